@@ -1,0 +1,43 @@
+//! Link materials.
+
+use super::Provenance;
+
+/// Classes of materials.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MaterialClass {
+    /// Metals and alloys.
+    Metal,
+    /// Fibre composites with a polymer matrix.
+    Composite,
+    /// Metal-matrix composites.
+    MetalMatrix,
+}
+
+/// One material. `None` is a figure the catalog does not give.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Name; unique in the catalog.
+    pub name: String,
+    /// Class.
+    pub class: MaterialClass,
+    /// Young's modulus along the link \[Pa\].
+    pub youngs_modulus_pa: f64,
+    /// Shear modulus \[Pa\]; for unidirectional composites G12.
+    pub shear_modulus_pa: Option<f64>,
+    /// Density \[kg/m³\].
+    pub density_kg_m3: f64,
+    /// Poisson's ratio.
+    pub poisson: Option<f64>,
+    /// Yield strength of a metal, strength of a composite \[Pa\].
+    pub strength_pa: Option<f64>,
+    /// What kind of strength that is.
+    pub strength_kind: String,
+    /// Cost of the raw material \[EUR/kg\].
+    pub cost_eur_per_kg: Option<f64>,
+    /// Behaviour in sea water and in air, in words.
+    pub corrosion_note: String,
+    /// Whether all fibres run along the link (its torsion and shear figures are then the lamina's).
+    pub unidirectional: bool,
+    /// Where the row comes from.
+    pub provenance: Provenance,
+}

@@ -1,0 +1,27 @@
+//! Armwright sizes high-precision robot arms.
+//!
+//! The rooms of the house, from the ground up; each knows only those before it:
+//!
+//! - [`fault`]: what is wrong with an input file, all of it at once, with file, line and field.
+//! - [`catalog`]: what can be bought: materials, profiles, gears, motors.
+//! - [`arm`]: what an arm is: the chain, sections, load cases, effects; the arm file.
+//! - [`mechanics`]: how it behaves: link (Eqs 1-6), statics (7, 13-15), modes (16-18).
+//! - [`sizing`]: which drive each joint needs, outward in (7-12).
+//! - [`search`]: the design space and its Pareto front.
+//! - [`report`]: numbers and pictures on paper: csv, json, svg, terminal.
+//! - [`study`]: named questions: read, resolve, run.
+//! - [`cli`]: the command line, one file a verb.
+//!
+//! Equation numbers are those of the paper the product grew from, *Mechanical analysis of high
+//! precision manipulator*. All quantities are SI and carry their unit in their name; conversion
+//! happens only where a file is read or written.
+
+pub mod arm;
+pub mod catalog;
+pub mod cli;
+pub mod fault;
+pub mod mechanics;
+pub mod report;
+pub mod search;
+pub mod sizing;
+pub mod study;
