@@ -1,0 +1,434 @@
+//! Reading the arm file.
+
+use super::load::vector;
+use super::{Arm, Curve, Effect, Element, Joint, Link, LinkBody, LinkMaterial, Section, Windup};
+use crate::catalog::{Catalogs, Gear, GearMass};
+use crate::fault::{Document, Faults, InputError, Node, Object};
+use nalgebra::{Unit, Vector3};
+use std::path::Path;
+
+const DEFAULT_GRAVITY_M_S2: f64 = 9.81;
+const DEFAULT_POISSON: f64 = 0.3;
+
+/// Reads an arm file; gears, motors and materials named in it are looked up in `catalogs`.
+///
+/// # Errors
+/// The file is missing, or all of its faults.
+pub fn read_arm(path: &Path, catalogs: &Catalogs) -> Result<Arm, InputError> {
+    Ok(read_arm_document(Document::read(path)?, catalogs)?)
+}
+
+/// Reads an arm from a parsed document.
+///
+/// # Errors
+/// All faults of the document at once.
+pub fn read_arm_document(document: Document, catalogs: &Catalogs) -> Result<Arm, Faults> {
+    let arm = arm(&document.root(), catalogs);
+    document.finish(arm)
+}
+
+/// Reads an arm from a node of a larger document.
+pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
+    let root = node.object(&["name", "gravity_m_s2", "materials", "chain", "effects", "provenance"])?;
+    let name = root.or("name", "arm".to_string(), |n| n.string().map(String::from));
+    let gravity = root.or("gravity_m_s2", DEFAULT_GRAVITY_M_S2, Node::non_negative);
+    let materials = root.or("materials", Vec::new(), read_materials).unwrap_or_default();
+    let chain = root.required("chain").and_then(|n| read_chain(&n, &materials, catalogs));
+    let effects = root.or("effects", Vec::new(), read_effects);
+    let arm = Arm { name: name?, gravity_m_s2: gravity?, chain: chain?, effects: effects? };
+    check_names(&arm, &root)?;
+    Some(arm)
+}
+
+type NamedMaterial = (String, LinkMaterial);
+
+fn read_materials(node: &Node) -> Option<Vec<NamedMaterial>> {
+    let read: Vec<_> =
+        node.entries()?.iter().map(|(name, n)| read_material(n).map(|m| (name.to_string(), m))).collect();
+    // a faulty material stays out of the list; its fault is already recorded
+    Some(read.into_iter().flatten().collect())
+}
+
+fn read_material(node: &Node) -> Option<LinkMaterial> {
+    let object = node.object(&["youngs_modulus_pa", "shear_modulus_pa", "density_kg_m3", "poisson"])?;
+    let positive = |key| object.required(key).and_then(|n| n.positive());
+    let (youngs, shear, density) =
+        (positive("youngs_modulus_pa"), positive("shear_modulus_pa"), positive("density_kg_m3"));
+    let poisson = object.or("poisson", DEFAULT_POISSON, |n| match n.number()? {
+        nu if (-1.0..=0.5).contains(&nu) => Some(nu),
+        nu => n.fault(format!("= {nu} is not a Poisson's ratio"), "give a number from -1 to 0.5"),
+    });
+    Some(LinkMaterial {
+        youngs_modulus_pa: youngs?,
+        shear_modulus_pa: shear?,
+        density_kg_m3: density?,
+        poisson: poisson?,
+    })
+}
+
+fn read_chain(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Vec<Element>> {
+    let items = node.array()?;
+    if items.is_empty() {
+        return node.fault("is empty", "an arm has at least one joint or link");
+    }
+    let read: Vec<_> = items.iter().map(|n| read_element(n, materials, catalogs)).collect();
+    read.into_iter().collect()
+}
+
+const JOINT_KEYS: [&str; 10] = [
+    "type",
+    "name",
+    "axis",
+    "stiffness_nm_per_rad",
+    "windup",
+    "gear",
+    "motor",
+    "gear_mass",
+    "mass_kg",
+    "coupled",
+];
+const LINK_KEYS: [&str; 6] = ["type", "name", "vector_m", "material", "section", "mass_kg"];
+
+fn read_element(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Element> {
+    let kind = node.value().get("type").and_then(|v| v.as_str());
+    match kind {
+        Some("joint") => read_joint(&node.object(&JOINT_KEYS)?, catalogs).map(Element::Joint),
+        Some("link") => read_link(&node.object(&LINK_KEYS)?, materials, catalogs).map(Element::Link),
+        _ => node.fault("has no \"type\" of \"joint\" or \"link\"", "add \"type\": \"joint\" or \"link\""),
+    }
+}
+
+fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<Joint> {
+    let name = read_name(object);
+    let axis = object.required("axis").and_then(|n| read_axis(&n));
+    let text = |key| object.or(key, None, |n| n.string().map(|s| Some(s.to_string())));
+    let (gear, motor) = (text("gear"), text("motor"));
+    let curve = read_curve(object, catalogs);
+    let mass_kg = read_joint_mass(object, catalogs);
+    let coupled = object.or("coupled", None, |n| read_coupling(n).map(Some));
+    Some(Joint {
+        name: name?,
+        axis: axis?,
+        curve: curve?,
+        mass_kg: mass_kg?,
+        gear: gear?,
+        motor: motor?,
+        coupled: coupled?,
+    })
+}
+
+fn read_name(object: &Object) -> Option<String> {
+    let node = object.required("name")?;
+    match node.string()? {
+        "" => node.fault("is empty", "give every element a name"),
+        name => Some(name.to_string()),
+    }
+}
+
+fn read_axis(node: &Node) -> Option<Unit<Vector3<f64>>> {
+    let axis = vector(node)?;
+    if (axis.norm_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
+        // already of unit length: kept to the last bit, so that a written arm reads back the same
+        return Some(Unit::new_unchecked(axis));
+    }
+    Unit::try_new(axis, 1e-9).or_else(|| {
+        node.fault("has no direction", "give a vector such as [0, 1, 0]; its length does not matter")
+    })
+}
+
+/// The torsion curve: explicit numbers first, else the gear's from the catalog.
+fn read_curve(object: &Object, catalogs: &Catalogs) -> Option<Curve> {
+    match (object.optional("stiffness_nm_per_rad"), object.optional("windup"), object.optional("gear")) {
+        (Some(stiffness), Some(_), _) => {
+            stiffness.fault("and \"windup\" are both given", "keep the one that holds")
+        }
+        (Some(stiffness), None, _) if stiffness.is_null() => Some(Curve::Rigid),
+        (Some(stiffness), None, _) => stiffness.positive().map(Curve::Linear),
+        (None, Some(windup), _) => read_windup(&windup).map(Curve::Windup),
+        (None, None, Some(gear)) => gear_windup(find_gear(&gear, catalogs)?, &gear).map(Curve::Windup),
+        (None, None, None) => object.node().fault(
+            "says nothing of its stiffness",
+            "add \"stiffness_nm_per_rad\" (null = rigid), \"windup\" or \"gear\"",
+        ),
+    }
+}
+
+fn read_windup(node: &Node) -> Option<Windup> {
+    let object = node.object(&["k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad", "t1_nm", "t2_nm"])?;
+    let positive = |key| object.required(key).and_then(|n| n.positive());
+    let [k1, k2, k3, t1, t2] =
+        ["k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad", "t1_nm", "t2_nm"].map(positive);
+    let windup =
+        Windup { k1_nm_per_rad: k1?, k2_nm_per_rad: k2?, k3_nm_per_rad: k3?, t1_nm: t1?, t2_nm: t2? };
+    if windup.t1_nm > windup.t2_nm {
+        return node.fault(
+            format!("t1_nm = {} is beyond t2_nm = {}", windup.t1_nm, windup.t2_nm),
+            "the first segment ends before the second",
+        );
+    }
+    Some(windup)
+}
+
+fn find_gear<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<&'c Gear> {
+    let name = node.string()?;
+    catalogs.gears.iter().find(|g| g.id == name).or_else(|| {
+        node.fault(
+            format!("gear \"{name}\" is not in the catalog"),
+            "write series-size-ratio, e.g. HFUC-58-100; `armwright catalog show gears` lists them",
+        )
+    })
+}
+
+/// The catalog's torsion curve of a gear, if all of it is known.
+pub(crate) fn windup_of(gear: &Gear) -> Option<Windup> {
+    Some(Windup {
+        k1_nm_per_rad: gear.k1_nm_per_rad?,
+        k2_nm_per_rad: gear.k2_nm_per_rad?,
+        k3_nm_per_rad: gear.k3_nm_per_rad?,
+        t1_nm: gear.t1_nm?,
+        t2_nm: gear.t2_nm?,
+    })
+}
+
+fn gear_windup(gear: &Gear, node: &Node) -> Option<Windup> {
+    windup_of(gear).or_else(|| {
+        node.fault(
+            format!("gear \"{}\" has no complete torsion curve", gear.id),
+            "give \"windup\" or \"stiffness_nm_per_rad\"",
+        )
+    })
+}
+
+/// The joint's mass: the number given, else gear plus motor from the catalog, else zero.
+fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f64> {
+    if let Some(mass) = object.optional("mass_kg") {
+        return mass.non_negative();
+    }
+    let which = object.or("gear_mass", GearMass::HousedUnit, |n| match n.string()? {
+        "component_set" => Some(GearMass::ComponentSet),
+        "housed_unit" => Some(GearMass::HousedUnit),
+        other => n.fault(format!("\"{other}\" is not known"), "choose one of: component_set, housed_unit"),
+    })?;
+    let gear = match object.optional("gear") {
+        Some(node) => part_mass(&node, find_gear(&node, catalogs)?.mass_kg(which))?,
+        None => 0.0,
+    };
+    let motor = match object.optional("motor") {
+        Some(node) => part_mass(&node, find_motor_mass(&node, catalogs)?)?,
+        None => 0.0,
+    };
+    Some(gear + motor)
+}
+
+fn find_motor_mass(node: &Node, catalogs: &Catalogs) -> Option<Option<f64>> {
+    let name = node.string()?;
+    catalogs.motors.iter().find(|m| m.id == name).map(|m| m.mass_kg).or_else(|| {
+        node.fault(
+            format!("motor \"{name}\" is not in the catalog"),
+            "`armwright catalog show motors` lists them; or give \"mass_kg\"",
+        )
+    })
+}
+
+fn part_mass(node: &Node, mass_kg: Option<f64>) -> Option<f64> {
+    mass_kg.or_else(|| node.fault("has no mass in the catalog", "give the joint's \"mass_kg\""))
+}
+
+fn read_coupling(node: &Node) -> Option<Vec<(String, f64)>> {
+    let read: Vec<_> =
+        node.entries()?.iter().map(|(name, n)| n.number().map(|f| (name.to_string(), f))).collect();
+    read.into_iter().collect()
+}
+
+fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Link> {
+    let name = read_name(object);
+    let vector_m = object.required("vector_m").and_then(|n| vector(&n));
+    let body = match object.optional("section") {
+        Some(section) => read_tube(object, &section, vector_m, materials, catalogs),
+        None => object.or("mass_kg", 0.0, Node::non_negative).map(|mass_kg| LinkBody::Offset { mass_kg }),
+    };
+    Some(Link { name: name?, vector_m: vector_m?, body: body? })
+}
+
+fn read_tube(
+    object: &Object,
+    section: &Node,
+    vector_m: Option<Vector3<f64>>,
+    materials: &[NamedMaterial],
+    catalogs: &Catalogs,
+) -> Option<LinkBody> {
+    if let Some(mass) = object.optional("mass_kg") {
+        mass.fault::<()>(
+            "stands beside a section",
+            "a tube's mass follows from section and density; remove it",
+        );
+    }
+    if vector_m.is_some_and(|v| v.norm() < 1e-6) {
+        object.node().fault::<()>("is a tube without length", "give a longer vector_m, or no section");
+    }
+    let section = read_section(section);
+    let material = object.required("material").and_then(|n| {
+        let name = n.string()?;
+        find_material(&n, name, materials, catalogs).map(|m| (name.to_string(), m))
+    });
+    let (material_name, material) = material?;
+    Some(LinkBody::Tube { material_name, material, section: section? })
+}
+
+fn find_material(
+    node: &Node,
+    name: &str,
+    materials: &[NamedMaterial],
+    catalogs: &Catalogs,
+) -> Option<LinkMaterial> {
+    if let Some((_, material)) = materials.iter().find(|(n, _)| n == name) {
+        return Some(*material);
+    }
+    let known: Vec<&str> = materials.iter().map(|(n, _)| n.as_str()).collect();
+    let Some(row) = catalogs.materials.iter().find(|m| m.name == name) else {
+        return node.fault(
+            format!("material \"{name}\" is not known"),
+            &format!(
+                "the file's materials: {}; `armwright catalog show materials` lists the catalog's",
+                known.join(", ")
+            ),
+        );
+    };
+    let Some(shear_modulus_pa) = row.shear_modulus_pa else {
+        return node
+            .fault(format!("material \"{name}\" has no shear modulus"), "add the material to the file");
+    };
+    Some(LinkMaterial {
+        youngs_modulus_pa: row.youngs_modulus_pa,
+        shear_modulus_pa,
+        density_kg_m3: row.density_kg_m3,
+        poisson: row.poisson.unwrap_or(DEFAULT_POISSON),
+    })
+}
+
+/// Reads a section object.
+pub(crate) fn read_section(node: &Node) -> Option<Section> {
+    let shape = node.value().get("shape").and_then(|v| v.as_str());
+    let section = match shape {
+        Some("rectangular_tube") => {
+            let object = node.object(&["shape", "width_m", "height_m", "wall_m"])?;
+            let [width, height, wall] =
+                ["width_m", "height_m", "wall_m"].map(|k| object.required(k).and_then(|n| n.positive()));
+            Section::RectangularTube { width_m: width?, height_m: height?, wall_m: wall? }
+        }
+        Some("round_tube") => {
+            let object = node.object(&["shape", "diameter_m", "wall_m"])?;
+            let [diameter, wall] =
+                ["diameter_m", "wall_m"].map(|k| object.required(k).and_then(|n| n.positive()));
+            Section::RoundTube { diameter_m: diameter?, wall_m: wall? }
+        }
+        _ => return node.fault("has no known \"shape\"", "choose one of: rectangular_tube, round_tube"),
+    };
+    let (width, height) = section.outer_m();
+    let wall = section.wall_m();
+    if 2.0 * wall >= width.min(height) {
+        return node.fault(
+            format!("wall_m = {wall} leaves no hollow in {width} x {height} m"),
+            "the wall is less than half of the smaller outer dimension",
+        );
+    }
+    Some(section)
+}
+
+fn read_effects(node: &Node) -> Option<Vec<Effect>> {
+    let read: Vec<_> = node.array()?.iter().map(read_effect).collect();
+    read.into_iter().collect()
+}
+
+fn read_effect(node: &Node) -> Option<Effect> {
+    let object = node.object(&["effect", "at", "parameters", "source"])?;
+    let text = |key| object.required(key).and_then(|n| n.string().map(String::from));
+    let (effect, at) = (text("effect"), text("at"));
+    let parameters = object.required("parameters").and_then(|n| read_parameters(&n));
+    let source = object.optional("source").map(|n| n.value().clone());
+    Some(Effect { effect: effect?, at: at?, parameters: parameters?, source })
+}
+
+fn read_parameters(node: &Node) -> Option<Vec<(String, Vec<f64>)>> {
+    let read: Vec<_> = node
+        .entries()?
+        .iter()
+        .map(|(name, n)| {
+            let numbers = match n.value().is_array() {
+                true => n.array()?.iter().map(Node::number).collect::<Option<Vec<_>>>()?,
+                false => vec![n.number()?],
+            };
+            Some((name.to_string(), numbers))
+        })
+        .collect();
+    read.into_iter().collect()
+}
+
+fn check_names(arm: &Arm, root: &Object) -> Option<()> {
+    let mut sound = true;
+    let names: Vec<&str> = arm.chain.iter().map(Element::name).collect();
+    let chain = root.required("chain")?.array()?;
+    for (i, name) in names.iter().enumerate() {
+        if names[..i].contains(name) {
+            chain[i]
+                .fault::<()>(format!("the name \"{name}\" is taken"), "give every element a name of its own");
+            sound = false;
+        }
+    }
+    let driven = arm.driven_joint_names();
+    for (element, node) in arm.chain.iter().zip(&chain) {
+        let Element::Joint(Joint { coupled: Some(terms), .. }) = element else { continue };
+        for (name, _) in terms.iter().filter(|(name, _)| !driven.contains(&name.as_str())) {
+            node.fault::<()>(
+                format!("is coupled to \"{name}\", which is no driven joint"),
+                &format!("driven joints: {}", driven.join(", ")),
+            );
+            sound = false;
+        }
+    }
+    sound.then_some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ARM: &str = r#"{"name": "two", "materials": {"steel": {"youngs_modulus_pa": 2.1e11,
+        "shear_modulus_pa": 8.1e10, "density_kg_m3": 7850}},
+      "chain": [
+       {"type": "joint", "name": "j2", "axis": [0,2,0], "stiffness_nm_per_rad": 607e3, "mass_kg": 12.2},
+       {"type": "link", "name": "upper", "vector_m": [0.8,0,0], "material": "steel",
+        "section": {"shape": "rectangular_tube", "width_m": 0.16, "height_m": 0.16, "wall_m": 0.01}}]}"#;
+
+    fn read(text: &str) -> Result<Arm, Faults> {
+        read_arm_document(Document::parse("arm.json", text)?, &Catalogs::default())
+    }
+
+    #[test]
+    fn an_arm_is_read_with_its_axis_normalised() {
+        let arm = read(ARM).expect("sound");
+        let joint = arm.joints().next().expect("one joint");
+        assert_eq!(joint.axis.into_inner(), Vector3::new(0.0, 1.0, 0.0));
+        assert!((arm.mass_kg() - (12.2 + 7850.0 * 0.006 * 0.8)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn every_fault_of_a_file_is_reported_with_its_line() {
+        let text = ARM
+            .replace("\"wall_m\": 0.01", "\"wall_m\": -0.01")
+            .replace("607e3", "-1")
+            .replace("\"material\": \"steel\"", "\"material\": \"steal\"")
+            .replace("\"axis\": [0,2,0]", "\"axis\": [0,0,0]");
+        let faults = read(&text).expect_err("four faults").0;
+        let lines: Vec<_> = faults.iter().map(|f| (f.line.expect("line"), f.field.as_str())).collect();
+        assert_eq!(
+            lines,
+            [
+                (4, "chain[0].axis"),
+                (4, "chain[0].stiffness_nm_per_rad"),
+                (6, "chain[1].section.wall_m"),
+                (5, "chain[1].material")
+            ]
+        );
+    }
+}

@@ -1,0 +1,166 @@
+//! How far a joint twists about its axis under a torque.
+
+/// The three-segment torsion curve of a harmonic-drive gear: odd in the torque, slope 1/K1 up to T1,
+/// 1/K2 up to T2, 1/K3 beyond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Windup {
+    /// Stiffness up to T1 \[N m/rad\].
+    pub k1_nm_per_rad: f64,
+    /// Stiffness between T1 and T2 \[N m/rad\].
+    pub k2_nm_per_rad: f64,
+    /// Stiffness beyond T2 \[N m/rad\].
+    pub k3_nm_per_rad: f64,
+    /// End of the first segment \[N m\].
+    pub t1_nm: f64,
+    /// End of the second segment \[N m\].
+    pub t2_nm: f64,
+}
+
+impl Windup {
+    /// Twist under the total torque \[rad\].
+    #[inline]
+    pub fn angle_rad(&self, torque_nm: f64) -> f64 {
+        let t = torque_nm.abs();
+        let first = t.min(self.t1_nm) / self.k1_nm_per_rad;
+        let second = (t.min(self.t2_nm) - self.t1_nm).max(0.0) / self.k2_nm_per_rad;
+        let third = (t - self.t2_nm).max(0.0) / self.k3_nm_per_rad;
+        (first + second + third).copysign(torque_nm)
+    }
+
+    /// Stiffness for a small further torque \[N m/rad\]; at a break point that of the segment below.
+    #[inline]
+    pub fn tangent_nm_per_rad(&self, torque_nm: f64) -> f64 {
+        let t = torque_nm.abs();
+        if t <= self.t1_nm {
+            self.k1_nm_per_rad
+        } else if t <= self.t2_nm {
+            self.k2_nm_per_rad
+        } else {
+            self.k3_nm_per_rad
+        }
+    }
+}
+
+/// A joint's torsion curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Curve {
+    /// No compliance.
+    Rigid,
+    /// One stiffness \[N m/rad\].
+    Linear(f64),
+    /// The three-segment curve of a gear.
+    Windup(Windup),
+}
+
+impl Curve {
+    /// Twist under the total torque \[rad\].
+    pub fn angle_rad(&self, torque_nm: f64) -> f64 {
+        match self {
+            Curve::Rigid => 0.0,
+            Curve::Linear(stiffness) => torque_nm / stiffness,
+            Curve::Windup(windup) => windup.angle_rad(torque_nm),
+        }
+    }
+
+    /// Twist per further torque \[rad/(N m)\].
+    pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
+        match self {
+            Curve::Rigid => 0.0,
+            Curve::Linear(stiffness) => 1.0 / stiffness,
+            Curve::Windup(windup) => 1.0 / windup.tangent_nm_per_rad(torque_nm),
+        }
+    }
+
+    /// The single number that stands for the curve in the paper's model: K2 of a gear.
+    pub fn middle_slope(&self) -> Curve {
+        match self {
+            Curve::Windup(windup) => Curve::Linear(windup.k2_nm_per_rad),
+            other => *other,
+        }
+    }
+}
+
+/// Play that closes smoothly: `theta += h tanh(T/Tc)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LostMotion {
+    /// Half width h \[rad\].
+    pub half_width_rad: f64,
+    /// Torque scale Tc \[N m\].
+    pub torque_nm: f64,
+}
+
+/// All that twists about a joint's axis, in series.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointLaw {
+    /// The gear.
+    pub curve: Curve,
+    /// Compliance of flange, shaft or bolts \[rad/(N m)\].
+    pub connection_rad_per_nm: f64,
+    /// Lost motion.
+    pub lost_motion: Option<LostMotion>,
+    /// Half width of the friction play \[rad\]; 0 = none. Without history: |T| rising from rest.
+    pub hysteresis_rad: f64,
+}
+
+impl From<Curve> for JointLaw {
+    fn from(curve: Curve) -> Self {
+        Self { curve, connection_rad_per_nm: 0.0, lost_motion: None, hysteresis_rad: 0.0 }
+    }
+}
+
+impl JointLaw {
+    /// Twist under the total torque \[rad\] without the friction play.
+    pub fn angle_rad(&self, torque_nm: f64) -> f64 {
+        let play = self.lost_motion.map_or(0.0, |l| l.half_width_rad * (torque_nm / l.torque_nm).tanh());
+        self.curve.angle_rad(torque_nm) + self.connection_rad_per_nm * torque_nm + play
+    }
+
+    /// Twist per further torque \[rad/(N m)\]; the friction play does not move in small oscillations.
+    pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
+        let play = self
+            .lost_motion
+            .map_or(0.0, |l| l.half_width_rad / l.torque_nm / (torque_nm / l.torque_nm).cosh().powi(2));
+        self.curve.tangent_compliance_rad_per_nm(torque_nm) + self.connection_rad_per_nm + play
+    }
+
+    /// Twist when the torque has risen from rest to `torque_nm` \[rad\]: the friction play holds back
+    /// up to its half width.
+    pub fn rising_angle_rad(&self, torque_nm: f64) -> f64 {
+        let angle = self.angle_rad(torque_nm);
+        angle - angle.clamp(-self.hysteresis_rad, self.hysteresis_rad)
+    }
+
+    /// Whether nothing twists.
+    pub fn is_rigid(&self) -> bool {
+        self.curve == Curve::Rigid && self.connection_rad_per_nm == 0.0 && self.lost_motion.is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HFUC_58: Windup = Windup {
+        k1_nm_per_rad: 400e3,
+        k2_nm_per_rad: 610e3,
+        k3_nm_per_rad: 710e3,
+        t1_nm: 168.0,
+        t2_nm: 598.0,
+    };
+
+    #[test]
+    fn the_curve_is_odd_continuous_and_has_the_segment_slopes() {
+        for t in [10.0, 168.0, 400.0, 598.0, 900.0] {
+            assert_eq!(HFUC_58.angle_rad(-t), -HFUC_58.angle_rad(t));
+            let step = 1e-6;
+            let slope = (HFUC_58.angle_rad(t + 2.0 * step) - HFUC_58.angle_rad(t + step)) / step;
+            assert!((slope * HFUC_58.tangent_nm_per_rad(t + step) - 1.0).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn the_papers_joint_2_twists_by_the_sum_of_two_segments() {
+        let by_hand = 168.0 / 400e3 + (568.3 - 168.0) / 610e3;
+        assert!((HFUC_58.angle_rad(568.3) - by_hand).abs() < 1e-15);
+    }
+}

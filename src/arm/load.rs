@@ -1,0 +1,139 @@
+//! What an arm carries in one case: a pose, a payload, a force at the tip, and the models to use.
+
+use super::{JointModel, LinkModel, Words};
+use crate::fault::{Document, Faults, Node, Object};
+use nalgebra::Vector3;
+use serde_json::{Value, json};
+
+/// What the arm holds. Centre and inertia are written in the last frame.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Payload {
+    /// Mass \[kg\].
+    pub mass_kg: f64,
+    /// Centre of gravity from the tip \[m\].
+    pub cg_m: Vector3<f64>,
+    /// Principal moments of inertia about the centre of gravity \[kg m²\].
+    pub inertia_about_cg_kgm2: Vector3<f64>,
+}
+
+/// One case an arm is analysed in.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadCase {
+    /// Name.
+    pub name: String,
+    /// One angle per driven joint, base to tip \[deg\] (as files write it).
+    pub pose_deg: Vec<f64>,
+    /// What the arm holds.
+    pub payload: Payload,
+    /// Force at the tip, world axes \[N\].
+    pub tip_force_n: Vector3<f64>,
+    /// Physics of the links.
+    pub links: LinkModel,
+    /// Physics of the joints.
+    pub joints: JointModel,
+}
+
+impl LoadCase {
+    /// The case as files write it.
+    pub fn to_json(&self) -> Value {
+        json!({
+            "name": self.name,
+            "pose_deg": self.pose_deg,
+            "payload": self.payload.to_json(),
+            "tip_force_n": self.tip_force_n.as_slice(),
+            "links": self.links.word(),
+            "joints": self.joints.word(),
+        })
+    }
+}
+
+impl Payload {
+    /// The payload as files write it.
+    pub fn to_json(&self) -> Value {
+        json!({
+            "mass_kg": self.mass_kg,
+            "cg_m": self.cg_m.as_slice(),
+            "inertia_about_cg_kgm2": self.inertia_about_cg_kgm2.as_slice(),
+        })
+    }
+
+    /// Reads a payload object.
+    pub fn read(node: &Node) -> Option<Self> {
+        let object = node.object(&["mass_kg", "cg_m", "inertia_about_cg_kgm2"])?;
+        let mass_kg = object.required("mass_kg").and_then(|n| n.non_negative());
+        let cg_m = object.or("cg_m", Vector3::zeros(), vector);
+        let inertia = object.or("inertia_about_cg_kgm2", Vector3::zeros(), read_inertia);
+        Some(Self { mass_kg: mass_kg?, cg_m: cg_m?, inertia_about_cg_kgm2: inertia? })
+    }
+}
+
+fn read_inertia(node: &Node) -> Option<Vector3<f64>> {
+    let inertia = vector(node)?;
+    match inertia.iter().all(|&i| i >= 0.0) {
+        true => Some(inertia),
+        false => {
+            node.fault("has a negative moment of inertia", "give [ixx, iyy, izz] in kg m², none negative")
+        }
+    }
+}
+
+/// A node as a vector of three numbers.
+pub(crate) fn vector(node: &Node) -> Option<Vector3<f64>> {
+    node.numbers::<3>().map(Vector3::from)
+}
+
+/// A node as one of the words of a choice.
+pub(crate) fn word<T: Words>(node: &Node) -> Option<T> {
+    let text = node.string()?;
+    T::from_word(text)
+        .or_else(|| node.fault(format!("\"{text}\" is not known"), &format!("choose one of: {}", T::words())))
+}
+
+/// Reads a `cases.json` document: an array of load cases for an arm with `driven_joints` angles.
+///
+/// # Errors
+/// All faults of the document at once.
+pub fn read_load_cases(document: Document, driven_joints: &[&str]) -> Result<Vec<LoadCase>, Faults> {
+    let cases = document.root().array().and_then(|items| {
+        let read: Vec<_> = items.iter().map(|item| read_case(item, driven_joints)).collect();
+        read.into_iter().collect::<Option<Vec<_>>>()
+    });
+    document.finish(cases)
+}
+
+fn read_case(node: &Node, driven_joints: &[&str]) -> Option<LoadCase> {
+    let object = node.object(&["name", "pose_deg", "payload", "tip_force_n", "links", "joints"])?;
+    let name = object.or("name", node.path().to_string(), |n| n.string().map(String::from));
+    let pose_deg = object.required("pose_deg").and_then(|n| read_pose(&n, driven_joints));
+    let payload = object.or("payload", Payload::default(), Payload::read);
+    let (tip_force_n, links, joints) = read_force_and_models(&object);
+    Some(LoadCase {
+        name: name?,
+        pose_deg: pose_deg?,
+        payload: payload?,
+        tip_force_n: tip_force_n?,
+        links: links?,
+        joints: joints?,
+    })
+}
+
+fn read_force_and_models(object: &Object) -> (Option<Vector3<f64>>, Option<LinkModel>, Option<JointModel>) {
+    (
+        object.or("tip_force_n", Vector3::zeros(), vector),
+        object.or("links", LinkModel::default(), word),
+        object.or("joints", JointModel::default(), word),
+    )
+}
+
+/// Reads a pose: one angle in degrees for each driven joint.
+pub(crate) fn read_pose(node: &Node, driven_joints: &[&str]) -> Option<Vec<f64>> {
+    let items = node.array()?;
+    if items.len() != driven_joints.len() {
+        return node.fault(
+            format!("has {} angles, the arm has {} driven joints", items.len(), driven_joints.len()),
+            &format!("give one angle in degrees for each of {}", driven_joints.join(", ")),
+        );
+    }
+    let angles: Vec<_> = items.iter().map(Node::number).collect();
+    angles.into_iter().collect()
+}

@@ -1,0 +1,150 @@
+//! The arm as mechanics sees it: pieces with their physics, effects applied, part names gone.
+
+use super::{Arm, Curve, Element, Joint, JointLaw, JointModel, Link, LinkBody, LinkMaterial, Section};
+use nalgebra::{Unit, Vector3};
+
+/// Everything mechanics needs to know of an arm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Structure {
+    /// Gravitational acceleration \[m/s²\].
+    pub gravity_m_s2: f64,
+    /// Tilt of the base about world x and y per moment \[rad/(N m)\].
+    pub base_tilt_rad_per_nm: f64,
+    /// The water the arm is in.
+    pub water: Option<Water>,
+    /// Joints and links from base to tip.
+    pub pieces: Vec<Piece>,
+}
+
+/// Water around the arm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Water {
+    /// Density of the water \[kg/m³\].
+    pub density_kg_m3: f64,
+    /// Added mass across a link over the mass of the water it displaces.
+    pub added_mass_coefficient: f64,
+    /// Density of the payload, for its buoyancy \[kg/m³\].
+    pub payload_density_kg_m3: f64,
+}
+
+/// One piece of the chain.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Piece {
+    /// A rotary joint.
+    Joint(JointPiece),
+    /// A link or a rigid offset.
+    Link(LinkPiece),
+}
+
+/// A rotary joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointPiece {
+    /// Name.
+    pub name: String,
+    /// Axis in the carried frame.
+    pub axis: Unit<Vector3<f64>>,
+    /// Twist about the axis.
+    pub law: JointLaw,
+    /// Tilt about the two axes across the joint's, per moment \[rad/(N m)\].
+    pub tilt_rad_per_nm: f64,
+    /// Point mass on the axis, inboard \[kg\].
+    pub mass_kg: f64,
+    /// Where the joint's angle comes from.
+    pub angle: JointAngle,
+}
+
+/// Where a joint's angle comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum JointAngle {
+    /// Entry of the pose.
+    Driven(usize),
+    /// Sum of factors times entries of the pose.
+    Coupled(Vec<(usize, f64)>),
+}
+
+impl JointAngle {
+    /// The joint's angle in a pose, in the pose's unit.
+    pub fn of(&self, pose: &[f64]) -> f64 {
+        match self {
+            JointAngle::Driven(index) => pose[*index],
+            JointAngle::Coupled(terms) => terms.iter().map(|(index, factor)| factor * pose[*index]).sum(),
+        }
+    }
+}
+
+/// A link or a rigid offset.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinkPiece {
+    /// Name.
+    pub name: String,
+    /// From root to end in the carried frame \[m\].
+    pub vector_m: Vector3<f64>,
+    /// The tube, if the link is one.
+    pub beam: Option<Beam>,
+    /// Point mass at mid-length \[kg\].
+    pub point_mass_kg: f64,
+    /// Cables and hoses along the axis \[kg/m\].
+    pub harness_kg_per_m: f64,
+}
+
+/// A straight tube of constant section.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Beam {
+    /// Elastic properties.
+    pub material: LinkMaterial,
+    /// Cross-section.
+    pub section: Section,
+    /// Factor on every compliance: 1 as built, 0 rigid.
+    pub flexibility: f64,
+}
+
+impl Arm {
+    /// The arm as mechanics sees it, with the joint curves the model asks for.
+    pub fn structure(&self, joints: JointModel) -> Structure {
+        let driven = self.driven_joint_names();
+        let pieces = self
+            .chain
+            .iter()
+            .map(|element| match element {
+                Element::Joint(joint) => Piece::Joint(joint_piece(joint, &driven, joints)),
+                Element::Link(link) => Piece::Link(link_piece(link)),
+            })
+            .collect();
+        Structure { gravity_m_s2: self.gravity_m_s2, base_tilt_rad_per_nm: 0.0, water: None, pieces }
+    }
+}
+
+fn joint_piece(joint: &Joint, driven: &[&str], model: JointModel) -> JointPiece {
+    let index = |name: &str| driven.iter().position(|d| *d == name);
+    let angle = match &joint.coupled {
+        None => JointAngle::Driven(index(&joint.name).unwrap_or_default()),
+        Some(terms) => {
+            JointAngle::Coupled(terms.iter().filter_map(|(name, f)| Some((index(name)?, *f))).collect())
+        }
+    };
+    JointPiece {
+        name: joint.name.clone(),
+        axis: joint.axis,
+        law: JointLaw::from(curve(joint.curve, model)),
+        tilt_rad_per_nm: 0.0,
+        mass_kg: joint.mass_kg,
+        angle,
+    }
+}
+
+fn curve(curve: Curve, model: JointModel) -> Curve {
+    match model {
+        JointModel::K2 => curve.middle_slope(),
+        JointModel::ThreeSegment => curve,
+    }
+}
+
+fn link_piece(link: &Link) -> LinkPiece {
+    let (beam, point_mass_kg) = match &link.body {
+        LinkBody::Tube { material, section, .. } => {
+            (Some(Beam { material: *material, section: *section, flexibility: 1.0 }), 0.0)
+        }
+        LinkBody::Offset { mass_kg } => (None, *mass_kg),
+    };
+    LinkPiece { name: link.name.clone(), vector_m: link.vector_m, beam, point_mass_kg, harness_kg_per_m: 0.0 }
+}

@@ -1,0 +1,123 @@
+//! Writing the arm file.
+
+use super::{Arm, Curve, Effect, Element, Joint, Link, LinkBody, Section};
+use serde_json::{Map, Value, json};
+
+impl Arm {
+    /// The arm as its file: every part resolved to numbers, part names kept beside them. Reading it
+    /// back gives the same arm to the last digit.
+    pub fn to_json(&self) -> Value {
+        json!({
+            "name": self.name,
+            "gravity_m_s2": self.gravity_m_s2,
+            "materials": self.materials_json(),
+            "chain": self.chain.iter().map(Element::to_json).collect::<Vec<_>>(),
+            "effects": self.effects.iter().map(Effect::to_json).collect::<Vec<_>>(),
+        })
+    }
+
+    fn materials_json(&self) -> Value {
+        let mut map = Map::new();
+        for link in self.links() {
+            if let LinkBody::Tube { material_name, material, .. } = &link.body {
+                map.insert(
+                    material_name.clone(),
+                    json!({
+                        "youngs_modulus_pa": material.youngs_modulus_pa,
+                        "shear_modulus_pa": material.shear_modulus_pa,
+                        "density_kg_m3": material.density_kg_m3,
+                        "poisson": material.poisson,
+                    }),
+                );
+            }
+        }
+        Value::Object(map)
+    }
+}
+
+impl Element {
+    fn to_json(&self) -> Value {
+        match self {
+            Element::Joint(joint) => joint.to_json(),
+            Element::Link(link) => link.to_json(),
+        }
+    }
+}
+
+impl Joint {
+    fn to_json(&self) -> Value {
+        let mut map = Map::new();
+        map.insert("type".into(), json!("joint"));
+        map.insert("name".into(), json!(self.name));
+        map.insert("axis".into(), json!(self.axis.as_slice()));
+        match &self.curve {
+            Curve::Rigid => map.insert("stiffness_nm_per_rad".into(), Value::Null),
+            Curve::Linear(k) => map.insert("stiffness_nm_per_rad".into(), json!(k)),
+            Curve::Windup(w) => map.insert(
+                "windup".into(),
+                json!({
+                    "k1_nm_per_rad": w.k1_nm_per_rad, "k2_nm_per_rad": w.k2_nm_per_rad,
+                    "k3_nm_per_rad": w.k3_nm_per_rad, "t1_nm": w.t1_nm, "t2_nm": w.t2_nm,
+                }),
+            ),
+        };
+        map.insert("mass_kg".into(), json!(self.mass_kg));
+        for (key, part) in [("gear", &self.gear), ("motor", &self.motor)] {
+            if let Some(part) = part {
+                map.insert(key.into(), json!(part));
+            }
+        }
+        if let Some(terms) = &self.coupled {
+            let terms: Map<String, Value> = terms.iter().map(|(n, f)| (n.clone(), json!(f))).collect();
+            map.insert("coupled".into(), Value::Object(terms));
+        }
+        Value::Object(map)
+    }
+}
+
+impl Link {
+    fn to_json(&self) -> Value {
+        let vector_m = self.vector_m.as_slice();
+        match &self.body {
+            LinkBody::Tube { material_name, section, .. } => json!({
+                "type": "link", "name": self.name, "vector_m": vector_m,
+                "material": material_name, "section": section.to_json(),
+            }),
+            LinkBody::Offset { mass_kg } => json!({
+                "type": "link", "name": self.name, "vector_m": vector_m, "mass_kg": mass_kg,
+            }),
+        }
+    }
+}
+
+impl Section {
+    /// The section as files write it.
+    pub fn to_json(&self) -> Value {
+        match self {
+            Section::RectangularTube { width_m, height_m, wall_m } => json!({
+                "shape": "rectangular_tube", "width_m": width_m, "height_m": height_m, "wall_m": wall_m,
+            }),
+            Section::RoundTube { diameter_m, wall_m } => json!({
+                "shape": "round_tube", "diameter_m": diameter_m, "wall_m": wall_m,
+            }),
+        }
+    }
+}
+
+impl Effect {
+    fn to_json(&self) -> Value {
+        let parameters: Map<String, Value> = self
+            .parameters
+            .iter()
+            .map(|(name, numbers)| match numbers.as_slice() {
+                [one] => (name.clone(), json!(one)),
+                many => (name.clone(), json!(many)),
+            })
+            .collect();
+        let mut value = json!({"effect": self.effect, "at": self.at, "parameters": parameters});
+        if let Some(source) = &self.source {
+            value["source"] = source.clone();
+        }
+        value
+    }
+}

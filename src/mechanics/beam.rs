@@ -1,0 +1,300 @@
+//! A link as strain coordinates.
+//!
+//! Along the link, `ξ = x/L` in 0..1, each strain is a sum of Legendre polynomials `P_i(2ξ-1)`:
+//! curvature in both planes, shear in both planes, twist rate and axial strain. Slopes and
+//! displacements are their integrals from the clamped root. Because Legendre polynomials are
+//! orthogonal the stiffness matrix is diagonal, and because of the integrals only the lowest
+//! polynomials move the link's end: curvature `P_0, P_1`, all others `P_0`; the rest are inner shapes.
+//!
+//! | strain | coordinates | compliance of the i-th | what it moves |
+//! |---|---|---|---|
+//! | curvature | 4 a plane | `(2i+1)/(E I L)` | deflection `L² ∬P_i`, slope `L ∫P_i` |
+//! | shear | 2 a plane | `(2i+1)/(κ G A L)` | deflection `L ∫P_i` |
+//! | twist | 2 | `(2i+1)/(G J L)` | rotation `L ∫P_i` |
+//! | stretch | 2 | `(2i+1)/(E A L)` | displacement `L ∫P_i` |
+//!
+//! The space holds the exact deflection under end force, end moment and uniform load (Eqs 1-4 and
+//! their Timoshenko counterparts), so statics are exact; it converges on frequencies from above. The
+//! inertia does not depend on the stiffness, so frequencies rise with every stiffness and fall with
+//! every mass, which the exact search relies on.
+
+use crate::arm::{Beam, LinkModel, LinkPiece, Structure};
+use nalgebra::{DMatrix, Matrix3, Matrix6xX, SMatrix, Vector3};
+
+/// Polynomials of curvature in each plane.
+pub const CURVATURES: usize = 4;
+/// Polynomials of shear (each plane), twist and stretch.
+pub const OTHERS: usize = 2;
+/// Gauss-Legendre points: exact to degree 15, the integrands here end at degree 10.
+const GAUSS: [(f64, f64); 8] = [
+    (0.019_855_071_751_231_9, 0.050_614_268_145_188_1),
+    (0.101_666_761_293_186_6, 0.111_190_517_226_687_2),
+    (0.237_233_795_041_835_5, 0.156_853_322_938_943_6),
+    (0.408_282_678_752_175_1, 0.181_341_891_689_181),
+    (0.591_717_321_247_824_9, 0.181_341_891_689_181),
+    (0.762_766_204_958_164_5, 0.156_853_322_938_943_6),
+    (0.898_333_238_706_813_4, 0.111_190_517_226_687_2),
+    (0.980_144_928_248_768_1, 0.050_614_268_145_188_1),
+];
+
+/// What one coordinate strains.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Strain {
+    /// Curvature that moves the link along its section's z.
+    CurvatureZ,
+    /// Curvature that moves the link along its section's y.
+    CurvatureY,
+    /// Shear along z.
+    ShearZ,
+    /// Shear along y.
+    ShearY,
+    /// Twist about the link.
+    Twist,
+    /// Stretch along the link.
+    Stretch,
+}
+
+/// Mass and rotary inertia per length.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LineInertia {
+    /// Mass per length that moves along the link \[kg/m\].
+    pub along_kg_per_m: f64,
+    /// Mass per length that moves across the link, added water included \[kg/m\].
+    pub across_kg_per_m: f64,
+    /// Rotary inertia per length about the link \[kg m\].
+    pub polar_kg_m: f64,
+    /// Rotary inertia per length about the section's y \[kg m\].
+    pub rotary_y_kg_m: f64,
+    /// Rotary inertia per length about the section's z \[kg m\].
+    pub rotary_z_kg_m: f64,
+}
+
+/// A link prepared for any pose: all that does not depend on where it is.
+#[derive(Debug, Clone)]
+pub struct PreparedBeam {
+    /// Length \[m\].
+    pub length_m: f64,
+    /// Section frame (columns x, y, z) in the carried frame.
+    pub frame: Matrix3<f64>,
+    /// Compliance of each coordinate.
+    pub compliances: Vec<f64>,
+    /// Displacement (rows 0-2) and rotation (rows 3-5) of the end per coordinate, section frame.
+    pub end_fields: Matrix6xX<f64>,
+    /// Integral of the displacement over the length per coordinate, section frame \[m² per unit\].
+    pub area_fields: Matrix6xX<f64>,
+    /// Inertia over (root translation, root rotation, coordinates), section frame.
+    pub inertia: DMatrix<f64>,
+    /// Net weight per length \[N/m\], buoyancy taken off.
+    pub weight_n_per_m: f64,
+    coordinates: Vec<(Strain, usize)>,
+    line: LineInertia,
+}
+
+impl PreparedBeam {
+    /// Prepares a link, or `None` for a massless rigid offset or one without length.
+    pub fn new(link: &LinkPiece, structure: &Structure, model: LinkModel) -> Option<Self> {
+        let length_m = link.vector_m.norm();
+        if length_m == 0.0 || (link.beam.is_none() && link.harness_kg_per_m == 0.0) {
+            return None;
+        }
+        let stiffness = link.beam.map_or_else(Vec::new, |beam| coordinates(&beam, length_m, model));
+        let line = line_inertia(link, structure, model);
+        let mut beam = Self {
+            length_m,
+            frame: section_frame(&link.vector_m),
+            compliances: stiffness.iter().map(|(_, _, c)| *c).collect(),
+            end_fields: Matrix6xX::zeros(0),
+            area_fields: Matrix6xX::zeros(0),
+            inertia: DMatrix::zeros(0, 0),
+            weight_n_per_m: weight_n_per_m(link, structure),
+            coordinates: stiffness.iter().map(|(s, i, _)| (*s, *i)).collect(),
+            line,
+        };
+        beam.end_fields = beam.fields(1.0).columns_range(6..).into_owned();
+        beam.integrate();
+        Some(beam)
+    }
+
+    /// Displacement (rows 0-2) and rotation (rows 3-5) at `xi` per unit of root translation (columns
+    /// 0-2), root rotation (3-5) and each coordinate (6 and on), section frame.
+    pub fn fields(&self, xi: f64) -> Matrix6xX<f64> {
+        let mut out = Matrix6xX::zeros(6 + self.coordinates.len());
+        out.fill_with_identity();
+        let x = xi * self.length_m;
+        // rotation about y lowers the link, about z moves it along y
+        out[(2, 4)] = -x;
+        out[(1, 5)] = x;
+        for (column, &(strain, degree)) in self.coordinates.iter().enumerate() {
+            let (slope, deflection) = shape(degree, xi, self.length_m);
+            let mut field = out.column_mut(6 + column);
+            match strain {
+                Strain::CurvatureZ => (field[2], field[4]) = (deflection, -slope),
+                Strain::CurvatureY => (field[1], field[5]) = (deflection, slope),
+                Strain::ShearZ => field[2] = slope,
+                Strain::ShearY => field[1] = slope,
+                Strain::Twist => field[3] = slope,
+                Strain::Stretch => field[0] = slope,
+            }
+        }
+        out
+    }
+
+    /// Inertia per length of each displacement and rotation component.
+    pub fn line_densities(&self) -> [f64; 6] {
+        let l = &self.line;
+        [
+            l.along_kg_per_m,
+            l.across_kg_per_m,
+            l.across_kg_per_m,
+            l.polar_kg_m,
+            l.rotary_y_kg_m,
+            l.rotary_z_kg_m,
+        ]
+    }
+
+    /// Gauss points with weights times length.
+    pub fn quadrature(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        GAUSS.iter().map(|&(xi, weight)| (xi, weight * self.length_m))
+    }
+
+    fn integrate(&mut self) {
+        let n = 6 + self.coordinates.len();
+        let densities = self.line_densities();
+        let mut inertia = DMatrix::zeros(n, n);
+        let mut areas = Matrix6xX::zeros(n - 6);
+        for (xi, weight) in self.quadrature() {
+            let fields = self.fields(xi);
+            areas += weight * fields.columns_range(6..);
+            let weighted =
+                SMatrix::<f64, 6, 6>::from_diagonal(&(weight * nalgebra::Vector6::from(densities)));
+            inertia += fields.transpose() * (weighted * &fields);
+        }
+        self.inertia = inertia;
+        self.area_fields = areas;
+    }
+}
+
+/// Slope `L ∫P_i` and deflection `L² ∬P_i` at `xi`, both zero at the root.
+fn shape(degree: usize, xi: f64, length_m: f64) -> (f64, f64) {
+    let (slope, deflection) = match degree {
+        0 => (xi, xi * xi / 2.0),
+        1 => (xi * (xi - 1.0), xi * xi * (2.0 * xi - 3.0) / 6.0),
+        2 => (xi * (xi - 1.0) * (2.0 * xi - 1.0), xi * xi * (xi - 1.0).powi(2) / 2.0),
+        _ => (
+            xi * (xi - 1.0) * (1.0 + 5.0 * xi * (xi - 1.0)),
+            xi * xi * (xi - 1.0).powi(2) * (2.0 * xi - 1.0) / 2.0,
+        ),
+    };
+    (length_m * slope, length_m * length_m * deflection)
+}
+
+/// The section frame of a link along `vector_m`, in the carried frame.
+pub fn section_frame(vector_m: &Vector3<f64>) -> Matrix3<f64> {
+    let x = vector_m.normalize();
+    let up = if x.z.abs() > 0.99 { Vector3::x() } else { Vector3::z() };
+    let z = (up - x * x.dot(&up)).normalize();
+    Matrix3::from_columns(&[x, z.cross(&x), z])
+}
+
+/// The strain coordinates of a tube with their compliances.
+fn coordinates(beam: &Beam, length_m: f64, model: LinkModel) -> Vec<(Strain, usize, f64)> {
+    let material = &beam.material;
+    let section = beam.section.properties(material.poisson);
+    let (e, g) = (material.youngs_modulus_pa, material.shear_modulus_pa);
+    let shear = section.shear_factor * g * section.area_m2;
+    let bending = [
+        (Strain::CurvatureZ, CURVATURES, e * section.second_moment_y_m4),
+        (Strain::CurvatureY, CURVATURES, e * section.second_moment_z_m4),
+    ];
+    let rest = [
+        (Strain::ShearZ, OTHERS, shear),
+        (Strain::ShearY, OTHERS, shear),
+        (Strain::Twist, OTHERS, g * section.torsion_constant_m4),
+        (Strain::Stretch, OTHERS, e * section.area_m2),
+    ];
+    let strains = match model {
+        LinkModel::Rigid => vec![],
+        LinkModel::Bending => bending.to_vec(),
+        LinkModel::Full => [bending.as_slice(), rest.as_slice()].concat(),
+    };
+    strains
+        .into_iter()
+        .flat_map(|(strain, count, stiffness)| {
+            (0..count)
+                .map(move |i| (strain, i, beam.flexibility * (2 * i + 1) as f64 / (stiffness * length_m)))
+        })
+        .collect()
+}
+
+fn line_inertia(link: &LinkPiece, structure: &Structure, model: LinkModel) -> LineInertia {
+    let Some(beam) = link.beam else {
+        return LineInertia {
+            along_kg_per_m: link.harness_kg_per_m,
+            across_kg_per_m: link.harness_kg_per_m,
+            ..LineInertia::default()
+        };
+    };
+    let section = beam.section.properties(beam.material.poisson);
+    let density = beam.material.density_kg_m3;
+    let along = density * section.area_m2 + link.harness_kg_per_m;
+    let added =
+        structure.water.map_or(0.0, |w| w.added_mass_coefficient * w.density_kg_m3 * section.outer_area_m2);
+    // Euler-Bernoulli has no rotary inertia across the beam; its spin about itself remains
+    let across = if model == LinkModel::Bending { 0.0 } else { density };
+    LineInertia {
+        along_kg_per_m: along,
+        across_kg_per_m: along + added,
+        polar_kg_m: density * (section.second_moment_y_m4 + section.second_moment_z_m4),
+        rotary_y_kg_m: across * section.second_moment_y_m4,
+        rotary_z_kg_m: across * section.second_moment_z_m4,
+    }
+}
+
+fn weight_n_per_m(link: &LinkPiece, structure: &Structure) -> f64 {
+    let (mass, displaced) = link.beam.map_or((0.0, 0.0), |beam| {
+        let section = beam.section.properties(beam.material.poisson);
+        let water = structure.water.map_or(0.0, |w| w.density_kg_m3);
+        (beam.material.density_kg_m3 * section.area_m2, water * section.outer_area_m2)
+    });
+    structure.gravity_m_s2 * (mass + link.harness_kg_per_m - displaced)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_lowest_shapes_move_the_end() {
+        assert_eq!(shape(0, 1.0, 2.0), (2.0, 2.0));
+        assert_eq!(shape(1, 1.0, 1.0), (0.0, -1.0 / 6.0));
+        assert_eq!(shape(2, 1.0, 1.0), (0.0, 0.0));
+        assert_eq!(shape(3, 1.0, 1.0), (0.0, 0.0));
+    }
+
+    #[test]
+    fn shapes_are_integrals_of_legendre_polynomials() {
+        let legendre = |i: usize, xi: f64| {
+            let s = 2.0 * xi - 1.0;
+            [1.0, s, (3.0 * s * s - 1.0) / 2.0, (5.0 * s.powi(3) - 3.0 * s) / 2.0][i]
+        };
+        let step = 1e-4;
+        for degree in 0..4 {
+            for xi in [0.1, 0.35, 0.8] {
+                let (slope, _) = shape(degree, xi, 1.0);
+                let (_, ahead) = shape(degree, xi + step, 1.0);
+                let (_, behind) = shape(degree, xi - step, 1.0);
+                let (_, here) = shape(degree, xi, 1.0);
+                assert!(((ahead - behind) / (2.0 * step) - slope).abs() < 1e-7, "slope {degree}");
+                let curvature = (ahead - 2.0 * here + behind) / (step * step);
+                assert!((curvature - legendre(degree, xi)).abs() < 1e-5, "curvature {degree}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_vertical_link_takes_its_section_frame_from_the_carried_x_axis() {
+        let frame = section_frame(&Vector3::new(0.0, 0.0, 0.5));
+        assert_eq!(frame.column(2).into_owned(), Vector3::x());
+        assert_eq!(frame.column(1).into_owned(), Vector3::x().cross(&Vector3::z()));
+    }
+}

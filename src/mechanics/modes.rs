@@ -1,0 +1,277 @@
+//! Natural frequencies (Eqs 16-18): motor shafts locked, no damping, no gravity stiffness.
+//!
+//! With diagonal compliance `C` of the strain coordinates and their mass matrix `M`, the symmetric
+//! matrix `A = C^½ M C^½` has eigenvalues `1/ω²`. `M` may be singular (a point mass on a roll axis):
+//! those eigenvalues vanish and their modes are not returned.
+
+use super::chain::{ElasticElement, Item, Posed};
+use super::statics::Statics;
+use super::{Twist, displacement_at};
+use nalgebra::{DMatrix, DVector, Matrix6, Matrix6xX, SymmetricEigen, Vector3};
+use std::f64::consts::TAU;
+
+/// One natural mode.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mode {
+    /// Natural frequency \[Hz\].
+    pub frequency_hz: f64,
+    /// `xz`, `xy` or `yz` if 99 % of the kinetic energy lies in that world plane.
+    pub plane: Option<&'static str>,
+    /// Each element's part of the strain energy, base to tip; the parts sum to 1.
+    pub strain_energy: Vec<(String, f64)>,
+    /// Displacement of the tip, scaled so that the strain energy of the mode is ½ J \[m\].
+    pub tip_shape_m: Vector3<f64>,
+}
+
+/// The modal solution of an arm in a pose: every mode of the model, lowest first.
+#[derive(Debug, Clone)]
+pub struct Modes {
+    /// `1/ω²` of each mode, largest first, those without inertia included as zeros.
+    pub(crate) inverse_squares: Vec<f64>,
+    /// Coordinates of each mode, scaled to a strain energy of ½ J.
+    pub(crate) shapes: DMatrix<f64>,
+}
+
+/// Modes slower than this part of the stiffest inertia-carrying mode are numerical zeros.
+const SINGULAR: f64 = 1e-13;
+/// Part of the kinetic energy that must lie in a plane for the mode to be called planar.
+const PLANAR: f64 = 0.99;
+
+impl Posed<'_> {
+    /// The `count` lowest modes about the static state; fewer if the arm has fewer with inertia.
+    pub fn modes(&self, statics: &Statics, count: usize) -> Vec<Mode> {
+        let modes = self.solve_modes(statics);
+        modes
+            .finite()
+            .take(count)
+            .map(|(k, frequency_hz)| {
+                self.describe(statics, &modes.shapes.column(k).into_owned(), frequency_hz)
+            })
+            .collect()
+    }
+
+    /// The lowest frequency \[Hz\]; infinite for an arm in which nothing both yields and weighs.
+    pub fn lowest_frequency_hz(&self, statics: &Statics) -> f64 {
+        let a = self.flexibility_form(statics).0;
+        let largest = a.symmetric_eigenvalues().iter().copied().fold(0.0, f64::max);
+        1.0 / (largest.sqrt() * TAU)
+    }
+
+    /// All eigenpairs of the flexibility form.
+    pub fn solve_modes(&self, statics: &Statics) -> Modes {
+        let (a, roots) = self.flexibility_form(statics);
+        let eigen = SymmetricEigen::new(a);
+        let mut order: Vec<usize> = (0..roots.len()).collect();
+        order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]).then(i.cmp(&j)));
+        let mut shapes = DMatrix::zeros(roots.len(), roots.len());
+        for (k, &i) in order.iter().enumerate() {
+            shapes.set_column(k, &eigen.eigenvectors.column(i).component_mul(&roots));
+        }
+        Modes { inverse_squares: order.iter().map(|&i| eigen.eigenvalues[i].max(0.0)).collect(), shapes }
+    }
+
+    /// `C^½ M C^½` and the diagonal of `C^½`.
+    fn flexibility_form(&self, statics: &Statics) -> (DMatrix<f64>, DVector<f64>) {
+        let roots = DVector::from_iterator(
+            statics.tangent_compliances.iter().map(Vec::len).sum(),
+            statics.tangent_compliances.iter().flatten().map(|c| c.sqrt()),
+        );
+        let mut a = self.mass_matrix();
+        for (mut column, root) in a.column_iter_mut().zip(roots.iter()) {
+            column.component_mul_assign(&roots);
+            column *= *root;
+        }
+        (a, roots)
+    }
+
+    /// The elastic elements, base to tip.
+    pub fn elements(&self) -> impl Iterator<Item = &ElasticElement> {
+        self.items.iter().filter_map(|item| match item {
+            Item::Elastic(element) => Some(element),
+            Item::Body(_) => None,
+        })
+    }
+
+    /// Mass matrix over all coordinates, base to tip: the composite inertia outboard of each element
+    /// seen by its twists and by the twists inboard of it.
+    pub fn mass_matrix(&self) -> DMatrix<f64> {
+        let twists: Vec<Twist> = self.elements().flat_map(|e| e.twists.iter().copied()).collect();
+        let mut mass = DMatrix::zeros(twists.len(), twists.len());
+        let mut outboard = Matrix6::zeros();
+        let mut end = twists.len();
+        for item in self.items.iter().rev() {
+            match item {
+                Item::Body(body) => outboard += body.inertia(),
+                Item::Elastic(element) => {
+                    let start = end - element.twists.len();
+                    add_element(&mut mass, element, &outboard, start, &twists);
+                    end = start;
+                    if let Some(own) = &element.own {
+                        outboard += own.rigid;
+                    }
+                }
+            }
+        }
+        mass
+    }
+
+    fn describe(&self, statics: &Statics, shape: &DVector<f64>, frequency_hz: f64) -> Mode {
+        Mode {
+            frequency_hz,
+            plane: self.plane(shape),
+            strain_energy: self.strain_energy(statics, shape),
+            tip_shape_m: self.tip_motion(shape),
+        }
+    }
+
+    /// Displacement of the tip in a shape \[m\].
+    pub(crate) fn tip_motion(&self, shape: &DVector<f64>) -> Vector3<f64> {
+        let motion: Twist =
+            self.elements().flat_map(|e| &e.twists).zip(shape.iter()).map(|(t, q)| t * *q).sum();
+        displacement_at(&motion, &self.tip_m)
+    }
+
+    /// Each element's part of the strain energy: the sum of `q²/c` over its coordinates.
+    fn strain_energy(&self, statics: &Statics, shape: &DVector<f64>) -> Vec<(String, f64)> {
+        let mut coordinate = shape.iter();
+        let mut parts: Vec<(String, f64)> = self
+            .elements()
+            .zip(&statics.tangent_compliances)
+            .map(|(element, compliances)| {
+                let energy = compliances
+                    .iter()
+                    .zip(coordinate.by_ref())
+                    .filter(|(c, _)| **c > 0.0)
+                    .map(|(c, q)| q * q / c)
+                    .sum();
+                (element.name.clone(), energy)
+            })
+            .collect();
+        let total: f64 = parts.iter().map(|(_, e)| e).sum();
+        parts.iter_mut().for_each(|(_, e)| *e /= total);
+        parts
+    }
+
+    /// The world plane in which the mode moves, if there is one.
+    fn plane(&self, shape: &DVector<f64>) -> Option<&'static str> {
+        const PLANES: [(&str, usize); 3] = [("xz", 1), ("xy", 2), ("yz", 0)];
+        let mut energy = PlaneEnergy::default();
+        let mut motion = Twist::zeros();
+        let mut coordinate = shape.iter();
+        for item in &self.items {
+            match item {
+                Item::Body(body) => energy.add_body(body, &motion),
+                Item::Elastic(element) => {
+                    let rates: Vec<f64> = coordinate.by_ref().take(element.twists.len()).copied().collect();
+                    if let Some(own) = &element.own {
+                        energy.add_link(self, own, &motion, &rates);
+                    }
+                    motion += element.twists.iter().zip(&rates).map(|(t, q)| t * *q).sum::<Twist>();
+                }
+            }
+        }
+        PLANES.iter().find(|(_, normal)| energy.fraction(*normal) >= PLANAR).map(|(name, _)| *name)
+    }
+}
+
+impl Modes {
+    /// Index and frequency \[Hz\] of each mode that carries inertia, lowest first.
+    pub fn finite(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let floor = SINGULAR * self.inverse_squares.first().copied().unwrap_or(0.0);
+        self.inverse_squares
+            .iter()
+            .enumerate()
+            .take_while(move |(_, mu)| **mu > floor)
+            .map(|(k, mu)| (k, 1.0 / (mu.sqrt() * TAU)))
+    }
+}
+
+fn add_element(
+    mass: &mut DMatrix<f64>,
+    element: &ElasticElement,
+    outboard: &Matrix6<f64>,
+    start: usize,
+    twists: &[Twist],
+) {
+    let n = element.twists.len();
+    let mut momentum = Matrix6xX::zeros(n);
+    for (mut column, twist) in momentum.column_iter_mut().zip(&element.twists) {
+        column.copy_from(&(outboard * twist));
+    }
+    for (j, i) in (0..n).flat_map(|j| (0..=j).map(move |i| (j, i))) {
+        let inner = element.own.as_ref().map_or(0.0, |own| own.inner[(i, j)]);
+        let entry = element.twists[i].dot(&momentum.column(j)) + inner;
+        mass[(start + i, start + j)] = entry;
+        mass[(start + j, start + i)] = entry;
+    }
+    if let Some(own) = &element.own {
+        momentum += &own.coupling;
+    }
+    for (j, i) in (0..n).flat_map(|j| (0..start).map(move |i| (j, i))) {
+        let entry = twists[i].dot(&momentum.column(j));
+        mass[(i, start + j)] = entry;
+        mass[(start + j, i)] = entry;
+    }
+}
+
+/// Kinetic energy of a shape, in all and within the plane across each world axis.
+#[derive(Default)]
+struct PlaneEnergy {
+    total: f64,
+    within: [f64; 3],
+}
+
+impl PlaneEnergy {
+    fn add_body(&mut self, body: &super::chain::Body, motion: &Twist) {
+        let velocity = displacement_at(motion, &body.cg_m);
+        let spin = super::angular(motion);
+        let spin_momentum = body.inertia_kgm2 * spin;
+        self.total += body.mass_kg * velocity.norm_squared() + spin.dot(&spin_momentum);
+        for (normal, within) in self.within.iter_mut().enumerate() {
+            let across = velocity[normal];
+            *within += body.mass_kg * (velocity.norm_squared() - across * across)
+                + body.inertia_kgm2[(normal, normal)] * spin[normal] * spin[normal];
+        }
+    }
+
+    fn add_link(&mut self, posed: &Posed, own: &super::chain::OwnMass, motion: &Twist, rates: &[f64]) {
+        let Some(beam) = posed.chain.beam(own.piece) else { return };
+        let turn = own.frame.transpose();
+        let root = turn * displacement_at(motion, &own.root_m);
+        let spin = turn * super::angular(motion);
+        let mut local = DVector::zeros(6 + rates.len());
+        local.fixed_rows_mut::<3>(0).copy_from(&root);
+        local.fixed_rows_mut::<3>(3).copy_from(&spin);
+        local.rows_mut(6, rates.len()).copy_from_slice(rates);
+        let [along, across, _, polar, rotary_y, rotary_z] = beam.line_densities();
+        for (xi, weight) in beam.quadrature() {
+            let rate = beam.fields(xi) * &local;
+            let velocity = rate.fixed_rows::<3>(0).into_owned();
+            let spin = rate.fixed_rows::<3>(3).into_owned();
+            self.add_line(&own.frame, &velocity, &Vector3::new(along, across, across), weight, false);
+            self.add_line(&own.frame, &spin, &Vector3::new(polar, rotary_y, rotary_z), weight, true);
+        }
+    }
+
+    /// Adds the energy of one Gauss point; rotation lies within a plane if it is about its normal.
+    fn add_line(
+        &mut self,
+        frame: &nalgebra::Matrix3<f64>,
+        rate: &Vector3<f64>,
+        density: &Vector3<f64>,
+        weight: f64,
+        rotation: bool,
+    ) {
+        let energy = |r: &Vector3<f64>| weight * density.component_mul(r).dot(r);
+        self.total += energy(rate);
+        for (normal, within) in self.within.iter_mut().enumerate() {
+            let n = frame.row(normal).transpose();
+            let about = n * n.dot(rate);
+            *within += if rotation { energy(&about) } else { energy(&(rate - about)) };
+        }
+    }
+
+    fn fraction(&self, normal: usize) -> f64 {
+        self.within[normal] / self.total
+    }
+}

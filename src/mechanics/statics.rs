@@ -1,0 +1,95 @@
+//! How far the tip moves under gravity and load (Eqs 4, 7, 13-15).
+
+use super::chain::{ElasticElement, Item, Posed, Yielding};
+use super::{Twist, Wrench, angular, displacement_at, force_wrench, linear};
+use nalgebra::Vector3;
+
+/// The static state of an arm in a pose under a load.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Statics {
+    /// Torque that gravity and load put on each joint about its axis \[N m\] (Eq 7).
+    pub joint_torques_nm: Vec<(String, f64)>,
+    /// Displacement of the tip from where the weightless arm would have it, world \[m\] (Eq 15).
+    pub tip_displacement_m: Vector3<f64>,
+    /// Each element's part of it, base to tip; the parts sum to the whole.
+    pub shares_m: Vec<(String, Vector3<f64>)>,
+    /// Forces and moments at the root of each link.
+    pub link_roots: Vec<LinkRoot>,
+    /// Compliance of each coordinate to a small further force, element by element, base to tip.
+    pub tangent_compliances: Vec<Vec<f64>>,
+    /// Force and moment on the base about the world origin.
+    pub base_wrench: Wrench,
+}
+
+/// What a link's root carries, in the link's section frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinkRoot {
+    /// Link.
+    pub name: String,
+    /// Force (axial, along y, along z) \[N\].
+    pub force_n: Vector3<f64>,
+    /// Moment (torsion, about y, about z) \[N m\].
+    pub moment_nm: Vector3<f64>,
+}
+
+impl Posed<'_> {
+    /// One pass from the tip inward: the wrench of everything outboard, each element's answer to it,
+    /// and what that answer moves the tip by.
+    pub fn statics(&self) -> Statics {
+        let mut wrench = force_wrench(&self.tip_force_n, &self.tip_m);
+        let mut out = Statics {
+            joint_torques_nm: Vec::new(),
+            tip_displacement_m: Vector3::zeros(),
+            shares_m: Vec::new(),
+            link_roots: Vec::new(),
+            tangent_compliances: Vec::new(),
+            base_wrench: Wrench::zeros(),
+        };
+        for item in self.items.iter().rev() {
+            match item {
+                Item::Body(body) => wrench += body.weight(),
+                Item::Elastic(element) => self.yield_to(element, &mut wrench, &mut out),
+            }
+        }
+        out.joint_torques_nm.reverse();
+        out.shares_m.reverse();
+        out.link_roots.reverse();
+        out.tangent_compliances.reverse();
+        out.tip_displacement_m = out.shares_m.iter().map(|(_, share)| share).sum();
+        out.base_wrench = wrench;
+        out
+    }
+
+    /// One element under the outboard wrench: its deformation, its tangent, its share; then its own
+    /// weight joins the wrench.
+    fn yield_to(&self, element: &ElasticElement, wrench: &mut Wrench, out: &mut Statics) {
+        let mut motion = Twist::zeros();
+        let tangents = match &element.yielding {
+            Yielding::Joint(law) => {
+                let torque_nm = element.twists[0].dot(wrench);
+                motion += element.twists[0] * law.rising_angle_rad(torque_nm);
+                out.joint_torques_nm.push((element.name.clone(), torque_nm));
+                vec![law.tangent_compliance_rad_per_nm(torque_nm)]
+            }
+            Yielding::Linear(compliances) => {
+                for (i, (twist, compliance)) in element.twists.iter().zip(compliances).enumerate() {
+                    let own = element.own.as_ref().map_or(0.0, |own| own.weight_work[i]);
+                    motion += twist * (compliance * (twist.dot(wrench) + own));
+                }
+                compliances.clone()
+            }
+        };
+        out.shares_m.push((element.name.clone(), displacement_at(&motion, &self.tip_m)));
+        out.tangent_compliances.push(tangents);
+        if let Some(own) = &element.own {
+            *wrench += own.weight;
+            let moment = angular(wrench) - own.root_m.cross(&linear(wrench));
+            let to_section = own.frame.transpose();
+            out.link_roots.push(LinkRoot {
+                name: element.name.clone(),
+                force_n: to_section * linear(wrench),
+                moment_nm: to_section * moment,
+            });
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! The reference arms, solved by FEDEM, CalculiX, Pinocchio, MuJoCo and an independent finite-element
+//! chain, against the library, to the tolerances their files state.
+
+use armwright::arm::{Arm, JointModel, LinkModel, LoadCase, Payload, read_arm_document};
+use armwright::catalog::Catalogs;
+use armwright::fault::Document;
+use armwright::mechanics::{Chain, Mode, Statics};
+use nalgebra::Vector3;
+use serde_json::Value;
+
+fn load(file: &str) -> Value {
+    let path = format!("{}/tests/data/{file}", env!("CARGO_MANIFEST_DIR"));
+    serde_json::from_str(&std::fs::read_to_string(path).expect("reference file")).expect("JSON")
+}
+
+fn arm(case: &Value) -> Arm {
+    let document = Document::parse("case", &case["arm"].to_string()).expect("JSON");
+    read_arm_document(document, &Catalogs::default()).expect("sound arm")
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().map(|a| a.iter().filter_map(Value::as_f64).collect()).unwrap_or_default()
+}
+
+fn vector(value: &Value) -> Vector3<f64> {
+    Vector3::from_iterator(numbers(value).into_iter().chain([0.0; 3]).take(3))
+}
+
+fn load_case(case: &Value, links: LinkModel) -> LoadCase {
+    let payload = &case["payload"];
+    let inertia = |key: &str| payload["inertia_about_cg_kgm2"][key].as_f64().unwrap_or(0.0);
+    LoadCase {
+        name: case["id"].to_string(),
+        pose_deg: numbers(&case["pose_deg"]),
+        payload: Payload {
+            mass_kg: payload["mass_kg"].as_f64().expect("mass"),
+            cg_m: vector(&payload["cg_m"]),
+            inertia_about_cg_kgm2: Vector3::new(inertia("ixx"), inertia("iyy"), inertia("izz")),
+        },
+        tip_force_n: vector(&case["tip_force_n"]),
+        links,
+        joints: JointModel::ThreeSegment,
+    }
+}
+
+fn solve(arm: &Arm, case: &LoadCase, modes: usize) -> (Statics, Vec<Mode>) {
+    let chain = Chain::new(&arm.structure(case.joints), case.links);
+    let posed = chain.pose(case);
+    let statics = posed.statics();
+    let modes = posed.modes(&statics, modes);
+    (statics, modes)
+}
+
+/// Largest relative deviation of a set of numbers \[%\].
+fn worst_pct(ours: &[f64], theirs: &[f64]) -> f64 {
+    assert!(ours.len() >= theirs.len(), "{ours:?} against {theirs:?}");
+    ours.iter().zip(theirs).map(|(a, b)| 100.0 * (a / b - 1.0).abs()).fold(0.0, f64::max)
+}
+
+fn tip_deviation_pct(statics: &Statics, expected_mm: &Vector3<f64>, floor_mm: f64) -> f64 {
+    let gap = (statics.tip_displacement_m * 1e3 - expected_mm).norm();
+    100.0 * gap / expected_mm.norm().max(floor_mm)
+}
+
+#[test]
+fn planar_arms_agree_with_four_independent_programs() {
+    let file = load("planar-arms.json");
+    for case in file["cases"].as_array().expect("cases") {
+        let arm = arm(case);
+        for (model, expected) in case["expected_in_plane"].as_object().expect("models") {
+            let links = if model == "rigid_links" { LinkModel::Rigid } else { LinkModel::Full };
+            let tolerance = file["suggested_tolerance_pct"][model].as_f64().expect("tolerance");
+            let (statics, modes) = solve(&arm, &load_case(case, links), 20);
+            let in_plane: Vec<f64> =
+                modes.iter().filter(|m| m.plane == Some("xz")).map(|m| m.frequency_hz).collect();
+            let frequency = worst_pct(&in_plane, &numbers(&expected["frequency_hz"]));
+            let tip = tip_deviation_pct(&statics, &vector(&expected["tip_mm"]), file["tip_floor_mm"].as_f64().expect("floor"));
+            println!("{} {model}: tip {tip:.4} %, modes {frequency:.4} % (allowed {tolerance} %)", case["id"]);
+            assert!(tip <= tolerance && frequency <= tolerance);
+        }
+    }
+}
+
+#[test]
+fn spatial_arms_agree_with_an_independent_finite_element_chain() {
+    let file = load("spatial-arms.json");
+    for case in file["cases"].as_array().expect("cases") {
+        let arm = arm(case);
+        for (model, expected) in case["expected"].as_object().expect("models") {
+            let links = if model == "rigid_links" { LinkModel::Rigid } else { LinkModel::Full };
+            let tolerance = file["suggested_tolerance_pct"][model].as_f64().expect("tolerance");
+            let (statics, modes) = solve(&arm, &load_case(case, links), 6);
+            let ours: Vec<f64> = modes.iter().map(|m| m.frequency_hz).collect();
+            let frequency = worst_pct(&ours, &numbers(&expected["frequency_hz"]));
+            let tip = tip_deviation_pct(&statics, &vector(&expected["tip_mm"]), 0.01);
+            println!("{} {model}: tip {tip:.4} %, modes {frequency:.4} % (allowed {tolerance} %)", case["id"]);
+            assert!(tip <= tolerance && frequency <= tolerance, "{ours:?}");
+            for (name, torque_nm) in &statics.joint_torques_nm {
+                let theirs = expected["joint_torque_nm"][name].as_f64().expect("torque");
+                assert!((torque_nm - theirs).abs() < 0.0005 * theirs.abs() + 0.002, "{name} {torque_nm} {theirs}");
+            }
+        }
+    }
+}
+
+#[test]
+fn shares_sum_to_the_tip_displacement_and_strain_energies_to_one() {
+    let file = load("spatial-arms.json");
+    for case in file["cases"].as_array().expect("cases") {
+        let (statics, modes) = solve(&arm(case), &load_case(case, LinkModel::Full), 6);
+        let sum: Vector3<f64> = statics.shares_m.iter().map(|(_, s)| s).sum();
+        assert!((sum - statics.tip_displacement_m).norm() < 1e-15);
+        for mode in modes {
+            let total: f64 = mode.strain_energy.iter().map(|(_, e)| e).sum();
+            assert!((total - 1.0).abs() < 1e-12);
+        }
+    }
+}
