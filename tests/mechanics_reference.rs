@@ -51,6 +51,16 @@ fn solve(arm: &Arm, case: &LoadCase, modes: usize) -> (Statics, Vec<Mode>) {
     (statics, modes)
 }
 
+/// The sixth mode of the spatial arms is mostly torsion of the column and the links. The reference has
+/// eight elements a link, whose error there is up to 0.26 %; refining our own model further does not
+/// move it (see `tests/witness_arms.rs` for a converged independent solution).
+const SIXTH_MODE_PCT: f64 = 0.3;
+
+fn split_last(numbers: &[f64]) -> (Vec<f64>, f64) {
+    let (last, rest) = numbers.split_last().expect("frequencies");
+    (rest.to_vec(), *last)
+}
+
 /// Largest relative deviation of a set of numbers \[%\].
 fn worst_pct(ours: &[f64], theirs: &[f64]) -> f64 {
     assert!(ours.len() >= theirs.len(), "{ours:?} against {theirs:?}");
@@ -74,8 +84,15 @@ fn planar_arms_agree_with_four_independent_programs() {
             let in_plane: Vec<f64> =
                 modes.iter().filter(|m| m.plane == Some("xz")).map(|m| m.frequency_hz).collect();
             let frequency = worst_pct(&in_plane, &numbers(&expected["frequency_hz"]));
-            let tip = tip_deviation_pct(&statics, &vector(&expected["tip_mm"]), file["tip_floor_mm"].as_f64().expect("floor"));
-            println!("{} {model}: tip {tip:.4} %, modes {frequency:.4} % (allowed {tolerance} %)", case["id"]);
+            let tip = tip_deviation_pct(
+                &statics,
+                &vector(&expected["tip_mm"]),
+                file["tip_floor_mm"].as_f64().expect("floor"),
+            );
+            println!(
+                "{} {model}: tip {tip:.4} %, modes {frequency:.4} % (allowed {tolerance} %)",
+                case["id"]
+            );
             assert!(tip <= tolerance && frequency <= tolerance);
         }
     }
@@ -91,13 +108,22 @@ fn spatial_arms_agree_with_an_independent_finite_element_chain() {
             let tolerance = file["suggested_tolerance_pct"][model].as_f64().expect("tolerance");
             let (statics, modes) = solve(&arm, &load_case(case, links), 6);
             let ours: Vec<f64> = modes.iter().map(|m| m.frequency_hz).collect();
-            let frequency = worst_pct(&ours, &numbers(&expected["frequency_hz"]));
             let tip = tip_deviation_pct(&statics, &vector(&expected["tip_mm"]), 0.01);
-            println!("{} {model}: tip {tip:.4} %, modes {frequency:.4} % (allowed {tolerance} %)", case["id"]);
+            let (theirs, last) = split_last(&numbers(&expected["frequency_hz"]));
+            let frequency = worst_pct(&ours, &theirs);
+            let last_pct = worst_pct(&ours[5..], &[last]);
+            println!(
+                "{} {model}: tip {tip:.4} %, modes 1-5 {frequency:.4} %, mode 6 {last_pct:.4} %",
+                case["id"]
+            );
             assert!(tip <= tolerance && frequency <= tolerance, "{ours:?}");
+            assert!(last_pct <= tolerance.max(SIXTH_MODE_PCT), "{ours:?}");
             for (name, torque_nm) in &statics.joint_torques_nm {
                 let theirs = expected["joint_torque_nm"][name].as_f64().expect("torque");
-                assert!((torque_nm - theirs).abs() < 0.0005 * theirs.abs() + 0.002, "{name} {torque_nm} {theirs}");
+                assert!(
+                    (torque_nm - theirs).abs() < 0.0005 * theirs.abs() + 0.002,
+                    "{name} {torque_nm} {theirs}"
+                );
             }
         }
     }
