@@ -116,6 +116,12 @@ impl Check {
         }
     }
 
+    /// The margin as a factor on torque, to compare checks by: the life goes with the cube of the torque.
+    pub fn torque_margin(&self) -> Option<f64> {
+        let margin = self.margin()?;
+        Some(if self.kind == CheckKind::GearLife { margin.cbrt() } else { margin })
+    }
+
     /// Whether the check holds.
     pub fn holds(&self) -> bool {
         self.state == CheckState::Holds
@@ -265,9 +271,9 @@ pub fn all_hold(checks: &[Check]) -> bool {
     checks.iter().all(Check::holds)
 }
 
-/// The check with the smallest margin among those that could be made: what binds.
+/// The check with the smallest torque margin among those that could be made: what binds.
 pub fn binding(checks: &[Check]) -> Option<&Check> {
-    let made = checks.iter().filter_map(|c| Some((c.margin()?, c)));
+    let made = checks.iter().filter_map(|c| Some((c.torque_margin()?, c)));
     made.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, check)| check)
 }
 

@@ -42,12 +42,12 @@ pub use demand::{JointDemand, JointMotion, cubic_mean_cubed_nm3, linear_torque_n
 pub use drive::{
     Drive, MissingFigure, motor_torque_nm, reference_life_h, rotary_torque_motor_nm, rotary_torque_output_nm,
 };
-//pub use explain::{RejectedPart, Rejection, Relaxation, RelaxationKind, Shortfall};
+pub use explain::{RejectedPart, Rejection, Relaxation, RelaxationKind, Shortfall};
 pub use limits::{DriveLimits, Obstacle};
 pub use requirement::{
     DutyCycle, LinearReading, MeanTorqueWeights, MotionRequirement, Phase, PhaseKind, RequirementError,
 };
-//pub use select::{DriveFilter, DriveTable};
+pub use select::{DriveFilter, DriveTable};
 //pub use sheet::{JointSizingRow, render_rows};
 
 /// One revolution a minute in rad/s.
