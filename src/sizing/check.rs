@@ -122,6 +122,11 @@ impl Check {
         Some(if self.kind == CheckKind::GearLife { margin.cbrt() } else { margin })
     }
 
+    /// Needed minus allowed, where both are known; positive when the check fails.
+    pub fn shortfall(&self) -> Option<f64> {
+        Some(self.needed? - self.allowed?)
+    }
+
     /// Whether the check holds.
     pub fn holds(&self) -> bool {
         self.state == CheckState::Holds

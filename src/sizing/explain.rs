@@ -130,6 +130,9 @@ pub struct Shortfall {
 impl fmt::Display for Shortfall {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "joint {}: no drive holds; nearest {}: {}", self.joint, self.drive, self.check)?;
+        if let Some(missing) = self.check.shortfall() {
+            write!(f, " (short by {missing:.3} {})", self.check.kind.unit())?;
+        }
         let steps: Vec<_> = self.relaxations.iter().map(Relaxation::to_string).collect();
         match steps.is_empty() {
             true => f.write_str("; neither less torque nor less speed alone lets one hold"),

@@ -48,7 +48,7 @@ pub use requirement::{
     DutyCycle, LinearReading, MeanTorqueWeights, MotionRequirement, Phase, PhaseKind, RequirementError,
 };
 pub use select::{DriveFilter, DriveTable};
-//pub use sheet::{JointSizingRow, render_rows};
+pub use sheet::{JointSizingRow, render_rows};
 
 /// One revolution a minute in rad/s.
 const RAD_S_PER_RPM: f64 = std::f64::consts::PI / 30.0;
