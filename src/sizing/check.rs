@@ -149,14 +149,19 @@ impl fmt::Display for Check {
     }
 }
 
-/// Decimals that show about three digits of the numbers, and the difference between them.
-fn digits_that_differ(a: f64, b: f64) -> usize {
-    let least = match a.abs().max(b.abs()) {
+/// Decimals that show about three digits of a number.
+pub(super) fn digits_of(x: f64) -> usize {
+    match x.abs() {
         x if x >= 100.0 => 0,
         x if x >= 10.0 => 1,
         x if x >= 1.0 => 2,
         _ => 3,
-    };
+    }
+}
+
+/// Decimals that show about three digits of the larger number, and the difference between the two.
+fn digits_that_differ(a: f64, b: f64) -> usize {
+    let least = digits_of(a.abs().max(b.abs()));
     (least..12).find(|&n| format!("{a:.n$}") != format!("{b:.n$}")).unwrap_or(least)
 }
 

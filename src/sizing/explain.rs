@@ -1,6 +1,6 @@
 //! Why a part was not chosen, and what to give way in when nothing holds.
 
-use super::check::{binding, checks, gear_checks, motor_checks};
+use super::check::{binding, checks, digits_of, gear_checks, motor_checks};
 use super::{Check, CheckState, Drive, DriveLimits, DriveTable, JointDemand};
 use std::fmt;
 
@@ -131,7 +131,8 @@ impl fmt::Display for Shortfall {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "joint {}: no drive holds; nearest {}: {}", self.joint, self.drive, self.check)?;
         if let Some(missing) = self.check.shortfall() {
-            write!(f, " (short by {missing:.3} {})", self.check.kind.unit())?;
+            let (digits, unit) = (digits_of(missing), self.check.kind.unit());
+            write!(f, " (short by {missing:.digits$} {unit})")?;
         }
         let steps: Vec<_> = self.relaxations.iter().map(Relaxation::to_string).collect();
         match steps.is_empty() {
@@ -434,6 +435,17 @@ mod tests {
         // 3000 rpm over 100 is 3.14 rad/s, 78 % of 4.
         assert_eq!(shortfall.relaxations[0].factor, 0.78);
         assert!(shortfall.to_string().contains("speed and acceleration down to 78 %, then HFUC-58-100"));
+    }
+
+    #[test]
+    fn less_speed_takes_its_share_off_the_linear_torque() {
+        let (gears, motors) = ([hfuc_40_100()], [f11_10()]);
+        let table = table(&gears, &motors);
+        // A vertical axis: linear torque only, 568 of 600 N m allowed.
+        let shortfall = table.smallest_shortfall(&motion().demand_of_torques(0.0, 600.0)).unwrap();
+        let slower = shortfall.relaxations.iter().find(|r| r.kind == RelaxationKind::Speed).unwrap();
+        assert_eq!(slower.factor, 0.90, "1200 N m in an emergency stop, 1080 allowed");
+        assert!(shortfall.to_string().contains("stop 1200 N m needed, 1080 allowed (short by 120 N m)"));
     }
 
     #[test]

@@ -72,6 +72,17 @@ impl DriveLimits {
             & (demand.tilting_moment_nm <= self.tilting_moment_nm)
     }
 
+    /// The larger of each limit of two drives.
+    pub(super) fn max(&self, other: &Self) -> Self {
+        Self {
+            static_torque_nm: self.static_torque_nm.max(other.static_torque_nm),
+            peak_torque_nm: self.peak_torque_nm.max(other.peak_torque_nm),
+            stop_torque_nm: self.stop_torque_nm.max(other.stop_torque_nm),
+            mean_torque_cubed_nm3: self.mean_torque_cubed_nm3.max(other.mean_torque_cubed_nm3),
+            tilting_moment_nm: self.tilting_moment_nm.max(other.tilting_moment_nm),
+        }
+    }
+
     /// Whether every limit is at least that of `other`.
     #[inline]
     pub fn cover(&self, other: &Self) -> bool {

@@ -74,6 +74,8 @@ pub struct DriveTable<'c> {
     /// Indices that no earlier (lighter) drive covers in all limits: only these can be a first fit.
     ladder: Vec<u32>,
     ladder_limits: Vec<DriveLimits>,
+    /// Largest limits up to each step: nothing before the first of these that holds can be a fit.
+    ladder_reach: Vec<DriveLimits>,
 }
 
 impl<'c> DriveTable<'c> {
@@ -96,6 +98,7 @@ impl<'c> DriveTable<'c> {
             limits: Vec::new(),
             ladder: Vec::new(),
             ladder_limits: Vec::new(),
+            ladder_reach: Vec::new(),
         };
         table.fill();
         table.raise_ladder();
@@ -122,6 +125,7 @@ impl<'c> DriveTable<'c> {
             if !self.ladder_limits.iter().any(|lighter| lighter.cover(limits)) {
                 self.ladder.push(index as u32);
                 self.ladder_limits.push(*limits);
+                self.ladder_reach.push(self.ladder_reach.last().map_or(*limits, |reach| reach.max(limits)));
             }
         }
     }
@@ -203,10 +207,12 @@ impl<'c> DriveTable<'c> {
         &self.ladder
     }
 
-    /// The lightest drive that holds (the paper's way).
+    /// The lightest drive that holds (the paper's way): a bisection to the first step within reach, then
+    /// a scan.
     #[inline]
     pub fn first_fit(&self, demand: &JointDemand) -> Option<usize> {
-        let step = self.ladder_limits.iter().position(|limits| limits.hold(demand))?;
+        let start = self.ladder_reach.partition_point(|reach| !reach.hold(demand));
+        let step = start + self.ladder_limits[start..].iter().position(|limits| limits.hold(demand))?;
         Some(self.ladder[step] as usize)
     }
 
@@ -302,15 +308,19 @@ mod tests {
             motors in prop::collection::vec(any_motor(), 1..8),
             motion in any_motion(),
             torques in any_torques(),
+            housed: bool,
         ) {
+            let gear_mass = if housed { GearMass::HousedUnit } else { GearMass::ComponentSet };
             let gears: Vec<_> = gears.into_iter().enumerate().map(|(i, g)| Gear { id: format!("G{i}"), ..g }).collect();
             let motors: Vec<_> = motors.into_iter().enumerate().map(|(i, m)| Motor { id: format!("M{i}"), ..m }).collect();
-            let demand = motion.demand_of_torques(torques[0], torques[1] / 4.0);
-            let table = DriveTable::build("j", motion, &everything(), &gears, &motors);
+            let demand = motion
+                .demand_of_torques(torques[0] / 2.0, torques[1] / 4.0)
+                .with_tilting_moment_nm(torques[2]);
+            let table = DriveTable::build("j", motion, &DriveFilter::everything(gear_mass), &gears, &motors);
             let mut slow = Vec::new();
             for gear in &gears {
                 for motor in &motors {
-                    let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet };
+                    let drive = Drive { gear, motor, gear_mass };
                     if all_hold(&checks(&drive, &motion, &demand)) {
                         slow.push((drive.mass_kg().unwrap(), gear.id.clone(), motor.id.clone()));
                     }
