@@ -59,7 +59,7 @@ struct Pair {
 
 /// Every drive that one joint may have under its motion, lightest first; ties by gear, then motor name.
 ///
-/// A drive whose speed is too low, or that lacks a figure a check needs, has no index; it is found by
+/// A drive that may not turn so fast, or that lacks a figure a check needs, has no index; it is found by
 /// [`DriveTable::explain`].
 #[derive(Debug, Clone)]
 pub struct DriveTable<'c> {
