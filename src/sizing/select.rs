@@ -207,13 +207,24 @@ impl<'c> DriveTable<'c> {
         &self.ladder
     }
 
-    /// The lightest drive that holds (the paper's way): a bisection to the first step within reach, then
-    /// a scan.
+    /// The lightest drive that holds (the paper's way): a search for the first step within reach,
+    /// then a scan.
     #[inline]
     pub fn first_fit(&self, demand: &JointDemand) -> Option<usize> {
-        let start = self.ladder_reach.partition_point(|reach| !reach.hold(demand));
+        let start = self.first_step_within_reach(demand);
         let step = start + self.ladder_limits[start..].iter().position(|limits| limits.hold(demand))?;
         Some(self.ladder[step] as usize)
+    }
+
+    /// Doubling strides, then bisection: a light demand is answered at the first steps.
+    #[inline]
+    fn first_step_within_reach(&self, demand: &JointDemand) -> usize {
+        let reach = &self.ladder_reach;
+        let (mut low, mut high) = (0, 1);
+        while high < reach.len() && !reach[high - 1].hold(demand) {
+            (low, high) = (high, 2 * high);
+        }
+        low + reach[low..high.min(reach.len())].partition_point(|reach| !reach.hold(demand))
     }
 
     /// Every drive that holds, lightest first.
