@@ -40,6 +40,7 @@ fn load_case(case: &Value, links: LinkModel) -> LoadCase {
         tip_force_n: vector(&case["tip_force_n"]),
         links,
         joints: JointModel::ThreeSegment,
+        water: None,
     }
 }
 

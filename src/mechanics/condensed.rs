@@ -72,7 +72,10 @@ impl CondensedLink {
         let mut end = Matrix6::zeros();
         for (mut out, local) in end.column_iter_mut().zip(self.end.column_iter()) {
             let rotation = frame * local.fixed_rows::<3>(3);
-            out.copy_from(&super::stack(&(frame * local.fixed_rows::<3>(0) + end_m.cross(&rotation)), &rotation));
+            out.copy_from(&super::stack(
+                &(frame * local.fixed_rows::<3>(0) + end_m.cross(&rotation)),
+                &rotation,
+            ));
         }
         PlacedLink {
             inertia: self.inertia.map(|m| to_local.transpose() * m * to_local),

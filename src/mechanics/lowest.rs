@@ -70,7 +70,8 @@ pub fn lowest_eigenvalue<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -
         if here.inner_sound && here.last > 0.0 {
             let secant = extrapolate((low, low_pivot), (guess, here.last));
             (low, low_pivot) = (guess, here.last);
-            guess = if high_pivot.is_nan() { secant } else { extrapolate((low, low_pivot), (high, high_pivot)) };
+            guess =
+                if high_pivot.is_nan() { secant } else { extrapolate((low, low_pivot), (high, high_pivot)) };
         } else {
             let sound = here.inner_sound;
             let secant = extrapolate((low, low_pivot), (guess, here.last));
