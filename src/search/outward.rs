@@ -10,7 +10,7 @@ use crate::arm::{Curve, Link, LinkBody, LinkPiece, Section, windup_of};
 use crate::catalog::Catalogs;
 use crate::mechanics::lowest::{Step, frequency_hz, lowest_eigenvalue};
 use crate::mechanics::{Wrench, angular, linear};
-use crate::sizing::{DriveTable, JointDemand, JointMotion};
+use crate::sizing::{DriveFilter, DriveTable, JointDemand, JointMotion};
 use nalgebra::{Matrix6, Vector3, Vector6};
 
 /// The search's view of a design space: drives tabulated, poses compiled.
@@ -46,6 +46,7 @@ struct OptionFigures {
     material: Option<usize>,
     cost_eur: f64,
     stress: Option<StressCheck>,
+    slender: bool,
 }
 
 /// Von Mises stress at a link's ends from force and moment in its section frame.
@@ -259,6 +260,9 @@ impl<'c> ArmProblem<'c> {
     }
 
     fn add_link(&self, slot: usize, option: u32, figures: &OptionFigures, to: &mut Partial) -> bool {
+        if figures.slender {
+            return false;
+        }
         to.mass_kg += figures.mass_kg;
         to.cost_eur += figures.cost_eur;
         to.group = to.group.with(figures.material);
@@ -460,12 +464,23 @@ fn joint_slot<'c>(space: &DesignSpace, joint: &SpaceJoint, reach_m: f64, catalog
         DriveChoice::AllFits(filter) => (filter, true),
     };
     let motion = space.motion.joint_motion(reach_m, joint.max_speed_rad_s);
-    // a gear without its torsion curve cannot be judged
-    let table = DriveTable::build(&joint.name, motion, filter, &catalogs.gears, &catalogs.motors);
+    let table = DriveTable::build(
+        &joint.name,
+        motion,
+        &with_curve(filter, catalogs),
+        &catalogs.gears,
+        &catalogs.motors,
+    );
     let curves = (0..table.len())
         .map(|i| windup_of(table.drive(i).gear).map_or(Curve::Rigid, |w| space.curve(Curve::Windup(w))))
         .collect();
     Slot::Sized(SizedJoint { table, curves, all_fits })
+}
+
+/// Leaves out gears without a complete torsion curve: what they would deflect cannot be said.
+fn with_curve(filter: &DriveFilter, catalogs: &Catalogs) -> DriveFilter {
+    let known = catalogs.gears.iter().filter(|g| filter.allows_gear(g) && windup_of(g).is_some());
+    DriveFilter { gear_ids: Some(known.map(|g| g.id.clone()).collect()), ..filter.clone() }
 }
 
 fn link_slot<'c>(space: &DesignSpace, link: &Link) -> Slot<'c> {
@@ -496,6 +511,7 @@ fn choice_slot<'c>(space: &DesignSpace, choice: &LinkChoice) -> Slot<'c> {
 fn figures(space: &DesignSpace, option: &LinkOption, length_m: f64) -> OptionFigures {
     let mass_kg = option.mass_kg_per_m() * length_m;
     OptionFigures {
+        slender: space.constraints.wall_slenderness_max.is_some_and(|max| option.wall_slenderness() > max),
         mass_kg,
         material: Some(option.material_index),
         cost_eur: option.cost_eur_per_kg.map_or(0.0, |cost| cost * mass_kg),

@@ -1,1 +1,6 @@
-//! (being built)
+//! Named questions: read, resolve, run.
+
+mod read;
+mod sections;
+
+pub use read::{Study, read_study};
