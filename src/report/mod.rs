@@ -1,1 +1,3 @@
-//! (being built)
+//! Numbers and pictures on paper: csv, json, svg, terminal.
+
+pub mod front_table;
