@@ -1,1 +1,5 @@
-//! (being built)
+//! Numbers, tables and pictures on paper.
+
+pub mod number;
+pub mod svg;
+pub mod table;

@@ -1,1 +1,3 @@
-//! (being built)
+//! Named questions: read, resolve, run.
+
+pub mod paper;
