@@ -32,8 +32,9 @@ const INK: &str = "#222222";
 const FAINT: &str = "#E3E3E3";
 const FONT_PX: f64 = 13.0;
 const TITLE_PX: f64 = 16.0;
+const NOTE_PX: f64 = 12.0;
 /// Width of an average character over the font size; generous, so that text never leaves its place.
-const CHARACTER: f64 = 0.57;
+const CHARACTER: f64 = 0.62;
 const LEGEND_CHARACTERS: usize = 26;
 
 /// How an axis counts.
@@ -115,13 +116,25 @@ impl Series {
     }
 }
 
+/// On which side of its place a note stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Side {
+    /// Right of and above the place.
+    #[default]
+    RightAbove,
+    /// Left of and below the place.
+    LeftBelow,
+}
+
 /// Words at a place in the plot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Note {
     /// Place in data units.
     pub at: (f64, f64),
-    /// Words, set right of and above the place and moved until they lie inside the frame.
+    /// Words, moved until they lie inside the frame.
     pub text: String,
+    /// Where the words stand.
+    pub side: Side,
 }
 
 /// A dashed line across the whole plot at a value of one axis.
@@ -328,7 +341,7 @@ impl Canvas {
             } else {
                 let y = self.bottom - self.y.position(guide.value) * (self.bottom - self.top);
                 dashed(out, (self.left, y), (self.right, y));
-                let x = self.right - 6.0 - text_px(&guide.text, FONT_PX);
+                let x = self.right - 6.0 - text_px(&guide.text, NOTE_PX);
                 self.words(out, (x, y - 6.0), &guide.text);
             }
         }
@@ -337,18 +350,23 @@ impl Canvas {
     fn notes(&self, out: &mut String, notes: &[Note]) {
         for note in notes {
             if let Some((x, y)) = self.inside(note.at) {
-                self.words(out, (x + 9.0, y - 8.0), &note.text);
+                let at = match note.side {
+                    Side::RightAbove => (x + 9.0, y - 8.0),
+                    Side::LeftBelow => (x - 9.0 - text_px(&note.text, NOTE_PX), y + 16.0),
+                };
+                self.words(out, at, &note.text);
             }
         }
     }
 
     /// Words with a white rim, moved until they lie inside the frame.
     fn words(&self, out: &mut String, (x, y): (f64, f64), words: &str) {
-        let x = x.min(self.right - 6.0 - text_px(words, FONT_PX)).max(self.left + 6.0);
+        let x = x.min(self.right - 6.0 - text_px(words, NOTE_PX)).max(self.left + 6.0);
         let y = y.clamp(self.top + 15.0, self.bottom - 6.0);
-        let rim = " font-size=\"12\" paint-order=\"stroke\" stroke=\"#FFFFFF\" stroke-width=\"3\" \
+        let rim = " paint-order=\"stroke\" stroke=\"#FFFFFF\" stroke-width=\"3\" \
                    stroke-linejoin=\"round\"";
-        text(out, (x, y), "start", rim, words);
+        let rim = format!(" font-size=\"{NOTE_PX}\"{rim}");
+        text(out, (x, y), "start", &rim, words);
     }
 
     fn legend(&self, out: &mut String, series: &[Series]) {
@@ -380,7 +398,7 @@ impl Canvas {
 fn legend_px(series: &[Series]) -> f64 {
     let rows = series.iter().flat_map(|s| wrap(&s.name, LEGEND_CHARACTERS));
     let widest = rows.map(|row| text_px(&row, FONT_PX)).fold(0.0, f64::max);
-    if widest > 0.0 { widest + 64.0 } else { 24.0 }
+    if widest > 0.0 { widest + 58.0 } else { 24.0 }
 }
 
 /// Breaks words into rows of at most `most` characters where there are blanks to break at.
