@@ -2,8 +2,8 @@
 //!
 //! Series differ by colour (the colour-blind-safe palette of Okabe and Ito) *and* by marker shape;
 //! `open` markers and dashed lines mark variants of the same thing. The legend stands beside the frame,
-//! so that it never covers data; notes are moved until they lie inside the frame. A series is one path,
-//! so that a front of thousands of points stays a small file.
+//! so that it never covers data; notes are moved until they lie inside the frame. A point costs its two
+//! coordinates, so that a front of thousands of points stays a small file.
 //!
 //! ```
 //! use armwright::report::svg::{Axis, Plot, Scale, Series};
@@ -18,9 +18,11 @@
 //! assert!(plot.to_svg().starts_with("<svg"));
 //! ```
 
+mod marker;
 mod ticks;
 
 use super::number::fixed;
+use marker::outline;
 use std::fmt::Write;
 use ticks::{Ruling, rule};
 
@@ -204,15 +206,14 @@ impl Plot {
     }
 
     fn head(&self) -> String {
-        let (w, h) = (px(self.width_px), px(self.height_px));
+        let (w, h, title) = (px(self.width_px), px(self.height_px), escape(&self.title));
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
-             role=\"img\" aria-labelledby=\"plot-title plot-desc\" \
+             role=\"img\" aria-label=\"{title}\" \
              font-family=\"'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif\" \
              font-size=\"{FONT_PX}\" fill=\"{INK}\">\n\
-             <title id=\"plot-title\">{}</title>\n<desc id=\"plot-desc\">{}</desc>\n\
+             <title>{title}</title>\n<desc>{}</desc>\n\
              <rect width=\"{w}\" height=\"{h}\" fill=\"#FFFFFF\"/>\n",
-            escape(&self.title),
             escape(&self.description)
         )
     }
@@ -424,78 +425,30 @@ fn dashes(stroke: Stroke) -> &'static str {
     if stroke == Stroke::Dashed { " stroke-dasharray=\"6 4\"" } else { "" }
 }
 
-/// All markers of a series as one path.
+/// All markers of a series: one outline, and a path without stroke that has it at every corner.
 fn markers(out: &mut String, series: &Series, points: &[(f64, f64)]) {
     if points.is_empty() || series.marker_px <= 0.0 {
         return;
     }
-    let path: String = points.iter().map(|p| marker(series.style, *p, series.marker_px)).collect();
     let (fill, stroke, width) = if series.open {
         ("#FFFFFF", colour(series.style), "1.8")
     } else {
         (colour(series.style), "#FFFFFF", "0.6")
     };
-    let _ =
-        writeln!(out, "<path d=\"{path}\" fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"{width}\"/>");
-}
-
-/// A marker's outline: circle, square, triangle up, diamond, triangle down, plus, cross, star.
-fn marker(style: usize, (x, y): (f64, f64), r: f64) -> String {
-    const UP: &[(f64, f64)] = &[(0.0, -1.25), (1.15, 0.8), (-1.15, 0.8)];
-    const DOWN: &[(f64, f64)] = &[(0.0, 1.25), (1.15, -0.8), (-1.15, -0.8)];
-    const SQUARE: &[(f64, f64)] = &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)];
-    const DIAMOND: &[(f64, f64)] = &[(0.0, -1.35), (1.1, 0.0), (0.0, 1.35), (-1.1, 0.0)];
-    const PLUS: &[(f64, f64)] = &[
-        (-0.4, -1.2),
-        (0.4, -1.2),
-        (0.4, -0.4),
-        (1.2, -0.4),
-        (1.2, 0.4),
-        (0.4, 0.4),
-        (0.4, 1.2),
-        (-0.4, 1.2),
-        (-0.4, 0.4),
-        (-1.2, 0.4),
-        (-1.2, -0.4),
-        (-0.4, -0.4),
-    ];
-    const STAR: &[(f64, f64)] = &[
-        (0.0, -1.4),
-        (0.33, -0.45),
-        (1.33, -0.43),
-        (0.53, 0.17),
-        (0.82, 1.13),
-        (0.0, 0.56),
-        (-0.82, 1.13),
-        (-0.53, 0.17),
-        (-1.33, -0.43),
-        (-0.33, -0.45),
-    ];
-    match style % PALETTE.len() {
-        0 => circle((x, y), r),
-        1 => polygon(SQUARE, (x, y), r, 0.0),
-        2 => polygon(UP, (x, y), r, 0.0),
-        3 => polygon(DIAMOND, (x, y), r, 0.0),
-        4 => polygon(DOWN, (x, y), r, 0.0),
-        5 => polygon(PLUS, (x, y), r, 0.0),
-        6 => polygon(PLUS, (x, y), r, std::f64::consts::FRAC_PI_4),
-        _ => polygon(STAR, (x, y), r, 0.0),
-    }
-}
-
-fn circle((x, y): (f64, f64), r: f64) -> String {
-    let (start, r, d) = (px(x - r), px(r), px(2.0 * r));
-    format!("M{start} {}a{r} {r} 0 1 0 {d} 0a{r} {r} 0 1 0 -{d} 0z", px(y))
-}
-
-fn polygon(corners: &[(f64, f64)], (x, y): (f64, f64), r: f64, turn_rad: f64) -> String {
-    let (sin, cos) = turn_rad.sin_cos();
-    let corners: Vec<String> = corners
-        .iter()
-        .map(|(cx, cy)| (x + r * (cos * cx - sin * cy), y + r * (sin * cx + cos * cy)))
-        .map(|(px_x, px_y)| format!("{} {}", px(px_x), px(px_y)))
-        .collect();
-    format!("M{}z", corners.join("L"))
+    // the name says all there is to the outline, so that pictures joined in one page do not disagree
+    let open = if series.open { "o" } else { "f" };
+    let id = format!("m{}{open}{}", series.style, px(10.0 * series.marker_px));
+    let shape = outline(series.style, series.marker_px);
+    let corners: Vec<String> = points.iter().map(|(x, y)| format!("{} {}", px(*x), px(*y))).collect();
+    let _ = writeln!(
+        out,
+        "<marker id=\"{id}\" overflow=\"visible\" markerUnits=\"userSpaceOnUse\">\
+         <path d=\"{shape}\" fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"{width}\"/></marker>\n\
+         <path d=\"M{}\" fill=\"none\" marker-start=\"url(#{id})\" marker-mid=\"url(#{id})\" \
+         marker-end=\"url(#{id})\"/>",
+        // a path of one point has no end of its own: the point is given twice
+        if corners.len() == 1 { format!("{0}L{0}", corners[0]) } else { corners.join("L") }
+    );
 }
 
 fn line(out: &mut String, from: (f64, f64), to: (f64, f64), colour: &str, width: f64) {
@@ -576,7 +529,19 @@ mod tests {
     fn values_without_a_place_are_left_out() {
         let svg = plot().to_svg();
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
-        assert_eq!(svg.matches("a4.5 4.5").count() / 2, 3, "two points and the legend's sample");
+        let drawn = svg.lines().find(|l| l.contains("marker-mid")).unwrap_or_default();
+        assert_eq!(drawn.matches('L').count(), 1, "two of four points: {drawn}");
+    }
+
+    #[test]
+    fn a_front_of_thousands_stays_small_and_series_differ_without_colour() {
+        let points = |i: usize| (0..600).map(|j| (1.0 + j as f64, 1.0 + (i * j) as f64)).collect();
+        let series = (0..9).map(|i| Series::scatter("front", i, points(i))).collect();
+        let svg = Plot { series, ..Plot::default() }.to_svg();
+        assert!(svg.len() < 100_000, "{}", svg.len());
+        let outlines: std::collections::BTreeSet<String> = (0..8).map(|i| outline(i, 4.0)).collect();
+        assert_eq!(outlines.len(), 8);
+        assert_ne!(outline(0, 4.0), outline(8, 4.0), "the same colour comes again with another shape");
     }
 
     #[test]
