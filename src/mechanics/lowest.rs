@@ -73,7 +73,7 @@ pub fn lowest_eigenvalue<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -
         } else {
             high = guess;
         }
-        if high - low <= 4.0 * f64::EPSILON * high {
+        if high.is_finite() && high - low <= 4.0 * f64::EPSILON * high {
             return low;
         }
         let next = if here.inner_sound {

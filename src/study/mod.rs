@@ -2,6 +2,7 @@
 
 mod diagnose;
 mod outcome;
+pub mod paper;
 mod read;
 mod sections;
 mod table;
