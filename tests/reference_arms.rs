@@ -6,7 +6,7 @@
 mod witness;
 
 use serde_json::Value;
-use witness::{Answer, LoadCase, Options};
+use witness::{Answer, LoadCase, MassShape, Options};
 
 /// Deviations from one set of expected numbers, in percent.
 #[derive(Debug, Default)]
@@ -121,9 +121,37 @@ fn the_witness_agrees_with_the_planar_arms() {
 
 fn the_witness_agrees_with_the_spatial_arms() {
     let file = data("spatial-arms.json");
-    for (class, options) in [("rigid_links", Options::rigid_links()), ("flexible_links", Options::default())]
-    {
-        let worst = worst_of_class(&file, "expected", class, Answer::frequencies_hz, &options);
-        assert_within_suggested(&file, class, &worst);
+    let all = Answer::frequencies_hz;
+    let flexible = |options: &Options| worst_of_class(&file, "expected", "flexible_links", all, options);
+
+    let rigid = worst_of_class(&file, "expected", "rigid_links", all, &Options::rigid_links());
+    assert_within_suggested(&file, "rigid_links", &rigid);
+    assert_within_suggested(&file, "flexible_links", &flexible(&as_the_spatial_reference_did()));
+    let timoshenko = flexible(&Options::default());
+    assert!(timoshenko.worst_pct() <= SPATIAL_TIMOSHENKO_PCT, "{timoshenko:?}");
+    let lowest_five = |answer: &Answer| answer.frequencies_hz()[..5].to_vec();
+    let lowest =
+        worst_of_class(&shortened(&file, 5), "expected", "flexible_links", lowest_five, &Options::default());
+    assert_within_suggested(&file, "flexible_links", &lowest);
+}
+
+/// What the spatial reference turns out to have done: eight elements a link, and a mass matrix from Euler-Bernoulli
+/// shapes, with which all its numbers come back to 0.03 %.
+fn as_the_spatial_reference_did() -> Options {
+    Options { elements_per_link: 8, mass_shape: MassShape::EulerBernoulli, ..Options::default() }
+}
+
+/// Suggested are 0.2 %, but for its mass matrix (see `MassShape::EulerBernoulli`) the reference has the sixth mode of S01
+/// 0.253 % too low; the five lowest modes of all arms stay within 0.06 %. The planar arms by FEDEM and the exact solution
+/// of a stout cantilever (`tests/closed_forms.rs`) side with the Timoshenko shapes.
+const SPATIAL_TIMOSHENKO_PCT: f64 = 0.3;
+
+/// The file with only the lowest expected frequencies.
+fn shortened(file: &Value, count: usize) -> Value {
+    let mut file = file.clone();
+    for case in file["cases"].as_array_mut().expect("cases") {
+        let list = &mut case["expected"]["flexible_links"]["frequency_hz"];
+        list.as_array_mut().expect("frequencies").truncate(count);
     }
+    file
 }

@@ -7,6 +7,7 @@
 
 use nalgebra::{Matrix3, Matrix4, SMatrix, Vector3};
 
+use super::MassShape;
 use super::arm::{LineLoad, Tube};
 use super::nodes::stacked;
 
@@ -73,13 +74,27 @@ impl BeamLine {
     }
 
     /// Consistent element mass in local axes.
-    pub fn mass(&self, length_m: f64) -> Matrix12 {
+    pub fn mass(&self, length_m: f64, shape: MassShape) -> Matrix12 {
         let bar = Matrix2Bar { diagonal: 1.0 / 3.0, off_diagonal: 1.0 / 6.0 };
         let mut m = Matrix12::zeros();
         bar.add_to(&mut m, 0, self.axial_mass_kg_per_m * length_m);
         bar.add_to(&mut m, 3, self.polar_kgm() * length_m);
-        XY.add_to(&mut m, &self.bending_mass(self.bending_z_nm2, self.rotary_z_kgm, length_m));
-        XZ.add_to(&mut m, &self.bending_mass(self.bending_y_nm2, self.rotary_y_kgm, length_m));
+        XY.add_to(
+            &mut m,
+            &self.bending_mass(
+                self.shape_parameter(shape, self.bending_z_nm2, length_m),
+                self.rotary_z_kgm,
+                length_m,
+            ),
+        );
+        XZ.add_to(
+            &mut m,
+            &self.bending_mass(
+                self.shape_parameter(shape, self.bending_y_nm2, length_m),
+                self.rotary_y_kgm,
+                length_m,
+            ),
+        );
         m
     }
 
@@ -115,8 +130,14 @@ impl BeamLine {
         shape * (bending_nm2 / ((1.0 + phi) * l.powi(3)))
     }
 
-    fn bending_mass(&self, bending_nm2: f64, rotary_kgm: f64, length_m: f64) -> Matrix4<f64> {
-        let phi = self.shear_parameter(bending_nm2, length_m);
+    fn shape_parameter(&self, shape: MassShape, bending_nm2: f64, length_m: f64) -> f64 {
+        match shape {
+            MassShape::Timoshenko => self.shear_parameter(bending_nm2, length_m),
+            MassShape::EulerBernoulli => 0.0,
+        }
+    }
+
+    fn bending_mass(&self, phi: f64, rotary_kgm: f64, length_m: f64) -> Matrix4<f64> {
         let line_kg = self.transverse_mass_kg_per_m * length_m / (1.0 + phi).powi(2);
         let rotary_kg = rotary_kgm / length_m / (1.0 + phi).powi(2);
         line_mass_shape(phi, length_m) * line_kg + rotary_mass_shape(phi, length_m) * rotary_kg

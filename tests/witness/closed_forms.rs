@@ -5,7 +5,8 @@
 //! Sources: Roark's Formulas for Stress and Strain, table 8.1 (cantilevers); R. D. Blevins, Formulas for Natural
 //! Frequency and Mode Shape (1979), tables 8-1 (beams), 8-8 (tip mass), 8-16 (shafts).
 
-use std::f64::consts::{PI, TAU};
+use nalgebra::Matrix4;
+use std::f64::consts::TAU;
 
 /// Roots of cos(b) cosh(b) = -1 (Blevins table 8-1, fixed-free).
 pub const CANTILEVER_ROOTS: [f64; 3] = [1.875_104_068_711_961, 4.694_091_132_974_175, 7.854_757_438_237_613];
@@ -50,6 +51,54 @@ pub fn tip_mass_frequency_hz(tip_kg: f64, length_m: f64, bending_nm2: f64, line_
         |b: f64| 1.0 + b.cos() * b.cosh() + ratio * b * (b.cos() * b.sinh() - b.sin() * b.cosh());
     let root = bisected(characteristic, 1e-6, CANTILEVER_ROOTS[0]);
     bending_frequency_hz(root, length_m, bending_nm2, line_kg_per_m)
+}
+
+/// A stout cantilever: bending, shear and rotary inertia.
+#[derive(Clone, Copy, Debug)]
+pub struct StoutBeam {
+    pub length_m: f64,
+    pub bending_nm2: f64,
+    pub shear_n: f64,
+    pub line_kg_per_m: f64,
+    /// rho I.
+    pub rotary_kgm: f64,
+}
+
+impl StoutBeam {
+    /// The lowest `count` frequencies, from Timoshenko's equations (Phil. Mag. 41 (1921) 744) without discretization.
+    ///
+    /// Deflection v, section rotation t, shear force Q and moment M obey `v' = t + Q / kGA`, `t' = M / EI`,
+    /// `Q' = -w^2 rho A v`, `M' = -Q - w^2 rho I t`; clamped at 0 and free at L, the block of the transfer matrix that
+    /// maps (Q, M) at the clamp to (Q, M) at the end is singular at a frequency.
+    pub fn cantilever_frequencies_hz(&self, count: usize) -> Vec<f64> {
+        let slender_hz = cantilever_frequencies_hz(self.length_m, self.bending_nm2, self.line_kg_per_m)[0];
+        let (step_hz, mut low_hz) = (slender_hz / 20.0, slender_hz / 20.0);
+        let mut roots_hz = Vec::new();
+        while roots_hz.len() < count {
+            let high_hz = low_hz + step_hz;
+            if self.end_determinant(low_hz) * self.end_determinant(high_hz) < 0.0 {
+                roots_hz.push(bisected(|f_hz| self.end_determinant(f_hz), low_hz, high_hz));
+            }
+            low_hz = high_hz;
+        }
+        roots_hz
+    }
+
+    /// State (v / L, t, Q L^2 / EI, M L / EI) along x / L, so that all entries are of one size.
+    fn end_determinant(&self, frequency_hz: f64) -> f64 {
+        let omega2 = (frequency_hz * TAU).powi(2);
+        let shear = self.bending_nm2 / (self.shear_n * self.length_m.powi(2));
+        let line = omega2 * self.line_kg_per_m * self.length_m.powi(4) / self.bending_nm2;
+        let rotary = omega2 * self.rotary_kgm * self.length_m.powi(2) / self.bending_nm2;
+        #[rustfmt::skip]
+        let change = Matrix4::new(
+            0.0,   1.0,     shear, 0.0,
+            0.0,   0.0,     0.0,   1.0,
+            -line, 0.0,     0.0,   0.0,
+            0.0,   -rotary, -1.0,  0.0,
+        );
+        change.exp().fixed_view::<2, 2>(2, 2).determinant()
+    }
 }
 
 fn bending_frequency_hz(root: f64, length_m: f64, bending_nm2: f64, line_kg_per_m: f64) -> f64 {
@@ -116,9 +165,4 @@ pub fn cubic_roots(a: f64, b: f64, c: f64) -> [f64; 3] {
     let mut roots = [root(0.0), root(1.0), root(-1.0)];
     roots.sort_by(f64::total_cmp);
     roots
-}
-
-/// Second moment of area and of a round tube's section; for tests that want a section of their own.
-pub fn round_tube_inertia_m4(diameter_m: f64, wall_m: f64) -> f64 {
-    PI / 64.0 * (diameter_m.powi(4) - (diameter_m - 2.0 * wall_m).powi(4))
 }

@@ -47,6 +47,16 @@ pub enum Links {
     Rigid,
 }
 
+/// The shapes that spread an element's mass over its nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MassShape {
+    /// The same shapes as the stiffness: rotary inertia goes with the section's rotation, as it should.
+    Timoshenko,
+    /// Cubic shapes whose slope is taken for the section's rotation; in short stout links the rotary inertia comes out too
+    /// large, however fine the mesh. Only to see what another program did.
+    EulerBernoulli,
+}
+
 /// How an arm is to be modelled.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -54,6 +64,8 @@ pub struct Options {
     pub links: Links,
     /// Beam elements in each link with a section.
     pub elements_per_link: usize,
+    /// How the elements' mass is spread.
+    pub mass_shape: MassShape,
     /// The most modes to return; fewer when the model has fewer finite ones.
     pub modes: usize,
     /// Physics beyond the arm file's chain.
@@ -62,7 +74,13 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { links: Links::Flexible, elements_per_link: 16, modes: 6, effects: Effects::default() }
+        Self {
+            links: Links::Flexible,
+            elements_per_link: 16,
+            mass_shape: MassShape::Timoshenko,
+            modes: 6,
+            effects: Effects::default(),
+        }
     }
 }
 

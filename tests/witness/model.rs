@@ -185,7 +185,7 @@ impl<'a> Walk<'a> {
         let step_m = span_m / self.options.elements_per_link as f64;
         let length_m = step_m.norm();
         let stiffness = in_world_axes(&beam.stiffness(length_m), axes);
-        let mass = in_world_axes(&beam.mass(length_m), axes);
+        let mass = in_world_axes(&beam.mass(length_m, self.options.mass_shape), axes);
         for element in 0..self.options.elements_per_link {
             let from_m = self.point_m + step_m * element as f64;
             let outboard = NodeMap::free(self.model.unknowns);
