@@ -94,7 +94,9 @@ impl Model {
     /// Names of what can deform, each once, in the order of the chain.
     pub fn compliant_elements(&self) -> Vec<String> {
         let beams = self.pieces.iter().filter(|piece| piece.stiffness != Matrix12::zeros());
-        let mut named: Vec<(usize, &String)> = beams.map(|beam| (beam.columns[0].0, &beam.name)).collect();
+        // Unknowns are numbered outwards, so a beam stands where its outboard node does.
+        let place = |beam: &Piece| beam.columns.iter().map(|(unknown, _)| *unknown).max().unwrap_or(0);
+        let mut named: Vec<(usize, &String)> = beams.map(|beam| (place(beam), &beam.name)).collect();
         named.extend(self.springs.iter().map(|spring| (spring.unknown, &spring.name)));
         named.sort();
         let mut names: Vec<String> = Vec::new();
