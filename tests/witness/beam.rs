@@ -1,7 +1,7 @@
 //! A Timoshenko beam element: stiffness, consistent mass, consistent load.
 //!
 //! Local unknowns: u, v, w, rx, ry, rz of the first node, then of the second; x along the beam. The shear parameter of a
-//! plane is `phi = 12 EI / (k G A l^2)`. Przemieniecki (1968), equations 5.116 and 11.29-11.33, the bending part of the
+//! plane is `phi = 12 EI / (k G A l^2)`. Przemieniecki (1968), chapters 5 and 11, the bending part of the
 //! mass split into what the line mass and what the rotary inertia contribute, because added mass of water has no
 //! rotary part.
 

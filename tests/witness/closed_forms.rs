@@ -2,13 +2,13 @@
 //!
 //! SI units throughout; `bending_nm2` is EI, `shear_n` is k G A, `line_kg_per_m` is rho A.
 //!
-//! Sources: Roark's Formulas for Stress and Strain, table 8.1 (cantilevers); R. D. Blevins, Formulas for Natural
-//! Frequency and Mode Shape (1979), tables 8-1 (beams), 8-8 (tip mass), 8-16 (shafts).
+//! Sources: Roark's Formulas for Stress and Strain, straight beams (cantilevers); R. D. Blevins, Formulas for Natural
+//! Frequency and Mode Shape (1979), chapter 8 (beams, tip mass, shafts).
 
 use nalgebra::Matrix4;
 use std::f64::consts::TAU;
 
-/// Roots of cos(b) cosh(b) = -1 (Blevins table 8-1, fixed-free).
+/// Roots of cos(b) cosh(b) = -1 (Blevins, fixed-free).
 pub const CANTILEVER_ROOTS: [f64; 3] = [1.875_104_068_711_961, 4.694_091_132_974_175, 7.854_757_438_237_613];
 
 /// Tip deflection under a tip force: F L^3 / 3 EI.
@@ -43,7 +43,7 @@ pub fn cantilever_frequencies_hz(length_m: f64, bending_nm2: f64, line_kg_per_m:
 
 /// Lowest bending frequency of a slender cantilever with a point mass at the tip.
 ///
-/// The root of `1 + cos b cosh b + (M / rho A L) b (cos b sinh b - sin b cosh b) = 0` (Blevins table 8-8) between 0 and
+/// The root of `1 + cos b cosh b + (M / rho A L) b (cos b sinh b - sin b cosh b) = 0` (Blevins) between 0 and
 /// the bare cantilever's, found by bisection.
 pub fn tip_mass_frequency_hz(tip_kg: f64, length_m: f64, bending_nm2: f64, line_kg_per_m: f64) -> f64 {
     let ratio = tip_kg / (line_kg_per_m * length_m);

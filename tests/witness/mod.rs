@@ -11,7 +11,7 @@
 //! answer.tip_displacement_m; answer.joint_torque_nm; answer.modes[0].frequency_hz;
 //! ```
 //!
-//! Sources: J. S. Przemieniecki, Theory of Matrix Structural Analysis (1968), sections 5.6 and 11.5-11.6 (Timoshenko
+//! Sources: J. S. Przemieniecki, Theory of Matrix Structural Analysis (1968), chapters 5 and 11 (Timoshenko
 //! stiffness and consistent mass); G. R. Cowper, J. Appl. Mech. 33 (1966) 335 (shear factors); K.-J. Bathe, Finite
 //! Element Procedures (1996), section 11.6 (subspace iteration).
 
