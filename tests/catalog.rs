@@ -1,7 +1,9 @@
 //! The catalogs as a user meets them: what is built in, what a folder of one's own adds, and what is
 //! said about a folder that is wrong.
 
-use armwright::catalog::{Catalogs, Confidence, MaterialClass, MotorKind, PartError, ProfileShape};
+use armwright::catalog::{
+    CatalogFile, Catalogs, Confidence, MaterialClass, MotorKind, PartError, ProfileShape,
+};
 use armwright::fault::{Fault, InputError};
 use std::path::{Path, PathBuf};
 
@@ -65,6 +67,41 @@ fn the_gears_of_table_1_have_the_middle_slopes_and_masses_of_sources_md() {
             (Some(set_kg), Some(unit_kg)),
             "{id}"
         );
+    }
+}
+
+#[test]
+fn the_stiffnesses_of_table_1_are_the_middle_slopes_printed_in_kgf_m_per_arcmin() {
+    let catalogs = Catalogs::builtin();
+    let nm_per_rad = |kgf_m_per_arcmin: f64| kgf_m_per_arcmin * 9.80665 / (std::f64::consts::PI / 10800.0);
+    let table_1 = [
+        ("HFUC-58-100", 607e3, 18.0),
+        ("HFUC-50-100", 405e3, 12.0),
+        ("HFUC-32-100", 108e3, 3.2),
+        ("HFUC-20-50", 17.5e3, 0.52),
+    ];
+    for (id, paper, older_print) in table_1 {
+        let k2 = catalogs.gear(id).expect(id).k2_nm_per_rad.expect("a torsion curve");
+        assert!((paper / k2 - 1.0).abs() < 0.035, "{id}: paper {paper}, catalog {k2}");
+        assert!((paper / nm_per_rad(older_print) - 1.0).abs() < 0.003, "{id}");
+    }
+}
+
+#[test]
+fn the_example_of_the_readme_loads_and_its_tables_name_every_column() {
+    let readme = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("catalogs/README.md"))
+        .expect("the file");
+    let example: Vec<&str> = readme.lines().skip_while(|l| !l.starts_with("type,model")).take(2).collect();
+    let catalogs = load(&[("motors.csv", &example.join("\n"))]).expect("sound");
+    assert_eq!(catalogs.motors.len(), 92);
+    assert_eq!(catalogs.warnings, Catalogs::builtin().warnings);
+    for file in CatalogFile::ALL {
+        for column in file.columns() {
+            let written =
+                if column.required { format!("**{}**", column.name) } else { column.name.to_string() };
+            let also = format!("`{}`", column.name);
+            assert!(readme.contains(&written) || readme.contains(&also), "{}: {written}", file.file_name());
+        }
     }
 }
 
