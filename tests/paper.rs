@@ -13,7 +13,7 @@ use armwright::study::paper::remedies::{CatalogGears, connections, error_left, s
 use armwright::study::paper::rows::PaperRow;
 use armwright::study::paper::third_spring::{PRINTED_HZ, closest_reading, readings};
 use armwright::study::paper::{self, NAMES, PaperError, PaperStudyOutput, table1};
-use paper_support::{catalogs, check_xml, file, table};
+use paper_support::{check_xml, file, table};
 
 fn row(rows: &[PaperRow], id: &str) -> PaperRow {
     rows.iter().find(|r| r.id == id).unwrap_or_else(|| panic!("row {id}")).clone()
@@ -27,12 +27,12 @@ fn assert_digits(what: &str, value: Option<f64>, stated: &str) {
 }
 
 fn output(name: &str) -> PaperStudyOutput {
-    paper::run(name, &catalogs()).unwrap()
+    paper::run(name, &Catalogs::builtin()).unwrap()
 }
 
 #[test]
 fn the_papers_numbers_come_out_under_the_stated_readings() {
-    let rows = table1::compute(&catalogs()).unwrap().rows;
+    let rows = table1::compute(&Catalogs::builtin()).unwrap().rows;
     for (id, stated) in [
         ("torque_joint_2", "568.3"),
         ("torque_joint_3", "112.4"),
@@ -67,7 +67,7 @@ fn the_papers_numbers_come_out_under_the_stated_readings() {
 
 #[test]
 fn the_exact_frame_gives_the_values_of_the_independent_programs() {
-    let rows = table1::compute(&catalogs()).unwrap().rows;
+    let rows = table1::compute(&Catalogs::builtin()).unwrap().rows;
     for (id, stated) in [
         ("deflection_total", "1.4815"),
         ("deflection_links", "0.0638"),
@@ -93,7 +93,7 @@ fn the_exact_frame_gives_the_values_of_the_independent_programs() {
 
 #[test]
 fn rigid_links_rank_thin_aluminium_above_thin_steel_and_flexible_links_do_not() {
-    let rows = table1::compute(&catalogs()).unwrap().rows;
+    let rows = table1::compute(&Catalogs::builtin()).unwrap().rows;
     let [steel, aluminium] = ["thin_steel", "thin_aluminium"].map(|id| row(&rows, id));
     assert!(aluminium.reading_value > steel.reading_value && aluminium.exact < steel.exact);
     assert!((aluminium.reading_value.unwrap() - 20.9).abs() < 0.1);
@@ -148,7 +148,7 @@ fn the_closest_reading_gives_all_three_frequencies_within_a_twentieth_of_a_perce
 
 #[test]
 fn correcting_for_the_joints_leaves_the_links_and_what_is_unknown_of_the_curve() {
-    let gears = CatalogGears::new(&catalogs()).unwrap();
+    let gears = CatalogGears::new(&Catalogs::builtin()).unwrap();
     let rows = error_left(&gears);
     let links_m = rows[1].curve_m;
     for (row, error) in rows[2..5].iter().zip([0.05, 0.10, 0.20]) {
@@ -186,7 +186,7 @@ fn a_connection_adds_torque_over_stiffness_times_lever() {
 
 #[test]
 fn eq_4_is_the_librarys_bending_link() {
-    let catalogs = catalogs();
+    let catalogs = Catalogs::builtin();
     let steel = catalogs.materials.iter().find(|m| m.name == "Structural steel S235").unwrap();
     let section = Section::RectangularTube { width_m: 0.1, height_m: 0.1, wall_m: WALL_M };
     let p = section.properties(0.3);
@@ -207,7 +207,7 @@ fn claim(claims: &[Claim], id: &str) -> bool {
 
 #[test]
 fn fig_2_claims_are_decided() {
-    let curves = fig2::curves(&catalogs()).unwrap();
+    let curves = fig2::curves(&Catalogs::builtin()).unwrap();
     let stated =
         [("steel", "0.305", "0.023"), ("titanium", "0.537", "0.038"), ("aluminium", "0.855", "0.059")];
     for (curve, (name, at_70, at_160)) in curves.iter().zip(stated) {
@@ -224,7 +224,7 @@ fn fig_2_claims_are_decided() {
 
 #[test]
 fn fig_3_claim_holds_at_every_section_and_grows_by_the_same_weight() {
-    let growths = fig3::growths(&catalogs()).unwrap();
+    let growths = fig3::growths(&Catalogs::builtin()).unwrap();
     assert_eq!(growths.len(), 20);
     assert!(growths.iter().all(|g| g.by_wall.is_some_and(|wall| g.by_width > wall && wall > 1.0)));
     assert!(claim(&fig3::claims(&growths), "width_beats_wall"));
@@ -232,7 +232,7 @@ fn fig_3_claim_holds_at_every_section_and_grows_by_the_same_weight() {
 
 #[test]
 fn fig_4_claims_are_decided() {
-    let curves = fig4::curves(&catalogs()).unwrap();
+    let curves = fig4::curves(&Catalogs::builtin()).unwrap();
     let claims = fig4::claims(&curves);
     for id in ["lighter_at_reference", "lighter_with_shear", "sizes_differ"] {
         assert!(claim(&claims, id), "{id}");
@@ -299,7 +299,7 @@ fn csv_files_have_the_expected_rows_and_read_back() {
         assert_eq!(table(&output(study), csv).len(), count, "{study}/{csv}");
     }
     let rows = table(&output("paper-table1"), "paper-table1.csv");
-    let computed = table1::compute(&catalogs()).unwrap().rows;
+    let computed = table1::compute(&Catalogs::builtin()).unwrap().rows;
     assert_eq!(rows.len(), computed.len());
     for (read, row) in rows.iter().zip(&computed) {
         assert_eq!(read["id"], row.id);
@@ -319,7 +319,7 @@ fn the_response_starts_at_the_static_compliance_and_peaks_at_the_lowest_mode() {
 
 #[test]
 fn unknown_names_and_missing_parts_are_named() {
-    assert!(matches!(paper::run("fig5", &catalogs()), Err(PaperError::UnknownStudy { .. })));
+    assert!(matches!(paper::run("fig5", &Catalogs::builtin()), Err(PaperError::UnknownStudy { .. })));
     for name in NAMES {
         let message = paper::run(name, &Catalogs::default()).unwrap_err().to_string();
         assert!(message.contains("catalogs have no"), "{message}");
@@ -328,7 +328,7 @@ fn unknown_names_and_missing_parts_are_named() {
 
 #[test]
 fn a_stiffness_factor_leaves_a_gear_curve_alone() {
-    let gears = CatalogGears::new(&catalogs()).unwrap();
+    let gears = CatalogGears::new(&Catalogs::builtin()).unwrap();
     let factored = gears.curve.with_stiffness_factors([4.0; 3]);
     assert!(matches!(factored.curves[0], Curve::Windup(_)) && factored == gears.curve);
 }
