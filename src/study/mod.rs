@@ -1,5 +1,6 @@
 //! Named questions: read, resolve, run.
 
+pub mod paper;
 mod read;
 mod sections;
 
