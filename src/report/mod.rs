@@ -2,5 +2,6 @@
 
 pub mod front_table;
 pub mod number;
+pub mod picks;
 pub mod svg;
 pub mod table;

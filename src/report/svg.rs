@@ -18,15 +18,20 @@
 //! assert!(plot.to_svg().starts_with("<svg"));
 //! ```
 
+mod sheet;
 mod ticks;
 
 use super::number::fixed;
 use std::fmt::Write;
+pub use sheet::Sheet;
 use ticks::{Ruling, rule};
 
 /// The palette of Okabe and Ito, ordered so that the first stand out best on white.
 pub const PALETTE: [&str; 8] =
     ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#B8A90A"];
+
+/// A style that stands back behind all others: grey, round.
+pub const MUTED: usize = usize::MAX;
 
 const INK: &str = "#222222";
 const FAINT: &str = "#E3E3E3";
@@ -399,7 +404,7 @@ fn wrap(words: &str, most: usize) -> Vec<String> {
 }
 
 fn colour(style: usize) -> &'static str {
-    PALETTE[style % PALETTE.len()]
+    if style == MUTED { "#A0A0A0" } else { PALETTE[style % PALETTE.len()] }
 }
 
 fn dashes(stroke: Stroke) -> &'static str {
@@ -454,6 +459,7 @@ fn marker(style: usize, (x, y): (f64, f64), r: f64) -> String {
         (-0.33, -0.45),
     ];
     match style % PALETTE.len() {
+        _ if style == MUTED => circle((x, y), r),
         0 => circle((x, y), r),
         1 => polygon(SQUARE, (x, y), r, 0.0),
         2 => polygon(UP, (x, y), r, 0.0),
