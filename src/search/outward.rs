@@ -44,7 +44,7 @@ pub struct SizedJoint<'c> {
 struct OptionFigures {
     mass_kg: f64,
     material: Option<usize>,
-    cost_eur: f64,
+    cost_eur: Option<f64>,
     stress: Option<StressCheck>,
     slender: bool,
 }
@@ -56,7 +56,7 @@ struct StressCheck {
     per_moment_z: f64,
     per_torsion: f64,
     round: bool,
-    allowed_pa: f64,
+    strength_pa: f64,
 }
 
 /// An arm from the tip to some level.
@@ -66,6 +66,8 @@ pub struct Partial {
     mass_kg: f64,
     cost_eur: f64,
     group: Group,
+    /// Largest stress over strength at peak load, where strengths are known.
+    stress_ratio: f64,
     /// Option per slot.
     options: Vec<u32>,
     /// Drive or point mass per slot \[kg\].
@@ -135,6 +137,25 @@ impl<'c> ArmProblem<'c> {
             Slot::Sized(sized) => Some(sized),
             _ => None,
         }
+    }
+
+    /// Smallest strength over stress of an arm at peak load; `None` if no strength is known.
+    pub fn stress_safety_factor(&self, partial: &Partial) -> Option<f64> {
+        (partial.stress_ratio > 0.0).then(|| 1.0 / partial.stress_ratio)
+    }
+
+    /// Cost of the chosen links' material \[EUR\]; `None` if a cost is unknown.
+    pub fn material_cost_eur(&self, partial: &Partial) -> Option<f64> {
+        let known = self.slots.iter().zip(&partial.options).all(|(slot, &option)| match slot {
+            Slot::Link { options, open: true } => options[option as usize].cost_eur.is_some(),
+            _ => true,
+        });
+        known.then_some(partial.cost_eur)
+    }
+
+    /// Mass of an arm so far \[kg\].
+    pub fn mass_kg(&self, partial: &Partial) -> f64 {
+        partial.mass_kg
     }
 
     /// Option of every piece of a complete arm, base to tip.
@@ -264,7 +285,7 @@ impl<'c> ArmProblem<'c> {
             return false;
         }
         to.mass_kg += figures.mass_kg;
-        to.cost_eur += figures.cost_eur;
+        to.cost_eur += figures.cost_eur.unwrap_or(0.0);
         to.group = to.group.with(figures.material);
         if self.space.constraints.material_cost_max_eur.is_some_and(|max| to.cost_eur > max) {
             return false;
@@ -275,13 +296,13 @@ impl<'c> ArmProblem<'c> {
             state.add_link(&options[option as usize]);
             if let Some(stress) = figures.stress.as_ref().filter(|_| self.space.sizing_cases.contains(&case))
             {
-                let ends = [(&outboard, &place.end_m), (&state.wrench, &place.root_m)];
-                if ends.iter().any(|(w, at)| !stress.holds(w, at, place, self.peak_factor)) {
-                    return false;
+                for (wrench, at_m) in [(&outboard, &place.end_m), (&state.wrench, &place.root_m)] {
+                    let ratio = stress.ratio(wrench, at_m, place) * self.peak_factor;
+                    to.stress_ratio = to.stress_ratio.max(ratio);
                 }
             }
         }
-        true
+        self.space.constraints.stress_safety_factor_min.is_none_or(|least| to.stress_ratio * least <= 1.0)
     }
 
     fn lowest_mode_hz(&self, complete: &Partial) -> f64 {
@@ -391,6 +412,13 @@ impl OutwardIn for ArmProblem<'_> {
     }
 }
 
+impl SizedJoint<'_> {
+    /// Whether its drive is a choice of the search.
+    pub fn is_level(&self) -> bool {
+        self.all_fits
+    }
+}
+
 impl Group {
     fn with(self, material: Option<usize>) -> Self {
         match (self, material) {
@@ -424,7 +452,7 @@ impl Slot<'_> {
 }
 
 impl StressCheck {
-    fn new(option: &LinkOption, safety_factor: f64) -> Option<Self> {
+    fn new(option: &LinkOption) -> Option<Self> {
         let p = option.section.properties(option.material.poisson);
         let (width, height) = option.section.outer_m();
         let wall = option.section.wall_m();
@@ -439,19 +467,19 @@ impl StressCheck {
             per_moment_z: width / 2.0 / p.second_moment_z_m4,
             per_torsion: 1.0 / (2.0 * enclosed * wall),
             round,
-            allowed_pa: option.strength_pa? / safety_factor,
+            strength_pa: option.strength_pa?,
         })
     }
 
-    /// Bending, axial stress and torsion at an end under the wrench, times the peak factor.
-    fn holds(&self, wrench: &Vector6<f64>, at_m: &Vector3<f64>, place: &Place, peak_factor: f64) -> bool {
+    /// Von Mises stress of bending, axial force and torsion at an end, over the strength.
+    fn ratio(&self, wrench: &Vector6<f64>, at_m: &Vector3<f64>, place: &Place) -> f64 {
         let force = place.frame.tr_mul(&linear(wrench));
         let moment = place.frame.tr_mul(&(angular(wrench) - at_m.cross(&linear(wrench))));
         let (y, z) = (moment.y.abs() * self.per_moment_y, moment.z.abs() * self.per_moment_z);
         let bending = if self.round { y.hypot(z) } else { y + z };
         let normal = force.x.abs() * self.per_axial_n + bending;
         let shear = moment.x.abs() * self.per_torsion;
-        peak_factor * (normal * normal + 3.0 * shear * shear).sqrt() <= self.allowed_pa
+        (normal * normal + 3.0 * shear * shear).sqrt() / self.strength_pa
     }
 }
 
@@ -514,11 +542,8 @@ fn figures(space: &DesignSpace, option: &LinkOption, length_m: f64) -> OptionFig
         slender: space.constraints.wall_slenderness_max.is_some_and(|max| option.wall_slenderness() > max),
         mass_kg,
         material: Some(option.material_index),
-        cost_eur: option.cost_eur_per_kg.map_or(0.0, |cost| cost * mass_kg),
-        stress: space
-            .constraints
-            .stress_safety_factor_min
-            .and_then(|factor| StressCheck::new(option, factor)),
+        cost_eur: option.cost_eur_per_kg.map(|cost| cost * mass_kg),
+        stress: StressCheck::new(option),
     }
 }
 
