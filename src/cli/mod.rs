@@ -2,6 +2,7 @@
 //! that writes to standard output.
 
 mod analyze;
+pub mod compare;
 mod design;
 mod run;
 mod size;

@@ -22,8 +22,8 @@ mod sheet;
 mod ticks;
 
 use super::number::fixed;
-use std::fmt::Write;
 pub use sheet::Sheet;
+use std::fmt::Write;
 use ticks::{Ruling, rule};
 
 /// The palette of Okabe and Ito, ordered so that the first stand out best on white.

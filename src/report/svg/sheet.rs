@@ -74,7 +74,12 @@ impl Canvas {
     fn ringed_notes(&self, out: &mut String, plot: &Plot) {
         let noted: Vec<_> = plot.notes.iter().filter_map(|n| Some((n, self.inside(n.at)?))).collect();
         let mut obstacles = Obstacles {
-            points: plot.series.iter().flat_map(|s: &Series| &s.points).filter_map(|p| self.inside(*p)).collect(),
+            points: plot
+                .series
+                .iter()
+                .flat_map(|s: &Series| &s.points)
+                .filter_map(|p| self.inside(*p))
+                .collect(),
             rings: noted.iter().map(|(_, place)| *place).collect(),
             boxes: Vec::new(),
         };
@@ -124,8 +129,10 @@ impl Obstacles {
     /// How bad a place is: other notes and rings first, then points, then the way to its own ring.
     fn cost(&self, place: &Rect, own: (f64, f64)) -> u64 {
         let boxes = self.boxes.iter().filter(|b| b.touches(place)).count() as u64;
-        let rings = self.rings.iter().filter(|r| place.touches(&Rect::around(**r, 16.0, 16.0))).count() as u64;
-        let points = self.points.iter().filter(|p| place.touches(&Rect::around(**p, 3.0, 3.0))).count() as u64;
+        let rings =
+            self.rings.iter().filter(|r| place.touches(&Rect::around(**r, 16.0, 16.0))).count() as u64;
+        let points =
+            self.points.iter().filter(|p| place.touches(&Rect::around(**p, 3.0, 3.0))).count() as u64;
         let (x, y) = place.nearest(own);
         let way = (x - own.0).hypot(y - own.1);
         (boxes + rings) * 1_000_000 + points * 200 + (way * 10.0) as u64
@@ -143,11 +150,19 @@ struct Rect {
 
 impl Rect {
     fn around((x, y): (f64, f64), width: f64, height: f64) -> Self {
-        Self { left: x - width / 2.0, right: x + width / 2.0, top: y - height / 2.0, bottom: y + height / 2.0 }
+        Self {
+            left: x - width / 2.0,
+            right: x + width / 2.0,
+            top: y - height / 2.0,
+            bottom: y + height / 2.0,
+        }
     }
 
     fn touches(&self, other: &Self) -> bool {
-        self.left < other.right && other.left < self.right && self.top < other.bottom && other.top < self.bottom
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
     }
 
     /// The point of the rectangle nearest to another.
