@@ -227,7 +227,7 @@ fn sentence(question: Question, limit: f64, answers: &[Answer]) -> String {
     let winners: Vec<&str> =
         reached.iter().filter(|(a, _)| a.winner).map(|(a, _)| a.label.as_str()).collect();
     let value = amount(sought, sought.of(best));
-    let cost = best.material_cost_eur.map_or(String::new(), |c| format!(", material {} EUR", plain3(c)));
+    let cost = best.material_cost_eur.map_or(String::new(), |c| format!(", material {} EUR", cost_words(c)));
     let lead = match reached.get(winners.len()) {
         Some((a, second)) => format!(
             ", {} {} than {} ({})",
@@ -241,11 +241,10 @@ fn sentence(question: Question, limit: f64, answers: &[Answer]) -> String {
         }
         None => String::new(),
     };
-    let verb = if winners.len() == 1 { "is" } else { "are" };
     let mut out = format!(
-        "{words}: {} {verb} {} with {value} (design {}{cost}){lead}",
+        "{words}: {} {} with {value} (design {}{cost}){lead}",
         winners.join(" and "),
-        superlative(question),
+        superlative(question, winners.len() > 1),
         best.design_id
     );
     out.push_str(&mixed(question, best, answers));
@@ -288,14 +287,18 @@ fn out_of_reach(question: Question, answers: &[Answer]) -> String {
 /// How much better a design is than another, as a share of the other: `12.3 %`.
 fn percent(sought: Objective, better: &Design, other: &Design) -> String {
     let (a, b) = (sought.of(better), sought.of(other));
-    format!("{} %", significant(100.0 * ((a - b) / b).abs(), 3))
+    let percent = 100.0 * ((a - b) / b).abs();
+    format!("{} %", significant(percent, if percent < 10.0 { 2 } else { 3 }))
 }
 
-fn superlative(question: Question) -> &'static str {
-    match question.sought() {
-        Objective::Mass => "lightest",
-        Objective::Deflection => "stiffest",
-        Objective::Mode => "highest in lowest mode",
+fn superlative(question: Question, several: bool) -> &'static str {
+    match (question.sought(), several) {
+        (Objective::Mass, false) => "is lightest",
+        (Objective::Mass, true) => "are lightest",
+        (Objective::Deflection, false) => "is stiffest",
+        (Objective::Deflection, true) => "are stiffest",
+        (Objective::Mode, false) => "has the highest lowest mode",
+        (Objective::Mode, true) => "have the highest lowest mode",
     }
 }
 
@@ -318,7 +321,7 @@ fn plain(value: f64) -> String {
 }
 
 /// A cost with three digits, whole above 100.
-fn plain3(value: f64) -> String {
+pub fn cost_words(value: f64) -> String {
     if value.abs() >= 100.0 { format!("{value:.0}") } else { significant(value, 3) }
 }
 

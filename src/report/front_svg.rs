@@ -1,15 +1,21 @@
-//! A picture of fronts: tip deflection and lowest mode over mass, points by material.
+//! A picture of fronts: tip deflection and lowest mode over mass, by material.
+//!
+//! A front on three objectives is a cloud on each panel, and clouds of nine materials hide one another.
+//! So every design is a small dot, and on top of all dots stands the edge of each front: the best of
+//! the panel's objective at each mass, joined by a line, with the markers of the legend.
 
 use super::front_table::FrontTable;
 use super::number::significant;
 use super::picks::{Design, Objective, Pick, designs, materials};
-use super::svg::{Axis, MUTED, Note, PALETTE, Plot, Scale, Series, Sheet, Stroke};
+use super::svg::{Axis, MUTED, Note, PALETTE, Plot, Scale, Series, Sheet};
 use std::collections::HashSet;
 
 const WIDTH_PX: f64 = 900.0;
 const HEIGHT_PX: f64 = 460.0;
 /// Points of one series nearer than this share of an axis are drawn once.
-const GRAIN: f64 = 1.0 / 800.0;
+const GRAIN: f64 = 1.0 / 200.0;
+/// Markers on an edge keep so many grains from one another.
+const MARKER_STEPS: f64 = 3.0;
 
 /// A front that is drawn.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,10 +77,12 @@ impl FrontPicture<'_> {
         let (x, y) = (axis(Objective::Mass, &shown), axis(over, &shown));
         let grain = Grain::new([(Objective::Mass, x.scale), (over, y.scale)], &shown);
         let style = |index: usize| drawn[..index].iter().filter(|f| !f.muted).count();
-        let mut series: Vec<Series> =
-            drawn.iter().enumerate().map(|(i, f)| grain.series(f, style(i))).collect();
-        // what is grey lies behind the rest, in the drawing and in the legend
-        series.sort_by_key(|s| s.style != MUTED);
+        let numbered = || drawn.iter().enumerate();
+        let clouds = numbered().map(|(i, f)| grain.cloud(f, style(i)));
+        let edges = numbered().map(|(i, f)| grain.edge(f, style(i)));
+        let mut series: Vec<Series> = clouds.chain(edges).collect();
+        // all dots lie behind all edges, and what is grey behind the rest of its kind
+        series.sort_by_key(|s| (!s.name.is_empty(), s.style != MUTED));
         let notes = self.picks.iter().map(|p| Note {
             at: (Objective::Mass.of(&p.design), over.of(&p.design)),
             text: p.names.join(", "),
@@ -94,7 +102,8 @@ impl FrontPicture<'_> {
     /// What the picture shows, in words.
     fn description(&self, drawn: &[Drawn]) -> String {
         let mut out = String::from(
-            "Two panels over the mass of links and drives: tip deflection above, lowest mode below.",
+            "Two panels over the mass of links and drives: tip deflection above, lowest mode below. \
+             Every dot is a design; lines join the best designs of a front at each mass.",
         );
         for front in drawn {
             let range = |o: Objective| {
@@ -150,21 +159,59 @@ impl Grain {
         Self { axes, low: ends.map(|e| e.0), step }
     }
 
-    /// A front as a series; of the points that fall on one place the first is drawn.
-    fn series(&self, front: &Drawn, index: usize) -> Series {
+    /// All designs of a front as small dots without a name; of those on one place the first is drawn.
+    fn cloud(&self, front: &Drawn, index: usize) -> Series {
         let mut seen = HashSet::new();
         let cell =
             |d: &Design, i: usize| ((place(self.axes[i], d) - self.low[i]) / self.step[i]).round() as i64;
-        let points: Vec<(f64, f64)> = front
-            .designs
-            .iter()
-            .filter(|d| seen.insert((cell(d, 0), cell(d, 1))))
-            .map(|d| (self.axes[0].0.of(d), self.axes[1].0.of(d)))
-            .collect();
-        let style = if front.muted { MUTED } else { index };
+        let apart = front.designs.iter().filter(|d| seen.insert((cell(d, 0), cell(d, 1))));
+        let points = apart.map(|d| self.point(d)).collect();
+        Series { marker_px: 1.6, ..Series::scatter("", front.style(index), points) }
+    }
+
+    /// The edge of a front on this panel, a line with markers: for every mass the best of the other axis.
+    fn edge(&self, front: &Drawn, index: usize) -> Series {
+        let over = self.axes[1].0;
+        let mut rising: Vec<&Design> = front.designs.iter().collect();
+        rising.sort_by(|a, b| {
+            a.mass_kg.total_cmp(&b.mass_kg).then(over.minimized(a).total_cmp(&over.minimized(b)))
+        });
+        let mut best = f64::INFINITY;
+        rising.retain(|d| {
+            let better = over.minimized(d) < best;
+            best = best.min(over.minimized(d));
+            better
+        });
+        // markers that would touch are left out, but for the ends
+        let last = rising.len().saturating_sub(1);
+        let mut shown: Option<&Design> = None;
+        let mut points = Vec::new();
+        for (i, d) in rising.into_iter().enumerate() {
+            if i == 0 || i == last || shown.is_none_or(|s| self.apart(s, d)) {
+                points.push(self.point(d));
+                shown = Some(d);
+            }
+        }
         // beyond the palette the markers repeat, hollow
         let open = !front.muted && (index / PALETTE.len()) % 2 == 1;
-        Series { stroke: Stroke::None, open, ..Series::scatter(front.name, style, points) }
+        let marker_px = if front.muted { 2.5 } else { 4.0 };
+        Series { open, marker_px, ..Series::line(front.name, front.style(index), points) }
+    }
+
+    fn point(&self, design: &Design) -> (f64, f64) {
+        (self.axes[0].0.of(design), self.axes[1].0.of(design))
+    }
+
+    /// Whether the markers of two designs do not touch.
+    fn apart(&self, a: &Design, b: &Design) -> bool {
+        let steps = |i: usize| (place(self.axes[i], a) - place(self.axes[i], b)) / self.step[i];
+        steps(0).hypot(steps(1)) > MARKER_STEPS
+    }
+}
+
+impl Drawn<'_> {
+    fn style(&self, index: usize) -> usize {
+        if self.muted { MUTED } else { index }
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a finished study found: the question, the answer in two sentences, picks, materials, counts.
 
+use super::compare::cost_words;
 use super::compare::text::{short_labels, wrap};
 use super::front_table::FrontTable;
 use super::number::significant;
@@ -390,7 +391,7 @@ fn amount(objective: Objective, design: &Design) -> String {
 }
 
 fn known(value: Option<f64>) -> String {
-    value.map_or("unknown".into(), |v| significant(v, 3))
+    value.map_or("unknown".into(), cost_words)
 }
 
 fn listed(words: &[String]) -> String {

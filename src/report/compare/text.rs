@@ -1,6 +1,6 @@
 //! A comparison for people and for programs: text tables, Markdown, CSV.
 
-use super::{Answer, Comparison, Question, Reach, Row, plain, plain3};
+use super::{Answer, Comparison, Question, Reach, Row, cost_words, plain};
 use crate::report::number::{shortest, significant};
 use crate::report::picks::{Design, Objective};
 use crate::report::table::{Column, Table, csv_line};
@@ -183,7 +183,7 @@ fn triple(objective: Objective, design: Option<&Design>, starred: bool) -> [Stri
     [
         format!("{star}{}", significant(objective.of(d), 4)),
         d.design_id.clone(),
-        d.material_cost_eur.map_or("?".into(), plain3),
+        d.material_cost_eur.map_or("?".into(), cost_words),
     ]
 }
 
@@ -298,14 +298,15 @@ fn item(sentence: &str) -> String {
     wrap(sentence, WIDTH, "    ").replacen("    ", "  - ", 1)
 }
 
-/// Breaks words into lines of at most `width` characters, each beginning with `lead`.
+/// Breaks words into lines of at most `width` characters, each beginning with `lead`; a number and its
+/// unit stay together.
 pub fn wrap(words: &str, width: usize, lead: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
-    for word in words.split_whitespace() {
+    for word in bound(words) {
         match lines.last_mut() {
             Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
                 line.push(' ');
-                line.push_str(word);
+                line.push_str(&word);
             }
             _ => lines.push(format!("{lead}{word}")),
         }
@@ -313,9 +314,31 @@ pub fn wrap(words: &str, width: usize, lead: &str) -> String {
     lines.iter().map(|l| format!("{l}\n")).collect()
 }
 
+/// Words, with units bound to the numbers before them.
+fn bound(words: &str) -> Vec<String> {
+    const UNITS: [&str; 5] = ["%", "mm", "kg", "Hz", "EUR"];
+    let mut out: Vec<String> = Vec::new();
+    for word in words.split_whitespace() {
+        let is_unit = UNITS.contains(&word.trim_end_matches([',', ';', '.', ')', ':']));
+        match out.last_mut() {
+            Some(number) if is_unit && number.ends_with(|c: char| c.is_ascii_digit()) => {
+                number.push(' ');
+                number.push_str(word);
+            }
+            _ => out.push(word.to_string()),
+        }
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_number_and_its_unit_stay_on_one_line() {
+        assert_eq!(wrap("it is 28 %, or 12 kg", 8, ""), "it is\n28 %, or\n12 kg\n");
+    }
 
     #[test]
     fn labels_are_shortened_only_where_they_must_and_stay_different() {

@@ -52,16 +52,16 @@ impl Thresholds {
 }
 
 /// The strictest limit that three of four fronts keep, and the loosest at which half of them still
-/// give something up: beyond it their answer is their best design of all.
+/// give something up: beyond it their answers are their best designs of all.
 fn overlap(limited: Objective, fronts: &[&[Design]]) -> (f64, f64) {
-    let strictest: Vec<f64> =
-        fronts.iter().filter_map(|f| Some(limited.minimized(best(limited, *f)?))).collect();
-    let others = Objective::ALL.into_iter().filter(|o| *o != limited && asked(limited, *o));
-    let loosest: Vec<f64> = others
-        .flat_map(|o| fronts.iter().filter_map(move |f| Some(limited.minimized(best(o, *f)?))))
-        .collect();
+    let at_best_of = |o, front: &[Design]| best(o, front).map(|d| limited.minimized(d));
+    let strictest = fronts.iter().filter_map(|f| at_best_of(limited, f)).collect();
+    let loosest_of = |front: &&[Design]| {
+        let others = Objective::ALL.into_iter().filter(|o| *o != limited && asked(limited, *o));
+        others.filter_map(|o| at_best_of(o, front)).max_by(f64::total_cmp)
+    };
     let strict = quantile(strictest, 0.75);
-    let loose = quantile(loosest, 0.5).max(strict);
+    let loose = quantile(fronts.iter().filter_map(loosest_of).collect(), 0.5).max(strict);
     if limited == Objective::Mode { (-strict, -loose) } else { (strict, loose) }
 }
 
