@@ -51,8 +51,8 @@ fn table(designs: &[Design]) -> FrontTable {
     let row = |(id, [upper, fore], deflection, mass, mode, cost): &Design| {
         let numbers = [deflection, mass, mode].map(|x| x.to_string());
         let [deflection, mass, mode] = &numbers;
-        [id, upper, &"3.5", fore, &"HFUC-25-100", &"M1", &deflection.as_str(), mass.as_str(), mode, "1", cost]
-            .map(|c: &str| c.to_string())
+        [*id, *upper, "3.5", *fore, "HFUC-25-100", "M1", deflection, mass, mode, "1", *cost]
+            .map(String::from)
             .to_vec()
     };
     FrontTable { columns: COLUMNS.map(String::from).to_vec(), rows: designs.iter().map(row).collect() }

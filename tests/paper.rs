@@ -7,9 +7,7 @@ fn write() {
         let out = armwright::study::paper::run(name, &c).unwrap();
         let dir = format!("/tmp/paperout/{name}");
         std::fs::create_dir_all(&dir).unwrap();
-        for (f, b) in &out.files {
-            std::fs::write(format!("{dir}/{f}"), b).unwrap();
-        }
+        for (f, b) in &out.files { std::fs::write(format!("{dir}/{f}"), b).unwrap(); }
         println!("{}", out.terminal);
     }
 }
