@@ -170,13 +170,10 @@ fn read_windup(node: &Node) -> Option<Windup> {
 }
 
 fn find_gear<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<&'c Gear> {
-    let name = node.string()?;
-    catalogs.gears.iter().find(|g| g.id == name).or_else(|| {
-        node.fault(
-            format!("gear \"{name}\" is not in the catalog"),
-            "write series-size-ratio, e.g. HFUC-58-100; `armwright catalog show gears` lists them",
-        )
-    })
+    catalogs
+        .gear(node.string()?)
+        .map_err(|e| node.fault::<()>(e.to_string(), "`armwright catalog show gears` lists them"))
+        .ok()
 }
 
 /// The catalog's torsion curve of a gear, if all of it is known.
@@ -221,13 +218,8 @@ pub(crate) fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f6
 }
 
 fn find_motor_mass(node: &Node, catalogs: &Catalogs) -> Option<Option<f64>> {
-    let name = node.string()?;
-    catalogs.motors.iter().find(|m| m.id == name).map(|m| m.mass_kg).or_else(|| {
-        node.fault(
-            format!("motor \"{name}\" is not in the catalog"),
-            "`armwright catalog show motors` lists them; or give \"mass_kg\"",
-        )
-    })
+    let hint = "`armwright catalog show motors` lists them; or give \"mass_kg\"";
+    catalogs.motor(node.string()?).map(|m| m.mass_kg).map_err(|e| node.fault::<()>(e.to_string(), hint)).ok()
 }
 
 fn part_mass(node: &Node, mass_kg: Option<f64>) -> Option<f64> {

@@ -2,6 +2,7 @@
 //! that writes to standard output.
 
 mod analyze;
+pub mod catalog;
 pub mod compare;
 mod design;
 mod run;
@@ -48,6 +49,8 @@ enum Verb {
     Analyze(analyze::AnalyzeArgs),
     /// Take a design out of a result as an arm file
     Design(design::DesignArgs),
+    /// Check the catalogs, or list what is in them
+    Catalog(catalog::CatalogArgs),
 }
 
 /// Why a verb failed; each reason has an exit code of its own.
@@ -98,6 +101,14 @@ impl Failure {
         }
     }
 
+    /// Why the catalogs cannot be used.
+    fn catalog(error: InputError) -> Self {
+        match error {
+            InputError::Faulty(faults) => Failure::Catalog(faults),
+            unreadable => Failure::File(unreadable.to_string()),
+        }
+    }
+
     fn file(path: &Path, doing: &str, source: &std::io::Error) -> Self {
         Failure::File(format!("cannot {doing} {}: {source}", path.display()))
     }
@@ -109,6 +120,12 @@ impl From<InputError> for Failure {
             InputError::Unreadable { .. } => Failure::File(error.to_string()),
             InputError::Faulty(faults) => Failure::Input(faults),
         }
+    }
+}
+
+impl From<crate::catalog::PartError> for Failure {
+    fn from(error: crate::catalog::PartError) -> Self {
+        Failure::Usage(error.to_string())
     }
 }
 
@@ -138,21 +155,16 @@ pub fn run(cli: Cli) -> Result<String, Failure> {
             .build_global()
             .map_err(|e| Failure::Internal(e.to_string()))?;
     }
-    let catalogs = load_catalogs(cli.catalogs.as_deref());
+    let overlay = cli.catalogs.as_deref();
+    let catalogs = Catalogs::load(overlay).map_err(Failure::catalog);
     match cli.verb {
+        Verb::Catalog(args) => catalog::run(&args, overlay),
         Verb::Studies => Ok(crate::study::list()),
-        Verb::Run(args) => run::run(&args, &catalogs?, cli.catalogs.as_deref()),
+        Verb::Run(args) => run::run(&args, &catalogs?, overlay),
         Verb::Size(args) => size::run(&args, &catalogs?),
         Verb::Analyze(args) => analyze::run(&args, &catalogs?),
         Verb::Design(args) => design::run(&args, &catalogs?),
     }
-}
-
-fn load_catalogs(overlay: Option<&Path>) -> Result<Catalogs, Failure> {
-    Catalogs::load(overlay).map_err(|error| match error {
-        InputError::Faulty(faults) => Failure::Catalog(faults),
-        unreadable => Failure::File(unreadable.to_string()),
-    })
 }
 
 /// Comma-separated numbers, as many as asked.

@@ -38,10 +38,10 @@ pub(super) fn study_text(name: &str) -> Result<(String, String), Failure> {
     match fs_err::read_to_string(path) {
         Ok(text) => Ok((name.to_string(), text)),
         Err(_) if !name.contains(['/', '.']) => {
-            let known: Vec<&str> = crate::study::NAMED.iter().map(|(n, _)| *n).collect();
+            let known = crate::study::names();
             let near =
                 crate::fault::closest(name, &known).map_or(String::new(), |n| format!("; did you mean {n}?"));
-            Err(Failure::Usage(format!("no study is called \"{name}\"{near} Known: {}", known.join(", "))))
+            Err(Failure::Usage(format!("no study is called \"{name}\"{near}; known: {}", known.join(", "))))
         }
         Err(error) => Err(Failure::File(error.to_string())),
     }
@@ -55,6 +55,9 @@ pub(super) fn load_study(name: &str, catalogs: &Catalogs) -> Result<(Study, Stri
 
 /// Carries out the verb.
 pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -> Result<String, Failure> {
+    if crate::study::paper::NAMES.contains(&args.study.as_str()) {
+        return run_paper(args, catalogs);
+    }
     let (study, text) = load_study(&args.study, catalogs)?;
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(slug(&study.name)));
     // a folder that cannot be written fails now, not after the search
@@ -80,6 +83,27 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
             Ok(format!("{}\nwritten to {}: {}\n", written.terminal, dir.display(), names(&written.files)))
         }
     }
+}
+
+/// Runs one of the paper's studies, which have a course of their own.
+fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+    let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(&args.study));
+    write_all(&dir, &[])?;
+    let started = Instant::now();
+    let output =
+        crate::study::paper::run(&args.study, catalogs).map_err(|e| Failure::Usage(e.to_string()))?;
+    let run = json!({
+        "schema_version": 1,
+        "study": args.study,
+        "status": Status::Complete.word(),
+        "elapsed_s": started.elapsed().as_secs_f64(),
+        "tool_version": env!("CARGO_PKG_VERSION"),
+        "catalogs_hash": catalogs_hash(catalogs),
+    });
+    let mut files = output.files;
+    files.push(("run.json".into(), serde_json::to_vec_pretty(&run).expect("a value serializes")));
+    write_all(&dir, &files)?;
+    Ok(format!("{}\nwritten to {}: {}\n", output.terminal, dir.display(), names(&files)))
 }
 
 fn names(files: &[(String, Vec<u8>)]) -> String {

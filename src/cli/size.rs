@@ -77,12 +77,27 @@ fn middle(problem: &ArmProblem) -> Vec<u32> {
     let mut out = Vec::new();
     for (piece, what) in problem.space().pieces.iter().enumerate().rev() {
         match (what, problem.sized_joint(piece)) {
-            (SpacePiece::Choice(choice), _) => out.push(choice.options.len() as u32 / 2),
+            (SpacePiece::Choice(choice), _) => {
+                let option = nearest_to_middle(problem, &out, piece, choice.options.len() as u32);
+                out.push(option);
+            }
             (_, Some(sized)) if sized.is_level() => out.push(first_fit_so_far(problem, &out, piece)),
             _ => {}
         }
     }
     out
+}
+
+/// The option nearest to the middle that keeps the link's own limits.
+fn nearest_to_middle(problem: &ArmProblem, outboard: &[u32], piece: usize, options: u32) -> u32 {
+    let middle = options / 2;
+    let mut order: Vec<u32> = (0..options).collect();
+    order.sort_by_key(|&o| o.abs_diff(middle));
+    let holds = |&option: &u32| match problem.walk(&[outboard, &[option]].concat(), |_, _| {}) {
+        Ok(_) => true,
+        Err(slot) => problem.piece_of_slot(slot) != piece,
+    };
+    order.into_iter().find(holds).unwrap_or(middle)
 }
 
 fn first_fit_so_far(problem: &ArmProblem, outboard: &[u32], piece: usize) -> u32 {

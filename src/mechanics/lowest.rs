@@ -48,48 +48,53 @@ struct Pass {
     last: f64,
 }
 
-/// Relative change of `λ` at which the root is found.
-const CONVERGED: f64 = 4e-14;
+/// Relative step below which a secant's result is accepted: its error is of the order of the product of
+/// the last two steps.
+const SMALL_STEP: f64 = 1e-9;
 const MOST_PASSES: usize = 200;
 
 /// Lowest eigenvalue `λ₁ = ω₁²` of the chain, given `trace_s2 ≥ tr(C M)`; infinite if nothing yields.
+///
+/// The last pivot is `1 - λ w(λ)` with `w` nearly constant, so secants are drawn for `1/λ - w` over `1/λ`,
+/// which is straight if everything outboard is rigid. A guess outside the bracket, or beyond a pole of
+/// `w` (an inner pivot not positive), is replaced by the middle of the bracket.
 pub fn lowest_eigenvalue<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
     if trace_s2 <= 0.0 {
         return f64::INFINITY;
     }
-    let (mut low, mut high) = (1.0 / trace_s2, f64::INFINITY);
-    let mut low_pivot = pass(steps, low).last;
-    // with the apparent inertia frozen the last pivot 1 - λ w vanishes at λ / (1 - pivot)
-    let mut guess = low / (1.0 - low_pivot.min(0.5)).max(f64::MIN_POSITIVE);
-    let mut high_pivot = f64::NAN;
+    let (mut low, mut high) = (0.0, f64::INFINITY);
+    let mut guess = 1.0 / trace_s2;
+    // the last two points at which the curve was sound: 1/λ and 1/λ - w
+    let mut before: Option<(f64, f64)> = None;
     for _ in 0..MOST_PASSES {
-        if guess <= low || guess >= high {
-            guess = if high.is_finite() { 0.5 * (low + high) } else { 2.0 * low };
-        }
         let here = pass(steps, guess);
         if here.inner_sound && here.last > 0.0 {
-            let secant = extrapolate((low, low_pivot), (guess, here.last));
-            (low, low_pivot) = (guess, here.last);
-            guess =
-                if high_pivot.is_nan() { secant } else { extrapolate((low, low_pivot), (high, high_pivot)) };
+            low = guess;
         } else {
-            let sound = here.inner_sound;
-            let secant = extrapolate((low, low_pivot), (guess, here.last));
-            let previous = (high, high_pivot);
-            (high, high_pivot) = (guess, if sound { here.last } else { f64::NAN });
-            guess = match (sound, previous.1.is_nan()) {
-                (false, _) => 0.5 * (low + high),
-                (true, true) => secant,
-                // both secants of a concave pivot: from above it is the sharper
-                (true, false) => extrapolate(previous, (high, high_pivot)).max(secant),
+            high = guess;
+        }
+        if high.is_finite() && high - low <= 4.0 * f64::EPSILON * high {
+            return low;
+        }
+        let next = if here.inner_sound {
+            let point = (1.0 / guess, here.last / guess);
+            let inverse = match before {
+                Some((x, y)) if y != point.1 => point.0 - point.1 * (point.0 - x) / (point.1 - y),
+                _ => point.0 - point.1,
             };
+            before = Some(point);
+            1.0 / inverse
+        } else {
+            f64::NAN
+        };
+        if (next - guess).abs() <= SMALL_STEP * guess {
+            return next;
         }
-        if (high - low).abs() <= CONVERGED * low || (guess - low).abs() <= CONVERGED * low {
-            return guess.clamp(low, high);
-        }
-        if high.is_finite() && (high - guess).abs() <= CONVERGED * high {
-            return guess.clamp(low, high);
-        }
+        guess = match next > low && next < high {
+            true => next,
+            false if high.is_finite() => 0.5 * (low + high),
+            false => 2.0 * low,
+        };
     }
     low
 }
@@ -97,10 +102,6 @@ pub fn lowest_eigenvalue<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -
 /// Frequency of an eigenvalue \[Hz\].
 pub fn frequency_hz(eigenvalue: f64) -> f64 {
     eigenvalue.sqrt() / TAU
-}
-
-fn extrapolate((x0, y0): (f64, f64), (x1, y1): (f64, f64)) -> f64 {
-    x1 - y1 * (x1 - x0) / (y1 - y0)
 }
 
 /// Carries the apparent inertia from tip to base.

@@ -7,7 +7,7 @@
 use super::front_table::FrontTable;
 use super::number::significant;
 use super::picks::{Design, Objective, Pick, designs, materials};
-use super::svg::{Axis, MUTED, Note, PALETTE, Plot, Scale, Series, Sheet};
+use super::svg::{Axis, MUTED, Note, PALETTE, Plot, Scale, Series, Sheet, Side};
 use std::collections::HashSet;
 
 const WIDTH_PX: f64 = 900.0;
@@ -86,6 +86,7 @@ impl FrontPicture<'_> {
         let notes = self.picks.iter().map(|p| Note {
             at: (Objective::Mass.of(&p.design), over.of(&p.design)),
             text: p.names.join(", "),
+            side: Side::default(),
         });
         Plot {
             title: title.to_string(),
@@ -192,7 +193,7 @@ impl Grain {
                 shown = Some(d);
             }
         }
-        // beyond the palette the markers repeat, hollow
+        // beyond the palette the colours repeat: hollow markers tell them apart
         let open = !front.muted && (index / PALETTE.len()) % 2 == 1;
         let marker_px = if front.muted { 2.5 } else { 4.0 };
         Series { open, marker_px, ..Series::line(front.name, front.style(index), points) }

@@ -30,10 +30,11 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     if is_negative_zero { text[1..].to_string() } else { text }
 }
 
-/// A change in percent with sign and `decimals` digits: `+75.2 %`.
+/// A change in percent with `decimals` digits and, unless it rounds to zero, its sign: `+75.2 %`.
 pub fn percent_change(ratio: f64, decimals: usize) -> String {
     let text = fixed(100.0 * (ratio - 1.0), decimals);
-    if text.starts_with('-') { format!("{text} %") } else { format!("+{text} %") }
+    let rises = text.bytes().any(|b| (b'1'..=b'9').contains(&b)) && !text.starts_with('-');
+    if rises { format!("+{text} %") } else { format!("{text} %") }
 }
 
 /// The shortest text that reads back as exactly the same `f64`.
@@ -71,6 +72,7 @@ mod tests {
         assert_eq!(fixed(-0.01, 2), "-0.01");
         assert_eq!(percent_change(1.752, 1), "+75.2 %");
         assert_eq!(percent_change(0.978, 1), "-2.2 %");
+        assert_eq!(percent_change(0.99999, 1), "0.0 %");
     }
 
     #[test]

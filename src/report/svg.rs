@@ -2,8 +2,8 @@
 //!
 //! Series differ by colour (the colour-blind-safe palette of Okabe and Ito) *and* by marker shape;
 //! `open` markers and dashed lines mark variants of the same thing. The legend stands beside the frame,
-//! so that it never covers data; notes are moved until they lie inside the frame. A series is one path,
-//! so that a front of thousands of points stays a small file.
+//! so that it never covers data; notes are moved until they lie inside the frame. A point costs its two
+//! coordinates, so that a front of thousands of points stays a small file.
 //!
 //! ```
 //! use armwright::report::svg::{Axis, Plot, Scale, Series};
@@ -18,10 +18,12 @@
 //! assert!(plot.to_svg().starts_with("<svg"));
 //! ```
 
+mod marker;
 mod sheet;
 mod ticks;
 
 use super::number::fixed;
+use marker::outline;
 pub use sheet::Sheet;
 use std::fmt::Write;
 use ticks::{Ruling, rule};
@@ -31,14 +33,15 @@ pub const PALETTE: [&str; 8] =
     ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#B8A90A"];
 
 /// A style that stands back behind all others: grey, round.
-pub const MUTED: usize = usize::MAX;
+pub const MUTED: usize = 999;
 
 const INK: &str = "#222222";
 const FAINT: &str = "#E3E3E3";
 const FONT_PX: f64 = 13.0;
 const TITLE_PX: f64 = 16.0;
+const NOTE_PX: f64 = 12.0;
 /// Width of an average character over the font size; generous, so that text never leaves its place.
-const CHARACTER: f64 = 0.57;
+const CHARACTER: f64 = 0.62;
 const LEGEND_CHARACTERS: usize = 26;
 
 /// How an axis counts.
@@ -120,13 +123,25 @@ impl Series {
     }
 }
 
+/// On which side of its place a note stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Side {
+    /// Right of and above the place.
+    #[default]
+    RightAbove,
+    /// Left of and below the place.
+    LeftBelow,
+}
+
 /// Words at a place in the plot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Note {
     /// Place in data units.
     pub at: (f64, f64),
-    /// Words, set right of and above the place and moved until they lie inside the frame.
+    /// Words, moved until they lie inside the frame.
     pub text: String,
+    /// Where the words stand.
+    pub side: Side,
 }
 
 /// A dashed line across the whole plot at a value of one axis.
@@ -196,15 +211,14 @@ impl Plot {
     }
 
     fn head(&self) -> String {
-        let (w, h) = (px(self.width_px), px(self.height_px));
+        let (w, h, title) = (px(self.width_px), px(self.height_px), escape(&self.title));
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
-             role=\"img\" aria-labelledby=\"plot-title plot-desc\" \
+             role=\"img\" aria-label=\"{title}\" \
              font-family=\"'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif\" \
              font-size=\"{FONT_PX}\" fill=\"{INK}\">\n\
-             <title id=\"plot-title\">{}</title>\n<desc id=\"plot-desc\">{}</desc>\n\
+             <title>{title}</title>\n<desc>{}</desc>\n\
              <rect width=\"{w}\" height=\"{h}\" fill=\"#FFFFFF\"/>\n",
-            escape(&self.title),
             escape(&self.description)
         )
     }
@@ -333,7 +347,7 @@ impl Canvas {
             } else {
                 let y = self.bottom - self.y.position(guide.value) * (self.bottom - self.top);
                 dashed(out, (self.left, y), (self.right, y));
-                let x = self.right - 6.0 - text_px(&guide.text, FONT_PX);
+                let x = self.right - 6.0 - text_px(&guide.text, NOTE_PX);
                 self.words(out, (x, y - 6.0), &guide.text);
             }
         }
@@ -342,18 +356,23 @@ impl Canvas {
     fn notes(&self, out: &mut String, notes: &[Note]) {
         for note in notes {
             if let Some((x, y)) = self.inside(note.at) {
-                self.words(out, (x + 9.0, y - 8.0), &note.text);
+                let at = match note.side {
+                    Side::RightAbove => (x + 9.0, y - 8.0),
+                    Side::LeftBelow => (x - 9.0 - text_px(&note.text, NOTE_PX), y + 16.0),
+                };
+                self.words(out, at, &note.text);
             }
         }
     }
 
     /// Words with a white rim, moved until they lie inside the frame.
     fn words(&self, out: &mut String, (x, y): (f64, f64), words: &str) {
-        let x = x.min(self.right - 6.0 - text_px(words, FONT_PX)).max(self.left + 6.0);
+        let x = x.min(self.right - 6.0 - text_px(words, NOTE_PX)).max(self.left + 6.0);
         let y = y.clamp(self.top + 15.0, self.bottom - 6.0);
-        let rim = " font-size=\"12\" paint-order=\"stroke\" stroke=\"#FFFFFF\" stroke-width=\"3\" \
+        let rim = " paint-order=\"stroke\" stroke=\"#FFFFFF\" stroke-width=\"3\" \
                    stroke-linejoin=\"round\"";
-        text(out, (x, y), "start", rim, words);
+        let rim = format!(" font-size=\"{NOTE_PX}\"{rim}");
+        text(out, (x, y), "start", &rim, words);
     }
 
     fn legend(&self, out: &mut String, series: &[Series]) {
@@ -385,7 +404,7 @@ impl Canvas {
 fn legend_px(series: &[Series]) -> f64 {
     let rows = series.iter().flat_map(|s| wrap(&s.name, LEGEND_CHARACTERS));
     let widest = rows.map(|row| text_px(&row, FONT_PX)).fold(0.0, f64::max);
-    if widest > 0.0 { widest + 64.0 } else { 24.0 }
+    if widest > 0.0 { widest + 58.0 } else { 24.0 }
 }
 
 /// Breaks words into rows of at most `most` characters where there are blanks to break at.
@@ -411,79 +430,30 @@ fn dashes(stroke: Stroke) -> &'static str {
     if stroke == Stroke::Dashed { " stroke-dasharray=\"6 4\"" } else { "" }
 }
 
-/// All markers of a series as one path.
+/// All markers of a series: one outline, and a path without stroke that has it at every corner.
 fn markers(out: &mut String, series: &Series, points: &[(f64, f64)]) {
     if points.is_empty() || series.marker_px <= 0.0 {
         return;
     }
-    let path: String = points.iter().map(|p| marker(series.style, *p, series.marker_px)).collect();
     let (fill, stroke, width) = if series.open {
         ("#FFFFFF", colour(series.style), "1.8")
     } else {
         (colour(series.style), "#FFFFFF", "0.6")
     };
-    let _ =
-        writeln!(out, "<path d=\"{path}\" fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"{width}\"/>");
-}
-
-/// A marker's outline: circle, square, triangle up, diamond, triangle down, plus, cross, star.
-fn marker(style: usize, (x, y): (f64, f64), r: f64) -> String {
-    const UP: &[(f64, f64)] = &[(0.0, -1.25), (1.15, 0.8), (-1.15, 0.8)];
-    const DOWN: &[(f64, f64)] = &[(0.0, 1.25), (1.15, -0.8), (-1.15, -0.8)];
-    const SQUARE: &[(f64, f64)] = &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)];
-    const DIAMOND: &[(f64, f64)] = &[(0.0, -1.35), (1.1, 0.0), (0.0, 1.35), (-1.1, 0.0)];
-    const PLUS: &[(f64, f64)] = &[
-        (-0.4, -1.2),
-        (0.4, -1.2),
-        (0.4, -0.4),
-        (1.2, -0.4),
-        (1.2, 0.4),
-        (0.4, 0.4),
-        (0.4, 1.2),
-        (-0.4, 1.2),
-        (-0.4, 0.4),
-        (-1.2, 0.4),
-        (-1.2, -0.4),
-        (-0.4, -0.4),
-    ];
-    const STAR: &[(f64, f64)] = &[
-        (0.0, -1.4),
-        (0.33, -0.45),
-        (1.33, -0.43),
-        (0.53, 0.17),
-        (0.82, 1.13),
-        (0.0, 0.56),
-        (-0.82, 1.13),
-        (-0.53, 0.17),
-        (-1.33, -0.43),
-        (-0.33, -0.45),
-    ];
-    match style % PALETTE.len() {
-        _ if style == MUTED => circle((x, y), r),
-        0 => circle((x, y), r),
-        1 => polygon(SQUARE, (x, y), r, 0.0),
-        2 => polygon(UP, (x, y), r, 0.0),
-        3 => polygon(DIAMOND, (x, y), r, 0.0),
-        4 => polygon(DOWN, (x, y), r, 0.0),
-        5 => polygon(PLUS, (x, y), r, 0.0),
-        6 => polygon(PLUS, (x, y), r, std::f64::consts::FRAC_PI_4),
-        _ => polygon(STAR, (x, y), r, 0.0),
-    }
-}
-
-fn circle((x, y): (f64, f64), r: f64) -> String {
-    let (start, r, d) = (px(x - r), px(r), px(2.0 * r));
-    format!("M{start} {}a{r} {r} 0 1 0 {d} 0a{r} {r} 0 1 0 -{d} 0z", px(y))
-}
-
-fn polygon(corners: &[(f64, f64)], (x, y): (f64, f64), r: f64, turn_rad: f64) -> String {
-    let (sin, cos) = turn_rad.sin_cos();
-    let corners: Vec<String> = corners
-        .iter()
-        .map(|(cx, cy)| (x + r * (cos * cx - sin * cy), y + r * (sin * cx + cos * cy)))
-        .map(|(px_x, px_y)| format!("{} {}", px(px_x), px(px_y)))
-        .collect();
-    format!("M{}z", corners.join("L"))
+    // the name says all there is to the outline, so that pictures joined in one page do not disagree
+    let open = if series.open { "o" } else { "f" };
+    let id = format!("m{}{open}{}", series.style, px(10.0 * series.marker_px));
+    let shape = outline(series.style, series.marker_px);
+    let corners: Vec<String> = points.iter().map(|(x, y)| format!("{} {}", px(*x), px(*y))).collect();
+    let _ = writeln!(
+        out,
+        "<marker id=\"{id}\" overflow=\"visible\" markerUnits=\"userSpaceOnUse\">\
+         <path d=\"{shape}\" fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"{width}\"/></marker>\n\
+         <path d=\"M{}\" fill=\"none\" marker-start=\"url(#{id})\" marker-mid=\"url(#{id})\" \
+         marker-end=\"url(#{id})\"/>",
+        // a path of one point has no end of its own: the point is given twice
+        if corners.len() == 1 { format!("{0}L{0}", corners[0]) } else { corners.join("L") }
+    );
 }
 
 fn line(out: &mut String, from: (f64, f64), to: (f64, f64), colour: &str, width: f64) {
@@ -564,7 +534,19 @@ mod tests {
     fn values_without_a_place_are_left_out() {
         let svg = plot().to_svg();
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
-        assert_eq!(svg.matches("a4.5 4.5").count() / 2, 3, "two points and the legend's sample");
+        let drawn = svg.lines().find(|l| l.contains("marker-mid")).unwrap_or_default();
+        assert_eq!(drawn.matches('L').count(), 1, "two of four points: {drawn}");
+    }
+
+    #[test]
+    fn a_front_of_thousands_stays_small_and_series_differ_without_colour() {
+        let points = |i: usize| (0..600).map(|j| (1.0 + j as f64, 1.0 + (i * j) as f64)).collect();
+        let series = (0..9).map(|i| Series::scatter("front", i, points(i))).collect();
+        let svg = Plot { series, ..Plot::default() }.to_svg();
+        assert!(svg.len() < 100_000, "{}", svg.len());
+        let outlines: std::collections::BTreeSet<String> = (0..8).map(|i| outline(i, 4.0)).collect();
+        assert_eq!(outlines.len(), 8);
+        assert_ne!(outline(0, 4.0), outline(8, 4.0), "the same colour comes again with another shape");
     }
 
     #[test]

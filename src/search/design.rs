@@ -114,12 +114,13 @@ impl<'c> ArmProblem<'c> {
         Some(Arm { name: space.name.clone(), gravity_m_s2: space.gravity_m_s2, chain, effects: Vec::new() })
     }
 
-    /// The cases of the study as load cases.
+    /// The cases that objectives are taken over, as load cases.
     pub fn load_cases(&self) -> Vec<LoadCase> {
         let space = self.space();
         space
-            .cases
+            .judged_cases
             .iter()
+            .map(|&i| &space.cases[i])
             .map(|case| LoadCase {
                 name: case.name.clone(),
                 pose_deg: case.pose_deg.clone(),

@@ -305,11 +305,14 @@ impl<'c> ArmProblem<'c> {
         self.space.constraints.stress_safety_factor_min.is_none_or(|least| to.stress_ratio * least <= 1.0)
     }
 
+    /// The cases that objectives are taken over.
+    fn judged<'s>(&'s self, complete: &'s Partial) -> impl Iterator<Item = (&'s Station, &'s StationState)> {
+        self.space.judged_cases.iter().map(|&i| (&self.stations[i], &complete.stations[i]))
+    }
+
     fn lowest_mode_hz(&self, complete: &Partial) -> f64 {
         let lowest = self
-            .stations
-            .iter()
-            .zip(&complete.stations)
+            .judged(complete)
             .map(|(station, state)| match &station.modal {
                 Modal::Planar(blocks) => {
                     let [within, across] = &**blocks;
@@ -395,7 +398,7 @@ impl OutwardIn for ArmProblem<'_> {
     }
 
     fn objectives(&self, complete: &Partial) -> Option<Objectives> {
-        let tip_deflection_m = complete.stations.iter().map(|s| s.tip_m.norm()).fold(0.0, f64::max);
+        let tip_deflection_m = self.judged(complete).map(|(_, s)| s.tip_m.norm()).fold(0.0, f64::max);
         let lowest_mode_hz = self.lowest_mode_hz(complete);
         Some(Objectives { tip_deflection_m, mass_kg: complete.mass_kg, lowest_mode_hz })
     }

@@ -14,8 +14,10 @@ pub struct DesignSpace {
     pub gravity_m_s2: f64,
     /// Joints and links from base to tip.
     pub pieces: Vec<SpacePiece>,
-    /// The cases that objectives are taken over, the worst of them.
+    /// Every case in which the arm is judged or sized.
     pub cases: Vec<Case>,
+    /// Indices of the cases that objectives are taken over, the worst of them.
+    pub judged_cases: Vec<usize>,
     /// Indices of the cases in which joints are sized and stress is checked.
     pub sizing_cases: Vec<usize>,
     /// What the tip must do.

@@ -68,7 +68,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let cases = read_cases(&root, joints.as_deref());
     let motion = root.or("motion", MotionRequirement::default(), read_motion);
     let (links, joint_model) = root.or("models", Default::default(), read_models)?;
-    let (cases, sizing_cases) = cases?;
+    let Cases { cases, judged, sizing } = cases?;
     let mut motion = motion?;
     motion.gravity_m_s2 = gravity?;
     let space = DesignSpace {
@@ -76,7 +76,8 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         gravity_m_s2: gravity?,
         pieces: chain?,
         cases,
-        sizing_cases,
+        judged_cases: judged,
+        sizing_cases: sizing,
         motion,
         links,
         joints: joint_model,
@@ -296,7 +297,20 @@ fn read_space_link(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> O
     Some(SpacePiece::Choice(LinkChoice { name: name?, vector_m: vector_m?, options }))
 }
 
-type Cases = (Vec<Case>, Vec<usize>);
+/// Every case, and which of them are judged and sized in.
+#[derive(Default)]
+struct Cases {
+    cases: Vec<Case>,
+    judged: Vec<usize>,
+    sizing: Vec<usize>,
+}
+
+/// One case as read, before it is put into every environment.
+struct ReadCase {
+    case: Case,
+    judged: bool,
+    sizing: bool,
+}
 
 fn read_cases(root: &Object, joints: Option<&[String]>) -> Option<Cases> {
     let payload = root.or("payload", Payload::default(), Payload::read);
@@ -310,18 +324,23 @@ fn read_cases(root: &Object, joints: Option<&[String]>) -> Option<Cases> {
     if poses.is_empty() {
         return root.required("poses")?.fault("is empty", "give at least the pose the arm is judged in");
     }
-    let mut out: Cases = Default::default();
+    let mut out = Cases::default();
     for environment in &environments {
-        for (case, sizing) in &poses {
-            if *sizing {
-                out.1.push(out.0.len());
-            }
+        for ReadCase { case, judged, sizing } in &poses {
+            let index = out.cases.len();
+            out.judged.extend(judged.then_some(index));
+            out.sizing.extend(sizing.then_some(index));
             let name = match environment.name.as_str() {
                 "" => case.name.clone(),
                 around => format!("{}, {around}", case.name),
             };
-            out.0.push(Case { name, water: environment.water, ..case.clone() });
+            out.cases.push(Case { name, water: environment.water, ..case.clone() });
         }
+    }
+    if out.judged.is_empty() {
+        return root
+            .required("poses")?
+            .fault("has no judged pose", "leave \"judged\" away, or set it true, in one of them");
     }
     Some(out)
 }
@@ -346,16 +365,17 @@ fn read_environments(node: &Node) -> Option<Vec<Environment>> {
     read.into_iter().collect()
 }
 
-fn read_case(node: &Node, joints: &[&str], payload: &Payload, force: &Vector3<f64>) -> Option<(Case, bool)> {
-    let object = node.object(&["name", "pose_deg", "payload", "tip_force_n", "sizing"])?;
+fn read_case(node: &Node, joints: &[&str], payload: &Payload, force: &Vector3<f64>) -> Option<ReadCase> {
+    let object = node.object(&["name", "pose_deg", "payload", "tip_force_n", "sizing", "judged"])?;
     let name = object.or("name", node.path().to_string(), |n| n.string().map(String::from));
     let pose_deg = object.required("pose_deg").and_then(|n| read_pose(&n, joints));
     let payload = object.or("payload", *payload, Payload::read);
     let tip_force_n = object.or("tip_force_n", *force, vector);
     let sizing = object.or("sizing", true, Node::boolean);
+    let judged = object.or("judged", true, Node::boolean);
     let case =
         Case { name: name?, pose_deg: pose_deg?, payload: payload?, tip_force_n: tip_force_n?, water: None };
-    Some((case, sizing?))
+    Some(ReadCase { case, judged: judged?, sizing: sizing? })
 }
 
 fn read_motion(node: &Node) -> Option<MotionRequirement> {

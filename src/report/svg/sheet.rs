@@ -14,7 +14,8 @@ pub struct Sheet {
     pub title: String,
     /// What the sheet shows, in a sentence or two, for those who cannot see it.
     pub description: String,
-    /// Plots from top to bottom. The legend stands beside the first. Notes get a ring at their place.
+    /// Plots from top to bottom. The legend stands beside the first. Notes get a ring at their place and are set where they
+    /// cover least, whatever their side.
     pub plots: Vec<Plot>,
 }
 

@@ -68,9 +68,7 @@ fn nice_step(least: f64) -> (f64, usize) {
 
 fn logarithmic(low: f64, high: f64, count: usize) -> Ruling {
     let (low, high) = if high / low < 1.02 { (low / 1.5, high * 1.5) } else { (low, high) };
-    let stops: &[f64] = if (high / low).log10() > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
-    let low = stop_below(low, stops);
-    let high = stop_above(high, stops);
+    let (low, high) = (stop_below(low), stop_above(high));
     let decades = (high / low).log10();
     let labelled: &[f64] = if decades <= 1.05 {
         &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]
@@ -98,15 +96,18 @@ fn times_power(mantissa: f64, power: i32) -> f64 {
     if power < 0 { mantissa / 10f64.powi(-power) } else { mantissa * 10f64.powi(power) }
 }
 
-fn stop_below(value: f64, stops: &[f64]) -> f64 {
+/// Where a logarithmic axis may end within a decade.
+const STOPS: [f64; 3] = [1.0, 2.0, 5.0];
+
+fn stop_below(value: f64) -> f64 {
     let power = value.log10().floor() as i32;
-    let candidates = stops.iter().map(|s| times_power(*s, power));
+    let candidates = STOPS.iter().map(|s| times_power(*s, power));
     candidates.filter(|s| *s <= value * (1.0 + 1e-9)).fold(times_power(1.0, power), f64::max)
 }
 
-fn stop_above(value: f64, stops: &[f64]) -> f64 {
+fn stop_above(value: f64) -> f64 {
     let power = value.log10().floor() as i32;
-    let candidates = stops.iter().map(|s| times_power(*s, power));
+    let candidates = STOPS.iter().map(|s| times_power(*s, power));
     candidates.filter(|s| *s >= value * (1.0 - 1e-9)).fold(times_power(1.0, power + 1), f64::min)
 }
 
@@ -153,7 +154,7 @@ mod tests {
         let r = rule(Scale::Log, 0.023, 0.855, 6);
         assert_eq!(labels(&r), ["0.02", "0.05", "0.1", "0.2", "0.5", "1"]);
         let r = rule(Scale::Log, 0.5, 30_000.0, 6);
-        assert_eq!(labels(&r), ["0.1", "1", "10", "100", "1000", "10000", "100000"]);
+        assert_eq!(labels(&r), ["1", "10", "100", "1000", "10000"]);
     }
 
     #[test]

@@ -45,9 +45,10 @@ fn frequencies(arm: &PaperArm, matching: &Reading) -> Vec<PaperRow> {
             .collect::<Vec<_>>()
     };
     let found = format!(
-        "{} kg at and beyond the wrist (Table 1: 13.78 kg), third spring K4 and K5 in series, \
+        "{} kg at and beyond the wrist (Table 1: {} kg), third spring K4 and K5 in series, \
          {} kg at {} m: within {} %",
         significant(matching.outboard_kg(), 4),
+        significant(arm.wrist_kg + arm.load_kg, 4),
         significant(matching.arm.load_kg, 3),
         fixed(matching.arm.third_link_m, 4),
         fixed(100.0 * matching.worst(), 3)
@@ -75,7 +76,7 @@ fn frequencies(arm: &PaperArm, matching: &Reading) -> Vec<PaperRow> {
             matching.frequencies_hz,
             &matching.arm.solve(LinkModel::Full).in_plane_hz,
             &found,
-            "2 to 3 kg at the wrist are missing from Table 1; other third springs with other masses give the same \
+            "mass at the wrist is missing from Table 1; other third springs with other masses give the same \
              three frequencies, so they cannot identify it (see the table of third springs)",
         ),
     ]

@@ -92,7 +92,7 @@ pub fn table(rows: &[PaperRow]) -> Table {
         Column::left("unit"),
         Column::right("paper"),
         Column::right("ours, paper's reading"),
-        Column::right("exact frame"),
+        Column::right("exact"),
     ]);
     for (i, row) in rows.iter().enumerate() {
         table.row([
@@ -107,14 +107,19 @@ pub fn table(rows: &[PaperRow]) -> Table {
     table
 }
 
-/// Reading and reason of each row, numbered as in [`table`].
+/// Reading and reason of each row, numbered as in [`table`]; a reading that goes on is given once.
 pub fn notes(rows: &[PaperRow]) -> String {
-    let note = |(i, row): (usize, &PaperRow)| {
-        let words: Vec<&str> =
-            [row.reading.as_str(), row.reason.as_str()].into_iter().filter(|w| !w.is_empty()).collect();
-        (!words.is_empty()).then(|| format!("{}. {}\n", i + 1, words.join(" -- ")))
-    };
-    rows.iter().enumerate().filter_map(note).collect()
+    let mut text = String::new();
+    let mut before = "";
+    for (i, row) in rows.iter().enumerate() {
+        let reading = if row.reading == before { "" } else { row.reading.as_str() };
+        let words: Vec<&str> = [reading, row.reason.as_str()].into_iter().filter(|w| !w.is_empty()).collect();
+        if !words.is_empty() {
+            text.push_str(&format!("- ({}) {}\n", i + 1, words.join(" -- ")));
+        }
+        before = &row.reading;
+    }
+    text
 }
 
 /// All fields, numbers in shortest round-trip form.

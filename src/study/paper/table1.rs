@@ -5,7 +5,7 @@ use super::remedies::{
     CatalogGears, connection_table, connections, error_left, error_left_table, stiffer, stiffer_table,
 };
 use super::rows::{self, PaperRow};
-use super::third_spring::{self, closest_reading, readings};
+use super::third_spring::{self, Reading, closest_reading, readings};
 use super::{PaperError, PaperStudyOutput, modes_rows, parts, statics_rows, torque_rows};
 use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
@@ -35,7 +35,7 @@ pub struct Section {
     /// Title.
     pub title: &'static str,
     /// What it says.
-    pub words: &'static str,
+    pub words: String,
     /// The table.
     pub table: Table,
 }
@@ -59,10 +59,7 @@ fn sections(catalogs: &Catalogs, gears: &CatalogGears) -> Result<Vec<Section>, P
         Section {
             file: "third-spring",
             title: "Arms that have the paper's three frequencies",
-            words: "Wrist mass, load and its distance were searched for each reading of the third spring until all \
-                    three frequencies are the paper's. Different springs with different masses give the same three: \
-                    three frequencies cannot identify the third spring. All of them want about 16 kg at and beyond \
-                    the wrist, where Table 1 has 13.78 kg. The last row keeps the table's wrist and rounds the load.",
+            words: third_spring_words(&springs),
             table: third_spring::table(&springs),
         },
         Section {
@@ -70,13 +67,13 @@ fn sections(catalogs: &Catalogs, gears: &CatalogGears) -> Result<Vec<Section>, P
             title: "What is left of the tip error",
             words: "Measuring each joint at its output leaves the links' part. Computing the joints' part from motor \
                     torque leaves the links' part and as much of the joints' as the gear's curve is unknown; \
-                    with K2 alone for gears that follow the curve, much of the error stays.",
+                    with K2 alone for gears that follow the curve, much of the error stays.".into(),
             table: error_left_table(&error_left(gears)),
         },
         Section {
             file: "stiffer",
             title: "Stiffer drives first",
-            words: "Twice the stiffness of one element, masses unchanged, full links, Table 1's joint stiffnesses.",
+            words: "Twice the stiffness of one element, masses unchanged, full links, Table 1's joint stiffnesses.".into(),
             table: stiffer_table(&stiffer(&arm)),
         },
         Section {
@@ -85,17 +82,32 @@ fn sections(catalogs: &Catalogs, gears: &CatalogGears) -> Result<Vec<Section>, P
             words: "Of Rivin's four sources, structure is the links, contacts are the connections here, energy \
                     transformation the gears, and kinematic transformation is what makes the first two columns \
                     equal: a connection between motor and gear is seen through the square of the ratio (100:1), \
-                    one between gear and arm as it is.",
+                    one between gear and arm as it is.".into(),
             table: connection_table(&connections(&arm)),
         },
         Section {
             file: "gears",
             title: "Table 1 against the catalog",
             words: "The paper's stiffnesses are the middle slopes K2; its masses are bare component sets, but for \
-                    HFUC 20, which is a housed unit.",
+                    HFUC 20, which is a housed unit.".into(),
             table: parts::gear_table(catalogs)?,
         },
     ])
+}
+
+fn third_spring_words(springs: &[Reading]) -> String {
+    let table_kg = PaperArm::table_1().wrist_kg + PaperArm::table_1().load_kg;
+    let missing = springs.iter().map(|s| s.outboard_kg() - table_kg);
+    let (least, most) = missing.fold((f64::INFINITY, 0.0f64), |(low, high), m| (low.min(m), high.max(m)));
+    format!(
+        "Wrist mass, load and its distance were searched for each reading of the third spring until all three \
+         frequencies are the paper's. Different springs with different masses give the same three: three frequencies \
+         cannot identify the third spring. All of them want {} to {} kg more at and beyond the wrist than the {} kg \
+         of Table 1. The last row keeps the table's wrist and rounds the load.",
+        fixed(least, 1),
+        fixed(most, 1),
+        fixed(table_kg, 2)
+    )
 }
 
 /// Runs the study.
@@ -131,14 +143,15 @@ fn terminal(study: &Table1) -> String {
 fn summary(study: &Table1) -> String {
     let mut text = format!(
         "# The paper's Table 1\n\nEach of the paper's numbers beside ours. *Paper's reading*: our value under the \
-         reading of the paper that gives its number. *Exact frame*: joints, links with bending, shear and end \
-         slopes, everything at the load, Table 1 as printed. A dash: not printed, or no such value.\n\n{}\n\
+         reading of the paper that gives its number. *Exact*: the frame without the paper's \
+         simplifications (links with bending, shear and end slopes, everything at the load), or the equation with its \
+         sides set right. A dash: not printed, or no such value.\n\n{}\n\
          Reading and reason, by row:\n\n{}",
         rows::table(&study.rows).to_markdown(),
         rows::notes(&study.rows)
     );
     for section in &study.sections {
-        let (title, words, table) = (section.title, section.words, section.table.to_markdown());
+        let (title, words, table) = (section.title, &section.words, section.table.to_markdown());
         text.push_str(&format!("\n## {title}\n\n{words}\n\n{table}"));
     }
     text.push_str(

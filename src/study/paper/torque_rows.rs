@@ -45,7 +45,8 @@ fn linear(torque: &DynamicTorque) -> Vec<PaperRow> {
 fn rotary(rotor: &DynamicTorque, both: &DynamicTorque) -> Vec<PaperRow> {
     vec![
         PaperRow::new("joint_2_acceleration", "angular acceleration of joint 2", "rad/s2", 4)
-            .exact(rotor.output_acceleration_rad_s2),
+            .exact(rotor.output_acceleration_rad_s2)
+            .because("1 m/s in 0.20 s at the load's distance of 1.35 m"),
         PaperRow::new("t_rot_rotor", "T_rot of F11-10, N = 100", "N m", 2)
             .reading(
                 rotor.rotary_motor_side_nm,

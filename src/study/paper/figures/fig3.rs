@@ -113,11 +113,11 @@ fn curves(material: &Material) -> (Vec<Series>, Vec<BeamPoint>) {
     (series, points)
 }
 
-/// Walls from 4 mm in steps of 2 mm while they leave a hole and are not too heavy to show.
+/// Walls from 4 mm in steps of 2 mm while they leave a hole of a fifth and are not too heavy to show.
 fn thickening(material: &Material, size_m: f64, most_n_per_m: f64) -> Vec<BeamPoint> {
     (2..)
         .map(|i| f64::from(i) * WALL_M / 5.0)
-        .take_while(|wall_m| 2.0 * wall_m < size_m - 1e-9)
+        .take_while(|wall_m| 2.0 * wall_m < 0.8 * size_m)
         .map(|wall_m| BeamPoint::new(material, size_m, wall_m))
         .take_while(|point| point.weight_n_per_m <= most_n_per_m)
         .collect()
