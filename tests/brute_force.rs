@@ -5,17 +5,23 @@
 mod brute;
 mod witness;
 
+use brute::arm::Tube;
 use brute::catalog::Catalog;
 use brute::design::{Design, Searched, objectives, search};
 use brute::front::{Place, SLACK, exact_front_size, places};
 use brute::program::{FrontRow, Results, armwright_ok, read_json, run_study, run_study_with, word};
 use brute::study::Study;
+use nalgebra::Vector3;
 use serde_json::{Value, json};
 use std::collections::HashMap;
+use std::path::Path;
+use witness::LoadCase;
 
-const DEFLECTION_TOLERANCE: f64 = 5e-4;
-const MODE_TOLERANCE: f64 = 1e-3;
+// Both programs solve the same equations, the one by compliances, the other by finite elements.
+const DEFLECTION_TOLERANCE: f64 = 1e-9;
+const MODE_TOLERANCE: f64 = SLACK;
 const MASS_TOLERANCE: f64 = 1e-9;
+const STRESS_TOLERANCE: f64 = 1e-9;
 
 /// The chain of a six-axis arm with open links and drives.
 fn six_axes(upper_arm: Value, forearm: Value) -> Value {
@@ -97,18 +103,25 @@ fn assert_counts(results: &Results, searched: &Searched, study_json: &Value) {
     assert_eq!(evaluated + excluded, total, "every design is evaluated or excluded");
     assert_eq!(results.count("front_size"), results.front.len());
     assert!(!searched.designs.is_empty(), "a study without designs shows nothing");
-    let has_free_drives = study_json["chain"].as_array().expect("a chain").iter().any(|p| p["drive"] == "all_fits");
-    if !has_free_drives {
+    let has_free_drive =
+        study_json["chain"].as_array().expect("a chain").iter().any(|p| p["drive"] == "all_fits");
+    if has_free_drive {
+        assert_eq!(total % searched.link_choices, 0, "every drive is offered to every choice of links");
+    } else {
         assert_eq!(total, searched.link_choices, "designs_total");
     }
     let has_limits = study_json["constraints"].is_object();
     match has_limits {
-        true => assert!(evaluated >= searched.designs.len(), "{evaluated} evaluated, {} meet", searched.designs.len()),
+        true => assert!(
+            evaluated >= searched.designs.len(),
+            "{evaluated} evaluated, {} meet",
+            searched.designs.len()
+        ),
         false => assert_eq!(evaluated, searched.designs.len(), "designs_evaluated"),
     }
 }
 
-/// The same designs on a front, up to those whose place depends on the last 0.1 %, with the same parts and objectives.
+/// The same designs on a front, up to those whose place depends on the last millionth, with the same parts and objectives.
 fn assert_same_front(
     what: &str,
     study_json: &Value,
@@ -149,7 +162,7 @@ fn assert_same_design(row: &FrontRow, design: &Design, agreement: &mut Agreement
         let chosen = [row.text(&format!("{joint}_gear")), row.text(&format!("{joint}_motor"))];
         assert_eq!(chosen, [gear, motor], "drive of {joint} in {}", row.text("design_id"));
     }
-    let mut compare = |column: &str, ours: f64, tolerance: f64| {
+    let compare = |column: &str, ours: f64, tolerance: f64| {
         let theirs = row.number(column);
         let off = (theirs / ours - 1.0).abs();
         assert!(off <= tolerance, "{column} of {}: {theirs}, brute force {ours}", row.text("design_id"));
@@ -158,13 +171,218 @@ fn assert_same_design(row: &FrontRow, design: &Design, agreement: &mut Agreement
     let mass = compare("mass_kg", design.mass_kg, MASS_TOLERANCE);
     let deflection = compare("tip_deflection_mm", design.tip_deflection_mm, DEFLECTION_TOLERANCE);
     let mode = compare("lowest_mode_hz", design.lowest_mode_hz, MODE_TOLERANCE);
+    if let Some(factor) = design.stress_safety_factor {
+        compare("stress_safety_factor", factor, STRESS_TOLERANCE);
+    }
     agreement.worst_mass = agreement.worst_mass.max(mass);
     agreement.worst_deflection = agreement.worst_deflection.max(deflection);
     agreement.worst_mode = agreement.worst_mode.max(mode);
+}
+
+/// Few drives, all of which that hold may be chosen for joint 2.
+fn free_second_drive() -> Value {
+    let mut study = compare_materials();
+    study["name"] = json!("brute-all-fits");
+    study["chain"] = six_axes(
+        boxes(&[STEEL, CFRP], json!(120), json!([120, 160]), json!(4)),
+        boxes(&[ALUMINIUM], json!([80]), json!([80, 100]), json!(3)),
+    );
+    study["chain"][2]["drive"] = json!("all_fits");
+    study["drives"] = json!({
+        "gear_series": ["CSG", "HFUC"], "ratios": [100, 160], "gear_mass": "housed_unit",
+        "motor_models": ["251601 (EC 45 flat 50 W)", "397172 (EC 45 flat 70 W)", "MF0060008 48V", "ILM70x18", "HG-KR43",
+            "HG-KR73"],
+    });
+    study
+}
+
+/// Limits on all that can be limited, each of which excludes something.
+fn limited() -> Value {
+    let mut study = compare_materials();
+    study["name"] = json!("brute-limits");
+    study["chain"] = six_axes(
+        boxes(&[STEEL, ALUMINIUM], json!([60, 120]), json!([60, 120, 160]), json!([2, 4])),
+        boxes(&[STEEL, CFRP], json!([40, 90]), json!([60, 120]), json!([2, 4])),
+    );
+    study["constraints"] = json!({"tip_deflection_max_mm": 3.5, "lowest_mode_min_hz": 10.5,
+        "stress_safety_factor_min": 25, "wall_slenderness_max": 50, "mass_max_kg": 60});
+    study
+}
+
+/// Folded and twisted poses, a force at the tip, a hand that is not a point, a joint that is given, a joint with a speed
+/// of its own, joints' axes and links that are not along the world's axes, and a pose in which drives are not sized.
+fn spatial() -> Value {
+    let mut chain = six_axes(
+        boxes(&[STEEL, ALUMINIUM], json!([80, 140]), json!([100, 160]), json!([4])),
+        boxes(&[ALUMINIUM, CFRP], json!([60, 100]), json!([60, 120]), json!([2, 5])),
+    );
+    chain[1]["mass_kg"] = json!(3.5);
+    chain[4] = json!({"type": "joint", "name": "j3", "axis": [0, 1, 0.1], "mass_kg": 4.5,
+        "windup": {"k1_nm_per_rad": 1.3e5, "k2_nm_per_rad": 1.9e5, "k3_nm_per_rad": 2.2e5, "t1_nm": 40, "t2_nm": 110}});
+    chain[5]["vector_m"] = json!([0.45, 0.1, 0.15]);
+    chain[8]["max_speed_rad_s"] = json!(6.0);
+    json!({
+        "name": "brute-spatial",
+        "gravity_m_s2": 9.80665,
+        "chain": chain,
+        "payload": {"mass_kg": 4, "cg_m": [0.03, 0.02, 0.05], "inertia_about_cg_kgm2": [0.02, 0.03, 0.04]},
+        "poses": [
+            {"name": "folded", "pose_deg": [20, -70, 140, 10, 35, 0]},
+            {"name": "twisted", "pose_deg": [75, -20, 40, 65, -50, 30], "tip_force_n": [20, -30, -10]},
+            {"name": "passing", "pose_deg": [0, 10, -10, 90, 20, 0], "sizing": false,
+                "payload": {"mass_kg": 8, "cg_m": [0, 0, 0.1]}}
+        ],
+        "motion": {"tip_speed_m_s": 0.8, "ramp_time_s": 0.25, "emergency_deceleration_m_s2": 8, "min_lever_m": 0.35,
+            "life_h": 15000},
+        "drives": {"motors": ["electric"], "gear_mass": "component_set"}
+    })
+}
+
+/// Round tubes by the grid and whatever can be bought off the shelf.
+fn sold() -> Value {
+    let mut study = compare_materials();
+    study["name"] = json!("brute-profiles");
+    study["chain"] = six_axes(
+        json!({"materials": [STEEL, "Aluminium 6082-T6"], "sections": [
+            {"shape": "round_tube", "diameter_mm": [90, 130], "wall_mm": [3, 6]},
+            {"profiles": {"family": "steel", "shapes": ["square"], "max_outer_mm": 90}},
+            {"profiles": {"family": "aluminium", "max_outer_mm": 70}}]}),
+        json!({"materials": ["Aluminium 6082-T6", CFRP], "sections": [
+            {"shape": "round_tube", "diameter_mm": {"from": 50, "to": 90, "step": 40}, "wall_mm": 2.5},
+            {"shape": "rectangular_tube", "width_mm": 70, "height_mm": "=width", "wall_mm": 3}]}),
+    );
+    study
 }
 
 #[test]
 fn finds_the_same_fronts_of_a_six_axis_arm_in_three_materials() {
     let agreement = assert_same(&compare_materials());
     assert!(agreement.on_the_front > 10, "{agreement:?}");
+}
+
+#[test]
+fn finds_the_same_front_when_every_drive_that_holds_is_a_choice() {
+    let agreement = assert_same(&free_second_drive());
+    assert!(agreement.on_the_front > 10, "{agreement:?}");
+}
+
+#[test]
+fn finds_the_same_front_within_limits() {
+    let study_json = limited();
+    assert_every_limit_bites(&study_json);
+    let agreement = assert_same(&study_json);
+    assert!(agreement.on_the_front > 3, "{agreement:?}");
+}
+
+/// Without any one of the limits more designs are left; and no design is so close to a limit that rounding decides.
+fn assert_every_limit_bites(study_json: &Value) {
+    let catalog = Catalog::built_in();
+    let mut study = Study::from_json(study_json, &catalog);
+    let within = search(&study).designs.len();
+    let limits = study_json["constraints"].as_object().expect("limits").clone();
+    for key in limits.keys() {
+        study.constraints =
+            limits.iter().filter(|(k, _)| *k != key).map(|(k, v)| (k.clone(), v.clone())).collect();
+        assert!(search(&study).designs.len() > within, "{key} excludes nothing");
+        let factor = if key.contains("_max") { 1.0 + 1e-5 } else { 1.0 - 1e-5 };
+        for nearby in [factor, 1.0 / factor] {
+            study.constraints = study_json["constraints"].clone();
+            study.constraints[key] = json!(limits[key].as_f64().expect("a number") * nearby);
+            assert_eq!(search(&study).designs.len(), within, "a design is as good as at {key}");
+        }
+    }
+}
+
+#[test]
+fn finds_the_same_front_in_folded_and_twisted_poses() {
+    let agreement = assert_same(&spatial());
+    assert!(agreement.on_the_front > 3, "{agreement:?}");
+}
+
+#[test]
+fn finds_the_same_front_with_round_tubes_and_catalog_profiles() {
+    let agreement = assert_same(&sold());
+    assert!(agreement.on_the_front > 10, "{agreement:?}");
+}
+
+#[test]
+fn gives_any_design_of_a_front_as_an_arm_file_that_analyzes_to_the_same_numbers() {
+    for study in [compare_materials(), spatial(), sold(), free_second_drive()] {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        let results = run_study(dir.path(), &study);
+        let step = results.front.len().div_ceil(5);
+        for row in results.front.iter().step_by(step) {
+            assert_taken_out_is_the_same(dir.path(), row);
+        }
+    }
+}
+
+/// `design`, then `analyze`, then the witness on the arm file.
+fn assert_taken_out_is_the_same(dir: &Path, row: &FrontRow) {
+    let id = row.text("design_id");
+    let out = dir.join(format!("taken-{id}"));
+    armwright_ok(&["design", word(&dir.join("results")), id, "--out", word(&out)]);
+    let (arm, cases) = (out.join("arm.json"), out.join("cases.json"));
+    let printed = armwright_ok(&["analyze", word(&arm), "--cases", word(&cases), "--json"]);
+    let analyzed: Value = serde_json::from_str(&printed).expect("JSON");
+    let analyzed = analyzed.as_array().expect("one object a case");
+    let norm_mm = |case: &Value| {
+        let squares = case["tip_displacement_m"].as_array().expect("a vector").iter();
+        1e3 * squares.map(|x| x.as_f64().expect("a number").powi(2)).sum::<f64>().sqrt()
+    };
+    let deflection_mm = analyzed.iter().map(norm_mm).fold(0.0, f64::max);
+    let first_hz = |case: &Value| case["modes"][0]["frequency_hz"].as_f64().expect("a frequency");
+    let mode_hz = analyzed.iter().map(first_hz).fold(f64::INFINITY, f64::min);
+    let off = (row.number("tip_deflection_mm") / deflection_mm - 1.0).abs();
+    assert!(
+        off < 1e-12,
+        "design {id}: front {} mm, analyze {deflection_mm} mm",
+        row.text("tip_deflection_mm")
+    );
+    assert_eq!(row.number("lowest_mode_hz"), mode_hz, "lowest mode of design {id}, front and analyze");
+
+    let arm = read_json(&arm);
+    let cases = read_json(&cases);
+    let cases: Vec<LoadCase> = cases.as_array().expect("cases").iter().map(LoadCase::from_json).collect();
+    let (witness_mm, witness_hz) = objectives(&arm, cases.iter());
+    assert!(
+        (deflection_mm / witness_mm - 1.0).abs() < DEFLECTION_TOLERANCE,
+        "{id}: {deflection_mm} {witness_mm} mm"
+    );
+    assert!((mode_hz / witness_hz - 1.0).abs() < MODE_TOLERANCE, "{id}: {mode_hz} {witness_hz} Hz");
+    let mass_kg = arm_mass_kg(&arm);
+    assert!(
+        (row.number("mass_kg") / mass_kg - 1.0).abs() < MASS_TOLERANCE,
+        "{id}: {mass_kg} kg in the arm file"
+    );
+}
+
+/// Drives, offsets and tubes of an arm file.
+fn arm_mass_kg(arm: &Value) -> f64 {
+    let mass = |piece: &Value| {
+        let Some(material) = piece["material"].as_str() else {
+            return piece["mass_kg"].as_f64().unwrap_or(0.0);
+        };
+        let length_m =
+            Vector3::from([0, 1, 2].map(|i| piece["vector_m"][i].as_f64().expect("a number"))).norm();
+        let density_kg_m3 = arm["materials"][material]["density_kg_m3"].as_f64().expect("a density");
+        density_kg_m3 * Tube::from_json(&piece["section"]).area_m2 * length_m
+    };
+    arm["chain"].as_array().expect("a chain").iter().map(mass).sum()
+}
+
+#[test]
+fn writes_the_same_bytes_for_any_number_of_threads() {
+    for study in [compare_materials(), free_second_drive()] {
+        let fronts = ["1", "2", "3"].map(|threads| {
+            let dir = tempfile::tempdir().expect("a temporary folder");
+            let results = run_study_with(dir.path(), &study, &["--threads", threads]);
+            let slugs = results.run["materials"].as_array().expect("materials").iter();
+            let by_material = slugs.map(|m| format!("front.{}.csv", m["slug"].as_str().expect("a slug")));
+            let names = std::iter::once("front.csv".to_owned()).chain(by_material);
+            let read = |name: String| std::fs::read(dir.path().join("results").join(name)).expect("written");
+            names.map(read).collect::<Vec<_>>()
+        });
+        assert!(fronts[0] == fronts[1] && fronts[1] == fronts[2], "{}", study["name"]);
+    }
 }

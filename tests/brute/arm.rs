@@ -35,7 +35,8 @@ pub struct Tube {
 }
 
 impl Tube {
-    fn from_json(section: &Value) -> Self {
+    /// Of a section as an arm file has it.
+    pub fn from_json(section: &Value) -> Self {
         let number = |key: &str| section[key].as_f64().expect("a number");
         let wall_m = number("wall_m");
         if section["shape"] == "round_tube" {
@@ -44,7 +45,15 @@ impl Tube {
             let over_z2_m4 = PI / 64.0 * (outer_m.powi(4) - inner_m.powi(4));
             let area_m2 = PI / 4.0 * (outer_m * outer_m - inner_m * inner_m);
             let (width_m, height_m) = (outer_m, outer_m);
-            return Self { area_m2, over_z2_m4, over_y2_m4: over_z2_m4, width_m, height_m, wall_m, is_round: true };
+            return Self {
+                area_m2,
+                over_z2_m4,
+                over_y2_m4: over_z2_m4,
+                width_m,
+                height_m,
+                wall_m,
+                is_round: true,
+            };
         }
         let (b, h) = (number("width_m"), number("height_m"));
         let (bi, hi) = (b - 2.0 * wall_m, h - 2.0 * wall_m);

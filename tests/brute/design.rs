@@ -9,7 +9,7 @@ use super::stress::stress_safety_factor;
 use super::study::{DriveChoice, Piece, Pose, Posed, Study};
 use crate::witness;
 
-/// Enough for the lowest mode to 1e-5; statics do not depend on it.
+/// Enough for the lowest mode to 1e-7 in these arms; statics do not depend on it.
 const ELEMENTS_PER_LINK: usize = 6;
 
 /// One complete choice and what it is worth.
@@ -36,12 +36,8 @@ pub fn search(study: &Study) -> Searched {
         _ => None,
     });
     let poses: Vec<(&Pose, Posed)> = study.poses.iter().map(|pose| (pose, study.posed(&pose.case))).collect();
-    let sizing: Vec<(&Pose, Posed)> = study
-        .poses
-        .iter()
-        .filter(|pose| pose.sizes)
-        .map(|pose| (pose, study.posed(&pose.case)))
-        .collect();
+    let sizing: Vec<(&Pose, Posed)> =
+        study.poses.iter().filter(|pose| pose.sizes).map(|pose| (pose, study.posed(&pose.case))).collect();
     let mut searched = Searched { link_choices: options.product(), designs: Vec::new() };
     extend(study, &sizing, &[], &mut |chain| {
         let design = judged(study, &poses, chain);
@@ -54,7 +50,10 @@ pub fn search(study: &Study) -> Searched {
 
 /// Adds every choice for the next piece inboard of `outboard` (nearest first), down to the base.
 fn extend(study: &Study, sizing: &[(&Pose, Posed)], outboard: &[Chosen], found: &mut dyn FnMut(&[Chosen])) {
-    let Some(index) = (study.pieces.len() - outboard.len()).checked_sub(1) else { return found(outboard) };
+    let Some(index) = (study.pieces.len() - outboard.len()).checked_sub(1) else {
+        found(outboard);
+        return;
+    };
     for choice in choices(study, sizing, index, outboard) {
         let mut longer = vec![choice];
         longer.extend_from_slice(outboard);
@@ -71,7 +70,9 @@ fn choices(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: &[C
             };
             options.iter().filter(slender).map(|o| Chosen::Link(Link::of(name, *vector_m, o))).collect()
         }
-        Piece::Joint { drive: DriveChoice::Given(entry), name, .. } => vec![Chosen::Joint(given(name, entry))],
+        Piece::Joint { drive: DriveChoice::Given(entry), name, .. } => {
+            vec![Chosen::Joint(given(name, entry))]
+        }
         Piece::Joint { name, axis, drive, .. } => {
             let asked = demand(study, sizing, index, outboard);
             let joint = |drive: &Drive| {
@@ -99,10 +100,11 @@ fn given(name: &str, entry: &Value) -> Joint {
     Joint { name: name.to_owned(), mass_kg, gear: String::new(), motor: String::new(), entry: entry.clone() }
 }
 
-/// The flat width or diameter of the widest wall over its thickness.
+/// The widest flat between the corners over the wall's thickness; a round tube's diameter over it.
 fn wall_slenderness(option: &LinkOption) -> f64 {
     let tube = &option.tube;
-    tube.width_m.max(tube.height_m) / tube.wall_m
+    let corners_m = if tube.is_round { 0.0 } else { 2.0 * tube.wall_m };
+    (tube.width_m.max(tube.height_m) - corners_m) / tube.wall_m
 }
 
 fn judged(study: &Study, poses: &[(&Pose, Posed)], chain: &[Chosen]) -> Design {
@@ -140,14 +142,18 @@ fn meets(study: &Study, design: &Design) -> bool {
 impl Design {
     /// What was chosen freely: the option of every open link, the drive of every joint that is not `first_fit`.
     pub fn key(&self, study: &Study) -> String {
-        let parts = study.pieces.iter().zip(&self.chain).filter_map(|(piece, chosen)| match (piece, chosen) {
-            (Piece::Choice { .. }, Chosen::Link(Link { option: Some(o), .. })) => {
-                let [width, height, wall] = [o.tube.width_m, o.tube.height_m, o.tube.wall_m].map(|m| 1e3 * m);
-                Some(link_key(&o.material, &o.profile, width, height, wall))
-            }
-            (Piece::Joint { drive: DriveChoice::AllFits, .. }, Chosen::Joint(joint)) => Some(drive_key(joint)),
-            _ => None,
-        });
+        let parts =
+            study.pieces.iter().zip(&self.chain).filter_map(|(piece, chosen)| match (piece, chosen) {
+                (Piece::Choice { .. }, Chosen::Link(Link { option: Some(o), .. })) => {
+                    let [width, height, wall] =
+                        [o.tube.width_m, o.tube.height_m, o.tube.wall_m].map(|m| 1e3 * m);
+                    Some(link_key(&o.material, &o.profile, width, height, wall))
+                }
+                (Piece::Joint { drive: DriveChoice::AllFits, .. }, Chosen::Joint(joint)) => {
+                    Some(drive_key(joint))
+                }
+                _ => None,
+            });
         parts.collect::<Vec<_>>().join("; ")
     }
 

@@ -31,7 +31,8 @@ pub struct Drive {
 
 /// The drives that a study's `drives` admits, lightest first, then by name.
 pub fn candidates(filter: &Value, catalog: &Catalog) -> Vec<Drive> {
-    let is_listed = |key: &str, name: &str| filter[key].as_array().is_none_or(|l| l.iter().any(|x| x == name));
+    let is_listed =
+        |key: &str, name: &str| filter[key].as_array().is_none_or(|l| l.iter().any(|x| x == name));
     let is_ratio = |gear: &Row| {
         let ratio = gear.number("ratio");
         filter["ratios"].as_array().is_none_or(|ratios| ratios.iter().any(|r| r.as_f64() == ratio))
@@ -42,11 +43,13 @@ pub fn candidates(filter: &Value, catalog: &Catalog) -> Vec<Drive> {
     };
     let mut drives = Vec::new();
     for gear in &catalog.gears {
-        if !is_listed("gear_series", gear.text("series")) || !is_listed("gears", &gear.id) || !is_ratio(gear) {
+        if !is_listed("gear_series", gear.text("series")) || !is_listed("gears", &gear.id) || !is_ratio(gear)
+        {
             continue;
         }
         for motor in &catalog.motors {
-            let is_wanted_kind = filter["motors"].as_array().is_none_or(|k| k.iter().any(|k| is_kind(k, motor)));
+            let is_wanted_kind =
+                filter["motors"].as_array().is_none_or(|k| k.iter().any(|k| is_kind(k, motor)));
             if is_wanted_kind && is_listed("motor_models", &motor.id) {
                 drives.extend(Drive::complete(gear, motor, mass_column));
             }

@@ -2,8 +2,8 @@
 
 use super::design::Design;
 
-/// How much better or worse than computed a deflection or a mode may be: the two programs agree at least so well.
-pub const SLACK: f64 = 1e-3;
+/// How much better or worse than computed a deflection or a mode may be.
+pub const SLACK: f64 = 1e-6;
 /// The same for masses, which both compute exactly.
 const MASS_SLACK_KG: f64 = 1e-9;
 
@@ -14,7 +14,7 @@ pub enum Place {
     On,
     /// Dominated, even if it were better by the slack.
     Off,
-    /// Which of the two depends on the last 0.1 %.
+    /// Which of the two depends on the last millionth.
     Close,
 }
 
@@ -37,7 +37,9 @@ pub fn places(designs: &[&Design]) -> Vec<Place> {
 pub fn exact_front_size(designs: &[&Design]) -> usize {
     let is_dominated = |a: &Design| {
         let is_better = |b: &Design| {
-            b.tip_deflection_mm < a.tip_deflection_mm || b.mass_kg < a.mass_kg || b.lowest_mode_hz > a.lowest_mode_hz
+            b.tip_deflection_mm < a.tip_deflection_mm
+                || b.mass_kg < a.mass_kg
+                || b.lowest_mode_hz > a.lowest_mode_hz
         };
         designs.iter().any(|b| dominates(b, a, 0.0) && is_better(b))
     };

@@ -145,14 +145,20 @@ fn grid_sections(family: &Value) -> Vec<(Value, String)> {
     for wall_mm in grid(&family["wall_mm"]) {
         if family["shape"] == "round_tube" {
             for diameter_mm in grid(&family["diameter_mm"]) {
-                sections.push(json!({"shape": "round_tube", "diameter_m": diameter_mm / 1e3, "wall_m": wall_mm / 1e3}));
+                sections.push(
+                    json!({"shape": "round_tube", "diameter_m": diameter_mm / 1e3, "wall_m": wall_mm / 1e3}),
+                );
             }
             continue;
         }
         for width_mm in grid(&family["width_mm"]) {
             let is_square = family["height_mm"].is_null() || family["height_mm"] == "=width";
             let heights = if is_square { vec![width_mm] } else { grid(&family["height_mm"]) };
-            sections.extend(heights.into_iter().map(|height_mm| rectangular(width_mm / 1e3, height_mm / 1e3, wall_mm / 1e3)));
+            sections.extend(
+                heights
+                    .into_iter()
+                    .map(|height_mm| rectangular(width_mm / 1e3, height_mm / 1e3, wall_mm / 1e3)),
+            );
         }
     }
     sections.into_iter().map(|section| (section, String::new())).collect()
