@@ -6,6 +6,8 @@ use super::design::Design;
 pub const SLACK: f64 = 1e-6;
 /// The same for masses, which both compute exactly.
 const MASS_SLACK_KG: f64 = 1e-9;
+/// Relative differences that are rounding.
+const TIE: f64 = 1e-12;
 
 /// Where a design stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,6 +33,14 @@ pub fn places(designs: &[&Design]) -> Vec<Place> {
         }
     };
     designs.iter().map(place).collect()
+}
+
+/// Whether two designs are equal in all three but for rounding.
+pub fn are_tied(a: &Design, b: &Design) -> bool {
+    let is_same = |x: f64, y: f64| (x / y - 1.0).abs() < TIE;
+    is_same(a.tip_deflection_mm, b.tip_deflection_mm)
+        && is_same(a.mass_kg, b.mass_kg)
+        && is_same(a.lowest_mode_hz, b.lowest_mode_hz)
 }
 
 /// The designs that no other dominates, by the numbers as they are.
