@@ -20,6 +20,24 @@ pub struct Demand {
     pub poses: Vec<Torques>,
 }
 
+impl Demand {
+    /// The same motion against other torques.
+    pub fn with_torques_times(&self, factor: f64) -> Self {
+        let less = |t: &Torques| Torques { static_nm: factor * t.static_nm, linear_nm: factor * t.linear_nm };
+        Self { poses: self.poses.iter().map(less).collect(), ..self.clone() }
+    }
+
+    /// A slower motion, with the same time for the ramp.
+    pub fn with_speed_times(&self, factor: f64) -> Self {
+        let less = |t: &Torques| Torques { linear_nm: factor * t.linear_nm, ..*t };
+        Self {
+            speed_rad_s: factor * self.speed_rad_s,
+            acceleration_rad_s2: factor * self.acceleration_rad_s2,
+            poses: self.poses.iter().map(less).collect(),
+        }
+    }
+}
+
 /// The demand on the joint at `index`; `outboard` are the pieces beyond it, nearest first.
 pub fn demand(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: &[Chosen]) -> Demand {
     let Piece::Joint { axis, max_speed_rad_s, .. } = &study.pieces[index] else { panic!("not a joint") };

@@ -20,6 +20,8 @@ pub struct Design {
     pub mass_kg: f64,
     pub lowest_mode_hz: f64,
     pub stress_safety_factor: Option<f64>,
+    /// Of the open links, if every material has a price.
+    pub material_cost_eur: Option<f64>,
 }
 
 /// All designs that hold, and how many there were to look at.
@@ -36,8 +38,7 @@ pub fn search(study: &Study) -> Searched {
         _ => None,
     });
     let poses: Vec<(&Pose, Posed)> = study.poses.iter().map(|pose| (pose, study.posed(&pose.case))).collect();
-    let sizing: Vec<(&Pose, Posed)> =
-        study.poses.iter().filter(|pose| pose.sizes).map(|pose| (pose, study.posed(&pose.case))).collect();
+    let sizing = sizing_poses(study);
     let mut searched = Searched { link_choices: options.product(), designs: Vec::new() };
     extend(study, &sizing, &[], &mut |chain| {
         let design = judged(study, &poses, chain);
@@ -46,6 +47,11 @@ pub fn search(study: &Study) -> Searched {
         }
     });
     searched
+}
+
+fn sizing_poses(study: &Study) -> Vec<(&Pose, Posed)> {
+    let sizing = study.poses.iter().filter(|pose| pose.sizes);
+    sizing.map(|pose| (pose, study.posed(&pose.case))).collect()
 }
 
 /// Adds every choice for the next piece inboard of `outboard` (nearest first), down to the base.
@@ -91,6 +97,22 @@ fn choices(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: &[C
     }
 }
 
+/// The first joint from the tip that no drive holds when every piece takes its first choice, and what is asked of it.
+pub fn joint_that_nothing_holds(study: &Study) -> Option<(String, Demand)> {
+    let sizing = sizing_poses(study);
+    let mut outboard: Vec<Chosen> = Vec::new();
+    for index in (0..study.pieces.len()).rev() {
+        match (choices(study, &sizing, index, &outboard).into_iter().next(), &study.pieces[index]) {
+            (Some(choice), _) => outboard.insert(0, choice),
+            (None, Piece::Joint { name, .. }) => {
+                return Some((name.clone(), demand(study, &sizing, index, &outboard)));
+            }
+            (None, _) => panic!("no section is left"),
+        }
+    }
+    None
+}
+
 fn fits<'a>(study: &'a Study, asked: &'a Demand) -> impl Iterator<Item = &'a Drive> {
     study.drives.iter().filter(|drive| drive.holds(asked, &study.motion))
 }
@@ -116,6 +138,14 @@ fn judged(study: &Study, poses: &[(&Pose, Posed)], chain: &[Chosen]) -> Design {
         mass_kg: chain.iter().map(Chosen::mass_kg).sum(),
         lowest_mode_hz,
         stress_safety_factor: stress_safety_factor(study, poses, chain),
+        material_cost_eur: chain.iter().map(link_cost_eur).sum(),
+    }
+}
+
+fn link_cost_eur(piece: &Chosen) -> Option<f64> {
+    match piece {
+        Chosen::Link(Link { option: Some(option), mass_kg, .. }) => Some(option.cost_eur_per_kg? * mass_kg),
+        _ => Some(0.0),
     }
 }
 
@@ -136,6 +166,7 @@ fn meets(study: &Study, design: &Design) -> bool {
     below("tip_deflection_max_mm", design.tip_deflection_mm)
         && below("mass_max_kg", design.mass_kg)
         && above("lowest_mode_min_hz", design.lowest_mode_hz)
+        && design.material_cost_eur.is_none_or(|cost| below("material_cost_max_eur", cost))
         && design.stress_safety_factor.is_none_or(|factor| above("stress_safety_factor_min", factor))
 }
 

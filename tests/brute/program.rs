@@ -1,7 +1,7 @@
 //! The `armwright` program as a user runs it, and the files it writes.
 
 use serde_json::Value;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -50,7 +50,7 @@ pub fn run_study_with(dir: &Path, study: &Value, more: &[&str]) -> Results {
 pub struct Results {
     pub run: Value,
     pub front: Vec<FrontRow>,
-    pub by_material: HashMap<String, Vec<FrontRow>>,
+    pub by_material: BTreeMap<String, Vec<FrontRow>>,
 }
 
 impl Results {
