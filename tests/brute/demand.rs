@@ -13,27 +13,27 @@ pub struct Torques {
 }
 
 /// All that a drive has to hold.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Demand {
     pub speed_rad_s: f64,
     pub acceleration_rad_s2: f64,
-    pub poses: Vec<Torques>,
+    /// The largest static torque of all sizing poses, and the largest linear torque of all.
+    pub worst: Torques,
 }
 
 impl Demand {
     /// The same motion against other torques.
     pub fn with_torques_times(&self, factor: f64) -> Self {
-        let less = |t: &Torques| Torques { static_nm: factor * t.static_nm, linear_nm: factor * t.linear_nm };
-        Self { poses: self.poses.iter().map(less).collect(), ..self.clone() }
+        let Torques { static_nm, linear_nm } = self.worst;
+        Self { worst: Torques { static_nm: factor * static_nm, linear_nm: factor * linear_nm }, ..*self }
     }
 
     /// A slower motion, with the same time for the ramp.
     pub fn with_speed_times(&self, factor: f64) -> Self {
-        let less = |t: &Torques| Torques { linear_nm: factor * t.linear_nm, ..*t };
         Self {
             speed_rad_s: factor * self.speed_rad_s,
             acceleration_rad_s2: factor * self.acceleration_rad_s2,
-            poses: self.poses.iter().map(less).collect(),
+            worst: Torques { linear_nm: factor * self.worst.linear_nm, ..self.worst },
         }
     }
 }
@@ -62,7 +62,12 @@ pub fn demand(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: 
         let inertia_kgm2: f64 = bodies.iter().map(|body| about_axis_kgm2(body, &axis, &at_m)).sum();
         Torques { static_nm: static_nm.abs(), linear_nm: inertia_kgm2 * acceleration_rad_s2 }
     };
-    Demand { speed_rad_s, acceleration_rad_s2, poses: sizing.iter().map(torques).collect() }
+    let larger = |a: Torques, b: Torques| Torques {
+        static_nm: a.static_nm.max(b.static_nm),
+        linear_nm: a.linear_nm.max(b.linear_nm),
+    };
+    let worst = sizing.iter().map(torques).reduce(larger).expect("a study sizes in some pose");
+    Demand { speed_rad_s, acceleration_rad_s2, worst }
 }
 
 /// Everything beyond the piece at `index`, the payload too.

@@ -100,17 +100,17 @@ impl Drive {
         })
     }
 
-    /// Whether the drive holds in every sizing pose.
+    /// Whether the drive holds the worst of all sizing poses.
     pub fn holds(&self, demand: &Demand, motion: &Motion) -> bool {
         let input_rpm = self.ratio * demand.speed_rad_s * 60.0 / TAU;
         let mean_rpm = 0.4 * input_rpm;
         input_rpm <= self.input_rpm
             && mean_rpm <= self.average_input_rpm
             && input_rpm <= self.motor_rpm
-            && demand.poses.iter().all(|t| self.holds_pose(t, demand.acceleration_rad_s2, mean_rpm, motion))
+            && self.holds_torques(&demand.worst, demand.acceleration_rad_s2, mean_rpm, motion)
     }
 
-    fn holds_pose(&self, t: &Torques, acceleration_rad_s2: f64, mean_rpm: f64, motion: &Motion) -> bool {
+    fn holds_torques(&self, t: &Torques, acceleration_rad_s2: f64, mean_rpm: f64, motion: &Motion) -> bool {
         let (slow, fast) = ((t.static_nm - t.linear_nm).abs(), t.static_nm + t.linear_nm);
         // Ramps run at half speed on average: weights 1/2, 3, 1/2 of t_a.
         let mean_nm = ((0.5 * fast.powi(3) + 3.0 * t.static_nm.powi(3) + 0.5 * slow.powi(3)) / 4.0).cbrt();

@@ -15,7 +15,8 @@
 //! | life | L_ref (T_rated / T_mean)^3 (2000 rpm / n_mean), L_ref = 7000 h for HFUC and CSF, 10 000 h for CSG and SHG |
 //! | motor | T / (N eta) held; (T + L) / (N eta) + J_in N alpha for the ramp; N w reached |
 //!
-//! A drive holds if it holds in every sizing pose.
+//! A drive must hold the largest T of all sizing poses together with the largest L of all, though no one pose may have
+//! both: the arm passes between its poses.
 
 pub mod arm;
 pub mod catalog;
