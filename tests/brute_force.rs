@@ -5,10 +5,10 @@
 mod brute;
 mod witness;
 
-use brute::arm::Tube;
+use brute::arm::{Chosen, Tube, arm_file};
 use brute::catalog::Catalog;
 use brute::demand::Demand;
-use brute::design::{Design, Searched, joint_that_nothing_holds, objectives, search};
+use brute::design::{Design, Searched, chains, joint_that_nothing_holds, link_key, objectives, search};
 use brute::front::{Place, SLACK, are_tied, exact_front_size, places};
 use brute::program::{
     FrontRow, Results, armwright_fails, armwright_ok, read_json, run_study, run_study_with, word,
@@ -344,6 +344,53 @@ fn gives_any_design_of_a_front_as_an_arm_file_that_analyzes_to_the_same_numbers(
             assert_taken_out_is_the_same(dir.path(), row);
         }
     }
+}
+
+/// Not only the front: the drives and the mass of every design of a study, good or bad.
+#[test]
+fn sizes_every_design_of_a_study_alike() {
+    let study_json = spatial();
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    let results = run_study(dir.path(), &study_json);
+    let study = Study::from_json(&study_json, &Catalog::built_in());
+    let sized = chains(&study);
+    let ours: HashMap<String, &[Chosen]> =
+        sized.iter().map(|chain| (arm_key(&arm_file(0.0, chain)), &chain[..])).collect();
+    assert_eq!(ours.len(), results.count("designs_total"));
+    for number in 0..ours.len() {
+        let id = base_36(number);
+        let out = dir.path().join("taken");
+        armwright_ok(&["design", word(&dir.path().join("results")), &id, "--out", word(&out)]);
+        let arm = read_json(&out.join("arm.json"));
+        let chain = ours.get(&arm_key(&arm)).unwrap_or_else(|| panic!("design {id} is none of ours"));
+        for (piece, entry) in chain.iter().zip(arm["chain"].as_array().expect("a chain")) {
+            let Chosen::Joint(joint) = piece else { continue };
+            let parts = [&entry["gear"], &entry["motor"]].map(|part| part.as_str().unwrap_or_default());
+            assert_eq!(parts, [&joint.gear, &joint.motor], "drive of {} in design {id}", joint.name);
+        }
+        let (theirs_kg, ours_kg) = (arm_mass_kg(&arm), chain.iter().map(Chosen::mass_kg).sum::<f64>());
+        assert!(
+            (theirs_kg / ours_kg - 1.0).abs() < MASS_TOLERANCE,
+            "{id}: {theirs_kg} kg, brute force {ours_kg} kg"
+        );
+    }
+}
+
+/// Material and section of every link of an arm file.
+fn arm_key(arm: &Value) -> String {
+    let link = |piece: &Value| {
+        let tube = piece["section"].is_object().then(|| Tube::from_json(&piece["section"]))?;
+        let [width, height, wall] = [tube.width_m, tube.height_m, tube.wall_m].map(|m| 1e3 * m);
+        Some(link_key(piece["material"].as_str().expect("a material"), "", width, height, wall))
+    };
+    arm["chain"].as_array().expect("a chain").iter().filter_map(link).collect::<Vec<_>>().join("; ")
+}
+
+/// A design's number as its id: digits, then small letters.
+fn base_36(number: usize) -> String {
+    let digit = char::from_digit((number % 36) as u32, 36).expect("below 36");
+    let rest = if number < 36 { String::new() } else { base_36(number / 36) };
+    format!("{rest}{digit}")
 }
 
 /// `design`, then `analyze`, then the witness on the arm file.

@@ -49,6 +49,13 @@ pub fn search(study: &Study) -> Searched {
     searched
 }
 
+/// Every arm whose joints all have a drive, base to tip.
+pub fn chains(study: &Study) -> Vec<Vec<Chosen>> {
+    let mut chains = Vec::new();
+    extend(study, &sizing_poses(study), &[], &mut |chain| chains.push(chain.to_vec()));
+    chains
+}
+
 fn sizing_poses(study: &Study) -> Vec<(&Pose, Posed)> {
     let sizing = study.poses.iter().filter(|pose| pose.sizes);
     sizing.map(|pose| (pose, study.posed(&pose.case))).collect()
@@ -69,7 +76,7 @@ fn extend(study: &Study, sizing: &[(&Pose, Posed)], outboard: &[Chosen], found: 
 
 fn choices(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: &[Chosen]) -> Vec<Chosen> {
     match &study.pieces[index] {
-        Piece::Fixed(link) => vec![Chosen::Link(link.clone())],
+        Piece::Fixed(link) => vec![Chosen::Link(Link::clone(link))],
         Piece::Choice { name, vector_m, options } => {
             let slender = |option: &&LinkOption| {
                 study.limit("wall_slenderness_max").is_none_or(|limit| wall_slenderness(option) <= limit)

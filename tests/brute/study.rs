@@ -11,7 +11,7 @@ use crate::witness::LoadCase;
 /// A piece of the chain with what is open about it.
 pub enum Piece {
     Joint { name: String, axis: Vector3<f64>, max_speed_rad_s: Option<f64>, drive: DriveChoice },
-    Fixed(Link),
+    Fixed(Box<Link>),
     Choice { name: String, vector_m: Vector3<f64>, options: Vec<LinkOption> },
 }
 
@@ -121,7 +121,7 @@ fn read_piece(piece: &Value, catalog: &Catalog) -> Piece {
     let vector_m = vector(&piece["vector_m"]);
     if piece["choose"].is_null() {
         let mass_kg = piece["mass_kg"].as_f64().unwrap_or(0.0);
-        return Piece::Fixed(Link { name, vector_m, mass_kg, option: None });
+        return Piece::Fixed(Box::new(Link { name, vector_m, mass_kg, option: None }));
     }
     Piece::Choice { name, vector_m, options: read_options(&piece["choose"], catalog) }
 }
