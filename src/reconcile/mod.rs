@@ -1,0 +1,6 @@
+//! From a gap to a better model: where an arm and its model disagree, which piece of physics is
+//! missing, how sure that is, and what it changes.
+
+pub mod campaign;
+pub mod readings;
+pub mod table;
