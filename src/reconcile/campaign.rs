@@ -89,8 +89,19 @@ pub fn read_statement(path: &Path) -> Result<Statement, InputError> {
 
 fn statement(node: &Node) -> Option<Statement> {
     let root = node.object(&[
-        "name", "arm", "conventions", "tolerance", "static", "modal", "windup", "positions", "links",
-        "description", "machine", "date", "provenance",
+        "name",
+        "arm",
+        "conventions",
+        "tolerance",
+        "static",
+        "modal",
+        "windup",
+        "positions",
+        "links",
+        "description",
+        "machine",
+        "date",
+        "provenance",
     ])?;
     let name = root.or("name", "campaign".to_string(), |n| n.string().map(String::from));
     let arm_file = root.or("arm", "arm.json".to_string(), |n| n.string().map(String::from));

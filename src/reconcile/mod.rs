@@ -2,5 +2,9 @@
 //! missing, how sure that is, and what it changes.
 
 pub mod campaign;
+pub mod exact;
+pub mod fit;
+pub mod forward;
+pub mod model;
 pub mod readings;
 pub mod table;

@@ -141,8 +141,7 @@ fn sigma(table: &Table, row: usize, column: usize) -> Option<f64> {
 pub fn static_rows(table: &Table, arm: &Arm) -> Vec<StaticRow> {
     let state = StateColumns::find(table, arm, true);
     let find = |names: [&str; 3]| names.map(|n| table.required(n));
-    let (force, d) =
-        (find(["force_x_n", "force_y_n", "force_z_n"]), find(["dx_mm", "dy_mm", "dz_mm"]));
+    let (force, d) = (find(["force_x_n", "force_y_n", "force_z_n"]), find(["dx_mm", "dy_mm", "dz_mm"]));
     let (branch, sigma_mm) = (table.optional("branch"), table.required("sigma_mm"));
     let (Some(state), [Some(fx), Some(fy), Some(fz)], [Some(dx), Some(dy), Some(dz)], Some(sigma_mm)) =
         (state, force, d, sigma_mm)
@@ -183,8 +182,7 @@ pub fn modal_rows(table: &Table, arm: &Arm) -> Vec<ModalRow> {
             |m| m >= 1.0 && m.fract() == 0.0 && m < 1000.0,
             "modes are numbered 1, 2, 3 ... by rising frequency",
         );
-        let frequency_hz =
-            table.number_that(row, frequency, |f| f > 0.0, "a frequency is greater than 0");
+        let frequency_hz = table.number_that(row, frequency, |f| f > 0.0, "a frequency is greater than 0");
         let sigma_hz = sigma(table, row, sigma_hz);
         Some(ModalRow {
             row,
@@ -201,8 +199,7 @@ pub fn modal_rows(table: &Table, arm: &Arm) -> Vec<ModalRow> {
 
 /// Reads bench rows.
 pub fn windup_rows(table: &Table, arm: &Arm) -> Vec<WindupRow> {
-    let columns =
-        ["joint", "torque_nm", "windup_arcmin", "sigma_arcmin"].map(|n| table.required(n));
+    let columns = ["joint", "torque_nm", "windup_arcmin", "sigma_arcmin"].map(|n| table.required(n));
     let branch = table.optional("branch");
     let [Some(joint), Some(torque), Some(windup), Some(sigma_arcmin)] = columns else {
         return Vec::new();

@@ -2,7 +2,8 @@
 
 use super::{Channel, Kind, Parameter, Place, Scope, Subject};
 
-const PARAMETERS: &[Parameter] = &[Parameter::vector("rate_mm_per_row", -0.1, 0.1, 2e-4)];
+const PARAMETERS: &[Parameter] =
+    &[Parameter::vector("rate_mm_per_row", -0.1, 0.1, 2e-4).expected(-0.01, 0.01)];
 
 /// The effect.
 pub const KIND: Kind = Kind {

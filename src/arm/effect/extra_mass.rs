@@ -2,7 +2,8 @@
 
 use super::{Kind, Parameter, Place, Scale, Scope, Subject};
 
-const PARAMETERS: &[Parameter] = &[Parameter::number("delta_kg", -10.0, 50.0, 1.0, Scale::Linear)];
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("delta_kg", -10.0, 50.0, 1.0, Scale::Linear).expected(-3.0, 12.0)];
 
 /// The effect.
 pub const KIND: Kind = Kind {

@@ -2,7 +2,8 @@
 
 use super::{Kind, Parameter, Place, Scale, Scope, Subject};
 
-const PARAMETERS: &[Parameter] = &[Parameter::number("kg_per_m", 0.0, 100.0, 2.0, Scale::Linear)];
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("kg_per_m", 0.0, 100.0, 2.0, Scale::Linear).expected(0.0, 15.0)];
 
 /// The effect.
 pub const KIND: Kind = Kind {

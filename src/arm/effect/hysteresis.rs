@@ -2,7 +2,8 @@
 
 use super::{Kind, Parameter, Place, Scale, Scope, Subject};
 
-const PARAMETERS: &[Parameter] = &[Parameter::number("half_width_rad", 0.0, 5e-3, 1e-4, Scale::Linear)];
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("half_width_rad", 0.0, 5e-3, 1e-4, Scale::Linear).expected(0.0, 2e-3)];
 
 /// The effect.
 pub const KIND: Kind = Kind {

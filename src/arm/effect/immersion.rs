@@ -4,8 +4,8 @@ use super::{Kind, Parameter, Place, Scale, Scope, Subject};
 use crate::arm::Water;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter::number("water_density_kg_m3", 0.0, 2000.0, 1000.0, Scale::Linear),
-    Parameter::number("added_mass_coefficient", 0.0, 4.0, 1.0, Scale::Linear),
+    Parameter::number("water_density_kg_m3", 0.0, 2000.0, 1000.0, Scale::Linear).expected(0.0, 1500.0),
+    Parameter::number("added_mass_coefficient", 0.0, 4.0, 1.0, Scale::Linear).expected(0.0, 2.5),
     Parameter {
         default: Some(7850.0),
         ..Parameter::number("payload_density_kg_m3", 1.0, 30000.0, 7850.0, Scale::Linear)

@@ -2,7 +2,8 @@
 
 use super::{Kind, Parameter, Place, Scale, Scope, Subject};
 
-const PARAMETERS: &[Parameter] = &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness)];
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.0, 20.0)];
 
 /// The effect.
 pub const KIND: Kind = Kind {

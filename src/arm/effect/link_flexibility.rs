@@ -2,7 +2,8 @@
 
 use super::{Kind, Parameter, Place, Scale, Scope, Subject};
 
-const PARAMETERS: &[Parameter] = &[Parameter::number("factor", 0.0, 20.0, 1.0, Scale::Linear)];
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("factor", 0.0, 20.0, 1.0, Scale::Linear).expected(0.0, 5.0)];
 
 /// The effect.
 pub const KIND: Kind = Kind {

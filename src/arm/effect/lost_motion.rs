@@ -4,8 +4,8 @@ use super::{Kind, Parameter, Place, Scale, Scope, Subject};
 use crate::arm::LostMotion;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter::number("half_width_rad", 0.0, 5e-3, 1.5e-4, Scale::Linear),
-    Parameter::number("torque_nm", 0.05, 1e4, 10.0, Scale::Log),
+    Parameter::number("half_width_rad", 0.0, 5e-3, 1.5e-4, Scale::Linear).expected(0.0, 2e-3),
+    Parameter::number("torque_nm", 0.05, 1e4, 10.0, Scale::Log).expected(0.3, 500.0),
 ];
 
 /// The effect.

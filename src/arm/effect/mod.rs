@@ -28,7 +28,8 @@ mod time_shift;
 mod validate;
 mod wrong_unit;
 
-pub use validate::EffectFault;
+pub use validate::{EffectFault, fits_nominal};
+pub use wrong_unit::SLIPS as UNIT_SLIPS;
 
 use super::{JointPiece, LinkPiece, Piece, Structure};
 use nalgebra::Vector3;
@@ -114,6 +115,9 @@ pub struct Parameter {
     pub high: f64,
     /// A typical value, where a fit starts.
     pub typical: f64,
+    /// Where a fit expects it, every value as likely as another; a stiffness as the compliance over that
+    /// of its joint, a reciprocal as `1/factor`.
+    pub prior: (f64, f64),
     /// How it is searched.
     pub scale: Scale,
     /// The value when it is left out; such a parameter is stated, not fitted.
@@ -123,12 +127,17 @@ pub struct Parameter {
 impl Parameter {
     /// A single number that must be given.
     pub const fn number(name: &'static str, low: f64, high: f64, typical: f64, scale: Scale) -> Self {
-        Self { name, count: 1, low, high, typical, scale, default: None }
+        Self { name, count: 1, low, high, typical, prior: (low, high), scale, default: None }
+    }
+
+    /// The same parameter, expected within narrower limits.
+    pub const fn expected(self, low: f64, high: f64) -> Self {
+        Self { prior: (low, high), ..self }
     }
 
     /// Three numbers that must be given.
     pub const fn vector(name: &'static str, low: f64, high: f64, typical: f64) -> Self {
-        Self { name, count: 3, low, high, typical, scale: Scale::Linear, default: None }
+        Self { name, count: 3, low, high, typical, prior: (low, high), scale: Scale::Linear, default: None }
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::{Kind, Parameter, Place, Scale, Scope, Subject};
 
-const PARAMETERS: &[Parameter] = &[Parameter::number("factor", 0.05, 5.0, 0.85, Scale::Reciprocal)];
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("factor", 0.05, 5.0, 0.85, Scale::Reciprocal).expected(0.5, 3.0)];
 
 /// The effect.
 pub const KIND: Kind = Kind {

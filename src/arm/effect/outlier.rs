@@ -11,7 +11,12 @@ pub const KIND: Kind = Kind {
     name: "outlier",
     summary: "single rows are gross errors",
     scope: Scope::Test,
-    places: &[Place::Channel(Channel::Static), Place::Channel(Channel::Modal), Place::Channel(Channel::Windup), Place::Channel(Channel::Positions)],
+    places: &[
+        Place::Channel(Channel::Static),
+        Place::Channel(Channel::Modal),
+        Place::Channel(Channel::Windup),
+        Place::Channel(Channel::Positions),
+    ],
     parameters: |_| ROWS,
     apply,
 };

@@ -3,7 +3,7 @@
 use super::{Kind, Parameter, Place, Scope, Subject};
 use nalgebra::Vector3;
 
-const PARAMETERS: &[Parameter] = &[Parameter::vector("offset_m", -0.5, 0.5, 0.01)];
+const PARAMETERS: &[Parameter] = &[Parameter::vector("offset_m", -0.5, 0.5, 0.01).expected(-0.1, 0.1)];
 
 /// The effect.
 pub const KIND: Kind = Kind {

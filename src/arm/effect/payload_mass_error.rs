@@ -2,7 +2,8 @@
 
 use super::{Kind, Parameter, Place, Scale, Scope, Subject};
 
-const PARAMETERS: &[Parameter] = &[Parameter::number("delta_kg", -20.0, 20.0, 0.2, Scale::Linear)];
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("delta_kg", -20.0, 20.0, 0.2, Scale::Linear).expected(-3.0, 3.0)];
 
 /// The effect.
 pub const KIND: Kind = Kind {

@@ -2,8 +2,9 @@
 
 use super::{Channel, Kind, Parameter, Place, Scale, Scope, Subject};
 
-const DISPLACEMENT: &[Parameter] = &[Parameter::vector("bias_mm", -10.0, 10.0, 0.02)];
-const TWIST: &[Parameter] = &[Parameter::number("bias_arcmin", -60.0, 60.0, 0.1, Scale::Linear)];
+const DISPLACEMENT: &[Parameter] = &[Parameter::vector("bias_mm", -10.0, 10.0, 0.02).expected(-0.5, 0.5)];
+const TWIST: &[Parameter] =
+    &[Parameter::number("bias_arcmin", -60.0, 60.0, 0.1, Scale::Linear).expected(-3.0, 3.0)];
 
 fn parameters(place: Place) -> &'static [Parameter] {
     match place {
@@ -17,7 +18,11 @@ pub const KIND: Kind = Kind {
     name: "sensor_bias",
     summary: "the sensor of a channel reads the truth plus a constant",
     scope: Scope::Test,
-    places: &[Place::Channel(Channel::Static), Place::Channel(Channel::Windup), Place::Channel(Channel::Positions)],
+    places: &[
+        Place::Channel(Channel::Static),
+        Place::Channel(Channel::Windup),
+        Place::Channel(Channel::Positions),
+    ],
     parameters: parameters,
     apply,
 };

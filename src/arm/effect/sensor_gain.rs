@@ -2,14 +2,20 @@
 
 use super::{Channel, Kind, Parameter, Place, Scale, Scope, Subject};
 
-const PARAMETERS: &[Parameter] = &[Parameter::number("gain", 0.2, 5.0, 1.03, Scale::Linear)];
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("gain", 0.2, 5.0, 1.03, Scale::Linear).expected(0.6, 1.6)];
 
 /// The effect.
 pub const KIND: Kind = Kind {
     name: "sensor_gain",
     summary: "the sensor of a channel reads a factor times the truth",
     scope: Scope::Test,
-    places: &[Place::Channel(Channel::Static), Place::Channel(Channel::Modal), Place::Channel(Channel::Windup), Place::Channel(Channel::Positions)],
+    places: &[
+        Place::Channel(Channel::Static),
+        Place::Channel(Channel::Modal),
+        Place::Channel(Channel::Windup),
+        Place::Channel(Channel::Positions),
+    ],
     parameters: |_| PARAMETERS,
     apply,
 };

@@ -4,11 +4,11 @@ use super::{Kind, Parameter, Place, Scale, Scope, Subject};
 use crate::arm::{Curve, Windup};
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter::number("k1_nm_per_rad", 1.0, 1e10, 1e5, Scale::Stiffness),
-    Parameter::number("k2_nm_per_rad", 1.0, 1e10, 1.5e5, Scale::Stiffness),
-    Parameter::number("k3_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness),
-    Parameter::number("t1_nm", 0.01, 1e5, 50.0, Scale::Log),
-    Parameter::number("t2_nm", 0.01, 1e5, 150.0, Scale::Log),
+    Parameter::number("k1_nm_per_rad", 1.0, 1e10, 1e5, Scale::Stiffness).expected(0.3, 4.0),
+    Parameter::number("k2_nm_per_rad", 1.0, 1e10, 1.5e5, Scale::Stiffness).expected(0.3, 4.0),
+    Parameter::number("k3_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.2, 4.0),
+    Parameter::number("t1_nm", 0.01, 1e5, 50.0, Scale::Log).expected(0.5, 5e3),
+    Parameter::number("t2_nm", 0.01, 1e5, 150.0, Scale::Log).expected(0.5, 5e3),
 ];
 
 /// The effect.

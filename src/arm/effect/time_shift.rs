@@ -9,7 +9,12 @@ pub const KIND: Kind = Kind {
     name: "time_shift",
     summary: "the clock of a channel runs ahead or behind (time records)",
     scope: Scope::Test,
-    places: &[Place::Channel(Channel::Static), Place::Channel(Channel::Modal), Place::Channel(Channel::Windup), Place::Channel(Channel::Positions)],
+    places: &[
+        Place::Channel(Channel::Static),
+        Place::Channel(Channel::Modal),
+        Place::Channel(Channel::Windup),
+        Place::Channel(Channel::Positions),
+    ],
     parameters: |_| PARAMETERS,
     apply,
 };

@@ -113,12 +113,12 @@ impl Subject {
 /// offered only where the model is rigid, and what twists in series only where something twists.
 pub fn fits_nominal(kind: &Kind, place: Place, at: &str, structure: &Structure) -> bool {
     let rigid_joint = structure.joints().any(|j| j.name == at && j.law.is_rigid());
-    let rigid_link = structure
-        .links()
-        .any(|l| l.name == at && l.beam.is_some_and(|b| b.flexibility == 0.0));
+    let rigid_link = structure.links().any(|l| l.name == at && l.beam.is_some_and(|b| b.flexibility == 0.0));
     match (kind.name, place) {
         ("joint_compliance", Place::Joint) => rigid_joint,
-        ("connection_compliance" | "soft_windup" | "lost_motion" | "hysteresis", Place::Joint) => !rigid_joint,
+        ("connection_compliance" | "soft_windup" | "lost_motion" | "hysteresis", Place::Joint) => {
+            !rigid_joint
+        }
         ("link_flexibility", _) => rigid_link,
         ("modulus_error", _) => !rigid_link,
         _ => true,

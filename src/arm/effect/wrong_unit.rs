@@ -9,7 +9,12 @@ pub const KIND: Kind = Kind {
     name: "wrong_unit",
     summary: "a channel is written in another unit than its column says",
     scope: Scope::Test,
-    places: &[Place::Channel(Channel::Static), Place::Channel(Channel::Modal), Place::Channel(Channel::Windup), Place::Channel(Channel::Positions)],
+    places: &[
+        Place::Channel(Channel::Static),
+        Place::Channel(Channel::Modal),
+        Place::Channel(Channel::Windup),
+        Place::Channel(Channel::Positions),
+    ],
     parameters: |_| PARAMETERS,
     apply,
 };
