@@ -7,4 +7,5 @@ pub mod fit;
 pub mod forward;
 pub mod model;
 pub mod readings;
+pub mod select;
 pub mod table;

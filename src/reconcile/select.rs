@@ -1,0 +1,274 @@
+//! Which effects are missing: every candidate at every place, judged by evidence that pays for each
+//! parameter and for having looked in many places.
+//!
+//! One stage adds one effect: all candidates are screened with the model made linear about the fit so
+//! far, the best are fitted in full. From two effects on each is dropped and swapped against all others
+//! until nothing improves, which repairs greedy mistakes.
+
+use super::fit::{Effort, Fit, Normal, Weights, bounded_step, change, evaluate, fit, jacobian, normal, objective};
+use super::forward::Forward;
+use super::model::{Candidate, Model, Nuisance};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// Rise of the score that an effect must bring.
+const WORTH: f64 = 3.0;
+/// Models within this score of the best cannot be told from it.
+const TIE: f64 = 3.0;
+/// Most effects.
+pub const MOST_EFFECTS: usize = 3;
+/// Candidates fitted in full at each stage.
+const FULL_FITS: usize = 7;
+
+/// All that a search needs.
+pub struct Search<'a> {
+    /// Prepared campaign.
+    pub forward: &'a Forward,
+    /// Calibration.
+    pub nuisance: &'a Nuisance,
+    /// Candidates.
+    pub candidates: &'a [Candidate],
+    /// Weights of the data.
+    pub weights: &'a Weights,
+}
+
+/// A model with its score.
+#[derive(Clone)]
+pub struct Scored {
+    /// Indices of the candidates in it.
+    pub effects: Vec<usize>,
+    /// Its parameters.
+    pub u: Vec<f64>,
+    /// Evidence less ln of the number of candidates for each effect.
+    pub score: f64,
+    /// `Σ ρ(r) + Σ u²`.
+    pub objective: f64,
+}
+
+/// What a search found.
+pub struct Selection {
+    /// The best model.
+    pub best: Scored,
+    /// Calibration only.
+    pub bare: Scored,
+    /// Every other model that was fitted, best first.
+    pub others: Vec<Scored>,
+}
+
+impl<'a> Search<'a> {
+    /// A model of the named candidates.
+    pub fn model(&self, effects: &[usize]) -> Model<'a> {
+        Model {
+            nuisance: self.nuisance,
+            effects: effects.iter().map(|&i| &self.candidates[i]).collect(),
+            smoothing: 0.0,
+        }
+    }
+
+    /// Fits the model of the named candidates from `u`.
+    pub fn fit(&self, effects: &[usize], u: &[f64], effort: Effort) -> Fit<'a> {
+        let mut model = self.model(effects);
+        let mut start = u.to_vec();
+        if !self.forward.modal.is_empty() && model.effects.iter().any(|e| e.kind.name == "soft_windup") {
+            for smoothing in [0.1, 0.03, 0.01] {
+                model.smoothing = smoothing;
+                let steps = Effort { steps: 8, tolerance: 0.05 };
+                start = fit(self.forward, &model, &start, self.weights, steps).point.u;
+            }
+            model.smoothing = 0.0;
+        }
+        fit(self.forward, &model, &start, self.weights, effort)
+    }
+
+    /// The score of a fit.
+    pub fn scored(&self, effects: &[usize], fit: &Fit) -> Scored {
+        let penalty = effects.len() as f64 * (self.places() as f64).ln();
+        Scored {
+            effects: effects.to_vec(),
+            u: fit.point.u.clone(),
+            score: fit.evidence - penalty,
+            objective: fit.point.objective,
+        }
+    }
+
+    /// In how many ways an effect could be named; a unit slip counts once a channel.
+    fn places(&self) -> usize {
+        let mut labels: Vec<String> = self.candidates.iter().map(|c| c.label()).collect();
+        labels.dedup();
+        labels.len()
+    }
+
+    /// Looks for the effects.
+    pub fn run(&self) -> Selection {
+        let bare_model = self.model(&[]);
+        let bare_fit =
+            fit(self.forward, &bare_model, &vec![0.0; bare_model.len()], self.weights, Effort::default());
+        let bare = self.scored(&[], &bare_fit);
+        let mut seen: Vec<Scored> = Vec::new();
+        let mut best = bare.clone();
+        while best.effects.len() < MOST_EFFECTS {
+            let tried = self.extend(&best);
+            seen.extend(tried.iter().cloned());
+            let Some(next) = better(&tried, best.score + WORTH) else { break };
+            best = next;
+            if best.effects.len() > 1 {
+                best = self.repair(best, &mut seen);
+            }
+        }
+        seen.sort_by(|a, b| b.score.total_cmp(&a.score));
+        Selection { best, bare, others: seen }
+    }
+
+    /// Drops and swaps effects until nothing improves.
+    fn repair(&self, mut best: Scored, seen: &mut Vec<Scored>) -> Scored {
+        for _ in 0..4 {
+            let mut improved = false;
+            for i in 0..best.effects.len() {
+                let mut effects = best.effects.clone();
+                effects.remove(i);
+                let start = self.drop_knobs(&best, i);
+                let dropped = self.scored(&effects, &self.fit(&effects, &start, Effort::default()));
+                let swapped = self.extend(&dropped);
+                seen.push(dropped.clone());
+                seen.extend(swapped.iter().cloned());
+                let fewer = (dropped.score + WORTH > best.score).then(|| dropped.clone());
+                if let Some(next) = fewer.or_else(|| better(&swapped, best.score + 1e-3)) {
+                    best = next;
+                    improved = true;
+                    break;
+                }
+            }
+            if !improved {
+                break;
+            }
+        }
+        best
+    }
+
+    /// Parameters of a model without those of one of its effects.
+    fn drop_knobs(&self, scored: &Scored, effect: usize) -> Vec<f64> {
+        let model = self.model(&scored.effects);
+        let first = model.first_knob(effect);
+        let mut u = scored.u.clone();
+        u.drain(first..first + model.effects[effect].knobs.len());
+        u
+    }
+
+    /// The best models with one more effect.
+    pub fn extend(&self, base: &Scored) -> Vec<Scored> {
+        let screened = self.screen(base);
+        let fits: Vec<Scored> = screened
+            .into_par_iter()
+            .map(|(candidate, u, _)| {
+                let effects = [base.effects.as_slice(), &[candidate]].concat();
+                let fitted = self.fit(&effects, &u, Effort { steps: 20, tolerance: 0.02 });
+                self.scored(&effects, &fitted)
+            })
+            .collect();
+        fits
+    }
+
+    /// The most promising candidates with a start for each: candidate, parameters, score of the model
+    /// made linear about the base.
+    fn screen(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
+        let model = self.model(&base.effects);
+        let here = evaluate(self.forward, &model, &base.u, self.weights);
+        let slopes = jacobian(self.forward, &model, &here);
+        let mut tried: Vec<(usize, Vec<f64>, f64)> = (0..self.candidates.len())
+            .into_par_iter()
+            .filter(|i| !base.effects.contains(i))
+            .filter_map(|i| self.best_start(&model, &here, &slopes, i))
+            .collect();
+        tried.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+        tried.truncate(FULL_FITS);
+        tried
+    }
+
+    fn best_start(
+        &self,
+        base: &Model<'a>,
+        here: &super::fit::Point,
+        slopes: &DMatrix<f64>,
+        index: usize,
+    ) -> Option<(usize, Vec<f64>, f64)> {
+        let candidate = &self.candidates[index];
+        let mut model = base.with(candidate);
+        model.smoothing = 0.1;
+        candidate
+            .starts
+            .iter()
+            .map(|start| self.linear(&model, here, slopes, start))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(u, score)| (index, u, score))
+    }
+
+    /// Best parameters and score of a model made linear about `here` plus the candidate's start.
+    fn linear(
+        &self,
+        model: &Model,
+        here: &super::fit::Point,
+        slopes: &DMatrix<f64>,
+        start: &[f64],
+    ) -> (Vec<f64>, f64) {
+        let mut u = here.u.clone();
+        u.extend_from_slice(start);
+        let base = change(self.forward, model, here, &u);
+        let mut columns = slopes.clone().resize_horizontally(u.len(), 0.0);
+        for p in here.u.len()..u.len() {
+            let (_, high) = model.bounds(p);
+            let step = if u[p] + 1e-3 > high { -1e-3 } else { 1e-3 };
+            let mut moved = u.clone();
+            moved[p] += step;
+            let ahead = change(self.forward, model, here, &moved);
+            for i in 0..base.len() {
+                columns[(i, p)] = (ahead[i] - base[i]) / step;
+            }
+        }
+        let origin = DVector::from_vec(u.clone());
+        let at = |u: &[f64]| -> Vec<f64> {
+            let delta = &columns * (DVector::from_column_slice(u) - &origin);
+            here.predicted.iter().zip(&base).zip(delta.iter()).map(|((p, b), d)| p + b + d).collect()
+        };
+        let mut predicted = at(&u);
+        let mut curvature = DMatrix::zeros(0, 0);
+        for _ in 0..4 {
+            let normal: Normal =
+                normal(self.forward, model.calibrated(), &u, &predicted, &columns, self.weights);
+            u = bounded_step(model, &u, &normal, 1e-6);
+            predicted = at(&u);
+            curvature = normal.curvature;
+        }
+        let objective = objective(self.forward, model, &u, &predicted, self.weights);
+        let mut score = -0.5 * objective;
+        for (i, knob) in model.knobs().enumerate() {
+            let p = model.calibrated() + i;
+            let width = 1.0 / (curvature[(p, p)] + 12.0 / knob.range().powi(2)).sqrt();
+            score += (width / knob.range()).ln() + 0.9;
+        }
+        (u, score)
+    }
+
+    /// Models with as many effects as the best, one of them another, that the data cannot tell from it:
+    /// for each effect of the best the candidates that could stand in its place.
+    pub fn alternatives(&self, best: &Scored, seen: &[Scored]) -> Vec<Vec<Scored>> {
+        (0..best.effects.len())
+            .map(|i| {
+                let mut rest = best.effects.clone();
+                let own = rest.remove(i);
+                let mut rivals: Vec<Scored> = seen
+                    .iter()
+                    .filter(|s| s.score > best.score - TIE)
+                    .filter(|s| s.effects.len() == best.effects.len() && !s.effects.contains(&own))
+                    .filter(|s| rest.iter().all(|e| s.effects.contains(e)))
+                    .cloned()
+                    .collect();
+                rivals.dedup_by(|a, b| a.effects == b.effects);
+                rivals
+            })
+            .collect()
+    }
+}
+
+fn better(tried: &[Scored], than: f64) -> Option<Scored> {
+    tried.iter().filter(|s| s.score > than).max_by(|a, b| a.score.total_cmp(&b.score)).cloned()
+}
