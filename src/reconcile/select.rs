@@ -5,7 +5,9 @@
 //! far, the best are fitted in full. From two effects on each is dropped and swapped against all others
 //! until nothing improves, which repairs greedy mistakes.
 
-use super::fit::{Effort, Fit, Normal, Weights, bounded_step, change, evaluate, fit, jacobian, normal, objective};
+use super::fit::{
+    Effort, Fit, Normal, Weights, bounded_step, change, evaluate, fit, jacobian, normal, objective,
+};
 use super::forward::Forward;
 use super::model::{Candidate, Model, Nuisance};
 use nalgebra::{DMatrix, DVector};
