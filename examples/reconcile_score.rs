@@ -1,66 +1,38 @@
-//! temporary probe
+//! Reconciles every campaign of a folder and scores the verdicts against a folder of keys, which are
+//! opened only when all verdicts have been written.
+//!
+//! `cargo run --release --example reconcile_score -- CAMPAIGNS KEYS [OUT]`
+
 use armwright::catalog::Catalogs;
-use armwright::reconcile::campaign::Campaign;
-use armwright::reconcile::forward::Forward;
-use armwright::reconcile::model::{Nuisance, candidates};
-use armwright::reconcile::noise::Noise;
-use armwright::reconcile::select::Search;
+use armwright::reconcile::{Campaign, reconcile};
 use std::path::Path;
-fn main() {
-    let mut total = std::time::Duration::ZERO;
-    for name in std::env::args().skip(1) {
-        let t = std::time::Instant::now();
-        let campaign = Campaign::read(Path::new(&name), &Catalogs::default()).unwrap();
-        let forward = Forward::new(&campaign);
-        let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
-        let candidates = candidates(&forward);
-        let t1 = t.elapsed();
-        let mut noise = Noise::default();
-        let (mut s, mut w);
-        let mut passes = 0;
-        loop {
-            w = noise.weights(&forward);
-            let search =
-                Search { forward: &forward, nuisance: &nuisance, candidates: &candidates, weights: &w };
-            s = search.run();
-            passes += 1;
-            let fit = search.fit(&s.best.effects, &s.best.u, Default::default());
-            let next = Noise::from_fit(&forward, &fit);
-            if passes == 4 || next.agrees(&noise) {
-                let lof = armwright::reconcile::lack_of_fit::lack_of_fit(&campaign, &forward, &fit, &w);
-                println!(
-                    "   {} chi2/dof {:.2} {:?} scale {:?} out {}",
-                    if lof.fails { "FAILS" } else { "ok" },
-                    lof.chi2_per_dof,
-                    lof.structures
-                        .iter()
-                        .take(2)
-                        .map(|s| format!("{} {} {:.1}", s.channel.word(), s.follows, s.ln_p / 2.3))
-                        .collect::<Vec<_>>(),
-                    noise.scale,
-                    noise.outliers.len()
-                );
-                break;
-            }
-            noise = next;
-        }
-        let label = |e: &[usize]| e.iter().map(|i| candidates[*i].label()).collect::<Vec<_>>().join("+");
-        println!(
-            "{} p{passes} n {} bare {:.0} best {:.0} ({:.2}/dof) score +{:.1} {}  [{} ms, {} ms]",
-            campaign.statement.name,
-            forward.data.len(),
-            s.bare.objective,
-            s.best.objective,
-            s.best.objective / forward.data.len() as f64,
-            s.best.score - s.bare.score,
-            label(&s.best.effects),
-            t1.as_millis(),
-            t.elapsed().as_millis()
-        );
-        for o in s.others.iter().filter(|o| o.effects != s.best.effects).take(3) {
-            println!("        {:.1} {:.0} {}", o.score - s.best.score, o.objective, label(&o.effects));
-        }
-        total += t.elapsed();
+use std::time::Instant;
+
+#[path = "../tests/reconcile_scoring/mod.rs"]
+mod scoring;
+
+fn main() -> anyhow::Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [campaigns, keys, rest @ ..] = arguments.as_slice() else {
+        anyhow::bail!("give a folder of campaigns and a folder of keys")
+    };
+    let temporary = tempfile::tempdir()?;
+    let out = rest.first().map_or(temporary.path(), |o| Path::new(o));
+    let mut names: Vec<String> =
+        std::fs::read_dir(campaigns)?.filter_map(|e| e.ok()?.file_name().into_string().ok()).collect();
+    names.sort();
+    let mut times = Vec::new();
+    for name in &names {
+        let start = Instant::now();
+        let campaign = Campaign::read(&Path::new(campaigns).join(name), &Catalogs::default())?;
+        let outcome = reconcile(&campaign);
+        times.push(start.elapsed().as_secs_f64());
+        outcome.write(&out.join(name))?;
+        print!("[{:.2} s] {}", times[times.len() - 1], outcome.to_text());
     }
-    println!("{total:?}");
+    let score = scoring::score(&names, out, Path::new(keys))?;
+    print!("{}", score.table());
+    let worst = times.iter().copied().fold(0.0, f64::max);
+    println!("time: mean {:.2} s, worst {worst:.2} s", times.iter().sum::<f64>() / times.len() as f64);
+    Ok(())
 }

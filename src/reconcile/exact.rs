@@ -2,7 +2,7 @@
 //! on the prepared model that fits use.
 
 use super::forward::{ARCMIN_PER_RAD, bench_twists_rad};
-use super::readings::{ModalRow, StaticRow, WindupRow};
+use super::readings::{ModalRow, PositionRow, StaticRow, WindupRow};
 use crate::arm::effect::{Channel, Subject};
 use crate::arm::{JointLaw, LinkModel, Payload};
 use crate::mechanics::chain::{Item, Posed, Yielding};
@@ -73,6 +73,18 @@ impl<'a> Exact<'a> {
             }
         }
         out
+    }
+
+    /// Positions of the tip in the arm's own frame, under gravity and payload \[mm\].
+    pub fn positions_mm(&self, rows: &[PositionRow]) -> Vec<[f64; 3]> {
+        let reading = &self.subject.channels[Channel::Positions as usize];
+        rows.iter()
+            .map(|row| {
+                let posed = self.posed(&row.pose_deg, &row.payload, Vector3::zeros());
+                let at = posed.tip_m + posed.statics().tip_displacement_m;
+                std::array::from_fn(|c| reading.of(1e3 * at[c], c, row.row))
+            })
+            .collect()
     }
 
     fn posed(&self, pose_deg: &[f64], stated: &Payload, force_n: Vector3<f64>) -> Posed<'_> {

@@ -236,12 +236,14 @@ pub struct Model<'a> {
     pub effects: Vec<&'a Candidate>,
     /// Smoothing of break points in the frequencies.
     pub smoothing: f64,
+    /// A parameter that is held.
+    pub held: Option<(usize, f64)>,
 }
 
 impl<'a> Model<'a> {
     /// Calibration only.
     pub fn bare(nuisance: &'a Nuisance) -> Self {
-        Self { nuisance, effects: Vec::new(), smoothing: 0.0 }
+        Self { nuisance, effects: Vec::new(), smoothing: 0.0, held: None }
     }
 
     /// The same model with one more effect.
@@ -285,6 +287,11 @@ impl<'a> Model<'a> {
 
     /// Smallest and largest value of a parameter.
     pub fn bounds(&self, index: usize) -> (f64, f64) {
+        if let Some((held, value)) = self.held
+            && held == index
+        {
+            return (value, value);
+        }
         match index.checked_sub(self.calibrated()) {
             None => (-8.0, 8.0),
             Some(i) => self.knobs().nth(i).map_or((0.0, 0.0), |k| (k.low, k.high)),

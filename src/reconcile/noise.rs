@@ -90,5 +90,7 @@ fn scale(
             count += 1.0 - 0.7 * parameters_per_datum;
         }
     }
-    (sum / count).sqrt().clamp(1.0, LARGEST_SCALE)
+    let scale = (sum / count).sqrt();
+    // within what chance does to honestly declared deviations nothing is changed
+    if scale < 1.0 + 2.0 / (2.0 * count).sqrt() { 1.0 } else { scale.min(LARGEST_SCALE) }
 }

@@ -64,12 +64,18 @@ impl<'a> Search<'a> {
             nuisance: self.nuisance,
             effects: effects.iter().map(|&i| &self.candidates[i]).collect(),
             smoothing: 0.0,
+            held: None,
         }
     }
 
     /// Fits the model of the named candidates from `u`.
     pub fn fit(&self, effects: &[usize], u: &[f64], effort: Effort) -> Fit<'a> {
-        let mut model = self.model(effects);
+        self.fit_model(self.model(effects), u, effort)
+    }
+
+    /// Fits a model from `u`; where a gear's curve has break points the frequencies' steps at them are
+    /// first smoothed, then sharpened.
+    fn fit_model(&self, mut model: Model<'a>, u: &[f64], effort: Effort) -> Fit<'a> {
         let mut start = u.to_vec();
         if !self.forward.modal.is_empty() && model.effects.iter().any(|e| e.kind.name == "soft_windup") {
             for smoothing in [0.1, 0.03, 0.01] {
@@ -80,6 +86,39 @@ impl<'a> Search<'a> {
             model.smoothing = 0.0;
         }
         fit(self.forward, &model, &start, self.weights, effort)
+    }
+
+    /// Fits a model to the end: the break points of a gear's curve are moved in steps, because the
+    /// frequencies' steps at them hide lower ground from a descent.
+    pub fn polish(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
+        let mut best = self.fit(effects, u, Effort::default());
+        let breaks: Vec<usize> = {
+            let first = best.model.calibrated();
+            let knobs = best.model.knobs().enumerate();
+            knobs.filter(|(_, k)| k.name == "t1_nm" || k.name == "t2_nm").map(|(i, _)| first + i).collect()
+        };
+        for reach in [0.3, 0.12, 0.04] {
+            for &p in &breaks {
+                let moves = [-1.0, -0.5, 0.5, 1.0].map(|m| best.point.u[p] + m * reach);
+                let tried: Vec<Fit<'a>> =
+                    moves.into_par_iter().map(|value| self.from_held(&best, p, value)).collect();
+                for fit in tried {
+                    if fit.point.objective < best.point.objective - 1e-6 {
+                        best = fit;
+                    }
+                }
+            }
+        }
+        best
+    }
+
+    /// Fits with a parameter held at a value, then lets it go.
+    fn from_held(&self, from: &Fit<'a>, parameter: usize, value: f64) -> Fit<'a> {
+        let effort = Effort { steps: 5, tolerance: 0.02 };
+        let mut model = from.model.clone();
+        model.held = Some((parameter, value));
+        let held = fit(self.forward, &model, &from.point.u, self.weights, effort);
+        fit(self.forward, &from.model, &held.point.u, self.weights, effort)
     }
 
     /// The score of a fit.
