@@ -59,7 +59,8 @@ fn sensitivities_are_differences_of_predictions() {
     let campaign = campaign();
     let forward = Forward::new(&campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
-    let weights = Weights { inverse: forward.data.iter().map(|d| 1.0 / d.sigma).collect() };
+    let weights =
+        Weights { inverse: forward.data.iter().map(|d| 1.0 / d.sigma).collect(), smooth_only: false };
     let all = candidates(&forward);
     for name in [
         "bearing_tilt@j3",

@@ -21,11 +21,18 @@ const FEWEST_POSES: usize = 3;
 
 /// Reconciles a campaign with its arm.
 pub fn reconcile(campaign: &Campaign) -> Outcome {
-    let forward = Forward::new(campaign);
+    let mut forward = Forward::new(campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
     let candidates = candidates(&forward);
     let found = settle(&forward, &nuisance, &candidates);
     let weights = found.noise.weights(&forward);
+    let coefficients = {
+        let search =
+            Search { forward: &forward, nuisance: &nuisance, candidates: &candidates, weights: &weights };
+        let best = &found.selection.best;
+        search.model(&best.effects).coefficients(&forward, &best.u)
+    };
+    forward.refresh(&coefficients);
     let search =
         Search { forward: &forward, nuisance: &nuisance, candidates: &candidates, weights: &weights };
     let best = search.polish(&found.selection.best.effects, &found.selection.best.u);
@@ -214,9 +221,14 @@ impl Analysis<'_> {
     fn kept_out(&self) -> Option<KeptOut> {
         let [before, after] = &self.left_out;
         let count = after.iter().flatten().count();
+        let scaled = |list: &[Option<f64>]| {
+            let each = list.iter().zip(&self.forward.data);
+            rms(each.filter_map(|(r, d)| Some((*r)? / self.noise.scale[d.channel as usize])))
+        };
         (count > 0).then(|| KeptOut {
-            rms_before: rms(before.iter().flatten().copied()),
-            rms_after: rms(after.iter().flatten().copied()),
+            rms_before: scaled(before),
+            rms_after: scaled(after),
+            rms_declared_after: rms(after.iter().flatten().copied()),
             count,
         })
     }
@@ -243,12 +255,13 @@ impl Analysis<'_> {
 
     fn rivals(&self, effect: usize) -> Vec<(String, String)> {
         let own: Vec<usize> = self.selection.best.effects.clone();
-        self.alternatives[effect]
+        let twins = self.best.model.effects[effect].twins.iter().cloned();
+        let others = self.alternatives[effect]
             .iter()
             .filter_map(|s| s.effects.iter().find(|e| !own.contains(e)))
             .map(|&e| &self.search.candidates[e])
-            .map(|c| (c.kind.name.to_string(), c.at.clone()))
-            .collect()
+            .map(|c| (c.kind.name.to_string(), c.at.clone()));
+        twins.chain(others).collect()
     }
 
     fn calibrated(&self, fit: &Fit) -> Vec<Calibrated> {

@@ -21,6 +21,18 @@ const STEP: f64 = 1e-4;
 pub struct Weights {
     /// 1 / (scale x sigma) of each datum; 0 = left out.
     pub inverse: Vec<f64>,
+    /// Whether the frequencies need not be known.
+    pub smooth_only: bool,
+}
+
+impl Weights {
+    /// The same without the frequencies.
+    pub fn without_modes(&self, forward: &Forward) -> Self {
+        let mut out = self.clone();
+        out.inverse[forward.starts[1]..forward.starts[2]].fill(0.0);
+        out.smooth_only = true;
+        out
+    }
 }
 
 /// A model at one parameter vector.
@@ -58,8 +70,14 @@ pub fn evaluate(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) 
     let coefficients = model.coefficients(forward, u);
     let mut truth = vec![0.0; forward.data.len()];
     forward.predict_smooth(&coefficients, &mut truth);
-    let solved: Vec<Vec<Solved>> =
-        forward.modal.iter().map(|t| t.solve(&forward.layout, &coefficients, t.mode_count())).collect();
+    let counts = |test: &super::forward::modal::ModalTest| {
+        test.modes.iter().any(|(datum, _)| weights.inverse[*datum] > 0.0)
+    };
+    let solve = |test: &super::forward::modal::ModalTest| match counts(test) || !weights.smooth_only {
+        true => test.solve(&forward.layout, &coefficients, test.mode_count()),
+        false => Vec::new(),
+    };
+    let solved: Vec<Vec<Solved>> = forward.modal.iter().map(solve).collect();
     for (test, modes) in forward.modal.iter().zip(&solved) {
         test.write(modes, &mut truth);
     }

@@ -13,13 +13,16 @@ use rayon::prelude::*;
 /// Hands the poses are dealt into.
 const HANDS: usize = 4;
 
-/// Root mean square of kept-out residuals, in declared standard deviations.
+/// Root mean square of kept-out residuals, in standard deviations: the declared ones times the scale
+/// that the readings showed (1 unless the report says otherwise).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KeptOut {
     /// Without any effect, calibration refitted.
     pub rms_before: f64,
     /// With the effects.
     pub rms_after: f64,
+    /// With the effects, in the standard deviations as declared.
+    pub rms_declared_after: f64,
     /// Numbers that were predicted.
     pub count: usize,
 }

@@ -89,6 +89,8 @@ pub struct Candidate {
     fixed: Vec<f64>,
     /// Where fits start.
     pub starts: Vec<Vec<f64>>,
+    /// Effects that are the same thing in this arm by construction: name and place.
+    pub twins: Vec<(String, String)>,
 }
 
 impl Candidate {
@@ -337,8 +339,22 @@ pub fn candidates(forward: &Forward) -> Vec<Candidate> {
             }
         }
     }
+    merge_twins(forward, &mut out);
     out.extend(unit_slips(forward));
     out
+}
+
+/// The tilt of a vertical first joint at the origin is the tilt of the base: one candidate for both.
+fn merge_twins(forward: &Forward, candidates: &mut Vec<Candidate>) {
+    let Some(Piece::Joint(first)) = forward.nominal.structure.pieces.first() else { return };
+    if first.axis.z.abs() < 1.0 - 1e-12 {
+        return;
+    }
+    let name = first.name.clone();
+    candidates.retain(|c| !(c.kind.name == "bearing_tilt" && c.at == name));
+    if let Some(base) = candidates.iter_mut().find(|c| c.kind.name == "base_compliance") {
+        base.twins.push(("bearing_tilt".into(), name));
+    }
 }
 
 fn channel_is_read(forward: &Forward, place: Place) -> bool {
@@ -362,7 +378,7 @@ fn candidate(forward: &Forward, kind: &'static Kind, place: Place, at: String) -
         }
     }
     let starts = starts(forward, kind, &at, &knobs);
-    Candidate { kind, at, knobs, fixed, starts }
+    Candidate { kind, at, knobs, fixed, starts, twins: Vec::new() }
 }
 
 /// Stiffness that compliances are measured by: the joint's own, else the first joint's.
@@ -375,18 +391,30 @@ fn reference_stiffness(forward: &Forward, at: &str) -> f64 {
         .map_or(1e5, |j| 1.0 / j.law.tangent_compliance_rad_per_nm(0.0))
 }
 
+/// Break points of a gear's curve to start from, as parts of the largest torque.
+const BREAKS: [(f64, f64); 8] = [
+    (0.08, 0.25),
+    (0.08, 0.6),
+    (0.15, 0.4),
+    (0.15, 0.75),
+    (0.25, 0.5),
+    (0.25, 0.85),
+    (0.4, 0.65),
+    (0.5, 0.85),
+];
+
 fn starts(forward: &Forward, kind: &Kind, at: &str, knobs: &[Knob]) -> Vec<Vec<f64>> {
     let torque = largest_torque_nm(forward, at).max(1.0);
     match kind.name {
         "connection_compliance" | "bearing_tilt" | "base_compliance" => vec![vec![0.1], vec![0.5]],
         "joint_compliance" => vec![vec![0.5], vec![2.0]],
         "modulus_error" => vec![vec![1.1], vec![1.4]],
-        "soft_windup" => [(0.1, 0.35), (0.15, 0.6), (0.3, 0.8), (0.4, 0.6)]
-            .iter()
-            .map(|(a, b)| vec![1.4, 1.0, 0.85, (a * torque).ln(), (b * torque).ln()])
-            .collect(),
+        "soft_windup" => {
+            BREAKS.iter().map(|(a, b)| vec![1.4, 1.0, 0.85, (a * torque).ln(), (b * torque).ln()]).collect()
+        }
         "lost_motion" => [0.03, 0.1, 0.3].iter().map(|part| vec![1.0, (part * torque).ln()]).collect(),
         "sensor_gain" => vec![vec![1.0 / knobs[0].value(1.0)]],
+        "hysteresis" => vec![vec![0.25], vec![1.0], vec![3.0]],
         "extra_mass" => vec![vec![0.5], vec![2.0]],
         "immersion" => vec![vec![1.0, 1.0]],
         "payload_cg_error" => vec![vec![0.0; 3]],
@@ -417,6 +445,7 @@ fn unit_slips(forward: &Forward) -> Vec<Candidate> {
                 knobs: Vec::new(),
                 fixed: vec![*factor],
                 starts: vec![Vec::new()],
+                twins: Vec::new(),
             })
         })
         .collect()

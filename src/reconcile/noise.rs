@@ -36,7 +36,7 @@ impl Noise {
             let gross = self.outliers.iter().any(|(c, row, _)| *c == d.channel && *row == d.row);
             if gross { 0.0 } else { 1.0 / (d.sigma * self.scale[d.channel as usize]) }
         });
-        Weights { inverse: inverse.collect() }
+        Weights { inverse: inverse.collect(), smooth_only: false }
     }
 
     /// Judges the readings by the residuals of a fit.

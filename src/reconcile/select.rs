@@ -17,6 +17,8 @@ use rayon::prelude::*;
 const WORTH: f64 = 3.0;
 /// Models within this score of the best cannot be told from it.
 const TIE: f64 = 3.0;
+/// Models within this score of a stage's best are worth a closer look.
+const PROMISING: f64 = 12.0;
 /// Most effects.
 pub const MOST_EFFECTS: usize = 3;
 /// Candidates fitted in full at each stage.
@@ -198,7 +200,7 @@ impl<'a> Search<'a> {
     /// The best models with one more effect.
     pub fn extend(&self, base: &Scored) -> Vec<Scored> {
         let screened = self.screen(base);
-        let fits: Vec<Scored> = screened
+        let mut fits: Vec<Scored> = screened
             .into_par_iter()
             .map(|(candidate, u, _)| {
                 let effects = [base.effects.as_slice(), &[candidate]].concat();
@@ -206,7 +208,48 @@ impl<'a> Search<'a> {
                 self.scored(&effects, &fitted)
             })
             .collect();
+        self.regrid(&mut fits);
         fits
+    }
+
+    /// Break points of the promising gear curves found over a grid, with the frequencies left out at first.
+    fn regrid(&self, fits: &mut [Scored]) {
+        let top = fits.iter().map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
+        for scored in fits.iter_mut().filter(|s| s.score > top - PROMISING) {
+            let curves = scored.effects.iter().rposition(|&e| self.candidates[e].kind.name == "soft_windup");
+            let Some(position) = curves else { continue };
+            let fit = self.over_breaks(scored, position);
+            let again = self.scored(&scored.effects, &fit);
+            if again.score > scored.score {
+                *scored = again;
+            }
+        }
+    }
+
+    /// The best fit from the grid of break points of one effect.
+    fn over_breaks(&self, from: &Scored, position: usize) -> Fit<'a> {
+        let model = self.model(&from.effects);
+        let first = model.first_knob(position);
+        let smooth = self.weights.without_modes(self.forward);
+        let effort = Effort { steps: 8, tolerance: 0.05 };
+        let starts = &model.effects[position].starts;
+        let mut tried: Vec<(f64, Vec<f64>)> = starts
+            .par_iter()
+            .map(|start| {
+                let mut u = from.u.clone();
+                u[first..first + start.len()].copy_from_slice(start);
+                let fit = fit(self.forward, &model, &u, &smooth, effort);
+                (fit.point.objective, fit.point.u)
+            })
+            .collect();
+        tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+        tried.truncate(2);
+        let effort = Effort { steps: 20, tolerance: 0.02 };
+        let fits: Vec<Fit<'a>> =
+            tried.into_par_iter().map(|(_, u)| self.fit(&from.effects, &u, effort)).collect();
+        fits.into_iter()
+            .min_by(|a, b| a.point.objective.total_cmp(&b.point.objective))
+            .expect("at least one start")
     }
 
     /// The most promising candidates with a start for each: candidate, parameters, score of the model

@@ -225,7 +225,7 @@ impl Outcome {
     /// `verdict.json`.
     pub fn to_json(&self) -> Value {
         let kept_out = self.kept_out.map(|k| {
-            json!({"rms_sigma_before": k.rms_before, "rms_sigma_after": k.rms_after, "readings": k.count})
+            json!({"rms_sigma_before": k.rms_before, "rms_sigma_after": k.rms_after, "rms_declared_sigma_after": k.rms_declared_after, "readings": k.count})
         });
         let located: Vec<Value> = self
             .located

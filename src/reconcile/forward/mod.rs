@@ -95,6 +95,12 @@ impl Forward {
         }
     }
 
+    /// Takes the trial shapes of all modal tests from these coefficients.
+    pub fn refresh(&mut self, coefficients: &Coefficients) {
+        let layout = &self.layout;
+        self.modal.iter_mut().for_each(|test| test.refresh(layout, coefficients));
+    }
+
     /// The channel's data.
     pub fn range(&self, channel: Channel) -> std::ops::Range<usize> {
         match channel {
