@@ -353,7 +353,7 @@ pub fn closest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
         .iter()
         .map(|k| (edit_distance(&word.to_lowercase(), &k.to_lowercase()), *k))
         .min()
-        .filter(|(d, k)| *d <= 2.max(k.len() / 3))
+        .filter(|(d, k)| *d <= 2.max(k.len() / 3) && *d < word.len())
         .map(|(_, k)| k)
 }
 

@@ -41,7 +41,7 @@ pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
     Some(arm)
 }
 
-type NamedMaterial = (String, LinkMaterial);
+pub(crate) type NamedMaterial = (String, LinkMaterial);
 
 fn read_materials(node: &Node) -> Option<Vec<NamedMaterial>> {
     let read: Vec<_> =
@@ -118,7 +118,7 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<Joint> {
     })
 }
 
-fn read_name(object: &Object) -> Option<String> {
+pub(crate) fn read_name(object: &Object) -> Option<String> {
     let node = object.required("name")?;
     match node.string()? {
         "" => node.fault("is empty", "give every element a name"),
@@ -126,7 +126,7 @@ fn read_name(object: &Object) -> Option<String> {
     }
 }
 
-fn read_axis(node: &Node) -> Option<Unit<Vector3<f64>>> {
+pub(crate) fn read_axis(node: &Node) -> Option<Unit<Vector3<f64>>> {
     let axis = vector(node)?;
     if (axis.norm_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
         // already of unit length: kept to the last bit, so that a written arm reads back the same
@@ -138,7 +138,7 @@ fn read_axis(node: &Node) -> Option<Unit<Vector3<f64>>> {
 }
 
 /// The torsion curve: explicit numbers first, else the gear's from the catalog.
-fn read_curve(object: &Object, catalogs: &Catalogs) -> Option<Curve> {
+pub(crate) fn read_curve(object: &Object, catalogs: &Catalogs) -> Option<Curve> {
     match (object.optional("stiffness_nm_per_rad"), object.optional("windup"), object.optional("gear")) {
         (Some(stiffness), Some(_), _) => {
             stiffness.fault("and \"windup\" are both given", "keep the one that holds")
@@ -171,13 +171,10 @@ fn read_windup(node: &Node) -> Option<Windup> {
 }
 
 fn find_gear<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<&'c Gear> {
-    let name = node.string()?;
-    catalogs.gears.iter().find(|g| g.id == name).or_else(|| {
-        node.fault(
-            format!("gear \"{name}\" is not in the catalog"),
-            "write series-size-ratio, e.g. HFUC-58-100; `armwright catalog show gears` lists them",
-        )
-    })
+    catalogs
+        .gear(node.string()?)
+        .map_err(|e| node.fault::<()>(e.to_string(), "`armwright catalog show gears` lists them"))
+        .ok()
 }
 
 /// The catalog's torsion curve of a gear, if all of it is known.
@@ -201,7 +198,7 @@ fn gear_windup(gear: &Gear, node: &Node) -> Option<Windup> {
 }
 
 /// The joint's mass: the number given, else gear plus motor from the catalog, else zero.
-fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f64> {
+pub(crate) fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f64> {
     if let Some(mass) = object.optional("mass_kg") {
         return mass.non_negative();
     }
@@ -222,13 +219,8 @@ fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f64> {
 }
 
 fn find_motor_mass(node: &Node, catalogs: &Catalogs) -> Option<Option<f64>> {
-    let name = node.string()?;
-    catalogs.motors.iter().find(|m| m.id == name).map(|m| m.mass_kg).or_else(|| {
-        node.fault(
-            format!("motor \"{name}\" is not in the catalog"),
-            "`armwright catalog show motors` lists them; or give \"mass_kg\"",
-        )
-    })
+    let hint = "`armwright catalog show motors` lists them; or give \"mass_kg\"";
+    catalogs.motor(node.string()?).map(|m| m.mass_kg).map_err(|e| node.fault::<()>(e.to_string(), hint)).ok()
 }
 
 fn part_mass(node: &Node, mass_kg: Option<f64>) -> Option<f64> {
@@ -241,7 +233,7 @@ fn read_coupling(node: &Node) -> Option<Vec<(String, f64)>> {
     read.into_iter().collect()
 }
 
-fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Link> {
+pub(crate) fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Link> {
     let name = read_name(object);
     let vector_m = object.required("vector_m").and_then(|n| vector(&n));
     let body = match object.optional("section") {

@@ -1,6 +1,6 @@
 //! What an arm carries in one case: a pose, a payload, a force at the tip, and the models to use.
 
-use super::{JointModel, LinkModel, Words};
+use super::{JointModel, LinkModel, Water, Words};
 use crate::fault::{Document, Faults, Node, Object};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
@@ -31,19 +31,25 @@ pub struct LoadCase {
     pub links: LinkModel,
     /// Physics of the joints.
     pub joints: JointModel,
+    /// The water the arm is in, if the case and not the arm says so.
+    pub water: Option<Water>,
 }
 
 impl LoadCase {
     /// The case as files write it.
     pub fn to_json(&self) -> Value {
-        json!({
+        let mut case = json!({
             "name": self.name,
             "pose_deg": self.pose_deg,
             "payload": self.payload.to_json(),
             "tip_force_n": self.tip_force_n.as_slice(),
             "links": self.links.word(),
             "joints": self.joints.word(),
-        })
+        });
+        if let Some(water) = self.water {
+            case["water"] = water.to_json();
+        }
+        case
     }
 }
 
@@ -64,6 +70,30 @@ impl Payload {
         let cg_m = object.or("cg_m", Vector3::zeros(), vector);
         let inertia = object.or("inertia_about_cg_kgm2", Vector3::zeros(), read_inertia);
         Some(Self { mass_kg: mass_kg?, cg_m: cg_m?, inertia_about_cg_kgm2: inertia? })
+    }
+}
+
+impl Water {
+    /// The water as files write it.
+    pub fn to_json(&self) -> Value {
+        json!({
+            "density_kg_m3": self.density_kg_m3,
+            "added_mass_coefficient": self.added_mass_coefficient,
+            "payload_density_kg_m3": self.payload_density_kg_m3,
+        })
+    }
+
+    /// Reads a water object; the payload is steel unless it says otherwise.
+    pub fn read(node: &Node) -> Option<Self> {
+        let object = node.object(&["density_kg_m3", "added_mass_coefficient", "payload_density_kg_m3"])?;
+        let density_kg_m3 = object.required("density_kg_m3").and_then(|n| n.positive());
+        let added_mass_coefficient = object.or("added_mass_coefficient", 1.0, Node::non_negative);
+        let payload_density_kg_m3 = object.or("payload_density_kg_m3", 7850.0, Node::positive);
+        Some(Self {
+            density_kg_m3: density_kg_m3?,
+            added_mass_coefficient: added_mass_coefficient?,
+            payload_density_kg_m3: payload_density_kg_m3?,
+        })
     }
 }
 
@@ -102,10 +132,11 @@ pub fn read_load_cases(document: Document, driven_joints: &[&str]) -> Result<Vec
 }
 
 fn read_case(node: &Node, driven_joints: &[&str]) -> Option<LoadCase> {
-    let object = node.object(&["name", "pose_deg", "payload", "tip_force_n", "links", "joints"])?;
+    let object = node.object(&["name", "pose_deg", "payload", "tip_force_n", "links", "joints", "water"])?;
     let name = object.or("name", node.path().to_string(), |n| n.string().map(String::from));
     let pose_deg = object.required("pose_deg").and_then(|n| read_pose(&n, driven_joints));
     let payload = object.or("payload", Payload::default(), Payload::read);
+    let water = object.or("water", None, |n| Water::read(n).map(Some));
     let (tip_force_n, links, joints) = read_force_and_models(&object);
     Some(LoadCase {
         name: name?,
@@ -114,6 +145,7 @@ fn read_case(node: &Node, driven_joints: &[&str]) -> Option<LoadCase> {
         tip_force_n: tip_force_n?,
         links: links?,
         joints: joints?,
+        water: water?,
     })
 }
 

@@ -15,9 +15,12 @@ mod write;
 
 pub use effect::Effect;
 pub use file::{read_arm, read_arm_document};
+pub(crate) use file::{read_axis, read_curve, read_joint_mass, read_link, read_name, windup_of};
 pub use joint_law::{Curve, JointLaw, LostMotion, Windup};
 pub use load::{LoadCase, Payload, read_load_cases};
+pub(crate) use load::{read_pose, vector, word};
 pub use section::{LinkMaterial, Section, SectionProperties};
+pub(crate) use structure::link_piece;
 pub use structure::{Beam, JointAngle, JointPiece, LinkPiece, Piece, Structure, Water};
 
 use nalgebra::{Unit, Vector3};

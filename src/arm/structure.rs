@@ -145,7 +145,7 @@ fn curve(curve: Curve, model: JointModel) -> Curve {
     }
 }
 
-fn link_piece(link: &Link) -> LinkPiece {
+pub(crate) fn link_piece(link: &Link) -> LinkPiece {
     let (beam, point_mass_kg) = match &link.body {
         LinkBody::Tube { material, section, .. } => {
             (Some(Beam { material: *material, section: *section, flexibility: 1.0 }), 0.0)

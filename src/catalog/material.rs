@@ -1,6 +1,7 @@
 //! Link materials.
 
 use super::Provenance;
+use std::fmt;
 
 /// Classes of materials.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -11,6 +12,24 @@ pub enum MaterialClass {
     Composite,
     /// Metal-matrix composites.
     MetalMatrix,
+}
+
+impl MaterialClass {
+    /// Words of the column `class`.
+    pub const WORDS: [&'static str; 4] = ["metal", "composite", "metal-matrix", "MMC"];
+
+    /// The class a word means; `MMC` and `metal-matrix` are the same.
+    pub fn from_word(word: &str) -> Option<Self> {
+        let classes = [MaterialClass::Metal, MaterialClass::Composite, MaterialClass::MetalMatrix];
+        let place = Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word))?;
+        Some(classes[place.min(2)])
+    }
+}
+
+impl fmt::Display for MaterialClass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(Self::WORDS[*self as usize])
+    }
 }
 
 /// One material. `None` is a figure the catalog does not give.

@@ -1,17 +1,31 @@
 //! What can be bought: materials, profiles, gears, motors.
 //!
 //! One CSV file a kind. A blank cell is unknown, never zero. Every row names its source and how far it
-//! can be trusted.
+//! can be trusted. [`Catalogs::builtin`] is what the program brings along, [`Catalogs::load`] adds the
+//! rows of a folder of the user's; [`Catalogs::gear`] and its sisters find a part by name.
 
+mod efficiency;
 mod gear;
+mod load;
+mod lookup;
 mod material;
 mod motor;
 mod profile;
+mod read;
+mod schema;
 
+pub use efficiency::{EfficiencyKind, EfficiencyPoint};
 pub use gear::{Gear, GearMass};
+pub use load::Loaded;
+pub use lookup::{PartError, PartKind};
 pub use material::{Material, MaterialClass};
 pub use motor::{Motor, MotorKind};
 pub use profile::{Profile, ProfileShape};
+pub use schema::{CatalogFile, Cell, Column};
+
+use crate::fault::Fault;
+use std::collections::BTreeMap;
+use std::fmt;
 
 /// How far a catalog row can be trusted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,6 +38,33 @@ pub enum Confidence {
     FromMemory,
     /// A typical figure of the class, not of this part.
     Representative,
+}
+
+impl Confidence {
+    /// Words of the column `confidence`.
+    pub const WORDS: [&'static str; 5] = [
+        "verified",
+        "third party",
+        "from memory",
+        "representative",
+        "from memory of vendor data, unverified",
+    ];
+
+    /// All levels, from the most trusted to the least.
+    pub const ALL: [Confidence; 4] =
+        [Confidence::Verified, Confidence::ThirdParty, Confidence::FromMemory, Confidence::Representative];
+
+    /// The level a word of the column means.
+    pub fn from_word(word: &str) -> Option<Self> {
+        let place = Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word))?;
+        Some(*Self::ALL.get(place).unwrap_or(&Confidence::FromMemory))
+    }
+}
+
+impl fmt::Display for Confidence {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(Self::WORDS[*self as usize])
+    }
 }
 
 /// Where a catalog row comes from.
@@ -52,4 +93,24 @@ pub struct Catalogs {
     pub materials: Vec<Material>,
     /// Hollow profiles.
     pub profiles: Vec<Profile>,
+    /// Points of efficiency curves of gears.
+    pub efficiency: Vec<EfficiencyPoint>,
+    /// Other names of gear series: the name `CSF` to the series `HFUC`.
+    pub series_aliases: BTreeMap<String, String>,
+    /// Every row as it stands in its file, by file and line: the columns and their cells.
+    pub printed: BTreeMap<(String, usize), PrintedRow>,
+    /// How many rows each file gave.
+    pub loaded: Vec<Loaded>,
+    /// What is odd but no reason to refuse: figures far from the usual, ratings that fall with size.
+    pub warnings: Vec<Fault>,
+}
+
+/// The cells of a row with their columns, as they stand in the file; columns it lacks are blank.
+pub type PrintedRow = Vec<(&'static str, String)>;
+
+impl Catalogs {
+    /// The row a part was read from, cell by cell; empty for parts that were not read from a file.
+    pub fn printed_row(&self, provenance: &Provenance) -> &[(&'static str, String)] {
+        self.printed.get(&(provenance.file.clone(), provenance.line)).map_or(&[], Vec::as_slice)
+    }
 }

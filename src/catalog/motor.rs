@@ -1,6 +1,7 @@
 //! Motors: electric servo and hydraulic.
 
 use super::Provenance;
+use std::fmt;
 
 /// Families of motors, as the catalog's `type` column names them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,9 +21,73 @@ pub enum MotorKind {
 }
 
 impl MotorKind {
+    /// All kinds, in the order of [`Self::WORDS`].
+    pub const ALL: [MotorKind; 6] = [
+        MotorKind::AcServo,
+        MotorKind::BrushlessServo,
+        MotorKind::FramelessServo,
+        MotorKind::FramelessTorque,
+        MotorKind::HydraulicPiston,
+        MotorKind::HydraulicOrbital,
+    ];
+
+    /// Words of the column `type`: the short word of each kind, then the long ones of the built-in file.
+    pub const WORDS: [&'static str; 12] = [
+        "ac-servo",
+        "brushless-servo",
+        "frameless-servo",
+        "frameless-torque",
+        "hydraulic-piston",
+        "hydraulic-orbital",
+        "AC servo",
+        "brushless servo",
+        "frameless servo",
+        "frameless torque motor",
+        "hydraulic axial piston (bent axis)",
+        "hydraulic orbital (geroler)",
+    ];
+
+    /// Words by which a study or a filter asks for motors: two families, then the kinds.
+    pub const CLASS_WORDS: [&'static str; 8] = [
+        "electric",
+        "hydraulic",
+        "ac-servo",
+        "brushless-servo",
+        "frameless-servo",
+        "frameless-torque",
+        "hydraulic-piston",
+        "hydraulic-orbital",
+    ];
+
+    /// The kind's short word, e.g. `frameless-servo`.
+    pub fn word(self) -> &'static str {
+        Self::WORDS[self as usize]
+    }
+
+    /// The kind a word of the column `type` means.
+    pub fn from_word(word: &str) -> Option<Self> {
+        let place = Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word))?;
+        Some(Self::ALL[place % Self::ALL.len()])
+    }
+
+    /// The kinds a class word means: `electric`, `hydraulic`, or one kind.
+    pub fn of_class(word: &str) -> Option<Vec<Self>> {
+        match word.to_lowercase().as_str() {
+            "electric" => Some(Self::ALL.into_iter().filter(|kind| !kind.is_hydraulic()).collect()),
+            "hydraulic" => Some(Self::ALL.into_iter().filter(|kind| kind.is_hydraulic()).collect()),
+            kind => Self::from_word(kind).map(|kind| vec![kind]),
+        }
+    }
+
     /// Whether the motor is driven by oil.
     pub fn is_hydraulic(self) -> bool {
         matches!(self, MotorKind::HydraulicPiston | MotorKind::HydraulicOrbital)
+    }
+}
+
+impl fmt::Display for MotorKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.word())
     }
 }
 
@@ -51,4 +116,25 @@ pub struct Motor {
     pub rated_power_w: Option<f64>,
     /// Where the row comes from.
     pub provenance: Provenance,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn class_words_name_families_and_kinds() {
+        assert_eq!(MotorKind::of_class("electric").map(|k| k.len()), Some(4));
+        assert_eq!(MotorKind::of_class("Hydraulic").map(|k| k.len()), Some(2));
+        assert_eq!(MotorKind::of_class("frameless-torque"), Some(vec![MotorKind::FramelessTorque]));
+        assert_eq!(MotorKind::of_class("steam"), None);
+        assert!(MotorKind::CLASS_WORDS.iter().all(|word| MotorKind::of_class(word).is_some()));
+    }
+
+    #[test]
+    fn every_kind_is_read_back_from_its_word() {
+        for kind in MotorKind::ALL {
+            assert_eq!(MotorKind::from_word(&kind.to_string()), Some(kind));
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! Hollow profiles one can buy.
 
 use super::Provenance;
+use std::fmt;
 
 /// Shape of a hollow profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,6 +14,28 @@ pub enum ProfileShape {
     Round,
 }
 
+impl ProfileShape {
+    /// Words of the column `shape`.
+    pub const WORDS: [&'static str; 3] = ["square", "rectangular", "round"];
+
+    /// The shape a word means.
+    pub fn from_word(word: &str) -> Option<Self> {
+        let shapes = [ProfileShape::Square, ProfileShape::Rectangular, ProfileShape::Round];
+        Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word)).map(|place| shapes[place])
+    }
+}
+
+impl fmt::Display for ProfileShape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(Self::WORDS[*self as usize])
+    }
+}
+
+impl Profile {
+    /// Words of the column `material_family`. Stainless steel is steel.
+    pub const MATERIAL_FAMILIES: [&'static str; 4] = ["steel", "aluminium", "titanium", "composite"];
+}
+
 /// One hollow profile. Corner radii are kept for information; mechanics uses sharp corners.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
@@ -20,7 +43,7 @@ pub struct Profile {
     pub designation: String,
     /// Shape.
     pub shape: ProfileShape,
-    /// `steel` or `aluminium`: the family of materials it is sold in.
+    /// `steel`, `aluminium`, `titanium` or `composite`: the family of materials it is sold in.
     pub material_family: String,
     /// Outer width (diameter of a round tube) \[m\].
     pub width_m: f64,

@@ -9,9 +9,9 @@
 //! | strain | coordinates | compliance of the i-th | what it moves |
 //! |---|---|---|---|
 //! | curvature | 4 a plane | `(2i+1)/(E I L)` | deflection `L² ∬P_i`, slope `L ∫P_i` |
-//! | shear | 2 a plane | `(2i+1)/(κ G A L)` | deflection `L ∫P_i` |
-//! | twist | 2 | `(2i+1)/(G J L)` | rotation `L ∫P_i` |
-//! | stretch | 2 | `(2i+1)/(E A L)` | displacement `L ∫P_i` |
+//! | shear | 3 a plane | `(2i+1)/(κ G A L)` | deflection `L ∫P_i` |
+//! | twist | 3 | `(2i+1)/(G J L)` | rotation `L ∫P_i` |
+//! | stretch | 3 | `(2i+1)/(E A L)` | displacement `L ∫P_i` |
 //!
 //! The space holds the exact deflection under end force, end moment and uniform load (Eqs 1-4 and
 //! their Timoshenko counterparts), so statics are exact; it converges on frequencies from above. The
@@ -24,14 +24,14 @@ use nalgebra::{DMatrix, Matrix3, Matrix6xX, SMatrix, Vector3};
 /// Polynomials of curvature in each plane.
 pub const CURVATURES: usize = 4;
 /// Polynomials of shear (each plane), twist and stretch.
-pub const OTHERS: usize = 2;
+pub const OTHERS: usize = 3;
 /// Gauss-Legendre points: exact to degree 15, the integrands here end at degree 10.
 const GAUSS: [(f64, f64); 8] = [
     (0.019_855_071_751_231_9, 0.050_614_268_145_188_1),
     (0.101_666_761_293_186_6, 0.111_190_517_226_687_2),
     (0.237_233_795_041_835_5, 0.156_853_322_938_943_6),
     (0.408_282_678_752_175_1, 0.181_341_891_689_181),
-    (0.591_717_321_247_824_9, 0.181_341_891_689_181),
+    (0.591_717_321_247_825, 0.181_341_891_689_181),
     (0.762_766_204_958_164_5, 0.156_853_322_938_943_6),
     (0.898_333_238_706_813_4, 0.111_190_517_226_687_2),
     (0.980_144_928_248_768_1, 0.050_614_268_145_188_1),
@@ -174,18 +174,30 @@ impl PreparedBeam {
     }
 }
 
-/// Slope `L ∫P_i` and deflection `L² ∬P_i` at `xi`, both zero at the root.
+/// Slope `L ∫P_i` and deflection `L² ∬P_i` at `xi`, both zero at the root, from
+/// `(2i+1) ∫P_i = P_(i+1) - P_(i-1)` over `s = 2ξ-1` (dξ = ds/2).
 fn shape(degree: usize, xi: f64, length_m: f64) -> (f64, f64) {
-    let (slope, deflection) = match degree {
-        0 => (xi, xi * xi / 2.0),
-        1 => (xi * (xi - 1.0), xi * xi * (2.0 * xi - 3.0) / 6.0),
-        2 => (xi * (xi - 1.0) * (2.0 * xi - 1.0), xi * xi * (xi - 1.0).powi(2) / 2.0),
-        _ => (
-            xi * (xi - 1.0) * (1.0 + 5.0 * xi * (xi - 1.0)),
-            xi * xi * (xi - 1.0).powi(2) * (2.0 * xi - 1.0) / 2.0,
-        ),
+    let s = 2.0 * xi - 1.0;
+    let integral = |i: usize| match i {
+        0 => (1.0 + s) / 2.0,
+        _ => (legendre(i + 1, s) - legendre(i - 1, s)) / (2.0 * (2 * i + 1) as f64),
     };
-    (length_m * slope, length_m * length_m * deflection)
+    let deflection = match degree {
+        0 => xi * xi / 2.0,
+        1 => (integral(2) - integral(0)) / 6.0,
+        i => (integral(i + 1) - integral(i - 1)) / (2.0 * (2 * i + 1) as f64),
+    };
+    (length_m * integral(degree), length_m * length_m * deflection)
+}
+
+/// Legendre polynomial, by its recurrence.
+fn legendre(degree: usize, s: f64) -> f64 {
+    let (mut before, mut here) = (0.0, 1.0);
+    for i in 0..degree {
+        let next = ((2 * i + 1) as f64 * s * here - i as f64 * before) / (i + 1) as f64;
+        (before, here) = (here, next);
+    }
+    here
 }
 
 /// The section frame of a link along `vector_m`, in the carried frame.
@@ -280,12 +292,8 @@ mod tests {
 
     #[test]
     fn shapes_are_integrals_of_legendre_polynomials() {
-        let legendre = |i: usize, xi: f64| {
-            let s = 2.0 * xi - 1.0;
-            [1.0, s, (3.0 * s * s - 1.0) / 2.0, (5.0 * s.powi(3) - 3.0 * s) / 2.0][i]
-        };
         let step = 1e-4;
-        for degree in 0..4 {
+        for degree in 0..CURVATURES {
             for xi in [0.1, 0.35, 0.8] {
                 let (slope, _) = shape(degree, xi, 1.0);
                 let (_, ahead) = shape(degree, xi + step, 1.0);
@@ -293,7 +301,7 @@ mod tests {
                 let (_, here) = shape(degree, xi, 1.0);
                 assert!(((ahead - behind) / (2.0 * step) - slope).abs() < 1e-7, "slope {degree}");
                 let curvature = (ahead - 2.0 * here + behind) / (step * step);
-                assert!((curvature - legendre(degree, xi)).abs() < 1e-5, "curvature {degree}");
+                assert!((curvature - legendre(degree, 2.0 * xi - 1.0)).abs() < 1e-5, "curvature {degree}");
             }
         }
     }

@@ -17,6 +17,8 @@
 
 pub mod beam;
 pub mod chain;
+pub mod condensed;
+pub mod lowest;
 pub mod modes;
 pub mod response;
 pub mod statics;

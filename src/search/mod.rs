@@ -1,1 +1,64 @@
-//! (being built)
+//! The design space and its Pareto front.
+//!
+//! A design is one option at each level of a tree; levels go from the tip inward, because the outward
+//! pass of the mechanics is also the order in which joints are sized. The search knows an arm only
+//! through [`OutwardIn`]: extend a partial arm by an option, or find that no design beyond it can hold;
+//! evaluate a complete one. [`space`] says what there is to choose, [`outward`] puts the arm behind the
+//! trait, [`sweep`] visits every design in parallel, [`front`] keeps what nothing dominates.
+
+pub mod archive;
+pub mod constraint;
+pub mod design;
+pub mod front;
+pub mod outward;
+pub mod space;
+pub mod station;
+pub mod sweep;
+
+pub use design::{Evaluated, evaluate};
+pub use outward::ArmProblem;
+pub use space::DesignSpace;
+pub use sweep::{Status, Sweep, SweepOutcome};
+
+/// What a design is judged by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Objectives {
+    /// Largest displacement of the tip over the study's cases \[m\].
+    pub tip_deflection_m: f64,
+    /// Mass of all links and drives \[kg\].
+    pub mass_kg: f64,
+    /// Smallest first natural frequency over the cases \[Hz\].
+    pub lowest_mode_hz: f64,
+}
+
+impl Objectives {
+    /// As three numbers to be made small.
+    pub fn minimized(&self) -> [f64; 3] {
+        [self.mass_kg, self.tip_deflection_m, -self.lowest_mode_hz]
+    }
+}
+
+/// A tree of designs whose levels go from the tip of the arm inward.
+pub trait OutwardIn: Sync {
+    /// A partial arm: everything outboard of the next level.
+    type Partial: Clone + Send + Sync;
+
+    /// Number of options at each level, tip first.
+    fn level_sizes(&self) -> &[u32];
+
+    /// The empty arm; `None` if no design can hold.
+    fn root(&self) -> Option<Self::Partial>;
+
+    /// Extends `from` by an option of a level and by all that follows without a choice, into `to`.
+    /// `false` if no design with this beginning meets the constraints.
+    fn extend(&self, level: usize, option: u32, from: &Self::Partial, to: &mut Self::Partial) -> bool;
+
+    /// Objectives of a complete arm; `None` if it breaks a constraint.
+    fn objectives(&self, complete: &Self::Partial) -> Option<Objectives>;
+
+    /// Number of groups that get a front of their own (materials).
+    fn groups(&self) -> usize;
+
+    /// The group a complete arm belongs to, if it belongs to one.
+    fn group(&self, complete: &Self::Partial) -> Option<usize>;
+}

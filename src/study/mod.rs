@@ -1,1 +1,55 @@
-//! (being built)
+//! Named questions: read, resolve, run.
+
+mod diagnose;
+mod outcome;
+pub mod paper;
+mod read;
+mod sections;
+mod table;
+
+pub use diagnose::why_infeasible;
+pub use outcome::{Front, Judged, StudyOutcome, run_study};
+pub use read::{Study, read_study};
+pub(crate) use table::sizing_rows;
+pub use table::{front_table, slug};
+
+/// The built-in studies: name and text.
+pub const NAMED: [(&str, &str); 4] = [
+    ("compare-materials", include_str!("../../studies/compare-materials.json")),
+    ("light-arm", include_str!("../../studies/light-arm.json")),
+    ("stiff-arm", include_str!("../../studies/stiff-arm.json")),
+    ("underwater-arm", include_str!("../../studies/underwater-arm.json")),
+];
+
+/// The text of a built-in study.
+pub fn named(name: &str) -> Option<&'static str> {
+    NAMED.iter().find(|(n, _)| *n == name).map(|(_, text)| *text)
+}
+
+/// Names of all built-in studies, the paper's included.
+pub fn names() -> Vec<&'static str> {
+    NAMED.iter().map(|(name, _)| *name).chain(paper::NAMES).collect()
+}
+
+/// The built-in studies with their questions, as a list.
+pub fn list() -> String {
+    let mut out = String::from("Built-in studies (armwright run NAME):\n");
+    for (name, text) in NAMED {
+        let study: serde_json::Value = serde_json::from_str(text).unwrap_or_default();
+        let question = study["question"].as_str().unwrap_or_default();
+        out.push_str(&format!("  {name:<20} {question}\n"));
+    }
+    out.push_str("The paper's own:\n");
+    for (name, what) in paper::NAMES.iter().zip(PAPER_QUESTIONS) {
+        out.push_str(&format!("  {name:<20} {what}\n"));
+    }
+    out
+}
+
+/// What each of the paper's studies shows, in the order of [`paper::NAMES`].
+const PAPER_QUESTIONS: [&str; 4] = [
+    "Table 1: deflection, frequencies, stiffer drives; the paper's numbers beside ours",
+    "Fig 2: deflection of a steel, titanium and aluminium beam over its weight",
+    "Fig 3: is weight better spent in width or in wall?",
+    "Fig 4: composites against aluminium",
+];

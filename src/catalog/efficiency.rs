@@ -1,0 +1,135 @@
+//! Efficiency of gears away from the rated point, as far as curves were seen.
+//!
+//! Two kinds of curve: efficiency at rated torque against input speed, for single gears, and the factor
+//! `K_e` on it against the ratio of torque to rated torque, for whole series. Both hold for grease
+//! lubrication at about 20 °C; a sealed housed unit is a few points lower.
+
+use super::{Catalogs, Gear, Provenance};
+
+/// What a point of `gears_efficiency.csv` tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EfficiencyKind {
+    /// Efficiency at rated torque; x is the input speed \[rpm\].
+    AgainstInputSpeed,
+    /// Factor on the efficiency at rated torque; x is torque over rated torque.
+    FactorAgainstTorqueRatio,
+}
+
+impl EfficiencyKind {
+    /// Words of the column `kind`.
+    pub const WORDS: [&'static str; 2] =
+        ["efficiency_at_rated_torque_vs_input_speed", "efficiency_factor_Ke_vs_torque_ratio"];
+
+    /// The kind a word of the column means.
+    pub fn from_word(word: &str) -> Option<Self> {
+        let kinds = [EfficiencyKind::AgainstInputSpeed, EfficiencyKind::FactorAgainstTorqueRatio];
+        Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word)).map(|i| kinds[i])
+    }
+
+    /// Unit of x as the column `x_unit` writes it.
+    pub fn x_unit(self) -> &'static str {
+        match self {
+            EfficiencyKind::AgainstInputSpeed => "rpm",
+            EfficiencyKind::FactorAgainstTorqueRatio => "T/T_rated",
+        }
+    }
+}
+
+/// One point of an efficiency curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EfficiencyPoint {
+    /// What x and value are.
+    pub kind: EfficiencyKind,
+    /// Series as printed, e.g. `HFUC-2A` (component set) or `CSF/CSG` (both series).
+    pub series: String,
+    /// Size; `None` for a curve of whole series.
+    pub size: Option<u32>,
+    /// Ratio; `None` for a curve of whole series.
+    pub ratio: Option<u32>,
+    /// Input speed \[rpm\] or torque over rated torque.
+    pub x: f64,
+    /// Efficiency or factor.
+    pub value: f64,
+    /// Where the row comes from.
+    pub provenance: Provenance,
+}
+
+impl EfficiencyPoint {
+    /// Whether the point is one of this gear's component set.
+    fn is_of(&self, gear: &Gear, also_sold_as: &[&str]) -> bool {
+        let named = |name: &str| name == gear.series || also_sold_as.contains(&name);
+        let series = self.series.trim_end_matches("-2A").split('/').any(named);
+        series && self.size.is_none_or(|s| s == gear.size) && self.ratio.is_none_or(|r| r == gear.ratio)
+    }
+}
+
+impl Catalogs {
+    /// Efficiency at rated torque and an input speed, linear between the points of this gear's own curve.
+    ///
+    /// `None` if no curve of this very gear was seen, or outside its speeds: use [`Gear::efficiency`]
+    /// (2000 rpm) and say so. The four HFUC sizes 14 to 25 at 100:1 have a built-in curve.
+    pub fn efficiency_at(&self, gear: &Gear, input_speed_rpm: f64) -> Option<f64> {
+        interpolate(&self.efficiency_curve(gear, EfficiencyKind::AgainstInputSpeed), input_speed_rpm)
+    }
+
+    /// Factor on the efficiency when the torque is this share of the rated torque, linear between points.
+    ///
+    /// `None` if no factor of this series was seen, or outside its range (0.1 to 1 built in).
+    pub fn efficiency_factor_at(&self, gear: &Gear, torque_over_rated: f64) -> Option<f64> {
+        interpolate(&self.efficiency_curve(gear, EfficiencyKind::FactorAgainstTorqueRatio), torque_over_rated)
+    }
+
+    /// The points of a gear's curve of a kind, by ascending x.
+    pub(super) fn efficiency_curve(&self, gear: &Gear, kind: EfficiencyKind) -> Vec<[f64; 2]> {
+        let aliases = self.series_aliases.iter().filter(|(_, series)| **series == gear.series);
+        let names: Vec<&str> = aliases.map(|(alias, _)| alias.as_str()).collect();
+        let points = self.efficiency.iter().filter(|p| p.kind == kind && p.is_of(gear, &names));
+        let mut curve: Vec<_> = points.map(|p| [p.x, p.value]).collect();
+        curve.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        curve
+    }
+}
+
+/// Linear between points sorted by x; `None` outside them.
+fn interpolate(curve: &[[f64; 2]], x: f64) -> Option<f64> {
+    let after = curve.iter().position(|point| point[0] >= x)?;
+    let [x1, y1] = curve[after];
+    if x1 == x {
+        return Some(y1);
+    }
+    let [x0, y0] = *curve.get(after.checked_sub(1)?)?;
+    Some(y0 + (y1 - y0) * (x - x0) / (x1 - x0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn efficiency_is_linear_between_the_points_of_a_gear_and_unknown_beyond() {
+        let catalogs = Catalogs::builtin();
+        let gear = catalogs.gear("HFUC-14-100").expect("built in");
+        let at = |rpm| catalogs.efficiency_at(gear, rpm);
+        assert_eq!(at(500.0), Some(0.83));
+        assert!((at(1500.0).expect("inside") - 0.775).abs() < 1e-12);
+        assert_eq!(at(3500.0), Some(0.70));
+        assert_eq!((at(499.0), at(3501.0)), (None, None));
+    }
+
+    #[test]
+    fn a_gear_without_a_curve_has_no_efficiency_away_from_its_rated_point() {
+        let catalogs = Catalogs::builtin();
+        let gear = catalogs.gear("HFUC-58-100").expect("built in");
+        assert_eq!(catalogs.efficiency_at(gear, 1000.0), None);
+        assert!(gear.efficiency.is_some());
+    }
+
+    #[test]
+    fn the_torque_factor_reaches_hfuc_through_its_other_name_csf() {
+        let catalogs = Catalogs::builtin();
+        let factor = |id: &str| catalogs.efficiency_factor_at(catalogs.gear(id).expect("built in"), 0.45);
+        assert!((factor("HFUC-58-100").expect("CSF") - 0.875).abs() < 1e-12);
+        assert!(factor("CSG-32-100").is_some());
+        assert_eq!(factor("SHG-32-100"), None);
+    }
+}

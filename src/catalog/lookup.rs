@@ -1,0 +1,219 @@
+//! Finding a part by its name, or by as much of it as is unambiguous.
+//!
+//! A name is taken, upper and lower case alike, as the whole name; else as the beginning of names; else as
+//! a piece of names that begins a word (`S355` of `Structural steel S355`). It must not end within a
+//! number: `F11-1` does not mean `F11-10`. The first of these that fits any part must fit only one.
+
+use super::{Catalogs, Gear, Material, Motor, Profile};
+use crate::fault::closest;
+use std::fmt;
+
+/// Kinds of parts one can ask for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PartKind {
+    /// A gear.
+    Gear,
+    /// A motor.
+    Motor,
+    /// A material.
+    Material,
+    /// A profile.
+    Profile,
+}
+
+impl fmt::Display for PartKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            PartKind::Gear => "gear",
+            PartKind::Motor => "motor",
+            PartKind::Material => "material",
+            PartKind::Profile => "profile",
+        })
+    }
+}
+
+/// Why a name does not name a part.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum PartError {
+    /// No part has this name.
+    #[error("no {kind} is called \"{name}\"; {}", near(.kind, .nearest))]
+    Unknown {
+        /// Kind asked for.
+        kind: PartKind,
+        /// Name asked for.
+        name: String,
+        /// Names that look like it, nearest first; may be empty.
+        nearest: Vec<String>,
+    },
+    /// Several parts have names with this in them.
+    #[error("{kind} \"{name}\" may be any of: {}; give more of the name", some(.candidates))]
+    Ambiguous {
+        /// Kind asked for.
+        kind: PartKind,
+        /// Name asked for.
+        name: String,
+        /// All names it fits.
+        candidates: Vec<String>,
+    },
+}
+
+fn near(kind: &PartKind, nearest: &[String]) -> String {
+    match nearest {
+        [] => format!("`armwright catalog show {kind}s` lists them"),
+        names => format!("nearest: {}", names.join(", ")),
+    }
+}
+
+fn some(names: &[String]) -> String {
+    const SHOWN: usize = 6;
+    let shown = names.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
+    match names.len().saturating_sub(SHOWN) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
+}
+
+impl Catalogs {
+    /// The gear `SERIES-SIZE-RATIO`; the series may be another name of it: `CSF-58-100` is `HFUC-58-100`.
+    ///
+    /// # Errors
+    /// No gear has the name; the nearest names are given.
+    pub fn gear(&self, name: &str) -> Result<&Gear, PartError> {
+        let own = self.alias_resolved(name);
+        find(PartKind::Gear, &self.gears, own.as_deref().unwrap_or(name), |g| &g.id)
+    }
+
+    /// The name with the series in place of its other name, unless a gear has the name as it stands.
+    fn alias_resolved(&self, name: &str) -> Option<String> {
+        let (alias, rest) = name.trim().split_once('-')?;
+        if self.gears.iter().any(|gear| gear.id.eq_ignore_ascii_case(name.trim())) {
+            return None;
+        }
+        let (_, series) = self.series_aliases.iter().find(|(other, _)| other.eq_ignore_ascii_case(alias))?;
+        Some(format!("{series}-{rest}"))
+    }
+
+    /// The motor of a model, or of an unambiguous part of it: `J 8.2` is `J 8.2 (129-)`.
+    ///
+    /// # Errors
+    /// No motor has the name, or several have.
+    pub fn motor(&self, name: &str) -> Result<&Motor, PartError> {
+        find(PartKind::Motor, &self.motors, name, |m| &m.id)
+    }
+
+    /// The material of a name, or of an unambiguous part of it.
+    ///
+    /// # Errors
+    /// No material has the name, or several have.
+    pub fn material(&self, name: &str) -> Result<&Material, PartError> {
+        find(PartKind::Material, &self.materials, name, |m| &m.name)
+    }
+
+    /// The profile of a designation, or of an unambiguous part of it.
+    ///
+    /// # Errors
+    /// No profile has the designation, or several have.
+    pub fn profile(&self, name: &str) -> Result<&Profile, PartError> {
+        find(PartKind::Profile, &self.profiles, name, |p| &p.designation)
+    }
+}
+
+fn find<'p, T>(
+    kind: PartKind,
+    parts: &'p [T],
+    name: &str,
+    id: fn(&T) -> &String,
+) -> Result<&'p T, PartError> {
+    let wanted = name.trim().to_lowercase();
+    let fits: [fn(&str, &str) -> bool; 3] = [|id, name| id == name, begins, has_word];
+    for fit in fits {
+        let found: Vec<_> = parts.iter().filter(|part| fit(&id(part).to_lowercase(), &wanted)).collect();
+        match found.as_slice() {
+            [] => {}
+            [part] => return Ok(part),
+            several => {
+                let mut candidates: Vec<_> = several.iter().map(|part| id(part).clone()).collect();
+                candidates.sort();
+                return Err(PartError::Ambiguous { kind, name: name.into(), candidates });
+            }
+        }
+    }
+    let mut ids: Vec<_> = parts.iter().map(|part| id(part).as_str()).collect();
+    ids.sort_unstable();
+    Err(PartError::Unknown { kind, name: name.into(), nearest: nearest(&wanted, ids) })
+}
+
+/// Whether `id` begins with `name`, and `name` does not end within a number of it.
+fn begins(id: &str, name: &str) -> bool {
+    let Some(rest) = id.strip_prefix(name).filter(|_| !name.is_empty()) else { return false };
+    let mut rest = rest.chars();
+    let within_number = match rest.next() {
+        Some('.') => rest.next().is_some_and(|c| c.is_ascii_digit()),
+        next => next.is_some_and(|c| c.is_ascii_digit()),
+    };
+    !(within_number && name.ends_with(|c: char| c.is_ascii_digit()))
+}
+
+/// Whether a word of `id` begins with `name`.
+fn has_word(id: &str, name: &str) -> bool {
+    let starts = id.char_indices().filter(|(i, _)| {
+        id[..*i].chars().next_back().is_some_and(|before| !before.is_alphanumeric() && before != '.')
+    });
+    starts.into_iter().any(|(i, _)| begins(&id[i..], name))
+}
+
+/// Up to four names like `wanted`: those that go on where it ends, then those a slip of the hand away.
+fn nearest(wanted: &str, mut ids: Vec<&str>) -> Vec<String> {
+    let mut out: Vec<&str> = Vec::new();
+    while out.len() < 4 {
+        let longer =
+            ids.iter().copied().find(|id| !wanted.is_empty() && id.to_lowercase().starts_with(wanted));
+        let Some(next) = longer.or_else(|| closest(wanted, &ids)) else { break };
+        ids.retain(|id| *id != next);
+        out.push(next);
+    }
+    out.into_iter().map(String::from).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_does_not_end_within_a_number() {
+        assert!(begins("j 8.2 (129-)", "j 8.2"));
+        assert!(!begins("j 8.2 (129-)", "j 8"));
+        assert!(!begins("f11-10", "f11-1"));
+        assert!(!begins("j 50.0 (129-)", "j 5"));
+        assert!(begins("f11-10", "f11"));
+    }
+
+    #[test]
+    fn a_word_within_a_name_is_enough_when_it_is_the_only_one() {
+        assert!(has_word("structural steel s355", "s355"));
+        assert!(!has_word("structural steel s355", "355"));
+        assert!(has_word("283860 (ec-max 22 25 w)", "ec-max 22 25"));
+    }
+
+    #[test]
+    fn an_exact_name_wins_over_longer_ones() {
+        let ids = ["A".to_string(), "A 2".into(), "a 3".into()];
+        assert_eq!(find(PartKind::Motor, &ids, "a", |id| id), Ok(&ids[0]));
+        assert!(matches!(
+            find(PartKind::Motor, &ids[1..], "a", |id| id),
+            Err(PartError::Ambiguous { candidates, .. }) if candidates.len() == 2
+        ));
+    }
+
+    #[test]
+    fn the_empty_name_names_nothing() {
+        let ids = ["A".to_string()];
+        assert!(find(PartKind::Motor, &ids, " ", |id| id).is_err());
+    }
+
+    #[test]
+    fn unknown_names_come_with_the_nearest() {
+        let error = Catalogs::builtin().motor("F11-1O").expect_err("letter O");
+        assert!(error.to_string().starts_with("no motor is called \"F11-1O\"; nearest: F11-10"), "{error}");
+    }
+}

@@ -1,0 +1,37 @@
+//! Rows of `gears_efficiency.csv` and what must hold within one row.
+
+use super::row::Row;
+use crate::catalog::{EfficiencyKind, EfficiencyPoint};
+
+/// The point of a row; `None` if a core cell was refused.
+pub fn point(row: &Row) -> Option<EfficiencyPoint> {
+    let kind = EfficiencyKind::from_word(row.text("kind"));
+    if let Some(kind) = kind {
+        check(row, kind);
+    }
+    Some(EfficiencyPoint {
+        kind: kind?,
+        series: row.filled("series")?.to_string(),
+        size: row.count("size"),
+        ratio: row.count("ratio"),
+        x: row.number("x")?,
+        value: row.number("value")?,
+        provenance: row.provenance()?,
+    })
+}
+
+fn check(row: &Row, kind: EfficiencyKind) {
+    let unit = row.text("x_unit");
+    if !unit.is_empty() && unit != kind.x_unit() {
+        row.fault(
+            "x_unit",
+            format!("\"{unit}\" is not the unit of this kind"),
+            &format!("write {}", kind.x_unit()),
+        );
+    }
+    if kind == EfficiencyKind::AgainstInputSpeed {
+        for column in ["size", "ratio"].iter().filter(|column| row.text(column).is_empty()) {
+            row.fault(column, "is blank", "a curve against input speed belongs to one gear");
+        }
+    }
+}

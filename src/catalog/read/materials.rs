@@ -1,0 +1,81 @@
+//! Rows of `materials.csv` and what must hold within one row.
+
+use super::row::Row;
+use crate::catalog::{Material, MaterialClass};
+
+/// The material of a row; `None` if its name, class, source or a core figure was refused.
+pub fn material(row: &Row) -> Option<Material> {
+    check(row);
+    Some(Material {
+        name: row.filled("name")?.to_string(),
+        class: MaterialClass::from_word(row.text("class"))?,
+        youngs_modulus_pa: row.number("e_pa")?,
+        shear_modulus_pa: row.number("g_pa"),
+        density_kg_m3: row.number("density_kg_m3")?,
+        poisson: row.number("poisson"),
+        strength_pa: row.number("yield_or_strength_pa"),
+        strength_kind: row.text("strength_kind").to_string(),
+        cost_eur_per_kg: row.number("cost_eur_per_kg"),
+        corrosion_note: row.text("corrosion_note").to_string(),
+        unidirectional: unidirectional(row),
+        provenance: row.provenance()?,
+    })
+}
+
+/// What the column says; without it, whether the name has the word `UD`.
+fn unidirectional(row: &Row) -> bool {
+    match row.filled("unidirectional") {
+        Some(word) => word.eq_ignore_ascii_case("yes"),
+        None => row.text("name").split(|c: char| !c.is_alphanumeric()).any(|word| word == "UD"),
+    }
+}
+
+fn check(row: &Row) {
+    let ranges = [
+        ("e_pa", [1e8, 2e12], [1e10, 1e12], "write Pa (1 GPa = 1e9 Pa)"),
+        ("g_pa", [1e7, 1e12], [1e9, 2e11], "write Pa (1 GPa = 1e9 Pa)"),
+        ("density_kg_m3", [100.0, 25_000.0], [1000.0, 9000.0], "write kg/m3 (1 g/cm3 = 1000 kg/m3)"),
+        ("yield_or_strength_pa", [1e5, 2e10], [1e7, 6e9], "write Pa (1 MPa = 1e6 Pa)"),
+        ("cte_1_per_k", [-1e-4, 1e-3], [-6e-6, 3e-5], "write 1/K (1 um/(m K) = 1e-6)"),
+    ];
+    let mut moduli_are_possible = true;
+    for (column, possible, usual, hint) in ranges {
+        let known = row.number(column);
+        let is_possible = known.is_none_or(|x| row.within(column, x, possible, usual, hint));
+        moduli_are_possible &= is_possible || !matches!(column, "e_pa" | "g_pa");
+    }
+    if poisson(row) && moduli_are_possible {
+        shear_modulus(row);
+    }
+}
+
+/// An isotropic material keeps 0 < nu < 1/2; a laminate need not. Returns whether nu is possible.
+fn poisson(row: &Row) -> bool {
+    let (Some(class), Some(nu)) = (MaterialClass::from_word(row.text("class")), row.number("poisson")) else {
+        return true;
+    };
+    if class == MaterialClass::Composite {
+        return row.within("poisson", nu, [-1.0, 1.0], [0.0, 0.5], "a laminate may leave 0 to 0.5");
+    }
+    let is_possible = nu > 0.0 && nu < 0.5;
+    if !is_possible {
+        row.fault("poisson", format!("= {nu} is outside 0 to 0.5"), "a metal's lies near 0.3");
+    }
+    is_possible
+}
+
+/// G = E/2(1+nu) for what is isotropic; metals are held to it.
+fn shear_modulus(row: &Row) {
+    let class = MaterialClass::from_word(row.text("class"));
+    let figures = (class, row.number("e_pa"), row.number("g_pa"), row.number("poisson"));
+    if let (Some(class), Some(e_pa), Some(g_pa), Some(nu)) = figures
+        && !unidirectional(row)
+    {
+        let refuse = match class {
+            MaterialClass::Metal => 0.06,
+            MaterialClass::MetalMatrix => 0.25,
+            MaterialClass::Composite => f64::INFINITY,
+        };
+        row.agrees("g_pa", g_pa, e_pa / (2.0 * (1.0 + nu)), "G = E/2(1+nu)", 0.06, refuse);
+    }
+}

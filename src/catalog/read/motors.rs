@@ -1,0 +1,69 @@
+//! Rows of `motors.csv` and what must hold within one row.
+
+use super::row::Row;
+use crate::catalog::{Motor, MotorKind};
+use std::f64::consts::PI;
+
+/// The motor of a row; `None` if its name, type or source was refused.
+pub fn motor(row: &Row) -> Option<Motor> {
+    check(row);
+    Some(Motor {
+        id: row.filled("model")?.to_string(),
+        kind: MotorKind::from_word(row.text("type"))?,
+        vendor: row.text("vendor").to_string(),
+        rated_torque_nm: row.number("rated_torque_nm"),
+        peak_torque_nm: row.number("peak_torque_nm"),
+        rated_speed_rpm: row.number("rated_speed_rpm"),
+        max_speed_rpm: row.number("max_speed_rpm"),
+        rotor_inertia_kgm2: row.number("rotor_inertia_kgm2"),
+        mass_kg: row.number("mass_kg"),
+        rated_power_w: row.number("rated_power_w"),
+        provenance: row.provenance()?,
+    })
+}
+
+fn check(row: &Row) {
+    let pairs = [
+        ("rated_torque_nm", "peak_torque_nm", "the peak torque is not below the continuous torque"),
+        ("rated_speed_rpm", "max_speed_rpm", "the largest speed is not below the rated speed"),
+        (
+            "pressure_continuous_bar",
+            "pressure_intermittent_bar",
+            "the intermittent pressure is not below the continuous",
+        ),
+    ];
+    for (low, high, hint) in pairs {
+        row.ascending(&[(low, row.number(low)), (high, row.number(high))], false, hint);
+    }
+    power(row);
+    inertia(row);
+}
+
+/// P = T w.
+fn power(row: &Row) {
+    let figures = (row.number("rated_torque_nm"), row.number("rated_speed_rpm"), row.number("rated_power_w"));
+    if let (Some(torque_nm), Some(speed_rpm), Some(power_w)) = figures {
+        row.agrees(
+            "rated_power_w",
+            power_w,
+            torque_nm * speed_rpm * PI / 30.0,
+            "rated torque and speed",
+            0.06,
+            0.5,
+        );
+    }
+}
+
+/// The radius of gyration the rotor would have if all of the motor's mass turned.
+fn inertia(row: &Row) {
+    if let (Some(inertia_kgm2), Some(mass_kg)) = (row.number("rotor_inertia_kgm2"), row.number("mass_kg")) {
+        let radius_m = (inertia_kgm2 / mass_kg).sqrt();
+        if !(0.001..=0.09).contains(&radius_m) {
+            row.warn(
+                "rotor_inertia_kgm2",
+                format!("= {inertia_kgm2} gives sqrt(J/m) = {radius_m:.4} m"),
+                "usual: 0.001 to 0.09 m; a slip of unit? (1 kg cm2 = 1e-4 kg m2)",
+            );
+        }
+    }
+}

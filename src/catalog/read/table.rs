@@ -1,0 +1,256 @@
+//! The text of one catalog file cut into rows; what is wrong with its form is recorded, not returned.
+
+use super::row::Row;
+use crate::catalog::CatalogFile;
+use crate::fault::{Fault, closest};
+use csv::{ByteRecord, ReaderBuilder, StringRecord, Trim};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+/// What was found wrong (`faults`) or odd (`warnings`) so far.
+#[derive(Debug, Default)]
+pub struct Log {
+    /// Reasons to refuse the file.
+    pub faults: RefCell<Vec<Fault>>,
+    /// Things to look at.
+    pub warnings: RefCell<Vec<Fault>>,
+}
+
+impl Log {
+    /// Records a reason to refuse a file.
+    pub fn fault(&self, file: &str, line: Option<usize>, field: &str, problem: String, hint: String) {
+        self.faults.borrow_mut().push(Fault { file: file.into(), line, field: field.into(), problem, hint });
+    }
+
+    /// Records something to look at.
+    pub fn warn(&self, file: &str, line: Option<usize>, field: &str, problem: String, hint: String) {
+        self.warnings.borrow_mut().push(Fault {
+            file: file.into(),
+            line,
+            field: field.into(),
+            problem,
+            hint,
+        });
+    }
+}
+
+/// The rows of a catalog file that have the right number of fields.
+pub fn rows<'a>(file: CatalogFile, name: &'a str, bytes: &[u8], log: &'a Log) -> Vec<Row<'a>> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let mut records = records(name, bytes, log).into_iter();
+    let Some((line, header)) = records.next() else {
+        log.fault(name, None, "", "is empty".into(), format!("begin with the header {}", required(file)));
+        return Vec::new();
+    };
+    let Some(places) = header_places(file, name, line, &header, log) else {
+        return Vec::new();
+    };
+    let mut out = Vec::new();
+    for (line, record) in records.filter(|(_, record)| record.iter().any(|cell| !cell.is_empty())) {
+        if record.len() == header.len() {
+            let cells = places.iter().map(|place| place.map(|i| record[i].to_string())).collect();
+            let row = Row::new(file, name, line, cells, log);
+            row.check_cells();
+            out.push(row);
+        } else {
+            log.fault(
+                name,
+                Some(line),
+                "",
+                format!("has {} fields, not the {} of the header", record.len(), header.len()),
+                "put text that contains a comma in \"quotes\"; the decimal sign is a point".into(),
+            );
+        }
+    }
+    refuse_duplicates(file, &out);
+    out
+}
+
+/// The records of a CSV text with the line each begins on.
+fn records(name: &str, bytes: &[u8], log: &Log) -> Vec<(usize, StringRecord)> {
+    let mut reader =
+        ReaderBuilder::new().has_headers(false).flexible(true).trim(Trim::All).from_reader(bytes);
+    let mut out = Vec::new();
+    let mut lines = LineCounter { bytes, at: 0, line: 1 };
+    for record in reader.byte_records() {
+        match record.map_err(|e| e.to_string()).and_then(|r| Ok((lines.of(&r), utf8(r)?))) {
+            Ok(numbered) => out.push(numbered),
+            Err(problem) => log.fault(
+                name,
+                Some(lines.line),
+                "",
+                format!("cannot be read: {problem}"),
+                "save the file as UTF-8 text".into(),
+            ),
+        }
+    }
+    out
+}
+
+fn utf8(record: ByteRecord) -> Result<StringRecord, String> {
+    StringRecord::from_byte_record(record).map_err(|e| e.utf8_error().to_string())
+}
+
+/// Counts lines up to a record's first byte. (The reader's own line is that of the end of the record
+/// before, which differs after blank lines and with CRLF.)
+struct LineCounter<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    line: usize,
+}
+
+impl LineCounter<'_> {
+    fn of(&mut self, record: &ByteRecord) -> usize {
+        let begin = record.position().map_or(self.at, |p| p.byte() as usize).min(self.bytes.len());
+        let blank = self.bytes[begin..].iter().take_while(|b| matches!(b, b'\r' | b'\n')).count();
+        let end = (begin + blank).max(self.at);
+        self.line += self.bytes[self.at..end].iter().filter(|&&b| b == b'\n').count();
+        self.at = end;
+        self.line
+    }
+}
+
+fn required(file: CatalogFile) -> String {
+    let names: Vec<_> = file.columns().iter().filter(|c| c.required).map(|c| c.name).collect();
+    names.join(",")
+}
+
+/// For each known column its place in the header; `None` if the text is not comma-separated at all.
+fn header_places(
+    file: CatalogFile,
+    name: &str,
+    line: usize,
+    header: &StringRecord,
+    log: &Log,
+) -> Option<Vec<Option<usize>>> {
+    if let Some(separator) = other_separator(header) {
+        let problem = format!("the columns are separated by {separator}");
+        log.fault(
+            name,
+            Some(line),
+            "",
+            problem,
+            "separate them by commas; the decimal sign is a point".into(),
+        );
+        return None;
+    }
+    let unknown = unknown_columns(file, name, line, header, log);
+    let columns = file.columns();
+    let places: Vec<_> = columns.iter().map(|c| header.iter().position(|h| h == c.name)).collect();
+    for (column, _) in columns.iter().zip(&places).filter(|(c, place)| c.required && place.is_none()) {
+        // An unknown column that looks like this one has been reported already.
+        if !unknown.contains(&Some(column.name)) {
+            let hint = format!("required columns: {}", required(file));
+            log.fault(name, Some(line), column.name, "this column is missing".into(), hint);
+        }
+    }
+    Some(places)
+}
+
+fn other_separator(header: &StringRecord) -> Option<&'static str> {
+    let only = header.get(0).filter(|_| header.len() == 1)?;
+    match () {
+        () if only.contains(';') => Some("semicolons"),
+        () if only.contains('\t') => Some("tabs"),
+        () => None,
+    }
+}
+
+/// Reports columns that are unknown or there twice; returns the known names nearest to the unknown ones.
+fn unknown_columns(
+    file: CatalogFile,
+    name: &str,
+    line: usize,
+    header: &StringRecord,
+    log: &Log,
+) -> Vec<Option<&'static str>> {
+    let known: Vec<_> = file.columns().iter().map(|c| c.name).collect();
+    let mut nearest = Vec::new();
+    for (i, column) in header.iter().enumerate() {
+        if header.iter().take(i).any(|earlier| earlier == column) {
+            log.fault(name, Some(line), column, "this column is there twice".into(), "keep one".into());
+        } else if !known.contains(&column) {
+            let absent: Vec<_> = known.iter().copied().filter(|k| !header.iter().any(|h| h == *k)).collect();
+            let near = closest(column, &absent);
+            let hint = match near {
+                Some(near) => format!("did you mean \"{near}\"? known columns: {}", known.join(", ")),
+                None => format!("known columns: {}", known.join(", ")),
+            };
+            log.fault(name, Some(line), column, "unknown column".into(), hint);
+            nearest.push(near);
+        }
+    }
+    nearest
+}
+
+fn refuse_duplicates(file: CatalogFile, rows: &[Row]) {
+    let mut first: BTreeMap<String, usize> = BTreeMap::new();
+    for row in rows {
+        let cells: Vec<_> = file.key().iter().map(|column| row.text(column)).collect();
+        if cells.iter().all(|cell| cell.is_empty()) {
+            continue;
+        }
+        let id = cells.join("-");
+        match first.get(&id.to_lowercase()) {
+            None => {
+                first.insert(id.to_lowercase(), row.line());
+            }
+            Some(earlier) => row.fault(
+                &file.key().join(","),
+                format!("\"{id}\" is already on line {earlier}"),
+                "a file names each part once; delete one of the rows",
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn faults(text: &str) -> Vec<String> {
+        let log = Log::default();
+        rows(CatalogFile::Materials, "m.csv", text.as_bytes(), &log);
+        log.faults.into_inner().iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn lines_are_counted_with_blank_lines_crlf_quotes_and_a_byte_order_mark() {
+        let text = "\u{feff}name,class,e_pa,density_kg_m3,source,confidence\r\n\r\na,metal,1,1,\"two\r\nlines\",verified\r\nb,metal,1,1,s,verified\r\n";
+        let log = Log::default();
+        let rows = rows(CatalogFile::Materials, "m.csv", text.as_bytes(), &log);
+        assert_eq!(rows.iter().map(Row::line).collect::<Vec<_>>(), [3, 5]);
+        assert!(log.faults.borrow().is_empty(), "{:?}", log.faults);
+    }
+
+    #[test]
+    fn a_semicolon_file_is_one_fault() {
+        let found = faults("name;class;e_pa\nx;metal;2,1e11\ny;metal;2\n");
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].contains("semicolons"), "{found:?}");
+    }
+
+    #[test]
+    fn a_misspelt_required_column_is_reported_once() {
+        let found = faults("name,class,e_Pa,density_kg_m3,source,confidence\n");
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].starts_with("m.csv:1: e_Pa: unknown column; did you mean \"e_pa\"?"), "{found:?}");
+    }
+
+    #[test]
+    fn an_empty_file_says_so() {
+        assert!(faults("")[0].contains("is empty"));
+    }
+
+    #[test]
+    fn bytes_that_are_not_utf8_are_named_by_line() {
+        let log = Log::default();
+        rows(
+            CatalogFile::Materials,
+            "m.csv",
+            b"name,class,e_pa,density_kg_m3,source,confidence\n\xff,metal,1,1,s,verified\n",
+            &log,
+        );
+        assert_eq!(log.faults.borrow()[0].line, Some(2));
+    }
+}

@@ -1,0 +1,251 @@
+//! `armwright analyze`: statics, modes and response of an arm file.
+
+use super::{Failure, choice, number_list, numbers};
+use crate::arm::{Arm, JointModel, LinkModel, LoadCase, Payload, read_arm, read_load_cases};
+use crate::catalog::Catalogs;
+use crate::fault::Document;
+use crate::mechanics::{Chain, Mode, Response, Statics, frequency_response};
+use clap::Args;
+use nalgebra::Vector3;
+use serde_json::{Map, Value, json};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Prints joint torques, tip displacement, every element's share of it, natural frequencies and where
+/// each mode's strain energy sits.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: armwright analyze arm.json --pose-deg 0,-30,60 --payload-kg 5 --payload-cg-m 0.05,0,0\n\
+                        Response: armwright analyze arm.json --response-n 0,0,1 --response-hz 1,100,200 --damping 0.02"
+)]
+pub struct AnalyzeArgs {
+    /// Arm file (JSON)
+    arm: PathBuf,
+    /// One angle per joint, base to tip [deg]; default all zero
+    #[arg(long, value_name = "Q1,Q2,...", allow_hyphen_values = true, value_parser = pose)]
+    pose_deg: Option<Pose>,
+    /// Payload mass [kg]
+    #[arg(long, default_value_t = 0.0, value_parser = non_negative)]
+    payload_kg: f64,
+    /// Payload centre of gravity from the tip, last frame [m]
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = numbers::<3>)]
+    payload_cg_m: [f64; 3],
+    /// Payload moments of inertia about its centre [kg m2]
+    #[arg(long, value_name = "IXX,IYY,IZZ", default_value = "0,0,0", value_parser = numbers::<3>)]
+    payload_inertia_kgm2: [f64; 3],
+    /// Force at the tip, world axes [N]
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = numbers::<3>)]
+    force_n: [f64; 3],
+    /// Link model: rigid, bending (Eqs 1-6) or full
+    #[arg(long, default_value = "full", value_parser = choice::<LinkModel>)]
+    links: LinkModel,
+    /// Joint model: k2 (the paper's single number) or three_segment
+    #[arg(long, default_value = "three_segment", value_parser = choice::<JointModel>)]
+    joints: JointModel,
+    /// How many modes to print
+    #[arg(long, default_value_t = 6)]
+    modes: usize,
+    /// Take pose, payload and models from a cases file instead of the flags
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["pose_deg", "payload_kg", "payload_cg_m", "payload_inertia_kgm2", "force_n", "links", "joints"])]
+    cases: Option<PathBuf>,
+    /// Amplitude of a harmonic force at the tip, world axes [N]: prints the tip's response (Eq 16)
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = numbers::<3>)]
+    response_n: Option<[f64; 3]>,
+    /// Damping ratio of every mode
+    #[arg(long, default_value_t = 0.02, value_parser = non_negative)]
+    damping: f64,
+    /// Frequencies of the response: from, to [Hz] and number of points
+    #[arg(long, value_name = "FROM,TO,POINTS", default_value = "1,100,100", value_parser = numbers::<3>)]
+    response_hz: [f64; 3],
+    /// Print JSON, every number to the last digit
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Clone)]
+struct Pose(Vec<f64>);
+
+fn pose(text: &str) -> Result<Pose, String> {
+    number_list(text).map(Pose)
+}
+
+fn non_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x >= 0.0 && x.is_finite() => Ok(x),
+        _ => Err("give a number that is not negative".into()),
+    }
+}
+
+/// One case, solved.
+struct Solved {
+    case: LoadCase,
+    statics: Statics,
+    modes: Vec<Mode>,
+    response: Option<Vec<Response>>,
+}
+
+/// Carries out the verb.
+pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+    let arm = read_arm(&args.arm, catalogs)?;
+    let cases = match &args.cases {
+        Some(path) => read_load_cases(Document::read(path)?, &arm.driven_joint_names())?,
+        None => vec![case_of_flags(args, &arm)?],
+    };
+    let solved: Vec<Solved> = cases.into_iter().map(|case| solve(args, &arm, case)).collect();
+    Ok(match (args.json, &args.cases) {
+        (true, None) => pretty(&solved[0].to_json()),
+        (true, Some(_)) => pretty(&Value::Array(solved.iter().map(Solved::to_json).collect())),
+        (false, _) => solved.iter().map(|s| s.to_text(&arm)).collect::<Vec<_>>().join("\n"),
+    })
+}
+
+fn pretty(value: &Value) -> String {
+    serde_json::to_string_pretty(value).expect("a value of numbers and strings serializes")
+}
+
+fn case_of_flags(args: &AnalyzeArgs, arm: &Arm) -> Result<LoadCase, Failure> {
+    let joints = arm.driven_joint_names();
+    let pose_deg = args.pose_deg.clone().map_or(vec![0.0; joints.len()], |p| p.0);
+    if pose_deg.len() != joints.len() {
+        return Err(Failure::Usage(format!(
+            "--pose-deg has {} angles, the arm has {} driven joints: {}",
+            pose_deg.len(),
+            joints.len(),
+            joints.join(", ")
+        )));
+    }
+    Ok(LoadCase {
+        name: "case".into(),
+        pose_deg,
+        payload: Payload {
+            mass_kg: args.payload_kg,
+            cg_m: args.payload_cg_m.into(),
+            inertia_about_cg_kgm2: args.payload_inertia_kgm2.into(),
+        },
+        tip_force_n: args.force_n.into(),
+        links: args.links,
+        joints: args.joints,
+        water: None,
+    })
+}
+
+fn solve(args: &AnalyzeArgs, arm: &Arm, case: LoadCase) -> Solved {
+    let mut structure = arm.structure(case.joints);
+    structure.water = case.water.or(structure.water);
+    let chain = Chain::new(&structure, case.links);
+    let posed = chain.pose(&case);
+    let statics = posed.statics();
+    let modes = posed.modes(&statics, args.modes);
+    let response = args.response_n.map(|force| {
+        let [from, to, points] = args.response_hz;
+        let last = (points.max(2.0) - 1.0).round();
+        let frequencies: Vec<f64> =
+            (0..=last as usize).map(|i| from + (to - from) * i as f64 / last).collect();
+        frequency_response(&posed, &statics, &Vector3::from(force), args.damping, &frequencies)
+    });
+    Solved { case, statics, modes, response }
+}
+
+impl Solved {
+    fn to_json(&self) -> Value {
+        let torques: Map<String, Value> =
+            self.statics.joint_torques_nm.iter().map(|(n, t)| (n.clone(), json!(t))).collect();
+        let shares: Vec<Value> = self
+            .statics
+            .shares_m
+            .iter()
+            .map(|(n, s)| json!({"element": n, "tip_displacement_m": s.as_slice()}))
+            .collect();
+        let mut out = json!({
+            "name": self.case.name,
+            "joint_torque_nm": torques,
+            "tip_displacement_m": self.statics.tip_displacement_m.as_slice(),
+            "shares": shares,
+            "modes": self.modes.iter().map(mode_json).collect::<Vec<_>>(),
+        });
+        if let Some(response) = &self.response {
+            out["response"] = response
+                .iter()
+                .map(|r| {
+                    json!({
+                        "frequency_hz": r.frequency_hz,
+                        "tip_amplitude_m": r.amplitude_m().as_slice(),
+                        "tip_phase_rad": r.phase_rad().as_slice(),
+                    })
+                })
+                .collect();
+        }
+        out
+    }
+
+    fn to_text(&self, arm: &Arm) -> String {
+        let mut out =
+            format!("{}, case \"{}\": pose {:?} deg\n", arm.name, self.case.name, self.case.pose_deg);
+        let _ = writeln!(out, "  arm mass            {:10.3} kg", arm.mass_kg());
+        let tip = self.statics.tip_displacement_m * 1e3;
+        let _ = writeln!(
+            out,
+            "  tip displacement    {:10.4} mm   (x {:.4}, y {:.4}, z {:.4} mm)",
+            tip.norm(),
+            tip.x,
+            tip.y,
+            tip.z
+        );
+        self.shares_text(&mut out);
+        self.modes_text(&mut out);
+        self.response_text(&mut out);
+        out
+    }
+
+    fn shares_text(&self, out: &mut String) {
+        let total = self.statics.tip_displacement_m;
+        let _ = writeln!(out, "  element          torque Nm    moves the tip by mm (x, y, z)      share");
+        for (name, share) in &self.statics.shares_m {
+            let torque = self.statics.joint_torques_nm.iter().find(|(n, _)| n == name);
+            let torque = torque.map_or(String::new(), |(_, t)| format!("{t:.3}"));
+            let part = 100.0 * share.dot(&total) / total.norm_squared().max(f64::MIN_POSITIVE);
+            let mm = share * 1e3;
+            let _ = writeln!(
+                out,
+                "  {name:<14} {torque:>11}  {:10.5} {:10.5} {:10.5}  {part:7.2} %",
+                mm.x, mm.y, mm.z
+            );
+        }
+    }
+
+    fn modes_text(&self, out: &mut String) {
+        let _ = writeln!(out, "  mode  frequency Hz  plane  where the strain energy sits");
+        for (k, mode) in self.modes.iter().enumerate() {
+            let mut parts: Vec<&(String, f64)> =
+                mode.strain_energy.iter().filter(|(_, e)| *e >= 0.01).collect();
+            parts.sort_by(|a, b| b.1.total_cmp(&a.1));
+            let parts: Vec<String> = parts.iter().map(|(n, e)| format!("{n} {:.0} %", 100.0 * e)).collect();
+            let plane = mode.plane.unwrap_or("-");
+            let _ = writeln!(
+                out,
+                "  {:>4}  {:>12.4}  {plane:<5}  {}",
+                k + 1,
+                mode.frequency_hz,
+                parts.join(", ")
+            );
+        }
+    }
+
+    fn response_text(&self, out: &mut String) {
+        let Some(response) = &self.response else { return };
+        let _ = writeln!(out, "  frequency Hz   tip amplitude mm (x, y, z)            phase deg (x, y, z)");
+        for r in response {
+            let (a, p) = (r.amplitude_m() * 1e3, r.phase_rad().map(f64::to_degrees));
+            let _ = writeln!(
+                out,
+                "  {:>12.3}   {:11.6} {:11.6} {:11.6}   {:8.1} {:8.1} {:8.1}",
+                r.frequency_hz, a.x, a.y, a.z, p.x, p.y, p.z
+            );
+        }
+    }
+}
+
+fn mode_json(mode: &Mode) -> Value {
+    let energy: Map<String, Value> = mode.strain_energy.iter().map(|(n, e)| (n.clone(), json!(e))).collect();
+    json!({"frequency_hz": mode.frequency_hz, "plane": mode.plane, "strain_energy": energy})
+}

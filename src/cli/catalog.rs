@@ -1,0 +1,583 @@
+//! `armwright catalog check` and `armwright catalog show`: what can be bought, and how far it is known.
+//!
+//! The functions return the text; nothing is printed here.
+
+use super::Failure;
+use crate::catalog::{
+    CatalogFile, Catalogs, Column, Confidence, Gear, Loaded, Material, MaterialClass, Motor, MotorKind,
+    PartError, Profile, ProfileShape, Provenance,
+};
+use crate::fault::InputError;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Catalogs: check them, or show parts.
+#[derive(Debug, Clone, clap::Args)]
+#[command(
+    about = "Check the catalogs, or show parts of them",
+    after_help = "Example: armwright catalog show gears --series CSG --size 32"
+)]
+pub struct CatalogArgs {
+    /// What to do with the catalogs.
+    #[command(subcommand)]
+    pub verb: CatalogVerb,
+}
+
+/// What to do with the catalogs.
+#[derive(Debug, Clone, clap::Subcommand)]
+pub enum CatalogVerb {
+    /// Validate every row; count rows, trust and blank figures; list what is odd.
+    ///
+    /// Reports every fault of every file at once, with file, line, column, value and what is allowed.
+    #[command(after_help = "Example: armwright catalog check --catalogs my-parts")]
+    Check,
+    /// List parts as a table, or one part with every figure and its source.
+    #[command(after_help = "Examples:\n  armwright catalog show gears --series CSG --size 32\n  \
+        armwright catalog show motors --kind electric\n  \
+        armwright catalog show materials --class composite\n  \
+        armwright catalog show profiles --family steel --shape square --csv\n  \
+        armwright catalog show --part HFUC-58-100")]
+    Show(ShowArgs),
+}
+
+/// Parts one can list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Parts {
+    /// Harmonic-drive gears.
+    Gears,
+    /// Electric and hydraulic motors.
+    Motors,
+    /// Link materials.
+    Materials,
+    /// Hollow profiles.
+    Profiles,
+}
+
+/// Which parts to show, and how.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct ShowArgs {
+    /// What to list; may be left out with --part, e.g. `gears`.
+    #[arg(value_enum, required_unless_present = "part")]
+    pub parts: Option<Parts>,
+    /// Show every field of one part, with source and trust, e.g. `--part HFUC-58-100`.
+    #[arg(long, value_name = "NAME")]
+    pub part: Option<String>,
+    /// Only gears of this series or its other name, e.g. `--series CSG` [default: all].
+    #[arg(long)]
+    pub series: Option<String>,
+    /// Only gears of this size, e.g. `--size 32` [default: all].
+    #[arg(long)]
+    pub size: Option<u32>,
+    /// Only gears of this ratio, e.g. `--ratio 100` [default: all].
+    #[arg(long)]
+    pub ratio: Option<u32>,
+    /// Only motors of this kind: electric, hydraulic, or one such as `--kind frameless-torque` [default: all].
+    #[arg(long)]
+    pub kind: Option<String>,
+    /// Only materials of this class: metal, composite or `--class metal-matrix` [default: all].
+    #[arg(long)]
+    pub class: Option<String>,
+    /// Only profiles of this family of materials, e.g. `--family steel` [default: all].
+    #[arg(long)]
+    pub family: Option<String>,
+    /// Only profiles of this shape: square, rectangular or `--shape round` [default: all].
+    #[arg(long)]
+    pub shape: Option<String>,
+    /// Print the rows as they stand in their files, as CSV that an own catalog folder can hold
+    /// [default: a table].
+    #[arg(long)]
+    pub csv: bool,
+}
+
+/// Runs the verb and returns what it says.
+///
+/// # Errors
+/// The catalogs are faulty, a filter is not known or does not belong to the parts asked for, no such part.
+pub fn run(args: &CatalogArgs, overlay: Option<&Path>) -> Result<String, Failure> {
+    match &args.verb {
+        CatalogVerb::Check => check(overlay).map_err(Failure::catalog),
+        CatalogVerb::Show(args) => show(&Catalogs::load(overlay).map_err(Failure::catalog)?, args),
+    }
+}
+
+/// Loads the catalogs and tells what is in them: rows, trust, blank figures, warnings.
+///
+/// # Errors
+/// Every fault of every file.
+pub fn check(overlay: Option<&Path>) -> Result<String, InputError> {
+    let catalogs = Catalogs::load(overlay)?;
+    let mut out = files_table(&catalogs.loaded);
+    out.push_str("\nFigures that a sizing check needs and rows leave blank:\n");
+    out.push_str(&blanks_table(&catalogs));
+    match catalogs.warnings.as_slice() {
+        [] => out.push_str("\nNo faults, no warnings.\n"),
+        warnings => {
+            // A String takes any text.
+            let _ = writeln!(out, "\nNo faults. Warnings ({}):", warnings.len());
+            warnings.iter().for_each(|warning| {
+                let _ = writeln!(out, "  {warning}");
+            });
+        }
+    }
+    Ok(out)
+}
+
+fn files_table(loaded: &[Loaded]) -> String {
+    let mut table = TextTable::new(["file", "rows", "replacing"].into_iter().map(String::from).collect());
+    table.head.extend(Confidence::ALL.iter().map(ToString::to_string));
+    for file in loaded {
+        let mut row = vec![file.name.clone(), file.rows.to_string(), file.replaced.to_string()];
+        row.extend(file.by_confidence.iter().map(ToString::to_string));
+        table.rows.push(row);
+    }
+    table.to_text()
+}
+
+/// Columns that sizing reads, by kind of part.
+const SIZING_COLUMNS: [(CatalogFile, &[&str]); 3] = [
+    (
+        CatalogFile::Gears,
+        &[
+            "rated_torque_nm",
+            "repeated_peak_torque_nm",
+            "average_torque_limit_nm",
+            "momentary_peak_torque_nm",
+            "max_input_speed_rpm",
+            "average_input_speed_limit_rpm",
+            "inertia_input_kgm2",
+            "mass_component_set_kg",
+            "mass_housed_unit_kg",
+            "t1_nm",
+            "t2_nm",
+            "k1_nm_per_rad",
+            "k2_nm_per_rad",
+            "k3_nm_per_rad",
+            "efficiency_rated_2000rpm",
+        ],
+    ),
+    (
+        CatalogFile::Motors,
+        &[
+            "rated_torque_nm",
+            "peak_torque_nm",
+            "rated_speed_rpm",
+            "max_speed_rpm",
+            "rotor_inertia_kgm2",
+            "mass_kg",
+        ],
+    ),
+    (CatalogFile::Materials, &["g_pa", "poisson", "yield_or_strength_pa", "cost_eur_per_kg"]),
+];
+
+fn blanks_table(catalogs: &Catalogs) -> String {
+    let mut table = TextTable::new(["file", "column", "blank", "of"].map(String::from).into());
+    for (file, columns) in SIZING_COLUMNS {
+        let rows: Vec<_> = provenances(catalogs, file).map(|p| catalogs.printed_row(p)).collect();
+        for column in columns {
+            let blank = rows.iter().filter(|row| cell(row, column).is_empty()).count();
+            if blank > 0 {
+                let row = [file.file_name(), column, &blank.to_string(), &rows.len().to_string()];
+                table.rows.push(row.map(String::from).into());
+            }
+        }
+    }
+    table.to_text()
+}
+
+fn provenances(catalogs: &Catalogs, file: CatalogFile) -> Box<dyn Iterator<Item = &Provenance> + '_> {
+    match file {
+        CatalogFile::Gears => Box::new(catalogs.gears.iter().map(|g| &g.provenance)),
+        CatalogFile::Efficiency => Box::new(catalogs.efficiency.iter().map(|p| &p.provenance)),
+        CatalogFile::Motors => Box::new(catalogs.motors.iter().map(|m| &m.provenance)),
+        CatalogFile::Materials => Box::new(catalogs.materials.iter().map(|m| &m.provenance)),
+        CatalogFile::Profiles => Box::new(catalogs.profiles.iter().map(|p| &p.provenance)),
+    }
+}
+
+fn cell<'r>(row: &'r [(&'static str, String)], column: &str) -> &'r str {
+    row.iter().find(|(name, _)| *name == column).map_or("", |(_, text)| text)
+}
+
+/// The parts asked for as a table or CSV, or one part with all its fields.
+///
+/// # Errors
+/// A filter is not known or does not belong to the parts asked for; no such part.
+pub fn show(catalogs: &Catalogs, args: &ShowArgs) -> Result<String, Failure> {
+    if let Some(name) = &args.part {
+        return show_part(catalogs, args.parts, name);
+    }
+    let Some(parts) = args.parts else {
+        return Err(Failure::Usage("say what to list: gears, motors, materials or profiles".into()));
+    };
+    refuse_stray_filters(parts, args)?;
+    match parts {
+        Parts::Gears => {
+            list(catalogs, CatalogFile::Gears, &gears(catalogs, args)?, GEAR_FIELDS, |g| &g.provenance, args)
+        }
+        Parts::Motors => list(
+            catalogs,
+            CatalogFile::Motors,
+            &motors(catalogs, args)?,
+            MOTOR_FIELDS,
+            |m| &m.provenance,
+            args,
+        ),
+        Parts::Materials => list(
+            catalogs,
+            CatalogFile::Materials,
+            &materials(catalogs, args)?,
+            MATERIAL_FIELDS,
+            |m| &m.provenance,
+            args,
+        ),
+        Parts::Profiles => list(
+            catalogs,
+            CatalogFile::Profiles,
+            &profiles(catalogs, args)?,
+            PROFILE_FIELDS,
+            |p| &p.provenance,
+            args,
+        ),
+    }
+}
+
+/// A filter that belongs to other parts is a slip, not something to pass over.
+fn refuse_stray_filters(parts: Parts, args: &ShowArgs) -> Result<(), Failure> {
+    let given = [
+        ("--series", args.series.is_some(), Parts::Gears),
+        ("--size", args.size.is_some(), Parts::Gears),
+        ("--ratio", args.ratio.is_some(), Parts::Gears),
+        ("--kind", args.kind.is_some(), Parts::Motors),
+        ("--class", args.class.is_some(), Parts::Materials),
+        ("--family", args.family.is_some(), Parts::Profiles),
+        ("--shape", args.shape.is_some(), Parts::Profiles),
+    ];
+    for (flag, is_given, belongs_to) in given {
+        if is_given && belongs_to != parts {
+            return Err(Failure::Usage(format!(
+                "{flag} filters {belongs_to:?}, not {parts:?}; leave it away"
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn gears<'c>(catalogs: &'c Catalogs, args: &ShowArgs) -> Result<Vec<&'c Gear>, Failure> {
+    let series = args.series.as_ref().map(|name| series(catalogs, name)).transpose()?;
+    let wanted = |g: &&Gear| {
+        series.as_ref().is_none_or(|s| g.series.eq_ignore_ascii_case(s))
+            && args.size.is_none_or(|size| g.size == size)
+            && args.ratio.is_none_or(|ratio| g.ratio == ratio)
+    };
+    Ok(catalogs.gears.iter().filter(wanted).collect())
+}
+
+fn series(catalogs: &Catalogs, name: &str) -> Result<String, Failure> {
+    if let Some(gear) = catalogs.gears.iter().find(|g| g.series.eq_ignore_ascii_case(name)) {
+        return Ok(gear.series.clone());
+    }
+    if let Some((_, series)) =
+        catalogs.series_aliases.iter().find(|(alias, _)| alias.eq_ignore_ascii_case(name))
+    {
+        return Ok(series.clone());
+    }
+    let mut known: Vec<_> = catalogs.gears.iter().map(|g| g.series.as_str()).collect();
+    known.sort_unstable();
+    known.dedup();
+    Err(Failure::Usage(format!("--series {name} is not known; choose one of: {}", known.join(", "))))
+}
+
+fn motors<'c>(catalogs: &'c Catalogs, args: &ShowArgs) -> Result<Vec<&'c Motor>, Failure> {
+    let kinds = word("--kind", &args.kind, MotorKind::of_class, &MotorKind::CLASS_WORDS)?;
+    Ok(catalogs.motors.iter().filter(|m| kinds.as_ref().is_none_or(|k| k.contains(&m.kind))).collect())
+}
+
+fn materials<'c>(catalogs: &'c Catalogs, args: &ShowArgs) -> Result<Vec<&'c Material>, Failure> {
+    let class = word("--class", &args.class, MaterialClass::from_word, &MaterialClass::WORDS)?;
+    Ok(catalogs.materials.iter().filter(|m| class.is_none_or(|class| m.class == class)).collect())
+}
+
+fn profiles<'c>(catalogs: &'c Catalogs, args: &ShowArgs) -> Result<Vec<&'c Profile>, Failure> {
+    let families = Profile::MATERIAL_FAMILIES;
+    let read =
+        |word: &str| families.iter().position(|f| f.eq_ignore_ascii_case(word)).map(|place| families[place]);
+    let family = word("--family", &args.family, read, &families)?;
+    let shape = word("--shape", &args.shape, ProfileShape::from_word, &ProfileShape::WORDS)?;
+    let wanted = |p: &&Profile| {
+        family.is_none_or(|family| p.material_family == family) && shape.is_none_or(|shape| p.shape == shape)
+    };
+    Ok(catalogs.profiles.iter().filter(wanted).collect())
+}
+
+fn word<T>(
+    flag: &str,
+    given: &Option<String>,
+    read: impl Fn(&str) -> Option<T>,
+    words: &[&str],
+) -> Result<Option<T>, Failure> {
+    let Some(text) = given else { return Ok(None) };
+    let known = || Failure::Usage(format!("{flag} {text} is not known; choose one of: {}", words.join(", ")));
+    read(text).map(Some).ok_or_else(known)
+}
+
+/// How far a row is trusted, as a letter; [`LEGEND`] explains it.
+fn trust(provenance: &Provenance) -> String {
+    let letter = match provenance.confidence {
+        Confidence::Verified => "V",
+        Confidence::ThirdParty => "T",
+        Confidence::FromMemory => "M",
+        Confidence::Representative => "R",
+    };
+    letter.into()
+}
+
+/// Printed below a table of parts.
+const LEGEND: &str =
+    "a blank cell is unknown; trust: V verified, T third party, M from memory, R representative";
+
+/// A column of a table: its head with the unit, and what it shows of a part.
+type Field<T> = (&'static str, fn(&T) -> String);
+
+const GEAR_FIELDS: &[Field<Gear>] = &[
+    ("gear|", |g| g.id.clone()),
+    ("rated|Nm", |g| figure(g.rated_torque_nm, 1.0)),
+    ("mean|Nm", |g| figure(g.average_torque_limit_nm, 1.0)),
+    ("peak|Nm", |g| figure(g.repeated_peak_torque_nm, 1.0)),
+    ("moment.|Nm", |g| figure(g.momentary_peak_torque_nm, 1.0)),
+    ("speed|rpm", |g| figure(g.max_input_speed_rpm, 1.0)),
+    ("inertia|kg cm2", |g| figure(g.inertia_input_kgm2, 1e4)),
+    ("K1|kNm/rad", |g| figure(g.k1_nm_per_rad, 1e-3)),
+    ("K2|kNm/rad", |g| figure(g.k2_nm_per_rad, 1e-3)),
+    ("K3|kNm/rad", |g| figure(g.k3_nm_per_rad, 1e-3)),
+    ("set|kg", |g| figure(g.mass_component_set_kg, 1.0)),
+    ("unit|kg", |g| figure(g.mass_housed_unit_kg, 1.0)),
+    ("eff.|", |g| figure(g.efficiency, 1.0)),
+    ("trust|", |g| trust(&g.provenance)),
+];
+
+const MOTOR_FIELDS: &[Field<Motor>] = &[
+    ("motor|", |m| m.id.clone()),
+    ("kind|", |m| m.kind.to_string()),
+    ("rated|Nm", |m| figure(m.rated_torque_nm, 1.0)),
+    ("peak|Nm", |m| figure(m.peak_torque_nm, 1.0)),
+    ("rated|rpm", |m| figure(m.rated_speed_rpm, 1.0)),
+    ("max|rpm", |m| figure(m.max_speed_rpm, 1.0)),
+    ("inertia|kg cm2", |m| figure(m.rotor_inertia_kgm2, 1e4)),
+    ("mass|kg", |m| figure(m.mass_kg, 1.0)),
+    ("trust|", |m| trust(&m.provenance)),
+];
+
+const MATERIAL_FIELDS: &[Field<Material>] = &[
+    ("material|", |m| m.name.clone()),
+    ("E|GPa", |m| figure(Some(m.youngs_modulus_pa), 1e-9)),
+    ("G|GPa", |m| figure(m.shear_modulus_pa, 1e-9)),
+    ("density|kg/m3", |m| figure(Some(m.density_kg_m3), 1.0)),
+    ("strength|MPa", |m| figure(m.strength_pa, 1e-6)),
+    ("cost|EUR/kg", |m| figure(m.cost_eur_per_kg, 1.0)),
+    ("trust|", |m| trust(&m.provenance)),
+];
+
+const PROFILE_FIELDS: &[Field<Profile>] = &[
+    ("profile|", |p| p.designation.clone()),
+    ("shape|", |p| p.shape.to_string()),
+    ("family|", |p| p.material_family.clone()),
+    ("width|mm", |p| figure(Some(p.width_m), 1e3)),
+    ("height|mm", |p| figure(Some(p.height_m), 1e3)),
+    ("wall|mm", |p| figure(Some(p.wall_m), 1e3)),
+    ("area|cm2", |p| figure(p.area_m2, 1e4)),
+    ("2nd moment|cm4", |p| figure(p.second_moment_m4, 1e8)),
+    ("mass|kg/m", |p| figure(p.mass_per_length_kg_m, 1.0)),
+    ("trust|", |p| trust(&p.provenance)),
+];
+
+fn list<T>(
+    catalogs: &Catalogs,
+    file: CatalogFile,
+    parts: &[&T],
+    fields: &[Field<T>],
+    provenance: fn(&T) -> &Provenance,
+    args: &ShowArgs,
+) -> Result<String, Failure> {
+    if args.csv {
+        return rows_as_csv(file, parts.iter().map(|part| catalogs.printed_row(provenance(part))));
+    }
+    let mut table = TextTable::new(fields.iter().map(|(head, _)| head.to_string()).collect());
+    table.rows = parts.iter().map(|part| fields.iter().map(|(_, show)| show(part)).collect()).collect();
+    let (shown, all) = (parts.len(), provenances(catalogs, file).count());
+    Ok(format!("{}{shown} of {all}; {LEGEND}\n", table.to_text()))
+}
+
+fn rows_as_csv<'r>(
+    file: CatalogFile,
+    rows: impl Iterator<Item = &'r [(&'static str, String)]>,
+) -> Result<String, Failure> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer
+        .write_record(file.columns().iter().map(|c| c.name))
+        .expect("writing to memory does not fail and rows are of one length");
+    for row in rows {
+        writer
+            .write_record(row.iter().map(|(_, text)| text))
+            .expect("writing to memory does not fail and rows are of one length");
+    }
+    let bytes = writer.into_inner().expect("flushing to memory does not fail");
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Every field of one part.
+fn show_part(catalogs: &Catalogs, parts: Option<Parts>, name: &str) -> Result<String, Failure> {
+    let kinds = match parts {
+        Some(parts) => vec![parts],
+        None => vec![Parts::Gears, Parts::Motors, Parts::Materials, Parts::Profiles],
+    };
+    let mut errors = Vec::new();
+    for parts in kinds {
+        match find(catalogs, parts, name) {
+            Ok((file, provenance)) => return Ok(all_fields(catalogs, file, provenance)),
+            Err(error) => errors.push(error),
+        }
+    }
+    // A name that several parts of one kind share says more than one that other kinds do not know.
+    let ambiguous = errors.iter().position(|e| matches!(e, PartError::Ambiguous { .. }));
+    let near =
+        errors.iter().position(|e| matches!(e, PartError::Unknown { nearest, .. } if !nearest.is_empty()));
+    Err(errors.swap_remove(ambiguous.or(near).unwrap_or(0)).into())
+}
+
+fn find<'c>(
+    catalogs: &'c Catalogs,
+    parts: Parts,
+    name: &str,
+) -> Result<(CatalogFile, &'c Provenance), PartError> {
+    Ok(match parts {
+        Parts::Gears => (CatalogFile::Gears, &catalogs.gear(name)?.provenance),
+        Parts::Motors => (CatalogFile::Motors, &catalogs.motor(name)?.provenance),
+        Parts::Materials => (CatalogFile::Materials, &catalogs.material(name)?.provenance),
+        Parts::Profiles => (CatalogFile::Profiles, &catalogs.profile(name)?.provenance),
+    })
+}
+
+fn all_fields(catalogs: &Catalogs, file: CatalogFile, provenance: &Provenance) -> String {
+    let row = catalogs.printed_row(provenance);
+    let mut table = TextTable::new(["column", "value", ""].map(String::from).into());
+    for Column { name, figure, .. } in file.columns() {
+        let text = cell(row, name);
+        let mark = match () {
+            () if *figure && text.is_empty() => "unknown",
+            () if provenance.unverified_fields.iter().any(|f| f == name) => "unverified",
+            () => "",
+        };
+        let is_long = matches!(*name, "source" | "unverified_fields" | "notes" | "confidence");
+        if !is_long && (*figure || !text.is_empty()) {
+            table.rows.push([*name, text, mark].map(String::from).into());
+        }
+    }
+    let mut out = table.to_text();
+    let unverified = provenance.unverified_fields.join(" ");
+    let remarks = [
+        ("source", provenance.source.as_str()),
+        ("confidence", &provenance.confidence.to_string()),
+        ("unverified", if unverified.is_empty() { "none" } else { &unverified }),
+        ("notes", cell(row, "notes")),
+        ("read from", &format!("{}:{}", provenance.file, provenance.line)),
+    ];
+    for (name, text) in remarks.iter().filter(|(_, text)| !text.is_empty()) {
+        out.push_str(&wrapped(&format!("{name}: {text}")));
+    }
+    out
+}
+
+/// Width that tables and paragraphs keep.
+const TERMINAL_COLUMNS: usize = 110;
+
+/// A paragraph broken between words, continued with an indent.
+fn wrapped(text: &str) -> String {
+    let mut out = String::new();
+    let mut width = 0;
+    for word in text.split_whitespace() {
+        let length = word.chars().count();
+        if width > 0 && width + 1 + length > TERMINAL_COLUMNS {
+            out.push_str("\n  ");
+            width = 2;
+        } else if width > 0 {
+            out.push(' ');
+            width += 1;
+        }
+        out.push_str(word);
+        width += length;
+    }
+    out.push('\n');
+    out
+}
+
+/// A known figure times a factor, in four significant digits without trailing zeros; blank if unknown.
+fn figure(x: Option<f64>, factor: f64) -> String {
+    let Some(x) = x.map(|x| x * factor) else { return String::new() };
+    if x == 0.0 {
+        return "0".into();
+    }
+    let magnitude = x.abs().log10().floor() as i32;
+    if !(-4..7).contains(&magnitude) {
+        return format!("{x:.3e}");
+    }
+    // Digits before the point are kept whole: 10117 stays 10117.
+    let decimals = (3 - magnitude).max(0) as usize;
+    let text = format!("{x:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+}
+
+/// A table of text: heads (`name|unit`) over columns, figures to the right.
+struct TextTable {
+    head: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl TextTable {
+    fn new(head: Vec<String>) -> Self {
+        Self { head, rows: Vec::new() }
+    }
+
+    fn to_text(&self) -> String {
+        let split = |head: &String, unit: bool| {
+            let (name, rest) = head.split_once('|').unwrap_or((head, ""));
+            if unit { rest } else { name }.to_string()
+        };
+        let names: Vec<_> = self.head.iter().map(|h| split(h, false)).collect();
+        let units: Vec<_> = self.head.iter().map(|h| split(h, true)).collect();
+        let mut lines = vec![names];
+        if units.iter().any(|unit| !unit.is_empty()) {
+            lines.push(units);
+        }
+        lines.extend(self.rows.iter().cloned());
+        let columns: Vec<_> = (0..self.head.len()).map(|i| self.column(i, &lines)).collect();
+        lines.iter().fold(String::new(), |out, line| out + &aligned(line, &columns) + "\n")
+    }
+
+    /// Width of a column, and whether it holds figures.
+    fn column(&self, i: usize, lines: &[Vec<String>]) -> (usize, bool) {
+        let width = lines.iter().map(|line| line[i].chars().count()).max().unwrap_or(0);
+        (width, self.rows.iter().all(|row| row[i].is_empty() || row[i].parse::<f64>().is_ok()))
+    }
+}
+
+fn aligned(line: &[String], columns: &[(usize, bool)]) -> String {
+    let mut out = String::new();
+    for (text, (width, is_figure)) in line.iter().zip(columns) {
+        let padding = " ".repeat(width - text.chars().count());
+        out += &if *is_figure { format!("{padding}{text}  ") } else { format!("{text}{padding}  ") };
+    }
+    out.trim_end().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_have_four_digits_and_no_noise() {
+        let texts = [3.3e-6 * 1e4, 0.1 + 0.2, 2100000.0, 12345.678, 0.66, 17.0, 0.0, 2.4e-9]
+            .map(|x| figure(Some(x), 1.0));
+        assert_eq!(texts, ["0.033", "0.3", "2100000", "12346", "0.66", "17", "0", "2.400e-9"]);
+        assert_eq!(figure(None, 1.0), "");
+    }
+}

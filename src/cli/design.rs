@@ -1,0 +1,86 @@
+//! `armwright design`: a design of a result as an arm file and its cases.
+
+use super::run::catalogs_hash;
+use super::{Failure, write_all};
+use crate::catalog::Catalogs;
+use crate::fault::Document;
+use crate::search::design::{full_objectives, number_of, options};
+use crate::search::{ArmProblem, OutwardIn};
+use crate::study::read_study;
+use clap::Args;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+/// Takes a design out of a result: its arm with every part resolved to numbers, and the cases it was
+/// judged in, so that `analyze` reproduces its objectives.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: armwright design results/compare-materials 3k9 --out my-arm\n         \
+                        armwright analyze my-arm/arm.json --cases my-arm/cases.json")]
+pub struct DesignArgs {
+    /// Result folder of a study
+    results: PathBuf,
+    /// design_id from its front.csv
+    id: String,
+    /// Folder for arm.json and cases.json; default RESULTS/design-ID
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// Carries out the verb.
+pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+    check_catalogs(args, catalogs)?;
+    let study = read_study(Document::read(&args.results.join("study.json"))?, catalogs)?;
+    let problem = ArmProblem::new(&study.space, catalogs);
+    let unknown = || {
+        Failure::Usage(format!(
+            "{} has no design \"{}\": take a design_id from its front.csv",
+            args.results.display(),
+            args.id
+        ))
+    };
+    let number = number_of(&args.id).ok_or_else(unknown)?;
+    let chosen = options(problem.level_sizes(), number).ok_or_else(unknown)?;
+    let mut arm = problem.arm(&chosen).ok_or_else(unknown)?;
+    arm.name = format!("{} {}", study.name, args.id);
+    let cases = problem.load_cases();
+    let objectives = full_objectives(&arm, &cases);
+    let dir = args.out.clone().unwrap_or_else(|| args.results.join(format!("design-{}", args.id)));
+    let cases: Vec<Value> = cases.iter().map(crate::arm::LoadCase::to_json).collect();
+    write_all(
+        &dir,
+        &[("arm.json".into(), pretty(&arm.to_json())), ("cases.json".into(), pretty(&json!(cases)))],
+    )?;
+    Ok(format!(
+        "design {} of {}: tip deflection {:.4} mm, mass {:.3} kg, lowest mode {:.3} Hz\n\
+         written to {}: arm.json, cases.json\n\
+         try: armwright analyze {} --cases {}\n",
+        args.id,
+        study.name,
+        objectives.tip_deflection_m * 1e3,
+        objectives.mass_kg,
+        objectives.lowest_mode_hz,
+        dir.display(),
+        dir.join("arm.json").display(),
+        dir.join("cases.json").display()
+    ))
+}
+
+fn pretty(value: &Value) -> Vec<u8> {
+    serde_json::to_vec_pretty(value).expect("a value of numbers and strings serializes")
+}
+
+/// Refuses catalogs other than those the result was made with: the id would name another design.
+fn check_catalogs(args: &DesignArgs, catalogs: &Catalogs) -> Result<(), Failure> {
+    let path = args.results.join("run.json");
+    let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;
+    let run: Value =
+        serde_json::from_str(&text).map_err(|e| Failure::File(format!("{}: {e}", path.display())))?;
+    if run["catalogs_hash"].as_str() == Some(&catalogs_hash(catalogs)) {
+        return Ok(());
+    }
+    let hint = match run["catalogs"].as_str() {
+        Some(folder) => format!("it used --catalogs {folder}; give the same folder, unchanged"),
+        None => "it used the built-in catalogs of another version; run the study again".into(),
+    };
+    Err(Failure::Check(format!("{} was made with other catalogs: {hint}", args.results.display())))
+}

@@ -1,0 +1,245 @@
+//! `armwright size`: the drive of every joint, joint 6 to joint 1, and why others were rejected.
+
+use super::run::load_study;
+use super::{Failure, write_all};
+use crate::catalog::Catalogs;
+use crate::search::OutwardIn;
+use crate::search::design::{number_of, options};
+use crate::search::outward::{ArmProblem, Partial};
+use crate::search::space::SpacePiece;
+use crate::sizing::{JointSizingRow, render_rows};
+use crate::study::{Study, sizing_rows};
+use clap::Args;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Sizes every joint of a study's arm from the tip inward: torques (Eqs 7-12), speed, the chosen gear
+/// and motor, what binds, margin, life and the mass passed on inward.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: armwright size light-arm\n         armwright size compare-materials --explain j2\n\n\
+                        Open links take the section in the middle of their options unless --design names one."
+)]
+pub struct SizeArgs {
+    /// A built-in study or a study file
+    study: String,
+    /// Take the links (and chosen drives) of this design_id
+    #[arg(long, value_name = "ID")]
+    design: Option<String>,
+    /// Say for every part why this joint rejects it
+    #[arg(long, value_name = "JOINT")]
+    explain: Option<String>,
+    /// List every drive that holds at this joint, lightest first, not only the first fit
+    #[arg(long, value_name = "JOINT")]
+    all_fits: Option<String>,
+    /// Folder for sizing.json and sizing.txt
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Carries out the verb.
+pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+    let (study, _) = load_study(&args.study, catalogs)?;
+    let problem = ArmProblem::new(&study.space, catalogs);
+    let chosen = chosen(args, &study, &problem)?;
+    if let Some(joint) = &args.explain {
+        return explain(&problem, &chosen, joint);
+    }
+    if let Some(joint) = &args.all_fits {
+        return all_fits(&problem, &chosen, joint);
+    }
+    let rows = sizing_rows(&problem, &chosen).map_err(|slot| fails(&problem, &chosen, slot))?;
+    let text = format!("{}{}", heading(&study, &problem, &chosen), render_rows(&rows));
+    let json = serde_json::to_string_pretty(&rows).expect("rows of numbers and strings serialize");
+    if let Some(dir) = &args.out {
+        let files = [("sizing.json", &json), ("sizing.txt", &text)];
+        write_all(dir, &files.map(|(name, text)| (name.to_string(), text.as_bytes().to_vec())))?;
+    }
+    Ok(if args.json { json } else { text + &notes(&rows) })
+}
+
+/// One option a level: the named design's, or the middle of each open link and the first drive.
+fn chosen(args: &SizeArgs, study: &Study, problem: &ArmProblem) -> Result<Vec<u32>, Failure> {
+    let sizes = problem.level_sizes();
+    match &args.design {
+        Some(id) => number_of(id)
+            .and_then(|n| options(sizes, n))
+            .ok_or_else(|| Failure::Usage(format!("the study \"{}\" has no design \"{id}\"", study.name))),
+        None => Ok(middle(problem)),
+    }
+}
+
+/// The middle option of every open link; a joint whose drive is a choice takes the first that holds.
+fn middle(problem: &ArmProblem) -> Vec<u32> {
+    let mut out = Vec::new();
+    for (piece, what) in problem.space().pieces.iter().enumerate().rev() {
+        match (what, problem.sized_joint(piece)) {
+            (SpacePiece::Choice(choice), _) => {
+                let option = nearest_to_middle(problem, &out, piece, choice.options.len() as u32);
+                out.push(option);
+            }
+            (_, Some(sized)) if sized.is_level() => out.push(first_fit_so_far(problem, &out, piece)),
+            _ => {}
+        }
+    }
+    out
+}
+
+/// The option nearest to the middle that keeps the link's own limits.
+fn nearest_to_middle(problem: &ArmProblem, outboard: &[u32], piece: usize, options: u32) -> u32 {
+    let middle = options / 2;
+    let mut order: Vec<u32> = (0..options).collect();
+    order.sort_by_key(|&o| o.abs_diff(middle));
+    let holds = |&option: &u32| match problem.walk(&[outboard, &[option]].concat(), |_, _| {}) {
+        Ok(_) => true,
+        Err(slot) => problem.piece_of_slot(slot) != piece,
+    };
+    order.into_iter().find(holds).unwrap_or(middle)
+}
+
+fn first_fit_so_far(problem: &ArmProblem, outboard: &[u32], piece: usize) -> u32 {
+    let mut index = 0;
+    let _ = problem.walk(outboard, |slot, partial| {
+        if problem.piece_of_slot(slot) == piece
+            && let Some(sized) = problem.sized_joint(piece)
+        {
+            index = sized.table.first_fit(&problem.demand_at(partial, slot)).unwrap_or(0) as u32;
+        }
+    });
+    index
+}
+
+fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
+    let motion = &study.space.motion;
+    let mut out = format!(
+        "{}: tip {} m/s in {} s, life {} h, sized over {} cases\n",
+        study.name,
+        motion.tip_speed_m_s,
+        motion.ramp_time_s,
+        motion.life_h,
+        study.space.sizing_cases.len()
+    );
+    let Some(parts) = problem.parts(chosen) else { return out };
+    for (piece, part) in study.space.pieces.iter().zip(parts) {
+        if let (SpacePiece::Choice(choice), crate::search::design::Part::Link(option)) = (piece, part) {
+            let (width, height) = option.section.outer_m();
+            let _ = writeln!(
+                out,
+                "link {}: {}, {:.0} x {:.0} x {:.1} mm",
+                choice.name,
+                option.material_name,
+                width * 1e3,
+                height * 1e3,
+                option.section.wall_m() * 1e3
+            );
+        }
+    }
+    out
+}
+
+fn notes(rows: &[JointSizingRow]) -> String {
+    let mut out = String::new();
+    for row in rows {
+        for text in row.fails.iter().map(|f| format!("fails: {f}")).chain(row.not_checked.iter().cloned()) {
+            let _ = writeln!(out, "joint {}: {text}", row.joint);
+        }
+    }
+    out
+}
+
+/// The state of the arm just before a joint, if the arm holds that far.
+fn before(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<(usize, usize, Partial), Failure> {
+    let piece = problem
+        .space()
+        .pieces
+        .iter()
+        .position(|p| matches!(p, SpacePiece::Joint(j) if j.name == joint))
+        .ok_or_else(|| Failure::Usage(format!("the study has no joint \"{joint}\"")))?;
+    let mut found = None;
+    let walked = problem.walk(chosen, |slot, partial| {
+        if problem.piece_of_slot(slot) == piece {
+            found = Some((slot, piece, partial.clone()));
+        }
+    });
+    match (found, walked) {
+        (Some(found), _) => Ok(found),
+        (None, Err(slot)) => Err(fails(problem, chosen, slot)),
+        (None, Ok(_)) => Err(Failure::Internal(format!("joint \"{joint}\" was not met on the way"))),
+    }
+}
+
+fn sized<'p, 'c>(
+    problem: &'p ArmProblem<'c>,
+    piece: usize,
+    joint: &str,
+) -> Result<&'p crate::search::outward::SizedJoint<'c>, Failure> {
+    problem
+        .sized_joint(piece)
+        .ok_or_else(|| Failure::Usage(format!("joint {joint} has a given drive: there is nothing to choose")))
+}
+
+fn explain(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String, Failure> {
+    let (slot, piece, partial) = before(problem, chosen, joint)?;
+    let table = &sized(problem, piece, joint)?.table;
+    let demand = problem.demand_at(&partial, slot);
+    let mut out = format!("{}\n", demand_line(joint, &demand, table));
+    for rejection in table.explain(&demand) {
+        let _ = writeln!(out, "{rejection}");
+    }
+    Ok(out)
+}
+
+fn all_fits(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String, Failure> {
+    let (slot, piece, partial) = before(problem, chosen, joint)?;
+    let table = &sized(problem, piece, joint)?.table;
+    let demand = problem.demand_at(&partial, slot);
+    let mut out = format!("{}\n", demand_line(joint, &demand, table));
+    let _ = writeln!(out, "{:>9}  {:>14}  drive", "mass kg", "K2 Nm/rad");
+    for index in table.all_fits(&demand) {
+        let drive = table.drive(index);
+        let k2 = drive.gear.k2_nm_per_rad.map_or("unknown".into(), |k| format!("{k:.0}"));
+        let _ = writeln!(out, "{:>9.3}  {k2:>14}  {}", table.mass_kg(index), drive.name());
+    }
+    Ok(out)
+}
+
+fn demand_line(
+    joint: &str,
+    demand: &crate::sizing::JointDemand,
+    table: &crate::sizing::DriveTable,
+) -> String {
+    format!(
+        "joint {joint}: static {:.1} N m, peak {:.1} N m, stop {:.1} N m, mean {:.1} N m, {:.2} rad/s; {} drives are \
+         fast enough, {} hold",
+        demand.static_torque_nm,
+        demand.peak_torque_nm(),
+        demand.stop_torque_nm,
+        demand.mean_torque_nm(),
+        table.motion().speed_rad_s,
+        table.len(),
+        table.all_fits(demand).count()
+    )
+}
+
+fn fails(problem: &ArmProblem, chosen: &[u32], slot: usize) -> Failure {
+    let mut last = Partial::default();
+    let _ = problem.walk(chosen, |_, partial| last = partial.clone());
+    let piece = problem.piece_of_slot(slot);
+    match problem.sized_joint(piece) {
+        Some(sized) => {
+            let demand = problem.demand_at(&last, slot);
+            let shortfall = sized.table.smallest_shortfall(&demand);
+            Failure::Infeasible(shortfall.map_or_else(
+                || format!("joint {}: no drive of the catalogs can be checked in full", sized.table.joint()),
+                |s| s.to_string(),
+            ))
+        }
+        None => Failure::Infeasible(
+            "a link breaks a limit on stress, wall slenderness, cost or mass: choose another with --design"
+                .into(),
+        ),
+    }
+}

@@ -1,0 +1,82 @@
+//! The front as a table: one row a design, units in the column names.
+
+use std::path::Path;
+
+/// A table of designs, as written to and read from `front.csv`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FrontTable {
+    /// Column names.
+    pub columns: Vec<String>,
+    /// Rows, as many cells as columns.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// Why a front could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum FrontTableError {
+    /// The file is missing or not CSV.
+    #[error("cannot read {file}: {source}")]
+    Unreadable {
+        /// File name.
+        file: String,
+        /// The reader's reason.
+        source: csv::Error,
+    },
+    /// A column that every front has is missing.
+    #[error("{file} has no column \"{column}\": is it a front written by `armwright run`?")]
+    NoColumn {
+        /// File name.
+        file: String,
+        /// The missing column.
+        column: &'static str,
+    },
+}
+
+/// Columns that every front has.
+pub const OBJECTIVE_COLUMNS: [&str; 3] = ["tip_deflection_mm", "mass_kg", "lowest_mode_hz"];
+
+impl FrontTable {
+    /// The table as CSV text.
+    pub fn to_csv(&self) -> Vec<u8> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        for record in std::iter::once(&self.columns).chain(&self.rows) {
+            writer.write_record(record).expect("writing to memory does not fail and rows are of one length");
+        }
+        writer.into_inner().expect("flushing to memory does not fail")
+    }
+
+    /// Reads a front.
+    ///
+    /// # Errors
+    /// The file is missing, is not CSV, or lacks a column that every front has.
+    pub fn read(path: &Path) -> Result<Self, FrontTableError> {
+        let file = path.display().to_string();
+        let unreadable = |source| FrontTableError::Unreadable { file: file.clone(), source };
+        let mut reader = csv::Reader::from_path(path).map_err(unreadable)?;
+        let columns: Vec<String> = reader.headers().map_err(unreadable)?.iter().map(String::from).collect();
+        for column in OBJECTIVE_COLUMNS.into_iter().chain(["design_id"]) {
+            if !columns.iter().any(|c| c == column) {
+                return Err(FrontTableError::NoColumn { file, column });
+            }
+        }
+        let rows = reader
+            .records()
+            .map(|r| r.map(|r| r.iter().map(String::from).collect()))
+            .collect::<Result<_, _>>()
+            .map_err(unreadable)?;
+        Ok(Self { columns, rows })
+    }
+
+    /// Index of a column.
+    pub fn column(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|c| c == name)
+    }
+
+    /// A column as numbers; blank cells are `None`.
+    pub fn numbers(&self, name: &str) -> Vec<Option<f64>> {
+        match self.column(name) {
+            Some(i) => self.rows.iter().map(|r| r[i].parse().ok()).collect(),
+            None => vec![None; self.rows.len()],
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Numbers as text: with a stated number of digits for people, in shortest round-trip form for files.
+
+/// A value with `digits` significant digits, trailing zeros kept: `significant(1.4, 3)` is `1.40`.
+///
+/// From 1e-4 to 1e7 in plain decimals, beyond that with an exponent. Integers larger than `digits`
+/// digits are rounded, not cut: `significant(123456.0, 3)` is `123000`.
+pub fn significant(value: f64, digits: usize) -> String {
+    let digits = digits.max(1);
+    if value == 0.0 || !value.is_finite() {
+        return plain(value);
+    }
+    // the exponent after rounding: 9.996 with three digits is 1.00e1
+    let rounded = format!("{value:.*e}", digits - 1);
+    let Some((mantissa, exponent)) = rounded.split_once('e') else { return rounded };
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    if !(-4..7).contains(&exponent) {
+        return format!("{mantissa}e{exponent}");
+    }
+    let decimals = digits as i32 - 1 - exponent;
+    match rounded.parse::<f64>() {
+        Ok(v) => format!("{v:.*}", decimals.max(0) as usize),
+        Err(_) => rounded,
+    }
+}
+
+/// A value with `decimals` digits after the point; never `-0.00`.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let is_negative_zero = text.starts_with('-') && !text.bytes().any(|b| (b'1'..=b'9').contains(&b));
+    if is_negative_zero { text[1..].to_string() } else { text }
+}
+
+/// A change in percent with `decimals` digits and, unless it rounds to zero, its sign: `+75.2 %`.
+pub fn percent_change(ratio: f64, decimals: usize) -> String {
+    let text = fixed(100.0 * (ratio - 1.0), decimals);
+    let rises = text.bytes().any(|b| (b'1'..=b'9').contains(&b)) && !text.starts_with('-');
+    if rises { format!("+{text} %") } else { format!("{text} %") }
+}
+
+/// The shortest text that reads back as exactly the same `f64`.
+pub fn shortest(value: f64) -> String {
+    let size = value.abs();
+    if size != 0.0 && !(1e-5..1e16).contains(&size) && value.is_finite() {
+        format!("{value:e}")
+    } else {
+        plain(value)
+    }
+}
+
+fn plain(value: f64) -> String {
+    if value == 0.0 { "0".to_string() } else { format!("{value}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn significant_digits_keep_zeros_and_round_over_the_decade() {
+        assert_eq!(significant(1.4, 3), "1.40");
+        assert_eq!(significant(9.996, 3), "10.0");
+        assert_eq!(significant(123456.0, 3), "123000");
+        assert_eq!(significant(0.1 + 0.2, 4), "0.3000");
+        assert_eq!(significant(-0.00012345, 3), "-0.000123");
+        assert_eq!(significant(2.1e11, 3), "2.10e11");
+        assert_eq!(significant(0.0, 3), "0");
+    }
+
+    #[test]
+    fn fixed_never_prints_negative_zero() {
+        assert_eq!(fixed(-0.001, 2), "0.00");
+        assert_eq!(fixed(-0.01, 2), "-0.01");
+        assert_eq!(percent_change(1.752, 1), "+75.2 %");
+        assert_eq!(percent_change(0.978, 1), "-2.2 %");
+        assert_eq!(percent_change(0.99999, 1), "0.0 %");
+    }
+
+    #[test]
+    fn shortest_reads_back_as_the_same_number() {
+        for x in [0.1, 1.0 / 3.0, 2.1e11, 1e-300, 1e300, -4.25e-7, 0.0, 1e-5, 123456789.0] {
+            assert_eq!(shortest(x).parse::<f64>().ok(), Some(x));
+        }
+        assert_eq!(shortest(0.7e-6), "7e-7");
+        assert_eq!(shortest(210e9), "210000000000");
+    }
+}

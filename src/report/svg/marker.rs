@@ -1,0 +1,62 @@
+//! Outlines of markers about the origin.
+
+use super::{PALETTE, px};
+
+/// A marker's outline: circle, square, triangle up, diamond, triangle down, plus, cross, star.
+pub fn outline(style: usize, r: f64) -> String {
+    const UP: &[(f64, f64)] = &[(0.0, -1.25), (1.15, 0.8), (-1.15, 0.8)];
+    const DOWN: &[(f64, f64)] = &[(0.0, 1.25), (1.15, -0.8), (-1.15, -0.8)];
+    const SQUARE: &[(f64, f64)] = &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)];
+    const DIAMOND: &[(f64, f64)] = &[(0.0, -1.35), (1.1, 0.0), (0.0, 1.35), (-1.1, 0.0)];
+    const PLUS: &[(f64, f64)] = &[
+        (-0.4, -1.2),
+        (0.4, -1.2),
+        (0.4, -0.4),
+        (1.2, -0.4),
+        (1.2, 0.4),
+        (0.4, 0.4),
+        (0.4, 1.2),
+        (-0.4, 1.2),
+        (-0.4, 0.4),
+        (-1.2, 0.4),
+        (-1.2, -0.4),
+        (-0.4, -0.4),
+    ];
+    const STAR: &[(f64, f64)] = &[
+        (0.0, -1.4),
+        (0.33, -0.45),
+        (1.33, -0.43),
+        (0.53, 0.17),
+        (0.82, 1.13),
+        (0.0, 0.56),
+        (-0.82, 1.13),
+        (-0.53, 0.17),
+        (-1.33, -0.43),
+        (-0.33, -0.45),
+    ];
+    // beyond the palette the colours come again with other shapes
+    match (style + style / PALETTE.len()) % PALETTE.len() {
+        0 => circle(r),
+        1 => polygon(SQUARE, r, 0.0),
+        2 => polygon(UP, r, 0.0),
+        3 => polygon(DIAMOND, r, 0.0),
+        4 => polygon(DOWN, r, 0.0),
+        5 => polygon(PLUS, r, 0.0),
+        6 => polygon(PLUS, r, std::f64::consts::FRAC_PI_4),
+        _ => polygon(STAR, r, 0.0),
+    }
+}
+
+fn circle(r: f64) -> String {
+    let (r, d) = (px(r), px(2.0 * r));
+    format!("M-{r} 0a{r} {r} 0 1 0 {d} 0a{r} {r} 0 1 0 -{d} 0z")
+}
+
+fn polygon(corners: &[(f64, f64)], r: f64, turn_rad: f64) -> String {
+    let (sin, cos) = turn_rad.sin_cos();
+    let corners: Vec<String> = corners
+        .iter()
+        .map(|(x, y)| format!("{} {}", px(r * (cos * x - sin * y)), px(r * (sin * x + cos * y))))
+        .collect();
+    format!("M{}z", corners.join("L"))
+}

@@ -1,0 +1,167 @@
+//! Where an axis has its ticks and what stands beside them.
+
+use super::Scale;
+
+/// One tick.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tick {
+    /// Where it is, in data units.
+    pub value: f64,
+    /// Its label; `None` for a minor tick.
+    pub label: Option<String>,
+}
+
+/// A range widened to round numbers, and its ticks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ruling {
+    /// Scale of the axis.
+    pub scale: Scale,
+    /// Lower end in data units.
+    pub low: f64,
+    /// Upper end in data units.
+    pub high: f64,
+    /// Ticks in rising order.
+    pub ticks: Vec<Tick>,
+}
+
+/// Rules an axis over the data from `low` to `high` with about `count` labelled ticks.
+pub fn rule(scale: Scale, low: f64, high: f64, count: usize) -> Ruling {
+    match scale {
+        Scale::Linear => linear(low, high, count),
+        Scale::Log => logarithmic(low, high, count),
+    }
+}
+
+impl Ruling {
+    /// Position of a value along the axis, 0 at the lower end and 1 at the upper.
+    pub fn position(&self, value: f64) -> f64 {
+        match self.scale {
+            Scale::Linear => (value - self.low) / (self.high - self.low),
+            Scale::Log => (value / self.low).ln() / (self.high / self.low).ln(),
+        }
+    }
+}
+
+fn linear(low: f64, high: f64, count: usize) -> Ruling {
+    let (low, high) = widen(low, high);
+    // a range that nearly reaches zero starts at zero
+    let low = if low > 0.0 && low < 0.35 * high { 0.0 } else { low };
+    let (step, decimals) = nice_step((high - low) / count.max(1) as f64);
+    let first = (low / step + 1e-9).floor();
+    let last = (high / step - 1e-9).ceil();
+    let ticks = (first as i64..=last as i64)
+        .map(|i| Tick { value: i as f64 * step, label: Some(label(i as f64 * step, decimals)) })
+        .collect();
+    Ruling { scale: Scale::Linear, low: first * step, high: last * step, ticks }
+}
+
+/// A step of 1, 2, 2.5 or 5 times a power of ten that is at least `least`, and its decimals.
+fn nice_step(least: f64) -> (f64, usize) {
+    let power = least.log10().floor() as i32;
+    let unit = 10f64.powi(power);
+    let (factor, extra) = [(1.0, 0), (2.0, 0), (2.5, 1), (5.0, 0), (10.0, -1)]
+        .into_iter()
+        .find(|(f, _)| f * unit >= least * (1.0 - 1e-9))
+        .unwrap_or((10.0, -1));
+    (factor * unit, (extra - power).max(0) as usize)
+}
+
+fn logarithmic(low: f64, high: f64, count: usize) -> Ruling {
+    let (low, high) = if high / low < 1.02 { (low / 1.5, high * 1.5) } else { (low, high) };
+    let (low, high) = (stop_below(low), stop_above(high));
+    let decades = (high / low).log10();
+    let labelled: &[f64] = if decades <= 1.05 {
+        &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]
+    } else if decades <= 3.0 {
+        &[1.0, 2.0, 5.0]
+    } else {
+        &[1.0]
+    };
+    let every = ((decades / count.max(1) as f64).ceil() as i32).max(1);
+    let ticks = (low.log10().floor() as i32..=high.log10().ceil() as i32)
+        .flat_map(|power| (1..10).map(move |m| (m, power)))
+        .map(|(m, power)| (f64::from(m), power, times_power(f64::from(m), power)))
+        .filter(|(_, _, value)| (low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(value))
+        .map(|(m, power, value)| Tick {
+            value,
+            label: (labelled.contains(&m) && power.rem_euclid(every) == 0)
+                .then(|| label(value, (-power).max(0) as usize)),
+        })
+        .collect();
+    Ruling { scale: Scale::Log, low, high, ticks }
+}
+
+/// `mantissa · 10^power`, exact where the decimal number is.
+fn times_power(mantissa: f64, power: i32) -> f64 {
+    if power < 0 { mantissa / 10f64.powi(-power) } else { mantissa * 10f64.powi(power) }
+}
+
+/// Where a logarithmic axis may end within a decade.
+const STOPS: [f64; 3] = [1.0, 2.0, 5.0];
+
+fn stop_below(value: f64) -> f64 {
+    let power = value.log10().floor() as i32;
+    let candidates = STOPS.iter().map(|s| times_power(*s, power));
+    candidates.filter(|s| *s <= value * (1.0 + 1e-9)).fold(times_power(1.0, power), f64::max)
+}
+
+fn stop_above(value: f64) -> f64 {
+    let power = value.log10().floor() as i32;
+    let candidates = STOPS.iter().map(|s| times_power(*s, power));
+    candidates.filter(|s| *s >= value * (1.0 - 1e-9)).fold(times_power(1.0, power + 1), f64::min)
+}
+
+/// A range that is not empty.
+fn widen(low: f64, high: f64) -> (f64, f64) {
+    let size = low.abs().max(high.abs());
+    if high - low > 1e-9 * size {
+        (low, high)
+    } else if size == 0.0 {
+        (0.0, 1.0)
+    } else {
+        (low - 0.1 * size, high + 0.1 * size)
+    }
+}
+
+fn label(value: f64, decimals: usize) -> String {
+    let size = value.abs();
+    if size >= 1e6 || (size != 0.0 && size < 1e-4) {
+        return format!("{value:e}").replace('-', "\u{2212}");
+    }
+    crate::report::number::fixed(value, decimals).replace('-', "\u{2212}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(ruling: &Ruling) -> Vec<&str> {
+        ruling.ticks.iter().filter_map(|t| t.label.as_deref()).collect()
+    }
+
+    #[test]
+    fn linear_ticks_are_round_and_cover_the_data() {
+        let r = rule(Scale::Linear, 0.023, 0.855, 5);
+        assert_eq!(labels(&r), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        let r = rule(Scale::Linear, 13.1, 15.9, 6);
+        assert_eq!((r.low, r.high), (13.0, 16.0));
+        let r = rule(Scale::Linear, -3.0, 4.0, 5);
+        assert_eq!(labels(&r), ["\u{2212}4", "\u{2212}2", "0", "2", "4"]);
+    }
+
+    #[test]
+    fn logarithmic_ticks_label_1_2_5_and_decades() {
+        let r = rule(Scale::Log, 0.023, 0.855, 6);
+        assert_eq!(labels(&r), ["0.02", "0.05", "0.1", "0.2", "0.5", "1"]);
+        let r = rule(Scale::Log, 0.5, 30_000.0, 6);
+        assert_eq!(labels(&r), ["1", "10", "100", "1000", "10000"]);
+    }
+
+    #[test]
+    fn an_empty_range_still_has_a_width() {
+        for scale in [Scale::Linear, Scale::Log] {
+            let r = rule(scale, 2.0, 2.0, 5);
+            assert!(r.low < 2.0 && r.high > 2.0 && labels(&r).len() >= 2, "{r:?}");
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! Small aligned tables: as text for a terminal, as Markdown for a summary, as CSV for programs.
+
+/// On which side a column's cells stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Align {
+    /// Words.
+    Left,
+    /// Numbers.
+    Right,
+}
+
+/// One column.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Column {
+    /// What the column holds, with the unit in brackets where it has one: `mass [kg]`.
+    pub header: String,
+    /// Side of the cells.
+    pub align: Align,
+}
+
+impl Column {
+    /// A column of words.
+    pub fn left(header: &str) -> Self {
+        Self { header: header.to_string(), align: Align::Left }
+    }
+
+    /// A column of numbers.
+    pub fn right(header: &str) -> Self {
+        Self { header: header.to_string(), align: Align::Right }
+    }
+
+    /// A column of numbers with a unit.
+    pub fn unit(name: &str, unit: &str) -> Self {
+        Self::right(&format!("{name} [{unit}]"))
+    }
+}
+
+/// Rows of text under columns.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Table {
+    columns: Vec<Column>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table without rows.
+    pub fn new(columns: Vec<Column>) -> Self {
+        Self { columns, rows: Vec::new() }
+    }
+
+    /// Adds a row; missing cells are blank, further ones are left out.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = impl Into<String>>) {
+        let mut row: Vec<String> = cells.into_iter().map(Into::into).collect();
+        row.resize(self.columns.len(), String::new());
+        self.rows.push(row);
+    }
+
+    /// The rows so far.
+    pub fn rows(&self) -> &[Vec<String>] {
+        &self.rows
+    }
+
+    /// Aligned text with a rule under the header, two blanks between columns, no blanks at line ends.
+    pub fn to_text(&self) -> String {
+        let widths = self.widths(|cell| cell.to_string());
+        let headers: Vec<String> = self.columns.iter().map(|c| c.header.clone()).collect();
+        let rule: Vec<String> = widths.iter().map(|w| "-".repeat(*w)).collect();
+        let lines = [&headers, &rule].into_iter().chain(&self.rows);
+        lines.map(|cells| format!("{}\n", self.line(cells, &widths, "  ").trim_end())).collect()
+    }
+
+    /// A Markdown table whose source is aligned too.
+    pub fn to_markdown(&self) -> String {
+        let widths: Vec<usize> = self.widths(escape_markdown).iter().map(|w| (*w).max(3)).collect();
+        let headers: Vec<String> = self.columns.iter().map(|c| escape_markdown(&c.header)).collect();
+        let rule: Vec<String> = self
+            .columns
+            .iter()
+            .zip(&widths)
+            .map(|(column, width)| match column.align {
+                Align::Left => "-".repeat(*width),
+                Align::Right => format!("{}:", "-".repeat(width - 1)),
+            })
+            .collect();
+        let escaped: Vec<Vec<String>> =
+            self.rows.iter().map(|row| row.iter().map(|cell| escape_markdown(cell)).collect()).collect();
+        [headers, rule]
+            .iter()
+            .chain(&escaped)
+            .map(|cells| format!("| {} |\n", self.line(cells, &widths, " | ")))
+            .collect()
+    }
+
+    /// CSV with the headers as they are; cells are quoted where they must be.
+    pub fn to_csv(&self) -> String {
+        let headers: Vec<String> = self.columns.iter().map(|c| c.header.clone()).collect();
+        std::iter::once(&headers).chain(&self.rows).map(|cells| csv_line(cells)).collect()
+    }
+
+    fn widths(&self, shown: impl Fn(&str) -> String) -> Vec<usize> {
+        let mut widths: Vec<usize> = self.columns.iter().map(|c| length(&shown(&c.header))).collect();
+        for row in &self.rows {
+            for (width, cell) in widths.iter_mut().zip(row) {
+                *width = (*width).max(length(&shown(cell)));
+            }
+        }
+        widths
+    }
+
+    fn line(&self, cells: &[String], widths: &[usize], between: &str) -> String {
+        let padded: Vec<String> = cells
+            .iter()
+            .zip(widths)
+            .zip(&self.columns)
+            .map(|((cell, width), column)| pad(cell, *width, column.align))
+            .collect();
+        padded.join(between)
+    }
+}
+
+/// One line of CSV with its line end.
+pub fn csv_line(cells: &[String]) -> String {
+    let quoted: Vec<String> = cells.iter().map(|cell| csv_cell(cell)).collect();
+    format!("{}\n", quoted.join(","))
+}
+
+fn csv_cell(cell: &str) -> String {
+    if cell.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    } else {
+        cell.to_string()
+    }
+}
+
+fn pad(cell: &str, width: usize, align: Align) -> String {
+    let blanks = " ".repeat(width.saturating_sub(length(cell)));
+    match align {
+        Align::Left => format!("{cell}{blanks}"),
+        Align::Right => format!("{blanks}{cell}"),
+    }
+}
+
+fn length(text: &str) -> usize {
+    text.chars().count()
+}
+
+fn escape_markdown(cell: &str) -> String {
+    cell.replace('|', "\\|")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> Table {
+        let mut table = Table::new(vec![Column::left("joint"), Column::unit("torque", "N m")]);
+        table.row(["j2", "568.3"]);
+        table.row(["j3 | wrist, \"bent\"", "2.45"]);
+        table
+    }
+
+    #[test]
+    fn text_is_aligned_and_has_no_trailing_blanks() {
+        let expected = "joint               torque [N m]\n\
+                        ------------------  ------------\n\
+                        j2                         568.3\n\
+                        j3 | wrist, \"bent\"          2.45\n";
+        assert_eq!(table().to_text(), expected);
+    }
+
+    #[test]
+    fn markdown_escapes_bars_and_marks_numbers() {
+        let text = table().to_markdown();
+        assert!(text.contains("j3 \\| wrist") && text.contains("-----------: |"));
+        assert!(text.lines().all(|line| line.starts_with("| ") && line.ends_with(" |")));
+    }
+
+    #[test]
+    fn csv_quotes_what_must_be_quoted() {
+        assert!(table().to_csv().ends_with("\"j3 | wrist, \"\"bent\"\"\",2.45\n"));
+    }
+}

@@ -1,0 +1,191 @@
+//! One complete design: its parts, its arm, and its objectives by the full model.
+
+use super::outward::ArmProblem;
+use super::space::{DriveChoice, LinkOption, SpacePiece};
+use super::{Objectives, OutwardIn};
+use crate::arm::{Arm, Curve, Element, Joint, LoadCase, windup_of};
+use crate::mechanics::Chain;
+use crate::sizing::Drive;
+
+/// The part chosen for one piece of the arm.
+#[derive(Debug, Clone)]
+pub enum Part<'a> {
+    /// A drive of the catalogs.
+    Drive(Drive<'a>),
+    /// A material and section.
+    Link(&'a LinkOption),
+    /// Nothing was chosen here.
+    Given,
+}
+
+/// A design judged by the full model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evaluated {
+    /// Number of the design in its space.
+    pub number: u128,
+    /// Objectives by the full model.
+    pub objectives: Objectives,
+    /// Group (material) if all its links are of one.
+    pub group: Option<usize>,
+}
+
+/// Number of the design with these options, one a level: a mixed-radix number, the tip's level the
+/// most significant.
+pub fn number(level_sizes: &[u32], options: &[u32]) -> u128 {
+    level_sizes.iter().zip(options).fold(0, |n, (&size, &option)| n * u128::from(size) + u128::from(option))
+}
+
+/// Options, one a level, of a numbered design; `None` if there is no such design.
+pub fn options(level_sizes: &[u32], mut number: u128) -> Option<Vec<u32>> {
+    let mut out = vec![0; level_sizes.len()];
+    for (slot, &size) in out.iter_mut().zip(level_sizes).rev() {
+        *slot = (number % u128::from(size)) as u32;
+        number /= u128::from(size);
+    }
+    (number == 0).then_some(out)
+}
+
+/// A design's name in files: its number in base 36.
+pub fn id_of(mut number: u128) -> String {
+    let mut digits = Vec::new();
+    while digits.is_empty() || number > 0 {
+        digits.push(char::from_digit((number % 36) as u32, 36).unwrap_or('?'));
+        number /= 36;
+    }
+    digits.iter().rev().collect()
+}
+
+/// The number behind a design's name.
+pub fn number_of(id: &str) -> Option<u128> {
+    if id.is_empty() {
+        return None;
+    }
+    id.chars().try_fold(0u128, |n, c| n.checked_mul(36)?.checked_add(u128::from(c.to_digit(36)?)))
+}
+
+impl<'c> ArmProblem<'c> {
+    /// The parts of a design, base to tip; `None` if the design cannot hold.
+    pub fn parts(&self, options: &[u32]) -> Option<Vec<Part<'c>>> {
+        let complete = self.walk(options, |_, _| {}).ok()?;
+        let parts = self
+            .space()
+            .pieces
+            .iter()
+            .enumerate()
+            .zip(self.options(&complete))
+            .map(|((piece, what), option)| match what {
+                SpacePiece::Choice(choice) => Part::Link(&choice.options[option as usize]),
+                SpacePiece::Joint(_) => self
+                    .sized_joint(piece)
+                    .map_or(Part::Given, |s| Part::Drive(s.table.drive(option as usize))),
+                SpacePiece::Link(_) => Part::Given,
+            })
+            .collect();
+        Some(parts)
+    }
+
+    /// The arm of a design with every part resolved to numbers.
+    pub fn arm(&self, options: &[u32]) -> Option<Arm> {
+        let parts = self.parts(options)?;
+        let space = self.space();
+        let chain = space
+            .pieces
+            .iter()
+            .zip(parts)
+            .map(|(piece, part)| match (piece, part) {
+                (SpacePiece::Choice(choice), Part::Link(option)) => Some(Element::Link(choice.link(option))),
+                (SpacePiece::Link(link), _) => Some(Element::Link(link.clone())),
+                (SpacePiece::Joint(joint), part) => {
+                    let (curve, mass_kg, names) = drive_of(&joint.drive, &part)?;
+                    let (gear, motor) = names.unzip();
+                    Some(Element::Joint(Joint {
+                        name: joint.name.clone(),
+                        axis: joint.axis,
+                        curve,
+                        mass_kg,
+                        gear,
+                        motor,
+                        coupled: None,
+                    }))
+                }
+                _ => None,
+            })
+            .collect::<Option<Vec<_>>>()?;
+        Some(Arm { name: space.name.clone(), gravity_m_s2: space.gravity_m_s2, chain, effects: Vec::new() })
+    }
+
+    /// The cases that objectives are taken over, as load cases.
+    pub fn load_cases(&self) -> Vec<LoadCase> {
+        let space = self.space();
+        space
+            .judged_cases
+            .iter()
+            .map(|&i| &space.cases[i])
+            .map(|case| LoadCase {
+                name: case.name.clone(),
+                pose_deg: case.pose_deg.clone(),
+                payload: case.payload,
+                tip_force_n: case.tip_force_n,
+                links: space.links,
+                joints: space.joints,
+                water: case.water,
+            })
+            .collect()
+    }
+}
+
+type NamedParts = Option<(String, String)>;
+
+fn drive_of(choice: &DriveChoice, part: &Part) -> Option<(Curve, f64, NamedParts)> {
+    match (choice, part) {
+        (DriveChoice::Given { curve, mass_kg, parts }, _) => Some((*curve, *mass_kg, parts.clone())),
+        (_, Part::Drive(drive)) => {
+            let curve = windup_of(drive.gear).map_or(Curve::Rigid, Curve::Windup);
+            let names = (drive.gear.id.clone(), drive.motor.id.clone());
+            Some((curve, drive.mass_kg().ok()?, Some(names)))
+        }
+        _ => None,
+    }
+}
+
+/// Objectives of an arm over load cases by the full model: what `analyze` prints.
+pub fn full_objectives(arm: &Arm, cases: &[LoadCase]) -> Objectives {
+    let mut out = Objectives { tip_deflection_m: 0.0, mass_kg: arm.mass_kg(), lowest_mode_hz: f64::INFINITY };
+    for case in cases {
+        let mut structure = arm.structure(case.joints);
+        structure.water = case.water.or(structure.water);
+        let chain = Chain::new(&structure, case.links);
+        let posed = chain.pose(case);
+        let statics = posed.statics();
+        out.tip_deflection_m = out.tip_deflection_m.max(statics.tip_displacement_m.norm());
+        let lowest = posed.modes(&statics, 1).first().map_or(f64::INFINITY, |m| m.frequency_hz);
+        out.lowest_mode_hz = out.lowest_mode_hz.min(lowest);
+    }
+    out
+}
+
+/// Judges a numbered design by the full model.
+pub fn evaluate(problem: &ArmProblem, number: u128) -> Option<Evaluated> {
+    let options = options(problem.level_sizes(), number)?;
+    let complete = problem.walk(&options, |_, _| {}).ok()?;
+    let arm = problem.arm(&options)?;
+    let objectives = full_objectives(&arm, &problem.load_cases());
+    Some(Evaluated { number, objectives, group: problem.group(&complete) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_and_names_are_one_to_one() {
+        let sizes = [3, 7, 2];
+        for n in 0..42 {
+            let o = options(&sizes, n).expect("in range");
+            assert_eq!(number(&sizes, &o), n);
+            assert_eq!(number_of(&id_of(n)), Some(n));
+        }
+        assert_eq!(options(&sizes, 42), None);
+        assert_eq!(number_of("not an id"), None);
+    }
+}

@@ -1,0 +1,581 @@
+//! The arm behind the search's trait: built from the tip inward, each joint sized when everything
+//! outboard of it is known (Eqs 7-12), deflection and inertia carried along (Eqs 13-16).
+
+use super::space::{DesignSpace, DriveChoice, LinkChoice, LinkOption, SpaceJoint, SpacePiece};
+use super::station::{
+    Block, BlockSlot, Modal, Place, Station, StationJoint, StationLink, StationSlot, reaches_m,
+};
+use super::{Objectives, OutwardIn};
+use crate::arm::{Curve, Link, LinkBody, LinkPiece, Section, windup_of};
+use crate::catalog::Catalogs;
+use crate::mechanics::lowest::{Step, frequency_hz, lowest_eigenvalue};
+use crate::mechanics::{Wrench, angular, linear};
+use crate::sizing::{DriveFilter, DriveTable, JointDemand, JointMotion};
+use nalgebra::{Matrix6, Vector3, Vector6};
+
+/// The search's view of a design space: drives tabulated, poses compiled.
+pub struct ArmProblem<'c> {
+    space: &'c DesignSpace,
+    slots: Vec<Slot<'c>>,
+    level_slots: Vec<usize>,
+    level_sizes: Vec<u32>,
+    stations: Vec<Station>,
+    materials: usize,
+    peak_factor: f64,
+}
+
+/// One piece of the chain, tip first.
+enum Slot<'c> {
+    Given { curve: Curve, mass_kg: f64 },
+    Sized(SizedJoint<'c>),
+    Link { options: Vec<OptionFigures>, open: bool },
+    Offset { mass_kg: f64 },
+}
+
+/// A joint whose drive the catalogs give.
+pub struct SizedJoint<'c> {
+    /// Every legal drive, lightest first.
+    pub table: DriveTable<'c>,
+    curves: Vec<Curve>,
+    all_fits: bool,
+}
+
+/// What the search needs of a link option besides its mechanics.
+struct OptionFigures {
+    mass_kg: f64,
+    material: Option<usize>,
+    cost_eur: Option<f64>,
+    stress: Option<StressCheck>,
+    slender: bool,
+}
+
+/// Von Mises stress at a link's ends from force and moment in its section frame.
+struct StressCheck {
+    per_axial_n: f64,
+    per_moment_y: f64,
+    per_moment_z: f64,
+    per_torsion: f64,
+    round: bool,
+    strength_pa: f64,
+}
+
+/// An arm from the tip to some level.
+#[derive(Debug, Clone, Default)]
+pub struct Partial {
+    next_slot: usize,
+    mass_kg: f64,
+    cost_eur: f64,
+    group: Group,
+    /// Largest stress over strength at peak load, where strengths are known.
+    stress_ratio: f64,
+    /// Option per slot.
+    options: Vec<u32>,
+    /// Drive or point mass per slot \[kg\].
+    masses_kg: Vec<f64>,
+    stations: Vec<StationState>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+enum Group {
+    #[default]
+    None,
+    One(usize),
+    Mixed,
+}
+
+/// What everything outboard does in one case.
+#[derive(Debug, Clone, PartialEq)]
+struct StationState {
+    wrench: Wrench,
+    inertia: Matrix6<f64>,
+    tip_m: Vector3<f64>,
+    /// Dunkerley's sum per block \[s²\].
+    trace_s2: [f64; 2],
+    /// Tangent compliance per slot \[rad/(N m)\].
+    compliances: Vec<f64>,
+}
+
+impl<'c> ArmProblem<'c> {
+    /// Tabulates drives and compiles poses.
+    pub fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Self {
+        let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
+        let mut reaches = reaches_m(space, sizing).into_iter();
+        let mut slots: Vec<Slot> = space
+            .pieces
+            .iter()
+            .map(|piece| match piece {
+                SpacePiece::Joint(joint) => {
+                    joint_slot(space, joint, reaches.next().unwrap_or_default(), catalogs)
+                }
+                SpacePiece::Link(link) => link_slot(space, link),
+                SpacePiece::Choice(choice) => choice_slot(space, choice),
+            })
+            .collect();
+        slots.reverse();
+        let level_slots: Vec<usize> = (0..slots.len()).filter(|&i| slots[i].is_level()).collect();
+        let level_sizes = level_slots.iter().map(|&i| slots[i].options()).collect();
+        let a_over_g = space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE);
+        Self {
+            space,
+            level_slots,
+            level_sizes,
+            stations: space.cases.iter().map(|case| Station::new(space, case)).collect(),
+            materials: space.material_names().len(),
+            peak_factor: 1.0 + a_over_g,
+            slots,
+        }
+    }
+
+    /// The design space.
+    pub fn space(&self) -> &'c DesignSpace {
+        self.space
+    }
+
+    /// The table of a sized joint by its place among the pieces, base to tip.
+    pub fn sized_joint(&self, piece: usize) -> Option<&SizedJoint<'c>> {
+        match &self.slots[self.slots.len() - 1 - piece] {
+            Slot::Sized(sized) => Some(sized),
+            _ => None,
+        }
+    }
+
+    /// Smallest strength over stress of an arm at peak load; `None` if no strength is known.
+    pub fn stress_safety_factor(&self, partial: &Partial) -> Option<f64> {
+        (partial.stress_ratio > 0.0).then(|| 1.0 / partial.stress_ratio)
+    }
+
+    /// Cost of the chosen links' material \[EUR\]; `None` if a cost is unknown.
+    pub fn material_cost_eur(&self, partial: &Partial) -> Option<f64> {
+        let known = self.slots.iter().zip(&partial.options).all(|(slot, &option)| match slot {
+            Slot::Link { options, open: true } => options[option as usize].cost_eur.is_some(),
+            _ => true,
+        });
+        known.then_some(partial.cost_eur)
+    }
+
+    /// Mass of an arm so far \[kg\].
+    pub fn mass_kg(&self, partial: &Partial) -> f64 {
+        partial.mass_kg
+    }
+
+    /// Option of every piece of a complete arm, base to tip.
+    pub fn options<'p>(&self, complete: &'p Partial) -> impl Iterator<Item = u32> + 'p {
+        complete.options.iter().rev().copied()
+    }
+
+    /// What each sized joint of an arm is asked for, base to tip, as pairs of piece and demand; and the mass
+    /// outboard of each.
+    pub fn demand_at(&self, partial: &Partial, slot: usize) -> JointDemand {
+        self.demand(&partial.stations, slot, self.slots[slot].motion())
+    }
+
+    /// Walks a complete choice (one option a level) and shows every joint's demand on the way, tip first:
+    /// `(slot, demand, mass outboard)`. Returns the arm, or the slot at which it fails.
+    pub fn walk(&self, options: &[u32], mut see: impl FnMut(usize, &Partial)) -> Result<Partial, usize> {
+        let mut partial = self.empty();
+        let mut levels = options.iter();
+        while partial.next_slot < self.slots.len() {
+            let slot = partial.next_slot;
+            see(slot, &partial);
+            let option = if self.slots[slot].is_level() { levels.next().copied().unwrap_or(0) } else { 0 };
+            if !self.add(slot, option, &mut partial) {
+                return Err(slot);
+            }
+        }
+        Ok(partial)
+    }
+
+    /// The piece (base to tip) that stands in a slot (tip first).
+    pub fn piece_of_slot(&self, slot: usize) -> usize {
+        self.slots.len() - 1 - slot
+    }
+
+    fn empty(&self) -> Partial {
+        Partial {
+            options: vec![0; self.slots.len()],
+            masses_kg: vec![0.0; self.slots.len()],
+            stations: self
+                .stations
+                .iter()
+                .map(|station| StationState {
+                    wrench: station.start_wrench,
+                    inertia: station.start_inertia,
+                    tip_m: Vector3::zeros(),
+                    trace_s2: [0.0; 2],
+                    compliances: vec![0.0; self.slots.len()],
+                })
+                .collect(),
+            ..Partial::default()
+        }
+    }
+
+    /// Adds pieces without a choice until the next level.
+    fn advance(&self, partial: &mut Partial) -> bool {
+        while partial.next_slot < self.slots.len() && !self.slots[partial.next_slot].is_level() {
+            if !self.add(partial.next_slot, 0, partial) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Adds one piece inboard; `false` if the arm cannot hold with it.
+    fn add(&self, slot: usize, option: u32, to: &mut Partial) -> bool {
+        to.next_slot = slot + 1;
+        to.options[slot] = option;
+        let added = match &self.slots[slot] {
+            Slot::Given { curve, mass_kg } => self.add_joint(slot, curve, *mass_kg, to),
+            Slot::Sized(sized) => self.add_sized(slot, sized, option, to),
+            Slot::Link { options, .. } => self.add_link(slot, option, &options[option as usize], to),
+            Slot::Offset { mass_kg } => self.add_offset(slot, *mass_kg, to),
+        };
+        added && self.space.constraints.mass_max_kg.is_none_or(|max| to.mass_kg <= max)
+    }
+
+    fn add_sized(&self, slot: usize, sized: &SizedJoint, option: u32, to: &mut Partial) -> bool {
+        let demand = self.demand(&to.stations, slot, Some(sized.table.motion()));
+        let index = match sized.all_fits {
+            true => Some(option as usize).filter(|&i| sized.table.limits(i).hold(&demand)),
+            false => sized.table.first_fit(&demand),
+        };
+        let Some(index) = index else { return false };
+        to.options[slot] = index as u32;
+        self.add_joint(slot, &sized.curves[index], sized.table.mass_kg(index), to)
+    }
+
+    /// What a joint is asked for: worst static torque and worst outboard inertia over the sizing cases.
+    fn demand(&self, states: &[StationState], slot: usize, motion: Option<&JointMotion>) -> JointDemand {
+        let (mut static_nm, mut inertia_kgm2) = (0.0f64, 0.0f64);
+        for &case in &self.space.sizing_cases {
+            let StationSlot::Joint(joint) = &self.stations[case].slots[slot] else { continue };
+            let state = &states[case];
+            static_nm = static_nm.max(joint.twist.dot(&state.wrench).abs());
+            inertia_kgm2 = inertia_kgm2.max(joint.twist.dot(&(state.inertia * joint.twist)));
+        }
+        motion.map_or_else(
+            || self.space.motion.joint_motion(0.0, None).demand(static_nm, inertia_kgm2),
+            |motion| motion.demand(static_nm, inertia_kgm2),
+        )
+    }
+
+    fn add_joint(&self, slot: usize, curve: &Curve, mass_kg: f64, to: &mut Partial) -> bool {
+        to.mass_kg += mass_kg;
+        to.masses_kg[slot] = mass_kg;
+        for (station, state) in self.stations.iter().zip(&mut to.stations) {
+            if let StationSlot::Joint(joint) = &station.slots[slot] {
+                state.add_joint(slot, joint, curve, mass_kg);
+            }
+        }
+        true
+    }
+
+    fn add_offset(&self, slot: usize, mass_kg: f64, to: &mut Partial) -> bool {
+        to.mass_kg += mass_kg;
+        for (station, state) in self.stations.iter().zip(&mut to.stations) {
+            if let StationSlot::Body { inertia, weight } = &station.slots[slot] {
+                state.inertia += inertia;
+                state.wrench += weight;
+            }
+        }
+        true
+    }
+
+    fn add_link(&self, slot: usize, option: u32, figures: &OptionFigures, to: &mut Partial) -> bool {
+        if figures.slender {
+            return false;
+        }
+        to.mass_kg += figures.mass_kg;
+        to.cost_eur += figures.cost_eur.unwrap_or(0.0);
+        to.group = to.group.with(figures.material);
+        if self.space.constraints.material_cost_max_eur.is_some_and(|max| to.cost_eur > max) {
+            return false;
+        }
+        for (case, (station, state)) in self.stations.iter().zip(&mut to.stations).enumerate() {
+            let StationSlot::Link { options, place } = &station.slots[slot] else { continue };
+            let outboard = state.wrench;
+            state.add_link(&options[option as usize]);
+            if let Some(stress) = figures.stress.as_ref().filter(|_| self.space.sizing_cases.contains(&case))
+            {
+                for (wrench, at_m) in [(&outboard, &place.end_m), (&state.wrench, &place.root_m)] {
+                    let ratio = stress.ratio(wrench, at_m, place) * self.peak_factor;
+                    to.stress_ratio = to.stress_ratio.max(ratio);
+                }
+            }
+        }
+        self.space.constraints.stress_safety_factor_min.is_none_or(|least| to.stress_ratio * least <= 1.0)
+    }
+
+    /// The cases that objectives are taken over.
+    fn judged<'s>(&'s self, complete: &'s Partial) -> impl Iterator<Item = (&'s Station, &'s StationState)> {
+        self.space.judged_cases.iter().map(|&i| (&self.stations[i], &complete.stations[i]))
+    }
+
+    fn lowest_mode_hz(&self, complete: &Partial) -> f64 {
+        let lowest = self
+            .judged(complete)
+            .map(|(station, state)| match &station.modal {
+                Modal::Planar(blocks) => {
+                    let [within, across] = &**blocks;
+                    block_eigenvalue(within, complete, state, state.trace_s2[0]).min(block_eigenvalue(
+                        across,
+                        complete,
+                        state,
+                        state.trace_s2[1],
+                    ))
+                }
+                Modal::Spatial(block) => block_eigenvalue(block, complete, state, state.trace_s2[0]),
+            })
+            .fold(f64::INFINITY, f64::min);
+        frequency_hz(lowest)
+    }
+}
+
+fn block_eigenvalue<const N: usize>(
+    block: &Block<N>,
+    complete: &Partial,
+    state: &StationState,
+    trace_s2: f64,
+) -> f64 {
+    let mut steps = Vec::with_capacity(2 * block.slots.len() + 1);
+    steps.push(Step::Body(1.0, &block.payload));
+    for (slot, piece) in block.slots.iter().enumerate() {
+        match piece {
+            BlockSlot::Joint { twist, inertia_per_kg } => {
+                if state.compliances[slot] > 0.0 && twist.amax() > 0.0 {
+                    steps.push(Step::Joint(twist, state.compliances[slot]));
+                }
+                if complete.masses_kg[slot] > 0.0 {
+                    steps.push(Step::Body(complete.masses_kg[slot], inertia_per_kg));
+                }
+            }
+            BlockSlot::Body(inertia) => steps.push(Step::Body(1.0, inertia)),
+            BlockSlot::Links(options) => steps.push(Step::Link(&options[complete.options[slot] as usize])),
+        }
+    }
+    lowest_eigenvalue(&steps, trace_s2)
+}
+
+impl StationState {
+    fn add_joint(&mut self, slot: usize, joint: &StationJoint, curve: &Curve, mass_kg: f64) {
+        let torque_nm = joint.twist.dot(&self.wrench);
+        let compliance = curve.tangent_compliance_rad_per_nm(torque_nm);
+        self.tip_m += joint.tip_m_per_rad * curve.angle_rad(torque_nm);
+        self.compliances[slot] = compliance;
+        self.trace_s2[joint.block] += compliance * joint.twist.dot(&(self.inertia * joint.twist));
+        self.inertia += joint.inertia_per_kg * mass_kg;
+        self.wrench += joint.weight_per_kg * mass_kg;
+    }
+
+    fn add_link(&mut self, link: &StationLink) {
+        let end = link.end.tr_mul(&self.wrench) + link.sag;
+        self.tip_m += link.tip * end;
+        let carried = self.inertia * link.end;
+        for g in 0..6 {
+            let own: f64 = link.end.column(g).dot(&carried.column(g)) + link.end_inertia[g];
+            self.trace_s2[link.block[g]] += own;
+        }
+        self.trace_s2.iter_mut().for_each(|t| *t += link.inner_trace_s2);
+        self.inertia += link.inertia;
+        self.wrench += link.weight;
+    }
+}
+
+impl OutwardIn for ArmProblem<'_> {
+    type Partial = Partial;
+
+    fn level_sizes(&self) -> &[u32] {
+        &self.level_sizes
+    }
+
+    fn root(&self) -> Option<Partial> {
+        let mut partial = self.empty();
+        self.advance(&mut partial).then_some(partial)
+    }
+
+    fn extend(&self, level: usize, option: u32, from: &Partial, to: &mut Partial) -> bool {
+        to.clone_from(from);
+        self.add(self.level_slots[level], option, to) && self.advance(to)
+    }
+
+    fn objectives(&self, complete: &Partial) -> Option<Objectives> {
+        let tip_deflection_m = self.judged(complete).map(|(_, s)| s.tip_m.norm()).fold(0.0, f64::max);
+        let lowest_mode_hz = self.lowest_mode_hz(complete);
+        Some(Objectives { tip_deflection_m, mass_kg: complete.mass_kg, lowest_mode_hz })
+    }
+
+    fn groups(&self) -> usize {
+        self.materials
+    }
+
+    fn group(&self, complete: &Partial) -> Option<usize> {
+        match complete.group {
+            Group::One(material) => Some(material),
+            _ => None,
+        }
+    }
+}
+
+impl SizedJoint<'_> {
+    /// Whether its drive is a choice of the search.
+    pub fn is_level(&self) -> bool {
+        self.all_fits
+    }
+}
+
+impl Group {
+    fn with(self, material: Option<usize>) -> Self {
+        match (self, material) {
+            (group, None) => group,
+            (Group::None, Some(m)) => Group::One(m),
+            (Group::One(a), Some(m)) if a == m => Group::One(a),
+            _ => Group::Mixed,
+        }
+    }
+}
+
+impl Slot<'_> {
+    fn is_level(&self) -> bool {
+        matches!(self, Slot::Link { open: true, .. } | Slot::Sized(SizedJoint { all_fits: true, .. }))
+    }
+
+    fn options(&self) -> u32 {
+        match self {
+            Slot::Link { options, .. } => options.len() as u32,
+            Slot::Sized(sized) => sized.table.len() as u32,
+            _ => 1,
+        }
+    }
+
+    fn motion(&self) -> Option<&JointMotion> {
+        match self {
+            Slot::Sized(sized) => Some(sized.table.motion()),
+            _ => None,
+        }
+    }
+}
+
+impl StressCheck {
+    fn new(option: &LinkOption) -> Option<Self> {
+        let p = option.section.properties(option.material.poisson);
+        let (width, height) = option.section.outer_m();
+        let wall = option.section.wall_m();
+        let round = matches!(option.section, Section::RoundTube { .. });
+        let enclosed = match round {
+            true => std::f64::consts::PI / 4.0 * (width - wall).powi(2),
+            false => (width - wall) * (height - wall),
+        };
+        Some(Self {
+            per_axial_n: 1.0 / p.area_m2,
+            per_moment_y: height / 2.0 / p.second_moment_y_m4,
+            per_moment_z: width / 2.0 / p.second_moment_z_m4,
+            per_torsion: 1.0 / (2.0 * enclosed * wall),
+            round,
+            strength_pa: option.strength_pa?,
+        })
+    }
+
+    /// Von Mises stress of bending, axial force and torsion at an end, over the strength.
+    fn ratio(&self, wrench: &Vector6<f64>, at_m: &Vector3<f64>, place: &Place) -> f64 {
+        let force = place.frame.tr_mul(&linear(wrench));
+        let moment = place.frame.tr_mul(&(angular(wrench) - at_m.cross(&linear(wrench))));
+        let (y, z) = (moment.y.abs() * self.per_moment_y, moment.z.abs() * self.per_moment_z);
+        let bending = if self.round { y.hypot(z) } else { y + z };
+        let normal = force.x.abs() * self.per_axial_n + bending;
+        let shear = moment.x.abs() * self.per_torsion;
+        (normal * normal + 3.0 * shear * shear).sqrt() / self.strength_pa
+    }
+}
+
+fn joint_slot<'c>(space: &DesignSpace, joint: &SpaceJoint, reach_m: f64, catalogs: &'c Catalogs) -> Slot<'c> {
+    let (filter, all_fits) = match &joint.drive {
+        DriveChoice::Given { curve, mass_kg, .. } => {
+            return Slot::Given { curve: space.curve(*curve), mass_kg: *mass_kg };
+        }
+        DriveChoice::FirstFit(filter) => (filter, false),
+        DriveChoice::AllFits(filter) => (filter, true),
+    };
+    let motion = space.motion.joint_motion(reach_m, joint.max_speed_rad_s);
+    let table = DriveTable::build(
+        &joint.name,
+        motion,
+        &with_curve(filter, catalogs),
+        &catalogs.gears,
+        &catalogs.motors,
+    );
+    let curves = (0..table.len())
+        .map(|i| windup_of(table.drive(i).gear).map_or(Curve::Rigid, |w| space.curve(Curve::Windup(w))))
+        .collect();
+    Slot::Sized(SizedJoint { table, curves, all_fits })
+}
+
+/// Leaves out gears without a complete torsion curve: what they would deflect cannot be said.
+fn with_curve(filter: &DriveFilter, catalogs: &Catalogs) -> DriveFilter {
+    let known = catalogs.gears.iter().filter(|g| filter.allows_gear(g) && windup_of(g).is_some());
+    DriveFilter { gear_ids: Some(known.map(|g| g.id.clone()).collect()), ..filter.clone() }
+}
+
+fn link_slot<'c>(space: &DesignSpace, link: &Link) -> Slot<'c> {
+    match &link.body {
+        LinkBody::Offset { mass_kg } => Slot::Offset { mass_kg: *mass_kg },
+        LinkBody::Tube { material, section, .. } => {
+            let option = LinkOption {
+                material_index: 0,
+                material_name: String::new(),
+                material: *material,
+                section: *section,
+                profile: None,
+                strength_pa: None,
+                cost_eur_per_kg: None,
+            };
+            let mut figures = figures(space, &option, link.vector_m.norm());
+            figures.material = None;
+            Slot::Link { options: vec![figures], open: false }
+        }
+    }
+}
+
+fn choice_slot<'c>(space: &DesignSpace, choice: &LinkChoice) -> Slot<'c> {
+    let length_m = choice.vector_m.norm();
+    Slot::Link { options: choice.options.iter().map(|o| figures(space, o, length_m)).collect(), open: true }
+}
+
+fn figures(space: &DesignSpace, option: &LinkOption, length_m: f64) -> OptionFigures {
+    let mass_kg = option.mass_kg_per_m() * length_m;
+    OptionFigures {
+        slender: space.constraints.wall_slenderness_max.is_some_and(|max| option.wall_slenderness() > max),
+        mass_kg,
+        material: Some(option.material_index),
+        cost_eur: option.cost_eur_per_kg.map(|cost| cost * mass_kg),
+        stress: StressCheck::new(option),
+    }
+}
+
+impl DesignSpace {
+    /// A torsion curve under the study's joint model.
+    pub fn curve(&self, curve: Curve) -> Curve {
+        match self.joints {
+            crate::arm::JointModel::K2 => curve.middle_slope(),
+            crate::arm::JointModel::ThreeSegment => curve,
+        }
+    }
+}
+
+impl LinkChoice {
+    /// The link with one of its options.
+    pub fn link(&self, option: &LinkOption) -> Link {
+        Link {
+            name: self.name.clone(),
+            vector_m: self.vector_m,
+            body: LinkBody::Tube {
+                material_name: option.material_name.clone(),
+                material: option.material,
+                section: option.section,
+            },
+        }
+    }
+}
+
+/// A link as mechanics sees it.
+pub(super) fn link_piece(link: &Link) -> LinkPiece {
+    crate::arm::link_piece(link)
+}

@@ -1,0 +1,325 @@
+//! Visiting every design, in parallel and in constant memory.
+//!
+//! The tree's first levels are cut into tasks; each task walks its part depth first with one partial
+//! arm a level. Designs that something else clearly beats are dropped at once ([`Archive`]); the rest
+//! are filtered exactly now and then, so that memory follows the front and not the space. What is kept
+//! at the end does not depend on the order of visits or the number of threads.
+
+use super::archive::Archive;
+use super::constraint::Constraints;
+use super::design::number;
+use super::front::not_clearly_beaten;
+use super::{Objectives, OutwardIn};
+use rayon::prelude::*;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// Two designs closer than this in an objective are told apart by the full model, not by the sweep.
+pub const SLACK: f64 = 1e-7;
+/// Candidates are filtered whenever there are this many more than after the last filtering.
+const BUFFER: usize = 1 << 15;
+/// Tasks to aim for: enough for balance and for a progress report.
+const TASKS: u128 = 512;
+
+/// How a search ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// Every design was visited.
+    Complete,
+    /// Every design was visited and none meets the constraints.
+    Infeasible,
+    /// Stopped before every design was visited.
+    Interrupted,
+}
+
+impl Status {
+    /// The word in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Status::Complete => "complete",
+            Status::Infeasible => "infeasible",
+            Status::Interrupted => "interrupted",
+        }
+    }
+}
+
+/// A design that no other clearly beats.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// Number of the design in its space.
+    pub number: u128,
+    /// Its objectives by the fast model.
+    pub objectives: Objectives,
+}
+
+/// What a sweep found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SweepOutcome {
+    /// How it ended.
+    pub status: Status,
+    /// Designs in the space.
+    pub designs_total: u128,
+    /// Designs whose three objectives were computed.
+    pub designs_evaluated: u64,
+    /// Designs left out because their outboard part, or a drive, stress, mass or cost limit, cannot hold.
+    pub designs_excluded: u128,
+    /// Candidates of the front of all designs.
+    pub front: Vec<Candidate>,
+    /// Candidates of each group's own front.
+    pub groups: Vec<Vec<Candidate>>,
+    /// The best of each objective among the designs that break only that objective's constraint:
+    /// the smallest relaxation that would help.
+    pub near_misses: [Option<f64>; 3],
+}
+
+/// A sweep that others can watch and stop.
+pub struct Sweep<'p, P: OutwardIn> {
+    problem: &'p P,
+    constraints: Constraints,
+    visited: AtomicU64,
+    stop: &'p AtomicBool,
+}
+
+/// Candidates of one front, shared by the tasks.
+struct Pool {
+    archive: Archive,
+    candidates: Mutex<(Vec<Candidate>, usize)>,
+}
+
+impl Pool {
+    fn new(cells: usize) -> Self {
+        Self { archive: Archive::new(cells), candidates: Mutex::new((Vec::new(), 0)) }
+    }
+
+    fn offer(&self, candidate: Candidate, buffer: &mut Vec<Candidate>) {
+        if self.archive.rejects(&candidate.objectives) {
+            return;
+        }
+        self.archive.enter(&candidate.objectives);
+        buffer.push(candidate);
+        if buffer.len() >= BUFFER {
+            self.empty(buffer);
+        }
+    }
+
+    fn empty(&self, buffer: &mut Vec<Candidate>) {
+        clear_beaten(buffer);
+        let mut pool = self.candidates.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let (all, settled) = &mut *pool;
+        all.append(buffer);
+        if all.len() > *settled + BUFFER {
+            clear_beaten(all);
+            *settled = all.len();
+        }
+    }
+
+    fn finish(self) -> Vec<Candidate> {
+        let mut all = self.candidates.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).0;
+        clear_beaten(&mut all);
+        all.sort_unstable_by_key(|c| c.number);
+        all
+    }
+}
+
+fn clear_beaten(candidates: &mut Vec<Candidate>) {
+    let points: Vec<[f64; 3]> = candidates.iter().map(|c| c.objectives.minimized()).collect();
+    let kept = not_clearly_beaten(&points, SLACK);
+    *candidates = kept.into_iter().map(|i| candidates[i]).collect();
+}
+
+/// What one task counts.
+#[derive(Default)]
+struct Tally {
+    evaluated: u64,
+    excluded: u128,
+    near_misses: [Option<f64>; 3],
+}
+
+impl Tally {
+    fn merge(mut self, other: Tally) -> Tally {
+        self.evaluated += other.evaluated;
+        self.excluded += other.excluded;
+        for (mine, theirs) in self.near_misses.iter_mut().zip(other.near_misses) {
+            if let Some(x) = theirs {
+                note(mine, x);
+            }
+        }
+        self
+    }
+
+    /// Whether the design meets every constraint; if it breaks just one, how nearly.
+    fn meets(&mut self, constraints: &Constraints, o: &Objectives) -> bool {
+        let broken = [
+            constraints.tip_deflection_max_m.is_some_and(|max| o.tip_deflection_m > max),
+            constraints.mass_max_kg.is_some_and(|max| o.mass_kg > max),
+            o.lowest_mode_hz < constraints.required_mode_hz(),
+        ];
+        if broken.iter().filter(|b| **b).count() == 1 {
+            let values = [o.tip_deflection_m, o.mass_kg, -o.lowest_mode_hz];
+            for (k, _) in broken.iter().enumerate().filter(|(_, b)| **b) {
+                note(&mut self.near_misses[k], values[k]);
+            }
+        }
+        !broken.contains(&true)
+    }
+}
+
+fn note(best: &mut Option<f64>, x: f64) {
+    *best = Some(best.map_or(x, |b| b.min(x)));
+}
+
+impl<'p, P: OutwardIn> Sweep<'p, P> {
+    /// A sweep of a problem's designs; it ends early when `stop` is set.
+    pub fn new(problem: &'p P, constraints: Constraints, stop: &'p AtomicBool) -> Self {
+        Self { problem, constraints, visited: AtomicU64::new(0), stop }
+    }
+
+    /// Designs visited or excluded so far.
+    pub fn visited(&self) -> u64 {
+        self.visited.load(Ordering::Relaxed)
+    }
+
+    /// Number of designs in the space.
+    pub fn total(&self) -> u128 {
+        self.problem.level_sizes().iter().map(|&s| u128::from(s)).product()
+    }
+
+    /// Visits every design.
+    pub fn run(&self) -> SweepOutcome {
+        let sizes = self.problem.level_sizes();
+        let overall = Pool::new(2048);
+        let groups: Vec<Pool> = (0..self.problem.groups()).map(|_| Pool::new(1024)).collect();
+        let tally = match self.problem.root() {
+            None => Tally { excluded: self.total(), ..Tally::default() },
+            Some(root) => self
+                .tasks()
+                .into_par_iter()
+                .map(|beginning| self.task(&beginning, &root, &overall, &groups))
+                .reduce(Tally::default, Tally::merge),
+        };
+        let front = overall.finish();
+        let status = match (self.stop.load(Ordering::Relaxed), front.is_empty() || sizes.contains(&0)) {
+            (true, _) => Status::Interrupted,
+            (false, true) => Status::Infeasible,
+            (false, false) => Status::Complete,
+        };
+        SweepOutcome {
+            status,
+            designs_total: self.total(),
+            designs_evaluated: tally.evaluated,
+            designs_excluded: tally.excluded,
+            front,
+            groups: groups.into_iter().map(Pool::finish).collect(),
+            near_misses: tally.near_misses,
+        }
+    }
+
+    /// Beginnings of designs, tip first, each a task.
+    fn tasks(&self) -> Vec<Vec<u32>> {
+        let sizes = self.problem.level_sizes();
+        let mut tasks: Vec<Vec<u32>> = vec![Vec::new()];
+        for &size in sizes.iter().take(sizes.len().saturating_sub(1)) {
+            if tasks.len() as u128 >= TASKS {
+                break;
+            }
+            tasks = tasks
+                .into_iter()
+                .flat_map(|t| (0..size).map(move |option| [t.as_slice(), &[option]].concat()))
+                .collect();
+        }
+        tasks
+    }
+
+    fn task(&self, beginning: &[u32], root: &P::Partial, overall: &Pool, groups: &[Pool]) -> Tally {
+        let mut worker = Worker {
+            sweep: self,
+            overall,
+            groups,
+            options: beginning.to_vec(),
+            tally: Tally::default(),
+            buffer: Vec::new(),
+            group_buffers: vec![Vec::new(); groups.len()],
+        };
+        let mut partial = root.clone();
+        for (level, &option) in beginning.iter().enumerate() {
+            let mut next = root.clone();
+            if !self.problem.extend(level, option, &partial, &mut next) {
+                worker.exclude(level + 1);
+                return worker.finish();
+            }
+            partial = next;
+        }
+        let mut stack = vec![partial; 1 + self.problem.level_sizes().len() - beginning.len()];
+        worker.descend(beginning.len(), &mut stack);
+        worker.finish()
+    }
+}
+
+/// One task at work.
+struct Worker<'s, 'p, P: OutwardIn> {
+    sweep: &'s Sweep<'p, P>,
+    overall: &'s Pool,
+    groups: &'s [Pool],
+    options: Vec<u32>,
+    tally: Tally,
+    buffer: Vec<Candidate>,
+    group_buffers: Vec<Vec<Candidate>>,
+}
+
+impl<P: OutwardIn> Worker<'_, '_, P> {
+    fn descend(&mut self, level: usize, stack: &mut [P::Partial]) {
+        let sizes = self.sweep.problem.level_sizes();
+        let Some(&size) = sizes.get(level) else {
+            self.complete(&stack[0]);
+            return;
+        };
+        for option in 0..size {
+            if self.sweep.stop.load(Ordering::Relaxed) {
+                return;
+            }
+            let (here, beyond) = stack.split_at_mut(1);
+            if !self.sweep.problem.extend(level, option, &here[0], &mut beyond[0]) {
+                self.exclude(level + 1);
+                continue;
+            }
+            self.options.push(option);
+            self.descend(level + 1, beyond);
+            self.options.pop();
+        }
+        if level + 1 == sizes.len() {
+            self.sweep.visited.fetch_add(u64::from(size), Ordering::Relaxed);
+        }
+    }
+
+    fn complete(&mut self, arm: &P::Partial) {
+        self.tally.evaluated += 1;
+        let Some(objectives) = self.sweep.problem.objectives(arm) else { return };
+        if !self.tally.meets(&self.sweep.constraints, &objectives) {
+            return;
+        }
+        let candidate =
+            Candidate { number: number(self.sweep.problem.level_sizes(), &self.options), objectives };
+        self.overall.offer(candidate, &mut self.buffer);
+        if let Some(group) = self.sweep.problem.group(arm) {
+            self.groups[group].offer(candidate, &mut self.group_buffers[group]);
+        }
+    }
+
+    /// Counts every design with the present beginning of `levels` levels as excluded.
+    fn exclude(&mut self, levels: usize) {
+        let sizes = self.sweep.problem.level_sizes();
+        let below: u128 = sizes[levels..].iter().map(|&s| u128::from(s)).product();
+        self.tally.excluded += below;
+        if levels < sizes.len() {
+            self.sweep.visited.fetch_add(u64::try_from(below).unwrap_or(u64::MAX), Ordering::Relaxed);
+        }
+    }
+
+    fn finish(mut self) -> Tally {
+        self.overall.empty(&mut self.buffer);
+        for (pool, buffer) in self.groups.iter().zip(&mut self.group_buffers) {
+            pool.empty(buffer);
+        }
+        self.tally
+    }
+}

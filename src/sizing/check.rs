@@ -1,0 +1,471 @@
+//! The checks of a drive, one by one, for people: needed, allowed, margin, and what cannot be checked.
+
+use super::drive::{Drive, Figure, MissingFigure};
+use super::limits as limit;
+use super::{JointDemand, JointMotion};
+use crate::catalog::{Gear, GearMass};
+use std::fmt;
+
+/// One limit of a gear or a motor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum CheckKind {
+    /// Static plus linear torque below the gear's limit for repeated peaks.
+    GearPeak,
+    /// Cubic mean torque below the gear's limit for average torque.
+    GearMean,
+    /// Emergency stop below the gear's limit for momentary peaks.
+    GearStop,
+    /// Moment across the axis below what the gear's output bearing permits.
+    GearTilt,
+    /// N times speed below the gear's largest input speed.
+    GearSpeed,
+    /// N times mean speed below the gear's limit for average input speed.
+    GearMeanSpeed,
+    /// L10 of the wave-generator bearing above the life required.
+    GearLife,
+    /// Static torque held by the motor continuously.
+    MotorHold,
+    /// Static, linear and rotary torque given by the motor for the ramp.
+    MotorPeak,
+    /// N times speed below the motor's largest speed.
+    MotorSpeed,
+    /// The mass of the drive is known. Listed only if it is not.
+    Mass,
+}
+
+impl CheckKind {
+    /// Name in messages after the part's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            CheckKind::GearPeak | CheckKind::MotorPeak => "peak",
+            CheckKind::GearMean => "mean",
+            CheckKind::GearStop => "stop",
+            CheckKind::GearTilt => "tilting moment",
+            CheckKind::GearSpeed => "input speed",
+            CheckKind::GearMeanSpeed => "mean input speed",
+            CheckKind::GearLife => "life",
+            CheckKind::MotorHold => "hold",
+            CheckKind::MotorSpeed => "speed",
+            CheckKind::Mass => "mass",
+        }
+    }
+
+    /// Name with the part it is about, for tables.
+    pub fn label(self) -> &'static str {
+        match self {
+            CheckKind::GearPeak => "gear peak",
+            CheckKind::GearMean => "gear mean",
+            CheckKind::GearStop => "gear stop",
+            CheckKind::GearTilt => "gear tilt",
+            CheckKind::GearSpeed => "gear speed",
+            CheckKind::GearMeanSpeed => "gear av.speed",
+            CheckKind::GearLife => "gear life",
+            CheckKind::MotorHold => "motor hold",
+            CheckKind::MotorPeak => "motor peak",
+            CheckKind::MotorSpeed => "motor speed",
+            CheckKind::Mass => "mass",
+        }
+    }
+
+    /// Unit of needed and allowed.
+    pub fn unit(self) -> &'static str {
+        match self {
+            CheckKind::GearSpeed | CheckKind::GearMeanSpeed | CheckKind::MotorSpeed => "rpm",
+            CheckKind::GearLife => "h",
+            CheckKind::Mass => "kg",
+            _ => "N m",
+        }
+    }
+
+    /// Whether the check is about the gear alone.
+    pub fn is_gear(self) -> bool {
+        !matches!(self, CheckKind::MotorHold | CheckKind::MotorPeak | CheckKind::MotorSpeed | CheckKind::Mass)
+    }
+}
+
+/// Outcome of a check.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CheckState {
+    /// The limit is kept.
+    Holds,
+    /// The limit is exceeded.
+    Fails,
+    /// A figure is blank.
+    NotChecked(MissingFigure),
+}
+
+/// One limit of one part against one demand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Check {
+    /// Which limit.
+    pub kind: CheckKind,
+    /// What is needed, where it can be computed, in [`CheckKind::unit`].
+    pub needed: Option<f64>,
+    /// What the part allows (for life: what it gives), where known.
+    pub allowed: Option<f64>,
+    /// Outcome.
+    pub state: CheckState,
+}
+
+impl Check {
+    /// Allowed over needed; below 1 the check fails. `None` if it could not be checked.
+    pub fn margin(&self) -> Option<f64> {
+        match (self.needed?, self.allowed?) {
+            (0.0, _) => Some(f64::INFINITY),
+            (needed, allowed) => Some(allowed / needed),
+        }
+    }
+
+    /// The margin as a factor on torque, to compare checks by: the life goes with the cube of the torque.
+    pub fn torque_margin(&self) -> Option<f64> {
+        let margin = self.margin()?;
+        Some(if self.kind == CheckKind::GearLife { margin.cbrt() } else { margin })
+    }
+
+    /// Needed minus allowed, where both are known; positive when the check fails.
+    pub fn shortfall(&self) -> Option<f64> {
+        Some(self.needed? - self.allowed?)
+    }
+
+    /// Whether the check holds.
+    pub fn holds(&self) -> bool {
+        self.state == CheckState::Holds
+    }
+}
+
+impl fmt::Display for Check {
+    /// `peak 568 N m needed, 523 allowed`, or `peak not checked: lacks peak_torque_nm`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = self.kind.name();
+        match (self.state, self.needed, self.allowed) {
+            (CheckState::NotChecked(figure), _, _) => write!(f, "{name} not checked: lacks {figure}"),
+            (_, Some(needed), Some(allowed)) => {
+                let digits = digits_that_differ(needed, allowed);
+                let unit = self.kind.unit();
+                write!(f, "{name} {needed:.digits$} {unit} needed, {allowed:.digits$} allowed")
+            }
+            _ => write!(f, "{name}"),
+        }
+    }
+}
+
+/// Decimals that show about three digits of a number.
+pub(super) fn digits_of(x: f64) -> usize {
+    match x.abs() {
+        x if x >= 100.0 => 0,
+        x if x >= 10.0 => 1,
+        x if x >= 1.0 => 2,
+        _ => 3,
+    }
+}
+
+/// Decimals that show about three digits of the larger number, and the difference between the two.
+fn digits_that_differ(a: f64, b: f64) -> usize {
+    let least = digits_of(a.abs().max(b.abs()));
+    (least..12).find(|&n| format!("{a:.n$}") != format!("{b:.n$}")).unwrap_or(least)
+}
+
+/// Compares `load` with `threshold`; needed and allowed are the same comparison in natural units.
+fn check(kind: CheckKind, needed: Figure, allowed: Figure, load: f64, threshold: Figure) -> Check {
+    let state = match threshold {
+        Ok(threshold) if load <= threshold => CheckState::Holds,
+        Ok(_) => CheckState::Fails,
+        Err(figure) => CheckState::NotChecked(figure),
+    };
+    Check { kind, needed: needed.ok(), allowed: allowed.ok(), state }
+}
+
+/// A check whose thresholds are its natural numbers.
+fn plain(kind: CheckKind, needed: f64, allowed: Figure) -> Check {
+    check(kind, Ok(needed), allowed, needed, allowed)
+}
+
+/// The checks of a gear, whatever the motor is. The tilting moment is checked if one is asked for.
+pub fn gear_checks(
+    gear: &Gear,
+    gear_mass: GearMass,
+    motion: &JointMotion,
+    demand: &JointDemand,
+) -> Vec<Check> {
+    let mut checks = vec![
+        plain(CheckKind::GearPeak, demand.peak_torque_nm(), limit::gear_peak_nm(gear)),
+        gear_mean(gear, demand),
+        plain(CheckKind::GearStop, demand.stop_torque_nm, limit::gear_momentary_nm(gear)),
+        plain(CheckKind::GearSpeed, limit::input_speed_rpm(gear, motion), limit::gear_max_speed_rpm(gear)),
+        plain(
+            CheckKind::GearMeanSpeed,
+            limit::mean_input_speed_rpm(gear, motion),
+            limit::gear_average_speed_rpm(gear),
+        ),
+        gear_life(gear, motion, demand),
+    ];
+    if demand.tilting_moment_nm != 0.0 {
+        let allowed = limit::tilting_moment_nm(gear, gear_mass);
+        checks.push(plain(CheckKind::GearTilt, demand.tilting_moment_nm, allowed));
+    }
+    checks
+}
+
+fn gear_mean(gear: &Gear, demand: &JointDemand) -> Check {
+    check(
+        CheckKind::GearMean,
+        Ok(demand.mean_torque_nm()),
+        limit::gear_average_nm(gear),
+        demand.mean_torque_cubed_nm3,
+        limit::gear_average_cubed_nm3(gear),
+    )
+}
+
+/// L10 = L_ref (T_rated / T_mean)³ (2000 rpm / n_mean), against the life required.
+fn gear_life(gear: &Gear, motion: &JointMotion, demand: &JointDemand) -> Check {
+    let life_h = limit::life_product(gear, motion).map(|product| product / demand.mean_torque_cubed_nm3);
+    check(
+        CheckKind::GearLife,
+        Ok(motion.life_h),
+        life_h,
+        demand.mean_torque_cubed_nm3,
+        limit::gear_life_cubed_nm3(gear, motion),
+    )
+}
+
+/// The checks of a motor behind its gear, and of the pair's mass if it is not known.
+pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
+    let mut checks = vec![
+        motor_hold(drive, demand),
+        motor_peak(drive, motion, demand),
+        plain(
+            CheckKind::MotorSpeed,
+            limit::input_speed_rpm(drive.gear, motion),
+            limit::motor_max_speed_rpm(drive.motor),
+        ),
+    ];
+    if let Err(figure) = drive.mass_kg() {
+        let state = CheckState::NotChecked(figure);
+        checks.push(Check { kind: CheckKind::Mass, needed: None, allowed: None, state });
+    }
+    checks
+}
+
+/// T / (N η) against the continuous torque.
+fn motor_hold(drive: &Drive, demand: &JointDemand) -> Check {
+    check(
+        CheckKind::MotorHold,
+        drive.gain().map(|gain| demand.static_torque_nm / gain),
+        super::drive::known(drive.motor.rated_torque_nm, "motor rated_torque_nm"),
+        demand.static_torque_nm,
+        limit::motor_continuous_nm(drive),
+    )
+}
+
+/// (T + T_lin) / (N η) + J_in N α against the peak torque.
+fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
+    let peak_nm = demand.peak_torque_nm();
+    check(
+        CheckKind::MotorPeak,
+        drive.peak_motor_torque_nm(motion, peak_nm),
+        super::drive::known(drive.motor.peak_torque_nm, "peak_torque_nm"),
+        peak_nm,
+        limit::motor_peak_nm(drive, motion),
+    )
+}
+
+/// All checks of a drive: gear first, then motor.
+pub fn checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
+    let mut all = gear_checks(drive.gear, drive.gear_mass, motion, demand);
+    all.extend(motor_checks(drive, motion, demand));
+    all
+}
+
+/// Whether every check holds; one that could not be made does not.
+pub fn all_hold(checks: &[Check]) -> bool {
+    checks.iter().all(Check::holds)
+}
+
+/// The check with the smallest torque margin among those that could be made: what binds.
+pub fn binding(checks: &[Check]) -> Option<&Check> {
+    let made = checks.iter().filter_map(|c| Some((c.torque_margin()?, c)));
+    made.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, check)| check)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{
+        any_gear, any_motion, any_motor, any_torques, char_lynn_j_8_2, f11_10, gear, hfuc_40_100, motor,
+    };
+    use super::super::{DriveLimits, MotionRequirement, Obstacle};
+    use super::*;
+    use crate::catalog::Motor;
+    use proptest::prelude::*;
+
+    /// A joint at 1.35 m with 300 N m static and 100 N m linear torque.
+    fn motion() -> JointMotion {
+        MotionRequirement::default().joint_motion(1.35, None)
+    }
+
+    fn demand() -> JointDemand {
+        motion().demand_of_torques(300.0, 100.0)
+    }
+
+    /// A gear and a motor that hold `demand()` in every respect.
+    fn ample() -> (Gear, Motor) {
+        let mut gear =
+            gear("CSG-50-100", [600.0, 900.0, 700.0, 2000.0], [3500.0, 2500.0], 0.00125, [3.2, 8.9]);
+        gear.permissible_tilting_moment_nm = Some(700.0);
+        (gear, motor("M", [10.0, 20.0], [2000.0, 3000.0], 0.0003, 4.0))
+    }
+
+    /// Kinds that do not hold after one thing was changed.
+    fn failing(
+        change: impl FnOnce(&mut Gear, &mut Motor, &mut JointMotion, &mut JointDemand),
+    ) -> Vec<CheckKind> {
+        let (mut gear, mut motor) = ample();
+        let (mut motion, mut demand) = (motion(), demand());
+        change(&mut gear, &mut motor, &mut motion, &mut demand);
+        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
+        let checks = checks(&drive, &motion, &demand);
+        assert!(checks.iter().all(|c| c.state != CheckState::Holds || c.margin().unwrap() >= 1.0));
+        assert!(checks.iter().all(|c| c.state != CheckState::Fails || c.margin().unwrap() < 1.0));
+        checks.iter().filter(|c| !c.holds()).map(|c| c.kind).collect()
+    }
+
+    #[test]
+    fn the_ample_drive_holds_everything() {
+        assert_eq!(failing(|_, _, _, d| d.tilting_moment_nm = 500.0), []);
+    }
+
+    #[test]
+    fn each_check_fails_alone_when_its_own_limit_is_lowered() {
+        assert_eq!(failing(|g, _, _, _| g.repeated_peak_torque_nm = Some(399.0)), [CheckKind::GearPeak]);
+        assert_eq!(failing(|g, _, _, _| g.average_torque_limit_nm = Some(300.0)), [CheckKind::GearMean]);
+        assert_eq!(failing(|g, _, _, _| g.momentary_peak_torque_nm = Some(499.0)), [CheckKind::GearStop]);
+        assert_eq!(failing(|g, _, _, _| g.max_input_speed_rpm = Some(707.0)), [CheckKind::GearSpeed]);
+        assert_eq!(
+            failing(|g, _, _, _| g.average_input_speed_limit_rpm = Some(282.0)),
+            [CheckKind::GearMeanSpeed]
+        );
+        assert_eq!(failing(|_, m, _, _| m.rated_torque_nm = Some(3.84)), [CheckKind::MotorHold]);
+        assert_eq!(failing(|_, m, _, _| m.peak_torque_nm = Some(5.70)), [CheckKind::MotorPeak]);
+        assert_eq!(failing(|_, m, _, _| m.max_speed_rpm = Some(707.0)), [CheckKind::MotorSpeed]);
+    }
+
+    #[test]
+    fn life_fails_alone_when_more_is_required_than_the_bearing_gives() {
+        assert_eq!(failing(|_, _, motion, _| motion.life_h = 1.0e6), [CheckKind::GearLife]);
+        assert_eq!(failing(|g, _, _, _| g.rated_torque_nm = Some(100.0)), [CheckKind::GearLife]);
+    }
+
+    #[test]
+    fn a_moment_across_the_axis_is_checked_only_if_given() {
+        assert_eq!(failing(|_, _, _, d| d.tilting_moment_nm = 701.0), [CheckKind::GearTilt]);
+        assert_eq!(failing(|g, _, _, _| g.permissible_tilting_moment_nm = None), []);
+    }
+
+    #[test]
+    fn a_component_set_has_no_bearing_to_tilt() {
+        let (gear, _) = ample();
+        let demand = demand().with_tilting_moment_nm(-9999.0);
+        assert!(all_hold(&gear_checks(&gear, GearMass::ComponentSet, &motion(), &demand)));
+        assert!(!all_hold(&gear_checks(&gear, GearMass::HousedUnit, &motion(), &demand)));
+    }
+
+    #[test]
+    fn the_life_is_the_vendors_formula() {
+        let (gear, _) = ample();
+        let checks = gear_checks(&gear, GearMass::HousedUnit, &motion(), &demand());
+        let life = checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();
+        let mean_rpm = 100.0 * 0.4 / 1.35 * 30.0 / std::f64::consts::PI;
+        let by_hand = 10_000.0 * (600.0 / demand().mean_torque_nm()).powi(3) * (2000.0 / mean_rpm);
+        assert!((life.allowed.unwrap() / by_hand - 1.0).abs() < 1e-12);
+        assert_eq!(life.needed, Some(10_000.0));
+    }
+
+    #[test]
+    fn a_check_reads_as_needed_and_allowed() {
+        let mut gear = hfuc_40_100();
+        gear.repeated_peak_torque_nm = Some(523.0);
+        let demand = motion().demand_of_torques(376.0, 192.3);
+        let checks = gear_checks(&gear, GearMass::HousedUnit, &motion(), &demand);
+        assert_eq!(checks[0].to_string(), "peak 568 N m needed, 523 allowed");
+    }
+
+    #[test]
+    fn numbers_that_round_alike_are_printed_until_they_differ() {
+        let near = plain(CheckKind::GearPeak, 523.04, Ok(522.96));
+        assert_eq!(near.to_string(), "peak 523.04 N m needed, 522.96 allowed");
+    }
+
+    #[test]
+    fn a_blank_figure_is_named_and_nothing_else_is_left_unchecked() {
+        let (gear, _) = ample();
+        let motor = char_lynn_j_8_2();
+        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
+        let checks = checks(&drive, &motion(), &demand());
+        let blank: Vec<_> = checks.iter().filter(|c| !c.holds()).map(Check::to_string).collect();
+        assert_eq!(blank, ["peak not checked: lacks rotor_inertia_kgm2"]);
+        assert_eq!(
+            DriveLimits::of(&drive, &motion()),
+            Err(Obstacle::Lacks(MissingFigure("rotor_inertia_kgm2")))
+        );
+    }
+
+    #[test]
+    fn a_blank_mass_is_listed_as_a_check_that_could_not_be_made() {
+        assert_eq!(failing(|_, m, _, _| m.mass_kg = None), [CheckKind::Mass]);
+    }
+
+    #[test]
+    fn a_rated_speed_stands_in_for_a_blank_largest_speed() {
+        assert_eq!(failing(|_, m, _, _| m.max_speed_rpm = None), []);
+        let slow = |_: &mut Gear, m: &mut Motor, _: &mut JointMotion, _: &mut JointDemand| {
+            (m.max_speed_rpm, m.rated_speed_rpm) = (None, Some(700.0));
+        };
+        assert_eq!(failing(slow), [CheckKind::MotorSpeed]);
+    }
+
+    #[test]
+    fn what_binds_is_the_smallest_margin() {
+        let (gear, motor) = ample();
+        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
+        let mut checks = checks(&drive, &motion(), &demand());
+        assert_eq!(binding(&checks).unwrap().kind, CheckKind::GearPeak);
+        checks.remove(0);
+        assert_eq!(binding(&checks).unwrap().kind, CheckKind::GearMean);
+        assert!(binding(&[]).is_none());
+    }
+
+    #[test]
+    fn a_joint_that_carries_nothing_has_no_end_of_life() {
+        let (gear, motor) = (hfuc_40_100(), f11_10());
+        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
+        let checks = checks(&drive, &motion(), &motion().demand_of_torques(0.0, 0.0));
+        assert!(all_hold(&checks));
+        let life = checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();
+        assert_eq!(life.allowed, Some(f64::INFINITY));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4000))]
+
+        #[test]
+        fn thresholds_hold_exactly_when_all_checks_do(
+            gear in any_gear(), motor in any_motor(), motion in any_motion(), torques in any_torques(), housed: bool,
+        ) {
+            let gear_mass = if housed { GearMass::HousedUnit } else { GearMass::ComponentSet };
+            let drive = Drive { gear: &gear, motor: &motor, gear_mass };
+            let demand = motion.demand_of_torques(torques[0], torques[1]).with_tilting_moment_nm(torques[2]);
+            let checks = checks(&drive, &motion, &demand);
+            let by_thresholds = DriveLimits::of(&drive, &motion).is_ok_and(|l| l.hold(&demand));
+            prop_assert_eq!(by_thresholds, all_hold(&checks));
+            for c in &checks {
+                let Some(margin) = c.margin() else {
+                    prop_assert!(matches!(c.state, CheckState::NotChecked(_)), "{:?}", c);
+                    continue;
+                };
+                // The printed numbers decide alike, but for rounding at the limit itself.
+                if (margin - 1.0).abs() > 1e-12 {
+                    prop_assert_eq!(c.holds(), margin > 1.0, "{:?}", c);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! What one joint is asked for: its motion, fixed by the study, and its torques, which follow from the
+//! masses outboard (Eqs 8 and 12, cubic mean of the duty cycle).
+
+use super::{LinearReading, MeanTorqueWeights};
+
+/// The motion of one joint. Fixed by study and geometry, whatever masses the arm has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointMotion {
+    /// Largest speed ω, output side \[rad/s\].
+    pub speed_rad_s: f64,
+    /// Acceleration α, output side \[rad/s²\].
+    pub acceleration_rad_s2: f64,
+    /// Ramp time t_a \[s\].
+    pub ramp_time_s: f64,
+    /// Tip acceleration over gravity, a / g, for the paper's reading of Eq 8.
+    pub acceleration_over_gravity: f64,
+    /// Reading of Eq 8.
+    pub linear_reading: LinearReading,
+    /// Emergency deceleration over acceleration.
+    pub stop_factor: f64,
+    /// Mean speed over ω.
+    pub mean_speed_fraction: f64,
+    /// Weights of the cubic mean torque.
+    pub mean_torque: MeanTorqueWeights,
+    /// Required life, L10 \[h\].
+    pub life_h: f64,
+}
+
+impl JointMotion {
+    /// Mean speed over the duty cycle, output side \[rad/s\].
+    pub fn mean_speed_rad_s(&self) -> f64 {
+        self.speed_rad_s * self.mean_speed_fraction
+    }
+
+    /// The same motion with another reading of Eq 8 (a vertical axis needs the exact one).
+    pub fn with_linear_reading(self, linear_reading: LinearReading) -> Self {
+        Self { linear_reading, ..self }
+    }
+
+    /// The same motion with speed, acceleration and emergency deceleration times `factor`, same ramp time.
+    pub fn slowed(self, factor: f64) -> Self {
+        Self {
+            speed_rad_s: self.speed_rad_s * factor,
+            acceleration_rad_s2: self.acceleration_rad_s2 * factor,
+            acceleration_over_gravity: self.acceleration_over_gravity * factor,
+            ..self
+        }
+    }
+
+    /// The demand on a joint with this motion.
+    ///
+    /// **Units:** static torque \[N m\], inertia of all that is outboard about the axis \[kg m²\].
+    #[inline]
+    pub fn demand(&self, static_torque_nm: f64, outboard_inertia_kgm2: f64) -> JointDemand {
+        let linear_torque_nm = linear_torque_nm(self, static_torque_nm, outboard_inertia_kgm2);
+        self.demand_of_torques(static_torque_nm, linear_torque_nm)
+    }
+
+    /// The demand on a joint whose linear torque is known \[N m\].
+    #[inline]
+    pub fn demand_of_torques(&self, static_torque_nm: f64, linear_torque_nm: f64) -> JointDemand {
+        let static_torque_nm = static_torque_nm.abs();
+        let linear_torque_nm = linear_torque_nm.abs();
+        JointDemand {
+            static_torque_nm,
+            linear_torque_nm,
+            stop_torque_nm: stop_torque_nm(static_torque_nm, linear_torque_nm, self.stop_factor),
+            mean_torque_cubed_nm3: cubic_mean_cubed_nm3(self.mean_torque, static_torque_nm, linear_torque_nm),
+            tilting_moment_nm: 0.0,
+        }
+    }
+}
+
+/// The torques on one joint, output side, none negative.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointDemand {
+    /// Worst static torque over the sizing poses, Eq 7 \[N m\].
+    pub static_torque_nm: f64,
+    /// Torque of linear acceleration, Eq 8 \[N m\].
+    pub linear_torque_nm: f64,
+    /// Static torque plus that of the emergency stop \[N m\].
+    pub stop_torque_nm: f64,
+    /// Cube of the cubic mean torque over the duty cycle \[(N m)³\]; kept as a cube so that a search
+    /// needs no cube root.
+    pub mean_torque_cubed_nm3: f64,
+    /// Moment across the axis, on the output bearing \[N m\]; 0 asks for no check.
+    pub tilting_moment_nm: f64,
+}
+
+impl JointDemand {
+    /// Torque the gear carries while accelerating: T + T_lin \[N m\].
+    #[inline]
+    pub fn peak_torque_nm(&self) -> f64 {
+        self.static_torque_nm + self.linear_torque_nm
+    }
+
+    /// Cubic mean torque over the duty cycle \[N m\].
+    pub fn mean_torque_nm(&self) -> f64 {
+        self.mean_torque_cubed_nm3.cbrt()
+    }
+
+    /// The same demand with a moment across the axis \[N m\].
+    pub fn with_tilting_moment_nm(self, moment_nm: f64) -> Self {
+        Self { tilting_moment_nm: moment_nm.abs(), ..self }
+    }
+
+    /// Every torque and moment times `factor`.
+    pub fn scaled(self, factor: f64) -> Self {
+        Self {
+            static_torque_nm: self.static_torque_nm * factor,
+            linear_torque_nm: self.linear_torque_nm * factor,
+            stop_torque_nm: self.stop_torque_nm * factor,
+            mean_torque_cubed_nm3: self.mean_torque_cubed_nm3 * factor.powi(3),
+            tilting_moment_nm: self.tilting_moment_nm * factor,
+        }
+    }
+}
+
+/// Eq 8, torque of linear acceleration \[N m\].
+///
+/// Exact: T_lin = Σ m a ρ² / r = I α, with I the inertia of all that is outboard about the axis.
+/// Paper: T_lin = (a / g) T, which takes every mass to accelerate like the tip; 0.5097 T, printed as T / 2.
+#[inline]
+pub fn linear_torque_nm(motion: &JointMotion, static_torque_nm: f64, outboard_inertia_kgm2: f64) -> f64 {
+    match motion.linear_reading {
+        LinearReading::Exact => outboard_inertia_kgm2 * motion.acceleration_rad_s2,
+        LinearReading::Paper => motion.acceleration_over_gravity * static_torque_nm.abs(),
+    }
+}
+
+/// Torque in an emergency stop \[N m\]: T + (a_stop / a) T_lin.
+#[inline]
+pub fn stop_torque_nm(static_torque_nm: f64, linear_torque_nm: f64, stop_factor: f64) -> f64 {
+    static_torque_nm + stop_factor * linear_torque_nm
+}
+
+/// Cube of the cubic mean torque \[(N m)³\]: T_mean³ = Σ |T_i|³ n_i t_i / Σ n_i t_i (vendor's Eq 18.2).
+#[inline]
+pub fn cubic_mean_cubed_nm3(weights: MeanTorqueWeights, static_torque_nm: f64, linear_torque_nm: f64) -> f64 {
+    let cube = |x: f64| x * x * x;
+    weights.sum * cube(static_torque_nm + linear_torque_nm)
+        + weights.steady * cube(static_torque_nm)
+        + weights.difference * cube((static_torque_nm - linear_torque_nm).abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::MotionRequirement;
+    use super::*;
+
+    fn paper() -> MotionRequirement {
+        MotionRequirement { linear_reading: LinearReading::Paper, ..Default::default() }
+    }
+
+    #[test]
+    fn paper_reading_of_equation_8_is_0_5097_of_the_static_torque() {
+        let demand = paper().joint_motion(1.35, None).demand(568.3, 0.0);
+        assert!((demand.linear_torque_nm / 568.3 - 0.5097).abs() < 1e-4 / 2.0);
+        assert!((demand.peak_torque_nm() - 568.3 * 1.509684).abs() < 1e-3);
+    }
+
+    #[test]
+    fn both_readings_agree_for_a_point_mass_at_the_tip_held_out_level() {
+        let (mass_kg, reach_m) = (5.0, 1.35);
+        let static_nm = mass_kg * 9.81 * reach_m;
+        let exact = MotionRequirement::default().joint_motion(reach_m, None);
+        let a = exact.demand(static_nm, mass_kg * reach_m * reach_m);
+        let b = exact.with_linear_reading(LinearReading::Paper).demand(static_nm, f64::NAN);
+        assert!((a.linear_torque_nm - b.linear_torque_nm).abs() < 1e-12 * a.linear_torque_nm);
+    }
+
+    #[test]
+    fn a_vertical_axis_has_linear_torque_only_in_the_exact_reading() {
+        let motion = paper().joint_motion(1.35, None);
+        assert_eq!(motion.demand(0.0, 10.0).linear_torque_nm, 0.0);
+        let exact = motion.with_linear_reading(LinearReading::Exact).demand(0.0, 10.0);
+        assert!((exact.linear_torque_nm - 10.0 * 5.0 / 1.35).abs() < 1e-12);
+        assert_eq!(exact.stop_torque_nm, 2.0 * exact.linear_torque_nm);
+    }
+
+    #[test]
+    fn the_mean_torque_is_the_vendors_cubic_mean_written_out() {
+        let motion = MotionRequirement::default().joint_motion(1.0, None);
+        let demand = motion.demand_of_torques(100.0, 40.0);
+        // Σ |T|³ n t / Σ n t in units of t_a: ramps at half speed, 3 t_a at full speed.
+        let sum = 140f64.powi(3) * 0.5 + 100f64.powi(3) * 3.0 + 60f64.powi(3) * 0.5;
+        assert!((demand.mean_torque_nm() - (sum / 4.0).cbrt()).abs() < 1e-10);
+    }
+
+    #[test]
+    fn the_sign_of_the_static_torque_does_not_matter() {
+        let motion = MotionRequirement::default().joint_motion(1.0, None);
+        assert_eq!(motion.demand(-50.0, 3.0), motion.demand(50.0, 3.0));
+    }
+
+    #[test]
+    fn scaling_a_demand_is_the_same_as_scaling_its_inputs() {
+        let motion = MotionRequirement::default().joint_motion(1.0, None);
+        let a = motion.demand_of_torques(100.0, 40.0).scaled(0.5);
+        let b = motion.demand_of_torques(50.0, 20.0);
+        assert!((a.mean_torque_nm() - b.mean_torque_nm()).abs() < 1e-12);
+        assert_eq!(a.stop_torque_nm, b.stop_torque_nm);
+    }
+}

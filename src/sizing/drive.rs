@@ -1,0 +1,182 @@
+//! A drive: a gear and a motor, seen from either side of the gear (Eqs 9-12).
+
+use super::JointMotion;
+use crate::catalog::{Gear, GearMass, Motor};
+
+/// A figure that the catalog leaves blank, by its column name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MissingFigure(
+    /// Name of the figure.
+    pub &'static str,
+);
+
+impl std::fmt::Display for MissingFigure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.0)
+    }
+}
+
+/// A figure that may be blank.
+pub(super) type Figure = Result<f64, MissingFigure>;
+
+/// The figure, or its name if it is blank.
+pub(super) fn known(figure: Option<f64>, name: &'static str) -> Figure {
+    figure.ok_or(MissingFigure(name))
+}
+
+/// A gear and a motor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drive<'c> {
+    /// The gear.
+    pub gear: &'c Gear,
+    /// The motor.
+    pub motor: &'c Motor,
+    /// Which mass of the gear counts.
+    pub gear_mass: GearMass,
+}
+
+impl Drive<'_> {
+    /// `gear + motor`, for messages.
+    pub fn name(&self) -> String {
+        format!("{} + {}", self.gear.id, self.motor.id)
+    }
+
+    /// Reduction ratio N.
+    pub fn ratio(&self) -> f64 {
+        f64::from(self.gear.ratio)
+    }
+
+    /// Mass of gear and motor \[kg\].
+    ///
+    /// # Errors
+    /// The mass that the catalog leaves blank.
+    pub fn mass_kg(&self) -> Result<f64, MissingFigure> {
+        let name = match self.gear_mass {
+            GearMass::ComponentSet => "gear mass_component_set_kg",
+            GearMass::HousedUnit => "gear mass_housed_unit_kg",
+        };
+        Ok(known(self.gear.mass_kg(self.gear_mass), name)? + known(self.motor.mass_kg, "motor mass_kg")?)
+    }
+
+    /// Eq 9: J_in = rotor + wave generator, motor side \[kg m²\].
+    ///
+    /// # Errors
+    /// The inertia that the catalog leaves blank.
+    pub fn input_inertia_kgm2(&self) -> Result<f64, MissingFigure> {
+        Ok(known(self.motor.rotor_inertia_kgm2, "rotor_inertia_kgm2")?
+            + known(self.gear.inertia_input_kgm2, "inertia_input_kgm2")?)
+    }
+
+    /// Efficiency of the gear.
+    ///
+    /// # Errors
+    /// Its name if the catalog leaves it blank.
+    pub fn efficiency(&self) -> Result<f64, MissingFigure> {
+        known(self.gear.efficiency, "efficiency")
+    }
+
+    /// Output torque for one newton metre at the motor: N η.
+    pub(super) fn gain(&self) -> Figure {
+        Ok(self.ratio() * self.efficiency()?)
+    }
+
+    /// Eq 11 for this drive, motor side \[N m\].
+    ///
+    /// # Errors
+    /// The inertia that the catalog leaves blank.
+    pub fn rotary_torque_motor_nm(&self, motion: &JointMotion) -> Result<f64, MissingFigure> {
+        let inertia = self.input_inertia_kgm2()?;
+        Ok(rotary_torque_motor_nm(inertia, self.ratio(), motion.acceleration_rad_s2))
+    }
+
+    /// Eq 12 on the motor's side \[N m\]: what the motor gives while the joint accelerates against
+    /// `peak_torque_nm`.
+    ///
+    /// # Errors
+    /// The figure that the catalog leaves blank.
+    pub fn peak_motor_torque_nm(
+        &self,
+        motion: &JointMotion,
+        peak_torque_nm: f64,
+    ) -> Result<f64, MissingFigure> {
+        Ok(motor_torque_nm(peak_torque_nm, self.gain()?, self.rotary_torque_motor_nm(motion)?))
+    }
+}
+
+/// Eqs 10-11, motor side \[N m\]: T_rot = J_in N α.
+///
+/// The paper's n_j is the motor's speed, so its θ̈ is N α. **Units:** kg m², -, rad/s² of the joint.
+pub fn rotary_torque_motor_nm(input_inertia_kgm2: f64, ratio: f64, acceleration_rad_s2: f64) -> f64 {
+    input_inertia_kgm2 * ratio * acceleration_rad_s2
+}
+
+/// Eqs 10-11 referred to the joint \[N m\]: N times the motor's side, J_in N² α.
+pub fn rotary_torque_output_nm(input_inertia_kgm2: f64, ratio: f64, acceleration_rad_s2: f64) -> f64 {
+    ratio * rotary_torque_motor_nm(input_inertia_kgm2, ratio, acceleration_rad_s2)
+}
+
+/// Eq 12, motor side \[N m\]: T / (N η) + T_rot, `gain` being N η.
+pub fn motor_torque_nm(output_torque_nm: f64, gain: f64, rotary_torque_motor_nm: f64) -> f64 {
+    output_torque_nm / gain + rotary_torque_motor_nm
+}
+
+/// L10 of a wave-generator bearing at rated torque and 2000 rpm, by series \[h\]; `None` for a series
+/// that is not known.
+///
+/// Source: Harmonic Drive LLC, CSF/CSG catalog, Eq 8 (L10: CSF 7000, CSG 10000) and Harmonic Drive SE,
+/// engineering data 1019659, table 20.1 (L50: CSG, SHG, CobaltLine 50000; HFUC, HFUS, CSD, CPU, CSF, SHD
+/// 35000; L10 about a fifth of it).
+pub fn reference_life_h(series: &str) -> Option<f64> {
+    match series {
+        "CSG" | "SHG" | "CobaltLine" => Some(10_000.0),
+        "HFUC" | "HFUS" | "CSF" | "CSD" | "CPU" | "SHD" => Some(7_000.0),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::MotionRequirement;
+    use super::super::testing::{f11_10, hfuc_58_100};
+    use super::*;
+
+    #[test]
+    fn the_papers_0_14_and_14_4_newton_metres_count_the_rotor_of_f11_10_alone() {
+        // J = 0.00039 kg m² of catalogs/motors.csv, row F11-10, without the gear's wave generator.
+        let rotor = f11_10().rotor_inertia_kgm2.unwrap();
+        assert_eq!(rotor, 0.00039);
+        assert_eq!(format!("{:.2}", rotary_torque_motor_nm(rotor, 100.0, 3.7)), "0.14");
+        assert_eq!(format!("{:.1}", rotary_torque_output_nm(rotor, 100.0, 3.7)), "14.4");
+    }
+
+    #[test]
+    fn with_the_wave_generator_of_hfuc_58_the_rotary_torque_is_eight_times_that() {
+        // Eq 9 adds the transmission: 0.00273 kg m² (gears.csv, HFUC-58-100), seven rotors.
+        let (gear, motor) = (hfuc_58_100(), f11_10());
+        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::ComponentSet };
+        let inertia = drive.input_inertia_kgm2().unwrap();
+        assert_eq!(inertia, 0.00312);
+        assert_eq!(format!("{:.2}", rotary_torque_motor_nm(inertia, 100.0, 3.7)), "1.15");
+        assert_eq!(format!("{:.1}", rotary_torque_output_nm(inertia, 100.0, 3.7)), "115.4");
+    }
+
+    #[test]
+    fn the_motor_carries_the_load_through_the_gear_and_its_own_inertia_directly() {
+        let (gear, motor) = (hfuc_58_100(), f11_10());
+        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
+        let motion = MotionRequirement::default().joint_motion(1.35, None);
+        let torque = drive.peak_motor_torque_nm(&motion, 858.0).unwrap();
+        let by_hand = 858.0 / (100.0 * 0.78) + 0.00312 * 100.0 * 5.0 / 1.35;
+        assert!((torque - by_hand).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_mass_is_that_of_the_build_asked_for_and_a_blank_is_named() {
+        let (gear, mut motor) = (hfuc_58_100(), f11_10());
+        let mass = |gear_mass, motor: &Motor| Drive { gear: &gear, motor, gear_mass }.mass_kg();
+        assert!((mass(GearMass::ComponentSet, &motor).unwrap() - 12.2).abs() < 1e-12, "Table 1");
+        assert!((mass(GearMass::HousedUnit, &motor).unwrap() - 22.1).abs() < 1e-12);
+        motor.mass_kg = None;
+        assert_eq!(mass(GearMass::HousedUnit, &motor), Err(MissingFigure("motor mass_kg")));
+    }
+}

@@ -1,0 +1,457 @@
+//! Why a part was not chosen, and what to give way in when nothing holds.
+
+use super::check::{binding, checks, digits_of, gear_checks, motor_checks};
+use super::{Check, CheckState, Drive, DriveLimits, DriveTable, JointDemand};
+use std::fmt;
+
+/// Which part a rejection is about.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RejectedPart {
+    /// A gear that no motor could save.
+    Gear {
+        /// The gear.
+        gear: String,
+    },
+    /// A gear that holds but finds no motor; the checks are those with the motor that comes nearest.
+    GearWithoutMotor {
+        /// The gear.
+        gear: String,
+        /// The motor that comes nearest.
+        nearest_motor: String,
+    },
+    /// A motor that fails behind some of the gears that hold; the checks are those with the gear with
+    /// which it comes nearest among them.
+    Motor {
+        /// The motor.
+        motor: String,
+        /// The gear of these checks.
+        nearest_gear: String,
+        /// All gears that hold but not with this motor.
+        rejected_with: Vec<String>,
+        /// Gears with which the motor holds.
+        fits_with: Vec<String>,
+    },
+}
+
+/// Why a part was rejected at one joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rejection {
+    /// Name of the joint.
+    pub joint: String,
+    /// The part.
+    pub part: RejectedPart,
+    /// Every check that does not hold, worst first, those that could not be made last; never empty.
+    pub checks: Vec<Check>,
+}
+
+impl Rejection {
+    /// Whether the part fails nothing but could not be checked, for want of figures.
+    pub fn is_not_checked(&self) -> bool {
+        self.checks.iter().all(|c| matches!(c.state, CheckState::NotChecked(_)))
+    }
+}
+
+impl fmt::Display for Rejection {
+    /// `joint j2: HFUC-40-100 peak 568 N m needed, 523 allowed`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "joint {}: ", self.joint)?;
+        match &self.part {
+            RejectedPart::Gear { gear } => write!(f, "{gear} ")?,
+            RejectedPart::GearWithoutMotor { gear, nearest_motor } => {
+                write!(f, "{gear} finds no motor, nearest {nearest_motor}: ")?
+            }
+            RejectedPart::Motor { motor, nearest_gear, .. } => write!(f, "{motor} behind {nearest_gear} ")?,
+        }
+        let reasons: Vec<_> = self.checks.iter().map(Check::to_string).collect();
+        f.write_str(&reasons.join("; "))?;
+        if let RejectedPart::Motor { rejected_with, fits_with, .. } = &self.part {
+            let gears = rejected_with.len() + fits_with.len();
+            write!(f, " (rejected with {} of {gears} gears that hold)", rejected_with.len())?;
+        }
+        Ok(())
+    }
+}
+
+/// What could be relaxed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RelaxationKind {
+    /// Every torque on the joint: payload, outboard masses, levers.
+    Torque,
+    /// Speed and acceleration, same ramp time.
+    Speed,
+}
+
+/// A relaxation that lets some drive hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Relaxation {
+    /// What is relaxed.
+    pub kind: RelaxationKind,
+    /// Factor on it, in whole percents below 1.
+    pub factor: f64,
+    /// The lightest drive that then holds.
+    pub drive: String,
+}
+
+impl Relaxation {
+    /// The factor on the payload alone, if `payload_share` of the joint's torques come from it; `None` if
+    /// even no payload at all is not enough.
+    pub fn payload_factor(&self, payload_share: f64) -> Option<f64> {
+        let factor = 1.0 - (1.0 - self.factor) / payload_share;
+        (self.kind == RelaxationKind::Torque && factor >= 0.0).then_some(factor)
+    }
+}
+
+impl fmt::Display for Relaxation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let percent = self.factor * 100.0;
+        match self.kind {
+            RelaxationKind::Torque => {
+                write!(f, "torque on the joint (payload, outboard mass, reach) down to {percent:.0} %")?
+            }
+            RelaxationKind::Speed => write!(f, "speed and acceleration down to {percent:.0} %")?,
+        }
+        write!(f, ", then {} holds", self.drive)
+    }
+}
+
+/// What is missing when no drive holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shortfall {
+    /// Name of the joint.
+    pub joint: String,
+    /// The drive whose worst margin is largest.
+    pub drive: String,
+    /// Its worst check.
+    pub check: Check,
+    /// What helps, smallest step first; empty if neither torque nor speed alone does.
+    pub relaxations: Vec<Relaxation>,
+}
+
+impl fmt::Display for Shortfall {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "joint {}: no drive holds; nearest {}: {}", self.joint, self.drive, self.check)?;
+        if let Some(missing) = self.check.shortfall() {
+            let (digits, unit) = (digits_of(missing), self.check.kind.unit());
+            write!(f, " (short by {missing:.digits$} {unit})")?;
+        }
+        let steps: Vec<_> = self.relaxations.iter().map(Relaxation::to_string).collect();
+        match steps.is_empty() {
+            true => f.write_str("; neither less torque nor less speed alone lets one hold"),
+            false => write!(f, "; smallest relaxation that helps: {}", steps.join("; or ")),
+        }
+    }
+}
+
+/// A gear that holds, a motor, and their checks that do not hold.
+struct Trial<'c> {
+    drive: Drive<'c>,
+    worst_margin: f64,
+    failed: Vec<Check>,
+}
+
+impl<'c> DriveTable<'c> {
+    /// Why parts were rejected: every gear that fails alone, every gear that holds but finds no motor,
+    /// every motor that fails behind some gear that holds. Gears first, each kind in catalog order.
+    pub fn explain(&self, demand: &JointDemand) -> Vec<Rejection> {
+        let (mut rejections, trials) = (Vec::new(), self.trials(demand));
+        for gear in self.gears() {
+            let failed = not_holding(gear_checks(gear, self.gear_mass(), self.motion(), demand));
+            if !failed.is_empty() {
+                rejections.push(self.rejection(RejectedPart::Gear { gear: gear.id.clone() }, failed));
+                continue;
+            }
+            let with_gear = trials.iter().filter(|t| t.drive.gear.id == gear.id);
+            rejections.extend(self.gear_without_motor(with_gear));
+        }
+        for motor in self.motors() {
+            rejections.extend(self.rejected_motor(trials.iter().filter(|t| t.drive.motor.id == motor.id)));
+        }
+        rejections
+    }
+
+    /// When no drive holds: the nearest one, what it lacks, and what helps. `None` if one holds or if
+    /// no drive has all the figures that the checks need.
+    pub fn smallest_shortfall(&self, demand: &JointDemand) -> Option<Shortfall> {
+        if self.first_fit(demand).is_some() {
+            return None;
+        }
+        let (drive, check) = self.nearest(demand)?;
+        let mut relaxations: Vec<_> = [RelaxationKind::Torque, RelaxationKind::Speed]
+            .into_iter()
+            .filter_map(|kind| self.relaxation(kind, demand))
+            .collect();
+        relaxations.sort_by(|a, b| b.factor.total_cmp(&a.factor));
+        Some(Shortfall { joint: self.joint().to_string(), drive: drive.name(), check, relaxations })
+    }
+
+    /// Each gear that holds with each motor.
+    fn trials(&self, demand: &JointDemand) -> Vec<Trial<'c>> {
+        let mut trials = Vec::new();
+        for gear in self.gears() {
+            let gear_mass = self.gear_mass();
+            if !not_holding(gear_checks(gear, gear_mass, self.motion(), demand)).is_empty() {
+                continue;
+            }
+            for motor in self.motors() {
+                let drive = Drive { gear, motor, gear_mass };
+                let checks = motor_checks(&drive, self.motion(), demand);
+                let worst_margin = binding(&checks).and_then(Check::torque_margin).unwrap_or(0.0);
+                trials.push(Trial { drive, worst_margin, failed: not_holding(checks) });
+            }
+        }
+        trials
+    }
+
+    fn gear_without_motor<'t>(&self, trials: impl Iterator<Item = &'t Trial<'c>> + Clone) -> Option<Rejection>
+    where
+        'c: 't,
+    {
+        if trials.clone().any(|t| t.failed.is_empty()) {
+            return None;
+        }
+        let nearest = nearest_trial(trials)?;
+        let part = RejectedPart::GearWithoutMotor {
+            gear: nearest.drive.gear.id.clone(),
+            nearest_motor: nearest.drive.motor.id.clone(),
+        };
+        Some(self.rejection(part, nearest.failed.clone()))
+    }
+
+    fn rejected_motor<'t>(&self, trials: impl Iterator<Item = &'t Trial<'c>>) -> Option<Rejection>
+    where
+        'c: 't,
+    {
+        let (fits, rejected): (Vec<_>, Vec<_>) = trials.partition(|t| t.failed.is_empty());
+        let nearest = nearest_trial(rejected.iter().copied())?;
+        let gears = |trials: &[&Trial]| trials.iter().map(|t| t.drive.gear.id.clone()).collect();
+        let part = RejectedPart::Motor {
+            motor: nearest.drive.motor.id.clone(),
+            nearest_gear: nearest.drive.gear.id.clone(),
+            rejected_with: gears(&rejected),
+            fits_with: gears(&fits),
+        };
+        Some(self.rejection(part, nearest.failed.clone()))
+    }
+
+    fn rejection(&self, part: RejectedPart, checks: Vec<Check>) -> Rejection {
+        Rejection { joint: self.joint().to_string(), part, checks }
+    }
+
+    /// The drive, fully checked, whose worst margin is largest.
+    fn nearest(&self, demand: &JointDemand) -> Option<(Drive<'c>, Check)> {
+        let mut best: Option<(f64, Drive<'c>, Check)> = None;
+        for drive in self.all_drives() {
+            let checks = checks(&drive, self.motion(), demand);
+            if checks.iter().any(|c| matches!(c.state, CheckState::NotChecked(_))) {
+                continue;
+            }
+            let Some(worst) = binding(&checks) else { continue };
+            let margin = worst.torque_margin().unwrap_or(0.0);
+            if best.as_ref().is_none_or(|(most, ..)| margin > *most) {
+                best = Some((margin, drive, *worst));
+            }
+        }
+        best.map(|(_, drive, check)| (drive, check))
+    }
+
+    /// The largest factor in whole percents at which some drive holds.
+    fn relaxation(&self, kind: RelaxationKind, demand: &JointDemand) -> Option<Relaxation> {
+        (1..100).rev().find_map(|percent| {
+            let factor = f64::from(percent) / 100.0;
+            let drive = match kind {
+                RelaxationKind::Torque => self.first_fit(&demand.scaled(factor)).map(|i| self.drive(i)),
+                RelaxationKind::Speed => self.lightest_when_slowed(factor, demand),
+            }?;
+            Some(Relaxation { kind, factor, drive: drive.name() })
+        })
+    }
+
+    fn lightest_when_slowed(&self, factor: f64, demand: &JointDemand) -> Option<Drive<'c>> {
+        let motion = self.motion().slowed(factor);
+        let slower = motion
+            .demand_of_torques(demand.static_torque_nm, demand.linear_torque_nm * factor)
+            .with_tilting_moment_nm(demand.tilting_moment_nm);
+        let holding = self.all_drives().filter_map(|drive| {
+            let limits = DriveLimits::of(&drive, &motion).ok()?;
+            let mass_kg = drive.mass_kg().ok()?;
+            limits.hold(&slower).then_some((mass_kg, drive))
+        });
+        holding.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, drive)| drive)
+    }
+}
+
+/// The trial with the largest worst margin, then the fewest failures, then the first.
+fn nearest_trial<'t, 'c: 't>(trials: impl Iterator<Item = &'t Trial<'c>>) -> Option<&'t Trial<'c>> {
+    let nearness = |t: &Trial| (t.worst_margin, std::cmp::Reverse(t.failed.len()));
+    trials.reduce(|best, t| if nearness(t) > nearness(best) { t } else { best })
+}
+
+/// The checks that do not hold, worst first, those that could not be made last.
+fn not_holding(checks: Vec<Check>) -> Vec<Check> {
+    let mut failed: Vec<_> = checks.into_iter().filter(|c| !c.holds()).collect();
+    let key = |c: &Check| c.torque_margin().unwrap_or(f64::INFINITY);
+    failed.sort_by(|a, b| key(a).total_cmp(&key(b)));
+    failed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{char_lynn_j_8_2, f11_10, hfuc_40_100, hfuc_58_100, motor};
+    use super::super::{CheckKind, DriveFilter, JointMotion, MotionRequirement};
+    use super::*;
+    use crate::catalog::{Gear, GearMass, Motor};
+
+    fn motion() -> JointMotion {
+        MotionRequirement::default().joint_motion(1.35, None)
+    }
+
+    fn table<'c>(gears: &'c [Gear], motors: &'c [Motor]) -> DriveTable<'c> {
+        DriveTable::build("j2", motion(), &DriveFilter::everything(GearMass::ComponentSet), gears, motors)
+    }
+
+    fn small_motor() -> Motor {
+        motor("HG-KR43", [1.3, 4.5], [3000.0, 6000.0], 0.0000371, 1.4)
+    }
+
+    fn lines(rejections: &[Rejection]) -> Vec<String> {
+        rejections.iter().map(Rejection::to_string).collect()
+    }
+
+    #[test]
+    fn a_gear_that_fails_alone_says_so() {
+        let (mut weak, motors) = (hfuc_40_100(), [f11_10()]);
+        weak.repeated_peak_torque_nm = Some(523.0);
+        let gears = [weak, hfuc_58_100()];
+        let rejections = table(&gears, &motors).explain(&motion().demand_of_torques(376.0, 192.3));
+        let first = rejections[0].to_string();
+        assert!(
+            first.starts_with("joint j2: HFUC-40-100 peak 568 N m needed, 523 allowed; mean "),
+            "{first}"
+        );
+        assert_eq!(rejections.len(), 1, "the other gear and the motor hold");
+    }
+
+    #[test]
+    fn a_motor_that_is_too_small_names_the_gear_with_which_it_comes_nearest() {
+        let (gears, motors) = ([hfuc_58_100(), hfuc_40_100()], [small_motor(), f11_10()]);
+        let rejections = table(&gears, &motors).explain(&motion().demand_of_torques(200.0, 100.0));
+        assert_eq!(
+            lines(&rejections),
+            ["joint j2: HG-KR43 behind HFUC-40-100 hold 2.56 N m needed, 1.30 allowed \
+              (rejected with 2 of 2 gears that hold)"]
+        );
+    }
+
+    #[test]
+    fn a_gear_that_holds_but_finds_no_motor_says_which_came_nearest() {
+        let (gears, motors) = ([hfuc_58_100()], [small_motor()]);
+        let rejections = table(&gears, &motors).explain(&motion().demand_of_torques(200.0, 0.0));
+        assert_eq!(
+            rejections[0].part,
+            RejectedPart::GearWithoutMotor { gear: "HFUC-58-100".into(), nearest_motor: "HG-KR43".into() }
+        );
+        assert!(rejections[0].to_string().contains("HFUC-58-100 finds no motor, nearest HG-KR43: hold"));
+        assert_eq!(rejections.len(), 2);
+    }
+
+    #[test]
+    fn a_motor_may_fail_behind_one_gear_and_hold_behind_another() {
+        let mut fast = hfuc_40_100();
+        (fast.id, fast.ratio) = ("HFUC-40-160".into(), 160);
+        let slow_motor = motor("SLOW", [5.0, 9.0], [800.0, 800.0], 0.0001, 3.0);
+        let (gears, motors) = ([fast, hfuc_40_100()], [slow_motor]);
+        let rejections = table(&gears, &motors).explain(&motion().demand_of_torques(200.0, 100.0));
+        let part = RejectedPart::Motor {
+            motor: "SLOW".into(),
+            nearest_gear: "HFUC-40-160".into(),
+            rejected_with: vec!["HFUC-40-160".into()],
+            fits_with: vec!["HFUC-40-100".into()],
+        };
+        assert!(rejections.iter().any(|r| r.part == part), "{:?}", lines(&rejections));
+    }
+
+    #[test]
+    fn a_part_with_blank_figures_is_listed_as_not_checked() {
+        let (gears, motors) = ([hfuc_40_100()], [char_lynn_j_8_2()]);
+        let rejections = table(&gears, &motors).explain(&motion().demand_of_torques(100.0, 50.0));
+        assert!(rejections.iter().all(Rejection::is_not_checked));
+        assert!(
+            rejections[1]
+                .to_string()
+                .contains("J 8.2 (129-) behind HFUC-40-100 peak not checked: lacks rotor_inertia_kgm2")
+        );
+        assert_eq!(table(&gears, &motors).smallest_shortfall(&motion().demand_of_torques(100.0, 50.0)), None);
+    }
+
+    #[test]
+    fn everything_that_is_no_fit_is_explained() {
+        let gears = [hfuc_40_100(), hfuc_58_100()];
+        let motors = [small_motor(), f11_10(), char_lynn_j_8_2()];
+        let table = table(&gears, &motors);
+        for static_nm in [50.0, 150.0, 400.0, 600.0, 5000.0] {
+            let demand = motion().demand_of_torques(static_nm, 0.4 * static_nm);
+            let rejections = table.explain(&demand);
+            for drive in table.all_drives() {
+                let fits = table.index_of(&drive.gear.id, &drive.motor.id);
+                let fits = fits.is_some_and(|i| table.all_fits(&demand).any(|j| i == j));
+                let explained = rejections.iter().any(|r| match &r.part {
+                    RejectedPart::Gear { gear } => *gear == drive.gear.id,
+                    RejectedPart::GearWithoutMotor { .. } => false,
+                    RejectedPart::Motor { motor, rejected_with, .. } => {
+                        *motor == drive.motor.id && rejected_with.contains(&drive.gear.id)
+                    }
+                });
+                assert_ne!(fits, explained, "{} at {static_nm}", drive.name());
+            }
+        }
+    }
+
+    #[test]
+    fn when_nothing_holds_the_nearest_drive_and_the_smallest_step_are_named() {
+        let (gears, motors) = ([hfuc_40_100(), hfuc_58_100()], [f11_10()]);
+        let table = table(&gears, &motors);
+        let demand = motion().demand_of_torques(1200.0, 600.0);
+        let shortfall = table.smallest_shortfall(&demand).unwrap();
+        assert_eq!(shortfall.drive, "HFUC-58-100 + F11-10");
+        assert_eq!(shortfall.check.kind, CheckKind::GearMean);
+        let torque = &shortfall.relaxations.iter().find(|r| r.kind == RelaxationKind::Torque).unwrap();
+        assert!(table.first_fit(&demand.scaled(torque.factor)).is_some());
+        assert!(table.first_fit(&demand.scaled(torque.factor + 0.01)).is_none());
+        assert!(shortfall.relaxations.windows(2).all(|w| w[0].factor >= w[1].factor));
+        let text = shortfall.to_string();
+        assert!(text.starts_with("joint j2: no drive holds; nearest HFUC-58-100 + F11-10: mean "), "{text}");
+        assert!(text.contains("smallest relaxation that helps: torque on the joint"), "{text}");
+    }
+
+    #[test]
+    fn a_joint_that_is_only_too_fast_needs_only_less_speed() {
+        let (gears, motors) = ([hfuc_58_100()], [f11_10()]);
+        let fast = MotionRequirement::default().joint_motion(1.35, Some(4.0));
+        let filter = DriveFilter::everything(GearMass::ComponentSet);
+        let table = DriveTable::build("j2", fast, &filter, &gears, &motors);
+        let shortfall = table.smallest_shortfall(&fast.demand_of_torques(100.0, 50.0)).unwrap();
+        assert_eq!(shortfall.check.kind, CheckKind::GearSpeed);
+        assert_eq!(shortfall.relaxations.len(), 1, "no torque is small enough");
+        // 3000 rpm over 100 is 3.14 rad/s, 78 % of 4.
+        assert_eq!(shortfall.relaxations[0].factor, 0.78);
+        assert!(shortfall.to_string().contains("speed and acceleration down to 78 %, then HFUC-58-100"));
+    }
+
+    #[test]
+    fn less_speed_takes_its_share_off_the_linear_torque() {
+        let (gears, motors) = ([hfuc_40_100()], [f11_10()]);
+        let table = table(&gears, &motors);
+        // A vertical axis: linear torque only, 568 of 600 N m allowed.
+        let shortfall = table.smallest_shortfall(&motion().demand_of_torques(0.0, 600.0)).unwrap();
+        let slower = shortfall.relaxations.iter().find(|r| r.kind == RelaxationKind::Speed).unwrap();
+        assert_eq!(slower.factor, 0.90, "1200 N m in an emergency stop, 1080 allowed");
+        assert!(shortfall.to_string().contains("stop 1200 N m needed, 1080 allowed (short by 120 N m)"));
+    }
+
+    #[test]
+    fn a_shortfall_of_torque_is_a_larger_one_of_the_payload_alone() {
+        let step = Relaxation { kind: RelaxationKind::Torque, factor: 0.9, drive: String::new() };
+        assert!((step.payload_factor(0.4).unwrap() - 0.75).abs() < 1e-12);
+        assert_eq!(step.payload_factor(0.05), None);
+    }
+}

@@ -1,0 +1,172 @@
+//! A drive under a fixed motion, reduced to thresholds on the torques asked of it.
+//!
+//! Speed, acceleration and duty cycle of a joint are fixed by the study, so every check of a drive is a
+//! comparison of one torque with one number. [`DriveLimits`] holds those numbers; a search compares five
+//! pairs and nothing else. The checks printed for people are decided by the same thresholds.
+
+use super::drive::{Drive, Figure, MissingFigure, known, reference_life_h};
+use super::{JointDemand, JointMotion, rpm_from_rad_s};
+use crate::catalog::{Gear, GearMass, Motor};
+
+/// Input speed at which a gear's rated torque holds \[rpm\].
+pub(super) const RATED_INPUT_SPEED_RPM: f64 = 2000.0;
+
+/// What a drive holds under a fixed motion, output side. It holds a demand exactly if none is exceeded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DriveLimits {
+    /// Largest static torque (motor, continuously) \[N m\].
+    pub static_torque_nm: f64,
+    /// Largest static plus linear torque (gear, repeated; motor, for the ramp) \[N m\].
+    pub peak_torque_nm: f64,
+    /// Largest torque in an emergency stop (gear, momentary) \[N m\].
+    pub stop_torque_nm: f64,
+    /// Cube of the largest cubic mean torque (gear, average limit and life) \[(N m)³\].
+    pub mean_torque_cubed_nm3: f64,
+    /// Largest moment across the axis (gear with its bearing) \[N m\].
+    pub tilting_moment_nm: f64,
+}
+
+/// Why a drive is out of question whatever the torques are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Obstacle {
+    /// The joint turns faster than gear or motor may.
+    TooFast,
+    /// A figure that a check needs is blank.
+    Lacks(MissingFigure),
+}
+
+impl From<MissingFigure> for Obstacle {
+    fn from(figure: MissingFigure) -> Self {
+        Obstacle::Lacks(figure)
+    }
+}
+
+impl DriveLimits {
+    /// The thresholds of a drive.
+    ///
+    /// # Errors
+    /// [`Obstacle`] if the drive cannot be chosen whatever the torques are. A blank tilting moment is not
+    /// one: its threshold is 0, which holds as long as no moment is asked for.
+    pub fn of(drive: &Drive, motion: &JointMotion) -> Result<Self, Obstacle> {
+        drive.mass_kg()?;
+        if !speeds_hold(drive, motion)? {
+            return Err(Obstacle::TooFast);
+        }
+        let gear = drive.gear;
+        Ok(Self {
+            static_torque_nm: motor_continuous_nm(drive)?,
+            peak_torque_nm: gear_peak_nm(gear)?.min(motor_peak_nm(drive, motion)?),
+            stop_torque_nm: gear_momentary_nm(gear)?,
+            mean_torque_cubed_nm3: gear_average_cubed_nm3(gear)?.min(gear_life_cubed_nm3(gear, motion)?),
+            tilting_moment_nm: tilting_moment_nm(gear, drive.gear_mass).unwrap_or(0.0),
+        })
+    }
+
+    /// Whether the drive holds a demand.
+    #[inline]
+    pub fn hold(&self, demand: &JointDemand) -> bool {
+        (demand.static_torque_nm <= self.static_torque_nm)
+            & (demand.peak_torque_nm() <= self.peak_torque_nm)
+            & (demand.stop_torque_nm <= self.stop_torque_nm)
+            & (demand.mean_torque_cubed_nm3 <= self.mean_torque_cubed_nm3)
+            & (demand.tilting_moment_nm <= self.tilting_moment_nm)
+    }
+
+    /// The larger of each limit of two drives.
+    pub(super) fn max(&self, other: &Self) -> Self {
+        Self {
+            static_torque_nm: self.static_torque_nm.max(other.static_torque_nm),
+            peak_torque_nm: self.peak_torque_nm.max(other.peak_torque_nm),
+            stop_torque_nm: self.stop_torque_nm.max(other.stop_torque_nm),
+            mean_torque_cubed_nm3: self.mean_torque_cubed_nm3.max(other.mean_torque_cubed_nm3),
+            tilting_moment_nm: self.tilting_moment_nm.max(other.tilting_moment_nm),
+        }
+    }
+
+    /// Whether every limit is at least that of `other`.
+    #[inline]
+    pub fn cover(&self, other: &Self) -> bool {
+        (self.static_torque_nm >= other.static_torque_nm)
+            & (self.peak_torque_nm >= other.peak_torque_nm)
+            & (self.stop_torque_nm >= other.stop_torque_nm)
+            & (self.mean_torque_cubed_nm3 >= other.mean_torque_cubed_nm3)
+            & (self.tilting_moment_nm >= other.tilting_moment_nm)
+    }
+}
+
+fn speeds_hold(drive: &Drive, motion: &JointMotion) -> Result<bool, MissingFigure> {
+    let input_rpm = input_speed_rpm(drive.gear, motion);
+    let gear_max = input_rpm <= gear_max_speed_rpm(drive.gear)?;
+    let gear_mean = mean_input_speed_rpm(drive.gear, motion) <= gear_average_speed_rpm(drive.gear)?;
+    Ok(gear_max && gear_mean && input_rpm <= motor_max_speed_rpm(drive.motor)?)
+}
+
+/// N ω \[rpm\].
+pub(super) fn input_speed_rpm(gear: &Gear, motion: &JointMotion) -> f64 {
+    f64::from(gear.ratio) * rpm_from_rad_s(motion.speed_rad_s)
+}
+
+/// N times the mean speed over the duty cycle \[rpm\].
+pub(super) fn mean_input_speed_rpm(gear: &Gear, motion: &JointMotion) -> f64 {
+    f64::from(gear.ratio) * rpm_from_rad_s(motion.mean_speed_rad_s())
+}
+
+pub(super) fn gear_max_speed_rpm(gear: &Gear) -> Figure {
+    known(gear.max_input_speed_rpm, "max_input_speed_rpm")
+}
+
+pub(super) fn gear_average_speed_rpm(gear: &Gear) -> Figure {
+    known(gear.average_input_speed_limit_rpm, "average_input_speed_limit_rpm")
+}
+
+/// The speed a motor may reach at the end of a ramp: its largest, or the rated one if that alone is known.
+pub(super) fn motor_max_speed_rpm(motor: &Motor) -> Figure {
+    known(motor.max_speed_rpm.or(motor.rated_speed_rpm), "max_speed_rpm")
+}
+
+/// Static torque at which the motor is at its continuous torque: T_rated N η.
+pub(super) fn motor_continuous_nm(drive: &Drive) -> Figure {
+    Ok(known(drive.motor.rated_torque_nm, "motor rated_torque_nm")? * drive.gain()?)
+}
+
+/// Output torque at which the motor is at its peak while accelerating: (T_peak - J_in N α) N η.
+pub(super) fn motor_peak_nm(drive: &Drive, motion: &JointMotion) -> Figure {
+    let peak = known(drive.motor.peak_torque_nm, "peak_torque_nm")?;
+    Ok((peak - drive.rotary_torque_motor_nm(motion)?) * drive.gain()?)
+}
+
+pub(super) fn gear_peak_nm(gear: &Gear) -> Figure {
+    known(gear.repeated_peak_torque_nm, "repeated_peak_torque_nm")
+}
+
+pub(super) fn gear_average_nm(gear: &Gear) -> Figure {
+    known(gear.average_torque_limit_nm, "average_torque_limit_nm")
+}
+
+pub(super) fn gear_average_cubed_nm3(gear: &Gear) -> Figure {
+    Ok(gear_average_nm(gear)?.powi(3))
+}
+
+pub(super) fn gear_momentary_nm(gear: &Gear) -> Figure {
+    known(gear.momentary_peak_torque_nm, "momentary_peak_torque_nm")
+}
+
+/// Life at a mean torque of 1 N m, in h (N m)³: L_ref T_rated³ (2000 rpm / n_mean).
+pub(super) fn life_product(gear: &Gear, motion: &JointMotion) -> Figure {
+    let reference_h = known(reference_life_h(&gear.series), "reference life of its series")?;
+    let rated_nm = known(gear.rated_torque_nm, "gear rated_torque_nm")?;
+    Ok(reference_h * rated_nm.powi(3) * (RATED_INPUT_SPEED_RPM / mean_input_speed_rpm(gear, motion)))
+}
+
+/// Cube of the mean torque at which the gear lasts just as long as required.
+pub(super) fn gear_life_cubed_nm3(gear: &Gear, motion: &JointMotion) -> Figure {
+    Ok(life_product(gear, motion)? / motion.life_h)
+}
+
+/// Permissible tilting moment; without limit for a component set, which has no bearing.
+pub(super) fn tilting_moment_nm(gear: &Gear, gear_mass: GearMass) -> Figure {
+    match gear_mass {
+        GearMass::ComponentSet => Ok(f64::INFINITY),
+        GearMass::HousedUnit => known(gear.permissible_tilting_moment_nm, "permissible_tilting_moment_nm"),
+    }
+}

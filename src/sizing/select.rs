@@ -1,0 +1,349 @@
+//! Selection of a drive for one joint: every legal pair of gear and motor, sorted by mass.
+
+use super::{Drive, DriveLimits, JointDemand, JointMotion};
+use crate::catalog::{Gear, GearMass, Motor, MotorKind};
+
+/// Which parts of the catalogs a joint may use; `None` allows all.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DriveFilter {
+    /// Which mass of a gear counts.
+    pub gear_mass: GearMass,
+    /// Series of gears, e.g. `CSG`.
+    pub gear_series: Option<Vec<String>>,
+    /// Reduction ratios.
+    pub ratios: Option<Vec<u32>>,
+    /// Gears by name.
+    pub gear_ids: Option<Vec<String>>,
+    /// Kinds of motors.
+    pub motor_kinds: Option<Vec<MotorKind>>,
+    /// Motors by name.
+    pub motor_ids: Option<Vec<String>>,
+}
+
+impl DriveFilter {
+    /// Everything in the catalogs.
+    pub fn everything(gear_mass: GearMass) -> Self {
+        Self {
+            gear_mass,
+            gear_series: None,
+            ratios: None,
+            gear_ids: None,
+            motor_kinds: None,
+            motor_ids: None,
+        }
+    }
+
+    /// Whether a gear may be used.
+    pub fn allows_gear(&self, gear: &Gear) -> bool {
+        allows(&self.gear_series, &gear.series)
+            && allows(&self.ratios, &gear.ratio)
+            && allows(&self.gear_ids, &gear.id)
+    }
+
+    /// Whether a motor may be used.
+    pub fn allows_motor(&self, motor: &Motor) -> bool {
+        allows(&self.motor_kinds, &motor.kind) && allows(&self.motor_ids, &motor.id)
+    }
+}
+
+fn allows<T: PartialEq>(list: &Option<Vec<T>>, item: &T) -> bool {
+    list.as_ref().is_none_or(|list| list.contains(item))
+}
+
+/// A pair of parts by their places in the table's lists.
+#[derive(Debug, Clone, Copy)]
+struct Pair {
+    gear: u32,
+    motor: u32,
+}
+
+/// Every drive that one joint may have under its motion, lightest first; ties by gear, then motor name.
+///
+/// A drive that may not turn so fast, or that lacks a figure a check needs, has no index; it is found by
+/// [`DriveTable::explain`].
+#[derive(Debug, Clone)]
+pub struct DriveTable<'c> {
+    joint: String,
+    motion: JointMotion,
+    gear_mass: GearMass,
+    gears: Vec<&'c Gear>,
+    motors: Vec<&'c Motor>,
+    pairs: Vec<Pair>,
+    masses_kg: Vec<f64>,
+    limits: Vec<DriveLimits>,
+    /// Indices that no earlier (lighter) drive covers in all limits: only these can be a first fit.
+    ladder: Vec<u32>,
+    ladder_limits: Vec<DriveLimits>,
+    /// Largest limits up to each step: nothing before the first of these that holds can be a fit.
+    ladder_reach: Vec<DriveLimits>,
+}
+
+impl<'c> DriveTable<'c> {
+    /// Builds the table of the joint named `joint`.
+    pub fn build(
+        joint: &str,
+        motion: JointMotion,
+        filter: &DriveFilter,
+        gears: &'c [Gear],
+        motors: &'c [Motor],
+    ) -> Self {
+        let mut table = Self {
+            joint: joint.to_string(),
+            motion,
+            gear_mass: filter.gear_mass,
+            gears: gears.iter().filter(|g| filter.allows_gear(g)).collect(),
+            motors: motors.iter().filter(|m| filter.allows_motor(m)).collect(),
+            pairs: Vec::new(),
+            masses_kg: Vec::new(),
+            limits: Vec::new(),
+            ladder: Vec::new(),
+            ladder_limits: Vec::new(),
+            ladder_reach: Vec::new(),
+        };
+        table.fill();
+        table.raise_ladder();
+        table
+    }
+
+    fn fill(&mut self) {
+        let mut legal = Vec::new();
+        for (drive, pair) in self.all_pairs() {
+            if let (Ok(limits), Ok(mass_kg)) = (DriveLimits::of(&drive, &self.motion), drive.mass_kg()) {
+                legal.push((mass_kg, drive, pair, limits));
+            }
+        }
+        legal.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| parts(&a.1).cmp(&parts(&b.1))));
+        for (mass_kg, _, pair, limits) in legal {
+            self.pairs.push(pair);
+            self.masses_kg.push(mass_kg);
+            self.limits.push(limits);
+        }
+    }
+
+    fn raise_ladder(&mut self) {
+        for (index, limits) in self.limits.iter().enumerate() {
+            if !self.ladder_limits.iter().any(|lighter| lighter.cover(limits)) {
+                self.ladder.push(index as u32);
+                self.ladder_limits.push(*limits);
+                self.ladder_reach.push(self.ladder_reach.last().map_or(*limits, |reach| reach.max(limits)));
+            }
+        }
+    }
+
+    fn all_pairs(&self) -> impl Iterator<Item = (Drive<'c>, Pair)> + '_ {
+        let motors = 0..self.motors.len() as u32;
+        let pairs = (0..self.gears.len() as u32)
+            .flat_map(move |gear| motors.clone().map(move |motor| Pair { gear, motor }));
+        pairs.map(|pair| (self.drive_of(pair), pair))
+    }
+
+    fn drive_of(&self, pair: Pair) -> Drive<'c> {
+        Drive {
+            gear: self.gears[pair.gear as usize],
+            motor: self.motors[pair.motor as usize],
+            gear_mass: self.gear_mass,
+        }
+    }
+
+    /// Name of the joint.
+    pub fn joint(&self) -> &str {
+        &self.joint
+    }
+
+    /// Motion of the joint.
+    pub fn motion(&self) -> &JointMotion {
+        &self.motion
+    }
+
+    /// Which mass of a gear counts.
+    pub fn gear_mass(&self) -> GearMass {
+        self.gear_mass
+    }
+
+    /// Gears that the filter allows, legal or not.
+    pub fn gears(&self) -> &[&'c Gear] {
+        &self.gears
+    }
+
+    /// Motors that the filter allows, legal or not.
+    pub fn motors(&self) -> &[&'c Motor] {
+        &self.motors
+    }
+
+    /// Number of legal drives.
+    pub fn len(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// Whether no drive is legal.
+    pub fn is_empty(&self) -> bool {
+        self.pairs.is_empty()
+    }
+
+    /// The drive at an index.
+    pub fn drive(&self, index: usize) -> Drive<'c> {
+        self.drive_of(self.pairs[index])
+    }
+
+    /// Mass of the drive at an index \[kg\].
+    #[inline]
+    pub fn mass_kg(&self, index: usize) -> f64 {
+        self.masses_kg[index]
+    }
+
+    /// Thresholds of the drive at an index.
+    #[inline]
+    pub fn limits(&self, index: usize) -> &DriveLimits {
+        &self.limits[index]
+    }
+
+    /// Index of a legal drive by the names of its parts.
+    pub fn index_of(&self, gear_id: &str, motor_id: &str) -> Option<usize> {
+        (0..self.len()).find(|&i| parts(&self.drive(i)) == (gear_id, motor_id))
+    }
+
+    /// Indices of the drives that can be a first fit: no lighter one holds all they hold.
+    pub fn first_fit_candidates(&self) -> &[u32] {
+        &self.ladder
+    }
+
+    /// The lightest drive that holds (the paper's way): a search for the first step within reach,
+    /// then a scan.
+    #[inline]
+    pub fn first_fit(&self, demand: &JointDemand) -> Option<usize> {
+        let start = self.first_step_within_reach(demand);
+        let step = start + self.ladder_limits[start..].iter().position(|limits| limits.hold(demand))?;
+        Some(self.ladder[step] as usize)
+    }
+
+    /// Doubling strides, then bisection: a light demand is answered at the first steps.
+    #[inline]
+    fn first_step_within_reach(&self, demand: &JointDemand) -> usize {
+        let reach = &self.ladder_reach;
+        let (mut low, mut high) = (0, 1);
+        while high < reach.len() && !reach[high - 1].hold(demand) {
+            (low, high) = (high, 2 * high);
+        }
+        low + reach[low..high.min(reach.len())].partition_point(|reach| !reach.hold(demand))
+    }
+
+    /// Every drive that holds, lightest first.
+    #[inline]
+    pub fn all_fits<'t>(&'t self, demand: &'t JointDemand) -> impl Iterator<Item = usize> + 't {
+        let holding = self.limits.iter().enumerate().filter(|(_, limits)| limits.hold(demand));
+        holding.map(|(index, _)| index)
+    }
+
+    /// Every pair that the filter allows, legal or not.
+    pub(super) fn all_drives(&self) -> impl Iterator<Item = Drive<'c>> + '_ {
+        self.all_pairs().map(|(drive, _)| drive)
+    }
+}
+
+fn parts<'c>(drive: &Drive<'c>) -> (&'c str, &'c str) {
+    (&drive.gear.id, &drive.motor.id)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{any_gear, any_motion, any_motor, any_torques, char_lynn_j_8_2, f11_10};
+    use super::super::testing::{hfuc_40_100, hfuc_58_100, motor};
+    use super::super::{MotionRequirement, all_hold, checks};
+    use super::*;
+    use proptest::prelude::*;
+
+    fn everything() -> DriveFilter {
+        DriveFilter::everything(GearMass::ComponentSet)
+    }
+
+    fn motion() -> JointMotion {
+        MotionRequirement::default().joint_motion(1.35, None)
+    }
+
+    #[test]
+    fn the_first_fit_is_the_lightest_drive_that_holds() {
+        let (gears, motors) = ([hfuc_58_100(), hfuc_40_100()], [f11_10()]);
+        let table = DriveTable::build("j2", motion(), &everything(), &gears, &motors);
+        let fit = |static_nm: f64| {
+            let index = table.first_fit(&motion().demand_of_torques(static_nm, 0.5 * static_nm))?;
+            Some((table.drive(index).gear.id.clone(), table.mass_kg(index)))
+        };
+        assert_eq!(fit(300.0), Some(("HFUC-40-100".to_string(), 9.2)));
+        assert_eq!(fit(568.3), Some(("HFUC-58-100".to_string(), 12.2)));
+        assert_eq!(fit(2000.0), None);
+    }
+
+    #[test]
+    fn a_part_that_lacks_a_figure_has_no_index() {
+        let (gears, motors) = ([hfuc_40_100()], [char_lynn_j_8_2()]);
+        let table = DriveTable::build("j4", motion(), &everything(), &gears, &motors);
+        assert!(table.is_empty());
+        assert_eq!(table.first_fit(&motion().demand_of_torques(0.0, 0.0)), None);
+    }
+
+    #[test]
+    fn equal_masses_are_ordered_by_name_whatever_the_order_of_the_lists() {
+        let gears = [hfuc_40_100()];
+        let same = |id| motor(id, [31.0, 62.0], [3000.0, 5000.0], 0.0003, 5.0);
+        for motors in [[same("B"), same("A")], [same("A"), same("B")]] {
+            let table = DriveTable::build("j2", motion(), &everything(), &gears, &motors);
+            assert_eq!(table.drive(0).motor.id, "A");
+            assert_eq!(table.first_fit_candidates(), [0], "B holds no more than A");
+            assert_eq!(table.index_of("HFUC-40-100", "B"), Some(1));
+        }
+    }
+
+    #[test]
+    fn a_filter_keeps_series_ratios_kinds_and_names() {
+        let (gears, motors) = ([hfuc_58_100(), hfuc_40_100()], [f11_10(), char_lynn_j_8_2()]);
+        let count = |change: fn(&mut DriveFilter)| {
+            let mut filter = everything();
+            change(&mut filter);
+            let table = DriveTable::build("j2", motion(), &filter, &gears, &motors);
+            (table.gears().len(), table.motors().len())
+        };
+        assert_eq!(count(|_| ()), (2, 2));
+        assert_eq!(count(|f| f.gear_series = Some(vec!["CSG".into()])), (0, 2));
+        assert_eq!(count(|f| f.ratios = Some(vec![100])), (2, 2));
+        assert_eq!(count(|f| f.gear_ids = Some(vec!["HFUC-40-100".into()])), (1, 2));
+        assert_eq!(count(|f| f.motor_kinds = Some(vec![MotorKind::HydraulicOrbital])), (2, 1));
+        assert_eq!(count(|f| f.motor_ids = Some(vec!["none".into()])), (2, 0));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(300))]
+
+        #[test]
+        fn fits_are_the_pairs_whose_checks_all_hold_and_the_first_is_the_lightest(
+            gears in prop::collection::vec(any_gear(), 1..8),
+            motors in prop::collection::vec(any_motor(), 1..8),
+            motion in any_motion(),
+            torques in any_torques(),
+            housed: bool,
+        ) {
+            let gear_mass = if housed { GearMass::HousedUnit } else { GearMass::ComponentSet };
+            let gears: Vec<_> = gears.into_iter().enumerate().map(|(i, g)| Gear { id: format!("G{i}"), ..g }).collect();
+            let motors: Vec<_> = motors.into_iter().enumerate().map(|(i, m)| Motor { id: format!("M{i}"), ..m }).collect();
+            let demand = motion
+                .demand_of_torques(torques[0] / 2.0, torques[1] / 4.0)
+                .with_tilting_moment_nm(torques[2]);
+            let table = DriveTable::build("j", motion, &DriveFilter::everything(gear_mass), &gears, &motors);
+            let mut slow = Vec::new();
+            for gear in &gears {
+                for motor in &motors {
+                    let drive = Drive { gear, motor, gear_mass };
+                    if all_hold(&checks(&drive, &motion, &demand)) {
+                        slow.push((drive.mass_kg().unwrap(), gear.id.clone(), motor.id.clone()));
+                    }
+                }
+            }
+            slow.sort_by(|a, b| a.partial_cmp(b).unwrap());
+            let fits: Vec<_> = table.all_fits(&demand).map(|i| {
+                let drive = table.drive(i);
+                (table.mass_kg(i), drive.gear.id.clone(), drive.motor.id.clone())
+            }).collect();
+            prop_assert_eq!(&fits, &slow);
+            prop_assert_eq!(table.first_fit(&demand), table.all_fits(&demand).next());
+        }
+    }
+}

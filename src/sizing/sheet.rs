@@ -1,0 +1,271 @@
+//! The numbers of one joint for the table that a designer reads, joint 6 to joint 1.
+
+use super::check::{Check, CheckKind, CheckState, binding, checks};
+use super::drive::{Drive, rotary_torque_output_nm};
+use super::limits::input_speed_rpm;
+use super::{JointDemand, JointMotion, rpm_from_rad_s};
+use serde::Serialize;
+
+/// One joint, sized. `None` is a number that a blank figure of the catalog leaves open.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JointSizingRow {
+    /// Name of the joint.
+    pub joint: String,
+    /// Static torque, Eq 7 \[N m\].
+    pub static_torque_nm: f64,
+    /// Torque of linear acceleration, Eq 8 \[N m\].
+    pub linear_torque_nm: f64,
+    /// Rotary torque as printed in Eq 11, motor side \[N m\].
+    pub rotary_torque_motor_nm: Option<f64>,
+    /// The same referred to the joint, N times as large \[N m\].
+    pub rotary_torque_output_nm: Option<f64>,
+    /// Eq 12 on one side: static, linear and rotary torque at the joint \[N m\].
+    pub total_torque_nm: Option<f64>,
+    /// What the motor gives at the peak, the gear's losses included \[N m\].
+    pub motor_peak_torque_nm: Option<f64>,
+    /// Torque in an emergency stop \[N m\].
+    pub stop_torque_nm: f64,
+    /// Cubic mean torque over the duty cycle \[N m\].
+    pub mean_torque_nm: f64,
+    /// Speed of the joint \[rpm\].
+    pub joint_speed_rpm: f64,
+    /// Speed of the motor \[rpm\].
+    pub motor_speed_rpm: f64,
+    /// Gear chosen.
+    pub gear: String,
+    /// Motor chosen.
+    pub motor: String,
+    /// The check with the smallest torque margin.
+    pub binds: Option<&'static str>,
+    /// Its allowed over needed; `None` also if nothing is needed of it.
+    pub margin: Option<f64>,
+    /// L10 of the wave-generator bearing \[h\].
+    pub life_h: Option<f64>,
+    /// Mass of the drive \[kg\].
+    pub mass_kg: Option<f64>,
+    /// Mass that the next joint inward carries beyond this one: everything outboard and this drive \[kg\].
+    pub mass_passed_inward_kg: f64,
+    /// Checks that fail, in words; a fixed selection may have some.
+    pub fails: Vec<String>,
+    /// Checks that could not be made, in words.
+    pub not_checked: Vec<String>,
+}
+
+impl JointSizingRow {
+    /// The row of a joint with its drive.
+    pub fn new(
+        joint: &str,
+        drive: &Drive,
+        motion: &JointMotion,
+        demand: &JointDemand,
+        mass_passed_inward_kg: f64,
+    ) -> Self {
+        let checks = checks(drive, motion, demand);
+        let bound = binding(&checks);
+        let finite = |x: &f64| x.is_finite();
+        let rotary_output = drive
+            .input_inertia_kgm2()
+            .map(|inertia| rotary_torque_output_nm(inertia, drive.ratio(), motion.acceleration_rad_s2));
+        Self {
+            joint: joint.to_string(),
+            static_torque_nm: demand.static_torque_nm,
+            linear_torque_nm: demand.linear_torque_nm,
+            rotary_torque_motor_nm: drive.rotary_torque_motor_nm(motion).ok(),
+            rotary_torque_output_nm: rotary_output.ok(),
+            total_torque_nm: rotary_output.ok().map(|rotary| demand.peak_torque_nm() + rotary),
+            motor_peak_torque_nm: drive.peak_motor_torque_nm(motion, demand.peak_torque_nm()).ok(),
+            stop_torque_nm: demand.stop_torque_nm,
+            mean_torque_nm: demand.mean_torque_nm(),
+            joint_speed_rpm: rpm_from_rad_s(motion.speed_rad_s),
+            motor_speed_rpm: input_speed_rpm(drive.gear, motion),
+            gear: drive.gear.id.clone(),
+            motor: drive.motor.id.clone(),
+            binds: bound.map(|c| c.kind.label()),
+            margin: bound.and_then(Check::margin).filter(finite),
+            life_h: life_h(&checks).filter(finite),
+            mass_kg: drive.mass_kg().ok(),
+            mass_passed_inward_kg,
+            fails: remarks(&checks, |state| state == CheckState::Fails),
+            not_checked: remarks(&checks, |state| matches!(state, CheckState::NotChecked(_))),
+        }
+    }
+}
+
+fn life_h(checks: &[Check]) -> Option<f64> {
+    checks.iter().find(|c| c.kind == CheckKind::GearLife)?.allowed
+}
+
+fn remarks(checks: &[Check], wanted: impl Fn(CheckState) -> bool) -> Vec<String> {
+    let part = |c: &Check| if c.kind.is_gear() { "gear" } else { "motor" };
+    checks.iter().filter(|c| wanted(c.state)).map(|c| format!("{} {c}", part(c))).collect()
+}
+
+/// Longest name of a motor printed in full.
+const MOTOR_WIDTH: usize = 14;
+
+/// Headers over their units; the columns of numbers are aligned to the right.
+const HEADERS: [(&str, &str, bool); 15] = [
+    ("joint", "", false),
+    ("static", "N m", true),
+    ("linear", "N m", true),
+    ("rot.mot", "N m", true),
+    ("rot.out", "N m", true),
+    ("total", "N m", true),
+    ("speed", "rpm", true),
+    ("motor", "rpm", true),
+    ("gear", "", false),
+    ("motor", "", false),
+    ("binds", "", false),
+    ("margin", "-", true),
+    ("life", "h", true),
+    ("drive", "kg", true),
+    ("inward", "kg", true),
+];
+
+/// The rows as a text table of about 120 columns, with remarks on failed and open checks below it.
+pub fn render_rows(rows: &[JointSizingRow]) -> String {
+    let mut lines = vec![HEADERS.map(|h| h.0.to_string()), HEADERS.map(|h| h.1.to_string())];
+    lines.extend(rows.iter().map(cells));
+    let mut text = String::new();
+    for line in &lines {
+        let padded: Vec<_> = (0..HEADERS.len()).map(|column| pad(&lines, line, column)).collect();
+        text.push_str(padded.join(" ").trim_end());
+        text.push('\n');
+    }
+    for row in rows {
+        for remark in row.fails.iter().chain(&row.not_checked) {
+            text.push_str(&format!("joint {}: {remark}\n", row.joint));
+        }
+    }
+    text
+}
+
+fn pad(lines: &[[String; 15]], line: &[String; 15], column: usize) -> String {
+    let width = lines.iter().map(|l| l[column].chars().count()).max().unwrap_or(0);
+    match HEADERS[column].2 {
+        true => format!("{:>width$}", line[column]),
+        false => format!("{:<width$}", line[column]),
+    }
+}
+
+fn cells(row: &JointSizingRow) -> [String; 15] {
+    let digits = |x: f64, n: usize| format!("{x:.n$}");
+    let or_open = |x: Option<f64>, n: usize| x.map_or("?".to_string(), |x| digits(x, n));
+    [
+        row.joint.clone(),
+        digits(row.static_torque_nm, 2),
+        digits(row.linear_torque_nm, 2),
+        or_open(row.rotary_torque_motor_nm, 3),
+        or_open(row.rotary_torque_output_nm, 2),
+        or_open(row.total_torque_nm, 1),
+        digits(row.joint_speed_rpm, 1),
+        digits(row.motor_speed_rpm, 0),
+        row.gear.clone(),
+        shortened(&row.motor),
+        row.binds.unwrap_or("-").to_string(),
+        row.margin.map_or("-".to_string(), |x| digits(x, 2)),
+        row.life_h.map_or("-".to_string(), life_text),
+        or_open(row.mass_kg, 2),
+        digits(row.mass_passed_inward_kg, 2),
+    ]
+}
+
+/// Hours, in scientific notation beyond a million.
+fn life_text(life_h: f64) -> String {
+    if life_h < 1e6 { format!("{life_h:.0}") } else { format!("{life_h:.1e}") }
+}
+
+fn shortened(name: &str) -> String {
+    if name.chars().count() <= MOTOR_WIDTH {
+        return name.to_string();
+    }
+    let kept: String = name.chars().take(MOTOR_WIDTH - 1).collect();
+    format!("{}~", kept.trim_end())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{char_lynn_j_8_2, f11_10, hfuc_40_100, hfuc_58_100};
+    use super::super::{LinearReading, MotionRequirement};
+    use super::*;
+    use crate::catalog::{GearMass, Motor};
+
+    fn paper_joint_2(motor: &Motor) -> JointSizingRow {
+        let study = MotionRequirement { linear_reading: LinearReading::Paper, ..Default::default() };
+        let motion = study.joint_motion(1.35, None);
+        let gear = hfuc_58_100();
+        let drive = Drive { gear: &gear, motor, gear_mass: GearMass::ComponentSet };
+        JointSizingRow::new("j2", &drive, &motion, &motion.demand(568.3, 0.0), 80.0)
+    }
+
+    #[test]
+    fn the_papers_joint_2_has_all_its_numbers() {
+        let row = paper_joint_2(&f11_10());
+        assert!((row.linear_torque_nm - 289.65).abs() < 0.01);
+        assert!(
+            (row.rotary_torque_output_nm.unwrap() / row.rotary_torque_motor_nm.unwrap() - 100.0).abs() < 1e-9
+        );
+        assert!((row.total_torque_nm.unwrap() - (568.3 + 289.65 + 115.56)).abs() < 0.01);
+        assert!((row.joint_speed_rpm - 7.07).abs() < 0.01);
+        assert!((row.motor_speed_rpm - 707.4).abs() < 0.1);
+        assert_eq!(row.mass_kg, Some(12.2));
+        assert_eq!(row.binds, Some("gear mean"));
+        assert!(row.fails.is_empty() && row.not_checked.is_empty());
+    }
+
+    #[test]
+    fn a_motor_without_inertia_leaves_its_numbers_open_and_says_so() {
+        let row = paper_joint_2(&char_lynn_j_8_2());
+        assert_eq!((row.rotary_torque_motor_nm, row.total_torque_nm), (None, None));
+        assert_eq!(row.not_checked, ["motor peak not checked: lacks rotor_inertia_kgm2"]);
+        assert!(
+            render_rows(&[row]).contains("\njoint j2: motor peak not checked: lacks rotor_inertia_kgm2\n")
+        );
+    }
+
+    #[test]
+    fn a_fixed_selection_that_fails_is_remarked_below_the_table() {
+        let motion = MotionRequirement::default().joint_motion(1.35, None);
+        let (gear, motor) = (hfuc_40_100(), f11_10());
+        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::ComponentSet };
+        let row = JointSizingRow::new("j2", &drive, &motion, &motion.demand_of_torques(500.0, 100.0), 0.0);
+        assert_eq!(row.fails[0], "gear peak 600 N m needed, 568 allowed");
+        assert!(row.margin.unwrap() < 1.0);
+    }
+
+    #[test]
+    fn the_table_prints_like_this() {
+        let text = render_rows(&[paper_joint_2(&f11_10())]);
+        let lines: Vec<_> = text.lines().collect();
+        assert_eq!(
+            lines,
+            [
+                "joint static linear rot.mot rot.out total speed motor gear        motor  binds     margin  \
+                 life drive inward",
+                "         N m    N m     N m     N m   N m   rpm   rpm                                   -     \
+                 h    kg     kg",
+                "j2    568.30 289.65   1.156  115.56 973.5   7.1   707 HFUC-58-100 F11-10 gear mean   1.76 \
+                 76071 12.20  80.00",
+            ]
+        );
+    }
+
+    #[test]
+    fn the_table_fits_about_120_columns_and_long_names_are_cut() {
+        let mut row = paper_joint_2(&f11_10());
+        row.motor = "EC-i 40 100 W 48 V (488607)".into();
+        (row.joint, row.gear, row.binds) = ("wrist1".into(), "HFUC-58-160".into(), Some("gear av.speed"));
+        row.life_h = Some(2.5e9);
+        let text = render_rows(&[row]);
+        assert!(text.contains("EC-i 40 100 W~"));
+        assert!(text.contains("2.5e9"));
+        assert!(text.lines().all(|l| l.chars().count() <= 122), "{text}");
+    }
+
+    #[test]
+    fn a_row_is_json_with_null_for_what_is_open() {
+        let json = serde_json::to_value(paper_joint_2(&char_lynn_j_8_2())).unwrap();
+        assert!(json["total_torque_nm"].is_null());
+        assert_eq!(json["gear"], "HFUC-58-100");
+    }
+}

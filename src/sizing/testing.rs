@@ -1,0 +1,152 @@
+//! Parts for tests: rows of the catalog written out, and a drive that holds with room to spare.
+
+use super::{JointMotion, MotionRequirement};
+use crate::catalog::{Confidence, Gear, Motor, MotorKind, Provenance};
+use proptest::prelude::*;
+
+fn provenance() -> Provenance {
+    Provenance {
+        source: "test".into(),
+        confidence: Confidence::Verified,
+        unverified_fields: vec![],
+        file: "test".into(),
+        line: 1,
+    }
+}
+
+/// A gear with every figure a check needs, in the order of `gears.csv`.
+pub fn gear(id: &str, torques_nm: [f64; 4], input_rpm: [f64; 2], inertia: f64, masses_kg: [f64; 2]) -> Gear {
+    let mut parts = id.split('-');
+    let mut next = || parts.next().expect("series-size-ratio");
+    Gear {
+        id: id.to_string(),
+        series: next().to_string(),
+        size: next().parse().expect("a size"),
+        ratio: next().parse().expect("a ratio"),
+        rated_torque_nm: Some(torques_nm[0]),
+        repeated_peak_torque_nm: Some(torques_nm[1]),
+        average_torque_limit_nm: Some(torques_nm[2]),
+        momentary_peak_torque_nm: Some(torques_nm[3]),
+        max_input_speed_rpm: Some(input_rpm[0]),
+        average_input_speed_limit_rpm: Some(input_rpm[1]),
+        inertia_input_kgm2: Some(inertia),
+        mass_component_set_kg: Some(masses_kg[0]),
+        mass_housed_unit_kg: Some(masses_kg[1]),
+        t1_nm: None,
+        t2_nm: None,
+        k1_nm_per_rad: None,
+        k2_nm_per_rad: None,
+        k3_nm_per_rad: None,
+        hysteresis_loss_arcmin: None,
+        transmission_accuracy_arcmin: None,
+        tilting_stiffness_nm_per_rad: None,
+        permissible_tilting_moment_nm: None,
+        efficiency: Some(0.78),
+        provenance: provenance(),
+    }
+}
+
+/// A motor with every figure: torques \[N m\], speeds \[rpm\], inertia \[kg m²\], mass \[kg\].
+pub fn motor(id: &str, torques_nm: [f64; 2], speeds_rpm: [f64; 2], inertia: f64, mass_kg: f64) -> Motor {
+    Motor {
+        id: id.to_string(),
+        kind: MotorKind::AcServo,
+        vendor: "test".into(),
+        rated_torque_nm: Some(torques_nm[0]),
+        peak_torque_nm: Some(torques_nm[1]),
+        rated_speed_rpm: Some(speeds_rpm[0]),
+        max_speed_rpm: Some(speeds_rpm[1]),
+        rotor_inertia_kgm2: Some(inertia),
+        mass_kg: Some(mass_kg),
+        rated_power_w: None,
+        provenance: provenance(),
+    }
+}
+
+/// `catalogs/gears.csv`, row HFUC-58-100.
+pub fn hfuc_58_100() -> Gear {
+    let mut gear =
+        gear("HFUC-58-100", [696.0, 1590.0, 1060.0, 3180.0], [3000.0, 2200.0], 0.00273, [4.7, 14.6]);
+    gear.permissible_tilting_moment_nm = Some(1180.0);
+    gear
+}
+
+/// `catalogs/gears.csv`, row HFUC-40-100, with the housed unit's bearing.
+pub fn hfuc_40_100() -> Gear {
+    let mut gear = gear("HFUC-40-100", [265.0, 568.0, 372.0, 1080.0], [4000.0, 3000.0], 0.00045, [1.7, 5.0]);
+    gear.permissible_tilting_moment_nm = Some(450.0);
+    gear
+}
+
+/// `catalogs/motors.csv`, row F11-10.
+pub fn f11_10() -> Motor {
+    let mut motor = motor("F11-10", [31.12, 62.23], [10200.0, 11200.0], 0.00039, 7.5);
+    motor.kind = MotorKind::HydraulicPiston;
+    motor
+}
+
+/// `catalogs/motors.csv`, row J 8.2 (129-): no rotor inertia.
+pub fn char_lynn_j_8_2() -> Motor {
+    let mut motor = motor("J 8.2 (129-)", [13.7, 16.2], [1992.0, 2390.0], 0.0, 2.0);
+    motor.kind = MotorKind::HydraulicOrbital;
+    motor.rotor_inertia_kgm2 = None;
+    motor
+}
+
+/// A figure in a range, blank now and then.
+fn figure(range: std::ops::Range<f64>) -> impl Strategy<Value = Option<f64>> {
+    prop_oneof![19 => range.prop_map(Some), 1 => Just(None)]
+}
+
+prop_compose! {
+    /// A gear of random figures.
+    pub fn any_gear()(
+        series in prop_oneof![9 => Just("CSG"), 9 => Just("HFUC"), 1 => Just("HOMEMADE")],
+        ratio in prop_oneof![Just(30u32), Just(50), Just(100), Just(160)],
+        torques in prop::array::uniform4(figure(50.0..2000.0)),
+        speeds in prop::array::uniform2(figure(300.0..6000.0)),
+        inertia in figure(0.0..0.003),
+        masses in prop::array::uniform2(figure(0.1..15.0)),
+        tilt in figure(50.0..1000.0),
+        efficiency in figure(0.5..0.9),
+    ) -> Gear {
+        let mut gear = gear(&format!("{series}-32-{ratio}"), [0.0; 4], [0.0; 2], 0.0, [0.0; 2]);
+        [gear.rated_torque_nm, gear.repeated_peak_torque_nm, gear.average_torque_limit_nm,
+            gear.momentary_peak_torque_nm] = torques;
+        [gear.max_input_speed_rpm, gear.average_input_speed_limit_rpm] = speeds;
+        [gear.mass_component_set_kg, gear.mass_housed_unit_kg] = masses;
+        (gear.inertia_input_kgm2, gear.efficiency) = (inertia, efficiency);
+        gear.permissible_tilting_moment_nm = tilt;
+        gear
+    }
+}
+
+prop_compose! {
+    /// A motor of random figures.
+    pub fn any_motor()(
+        torques in prop::array::uniform2(figure(1.0..60.0)),
+        speeds in prop::array::uniform2(figure(300.0..6000.0)),
+        inertia in figure(0.0..0.003),
+        mass in figure(0.1..15.0),
+    ) -> Motor {
+        let mut motor = motor("M", [0.0; 2], [0.0; 2], 0.0, 0.0);
+        [motor.rated_torque_nm, motor.peak_torque_nm] = torques;
+        [motor.rated_speed_rpm, motor.max_speed_rpm] = speeds;
+        (motor.rotor_inertia_kgm2, motor.mass_kg) = (inertia, mass);
+        motor
+    }
+}
+
+prop_compose! {
+    /// The motion of a joint.
+    pub fn any_motion()(reach in 0.2..2.0f64, ramp in 0.1..1.0f64, life in 1e3..5e4f64) -> JointMotion {
+        let study = MotionRequirement { ramp_time_s: ramp, life_h: life, ..Default::default() };
+        study.joint_motion(reach, None)
+    }
+}
+
+/// Static, linear torque and tilting moment, each zero now and then.
+pub fn any_torques() -> impl Strategy<Value = [f64; 3]> {
+    let torque = || prop_oneof![1 => Just(0.0), 9 => 0.0..800.0f64];
+    (torque(), torque(), torque()).prop_map(|(a, b, c)| [a, b, c])
+}

@@ -1,0 +1,48 @@
+//! A statement of the paper, checked.
+
+use crate::report::table::{Column, Table};
+
+/// A statement of the paper with the evidence computed for it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Claim {
+    /// Key, stable across versions.
+    pub id: &'static str,
+    /// What is claimed.
+    pub statement: String,
+    /// What was computed.
+    pub evidence: String,
+    /// Whether the evidence supports the statement.
+    pub holds: bool,
+}
+
+impl Claim {
+    /// A claim with its evidence.
+    pub fn new(id: &'static str, statement: &str, holds: bool, evidence: impl Into<String>) -> Self {
+        Self { id, statement: statement.to_string(), evidence: evidence.into(), holds }
+    }
+
+    /// `holds` or `does not hold`.
+    pub fn verdict(&self) -> &'static str {
+        if self.holds { "holds" } else { "does not hold" }
+    }
+}
+
+/// Claims as a table.
+pub fn table(claims: &[Claim]) -> Table {
+    let columns = ["claim", "statement", "holds", "evidence"].map(Column::left).to_vec();
+    let mut table = Table::new(columns);
+    for claim in claims {
+        table.row([
+            claim.id.to_string(),
+            claim.statement.clone(),
+            if claim.holds { "true" } else { "false" }.to_string(),
+            claim.evidence.clone(),
+        ]);
+    }
+    table
+}
+
+/// Claims as a list for reading.
+pub fn list(claims: &[Claim]) -> String {
+    claims.iter().map(|c| format!("- {} -- **{}**: {}.\n", c.statement, c.verdict(), c.evidence)).collect()
+}

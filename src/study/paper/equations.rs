@@ -1,0 +1,130 @@
+//! The paper's own equations, written down as they are printed, beside the general mechanics.
+
+use super::arm::{GRAVITY_M_S2, JOINTS, PaperArm};
+use crate::arm::LinkModel;
+
+/// Eq 4: deflection of a cantilever under end force F, weight per length q and end torque T \[m\].
+///
+/// `δ = L²/(E I) (F L/3 + q L²/8 + T/2)`
+pub fn deflection_eq_4_m(
+    flexural_rigidity_nm2: f64,
+    length_m: f64,
+    force_n: f64,
+    line_weight_n_per_m: f64,
+    torque_nm: f64,
+) -> f64 {
+    length_m.powi(2) / flexural_rigidity_nm2
+        * (force_n * length_m / 3.0 + line_weight_n_per_m * length_m.powi(2) / 8.0 + torque_nm / 2.0)
+}
+
+/// Eq 13: what a joint's wind-up moves the end of the arm by \[m\].
+pub fn deflection_eq_13_m(torque_nm: f64, stiffness_nm_per_rad: f64, length_m: f64) -> f64 {
+    (torque_nm / stiffness_nm_per_rad).sin() * length_m
+}
+
+/// The total deflection as the paper computes it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PrintedDeflection {
+    /// Wind-up of joints 2, 3 and 4 times the length to the wrist \[m\] (Eqs 13, 14).
+    pub joints_m: [f64; 3],
+    /// Links 1 and 2 (Eq 4) \[m\].
+    pub links_m: [f64; 2],
+}
+
+impl PrintedDeflection {
+    /// Eq 15 \[m\].
+    pub fn total_m(&self) -> f64 {
+        self.joints_m.iter().sum::<f64>() + self.links_sum_m()
+    }
+
+    /// δ1 + δ2 of Eq 15: link 1's end slope is dropped \[m\].
+    pub fn links_sum_m(&self) -> f64 {
+        self.links_m.iter().sum()
+    }
+}
+
+/// What the end force F of Eq 4 is taken to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EndForce {
+    /// The weight of everything outboard of the link.
+    AllOutboard,
+    /// The weight of the motor and gear at the link's end alone, as the text says.
+    DriveAtTheEnd,
+}
+
+/// Eqs 4 and 13 to 15 for the stretched arm with constant stiffnesses, `L_tot` measured to the wrist.
+pub fn printed_deflection(arm: &PaperArm, force: EndForce) -> PrintedDeflection {
+    let [l1, l2] = arm.lengths_m;
+    let to_wrist_m = [l1 + l2, l2, 0.0];
+    let solved = arm.solve(LinkModel::Rigid);
+    let torques_nm = JOINTS.map(|name| solved.torque_nm(name));
+    let windup = |i: usize| arm.curves[i].angle_rad(torques_nm[i]).sin() * to_wrist_m[i];
+    let drives_kg = [arm.joint_3_kg, arm.wrist_kg];
+    let outboard_kg =
+        [arm.joint_3_kg + arm.link_kg(1) + arm.wrist_kg + arm.load_kg, arm.wrist_kg + arm.load_kg];
+    let link = |i: usize| {
+        let end_kg = if force == EndForce::AllOutboard { outboard_kg[i] } else { drives_kg[i] };
+        deflection_eq_4_m(
+            arm.material.youngs_modulus_pa * arm.second_moment_m4(i),
+            arm.lengths_m[i],
+            end_kg * GRAVITY_M_S2,
+            arm.line_kg_per_m(i) * GRAVITY_M_S2,
+            torques_nm[i + 1],
+        )
+    };
+    PrintedDeflection { joints_m: [0, 1, 2].map(windup), links_m: [0, 1].map(link) }
+}
+
+/// Acceleration of the load: 1 m/s in 0.20 s \[m/s²\].
+pub const LOAD_ACCELERATION_M_S2: f64 = 1.0 / 0.20;
+
+/// Eqs 8 to 12 for one joint, both sides of the gear.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DynamicTorque {
+    /// Static torque T_j at the output \[N m\].
+    pub static_nm: f64,
+    /// T_lin with the printed factor 1/2 \[N m\].
+    pub linear_half_nm: f64,
+    /// T_lin as Eq 8 defines it, (a/g) T_j \[N m\].
+    pub linear_ratio_nm: f64,
+    /// Moment of inertia of everything outboard about the joint times its acceleration \[N m\].
+    pub linear_inertia_nm: f64,
+    /// Acceleration of the joint at the output, a over the distance of the load \[rad/s²\].
+    pub output_acceleration_rad_s2: f64,
+    /// T_rot at the motor's shaft, as Eqs 10 and 11 print it \[N m\].
+    pub rotary_motor_side_nm: f64,
+    /// The same referred to the output: ratio times larger \[N m\].
+    pub rotary_output_side_nm: f64,
+}
+
+/// Eqs 8 to 12 at joint 2 of the stretched arm for an input inertia J = J_mot + J_trans (Eq 9).
+pub fn dynamic_torque_at_joint_2(arm: &PaperArm, ratio: f64, input_inertia_kgm2: f64) -> DynamicTorque {
+    let static_nm = arm.solve(LinkModel::Rigid).torque_nm(JOINTS[0]);
+    let reach_m = arm.lengths_m.iter().sum::<f64>() + arm.third_link_m;
+    let alpha = LOAD_ACCELERATION_M_S2 / reach_m;
+    let structure = arm.arm().structure(crate::arm::JointModel::K2);
+    let outboard_kgm2 = arm.with_posed(&structure, LinkModel::Rigid, |posed| posed.mass_matrix()[(0, 0)]);
+    // theta'' of Eq 10 is that of the motor: n_j is the motor's speed, ratio times the joint's
+    let rotary_motor_side_nm = input_inertia_kgm2 * ratio * alpha;
+    DynamicTorque {
+        static_nm,
+        linear_half_nm: static_nm / 2.0,
+        linear_ratio_nm: static_nm * LOAD_ACCELERATION_M_S2 / GRAVITY_M_S2,
+        linear_inertia_nm: outboard_kgm2 * alpha,
+        output_acceleration_rad_s2: alpha,
+        rotary_motor_side_nm,
+        rotary_output_side_nm: rotary_motor_side_nm * ratio,
+    }
+}
+
+impl DynamicTorque {
+    /// Eq 12 as printed: T_rot of the motor's side added to torques of the output's \[N m\].
+    pub fn total_as_printed_nm(&self) -> f64 {
+        self.static_nm + self.linear_half_nm + self.rotary_motor_side_nm
+    }
+
+    /// Eq 12 with all three at the output \[N m\].
+    pub fn total_at_output_nm(&self) -> f64 {
+        self.static_nm + self.linear_inertia_nm + self.rotary_output_side_nm
+    }
+}

@@ -1,0 +1,152 @@
+//! One number of the paper beside ours, and how a list of them is written.
+
+use crate::report::number::{fixed, shortest};
+use crate::report::table::{Column, Table};
+use serde_json::{Value, json};
+
+/// One of the paper's numbers beside ours.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PaperRow {
+    /// Key, stable across versions.
+    pub id: &'static str,
+    /// What the number is.
+    pub quantity: &'static str,
+    /// Its unit; empty for a plain ratio.
+    pub unit: &'static str,
+    /// The paper's number, where it prints one.
+    pub paper: Option<f64>,
+    /// The paper's words for it: `less than 3`, `about 70`.
+    pub paper_words: &'static str,
+    /// Our number under the reading that gives the paper's.
+    pub reading_value: Option<f64>,
+    /// The number in an exact frame: all compliances, Table 1 as printed.
+    pub exact: Option<f64>,
+    /// Digits after the point.
+    pub decimals: usize,
+    /// The reading.
+    pub reading: String,
+    /// Why the numbers differ, where they do.
+    pub reason: String,
+}
+
+impl PaperRow {
+    /// A row with the paper's number left open.
+    pub fn new(id: &'static str, quantity: &'static str, unit: &'static str, decimals: usize) -> Self {
+        Self { id, quantity, unit, decimals, ..Self::default() }
+    }
+
+    /// The paper's number.
+    pub fn paper(mut self, value: f64, words: &'static str) -> Self {
+        self.paper = Some(value);
+        self.paper_words = words;
+        self
+    }
+
+    /// Ours under the paper's reading, and the reading.
+    pub fn reading(mut self, value: f64, reading: impl Into<String>) -> Self {
+        self.reading_value = Some(value);
+        self.reading = reading.into();
+        self
+    }
+
+    /// The exact frame's.
+    pub fn exact(mut self, value: f64) -> Self {
+        self.exact = Some(value);
+        self
+    }
+
+    /// Why they differ.
+    pub fn because(mut self, reason: impl Into<String>) -> Self {
+        self.reason = reason.into();
+        self
+    }
+
+    fn shown(&self, value: Option<f64>) -> String {
+        value.map_or_else(|| "-".to_string(), |v| fixed(v, self.decimals))
+    }
+
+    fn paper_shown(&self) -> String {
+        if self.paper.is_some() { self.paper_words.to_string() } else { "-".to_string() }
+    }
+
+    fn to_json(&self) -> Value {
+        json!({
+            "id": self.id,
+            "quantity": self.quantity,
+            "unit": self.unit,
+            "paper": self.paper,
+            "paper_words": self.paper_words,
+            "reading_value": self.reading_value,
+            "exact": self.exact,
+            "reading": self.reading,
+            "reason": self.reason,
+        })
+    }
+}
+
+/// Numbers side by side; words are left to [`notes`].
+pub fn table(rows: &[PaperRow]) -> Table {
+    let mut table = Table::new(vec![
+        Column::right("#"),
+        Column::left("quantity"),
+        Column::left("unit"),
+        Column::right("paper"),
+        Column::right("ours, paper's reading"),
+        Column::right("exact"),
+    ]);
+    for (i, row) in rows.iter().enumerate() {
+        table.row([
+            (i + 1).to_string(),
+            row.quantity.to_string(),
+            row.unit.to_string(),
+            row.paper_shown(),
+            row.shown(row.reading_value),
+            row.shown(row.exact),
+        ]);
+    }
+    table
+}
+
+/// Reading and reason of each row, numbered as in [`table`]; a reading that goes on is given once.
+pub fn notes(rows: &[PaperRow]) -> String {
+    let mut text = String::new();
+    let mut before = "";
+    for (i, row) in rows.iter().enumerate() {
+        let reading = if row.reading == before { "" } else { row.reading.as_str() };
+        let words: Vec<&str> = [reading, row.reason.as_str()].into_iter().filter(|w| !w.is_empty()).collect();
+        if !words.is_empty() {
+            text.push_str(&format!("- ({}) {}\n", i + 1, words.join(" -- ")));
+        }
+        before = &row.reading;
+    }
+    text
+}
+
+/// All fields, numbers in shortest round-trip form.
+pub fn csv(rows: &[PaperRow]) -> String {
+    let mut table = Table::new(
+        ["id", "quantity", "unit", "paper", "paper_words", "reading_value", "exact", "reading", "reason"]
+            .map(Column::left)
+            .to_vec(),
+    );
+    let number = |value: Option<f64>| value.map_or_else(String::new, shortest);
+    for row in rows {
+        table.row([
+            row.id.to_string(),
+            row.quantity.to_string(),
+            row.unit.to_string(),
+            number(row.paper),
+            row.paper_words.to_string(),
+            number(row.reading_value),
+            number(row.exact),
+            row.reading.clone(),
+            row.reason.clone(),
+        ]);
+    }
+    table.to_csv()
+}
+
+/// The rows as a JSON array.
+pub fn json(rows: &[PaperRow]) -> Value {
+    Value::Array(rows.iter().map(PaperRow::to_json).collect())
+}

@@ -1,0 +1,440 @@
+//! Reading a study file: an arm with open links and drives, the cases it is judged in, what it must do.
+//!
+//! Lengths of sections and limits are in millimetres because that is how profiles are sold; everything
+//! else is SI. The resolved [`DesignSpace`] is SI throughout.
+
+use super::sections::{read_materials, read_sections};
+use crate::arm::{JointModel, LinkModel, Payload};
+use crate::arm::{read_curve, read_joint_mass, read_link, read_name, read_pose, vector, word};
+use crate::catalog::{Catalogs, GearMass, MotorKind};
+use crate::fault::{Document, Faults, Node, Object};
+use crate::search::constraint::{Constraints, Servo};
+use crate::search::space::{Case, DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
+use crate::sizing::{DriveFilter, MotionRequirement};
+use nalgebra::Vector3;
+
+/// A study: a named question about an arm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    /// Name.
+    pub name: String,
+    /// The question in a sentence.
+    pub question: String,
+    /// What there is to choose and what it is asked to do.
+    pub space: DesignSpace,
+    /// Options left out because a figure that a check needs is unknown, in words.
+    pub not_checked: Vec<String>,
+}
+
+const KEYS: [&str; 13] = [
+    "name",
+    "question",
+    "gravity_m_s2",
+    "chain",
+    "payload",
+    "tip_force_n",
+    "poses",
+    "environments",
+    "motion",
+    "drives",
+    "constraints",
+    "models",
+    "notes",
+];
+
+/// Reads a study; materials, profiles and parts are looked up in `catalogs`.
+///
+/// # Errors
+/// All faults of the document at once.
+pub fn read_study(document: Document, catalogs: &Catalogs) -> Result<Study, Faults> {
+    let study = study(&document.root(), catalogs);
+    document.finish(study)
+}
+
+fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
+    let root = node.object(&KEYS)?;
+    let text = |key| root.or(key, String::new(), |n| n.string().map(String::from));
+    let name = root.required("name").and_then(|n| n.string().map(String::from));
+    let (question, _notes) = (text("question"), text("notes"));
+    let gravity = root.or("gravity_m_s2", 9.81, Node::positive);
+    let filter = root.or("drives", Drives::default(), |n| read_drives(n, catalogs));
+    let constraints = root.or("constraints", Constraints::default(), read_constraints);
+    let mut not_checked = Vec::new();
+    let chain = root.required("chain").and_then(|n| {
+        let open = Open { catalogs, drives: filter.as_ref()?, constraints: constraints.as_ref()? };
+        read_chain(&n, &open, &mut not_checked)
+    });
+    let joints: Option<Vec<String>> = chain.as_ref().map(|pieces| joint_names(pieces));
+    let cases = read_cases(&root, joints.as_deref());
+    let motion = root.or("motion", MotionRequirement::default(), read_motion);
+    let (links, joint_model) = root.or("models", Default::default(), read_models)?;
+    let Cases { cases, judged, sizing } = cases?;
+    let mut motion = motion?;
+    motion.gravity_m_s2 = gravity?;
+    let space = DesignSpace {
+        name: name.clone()?,
+        gravity_m_s2: gravity?,
+        pieces: chain?,
+        cases,
+        judged_cases: judged,
+        sizing_cases: sizing,
+        motion,
+        links,
+        joints: joint_model,
+        constraints: constraints?,
+    };
+    Some(Study { name: name?, question: question?, space, not_checked })
+}
+
+fn joint_names(pieces: &[SpacePiece]) -> Vec<String> {
+    pieces
+        .iter()
+        .filter_map(|p| match p {
+            SpacePiece::Joint(joint) => Some(joint.name.clone()),
+            _ => None,
+        })
+        .collect()
+}
+
+/// What an open piece is chosen from.
+struct Open<'a> {
+    catalogs: &'a Catalogs,
+    drives: &'a Drives,
+    constraints: &'a Constraints,
+}
+
+/// Where drives are taken from.
+#[derive(Debug, Clone)]
+struct Drives {
+    filter: DriveFilter,
+}
+
+impl Default for Drives {
+    fn default() -> Self {
+        Self { filter: DriveFilter::everything(GearMass::HousedUnit) }
+    }
+}
+
+fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
+    let object = node.object(&["gear_series", "gears", "ratios", "gear_mass", "motors", "motor_models"])?;
+    let gear_mass = object.or("gear_mass", GearMass::HousedUnit, read_gear_mass);
+    let known_series: Vec<&str> = catalogs.gears.iter().map(|g| g.series.as_str()).collect();
+    let known_gears: Vec<&str> = catalogs.gears.iter().map(|g| g.id.as_str()).collect();
+    let known_motors: Vec<&str> = catalogs.motors.iter().map(|m| m.id.as_str()).collect();
+    let filter = DriveFilter {
+        gear_mass: gear_mass?,
+        gear_series: names(&object, "gear_series", &known_series)?,
+        ratios: object.or("ratios", None, |n| read_ratios(n).map(Some))?,
+        gear_ids: names(&object, "gears", &known_gears)?,
+        motor_kinds: object.or("motors", None, |n| read_motor_kinds(n).map(Some))?,
+        motor_ids: names(&object, "motor_models", &known_motors)?,
+    };
+    Some(Drives { filter })
+}
+
+/// A list of names that must all be known; absent is no restriction.
+fn names(object: &Object, key: &str, known: &[&str]) -> Option<Option<Vec<String>>> {
+    object.or(key, None, |node| {
+        let read: Vec<Option<String>> = node
+            .array()?
+            .iter()
+            .map(|n| match n.string()? {
+                name if known.contains(&name) => Some(name.to_string()),
+                name => n.fault(
+                    format!("\"{name}\" is not in the catalog"),
+                    &crate::fault::closest(name, known)
+                        .map_or("`armwright catalog show` lists what is".into(), |c| {
+                            format!("did you mean \"{c}\"?")
+                        }),
+                ),
+            })
+            .collect();
+        read.into_iter().collect::<Option<Vec<_>>>().map(Some)
+    })
+}
+
+fn read_gear_mass(node: &Node) -> Option<GearMass> {
+    match node.string()? {
+        "component_set" => Some(GearMass::ComponentSet),
+        "housed_unit" => Some(GearMass::HousedUnit),
+        other => node.fault(format!("\"{other}\" is not known"), "choose one of: component_set, housed_unit"),
+    }
+}
+
+fn read_ratios(node: &Node) -> Option<Vec<u32>> {
+    let read: Vec<_> = node.array()?.iter().map(|n| n.positive().map(|x| x as u32)).collect();
+    read.into_iter().collect()
+}
+
+const MOTOR_WORDS: [(&str, &[MotorKind]); 6] = [
+    (
+        "electric",
+        &[
+            MotorKind::AcServo,
+            MotorKind::BrushlessServo,
+            MotorKind::FramelessServo,
+            MotorKind::FramelessTorque,
+        ],
+    ),
+    ("hydraulic", &[MotorKind::HydraulicPiston, MotorKind::HydraulicOrbital]),
+    ("ac_servo", &[MotorKind::AcServo]),
+    ("brushless_servo", &[MotorKind::BrushlessServo]),
+    ("frameless_servo", &[MotorKind::FramelessServo]),
+    ("frameless_torque", &[MotorKind::FramelessTorque]),
+];
+
+fn read_motor_kinds(node: &Node) -> Option<Vec<MotorKind>> {
+    let read: Vec<Option<&[MotorKind]>> = node
+        .array()?
+        .iter()
+        .map(|n| {
+            let word = n.string()?;
+            MOTOR_WORDS.iter().find(|(w, _)| *w == word).map(|(_, kinds)| *kinds).or_else(|| {
+                let words: Vec<&str> = MOTOR_WORDS.iter().map(|(w, _)| *w).collect();
+                n.fault(format!("\"{word}\" is not known"), &format!("choose among: {}", words.join(", ")))
+            })
+        })
+        .collect();
+    Some(read.into_iter().collect::<Option<Vec<_>>>()?.concat())
+}
+
+fn read_chain(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> Option<Vec<SpacePiece>> {
+    let items = node.array()?;
+    if items.is_empty() {
+        return node.fault("is empty", "an arm has at least one joint or link");
+    }
+    let read: Vec<Option<SpacePiece>> = items
+        .iter()
+        .map(|n| match n.value().get("type").and_then(|v| v.as_str()) {
+            Some("joint") => read_space_joint(n, open).map(SpacePiece::Joint),
+            Some("link") => read_space_link(n, open, not_checked),
+            _ => n.fault("has no \"type\" of \"joint\" or \"link\"", "add \"type\": \"joint\" or \"link\""),
+        })
+        .collect();
+    let pieces = read.into_iter().collect::<Option<Vec<_>>>()?;
+    unique_names(node, &pieces)?;
+    Some(pieces)
+}
+
+fn unique_names(node: &Node, pieces: &[SpacePiece]) -> Option<()> {
+    let name = |p: &SpacePiece| match p {
+        SpacePiece::Joint(joint) => joint.name.clone(),
+        SpacePiece::Link(link) => link.name.clone(),
+        SpacePiece::Choice(choice) => choice.name.clone(),
+    };
+    let names: Vec<String> = pieces.iter().map(name).collect();
+    match (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
+        Some(i) => {
+            node.fault(format!("has two pieces named \"{}\"", names[i]), "give every piece a name of its own")
+        }
+        None => Some(()),
+    }
+}
+
+fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
+    let object = node.object(&[
+        "type",
+        "name",
+        "axis",
+        "drive",
+        "stiffness_nm_per_rad",
+        "windup",
+        "gear",
+        "motor",
+        "gear_mass",
+        "mass_kg",
+        "max_speed_rad_s",
+    ])?;
+    let name = read_name(&object);
+    let axis = object.required("axis").and_then(|n| crate::arm::read_axis(&n));
+    let max_speed = object.or("max_speed_rad_s", None, |n| n.positive().map(Some));
+    let drive = match object.optional("drive") {
+        Some(drive) => read_drive_choice(&drive, open),
+        None => read_given_drive(&object, open),
+    };
+    Some(SpaceJoint { name: name?, axis: axis?, drive: drive?, max_speed_rad_s: max_speed? })
+}
+
+fn read_drive_choice(node: &Node, open: &Open) -> Option<DriveChoice> {
+    match node.string()? {
+        "first_fit" => Some(DriveChoice::FirstFit(open.drives.filter.clone())),
+        "all_fits" => Some(DriveChoice::AllFits(open.drives.filter.clone())),
+        other => node.fault(
+            format!("\"{other}\" is not known"),
+            "choose first_fit (the lightest that holds) or all_fits, or give gear, motor or stiffness_nm_per_rad",
+        ),
+    }
+}
+
+fn read_given_drive(object: &Object, open: &Open) -> Option<DriveChoice> {
+    let curve = read_curve(object, open.catalogs);
+    let mass_kg = read_joint_mass(object, open.catalogs);
+    let text = |key| object.or(key, None, |n| n.string().map(|s| Some(s.to_string())));
+    let (gear, motor) = (text("gear")?, text("motor")?);
+    Some(DriveChoice::Given { curve: curve?, mass_kg: mass_kg?, parts: gear.zip(motor) })
+}
+
+fn read_space_link(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> Option<SpacePiece> {
+    let object = node.object(&["type", "name", "vector_m", "material", "section", "mass_kg", "choose"])?;
+    let Some(choose) = object.optional("choose") else {
+        return read_link(&object, &[], open.catalogs).map(SpacePiece::Link);
+    };
+    let name = read_name(&object);
+    let vector_m = object.required("vector_m").and_then(|n| vector(&n)).filter(|v| {
+        v.norm() > 1e-6 || object.node().fault::<()>("has no length", "give a longer vector_m").is_some()
+    });
+    let choices = choose.object(&["materials", "sections"])?;
+    let materials = choices.required("materials").and_then(|n| read_materials(&n, open.catalogs));
+    let sections = choices.required("sections").and_then(|n| read_sections(&n, open.catalogs));
+    let options =
+        super::sections::options(&materials?, &sections?, open.constraints, name.as_deref()?, not_checked);
+    if options.is_empty() {
+        return choose.fault(
+            "leaves no option",
+            "no section has a wall under half its outer size, or no profile is sold in these materials",
+        );
+    }
+    Some(SpacePiece::Choice(LinkChoice { name: name?, vector_m: vector_m?, options }))
+}
+
+/// Every case, and which of them are judged and sized in.
+#[derive(Default)]
+struct Cases {
+    cases: Vec<Case>,
+    judged: Vec<usize>,
+    sizing: Vec<usize>,
+}
+
+/// One case as read, before it is put into every environment.
+struct ReadCase {
+    case: Case,
+    judged: bool,
+    sizing: bool,
+}
+
+fn read_cases(root: &Object, joints: Option<&[String]>) -> Option<Cases> {
+    let payload = root.or("payload", Payload::default(), Payload::read);
+    let force = root.or("tip_force_n", Vector3::zeros(), vector);
+    let environments = root.or("environments", vec![Environment::default()], read_environments);
+    let poses = root.required("poses").and_then(|n| n.array());
+    let joints: Vec<&str> = joints?.iter().map(String::as_str).collect();
+    let (payload, force, environments) = (payload?, force?, environments?);
+    let poses: Vec<_> = poses?.iter().map(|n| read_case(n, &joints, &payload, &force)).collect();
+    let poses = poses.into_iter().collect::<Option<Vec<_>>>()?;
+    if poses.is_empty() {
+        return root.required("poses")?.fault("is empty", "give at least the pose the arm is judged in");
+    }
+    let mut out = Cases::default();
+    for environment in &environments {
+        for ReadCase { case, judged, sizing } in &poses {
+            let index = out.cases.len();
+            out.judged.extend(judged.then_some(index));
+            out.sizing.extend(sizing.then_some(index));
+            let name = match environment.name.as_str() {
+                "" => case.name.clone(),
+                around => format!("{}, {around}", case.name),
+            };
+            out.cases.push(Case { name, water: environment.water, ..case.clone() });
+        }
+    }
+    if out.judged.is_empty() {
+        return root
+            .required("poses")?
+            .fault("has no judged pose", "leave \"judged\" away, or set it true, in one of them");
+    }
+    Some(out)
+}
+
+#[derive(Debug, Clone, Default)]
+struct Environment {
+    name: String,
+    water: Option<crate::arm::Water>,
+}
+
+fn read_environments(node: &Node) -> Option<Vec<Environment>> {
+    let read: Vec<_> = node
+        .array()?
+        .iter()
+        .map(|n| {
+            let object = n.object(&["name", "water"])?;
+            let name = object.required("name").and_then(|n| n.string().map(String::from));
+            let water = object.or("water", None, |n| crate::arm::Water::read(n).map(Some));
+            Some(Environment { name: name?, water: water? })
+        })
+        .collect();
+    read.into_iter().collect()
+}
+
+fn read_case(node: &Node, joints: &[&str], payload: &Payload, force: &Vector3<f64>) -> Option<ReadCase> {
+    let object = node.object(&["name", "pose_deg", "payload", "tip_force_n", "sizing", "judged"])?;
+    let name = object.or("name", node.path().to_string(), |n| n.string().map(String::from));
+    let pose_deg = object.required("pose_deg").and_then(|n| read_pose(&n, joints));
+    let payload = object.or("payload", *payload, Payload::read);
+    let tip_force_n = object.or("tip_force_n", *force, vector);
+    let sizing = object.or("sizing", true, Node::boolean);
+    let judged = object.or("judged", true, Node::boolean);
+    let case =
+        Case { name: name?, pose_deg: pose_deg?, payload: payload?, tip_force_n: tip_force_n?, water: None };
+    Some(ReadCase { case, judged: judged?, sizing: sizing? })
+}
+
+fn read_motion(node: &Node) -> Option<MotionRequirement> {
+    let object = node.object(&[
+        "tip_speed_m_s",
+        "ramp_time_s",
+        "emergency_deceleration_m_s2",
+        "min_lever_m",
+        "life_h",
+    ])?;
+    let default = MotionRequirement::default();
+    let speed = object.or("tip_speed_m_s", default.tip_speed_m_s, Node::positive);
+    let ramp = object.or("ramp_time_s", default.ramp_time_s, Node::positive);
+    let stop = object.or("emergency_deceleration_m_s2", None, |n| n.positive().map(Some));
+    let lever = object.or("min_lever_m", default.min_lever_m, Node::positive);
+    let life = object.or("life_h", default.life_h, Node::positive);
+    Some(MotionRequirement {
+        tip_speed_m_s: speed?,
+        ramp_time_s: ramp?,
+        emergency_deceleration_m_s2: stop?,
+        min_lever_m: lever?,
+        life_h: life?,
+        duty_cycle: crate::sizing::DutyCycle::move_and_rest(ramp?),
+        ..default
+    })
+}
+
+fn read_constraints(node: &Node) -> Option<Constraints> {
+    let object = node.object(&[
+        "tip_deflection_max_mm",
+        "mass_max_kg",
+        "lowest_mode_min_hz",
+        "servo_bandwidth_hz",
+        "servo_ratio",
+        "stress_safety_factor_min",
+        "wall_slenderness_max",
+        "material_cost_max_eur",
+    ])?;
+    let limit = |key| object.or(key, None, |n| n.positive().map(Some));
+    let (deflection_mm, mass) = (limit("tip_deflection_max_mm"), limit("mass_max_kg"));
+    let (mode, bandwidth) = (limit("lowest_mode_min_hz"), limit("servo_bandwidth_hz"));
+    let ratio = object.or("servo_ratio", 3.0, Node::positive);
+    let (stress, slenderness) = (limit("stress_safety_factor_min"), limit("wall_slenderness_max"));
+    let cost = limit("material_cost_max_eur");
+    let ratio = ratio?;
+    Some(Constraints {
+        tip_deflection_max_m: deflection_mm?.map(|mm| mm / 1e3),
+        mass_max_kg: mass?,
+        lowest_mode_min_hz: mode?,
+        servo: bandwidth?.map(|bandwidth_hz| Servo { bandwidth_hz, ratio }),
+        stress_safety_factor_min: stress?,
+        wall_slenderness_max: slenderness?,
+        material_cost_max_eur: cost?,
+    })
+}
+
+fn read_models(node: &Node) -> Option<(LinkModel, JointModel)> {
+    let object = node.object(&["links", "joints"])?;
+    let links = object.or("links", LinkModel::default(), word);
+    let joints = object.or("joints", JointModel::default(), word);
+    Some((links?, joints?))
+}

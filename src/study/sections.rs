@@ -1,0 +1,241 @@
+//! The options of an open link: materials times sections.
+
+use crate::arm::{LinkMaterial, Section};
+use crate::catalog::{Catalogs, Material, Profile, ProfileShape};
+use crate::fault::{Node, closest};
+use crate::search::constraint::Constraints;
+use crate::search::space::LinkOption;
+
+const DEFAULT_POISSON: f64 = 0.3;
+/// No grid has more points than this; a larger one is a slip in the step.
+const MOST_POINTS: usize = 100_000;
+
+/// Sections to choose from.
+pub(super) struct Sections {
+    sections: Vec<(Section, Option<ProfileName>)>,
+}
+
+/// A profile and the family of materials it is sold in.
+#[derive(Clone)]
+struct ProfileName {
+    designation: String,
+    family: String,
+}
+
+/// Reads a list of material names; `"*"` is every material that has the figures a link needs.
+pub(super) fn read_materials<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<Vec<&'c Material>> {
+    let items = node.array()?;
+    if items.is_empty() {
+        return node.fault("is empty", "name at least one material");
+    }
+    let names: Vec<&str> = catalogs.materials.iter().map(|m| m.name.as_str()).collect();
+    let read: Vec<Option<&Material>> = items
+        .iter()
+        .map(|n| {
+            let name = n.string()?;
+            let Some(material) = catalogs.materials.iter().find(|m| m.name == name) else {
+                let near = closest(name, &names).map_or(String::new(), |c| format!("did you mean \"{c}\"? "));
+                return n.fault(
+                    format!("material \"{name}\" is not in the catalog"),
+                    &format!("{near}`armwright catalog show materials` lists them"),
+                );
+            };
+            match material.shear_modulus_pa {
+                Some(_) => Some(material),
+                None => n.fault(
+                    format!("material \"{name}\" has no shear modulus"),
+                    "add it in a catalog of your own",
+                ),
+            }
+        })
+        .collect();
+    read.into_iter().collect()
+}
+
+/// Reads a list of section families.
+pub(super) fn read_sections(node: &Node, catalogs: &Catalogs) -> Option<Sections> {
+    let read: Vec<_> = node.array()?.iter().map(|n| read_family(n, catalogs)).collect();
+    let sections = read.into_iter().collect::<Option<Vec<_>>>()?.concat();
+    Some(Sections { sections })
+}
+
+type Named = (Section, Option<ProfileName>);
+
+fn read_family(node: &Node, catalogs: &Catalogs) -> Option<Vec<Named>> {
+    if node.value().get("profiles").is_some() {
+        return read_profiles(node, catalogs);
+    }
+    match node.value().get("shape").and_then(|v| v.as_str()) {
+        Some("rectangular_tube") => read_rectangular(node),
+        Some("round_tube") => read_round(node),
+        _ => node
+            .fault("has no known \"shape\"", "choose rectangular_tube or round_tube, or give \"profiles\""),
+    }
+}
+
+fn read_rectangular(node: &Node) -> Option<Vec<Named>> {
+    let object = node.object(&["shape", "width_mm", "height_mm", "wall_mm"])?;
+    let widths = object.required("width_mm").and_then(|n| read_grid(&n));
+    let square = object.optional("height_mm").is_none_or(|n| n.value().as_str() == Some("=width"));
+    let heights = match square {
+        true => Some(Vec::new()),
+        false => object.required("height_mm").and_then(|n| read_grid(&n)),
+    };
+    let walls = object.required("wall_mm").and_then(|n| read_grid(&n));
+    let (widths, heights, walls) = (widths?, heights?, walls?);
+    let mut out = Vec::new();
+    for &width in &widths {
+        for &height in if square { std::slice::from_ref(&width) } else { &heights } {
+            for &wall in walls.iter().filter(|&&t| 2.0 * t < width.min(height)) {
+                let section = Section::RectangularTube {
+                    width_m: width / 1e3,
+                    height_m: height / 1e3,
+                    wall_m: wall / 1e3,
+                };
+                out.push((section, None));
+            }
+        }
+    }
+    Some(out)
+}
+
+fn read_round(node: &Node) -> Option<Vec<Named>> {
+    let object = node.object(&["shape", "diameter_mm", "wall_mm"])?;
+    let diameters = object.required("diameter_mm").and_then(|n| read_grid(&n));
+    let walls = object.required("wall_mm").and_then(|n| read_grid(&n));
+    let (diameters, walls) = (diameters?, walls?);
+    let mut out = Vec::new();
+    for &diameter in &diameters {
+        for &wall in walls.iter().filter(|&&t| 2.0 * t < diameter) {
+            out.push((Section::RoundTube { diameter_m: diameter / 1e3, wall_m: wall / 1e3 }, None));
+        }
+    }
+    Some(out)
+}
+
+fn read_profiles(node: &Node, catalogs: &Catalogs) -> Option<Vec<Named>> {
+    let object = node.object(&["profiles"])?.required("profiles")?;
+    let object = object.object(&["family", "shapes", "max_outer_mm"])?;
+    let families: Vec<&str> = catalogs.profiles.iter().map(|p| p.material_family.as_str()).collect();
+    let family = object.required("family").and_then(|n| match n.string()? {
+        family if families.contains(&family) => Some(family),
+        family => n.fault(format!("\"{family}\" has no profiles"), "choose steel or aluminium"),
+    });
+    let shapes = object.or("shapes", None, |n| read_shapes(n).map(Some));
+    let largest_mm = object.or("max_outer_mm", f64::INFINITY, Node::positive);
+    let (family, shapes, largest_m) = (family?, shapes?, largest_mm? / 1e3);
+    let wanted = |p: &&Profile| {
+        p.material_family == family
+            && shapes.as_ref().is_none_or(|s: &Vec<ProfileShape>| s.contains(&p.shape))
+            && p.width_m.max(p.height_m) <= largest_m
+    };
+    Some(catalogs.profiles.iter().filter(wanted).map(profile_section).collect())
+}
+
+fn read_shapes(node: &Node) -> Option<Vec<ProfileShape>> {
+    let read: Vec<_> = node
+        .array()?
+        .iter()
+        .map(|n| match n.string()? {
+            "square" => Some(ProfileShape::Square),
+            "rectangular" => Some(ProfileShape::Rectangular),
+            "round" => Some(ProfileShape::Round),
+            other => n.fault(format!("\"{other}\" is not known"), "choose among: square, rectangular, round"),
+        })
+        .collect();
+    read.into_iter().collect()
+}
+
+fn profile_section(profile: &Profile) -> Named {
+    let section = match profile.shape {
+        ProfileShape::Round => Section::RoundTube { diameter_m: profile.width_m, wall_m: profile.wall_m },
+        _ => Section::RectangularTube {
+            width_m: profile.width_m,
+            height_m: profile.height_m,
+            wall_m: profile.wall_m,
+        },
+    };
+    let name =
+        ProfileName { designation: profile.designation.clone(), family: profile.material_family.clone() };
+    (section, Some(name))
+}
+
+/// Reads a number, a list of numbers, or `{"from", "to", "step"}`, all greater than zero.
+fn read_grid(node: &Node) -> Option<Vec<f64>> {
+    if node.value().is_number() {
+        return Some(vec![node.positive()?]);
+    }
+    if node.value().is_array() {
+        let read: Vec<_> = node.array()?.iter().map(Node::positive).collect();
+        return read.into_iter().collect();
+    }
+    let object = node.object(&["from", "to", "step"])?;
+    let [from, to, step] = ["from", "to", "step"].map(|k| object.required(k).and_then(|n| n.positive()));
+    let (from, to, step) = (from?, to?, step?);
+    let points = ((to - from) / step + 1e-9).floor();
+    if points < 0.0 || points > MOST_POINTS as f64 {
+        return node.fault(
+            format!("from {from} to {to} by {step} is not a grid"),
+            "\"from\" is not above \"to\", and there are at most 100000 steps",
+        );
+    }
+    Some((0..=points as usize).map(|i| from + i as f64 * step).collect())
+}
+
+/// Whether a profile of a family can be bought in a material: the family's name stands in the material's.
+fn sold_in(family: &str, material: &Material) -> bool {
+    let name = material.name.to_lowercase();
+    match family {
+        "steel" => name.starts_with("structural steel"),
+        other => name.contains(&other.to_lowercase()),
+    }
+}
+
+/// Materials times sections. Options that lack a figure a constraint needs are left out and listed.
+pub(super) fn options(
+    materials: &[&Material],
+    sections: &Sections,
+    constraints: &Constraints,
+    link: &str,
+    not_checked: &mut Vec<String>,
+) -> Vec<LinkOption> {
+    let mut out = Vec::new();
+    for (material_index, material) in materials.iter().enumerate() {
+        let Some(shear_modulus_pa) = material.shear_modulus_pa else { continue };
+        if let Some(missing) = missing_figure(material, constraints) {
+            not_checked.push(format!("link {link}: {} has no {missing} in the catalog", material.name));
+            continue;
+        }
+        let figures = LinkMaterial {
+            youngs_modulus_pa: material.youngs_modulus_pa,
+            shear_modulus_pa,
+            density_kg_m3: material.density_kg_m3,
+            poisson: material.poisson.unwrap_or(DEFAULT_POISSON),
+        };
+        for (section, profile) in &sections.sections {
+            if profile.as_ref().is_some_and(|p| !sold_in(&p.family, material)) {
+                continue;
+            }
+            out.push(LinkOption {
+                material_index,
+                material_name: material.name.clone(),
+                material: figures,
+                section: *section,
+                profile: profile.as_ref().map(|p| p.designation.clone()),
+                strength_pa: material.strength_pa,
+                cost_eur_per_kg: material.cost_eur_per_kg,
+            });
+        }
+    }
+    out
+}
+
+fn missing_figure(material: &Material, constraints: &Constraints) -> Option<&'static str> {
+    if constraints.stress_safety_factor_min.is_some() && material.strength_pa.is_none() {
+        return Some("strength");
+    }
+    if constraints.material_cost_max_eur.is_some() && material.cost_eur_per_kg.is_none() {
+        return Some("cost");
+    }
+    None
+}

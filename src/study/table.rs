@@ -1,0 +1,138 @@
+//! A front as a table: every choice, objective and margin of every design.
+
+use super::outcome::Front;
+use crate::arm::Section;
+use crate::report::front_table::FrontTable;
+use crate::search::OutwardIn;
+use crate::search::design::{Part, id_of, options};
+use crate::search::outward::ArmProblem;
+use crate::search::space::{DriveChoice, LinkOption, SpacePiece};
+use crate::sizing::JointSizingRow;
+
+/// A name in lower case with runs of anything but letters and digits turned into one `-`.
+pub fn slug(name: &str) -> String {
+    let mut out = String::new();
+    for c in name.chars() {
+        match c.is_ascii_alphanumeric() {
+            true => out.push(c.to_ascii_lowercase()),
+            false if !out.is_empty() && !out.ends_with('-') => out.push('-'),
+            false => {}
+        }
+    }
+    out.trim_end_matches('-').to_string()
+}
+
+/// The table of a front.
+pub fn front_table(problem: &ArmProblem, front: &Front) -> FrontTable {
+    FrontTable {
+        columns: columns(problem),
+        rows: front.iter().filter_map(|judged| row(problem, judged)).collect(),
+    }
+}
+
+fn columns(problem: &ArmProblem) -> Vec<String> {
+    let mut out = vec!["design_id".to_string()];
+    for piece in &problem.space().pieces {
+        match piece {
+            SpacePiece::Choice(choice) => out.extend(
+                ["material", "shape", "width_mm", "height_mm", "wall_mm", "profile"]
+                    .map(|what| format!("{}_{what}", choice.name)),
+            ),
+            SpacePiece::Joint(joint) if has_parts(&joint.drive) => {
+                out.extend(["gear", "motor"].map(|what| format!("{}_{what}", joint.name)));
+            }
+            _ => {}
+        }
+    }
+    out.extend(["tip_deflection_mm", "mass_kg", "lowest_mode_hz", "tie_group"].map(String::from));
+    for (i, piece) in problem.space().pieces.iter().enumerate() {
+        if let (SpacePiece::Joint(joint), Some(_)) = (piece, problem.sized_joint(i)) {
+            out.extend(["margin", "binds"].map(|what| format!("{}_{what}", joint.name)));
+        }
+    }
+    out.extend(["stress_safety_factor", "material_cost_eur"].map(String::from));
+    out
+}
+
+fn has_parts(drive: &DriveChoice) -> bool {
+    !matches!(drive, DriveChoice::Given { parts: None, .. })
+}
+
+fn row(problem: &ArmProblem, judged: &super::Judged) -> Option<Vec<String>> {
+    let chosen = options(problem.level_sizes(), judged.design.number)?;
+    let mut out = vec![id_of(judged.design.number)];
+    for (piece, part) in problem.space().pieces.iter().zip(problem.parts(&chosen)?) {
+        match (piece, part) {
+            (SpacePiece::Choice(_), Part::Link(option)) => out.extend(link_cells(option)),
+            (SpacePiece::Joint(_), Part::Drive(drive)) => {
+                out.extend([drive.gear.id.clone(), drive.motor.id.clone()]);
+            }
+            (SpacePiece::Joint(joint), _) => {
+                if let DriveChoice::Given { parts: Some((gear, motor)), .. } = &joint.drive {
+                    out.extend([gear.clone(), motor.clone()]);
+                }
+            }
+            _ => {}
+        }
+    }
+    let o = judged.design.objectives;
+    out.extend([o.tip_deflection_m * 1e3, o.mass_kg, o.lowest_mode_hz].map(number));
+    out.push(judged.tie_group.to_string());
+    for joint in sizing_rows(problem, &chosen).ok()?.into_iter().rev() {
+        out.push(joint.margin.map_or(String::new(), number));
+        out.push(joint.binds.unwrap_or_default().to_string());
+    }
+    let complete = problem.walk(&chosen, |_, _| {}).ok()?;
+    out.push(problem.stress_safety_factor(&complete).map_or(String::new(), number));
+    out.push(problem.material_cost_eur(&complete).map_or(String::new(), number));
+    Some(out)
+}
+
+fn link_cells(option: &LinkOption) -> [String; 6] {
+    let (width, height) = option.section.outer_m();
+    let shape = match option.section {
+        Section::RectangularTube { .. } => "rectangular_tube",
+        Section::RoundTube { .. } => "round_tube",
+    };
+    [
+        option.material_name.clone(),
+        shape.to_string(),
+        millimetres(width),
+        millimetres(height),
+        millimetres(option.section.wall_m()),
+        option.profile.clone().unwrap_or_default(),
+    ]
+}
+
+/// A length as the millimetres it was given in: the shortest decimal that reads back the same.
+fn millimetres(length_m: f64) -> String {
+    let near = (length_m * 1e3 * 1e9).round() / 1e9;
+    number(if near / 1e3 == length_m { near } else { length_m * 1e3 })
+}
+
+/// The shortest decimal that reads back as the same number.
+fn number(x: f64) -> String {
+    format!("{x}")
+}
+
+/// The sizing of every joint with a drive from the catalogs, tip first; or the slot at which the
+/// design cannot hold.
+pub(crate) fn sizing_rows(problem: &ArmProblem, chosen: &[u32]) -> Result<Vec<JointSizingRow>, usize> {
+    let mut demands = Vec::new();
+    let complete = problem.walk(chosen, |slot, partial| {
+        if problem.sized_joint(problem.piece_of_slot(slot)).is_some() {
+            demands.push((slot, problem.demand_at(partial, slot), problem.mass_kg(partial)));
+        }
+    })?;
+    let chosen: Vec<u32> = problem.options(&complete).collect();
+    Ok(demands
+        .into_iter()
+        .filter_map(|(slot, demand, outboard_kg)| {
+            let piece = problem.piece_of_slot(slot);
+            let table = &problem.sized_joint(piece)?.table;
+            let drive = table.drive(chosen[piece] as usize);
+            let passed = outboard_kg + table.mass_kg(chosen[piece] as usize);
+            Some(JointSizingRow::new(table.joint(), &drive, table.motion(), &demand, passed))
+        })
+        .collect())
+}
