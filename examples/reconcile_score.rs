@@ -11,10 +11,10 @@ use std::time::Instant;
 #[path = "../tests/reconcile_scoring/mod.rs"]
 mod scoring;
 
-fn main() -> anyhow::Result<()> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [campaigns, keys, rest @ ..] = arguments.as_slice() else {
-        anyhow::bail!("give a folder of campaigns and a folder of keys")
+        return Err("give a folder of campaigns and a folder of keys".into());
     };
     let temporary = tempfile::tempdir()?;
     let out = rest.first().map_or(temporary.path(), |o| Path::new(o));

@@ -4,6 +4,8 @@
 mod analyze;
 pub mod catalog;
 mod design;
+pub mod predict;
+pub mod reconcile;
 mod run;
 mod size;
 
@@ -48,6 +50,10 @@ enum Verb {
     Analyze(analyze::AnalyzeArgs),
     /// Take a design out of a result as an arm file
     Design(design::DesignArgs),
+    /// Find where an arm and its measurements disagree and which physics is missing
+    Reconcile(reconcile::ReconcileArgs),
+    /// Write the model's value beside every reading of a file
+    Predict(predict::PredictArgs),
     /// Check the catalogs, or list what is in them
     Catalog(catalog::CatalogArgs),
 }
@@ -163,6 +169,8 @@ pub fn run(cli: Cli) -> Result<String, Failure> {
         Verb::Size(args) => size::run(&args, &catalogs?),
         Verb::Analyze(args) => analyze::run(&args, &catalogs?),
         Verb::Design(args) => design::run(&args, &catalogs?),
+        Verb::Reconcile(args) => reconcile::run(&args, &catalogs?).map(|(_, text)| text),
+        Verb::Predict(args) => predict::run(&args, &catalogs?),
     }
 }
 

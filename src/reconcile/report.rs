@@ -68,17 +68,24 @@ impl Outcome {
         }
     }
 
-    /// Writes `verdict.json`, `arm.corrected.json`, `residuals.csv` and `verdict.txt` into a folder.
+    /// The files of the outcome with their names.
+    pub fn files(&self) -> Vec<(&'static str, String)> {
+        let json = |value: &serde_json::Value| format!("{value:#}\n");
+        vec![
+            ("verdict.json", json(&self.to_json())),
+            ("verdict.txt", self.to_text()),
+            ("arm.corrected.json", json(&self.corrected_json())),
+            ("residuals.csv", self.residuals_csv()),
+        ]
+    }
+
+    /// Writes `verdict.json`, `verdict.txt`, `arm.corrected.json` and `residuals.csv` into a folder.
     ///
     /// # Errors
     /// The folder or a file cannot be written.
     pub fn write(&self, folder: &Path) -> std::io::Result<()> {
         fs_err::create_dir_all(folder)?;
-        let json = |value: &serde_json::Value| format!("{value:#}\n");
-        fs_err::write(folder.join("verdict.json"), json(&self.to_json()))?;
-        fs_err::write(folder.join("arm.corrected.json"), json(&self.corrected_json()))?;
-        fs_err::write(folder.join("residuals.csv"), self.residuals_csv())?;
-        fs_err::write(folder.join("verdict.txt"), self.to_text())
+        self.files().into_iter().try_for_each(|(name, text)| fs_err::write(folder.join(name), text))
     }
 }
 

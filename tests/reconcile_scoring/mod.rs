@@ -19,7 +19,7 @@ pub struct Score {
     pub kept_out: Vec<(String, f64)>,
 }
 
-fn read(path: &Path) -> anyhow::Result<Value> {
+fn read(path: &Path) -> Result<Value, Box<dyn std::error::Error>> {
     Ok(serde_json::from_str(&std::fs::read_to_string(path)?)?)
 }
 
@@ -32,7 +32,7 @@ fn known(effect: &str) -> bool {
 }
 
 /// Opens the keys of the named campaigns and scores what was written for them.
-pub fn score(names: &[String], verdicts: &Path, keys: &Path) -> anyhow::Result<Score> {
+pub fn score(names: &[String], verdicts: &Path, keys: &Path) -> Result<Score, Box<dyn std::error::Error>> {
     let mut score = Score::default();
     for name in names {
         let verdict = read(&verdicts.join(name).join("verdict.json"))?;
