@@ -166,7 +166,7 @@ impl Analysis<'_> {
                 return (Verdict::InsufficientData, vec![text]);
             }
         }
-        if let Some(k) = kept_out.filter(|k| k.rms_after >= k.rms_before) {
+        if let Some(k) = kept_out.filter(|k| k.rms_after > k.rms_before + 0.02) {
             let text = format!(
                 "{} does not predict poses it was not fitted to ({:.2} sigma after, {:.2} before)",
                 self.best.model.label(),

@@ -74,7 +74,7 @@ fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64
     let limit = if side < 0.0 { low } else { high };
     let rise = |value: f64| {
         let mut model = best.model.clone();
-        model.held = Some((p, value));
+        model.held = vec![(p, value)];
         let effort = Effort { steps: 5, tolerance: 0.02 };
         fit(forward, &model, &best.point.u, weights, effort).point.objective - best.point.objective
     };

@@ -238,14 +238,14 @@ pub struct Model<'a> {
     pub effects: Vec<&'a Candidate>,
     /// Smoothing of break points in the frequencies.
     pub smoothing: f64,
-    /// A parameter that is held.
-    pub held: Option<(usize, f64)>,
+    /// Parameters that are held.
+    pub held: Vec<(usize, f64)>,
 }
 
 impl<'a> Model<'a> {
     /// Calibration only.
     pub fn bare(nuisance: &'a Nuisance) -> Self {
-        Self { nuisance, effects: Vec::new(), smoothing: 0.0, held: None }
+        Self { nuisance, effects: Vec::new(), smoothing: 0.0, held: Vec::new() }
     }
 
     /// The same model with one more effect.
@@ -260,6 +260,13 @@ impl<'a> Model<'a> {
         let mut out = self.clone();
         out.effects.remove(index);
         out
+    }
+
+    /// Where in the parameter vector the break points of gear curves are.
+    pub fn break_points(&self) -> Vec<usize> {
+        let first = self.calibrated();
+        let knobs = self.knobs().enumerate();
+        knobs.filter(|(_, k)| k.name == "t1_nm" || k.name == "t2_nm").map(|(i, _)| first + i).collect()
     }
 
     /// Number of parameters.
@@ -289,10 +296,8 @@ impl<'a> Model<'a> {
 
     /// Smallest and largest value of a parameter.
     pub fn bounds(&self, index: usize) -> (f64, f64) {
-        if let Some((held, value)) = self.held
-            && held == index
-        {
-            return (value, value);
+        if let Some((_, value)) = self.held.iter().find(|(held, _)| *held == index) {
+            return (*value, *value);
         }
         match index.checked_sub(self.calibrated()) {
             None => (-8.0, 8.0),

@@ -17,6 +17,8 @@ use rayon::prelude::*;
 const WORTH: f64 = 3.0;
 /// Models within this score of the best cannot be told from it.
 const TIE: f64 = 3.0;
+/// Models this far behind after a few steps are not fitted further.
+const HOPELESS: f64 = 40.0;
 /// Models within this score of a stage's best are worth a closer look.
 const PROMISING: f64 = 12.0;
 /// Most effects.
@@ -66,7 +68,7 @@ impl<'a> Search<'a> {
             nuisance: self.nuisance,
             effects: effects.iter().map(|&i| &self.candidates[i]).collect(),
             smoothing: 0.0,
-            held: None,
+            held: Vec::new(),
         }
     }
 
@@ -75,11 +77,13 @@ impl<'a> Search<'a> {
         self.fit_model(self.model(effects), u, effort)
     }
 
-    /// Fits a model from `u`; where a gear's curve has break points the frequencies' steps at them are
-    /// first smoothed, then sharpened.
+    /// Fits a model from `u`; where the last effect is a gear's curve, its break points' steps in the
+    /// frequencies are first smoothed, then sharpened.
     fn fit_model(&self, mut model: Model<'a>, u: &[f64], effort: Effort) -> Fit<'a> {
         let mut start = u.to_vec();
-        if !self.forward.modal.is_empty() && model.effects.iter().any(|e| e.kind.name == "soft_windup") {
+        if !self.forward.modal.is_empty()
+            && model.effects.last().is_some_and(|e| e.kind.name == "soft_windup")
+        {
             for smoothing in [0.1, 0.03, 0.01] {
                 model.smoothing = smoothing;
                 let steps = Effort { steps: 8, tolerance: 0.05 };
@@ -93,12 +97,8 @@ impl<'a> Search<'a> {
     /// Fits a model to the end: the break points of a gear's curve are moved in steps, because the
     /// frequencies' steps at them hide lower ground from a descent.
     pub fn polish(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
-        let mut best = self.fit(effects, u, Effort::default());
-        let breaks: Vec<usize> = {
-            let first = best.model.calibrated();
-            let knobs = best.model.knobs().enumerate();
-            knobs.filter(|(_, k)| k.name == "t1_nm" || k.name == "t2_nm").map(|(i, _)| first + i).collect()
-        };
+        let mut best = fit(self.forward, &self.model(effects), u, self.weights, Effort::default());
+        let breaks = best.model.break_points();
         for reach in [0.3, 0.12, 0.04] {
             for &p in &breaks {
                 let moves = [-1.0, -0.5, 0.5, 1.0].map(|m| best.point.u[p] + m * reach);
@@ -111,14 +111,41 @@ impl<'a> Search<'a> {
                 }
             }
         }
-        best
+        if breaks.is_empty() { best } else { self.centre_breaks(best) }
+    }
+
+    /// Moves break points from the brink of a frequency's step into the middle of where the objective is
+    /// flat, so that a small change of the torques does not carry a test across.
+    fn centre_breaks(&self, best: Fit<'a>) -> Fit<'a> {
+        const STEP: f64 = 0.002;
+        let mut u = best.point.u.clone();
+        for p in best.model.break_points() {
+            let flat = |side: f64| {
+                let rises = (1..=10).map(|i| {
+                    let mut moved = u.clone();
+                    moved[p] += side * STEP * i as f64;
+                    evaluate(self.forward, &best.model, &moved, self.weights).objective
+                });
+                rises.take_while(|o| *o < best.point.objective + 1.0).count() as f64
+            };
+            let middle = 0.5 * STEP * (flat(1.0) - flat(-1.0));
+            u[p] += middle;
+        }
+        let mut model = best.model.clone();
+        model.held = model.break_points().into_iter().map(|p| (p, u[p])).collect();
+        let effort = Effort { steps: 4, tolerance: 0.02 };
+        let settled = fit(self.forward, &model, &u, self.weights, effort);
+        if settled.point.objective > best.point.objective + 4.0 {
+            return best;
+        }
+        fit(self.forward, &best.model, &settled.point.u, self.weights, Effort { steps: 0, tolerance: 0.0 })
     }
 
     /// Fits with a parameter held at a value, then lets it go.
     fn from_held(&self, from: &Fit<'a>, parameter: usize, value: f64) -> Fit<'a> {
         let effort = Effort { steps: 5, tolerance: 0.02 };
         let mut model = from.model.clone();
-        model.held = Some((parameter, value));
+        model.held = vec![(parameter, value)];
         let held = fit(self.forward, &model, &from.point.u, self.weights, effort);
         fit(self.forward, &from.model, &held.point.u, self.weights, effort)
     }
@@ -200,14 +227,26 @@ impl<'a> Search<'a> {
     /// The best models with one more effect.
     pub fn extend(&self, base: &Scored) -> Vec<Scored> {
         let screened = self.screen(base);
-        let mut fits: Vec<Scored> = screened
-            .into_par_iter()
-            .map(|(candidate, u, _)| {
-                let effects = [base.effects.as_slice(), &[candidate]].concat();
-                let fitted = self.fit(&effects, &u, Effort { steps: 20, tolerance: 0.02 });
-                self.scored(&effects, &fitted)
-            })
-            .collect();
+        let round = |starts: Vec<(Vec<usize>, Vec<f64>)>, fresh: bool, steps: usize| -> Vec<Scored> {
+            let effort = Effort { steps, tolerance: 0.02 };
+            starts
+                .into_par_iter()
+                .map(|(effects, u)| {
+                    let fitted = match fresh {
+                        true => self.fit(&effects, &u, effort),
+                        false => fit(self.forward, &self.model(&effects), &u, self.weights, effort),
+                    };
+                    self.scored(&effects, &fitted)
+                })
+                .collect()
+        };
+        let starts = screened.into_iter().map(|(c, u, _)| ([base.effects.as_slice(), &[c]].concat(), u));
+        let first = round(starts.collect(), true, 4);
+        let top = first.iter().map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
+        let (near, far): (Vec<Scored>, Vec<Scored>) =
+            first.into_iter().partition(|s| s.score > top - HOPELESS);
+        let mut fits = round(near.into_iter().map(|s| (s.effects, s.u)).collect(), false, 14);
+        fits.extend(far);
         self.regrid(&mut fits);
         fits
     }
@@ -244,7 +283,7 @@ impl<'a> Search<'a> {
             .collect();
         tried.sort_by(|a, b| a.0.total_cmp(&b.0));
         tried.truncate(2);
-        let effort = Effort { steps: 20, tolerance: 0.02 };
+        let effort = Effort { steps: 12, tolerance: 0.02 };
         let fits: Vec<Fit<'a>> =
             tried.into_par_iter().map(|(_, u)| self.fit(&from.effects, &u, effort)).collect();
         fits.into_iter()
