@@ -21,6 +21,9 @@ const FEWEST_POSES: usize = 3;
 
 /// Reconciles a campaign with its arm.
 pub fn reconcile(campaign: &Campaign) -> Outcome {
+    if !campaign.positions.is_empty() {
+        return super::positions::reconcile(campaign);
+    }
     let mut forward = Forward::new(campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
     let candidates = candidates(&forward);

@@ -32,12 +32,17 @@ pub fn corrected(
         }
         add_effects(campaign, forward, fit, findings, &mut arm);
     }
-    let provenance = json!({
+    let provenance = provenance(campaign, verdict, values);
+    (arm, provenance)
+}
+
+/// Where the values of a corrected arm come from.
+pub fn provenance(campaign: &Campaign, verdict: Verdict, calibrated: Vec<Value>) -> Value {
+    json!({
         "campaign": campaign.statement.name, "campaign_blake3": campaign.hash,
         "tool": format!("armwright {}", env!("CARGO_PKG_VERSION")),
-        "verdict": verdict.word(), "calibrated": values,
-    });
-    (arm, provenance)
+        "verdict": verdict.word(), "calibrated": calibrated,
+    })
 }
 
 fn add_effects(campaign: &Campaign, forward: &Forward, fit: &Fit, findings: &[Finding], arm: &mut Arm) {

@@ -20,6 +20,7 @@ pub mod locate;
 pub mod model;
 pub mod next_test;
 pub mod noise;
+pub mod positions;
 pub mod predict;
 pub mod readings;
 pub mod report;
