@@ -3,6 +3,7 @@
 
 mod analyze;
 pub mod catalog;
+pub mod compare;
 mod design;
 mod run;
 mod size;

@@ -1,6 +1,10 @@
-//! Numbers and pictures on paper: csv, json, svg, terminal.
+//! Numbers, tables and pictures on paper: csv, json, svg, terminal.
 
+pub mod compare;
+pub mod front_svg;
 pub mod front_table;
 pub mod number;
+pub mod picks;
+pub mod summary;
 pub mod svg;
 pub mod table;

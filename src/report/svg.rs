@@ -19,16 +19,21 @@
 //! ```
 
 mod marker;
+mod sheet;
 mod ticks;
 
 use super::number::fixed;
 use marker::outline;
+pub use sheet::Sheet;
 use std::fmt::Write;
 use ticks::{Ruling, rule};
 
 /// The palette of Okabe and Ito, ordered so that the first stand out best on white.
 pub const PALETTE: [&str; 8] =
     ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#B8A90A"];
+
+/// A style that stands back behind all others: grey, round.
+pub const MUTED: usize = 999;
 
 const INK: &str = "#222222";
 const FAINT: &str = "#E3E3E3";
@@ -418,7 +423,7 @@ fn wrap(words: &str, most: usize) -> Vec<String> {
 }
 
 fn colour(style: usize) -> &'static str {
-    PALETTE[style % PALETTE.len()]
+    if style == MUTED { "#A0A0A0" } else { PALETTE[style % PALETTE.len()] }
 }
 
 fn dashes(stroke: Stroke) -> &'static str {

@@ -244,21 +244,25 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         "gear_mass",
         "mass_kg",
         "max_speed_rad_s",
+        "drives",
     ])?;
     let name = read_name(&object);
     let axis = object.required("axis").and_then(|n| crate::arm::read_axis(&n));
     let max_speed = object.or("max_speed_rad_s", None, |n| n.positive().map(Some));
     let drive = match object.optional("drive") {
-        Some(drive) => read_drive_choice(&drive, open),
+        Some(drive) => {
+            let own = object.or("drives", open.drives.clone(), |n| read_drives(n, open.catalogs));
+            read_drive_choice(&drive, &own?)
+        }
         None => read_given_drive(&object, open),
     };
     Some(SpaceJoint { name: name?, axis: axis?, drive: drive?, max_speed_rad_s: max_speed? })
 }
 
-fn read_drive_choice(node: &Node, open: &Open) -> Option<DriveChoice> {
+fn read_drive_choice(node: &Node, drives: &Drives) -> Option<DriveChoice> {
     match node.string()? {
-        "first_fit" => Some(DriveChoice::FirstFit(open.drives.filter.clone())),
-        "all_fits" => Some(DriveChoice::AllFits(open.drives.filter.clone())),
+        "first_fit" => Some(DriveChoice::FirstFit(drives.filter.clone())),
+        "all_fits" => Some(DriveChoice::AllFits(drives.filter.clone())),
         other => node.fault(
             format!("\"{other}\" is not known"),
             "choose first_fit (the lightest that holds) or all_fits, or give gear, motor or stiffness_nm_per_rad",

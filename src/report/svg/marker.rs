@@ -1,6 +1,6 @@
 //! Outlines of markers about the origin.
 
-use super::{PALETTE, px};
+use super::{MUTED, PALETTE, px};
 
 /// A marker's outline: circle, square, triangle up, diamond, triangle down, plus, cross, star.
 pub fn outline(style: usize, r: f64) -> String {
@@ -36,6 +36,7 @@ pub fn outline(style: usize, r: f64) -> String {
     ];
     // beyond the palette the colours come again with other shapes
     match (style + style / PALETTE.len()) % PALETTE.len() {
+        _ if style == MUTED => circle(r),
         0 => circle(r),
         1 => polygon(SQUARE, r, 0.0),
         2 => polygon(UP, r, 0.0),

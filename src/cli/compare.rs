@@ -1,0 +1,214 @@
+//! `armwright compare`: fronts side by side.
+
+use super::{Failure, number_list, write_all};
+use crate::report::compare::{Comparison, Contender, Thresholds, compare, moved::moved};
+use crate::report::front_svg::{FrontPicture, PlottedFront};
+use crate::report::front_table::{FrontTable, FrontTableError};
+use clap::Args;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// Puts fronts side by side: lightest at a given tip deflection, stiffest and highest mode at a given
+/// mass, lightest for a given lowest mode, and what the material costs.
+///
+/// One result folder: its materials against each other. Several: their overall fronts, and what moved
+/// if they are runs of one study. Front files (front.csv, front.<material>.csv) may be given too.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples: armwright compare results/compare-materials\n          \
+                        armwright compare results/compare-materials --deflection-mm 1,2,5 --mass-kg 40,60 \
+                        --mode-hz 10,15 --out comparison\n          \
+                        armwright compare results/light-arm results/stiff-arm")]
+pub struct CompareArgs {
+    /// Result folders of `armwright run`, or front files
+    #[arg(required = true, value_name = "RESULTS")]
+    pub results: Vec<PathBuf>,
+    /// Tip deflections to compare masses at [mm], separated by commas; without any limit, round numbers
+    /// are chosen where the fronts overlap, and with one, only what is asked for is compared
+    #[arg(long, value_name = "MM", value_parser = limits)]
+    pub deflection_mm: Option<Limits>,
+    /// Masses to compare deflections and modes at [kg]
+    #[arg(long, value_name = "KG", value_parser = limits)]
+    pub mass_kg: Option<Limits>,
+    /// Lowest modes to compare masses at [Hz]
+    #[arg(long, value_name = "HZ", value_parser = limits)]
+    pub mode_hz: Option<Limits>,
+    /// Folder for compare.md, compare.csv and compare.svg
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print JSON instead of tables
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Limits as given on the command line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limits(pub Vec<f64>);
+
+/// Comma-separated numbers greater than zero.
+fn limits(text: &str) -> Result<Limits, String> {
+    let list = number_list(text)?;
+    match list.iter().find(|x| **x <= 0.0) {
+        Some(x) => Err(format!("{x} is not greater than zero")),
+        None => Ok(Limits(list)),
+    }
+}
+
+/// Carries out the verb.
+///
+/// # Errors
+/// A folder or file is missing, is not a result, or cannot be written.
+pub fn run(args: &CompareArgs) -> Result<String, Failure> {
+    let loaded = load(&args.results)?;
+    let mut comparison = compare(&loaded.contenders, &thresholds(args));
+    if loaded.one_study {
+        let (first, others) = loaded.contenders.split_first().unzip();
+        let pairs = first.into_iter().flat_map(|a| others.unwrap_or_default().iter().map(move |b| (a, b)));
+        comparison.moved = pairs.map(|(a, b)| moved(a, b)).collect();
+    }
+    let mut out = if args.json { json_text(&comparison) } else { comparison.to_text() };
+    if let Some(dir) = &args.out {
+        write_all(dir, &files(&comparison, &loaded.contenders))?;
+        if !args.json {
+            out.push_str(&format!("\nwritten to {}: compare.md, compare.csv, compare.svg\n", dir.display()));
+        }
+    }
+    Ok(out)
+}
+
+fn thresholds(args: &CompareArgs) -> Thresholds {
+    let given = |limits: &Option<Limits>| limits.as_ref().map_or(Vec::new(), |l| l.0.clone());
+    Thresholds {
+        deflection_mm: given(&args.deflection_mm),
+        mass_kg: given(&args.mass_kg),
+        mode_hz: given(&args.mode_hz),
+    }
+}
+
+fn json_text(comparison: &Comparison) -> String {
+    serde_json::to_string_pretty(comparison).expect("a comparison of numbers and strings serializes")
+}
+
+fn files(comparison: &Comparison, contenders: &[Contender]) -> Vec<(String, Vec<u8>)> {
+    let picture = FrontPicture {
+        title: "Fronts side by side".into(),
+        fronts: contenders
+            .iter()
+            .map(|c| PlottedFront { name: c.label.clone(), front: &c.front, muted: c.reference })
+            .collect(),
+        picks: Vec::new(),
+    };
+    vec![
+        ("compare.md".into(), comparison.to_markdown().into_bytes()),
+        ("compare.csv".into(), comparison.to_csv().into_bytes()),
+        ("compare.svg".into(), picture.to_svg().into_bytes()),
+    ]
+}
+
+/// What is compared.
+struct Loaded {
+    contenders: Vec<Contender>,
+    /// Whether they are several runs of one study.
+    one_study: bool,
+}
+
+fn load(results: &[PathBuf]) -> Result<Loaded, Failure> {
+    if let [one] = results
+        && one.is_dir()
+    {
+        return Ok(Loaded { contenders: materials_of(one)?, one_study: false });
+    }
+    let labels = labels(results);
+    let contenders = results
+        .iter()
+        .zip(&labels)
+        .map(|(path, label)| Ok(Contender::new(label, front_at(path)?)))
+        .collect::<Result<Vec<_>, Failure>>()?;
+    Ok(Loaded { contenders, one_study: results.len() > 1 && is_one_study(results) })
+}
+
+/// The front of a result folder or a front file.
+fn front_at(path: &Path) -> Result<FrontTable, Failure> {
+    if path.is_dir() {
+        return read_front(&front_file(path)?);
+    }
+    if !path.exists() {
+        return Err(Failure::File(format!(
+            "cannot read {}: no such file or folder; give a result folder of `armwright run` or a front file",
+            path.display()
+        )));
+    }
+    read_front(path)
+}
+
+/// The overall front of a result folder.
+fn front_file(dir: &Path) -> Result<PathBuf, Failure> {
+    let file = dir.join("front.csv");
+    if file.is_file() {
+        return Ok(file);
+    }
+    Err(Failure::File(format!(
+        "{} is not a result folder: it has no front.csv; `armwright run STUDY --out {}` writes one",
+        dir.display(),
+        dir.display()
+    )))
+}
+
+fn read_front(file: &Path) -> Result<FrontTable, Failure> {
+    FrontTable::read(file).map_err(|error: FrontTableError| Failure::File(error.to_string()))
+}
+
+/// The fronts of the materials of one result, after the overall front.
+fn materials_of(dir: &Path) -> Result<Vec<Contender>, Failure> {
+    let overall = read_front(&front_file(dir)?)?;
+    let mut out = vec![Contender { reference: true, ..Contender::new("all", overall) }];
+    for (name, slug) in listed_materials(dir)? {
+        out.push(Contender::new(&name, read_front(&dir.join(format!("front.{slug}.csv")))?));
+    }
+    // the only front there is competes with nobody and answers for itself
+    out[0].reference = out.len() > 1;
+    Ok(out)
+}
+
+/// Name and slug of every material in run.json.
+fn listed_materials(dir: &Path) -> Result<Vec<(String, String)>, Failure> {
+    let run = run_json(dir)?;
+    let entries = run["materials"].as_array().cloned().unwrap_or_default();
+    let text = |entry: &Value, key: &str| entry[key].as_str().map(String::from);
+    Ok(entries.iter().filter_map(|e| Some((text(e, "name")?, text(e, "slug")?))).collect())
+}
+
+fn run_json(dir: &Path) -> Result<Value, Failure> {
+    let path = dir.join("run.json");
+    let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;
+    serde_json::from_str(&text).map_err(|e| Failure::File(format!("{} is not JSON: {e}", path.display())))
+}
+
+/// Whether all are result folders of the same study.
+fn is_one_study(results: &[PathBuf]) -> bool {
+    let study = |path: &PathBuf| run_json(path).ok()?["study"].as_str().map(String::from);
+    let first = results.first().and_then(study);
+    first.is_some() && results.iter().all(|r| study(r) == first)
+}
+
+/// A label for every path: as few of its last parts as tell it from the others.
+fn labels(results: &[PathBuf]) -> Vec<String> {
+    let most = results.iter().map(|r| r.components().count()).max().unwrap_or(1);
+    let at = |parts: usize| results.iter().map(|r| last_parts(r, parts)).collect::<Vec<_>>();
+    let differ = |labels: &Vec<String>| labels.iter().enumerate().all(|(i, l)| !labels[..i].contains(l));
+    (1..=most).map(at).find(differ).unwrap_or_else(|| numbered(at(most)))
+}
+
+/// The last parts of a path, `front.` and `.csv` left out of a file's name.
+fn last_parts(path: &Path, parts: usize) -> String {
+    let full: Vec<String> = path.components().map(|c| c.as_os_str().to_string_lossy().into_owned()).collect();
+    let mut kept = full[full.len().saturating_sub(parts)..].to_vec();
+    if let Some(name) = kept.last_mut().filter(|_| !path.is_dir()) {
+        let stem = name.trim_end_matches(".csv");
+        *name = stem.strip_prefix("front.").unwrap_or(stem).to_string();
+    }
+    kept.join("/")
+}
+
+fn numbered(labels: Vec<String>) -> Vec<String> {
+    labels.into_iter().enumerate().map(|(i, l)| format!("{l} #{}", i + 1)).collect()
+}

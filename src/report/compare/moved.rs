@@ -1,0 +1,92 @@
+//! What changed between two runs of a study: designs that stayed, came and went, and how far the best
+//! values moved.
+
+use super::{Contender, amount};
+use crate::report::front_table::{FrontTable, OBJECTIVE_COLUMNS};
+use crate::report::number::significant;
+use crate::report::picks::{Objective, best, designs};
+use serde::Serialize;
+use std::collections::HashMap;
+
+/// What moved from one front to another.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Moved {
+    /// Label of the front before.
+    pub from: String,
+    /// Label of the front after.
+    pub to: String,
+    /// Designs (equal in every choice) on both fronts with the same objectives.
+    pub unchanged: usize,
+    /// Designs on both fronts whose objectives differ.
+    pub judged_anew: usize,
+    /// Designs only on the front after.
+    pub came: usize,
+    /// Designs only on the front before.
+    pub went: usize,
+    /// What changed, in sentences.
+    pub words: String,
+}
+
+/// What moved between two fronts.
+pub fn moved(before: &Contender, after: &Contender) -> Moved {
+    let (old, new) = (by_choice(&before.front), by_choice(&after.front));
+    let shared = || new.iter().filter_map(|(key, row)| Some((row, old.get(key)?)));
+    let unchanged = shared().filter(|(a, b)| a == b).count();
+    let both = shared().count();
+    let mut moved = Moved {
+        from: before.label.clone(),
+        to: after.label.clone(),
+        unchanged,
+        judged_anew: both - unchanged,
+        came: new.len() - both,
+        went: old.len() - both,
+        words: String::new(),
+    };
+    moved.words = words(&moved, before, after);
+    moved
+}
+
+/// The objectives of every design by its choices. Where the tables have no choices, by its name.
+fn by_choice(front: &FrontTable) -> HashMap<Vec<&str>, Vec<&str>> {
+    let objectives: Vec<usize> = OBJECTIVE_COLUMNS.iter().filter_map(|c| front.column(c)).collect();
+    let first = objectives.iter().copied().min().unwrap_or(0);
+    let name = front.column("design_id");
+    let chosen: Vec<usize> = (0..first).filter(|i| Some(*i) != name).collect();
+    let key = if chosen.is_empty() { name.into_iter().collect() } else { chosen };
+    front.rows.iter().map(|row| (pick(row, &key), pick(row, &objectives))).collect()
+}
+
+fn pick<'a>(row: &'a [String], columns: &[usize]) -> Vec<&'a str> {
+    columns.iter().map(|c| row[*c].as_str()).collect()
+}
+
+fn words(moved: &Moved, before: &Contender, after: &Contender) -> String {
+    let counts = format!(
+        "From {} to {}: {} designs unchanged, {} judged anew, {} came, {} went.",
+        moved.from, moved.to, moved.unchanged, moved.judged_anew, moved.came, moved.went
+    );
+    let (old, new) = (designs(&before.front), designs(&after.front));
+    let changes = [
+        ("lightest", Objective::Mass),
+        ("stiffest", Objective::Deflection),
+        ("highest mode", Objective::Mode),
+    ]
+    .into_iter()
+    .filter_map(|(name, o)| Some(change(name, o, o.of(best(o, &old)?), o.of(best(o, &new)?))));
+    let changes: Vec<String> = changes.collect();
+    if changes.is_empty() { counts } else { format!("{counts} {}.", super::capital(&changes.join("; "))) }
+}
+
+fn change(name: &str, objective: Objective, old: f64, new: f64) -> String {
+    if old == new {
+        return format!("{name} still {}", amount(objective, new));
+    }
+    let percent = 100.0 * (new / old - 1.0);
+    let sign = if percent > 0.0 { "+" } else { "" };
+    format!(
+        "{name} {} to {} ({sign}{} %)",
+        amount(objective, old),
+        amount(objective, new),
+        significant(percent, 2)
+    )
+}

@@ -1,0 +1,160 @@
+//! Round limits to compare fronts at, spread over where the fronts overlap.
+
+use super::Question;
+use crate::report::picks::{Design, Objective, best};
+use serde::Serialize;
+
+/// How many limits are chosen for a question.
+const CHOSEN: usize = 3;
+
+/// Limits to compare at; what is empty is not asked.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Thresholds {
+    /// Tip deflections \[mm\].
+    pub deflection_mm: Vec<f64>,
+    /// Masses \[kg\].
+    pub mass_kg: Vec<f64>,
+    /// Lowest modes \[Hz\].
+    pub mode_hz: Vec<f64>,
+}
+
+impl Thresholds {
+    /// The limits of a question.
+    pub fn of(&self, question: Question) -> &[f64] {
+        match question.limited() {
+            Objective::Deflection => &self.deflection_mm,
+            Objective::Mass => &self.mass_kg,
+            Objective::Mode => &self.mode_hz,
+        }
+    }
+
+    /// Whether no limit is given.
+    pub fn is_empty(&self) -> bool {
+        self.deflection_mm.is_empty() && self.mass_kg.is_empty() && self.mode_hz.is_empty()
+    }
+
+    /// These limits, or, where none at all is given, limits chosen for these fronts (none of them
+    /// empty): round numbers that most fronts can keep and at which most still have to choose.
+    pub fn or_chosen(&self, fronts: &[&[Design]]) -> Self {
+        if !self.is_empty() || fronts.is_empty() {
+            return self.clone();
+        }
+        let choose = |limited| {
+            let (strict, loose) = overlap(limited, fronts);
+            round_between(strict.min(loose), strict.max(loose), CHOSEN, limited)
+        };
+        Self {
+            deflection_mm: choose(Objective::Deflection),
+            mass_kg: choose(Objective::Mass),
+            mode_hz: choose(Objective::Mode),
+        }
+    }
+}
+
+/// The strictest limit that three of four fronts keep, and the loosest at which half of them still
+/// give something up: beyond it their answers are their best designs of all.
+fn overlap(limited: Objective, fronts: &[&[Design]]) -> (f64, f64) {
+    let at_best_of = |o, front: &[Design]| best(o, front).map(|d| limited.minimized(d));
+    let strictest = fronts.iter().filter_map(|f| at_best_of(limited, f)).collect();
+    let loosest_of = |front: &&[Design]| {
+        let others = Objective::ALL.into_iter().filter(|o| *o != limited && asked(limited, *o));
+        others.filter_map(|o| at_best_of(o, front)).max_by(f64::total_cmp)
+    };
+    let strict = quantile(strictest, 0.75);
+    let loose = quantile(fronts.iter().filter_map(loosest_of).collect(), 0.5).max(strict);
+    if limited == Objective::Mode { (-strict, -loose) } else { (strict, loose) }
+}
+
+/// Whether some question seeks the one under a limit on the other.
+fn asked(limited: Objective, sought: Objective) -> bool {
+    Question::ALL.into_iter().any(|q| q.limited() == limited && q.sought() == sought)
+}
+
+/// The smallest value that at least this share of the values does not exceed.
+fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let index = (share * values.len() as f64).ceil() as usize;
+    values.get(index.saturating_sub(1)).copied().unwrap_or(f64::NAN)
+}
+
+/// At most `count` round numbers from `low` to `high`, spread over the range, the coarsest that give so
+/// many; the nearest number of two digits that most can keep if the range holds none.
+fn round_between(low: f64, high: f64, count: usize, limited: Objective) -> Vec<f64> {
+    const STOPS: [&[u32]; 4] = [
+        &[10, 20, 50],
+        &[10, 15, 20, 30, 40, 50, 60, 80],
+        &[10, 12, 14, 16, 18, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 75, 80, 85, 90, 95],
+        &[],
+    ];
+    if !(low > 0.0 && high.is_finite()) {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    for stops in STOPS {
+        let finest: Vec<u32> = (10..100).collect();
+        found = stops_between(low, high, if stops.is_empty() { &finest } else { stops });
+        if found.len() >= count {
+            break;
+        }
+    }
+    if found.is_empty() {
+        return vec![nearest_round(low, high, limited)];
+    }
+    spread(&found, low, high, count)
+}
+
+/// All numbers `stop * 10^n` in a range, rising.
+fn stops_between(low: f64, high: f64, stops: &[u32]) -> Vec<f64> {
+    let (from, to) = (low.log10().floor() as i32 - 1, high.log10().ceil() as i32);
+    (from..=to)
+        .flat_map(|power| stops.iter().map(move |s| decimal(*s, power - 1)))
+        .filter(|v| (low..=high).contains(v))
+        .collect()
+}
+
+/// `digits * 10^power`, exact where the decimal number is.
+fn decimal(digits: u32, power: i32) -> f64 {
+    let digits = f64::from(digits);
+    if power < 0 { digits / 10f64.powi(-power) } else { digits * 10f64.powi(power) }
+}
+
+/// Of rising numbers those nearest to evenly spread places (in ratio) inside the range.
+fn spread(found: &[f64], low: f64, high: f64, count: usize) -> Vec<f64> {
+    let place = |i: usize| low * (high / low).powf((i as f64 + 0.5) / count as f64);
+    let mut out: Vec<f64> = (0..count)
+        .filter_map(|i| {
+            let off = |v: &f64| (v / place(i)).ln().abs();
+            found.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))
+        })
+        .collect();
+    out.dedup();
+    out
+}
+
+/// The next number of two digits on the side that more fronts can keep.
+fn nearest_round(low: f64, high: f64, limited: Objective) -> f64 {
+    let (value, up) = if limited == Objective::Mode { (low, false) } else { (high, true) };
+    let power = value.log10().floor() as i32 - 1;
+    let digits = value / 10f64.powi(power);
+    decimal(if up { digits.ceil() } else { digits.floor() } as u32, power)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_are_round_and_spread_over_the_range() {
+        assert_eq!(round_between(0.8, 22.0, 3, Objective::Deflection), [1.0, 5.0, 10.0]);
+        assert_eq!(round_between(31.0, 88.0, 3, Objective::Mass), [40.0, 50.0, 80.0]);
+        assert_eq!(round_between(31.2, 31.9, 3, Objective::Mass), [32.0]);
+        assert_eq!(round_between(7.11, 7.19, 3, Objective::Mode), [7.1]);
+        assert!(round_between(f64::NAN, 1.0, 3, Objective::Mass).is_empty());
+    }
+
+    #[test]
+    fn three_of_four_fronts_keep_the_strictest_limit() {
+        assert_eq!(quantile(vec![4.0, 1.0, 3.0, 2.0], 0.75), 3.0);
+        assert_eq!(quantile(vec![5.0], 0.75), 5.0);
+    }
+}

@@ -1,0 +1,275 @@
+//! A picture of fronts: tip deflection and lowest mode over mass, by material.
+//!
+//! A front on three objectives is a cloud on each panel, and clouds of nine materials hide one another.
+//! So every design is a small dot, and on top of all dots stands the edge of each front: the best of
+//! the panel's objective at each mass, joined by a line, with the markers of the legend.
+
+use super::front_table::FrontTable;
+use super::number::significant;
+use super::picks::{Design, Objective, Pick, designs, materials};
+use super::svg::{Axis, MUTED, Note, PALETTE, Plot, Scale, Series, Sheet, Side};
+use std::collections::HashSet;
+
+const WIDTH_PX: f64 = 900.0;
+const HEIGHT_PX: f64 = 460.0;
+/// Points of one series nearer than this share of an axis are drawn once.
+const GRAIN: f64 = 1.0 / 200.0;
+/// Markers on an edge keep so many grains from one another.
+const MARKER_STEPS: f64 = 3.0;
+
+/// A front that is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlottedFront<'a> {
+    /// Name in the legend.
+    pub name: String,
+    /// Its designs.
+    pub front: &'a FrontTable,
+    /// Whether it is drawn in grey behind the others.
+    pub muted: bool,
+}
+
+/// Fronts and picks in one picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrontPicture<'a> {
+    /// Title.
+    pub title: String,
+    /// The fronts, in the order of the legend.
+    pub fronts: Vec<PlottedFront<'a>>,
+    /// Designs that get a ring and a name.
+    pub picks: Vec<Pick>,
+}
+
+/// The designs of a front whose links are of more than one material.
+pub fn mixed_designs(front: &FrontTable) -> FrontTable {
+    let rows = (0..front.rows.len()).filter(|r| materials(front, *r).len() > 1);
+    FrontTable { columns: front.columns.clone(), rows: rows.map(|r| front.rows[r].clone()).collect() }
+}
+
+/// A front that is drawn, by its designs.
+struct Drawn<'a> {
+    name: &'a str,
+    muted: bool,
+    designs: Vec<Design>,
+}
+
+impl FrontPicture<'_> {
+    /// The picture as a self-contained SVG document.
+    pub fn to_svg(&self) -> String {
+        let drawn: Vec<Drawn> = self
+            .fronts
+            .iter()
+            .map(|f| Drawn { name: &f.name, muted: f.muted, designs: designs(f.front) })
+            .filter(|f| !f.designs.is_empty())
+            .collect();
+        Sheet {
+            title: self.title.clone(),
+            description: self.description(&drawn),
+            plots: vec![
+                self.panel(&drawn, Objective::Deflection, &self.title),
+                self.panel(&drawn, Objective::Mode, ""),
+            ],
+        }
+        .to_svg()
+    }
+
+    fn panel(&self, drawn: &[Drawn], over: Objective, title: &str) -> Plot {
+        let shown: Vec<&Design> = drawn.iter().flat_map(|f| &f.designs).collect();
+        let (x, y) = (axis(Objective::Mass, &shown), axis(over, &shown));
+        let grain = Grain::new([(Objective::Mass, x.scale), (over, y.scale)], &shown);
+        let style = |index: usize| drawn[..index].iter().filter(|f| !f.muted).count();
+        let numbered = || drawn.iter().enumerate();
+        let clouds = numbered().map(|(i, f)| grain.cloud(f, style(i)));
+        let edges = numbered().map(|(i, f)| grain.edge(f, style(i)));
+        let mut series: Vec<Series> = clouds.chain(edges).collect();
+        // all dots lie behind all edges, and what is grey behind the rest of its kind
+        series.sort_by_key(|s| (!s.name.is_empty(), s.style != MUTED));
+        let notes = self.picks.iter().map(|p| Note {
+            at: (Objective::Mass.of(&p.design), over.of(&p.design)),
+            text: p.names.join(", "),
+            side: Side::default(),
+        });
+        Plot {
+            title: title.to_string(),
+            x,
+            y,
+            series,
+            notes: notes.collect(),
+            width_px: WIDTH_PX,
+            height_px: HEIGHT_PX,
+            ..Plot::default()
+        }
+    }
+
+    /// What the picture shows, in words.
+    fn description(&self, drawn: &[Drawn]) -> String {
+        let mut out = String::from(
+            "Two panels over the mass of links and drives: tip deflection above, lowest mode below. \
+             Every dot is a design; lines join the best designs of a front at each mass.",
+        );
+        for front in drawn {
+            let range = |o: Objective| {
+                let values = || front.designs.iter().map(|d| o.of(d));
+                let (low, high) =
+                    (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+                format!("{} to {} {}", significant(low, 3), significant(high, 3), o.unit())
+            };
+            let ranges = [Objective::Mass, Objective::Deflection, Objective::Mode].map(range).join(", ");
+            out.push_str(&format!(" {}: {} designs, {ranges}.", front.name, front.designs.len()));
+        }
+        for pick in &self.picks {
+            let values = [Objective::Mass, Objective::Deflection, Objective::Mode]
+                .map(|o| format!("{} {}", significant(o.of(&pick.design), 4), o.unit()));
+            let names = pick.names.join(", ");
+            out.push_str(&format!(
+                " Picked as {names}: design {}, {}.",
+                pick.design.design_id,
+                values.join(", ")
+            ));
+        }
+        out
+    }
+}
+
+/// An axis for an objective: in ratios where the data span more than a decade.
+fn axis(objective: Objective, shown: &[&Design]) -> Axis {
+    let values = || shown.iter().map(|d| objective.of(d));
+    let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
+    let scale = if low > 0.0 && high > 10.0 * low { Scale::Log } else { Scale::Linear };
+    let label = match objective {
+        Objective::Deflection => "tip deflection [mm]",
+        Objective::Mass => "mass of links and drives [kg]",
+        Objective::Mode => "lowest mode [Hz]",
+    };
+    Axis::new(label, scale)
+}
+
+/// What cannot be told apart on a panel.
+struct Grain {
+    axes: [(Objective, Scale); 2],
+    low: [f64; 2],
+    step: [f64; 2],
+}
+
+impl Grain {
+    fn new(axes: [(Objective, Scale); 2], shown: &[&Design]) -> Self {
+        let ends = axes.map(|axis| {
+            let values = || shown.iter().map(|d| place(axis, d));
+            (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max))
+        });
+        let step = ends.map(|(low, high)| ((high - low) * GRAIN).max(f64::MIN_POSITIVE));
+        Self { axes, low: ends.map(|e| e.0), step }
+    }
+
+    /// All designs of a front as small dots without a name; of those on one place the first is drawn.
+    fn cloud(&self, front: &Drawn, index: usize) -> Series {
+        let mut seen = HashSet::new();
+        let cell =
+            |d: &Design, i: usize| ((place(self.axes[i], d) - self.low[i]) / self.step[i]).round() as i64;
+        let apart = front.designs.iter().filter(|d| seen.insert((cell(d, 0), cell(d, 1))));
+        let points = apart.map(|d| self.point(d)).collect();
+        Series { marker_px: 1.6, ..Series::scatter("", front.style(index), points) }
+    }
+
+    /// The edge of a front on this panel, a line with markers: for every mass the best of the other axis.
+    fn edge(&self, front: &Drawn, index: usize) -> Series {
+        let over = self.axes[1].0;
+        let mut rising: Vec<&Design> = front.designs.iter().collect();
+        rising.sort_by(|a, b| {
+            a.mass_kg.total_cmp(&b.mass_kg).then(over.minimized(a).total_cmp(&over.minimized(b)))
+        });
+        let mut best = f64::INFINITY;
+        rising.retain(|d| {
+            let better = over.minimized(d) < best;
+            best = best.min(over.minimized(d));
+            better
+        });
+        // markers that would touch are left out, but for the ends
+        let last = rising.len().saturating_sub(1);
+        let mut shown: Option<&Design> = None;
+        let mut points = Vec::new();
+        for (i, d) in rising.into_iter().enumerate() {
+            if i == 0 || i == last || shown.is_none_or(|s| self.apart(s, d)) {
+                points.push(self.point(d));
+                shown = Some(d);
+            }
+        }
+        // beyond the palette the colours repeat: hollow markers tell them apart
+        let open = !front.muted && (index / PALETTE.len()) % 2 == 1;
+        let marker_px = if front.muted { 2.5 } else { 4.0 };
+        Series { open, marker_px, ..Series::line(front.name, front.style(index), points) }
+    }
+
+    fn point(&self, design: &Design) -> (f64, f64) {
+        (self.axes[0].0.of(design), self.axes[1].0.of(design))
+    }
+
+    /// Whether the markers of two designs do not touch.
+    fn apart(&self, a: &Design, b: &Design) -> bool {
+        let steps = |i: usize| (place(self.axes[i], a) - place(self.axes[i], b)) / self.step[i];
+        steps(0).hypot(steps(1)) > MARKER_STEPS
+    }
+}
+
+impl Drawn<'_> {
+    fn style(&self, index: usize) -> usize {
+        if self.muted { MUTED } else { index }
+    }
+}
+
+/// Where a design lies along an axis, up to scale.
+fn place((objective, scale): (Objective, Scale), design: &Design) -> f64 {
+    let value = objective.of(design);
+    if scale == Scale::Log { value.ln() } else { value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(rows: &[(&str, &str, f64, f64, f64)]) -> FrontTable {
+        let columns =
+            ["design_id", "a_material", "b_material", "tip_deflection_mm", "mass_kg", "lowest_mode_hz"];
+        let row = |(a, b, d, m, f): &(&str, &str, f64, f64, f64)| {
+            ["x", a, b, &d.to_string(), &m.to_string(), &f.to_string()].map(String::from).to_vec()
+        };
+        FrontTable { columns: columns.map(String::from).to_vec(), rows: rows.iter().map(row).collect() }
+    }
+
+    fn picture(front: &FrontTable) -> FrontPicture<'_> {
+        FrontPicture {
+            title: "t".into(),
+            fronts: vec![PlottedFront { name: "steel & co".into(), front, muted: false }],
+            picks: super::super::picks::picks(&designs(front)),
+        }
+    }
+
+    #[test]
+    fn axes_are_logarithmic_beyond_a_decade() {
+        let front = table(&[("s", "s", 1.0, 30.0, 10.0), ("s", "s", 11.0, 20.0, 5.0)]);
+        let designs = designs(&front);
+        let shown: Vec<&Design> = designs.iter().collect();
+        assert_eq!(axis(Objective::Deflection, &shown).scale, Scale::Log);
+        assert_eq!(axis(Objective::Mass, &shown).scale, Scale::Linear);
+    }
+
+    #[test]
+    fn mixed_designs_have_links_of_two_materials() {
+        let front = table(&[("s", "t", 1.0, 2.0, 3.0), ("s", "s", 1.0, 2.0, 3.0)]);
+        assert_eq!(mixed_designs(&front).rows.len(), 1);
+    }
+
+    #[test]
+    fn the_picture_names_its_picks_and_says_itself_in_words() {
+        let front = table(&[("s", "s", 1.0, 30.0, 10.0), ("s", "s", 11.0, 20.0, 5.0)]);
+        let svg = picture(&front).to_svg();
+        assert!(svg.contains(">lightest") && svg.contains(">stiffest, highest mode"));
+        assert!(svg.contains("steel &amp; co: 2 designs, 20.0 to 30.0 kg"));
+        assert!(!svg.contains("NaN"));
+    }
+
+    #[test]
+    fn an_empty_front_still_gives_a_picture() {
+        let front = table(&[]);
+        assert!(picture(&front).to_svg().ends_with("</svg>\n"));
+    }
+}

@@ -1,0 +1,244 @@
+//! The designs of a front that a reader looks for first: lightest, stiffest, highest mode, knee.
+
+use super::front_table::FrontTable;
+use std::cmp::Ordering;
+
+/// One design of a front by its objectives.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Design {
+    /// Name of the design in its results.
+    pub design_id: String,
+    /// Tip deflection \[mm\].
+    pub tip_deflection_mm: f64,
+    /// Mass \[kg\].
+    pub mass_kg: f64,
+    /// Lowest mode \[Hz\].
+    pub lowest_mode_hz: f64,
+    /// Cost of the links' material \[EUR\]; `None` = unknown.
+    pub material_cost_eur: Option<f64>,
+    /// Row in its table, from 0.
+    #[serde(skip)]
+    pub row: usize,
+}
+
+/// One of the three objectives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Objective {
+    /// Tip deflection \[mm\], small is good.
+    Deflection,
+    /// Mass \[kg\], small is good.
+    Mass,
+    /// Lowest mode \[Hz\], large is good.
+    Mode,
+}
+
+impl Objective {
+    /// All three.
+    pub const ALL: [Self; 3] = [Self::Deflection, Self::Mass, Self::Mode];
+
+    /// The value of a design.
+    pub fn of(self, design: &Design) -> f64 {
+        match self {
+            Self::Deflection => design.tip_deflection_mm,
+            Self::Mass => design.mass_kg,
+            Self::Mode => design.lowest_mode_hz,
+        }
+    }
+
+    /// The value of a design as a number to be made small.
+    pub fn minimized(self, design: &Design) -> f64 {
+        if self == Self::Mode { -self.of(design) } else { self.of(design) }
+    }
+
+    /// Unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Deflection => "mm",
+            Self::Mass => "kg",
+            Self::Mode => "Hz",
+        }
+    }
+}
+
+/// The designs of a table; rows whose objectives are not finite numbers are left out.
+pub fn designs(front: &FrontTable) -> Vec<Design> {
+    let [deflection, mass, mode] =
+        ["tip_deflection_mm", "mass_kg", "lowest_mode_hz"].map(|c| front.numbers(c));
+    let cost = front.numbers("material_cost_eur");
+    let id = front.column("design_id");
+    let finite = |values: &[Option<f64>], row: usize| values[row].filter(|v| v.is_finite());
+    (0..front.rows.len())
+        .filter_map(|row| {
+            Some(Design {
+                design_id: id.map_or_else(|| row.to_string(), |c| front.rows[row][c].clone()),
+                tip_deflection_mm: finite(&deflection, row)?,
+                mass_kg: finite(&mass, row)?,
+                lowest_mode_hz: finite(&mode, row)?,
+                material_cost_eur: finite(&cost, row),
+                row,
+            })
+        })
+        .collect()
+}
+
+/// The best design in one objective. Equals are told apart by the other objectives, then by cost
+/// (unknown last), then by name, so that the answer does not depend on the order of the rows.
+pub fn best<'a>(objective: Objective, among: impl IntoIterator<Item = &'a Design>) -> Option<&'a Design> {
+    among.into_iter().min_by(|a, b| better(objective, a, b))
+}
+
+fn better(objective: Objective, a: &Design, b: &Design) -> Ordering {
+    let by = |o: Objective| o.minimized(a).total_cmp(&o.minimized(b));
+    let cost = |d: &Design| d.material_cost_eur.unwrap_or(f64::INFINITY);
+    let others = Objective::ALL.into_iter().map(by).fold(Ordering::Equal, Ordering::then);
+    let name = |d: &Design| (d.design_id.len(), d.design_id.clone());
+    by(objective).then(others).then(cost(a).total_cmp(&cost(b))).then_with(|| name(a).cmp(&name(b)))
+}
+
+/// The knee: the design nearest to the ideal point (the best of every objective at once), distances
+/// measured in logarithms, each objective scaled by its range over the front.
+pub fn knee(designs: &[Design]) -> Option<&Design> {
+    let scales = Objective::ALL.map(|o| Scale::of(o, designs));
+    let distance = |d: &Design| scales.iter().map(|s| s.regret(d).powi(2)).sum::<f64>();
+    designs
+        .iter()
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)).then_with(|| better(Objective::Mass, a, b)))
+}
+
+/// How an objective is spread over a front.
+struct Scale {
+    objective: Objective,
+    logarithmic: bool,
+    ideal: f64,
+    range: f64,
+}
+
+impl Scale {
+    fn of(objective: Objective, designs: &[Design]) -> Self {
+        let logarithmic = designs.iter().all(|d| objective.of(d) > 0.0);
+        let mut scale = Self { objective, logarithmic, ideal: 0.0, range: 0.0 };
+        let values: Vec<f64> = designs.iter().map(|d| scale.value(d)).collect();
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        (scale.ideal, scale.range) = (least, most - least);
+        scale
+    }
+
+    /// The objective, small is good; in logarithms where all are positive.
+    fn value(&self, design: &Design) -> f64 {
+        let value = self.objective.of(design);
+        let value = if self.logarithmic { value.ln() } else { value };
+        if self.objective == Objective::Mode { -value } else { value }
+    }
+
+    /// Distance from the best, 0 to 1.
+    fn regret(&self, design: &Design) -> f64 {
+        if self.range > 0.0 { (self.value(design) - self.ideal) / self.range } else { 0.0 }
+    }
+}
+
+/// A design with the names of what it is picked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pick {
+    /// What it is picked for: one or more of `lightest`, `stiffest`, `highest mode`, `knee`.
+    pub names: Vec<&'static str>,
+    /// The design.
+    pub design: Design,
+}
+
+/// Lightest, stiffest, highest mode and knee; a design picked twice is listed once, with both names.
+pub fn picks(designs: &[Design]) -> Vec<Pick> {
+    let named = [
+        ("lightest", best(Objective::Mass, designs)),
+        ("stiffest", best(Objective::Deflection, designs)),
+        ("highest mode", best(Objective::Mode, designs)),
+        ("knee", knee(designs)),
+    ];
+    let mut out: Vec<Pick> = Vec::new();
+    for (name, design) in named.into_iter().filter_map(|(n, d)| Some((n, d?))) {
+        match out.iter_mut().find(|p| p.design.row == design.row) {
+            Some(pick) => pick.names.push(name),
+            None => out.push(Pick { names: vec![name], design: design.clone() }),
+        }
+    }
+    out
+}
+
+/// The choices of a row in words, link by link and joint by joint as the columns come:
+/// `upper_arm 120 x 100 x 3 mm Aluminium 6061-T6`.
+pub fn choices(front: &FrontTable, row: usize) -> Vec<String> {
+    let cell = |name: &str| front.column(name).map(|c| front.rows[row][c].as_str()).filter(|c| !c.is_empty());
+    let piece = |column: &String| {
+        if let Some(link) = column.strip_suffix("_material") {
+            let sizes = ["width_mm", "height_mm", "wall_mm"].map(|s| cell(&format!("{link}_{s}")));
+            let sizes: Vec<&str> = sizes.into_iter().flatten().collect();
+            let size = if sizes.is_empty() { String::new() } else { format!(" {} mm", sizes.join(" x ")) };
+            let round = cell(&format!("{link}_shape")).is_some_and(|s| s.starts_with("round"));
+            let shape = if round { " round" } else { "" };
+            return cell(column).map(|material| format!("{link}{shape}{size} {material}"));
+        }
+        let joint = column.strip_suffix("_gear")?;
+        let parts: Vec<&str> =
+            [cell(column), cell(&format!("{joint}_motor"))].into_iter().flatten().collect();
+        (!parts.is_empty()).then(|| format!("{joint} {}", parts.join(" + ")))
+    };
+    front.columns.iter().filter_map(piece).collect()
+}
+
+/// The different link materials of a row, in the order of the links.
+pub fn materials(front: &FrontTable, row: usize) -> Vec<&str> {
+    let mut out: Vec<&str> = Vec::new();
+    for (index, _) in front.columns.iter().enumerate().filter(|(_, c)| c.ends_with("_material")) {
+        let name = front.rows[row][index].as_str();
+        if !name.is_empty() && !out.contains(&name) {
+            out.push(name);
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn design(id: &str, deflection: f64, mass: f64, mode: f64) -> Design {
+        Design {
+            design_id: id.into(),
+            tip_deflection_mm: deflection,
+            mass_kg: mass,
+            lowest_mode_hz: mode,
+            material_cost_eur: None,
+            row: id.bytes().map(usize::from).sum(),
+        }
+    }
+
+    #[test]
+    fn the_knee_is_nearest_to_the_ideal_in_logarithms() {
+        // logs base 10: deflection 0..2, mass 0..2; b is at (0.5, 0.5), a and c in opposite corners
+        let front =
+            [design("a", 1.0, 100.0, 9.0), design("b", 3.162, 3.162, 9.0), design("c", 100.0, 1.0, 9.0)];
+        assert_eq!(knee(&front).map(|d| d.design_id.as_str()), Some("b"));
+    }
+
+    #[test]
+    fn a_deflection_of_zero_does_not_spoil_the_knee() {
+        let front = [design("a", 0.0, 10.0, 9.0), design("b", 0.1, 1.0, 9.0), design("c", 1.0, 0.9, 9.0)];
+        assert_eq!(knee(&front).map(|d| d.design_id.as_str()), Some("b"));
+        assert_eq!(knee(&[]), None);
+    }
+
+    #[test]
+    fn equals_are_told_apart_by_the_other_objectives_and_cost() {
+        let cheap = Design { material_cost_eur: Some(5.0), ..design("z", 1.0, 2.0, 3.0) };
+        let front = [design("a", 1.0, 2.0, 3.0), cheap.clone(), design("b", 2.0, 2.0, 9.0)];
+        assert_eq!(best(Objective::Mass, &front), Some(&cheap));
+    }
+
+    #[test]
+    fn a_design_picked_twice_is_listed_once() {
+        let front = [design("a", 1.0, 9.0, 30.0), design("b", 5.0, 2.0, 3.0)];
+        let names: Vec<_> = picks(&front).into_iter().map(|p| (p.design.design_id, p.names)).collect();
+        assert_eq!(names[0].0, "b");
+        assert!(names[1].1.starts_with(&["stiffest", "highest mode"]));
+    }
+}

@@ -1,0 +1,444 @@
+//! What a finished study found: the question, the answer in two sentences, picks, materials, counts.
+
+use super::compare::cost_words;
+use super::compare::text::{short_labels, wrap};
+use super::front_table::FrontTable;
+use super::number::significant;
+use super::picks::{Design, Objective, Pick, best, choices, designs, knee, materials, picks};
+use super::table::{Column, Table};
+use crate::search::constraint::Constraints;
+
+/// Width of a terminal \[characters\].
+const TERMINAL: usize = 80;
+
+/// What a run knows besides its fronts.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SummaryFacts {
+    /// Name of the study.
+    pub study: String,
+    /// Its question in a sentence.
+    pub question: String,
+    /// How the search ended: `complete`, `certified`, `partial`, `infeasible` or `interrupted`.
+    pub status: String,
+    /// Designs in the space.
+    pub designs_total: u128,
+    /// Designs whose three objectives were computed.
+    pub designs_evaluated: u128,
+    /// Designs left out because a limit cannot hold.
+    pub designs_excluded: u128,
+    /// Duration of the search \[s\].
+    pub elapsed_s: f64,
+    /// Worker threads; 0 = not known.
+    pub threads: usize,
+    /// Version of the program.
+    pub tool_version: String,
+    /// Constraints in words; see [`constraint_words`].
+    pub constraints: Vec<String>,
+    /// Names of the cases, the worst of which counts.
+    pub cases: Vec<String>,
+    /// Parts and options left out because a figure is unknown, in words.
+    pub not_checked: Vec<String>,
+    /// Result folder as it is typed.
+    pub results: String,
+}
+
+/// The front of one material's designs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaterialFront {
+    /// Name of the material.
+    pub name: String,
+    /// Cost of the raw material \[EUR/kg\]; `None` = unknown.
+    pub cost_eur_per_kg: Option<f64>,
+    /// The front of the designs whose links are all of it.
+    pub front: FrontTable,
+}
+
+/// Everything a summary says.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SummaryInput {
+    /// Facts of the run.
+    pub facts: SummaryFacts,
+    /// Front of all designs.
+    pub overall: FrontTable,
+    /// Front of each material, in the study's order.
+    pub materials: Vec<MaterialFront>,
+}
+
+/// Constraints in words, one a line; empty if there are none.
+pub fn constraint_words(constraints: &Constraints) -> Vec<String> {
+    let c = constraints;
+    let plain = super::number::shortest;
+    [
+        c.tip_deflection_max_m.map(|v| format!("tip deflection at most {} mm", significant(v * 1e3, 4))),
+        c.mass_max_kg.map(|v| format!("mass at most {} kg", plain(v))),
+        c.lowest_mode_min_hz.map(|v| format!("lowest mode at least {} Hz", plain(v))),
+        c.servo.map(|s| {
+            let (bandwidth, ratio) = (plain(s.bandwidth_hz), plain(s.ratio));
+            format!("lowest mode at least {ratio} times the servo bandwidth of {bandwidth} Hz")
+        }),
+        c.stress_safety_factor_min
+            .map(|v| format!("strength at least {} times the stress at peak load", plain(v))),
+        c.wall_slenderness_max
+            .map(|v| format!("flat width at most {} times the wall (local buckling)", plain(v))),
+        c.material_cost_max_eur.map(|v| format!("links' material at most {} EUR", plain(v))),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// The summary as a Markdown document.
+pub fn summary_md(input: &SummaryInput) -> String {
+    let facts = &input.facts;
+    let found = Found::of(input);
+    let mut out = format!("# {}\n\n{}\n\n", facts.study, facts.question);
+    out.push_str(&format!("**Answer.** {}\n", answer(input, &found)));
+    if !found.picks.is_empty() {
+        out.push_str("\n![The front](front.svg)\n");
+        out.push_str(&format!("\n## Picks\n\n{}\n", picks_table(&found.picks, MARKDOWN_PICKS).to_markdown()));
+        for pick in &found.picks {
+            let choices = choices(&input.overall, pick.design.row).join("; ");
+            out.push_str(&format!(
+                "- {} ({}): {choices}{}\n",
+                pick.names.join(", "),
+                pick.design.design_id,
+                ties(pick, &found.designs)
+            ));
+        }
+        out.push_str(KNEE);
+        let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
+        out.push_str(&format!(
+            "\n## Materials\n\n{}",
+            materials_table(input, &names, MARKDOWN_MATERIALS).to_markdown()
+        ));
+        out.push_str("\nThe front of a material holds the designs whose links are all of it; its share counts its designs on the front of all.\n");
+    }
+    out.push_str(&format!("\n## What was searched\n\n- {}\n", counts(facts)));
+    out.push_str(&format!(
+        "- Constraints: {}.\n- Cases, the worst of which counts: {}.\n",
+        listed(&facts.constraints),
+        listed(&facts.cases)
+    ));
+    if !facts.not_checked.is_empty() {
+        out.push_str("\n## Not checked\n\n");
+        facts.not_checked.iter().for_each(|words| out.push_str(&format!("- {words}\n")));
+    }
+    if let Some(pick) = found.default_pick() {
+        out.push_str(&format!("\n## Take a design out\n\n```\n{}```\n", commands(facts, pick)));
+    }
+    if !facts.tool_version.is_empty() {
+        out.push_str(&format!("\narmwright {}\n", facts.tool_version));
+    }
+    out
+}
+
+const KNEE: &str = "\nThe knee is the design nearest to the ideal point (the best of all three at once), distances in logarithms,\neach objective scaled by its range over the front.\n";
+
+/// The summary for a terminal of 80 columns.
+pub fn terminal_summary(input: &SummaryInput) -> String {
+    let facts = &input.facts;
+    let found = Found::of(input);
+    let mut out = wrap(&format!("{}: {}", facts.study, facts.question), TERMINAL, "");
+    out.push_str(&format!("\n{}", wrap(&answer(input, &found), TERMINAL, "")));
+    if !found.picks.is_empty() {
+        out.push_str(&format!("\n{}", picks_table(&found.picks, TERMINAL_PICKS).to_text()));
+        let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
+        out.push_str(&format!(
+            "\n{}",
+            materials_table(input, &short_labels(&names), TERMINAL_MATERIALS).to_text()
+        ));
+    }
+    out.push_str(&format!("\n{}", wrap(&counts(facts), TERMINAL, "")));
+    if !facts.not_checked.is_empty() {
+        let words =
+            format!("Options or parts not checked: {}; summary.md lists them.", facts.not_checked.len());
+        out.push_str(&wrap(&words, TERMINAL, ""));
+    }
+    if let Some(pick) = found.default_pick() {
+        let (results, id) = (&facts.results, &pick.design.design_id);
+        out.push_str(&format!("\narmwright design {results} {id}\narmwright compare {results}\n"));
+    }
+    out
+}
+
+/// What the fronts say.
+struct Found {
+    designs: Vec<Design>,
+    picks: Vec<Pick>,
+}
+
+impl Found {
+    fn of(input: &SummaryInput) -> Self {
+        let designs = designs(&input.overall);
+        Self { picks: picks(&designs), designs }
+    }
+
+    /// The design that examples take out: the knee.
+    fn default_pick(&self) -> Option<&Pick> {
+        self.picks.iter().find(|p| p.names.contains(&"knee"))
+    }
+}
+
+/// The answer in two sentences.
+fn answer(input: &SummaryInput, found: &Found) -> String {
+    let facts = &input.facts;
+    let Some(knee) = knee(&found.designs) else {
+        return match facts.status.as_str() {
+            "interrupted" | "partial" => "No design was found before the search stopped.".into(),
+            _ => "No design meets the constraints.".into(),
+        };
+    };
+    let caution = match facts.status.as_str() {
+        "interrupted" | "partial" => "The search did not visit every design, so better ones may exist. ",
+        _ => "",
+    };
+    format!("{caution}{} {}", winners(input, found), compromise(input, found, knee))
+}
+
+/// `A gives the lightest arm (31 kg); B the stiffest (0.8 mm) and the highest mode (40 Hz).`
+fn winners(input: &SummaryInput, found: &Found) -> String {
+    let sought = [
+        (Objective::Mass, "the lightest arm"),
+        (Objective::Deflection, "the stiffest"),
+        (Objective::Mode, "the highest lowest mode"),
+    ];
+    let mut by_material: Vec<(String, Vec<String>)> = Vec::new();
+    for (objective, words) in sought {
+        let Some(design) = best(objective, &found.designs) else { continue };
+        let what = format!("{words} ({})", amount(objective, design));
+        let material = made_of(&input.overall, design.row);
+        match by_material.iter_mut().find(|(m, _)| *m == material) {
+            Some((_, list)) => list.push(what),
+            None => by_material.push((material, vec![what])),
+        }
+    }
+    let clauses: Vec<String> =
+        by_material.iter().map(|(material, what)| format!("{material} gives {}", and(what))).collect();
+    format!("{}.", capital(&clauses.join("; ")))
+}
+
+fn compromise(input: &SummaryInput, found: &Found, knee: &Design) -> String {
+    let values: Vec<String> =
+        [Objective::Mass, Objective::Deflection, Objective::Mode].map(|o| amount(o, knee)).into();
+    let mut out = format!(
+        "The knee, nearest to the best of all three, is design {} ({}): {}",
+        knee.design_id,
+        made_of(&input.overall, knee.row),
+        values.join(", ")
+    );
+    let share =
+        |(name, count): &(String, usize)| format!("{} of them {name}", percent(*count, found.designs.len()));
+    if let Some(most) = owners(input).iter().max_by_key(|(_, count)| *count).filter(|(_, c)| *c > 0) {
+        let size = found.designs.len();
+        let designs = if size == 1 { "design" } else { "designs" };
+        out.push_str(&format!("; the front has {} {designs}, {}", grouped(size as u128), share(most)));
+    }
+    out + "."
+}
+
+/// How many designs of the overall front are of each material, and how many are mixed.
+fn owners(input: &SummaryInput) -> Vec<(String, usize)> {
+    let of_row: Vec<Vec<&str>> =
+        (0..input.overall.rows.len()).map(|r| materials(&input.overall, r)).collect();
+    let alone = |name: &str| of_row.iter().filter(|m| m.len() == 1 && m[0] == name).count();
+    let mut out: Vec<(String, usize)> =
+        input.materials.iter().map(|m| (m.name.clone(), alone(&m.name))).collect();
+    out.push((MIXED.into(), of_row.iter().filter(|m| m.len() > 1).count()));
+    out
+}
+
+const MIXED: &str = "of mixed materials";
+
+/// The materials of a design in words.
+fn made_of(front: &FrontTable, row: usize) -> String {
+    match materials(front, row).as_slice() {
+        [] => "this arm".into(),
+        [one] => (*one).to_string(),
+        several => format!("a mix of {}", and(several)),
+    }
+}
+
+const MARKDOWN_PICKS: [&str; 6] =
+    ["pick", "design", "mass [kg]", "tip deflection [mm]", "lowest mode [Hz]", "material cost [EUR]"];
+const TERMINAL_PICKS: [&str; 6] = ["pick", "design", "mass kg", "tip mm", "mode Hz", "material EUR"];
+
+fn picks_table(picks: &[Pick], headers: [&str; 6]) -> Table {
+    let columns =
+        headers.iter().enumerate().map(|(i, h)| if i < 2 { Column::left(h) } else { Column::right(h) });
+    let mut table = Table::new(columns.collect());
+    for Pick { names, design } in picks {
+        let mut cells = vec![names.join(", "), design.design_id.clone()];
+        cells.extend(
+            [Objective::Mass, Objective::Deflection, Objective::Mode].map(|o| significant(o.of(design), 4)),
+        );
+        cells.push(known(design.material_cost_eur));
+        table.row(cells);
+    }
+    table
+}
+
+const MARKDOWN_MATERIALS: [&str; 7] = [
+    "material",
+    "designs on its front",
+    "lightest [kg]",
+    "stiffest [mm]",
+    "highest mode [Hz]",
+    "share of the whole front",
+    "material [EUR/kg]",
+];
+const TERMINAL_MATERIALS: [&str; 7] =
+    ["material", "front", "least kg", "least mm", "most Hz", "share", "EUR/kg"];
+
+/// One row a material; the last row is what mixing adds to the whole front.
+fn materials_table(input: &SummaryInput, names: &[String], headers: [&str; 7]) -> Table {
+    let columns =
+        headers.iter().enumerate().map(|(i, h)| if i < 1 { Column::left(h) } else { Column::right(h) });
+    let mut table = Table::new(columns.collect());
+    let total = input.overall.rows.len();
+    let owners = owners(input);
+    for ((material, name), (_, count)) in input.materials.iter().zip(names).zip(&owners) {
+        let cost = known(material.cost_eur_per_kg);
+        table.row(material_cells(name, &designs(&material.front), percent(*count, total), cost));
+    }
+    let mixed = designs(&super::front_svg::mixed_designs(&input.overall));
+    if !mixed.is_empty() {
+        table.row(material_cells("mixed", &mixed, percent(mixed.len(), total), String::new()));
+    }
+    table
+}
+
+fn material_cells(name: &str, front: &[Design], share: String, cost: String) -> Vec<String> {
+    let reach = [Objective::Mass, Objective::Deflection, Objective::Mode]
+        .map(|o| best(o, front).map_or("none".into(), |d| significant(o.of(d), 4)));
+    let head = [name.to_string(), grouped(front.len() as u128)];
+    head.into_iter().chain(reach).chain([share, cost]).collect()
+}
+
+/// How many other designs have the same objectives.
+fn ties(pick: &Pick, designs: &[Design]) -> String {
+    let same = |d: &&Design| Objective::ALL.iter().all(|o| o.of(d) == o.of(&pick.design));
+    match designs.iter().filter(same).count() {
+        0 | 1 => String::new(),
+        2 => " (1 other design has the same objectives)".into(),
+        n => format!(" ({} other designs have the same objectives)", n - 1),
+    }
+}
+
+/// Designs total, evaluated, excluded, and the rate.
+fn counts(facts: &SummaryFacts) -> String {
+    let rate = facts.designs_evaluated as f64 / facts.elapsed_s;
+    let rate = if rate.is_finite() && rate > 0.0 {
+        let threads = match facts.threads {
+            0 => String::new(),
+            1 => " on 1 thread".into(),
+            n => format!(" on {n} threads"),
+        };
+        format!(" ({} designs/s{threads})", grouped(rate.round() as u128))
+    } else {
+        String::new()
+    };
+    format!(
+        "{} designs: {} evaluated, {} excluded by a limit, in {} s{rate}; search {}.",
+        grouped(facts.designs_total),
+        grouped(facts.designs_evaluated),
+        grouped(facts.designs_excluded),
+        significant(facts.elapsed_s, 3),
+        facts.status
+    )
+}
+
+/// The commands that take a design out and analyse it, one a line.
+fn commands(facts: &SummaryFacts, pick: &Pick) -> String {
+    let (results, id) = (&facts.results, &pick.design.design_id);
+    let dir = format!("{results}/design-{id}");
+    format!(
+        "armwright design {results} {id}\n\
+         armwright analyze {dir}/arm.json --cases {dir}/cases.json\n\
+         armwright compare {results}\n"
+    )
+}
+
+/// A whole number with commas; above 1e12 in powers of ten.
+fn grouped(n: u128) -> String {
+    if n >= 1_000_000_000_000 {
+        return significant(n as f64, 3);
+    }
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (i, c) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(c);
+    }
+    out
+}
+
+/// A share that is never rounded to nothing or to all.
+fn percent(part: usize, whole: usize) -> String {
+    let share = 100.0 * part as f64 / whole.max(1) as f64;
+    match share {
+        _ if part == 0 => "0 %".into(),
+        s if part > 0 && s < 0.1 => "<0.1 %".into(),
+        s if part < whole && s > 99.9 => ">99.9 %".into(),
+        s if s < 10.0 => format!("{s:.1} %"),
+        s => format!("{s:.0} %"),
+    }
+}
+
+fn amount(objective: Objective, design: &Design) -> String {
+    format!("{} {}", significant(objective.of(design), 4), objective.unit())
+}
+
+fn known(value: Option<f64>) -> String {
+    value.map_or("unknown".into(), cost_words)
+}
+
+fn listed(words: &[String]) -> String {
+    if words.is_empty() { "none".into() } else { words.join("; ") }
+}
+
+fn and(words: &[impl AsRef<str>]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.as_ref().to_string(),
+        [init @ .., last] => {
+            let init: Vec<&str> = init.iter().map(AsRef::as_ref).collect();
+            format!("{} and {}", init.join(", "), last.as_ref())
+        }
+    }
+}
+
+fn capital(text: &str) -> String {
+    let mut chars = text.chars();
+    chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_are_grouped_and_shares_never_rounded_to_nothing() {
+        assert_eq!(grouped(10_536_192), "10,536,192");
+        assert_eq!(grouped(999), "999");
+        assert_eq!(grouped(12_300_000_000_000_000_000), "1.23e19");
+        assert_eq!(percent(1, 5000), "<0.1 %");
+        assert_eq!(percent(4999, 5000), ">99.9 %");
+        assert_eq!(percent(0, 0), "0 %");
+    }
+
+    #[test]
+    fn constraints_are_said_in_words() {
+        let constraints = Constraints {
+            tip_deflection_max_m: Some(0.002),
+            stress_safety_factor_min: Some(2.0),
+            ..Constraints::default()
+        };
+        assert_eq!(
+            constraint_words(&constraints),
+            ["tip deflection at most 2.000 mm", "strength at least 2 times the stress at peak load"]
+        );
+        assert!(constraint_words(&Constraints::default()).is_empty());
+    }
+}

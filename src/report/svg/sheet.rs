@@ -1,0 +1,194 @@
+//! Plots under one another as one picture, their frames in line, with one legend.
+
+use super::{Canvas, INK, Plot, Series, escape, line, px, text, text_px};
+use std::fmt::Write;
+
+/// Radius of the ring around a noted place \[px\].
+const RING_PX: f64 = 7.0;
+const NOTE_PX: f64 = 12.0;
+
+/// Plots that share a picture.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Sheet {
+    /// Title for those who cannot see it; the plots have their own.
+    pub title: String,
+    /// What the sheet shows, in a sentence or two, for those who cannot see it.
+    pub description: String,
+    /// Plots from top to bottom. The legend stands beside the first. Notes get a ring at their place and are set where they
+    /// cover least, whatever their side.
+    pub plots: Vec<Plot>,
+}
+
+impl Sheet {
+    /// The sheet as a self-contained SVG document.
+    pub fn to_svg(&self) -> String {
+        let cover = Plot {
+            title: self.title.clone(),
+            description: self.description.clone(),
+            width_px: self.plots.iter().map(|p| p.width_px).fold(0.0, f64::max),
+            height_px: self.plots.iter().map(|p| p.height_px).sum(),
+            ..Plot::default()
+        };
+        let mut out = cover.head();
+        let mut top = 0.0;
+        for (index, (plot, canvas)) in self.plots.iter().zip(self.canvases()).enumerate() {
+            let _ = writeln!(
+                out,
+                "<g transform=\"translate(0 {})\" role=\"group\" aria-label=\"{}\">",
+                px(top),
+                escape(&format!("{} over {}", plot.y.label, plot.x.label))
+            );
+            canvas.panel(&mut out, plot, index == 0);
+            out.push_str("</g>\n");
+            top += plot.height_px;
+        }
+        out.push_str("</svg>\n");
+        out
+    }
+
+    /// One canvas a plot, with their frames in line.
+    fn canvases(&self) -> Vec<Canvas> {
+        let mut canvases: Vec<Canvas> = self.plots.iter().map(Canvas::new).collect();
+        let left = canvases.iter().map(|c| c.left).fold(0.0, f64::max);
+        let right = canvases.iter().map(|c| c.right).fold(f64::INFINITY, f64::min);
+        for canvas in &mut canvases {
+            (canvas.left, canvas.right) = (left, right);
+        }
+        canvases
+    }
+}
+
+impl Canvas {
+    fn panel(&self, out: &mut String, plot: &Plot, with_legend: bool) {
+        self.grid(out, plot);
+        self.guides(out, &plot.guides);
+        for series in &plot.series {
+            self.series(out, series);
+        }
+        self.ringed_notes(out, plot);
+        if with_legend {
+            self.legend(out, &plot.series);
+        }
+    }
+
+    /// Notes with a ring at their place, each set where it covers least.
+    fn ringed_notes(&self, out: &mut String, plot: &Plot) {
+        let noted: Vec<_> = plot.notes.iter().filter_map(|n| Some((n, self.inside(n.at)?))).collect();
+        let mut obstacles = Obstacles {
+            points: plot
+                .series
+                .iter()
+                .flat_map(|s: &Series| &s.points)
+                .filter_map(|p| self.inside(*p))
+                .collect(),
+            rings: noted.iter().map(|(_, place)| *place).collect(),
+            boxes: Vec::new(),
+        };
+        for (note, place) in noted {
+            let size = (text_px(&note.text, NOTE_PX), NOTE_PX);
+            let set = self.candidates(place, size).into_iter().min_by_key(|b| obstacles.cost(b, place));
+            ring(out, place);
+            if let Some(set) = set {
+                leader(out, place, &set);
+                let style = " font-size=\"12\" font-weight=\"bold\" paint-order=\"stroke\" stroke=\"#FFFFFF\" \
+                             stroke-width=\"3\" stroke-linejoin=\"round\"";
+                text(out, (set.left, set.bottom - 2.0), "start", style, &note.text);
+                obstacles.boxes.push(set);
+            }
+        }
+    }
+
+    /// Places for a note of this size around a point, inside the frame, the nearest first.
+    fn candidates(&self, (x, y): (f64, f64), (width, height): (f64, f64)) -> Vec<Rect> {
+        let inside = |b: &Rect| {
+            b.left >= self.left + 4.0
+                && b.right <= self.right - 4.0
+                && b.top >= self.top + 4.0
+                && b.bottom <= self.bottom - 4.0
+        };
+        [16.0, 34.0, 56.0, 80.0, 110.0]
+            .into_iter()
+            .flat_map(|r| (0..16).map(move |i| (r, f64::from(i) * std::f64::consts::PI / 8.0)))
+            .map(|(r, angle)| {
+                let (sin, cos) = angle.sin_cos();
+                let middle = (x + cos * (r + width / 2.0), y - sin * (r + height / 2.0));
+                Rect::around(middle, width, height)
+            })
+            .filter(inside)
+            .collect()
+    }
+}
+
+/// What a note should not cover.
+struct Obstacles {
+    points: Vec<(f64, f64)>,
+    rings: Vec<(f64, f64)>,
+    boxes: Vec<Rect>,
+}
+
+impl Obstacles {
+    /// How bad a place is: other notes and rings first, then points, then the way to its own ring.
+    fn cost(&self, place: &Rect, own: (f64, f64)) -> u64 {
+        let boxes = self.boxes.iter().filter(|b| b.touches(place)).count() as u64;
+        let rings =
+            self.rings.iter().filter(|r| place.touches(&Rect::around(**r, 16.0, 16.0))).count() as u64;
+        let points =
+            self.points.iter().filter(|p| place.touches(&Rect::around(**p, 3.0, 3.0))).count() as u64;
+        let (x, y) = place.nearest(own);
+        let way = (x - own.0).hypot(y - own.1);
+        (boxes + rings) * 1_000_000 + points * 200 + (way * 10.0) as u64
+    }
+}
+
+/// A rectangle \[px\].
+#[derive(Debug, Clone, Copy)]
+struct Rect {
+    left: f64,
+    right: f64,
+    top: f64,
+    bottom: f64,
+}
+
+impl Rect {
+    fn around((x, y): (f64, f64), width: f64, height: f64) -> Self {
+        Self {
+            left: x - width / 2.0,
+            right: x + width / 2.0,
+            top: y - height / 2.0,
+            bottom: y + height / 2.0,
+        }
+    }
+
+    fn touches(&self, other: &Self) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
+    }
+
+    /// The point of the rectangle nearest to another.
+    fn nearest(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
+    }
+}
+
+fn ring(out: &mut String, (x, y): (f64, f64)) {
+    for (colour, width) in [("#FFFFFF", 4.5), (INK, 2.0)] {
+        let _ = writeln!(
+            out,
+            "<circle cx=\"{}\" cy=\"{}\" r=\"{RING_PX}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"/>",
+            px(x),
+            px(y)
+        );
+    }
+}
+
+/// A thin line from a ring to its note, where they do not touch.
+fn leader(out: &mut String, (x, y): (f64, f64), note: &Rect) {
+    let (end_x, end_y) = note.nearest((x, y));
+    let way = (end_x - x).hypot(end_y - y);
+    if way > RING_PX + 6.0 {
+        let start = RING_PX / way;
+        line(out, (x + start * (end_x - x), y + start * (end_y - y)), (end_x, end_y), INK, 1.0);
+    }
+}
