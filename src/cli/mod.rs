@@ -49,6 +49,8 @@ enum Verb {
     Analyze(analyze::AnalyzeArgs),
     /// Take a design out of a result as an arm file
     Design(design::DesignArgs),
+    /// Put fronts side by side: materials of one study, or several studies
+    Compare(compare::CompareArgs),
     /// Check the catalogs, or list what is in them
     Catalog(catalog::CatalogArgs),
 }
@@ -162,6 +164,7 @@ pub fn run(cli: Cli) -> Result<String, Failure> {
         Verb::Studies => Ok(crate::study::list()),
         Verb::Run(args) => run::run(&args, &catalogs?, overlay),
         Verb::Size(args) => size::run(&args, &catalogs?),
+        Verb::Compare(args) => compare::run(&args),
         Verb::Analyze(args) => analyze::run(&args, &catalogs?),
         Verb::Design(args) => design::run(&args, &catalogs?),
     }

@@ -3,7 +3,11 @@
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
 use crate::fault::Document;
-use crate::search::design::id_of;
+use crate::report::front_svg::{FrontPicture, PlottedFront, mixed_designs};
+use crate::report::picks;
+use crate::report::summary::{
+    MaterialFront, SummaryFacts, SummaryInput, constraint_words, summary_md, terminal_summary,
+};
 use crate::search::{ArmProblem, OutwardIn, Status};
 use crate::study::{Study, StudyOutcome, front_table, named, read_study, run_study, slug, why_infeasible};
 use clap::Args;
@@ -78,7 +82,17 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
         ))),
         Status::Infeasible => Err(Failure::Infeasible(why_infeasible(&study, catalogs, &outcome))),
         Status::Complete => {
-            let written = files(&study, &text, &problem, &outcome, elapsed_s, overlay, catalogs);
+            let finished = Finished {
+                study: &study,
+                text: &text,
+                problem: &problem,
+                outcome: &outcome,
+                elapsed_s,
+                overlay,
+                catalogs,
+                dir: &dir,
+            };
+            let written = finished.files();
             write_all(&dir, &written.files)?;
             Ok(format!("{}\nwritten to {}: {}\n", written.terminal, dir.display(), names(&written.files)))
         }
@@ -101,7 +115,7 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
         "catalogs_hash": catalogs_hash(catalogs),
     });
     let mut files = output.files;
-    files.push(("run.json".into(), serde_json::to_vec_pretty(&run).expect("a value serializes")));
+    files.push(("run.json".into(), pretty(&run)));
     write_all(&dir, &files)?;
     Ok(format!("{}\nwritten to {}: {}\n", output.terminal, dir.display(), names(&files)))
 }
@@ -136,72 +150,123 @@ struct Written {
     terminal: String,
 }
 
-fn files(
-    study: &Study,
-    text: &str,
-    problem: &ArmProblem,
-    outcome: &StudyOutcome,
+/// A finished search and what it was made with.
+struct Finished<'a> {
+    study: &'a Study,
+    text: &'a str,
+    problem: &'a ArmProblem<'a>,
+    outcome: &'a StudyOutcome,
     elapsed_s: f64,
-    overlay: Option<&Path>,
-    catalogs: &Catalogs,
-) -> Written {
-    let materials = study.space.material_names();
-    let overall = front_table(problem, &outcome.front);
-    let mut files = vec![("front.csv".to_string(), overall.to_csv())];
-    let mut listed = Vec::new();
-    for (name, front) in materials.iter().zip(&outcome.by_material) {
-        files.push((format!("front.{}.csv", slug(name)), front_table(problem, front).to_csv()));
-        listed.push(json!({"name": name, "slug": slug(name), "front_size": front.len()}));
-    }
-    let run = run_json(study, text, outcome, elapsed_s, overlay, catalogs, listed);
-    files.push(("run.json".into(), serde_json::to_vec_pretty(&run).expect("a value serializes")));
-    files.push(("study.json".into(), text.as_bytes().to_vec()));
-    let sweep = &outcome.sweep;
-    let terminal = format!(
-        "{}: {} designs, {} evaluated, {} excluded, front of {} in {elapsed_s:.1} s ({:.0} designs/s)",
-        study.name,
-        sweep.designs_total,
-        sweep.designs_evaluated,
-        sweep.designs_excluded,
-        outcome.front.len(),
-        sweep.designs_evaluated as f64 / elapsed_s
-    );
-    let first = outcome.front.first().map_or(String::new(), |d| id_of(d.design.number));
-    Written { files, terminal: format!("{terminal}\nlightest: armwright design RESULTS {first}") }
+    overlay: Option<&'a Path>,
+    catalogs: &'a Catalogs,
+    dir: &'a Path,
 }
 
-fn run_json(
-    study: &Study,
-    text: &str,
-    outcome: &StudyOutcome,
-    elapsed_s: f64,
-    overlay: Option<&Path>,
-    catalogs: &Catalogs,
-    materials: Vec<Value>,
-) -> Value {
-    let sweep = &outcome.sweep;
-    json!({
-        "schema_version": 1,
-        "study": study.name,
-        "question": study.question,
-        "status": sweep.status.word(),
-        "designs_total": count(sweep.designs_total),
-        "designs_evaluated": sweep.designs_evaluated,
-        "designs_excluded": count(sweep.designs_excluded),
-        "front_size": outcome.front.len(),
-        "elapsed_s": elapsed_s,
-        "designs_per_s": sweep.designs_evaluated as f64 / elapsed_s,
-        "threads": rayon::current_num_threads(),
-        "tool_version": env!("CARGO_PKG_VERSION"),
-        "platform": format!("{}-{}", std::env::consts::OS, std::env::consts::ARCH),
-        "models": {"links": study.space.links.word(), "joints": study.space.joints.word()},
-        "cases": study.space.cases.iter().map(|c| c.name.clone()).collect::<Vec<_>>(),
-        "materials": materials,
-        "not_checked": study.not_checked,
-        "catalogs": overlay.map(|p| p.display().to_string()),
-        "study_hash": blake3::hash(text.as_bytes()).to_hex().to_string(),
-        "catalogs_hash": catalogs_hash(catalogs),
-    })
+impl Finished<'_> {
+    fn files(&self) -> Written {
+        let summary = self.summary();
+        let mut files = vec![("front.csv".to_string(), summary.overall.to_csv())];
+        for material in &summary.materials {
+            files.push((format!("front.{}.csv", slug(&material.name)), material.front.to_csv()));
+        }
+        files.push(("front.svg".into(), picture(&summary).into_bytes()));
+        files.push(("summary.md".into(), summary_md(&summary).into_bytes()));
+        files.push(("run.json".into(), pretty(&self.run_json(&summary))));
+        files.push(("study.json".into(), self.text.as_bytes().to_vec()));
+        Written { files, terminal: terminal_summary(&summary) }
+    }
+
+    fn summary(&self) -> SummaryInput {
+        let (study, sweep) = (self.study, &self.outcome.sweep);
+        let cost = |name: &str| self.catalogs.materials.iter().find(|m| m.name == name)?.cost_eur_per_kg;
+        let materials = study.space.material_names();
+        SummaryInput {
+            facts: SummaryFacts {
+                study: study.name.clone(),
+                question: study.question.clone(),
+                status: sweep.status.word().into(),
+                designs_total: sweep.designs_total,
+                designs_evaluated: sweep.designs_evaluated.into(),
+                designs_excluded: sweep.designs_excluded,
+                elapsed_s: self.elapsed_s,
+                threads: rayon::current_num_threads(),
+                tool_version: env!("CARGO_PKG_VERSION").into(),
+                constraints: constraint_words(&study.space.constraints),
+                cases: self.judged_cases(),
+                not_checked: study.not_checked.clone(),
+                results: self.dir.display().to_string(),
+            },
+            overall: front_table(self.problem, &self.outcome.front),
+            materials: materials
+                .into_iter()
+                .zip(&self.outcome.by_material)
+                .map(|(name, front)| MaterialFront {
+                    cost_eur_per_kg: cost(&name),
+                    name,
+                    front: front_table(self.problem, front),
+                })
+                .collect(),
+        }
+    }
+
+    fn judged_cases(&self) -> Vec<String> {
+        let space = &self.study.space;
+        space.judged_cases.iter().map(|&i| space.cases[i].name.clone()).collect()
+    }
+
+    fn run_json(&self, summary: &SummaryInput) -> Value {
+        let (study, sweep) = (self.study, &self.outcome.sweep);
+        let materials: Vec<Value> = summary
+            .materials
+            .iter()
+            .map(|m| {
+                json!({
+                    "name": m.name, "slug": slug(&m.name), "front_size": m.front.rows.len(),
+                    "cost_eur_per_kg": m.cost_eur_per_kg,
+                })
+            })
+            .collect();
+        json!({
+            "schema_version": 1,
+            "study": study.name,
+            "question": study.question,
+            "status": sweep.status.word(),
+            "designs_total": count(sweep.designs_total),
+            "designs_evaluated": sweep.designs_evaluated,
+            "designs_excluded": count(sweep.designs_excluded),
+            "front_size": self.outcome.front.len(),
+            "elapsed_s": self.elapsed_s,
+            "designs_per_s": sweep.designs_evaluated as f64 / self.elapsed_s,
+            "threads": rayon::current_num_threads(),
+            "tool_version": env!("CARGO_PKG_VERSION"),
+            "platform": format!("{}-{}", std::env::consts::OS, std::env::consts::ARCH),
+            "models": {"links": study.space.links.word(), "joints": study.space.joints.word()},
+            "constraints": summary.facts.constraints,
+            "cases": summary.facts.cases,
+            "materials": materials,
+            "not_checked": study.not_checked,
+            "catalogs": self.overlay.map(|p| p.display().to_string()),
+            "study_hash": blake3::hash(self.text.as_bytes()).to_hex().to_string(),
+            "catalogs_hash": catalogs_hash(self.catalogs),
+        })
+    }
+}
+
+/// The picture of the front: designs of mixed materials in grey, each material's own front in colour.
+fn picture(summary: &SummaryInput) -> String {
+    let mixed = mixed_designs(&summary.overall);
+    let mut fronts = vec![PlottedFront { name: "mixed".into(), front: &mixed, muted: true }];
+    fronts.extend(summary.materials.iter().map(|m| PlottedFront {
+        name: m.name.clone(),
+        front: &m.front,
+        muted: false,
+    }));
+    let picks = picks::picks(&picks::designs(&summary.overall));
+    FrontPicture { title: summary.facts.study.clone(), fronts, picks }.to_svg()
+}
+
+fn pretty(value: &Value) -> Vec<u8> {
+    serde_json::to_vec_pretty(value).expect("a value of numbers and strings serializes")
 }
 
 /// A count as a JSON number; above 2^53 it is rounded.

@@ -1,0 +1,90 @@
+//! What is asked of a joint in one pose: Eqs 7 and 8.
+
+use nalgebra::{Matrix3, Unit, Vector3};
+
+use super::arm::{Body, Chosen, turned};
+use super::study::{Piece, Pose, Posed, Study};
+
+/// Torques on a joint in one pose.
+#[derive(Clone, Copy, Debug)]
+pub struct Torques {
+    pub static_nm: f64,
+    pub linear_nm: f64,
+}
+
+/// All that a drive has to hold.
+#[derive(Clone, Copy, Debug)]
+pub struct Demand {
+    pub speed_rad_s: f64,
+    pub acceleration_rad_s2: f64,
+    /// The largest static torque of all sizing poses, and the largest linear torque of all.
+    pub worst: Torques,
+}
+
+impl Demand {
+    /// The same motion against other torques.
+    pub fn with_torques_times(&self, factor: f64) -> Self {
+        let Torques { static_nm, linear_nm } = self.worst;
+        Self { worst: Torques { static_nm: factor * static_nm, linear_nm: factor * linear_nm }, ..*self }
+    }
+
+    /// A slower motion, with the same time for the ramp.
+    pub fn with_speed_times(&self, factor: f64) -> Self {
+        Self {
+            speed_rad_s: factor * self.speed_rad_s,
+            acceleration_rad_s2: factor * self.acceleration_rad_s2,
+            worst: Torques { linear_nm: factor * self.worst.linear_nm, ..self.worst },
+        }
+    }
+}
+
+/// The demand on the joint at `index`; `outboard` are the pieces beyond it, nearest first.
+pub fn demand(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: &[Chosen]) -> Demand {
+    let Piece::Joint { axis, max_speed_rad_s, .. } = &study.pieces[index] else { panic!("not a joint") };
+    // The axis turns with the joints before it; turning about itself leaves it.
+    let axis_in = |posed: &Posed| Unit::new_normalize(posed.places[index].frame * axis);
+    let reach_m = sizing.iter().map(|(_, posed)| {
+        let to_tip = posed.tip_m - posed.places[index].start_m;
+        to_tip.cross(&axis_in(posed)).norm()
+    });
+    let lever_m = reach_m.fold(study.motion.min_lever_m, f64::max);
+    let speed_rad_s = max_speed_rad_s.unwrap_or(study.motion.tip_speed_m_s / lever_m);
+    let acceleration_rad_s2 = speed_rad_s / study.motion.ramp_time_s;
+    let torques = |(pose, posed): &(&Pose, Posed)| {
+        let bodies = bodies(pose, posed, index, outboard);
+        let (axis, at_m) = (axis_in(posed), posed.places[index].start_m);
+        let force_nm = axis.dot(&(posed.tip_m - at_m).cross(&pose.case.tip_force_n));
+        let gravity_nm = |body: &Body| {
+            let weight_n = Vector3::new(0.0, 0.0, -body.mass_kg * study.gravity_m_s2);
+            axis.dot(&(body.centre_m - at_m).cross(&weight_n))
+        };
+        let static_nm = force_nm + bodies.iter().map(gravity_nm).sum::<f64>();
+        let inertia_kgm2: f64 = bodies.iter().map(|body| about_axis_kgm2(body, &axis, &at_m)).sum();
+        Torques { static_nm: static_nm.abs(), linear_nm: inertia_kgm2 * acceleration_rad_s2 }
+    };
+    let larger = |a: Torques, b: Torques| Torques {
+        static_nm: a.static_nm.max(b.static_nm),
+        linear_nm: a.linear_nm.max(b.linear_nm),
+    };
+    let worst = sizing.iter().map(torques).reduce(larger).expect("a study sizes in some pose");
+    Demand { speed_rad_s, acceleration_rad_s2, worst }
+}
+
+/// Everything beyond the piece at `index`, the payload too.
+pub fn bodies(pose: &Pose, posed: &Posed, index: usize, outboard: &[Chosen]) -> Vec<Body> {
+    let pieces = outboard.iter().zip(&posed.places[index + 1..]);
+    let mut bodies: Vec<Body> = pieces.map(|(piece, place)| piece.body(place)).collect();
+    let frame = &posed.places[posed.places.len() - 1].frame;
+    let payload = &pose.case.payload;
+    bodies.push(Body {
+        mass_kg: payload.mass_kg,
+        centre_m: posed.tip_m + frame * payload.cg_m,
+        inertia_kgm2: turned(frame, &Matrix3::from_diagonal(&payload.inertia_about_cg_kgm2)),
+    });
+    bodies
+}
+
+fn about_axis_kgm2(body: &Body, axis: &Vector3<f64>, at_m: &Vector3<f64>) -> f64 {
+    let off_axis_m = (body.centre_m - at_m).cross(axis).norm();
+    axis.dot(&(body.inertia_kgm2 * axis)) + body.mass_kg * off_axis_m * off_axis_m
+}
