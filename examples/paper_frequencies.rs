@@ -20,5 +20,8 @@ fn main() {
     println!("{:<8} {:8.2} {f1:10.1} {f2:10.1} {f3:10.1}", "printed", 1.39);
     let stiff = arm.with_stiffness_factors([4.0, 1.0, 1.0]).solve(LinkModel::Rigid);
     let before = arm.solve(LinkModel::Rigid).in_plane_hz[0];
-    println!("joint 2 four times as stiff: lowest mode {:+.1} %", 100.0 * (stiff.in_plane_hz[0] / before - 1.0));
+    println!(
+        "joint 2 four times as stiff: lowest mode {:+.1} %",
+        100.0 * (stiff.in_plane_hz[0] / before - 1.0)
+    );
 }
