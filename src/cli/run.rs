@@ -8,8 +8,10 @@ use crate::report::picks;
 use crate::report::summary::{
     MaterialFront, SummaryFacts, SummaryInput, constraint_words, summary_md, terminal_summary,
 };
-use crate::search::{ArmProblem, OutwardIn, Status};
-use crate::study::{Study, StudyOutcome, front_table, named, read_study, run_study, slug, why_infeasible};
+use crate::search::{ArmProblem, Status};
+use crate::study::{
+    Study, StudyOutcome, empty_pieces, front_table, named, read_study, run_study, slug, why_infeasible,
+};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
@@ -64,10 +66,10 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
     }
     let (study, text) = load_study(&args.study, catalogs)?;
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(slug(&study.name)));
-    // a folder that cannot be written fails now, not after the search
-    write_all(&dir, &[])?;
     let problem = ArmProblem::new(&study.space, catalogs);
     refuse_empty(&study, &problem)?;
+    // a folder that cannot be written fails now, not after the search
+    write_all(&dir, &[])?;
     let stop = Arc::new(AtomicBool::new(false));
     let on_signal = Arc::clone(&stop);
     // a second handler cannot be set; the first one serves
@@ -80,7 +82,11 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
             "stopped after {} of {} designs; nothing was written, run again to start over",
             outcome.sweep.designs_evaluated, outcome.sweep.designs_total
         ))),
-        Status::Infeasible => Err(Failure::Infeasible(why_infeasible(&study, catalogs, &outcome))),
+        Status::Infeasible => {
+            // succeeds only on an empty folder: earlier results stay
+            let _ = std::fs::remove_dir(&dir);
+            Err(Failure::Infeasible(why_infeasible(&study, catalogs, &outcome)))
+        }
         Status::Complete => {
             let finished = Finished {
                 study: &study,
@@ -134,15 +140,14 @@ fn names(files: &[(String, Vec<u8>)]) -> String {
 }
 
 fn refuse_empty(study: &Study, problem: &ArmProblem) -> Result<(), Failure> {
-    if problem.level_sizes().contains(&0) {
-        return Err(Failure::EmptySpace(format!(
-            "the study \"{}\" has nothing to choose from at one of its levels ({:?} options, tip first): widen its \
-             sections, materials or drives",
+    match empty_pieces(problem).as_slice() {
+        [] => Ok(()),
+        pieces => Err(Failure::EmptySpace(format!(
+            "the study \"{}\" has nothing to choose from\n  {}",
             study.name,
-            problem.level_sizes()
-        )));
+            pieces.join("\n  ")
+        ))),
     }
-    Ok(())
 }
 
 struct Written {

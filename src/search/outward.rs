@@ -153,6 +153,17 @@ impl<'c> ArmProblem<'c> {
         known.then_some(partial.cost_eur)
     }
 
+    /// Largest wall slenderness of a complete arm's chosen links.
+    pub fn wall_slenderness(&self, complete: &Partial) -> f64 {
+        let chosen = self.space.pieces.iter().zip(self.options(complete));
+        chosen
+            .filter_map(|(piece, option)| match piece {
+                SpacePiece::Choice(choice) => Some(choice.options[option as usize].wall_slenderness()),
+                _ => None,
+            })
+            .fold(0.0, f64::max)
+    }
+
     /// Mass of an arm so far \[kg\].
     pub fn mass_kg(&self, partial: &Partial) -> f64 {
         partial.mass_kg
@@ -294,12 +305,11 @@ impl<'c> ArmProblem<'c> {
             let StationSlot::Link { options, place } = &station.slots[slot] else { continue };
             let outboard = state.wrench;
             state.add_link(&options[option as usize]);
-            if let Some(stress) = figures.stress.as_ref().filter(|_| self.space.sizing_cases.contains(&case))
-            {
-                for (wrench, at_m) in [(&outboard, &place.end_m), (&state.wrench, &place.root_m)] {
-                    let ratio = stress.ratio(wrench, at_m, place) * self.peak_factor;
-                    to.stress_ratio = to.stress_ratio.max(ratio);
-                }
+            let Some(stress) = &figures.stress else { continue };
+            // where joints are sized the arm also accelerates; elsewhere it only stands
+            let factor = if self.space.sizing_cases.contains(&case) { self.peak_factor } else { 1.0 };
+            for (wrench, at_m) in [(&outboard, &place.end_m), (&state.wrench, &place.root_m)] {
+                to.stress_ratio = to.stress_ratio.max(stress.ratio(wrench, at_m, place) * factor);
             }
         }
         self.space.constraints.stress_safety_factor_min.is_none_or(|least| to.stress_ratio * least <= 1.0)

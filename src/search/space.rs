@@ -101,7 +101,7 @@ pub struct LinkChoice {
 /// One material and section.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinkOption {
-    /// Index into the study's list of materials.
+    /// Number of the material in the study: the same on every link.
     pub material_index: usize,
     /// Name of the material.
     pub material_name: String,

@@ -2,80 +2,253 @@
 
 use super::{Study, StudyOutcome};
 use crate::catalog::Catalogs;
-use crate::search::OutwardIn;
-use crate::search::outward::{ArmProblem, Partial};
+use crate::search::constraint::Constraints;
+use crate::search::outward::{ArmProblem, Partial, SizedJoint};
 use crate::search::space::SpacePiece;
-use std::fmt::Write;
+use crate::search::{Objectives, OutwardIn, Sweep};
+use crate::sizing::rpm_from_rad_s;
+use std::sync::atomic::AtomicBool;
 
-/// The reason in words: the constraint that is missed most nearly, or the joint that no drive holds.
+/// The reason in words: each limit that alone stands in the way with the value that would do, or the
+/// joint that no drive holds.
 pub fn why_infeasible(study: &Study, catalogs: &Catalogs, outcome: &StudyOutcome) -> String {
-    let total = outcome.sweep.designs_total;
-    let mut text = format!("no design of {total} meets the study \"{}\"", study.name);
-    let constraints = &study.space.constraints;
-    let mut found = false;
-    let limits = [
-        ("tip deflection", "mm", constraints.tip_deflection_max_m.map(|m| m * 1e3), "tip_deflection_max_mm"),
-        ("mass", "kg", constraints.mass_max_kg, "mass_max_kg"),
+    let head = format!("no design of {} meets the study \"{}\"", outcome.sweep.designs_total, study.name);
+    let mut reasons: Vec<String> = limits(&study.space.constraints)
+        .into_iter()
+        .filter_map(|l| l.relaxed(study, catalogs, outcome))
+        .collect();
+    if reasons.is_empty() {
+        reasons.push(first_obstacle(&ArmProblem::new(&study.space, catalogs)));
+    }
+    format!("{head}\n  {}", reasons.join("\n  "))
+}
+
+/// What a limit is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Quantity {
+    Deflection,
+    Mode,
+    Mass,
+    Stress,
+    Slenderness,
+    Cost,
+}
+
+/// One limit of a study, in the unit of its key.
+struct Limit {
+    quantity: Quantity,
+    name: &'static str,
+    key: &'static str,
+    unit: &'static str,
+    asked: f64,
+    /// Number in the key per number in the unit: the servo key is a bandwidth, not a mode.
+    key_per_unit: f64,
+}
+
+fn limits(constraints: &Constraints) -> Vec<Limit> {
+    use Quantity::{Cost, Deflection, Mass, Mode, Slenderness, Stress};
+    let servo_binds =
+        constraints.servo.filter(|_| constraints.lowest_mode_min_hz != Some(constraints.required_mode_hz()));
+    let (mode_key, key_per_unit) =
+        servo_binds.map_or(("lowest_mode_min_hz", 1.0), |servo| ("servo_bandwidth_hz", 1.0 / servo.ratio));
+    let mode = (constraints.required_mode_hz() > 0.0).then(|| constraints.required_mode_hz());
+    let rows = [
         (
-            "lowest mode",
-            "Hz",
-            Some(constraints.required_mode_hz()),
-            "lowest_mode_min_hz or servo_bandwidth_hz",
+            Deflection,
+            "tip deflection",
+            "tip_deflection_max_mm",
+            "mm",
+            constraints.tip_deflection_max_m.map(|m| m * 1e3),
+            1.0,
         ),
+        (Mode, "lowest mode", mode_key, "Hz", mode, key_per_unit),
+        (Mass, "mass", "mass_max_kg", "kg", constraints.mass_max_kg, 1.0),
+        (
+            Stress,
+            "strength over stress",
+            "stress_safety_factor_min",
+            "",
+            constraints.stress_safety_factor_min,
+            1.0,
+        ),
+        (Slenderness, "wall slenderness", "wall_slenderness_max", "", constraints.wall_slenderness_max, 1.0),
+        (Cost, "material cost", "material_cost_max_eur", "EUR", constraints.material_cost_max_eur, 1.0),
     ];
-    for ((name, unit, limit, key), best) in limits.into_iter().zip(outcome.sweep.near_misses) {
-        let (Some(limit), Some(best)) = (limit, best) else { continue };
-        let reached = if unit == "mm" { best * 1e3 } else { best.abs() };
-        found = true;
-        let _ = write!(
-            text,
-            "\n  {name}: {limit:.4} {unit} asked, {reached:.4} {unit} reached by designs that meet all else \
-             (short by {:.2} %); relaxing \"{key}\" to {reached:.4} is enough",
-            100.0 * (reached / limit - 1.0).abs()
-        );
+    rows.into_iter()
+        .filter_map(|(quantity, name, key, unit, asked, key_per_unit)| {
+            Some(Limit { quantity, name, key, unit, asked: asked?, key_per_unit })
+        })
+        .collect()
+}
+
+impl Limit {
+    /// Whether the limit is a least value.
+    fn is_least(&self) -> bool {
+        matches!(self.quantity, Quantity::Mode | Quantity::Stress)
     }
-    if !found {
-        let problem = ArmProblem::new(&study.space, catalogs);
-        let _ = write!(text, "\n  {}", first_obstacle(&problem));
+
+    /// What designs reach that meet all other limits, in words; `None` if relaxing this limit alone does
+    /// not help.
+    fn relaxed(&self, study: &Study, catalogs: &Catalogs, outcome: &StudyOutcome) -> Option<String> {
+        let reached = match self.quantity {
+            Quantity::Deflection => outcome.sweep.near_misses[0]? * 1e3,
+            Quantity::Mode => -outcome.sweep.near_misses[2]?,
+            quantity => best_without(study, catalogs, quantity)?,
+        };
+        let enough = toward(reached * self.key_per_unit, !self.is_least());
+        Some(format!(
+            "{}: {} {unit} asked, {} {unit} reached by designs that meet all else (short by {} {unit}); relaxing \
+             \"{}\" to {enough} is enough",
+            self.name,
+            short(self.asked),
+            short(reached),
+            short((reached - self.asked).abs()),
+            self.key,
+            unit = self.unit,
+        )
+        .replace("  ", " ")
+        .replace(" )", ")"))
     }
-    text
+}
+
+/// Four significant digits.
+fn short(x: f64) -> String {
+    crate::report::number::significant(x, 4)
+}
+
+/// Five significant digits, rounded up or down: a value that is enough stays enough.
+fn toward(x: f64, up: bool) -> f64 {
+    let scale = 10f64.powi(4 - x.abs().max(f64::MIN_POSITIVE).log10().floor() as i32);
+    let scaled = x * scale;
+    (if up { (scaled * (1.0 + 1e-12)).ceil() } else { (scaled * (1.0 - 1e-12)).floor() }) / scale
+}
+
+/// The best a quantity can be among the designs that meet every other limit.
+fn best_without(study: &Study, catalogs: &Catalogs, quantity: Quantity) -> Option<f64> {
+    let mut space = study.space.clone();
+    let limits = &mut space.constraints;
+    match quantity {
+        Quantity::Mass => limits.mass_max_kg = None,
+        Quantity::Stress => limits.stress_safety_factor_min = None,
+        Quantity::Slenderness => limits.wall_slenderness_max = None,
+        _ => limits.material_cost_max_eur = None,
+    }
+    let problem = ArmProblem::new(&space, catalogs);
+    let relaxed = Relaxed { problem: &problem, quantity };
+    let never = AtomicBool::new(false);
+    let outcome = Sweep::new(&relaxed, Constraints::default(), &never).run();
+    let best = outcome.front.iter().map(|c| c.objectives.mass_kg).reduce(f64::min)?;
+    Some(if quantity == Quantity::Stress { 1.0 / best } else { best })
+}
+
+/// A problem whose only objective is a limited quantity, to be made small.
+struct Relaxed<'p, 'c> {
+    problem: &'p ArmProblem<'c>,
+    quantity: Quantity,
+}
+
+impl Relaxed<'_, '_> {
+    fn value(&self, complete: &Partial) -> Option<f64> {
+        match self.quantity {
+            Quantity::Mass => Some(self.problem.mass_kg(complete)),
+            Quantity::Stress => self.problem.stress_safety_factor(complete).map(|factor| 1.0 / factor),
+            Quantity::Cost => self.problem.material_cost_eur(complete),
+            _ => Some(self.problem.wall_slenderness(complete)),
+        }
+    }
+}
+
+impl OutwardIn for Relaxed<'_, '_> {
+    type Partial = Partial;
+
+    fn level_sizes(&self) -> &[u32] {
+        self.problem.level_sizes()
+    }
+
+    fn root(&self) -> Option<Partial> {
+        self.problem.root()
+    }
+
+    fn extend(&self, level: usize, option: u32, from: &Partial, to: &mut Partial) -> bool {
+        self.problem.extend(level, option, from, to)
+    }
+
+    fn objectives(&self, complete: &Partial) -> Option<Objectives> {
+        let limits = &self.problem.space().constraints;
+        if limits.tip_deflection_max_m.is_some() || limits.required_mode_hz() > 0.0 {
+            let o = self.problem.objectives(complete)?;
+            if limits.tip_deflection_max_m.is_some_and(|max| o.tip_deflection_m > max)
+                || o.lowest_mode_hz < limits.required_mode_hz()
+            {
+                return None;
+            }
+        }
+        // the quantity in every objective: the front is its least value
+        let value = self.value(complete)?;
+        Some(Objectives { tip_deflection_m: value, mass_kg: value, lowest_mode_hz: 1.0 / value })
+    }
+
+    fn groups(&self) -> usize {
+        0
+    }
+
+    fn group(&self, _: &Partial) -> Option<usize> {
+        None
+    }
 }
 
 /// Follows the lightest option at every level until the arm cannot go on.
 fn first_obstacle(problem: &ArmProblem) -> String {
-    let lightest = lightest_options(problem);
+    const TOGETHER: &str = "no limit alone stands in the way: at least two must be relaxed together";
     let mut last: Option<Partial> = None;
-    let Err(slot) = problem.walk(&lightest, |_, partial| last = Some(partial.clone())) else {
-        return "several limits work against each other: each design that meets one breaks at least two others; \
-                relax the tightest of them"
-            .into();
+    let Err(slot) = problem.walk(&lightest_options(problem), |_, partial| last = Some(partial.clone()))
+    else {
+        return TOGETHER.into();
     };
-    let piece = problem.piece_of_slot(slot);
-    let partial = last.unwrap_or_default();
-    match (&problem.space().pieces[piece], problem.sized_joint(piece)) {
-        (SpacePiece::Joint(joint), Some(sized)) if sized.table.is_empty() => format!(
-            "joint {}: no drive of the catalogs is fast enough at {:.2} rad/s with all figures known; slow the joint \
-             (tip_speed_m_s, min_lever_m, max_speed_rad_s) or widen \"drives\"",
-            joint.name,
-            sized.table.motion().speed_rad_s
-        ),
-        (SpacePiece::Joint(joint), Some(sized)) => {
-            let demand = problem.demand_at(&partial, slot);
-            match sized.table.smallest_shortfall(&demand) {
-                Some(shortfall) => format!("even with the lightest links, {shortfall}"),
-                None => format!(
-                    "joint {}: with the lightest links a drive holds, but the arm exceeds mass_max_kg = {} kg there",
-                    joint.name,
-                    problem.space().constraints.mass_max_kg.unwrap_or_default()
-                ),
-            }
+    let Some(sized) = problem.sized_joint(problem.piece_of_slot(slot)) else { return TOGETHER.into() };
+    if sized.table.is_empty() {
+        return too_fast(sized);
+    }
+    let demand = problem.demand_at(&last.unwrap_or_default(), slot);
+    match sized.table.smallest_shortfall(&demand) {
+        Some(shortfall) => format!("even with the lightest links, {shortfall}"),
+        None => TOGETHER.into(),
+    }
+}
+
+/// A joint that no drive turns fast enough, or whose drives all lack a figure.
+fn too_fast(sized: &SizedJoint) -> String {
+    let table = &sized.table;
+    let needed_rpm = rpm_from_rad_s(table.motion().speed_rad_s);
+    let fastest = table
+        .gears()
+        .iter()
+        .flat_map(|gear| table.motors().iter().map(move |motor| (gear, motor)))
+        .filter_map(|(gear, motor)| {
+            let input_rpm = gear.max_input_speed_rpm?.min(motor.max_speed_rpm.or(motor.rated_speed_rpm)?);
+            Some((input_rpm / f64::from(gear.ratio), gear, motor))
+        })
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    match fastest {
+        Some((rpm, gear, motor)) if rpm < needed_rpm => {
+            let rad_s = |rpm: f64| table.motion().speed_rad_s * rpm / needed_rpm;
+            format!(
+                "joint {}: {} rad/s needed, {} rad/s allowed by the fastest drive, {} + {} (short by {} rad/s); slow \
+                 the joint (tip_speed_m_s, min_lever_m, max_speed_rad_s) or widen \"drives\"",
+                table.joint(),
+                short(rad_s(needed_rpm)),
+                short(rad_s(rpm)),
+                gear.id,
+                motor.id,
+                short(rad_s(needed_rpm - rpm)),
+            )
         }
-        (SpacePiece::Choice(choice), _) => format!(
-            "link {}: its lightest section breaks a limit on stress, wall slenderness, material cost or mass; offer \
-             larger sections or relax that limit",
-            choice.name
+        _ => format!(
+            "joint {}: every drive that \"drives\" offers is too fast for its average input speed or lacks a figure \
+             that a check needs; `armwright size STUDY --explain {}` lists them",
+            table.joint(),
+            table.joint()
         ),
-        _ => "the arm exceeds mass_max_kg before its base is reached".into(),
     }
 }
 
@@ -83,24 +256,63 @@ fn first_obstacle(problem: &ArmProblem) -> String {
 fn lightest_options(problem: &ArmProblem) -> Vec<u32> {
     let space = problem.space();
     let slenderest = space.constraints.wall_slenderness_max.unwrap_or(f64::INFINITY);
-    let mut out: Vec<u32> = space
+    let lightest = |options: &[crate::search::space::LinkOption]| {
+        let holding = options.iter().enumerate().filter(|(_, o)| o.wall_slenderness() <= slenderest);
+        holding
+            .min_by(|(_, a), (_, b)| a.mass_kg_per_m().total_cmp(&b.mass_kg_per_m()))
+            .map_or(0, |(k, _)| k as u32)
+    };
+    space
         .pieces
         .iter()
         .enumerate()
         .rev()
         .filter_map(|(i, piece)| match piece {
-            SpacePiece::Choice(choice) => choice
-                .options
-                .iter()
-                .enumerate()
-                .filter(|(_, o)| o.wall_slenderness() <= slenderest)
-                .min_by(|(_, a), (_, b)| a.mass_kg_per_m().total_cmp(&b.mass_kg_per_m()))
-                .map(|(k, _)| k as u32)
-                .or(Some(0)),
+            SpacePiece::Choice(choice) => Some(lightest(&choice.options)),
             SpacePiece::Joint(_) => problem.sized_joint(i).filter(|s| s.is_level()).map(|_| 0),
             SpacePiece::Link(_) => None,
         })
-        .collect();
-    out.resize(problem.level_sizes().len(), 0);
-    out
+        .collect()
+}
+
+/// The pieces with nothing to choose from, in words; empty if every piece has something.
+pub fn empty_pieces(problem: &ArmProblem) -> Vec<String> {
+    let space = problem.space();
+    space
+        .pieces
+        .iter()
+        .enumerate()
+        .filter_map(|(i, piece)| match piece {
+            SpacePiece::Choice(choice) if choice.options.is_empty() => Some(format!(
+                "link {}: no section has a wall under half its outer size, or no profile is sold in these materials; \
+                 change its \"sections\" or \"materials\"",
+                choice.name
+            )),
+            SpacePiece::Joint(joint) => {
+                let table = &problem.sized_joint(i)?.table;
+                (table.gears().is_empty() || table.motors().is_empty()).then(|| {
+                    format!(
+                        "joint {}: \"drives\" leaves {} gears and {} motors of the catalogs; widen it",
+                        joint.name,
+                        table.gears().len(),
+                        table.motors().len()
+                    )
+                })
+            }
+            _ => None,
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_that_is_enough_is_rounded_to_stay_enough() {
+        assert_eq!(toward(2.917_24, true), 2.9173);
+        assert_eq!(toward(2.917_24, false), 2.9172);
+        assert!(toward(12.0, true) >= 12.0 && toward(12.0, false) <= 12.0);
+        assert!(toward(1e-7 / 3.0, true) >= 1e-7 / 3.0);
+    }
 }

@@ -7,7 +7,7 @@ mod read;
 mod sections;
 mod table;
 
-pub use diagnose::why_infeasible;
+pub use diagnose::{empty_pieces, why_infeasible};
 pub use outcome::{Front, Judged, StudyOutcome, run_study};
 pub use read::{Study, read_study};
 pub(crate) use table::sizing_rows;

@@ -54,7 +54,12 @@ pub fn read_study(document: Document, catalogs: &Catalogs) -> Result<Study, Faul
 fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let root = node.object(&KEYS)?;
     let text = |key| root.or(key, String::new(), |n| n.string().map(String::from));
-    let name = root.required("name").and_then(|n| n.string().map(String::from));
+    let name = root.required("name").and_then(|n| match n.string()? {
+        name if name.chars().any(|c| c.is_ascii_alphanumeric()) => Some(name.to_string()),
+        name => {
+            n.fault(format!("\"{name}\" is no name"), "give letters or digits: results are written under it")
+        }
+    });
     let (question, _notes) = (text("question"), text("notes"));
     let gravity = root.or("gravity_m_s2", 9.81, Node::positive);
     let filter = root.or("drives", Drives::default(), |n| read_drives(n, catalogs));
@@ -64,8 +69,8 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         let open = Open { catalogs, drives: filter.as_ref()?, constraints: constraints.as_ref()? };
         read_chain(&n, &open, &mut not_checked)
     });
-    let joints: Option<Vec<String>> = chain.as_ref().map(|pieces| joint_names(pieces));
-    let cases = read_cases(&root, joints.as_deref());
+    let joints = joint_names(node);
+    let cases = read_cases(&root, &joints);
     let motion = root.or("motion", MotionRequirement::default(), read_motion);
     let (links, joint_model) = root.or("models", Default::default(), read_models)?;
     let Cases { cases, judged, sizing } = cases?;
@@ -86,14 +91,26 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     Some(Study { name: name?, question: question?, space, not_checked })
 }
 
-fn joint_names(pieces: &[SpacePiece]) -> Vec<String> {
-    pieces
-        .iter()
-        .filter_map(|p| match p {
-            SpacePiece::Joint(joint) => Some(joint.name.clone()),
-            _ => None,
-        })
-        .collect()
+/// Names of the joints as written, so that poses are checked even when the chain is faulty.
+fn joint_names(study: &Node) -> Vec<String> {
+    let chain = study.value().get("chain").and_then(|c| c.as_array());
+    let joints = chain.into_iter().flatten().filter(|e| e.get("type").is_some_and(|t| t == "joint"));
+    joints.map(|j| j.get("name").and_then(|n| n.as_str()).unwrap_or("(unnamed)").to_string()).collect()
+}
+
+/// Numbers the materials of all links through the study, in the order in which they first appear.
+fn number_materials(pieces: &mut [SpacePiece]) {
+    let mut names: Vec<String> = Vec::new();
+    let options = pieces.iter_mut().filter_map(|p| match p {
+        SpacePiece::Choice(choice) => Some(&mut choice.options),
+        _ => None,
+    });
+    for option in options.flatten() {
+        option.material_index = names.iter().position(|n| *n == option.material_name).unwrap_or_else(|| {
+            names.push(option.material_name.clone());
+            names.len() - 1
+        });
+    }
 }
 
 /// What an open piece is chosen from.
@@ -211,7 +228,8 @@ fn read_chain(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> Option
             _ => n.fault("has no \"type\" of \"joint\" or \"link\"", "add \"type\": \"joint\" or \"link\""),
         })
         .collect();
-    let pieces = read.into_iter().collect::<Option<Vec<_>>>()?;
+    let mut pieces = read.into_iter().collect::<Option<Vec<_>>>()?;
+    number_materials(&mut pieces);
     unique_names(node, &pieces)?;
     Some(pieces)
 }
@@ -292,12 +310,6 @@ fn read_space_link(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> O
     let sections = choices.required("sections").and_then(|n| read_sections(&n, open.catalogs));
     let options =
         super::sections::options(&materials?, &sections?, open.constraints, name.as_deref()?, not_checked);
-    if options.is_empty() {
-        return choose.fault(
-            "leaves no option",
-            "no section has a wall under half its outer size, or no profile is sold in these materials",
-        );
-    }
     Some(SpacePiece::Choice(LinkChoice { name: name?, vector_m: vector_m?, options }))
 }
 
@@ -316,15 +328,17 @@ struct ReadCase {
     sizing: bool,
 }
 
-fn read_cases(root: &Object, joints: Option<&[String]>) -> Option<Cases> {
+fn read_cases(root: &Object, joints: &[String]) -> Option<Cases> {
     let payload = root.or("payload", Payload::default(), Payload::read);
     let force = root.or("tip_force_n", Vector3::zeros(), vector);
     let environments = root.or("environments", vec![Environment::default()], read_environments);
     let poses = root.required("poses").and_then(|n| n.array());
-    let joints: Vec<&str> = joints?.iter().map(String::as_str).collect();
-    let (payload, force, environments) = (payload?, force?, environments?);
-    let poses: Vec<_> = poses?.iter().map(|n| read_case(n, &joints, &payload, &force)).collect();
+    let joints: Vec<&str> = joints.iter().map(String::as_str).collect();
+    // faulty defaults must not hide faults of the poses
+    let (usual, push) = (payload.unwrap_or_default(), force.unwrap_or_default());
+    let poses: Vec<_> = poses?.iter().map(|n| read_case(n, &joints, &usual, &push)).collect();
     let poses = poses.into_iter().collect::<Option<Vec<_>>>()?;
+    let (environments, _, _) = (environments?, payload?, force?);
     if poses.is_empty() {
         return root.required("poses")?.fault("is empty", "give at least the pose the arm is judged in");
     }

@@ -200,7 +200,7 @@ pub(super) fn options(
     not_checked: &mut Vec<String>,
 ) -> Vec<LinkOption> {
     let mut out = Vec::new();
-    for (material_index, material) in materials.iter().enumerate() {
+    for material in materials {
         let Some(shear_modulus_pa) = material.shear_modulus_pa else { continue };
         if let Some(missing) = missing_figure(material, constraints) {
             not_checked.push(format!("link {link}: {} has no {missing} in the catalog", material.name));
@@ -217,7 +217,7 @@ pub(super) fn options(
                 continue;
             }
             out.push(LinkOption {
-                material_index,
+                material_index: 0,
                 material_name: material.name.clone(),
                 material: figures,
                 section: *section,

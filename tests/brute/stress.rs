@@ -1,6 +1,7 @@
 //! The stress in the links at peak load.
 //!
-//! Peak load is gravity, payload and tip force times 1 + a / g, in the sizing poses: the paper's reading of Eq 8. At
+//! Peak load is gravity, payload and tip force times 1 + a / g in the sizing poses, the paper's reading of Eq 8, and
+//! times 1 in the others. At
 //! either end of a link, bending in both planes and the axial force add up at the worst corner (round: on the rim);
 //! with Bredt's shear stress of torsion they make von Mises' stress. Transverse shear is left out.
 
@@ -10,18 +11,19 @@ use super::arm::{Chosen, Link, Tube, section_axes};
 use super::demand::bodies;
 use super::study::{Pose, Posed, Study};
 
-/// Strength over the largest stress of all links in all sizing poses; none if no strength is known.
+/// Strength over the largest stress of all links in all poses; none if no strength is known.
 pub fn stress_safety_factor(study: &Study, poses: &[(&Pose, Posed)], chain: &[Chosen]) -> Option<f64> {
     let peak = 1.0 + study.motion.tip_speed_m_s / study.motion.ramp_time_s / study.gravity_m_s2;
     let mut least: Option<f64> = None;
     for (index, piece) in chain.iter().enumerate() {
         let Chosen::Link(Link { option: Some(option), vector_m, .. }) = piece else { continue };
-        for pose in poses.iter().filter(|(pose, _)| pose.sizes) {
+        for pose in poses {
+            let load = if pose.0.sizes { peak } else { 1.0 };
             for is_root in [true, false] {
                 let (force_n, moment_nm) = wrench(study, pose, index, chain, is_root);
                 let axes = pose.1.places[index].frame * section_axes(vector_m);
                 let (force_n, moment_nm) = (axes.transpose() * force_n, axes.transpose() * moment_nm);
-                let stress_pa = peak * von_mises_pa(&option.tube, &force_n, &moment_nm);
+                let stress_pa = load * von_mises_pa(&option.tube, &force_n, &moment_nm);
                 let factor = option.strength_pa? / stress_pa;
                 least = Some(least.map_or(factor, |other| other.min(factor)));
             }
