@@ -15,6 +15,8 @@
 //! Equation numbers are those of the paper the product grew from, *Mechanical analysis of high
 //! precision manipulator*. All quantities are SI and carry their unit in their name; conversion
 //! happens only where a file is read or written.
+#![doc = ""]
+#![doc = include_str!("../docs/model.md")]
 
 pub mod arm;
 pub mod catalog;

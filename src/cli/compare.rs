@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// mass, lightest for a given lowest mode, and what the material costs.
 ///
 /// One result folder: its materials against each other. Several: their overall fronts, and what moved
-/// if they are runs of one study. Front files (front.csv, front.<material>.csv) may be given too.
+/// if they are runs of one study. Front files (`front.csv`, `front.<material>.csv`) may be given too.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples: armwright compare results/compare-materials\n          \
                         armwright compare results/compare-materials --deflection-mm 1,2,5 --mass-kg 40,60 \
@@ -22,14 +22,14 @@ pub struct CompareArgs {
     /// Result folders of `armwright run`, or front files
     #[arg(required = true, value_name = "RESULTS")]
     pub results: Vec<PathBuf>,
-    /// Tip deflections to compare masses at [mm], separated by commas; without any limit, round numbers
+    /// Tip deflections to compare masses at (mm), separated by commas; without any limit, round numbers
     /// are chosen where the fronts overlap, and with one, only what is asked for is compared
     #[arg(long, value_name = "MM", value_parser = limits)]
     pub deflection_mm: Option<Limits>,
-    /// Masses to compare deflections and modes at [kg]
+    /// Masses to compare deflections and modes at (kg)
     #[arg(long, value_name = "KG", value_parser = limits)]
     pub mass_kg: Option<Limits>,
-    /// Lowest modes to compare masses at [Hz]
+    /// Lowest modes to compare masses at (Hz)
     #[arg(long, value_name = "HZ", value_parser = limits)]
     pub mode_hz: Option<Limits>,
     /// Folder for compare.md, compare.csv and compare.svg

@@ -1,4 +1,4 @@
-//! The command line: one file a verb. A verb returns the text it prints; [`print`] is the one place
+//! The command line: one file a verb. A verb returns the text it prints; [`print()`] is the one place
 //! that writes to standard output.
 
 mod analyze;

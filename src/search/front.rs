@@ -6,7 +6,7 @@ use std::collections::HashMap;
 /// Decimal digits that count when two objectives are compared: what lies below is rounding.
 const DIGITS: i32 = 12;
 
-/// A number rounded to [`DIGITS`] significant decimal digits.
+/// A number rounded to `DIGITS` significant decimal digits.
 pub fn rounded(x: f64) -> f64 {
     if x == 0.0 || !x.is_finite() {
         return x;
