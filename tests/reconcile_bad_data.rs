@@ -145,3 +145,30 @@ fn swapped_units_are_named_as_a_unit_and_not_as_physics() {
     let named = outcome.effects.iter().any(|f| f.effect == "wrong_unit" && f.at == "static");
     assert!(named || outcome.verdict == Verdict::Unexplained, "{}", outcome.to_text());
 }
+
+#[test]
+fn a_mode_that_was_missed_is_noticed() {
+    // the second mode of one list is not there; those above it were numbered down
+    let folder = edited("modal.csv", |_, text| {
+        let mut cells: Vec<&str> = text.split(',').collect();
+        match (cells[0], cells[11]) {
+            ("3", "2") => None,
+            ("3", "3") => {
+                cells[11] = "2";
+                Some(cells.join(","))
+            }
+            ("3", "4") => {
+                cells[11] = "3";
+                Some(cells.join(","))
+            }
+            _ => Some(text.to_string()),
+        }
+    });
+    let outcome = outcome(folder.path());
+    assert!(
+        outcome.reasons.iter().any(|r| r.contains("appears to be missing from list 3")),
+        "{:?}",
+        outcome.reasons
+    );
+    assert_eq!(outcome.effects[0].label(), "lost_motion@j3");
+}

@@ -27,7 +27,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     let mut forward = Forward::new(campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
     let candidates = candidates(&forward);
-    let found = settle(&forward, &nuisance, &candidates);
+    let found = settle(&mut forward, &nuisance, &candidates);
     let weights = found.noise.weights(&forward);
     let coefficients = {
         let search =
@@ -49,6 +49,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         search: &search,
         selection: &found.selection,
         noise: &found.noise,
+        missed: &found.missed,
         weights: &weights,
         best,
         bare,
@@ -63,35 +64,43 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
 struct Settled {
     selection: Selection,
     noise: Noise,
+    /// Modes missing from lists, in words.
+    missed: Vec<String>,
 }
 
-/// Searches with the deviations as declared, takes out gross errors, searches again, and lets the best
-/// model say whether the declaration was right; if it was not, searches with what it says.
-fn settle(forward: &Forward, nuisance: &Nuisance, candidates: &[Candidate]) -> Settled {
-    let run = |noise: &Noise| {
+/// Searches with the deviations as declared, takes out gross errors and counts missed modes, searches
+/// again, and lets the best model say whether the declaration was right; if it was not, searches with
+/// what it says.
+fn settle(forward: &mut Forward, nuisance: &Nuisance, candidates: &[Candidate]) -> Settled {
+    let run = |forward: &Forward, noise: &Noise, before: Option<&Scored>| {
         let weights = noise.weights(forward);
         let search = Search { forward, nuisance, candidates, weights: &weights };
-        let selection = search.run();
+        let selection = search.run(before);
         let best = search.fit(&selection.best.effects, &selection.best.u, Effort::default());
-        (selection, Noise::from_fit(forward, &best))
+        let judged = Noise::from_fit(forward, &best);
+        (selection, judged, best.point.coefficients)
     };
     let mut noise = Noise::default();
-    let (mut selection, mut judged) = run(&noise);
+    let (mut selection, mut judged, coefficients) = run(forward, &noise, None);
+    let missed = forward.find_missed_modes(&coefficients);
+    if !missed.is_empty() {
+        (selection, judged, _) = run(forward, &noise, None);
+    }
     for _ in 0..2 {
         if judged.outliers == noise.outliers {
             break;
         }
         noise = Noise { scale: [1.0; 3], outliers: judged.outliers.clone() };
-        (selection, judged) = run(&noise);
+        (selection, judged, _) = run(forward, &noise, Some(&selection.best));
     }
     for _ in 0..2 {
         if judged.agrees(&noise) {
             break;
         }
         noise = judged;
-        (selection, judged) = run(&noise);
+        (selection, judged, _) = run(forward, &noise, Some(&selection.best));
     }
-    Settled { selection, noise }
+    Settled { selection, noise, missed }
 }
 
 struct Analysis<'a> {
@@ -100,6 +109,7 @@ struct Analysis<'a> {
     search: &'a Search<'a>,
     selection: &'a Selection,
     noise: &'a Noise,
+    missed: &'a [String],
     weights: &'a Weights,
     best: Fit<'a>,
     bare: Fit<'a>,
@@ -111,7 +121,8 @@ struct Analysis<'a> {
 impl Analysis<'_> {
     fn conclude(self) -> Outcome {
         let kept_out = self.kept_out();
-        let (verdict, reasons) = self.verdict(&kept_out);
+        let (verdict, mut reasons) = self.verdict(&kept_out);
+        reasons.extend(self.missed.iter().cloned());
         let findings = match verdict {
             Verdict::Explained | Verdict::InsufficientData => self.findings(),
             Verdict::NoGap | Verdict::Unexplained => Vec::new(),

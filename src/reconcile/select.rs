@@ -103,7 +103,7 @@ impl<'a> Search<'a> {
             for &p in &breaks {
                 let moves = [-1.0, -0.5, 0.5, 1.0].map(|m| best.point.u[p] + m * reach);
                 let tried: Vec<Fit<'a>> =
-                    moves.into_par_iter().map(|value| self.from_held(&best, p, value)).collect();
+                    moves.into_par_iter().map(|value| self.held_then_free(&best, p, value)).collect();
                 for fit in tried {
                     if fit.point.objective < best.point.objective - 1e-6 {
                         best = fit;
@@ -142,7 +142,7 @@ impl<'a> Search<'a> {
     }
 
     /// Fits with a parameter held at a value, then lets it go.
-    fn from_held(&self, from: &Fit<'a>, parameter: usize, value: f64) -> Fit<'a> {
+    fn held_then_free(&self, from: &Fit<'a>, parameter: usize, value: f64) -> Fit<'a> {
         let effort = Effort { steps: 5, tolerance: 0.02 };
         let mut model = from.model.clone();
         model.held = vec![(parameter, value)];
@@ -168,14 +168,22 @@ impl<'a> Search<'a> {
         labels.len()
     }
 
-    /// Looks for the effects.
-    pub fn run(&self) -> Selection {
+    /// Looks for the effects; from two effects on a model found before is a better start than nothing.
+    pub fn run(&self, before: Option<&Scored>) -> Selection {
         let bare_model = self.model(&[]);
         let bare_fit =
             fit(self.forward, &bare_model, &vec![0.0; bare_model.len()], self.weights, Effort::default());
         let bare = self.scored(&[], &bare_fit);
         let mut seen: Vec<Scored> = Vec::new();
         let mut best = bare.clone();
+        if let Some(known) = before.filter(|b| b.effects.len() > 1) {
+            let effort = Effort { steps: 12, tolerance: 0.02 };
+            let again = fit(self.forward, &self.model(&known.effects), &known.u, self.weights, effort);
+            best = self.repair(self.scored(&known.effects, &again), &mut seen);
+            if best.score < bare.score + WORTH {
+                best = bare.clone();
+            }
+        }
         while best.effects.len() < MOST_EFFECTS {
             let tried = self.extend(&best);
             seen.extend(tried.iter().cloned());

@@ -23,7 +23,7 @@ pub const KIND: Kind = Kind {
         Place::Channel(Channel::Windup),
         Place::Channel(Channel::Positions),
     ],
-    parameters: parameters,
+    parameters,
     apply,
 };
 

@@ -5,9 +5,9 @@ use crate::arm::{Curve, Windup};
 
 /// A joint's single number is its gear's middle slope K2, so K2 is expected near it, K1 below, K3 above.
 const PARAMETERS: &[Parameter] = &[
-    Parameter::number("k1_nm_per_rad", 1.0, 1e10, 1e5, Scale::Stiffness).expected(0.95, 4.0),
-    Parameter::number("k2_nm_per_rad", 1.0, 1e10, 1.5e5, Scale::Stiffness).expected(0.8, 1.25),
-    Parameter::number("k3_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.25, 1.05),
+    Parameter::number("k1_nm_per_rad", 1.0, 1e10, 1e5, Scale::Stiffness).expected(1.02, 4.0),
+    Parameter::number("k2_nm_per_rad", 1.0, 1e10, 1.5e5, Scale::Stiffness).expected(0.9, 1.1),
+    Parameter::number("k3_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.25, 0.98),
     Parameter::number("t1_nm", 0.01, 1e5, 50.0, Scale::Log).expected(0.5, 5e3),
     Parameter::number("t2_nm", 0.01, 1e5, 150.0, Scale::Log).expected(0.5, 5e3),
 ];

@@ -95,6 +95,17 @@ impl Forward {
         }
     }
 
+    /// Counts lists of frequencies from which a mode is missing one higher; says which.
+    pub fn find_missed_modes(&mut self, coefficients: &Coefficients) -> Vec<String> {
+        let mut out = Vec::new();
+        for (i, test) in self.modal.iter_mut().enumerate() {
+            if let Some(mode) = test.find_missed_mode(&self.layout, coefficients, &self.data) {
+                out.push(format!("mode {mode} appears to be missing from list {} of the frequencies", i + 1));
+            }
+        }
+        out
+    }
+
     /// Takes the trial shapes of all modal tests from these coefficients.
     pub fn refresh(&mut self, coefficients: &Coefficients) {
         let layout = &self.layout;

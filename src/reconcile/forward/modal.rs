@@ -20,6 +20,9 @@ use std::f64::consts::TAU;
 /// Trial shapes beyond the modes that are compared.
 const SPARE_SHAPES: usize = 12;
 
+/// Most that one frequency can cost when lists are compared \[squared standard deviations\].
+const MISS: f64 = 400.0;
+
 /// One pose and payload whose modes were listed.
 pub struct ModalTest {
     geometry: PoseGeometry,
@@ -217,6 +220,37 @@ impl ModalTest {
             .collect()
     }
 
+    /// Whether one mode is missing from the measured list: if counting those above it one higher fits
+    /// far better, they are counted so. Returns the number of the missed mode, from 1.
+    pub fn find_missed_mode(
+        &mut self,
+        layout: &Layout,
+        coefficients: &Coefficients,
+        data: &[Datum],
+    ) -> Option<usize> {
+        let spectrum: Vec<f64> = self
+            .solve(layout, coefficients, self.mode_count() + 1)
+            .iter()
+            .map(|s| 1.0 / (TAU * s.mu.sqrt()))
+            .collect();
+        let cost = |missed: usize| -> f64 {
+            let miss = |&(datum, mode): &(usize, usize)| {
+                let counted = if mode >= missed { mode + 1 } else { mode };
+                let d: &Datum = &data[datum];
+                spectrum.get(counted).map_or(MISS, |f| ((f - d.value) / d.sigma).powi(2).min(MISS))
+            };
+            self.modes.iter().map(miss).sum()
+        };
+        let none = cost(usize::MAX);
+        let (best, missed) =
+            (0..self.mode_count()).map(|m| (cost(m), m)).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        if none < best + MISS || best > 0.2 * none {
+            return None;
+        }
+        self.modes.iter_mut().filter(|(_, mode)| *mode >= missed).for_each(|(_, mode)| *mode += 1);
+        Some(missed + 1)
+    }
+
     /// Frequencies of the compared modes \[Hz\].
     pub fn predict(&self, layout: &Layout, coefficients: &Coefficients, out: &mut [f64]) {
         let solved = self.solve(layout, coefficients, self.mode_count());
@@ -262,10 +296,8 @@ impl ModalTest {
             for (i, amount) in &masses {
                 d_mu += amount * self.factors[*i].tr_mul(&s.x).norm_squared();
             }
-            if let Some(((m0, j0), (m1, j1))) = &payloads {
-                if *m0 != 0.0 {
-                    d_mu += m1 * (j1 * &s.x).norm_squared() - m0 * (j0 * &s.x).norm_squared();
-                }
+            if let Some(((m0, j0), (m1, j1))) = payloads.as_ref().filter(|((m0, _), _)| *m0 != 0.0) {
+                d_mu += m1 * (j1 * &s.x).norm_squared() - m0 * (j0 * &s.x).norm_squared();
             }
             out[datum] = -0.5 * d_mu / s.mu / (TAU * s.mu.sqrt());
         }
