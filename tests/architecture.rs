@@ -93,6 +93,8 @@ fn no_room_knows_a_room_above_it_or_beside_it() {
             continue;
         };
         let text = fs::read_to_string(file).expect("a source file");
+        // a unit test may call a witness from any room
+        let text = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default().to_string();
         for other in rooms_named(&code(&text)).into_iter().filter(|other| *other != room) {
             if storey(&other).is_none_or(|there| there >= here) {
                 violations.push(format!("{}: {room} knows {other}", file.display()));
