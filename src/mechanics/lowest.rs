@@ -40,6 +40,13 @@ pub struct BlockLink<const N: usize> {
     pub end: SMatrix<f64, N, N>,
 }
 
+impl<const N: usize> BlockLink<N> {
+    /// Whether any motion of its end is elastic.
+    pub fn yields(&self) -> bool {
+        self.end.amax() > 0.0 || self.end_inertia.iter().any(|m| m.amax() > 0.0)
+    }
+}
+
 /// What one pass at `λ` finds.
 struct Pass {
     /// Whether every pivot before the last is positive.

@@ -18,7 +18,9 @@
 pub mod beam;
 pub mod chain;
 pub mod condensed;
+pub mod lanes;
 pub mod lowest;
+pub mod lowest_lanes;
 pub mod modes;
 pub mod response;
 pub mod statics;

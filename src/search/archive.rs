@@ -1,70 +1,92 @@
 //! Rejecting dominated designs in a few nanoseconds while millions of them stream by.
 //!
-//! A table over (log mass, log deflection) holds the best frequency found so far at or below each
-//! cell. A design is entered at the next corner up and looked up at the next corner down, its
-//! frequency rounded down on entry, so that the table never claims too much: it only rejects designs
-//! that another one beats. What it lets through is filtered exactly later, so the outcome does not
-//! depend on the order of entries.
+//! A table over mass and deflection, both on a scale that halves each octave into equal steps (the
+//! leading bits of the floating-point number: monotone, exact, and no logarithm), holds the best
+//! frequency found so far at or below each cell. A design is entered at the next corner up and looked up
+//! at the next corner down, its frequency rounded down on entry, so that the table never claims too
+//! much: it only rejects designs that another one beats. What it lets through is filtered exactly later,
+//! so the outcome does not depend on the order of entries.
 
 use super::Objectives;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Range of the table, outside of which nothing is rejected.
-const MASS_KG: (f64, f64) = (1e-2, 1e5);
-const DEFLECTION_M: (f64, f64) = (1e-7, 1e1);
+/// Range of the table in powers of two, outside of which nothing is rejected: 8 g to 131 t, 0.1 um to
+/// 16 m.
+const MASS_OCTAVES: (i32, i32) = (-7, 17);
+const DEFLECTION_OCTAVES: (i32, i32) = (-23, 4);
 /// A rejected design is slower than its rival by at least this part.
 const MARGIN: f64 = 1e-5;
 
 /// The table, shared by all threads.
 pub struct Archive {
-    cells: usize,
+    /// Leading bits of the fraction that tell cells apart.
+    bits: u32,
+    columns: usize,
     best_hz: Vec<AtomicU32>,
 }
 
 impl Archive {
-    /// A table of `cells` x `cells`.
-    pub fn new(cells: usize) -> Self {
-        Self { cells, best_hz: (0..cells * cells).map(|_| AtomicU32::new(0)).collect() }
+    /// A table of `2^bits` steps an octave.
+    pub fn new(bits: u32) -> Self {
+        let cells = |(low, high): (i32, i32)| ((high - low) as usize) << bits;
+        let columns = cells(DEFLECTION_OCTAVES);
+        let all = cells(MASS_OCTAVES) * columns;
+        Self { bits, columns, best_hz: (0..all).map(|_| AtomicU32::new(0)).collect() }
     }
 
     /// Whether some design entered before is surely better.
     #[inline]
     pub fn rejects(&self, o: &Objectives) -> bool {
-        let (Some(row), Some(column)) = (self.row(o).0, self.column(o).0) else { return false };
-        let best = f32::from_bits(self.best_hz[row * self.cells + column].load(Ordering::Relaxed));
+        let (row, column) = (
+            self.corner(o.mass_kg, MASS_OCTAVES, Corner::Below),
+            self.corner(o.tip_deflection_m, DEFLECTION_OCTAVES, Corner::Below),
+        );
+        let (Some(row), Some(column)) = (row, column) else { return false };
+        let best = f32::from_bits(self.best_hz[row * self.columns + column].load(Ordering::Relaxed));
         f64::from(best) > o.lowest_mode_hz * (1.0 + MARGIN)
     }
 
-    /// Enters a design.
+    /// Enters a design. Two threads that write one cell at once may lose the better of the two; the table
+    /// then rejects less than it could, never more.
     pub fn enter(&self, o: &Objectives) {
-        let (Some(row), Some(column)) = (self.row(o).1, self.column(o).1) else { return };
+        let (row, column) = (
+            self.corner(o.mass_kg, MASS_OCTAVES, Corner::Above),
+            self.corner(o.tip_deflection_m, DEFLECTION_OCTAVES, Corner::Above),
+        );
+        let (Some(row), Some(column)) = (row, column) else { return };
         let hz = round_down(o.lowest_mode_hz);
-        for r in row..self.cells {
-            for (c, cell) in self.best_hz[r * self.cells..(r + 1) * self.cells][column..].iter().enumerate() {
-                if cell.fetch_max(hz, Ordering::Relaxed) >= hz {
-                    if c == 0 {
-                        return;
-                    }
-                    break;
-                }
+        for cells in self.best_hz.chunks(self.columns).skip(row) {
+            let worse = |cell: &&AtomicU32| cell.load(Ordering::Relaxed) < hz;
+            let mut entered = false;
+            for cell in cells[column..].iter().take_while(worse) {
+                cell.store(hz, Ordering::Relaxed);
+                entered = true;
+            }
+            if !entered {
+                return;
             }
         }
     }
 
-    fn row(&self, o: &Objectives) -> (Option<usize>, Option<usize>) {
-        self.corners(o.mass_kg, MASS_KG)
+    /// The step at or below, or at or above, a positive number.
+    #[inline]
+    fn corner(&self, x: f64, (low, high): (i32, i32), side: Corner) -> Option<usize> {
+        let shift = f64::MANTISSA_DIGITS - 1 - self.bits;
+        let up = match side {
+            Corner::Below => 0,
+            Corner::Above => (1u64 << shift) - 1,
+        };
+        let step = |octave: i32| ((1023 + octave) as u64) << self.bits;
+        let place = (x.to_bits() + up) >> shift;
+        (x >= 0.0 && place >= step(low) && place < step(high)).then(|| (place - step(low)) as usize)
     }
+}
 
-    fn column(&self, o: &Objectives) -> (Option<usize>, Option<usize>) {
-        self.corners(o.tip_deflection_m, DEFLECTION_M)
-    }
-
-    /// The corners at or below and at or above a value.
-    fn corners(&self, x: f64, (low, high): (f64, f64)) -> (Option<usize>, Option<usize>) {
-        let place = (x / low).ln() / (high / low).ln() * self.cells as f64;
-        let inside = |p: f64| (p >= 0.0 && p < self.cells as f64).then_some(p as usize);
-        (inside((place - 1e-9).floor()), inside((place + 1e-9).ceil()))
-    }
+/// Which corner of a cell.
+#[derive(Clone, Copy)]
+enum Corner {
+    Below,
+    Above,
 }
 
 /// The bits of the largest `f32` not above a positive number; their order is that of the numbers.
@@ -84,7 +106,7 @@ mod tests {
 
     #[test]
     fn it_rejects_only_what_an_entry_beats() {
-        let archive = Archive::new(512);
+        let archive = Archive::new(6);
         archive.enter(&design(50.0, 1e-3, 15.0));
         assert!(archive.rejects(&design(60.0, 1.2e-3, 14.9)));
         assert!(!archive.rejects(&design(60.0, 1.2e-3, 15.1)));
@@ -94,7 +116,7 @@ mod tests {
 
     #[test]
     fn later_entries_only_add() {
-        let archive = Archive::new(64);
+        let archive = Archive::new(2);
         archive.enter(&design(50.0, 1e-3, 15.0));
         archive.enter(&design(20.0, 1e-4, 12.0));
         assert!(archive.rejects(&design(90.0, 1e-2, 14.0)));

@@ -9,9 +9,12 @@
 pub mod archive;
 pub mod constraint;
 pub mod design;
+mod figures;
 pub mod fixed;
 pub mod front;
 pub mod outward;
+mod row;
+mod row_lanes;
 pub mod space;
 pub mod station;
 pub mod sweep;
@@ -20,6 +23,8 @@ pub use design::{Evaluated, evaluate};
 pub use outward::ArmProblem;
 pub use space::DesignSpace;
 pub use sweep::{Status, Sweep, SweepOutcome};
+
+use std::ops::Range;
 
 /// What a design is judged by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,10 +44,21 @@ impl Objectives {
     }
 }
 
+/// A design finished.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Finished {
+    /// Its objectives.
+    pub objectives: Objectives,
+    /// The group it belongs to, if it belongs to one.
+    pub group: Option<usize>,
+}
+
 /// A tree of designs whose levels go from the tip of the arm inward.
 pub trait OutwardIn: Sync {
     /// A partial arm: everything outboard of the next level.
     type Partial: Clone + Send + Sync;
+    /// What a worker keeps from one row of innermost options to the next.
+    type Scratch: Send;
 
     /// Number of options at each level, tip first.
     fn level_sizes(&self) -> &[u32];
@@ -53,6 +69,28 @@ pub trait OutwardIn: Sync {
     /// Extends `from` by an option of a level and by all that follows without a choice, into `to`.
     /// `false` if no design with this beginning meets the constraints.
     fn extend(&self, level: usize, option: u32, from: &Self::Partial, to: &mut Self::Partial) -> bool;
+
+    /// Finishes `from`, which lacks only the innermost level, by each of a range of that level's options,
+    /// and shows the outcomes in order; `None` if the design does not hold.
+    fn finish(
+        &self,
+        from: &Self::Partial,
+        options: Range<u32>,
+        scratch: &mut Self::Scratch,
+        mut see: impl FnMut(u32, Option<Finished>),
+    ) {
+        let level = self.level_sizes().len().saturating_sub(1);
+        let mut complete = from.clone();
+        for option in options {
+            let holds = self.extend(level, option, from, &mut complete);
+            let objectives = if holds { self.objectives(&complete) } else { None };
+            see(option, objectives.map(|objectives| Finished { objectives, group: self.group(&complete) }));
+        }
+        let _ = scratch;
+    }
+
+    /// Room for a worker's rows.
+    fn scratch(&self) -> Self::Scratch;
 
     /// Objectives of a complete arm; `None` if it breaks a constraint.
     fn objectives(&self, complete: &Self::Partial) -> Option<Objectives>;

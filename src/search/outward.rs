@@ -1,17 +1,20 @@
 //! The arm behind the search's trait: built from the tip inward, each joint sized when everything
 //! outboard of it is known (Eqs 7-12), deflection and inertia carried along (Eqs 13-16).
 
+use super::figures::{OptionFigures, figures};
+use super::row::{Row, RowScratch};
+use super::row_lanes::RowWork;
 use super::space::{DesignSpace, DriveChoice, LinkChoice, LinkOption, SpaceJoint, SpacePiece};
-use super::station::{
-    Block, BlockSlot, Modal, Place, Station, StationJoint, StationLink, StationSlot, reaches_m,
-};
-use super::{Objectives, OutwardIn};
-use crate::arm::{Curve, Link, LinkBody, LinkPiece, Section, windup_of};
+use super::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot, reaches_m};
+use super::{Finished, Objectives, OutwardIn};
+use crate::arm::{Curve, Link, LinkBody, LinkPiece, windup_of};
 use crate::catalog::Catalogs;
+use crate::mechanics::Wrench;
+use crate::mechanics::lanes::{LANES, in_lanes};
 use crate::mechanics::lowest::{Step, frequency_hz, lowest_eigenvalue};
-use crate::mechanics::{Wrench, angular, linear};
 use crate::sizing::{DriveFilter, DriveTable, JointDemand, JointMotion};
-use nalgebra::{Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix6, Vector3};
+use std::ops::Range;
 
 /// The search's view of a design space: drives tabulated, poses compiled.
 pub struct ArmProblem<'c> {
@@ -22,10 +25,11 @@ pub struct ArmProblem<'c> {
     stations: Vec<Station>,
     materials: usize,
     peak_factor: f64,
+    row: Option<Row>,
 }
 
 /// One piece of the chain, tip first.
-enum Slot<'c> {
+pub(super) enum Slot<'c> {
     Given { curve: Curve, mass_kg: f64 },
     Sized(SizedJoint<'c>),
     Link { options: Vec<OptionFigures>, open: bool },
@@ -36,47 +40,28 @@ enum Slot<'c> {
 pub struct SizedJoint<'c> {
     /// Every legal drive, lightest first.
     pub table: DriveTable<'c>,
-    curves: Vec<Curve>,
-    all_fits: bool,
-}
-
-/// What the search needs of a link option besides its mechanics.
-struct OptionFigures {
-    mass_kg: f64,
-    material: Option<usize>,
-    cost_eur: Option<f64>,
-    stress: Option<StressCheck>,
-    slender: bool,
-}
-
-/// Von Mises stress at a link's ends from force and moment in its section frame.
-struct StressCheck {
-    per_axial_n: f64,
-    per_moment_y: f64,
-    per_moment_z: f64,
-    per_torsion: f64,
-    round: bool,
-    strength_pa: f64,
+    pub(super) curves: Vec<Curve>,
+    pub(super) all_fits: bool,
 }
 
 /// An arm from the tip to some level.
 #[derive(Debug, Clone, Default)]
 pub struct Partial {
     next_slot: usize,
-    mass_kg: f64,
-    cost_eur: f64,
-    group: Group,
+    pub(super) mass_kg: f64,
+    pub(super) cost_eur: f64,
+    pub(super) group: Group,
     /// Largest stress over strength at peak load, where strengths are known.
-    stress_ratio: f64,
+    pub(super) stress_ratio: f64,
     /// Option per slot.
-    options: Vec<u32>,
+    pub(super) options: Vec<u32>,
     /// Drive or point mass per slot \[kg\].
-    masses_kg: Vec<f64>,
+    pub(super) masses_kg: Vec<f64>,
     pub(super) stations: Vec<StationState>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-enum Group {
+pub(super) enum Group {
     #[default]
     None,
     One(usize),
@@ -86,13 +71,13 @@ enum Group {
 /// What everything outboard does in one case.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct StationState {
-    wrench: Wrench,
-    inertia: Matrix6<f64>,
-    tip_m: Vector3<f64>,
+    pub wrench: Wrench,
+    pub inertia: Matrix6<f64>,
+    pub tip_m: Vector3<f64>,
     /// Dunkerley's sum per block \[s²\].
-    trace_s2: [f64; 2],
+    pub trace_s2: [f64; 2],
     /// Tangent compliance per slot \[rad/(N m)\].
-    compliances: Vec<f64>,
+    pub compliances: Vec<f64>,
 }
 
 impl<'c> ArmProblem<'c> {
@@ -115,7 +100,7 @@ impl<'c> ArmProblem<'c> {
         let level_slots: Vec<usize> = (0..slots.len()).filter(|&i| slots[i].is_level()).collect();
         let level_sizes = level_slots.iter().map(|&i| slots[i].options()).collect();
         let a_over_g = space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE);
-        Self {
+        let mut problem = Self {
             space,
             level_slots,
             level_sizes,
@@ -123,7 +108,10 @@ impl<'c> ArmProblem<'c> {
             materials: space.material_names().len(),
             peak_factor: 1.0 + a_over_g,
             slots,
-        }
+            row: None,
+        };
+        problem.row = Row::new(&problem);
+        problem
     }
 
     /// The design space.
@@ -201,7 +189,43 @@ impl<'c> ArmProblem<'c> {
         self.slots.len() - 1 - slot
     }
 
-    fn empty(&self) -> Partial {
+    pub(super) fn slots(&self) -> &[Slot<'c>] {
+        &self.slots
+    }
+
+    pub(super) fn level_slots(&self) -> &[usize] {
+        &self.level_slots
+    }
+
+    pub(super) fn level_sizes_slice(&self) -> &[u32] {
+        &self.level_sizes
+    }
+
+    pub(super) fn stations(&self) -> &[Station] {
+        &self.stations
+    }
+
+    pub(super) fn peak_factor(&self) -> f64 {
+        self.peak_factor
+    }
+
+    /// The group of an arm that only lacks an option of the innermost level, with that option.
+    fn group_with(&self, from: &Partial, level_slot: usize, option: u32) -> Option<usize> {
+        let group = match &self.slots[level_slot] {
+            Slot::Link { options, .. } => from.group.with(options[option as usize].material),
+            _ => from.group,
+        };
+        group.material()
+    }
+
+    /// Finishes one design by itself.
+    fn finish_one(&self, from: &Partial, option: u32, spare: &mut Partial) -> Option<Finished> {
+        let level = self.level_sizes.len().saturating_sub(1);
+        let objectives = if self.extend(level, option, from, spare) { self.objectives(spare) } else { None }?;
+        Some(Finished { objectives, group: self.group(spare) })
+    }
+
+    pub(super) fn empty(&self) -> Partial {
         Partial {
             options: vec![0; self.slots.len()],
             masses_kg: vec![0.0; self.slots.len()],
@@ -351,23 +375,30 @@ fn block_eigenvalue<const N: usize>(
     state: &StationState,
     trace_s2: f64,
 ) -> f64 {
-    let mut steps = Vec::with_capacity(2 * block.slots.len() + 1);
-    steps.push(Step::Body(1.0, &block.payload));
-    for (slot, piece) in block.slots.iter().enumerate() {
-        match piece {
-            BlockSlot::Joint { twist, inertia_per_kg } => {
-                if state.compliances[slot] > 0.0 && twist.amax() > 0.0 {
-                    steps.push(Step::Joint(twist, state.compliances[slot]));
-                }
-                if complete.masses_kg[slot] > 0.0 {
-                    steps.push(Step::Body(complete.masses_kg[slot], inertia_per_kg));
-                }
-            }
-            BlockSlot::Body(inertia) => steps.push(Step::Body(1.0, inertia)),
-            BlockSlot::Links(options) => steps.push(Step::Link(&options[complete.options[slot] as usize])),
-        }
-    }
+    let steps: Vec<Step<N>> = block_steps(block, complete, state, block.slots.len()).collect();
     lowest_eigenvalue(&steps, trace_s2)
+}
+
+/// What the pass for the lowest mode sees of an arm's first `slots` slots, tip first.
+pub(super) fn block_steps<'a, const N: usize>(
+    block: &'a Block<N>,
+    arm: &'a Partial,
+    state: &'a StationState,
+    slots: usize,
+) -> impl Iterator<Item = Step<'a, N>> {
+    let steps = block.slots[..slots].iter().enumerate().flat_map(|(slot, piece)| match piece {
+        BlockSlot::Joint { twist, inertia_per_kg } => {
+            let yields = state.compliances[slot] > 0.0 && twist.amax() > 0.0;
+            let weighs = arm.masses_kg[slot] > 0.0;
+            [
+                yields.then_some(Step::Joint(twist, state.compliances[slot])),
+                weighs.then_some(Step::Body(arm.masses_kg[slot], inertia_per_kg)),
+            ]
+        }
+        BlockSlot::Body(inertia) => [Some(Step::Body(1.0, inertia)), None],
+        BlockSlot::Links(options) => [Some(Step::Link(&options[arm.options[slot] as usize])), None],
+    });
+    std::iter::once(Step::Body(1.0, &block.payload)).chain(steps.flatten())
 }
 
 impl StationState {
@@ -423,9 +454,50 @@ impl OutwardIn for ArmProblem<'_> {
     }
 
     fn group(&self, complete: &Partial) -> Option<usize> {
-        match complete.group {
-            Group::One(material) => Some(material),
-            _ => None,
+        complete.group.material()
+    }
+
+    type Scratch = RowScratch;
+
+    fn scratch(&self) -> RowScratch {
+        RowScratch::new(self)
+    }
+
+    fn finish(
+        &self,
+        from: &Partial,
+        options: Range<u32>,
+        scratch: &mut RowScratch,
+        mut see: impl FnMut(u32, Option<Finished>),
+    ) {
+        let Some(row) = &self.row else {
+            for option in options {
+                let finished = self.finish_one(from, option, &mut scratch.spare);
+                see(option, finished);
+            }
+            return;
+        };
+        scratch.start_row(self, row, from);
+        let mut option = options.start;
+        while option < options.end {
+            let chunk = option as usize / LANES;
+            let last = options.end.min((chunk as u32 + 1) * LANES as u32);
+            let lanes = option as usize % LANES..(last as usize - 1) % LANES + 1;
+            let valid = lanes.clone().fold(0, |bits, lane| bits | 1 << lane);
+            let done = in_lanes(RowWork { problem: self, row, from, scratch, chunk, valid });
+            for (lane, option) in lanes.zip(option..last) {
+                let bit = 1 << lane;
+                let finished = if done.held & bit == 0 {
+                    None
+                } else if done.unsure & bit != 0 {
+                    self.finish_one(from, option, &mut scratch.spare)
+                } else {
+                    let group = self.group_with(from, row.first, option);
+                    Some(Finished { objectives: done.objectives(lane), group })
+                };
+                see(option, finished);
+            }
+            option = last;
         }
     }
 }
@@ -438,6 +510,13 @@ impl SizedJoint<'_> {
 }
 
 impl Group {
+    fn material(self) -> Option<usize> {
+        match self {
+            Group::One(material) => Some(material),
+            _ => None,
+        }
+    }
+
     fn with(self, material: Option<usize>) -> Self {
         match (self, material) {
             (group, None) => group,
@@ -466,38 +545,6 @@ impl Slot<'_> {
             Slot::Sized(sized) => Some(sized.table.motion()),
             _ => None,
         }
-    }
-}
-
-impl StressCheck {
-    fn new(option: &LinkOption) -> Option<Self> {
-        let p = option.section.properties(option.material.poisson);
-        let (width, height) = option.section.outer_m();
-        let wall = option.section.wall_m();
-        let round = matches!(option.section, Section::RoundTube { .. });
-        let enclosed = match round {
-            true => std::f64::consts::PI / 4.0 * (width - wall).powi(2),
-            false => (width - wall) * (height - wall),
-        };
-        Some(Self {
-            per_axial_n: 1.0 / p.area_m2,
-            per_moment_y: height / 2.0 / p.second_moment_y_m4,
-            per_moment_z: width / 2.0 / p.second_moment_z_m4,
-            per_torsion: 1.0 / (2.0 * enclosed * wall),
-            round,
-            strength_pa: option.strength_pa?,
-        })
-    }
-
-    /// Von Mises stress of bending, axial force and torsion at an end, over the strength.
-    fn ratio(&self, wrench: &Vector6<f64>, at_m: &Vector3<f64>, place: &Place) -> f64 {
-        let force = place.frame.tr_mul(&linear(wrench));
-        let moment = place.frame.tr_mul(&(angular(wrench) - at_m.cross(&linear(wrench))));
-        let (y, z) = (moment.y.abs() * self.per_moment_y, moment.z.abs() * self.per_moment_z);
-        let bending = if self.round { y.hypot(z) } else { y + z };
-        let normal = force.x.abs() * self.per_axial_n + bending;
-        let shear = moment.x.abs() * self.per_torsion;
-        (normal * normal + 3.0 * shear * shear).sqrt() / self.strength_pa
     }
 }
 
@@ -552,17 +599,6 @@ fn link_slot<'c>(space: &DesignSpace, link: &Link) -> Slot<'c> {
 fn choice_slot<'c>(space: &DesignSpace, choice: &LinkChoice) -> Slot<'c> {
     let length_m = choice.vector_m.norm();
     Slot::Link { options: choice.options.iter().map(|o| figures(space, o, length_m)).collect(), open: true }
-}
-
-fn figures(space: &DesignSpace, option: &LinkOption, length_m: f64) -> OptionFigures {
-    let mass_kg = option.mass_kg_per_m() * length_m;
-    OptionFigures {
-        slender: space.constraints.wall_slenderness_max.is_some_and(|max| option.wall_slenderness() > max),
-        mass_kg,
-        material: Some(option.material_index),
-        cost_eur: option.cost_eur_per_kg.map(|cost| cost * mass_kg),
-        stress: StressCheck::new(option),
-    }
 }
 
 impl DesignSpace {

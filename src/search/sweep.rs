@@ -9,7 +9,7 @@ use super::archive::Archive;
 use super::constraint::Constraints;
 use super::design::number;
 use super::front::not_clearly_beaten;
-use super::{Objectives, OutwardIn};
+use super::{Finished, Objectives, OutwardIn};
 use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -87,8 +87,8 @@ struct Pool {
 }
 
 impl Pool {
-    fn new(cells: usize) -> Self {
-        Self { archive: Archive::new(cells), candidates: Mutex::new((Vec::new(), 0)) }
+    fn new(bits: u32) -> Self {
+        Self { archive: Archive::new(bits), candidates: Mutex::new((Vec::new(), 0)) }
     }
 
     fn offer(&self, candidate: Candidate, buffer: &mut Vec<Candidate>) {
@@ -187,8 +187,8 @@ impl<'p, P: OutwardIn> Sweep<'p, P> {
     /// Visits every design.
     pub fn run(&self) -> SweepOutcome {
         let sizes = self.problem.level_sizes();
-        let overall = Pool::new(2048);
-        let groups: Vec<Pool> = (0..self.problem.groups()).map(|_| Pool::new(1024)).collect();
+        let overall = Pool::new(6);
+        let groups: Vec<Pool> = (0..self.problem.groups()).map(|_| Pool::new(5)).collect();
         let tally = match self.problem.root() {
             None => Tally { excluded: self.total(), ..Tally::default() },
             Some(root) => self
@@ -237,6 +237,7 @@ impl<'p, P: OutwardIn> Sweep<'p, P> {
             groups,
             options: beginning.to_vec(),
             tally: Tally::default(),
+            scratch: None,
             buffer: Vec::new(),
             group_buffers: vec![Vec::new(); groups.len()],
         };
@@ -249,7 +250,8 @@ impl<'p, P: OutwardIn> Sweep<'p, P> {
             }
             partial = next;
         }
-        let mut stack = vec![partial; 1 + self.problem.level_sizes().len() - beginning.len()];
+        let levels_left = self.problem.level_sizes().len() - beginning.len();
+        let mut stack = vec![partial; levels_left.max(1)];
         worker.descend(beginning.len(), &mut stack);
         worker.finish()
     }
@@ -262,6 +264,7 @@ struct Worker<'s, 'p, P: OutwardIn> {
     groups: &'s [Pool],
     options: Vec<u32>,
     tally: Tally,
+    scratch: Option<P::Scratch>,
     buffer: Vec<Candidate>,
     group_buffers: Vec<Vec<Candidate>>,
 }
@@ -269,11 +272,11 @@ struct Worker<'s, 'p, P: OutwardIn> {
 impl<P: OutwardIn> Worker<'_, '_, P> {
     fn descend(&mut self, level: usize, stack: &mut [P::Partial]) {
         let sizes = self.sweep.problem.level_sizes();
-        let Some(&size) = sizes.get(level) else {
-            self.complete(&stack[0]);
+        if level + 1 >= sizes.len() {
+            self.finish_row(&stack[0]);
             return;
-        };
-        for option in 0..size {
+        }
+        for option in 0..sizes[level] {
             if self.sweep.stop.load(Ordering::Relaxed) {
                 return;
             }
@@ -286,21 +289,35 @@ impl<P: OutwardIn> Worker<'_, '_, P> {
             self.descend(level + 1, beyond);
             self.options.pop();
         }
-        if level + 1 == sizes.len() {
-            self.sweep.visited.fetch_add(u64::from(size), Ordering::Relaxed);
-        }
     }
 
-    fn complete(&mut self, arm: &P::Partial) {
+    /// Every option of the innermost level. A space without levels is one design.
+    fn finish_row(&mut self, from: &P::Partial) {
+        let problem = self.sweep.problem;
+        let Some(&size) = problem.level_sizes().last() else {
+            if let Some(objectives) = problem.objectives(from) {
+                self.complete(0, Finished { objectives, group: problem.group(from) });
+            }
+            return;
+        };
+        let first = number(problem.level_sizes(), &self.options) * u128::from(size);
+        let mut scratch = self.scratch.take().unwrap_or_else(|| problem.scratch());
+        problem.finish(from, 0..size, &mut scratch, |option, finished| match finished {
+            Some(finished) => self.complete(first + u128::from(option), finished),
+            None => self.tally.excluded += 1,
+        });
+        self.scratch = Some(scratch);
+        self.sweep.visited.fetch_add(u64::from(size), Ordering::Relaxed);
+    }
+
+    fn complete(&mut self, number: u128, Finished { objectives, group }: Finished) {
         self.tally.evaluated += 1;
-        let Some(objectives) = self.sweep.problem.objectives(arm) else { return };
         if !self.tally.meets(&self.sweep.constraints, &objectives) {
             return;
         }
-        let candidate =
-            Candidate { number: number(self.sweep.problem.level_sizes(), &self.options), objectives };
+        let candidate = Candidate { number, objectives };
         self.overall.offer(candidate, &mut self.buffer);
-        if let Some(group) = self.sweep.problem.group(arm) {
+        if let Some(group) = group {
             self.groups[group].offer(candidate, &mut self.group_buffers[group]);
         }
     }

@@ -160,6 +160,9 @@ impl Relaxed<'_, '_> {
 
 impl OutwardIn for Relaxed<'_, '_> {
     type Partial = Partial;
+    type Scratch = ();
+
+    fn scratch(&self) {}
 
     fn level_sizes(&self) -> &[u32] {
         self.problem.level_sizes()

@@ -1,0 +1,344 @@
+//! Eight designs side by side: the arithmetic that a processor does on eight numbers at once.
+//!
+//! One kernel is written once over [`Lanes`] and compiled for three instruction sets; [`in_lanes`]
+//! takes the widest that the machine has. Each lane does the same IEEE operations in the same order
+//! whatever the set (no contraction to fused multiply-add), so results are equal to the last bit on
+//! every machine.
+
+use std::ops::{Add, Div, Mul, Sub};
+
+/// Designs evaluated side by side.
+pub const LANES: usize = 8;
+/// One number for each of the designs.
+pub type Eight = [f64; LANES];
+
+/// Eight numbers in whatever registers the machine has.
+pub trait Lanes:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
+    /// The same number in every lane.
+    fn splat(x: f64) -> Self;
+    /// From memory.
+    fn load(from: &Eight) -> Self;
+    /// To memory.
+    fn store(self) -> Eight;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// The smaller; the second if either is NaN.
+    fn min(self, other: Self) -> Self;
+    /// The larger; the second if either is NaN.
+    fn max(self, other: Self) -> Self;
+    /// Lanes, as bits, in which the first is less than the second; not where either is NaN.
+    fn less(self, other: Self) -> u8;
+    /// The first where a bit is set, else the second.
+    fn choose(bits: u8, set: Self, clear: Self) -> Self;
+
+    /// Zero in every lane.
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::splat(0.0)
+    }
+
+    /// Without sign.
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.max(Self::zero() - self)
+    }
+}
+
+/// Each of some numbers in every lane.
+#[inline(always)]
+pub fn splat_all<V: Lanes, const K: usize>(numbers: [f64; K]) -> [V; K] {
+    let mut out = [V::zero(); K];
+    for k in 0..K {
+        out[k] = V::splat(numbers[k]);
+    }
+    out
+}
+
+/// Work written over [`Lanes`]. Everything it calls must be inlined into `run`, so the kernels are
+/// written with plain loops: a closure that handles lanes is compiled for no register set at all.
+pub trait LaneWork {
+    /// What the work yields.
+    type Output;
+    /// Does the work.
+    fn run<V: Lanes>(self) -> Self::Output;
+}
+
+/// Does the work with the widest registers of the machine.
+#[inline]
+pub fn in_lanes<W: LaneWork>(work: W) -> W::Output {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq") {
+            // SAFETY: the machine has the features the function is compiled for
+            return unsafe { x86::with_avx512(work) };
+        }
+        if is_x86_feature_detected!("avx2") {
+            // SAFETY: as above
+            return unsafe { x86::with_avx2(work) };
+        }
+    }
+    work.run::<Portable>()
+}
+
+/// Lanes as an array, for machines without wide registers.
+#[derive(Debug, Clone, Copy)]
+pub struct Portable(Eight);
+
+macro_rules! array_operator {
+    ($trait:ident, $name:ident, $operator:tt) => {
+        impl $trait for Portable {
+            type Output = Self;
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                Self(std::array::from_fn(|i| self.0[i] $operator other.0[i]))
+            }
+        }
+    };
+}
+array_operator!(Add, add, +);
+array_operator!(Sub, sub, -);
+array_operator!(Mul, mul, *);
+array_operator!(Div, div, /);
+
+impl Lanes for Portable {
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        Self([x; LANES])
+    }
+
+    #[inline(always)]
+    fn load(from: &Eight) -> Self {
+        Self(*from)
+    }
+
+    #[inline(always)]
+    fn store(self) -> Eight {
+        self.0
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] }))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] }))
+    }
+
+    #[inline(always)]
+    fn less(self, other: Self) -> u8 {
+        (0..LANES).fold(0, |bits, i| bits | u8::from(self.0[i] < other.0[i]) << i)
+    }
+
+    #[inline(always)]
+    fn choose(bits: u8, set: Self, clear: Self) -> Self {
+        Self(std::array::from_fn(|i| if bits >> i & 1 == 1 { set.0[i] } else { clear.0[i] }))
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    //! Registers of x86-64. Every intrinsic here belongs to a set that [`super::in_lanes`] has found on
+    //! the machine before it lets a kernel be compiled for these types run.
+
+    use super::{Add, Div, Eight, LaneWork, Lanes, Mul, Sub};
+    use std::arch::x86_64::*;
+
+    #[target_feature(enable = "avx512f,avx512dq")]
+    pub(super) fn with_avx512<W: LaneWork>(work: W) -> W::Output {
+        work.run::<Wide>()
+    }
+
+    #[target_feature(enable = "avx2")]
+    pub(super) fn with_avx2<W: LaneWork>(work: W) -> W::Output {
+        work.run::<Halves>()
+    }
+
+    /// One register of eight.
+    #[derive(Clone, Copy)]
+    pub(super) struct Wide(__m512d);
+
+    /// Two registers of four.
+    #[derive(Clone, Copy)]
+    pub(super) struct Halves(__m256d, __m256d);
+
+    macro_rules! register_operator {
+        ($trait:ident, $name:ident, $wide:ident, $half:ident) => {
+            impl $trait for Wide {
+                type Output = Self;
+                #[inline(always)]
+                fn $name(self, other: Self) -> Self {
+                    // SAFETY: only run where the set was found
+                    Self(unsafe { $wide(self.0, other.0) })
+                }
+            }
+
+            impl $trait for Halves {
+                type Output = Self;
+                #[inline(always)]
+                fn $name(self, other: Self) -> Self {
+                    // SAFETY: only run where the set was found
+                    unsafe { Self($half(self.0, other.0), $half(self.1, other.1)) }
+                }
+            }
+        };
+    }
+    register_operator!(Add, add, _mm512_add_pd, _mm256_add_pd);
+    register_operator!(Sub, sub, _mm512_sub_pd, _mm256_sub_pd);
+    register_operator!(Mul, mul, _mm512_mul_pd, _mm256_mul_pd);
+    register_operator!(Div, div, _mm512_div_pd, _mm256_div_pd);
+
+    // SAFETY, for every block below: only run where the set was found; loads and stores are unaligned
+    // and within the array
+    impl Lanes for Wide {
+        #[inline(always)]
+        fn splat(x: f64) -> Self {
+            Self(unsafe { _mm512_set1_pd(x) })
+        }
+
+        #[inline(always)]
+        fn load(from: &Eight) -> Self {
+            Self(unsafe { _mm512_loadu_pd(from.as_ptr()) })
+        }
+
+        #[inline(always)]
+        fn store(self) -> Eight {
+            let mut out = [0.0; 8];
+            unsafe { _mm512_storeu_pd(out.as_mut_ptr(), self.0) };
+            out
+        }
+
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            Self(unsafe { _mm512_sqrt_pd(self.0) })
+        }
+
+        #[inline(always)]
+        fn min(self, other: Self) -> Self {
+            Self(unsafe { _mm512_min_pd(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            Self(unsafe { _mm512_max_pd(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn less(self, other: Self) -> u8 {
+            unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0) }
+        }
+
+        #[inline(always)]
+        fn choose(bits: u8, set: Self, clear: Self) -> Self {
+            Self(unsafe { _mm512_mask_blend_pd(bits, clear.0, set.0) })
+        }
+    }
+
+    impl Lanes for Halves {
+        #[inline(always)]
+        fn splat(x: f64) -> Self {
+            let half = unsafe { _mm256_set1_pd(x) };
+            Self(half, half)
+        }
+
+        #[inline(always)]
+        fn load(from: &Eight) -> Self {
+            let start = from.as_ptr();
+            unsafe { Self(_mm256_loadu_pd(start), _mm256_loadu_pd(start.add(4))) }
+        }
+
+        #[inline(always)]
+        fn store(self) -> Eight {
+            let mut out = [0.0; 8];
+            let start = out.as_mut_ptr();
+            unsafe {
+                _mm256_storeu_pd(start, self.0);
+                _mm256_storeu_pd(start.add(4), self.1);
+            }
+            out
+        }
+
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            unsafe { Self(_mm256_sqrt_pd(self.0), _mm256_sqrt_pd(self.1)) }
+        }
+
+        #[inline(always)]
+        fn min(self, other: Self) -> Self {
+            unsafe { Self(_mm256_min_pd(self.0, other.0), _mm256_min_pd(self.1, other.1)) }
+        }
+
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            unsafe { Self(_mm256_max_pd(self.0, other.0), _mm256_max_pd(self.1, other.1)) }
+        }
+
+        #[inline(always)]
+        fn less(self, other: Self) -> u8 {
+            unsafe {
+                let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0));
+                let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.1, other.1));
+                (low | high << 4) as u8
+            }
+        }
+
+        #[inline(always)]
+        fn choose(bits: u8, set: Self, clear: Self) -> Self {
+            unsafe {
+                let place = |first: i64| {
+                    let own = _mm256_setr_epi64x(first, first << 1, first << 2, first << 3);
+                    let all = _mm256_set1_epi64x(i64::from(bits));
+                    _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(all, own), own))
+                };
+                Self(_mm256_blendv_pd(clear.0, set.0, place(1)), _mm256_blendv_pd(clear.1, set.1, place(16)))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Everything(Eight, Eight);
+
+    impl LaneWork for Everything {
+        type Output = (Vec<Eight>, u8);
+
+        fn run<V: Lanes>(self) -> Self::Output {
+            let (a, b) = (V::load(&self.0), V::load(&self.1));
+            let bits = a.less(b);
+            let results = [
+                a + b,
+                a - b,
+                a * b,
+                a / b,
+                a.abs().sqrt(),
+                a.min(b),
+                a.max(b),
+                V::choose(bits, a, V::splat(7.0)),
+            ];
+            (results.iter().map(|v| v.store()).collect(), bits)
+        }
+    }
+
+    #[test]
+    fn every_set_gives_the_same_bits() {
+        let a = [1.0, -2.5, 3e300, f64::NAN, 0.1, 0.2, -0.3, 1e-310];
+        let b = [3.0, 7.7, 2e300, 1.0, 0.3, 0.2, 0.7, 2.0];
+        let (wide, wide_bits) = in_lanes(Everything(a, b));
+        let (plain, plain_bits) = Everything(a, b).run::<Portable>();
+        assert_eq!(wide_bits, plain_bits);
+        for (w, p) in wide.iter().flatten().zip(plain.iter().flatten()) {
+            assert!(w.to_bits() == p.to_bits() || (w.is_nan() && p.is_nan()), "{w} {p}");
+        }
+    }
+}

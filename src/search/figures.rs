@@ -1,0 +1,70 @@
+//! What the search needs of a link option besides its mechanics: mass, cost, slenderness, stress.
+
+use super::space::{DesignSpace, LinkOption};
+use super::station::Place;
+use crate::arm::Section;
+use crate::mechanics::{angular, linear};
+use nalgebra::{Vector3, Vector6};
+
+/// What the search needs of a link option besides its mechanics.
+pub(super) struct OptionFigures {
+    pub mass_kg: f64,
+    pub material: Option<usize>,
+    pub cost_eur: Option<f64>,
+    pub stress: Option<StressCheck>,
+    pub slender: bool,
+}
+
+/// Von Mises stress at a link's ends from force and moment in its section frame.
+pub(super) struct StressCheck {
+    pub per_axial_n: f64,
+    pub per_moment_y: f64,
+    pub per_moment_z: f64,
+    pub per_torsion: f64,
+    pub round: bool,
+    pub strength_pa: f64,
+}
+
+impl StressCheck {
+    pub fn new(option: &LinkOption) -> Option<Self> {
+        let p = option.section.properties(option.material.poisson);
+        let (width, height) = option.section.outer_m();
+        let wall = option.section.wall_m();
+        let round = matches!(option.section, Section::RoundTube { .. });
+        let enclosed = match round {
+            true => std::f64::consts::PI / 4.0 * (width - wall).powi(2),
+            false => (width - wall) * (height - wall),
+        };
+        Some(Self {
+            per_axial_n: 1.0 / p.area_m2,
+            per_moment_y: height / 2.0 / p.second_moment_y_m4,
+            per_moment_z: width / 2.0 / p.second_moment_z_m4,
+            per_torsion: 1.0 / (2.0 * enclosed * wall),
+            round,
+            strength_pa: option.strength_pa?,
+        })
+    }
+
+    /// Von Mises stress of bending, axial force and torsion at an end, over the strength.
+    pub fn ratio(&self, wrench: &Vector6<f64>, at_m: &Vector3<f64>, place: &Place) -> f64 {
+        let force = place.frame.tr_mul(&linear(wrench));
+        let moment = place.frame.tr_mul(&(angular(wrench) - at_m.cross(&linear(wrench))));
+        let (y, z) = (moment.y.abs() * self.per_moment_y, moment.z.abs() * self.per_moment_z);
+        let bending = if self.round { y.hypot(z) } else { y + z };
+        let normal = force.x.abs() * self.per_axial_n + bending;
+        let shear = moment.x.abs() * self.per_torsion;
+        (normal * normal + 3.0 * shear * shear).sqrt() / self.strength_pa
+    }
+}
+
+/// The figures of an option of a link of this length.
+pub(super) fn figures(space: &DesignSpace, option: &LinkOption, length_m: f64) -> OptionFigures {
+    let mass_kg = option.mass_kg_per_m() * length_m;
+    OptionFigures {
+        slender: space.constraints.wall_slenderness_max.is_some_and(|max| option.wall_slenderness() > max),
+        mass_kg,
+        material: Some(option.material_index),
+        cost_eur: option.cost_eur_per_kg.map(|cost| cost * mass_kg),
+        stress: StressCheck::new(option),
+    }
+}

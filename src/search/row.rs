@@ -1,0 +1,380 @@
+//! The innermost level, compiled for eight options at a time.
+//!
+//! All options of the innermost level share everything outboard of it, so a sweep finishes them as a
+//! row. What a row needs of each option stands here side by side in groups of eight ([`Chunk`]); what
+//! follows from the outboard arm is worked out once a row ([`RowScratch`]); the kernel that joins the
+//! two is [`row_lanes`](super::row_lanes).
+
+use super::figures::OptionFigures;
+use super::outward::{ArmProblem, Partial, Slot, block_steps};
+use super::row_lanes::MOST_CASES;
+use super::station::{Block, BlockSlot, Modal, Station, StationLink, StationSlot};
+use crate::arm::Curve;
+use crate::mechanics::lanes::{Eight, LANES};
+use crate::mechanics::lowest_lanes::{LaneLink, Outboard};
+use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
+
+/// Most pieces from the innermost level to the base that a row handles; beyond, designs are finished
+/// one by one.
+pub(super) const MOST_SLOTS: usize = 8;
+
+/// The pieces from the innermost level to the base.
+pub(super) struct Row {
+    /// Slot of the innermost level.
+    pub first: usize,
+    /// Eight options each; none if the level is a joint's drive.
+    pub chunks: Vec<Chunk>,
+    pub cases: Vec<RowCase>,
+    /// Drives by inner slot, then by index; empty for links.
+    pub drives: Vec<Vec<DriveFigures>>,
+}
+
+/// What depends on the pose but not on the option.
+pub(super) struct RowCase {
+    /// Inertia about each inner joint's axis of a piece (of a kilogram of it, if it is a drive):
+    /// `carried[piece][joint]`, by inner slot.
+    pub carried: [[f64; MOST_SLOTS]; MOST_SLOTS],
+    /// Weight wrench of a link per newton.
+    pub link_weight: Vector6<f64>,
+    /// Block, row and column of the outboard inertia that link ends carry.
+    pub spread_entries: Vec<(usize, usize, usize)>,
+    /// Inner pieces up to the last that yields in each block.
+    pub ends: [usize; 2],
+    pub links_yield: bool,
+    pub judged: bool,
+    pub sizing: bool,
+}
+
+/// A torsion curve as one of three segments, and the drive's mass.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct DriveFigures {
+    pub mass_kg: f64,
+    /// Stiffnesses \[N m/rad\].
+    pub stiffness: [f64; 3],
+    /// Ends of the first two segments \[N m\].
+    pub ends_nm: [f64; 2],
+}
+
+/// Eight link options. The last chunk is filled up with its last option.
+pub(super) struct Chunk {
+    pub mass_kg: Eight,
+    pub cost_eur: Eight,
+    /// Bits of the options whose walls are too slender.
+    pub slender: u8,
+    pub stress: StressEight,
+    pub cases: Vec<CaseChunk>,
+}
+
+/// Stress over strength per force and moment.
+#[derive(Default)]
+pub(super) struct StressEight {
+    pub per_axial_n: Eight,
+    pub per_moment_y: Eight,
+    pub per_moment_z: Eight,
+    pub per_torsion: Eight,
+    pub round: u8,
+}
+
+/// Eight link options in one pose.
+pub(super) struct CaseChunk {
+    pub weight_n: Eight,
+    /// Displacement of the tip by the wrench on the link's end.
+    pub flexibility: [[Eight; 6]; 3],
+    /// Displacement of the tip by the link's own weight.
+    pub sag_m: [Eight; 3],
+    /// Inertia about each inner joint.
+    pub inertia_at: [Eight; MOST_SLOTS],
+    /// Of the outboard inertia, what each entry adds to the sum of `1/λ`.
+    pub spread: Vec<Eight>,
+    /// Sum of `1/λ` of the link by itself.
+    pub trace_s2: [Eight; 2],
+    pub modal: ChunkModal,
+}
+
+pub(super) enum ChunkModal {
+    Planar(Box<[LaneLink<3>; 2]>),
+    Spatial(Box<LaneLink<6>>),
+}
+
+/// What follows from the arm outboard of a row, and what is remembered from row to row.
+pub struct RowScratch {
+    pub(super) cases: Vec<CaseScratch>,
+    /// Lowest eigenvalue of each option in the last row; 0 at first.
+    pub(super) eigenvalues: Vec<Eight>,
+    /// By how much eigenvalues differ from those of the last row.
+    pub(super) drift: f64,
+    /// An arm for designs finished one by one.
+    pub(super) spare: Partial,
+}
+
+pub(super) struct CaseScratch {
+    pub outboard: CaseOutboard,
+    /// Inertia outboard of the row about each inner joint.
+    pub inertia_at: [f64; MOST_SLOTS],
+    pub spread: Vec<f64>,
+    pub slopes: [Eight; 2],
+}
+
+pub(super) enum CaseOutboard {
+    Planar(Box<[Outboard<3>; 2]>),
+    Spatial(Box<Outboard<6>>),
+}
+
+impl DriveFigures {
+    pub fn new(mass_kg: f64, curve: &Curve) -> Self {
+        let (stiffness, ends_nm) = match curve {
+            Curve::Rigid => ([f64::INFINITY; 3], [f64::INFINITY; 2]),
+            Curve::Linear(k) => ([*k; 3], [f64::INFINITY; 2]),
+            Curve::Windup(w) => ([w.k1_nm_per_rad, w.k2_nm_per_rad, w.k3_nm_per_rad], [w.t1_nm, w.t2_nm]),
+        };
+        Self { mass_kg, stiffness, ends_nm }
+    }
+}
+
+impl Row {
+    /// Compiles the innermost level; `None` if there is none, or the pieces inboard of it are of kinds
+    /// that are finished one by one: a given tube, or very many.
+    pub fn new(problem: &ArmProblem) -> Option<Self> {
+        let first = *problem.level_slots().last()?;
+        let slots = &problem.slots()[first..];
+        if slots.len() > MOST_SLOTS
+            || problem.stations().len() > MOST_CASES
+            || slots[1..].iter().any(|s| matches!(s, Slot::Link { .. }))
+        {
+            return None;
+        }
+        let space = problem.space();
+        let cases: Vec<RowCase> = problem
+            .stations()
+            .iter()
+            .enumerate()
+            .map(|(case, station)| {
+                let (judged, sizing) =
+                    (space.judged_cases.contains(&case), space.sizing_cases.contains(&case));
+                RowCase::new(station, first, judged, sizing)
+            })
+            .collect();
+        let chunks = match &slots[0] {
+            Slot::Link { options, .. } => (0..options.len().div_ceil(LANES))
+                .map(|c| Chunk::new(problem, &cases, options, first, c))
+                .collect(),
+            _ => Vec::new(),
+        };
+        Some(Self { first, chunks, cases, drives: slots.iter().map(drive_figures).collect() })
+    }
+}
+
+fn drive_figures(slot: &Slot) -> Vec<DriveFigures> {
+    match slot {
+        Slot::Given { curve, mass_kg } => vec![DriveFigures::new(*mass_kg, curve)],
+        Slot::Sized(sized) => sized
+            .curves
+            .iter()
+            .enumerate()
+            .map(|(i, curve)| DriveFigures::new(sized.table.mass_kg(i), curve))
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+impl RowCase {
+    fn new(station: &Station, first: usize, judged: bool, sizing: bool) -> Self {
+        let slots = &station.slots[first..];
+        let about = |joint: &StationSlot, inertia: &Matrix6<f64>| match joint {
+            StationSlot::Joint(joint) => joint.twist.dot(&(inertia * joint.twist)),
+            _ => 0.0,
+        };
+        let mut carried = [[0.0; MOST_SLOTS]; MOST_SLOTS];
+        for (b, body) in slots.iter().enumerate() {
+            let inertia = match body {
+                StationSlot::Joint(joint) => &joint.inertia_per_kg,
+                StationSlot::Body { inertia, .. } => inertia,
+                StationSlot::Link { .. } => continue,
+            };
+            for (j, joint) in slots.iter().enumerate().skip(b + 1) {
+                carried[b][j] = about(joint, inertia);
+            }
+        }
+        let links: &[StationLink] = match &slots[0] {
+            StationSlot::Link { options, .. } => options,
+            _ => &[],
+        };
+        let link_weight =
+            links.iter().find(|l| l.weight[2] != 0.0).map_or(Vector6::zeros(), |l| -l.weight / l.weight[2]);
+        let links_yield = links.iter().any(|l| l.end.amax() > 0.0);
+        let ends = match &station.modal {
+            Modal::Planar(blocks) => [0, 1].map(|b| last_yielding(&blocks[b], first, links_yield)),
+            Modal::Spatial(block) => [last_yielding(block, first, links_yield), 0],
+        };
+        let spread_entries = if links_yield { spread_entries(&station.modal) } else { Vec::new() };
+        Self { carried, link_weight, spread_entries, ends, links_yield, judged, sizing }
+    }
+}
+
+/// Inner pieces up to the last that can yield.
+fn last_yielding<const N: usize>(block: &Block<N>, first: usize, links_yield: bool) -> usize {
+    let yields = |slot: &BlockSlot<N>| match slot {
+        BlockSlot::Joint { twist, .. } => twist.amax() > 0.0,
+        BlockSlot::Links(_) => links_yield,
+        BlockSlot::Body(_) => false,
+    };
+    block.slots[first..].iter().rposition(yields).map_or(0, |last| last + 1)
+}
+
+/// Entries of the lower part of the inertia that the ends of a block's links can carry.
+fn spread_entries(modal: &Modal) -> Vec<(usize, usize, usize)> {
+    let lower = |block: usize, motions: &[usize]| -> Vec<(usize, usize, usize)> {
+        let pairs = motions.iter().flat_map(|&i| motions.iter().map(move |&j| (i, j)));
+        pairs.filter(|(i, j)| i >= j).map(|(i, j)| (block, i, j)).collect()
+    };
+    match modal {
+        Modal::Planar(_) => [lower(0, &[0, 2, 4]), lower(1, &[1, 3, 5])].concat(),
+        Modal::Spatial(_) => lower(0, &[0, 1, 2, 3, 4, 5]),
+    }
+}
+
+impl Chunk {
+    fn new(
+        problem: &ArmProblem,
+        cases: &[RowCase],
+        options: &[OptionFigures],
+        first: usize,
+        c: usize,
+    ) -> Self {
+        let at = |lane: usize| (LANES * c + lane).min(options.len() - 1);
+        let lanes = |of: &dyn Fn(&OptionFigures) -> f64| std::array::from_fn(|lane| of(&options[at(lane)]));
+        let bits = |of: &dyn Fn(&OptionFigures) -> bool| {
+            (0..LANES).fold(0, |bits, lane| bits | u8::from(of(&options[at(lane)])) << lane)
+        };
+        let stress = |of: &dyn Fn(&super::figures::StressCheck) -> f64| {
+            lanes(&|o| o.stress.as_ref().map_or(0.0, |s| of(s) / s.strength_pa))
+        };
+        Self {
+            mass_kg: lanes(&|o| o.mass_kg),
+            cost_eur: lanes(&|o| o.cost_eur.unwrap_or(0.0)),
+            slender: bits(&|o| o.slender),
+            stress: StressEight {
+                per_axial_n: stress(&|s| s.per_axial_n),
+                per_moment_y: stress(&|s| s.per_moment_y),
+                per_moment_z: stress(&|s| s.per_moment_z),
+                per_torsion: stress(&|s| s.per_torsion),
+                round: bits(&|o| o.stress.as_ref().is_some_and(|s| s.round)),
+            },
+            cases: problem
+                .stations()
+                .iter()
+                .zip(cases)
+                .filter_map(|(station, case)| CaseChunk::new(station, case, first, &at))
+                .collect(),
+        }
+    }
+}
+
+impl CaseChunk {
+    fn new(station: &Station, case: &RowCase, first: usize, at: &dyn Fn(usize) -> usize) -> Option<Self> {
+        let StationSlot::Link { options, .. } = &station.slots[first] else { return None };
+        let links: [&StationLink; LANES] = std::array::from_fn(|lane| &options[at(lane)]);
+        let lanes = |of: &dyn Fn(&StationLink) -> f64| links.map(of);
+        let flexibility = links.map(|l| l.tip * l.end.transpose());
+        let sag = links.map(|l| l.tip * l.sag);
+        let joints: Vec<_> = station.slots[first..]
+            .iter()
+            .map(|slot| match slot {
+                StationSlot::Joint(joint) => joint.twist,
+                _ => Vector6::zeros(),
+            })
+            .collect();
+        let joint = |j: usize| joints.get(j).copied().unwrap_or_default();
+        let trace = |block: usize| {
+            lanes(&|l| {
+                let ends: f64 = (0..6).filter(|&g| l.block[g] == block).map(|g| l.end_inertia[g]).sum();
+                ends + l.inner_trace_s2
+            })
+        };
+        Some(Self {
+            weight_n: lanes(&|l| -l.weight[2]),
+            flexibility: std::array::from_fn(|i| {
+                std::array::from_fn(|j| flexibility.map(|f: Matrix3x6<f64>| f[(i, j)]))
+            }),
+            sag_m: std::array::from_fn(|i| sag.map(|s: Vector3<f64>| s[i])),
+            inertia_at: std::array::from_fn(|j| lanes(&|l| joint(j).dot(&(l.inertia * joint(j))))),
+            spread: case.spread_entries.iter().map(|entry| lanes(&|l| spread_of(l, *entry))).collect(),
+            trace_s2: [trace(0), trace(1)],
+            modal: chunk_modal(&station.modal, first, at),
+        })
+    }
+}
+
+fn spread_of(link: &StationLink, (block, i, j): (usize, usize, usize)) -> f64 {
+    (0..6).filter(|&g| link.block[g] == block).map(|g| link.end[(i, g)] * link.end[(j, g)]).sum()
+}
+
+fn chunk_modal(modal: &Modal, first: usize, at: &dyn Fn(usize) -> usize) -> ChunkModal {
+    match modal {
+        Modal::Planar(blocks) => {
+            let [within, across] = &**blocks;
+            ChunkModal::Planar(Box::new([lane_link(within, first, at), lane_link(across, first, at)]))
+        }
+        Modal::Spatial(block) => ChunkModal::Spatial(Box::new(lane_link(block, first, at))),
+    }
+}
+
+fn lane_link<const N: usize>(block: &Block<N>, first: usize, at: &dyn Fn(usize) -> usize) -> LaneLink<N> {
+    match &block.slots[first] {
+        BlockSlot::Links(options) => LaneLink::new(std::array::from_fn(|lane| &options[at(lane)])),
+        _ => unreachable!("a chunk is made of a slot of links"),
+    }
+}
+
+impl RowScratch {
+    /// Room for the rows of a problem.
+    pub(super) fn new(problem: &ArmProblem) -> Self {
+        let chunks = problem.level_sizes_slice().last().map_or(0, |&n| (n as usize).div_ceil(LANES));
+        let cases = problem.stations().iter().map(|station| CaseScratch {
+            outboard: match &station.modal {
+                Modal::Planar(_) => CaseOutboard::Planar(Box::default()),
+                Modal::Spatial(_) => CaseOutboard::Spatial(Box::default()),
+            },
+            inertia_at: [0.0; MOST_SLOTS],
+            spread: Vec::new(),
+            slopes: [[1.0; LANES]; 2],
+        });
+        Self {
+            cases: cases.collect(),
+            eigenvalues: vec![[0.0; LANES]; chunks],
+            drift: 1.0,
+            spare: problem.empty(),
+        }
+    }
+
+    /// Works out what a row shares.
+    pub(super) fn start_row(&mut self, problem: &ArmProblem, row: &Row, from: &Partial) {
+        for (k, scratch) in self.cases.iter_mut().enumerate() {
+            let (station, state, case) = (&problem.stations()[k], &from.stations[k], &row.cases[k]);
+            for (j, slot) in station.slots[row.first..].iter().enumerate() {
+                if let StationSlot::Joint(joint) = slot {
+                    scratch.inertia_at[j] = joint.twist.dot(&(state.inertia * joint.twist));
+                }
+            }
+            scratch.spread.clear();
+            scratch.spread.extend(case.spread_entries.iter().map(|&(_, i, j)| {
+                let both = if i == j { 1.0 } else { 2.0 };
+                both * state.inertia[(i, j)]
+            }));
+            if !case.judged {
+                continue;
+            }
+            match (&mut scratch.outboard, &station.modal) {
+                (CaseOutboard::Planar(mine), Modal::Planar(blocks)) => {
+                    for (mine, block) in mine.iter_mut().zip(blocks.iter()) {
+                        mine.refill(block_steps(block, from, state, row.first));
+                    }
+                }
+                (CaseOutboard::Spatial(mine), Modal::Spatial(block)) => {
+                    mine.refill(block_steps(block, from, state, row.first));
+                }
+                _ => unreachable!("a case keeps its kind"),
+            }
+        }
+    }
+}

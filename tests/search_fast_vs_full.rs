@@ -1,0 +1,205 @@
+//! The objectives that the sweep works with against the full model, on random designs of random studies.
+//!
+//! Studies differ in poses (planar, folded, straight up, every joint turned), link and joint models,
+//! payloads with an offset centre and inertia, water, tip force, given and sized joints, and in what the
+//! innermost level is. A design must hold in both or in neither, and all objectives must agree to 1e-10.
+
+use armwright::catalog::Catalogs;
+use armwright::fault::Document;
+use armwright::search::{ArmProblem, Finished, OutwardIn, Status, Sweep, design, evaluate};
+use armwright::study::{Study, named, read_study};
+use serde_json::{Value, json};
+use std::sync::atomic::AtomicBool;
+
+/// Largest relative difference of an objective.
+const AGREE: f64 = 1e-10;
+
+/// A small generator with a recorded seed.
+struct Dice(u64);
+
+impl Dice {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, n: u64) -> u64 {
+        self.next() % n
+    }
+
+    fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn of<T: Clone>(&mut self, list: &[T]) -> T {
+        list[self.below(list.len() as u64) as usize].clone()
+    }
+}
+
+fn link(dice: &mut Dice, name: &str, length_m: f64, largest_mm: u32) -> Value {
+    let section = match dice.below(3) {
+        0 => {
+            json!({"shape": "round_tube", "diameter_mm": {"from": 60, "to": largest_mm, "step": 20}, "wall_mm": [3, 5]})
+        }
+        _ => json!({"shape": "rectangular_tube", "width_mm": {"from": 40, "to": largest_mm, "step": 40},
+            "height_mm": {"from": 60, "to": largest_mm, "step": 20}, "wall_mm": [2, 4]}),
+    };
+    let offset = dice.of(&[0.0, 0.0, 0.1]);
+    json!({"type": "link", "name": name, "vector_m": [length_m, 0, offset], "choose": {
+        "materials": ["Structural steel S355", "Aluminium 6061-T6", "CFRP T300/5208 (standard modulus) quasi-isotropic"],
+        "sections": [section]}})
+}
+
+fn joint(dice: &mut Dice, name: &str, axis: [f64; 3], stiffness: f64, kind: &str) -> Value {
+    match kind {
+        "given" => json!({"type": "joint", "name": name, "axis": axis,
+            "stiffness_nm_per_rad": stiffness * dice.within(0.3, 3.0), "mass_kg": dice.of(&[0.0, 2.0, 6.0])}),
+        drive => json!({"type": "joint", "name": name, "axis": axis, "drive": drive}),
+    }
+}
+
+fn pose(dice: &mut Dice) -> Vec<f64> {
+    let any = |dice: &mut Dice| (0..6).map(|_| dice.within(-120.0, 120.0)).collect();
+    match dice.below(6) {
+        0 => vec![0.0; 6],
+        1 => vec![0.0, -45.0, 90.0, 0.0, 45.0, 0.0],
+        // folded back and straight up
+        2 => vec![0.0, -30.0, 150.0, 0.0, 20.0, 0.0],
+        3 => vec![0.0, -90.0, 0.0, 0.0, 0.0, 0.0],
+        4 => vec![dice.within(-90.0, 90.0), -20.0, 40.0, dice.within(-90.0, 90.0), 30.0, 0.0],
+        _ => any(dice),
+    }
+}
+
+fn study(seed: u64, catalogs: &Catalogs) -> Study {
+    let dice = &mut Dice(seed);
+    let kinds = ["given", "first_fit", "first_fit"];
+    let (k6, k5, k4) = (dice.of(&kinds), dice.of(&kinds), dice.of(&kinds));
+    let (k3, k2) = (dice.of(&kinds), dice.of(&["given", "first_fit", "all_fits"]));
+    let k1 = dice.of(&["given", "first_fit", "all_fits", "first_fit"]);
+    let chain = [
+        joint(dice, "j1", [0.0, 0.0, 1.0], 3e5, k1),
+        json!({"type": "link", "name": "shoulder", "vector_m": [dice.of(&[0.0, 0.15]), 0, 0.3], "mass_kg": dice.of(&[0.0, 4.0])}),
+        joint(dice, "j2", [0.0, 1.0, 0.0], 3e5, k2),
+        link(dice, "upper_arm", 0.8, 160),
+        joint(dice, "j3", [0.0, 1.0, 0.0], 1e5, k3),
+        link(dice, "forearm", 0.5, 120),
+        joint(dice, "j4", [1.0, 0.0, 0.0], 4e4, k4),
+        joint(dice, "j5", [0.0, 1.0, 0.0], 4e4, k5),
+        joint(dice, "j6", [1.0, 0.0, 0.0], 2e4, k6),
+        json!({"type": "link", "name": "flange", "vector_m": [0.05, 0, 0]}),
+    ];
+    let payload = match dice.below(3) {
+        0 => json!({"mass_kg": 5}),
+        1 => json!({"mass_kg": dice.within(1.0, 8.0), "cg_m": [0.03, 0, dice.within(0.0, 0.1)]}),
+        _ => json!({"mass_kg": 4, "cg_m": [0.02, 0.05, -0.04], "inertia_about_cg_kgm2": [0.02, 0.05, 0.03]}),
+    };
+    let water = json!({"density_kg_m3": 1025, "added_mass_coefficient": 1.0, "payload_density_kg_m3": 7850});
+    let environments = match dice.below(4) {
+        0 => json!([{"name": "deck"}, {"name": "immersed", "water": water}]),
+        _ => json!([{"name": "air"}]),
+    };
+    let poses: Vec<Value> =
+        (0..1 + dice.below(3)).map(|k| json!({"name": format!("p{k}"), "pose_deg": pose(dice)})).collect();
+    let text = json!({
+        "name": format!("random-{seed}"), "question": "?", "chain": chain, "payload": payload,
+        "tip_force_n": dice.of(&[[0.0, 0.0, 0.0], [20.0, -30.0, 10.0]]),
+        "poses": poses, "environments": environments,
+        "drives": {"motors": ["electric"], "gear_mass": "housed_unit"},
+        "models": {"links": dice.of(&["rigid", "bending", "full", "full"]),
+            "joints": dice.of(&["k2", "three_segment"])},
+        "constraints": dice.of(&[json!({}), json!({"stress_safety_factor_min": 2, "wall_slenderness_max": 50})]),
+    });
+    read_study(Document::parse("random", &text.to_string()).expect("JSON"), catalogs)
+        .unwrap_or_else(|e| panic!("seed {seed}: {e}\n{text:#}"))
+}
+
+/// Largest difference over some designs of some rows, and how many designs hold.
+fn compare(problem: &ArmProblem, dice: &mut Dice, rows: usize, stride: usize) -> (f64, usize) {
+    let sizes = problem.level_sizes().to_vec();
+    let (&last, outer) = sizes.split_last().expect("a level");
+    let root = problem.root().expect("a root");
+    let mut scratch = problem.scratch();
+    let (mut worst, mut held) = (0.0f64, 0);
+    for _ in 0..rows {
+        let options: Vec<u32> = outer.iter().map(|&n| dice.below(u64::from(n)) as u32).collect();
+        let mut from = root.clone();
+        let begins = options.iter().enumerate().all(|(level, &option)| {
+            let before = from.clone();
+            problem.extend(level, option, &before, &mut from)
+        });
+        if !begins {
+            continue;
+        }
+        let start = dice.below(u64::from(last)) as u32;
+        let mut row: Vec<(u32, Option<Finished>)> = Vec::new();
+        problem.finish(&from, start..last.min(start + 60), &mut scratch, |o, f| row.push((o, f)));
+        for (option, fast) in row.into_iter().step_by(stride) {
+            let number = design::number(&sizes, &[options.as_slice(), &[option]].concat());
+            let full = evaluate(problem, number);
+            assert_eq!(fast.is_some(), full.is_some(), "design {number}");
+            let (Some(fast), Some(full)) = (fast, full) else { continue };
+            assert_eq!(fast.group, full.group, "design {number}");
+            held += 1;
+            for (a, b) in fast.objectives.minimized().into_iter().zip(full.objectives.minimized()) {
+                let difference = if a == b { 0.0 } else { (a / b - 1.0).abs() };
+                assert!(difference <= AGREE, "design {number}: {:?} {:?}", fast.objectives, full.objectives);
+                worst = worst.max(difference);
+            }
+        }
+    }
+    (worst, held)
+}
+
+#[test]
+fn fast_objectives_are_those_of_the_full_model_on_random_studies() {
+    let catalogs = Catalogs::builtin();
+    let (mut worst, mut held) = (0.0f64, 0);
+    for seed in 0..48 {
+        let study = study(seed, &catalogs);
+        let problem = ArmProblem::new(&study.space, &catalogs);
+        if problem.root().is_none() || problem.level_sizes().contains(&0) {
+            continue;
+        }
+        println!("seed {seed}: {:?}", problem.level_sizes());
+        let (difference, count) = compare(&problem, &mut Dice(seed + 1000), 3, 7);
+        worst = worst.max(difference);
+        held += count;
+    }
+    println!("{held} designs, largest relative difference {worst:e}");
+    assert!(held > 200, "only {held} designs hold: the studies are too hard");
+}
+
+#[test]
+fn fast_objectives_are_those_of_the_full_model_on_a_named_study() {
+    let catalogs = Catalogs::builtin();
+    let text = named("compare-materials").expect("built in");
+    let study = read_study(Document::parse("study", text).expect("JSON"), &catalogs).expect("reads");
+    let problem = ArmProblem::new(&study.space, &catalogs);
+    let (worst, held) = compare(&problem, &mut Dice(7), 12, 5);
+    println!("{held} designs, largest relative difference {worst:e}");
+    assert!(held > 20);
+}
+
+#[test]
+fn the_outcome_is_the_same_for_any_number_of_threads() {
+    let catalogs = Catalogs::builtin();
+    let study = study(3, &catalogs);
+    let problem = ArmProblem::new(&study.space, &catalogs);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        let stop = AtomicBool::new(false);
+        pool.install(|| Sweep::new(&problem, study.space.constraints, &stop).run())
+    };
+    let one = run(1);
+    assert_ne!(one.status, Status::Interrupted);
+    let key = |o: &armwright::search::SweepOutcome| {
+        (o.designs_evaluated, o.designs_excluded, o.front.clone(), o.groups.clone())
+    };
+    for threads in [2, 3] {
+        assert_eq!(key(&run(threads)), key(&one), "{threads} threads");
+    }
+}
