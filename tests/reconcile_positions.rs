@@ -4,8 +4,9 @@
 //! variable ARMWRIGHT_MEASURED, and the test says aloud when it is skipped.
 
 use armwright::catalog::Catalogs;
-use armwright::reconcile::Campaign;
+use armwright::reconcile::exact::{Exact, Placement};
 use armwright::reconcile::positions::analyze;
+use armwright::reconcile::{Campaign, reconcile};
 use nalgebra::{Matrix4, Rotation3, Translation3, Vector3};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -70,6 +71,26 @@ fn campaign(source: &Path, folder: &Path) {
     std::fs::write(folder.join("campaign.json"), statement.to_string()).expect("written");
 }
 
+/// The corrected arm predicts the readings as the fit did.
+fn check_prediction(campaign: &Campaign, fitted_median_mm: f64) {
+    let outcome = reconcile(campaign);
+    let placement = Placement::from_json(&outcome.corrected_json());
+    let text = outcome.corrected_json().to_string();
+    let document = armwright::fault::Document::parse("arm", &text).expect("JSON");
+    let arm = armwright::arm::read_arm_document(document, &Catalogs::default()).expect("sound");
+    let subject = arm.subject(armwright::arm::JointModel::ThreeSegment);
+    let predicted = Exact::new(&subject).positions_mm(&campaign.positions, &placement);
+    let mut errors: Vec<f64> = predicted
+        .iter()
+        .zip(&campaign.positions)
+        .map(|(p, row)| (Vector3::from(*p) - Vector3::from(row.position_mm)).norm())
+        .collect();
+    errors.sort_by(f64::total_cmp);
+    let median = errors[errors.len() / 2];
+    println!("predicted by the corrected arm: median {median:.3} mm");
+    assert!((median - fitted_median_mm).abs() < 0.03, "{median} {fitted_median_mm}");
+}
+
 #[test]
 fn the_motoman_bends_in_its_joints_and_across_them() {
     let Some(measured) = std::env::var_os("ARMWRIGHT_MEASURED").map(PathBuf::from) else {
@@ -91,6 +112,7 @@ fn the_motoman_bends_in_its_joints_and_across_them() {
         let stage = found.stages.iter().rev().find(|s| s.added.contains(word)).expect("stage");
         stage.median_mm
     };
+    check_prediction(&campaign, found.stages.last().expect("stages").fitted_median_mm);
     assert!(median("geometry") < 1.6);
     assert!(median("joint_compliance") < 0.68);
     assert!(found.stages.last().expect("stages").median_mm < 0.58);

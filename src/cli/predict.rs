@@ -4,6 +4,7 @@ use super::Failure;
 use crate::arm::read_arm;
 use crate::catalog::Catalogs;
 use crate::reconcile::campaign::read_statement;
+use crate::reconcile::exact::Placement;
 use crate::reconcile::predict::predict;
 use crate::reconcile::table::Table;
 use clap::Args;
@@ -38,7 +39,9 @@ pub struct PredictArgs {
 pub fn run(args: &PredictArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let statement = read_statement(&args.campaign)?;
     let arm = read_arm(&args.arm, catalogs)?;
-    let text = predict(&arm, &statement, Table::read(&args.readings)?)?;
+    let file = std::fs::read_to_string(&args.arm).unwrap_or_default();
+    let placement = Placement::from_json(&serde_json::from_str(&file).unwrap_or_default());
+    let text = predict(&arm, &statement, &placement, Table::read(&args.readings)?)?;
     let Some(out) = &args.out else { return Ok(text) };
     if let Some(folder) = out.parent().filter(|f| !f.as_os_str().is_empty()) {
         fs_err::create_dir_all(folder).map_err(|e| Failure::file(folder, "create", &e))?;

@@ -7,7 +7,43 @@ use crate::arm::effect::{Channel, Subject};
 use crate::arm::{JointLaw, LinkModel, Payload};
 use crate::mechanics::chain::{Item, Posed, Yielding};
 use crate::mechanics::{Chain, Twist, displacement_at};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
+use serde_json::Value;
+
+/// Where the arm stands in the instrument's frame, and where the measured points sit on its last frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Placement {
+    /// The arm's base frame in the instrument's.
+    pub rotation: Matrix3<f64>,
+    /// Its origin \[m\].
+    pub origin_m: Vector3<f64>,
+    /// Points by name, last frame \[m\].
+    pub points_m: Vec<(String, Vector3<f64>)>,
+}
+
+impl Default for Placement {
+    fn default() -> Self {
+        Self { rotation: Matrix3::identity(), origin_m: Vector3::zeros(), points_m: Vec::new() }
+    }
+}
+
+impl Placement {
+    /// Reads the `placement` of a corrected arm's provenance; the identity if there is none.
+    pub fn from_json(arm_file: &Value) -> Self {
+        let placement = &arm_file["provenance"]["placement"];
+        let vector = |v: &Value| Vector3::from_fn(|i, _| v[i].as_f64().unwrap_or_default());
+        let Some(points) = placement["points_m"].as_object() else { return Self::default() };
+        Self {
+            rotation: Matrix3::from_fn(|i, j| placement["rotation"][i][j].as_f64().unwrap_or_default()),
+            origin_m: vector(&placement["origin_m"]),
+            points_m: points.iter().map(|(name, v)| (name.clone(), vector(v))).collect(),
+        }
+    }
+
+    fn point_m(&self, name: &str) -> Vector3<f64> {
+        self.points_m.iter().find(|(n, _)| n == name).map_or(Vector3::zeros(), |(_, at)| *at)
+    }
+}
 
 /// A subject ready to be asked.
 pub struct Exact<'a> {
@@ -75,13 +111,16 @@ impl<'a> Exact<'a> {
         out
     }
 
-    /// Positions of the tip in the arm's own frame, under gravity and payload \[mm\].
-    pub fn positions_mm(&self, rows: &[PositionRow]) -> Vec<[f64; 3]> {
+    /// Positions of the points on the last frame, in the instrument's frame, under gravity and payload
+    /// \[mm\].
+    pub fn positions_mm(&self, rows: &[PositionRow], placement: &Placement) -> Vec<[f64; 3]> {
         let reading = &self.subject.channels[Channel::Positions as usize];
         rows.iter()
             .map(|row| {
                 let posed = self.posed(&row.pose_deg, &row.payload, Vector3::zeros());
-                let at = posed.tip_m + posed.statics().tip_displacement_m;
+                let tool = posed.tip_rotation * placement.point_m(&row.point);
+                let own = posed.tip_m + tool + posed.statics().tip_displacement_m;
+                let at = placement.rotation * own + placement.origin_m;
                 std::array::from_fn(|c| reading.of(1e3 * at[c], c, row.row))
             })
             .collect()

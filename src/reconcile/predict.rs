@@ -1,7 +1,7 @@
 //! `predict`: the model's value beside every reading of a file.
 
 use super::campaign::Statement;
-use super::exact::Exact;
+use super::exact::{Exact, Placement};
 use super::forward::make_links_rigid;
 use super::readings::{modal_rows, position_rows, static_rows, windup_rows};
 use super::table::Table;
@@ -21,11 +21,16 @@ pub fn channel_of(table: &Table) -> Option<Channel> {
     }
 }
 
-/// The file with the model's columns added.
+/// The file with the model's columns added; `placement` counts for absolute positions.
 ///
 /// # Errors
 /// All faults of the file.
-pub fn predict(arm: &Arm, statement: &Statement, table: Table) -> Result<String, Faults> {
+pub fn predict(
+    arm: &Arm,
+    statement: &Statement,
+    placement: &Placement,
+    table: Table,
+) -> Result<String, Faults> {
     let subject = subject(arm, statement);
     let exact = Exact::new(&subject);
     let (names, columns): (&[&str], Vec<Vec<f64>>) = match channel_of(&table) {
@@ -42,7 +47,7 @@ pub fn predict(arm: &Arm, statement: &Statement, table: Table) -> Result<String,
             (&["model_windup_arcmin"], rows.iter().map(|w| vec![*w]).collect())
         }
         Some(Channel::Positions) => {
-            let rows = exact.positions_mm(&position_rows(&table, arm));
+            let rows = exact.positions_mm(&position_rows(&table, arm), placement);
             (&["model_x_mm", "model_y_mm", "model_z_mm"], rows.iter().map(|r| r.to_vec()).collect())
         }
         None => {

@@ -1,6 +1,6 @@
 //! Where a point on the tool is, for any calibrated geometry, and how it moves with each number of it.
 
-use crate::arm::{JointAngle, Piece, Structure};
+use crate::arm::{Arm, Element, JointAngle, Piece, Structure};
 use crate::reconcile::campaign::PositionsSpec;
 use nalgebra::{Rotation3, Unit, Vector3};
 
@@ -131,6 +131,26 @@ impl Geometry {
                 Number::Vector(i, c) => self.vectors_m[i][c] += by,
             }
         }
+    }
+
+    /// Writes the calibrated axes and vectors into the arm. A joint's zero turns everything outboard of
+    /// it, so the later axes and vectors, and the points on the last frame, are turned with it; returns
+    /// the points as they are then.
+    pub fn write_into(&self, arm: &mut Arm) -> Vec<Vector3<f64>> {
+        let mut turned = Rotation3::identity();
+        for (i, element) in arm.chain.iter_mut().enumerate() {
+            match element {
+                Element::Joint(joint) => {
+                    joint.axis = Unit::new_normalize(turned * self.axes[i].into_inner());
+                    if let Some(angle) = &self.angles[i] {
+                        let zero = angle.of(&self.zeros_rad);
+                        turned *= Rotation3::from_axis_angle(&self.axes[i], zero);
+                    }
+                }
+                Element::Link(link) => link.vector_m = turned * self.vectors_m[i],
+            }
+        }
+        self.tools_m.iter().map(|t| turned * t).collect()
     }
 
     /// A point in a pose with its derivatives.

@@ -104,7 +104,7 @@ pub fn analyze(campaign: &Campaign) -> Positions {
     // joints first, then what yields across them: each class one effect at a time
     for class in [["joint_compliance", "connection_compliance"], ["bearing_tilt", "base_compliance"]] {
         while let Some((added, next)) = out.add(&fitted, &class) {
-            fitted = next;
+            fitted = out.without_idle(next);
             let label = format!("{}@{}", out.candidates[added].effect, out.candidates[added].at);
             out.stages.push(stage(&label, &out.samples, &out.numbers, &fitted));
         }
@@ -115,6 +115,17 @@ pub fn analyze(campaign: &Campaign) -> Positions {
 }
 
 impl Positions {
+    /// The fit without effects that a later one has taken the place of.
+    fn without_idle(&self, fitted: Fitted) -> Fitted {
+        let pairs = fitted.effects.iter().zip(&fitted.compliances);
+        let busy: Vec<usize> = pairs.filter(|(_, c)| **c > 1e-10).map(|(e, _)| *e).collect();
+        if busy.len() == fitted.effects.len() {
+            return fitted;
+        }
+        let all: Vec<&Sample> = self.samples.iter().collect();
+        fit(&all, &self.numbers, &busy, &fitted)
+    }
+
     /// The effect of a class that raises the evidence most, if one does.
     fn add(&self, base: &Fitted, class: &[&str]) -> Option<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
@@ -256,6 +267,9 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     let scale_mm = 1e3 * found.fitted.scale_m;
     let mut corrected = campaign.arm.clone();
     corrected.effects.extend(effects.iter().map(|f| found.effect(campaign, f)));
+    let tools = found.fitted.geometry.write_into(&mut corrected);
+    let mut provenance = correct::provenance(campaign, verdict, Vec::new());
+    provenance["placement"] = found.placement(&points(campaign), &tools);
     let sigma = campaign.positions.first().map_or(1.0, |r| r.sigma_mm);
     Outcome {
         campaign: campaign.statement.name.clone(),
@@ -279,7 +293,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         calibrated: Vec::new(),
         evidence: found.evidence(),
         residuals: Vec::new(),
-        provenance: correct::provenance(campaign, verdict, Vec::new()),
+        provenance,
         corrected,
         effects,
     }
@@ -298,6 +312,15 @@ impl Positions {
             parameters: vec![("stiffness_nm_per_rad".into(), vec![estimate])],
             indistinguishable_from: Vec::new(),
         }
+    }
+
+    /// Where the arm stands in the instrument's frame and where the points sit on its last frame.
+    fn placement(&self, names: &[String], tools_m: &[Vector3<f64>]) -> serde_json::Value {
+        let base = self.fitted.geometry.base.matrix();
+        let rotation: Vec<Vec<f64>> = (0..3).map(|i| base.row(i).iter().copied().collect()).collect();
+        let tools: serde_json::Map<String, serde_json::Value> =
+            names.iter().zip(tools_m).map(|(n, t)| (n.clone(), json!(t.as_slice()))).collect();
+        json!({"rotation": rotation, "origin_m": self.fitted.geometry.origin_m.as_slice(), "points_m": tools})
     }
 
     fn effect(&self, campaign: &Campaign, finding: &Finding) -> Effect {
