@@ -188,6 +188,12 @@ impl<'a> Node<'a> {
         None
     }
 
+    /// Records a fault at a path below this node and returns `None`.
+    pub fn fault_below<T>(&self, path: &str, problem: impl Into<String>, hint: &str) -> Option<T> {
+        self.document.fault(&join(&self.path, path), problem.into(), hint);
+        None
+    }
+
     /// This node as an object whose keys are all among `known`; unknown keys are faults.
     pub fn object(&self, known: &[&str]) -> Option<Object<'a>> {
         let Value::Object(map) = self.value else {

@@ -23,6 +23,7 @@ pub mod catalog;
 pub mod cli;
 pub mod fault;
 pub mod mechanics;
+pub mod reconcile;
 pub mod report;
 pub mod search;
 pub mod sizing;

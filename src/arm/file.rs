@@ -37,6 +37,7 @@ pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
     let effects = root.or("effects", Vec::new(), read_effects);
     let arm = Arm { name: name?, gravity_m_s2: gravity?, chain: chain?, effects: effects? };
     check_names(&arm, &root)?;
+    check_effects(&arm, &root)?;
     Some(arm)
 }
 
@@ -354,6 +355,20 @@ fn read_parameters(node: &Node) -> Option<Vec<(String, Vec<f64>)>> {
         })
         .collect();
     read.into_iter().collect()
+}
+
+/// Every effect of the arm against what is known of its kind.
+fn check_effects(arm: &Arm, root: &Object) -> Option<()> {
+    let Some(node) = root.optional("effects") else { return Some(()) };
+    let structure = arm.nominal_structure(super::JointModel::default());
+    let mut sound = true;
+    for (effect, node) in arm.effects.iter().zip(node.array()?) {
+        for fault in effect.faults(&structure) {
+            sound = false;
+            node.fault_below::<()>(&fault.field, fault.problem, &fault.hint);
+        }
+    }
+    sound.then_some(())
 }
 
 fn check_names(arm: &Arm, root: &Object) -> Option<()> {

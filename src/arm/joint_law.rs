@@ -80,6 +80,9 @@ impl Curve {
     }
 }
 
+/// Torques smaller than this are rounding errors of a joint that carries nothing \[N m\].
+const REST_NM: f64 = 1e-9;
+
 /// Play that closes smoothly: `theta += h tanh(T/Tc)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LostMotion {
@@ -128,6 +131,32 @@ impl JointLaw {
     pub fn rising_angle_rad(&self, torque_nm: f64) -> f64 {
         let angle = self.angle_rad(torque_nm);
         angle - angle.clamp(-self.hysteresis_rad, self.hysteresis_rad)
+    }
+
+    /// Stiffness of the spring that the friction play drags: the gear's middle slope with the
+    /// connection in series \[N m/rad\].
+    pub fn play_stiffness_nm_per_rad(&self) -> f64 {
+        let gear = self.curve.middle_slope().tangent_compliance_rad_per_nm(0.0);
+        1.0 / (gear + self.connection_rad_per_nm)
+    }
+
+    /// Twist at a torque when the friction play stands at `state` (a torque \[N m\], updated): the play
+    /// follows the torque at a distance of at most k h.
+    pub fn play_angle_rad(&self, torque_nm: f64, state: &mut f64) -> f64 {
+        let angle = self.angle_rad(torque_nm);
+        if self.hysteresis_rad == 0.0 {
+            return angle;
+        }
+        let stiffness = self.play_stiffness_nm_per_rad();
+        let reach = stiffness * self.hysteresis_rad;
+        *state = state.max(torque_nm - reach).min(torque_nm + reach);
+        angle + (*state - torque_nm) / stiffness
+    }
+
+    /// Where the play stands after the torque's size has risen from rest to `torque_nm` \[N m\].
+    pub fn play_at_rest_nm(&self, torque_nm: f64) -> f64 {
+        let sign = if torque_nm.abs() < REST_NM { 0.0 } else { torque_nm.signum() };
+        torque_nm - sign * self.play_stiffness_nm_per_rad() * self.hysteresis_rad
     }
 
     /// Whether nothing twists.

@@ -5,7 +5,7 @@
 //! parallel to the world's; a joint's axis and a link's vector are written in the frame carried by
 //! the joints before it.
 
-mod effect;
+pub mod effect;
 mod file;
 mod joint_law;
 mod load;

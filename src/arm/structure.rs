@@ -99,8 +99,14 @@ pub struct Beam {
 }
 
 impl Arm {
-    /// The arm as mechanics sees it, with the joint curves the model asks for.
+    /// The arm as mechanics sees it, with the joint curves the model asks for and the effects of the
+    /// product applied. Effects of a test are left out: see [`Arm::ignored_effects`].
     pub fn structure(&self, joints: JointModel) -> Structure {
+        self.subject(joints).structure
+    }
+
+    /// The arm as mechanics sees it without any effect.
+    pub fn nominal_structure(&self, joints: JointModel) -> Structure {
         let driven = self.driven_joint_names();
         let pieces = self
             .chain

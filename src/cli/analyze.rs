@@ -91,12 +91,26 @@ pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Fai
         Some(path) => read_load_cases(Document::read(path)?, &arm.driven_joint_names())?,
         None => vec![case_of_flags(args, &arm)?],
     };
+    let ignored: Vec<String> =
+        arm.ignored_effects().iter().map(|e| format!("{} at {}", e.effect, e.at)).collect();
     let solved: Vec<Solved> = cases.into_iter().map(|case| solve(args, &arm, case)).collect();
     Ok(match (args.json, &args.cases) {
-        (true, None) => pretty(&solved[0].to_json()),
-        (true, Some(_)) => pretty(&Value::Array(solved.iter().map(Solved::to_json).collect())),
-        (false, _) => solved.iter().map(|s| s.to_text(&arm)).collect::<Vec<_>>().join("\n"),
+        (true, None) => pretty(&solved[0].to_json(&ignored)),
+        (true, Some(_)) => pretty(&Value::Array(solved.iter().map(|s| s.to_json(&ignored)).collect())),
+        (false, _) => {
+            solved.iter().map(|s| s.to_text(&arm)).collect::<Vec<_>>().join("\n") + &ignored_text(&ignored)
+        }
     })
+}
+
+/// Effects of a test rather than of the arm stay out of an analysis; it says so.
+fn ignored_text(ignored: &[String]) -> String {
+    match ignored {
+        [] => String::new(),
+        effects => {
+            format!("  left out, because they describe a test and not the arm: {}\n", effects.join(", "))
+        }
+    }
 }
 
 fn pretty(value: &Value) -> String {
@@ -147,7 +161,7 @@ fn solve(args: &AnalyzeArgs, arm: &Arm, case: LoadCase) -> Solved {
 }
 
 impl Solved {
-    fn to_json(&self) -> Value {
+    fn to_json(&self, ignored: &[String]) -> Value {
         let torques: Map<String, Value> =
             self.statics.joint_torques_nm.iter().map(|(n, t)| (n.clone(), json!(t))).collect();
         let shares: Vec<Value> = self
@@ -163,6 +177,9 @@ impl Solved {
             "shares": shares,
             "modes": self.modes.iter().map(mode_json).collect::<Vec<_>>(),
         });
+        if !ignored.is_empty() {
+            out["ignored_effects"] = json!(ignored);
+        }
         if let Some(response) = &self.response {
             out["response"] = response
                 .iter()

@@ -5,6 +5,8 @@ mod analyze;
 pub mod catalog;
 pub mod compare;
 mod design;
+pub mod predict;
+pub mod reconcile;
 mod run;
 mod size;
 
@@ -51,6 +53,10 @@ enum Verb {
     Design(design::DesignArgs),
     /// Put fronts side by side: materials of one study, or several studies
     Compare(compare::CompareArgs),
+    /// Find where an arm and its measurements disagree and which physics is missing
+    Reconcile(reconcile::ReconcileArgs),
+    /// Write the model's value beside every reading of a file
+    Predict(predict::PredictArgs),
     /// Check the catalogs, or list what is in them
     Catalog(catalog::CatalogArgs),
 }
@@ -167,6 +173,8 @@ pub fn run(cli: Cli) -> Result<String, Failure> {
         Verb::Compare(args) => compare::run(&args),
         Verb::Analyze(args) => analyze::run(&args, &catalogs?),
         Verb::Design(args) => design::run(&args, &catalogs?),
+        Verb::Reconcile(args) => reconcile::run(&args, &catalogs?).map(|(_, text)| text),
+        Verb::Predict(args) => predict::run(&args, &catalogs?),
     }
 }
 

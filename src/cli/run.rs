@@ -201,14 +201,14 @@ impl Finished<'_> {
                 not_checked: study.not_checked.clone(),
                 results: self.dir.display().to_string(),
             },
-            overall: front_table(self.problem, &self.outcome.front),
+            overall: front_table(self.problem, self.catalogs, &self.outcome.front),
             materials: materials
                 .into_iter()
                 .zip(&self.outcome.by_material)
                 .map(|(name, front)| MaterialFront {
                     cost_eur_per_kg: cost(&name),
                     name,
-                    front: front_table(self.problem, front),
+                    front: front_table(self.problem, self.catalogs, front),
                 })
                 .collect(),
         }

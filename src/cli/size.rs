@@ -7,7 +7,7 @@ use crate::search::OutwardIn;
 use crate::search::design::{number_of, options};
 use crate::search::outward::{ArmProblem, Partial};
 use crate::search::space::SpacePiece;
-use crate::sizing::{JointSizingRow, render_rows};
+use crate::sizing::render_rows;
 use crate::study::{Study, sizing_rows};
 use clap::Args;
 use std::fmt::Write;
@@ -51,14 +51,14 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     if let Some(joint) = &args.all_fits {
         return all_fits(&problem, &chosen, joint);
     }
-    let rows = sizing_rows(&problem, &chosen).map_err(|slot| fails(&problem, &chosen, slot))?;
+    let rows = sizing_rows(&problem, catalogs, &chosen).map_err(|slot| fails(&problem, &chosen, slot))?;
     let text = format!("{}{}", heading(&study, &problem, &chosen), render_rows(&rows));
     let json = serde_json::to_string_pretty(&rows).expect("rows of numbers and strings serialize");
     if let Some(dir) = &args.out {
         let files = [("sizing.json", &json), ("sizing.txt", &text)];
         write_all(dir, &files.map(|(name, text)| (name.to_string(), text.as_bytes().to_vec())))?;
     }
-    Ok(if args.json { json } else { text + &notes(&rows) })
+    Ok(if args.json { json } else { text })
 }
 
 /// One option a level: the named design's, or the middle of each open link and the first drive.
@@ -135,16 +135,6 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
                 height * 1e3,
                 option.section.wall_m() * 1e3
             );
-        }
-    }
-    out
-}
-
-fn notes(rows: &[JointSizingRow]) -> String {
-    let mut out = String::new();
-    for row in rows {
-        for text in row.fails.iter().map(|f| format!("fails: {f}")).chain(row.not_checked.iter().cloned()) {
-            let _ = writeln!(out, "joint {}: {text}", row.joint);
         }
     }
     out

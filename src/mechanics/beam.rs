@@ -208,6 +208,13 @@ pub fn section_frame(vector_m: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::from_columns(&[x, z.cross(&x), z])
 }
 
+/// Compliance of each strain coordinate of a link, in the order of [`PreparedBeam::compliances`].
+pub fn compliances(link: &LinkPiece, model: LinkModel) -> Vec<f64> {
+    let length_m = link.vector_m.norm();
+    let coordinates = link.beam.map_or_else(Vec::new, |beam| coordinates(&beam, length_m, model));
+    coordinates.into_iter().map(|(_, _, compliance)| compliance).collect()
+}
+
 /// The strain coordinates of a tube with their compliances.
 fn coordinates(beam: &Beam, length_m: f64, model: LinkModel) -> Vec<(Strain, usize, f64)> {
     let material = &beam.material;

@@ -72,7 +72,7 @@ pub struct Partial {
     options: Vec<u32>,
     /// Drive or point mass per slot \[kg\].
     masses_kg: Vec<f64>,
-    stations: Vec<StationState>,
+    pub(super) stations: Vec<StationState>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -85,7 +85,7 @@ enum Group {
 
 /// What everything outboard does in one case.
 #[derive(Debug, Clone, PartialEq)]
-struct StationState {
+pub(super) struct StationState {
     wrench: Wrench,
     inertia: Matrix6<f64>,
     tip_m: Vector3<f64>,
@@ -255,7 +255,12 @@ impl<'c> ArmProblem<'c> {
     }
 
     /// What a joint is asked for: worst static torque and worst outboard inertia over the sizing cases.
-    fn demand(&self, states: &[StationState], slot: usize, motion: Option<&JointMotion>) -> JointDemand {
+    pub(super) fn demand(
+        &self,
+        states: &[StationState],
+        slot: usize,
+        motion: Option<&JointMotion>,
+    ) -> JointDemand {
         let (mut static_nm, mut inertia_kgm2) = (0.0f64, 0.0f64);
         for &case in &self.space.sizing_cases {
             let StationSlot::Joint(joint) = &self.stations[case].slots[slot] else { continue };

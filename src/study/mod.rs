@@ -14,11 +14,13 @@ pub(crate) use table::sizing_rows;
 pub use table::{front_table, slug};
 
 /// The built-in studies: name and text.
-pub const NAMED: [(&str, &str); 4] = [
+pub const NAMED: [(&str, &str); 6] = [
     ("compare-materials", include_str!("../../studies/compare-materials.json")),
     ("light-arm", include_str!("../../studies/light-arm.json")),
     ("stiff-arm", include_str!("../../studies/stiff-arm.json")),
     ("underwater-arm", include_str!("../../studies/underwater-arm.json")),
+    ("paper-hydraulic", include_str!("../../studies/paper-hydraulic.json")),
+    ("paper-electric", include_str!("../../studies/paper-electric.json")),
 ];
 
 /// The text of a built-in study.

@@ -2,12 +2,13 @@
 
 use super::outcome::Front;
 use crate::arm::Section;
+use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
 use crate::search::OutwardIn;
 use crate::search::design::{Part, id_of, options};
-use crate::search::outward::ArmProblem;
+use crate::search::outward::{ArmProblem, Partial};
 use crate::search::space::{DriveChoice, LinkOption, SpacePiece};
-use crate::sizing::JointSizingRow;
+use crate::sizing::{JointDemand, JointSizingRow};
 
 /// A name in lower case with runs of anything but letters and digits turned into one `-`.
 pub fn slug(name: &str) -> String {
@@ -23,14 +24,14 @@ pub fn slug(name: &str) -> String {
 }
 
 /// The table of a front.
-pub fn front_table(problem: &ArmProblem, front: &Front) -> FrontTable {
+pub fn front_table(problem: &ArmProblem, catalogs: &Catalogs, front: &Front) -> FrontTable {
     FrontTable {
-        columns: columns(problem),
-        rows: front.iter().filter_map(|judged| row(problem, judged)).collect(),
+        columns: columns(problem, catalogs),
+        rows: front.iter().filter_map(|judged| row(problem, catalogs, judged)).collect(),
     }
 }
 
-fn columns(problem: &ArmProblem) -> Vec<String> {
+fn columns(problem: &ArmProblem, catalogs: &Catalogs) -> Vec<String> {
     let mut out = vec!["design_id".to_string()];
     for piece in &problem.space().pieces {
         match piece {
@@ -46,7 +47,9 @@ fn columns(problem: &ArmProblem) -> Vec<String> {
     }
     out.extend(["tip_deflection_mm", "mass_kg", "lowest_mode_hz", "tie_group"].map(String::from));
     for (i, piece) in problem.space().pieces.iter().enumerate() {
-        if let (SpacePiece::Joint(joint), Some(_)) = (piece, problem.sized_joint(i)) {
+        if let SpacePiece::Joint(joint) = piece
+            && (problem.sized_joint(i).is_some() || problem.fixed_drive(i, catalogs).is_some())
+        {
             out.extend(["margin", "binds"].map(|what| format!("{}_{what}", joint.name)));
         }
     }
@@ -58,7 +61,7 @@ fn has_parts(drive: &DriveChoice) -> bool {
     !matches!(drive, DriveChoice::Given { parts: None, .. })
 }
 
-fn row(problem: &ArmProblem, judged: &super::Judged) -> Option<Vec<String>> {
+fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::Judged) -> Option<Vec<String>> {
     let chosen = options(problem.level_sizes(), judged.design.number)?;
     let mut out = vec![id_of(judged.design.number)];
     for (piece, part) in problem.space().pieces.iter().zip(problem.parts(&chosen)?) {
@@ -78,7 +81,7 @@ fn row(problem: &ArmProblem, judged: &super::Judged) -> Option<Vec<String>> {
     let o = judged.design.objectives;
     out.extend([o.tip_deflection_m * 1e3, o.mass_kg, o.lowest_mode_hz].map(number));
     out.push(judged.tie_group.to_string());
-    for joint in sizing_rows(problem, &chosen).ok()?.into_iter().rev() {
+    for joint in sizing_rows(problem, catalogs, &chosen).ok()?.into_iter().rev() {
         out.push(joint.margin.map_or(String::new(), number));
         out.push(joint.binds.unwrap_or_default().to_string());
     }
@@ -115,24 +118,54 @@ fn number(x: f64) -> String {
     format!("{x}")
 }
 
-/// The sizing of every joint with a drive from the catalogs, tip first; or the slot at which the
-/// design cannot hold.
-pub(crate) fn sizing_rows(problem: &ArmProblem, chosen: &[u32]) -> Result<Vec<JointSizingRow>, usize> {
-    let mut demands = Vec::new();
+/// The sizing of every joint with a drive from the catalogs, chosen or given, tip first; or the slot at
+/// which the design cannot hold.
+pub(crate) fn sizing_rows(
+    problem: &ArmProblem,
+    catalogs: &Catalogs,
+    chosen: &[u32],
+) -> Result<Vec<JointSizingRow>, usize> {
+    let mut rows = Vec::new();
+    // the drive of a sized joint is known once it is added: its row follows at the next slot
+    let mut open: Option<(usize, JointDemand, f64)> = None;
     let complete = problem.walk(chosen, |slot, partial| {
-        if problem.sized_joint(problem.piece_of_slot(slot)).is_some() {
-            demands.push((slot, problem.demand_at(partial, slot), problem.mass_kg(partial)));
+        rows.extend(close(problem, open.take(), partial));
+        let piece = problem.piece_of_slot(slot);
+        if problem.sized_joint(piece).is_some() {
+            open = Some((slot, problem.demand_at(partial, slot), problem.mass_kg(partial)));
+        } else if let Some(fixed) = problem.fixed_drive(piece, catalogs) {
+            let demand = problem.fixed_demand(partial, slot, &fixed.motion);
+            let passed = problem.mass_kg(partial) + fixed.mass_kg;
+            rows.push(JointSizingRow::new(
+                joint_name(problem, piece),
+                &fixed.drive,
+                &fixed.motion,
+                &demand,
+                passed,
+            ));
         }
     })?;
-    let chosen: Vec<u32> = problem.options(&complete).collect();
-    Ok(demands
-        .into_iter()
-        .filter_map(|(slot, demand, outboard_kg)| {
-            let piece = problem.piece_of_slot(slot);
-            let table = &problem.sized_joint(piece)?.table;
-            let drive = table.drive(chosen[piece] as usize);
-            let passed = outboard_kg + table.mass_kg(chosen[piece] as usize);
-            Some(JointSizingRow::new(table.joint(), &drive, table.motion(), &demand, passed))
-        })
-        .collect())
+    rows.extend(close(problem, open.take(), &complete));
+    Ok(rows)
+}
+
+fn joint_name<'p>(problem: &'p ArmProblem, piece: usize) -> &'p str {
+    match &problem.space().pieces[piece] {
+        SpacePiece::Joint(joint) => &joint.name,
+        _ => "",
+    }
+}
+
+/// The row of a sized joint whose drive is now known.
+fn close(
+    problem: &ArmProblem,
+    open: Option<(usize, JointDemand, f64)>,
+    with_it: &Partial,
+) -> Option<JointSizingRow> {
+    let (slot, demand, outboard_kg) = open?;
+    let piece = problem.piece_of_slot(slot);
+    let table = &problem.sized_joint(piece)?.table;
+    let index = problem.options(with_it).nth(piece)? as usize;
+    let passed = outboard_kg + table.mass_kg(index);
+    Some(JointSizingRow::new(table.joint(), &table.drive(index), table.motion(), &demand, passed))
 }

@@ -1,0 +1,44 @@
+//! What the arm stands on: tilt about world x and y at the chain's origin.
+
+use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 5e5, Scale::Stiffness).expected(0.0, 6.0)];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "base_compliance",
+    summary: "the base tilts about world x and y",
+    scope: Scope::Product,
+    places: &[Place::Base],
+    parameters: |_| PARAMETERS,
+    apply,
+};
+
+fn apply(numbers: &[f64], _at: &str, subject: &mut Subject) {
+    subject.structure.base_tilt_rad_per_nm += 1.0 / numbers[0];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn subject() -> Subject {
+        super::super::validate::testing::two_link_subject()
+    }
+
+    #[test]
+    fn it_is_the_same_as_the_tilt_of_a_vertical_first_joint() {
+        use crate::arm::{LinkModel, Payload};
+        use nalgebra::Vector3;
+        let tip = |kind: &Kind, at: &str| {
+            let mut subject = subject();
+            (kind.apply)(&[3e5], at, &mut subject);
+            let chain = crate::mechanics::Chain::new(&subject.structure, LinkModel::Full);
+            let posed = chain.pose_rad(&[0.7, 0.3], &Payload::default(), Vector3::new(5.0, -3.0, -10.0));
+            posed.statics().tip_displacement_m
+        };
+        let difference = tip(&KIND, "base") - tip(&super::super::bearing_tilt::KIND, "j1");
+        assert!(difference.norm() < 1e-15);
+    }
+}

@@ -1,0 +1,45 @@
+//! The output bearing: equal rotational springs about the two axes across the joint's.
+
+use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.0, 6.0)];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "bearing_tilt",
+    summary: "the output bearing tilts about the two axes across the joint",
+    scope: Scope::Product,
+    places: &[Place::Joint],
+    parameters: |_| PARAMETERS,
+    apply,
+};
+
+fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
+    if let Some(joint) = subject.structure.joint_mut(at) {
+        joint.tilt_rad_per_nm += 1.0 / numbers[0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn subject() -> Subject {
+        super::super::validate::testing::two_link_subject()
+    }
+
+    #[test]
+    fn a_moment_across_the_axis_tilts_the_outboard_arm() {
+        use crate::arm::{LinkModel, Payload};
+        use nalgebra::Vector3;
+        let mut subject = subject();
+        apply(&[2e5], "j1", &mut subject);
+        subject.structure.gravity_m_s2 = 0.0;
+        let chain = crate::mechanics::Chain::new(&subject.structure, LinkModel::Rigid);
+        // j1 turns about z; 10 N down at the tip, 1 m out: moment 10 N m across the axis
+        let posed = chain.pose_rad(&[0.0, 0.0], &Payload::default(), Vector3::new(0.0, 0.0, -10.0));
+        let share = posed.statics().shares_m.iter().find(|(n, _)| n == "j1.bearing_tilt").expect("share").1;
+        assert!((share.z + 10.0 / 2e5).abs() < 1e-12, "{share}");
+    }
+}

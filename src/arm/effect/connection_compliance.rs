@@ -1,0 +1,40 @@
+//! Flange, shaft or bolts that twist in series with the gear: `1/k = 1/k_gear + 1/c`.
+
+use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 1e6, Scale::Stiffness).expected(0.0, 4.0)];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "connection_compliance",
+    summary: "flange, shaft or bolts twisting in series with the gear",
+    scope: Scope::Product,
+    places: &[Place::Joint],
+    parameters: |_| PARAMETERS,
+    apply,
+};
+
+fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
+    if let Some(joint) = subject.structure.joint_mut(at) {
+        joint.law.connection_rad_per_nm += 1.0 / numbers[0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn subject() -> Subject {
+        super::super::validate::testing::two_link_subject()
+    }
+
+    #[test]
+    fn two_springs_in_series() {
+        let mut subject = subject();
+        apply(&[2e5], "j1", &mut subject);
+        let law = subject.structure.joint_mut("j1").expect("j1").law;
+        assert!((law.angle_rad(100.0) - 100.0 * (1.0 / 1e5 + 1.0 / 2e5)).abs() < 1e-15);
+        assert!((1.0 / law.tangent_compliance_rad_per_nm(0.0) - 2e5 / 3.0).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,46 @@
+//! A point mass at a joint beyond tolerance.
+
+use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("delta_kg", -10.0, 50.0, 1.0, Scale::Linear).expected(-3.0, 12.0)];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "extra_mass",
+    summary: "a point mass at a joint beyond tolerance",
+    scope: Scope::Product,
+    places: &[Place::Joint],
+    parameters: |_| PARAMETERS,
+    apply,
+};
+
+fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
+    if let Some(joint) = subject.structure.joint_mut(at) {
+        joint.mass_kg += numbers[0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn subject() -> Subject {
+        super::super::validate::testing::two_link_subject()
+    }
+
+    #[test]
+    fn a_kilogram_at_half_a_metre_adds_its_weight_times_the_lever() {
+        use crate::arm::{LinkModel, Payload};
+        use nalgebra::Vector3;
+        let torque = |delta: f64| {
+            let mut subject = subject();
+            apply(&[delta], "j2", &mut subject);
+            subject.structure.joint_mut("j1").expect("j1").axis = nalgebra::Vector3::y_axis();
+            let chain = crate::mechanics::Chain::new(&subject.structure, LinkModel::Rigid);
+            let posed = chain.pose_rad(&[0.0, 0.0], &Payload::default(), Vector3::zeros());
+            posed.statics().joint_torques_nm[0].1
+        };
+        assert!((torque(1.0) - torque(0.0) - 9.81 * 0.5).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,44 @@
+//! Cables and hoses along a link: mass and weight on its axis, no stiffness.
+
+use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("kg_per_m", 0.0, 100.0, 2.0, Scale::Linear).expected(0.0, 15.0)];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "harness_mass",
+    summary: "cables and hoses along a link: mass without stiffness",
+    scope: Scope::Product,
+    places: &[Place::Link],
+    parameters: |_| PARAMETERS,
+    apply,
+};
+
+fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
+    if let Some(link) = subject.structure.link_mut(at) {
+        link.harness_kg_per_m += numbers[0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn subject() -> Subject {
+        super::super::validate::testing::two_link_subject()
+    }
+
+    #[test]
+    fn the_root_carries_its_weight() {
+        use crate::arm::{LinkModel, Payload};
+        use nalgebra::Vector3;
+        let base_force = |kg_per_m: f64| {
+            let mut subject = subject();
+            apply(&[kg_per_m], "forearm", &mut subject);
+            let chain = crate::mechanics::Chain::new(&subject.structure, LinkModel::Full);
+            chain.pose_rad(&[0.0, 0.0], &Payload::default(), Vector3::zeros()).statics().base_wrench[2]
+        };
+        assert!((base_force(2.0) - base_force(0.0) + 2.0 * 0.5 * 9.81).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,53 @@
+//! Friction play: the twist lags a torque reversal by up to the half width.
+
+use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("half_width_rad", 0.0, 5e-3, 1e-4, Scale::Linear).expected(0.0, 2e-3)];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "hysteresis",
+    summary: "friction play: the twist lags a reversal of torque",
+    scope: Scope::Product,
+    places: &[Place::Joint],
+    parameters: |_| PARAMETERS,
+    apply,
+};
+
+fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
+    if let Some(joint) = subject.structure.joint_mut(at) {
+        joint.law.hysteresis_rad += numbers[0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn subject() -> Subject {
+        super::super::validate::testing::two_link_subject()
+    }
+
+    #[test]
+    fn a_torque_rising_from_rest_twists_less_by_the_half_width() {
+        let mut subject = subject();
+        apply(&[1e-4], "j1", &mut subject);
+        let law = subject.structure.joint_mut("j1").expect("j1").law;
+        assert!((law.rising_angle_rad(100.0) - (100.0 / 1e5 - 1e-4)).abs() < 1e-15);
+        assert!((law.tangent_compliance_rad_per_nm(100.0) - 1e-5).abs() < 1e-20);
+    }
+
+    #[test]
+    fn the_play_drags_its_spring_at_the_half_width() {
+        let mut subject = subject();
+        apply(&[1e-4], "j1", &mut subject);
+        let law = subject.structure.joint_mut("j1").expect("j1").law;
+        // k h = 10 N m: from the far edge at 0, up to 100, back to 50, back to 95
+        let mut state = 10.0;
+        let twist: Vec<f64> = [100.0, 50.0, 45.0].map(|t| law.play_angle_rad(t, &mut state)).to_vec();
+        assert!((twist[0] - (1e-3 - 1e-4)).abs() < 1e-15);
+        assert!((twist[1] - (0.5e-3 + 1e-4)).abs() < 1e-15);
+        assert!((twist[2] - (0.45e-3 + 1e-4)).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,40 @@
+//! The twist of a joint whose nominal model is rigid.
+
+use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.0, 20.0)];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "joint_compliance",
+    summary: "a joint that the model holds rigid twists",
+    scope: Scope::Product,
+    places: &[Place::Joint],
+    parameters: |_| PARAMETERS,
+    apply,
+};
+
+fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
+    if let Some(joint) = subject.structure.joint_mut(at) {
+        joint.law.connection_rad_per_nm += 1.0 / numbers[0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn subject() -> Subject {
+        super::super::validate::testing::two_link_subject()
+    }
+
+    #[test]
+    fn a_rigid_joint_becomes_a_spring() {
+        let mut subject = subject();
+        subject.structure.joint_mut("j1").expect("j1").law = crate::arm::Curve::Rigid.into();
+        apply(&[5e4], "j1", &mut subject);
+        let law = subject.structure.joint_mut("j1").expect("j1").law;
+        assert!((law.angle_rad(100.0) - 100.0 / 5e4).abs() < 1e-18);
+    }
+}

@@ -1,0 +1,46 @@
+//! The bending, shear, torsion and stretch of a link that the nominal model holds rigid, as a factor on its own compliance.
+
+use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("factor", 0.0, 20.0, 1.0, Scale::Linear).expected(0.0, 5.0)];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "link_flexibility",
+    summary: "a link that the model holds rigid bends; 1 = as its section says",
+    scope: Scope::Product,
+    places: &[Place::Tube],
+    parameters: |_| PARAMETERS,
+    apply,
+};
+
+fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
+    if let Some(beam) = subject.structure.link_mut(at).and_then(|l| l.beam.as_mut()) {
+        beam.flexibility = numbers[0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn subject() -> Subject {
+        super::super::validate::testing::two_link_subject()
+    }
+
+    #[test]
+    fn the_factor_scales_the_links_share() {
+        use crate::arm::{LinkModel, Payload};
+        use nalgebra::Vector3;
+        let share = |factor: f64| {
+            let mut subject = subject();
+            apply(&[factor], "forearm", &mut subject);
+            let chain = crate::mechanics::Chain::new(&subject.structure, LinkModel::Full);
+            let posed = chain.pose_rad(&[0.0, 0.0], &Payload::default(), Vector3::new(0.0, 0.0, -10.0));
+            posed.statics().shares_m.iter().find(|(n, _)| n == "forearm").expect("share").1.z
+        };
+        assert!((share(3.0) / share(1.0) - 3.0).abs() < 1e-12);
+        assert_eq!(share(0.0), 0.0);
+    }
+}

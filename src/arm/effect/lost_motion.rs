@@ -1,0 +1,43 @@
+//! Play that closes smoothly: `theta += h tanh(T/T_c)`.
+
+use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+use crate::arm::LostMotion;
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter::number("half_width_rad", 0.0, 5e-3, 1.5e-4, Scale::Linear).expected(0.0, 2e-3),
+    Parameter::number("torque_nm", 0.05, 1e4, 10.0, Scale::Log).expected(0.3, 500.0),
+];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "lost_motion",
+    summary: "play that closes smoothly as the torque grows",
+    scope: Scope::Product,
+    places: &[Place::Joint],
+    parameters: |_| PARAMETERS,
+    apply,
+};
+
+fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
+    if let Some(joint) = subject.structure.joint_mut(at) {
+        joint.law.lost_motion = Some(LostMotion { half_width_rad: numbers[0], torque_nm: numbers[1] });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn subject() -> Subject {
+        super::super::validate::testing::two_link_subject()
+    }
+
+    #[test]
+    fn the_play_adds_its_half_width_at_high_torque_and_its_slope_at_none() {
+        let mut subject = subject();
+        apply(&[2e-4, 10.0], "j1", &mut subject);
+        let law = subject.structure.joint_mut("j1").expect("j1").law;
+        assert!((law.angle_rad(1000.0) - (1000.0 / 1e5 + 2e-4)).abs() < 1e-15);
+        assert!((law.tangent_compliance_rad_per_nm(0.0) - (1e-5 + 2e-5)).abs() < 1e-18);
+    }
+}

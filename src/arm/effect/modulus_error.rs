@@ -1,0 +1,46 @@
+//! A factor on Young's modulus of one link: layup, bond lines. G and density unchanged.
+
+use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("factor", 0.05, 5.0, 0.85, Scale::Reciprocal).expected(0.5, 3.0)];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "modulus_error",
+    summary: "one link has another modulus of elasticity than its material",
+    scope: Scope::Product,
+    places: &[Place::Tube],
+    parameters: |_| PARAMETERS,
+    apply,
+};
+
+fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
+    if let Some(beam) = subject.structure.link_mut(at).and_then(|l| l.beam.as_mut()) {
+        beam.material.youngs_modulus_pa *= numbers[0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn subject() -> Subject {
+        super::super::validate::testing::two_link_subject()
+    }
+
+    #[test]
+    fn bending_grows_by_the_reciprocal_and_torsion_does_not() {
+        use crate::arm::LinkModel;
+        use crate::mechanics::beam::PreparedBeam;
+        let beam = |factor: f64| {
+            let mut subject = subject();
+            apply(&[factor], "forearm", &mut subject);
+            let link = subject.structure.links().last().expect("forearm").clone();
+            PreparedBeam::new(&link, &subject.structure, LinkModel::Full).expect("beam").compliances
+        };
+        let (nominal, soft) = (beam(1.0), beam(0.5));
+        assert!((soft[0] / nominal[0] - 2.0).abs() < 1e-12, "curvature");
+        assert!((soft[12] / nominal[12] - 1.0).abs() < 1e-12, "twist");
+    }
+}

@@ -1,0 +1,44 @@
+//! Single rows that are gross errors: a slipped reflector, a typing error.
+
+use super::{Channel, Kind, Parameter, Place, Scale, Scope, Subject};
+
+/// As many rows as there are.
+const ROWS: &[Parameter] =
+    &[Parameter { count: 0, ..Parameter::number("rows", 1.0, 1e9, 1.0, Scale::Linear) }];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "outlier",
+    summary: "single rows are gross errors",
+    scope: Scope::Test,
+    places: &[
+        Place::Channel(Channel::Static),
+        Place::Channel(Channel::Modal),
+        Place::Channel(Channel::Windup),
+        Place::Channel(Channel::Positions),
+    ],
+    parameters: |_| ROWS,
+    apply,
+};
+
+fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
+    if let Some(reading) = subject.channel_mut(at) {
+        reading.outlier_rows.extend(numbers.iter().map(|n| *n as usize));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn subject() -> Subject {
+        super::super::validate::testing::two_link_subject()
+    }
+
+    #[test]
+    fn the_rows_are_remembered() {
+        let mut subject = subject();
+        apply(&[3.0, 17.0], "static", &mut subject);
+        assert_eq!(subject.channels[Channel::Static as usize].outlier_rows, [3, 17]);
+    }
+}

@@ -1,0 +1,44 @@
+//! A sensor whose reading is a factor times the truth.
+
+use super::{Channel, Kind, Parameter, Place, Scale, Scope, Subject};
+
+const PARAMETERS: &[Parameter] =
+    &[Parameter::number("gain", 0.2, 5.0, 1.03, Scale::Linear).expected(0.6, 1.6)];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "sensor_gain",
+    summary: "the sensor of a channel reads a factor times the truth",
+    scope: Scope::Test,
+    places: &[
+        Place::Channel(Channel::Static),
+        Place::Channel(Channel::Modal),
+        Place::Channel(Channel::Windup),
+        Place::Channel(Channel::Positions),
+    ],
+    parameters: |_| PARAMETERS,
+    apply,
+};
+
+fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
+    if let Some(reading) = subject.channel_mut(at) {
+        reading.factor *= numbers[0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn subject() -> Subject {
+        super::super::validate::testing::two_link_subject()
+    }
+
+    #[test]
+    fn the_reading_is_gain_times_truth() {
+        let mut subject = subject();
+        apply(&[1.05], "static", &mut subject);
+        assert_eq!(subject.channels[Channel::Static as usize].of(2.0, 1, 7), 2.1);
+        assert_eq!(subject.channels[Channel::Modal as usize].of(2.0, 0, 7), 2.0);
+    }
+}

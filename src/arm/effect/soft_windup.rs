@@ -1,0 +1,54 @@
+//! The gear's three-segment torsion curve in place of the joint's single number.
+
+use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+use crate::arm::{Curve, Windup};
+
+/// A joint's single number is its gear's middle slope K2, so K2 is expected near it, K1 below, K3 above.
+const PARAMETERS: &[Parameter] = &[
+    Parameter::number("k1_nm_per_rad", 1.0, 1e10, 1e5, Scale::Stiffness).expected(1.02, 4.0),
+    Parameter::number("k2_nm_per_rad", 1.0, 1e10, 1.5e5, Scale::Stiffness).expected(0.9, 1.1),
+    Parameter::number("k3_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.25, 0.98),
+    Parameter::number("t1_nm", 0.01, 1e5, 50.0, Scale::Log).expected(0.5, 5e3),
+    Parameter::number("t2_nm", 0.01, 1e5, 150.0, Scale::Log).expected(0.5, 5e3),
+];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "soft_windup",
+    summary: "the three-segment torsion curve replaces the single stiffness",
+    scope: Scope::Product,
+    places: &[Place::Joint],
+    parameters: |_| PARAMETERS,
+    apply,
+};
+
+fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
+    if let Some(joint) = subject.structure.joint_mut(at) {
+        joint.law.curve = Curve::Windup(Windup {
+            k1_nm_per_rad: numbers[0],
+            k2_nm_per_rad: numbers[1],
+            k3_nm_per_rad: numbers[2],
+            t1_nm: numbers[3],
+            t2_nm: numbers[4].max(numbers[3]),
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn subject() -> Subject {
+        super::super::validate::testing::two_link_subject()
+    }
+
+    #[test]
+    fn the_twist_is_the_sum_of_the_segments() {
+        let mut subject = subject();
+        apply(&[4e4, 8e4, 1e5, 10.0, 30.0], "j1", &mut subject);
+        let law = subject.structure.joint_mut("j1").expect("j1").law;
+        let by_hand = 10.0 / 4e4 + 20.0 / 8e4 + 15.0 / 1e5;
+        assert!((law.angle_rad(-45.0) + by_hand).abs() < 1e-15);
+        assert_eq!(1.0 / law.tangent_compliance_rad_per_nm(20.0), 8e4);
+    }
+}

@@ -1,0 +1,24 @@
+//! A channel whose clock runs ahead or behind. It has a meaning for time records only.
+
+use super::{Channel, Kind, Parameter, Place, Scale, Scope, Subject};
+
+const PARAMETERS: &[Parameter] = &[Parameter::number("seconds", -3600.0, 3600.0, 0.01, Scale::Linear)];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "time_shift",
+    summary: "the clock of a channel runs ahead or behind (time records)",
+    scope: Scope::Test,
+    places: &[
+        Place::Channel(Channel::Static),
+        Place::Channel(Channel::Modal),
+        Place::Channel(Channel::Windup),
+        Place::Channel(Channel::Positions),
+    ],
+    parameters: |_| PARAMETERS,
+    apply,
+};
+
+fn apply(_numbers: &[f64], _at: &str, _subject: &mut Subject) {
+    // static, modal, bench and position readings carry no time
+}

@@ -1,0 +1,191 @@
+//! What can be wrong with an effect in a file, and the effects a calculation leaves out.
+
+use super::{Effect, KINDS, Kind, Parameter, Place, Subject, kind};
+use crate::arm::{Arm, JointModel, Payload, Structure};
+use crate::fault::closest;
+
+/// One thing wrong with an effect: the key it concerns, the problem, and what to try.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EffectFault {
+    /// `effect`, `at` or `parameters.NAME`, relative to the effect.
+    pub field: String,
+    /// What is wrong.
+    pub problem: String,
+    /// What is allowed.
+    pub hint: String,
+}
+
+impl Effect {
+    /// Everything that is wrong with the effect for this arm.
+    pub fn faults(&self, structure: &Structure) -> Vec<EffectFault> {
+        let Some(kind) = kind(&self.effect) else { return vec![self.unknown_kind()] };
+        match structure.place(&self.at, kind.places) {
+            None => vec![self.wrong_place(kind, structure)],
+            Some(place) => self.parameter_faults((kind.parameters)(place)),
+        }
+    }
+
+    fn unknown_kind(&self) -> EffectFault {
+        let names: Vec<&str> = KINDS.iter().map(|k| k.name).collect();
+        let hint = match closest(&self.effect, &names) {
+            Some(name) => format!("did you mean \"{name}\"? known effects: {}", names.join(", ")),
+            None => format!("known effects: {}", names.join(", ")),
+        };
+        EffectFault {
+            field: "effect".into(),
+            problem: format!("effect \"{}\" is not known", self.effect),
+            hint,
+        }
+    }
+
+    fn wrong_place(&self, kind: &Kind, structure: &Structure) -> EffectFault {
+        let places: Vec<String> = kind.places.iter().flat_map(|p| structure.places(*p)).collect();
+        EffectFault {
+            field: "at".into(),
+            problem: format!("{} cannot sit at \"{}\"", kind.name, self.at),
+            hint: format!("its places in this arm: {}", places.join(", ")),
+        }
+    }
+
+    fn parameter_faults(&self, parameters: &[Parameter]) -> Vec<EffectFault> {
+        let mut faults = Vec::new();
+        let names: Vec<&str> = parameters.iter().map(|p| p.name).collect();
+        for (name, _) in self.parameters.iter().filter(|(n, _)| !names.contains(&n.as_str())) {
+            faults.push(EffectFault {
+                field: format!("parameters.{name}"),
+                problem: "unknown parameter".into(),
+                hint: format!("{} has: {}", self.effect, names.join(", ")),
+            });
+        }
+        faults.extend(parameters.iter().filter_map(|p| self.parameter_fault(p)));
+        faults
+    }
+
+    fn parameter_fault(&self, parameter: &Parameter) -> Option<EffectFault> {
+        let (problem, hint) = match self.parameters.iter().find(|(name, _)| name == parameter.name) {
+            None if parameter.default.is_some() => return None,
+            None => (format!("lacks \"{}\"", parameter.name), format!("add \"{}\": ...", parameter.name)),
+            Some((_, numbers)) if parameter.count > 0 && numbers.len() != parameter.count => (
+                format!("has {} numbers, not {}", numbers.len(), parameter.count),
+                format!("give {}", parameter.count),
+            ),
+            Some((_, numbers)) => {
+                let outside = numbers.iter().find(|n| !(parameter.low..=parameter.high).contains(*n))?;
+                (
+                    format!("= {outside} is out of bounds"),
+                    format!("give {} to {}", parameter.low, parameter.high),
+                )
+            }
+        };
+        Some(EffectFault { field: format!("parameters.{}", parameter.name), problem, hint })
+    }
+}
+
+impl Arm {
+    /// The effects that describe a test and not the product; `analyze` and studies leave them out.
+    pub fn ignored_effects(&self) -> Vec<&Effect> {
+        self.effects.iter().filter(|e| e.is_of_test()).collect()
+    }
+
+    /// The arm with all of its effects, those of the payload and of the channels included.
+    pub fn subject(&self, joints: JointModel) -> Subject {
+        let mut subject = Subject::new(self.nominal_structure(joints));
+        self.effects.iter().for_each(|effect| subject.apply(effect));
+        subject
+    }
+}
+
+impl Subject {
+    /// The true payload where `stated` is stated.
+    pub fn payload(&self, stated: &Payload) -> Payload {
+        if stated.mass_kg == 0.0 {
+            return *stated;
+        }
+        Payload {
+            mass_kg: stated.mass_kg + self.payload_delta_kg,
+            cg_m: stated.cg_m + self.payload_offset_m,
+            ..*stated
+        }
+    }
+}
+
+/// Whether an effect may sit at a kind of place in this arm as it is: what a rigid model lacks is
+/// offered only where the model is rigid, and what twists in series only where something twists.
+pub fn fits_nominal(kind: &Kind, place: Place, at: &str, structure: &Structure) -> bool {
+    let rigid_joint = structure.joints().any(|j| j.name == at && j.law.is_rigid());
+    let rigid_link = structure.links().any(|l| l.name == at && l.beam.is_some_and(|b| b.flexibility == 0.0));
+    match (kind.name, place) {
+        ("joint_compliance", Place::Joint) => rigid_joint,
+        ("connection_compliance" | "soft_windup" | "lost_motion" | "hysteresis", Place::Joint) => {
+            !rigid_joint
+        }
+        ("link_flexibility", _) => rigid_link,
+        ("modulus_error", _) => !rigid_link,
+        _ => true,
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod testing {
+    use super::*;
+    use crate::arm::read_arm_document;
+    use crate::catalog::Catalogs;
+    use crate::fault::{Document, Faults};
+
+    const CHAIN: &str = r#"{"name": "two",
+      "materials": {"steel": {"youngs_modulus_pa": 2.1e11, "shear_modulus_pa": 8.1e10, "density_kg_m3": 7850}},
+      "chain": [
+       {"type": "joint", "name": "j1", "axis": [0,0,1], "stiffness_nm_per_rad": 1e5, "mass_kg": 5},
+       {"type": "link", "name": "upper", "vector_m": [0.5,0,0], "material": "steel",
+        "section": {"shape": "rectangular_tube", "width_m": 0.1, "height_m": 0.1, "wall_m": 0.005}},
+       {"type": "joint", "name": "j2", "axis": [0,1,0], "stiffness_nm_per_rad": 5e4, "mass_kg": 3},
+       {"type": "link", "name": "forearm", "vector_m": [0.5,0,0], "material": "steel",
+        "section": {"shape": "rectangular_tube", "width_m": 0.1, "height_m": 0.1, "wall_m": 0.005}}],
+      "effects": EFFECTS}"#;
+
+    pub(crate) fn read_with(effects: &str) -> Result<Arm, Faults> {
+        let text = CHAIN.replace("EFFECTS", effects);
+        read_arm_document(Document::parse("arm.json", &text)?, &Catalogs::default())
+    }
+
+    pub(crate) fn two_link_subject() -> Subject {
+        read_with("[]").expect("sound arm").subject(JointModel::ThreeSegment)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::testing::read_with;
+    use super::*;
+
+    #[test]
+    fn a_sound_effect_changes_the_structure() {
+        let arm = read_with(
+            r#"[{"effect": "bearing_tilt", "at": "j2", "parameters": {"stiffness_nm_per_rad": 2e5}},
+                {"effect": "sensor_gain", "at": "static", "parameters": {"gain": 1.1}}]"#,
+        )
+        .expect("sound arm");
+        let mut structure = arm.structure(JointModel::ThreeSegment);
+        assert_eq!(structure.joint_mut("j2").expect("j2").tilt_rad_per_nm, 1.0 / 2e5);
+        assert_eq!(arm.ignored_effects().len(), 1);
+        assert_eq!(arm.ignored_effects()[0].effect, "sensor_gain");
+    }
+
+    #[test]
+    fn every_fault_of_the_effects_is_reported_at_once() {
+        let faults = read_with(
+            r#"[{"effect": "bearing_tlt", "at": "j2", "parameters": {}},
+                {"effect": "bearing_tilt", "at": "upper", "parameters": {"stiffness_nm_per_rad": 2e5}},
+                {"effect": "harness_mass", "at": "upper", "parameters": {"kg": 1}},
+                {"effect": "lost_motion", "at": "j1", "parameters": {"half_width_rad": -1, "torque_nm": 5}}]"#,
+        )
+        .expect_err("faults")
+        .0;
+        let text: Vec<String> = faults.iter().map(|f| f.to_string()).collect();
+        assert_eq!(faults.len(), 5, "{text:#?}");
+        assert!(text[0].contains("did you mean \"bearing_tilt\""), "{}", text[0]);
+        assert!(text[1].contains("its places in this arm: j1, j2"), "{}", text[1]);
+        assert!(text[2].contains("unknown parameter") && text[3].contains("lacks \"kg_per_m\""));
+        assert!(text[4].contains("-1 is out of bounds"), "{}", text[4]);
+    }
+}

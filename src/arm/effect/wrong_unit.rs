@@ -1,0 +1,60 @@
+//! A channel written in another unit than its column says: inches, metres, degrees.
+
+use super::{Channel, Kind, Parameter, Place, Scale, Scope, Subject};
+
+const PARAMETERS: &[Parameter] = &[Parameter::number("factor", 1e-7, 1e7, 25.4, Scale::Log)];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "wrong_unit",
+    summary: "a channel is written in another unit than its column says",
+    scope: Scope::Test,
+    places: &[
+        Place::Channel(Channel::Static),
+        Place::Channel(Channel::Modal),
+        Place::Channel(Channel::Windup),
+        Place::Channel(Channel::Positions),
+    ],
+    parameters: |_| PARAMETERS,
+    apply,
+};
+
+fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
+    if let Some(reading) = subject.channel_mut(at) {
+        reading.factor *= numbers[0];
+    }
+}
+
+/// Factors that unit slips leave in a column, with what happened.
+pub const SLIPS: &[(f64, &str)] = &[
+    (25.4, "a value in mm stands 25.4 times too large: converted from inches twice"),
+    (1.0 / 25.4, "inches in a column of mm"),
+    (1000.0, "micrometres in a column of mm, or a conversion done twice"),
+    (1e-3, "metres in a column of mm"),
+    (10.0, "tenths in the column"),
+    (0.1, "cm in a column of mm"),
+    (std::f64::consts::PI / 180.0, "radians in a column of degrees"),
+    (180.0 / std::f64::consts::PI, "degrees in a column of radians"),
+    (60.0, "arcseconds in a column of arcmin, or rpm in a column of Hz"),
+    (1.0 / 60.0, "degrees in a column of arcmin"),
+    (std::f64::consts::TAU, "rad/s in a column of Hz"),
+    (1.0 / std::f64::consts::TAU, "a frequency divided by 2 pi twice"),
+    (std::f64::consts::PI / 10800.0, "radians in a column of arcmin"),
+    (0.1 * std::f64::consts::PI / 10.8, "milliradians in a column of arcmin"),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn subject() -> Subject {
+        super::super::validate::testing::two_link_subject()
+    }
+
+    #[test]
+    fn metres_in_a_column_of_millimetres() {
+        let mut subject = subject();
+        apply(&[1e-3], "static", &mut subject);
+        assert_eq!(subject.channels[Channel::Static as usize].of(2.0, 0, 0), 2e-3);
+    }
+}

@@ -1,0 +1,448 @@
+//! The workflow: is there a gap, what is missing, how sure is that, does it hold on kept-out poses.
+
+use super::campaign::Campaign;
+use super::fit::{Effort, Fit, Weights};
+use super::forward::Forward;
+use super::interval::{Interval, deviations, intervals};
+use super::kept_out::{self, KeptOut, rms};
+use super::lack_of_fit::{LackOfFit, lack_of_fit};
+use super::model::{Calibration, Candidate, Knob, Model, Nuisance, candidates};
+use super::noise::Noise;
+use super::select::{Scored, Search, Selection};
+use super::verdict::{Calibrated, Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict};
+use super::{correct, locate, next_test};
+
+/// Most alternatives an effect may have and still be named.
+const MOST_ALTERNATIVES: usize = 3;
+/// Fewest rows that can speak.
+const FEWEST_ROWS: usize = 11;
+/// Fewest poses that can speak.
+const FEWEST_POSES: usize = 3;
+
+/// Reconciles a campaign with its arm.
+pub fn reconcile(campaign: &Campaign) -> Outcome {
+    if !campaign.positions.is_empty() {
+        return super::positions::reconcile(campaign);
+    }
+    let mut forward = Forward::new(campaign);
+    let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
+    let candidates = candidates(&forward);
+    let found = settle(&mut forward, &nuisance, &candidates);
+    let weights = found.noise.weights(&forward);
+    let coefficients = {
+        let search =
+            Search { forward: &forward, nuisance: &nuisance, candidates: &candidates, weights: &weights };
+        let best = &found.selection.best;
+        search.model(&best.effects).coefficients(&forward, &best.u)
+    };
+    forward.refresh(&coefficients);
+    let search =
+        Search { forward: &forward, nuisance: &nuisance, candidates: &candidates, weights: &weights };
+    let best = search.polish(&found.selection.best.effects, &found.selection.best.u);
+    let bare = search.fit(&[], &found.selection.bare.u, Effort::default());
+    let fit_test = lack_of_fit(campaign, &forward, &best, &weights);
+    let alternatives = search.alternatives(&found.selection.best, &found.selection.others);
+    let left_out = [&bare, &best].map(|f| kept_out::residuals(&forward, &f.model, &f.point.u, &weights));
+    let analysis = Analysis {
+        campaign,
+        forward: &forward,
+        search: &search,
+        selection: &found.selection,
+        noise: &found.noise,
+        missed: &found.missed,
+        weights: &weights,
+        best,
+        bare,
+        lack_of_fit: fit_test,
+        alternatives,
+        left_out,
+    };
+    analysis.conclude()
+}
+
+/// The effects and the quality of the readings, which depend on each other.
+struct Settled {
+    selection: Selection,
+    noise: Noise,
+    /// Modes missing from lists, in words.
+    missed: Vec<String>,
+}
+
+/// Searches with the deviations as declared, takes out gross errors and counts missed modes, searches
+/// again, and lets the best model say whether the declaration was right; if it was not, searches with
+/// what it says.
+fn settle(forward: &mut Forward, nuisance: &Nuisance, candidates: &[Candidate]) -> Settled {
+    let run = |forward: &Forward, noise: &Noise, before: Option<&Scored>| {
+        let weights = noise.weights(forward);
+        let search = Search { forward, nuisance, candidates, weights: &weights };
+        let selection = search.run(before);
+        let best = search.fit(&selection.best.effects, &selection.best.u, Effort::default());
+        let judged = Noise::from_fit(forward, &best);
+        (selection, judged, best.point.coefficients)
+    };
+    let mut noise = Noise::default();
+    let (mut selection, mut judged, coefficients) = run(forward, &noise, None);
+    let missed = forward.find_missed_modes(&coefficients);
+    if !missed.is_empty() {
+        (selection, judged, _) = run(forward, &noise, None);
+    }
+    for _ in 0..2 {
+        if judged.outliers == noise.outliers {
+            break;
+        }
+        noise = Noise { scale: [1.0; 3], outliers: judged.outliers.clone() };
+        (selection, judged, _) = run(forward, &noise, Some(&selection.best));
+    }
+    for _ in 0..2 {
+        if judged.agrees(&noise) {
+            break;
+        }
+        noise = judged;
+        (selection, judged, _) = run(forward, &noise, Some(&selection.best));
+    }
+    Settled { selection, noise, missed }
+}
+
+struct Analysis<'a> {
+    campaign: &'a Campaign,
+    forward: &'a Forward,
+    search: &'a Search<'a>,
+    selection: &'a Selection,
+    noise: &'a Noise,
+    missed: &'a [String],
+    weights: &'a Weights,
+    best: Fit<'a>,
+    bare: Fit<'a>,
+    lack_of_fit: LackOfFit,
+    alternatives: Vec<Vec<Scored>>,
+    left_out: [Vec<Option<f64>>; 2],
+}
+
+impl Analysis<'_> {
+    fn conclude(self) -> Outcome {
+        let kept_out = self.kept_out();
+        let (verdict, mut reasons) = self.verdict(&kept_out);
+        reasons.extend(self.missed.iter().cloned());
+        let findings = match verdict {
+            Verdict::Explained | Verdict::InsufficientData => self.findings(),
+            Verdict::NoGap | Verdict::Unexplained => Vec::new(),
+        };
+        let (effects, suspects) = match verdict {
+            Verdict::Explained => (findings, Vec::new()),
+            _ => (Vec::new(), findings),
+        };
+        let shown = if verdict == Verdict::Unexplained { &self.bare } else { &self.best };
+        let calibrated = self.calibrated(shown);
+        let (corrected, provenance) = correct::corrected(
+            self.campaign,
+            self.forward,
+            shown,
+            if verdict == Verdict::Explained { &effects } else { &[] },
+            &calibrated,
+            verdict,
+        );
+        Outcome {
+            campaign: self.campaign.statement.name.clone(),
+            hash: self.campaign.hash.clone(),
+            verdict,
+            reasons,
+            next_tests: next_test::propose(&self.next_question(verdict)),
+            effects,
+            suspects,
+            kept_out,
+            located: self.located(),
+            noise: self.noise.clone(),
+            lack_of_fit: Some(self.lack_of_fit.clone()),
+            calibrated,
+            evidence: if verdict == Verdict::Unexplained { Vec::new() } else { self.evidence() },
+            residuals: self.residuals(),
+            corrected,
+            provenance,
+        }
+    }
+
+    fn verdict(&self, kept_out: &Option<KeptOut>) -> (Verdict, Vec<String>) {
+        let mut reasons = too_little(self.campaign);
+        if !reasons.is_empty() {
+            reasons.extend(self.unidentified());
+            return (Verdict::InsufficientData, reasons);
+        }
+        if self.lack_of_fit.fails {
+            return (Verdict::Unexplained, self.left_over());
+        }
+        if self.best.model.effects.is_empty() {
+            let text = "noise and calibration within tolerance explain every reading".to_string();
+            return (Verdict::NoGap, vec![text]);
+        }
+        for (effect, rivals) in self.best.model.effects.iter().zip(&self.alternatives) {
+            if rivals.len() > MOST_ALTERNATIVES {
+                let text = format!("{} other effects fit as well as {}", rivals.len(), effect.label());
+                return (Verdict::InsufficientData, vec![text]);
+            }
+        }
+        if let Some(k) = kept_out.filter(|k| k.rms_after > k.rms_before + 0.02) {
+            let text = format!(
+                "{} does not predict poses it was not fitted to ({:.2} sigma after, {:.2} before)",
+                self.best.model.label(),
+                k.rms_after,
+                k.rms_before
+            );
+            return (Verdict::InsufficientData, vec![text]);
+        }
+        (Verdict::Explained, self.gap_sentences())
+    }
+
+    fn gap_sentences(&self) -> Vec<String> {
+        let gain = self.selection.best.score - self.selection.bare.score;
+        vec![format!(
+            "with {} the evidence rises by {gain:.1} (chi-squared {:.0} to {:.0} on {} readings)",
+            self.best.model.label(),
+            self.bare.point.objective,
+            self.best.point.objective,
+            self.forward.data.len()
+        )]
+    }
+
+    /// What structure is left, naming no effect.
+    fn left_over(&self) -> Vec<String> {
+        let mut out: Vec<String> = self
+            .lack_of_fit
+            .structures
+            .iter()
+            .filter(|s| s.ln_p < (1e-4f64).ln())
+            .take(3)
+            .map(|s| s.sentence())
+            .collect();
+        out.push(format!(
+            "the best model leaves {:.2} times the declared variance; no effect of the library accounts for it",
+            self.lack_of_fit.chi2_per_dof
+        ));
+        out
+    }
+
+    /// Calibrated values of which the readings say nothing.
+    fn unidentified(&self) -> Vec<String> {
+        let blind: Vec<String> = self
+            .calibrated(&self.best)
+            .into_iter()
+            .filter(|c| c.learnt > 0.9 && c.name.ends_with("stiffness"))
+            .map(|c| c.name)
+            .collect();
+        let text = format!("the readings say nothing of {}", blind.join(", "));
+        if blind.is_empty() { Vec::new() } else { vec![text] }
+    }
+
+    fn kept_out(&self) -> Option<KeptOut> {
+        let [before, after] = &self.left_out;
+        let count = after.iter().flatten().count();
+        let scaled = |list: &[Option<f64>]| {
+            let each = list.iter().zip(&self.forward.data);
+            rms(each.filter_map(|(r, d)| Some((*r)? / self.noise.scale[d.channel as usize])))
+        };
+        (count > 0).then(|| KeptOut {
+            rms_before: scaled(before),
+            rms_after: scaled(after),
+            rms_declared_after: rms(after.iter().flatten().copied()),
+            count,
+        })
+    }
+
+    fn findings(&self) -> Vec<Finding> {
+        let ends = intervals(self.forward, &self.best, self.weights);
+        let mut knob = 0;
+        let effects = self.best.model.effects.iter().enumerate();
+        effects
+            .map(|(i, effect)| {
+                let first = self.best.model.first_knob(i);
+                let own = first..first + effect.knobs.len();
+                let finding = Finding {
+                    effect: effect.kind.name.into(),
+                    at: effect.at.clone(),
+                    parameters: parameters(effect, &self.best.point.u[own], &ends[knob..]),
+                    indistinguishable_from: self.rivals(i),
+                };
+                knob += effect.knobs.len();
+                finding
+            })
+            .collect()
+    }
+
+    fn rivals(&self, effect: usize) -> Vec<(String, String)> {
+        let own: Vec<usize> = self.selection.best.effects.clone();
+        let twins = self.best.model.effects[effect].twins.iter().cloned();
+        let others = self.alternatives[effect]
+            .iter()
+            .filter_map(|s| s.effects.iter().find(|e| !own.contains(e)))
+            .map(|&e| &self.search.candidates[e])
+            .map(|c| (c.kind.name.to_string(), c.at.clone()));
+        twins.chain(others).collect()
+    }
+
+    fn calibrated(&self, fit: &Fit) -> Vec<Calibrated> {
+        let sds = deviations(fit);
+        let numbers = fit.model.nuisance.numbers.iter().enumerate();
+        numbers
+            .map(|(i, (calibration, _))| {
+                let factor = |u: f64| fit.model.nuisance.factor(i, u);
+                let (u, sd) = (fit.point.u[i], sds[i].min(1.0));
+                Calibrated {
+                    name: match calibration {
+                        Calibration::Stiffness(joint) => format!("{joint}.stiffness"),
+                        Calibration::Mass(joint) => format!("{joint}.mass"),
+                        Calibration::Modulus(material, _) => format!("{material}.modulus"),
+                    },
+                    factor: Estimate {
+                        value: factor(u),
+                        low: Some(factor(u - 1.96 * sd)),
+                        high: Some(factor(u + 1.96 * sd)),
+                    },
+                    learnt: sd,
+                }
+            })
+            .collect()
+    }
+
+    fn located(&self) -> Vec<Located> {
+        locate::located(self.campaign, self.forward, &self.bare, &self.best, self.weights)
+    }
+
+    fn evidence(&self) -> Vec<Evidence> {
+        let best = self.selection.best.score;
+        let label = |s: &Scored| self.search.model(&s.effects).label();
+        let named = |s: &Scored| Evidence {
+            model: if s.effects.is_empty() { "calibration only".into() } else { label(s) },
+            score: s.score - best,
+            objective: s.objective,
+        };
+        let mut out = vec![named(&self.selection.best), named(&self.selection.bare)];
+        out.extend(self.selection.others.iter().map(named));
+        let mut seen: Vec<String> = Vec::new();
+        out.retain(|e| {
+            let new = !seen.contains(&e.model);
+            seen.push(e.model.clone());
+            new
+        });
+        out.truncate(20);
+        out
+    }
+
+    fn residuals(&self) -> Vec<ReadingResidual> {
+        let quantity = |i: usize| -> &'static str {
+            let datum = &self.forward.data[i];
+            match datum.channel.word() {
+                "static" => ["dx_mm", "dy_mm", "dz_mm"][datum.component],
+                "modal" => "frequency_hz",
+                _ => "windup_arcmin",
+            }
+        };
+        (0..self.forward.data.len())
+            .map(|i| {
+                let datum = &self.forward.data[i];
+                ReadingResidual {
+                    channel: datum.channel,
+                    row: datum.row + 1,
+                    quantity: quantity(i),
+                    measured: datum.value,
+                    sigma: datum.sigma,
+                    before: self.bare.point.predicted[i],
+                    after: self.best.point.predicted[i],
+                    kept_out: self.left_out[1][i],
+                    gross: self.weights.inverse[i] == 0.0,
+                }
+            })
+            .collect()
+    }
+
+    fn next_question(&self, verdict: Verdict) -> next_test::Question<'_> {
+        let subject = |model: &Model, u: &[f64]| model.subject(self.forward, u);
+        let best = (self.best.model.label(), subject(&self.best.model, &self.best.point.u));
+        let mut rivals: Vec<(String, crate::arm::effect::Subject)> = self
+            .alternatives
+            .iter()
+            .flatten()
+            .take(4)
+            .map(|s| {
+                let model = self.search.model(&s.effects);
+                (model.label(), subject(&model, &s.u))
+            })
+            .collect();
+        if rivals.is_empty() && verdict != Verdict::Unexplained {
+            // nothing is confusable: the runner-up, or the arm without the effect
+            rivals.push(("calibration only".into(), subject(&self.bare.model, &self.bare.point.u)));
+        }
+        next_test::Question { campaign: self.campaign, best, rivals, residuals: self.worst_pose(), verdict }
+    }
+
+    /// The pose whose readings the best model misses most.
+    fn worst_pose(&self) -> Option<Vec<f64>> {
+        let residuals = self.best.residuals(self.forward, self.weights);
+        let group = (0..self.forward.groups.len())
+            .map(|g| {
+                let own = (0..residuals.len()).filter(|&i| self.forward.data[i].group == g);
+                (rms(own.map(|i| residuals[i])), g)
+            })
+            .max_by(|a, b| a.0.total_cmp(&b.0))?
+            .1;
+        let name = self.forward.groups.get(group)?;
+        Some(name.split(',').filter_map(|a| a.parse().ok()).collect())
+    }
+}
+
+/// Why the readings cannot speak at all.
+fn too_little(campaign: &Campaign) -> Vec<String> {
+    let mut reasons = Vec::new();
+    let rows = campaign.statics.len() + campaign.modal.len() + campaign.windup.len();
+    if rows < FEWEST_ROWS {
+        reasons.push(format!("{rows} rows are too few: give at least {FEWEST_ROWS}"));
+    }
+    let mut poses: Vec<&Vec<f64>> = campaign
+        .statics
+        .iter()
+        .map(|r| &r.pose_deg)
+        .chain(campaign.modal.iter().map(|r| &r.pose_deg))
+        .collect();
+    poses.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+    poses.dedup();
+    if poses.len() < FEWEST_POSES && !(poses.is_empty() && rows >= FEWEST_ROWS) {
+        reasons.push(format!(
+            "{} distinct pose(s): effects at different places look alike; measure at least {FEWEST_POSES}",
+            poses.len()
+        ));
+    }
+    let first = campaign.statics.first();
+    let same_load = |r: &super::readings::StaticRow| {
+        first.is_some_and(|f| f.payload == r.payload && f.force_n == r.force_n)
+    };
+    if first.is_some() && campaign.statics.iter().all(same_load) {
+        reasons.push(
+            "every static reading has the same load: what grows with it cannot be told from what does not"
+                .into(),
+        );
+    }
+    reasons
+}
+
+/// A fitted effect's parameters with their intervals.
+fn parameters(effect: &Candidate, u: &[f64], ends: &[Interval]) -> Vec<(String, Vec<Estimate>)> {
+    let mut out: Vec<(String, Vec<Estimate>)> = Vec::new();
+    for ((knob, &u), interval) in effect.knobs.iter().zip(u).zip(ends) {
+        let estimate = estimate(knob, u, interval);
+        match out.iter_mut().find(|(name, _)| name == knob.name) {
+            Some((_, list)) => list.push(estimate),
+            None => out.push((knob.name.to_string(), vec![estimate])),
+        }
+    }
+    if effect.knobs.is_empty() {
+        let stated = |value: f64| Estimate { value, low: Some(value), high: Some(value) };
+        out.push(("factor".into(), effect.numbers(&[]).into_iter().map(stated).collect()));
+    }
+    out
+}
+
+fn estimate(knob: &Knob, u: f64, interval: &Interval) -> Estimate {
+    let (low, high) = match knob.reversed() {
+        true => (interval.high, interval.low),
+        false => (interval.low, interval.high),
+    };
+    Estimate { value: knob.value(u), low: low.map(|u| knob.value(u)), high: high.map(|u| knob.value(u)) }
+}

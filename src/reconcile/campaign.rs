@@ -1,0 +1,270 @@
+//! A campaign: an arm file, what is stated about it, and the readings.
+
+use super::readings::{
+    ModalRow, PositionRow, StaticRow, WindupRow, modal_rows, position_rows, static_rows, windup_rows,
+};
+use super::table::Table;
+use crate::arm::effect::Channel;
+use crate::arm::{Arm, read_arm};
+use crate::catalog::Catalogs;
+use crate::fault::{Document, Faults, InputError, Node, Object};
+use std::path::{Path, PathBuf};
+
+/// Within what honest parts lie: 95 % limits, as parts of the nominal value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerance {
+    /// Stiffness of each joint on its own.
+    pub joint_stiffness: f64,
+    /// One factor a material on E and G together.
+    pub modulus: f64,
+    /// Mass of each joint on its own.
+    pub joint_mass: f64,
+}
+
+/// What `campaign.json` says about absolute positions.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PositionsSpec {
+    /// The arm stands anywhere in the instrument's frame.
+    pub base_placement: bool,
+    /// Each point sits anywhere on the last frame.
+    pub tool_offset: bool,
+    /// Each joint's zero is off.
+    pub joint_offsets: bool,
+    /// Each link's vector and each joint's axis is off.
+    pub geometry: bool,
+    /// Gravity need not point along the arm's -z.
+    pub gravity_direction: bool,
+}
+
+/// What `campaign.json` states.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Statement {
+    /// Name.
+    pub name: String,
+    /// Tolerance of the parts.
+    pub tolerance: Tolerance,
+    /// Density of the payloads, for their buoyancy \[kg/m³\].
+    pub payload_density_kg_m3: f64,
+    /// Whether the nominal model holds the links rigid.
+    pub rigid_links: bool,
+    /// What is free in absolute positions.
+    pub positions: PositionsSpec,
+    arm_file: String,
+    files: [Option<String>; 4],
+}
+
+/// A campaign, read and checked.
+#[derive(Debug, Clone)]
+pub struct Campaign {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// What it states.
+    pub statement: Statement,
+    /// The nominal arm.
+    pub arm: Arm,
+    /// Tip displacements, in the order of the file.
+    pub statics: Vec<StaticRow>,
+    /// Natural frequencies.
+    pub modal: Vec<ModalRow>,
+    /// Bench twists.
+    pub windup: Vec<WindupRow>,
+    /// Absolute positions.
+    pub positions: Vec<PositionRow>,
+    /// blake3 of all files of the campaign.
+    pub hash: String,
+}
+
+const DEFAULT_FILES: [&str; 4] = ["static.csv", "modal.csv", "windup.csv", "positions.csv"];
+const DEFAULT_PAYLOAD_DENSITY_KG_M3: f64 = 7850.0;
+
+/// Reads `campaign.json`.
+///
+/// # Errors
+/// The file is missing, or all of its faults.
+pub fn read_statement(path: &Path) -> Result<Statement, InputError> {
+    let document = Document::read(path)?;
+    let statement = statement(&document.root());
+    Ok(document.finish(statement)?)
+}
+
+fn statement(node: &Node) -> Option<Statement> {
+    let root = node.object(&[
+        "name",
+        "arm",
+        "conventions",
+        "tolerance",
+        "static",
+        "modal",
+        "windup",
+        "positions",
+        "links",
+        "description",
+        "machine",
+        "date",
+        "provenance",
+    ])?;
+    let name = root.or("name", "campaign".to_string(), |n| n.string().map(String::from));
+    let arm_file = root.or("arm", "arm.json".to_string(), |n| n.string().map(String::from));
+    let tolerance = root.or("tolerance", DEFAULT_TOLERANCE, read_tolerance);
+    let payload_density_kg_m3 = root.or("conventions", DEFAULT_PAYLOAD_DENSITY_KG_M3, |n| {
+        match n.value().get("payload_density_kg_m3").and_then(|v| v.as_f64()) {
+            Some(density) if density > 0.0 => Some(density),
+            Some(density) => n.fault(format!("payload_density_kg_m3 = {density}"), "give a density in kg/m³"),
+            None => Some(DEFAULT_PAYLOAD_DENSITY_KG_M3),
+        }
+    });
+    let rigid_links = root.or("links", false, |n| match n.string()? {
+        "rigid" => Some(true),
+        "full" => Some(false),
+        other => n.fault(format!("\"{other}\" is not known"), "choose one of: rigid, full"),
+    });
+    let positions = root.or("positions", PositionsSpec::default(), read_positions);
+    Some(Statement {
+        name: name?,
+        tolerance: tolerance?,
+        payload_density_kg_m3: payload_density_kg_m3?,
+        rigid_links: rigid_links?,
+        positions: positions?,
+        arm_file: arm_file?,
+        files: Channel::ALL.map(|c| file_of(&root, c)),
+    })
+}
+
+/// Parts of the nominal value that are taken for honest where a campaign says nothing.
+const DEFAULT_TOLERANCE: Tolerance = Tolerance { joint_stiffness: 0.10, modulus: 0.03, joint_mass: 0.02 };
+
+fn read_tolerance(node: &Node) -> Option<Tolerance> {
+    let object = node.object(&["joint_stiffness", "modulus", "joint_mass"])?;
+    let part = |key, default| {
+        object.or(key, default, |n| match n.non_negative()? {
+            x if x < 1.0 => Some(x),
+            x => n.fault(format!("= {x} is no part of 1"), "write 0.05 for 5 %"),
+        })
+    };
+    let (k, e, m) = (part("joint_stiffness", 0.0), part("modulus", 0.0), part("joint_mass", 0.0));
+    Some(Tolerance { joint_stiffness: k?, modulus: e?, joint_mass: m? })
+}
+
+fn read_positions(node: &Node) -> Option<PositionsSpec> {
+    const KEYS: [&str; 5] =
+        ["base_placement", "tool_offset", "joint_offsets", "geometry", "gravity_direction"];
+    let object = node.object(&[KEYS.as_slice(), &["file", "boundary", "reference"]].concat())?;
+    let flags = KEYS.map(|key| object.or(key, false, Node::boolean));
+    Some(PositionsSpec {
+        base_placement: flags[0]?,
+        tool_offset: flags[1]?,
+        joint_offsets: flags[2]?,
+        geometry: flags[3]?,
+        gravity_direction: flags[4]?,
+    })
+}
+
+/// The file of a channel that `campaign.json` names.
+fn file_of(root: &Object, channel: Channel) -> Option<String> {
+    let node = root.optional(channel.word())?;
+    match node.value().get("file").and_then(|v| v.as_str()) {
+        Some(file) => Some(file.to_string()),
+        None => Some(DEFAULT_FILES[channel as usize].to_string()),
+    }
+}
+
+impl Campaign {
+    /// Reads a campaign folder.
+    ///
+    /// # Errors
+    /// A file is missing, or all faults of all files.
+    pub fn read(folder: &Path, catalogs: &Catalogs) -> Result<Self, InputError> {
+        if !folder.join("campaign.json").exists() && folder.is_file() {
+            return Self::read(folder.parent().unwrap_or(folder), catalogs);
+        }
+        let mut faults = Vec::new();
+        let statement = keep_faults(read_statement(&folder.join("campaign.json")), &mut faults)?;
+        let arm_file = statement.as_ref().map_or("arm.json", |s| s.arm_file.as_str());
+        let arm = keep_faults(read_arm(&folder.join(arm_file), catalogs), &mut faults)?;
+        let (Some(statement), Some(arm)) = (statement, arm) else { return Err(Faults(faults).into()) };
+        let mut campaign = Self {
+            folder: folder.to_path_buf(),
+            statement,
+            arm,
+            statics: Vec::new(),
+            modal: Vec::new(),
+            windup: Vec::new(),
+            positions: Vec::new(),
+            hash: String::new(),
+        };
+        for channel in Channel::ALL {
+            if let Some(file) = campaign.file(channel) {
+                let table = Table::read(&file)?;
+                campaign.read_channel(channel, &table);
+                faults.extend(table.into_faults());
+            }
+        }
+        campaign.hash = campaign.hash_files();
+        if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults).into()) }
+    }
+
+    fn read_channel(&mut self, channel: Channel, table: &Table) {
+        match channel {
+            Channel::Static => self.statics = static_rows(table, &self.arm),
+            Channel::Modal => self.modal = modal_rows(table, &self.arm),
+            Channel::Windup => self.windup = windup_rows(table, &self.arm),
+            Channel::Positions => self.positions = position_rows(table, &self.arm),
+        }
+    }
+
+    /// The file of a channel: the one named in `campaign.json`, else the usual one if it is there.
+    fn file(&self, channel: Channel) -> Option<PathBuf> {
+        let usual = self.folder.join(DEFAULT_FILES[channel as usize]);
+        match &self.statement.files[channel as usize] {
+            Some(file) => Some(self.folder.join(file)),
+            None => usual.exists().then_some(usual),
+        }
+    }
+
+    fn hash_files(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        let named = [self.folder.join("campaign.json"), self.folder.join(&self.statement.arm_file)];
+        let files = named.into_iter().chain(Channel::ALL.into_iter().filter_map(|c| self.file(c)));
+        for file in files {
+            hasher.update(&std::fs::read(file).unwrap_or_default());
+        }
+        hasher.finalize().to_hex().to_string()
+    }
+
+    /// Joins further campaigns of the same arm to this one.
+    ///
+    /// # Errors
+    /// The arms or what is stated of them differ.
+    pub fn join(mut self, others: Vec<Campaign>) -> Result<Self, String> {
+        for other in others {
+            if other.arm != self.arm || other.statement.tolerance != self.statement.tolerance {
+                return Err(format!(
+                    "{} and {} measure different arms or state different tolerances: reconcile them one by one",
+                    self.folder.display(),
+                    other.folder.display()
+                ));
+            }
+            self.statics.extend(other.statics);
+            self.modal.extend(other.modal);
+            self.windup.extend(other.windup);
+            self.positions.extend(other.positions);
+            self.statement.name = format!("{}+{}", self.statement.name, other.statement.name);
+            self.hash = blake3::hash(format!("{}{}", self.hash, other.hash).as_bytes()).to_hex().to_string();
+        }
+        Ok(self)
+    }
+}
+
+fn keep_faults<T>(
+    result: Result<T, InputError>,
+    faults: &mut Vec<crate::fault::Fault>,
+) -> Result<Option<T>, InputError> {
+    match result {
+        Ok(value) => Ok(Some(value)),
+        Err(InputError::Faulty(found)) => {
+            faults.extend(found.0);
+            Ok(None)
+        }
+        Err(other) => Err(other),
+    }
+}

@@ -1,0 +1,124 @@
+//! Readings predicted by mechanics directly, one row at a time: what `predict` writes, and the check
+//! on the prepared model that fits use.
+
+use super::forward::{ARCMIN_PER_RAD, bench_twists_rad};
+use super::readings::{ModalRow, PositionRow, StaticRow, WindupRow};
+use crate::arm::effect::{Channel, Subject};
+use crate::arm::{JointLaw, LinkModel, Payload};
+use crate::mechanics::chain::{Item, Posed, Yielding};
+use crate::mechanics::{Chain, Twist, displacement_at};
+use nalgebra::Vector3;
+
+/// A subject ready to be asked.
+pub struct Exact<'a> {
+    subject: &'a Subject,
+    chain: Chain,
+}
+
+impl<'a> Exact<'a> {
+    /// Prepares a subject.
+    pub fn new(subject: &'a Subject) -> Self {
+        Self { subject, chain: Chain::new(&subject.structure, LinkModel::Full) }
+    }
+
+    /// Displacement readings \[mm\], the rows in the order of their file.
+    pub fn statics_mm(&self, rows: &[StaticRow]) -> Vec<[f64; 3]> {
+        let reading = &self.subject.channels[Channel::Static as usize];
+        let mut out = Vec::with_capacity(rows.len());
+        let mut pose: &[f64] = &[];
+        let (mut play, mut reference) = (Vec::new(), Vector3::zeros());
+        for row in rows {
+            if row.pose_deg != pose || out.is_empty() {
+                pose = &row.pose_deg;
+                let unloaded = self.posed(pose, &Payload::default(), Vector3::zeros());
+                play = rest(&unloaded);
+                reference = tip_m(&unloaded, &mut play);
+            }
+            let loaded = self.posed(pose, &row.payload, row.force_n);
+            let d = tip_m(&loaded, &mut play) - reference;
+            out.push(std::array::from_fn(|c| reading.of(1e3 * d[c], c, row.row)));
+        }
+        out
+    }
+
+    /// Frequency readings \[Hz\]; `None` where the arm has no such mode.
+    pub fn frequencies_hz(&self, rows: &[ModalRow]) -> Vec<Option<f64>> {
+        let reading = &self.subject.channels[Channel::Modal as usize];
+        let mut last: Option<(&ModalRow, Vec<f64>)> = None;
+        rows.iter()
+            .map(|row| {
+                let again = last
+                    .as_ref()
+                    .is_some_and(|(r, _)| r.pose_deg == row.pose_deg && r.payload == row.payload);
+                if !again {
+                    let posed = self.posed(&row.pose_deg, &row.payload, Vector3::zeros());
+                    let modes = posed.solve_modes(&posed.statics());
+                    last = Some((row, modes.finite().map(|(_, f)| f).collect()));
+                }
+                let frequency = last.as_ref().and_then(|(_, f)| f.get(row.mode - 1).copied());
+                frequency.map(|f| reading.of(f, 0, row.row))
+            })
+            .collect()
+    }
+
+    /// Bench readings \[arcmin\].
+    pub fn windups_arcmin(&self, rows: &[WindupRow]) -> Vec<f64> {
+        let reading = &self.subject.channels[Channel::Windup as usize];
+        let mut out = vec![0.0; rows.len()];
+        for joint in self.subject.structure.joints() {
+            let own: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].joint == joint.name).collect();
+            let torques: Vec<f64> = own.iter().map(|&i| rows[i].torque_nm).collect();
+            for (i, twist) in own.into_iter().zip(bench_twists_rad(&joint.law, &torques)) {
+                out[i] = reading.of(twist * ARCMIN_PER_RAD, 0, rows[i].row);
+            }
+        }
+        out
+    }
+
+    /// Positions of the tip in the arm's own frame, under gravity and payload \[mm\].
+    pub fn positions_mm(&self, rows: &[PositionRow]) -> Vec<[f64; 3]> {
+        let reading = &self.subject.channels[Channel::Positions as usize];
+        rows.iter()
+            .map(|row| {
+                let posed = self.posed(&row.pose_deg, &row.payload, Vector3::zeros());
+                let at = posed.tip_m + posed.statics().tip_displacement_m;
+                std::array::from_fn(|c| reading.of(1e3 * at[c], c, row.row))
+            })
+            .collect()
+    }
+
+    fn posed(&self, pose_deg: &[f64], stated: &Payload, force_n: Vector3<f64>) -> Posed<'_> {
+        let pose_rad: Vec<f64> = pose_deg.iter().map(|a| a.to_radians()).collect();
+        self.chain.pose_rad(&pose_rad, &self.subject.payload(stated), force_n)
+    }
+}
+
+/// Each joint's law, twist and torque, base to tip.
+fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
+    let torques = posed.statics().joint_torques_nm;
+    let laws = posed.items.iter().filter_map(|item| match item {
+        Item::Elastic(element) => match element.yielding {
+            Yielding::Joint(law) => Some((law, element.twists[0])),
+            Yielding::Linear(_) => None,
+        },
+        Item::Body(_) => None,
+    });
+    laws.zip(torques).map(|((law, twist), (_, torque))| (law, twist, torque)).collect()
+}
+
+/// Where each joint's friction play stands when the arm has come to rest.
+fn rest(posed: &Posed) -> Vec<f64> {
+    joints(posed).iter().map(|(law, _, torque)| law.play_at_rest_nm(*torque)).collect()
+}
+
+/// Displacement of the tip from the weightless arm \[m\], the friction play following.
+fn tip_m(posed: &Posed, play: &mut [f64]) -> Vector3<f64> {
+    let joints = joints(posed);
+    let statics = posed.statics();
+    let mut tip = statics.tip_displacement_m;
+    for ((law, twist, torque), state) in joints.into_iter().zip(play) {
+        let followed = law.play_angle_rad(torque, state) - law.rising_angle_rad(torque);
+        tip += displacement_at(&(twist * followed), &posed.tip_m);
+    }
+    tip
+}

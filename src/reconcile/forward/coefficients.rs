@@ -1,0 +1,200 @@
+//! Which coordinates an arm can have, and a subject as numbers on them.
+
+use crate::arm::effect::{Reading, Subject};
+use crate::arm::{JointLaw, LinkModel, LinkPiece, Piece, Structure, Water};
+use crate::mechanics::Chain;
+use crate::mechanics::beam::compliances;
+use nalgebra::Vector3;
+
+/// A joint's coordinates.
+#[derive(Debug, Clone)]
+pub struct JointSlot {
+    /// Name.
+    pub name: String,
+    /// Its twist's coordinate; its tilts are the two before it.
+    pub twist: usize,
+}
+
+/// A link's coordinates.
+#[derive(Debug, Clone)]
+pub struct LinkSlot {
+    /// Name.
+    pub name: String,
+    /// Its first coordinate.
+    pub first: usize,
+    /// How many.
+    pub count: usize,
+}
+
+/// The coordinates of every elastic thing an arm can have, base to tip: the base's tilts (0 and 1),
+/// each joint's two tilts and its twist, each link's strains.
+pub struct Layout {
+    /// Number of coordinates.
+    pub n: usize,
+    /// Joints, base to tip.
+    pub joints: Vec<JointSlot>,
+    /// Links, base to tip.
+    pub links: Vec<LinkSlot>,
+    /// The arm with every elastic thing present, so that mechanics lists all coordinates.
+    pub template: Chain,
+    /// The template with one mass added, for each of the masses.
+    pub with_mass: Vec<Chain>,
+    /// Gravity \[m/s²\].
+    pub gravity_m_s2: f64,
+}
+
+/// A subject as numbers on the coordinates.
+#[derive(Debug, Clone)]
+pub struct Coefficients {
+    /// Compliance of each coordinate; a joint's twist has 0 here and its law below.
+    pub linear: Vec<f64>,
+    /// Laws of the joints, base to tip.
+    pub laws: Vec<JointLaw>,
+    /// Mass beyond the template: each joint \[kg\], each link's harness \[kg/m\], water density times
+    /// added-mass coefficient \[kg/m³\].
+    pub masses: Vec<f64>,
+    /// Weight beyond the template: the same, but for water its density.
+    pub weights: Vec<f64>,
+    /// True less stated payload mass \[kg\].
+    pub payload_delta_kg: f64,
+    /// True less stated centre \[m\].
+    pub payload_offset_m: Vector3<f64>,
+    /// Part of the payload's weight that remains in the water.
+    pub payload_weight: f64,
+    /// How the channels read.
+    pub channels: [Reading; 4],
+    /// Width, in ln of the torque, over which the slope of a gear's curve changes at a break point.
+    pub smoothing: f64,
+}
+
+impl Layout {
+    /// Lists the coordinates of an arm.
+    pub fn new(structure: &Structure) -> Self {
+        let full = with_everything(structure);
+        let mut n = 2;
+        let (mut joints, mut links) = (Vec::new(), Vec::new());
+        for piece in &full.pieces {
+            match piece {
+                Piece::Joint(joint) => {
+                    joints.push(JointSlot { name: joint.name.clone(), twist: n + 2 });
+                    n += 3;
+                }
+                Piece::Link(link) => {
+                    let count = compliances(link, LinkModel::Full).len();
+                    links.push(LinkSlot { name: link.name.clone(), first: n, count });
+                    n += count;
+                }
+            }
+        }
+        Self {
+            n,
+            joints,
+            links,
+            template: Chain::new(&full, LinkModel::Full),
+            with_mass: unit_masses(&full).iter().map(|s| Chain::new(s, LinkModel::Full)).collect(),
+            gravity_m_s2: structure.gravity_m_s2,
+        }
+    }
+}
+
+/// Every elastic thing present, whatever its size; nothing else changed.
+fn with_everything(structure: &Structure) -> Structure {
+    let mut full = structure.clone();
+    full.base_tilt_rad_per_nm = 1.0;
+    full.water = None;
+    for piece in &mut full.pieces {
+        match piece {
+            Piece::Joint(joint) => joint.tilt_rad_per_nm = 1.0,
+            Piece::Link(link) => {
+                if let Some(beam) = &mut link.beam {
+                    beam.flexibility = 1.0;
+                }
+            }
+        }
+    }
+    full
+}
+
+/// The structure with one unit of each mass added: joints, harnesses, water.
+fn unit_masses(full: &Structure) -> Vec<Structure> {
+    let joints = full.joints().map(|joint| {
+        let mut with = full.clone();
+        if let Some(j) = with.joint_mut(&joint.name) {
+            j.mass_kg += 1.0;
+        }
+        with
+    });
+    let links = full.links().map(|link| {
+        let mut with = full.clone();
+        if let Some(l) = with.link_mut(&link.name) {
+            l.harness_kg_per_m += 1.0;
+        }
+        with
+    });
+    let water =
+        Water { density_kg_m3: 1.0, added_mass_coefficient: 1.0, payload_density_kg_m3: f64::INFINITY };
+    let wet = Structure { water: Some(water), ..full.clone() };
+    joints.chain(links).chain([wet]).collect()
+}
+
+impl Coefficients {
+    /// The subject as numbers on the coordinates of `layout`; masses are counted from `nominal`.
+    pub fn new(layout: &Layout, nominal: &Subject, subject: &Subject) -> Self {
+        let structure = &subject.structure;
+        let mut linear = vec![0.0; layout.n];
+        linear[..2].fill(structure.base_tilt_rad_per_nm);
+        let mut masses = Vec::with_capacity(layout.with_mass.len());
+        let mut laws = Vec::with_capacity(layout.joints.len());
+        for ((slot, joint), before) in
+            layout.joints.iter().zip(structure.joints()).zip(nominal.structure.joints())
+        {
+            linear[slot.twist - 2..slot.twist].fill(joint.tilt_rad_per_nm);
+            laws.push(joint.law);
+            masses.push(joint.mass_kg - before.mass_kg);
+        }
+        for ((slot, link), before) in
+            layout.links.iter().zip(structure.links()).zip(nominal.structure.links())
+        {
+            linear[slot.first..slot.first + slot.count].copy_from_slice(&link_compliances(link));
+            masses.push(link.harness_kg_per_m - before.harness_kg_per_m);
+        }
+        let mut weights = masses.clone();
+        let (added, density, payload_weight) = structure.water.map_or((0.0, 0.0, 1.0), |w| {
+            let density = w.density_kg_m3;
+            (density * w.added_mass_coefficient, density, 1.0 - density / w.payload_density_kg_m3)
+        });
+        masses.push(added);
+        weights.push(density);
+        Self {
+            linear,
+            laws,
+            masses,
+            weights,
+            payload_delta_kg: subject.payload_delta_kg,
+            payload_offset_m: subject.payload_offset_m,
+            payload_weight,
+            channels: subject.channels.clone(),
+            smoothing: 0.0,
+        }
+    }
+
+    /// Whether two subjects have the same frequencies and modal channel.
+    pub fn same_modes(&self, other: &Self) -> bool {
+        self.linear == other.linear
+            && self.masses == other.masses
+            && self.weights == other.weights
+            && self.payload_delta_kg == other.payload_delta_kg
+            && self.payload_offset_m == other.payload_offset_m
+            && self.payload_weight == other.payload_weight
+            && self.smoothing == other.smoothing
+            && self.laws.iter().zip(&other.laws).all(|(a, b)| {
+                a.curve == b.curve
+                    && a.connection_rad_per_nm == b.connection_rad_per_nm
+                    && a.lost_motion == b.lost_motion
+            })
+    }
+}
+
+fn link_compliances(link: &LinkPiece) -> Vec<f64> {
+    compliances(link, LinkModel::Full)
+}

@@ -1,0 +1,222 @@
+//! Static readings: the displacement of the tip from its reference state.
+//!
+//! The chain is statically determinate, so torques depend on masses only. What yields in proportion
+//! moves the tip by `A w`, `A` a 3x6 matrix a pose; a joint by `θ(T) - θ(T0)`, with the friction play
+//! following the order of the rows.
+
+use super::coefficients::{Coefficients, Layout};
+use super::{Datum, group_of};
+use crate::arm::Payload;
+use crate::arm::effect::{Channel, Subject};
+use crate::mechanics::chain::{Item, Posed};
+use crate::mechanics::{Twist, Wrench, displacement_at, force_wrench};
+use crate::reconcile::campaign::Campaign;
+use nalgebra::{Matrix3x6, Rotation3, Vector3};
+
+/// A coordinate's twist and what it moves the tip by.
+#[derive(Debug, Clone)]
+pub struct Mover {
+    /// Coordinate.
+    pub index: usize,
+    /// Motion of everything outboard.
+    pub twist: Twist,
+    /// Displacement of the tip per unit.
+    pub tip: Vector3<f64>,
+}
+
+/// What of a pose does not depend on any parameter.
+#[derive(Debug, Clone)]
+pub struct PoseGeometry {
+    /// Tip, world \[m\].
+    pub tip_m: Vector3<f64>,
+    /// Last frame.
+    pub rotation: Rotation3<f64>,
+    /// Coordinates in proportion that move the tip.
+    pub linear: Vec<Mover>,
+    /// Twists of the joints.
+    pub joints: Vec<Mover>,
+    /// Torque of the template's dead weight on each joint \[N m\].
+    pub dead_nm: Vec<f64>,
+    /// The same for a unit of each mass.
+    pub dead_per_mass_nm: Vec<Vec<f64>>,
+}
+
+/// One load in a pose.
+#[derive(Debug, Clone)]
+struct Load {
+    payload: Payload,
+    force_n: Vector3<f64>,
+    first_datum: usize,
+}
+
+/// A pose with its loads in the order of the file.
+#[derive(Debug, Clone)]
+pub struct StaticPose {
+    /// Geometry.
+    pub geometry: PoseGeometry,
+    loads: Vec<Load>,
+}
+
+/// Prepares the poses of the static rows and appends their data.
+pub fn prepare(
+    campaign: &Campaign,
+    layout: &Layout,
+    nominal: &Subject,
+    groups: &mut Vec<(Vec<f64>, String)>,
+    data: &mut Vec<Datum>,
+) -> Vec<StaticPose> {
+    let mut poses: Vec<StaticPose> = Vec::new();
+    let mut last: Option<&[f64]> = None;
+    for row in &campaign.statics {
+        let group = group_of(&row.pose_deg, groups);
+        if last != Some(&row.pose_deg) {
+            let geometry = PoseGeometry::new(layout, nominal, &row.pose_deg);
+            poses.push(StaticPose { geometry, loads: Vec::new() });
+            last = Some(&row.pose_deg);
+        }
+        let load = Load { payload: row.payload, force_n: row.force_n, first_datum: data.len() };
+        poses.last_mut().expect("pushed above").loads.push(load);
+        data.extend((0..3).map(|component| Datum {
+            channel: Channel::Static,
+            row: row.row,
+            component,
+            group,
+            value: row.d_mm[component],
+            sigma: row.sigma_mm,
+        }));
+    }
+    poses
+}
+
+impl PoseGeometry {
+    /// Asks mechanics for a pose.
+    pub fn new(layout: &Layout, _nominal: &Subject, pose_deg: &[f64]) -> Self {
+        let pose_rad: Vec<f64> = pose_deg.iter().map(|a| a.to_radians()).collect();
+        let empty = Payload::default();
+        let posed = layout.template.pose_rad(&pose_rad, &empty, Vector3::zeros());
+        let twists: Vec<Twist> = posed.elements().flat_map(|e| e.twists.iter().copied()).collect();
+        let mover = |index: usize| Mover {
+            index,
+            twist: twists[index],
+            tip: displacement_at(&twists[index], &posed.tip_m),
+        };
+        let is_joint = |i: usize| layout.joints.iter().any(|j| j.twist == i);
+        let dead_nm = dead_torques(&posed);
+        let dead_per_mass_nm = layout
+            .with_mass
+            .iter()
+            .map(|chain| {
+                let with = dead_torques(&chain.pose_rad(&pose_rad, &empty, Vector3::zeros()));
+                with.iter().zip(&dead_nm).map(|(a, b)| a - b).collect()
+            })
+            .collect();
+        Self {
+            tip_m: posed.tip_m,
+            rotation: posed.tip_rotation,
+            linear: (0..layout.n)
+                .filter(|&i| !is_joint(i) && twists[i] != Twist::zeros())
+                .map(mover)
+                .collect(),
+            joints: layout.joints.iter().map(|j| mover(j.twist)).collect(),
+            dead_nm,
+            dead_per_mass_nm,
+        }
+    }
+
+    /// Torque of the dead weight on each joint \[N m\].
+    pub fn dead_torques_nm(&self, coefficients: &Coefficients) -> Vec<f64> {
+        let mut torques = self.dead_nm.clone();
+        for (per_mass, weight) in self.dead_per_mass_nm.iter().zip(&coefficients.weights) {
+            if *weight != 0.0 {
+                torques.iter_mut().zip(per_mass).for_each(|(t, p)| *t += weight * p);
+            }
+        }
+        torques
+    }
+
+    /// The load as a wrench about the world origin.
+    pub fn wrench(
+        &self,
+        payload: &Payload,
+        force_n: &Vector3<f64>,
+        gravity_m_s2: f64,
+        coefficients: &Coefficients,
+    ) -> Wrench {
+        let mut wrench = force_wrench(force_n, &self.tip_m);
+        if payload.mass_kg != 0.0 {
+            let mass_kg = payload.mass_kg + coefficients.payload_delta_kg;
+            let cg_m = self.tip_m + self.rotation * (payload.cg_m + coefficients.payload_offset_m);
+            let weight_n = mass_kg * gravity_m_s2 * coefficients.payload_weight;
+            wrench += force_wrench(&Vector3::new(0.0, 0.0, -weight_n), &cg_m);
+        }
+        wrench
+    }
+}
+
+fn dead_torques(posed: &Posed) -> Vec<f64> {
+    let mut wrench = Wrench::zeros();
+    let mut torques = Vec::new();
+    for item in posed.items.iter().rev() {
+        match item {
+            Item::Body(body) => wrench += body.weight(),
+            Item::Elastic(element) => {
+                if let crate::mechanics::chain::Yielding::Joint(_) = element.yielding {
+                    torques.push(element.twists[0].dot(&wrench));
+                }
+                if let Some(own) = &element.own {
+                    wrench += own.weight;
+                }
+            }
+        }
+    }
+    torques.reverse();
+    torques
+}
+
+impl StaticPose {
+    /// Displacements of all loads of the pose \[mm\].
+    pub fn predict(&self, layout: &Layout, coefficients: &Coefficients, out: &mut [f64]) {
+        let geometry = &self.geometry;
+        let dead = geometry.dead_torques_nm(coefficients);
+        let compliance: Matrix3x6<f64> = geometry
+            .linear
+            .iter()
+            .filter(|m| coefficients.linear[m.index] != 0.0)
+            .map(|m| m.tip * (coefficients.linear[m.index] * m.twist.transpose()))
+            .sum();
+        let mut play: Vec<f64> =
+            coefficients.laws.iter().zip(&dead).map(|(law, t)| law.play_at_rest_nm(*t)).collect();
+        let reference: Vec<f64> = coefficients
+            .laws
+            .iter()
+            .zip(&dead)
+            .zip(&mut play)
+            .map(|((law, t), state)| law.play_angle_rad(*t, state))
+            .collect();
+        for load in &self.loads {
+            let wrench = geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients);
+            let mut tip = compliance * wrench;
+            for (j, mover) in geometry.joints.iter().enumerate() {
+                let torque = dead[j] + mover.twist.dot(&wrench);
+                let twist = coefficients.laws[j].play_angle_rad(torque, &mut play[j]);
+                tip += mover.tip * (twist - reference[j]);
+            }
+            for component in 0..3 {
+                out[load.first_datum + component] = 1e3 * tip[component];
+            }
+        }
+    }
+
+    /// Torque on each joint in every load, and of the dead weight alone \[N m\].
+    pub fn torques_nm(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<Vec<f64>> {
+        let dead = self.geometry.dead_torques_nm(coefficients);
+        let mut out = vec![dead.clone()];
+        for load in &self.loads {
+            let wrench =
+                self.geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients);
+            let joints = self.geometry.joints.iter().zip(&dead);
+            out.push(joints.map(|(m, t)| t + m.twist.dot(&wrench)).collect());
+        }
+        out
+    }
+}

@@ -1,0 +1,106 @@
+//! 95 % intervals of fitted parameters.
+//!
+//! From the curvature where the objective is a parabola; where it may not be (break points, torque
+//! scales, ends of a range) by its profile: the parameter is held, everything else refitted, until the
+//! objective has risen by 3.84.
+
+use super::fit::{Effort, Fit, Weights, fit};
+use super::forward::Forward;
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+/// Normal deviate of a two-sided 95 %.
+const Z95: f64 = 1.959_964;
+/// Rise of the objective at the ends of a 95 % interval.
+const RISE: f64 = 3.841_459;
+
+/// An interval in `u`; an end the data do not bound is `None`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Lower end.
+    pub low: Option<f64>,
+    /// Upper end.
+    pub high: Option<f64>,
+}
+
+/// Standard deviation of every parameter from the curvature.
+pub fn deviations(fit: &Fit) -> Vec<f64> {
+    let n = fit.curvature.nrows();
+    let mut curvature = fit.curvature.clone();
+    for (i, knob) in fit.model.knobs().enumerate() {
+        // the width of the prior belongs to the evidence, not to what the data say
+        let p = fit.model.calibrated() + i;
+        curvature[(p, p)] -= 11.9 / knob.range().powi(2);
+    }
+    let covariance = curvature.try_inverse().unwrap_or_else(|| DMatrix::from_element(n, n, f64::INFINITY));
+    (0..n).map(|p| covariance[(p, p)].abs().sqrt()).collect()
+}
+
+/// Intervals of the effects' knobs, in their order.
+pub fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec<Interval> {
+    let deviations = deviations(best);
+    let first = best.model.calibrated();
+    let knobs: Vec<_> = best.model.knobs().collect();
+    let crooked = |i: usize| {
+        let knob = knobs[i];
+        let owner = best.model.effects.iter().find(|e| e.knobs.iter().any(|k| std::ptr::eq(k, knob)));
+        owner.is_some_and(|e| matches!(e.kind.name, "soft_windup" | "lost_motion" | "immersion"))
+    };
+    (0..knobs.len())
+        .into_par_iter()
+        .map(|i| {
+            let p = first + i;
+            let (low, high) = (knobs[i].low, knobs[i].high);
+            let (u, sd) = (best.point.u[p], deviations[p]);
+            let end = |side: f64| {
+                let straight = u + side * Z95 * sd;
+                let outside = !(low..=high).contains(&straight);
+                let value = if crooked(i) || outside {
+                    profile(forward, best, weights, p, side, sd)
+                } else {
+                    Some(straight)
+                };
+                value.filter(|v| *v > low && *v < high)
+            };
+            Interval { low: end(-1.0), high: end(1.0) }
+        })
+        .collect()
+}
+
+/// Where the profile has risen enough on one side; `None` if it does not within the prior.
+fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64, sd: f64) -> Option<f64> {
+    let (low, high) = best.model.bounds(p);
+    let u = best.point.u[p];
+    let limit = if side < 0.0 { low } else { high };
+    let rise = |value: f64| {
+        let mut model = best.model.clone();
+        model.held = vec![(p, value)];
+        let effort = Effort { steps: 5, tolerance: 0.02 };
+        fit(forward, &model, &best.point.u, weights, effort).point.objective - best.point.objective
+    };
+    let clamp = |value: f64| value.clamp(low, high);
+    let mut near = (u, 0.0);
+    let mut value = clamp(u + side * Z95 * sd.clamp(1e-6, 10.0));
+    for _ in 0..6 {
+        let here = rise(value);
+        if (here - RISE).abs() < 0.4 {
+            return Some(value);
+        }
+        if here < RISE && value == limit {
+            return None;
+        }
+        // the square root of the rise is nearly straight
+        let (a, b) = (near.1, here.max(1e-3).sqrt());
+        let slope = (value - near.0) / (b - a);
+        if here < RISE {
+            near = (value, b);
+        }
+        let next = if slope.is_finite() && slope * side > 0.0 {
+            value + (RISE.sqrt() - b) * slope
+        } else {
+            u + (value - u) * 1.7
+        };
+        value = clamp(next.clamp(u.min(u + (value - u) * 4.0), u.max(u + (value - u) * 4.0)));
+    }
+    Some(value)
+}

@@ -1,0 +1,254 @@
+//! Whether the best model leaves a structure that it should not.
+//!
+//! The residuals of a right model are noise: they do not follow the order of the tests, a joint's angle,
+//! the load, the branch, the torque. Each such question is a few regressors `X`; with the part that the
+//! model could still fit removed, `zᵀ S⁻¹ z` with `z = Xᵀr`, `S = XᵀX - XᵀJ (JᵀWJ)⁻¹ JᵀX` is
+//! chi-squared if there is nothing.
+
+use super::campaign::Campaign;
+use super::fit::{Fit, Weights};
+use super::forward::Forward;
+use super::stats::ln_chi_squared_tail;
+use crate::arm::effect::Channel;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use std::f64::consts::TAU;
+
+/// One question put to the residuals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Structure {
+    /// Channel.
+    pub channel: Channel,
+    /// What the residuals would follow, in words.
+    pub follows: String,
+    /// Test statistic.
+    pub statistic: f64,
+    /// Its degrees of freedom.
+    pub dof: f64,
+    /// ln of the probability of so large a statistic, times the number of questions.
+    pub ln_p: f64,
+}
+
+/// The answer to all questions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LackOfFit {
+    /// Every question, the most telling first.
+    pub structures: Vec<Structure>,
+    /// Sum of squares over degrees of freedom of all data, in declared standard deviations.
+    pub chi2_per_dof: f64,
+    /// Whether the model fails.
+    pub fails: bool,
+}
+
+/// Sum of squares over degrees of freedom that wrong declared deviations could leave.
+const MATERIAL: f64 = 1.75;
+
+/// Asks all questions.
+pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> LackOfFit {
+    let tester = Tester::new(forward, fit, weights);
+    let mut structures = Vec::new();
+    for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
+        let range = forward.range(channel);
+        if range.len() >= 8 {
+            structures.extend(
+                questions(campaign, forward, fit, channel)
+                    .into_iter()
+                    .filter_map(|(follows, regressors)| tester.ask(channel, follows, &regressors)),
+            );
+        }
+    }
+    let asked = (structures.len() as f64).max(1.0).ln();
+    structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
+    structures.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
+    let chi2_per_dof = tester.chi2_per_dof(forward, fit);
+    let structured = structures.first().is_some_and(|s| s.ln_p < (1e-6f64).ln());
+    LackOfFit { structures, chi2_per_dof, fails: structured || chi2_per_dof > MATERIAL }
+}
+
+struct Tester {
+    residual: DVector<f64>,
+    jacobian: DMatrix<f64>,
+    covariance: DMatrix<f64>,
+    weight: Vec<f64>,
+}
+
+impl Tester {
+    fn new(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
+        let residual = DVector::from_vec(fit.residuals(forward, weights)).map(|r| r.clamp(-5.0, 5.0));
+        let mut jacobian = fit.jacobian.clone();
+        for (mut row, w) in jacobian.row_iter_mut().zip(&weights.inverse) {
+            row *= *w;
+        }
+        let n = fit.curvature.nrows();
+        let covariance = fit.curvature.clone().try_inverse().unwrap_or_else(|| DMatrix::zeros(n, n));
+        Self { residual, jacobian, covariance, weight: weights.inverse.clone() }
+    }
+
+    fn ask(&self, channel: Channel, follows: String, regressors: &[Vec<f64>]) -> Option<Structure> {
+        let n = self.residual.len();
+        let x =
+            DMatrix::from_fn(
+                n,
+                regressors.len(),
+                |i, k| {
+                    if self.weight[i] > 0.0 { regressors[k][i] } else { 0.0 }
+                },
+            );
+        let z = x.tr_mul(&self.residual);
+        let xj = x.tr_mul(&self.jacobian);
+        let s = x.tr_mul(&x) - &xj * &self.covariance * xj.transpose();
+        let eigen = SymmetricEigen::new((&s + s.transpose()) * 0.5);
+        let largest = eigen.eigenvalues.max();
+        let (mut statistic, mut dof) = (0.0, 0.0);
+        for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            if *value > 1e-6 * largest && *value > 1e-9 {
+                statistic += vector.dot(&z).powi(2) / value;
+                dof += 1.0;
+            }
+        }
+        (dof > 0.0).then(|| Structure {
+            channel,
+            follows,
+            statistic,
+            dof,
+            ln_p: ln_chi_squared_tail(statistic, dof),
+        })
+    }
+
+    fn chi2_per_dof(&self, forward: &Forward, fit: &Fit) -> f64 {
+        let (mut chi2, mut count) = (0.0, 0.0);
+        for (i, datum) in forward.data.iter().enumerate() {
+            if self.weight[i] > 0.0 {
+                chi2 += ((datum.value - fit.point.predicted[i]) / datum.sigma).powi(2);
+                count += 1.0;
+            }
+        }
+        chi2 / (count - fit.model.effects.len() as f64 - 4.0).max(1.0)
+    }
+}
+
+/// Functions of what a datum belongs to, each zero outside its channel.
+fn questions(
+    campaign: &Campaign,
+    forward: &Forward,
+    fit: &Fit,
+    channel: Channel,
+) -> Vec<(String, Vec<Vec<f64>>)> {
+    match channel {
+        Channel::Static => static_questions(campaign, forward, fit),
+        Channel::Modal => modal_questions(campaign, forward),
+        _ => windup_questions(campaign, forward),
+    }
+}
+
+/// Values at the data of a channel, zero elsewhere.
+fn spread(forward: &Forward, channel: Channel, value: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+    let mut out = vec![0.0; forward.data.len()];
+    for i in forward.range(channel) {
+        out[i] = value(i, forward.data[i].component);
+    }
+    out
+}
+
+fn waves(angle_deg: f64) -> [f64; 4] {
+    let a = angle_deg.to_radians();
+    [a.sin(), a.cos(), (2.0 * a).sin(), (2.0 * a).cos()]
+}
+
+/// Slow and fast waves and a line over the order of the rows.
+fn order_functions(part: f64) -> [f64; 6] {
+    let (a, b) = (TAU * part, 2.0 * TAU * part);
+    [part - 0.5, (part - 0.5).powi(2), a.sin(), a.cos(), b.sin(), b.cos()]
+}
+
+fn static_questions(campaign: &Campaign, forward: &Forward, fit: &Fit) -> Vec<(String, Vec<Vec<f64>>)> {
+    let rows = &campaign.statics;
+    let row = |i: usize| i / 3;
+    let count = rows.len() as f64;
+    let channel = Channel::Static;
+    // each component on its own, and along the predicted displacement (a stiffness that changes)
+    let vary = |f: &dyn Fn(usize) -> f64| -> Vec<Vec<f64>> {
+        let mut out: Vec<Vec<f64>> = (0..3)
+            .map(|c| spread(forward, channel, |i, component| if component == c { f(row(i)) } else { 0.0 }))
+            .collect();
+        out.push(spread(forward, channel, |i, _| {
+            f(row(i)) * fit.point.predicted[i] / forward.data[i].sigma / 30.0
+        }));
+        out
+    };
+    let mut out = Vec::new();
+    let order: Vec<Vec<f64>> = (0..6).flat_map(|k| vary(&|r| order_functions(r as f64 / count)[k])).collect();
+    out.push(("the order of the tests".to_string(), order));
+    for (j, name) in campaign.arm.driven_joint_names().iter().enumerate() {
+        let angle: Vec<Vec<f64>> = (0..4).flat_map(|k| vary(&|r| waves(rows[r].pose_deg[j])[k])).collect();
+        out.push((format!("the angle of {name}"), angle));
+    }
+    let load: Vec<Vec<f64>> = [
+        vary(&|r| rows[r].payload.mass_kg / 10.0),
+        vary(&|r| (rows[r].payload.mass_kg / 10.0).powi(2)),
+        vary(&|r| rows[r].force_n.norm() / 100.0),
+    ]
+    .concat();
+    out.push(("the load".to_string(), load));
+    let branch = vary(&|r| if rows[r].branch == "unloading" { 1.0 } else { 0.0 });
+    out.push(("loading or unloading".to_string(), branch));
+    out
+}
+
+fn modal_questions(campaign: &Campaign, forward: &Forward) -> Vec<(String, Vec<Vec<f64>>)> {
+    let rows = &campaign.modal;
+    let first = forward.starts[1];
+    let count = rows.len() as f64;
+    let function = |f: &dyn Fn(usize) -> f64| spread(forward, Channel::Modal, |i, _| f(i - first));
+    let mut out = Vec::new();
+    let order = (0..6).map(|k| function(&|r| order_functions(r as f64 / count)[k])).collect();
+    out.push(("the order of the tests".to_string(), order));
+    for (j, name) in campaign.arm.driven_joint_names().iter().enumerate() {
+        let low = |r: usize, k: usize| if rows[r].mode <= 2 { waves(rows[r].pose_deg[j])[k] } else { 0.0 };
+        let angle = (0..4)
+            .flat_map(|k| [function(&|r| waves(rows[r].pose_deg[j])[k]), function(&|r| low(r, k))])
+            .collect();
+        out.push((format!("the angle of {name}"), angle));
+    }
+    let load = vec![function(&|r| rows[r].payload.mass_kg / 10.0), function(&|_| 1.0)];
+    out.push(("the payload".to_string(), load));
+    let modes = (1..=6).map(|m| function(&|r| if rows[r].mode == m { 1.0 } else { 0.0 })).collect();
+    out.push(("the number of the mode".to_string(), modes));
+    out
+}
+
+fn windup_questions(campaign: &Campaign, forward: &Forward) -> Vec<(String, Vec<Vec<f64>>)> {
+    let rows = &campaign.windup;
+    let first = forward.starts[2];
+    let names: Vec<&str> = campaign.arm.joints().map(|j| j.name.as_str()).collect();
+    names
+        .into_iter()
+        .filter(|name| rows.iter().filter(|r| r.joint == *name).count() >= 6)
+        .map(|name| {
+            let largest =
+                rows.iter().filter(|r| r.joint == name).map(|r| r.torque_nm.abs()).fold(1e-9, f64::max);
+            let function = |f: &dyn Fn(f64, f64) -> f64| {
+                spread(forward, Channel::Windup, |i, _| {
+                    let row = &rows[i - first];
+                    let side = if row.branch == "unloading" { 1.0 } else { -1.0 };
+                    if row.joint == name { f(row.torque_nm / largest, side) } else { 0.0 }
+                })
+            };
+            let mut regressors: Vec<Vec<f64>> = (0..6).map(|k| function(&|t, _| t.powi(k))).collect();
+            regressors.extend((0..3).map(|k| function(&|t, side| side * t.powi(k))));
+            (format!("the torque on {name}"), regressors)
+        })
+        .collect()
+}
+
+impl Structure {
+    /// The structure in one line.
+    pub fn sentence(&self) -> String {
+        format!(
+            "the residuals of {} follow {} (chi-squared {:.0} on {} degrees of freedom)",
+            self.channel.word(),
+            self.follows,
+            self.statistic,
+            self.dof
+        )
+    }
+}

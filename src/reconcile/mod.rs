@@ -1,0 +1,34 @@
+//! From a gap to a better model: where an arm and its model disagree, which piece of physics is
+//! missing, how sure that is, and what it changes.
+//!
+//! [`campaign`] reads the readings; [`forward`] predicts them fast, [`exact`] by mechanics directly;
+//! [`model`] says what is free; [`fit`] fits; [`select`] finds the effects; [`noise`] finds gross errors
+//! and wrongly declared deviations; [`lack_of_fit`] asks whether structure is left; [`kept_out`]
+//! confirms on poses kept out; [`interval`] gives the intervals; [`analysis`] draws the conclusion and
+//! [`verdict`] is its form; [`correct`] writes the corrected arm and [`next_test`] says what to measure.
+
+pub mod analysis;
+pub mod campaign;
+pub mod correct;
+pub mod exact;
+pub mod fit;
+pub mod forward;
+pub mod interval;
+pub mod kept_out;
+pub mod lack_of_fit;
+pub mod locate;
+pub mod model;
+pub mod next_test;
+pub mod noise;
+pub mod positions;
+pub mod predict;
+pub mod readings;
+pub mod report;
+pub mod select;
+pub mod stats;
+pub mod table;
+pub mod verdict;
+
+pub use analysis::reconcile;
+pub use campaign::Campaign;
+pub use verdict::{Outcome, Verdict};

@@ -1,0 +1,405 @@
+//! Which effects are missing: every candidate at every place, judged by evidence that pays for each
+//! parameter and for having looked in many places.
+//!
+//! One stage adds one effect: all candidates are screened with the model made linear about the fit so
+//! far, the best are fitted in full. From two effects on each is dropped and swapped against all others
+//! until nothing improves, which repairs greedy mistakes.
+
+use super::fit::{
+    Effort, Fit, Normal, Weights, bounded_step, change, evaluate, fit, jacobian, normal, objective,
+};
+use super::forward::Forward;
+use super::model::{Candidate, Model, Nuisance};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// Rise of the score that an effect must bring.
+const WORTH: f64 = 3.0;
+/// Models within this score of the best cannot be told from it.
+const TIE: f64 = 3.0;
+/// Models this far behind after a few steps are not fitted further.
+const HOPELESS: f64 = 40.0;
+/// Models within this score of a stage's best are worth a closer look.
+const PROMISING: f64 = 12.0;
+/// Most effects.
+pub const MOST_EFFECTS: usize = 3;
+/// Candidates fitted in full at each stage.
+const FULL_FITS: usize = 7;
+
+/// All that a search needs.
+pub struct Search<'a> {
+    /// Prepared campaign.
+    pub forward: &'a Forward,
+    /// Calibration.
+    pub nuisance: &'a Nuisance,
+    /// Candidates.
+    pub candidates: &'a [Candidate],
+    /// Weights of the data.
+    pub weights: &'a Weights,
+}
+
+/// A model with its score.
+#[derive(Clone)]
+pub struct Scored {
+    /// Indices of the candidates in it.
+    pub effects: Vec<usize>,
+    /// Its parameters.
+    pub u: Vec<f64>,
+    /// Evidence less ln of the number of candidates for each effect.
+    pub score: f64,
+    /// `Σ ρ(r) + Σ u²`.
+    pub objective: f64,
+}
+
+/// What a search found.
+pub struct Selection {
+    /// The best model.
+    pub best: Scored,
+    /// Calibration only.
+    pub bare: Scored,
+    /// Every other model that was fitted, best first.
+    pub others: Vec<Scored>,
+}
+
+impl<'a> Search<'a> {
+    /// A model of the named candidates.
+    pub fn model(&self, effects: &[usize]) -> Model<'a> {
+        Model {
+            nuisance: self.nuisance,
+            effects: effects.iter().map(|&i| &self.candidates[i]).collect(),
+            smoothing: 0.0,
+            held: Vec::new(),
+        }
+    }
+
+    /// Fits the model of the named candidates from `u`.
+    pub fn fit(&self, effects: &[usize], u: &[f64], effort: Effort) -> Fit<'a> {
+        self.fit_model(self.model(effects), u, effort)
+    }
+
+    /// Fits a model from `u`; where the last effect is a gear's curve, its break points' steps in the
+    /// frequencies are first smoothed, then sharpened.
+    fn fit_model(&self, mut model: Model<'a>, u: &[f64], effort: Effort) -> Fit<'a> {
+        let mut start = u.to_vec();
+        if !self.forward.modal.is_empty()
+            && model.effects.last().is_some_and(|e| e.kind.name == "soft_windup")
+        {
+            for smoothing in [0.1, 0.03, 0.01] {
+                model.smoothing = smoothing;
+                let steps = Effort { steps: 8, tolerance: 0.05 };
+                start = fit(self.forward, &model, &start, self.weights, steps).point.u;
+            }
+            model.smoothing = 0.0;
+        }
+        fit(self.forward, &model, &start, self.weights, effort)
+    }
+
+    /// Fits a model to the end: the break points of a gear's curve are moved in steps, because the
+    /// frequencies' steps at them hide lower ground from a descent.
+    pub fn polish(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
+        let mut best = fit(self.forward, &self.model(effects), u, self.weights, Effort::default());
+        let breaks = best.model.break_points();
+        for reach in [0.3, 0.12, 0.04] {
+            for &p in &breaks {
+                let moves = [-1.0, -0.5, 0.5, 1.0].map(|m| best.point.u[p] + m * reach);
+                let tried: Vec<Fit<'a>> =
+                    moves.into_par_iter().map(|value| self.held_then_free(&best, p, value)).collect();
+                for fit in tried {
+                    if fit.point.objective < best.point.objective - 1e-6 {
+                        best = fit;
+                    }
+                }
+            }
+        }
+        if breaks.is_empty() { best } else { self.centre_breaks(best) }
+    }
+
+    /// Moves break points from the brink of a frequency's step into the middle of where the objective is
+    /// flat, so that a small change of the torques does not carry a test across.
+    fn centre_breaks(&self, best: Fit<'a>) -> Fit<'a> {
+        const STEP: f64 = 0.002;
+        let mut u = best.point.u.clone();
+        for p in best.model.break_points() {
+            let flat = |side: f64| {
+                let rises = (1..=10).map(|i| {
+                    let mut moved = u.clone();
+                    moved[p] += side * STEP * i as f64;
+                    evaluate(self.forward, &best.model, &moved, self.weights).objective
+                });
+                rises.take_while(|o| *o < best.point.objective + 1.0).count() as f64
+            };
+            let middle = 0.5 * STEP * (flat(1.0) - flat(-1.0));
+            u[p] += middle;
+        }
+        let mut model = best.model.clone();
+        model.held = model.break_points().into_iter().map(|p| (p, u[p])).collect();
+        let effort = Effort { steps: 4, tolerance: 0.02 };
+        let settled = fit(self.forward, &model, &u, self.weights, effort);
+        if settled.point.objective > best.point.objective + 4.0 {
+            return best;
+        }
+        fit(self.forward, &best.model, &settled.point.u, self.weights, Effort { steps: 0, tolerance: 0.0 })
+    }
+
+    /// Fits with a parameter held at a value, then lets it go.
+    fn held_then_free(&self, from: &Fit<'a>, parameter: usize, value: f64) -> Fit<'a> {
+        let effort = Effort { steps: 5, tolerance: 0.02 };
+        let mut model = from.model.clone();
+        model.held = vec![(parameter, value)];
+        let held = fit(self.forward, &model, &from.point.u, self.weights, effort);
+        fit(self.forward, &from.model, &held.point.u, self.weights, effort)
+    }
+
+    /// The score of a fit.
+    pub fn scored(&self, effects: &[usize], fit: &Fit) -> Scored {
+        let penalty = effects.len() as f64 * (self.places() as f64).ln();
+        Scored {
+            effects: effects.to_vec(),
+            u: fit.point.u.clone(),
+            score: fit.evidence - penalty,
+            objective: fit.point.objective,
+        }
+    }
+
+    /// In how many ways an effect could be named; a unit slip counts once a channel.
+    fn places(&self) -> usize {
+        let mut labels: Vec<String> = self.candidates.iter().map(|c| c.label()).collect();
+        labels.dedup();
+        labels.len()
+    }
+
+    /// Looks for the effects; from two effects on a model found before is a better start than nothing.
+    pub fn run(&self, before: Option<&Scored>) -> Selection {
+        let bare_model = self.model(&[]);
+        let bare_fit =
+            fit(self.forward, &bare_model, &vec![0.0; bare_model.len()], self.weights, Effort::default());
+        let bare = self.scored(&[], &bare_fit);
+        let mut seen: Vec<Scored> = Vec::new();
+        let mut best = bare.clone();
+        if let Some(known) = before.filter(|b| b.effects.len() > 1) {
+            let effort = Effort { steps: 12, tolerance: 0.02 };
+            let again = fit(self.forward, &self.model(&known.effects), &known.u, self.weights, effort);
+            best = self.repair(self.scored(&known.effects, &again), &mut seen);
+            if best.score < bare.score + WORTH {
+                best = bare.clone();
+            }
+        }
+        while best.effects.len() < MOST_EFFECTS {
+            let tried = self.extend(&best);
+            seen.extend(tried.iter().cloned());
+            let Some(next) = better(&tried, best.score + WORTH) else { break };
+            best = next;
+            if best.effects.len() > 1 {
+                best = self.repair(best, &mut seen);
+            }
+        }
+        seen.sort_by(|a, b| b.score.total_cmp(&a.score));
+        Selection { best, bare, others: seen }
+    }
+
+    /// Drops and swaps effects until nothing improves.
+    fn repair(&self, mut best: Scored, seen: &mut Vec<Scored>) -> Scored {
+        for _ in 0..4 {
+            let mut improved = false;
+            for i in 0..best.effects.len() {
+                let mut effects = best.effects.clone();
+                effects.remove(i);
+                let start = self.drop_knobs(&best, i);
+                let dropped = self.scored(&effects, &self.fit(&effects, &start, Effort::default()));
+                let swapped = self.extend(&dropped);
+                seen.push(dropped.clone());
+                seen.extend(swapped.iter().cloned());
+                let fewer = (dropped.score + WORTH > best.score).then(|| dropped.clone());
+                if let Some(next) = fewer.or_else(|| better(&swapped, best.score + 1e-3)) {
+                    best = next;
+                    improved = true;
+                    break;
+                }
+            }
+            if !improved {
+                break;
+            }
+        }
+        best
+    }
+
+    /// Parameters of a model without those of one of its effects.
+    fn drop_knobs(&self, scored: &Scored, effect: usize) -> Vec<f64> {
+        let model = self.model(&scored.effects);
+        let first = model.first_knob(effect);
+        let mut u = scored.u.clone();
+        u.drain(first..first + model.effects[effect].knobs.len());
+        u
+    }
+
+    /// The best models with one more effect.
+    pub fn extend(&self, base: &Scored) -> Vec<Scored> {
+        let screened = self.screen(base);
+        let round = |starts: Vec<(Vec<usize>, Vec<f64>)>, fresh: bool, steps: usize| -> Vec<Scored> {
+            let effort = Effort { steps, tolerance: 0.02 };
+            starts
+                .into_par_iter()
+                .map(|(effects, u)| {
+                    let fitted = match fresh {
+                        true => self.fit(&effects, &u, effort),
+                        false => fit(self.forward, &self.model(&effects), &u, self.weights, effort),
+                    };
+                    self.scored(&effects, &fitted)
+                })
+                .collect()
+        };
+        let starts = screened.into_iter().map(|(c, u, _)| ([base.effects.as_slice(), &[c]].concat(), u));
+        let first = round(starts.collect(), true, 4);
+        let top = first.iter().map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
+        let (near, far): (Vec<Scored>, Vec<Scored>) =
+            first.into_iter().partition(|s| s.score > top - HOPELESS);
+        let mut fits = round(near.into_iter().map(|s| (s.effects, s.u)).collect(), false, 14);
+        fits.extend(far);
+        self.regrid(&mut fits);
+        fits
+    }
+
+    /// Break points of the promising gear curves found over a grid, with the frequencies left out at first.
+    fn regrid(&self, fits: &mut [Scored]) {
+        let top = fits.iter().map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
+        for scored in fits.iter_mut().filter(|s| s.score > top - PROMISING) {
+            let curves = scored.effects.iter().rposition(|&e| self.candidates[e].kind.name == "soft_windup");
+            let Some(position) = curves else { continue };
+            let fit = self.over_breaks(scored, position);
+            let again = self.scored(&scored.effects, &fit);
+            if again.score > scored.score {
+                *scored = again;
+            }
+        }
+    }
+
+    /// The best fit from the grid of break points of one effect.
+    fn over_breaks(&self, from: &Scored, position: usize) -> Fit<'a> {
+        let model = self.model(&from.effects);
+        let first = model.first_knob(position);
+        let smooth = self.weights.without_modes(self.forward);
+        let effort = Effort { steps: 8, tolerance: 0.05 };
+        let starts = &model.effects[position].starts;
+        let mut tried: Vec<(f64, Vec<f64>)> = starts
+            .par_iter()
+            .map(|start| {
+                let mut u = from.u.clone();
+                u[first..first + start.len()].copy_from_slice(start);
+                let fit = fit(self.forward, &model, &u, &smooth, effort);
+                (fit.point.objective, fit.point.u)
+            })
+            .collect();
+        tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+        tried.truncate(2);
+        let effort = Effort { steps: 12, tolerance: 0.02 };
+        let fits: Vec<Fit<'a>> =
+            tried.into_par_iter().map(|(_, u)| self.fit(&from.effects, &u, effort)).collect();
+        fits.into_iter()
+            .min_by(|a, b| a.point.objective.total_cmp(&b.point.objective))
+            .expect("at least one start")
+    }
+
+    /// The most promising candidates with a start for each: candidate, parameters, score of the model
+    /// made linear about the base.
+    fn screen(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
+        let model = self.model(&base.effects);
+        let here = evaluate(self.forward, &model, &base.u, self.weights);
+        let slopes = jacobian(self.forward, &model, &here);
+        let mut tried: Vec<(usize, Vec<f64>, f64)> = (0..self.candidates.len())
+            .into_par_iter()
+            .filter(|i| !base.effects.contains(i))
+            .filter_map(|i| self.best_start(&model, &here, &slopes, i))
+            .collect();
+        tried.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+        tried.truncate(FULL_FITS);
+        tried
+    }
+
+    fn best_start(
+        &self,
+        base: &Model<'a>,
+        here: &super::fit::Point,
+        slopes: &DMatrix<f64>,
+        index: usize,
+    ) -> Option<(usize, Vec<f64>, f64)> {
+        let candidate = &self.candidates[index];
+        let mut model = base.with(candidate);
+        model.smoothing = 0.1;
+        candidate
+            .starts
+            .iter()
+            .map(|start| self.linear(&model, here, slopes, start))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(u, score)| (index, u, score))
+    }
+
+    /// Best parameters and score of a model made linear about `here` plus the candidate's start.
+    fn linear(
+        &self,
+        model: &Model,
+        here: &super::fit::Point,
+        slopes: &DMatrix<f64>,
+        start: &[f64],
+    ) -> (Vec<f64>, f64) {
+        let mut u = here.u.clone();
+        u.extend_from_slice(start);
+        let base = change(self.forward, model, here, &u);
+        let mut columns = slopes.clone().resize_horizontally(u.len(), 0.0);
+        for p in here.u.len()..u.len() {
+            let (_, high) = model.bounds(p);
+            let step = if u[p] + 1e-3 > high { -1e-3 } else { 1e-3 };
+            let mut moved = u.clone();
+            moved[p] += step;
+            let ahead = change(self.forward, model, here, &moved);
+            for i in 0..base.len() {
+                columns[(i, p)] = (ahead[i] - base[i]) / step;
+            }
+        }
+        let origin = DVector::from_vec(u.clone());
+        let at = |u: &[f64]| -> Vec<f64> {
+            let delta = &columns * (DVector::from_column_slice(u) - &origin);
+            here.predicted.iter().zip(&base).zip(delta.iter()).map(|((p, b), d)| p + b + d).collect()
+        };
+        let mut predicted = at(&u);
+        let mut curvature = DMatrix::zeros(0, 0);
+        for _ in 0..4 {
+            let normal: Normal =
+                normal(self.forward, model.calibrated(), &u, &predicted, &columns, self.weights);
+            u = bounded_step(model, &u, &normal, 1e-6);
+            predicted = at(&u);
+            curvature = normal.curvature;
+        }
+        let objective = objective(self.forward, model, &u, &predicted, self.weights);
+        let mut score = -0.5 * objective;
+        for (i, knob) in model.knobs().enumerate() {
+            let p = model.calibrated() + i;
+            let width = 1.0 / (curvature[(p, p)] + 12.0 / knob.range().powi(2)).sqrt();
+            score += (width / knob.range()).ln() + 0.9;
+        }
+        (u, score)
+    }
+
+    /// Models with as many effects as the best, one of them another, that the data cannot tell from it:
+    /// for each effect of the best the candidates that could stand in its place.
+    pub fn alternatives(&self, best: &Scored, seen: &[Scored]) -> Vec<Vec<Scored>> {
+        (0..best.effects.len())
+            .map(|i| {
+                let mut rest = best.effects.clone();
+                let own = rest.remove(i);
+                let mut rivals: Vec<Scored> = seen
+                    .iter()
+                    .filter(|s| s.score > best.score - TIE)
+                    .filter(|s| s.effects.len() == best.effects.len() && !s.effects.contains(&own))
+                    .filter(|s| rest.iter().all(|e| s.effects.contains(e)))
+                    .cloned()
+                    .collect();
+                rivals.dedup_by(|a, b| a.effects == b.effects);
+                rivals
+            })
+            .collect()
+    }
+}
+
+fn better(tried: &[Scored], than: f64) -> Option<Scored> {
+    tried.iter().filter(|s| s.score > than).max_by(|a, b| a.score.total_cmp(&b.score)).cloned()
+}

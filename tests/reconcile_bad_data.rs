@@ -1,0 +1,174 @@
+//! Bad campaigns: every fault is listed at once, and too little is called too little.
+
+use armwright::catalog::Catalogs;
+use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};
+use std::path::{Path, PathBuf};
+
+fn source() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e")
+}
+
+/// The campaign with one of its files edited line by line; `None` drops a line.
+fn edited(file: &str, edit: impl Fn(usize, &str) -> Option<String>) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    for entry in std::fs::read_dir(source()).expect("campaign") {
+        let path = entry.expect("entry").path();
+        let name = path.file_name().expect("name");
+        let text = std::fs::read_to_string(&path).expect("text");
+        let text = match name == file {
+            true => {
+                text.lines().enumerate().filter_map(|(i, l)| edit(i + 1, l)).collect::<Vec<_>>().join("\n")
+            }
+            false => text,
+        };
+        std::fs::write(folder.path().join(name), text).expect("written");
+    }
+    folder
+}
+
+fn faults(folder: &Path) -> String {
+    Campaign::read(folder, &Catalogs::default()).expect_err("faulty").to_string()
+}
+
+fn outcome(folder: &Path) -> Outcome {
+    reconcile(&Campaign::read(folder, &Catalogs::default()).expect("readable"))
+}
+
+fn cells(line: &str, column: usize, value: &str) -> String {
+    let mut cells: Vec<&str> = line.split(',').collect();
+    cells[column] = value;
+    cells.join(",")
+}
+
+#[test]
+fn every_fault_of_a_file_is_listed_with_line_column_and_value() {
+    let folder = edited("static.csv", |line, text| {
+        Some(match line {
+            5 => cells(text, 15, "NaN"),
+            7 => cells(text, 18, "-0.006"),
+            9 => cells(text, 7, "abc"),
+            11 => cells(text, 8, "76"),
+            _ => text.to_string(),
+        })
+    });
+    let text = faults(folder.path());
+    for expected in [
+        "static.csv:5: dx_mm: NaN is not a finite number",
+        "static.csv:7: sigma_mm: = -0.006; a standard deviation is greater than 0",
+        "static.csv:9: payload_kg: \"abc\" is not a number",
+        "static.csv:11: payload_cg_x_m: = 76; more than 5 m from the tip: is it in mm?",
+    ] {
+        assert!(text.contains(expected), "{expected}\n{text}");
+    }
+}
+
+#[test]
+fn missing_columns_and_unknown_joints_are_named() {
+    let folder = edited("static.csv", |line, text| {
+        Some(if line == 1 {
+            text.replace("sigma_mm", "sigma").replace("q_j3_deg", "q_j33_deg")
+        } else {
+            text.into()
+        })
+    });
+    let text = faults(folder.path());
+    assert!(text.contains("sigma_mm: the column is missing"), "{text}");
+    assert!(text.contains("q_j33_deg: is the angle of no driven joint"), "{text}");
+    let folder = edited("windup.csv", |_, text| Some(text.replace("j5", "j9")));
+    assert!(faults(folder.path()).contains("\"j9\" is no joint of the arm"));
+}
+
+#[test]
+fn a_repeated_row_and_radians_are_refused() {
+    let folder = edited("static.csv", |line, text| {
+        Some(if line == 4 { format!("{text}\n{text}") } else { text.into() })
+    });
+    let text = faults(folder.path());
+    assert!(text.contains("static.csv:5: repeats line 4 in every value"), "{text}");
+    let folder = edited("static.csv", |line, text| {
+        if line == 1 {
+            return Some(text.into());
+        }
+        let radians = text.split(',').enumerate().map(|(i, cell)| match i {
+            1..=6 => format!("{:.4}", cell.parse::<f64>().expect("angle").to_radians()),
+            _ => cell.to_string(),
+        });
+        Some(radians.collect::<Vec<_>>().join(","))
+    });
+    assert!(faults(folder.path()).contains("they look like radians"));
+}
+
+fn only_static(keep: impl Fn(usize, &str) -> bool) -> tempfile::TempDir {
+    let folder = edited("static.csv", |line, text| (line == 1 || keep(line, text)).then(|| text.to_string()));
+    for file in ["modal.csv", "windup.csv"] {
+        std::fs::remove_file(folder.path().join(file)).expect("removed");
+    }
+    let path = folder.path().join("campaign.json");
+    let mut campaign: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(&path).expect("text")).expect("JSON");
+    for key in ["modal", "windup"] {
+        campaign.as_object_mut().expect("object").remove(key);
+    }
+    std::fs::write(path, campaign.to_string()).expect("written");
+    folder
+}
+
+#[test]
+fn ten_rows_one_pose_or_one_load_are_insufficient() {
+    for (folder, word) in [
+        (only_static(|line, _| line <= 11), "too few"),
+        (only_static(|line, _| line <= 6), "distinct pose"),
+        (only_static(|_, text| text.contains(",10,") && text.split(',').nth(7) == Some("10")), ""),
+    ] {
+        let outcome = outcome(folder.path());
+        if !word.is_empty() {
+            assert_eq!(outcome.verdict, Verdict::InsufficientData, "{word}: {}", outcome.to_text());
+            assert!(outcome.reasons.iter().any(|r| r.contains(word)), "{:?}", outcome.reasons);
+        }
+        assert!(outcome.verdict != Verdict::Explained || outcome.effects.len() == 1);
+    }
+}
+
+#[test]
+fn swapped_units_are_named_as_a_unit_and_not_as_physics() {
+    let folder = edited("static.csv", |line, text| {
+        if line == 1 {
+            return Some(text.into());
+        }
+        let inches = text.split(',').enumerate().map(|(i, cell)| match i {
+            15..=17 => format!("{:.6}", cell.parse::<f64>().expect("mm") / 25.4),
+            _ => cell.to_string(),
+        });
+        Some(inches.collect::<Vec<_>>().join(","))
+    });
+    let outcome = outcome(folder.path());
+    let named = outcome.effects.iter().any(|f| f.effect == "wrong_unit" && f.at == "static");
+    assert!(named || outcome.verdict == Verdict::Unexplained, "{}", outcome.to_text());
+}
+
+#[test]
+fn a_mode_that_was_missed_is_noticed() {
+    // the second mode of one list is not there; those above it were numbered down
+    let folder = edited("modal.csv", |_, text| {
+        let mut cells: Vec<&str> = text.split(',').collect();
+        match (cells[0], cells[11]) {
+            ("3", "2") => None,
+            ("3", "3") => {
+                cells[11] = "2";
+                Some(cells.join(","))
+            }
+            ("3", "4") => {
+                cells[11] = "3";
+                Some(cells.join(","))
+            }
+            _ => Some(text.to_string()),
+        }
+    });
+    let outcome = outcome(folder.path());
+    assert!(
+        outcome.reasons.iter().any(|r| r.contains("appears to be missing from list 3")),
+        "{:?}",
+        outcome.reasons
+    );
+    assert_eq!(outcome.effects[0].label(), "lost_motion@j3");
+}
