@@ -19,7 +19,7 @@ pub struct ReconcileArgs {
     /// Study to run again with the corrected arm, to see which picks change.
     #[arg(long, value_name = "STUDY")]
     pub study: Option<String>,
-    /// Folder to write into, made with its parents; default: results/<campaign>.
+    /// Folder to write into, made with its parents; default: `results/<campaign>`.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
