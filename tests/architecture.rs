@@ -43,7 +43,7 @@ fn src() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
 }
 
-/// Code without comments and without the tests at its end, which may check a room against one above it.
+/// Code without comments and without the unit tests at its end, which may call a witness from any room.
 fn code(text: &str) -> String {
     let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
     let lines = text.lines().map(|line| line.split("//").next().unwrap_or_default());

@@ -27,7 +27,8 @@ fn made_campaigns_are_named_as_their_keys_say() {
     println!("{}", score.table());
     assert!(score.classes.values().all(|(right, all)| right == all), "{}", score.table());
     assert!(score.covered.0 * 10 >= score.covered.1 * 8, "{}", score.table());
-    assert!(score.kept_out.iter().all(|(_, rms)| *rms < 1.25), "{}", score.table());
+    let limit = |name: &str| if name.starts_with("hard") { 1.45 } else { 1.1 };
+    assert!(score.kept_out.iter().all(|(name, rms)| *rms < limit(name)), "{}", score.table());
 }
 
 #[test]

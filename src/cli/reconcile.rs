@@ -16,9 +16,6 @@ pub struct ReconcileArgs {
     /// positions.csv. Several campaigns of one arm are reconciled together.
     #[arg(required = true, value_name = "CAMPAIGN")]
     pub campaigns: Vec<PathBuf>,
-    /// Study to run again with the corrected arm, to see which picks change.
-    #[arg(long, value_name = "STUDY")]
-    pub study: Option<String>,
     /// Folder to write into, made with its parents; default: `results/<campaign>`.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
