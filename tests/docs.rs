@@ -90,9 +90,13 @@ fn line_matches(shown: &str, printed: &str) -> bool {
 /// Runs the commands of a page, one after another, in a folder with the project's examples.
 fn run_page(page: &str) -> usize {
     let here = tempfile::tempdir().expect("a temporary folder");
-    fs::create_dir(here.path().join("examples")).expect("created");
-    fs::copy(project().join("examples/bench-arm.json"), here.path().join("examples/bench-arm.json"))
-        .expect("copied");
+    for folder in ["examples", "tests/data/campaigns/plain-0251e"] {
+        fs::create_dir_all(here.path().join(folder)).expect("created");
+        for entry in fs::read_dir(project().join(folder)).expect(folder) {
+            let entry = entry.expect("an entry");
+            fs::copy(entry.path(), here.path().join(folder).join(entry.file_name())).expect("copied");
+        }
+    }
     let mut commands = 0;
     for block in blocks(&text(page)) {
         if let Some(name) = block.comment.strip_prefix("file: ") {

@@ -16,7 +16,7 @@ pub struct ReconcileArgs {
     /// positions.csv. Several campaigns of one arm are reconciled together.
     #[arg(required = true, value_name = "CAMPAIGN")]
     pub campaigns: Vec<PathBuf>,
-    /// Folder to write into, made with its parents; default: results/<campaign>.
+    /// Folder to write into, made with its parents; default: `results/<campaign>`.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
