@@ -198,7 +198,7 @@ fn says_that_no_drive_is_left_to_choose_from() {
     for choice in ["all_fits", "first_fit"] {
         let mut study = small_study();
         study["chain"][2]["drive"] = json!(choice);
-        study["drives"] = json!({"gear_series": ["CSG"], "ratios": [37]});
+        study["drives"] = json!({"gear_series": ["CSG"], "ratios": [30]});
         let said = Bench::with_study(&study).refuses_run(EMPTY_SPACE);
         assert_says(&said, &["j2", "drives"]);
     }

@@ -90,7 +90,7 @@ fn each_reason_to_fail_has_its_own_exit_code() {
     write("parts/motors.csv", "type,model\nwind,M1\n");
     assert_eq!(code(&["run", "paper-table1", "--catalogs", "parts"]), 4, "a faulty catalog");
     let mut study = bench_arm();
-    study["drives"]["ratios"] = json!([77]);
+    study["drives"] = json!({"gear_series": ["CSG"], "ratios": [30]});
     write("empty.json", &study.to_string());
     assert_eq!(code(&["run", "empty.json"]), 5, "no drive to choose from");
     let mut study = bench_arm();

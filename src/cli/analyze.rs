@@ -25,7 +25,7 @@ pub struct AnalyzeArgs {
     #[arg(long, value_name = "Q1,Q2,...", allow_hyphen_values = true, value_parser = pose)]
     pose_deg: Option<Pose>,
     /// Payload mass [kg]
-    #[arg(long, default_value_t = 0.0, value_parser = non_negative)]
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = non_negative)]
     payload_kg: f64,
     /// Payload centre of gravity from the tip, last frame [m]
     #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = numbers::<3>)]
@@ -52,11 +52,11 @@ pub struct AnalyzeArgs {
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = numbers::<3>)]
     response_n: Option<[f64; 3]>,
     /// Damping ratio of every mode
-    #[arg(long, default_value_t = 0.02, value_parser = non_negative)]
+    #[arg(long, default_value_t = 0.02, allow_hyphen_values = true, value_parser = non_negative)]
     damping: f64,
     /// Frequencies of the response: from, to [Hz] and number of points
-    #[arg(long, value_name = "FROM,TO,POINTS", default_value = "1,100,100", value_parser = numbers::<3>)]
-    response_hz: [f64; 3],
+    #[arg(long, value_name = "FROM,TO,POINTS", default_value = "1,100,100", allow_hyphen_values = true, value_parser = frequencies)]
+    response_hz: Frequencies,
     /// Print JSON, every number to the last digit
     #[arg(long)]
     json: bool,
@@ -67,6 +67,22 @@ struct Pose(Vec<f64>);
 
 fn pose(text: &str) -> Result<Pose, String> {
     number_list(text).map(Pose)
+}
+
+/// Frequencies of a response \[Hz\].
+#[derive(Debug, Clone)]
+struct Frequencies(Vec<f64>);
+
+fn frequencies(text: &str) -> Result<Frequencies, String> {
+    let [from, to, points] = numbers::<3>(text)?;
+    if from < 0.0 || to <= from {
+        return Err("give two frequencies, the second above the first and none negative".into());
+    }
+    if points.fract() != 0.0 || !(2.0..=100_000.0).contains(&points) {
+        return Err(format!("{points} points: give a whole number from 2 to 100000"));
+    }
+    let last = points - 1.0;
+    Ok(Frequencies((0..points as usize).map(|i| from + (to - from) * i as f64 / last).collect()))
 }
 
 fn non_negative(text: &str) -> Result<f64, String> {
@@ -151,11 +167,7 @@ fn solve(args: &AnalyzeArgs, arm: &Arm, case: LoadCase) -> Solved {
     let statics = posed.statics();
     let modes = posed.modes(&statics, args.modes);
     let response = args.response_n.map(|force| {
-        let [from, to, points] = args.response_hz;
-        let last = (points.max(2.0) - 1.0).round();
-        let frequencies: Vec<f64> =
-            (0..=last as usize).map(|i| from + (to - from) * i as f64 / last).collect();
-        frequency_response(&posed, &statics, &Vector3::from(force), args.damping, &frequencies)
+        frequency_response(&posed, &statics, &Vector3::from(force), args.damping, &args.response_hz.0)
     });
     Solved { case, statics, modes, response }
 }

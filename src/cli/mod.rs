@@ -33,8 +33,8 @@ pub struct Cli {
     #[arg(long, global = true, value_name = "DIR")]
     catalogs: Option<PathBuf>,
     /// Worker threads; the default is one per core. Results do not depend on it.
-    #[arg(long, global = true, value_name = "N")]
-    threads: Option<usize>,
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
     #[command(subcommand)]
     verb: Verb,
 }
@@ -159,7 +159,7 @@ pub fn print(text: &str) {
 pub fn run(cli: Cli) -> Result<String, Failure> {
     if let Some(threads) = cli.threads {
         rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
+            .num_threads(threads.into())
             .build_global()
             .map_err(|e| Failure::Internal(e.to_string()))?;
     }

@@ -78,10 +78,14 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
     let outcome = run_study(&study, catalogs, &stop, watch);
     let elapsed_s = started.elapsed().as_secs_f64();
     match outcome.sweep.status {
-        Status::Interrupted => Err(Failure::Interrupted(format!(
-            "stopped after {} of {} designs; nothing was written, run again to start over",
-            outcome.sweep.designs_evaluated, outcome.sweep.designs_total
-        ))),
+        Status::Interrupted => {
+            let _ = std::fs::remove_dir(&dir);
+            let done = u128::from(outcome.sweep.designs_evaluated) + outcome.sweep.designs_excluded;
+            Err(Failure::Interrupted(format!(
+                "stopped after {done} of {} designs; nothing was written, run again to start over",
+                outcome.sweep.designs_total
+            )))
+        }
         Status::Infeasible => {
             // succeeds only on an empty folder: earlier results stay
             let _ = std::fs::remove_dir(&dir);
@@ -134,8 +138,13 @@ fn names(files: &[(String, Vec<u8>)]) -> String {
         .map(|(n, _)| n.as_str())
         .filter(|n| !n.starts_with("front.") || *n == "front.csv" || *n == "front.svg")
         .collect();
-    let by_material = format!("{fronts} fronts by material");
-    names.push(&by_material);
+    let by_material = match fronts {
+        1 => "one front by material".to_string(),
+        n => format!("{n} fronts by material"),
+    };
+    if fronts > 0 {
+        names.push(&by_material);
+    }
     names.join(", ")
 }
 

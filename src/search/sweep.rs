@@ -245,7 +245,8 @@ impl<'p, P: OutwardIn> Sweep<'p, P> {
         for (level, &option) in beginning.iter().enumerate() {
             let mut next = root.clone();
             if !self.problem.extend(level, option, &partial, &mut next) {
-                worker.exclude(level + 1);
+                // other tasks with this beginning count their own designs
+                worker.exclude(beginning.len());
                 return worker.finish();
             }
             partial = next;

@@ -18,7 +18,7 @@ pub fn why_infeasible(study: &Study, catalogs: &Catalogs, outcome: &StudyOutcome
         .filter_map(|l| l.relaxed(study, catalogs, outcome))
         .collect();
     if reasons.is_empty() {
-        reasons.push(first_obstacle(&ArmProblem::new(&study.space, catalogs)));
+        reasons.push(first_obstacle(study, catalogs));
     }
     format!("{head}\n  {}", reasons.join("\n  "))
 }
@@ -200,22 +200,34 @@ impl OutwardIn for Relaxed<'_, '_> {
     }
 }
 
-/// Follows the lightest option at every level until the arm cannot go on.
-fn first_obstacle(problem: &ArmProblem) -> String {
-    const TOGETHER: &str = "no limit alone stands in the way: at least two must be relaxed together";
+/// Follows the lightest option at every level, with no limit but the drives', until a joint cannot hold.
+fn first_obstacle(study: &Study, catalogs: &Catalogs) -> String {
+    let keys: Vec<String> =
+        limits(&study.space.constraints).iter().map(|l| format!("\"{}\"", l.key)).collect();
+    let together = format!(
+        "no limit alone stands in the way: at least two of {} must be relaxed together",
+        if keys.is_empty() { "the requirements".to_string() } else { keys.join(", ") }
+    );
+    let space = crate::search::DesignSpace { constraints: Constraints::default(), ..study.space.clone() };
+    let problem = ArmProblem::new(&space, catalogs);
     let mut last: Option<Partial> = None;
-    let Err(slot) = problem.walk(&lightest_options(problem), |_, partial| last = Some(partial.clone()))
+    let Err(slot) = problem.walk(&lightest_options(&problem), |_, partial| last = Some(partial.clone()))
     else {
-        return TOGETHER.into();
+        return together;
     };
-    let Some(sized) = problem.sized_joint(problem.piece_of_slot(slot)) else { return TOGETHER.into() };
+    let Some(sized) = problem.sized_joint(problem.piece_of_slot(slot)) else { return together };
     if sized.table.is_empty() {
         return too_fast(sized);
     }
     let demand = problem.demand_at(&last.unwrap_or_default(), slot);
+    let also = if keys.is_empty() {
+        String::new()
+    } else {
+        format!("; {} may stand in the way too", keys.join(", "))
+    };
     match sized.table.smallest_shortfall(&demand) {
-        Some(shortfall) => format!("even with the lightest links, {shortfall}"),
-        None => TOGETHER.into(),
+        Some(shortfall) => format!("even with the lightest links, {shortfall}{also}"),
+        None => together,
     }
 }
 

@@ -138,10 +138,13 @@ fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
     let known_series: Vec<&str> = catalogs.gears.iter().map(|g| g.series.as_str()).collect();
     let known_gears: Vec<&str> = catalogs.gears.iter().map(|g| g.id.as_str()).collect();
     let known_motors: Vec<&str> = catalogs.motors.iter().map(|m| m.id.as_str()).collect();
+    let mut known_ratios: Vec<u32> = catalogs.gears.iter().map(|g| g.ratio).collect();
+    known_ratios.sort_unstable();
+    known_ratios.dedup();
     let filter = DriveFilter {
         gear_mass: gear_mass?,
         gear_series: names(&object, "gear_series", &known_series)?,
-        ratios: object.or("ratios", None, |n| read_ratios(n).map(Some))?,
+        ratios: object.or("ratios", None, |n| read_ratios(n, &known_ratios).map(Some))?,
         gear_ids: names(&object, "gears", &known_gears)?,
         motor_kinds: object.or("motors", None, |n| read_motor_kinds(n).map(Some))?,
         motor_ids: names(&object, "motor_models", &known_motors)?,
@@ -178,8 +181,18 @@ fn read_gear_mass(node: &Node) -> Option<GearMass> {
     }
 }
 
-fn read_ratios(node: &Node) -> Option<Vec<u32>> {
-    let read: Vec<_> = node.array()?.iter().map(|n| n.positive().map(|x| x as u32)).collect();
+fn read_ratios(node: &Node, known: &[u32]) -> Option<Vec<u32>> {
+    let read: Vec<_> = node
+        .array()?
+        .iter()
+        .map(|n| {
+            let ratio = n.positive()?;
+            known.iter().copied().find(|&k| f64::from(k) == ratio).or_else(|| {
+                let list: Vec<String> = known.iter().map(u32::to_string).collect();
+                n.fault(format!("= {ratio}: no gear has this ratio"), &format!("ratios: {}", list.join(", ")))
+            })
+        })
+        .collect();
     read.into_iter().collect()
 }
 
@@ -269,12 +282,34 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
     let max_speed = object.or("max_speed_rad_s", None, |n| n.positive().map(Some));
     let drive = match object.optional("drive") {
         Some(drive) => {
+            let given = ["stiffness_nm_per_rad", "windup", "gear", "motor", "gear_mass", "mass_kg"];
+            stray(
+                &object,
+                &given,
+                "stands beside \"drive\"",
+                "a drive is either searched for or given; keep one",
+            );
             let own = object.or("drives", open.drives.clone(), |n| read_drives(n, open.catalogs));
             read_drive_choice(&drive, &own?)
         }
-        None => read_given_drive(&object, open),
+        None => {
+            stray(
+                &object,
+                &["drives"],
+                "has no \"drive\" beside it",
+                "add \"drive\": \"first_fit\" or \"all_fits\"",
+            );
+            read_given_drive(&object, open)
+        }
     };
     Some(SpaceJoint { name: name?, axis: axis?, drive: drive?, max_speed_rad_s: max_speed? })
+}
+
+/// Keys that another key makes meaningless are faults: nothing written is ignored.
+fn stray(object: &Object, keys: &[&str], problem: &str, hint: &str) {
+    for node in keys.iter().filter_map(|key| object.optional(key)) {
+        node.fault::<()>(problem, hint);
+    }
 }
 
 fn read_drive_choice(node: &Node, drives: &Drives) -> Option<DriveChoice> {
@@ -301,6 +336,12 @@ fn read_space_link(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> O
     let Some(choose) = object.optional("choose") else {
         return read_link(&object, &[], open.catalogs).map(SpacePiece::Link);
     };
+    stray(
+        &object,
+        &["material", "section", "mass_kg"],
+        "stands beside \"choose\"",
+        "a link is either chosen or given; keep one",
+    );
     let name = read_name(&object);
     let vector_m = object.required("vector_m").and_then(|n| vector(&n)).filter(|v| {
         v.norm() > 1e-6 || object.node().fault::<()>("has no length", "give a longer vector_m").is_some()
@@ -436,6 +477,14 @@ fn read_constraints(node: &Node) -> Option<Constraints> {
     let (deflection_mm, mass) = (limit("tip_deflection_max_mm"), limit("mass_max_kg"));
     let (mode, bandwidth) = (limit("lowest_mode_min_hz"), limit("servo_bandwidth_hz"));
     let ratio = object.or("servo_ratio", 3.0, Node::positive);
+    if !object.has("servo_bandwidth_hz") {
+        stray(
+            &object,
+            &["servo_ratio"],
+            "has no \"servo_bandwidth_hz\" beside it",
+            "add the bandwidth, or remove it",
+        );
+    }
     let (stress, slenderness) = (limit("stress_safety_factor_min"), limit("wall_slenderness_max"));
     let cost = limit("material_cost_max_eur");
     let ratio = ratio?;

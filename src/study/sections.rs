@@ -22,13 +22,18 @@ struct ProfileName {
     family: String,
 }
 
-/// Reads a list of material names; `"*"` is every material that has the figures a link needs.
+/// Reads a list of material names, none of them twice.
 pub(super) fn read_materials<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<Vec<&'c Material>> {
     let items = node.array()?;
     if items.is_empty() {
         return node.fault("is empty", "name at least one material");
     }
     let names: Vec<&str> = catalogs.materials.iter().map(|m| m.name.as_str()).collect();
+    let repeated =
+        items.iter().enumerate().filter(|(i, n)| items[..*i].iter().any(|o| o.value() == n.value()));
+    for (_, item) in repeated {
+        item.fault::<()>(format!("{} is listed twice", item.value()), "list every material once");
+    }
     let read: Vec<Option<&Material>> = items
         .iter()
         .map(|n| {
