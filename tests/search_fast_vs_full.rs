@@ -2,7 +2,7 @@
 //!
 //! Studies differ in poses (planar, folded, straight up, every joint turned), link and joint models,
 //! payloads with an offset centre and inertia, water, tip force, given and sized joints, and in what the
-//! innermost level is. A design must hold in both or in neither, and all objectives must agree to 1e-10.
+//! innermost level is. A design must hold in both or in neither, and all objectives must agree to 1e-9 (half of them to 1e-13).
 
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
@@ -11,8 +11,10 @@ use armwright::study::{Study, named, read_study};
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 
-/// Largest relative difference of an objective.
-const AGREE: f64 = 1e-10;
+/// Largest relative difference of an objective. The fast model leaves out the cube of the lowest mode's
+/// eigenvalue over a link's inner one: nothing for most arms, 2e-10 for a slender tube under water, whose inner
+/// modes are only forty times faster. The sweep keeps whatever is within 1e-7 for the full model to judge.
+const AGREE: f64 = 1e-9;
 
 /// A small generator with a recorded seed.
 struct Dice(u64);
@@ -117,13 +119,13 @@ fn study(seed: u64, catalogs: &Catalogs) -> Study {
         .unwrap_or_else(|e| panic!("seed {seed}: {e}\n{text:#}"))
 }
 
-/// Largest difference over some designs of some rows, and how many designs hold.
-fn compare(problem: &ArmProblem, dice: &mut Dice, rows: usize, stride: usize) -> (f64, usize) {
+/// Largest difference of each design that holds among some of some rows.
+fn compare(problem: &ArmProblem, dice: &mut Dice, rows: usize, stride: usize) -> Vec<f64> {
     let sizes = problem.level_sizes().to_vec();
     let (&last, outer) = sizes.split_last().expect("a level");
     let root = problem.root().expect("a root");
     let mut scratch = problem.scratch();
-    let (mut worst, mut held) = (0.0f64, 0);
+    let mut differences = Vec::new();
     for _ in 0..rows {
         let options: Vec<u32> = outer.iter().map(|&n| dice.below(u64::from(n)) as u32).collect();
         let mut from = root.clone();
@@ -143,21 +145,29 @@ fn compare(problem: &ArmProblem, dice: &mut Dice, rows: usize, stride: usize) ->
             assert_eq!(fast.is_some(), full.is_some(), "design {number}");
             let (Some(fast), Some(full)) = (fast, full) else { continue };
             assert_eq!(fast.group, full.group, "design {number}");
-            held += 1;
+            let mut worst = 0.0f64;
             for (a, b) in fast.objectives.minimized().into_iter().zip(full.objectives.minimized()) {
                 let difference = if a == b { 0.0 } else { (a / b - 1.0).abs() };
-                assert!(difference <= AGREE, "design {number}: {:?} {:?}", fast.objectives, full.objectives);
+                let alone = || problem.walk(&[options.as_slice(), &[option]].concat(), |_, _| {});
+                assert!(
+                    difference <= AGREE,
+                    "design {number}: eight at once {:?}\nalone {:?}\nfull {:?}",
+                    fast.objectives,
+                    alone().ok().and_then(|arm| problem.objectives(&arm)),
+                    full.objectives
+                );
                 worst = worst.max(difference);
             }
+            differences.push(worst);
         }
     }
-    (worst, held)
+    differences
 }
 
 #[test]
 fn fast_objectives_are_those_of_the_full_model_on_random_studies() {
     let catalogs = Catalogs::builtin();
-    let (mut worst, mut held) = (0.0f64, 0);
+    let mut differences = Vec::new();
     for seed in 0..48 {
         let study = study(seed, &catalogs);
         let problem = ArmProblem::new(&study.space, &catalogs);
@@ -165,11 +175,12 @@ fn fast_objectives_are_those_of_the_full_model_on_random_studies() {
             continue;
         }
         println!("seed {seed}: {:?}", problem.level_sizes());
-        let (difference, count) = compare(&problem, &mut Dice(seed + 1000), 3, 7);
-        worst = worst.max(difference);
-        held += count;
+        differences.extend(compare(&problem, &mut Dice(seed + 1000), 3, 7));
     }
-    println!("{held} designs, largest relative difference {worst:e}");
+    let (held, worst) = (differences.len(), differences.iter().copied().fold(0.0, f64::max));
+    differences.sort_unstable_by(f64::total_cmp);
+    println!("{held} designs, largest relative difference {worst:e}, median {:e}", differences[held / 2]);
+    assert!(differences[held / 2] < 1e-13);
     assert!(held > 200, "only {held} designs hold: the studies are too hard");
 }
 
@@ -179,9 +190,10 @@ fn fast_objectives_are_those_of_the_full_model_on_a_named_study() {
     let text = named("compare-materials").expect("built in");
     let study = read_study(Document::parse("study", text).expect("JSON"), &catalogs).expect("reads");
     let problem = ArmProblem::new(&study.space, &catalogs);
-    let (worst, held) = compare(&problem, &mut Dice(7), 12, 5);
+    let differences = compare(&problem, &mut Dice(7), 12, 5);
+    let (held, worst) = (differences.len(), differences.iter().copied().fold(0.0, f64::max));
     println!("{held} designs, largest relative difference {worst:e}");
-    assert!(held > 20);
+    assert!(held > 20 && worst < 1e-12);
 }
 
 #[test]

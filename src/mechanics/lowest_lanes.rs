@@ -72,8 +72,10 @@ pub struct Roots<V> {
     pub unsure: u8,
 }
 
-/// Two steps whose product is below this leave an error below 1e-13.
+/// A secant's error is `C` times the product of the last two steps. `C` is about 1 for most arms, far more
+/// if a pole is near: both the product and the error by the `C` that the last three steps show are bounded.
 const STEPS_PRODUCT: f64 = 1e-12;
+const SHOWN_ERROR: f64 = 1e-13;
 /// Whatever the product, the last step bounds the error if another mode is very near.
 const LAST_STEP: f64 = 5e-8;
 const MOST_PASSES: usize = 24;
@@ -355,7 +357,8 @@ pub fn roots<V: Lanes, const N: usize>(
     let mut open = wanted;
     let mut x = one / guess;
     let (mut result, mut slope) = (x, slope);
-    let (mut x_before, mut y_before, mut step_before) = (V::zero(), V::zero(), V::splat(0.1) * x);
+    let (mut x_before, mut y_before) = (V::zero(), V::zero());
+    let (mut step_before, mut step_two_before) = (V::splat(0.1) * x, x);
     let mut has_before = 0u8;
     for _ in 0..MOST_PASSES {
         let here = pass(outboard, inner, one / x);
@@ -366,6 +369,7 @@ pub fn roots<V: Lanes, const N: usize>(
         let step = (next - x).abs();
         let settled = step.less(V::splat(LAST_STEP) * x)
             & (step * step_before).less(V::splat(STEPS_PRODUCT) * x * x)
+            & (step * step).less(V::splat(SHOWN_ERROR) * x * step_two_before)
             & here.sound
             & open;
         result = V::choose(settled, next, result);
@@ -377,6 +381,7 @@ pub fn roots<V: Lanes, const N: usize>(
         let in_reach = next.less(V::splat(4.0) * x) & (V::splat(0.25) * x).less(next) & here.sound;
         let drawn_back = V::choose(V::zero().less(y) & here.sound, V::splat(0.5) * x, V::splat(1.5) * x);
         has_before = here.sound;
+        step_two_before = step_before;
         step_before = V::choose(in_reach, step, V::splat(0.1) * x);
         (x_before, y_before) = (x, y);
         x = V::choose(open, V::choose(in_reach, next, drawn_back), x);

@@ -3,7 +3,7 @@
 
 use super::figures::{OptionFigures, figures};
 use super::row::{Row, RowScratch};
-use super::row_lanes::RowWork;
+use super::row_lanes::{MOST_CASES, RowWork};
 use super::space::{DesignSpace, DriveChoice, LinkChoice, LinkOption, SpaceJoint, SpacePiece};
 use super::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot, reaches_m};
 use super::{Finished, Objectives, OutwardIn};
@@ -484,7 +484,11 @@ impl OutwardIn for ArmProblem<'_> {
             let last = options.end.min((chunk as u32 + 1) * LANES as u32);
             let lanes = option as usize % LANES..(last as usize - 1) % LANES + 1;
             let valid = lanes.clone().fold(0, |bits, lane| bits | 1 << lane);
-            let done = in_lanes(RowWork { problem: self, row, from, scratch, chunk, valid });
+            let done = match self.stations.len() {
+                1 => in_lanes(RowWork::<1> { problem: self, row, from, scratch, chunk, valid }),
+                2 => in_lanes(RowWork::<2> { problem: self, row, from, scratch, chunk, valid }),
+                _ => in_lanes(RowWork::<MOST_CASES> { problem: self, row, from, scratch, chunk, valid }),
+            };
             for (lane, option) in lanes.zip(option..last) {
                 let bit = 1 << lane;
                 let finished = if done.held & bit == 0 {

@@ -22,7 +22,7 @@ use nalgebra::{SMatrix, Vector3, Vector6};
 use std::f64::consts::TAU;
 
 /// Eight options of a row to be finished.
-pub(super) struct RowWork<'a, 'c> {
+pub(super) struct RowWork<'a, 'c, const CASES: usize> {
     pub problem: &'a ArmProblem<'c>,
     pub row: &'a Row,
     pub from: &'a Partial,
@@ -56,20 +56,21 @@ struct CaseLanes<V> {
 /// Most cases that a row handles.
 pub(super) const MOST_CASES: usize = 8;
 
-/// Eight arms as they grow inward.
-struct Growing<V> {
+/// Eight arms as they grow inward, in at most so many cases.
+struct Growing<V, const CASES: usize> {
     held: u8,
     mass_kg: V,
     masses_kg: [V; MOST_SLOTS],
-    cases: [CaseLanes<V>; MOST_CASES],
+    cases: [CaseLanes<V>; CASES],
 }
 
-impl LaneWork for RowWork<'_, '_> {
+impl<const CASES: usize> LaneWork for RowWork<'_, '_, CASES> {
     type Output = FinishedEight;
 
     #[inline(always)]
     fn run<V: Lanes>(mut self) -> FinishedEight {
-        let mut arms = self.grow::<V>();
+        let mut arms = self.start::<V>();
+        self.grow(&mut arms);
         let max_kg = self.problem.space().constraints.mass_max_kg.unwrap_or(f64::INFINITY);
         arms.held &= !V::splat(max_kg).less(arms.mass_kg);
         if arms.held == 0 {
@@ -107,31 +108,29 @@ impl FinishedEight {
     }
 }
 
-impl RowWork<'_, '_> {
+impl<const CASES: usize> RowWork<'_, '_, CASES> {
     /// Adds piece after piece.
     #[inline(always)]
-    fn grow<V: Lanes>(&self) -> Growing<V> {
-        let mut arms = self.start();
+    fn grow<V: Lanes>(&self, arms: &mut Growing<V, CASES>) {
         let first = self.row.first;
         for (k, slot) in self.problem.slots()[first..].iter().enumerate() {
             match slot {
-                Slot::Link { .. } => self.add_link(&self.row.chunks[self.chunk], &mut arms),
-                Slot::Offset { mass_kg } => self.add_offset(k, *mass_kg, &mut arms),
-                Slot::Given { .. } => self.add_joint(k, [self.row.drives[k][0]; LANES], &mut arms),
+                Slot::Link { .. } => self.add_link(&self.row.chunks[self.chunk], arms),
+                Slot::Offset { mass_kg } => self.add_offset(k, *mass_kg, arms),
+                Slot::Given { .. } => self.add_joint(k, [self.row.drives[k][0]; LANES], arms),
                 Slot::Sized(sized) => {
-                    let indices = self.pick(k, sized, &mut arms);
+                    let indices = self.pick(k, sized, arms);
                     if arms.held == 0 {
-                        return arms;
+                        return;
                     }
-                    self.add_joint(k, indices.map(|i| self.row.drives[k][i]), &mut arms);
+                    self.add_joint(k, indices.map(|i| self.row.drives[k][i]), arms);
                 }
             }
         }
-        arms
     }
 
     #[inline(always)]
-    fn start<V: Lanes>(&self) -> Growing<V> {
+    fn start<V: Lanes>(&self) -> Growing<V, CASES> {
         let nothing = CaseLanes {
             wrench: [V::zero(); 6],
             tip_m: [V::zero(); 3],
@@ -139,7 +138,7 @@ impl RowWork<'_, '_> {
             compliance: [V::zero(); MOST_SLOTS],
             trace_s2: [V::zero(); 2],
         };
-        let mut cases = [nothing; MOST_CASES];
+        let mut cases = [nothing; CASES];
         for ((lanes, state), scratch) in cases.iter_mut().zip(&self.from.stations).zip(&self.scratch.cases) {
             lanes.wrench = splat_all(state.wrench.into());
             lanes.tip_m = splat_all(state.tip_m.into());
@@ -151,7 +150,7 @@ impl RowWork<'_, '_> {
     }
 
     #[inline(always)]
-    fn add_link<V: Lanes>(&self, chunk: &Chunk, arms: &mut Growing<V>) {
+    fn add_link<V: Lanes>(&self, chunk: &Chunk, arms: &mut Growing<V, CASES>) {
         let constraints = &self.problem.space().constraints;
         arms.held &= !chunk.slender;
         arms.mass_kg = arms.mass_kg + V::load(&chunk.mass_kg);
@@ -219,7 +218,7 @@ impl RowWork<'_, '_> {
     }
 
     #[inline(always)]
-    fn add_offset<V: Lanes>(&self, k: usize, mass_kg: f64, arms: &mut Growing<V>) {
+    fn add_offset<V: Lanes>(&self, k: usize, mass_kg: f64, arms: &mut Growing<V, CASES>) {
         arms.mass_kg = arms.mass_kg + V::splat(mass_kg);
         for (c, case) in self.row.cases.iter().enumerate() {
             let StationSlot::Body { weight, .. } = &self.station(c).slots[self.row.first + k] else {
@@ -237,7 +236,7 @@ impl RowWork<'_, '_> {
 
     /// The drive of each arm; an arm without one is no longer held.
     #[inline(always)]
-    fn pick<V: Lanes>(&self, k: usize, sized: &SizedJoint, arms: &mut Growing<V>) -> [usize; LANES] {
+    fn pick<V: Lanes>(&self, k: usize, sized: &SizedJoint, arms: &mut Growing<V, CASES>) -> [usize; LANES] {
         let (mut static_nm, mut inertia_kgm2) = (V::zero(), V::zero());
         for (c, _) in self.row.cases.iter().enumerate().filter(|(_, case)| case.sizing) {
             let Some(joint) = self.joint(c, k) else { continue };
@@ -262,7 +261,7 @@ impl RowWork<'_, '_> {
     }
 
     #[inline(always)]
-    fn add_joint<V: Lanes>(&self, k: usize, drives: [DriveFigures; LANES], arms: &mut Growing<V>) {
+    fn add_joint<V: Lanes>(&self, k: usize, drives: [DriveFigures; LANES], arms: &mut Growing<V, CASES>) {
         let mass = gather(&drives, |d| d.mass_kg);
         let stiffness = [
             gather(&drives, |d| d.stiffness[0]),
@@ -310,7 +309,7 @@ impl RowWork<'_, '_> {
 
     /// Lowest eigenvalue over all judged cases, and the lanes in which it was not found.
     #[inline(always)]
-    fn lowest<V: Lanes>(&mut self, arms: &Growing<V>) -> (V, u8) {
+    fn lowest<V: Lanes>(&mut self, arms: &Growing<V, CASES>) -> (V, u8) {
         let blocks = self.blocks(arms);
         let remembered = V::load(&self.scratch.eigenvalues[self.chunk]);
         let (mut lowest, mut unsure) = (V::splat(f64::INFINITY), 0);
@@ -336,7 +335,7 @@ impl RowWork<'_, '_> {
 
     /// Blocks of the judged cases, that of the largest Dunkerley sum first.
     #[inline(always)]
-    fn blocks<V: Lanes>(&self, arms: &Growing<V>) -> [Option<(usize, usize)>; 2 * MOST_CASES] {
+    fn blocks<V: Lanes>(&self, arms: &Growing<V, CASES>) -> [Option<(usize, usize)>; 2 * MOST_CASES] {
         let mut blocks = [None; 2 * MOST_CASES];
         let mut sums = [0.0; 2 * MOST_CASES];
         let mut count = 0;
@@ -373,8 +372,8 @@ impl RowWork<'_, '_> {
 }
 
 /// A block asked for its lowest eigenvalues where they are below those found so far.
-struct Ask<'a, V> {
-    arms: &'a Growing<V>,
+struct Ask<'a, V, const CASES: usize> {
+    arms: &'a Growing<V, CASES>,
     case: usize,
     block: usize,
     first: usize,
@@ -383,7 +382,7 @@ struct Ask<'a, V> {
     open: u8,
 }
 
-impl<V: Lanes> Ask<'_, V> {
+impl<V: Lanes, const CASES: usize> Ask<'_, V, CASES> {
     #[inline(always)]
     fn answer(
         &self,

@@ -91,15 +91,17 @@ impl Pool {
         Self { archive: Archive::new(bits), candidates: Mutex::new((Vec::new(), 0)) }
     }
 
-    fn offer(&self, candidate: Candidate, buffer: &mut Vec<Candidate>) {
+    /// Takes a candidate unless one before it surely beats it.
+    fn offer(&self, candidate: Candidate, buffer: &mut Vec<Candidate>) -> bool {
         if self.archive.rejects(&candidate.objectives) {
-            return;
+            return false;
         }
         self.archive.enter(&candidate.objectives);
         buffer.push(candidate);
         if buffer.len() >= BUFFER {
             self.empty(buffer);
         }
+        true
     }
 
     fn empty(&self, buffer: &mut Vec<Candidate>) {
@@ -317,9 +319,11 @@ impl<P: OutwardIn> Worker<'_, '_, P> {
             return;
         }
         let candidate = Candidate { number, objectives };
-        self.overall.offer(candidate, &mut self.buffer);
-        if let Some(group) = group {
-            self.groups[group].offer(candidate, &mut self.group_buffers[group]);
+        // what one of its own group beats, one of all designs beats
+        let beaten =
+            group.is_some_and(|group| !self.groups[group].offer(candidate, &mut self.group_buffers[group]));
+        if !beaten {
+            self.overall.offer(candidate, &mut self.buffer);
         }
     }
 

@@ -1,0 +1,86 @@
+//! Speed of the sweep and of what it is made of: `cargo bench --bench sweep`. Rates are items (designs, points, arms)
+//! a second on one thread.
+
+mod common;
+
+use armwright::catalog::Catalogs;
+use armwright::fault::Document;
+use armwright::search::design::full_objectives;
+use armwright::search::front::nondominated;
+use armwright::search::{ArmProblem, OutwardIn, Sweep};
+use armwright::study::{Study, named, read_study};
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use std::sync::atomic::AtomicBool;
+
+fn main() {
+    divan::main();
+}
+
+fn compare_materials(catalogs: &Catalogs) -> Study {
+    let text = named("compare-materials").expect("built in");
+    read_study(Document::parse("study", text).expect("JSON"), catalogs).expect("whole")
+}
+
+fn sweep(bencher: Bencher, study: &Study, catalogs: &Catalogs) {
+    let problem = ArmProblem::new(&study.space, catalogs);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be had");
+    let stop = AtomicBool::new(false);
+    let run = || pool.install(|| Sweep::new(&problem, study.space.constraints, &stop).run());
+    let evaluated = run().designs_evaluated;
+    bencher.counter(ItemsCount::new(evaluated)).bench(run);
+}
+
+/// Rigid links, given joints, one case.
+#[divan::bench(args = [1000, 3162], sample_count = 5)]
+fn simple_model(bencher: Bencher, options: u32) {
+    let catalogs = Catalogs::builtin();
+    sweep(bencher, &common::simple(options, &catalogs), &catalogs);
+}
+
+/// Full links, three-segment gears, six sized joints, the stretched pose alone.
+#[divan::bench(sample_count = 3)]
+fn full_model_one_pose(bencher: Bencher) {
+    let catalogs = Catalogs::builtin();
+    let mut study = compare_materials(&catalogs);
+    (study.space.judged_cases, study.space.sizing_cases) = (vec![0], vec![0]);
+    study.space.cases.truncate(1);
+    sweep(bencher, &study, &catalogs);
+}
+
+/// The same with both poses: the named study.
+#[divan::bench(sample_count = 3)]
+fn full_model_compare_materials(bencher: Bencher) {
+    let catalogs = Catalogs::builtin();
+    sweep(bencher, &compare_materials(&catalogs), &catalogs);
+}
+
+/// Exact filter of points spread about a curved front.
+#[divan::bench(args = [100_000, 1_000_000], sample_count = 5)]
+fn pareto_filter(bencher: Bencher, points: usize) {
+    let mut state = 1u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let points: Vec<[f64; 3]> = (0..points)
+        .map(|_| {
+            let p = [0; 3].map(|_| 0.01 + random());
+            let length = p.iter().map(|x| x * x).sum::<f64>().sqrt() / (1.0 + 0.2 * random());
+            p.map(|x| 1.5 - x / length)
+        })
+        .collect();
+    bencher.counter(ItemsCount::new(points.len())).bench(|| nondominated(&points).len());
+}
+
+/// The full model of one six-axis arm in two poses: what `analyze` prints.
+#[divan::bench]
+fn analyze_six_axis_arm(bencher: Bencher) {
+    let catalogs = Catalogs::builtin();
+    let study = compare_materials(&catalogs);
+    let problem = ArmProblem::new(&study.space, &catalogs);
+    let middle: Vec<u32> = problem.level_sizes().iter().map(|n| n / 2).collect();
+    let arm = problem.arm(&middle).expect("the arm in the middle of the space holds");
+    let cases = problem.load_cases();
+    bencher.counter(ItemsCount::new(1u32)).bench(|| full_objectives(&arm, &cases));
+}

@@ -1,0 +1,69 @@
+//! How fast the exhaustive sweep is, and whether its memory stays flat.
+//!
+//! `cargo run --release --example speed -- simple 1e6 1e7 1e8` sweeps two links with fixed joints (rigid links, one
+//! case) over that many designs; `-- compare-materials` sweeps the named study (full links, three-segment gears, six
+//! sized joints, two poses). One thread; rates are per second of processor time.
+
+#[path = "../benches/common/mod.rs"]
+mod common;
+
+use armwright::catalog::Catalogs;
+use armwright::fault::Document;
+use armwright::search::{ArmProblem, Sweep};
+use armwright::study::{Study, named, read_study};
+use std::sync::atomic::AtomicBool;
+
+fn main() {
+    let mut words = std::env::args().skip(1);
+    let study = words.next().unwrap_or_else(|| "simple".into());
+    let catalogs = Catalogs::builtin();
+    if let Some(text) = named(&study) {
+        let document = Document::parse(&study, text).expect("a named study is JSON");
+        report(&read_study(document, &catalogs).expect("a named study is whole"), &catalogs);
+        return;
+    }
+    let sizes: Vec<f64> = words.filter_map(|w| w.parse().ok()).collect();
+    for designs in if sizes.is_empty() { vec![1e6, 1e7, 1e8] } else { sizes } {
+        report(&common::simple(designs.sqrt().round() as u32, &catalogs), &catalogs);
+    }
+}
+
+fn report(study: &Study, catalogs: &Catalogs) {
+    let problem = ArmProblem::new(&study.space, catalogs);
+    let stop = AtomicBool::new(false);
+    let sweep = Sweep::new(&problem, study.space.constraints, &stop);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be had");
+    let before = processor_s();
+    let outcome = pool.install(|| sweep.run());
+    let spent_s = processor_s() - before;
+    let lightest = outcome.front.iter().map(|c| c.objectives).min_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
+    println!(
+        "{}: {} designs, {} evaluated, {spent_s:.2} s of one core, {:.3e} designs/s/core, {} candidates, peak {} MB",
+        study.name,
+        outcome.designs_total,
+        outcome.designs_evaluated,
+        outcome.designs_evaluated as f64 / spent_s,
+        outcome.front.len(),
+        peak_mb()
+    );
+    if let Some(o) = lightest {
+        let (kg, mm, hz) = (o.mass_kg, 1e3 * o.tip_deflection_m, o.lowest_mode_hz);
+        println!("  lightest {kg:.6} kg, {mm:.6} mm, {hz:.6} Hz");
+    }
+}
+
+/// Processor time of this process \[s\]; not that of others on the machine.
+fn processor_s() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let after_name = stat.rsplit(')').next().unwrap_or_default();
+    let ticks: f64 =
+        after_name.split_whitespace().skip(11).take(2).filter_map(|t| t.parse::<f64>().ok()).sum();
+    ticks / 100.0
+}
+
+/// Largest resident memory of this process so far \[MB\].
+fn peak_mb() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find(|l| l.starts_with("VmHWM")).unwrap_or_default();
+    line.split_whitespace().nth(1).and_then(|kb| kb.parse::<u64>().ok()).unwrap_or(0) / 1024
+}
