@@ -15,6 +15,7 @@ pub mod front;
 pub mod outward;
 mod row;
 mod row_lanes;
+mod slot;
 pub mod space;
 pub mod station;
 pub mod sweep;

@@ -1,0 +1,139 @@
+//! The pieces of an arm as the search builds it: what is given, what is sized, what is chosen.
+
+use super::figures::{OptionFigures, figures};
+use super::space::{DesignSpace, DriveChoice, LinkChoice, LinkOption, SpaceJoint};
+use crate::arm::{Curve, Link, LinkBody, LinkPiece, windup_of};
+use crate::catalog::Catalogs;
+use crate::sizing::{DriveFilter, DriveTable, JointMotion};
+
+/// One piece of the chain, tip first.
+pub(super) enum Slot<'c> {
+    Given { curve: Curve, mass_kg: f64 },
+    Sized(SizedJoint<'c>),
+    Link { options: Vec<OptionFigures>, open: bool },
+    Offset { mass_kg: f64 },
+}
+
+/// A joint whose drive the catalogs give.
+pub struct SizedJoint<'c> {
+    /// Every legal drive, lightest first.
+    pub table: DriveTable<'c>,
+    pub(super) curves: Vec<Curve>,
+    pub(super) all_fits: bool,
+}
+
+impl SizedJoint<'_> {
+    /// Whether its drive is a choice of the search.
+    pub fn is_level(&self) -> bool {
+        self.all_fits
+    }
+}
+
+impl Slot<'_> {
+    pub fn is_level(&self) -> bool {
+        matches!(self, Slot::Link { open: true, .. } | Slot::Sized(SizedJoint { all_fits: true, .. }))
+    }
+
+    pub fn options(&self) -> u32 {
+        match self {
+            Slot::Link { options, .. } => options.len() as u32,
+            Slot::Sized(sized) => sized.table.len() as u32,
+            _ => 1,
+        }
+    }
+
+    pub fn motion(&self) -> Option<&JointMotion> {
+        match self {
+            Slot::Sized(sized) => Some(sized.table.motion()),
+            _ => None,
+        }
+    }
+}
+
+pub(super) fn joint_slot<'c>(
+    space: &DesignSpace,
+    joint: &SpaceJoint,
+    reach_m: f64,
+    catalogs: &'c Catalogs,
+) -> Slot<'c> {
+    let (filter, all_fits) = match &joint.drive {
+        DriveChoice::Given { curve, mass_kg, .. } => {
+            return Slot::Given { curve: space.curve(*curve), mass_kg: *mass_kg };
+        }
+        DriveChoice::FirstFit(filter) => (filter, false),
+        DriveChoice::AllFits(filter) => (filter, true),
+    };
+    let motion = space.motion.joint_motion(reach_m, joint.max_speed_rad_s);
+    let table = DriveTable::build(
+        &joint.name,
+        motion,
+        &with_curve(filter, catalogs),
+        &catalogs.gears,
+        &catalogs.motors,
+    );
+    let curves = (0..table.len())
+        .map(|i| windup_of(table.drive(i).gear).map_or(Curve::Rigid, |w| space.curve(Curve::Windup(w))))
+        .collect();
+    Slot::Sized(SizedJoint { table, curves, all_fits })
+}
+
+/// Leaves out gears without a complete torsion curve: what they would deflect cannot be said.
+fn with_curve(filter: &DriveFilter, catalogs: &Catalogs) -> DriveFilter {
+    let known = catalogs.gears.iter().filter(|g| filter.allows_gear(g) && windup_of(g).is_some());
+    DriveFilter { gear_ids: Some(known.map(|g| g.id.clone()).collect()), ..filter.clone() }
+}
+
+pub(super) fn link_slot<'c>(space: &DesignSpace, link: &Link) -> Slot<'c> {
+    match &link.body {
+        LinkBody::Offset { mass_kg } => Slot::Offset { mass_kg: *mass_kg },
+        LinkBody::Tube { material, section, .. } => {
+            let option = LinkOption {
+                material_index: 0,
+                material_name: String::new(),
+                material: *material,
+                section: *section,
+                profile: None,
+                strength_pa: None,
+                cost_eur_per_kg: None,
+            };
+            let mut figures = figures(space, &option, link.vector_m.norm());
+            figures.material = None;
+            Slot::Link { options: vec![figures], open: false }
+        }
+    }
+}
+
+pub(super) fn choice_slot<'c>(space: &DesignSpace, choice: &LinkChoice) -> Slot<'c> {
+    let length_m = choice.vector_m.norm();
+    Slot::Link { options: choice.options.iter().map(|o| figures(space, o, length_m)).collect(), open: true }
+}
+
+impl DesignSpace {
+    /// A torsion curve under the study's joint model.
+    pub fn curve(&self, curve: Curve) -> Curve {
+        match self.joints {
+            crate::arm::JointModel::K2 => curve.middle_slope(),
+            crate::arm::JointModel::ThreeSegment => curve,
+        }
+    }
+}
+
+impl LinkChoice {
+    /// The link with one of its options.
+    pub fn link(&self, option: &LinkOption) -> Link {
+        Link {
+            name: self.name.clone(),
+            vector_m: self.vector_m,
+            body: LinkBody::Tube {
+                material_name: option.material_name.clone(),
+                material: option.material,
+                section: option.section,
+            },
+        }
+    }
+}
+
+/// A link as mechanics sees it.
+pub(super) fn link_piece(link: &Link) -> LinkPiece {
+    crate::arm::link_piece(link)
+}
