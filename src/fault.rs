@@ -124,13 +124,18 @@ impl Document {
 
     /// Records a fault that concerns several fields at once.
     pub fn fault(&self, path: &str, problem: String, hint: &str) {
-        self.faults.borrow_mut().push(Fault {
+        let fault = Fault {
             file: self.file.clone(),
             line: line_of(&self.text, path),
             field: path.to_string(),
             problem,
             hint: hint.to_string(),
-        });
+        };
+        let mut faults = self.faults.borrow_mut();
+        // two readers may look at one field
+        if !faults.contains(&fault) {
+            faults.push(fault);
+        }
     }
 
     /// The value if no fault was found.

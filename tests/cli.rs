@@ -194,3 +194,37 @@ fn cell(front: &str, column: &str) -> f64 {
     let first = rows.records().next().expect("a row").expect("sound");
     first[at].parse().expect("a number")
 }
+
+#[test]
+fn an_arm_without_anything_elastic_has_no_modes() {
+    let here = folder();
+    let arm = r#"{"name": "stiff", "materials": {"steel": {"youngs_modulus_pa": 2.1e11, "shear_modulus_pa": 8.1e10,
+        "density_kg_m3": 7850}}, "chain": [{"type": "link", "name": "a", "vector_m": [0, 0, 1], "material": "steel",
+        "section": {"shape": "round_tube", "diameter_m": 0.1, "wall_m": 0.005}}]}"#;
+    std::fs::write(here.path().join("arm.json"), arm).expect("written");
+    let solved = said(here.path(), &["analyze", "arm.json", "--links", "rigid", "--json"]);
+    let solved: serde_json::Value = serde_json::from_str(&solved).expect("JSON");
+    assert_eq!(solved["modes"], json!([]));
+    assert_eq!(solved["tip_displacement_m"], json!([0.0, 0.0, 0.0]));
+}
+
+#[test]
+fn numbers_on_the_command_line_may_begin_with_a_minus_sign() {
+    let here = folder();
+    let arm = r#"{"chain": [{"type": "joint", "name": "j", "axis": [0, 1e200, 0], "stiffness_nm_per_rad": 1e5},
+        {"type": "link", "name": "a", "vector_m": [1, 0, 0], "mass_kg": 2}]}"#;
+    std::fs::write(here.path().join("arm.json"), arm).expect("written");
+    let torque = |words: &[&str]| {
+        let words = [&["analyze", "arm.json", "--json", "--force-n", "0,0,-10"], words].concat();
+        let solved: serde_json::Value = serde_json::from_str(&said(here.path(), &words)).expect("JSON");
+        solved["joint_torque_nm"]["j"].as_f64().expect("a torque")
+    };
+    // 2 kg at 0.5 m and 10 N at 1 m
+    assert!((torque(&["--pose-deg", "-0"]) - 19.81).abs() < 1e-12);
+    assert_eq!(
+        torque(&["--payload-inertia-kgm2", "-0,0.1,0.1"]),
+        torque(&["--payload-inertia-kgm2=0,0.1,0.1"])
+    );
+    let (code, message) = refused(here.path(), &["analyze", "arm.json", "--payload-inertia-kgm2", "-1,0,0"]);
+    assert!(code == 2 && message.contains("not negative"), "{message}");
+}

@@ -132,7 +132,10 @@ pub(crate) fn read_axis(node: &Node) -> Option<Unit<Vector3<f64>>> {
         // already of unit length: kept to the last bit, so that a written arm reads back the same
         return Some(Unit::new_unchecked(axis));
     }
-    Unit::try_new(axis, 1e-9).or_else(|| {
+    // scaled by its largest entry first: very long and very short axes have a direction too
+    let largest = axis.amax();
+    let direction = if largest > 0.0 { Unit::try_new(axis / largest, 0.5) } else { None };
+    direction.or_else(|| {
         node.fault("has no direction", "give a vector such as [0, 1, 0]; its length does not matter")
     })
 }

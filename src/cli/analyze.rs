@@ -31,7 +31,7 @@ pub struct AnalyzeArgs {
     #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = numbers::<3>)]
     payload_cg_m: [f64; 3],
     /// Payload moments of inertia about its centre [kg m2]
-    #[arg(long, value_name = "IXX,IYY,IZZ", default_value = "0,0,0", value_parser = numbers::<3>)]
+    #[arg(long, value_name = "IXX,IYY,IZZ", default_value = "0,0,0", allow_hyphen_values = true, value_parser = moments)]
     payload_inertia_kgm2: [f64; 3],
     /// Force at the tip, world axes [N]
     #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = numbers::<3>)]
@@ -67,6 +67,15 @@ struct Pose(Vec<f64>);
 
 fn pose(text: &str) -> Result<Pose, String> {
     number_list(text).map(Pose)
+}
+
+/// Three moments of inertia, none negative.
+fn moments(text: &str) -> Result<[f64; 3], String> {
+    let moments = numbers::<3>(text)?;
+    match moments.iter().all(|&i| i >= 0.0) {
+        true => Ok(moments),
+        false => Err("a moment of inertia is not negative".into()),
+    }
 }
 
 /// Frequencies of a response \[Hz\].

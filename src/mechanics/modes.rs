@@ -53,6 +53,9 @@ impl Posed<'_> {
     /// The lowest frequency \[Hz\]; infinite for an arm in which nothing both yields and weighs.
     pub fn lowest_frequency_hz(&self, statics: &Statics) -> f64 {
         let a = self.flexibility_form(statics).0;
+        if a.is_empty() {
+            return f64::INFINITY;
+        }
         let largest = a.symmetric_eigenvalues().iter().copied().fold(0.0, f64::max);
         1.0 / (largest.sqrt() * TAU)
     }
@@ -60,6 +63,9 @@ impl Posed<'_> {
     /// All eigenpairs of the flexibility form.
     pub fn solve_modes(&self, statics: &Statics) -> Modes {
         let (a, roots) = self.flexibility_form(statics);
+        if roots.is_empty() {
+            return Modes { inverse_squares: Vec::new(), shapes: a };
+        }
         let eigen = SymmetricEigen::new(a);
         let mut order: Vec<usize> = (0..roots.len()).collect();
         order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]).then(i.cmp(&j)));
@@ -170,7 +176,10 @@ impl Posed<'_> {
                 }
             }
         }
-        PLANES.iter().find(|(_, normal)| energy.fraction(*normal) >= PLANAR).map(|(name, _)| *name)
+        // a motion along one axis lies in two planes: rotation decides which, else the first
+        let fractions = PLANES.map(|(name, normal)| (name, energy.fraction(normal)));
+        let most = fractions.iter().map(|(_, f)| *f).fold(0.0, f64::max);
+        fractions.iter().find(|(_, f)| *f >= PLANAR && *f >= most - 1e-9).map(|(name, _)| *name)
     }
 }
 
