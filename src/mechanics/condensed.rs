@@ -10,8 +10,8 @@
 //! M_eff(λ) = M₀ + λ M₁ + λ² M₂ + O(λ³),  M₁ = M_qᵀ G M_q,  M₂ = M_qᵀ G M_qq G M_q
 //! ```
 //!
-//! over root motion and `g`. The neglected term is of the order `(λ/λ_inner)³`: below 1e-9 of the
-//! inertia for every link whose inner modes are ten times above the arm's lowest mode. The search uses
+//! over root motion and `g`. The neglected term is of the order `(λ/λ_inner)³`: at most 1e-6 of the link's
+//! inertia if its inner modes are ten times as fast as the arm's lowest, 1e-12 at a hundred times. The search uses
 //! this form; every number it reports comes from the full model.
 
 use super::beam::PreparedBeam;

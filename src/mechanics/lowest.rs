@@ -53,57 +53,101 @@ struct Pass {
     inner_sound: bool,
     /// The last pivot: positive below the lowest eigenvalue, negative just above it.
     last: f64,
+    /// Product of all pivots before the last.
+    inner_product: f64,
+    /// Number of pivots.
+    count: i32,
 }
 
-/// Relative step below which a secant's result is accepted: its error is of the order of the product of
-/// the last two steps.
-const SMALL_STEP: f64 = 1e-9;
-const MOST_PASSES: usize = 200;
+impl Pass {
+    /// Whether no eigenvalue lies at or below `λ`.
+    fn below_all(&self) -> bool {
+        self.inner_sound && self.last > 0.0
+    }
+}
+
+/// A secant's error is `C` times the product of the last two steps. `C` is about 1 for most arms and far
+/// more if a pole is near, so what the last three steps show of it is bounded, and the last step itself in
+/// case that another mode lies in between. All relative to `1/λ`.
+pub(super) const SHOWN_ERROR: f64 = 1e-13;
+/// See [`SHOWN_ERROR`].
+pub(super) const LAST_STEP: f64 = 5e-8;
+/// What the first steps are taken for, so that nothing is accepted before the steps show `C`.
+pub(super) const UNKNOWN_STEP: f64 = 1e-9;
+/// The same where one chain is solved by itself and a pass more does not matter.
+const CAREFUL_LAST_STEP: f64 = 1e-11;
+const QUICK_PASSES: usize = 12;
+const MOST_PASSES: usize = 300;
 
 /// Lowest eigenvalue `λ₁ = ω₁²` of the chain, given `trace_s2 ≥ tr(C M)`; infinite if nothing yields.
 ///
 /// The last pivot is `1 - λ w(λ)` with `w` nearly constant, so secants are drawn for `1/λ - w` over `1/λ`,
-/// which is straight if everything outboard is rigid. A guess outside the bracket, or beyond a pole of
-/// `w` (an inner pivot not positive), is replaced by the middle of the bracket.
+/// which is straight if everything outboard is rigid. That is quick unless the last joint hardly takes
+/// part in the mode: then a pole of `w` lies next to the root, and the product of all pivots, which has
+/// no poles, is searched instead.
 pub fn lowest_eigenvalue<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
     if trace_s2 <= 0.0 {
         return f64::INFINITY;
     }
-    let (mut low, mut high) = (0.0, f64::INFINITY);
-    let mut guess = 1.0 / trace_s2;
-    // the last two points at which the curve was sound: 1/λ and 1/λ - w
+    quick_root(steps, trace_s2).unwrap_or_else(|| careful_root(steps, trace_s2))
+}
+
+fn quick_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> Option<f64> {
+    let mut x = trace_s2;
     let mut before: Option<(f64, f64)> = None;
-    for _ in 0..MOST_PASSES {
-        let here = pass(steps, guess);
-        if here.inner_sound && here.last > 0.0 {
-            low = guess;
-        } else {
-            high = guess;
+    let (mut step_before, mut step_two_before) = (UNKNOWN_STEP * x, UNKNOWN_STEP * x);
+    for _ in 0..QUICK_PASSES {
+        let here = pass(steps, 1.0 / x);
+        if !here.inner_sound {
+            return None;
         }
-        if high.is_finite() && high - low <= 4.0 * f64::EPSILON * high {
-            return low;
+        let y = here.last * x;
+        let slope = before.map_or(1.0, |(x0, y0)| (y - y0) / (x - x0));
+        let next = x - y / slope;
+        let step = (next - x).abs();
+        if y == 0.0 || (step < CAREFUL_LAST_STEP * x && step * step < SHOWN_ERROR * x * step_two_before) {
+            return Some(1.0 / next).filter(|root| root.is_finite()).or(Some(1.0 / x));
         }
-        let next = if here.inner_sound {
-            let point = (1.0 / guess, here.last / guess);
-            let inverse = match before {
-                Some((x, y)) if y != point.1 => point.0 - point.1 * (point.0 - x) / (point.1 - y),
-                _ => point.0 - point.1,
-            };
-            before = Some(point);
-            1.0 / inverse
-        } else {
-            f64::NAN
-        };
-        if (next - guess).abs() <= SMALL_STEP * guess {
-            return next;
+        if next.is_nan() || next <= 0.0 {
+            return None;
         }
-        guess = match next > low && next < high {
-            true => next,
-            false if high.is_finite() => 0.5 * (low + high),
-            false => 2.0 * low,
-        };
+        (step_two_before, step_before) = (step_before, step);
+        before = Some((x, y));
+        x = next;
     }
-    low
+    None
+}
+
+/// Secants on the product of all pivots times a power of `x = 1/λ`: about `Π (x - x_i)`, which from above
+/// the largest `x_i` falls to it without a bend the other way, so that they never overshoot, however near
+/// the next root is. Where rounding or the inner modes of links make one overshoot, the step is halved.
+fn careful_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
+    let product = |x: f64| {
+        let here = pass(steps, 1.0 / x);
+        here.below_all().then_some((x, here.last * here.inner_product, here.count))
+    };
+    // rounding may put a single spring's root a hair above its bound
+    let (Some(mut far), Some(mut near)) = (product(2.0 * trace_s2), product((1.0 + 1e-9) * trace_s2)) else {
+        return 1.0 / trace_s2;
+    };
+    let mut beyond = 0.0;
+    for _ in 0..MOST_PASSES {
+        // f_far / f_near of the polynomial
+        let ratio = far.1 / near.1 * (far.0 / near.0).powi(near.2);
+        let secant = near.0 - (far.0 - near.0) / (ratio - 1.0);
+        let next = if secant > beyond && secant < near.0 { secant } else { 0.5 * (beyond + near.0) };
+        if near.0 - next <= 1e-15 * near.0 {
+            return 1.0 / next;
+        }
+        match product(next) {
+            Some(point) => (far, near) = (near, point),
+            None => beyond = next,
+        }
+        if near.0 - beyond <= 4.0 * f64::EPSILON * near.0 {
+            break;
+        }
+    }
+    1.0 / near.0
 }
 
 /// Frequency of an eigenvalue \[Hz\].
@@ -115,7 +159,7 @@ pub fn frequency_hz(eigenvalue: f64) -> f64 {
 #[inline]
 fn pass<const N: usize>(steps: &[Step<'_, N>], lambda: f64) -> Pass {
     let mut apparent = SMatrix::<f64, N, N>::zeros();
-    let mut out = Pass { inner_sound: true, last: 1.0 };
+    let mut out = Pass { inner_sound: true, last: 1.0, inner_product: 1.0, count: 0 };
     for step in steps {
         match step {
             Step::Body(mass, inertia) => apparent += *inertia * *mass,
@@ -174,6 +218,53 @@ impl Pass {
     #[inline]
     fn next(&mut self, pivot: f64) {
         self.inner_sound &= self.last > 0.0;
+        self.inner_product *= self.last;
+        self.count += 1;
         self.last = pivot;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix2, Vector2};
+
+    /// Two springs in series on a body with these inertias, by the quadratic formula.
+    fn by_hand(m: &Matrix2<f64>, c: [f64; 2], twists: [Vector2<f64>; 2]) -> f64 {
+        let a = |i: usize, j: usize| (c[i] * c[j]).sqrt() * twists[i].dot(&(m * twists[j]));
+        let (mean, half) = (0.5 * (a(0, 0) + a(1, 1)), 0.5 * (a(0, 0) - a(1, 1)));
+        1.0 / (mean + half.hypot(a(0, 1)))
+    }
+
+    #[test]
+    fn nearly_decoupled_modes_are_told_apart_whichever_is_lower() {
+        let twists = [Vector2::x(), Vector2::y()];
+        for coupling in [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 0.3] {
+            for second in [0.1, 0.5, 0.999, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 1.001, 2.0, 50.0] {
+                let inertia = Matrix2::new(1.0, coupling, coupling, second);
+                for c in [[1e-5, 1e-5], [1e-5, 3e-6], [2e-6, 1e-5]] {
+                    let steps = [
+                        Step::Body(1.0, &inertia),
+                        Step::Joint(&twists[0], c[0]),
+                        Step::Joint(&twists[1], c[1]),
+                    ];
+                    let found = lowest_eigenvalue(&steps, c[0] + c[1] * second);
+                    let expected = by_hand(&inertia, c, twists);
+                    let error = (found / expected - 1.0).abs();
+                    assert!(error < 1e-10, "{coupling:e} {second} {c:?}: {found} {expected} {error:e}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn springs_that_carry_nothing_do_not_matter() {
+        let twists = [Vector2::x(), Vector2::y()];
+        let inertia = Matrix2::new(0.0, 0.0, 0.0, 2.0);
+        let steps = [Step::Body(1.0, &inertia), Step::Joint(&twists[0], 1e-3), Step::Joint(&twists[1], 1e-5)];
+        assert!((lowest_eigenvalue(&steps, 2e-5) * 2e-5 - 1.0).abs() < 1e-14);
+        let last = [Step::Body(1.0, &inertia), Step::Joint(&twists[1], 1e-5), Step::Joint(&twists[0], 1e-3)];
+        assert!((lowest_eigenvalue(&last, 2e-5) * 2e-5 - 1.0).abs() < 1e-12);
+        assert_eq!(lowest_eigenvalue::<2>(&[Step::Body(1.0, &inertia)], 0.0), f64::INFINITY);
     }
 }

@@ -7,7 +7,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::lanes::{Eight, LANES, Lanes};
-use super::lowest::{BlockLink, Step};
+use super::lowest::{BlockLink, LAST_STEP, SHOWN_ERROR, Step, UNKNOWN_STEP};
 use nalgebra::{SMatrix, SVector};
 
 /// What eight chains share, from the tip inward.
@@ -72,13 +72,7 @@ pub struct Roots<V> {
     pub unsure: u8,
 }
 
-/// A secant's error is `C` times the product of the last two steps. `C` is about 1 for most arms, far more
-/// if a pole is near: both the product and the error by the `C` that the last three steps show are bounded.
-const STEPS_PRODUCT: f64 = 1e-12;
-const SHOWN_ERROR: f64 = 1e-13;
-/// Whatever the product, the last step bounds the error if another mode is very near.
-const LAST_STEP: f64 = 5e-8;
-const MOST_PASSES: usize = 24;
+const MOST_PASSES: usize = 10;
 
 impl<const N: usize> Default for Outboard<N> {
     fn default() -> Self {
@@ -227,7 +221,7 @@ macro_rules! add_lower {
     };
 }
 
-/// `m0 + m1 λ + m2 λ²` of an entry of a link.
+/// An entry of a link's inertia at `λ`.
 macro_rules! at_lambda {
     ($link:ident.$of:ident($i:expr, $j:expr), $lambda:expr) => {
         $link.$of::<V>(0, $i, $j)
@@ -358,7 +352,8 @@ pub fn roots<V: Lanes, const N: usize>(
     let mut x = one / guess;
     let (mut result, mut slope) = (x, slope);
     let (mut x_before, mut y_before) = (V::zero(), V::zero());
-    let (mut step_before, mut step_two_before) = (V::splat(0.1) * x, x);
+    let unknown = V::splat(UNKNOWN_STEP) * x;
+    let (mut step_before, mut step_two_before) = (unknown, unknown);
     let mut has_before = 0u8;
     for _ in 0..MOST_PASSES {
         let here = pass(outboard, inner, one / x);
@@ -368,7 +363,6 @@ pub fn roots<V: Lanes, const N: usize>(
         let next = x - y / slope;
         let step = (next - x).abs();
         let settled = step.less(V::splat(LAST_STEP) * x)
-            & (step * step_before).less(V::splat(STEPS_PRODUCT) * x * x)
             & (step * step).less(V::splat(SHOWN_ERROR) * x * step_two_before)
             & here.sound
             & open;
@@ -382,7 +376,7 @@ pub fn roots<V: Lanes, const N: usize>(
         let drawn_back = V::choose(V::zero().less(y) & here.sound, V::splat(0.5) * x, V::splat(1.5) * x);
         has_before = here.sound;
         step_two_before = step_before;
-        step_before = V::choose(in_reach, step, V::splat(0.1) * x);
+        step_before = V::choose(in_reach, step, V::splat(UNKNOWN_STEP) * x);
         (x_before, y_before) = (x, y);
         x = V::choose(open, V::choose(in_reach, next, drawn_back), x);
     }
