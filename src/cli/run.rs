@@ -12,7 +12,7 @@ use crate::report::summary::{
 };
 use crate::search::{ArmProblem, Status};
 use crate::study::{
-    Carried, Study, StudyOutcome, empty_pieces, front_table, named, read_study, run_study, slug,
+    Carried, Study, StudyOutcome, empty_pieces, front_table, left_out, named, read_study, run_study, slug,
     why_infeasible,
 };
 use clap::Args;
@@ -74,7 +74,7 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
     }
     let (study, text) = load_study(&args.study, catalogs)?;
     let (asked, suffix) = match &args.effects {
-        None => (Asked { study, text, carried: Vec::new() }, ""),
+        None => (Asked { carried: left_out(&study), study, text }, ""),
         Some(path) => (carry::from_arm_file(path, &study, &text, catalogs)?, "-with-effects"),
     };
     let name = format!("{}{suffix}", slug(&asked.study.name));

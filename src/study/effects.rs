@@ -93,6 +93,18 @@ fn added_kg(space: &DesignSpace, effect: &Effect) -> f64 {
     DesignSpace { effects: vec![effect.clone()], ..space.clone() }.effects_mass_kg()
 }
 
+/// The study's own effects that describe a test, which change nothing.
+pub fn left_out(study: &Study) -> Vec<Carried> {
+    let of_test = study.space.effects.iter().filter(|effect| effect.is_of_test());
+    of_test.map(|effect| Carried { what: label(effect), carried: false, words: OF_TEST.into() }).collect()
+}
+
+const OF_TEST: &str = "it describes how the arm was tested, not the arm";
+
+fn label(effect: &Effect) -> String {
+    format!("{} at {}", effect.effect, effect.at)
+}
+
 /// Puts what a measured arm's corrections mean for a study into the study's file: the effects of `arm`,
 /// and the factors within tolerance, `("j2.stiffness", 1.02)`, that it was calibrated with.
 pub fn carry_over(file: &Value, study: &Study, arm: &Arm, calibrated: &[(String, f64)]) -> CorrectedStudy {
@@ -108,9 +120,9 @@ impl CorrectedStudy {
     }
 
     fn effect(&mut self, space: &DesignSpace, effect: &Effect) {
-        let what = format!("{} at {}", effect.effect, effect.at);
+        let what = label(effect);
         if effect.is_of_test() {
-            return self.say(what, false, "it describes how the arm was tested, not the arm");
+            return self.say(what, false, OF_TEST);
         }
         if let Some((_, problem, hint)) = unfit(space, effect) {
             return self.say(what, false, format!("{problem}; {hint}"));

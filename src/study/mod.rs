@@ -9,7 +9,7 @@ mod sections;
 mod table;
 
 pub use diagnose::{empty_pieces, why_infeasible};
-pub use effects::{Carried, CorrectedStudy, carry_over};
+pub use effects::{Carried, CorrectedStudy, carry_over, left_out};
 pub use outcome::{Front, Judged, StudyOutcome, run_study};
 pub use read::{Study, read_study};
 pub(crate) use table::sizing_rows;
