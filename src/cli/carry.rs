@@ -60,15 +60,22 @@ fn calibrated(file: &Value) -> Vec<(String, f64)> {
     list.iter().filter_map(|c| Some((c["value"].as_str()?.to_string(), c["factor"].as_f64()?))).collect()
 }
 
-/// What carries over and what does not, a line each; empty if there is nothing to say.
+/// What carries over and what does not, a line a reason; empty if there is nothing to say.
 pub(super) fn to_text(carried: &[Carried]) -> String {
     let mut out = String::new();
     for (taken, head) in [(true, "carried over"), (false, "not carried over")] {
-        for (i, c) in carried.iter().filter(|c| c.carried == taken).enumerate() {
-            if i == 0 {
-                let _ = writeln!(out, "\n{head}:");
+        let mut lines: Vec<(&str, Vec<&str>)> = Vec::new();
+        for c in carried.iter().filter(|c| c.carried == taken) {
+            match lines.iter_mut().find(|(words, _)| *words == c.words) {
+                Some((_, what)) => what.push(&c.what),
+                None => lines.push((&c.words, vec![&c.what])),
             }
-            let _ = writeln!(out, "  {}: {}", c.what, c.words);
+        }
+        if !lines.is_empty() {
+            let _ = writeln!(out, "\n{head}:");
+        }
+        for (words, what) in lines {
+            let _ = writeln!(out, "  {}: {words}", what.join(", "));
         }
     }
     out

@@ -54,9 +54,11 @@ pub(super) fn rerun(
     let calibrated: Vec<(String, f64)> =
         outcome.calibrated.iter().map(|c| (c.name.clone(), c.factor.value)).collect();
     let corrected = carry::corrected(&nominal, &text, &outcome.corrected, &calibrated, catalogs)?;
-    if !corrected.carried.iter().any(|c| c.carried) {
-        let why = format!("not re-run: nothing carries over to it\n{}", carry::to_text(&corrected.carried));
-        return Ok(Rerun::without(&name, "not_run", &why));
+    if corrected.study.space.effects.len() == nominal.space.effects.len() {
+        let mut rerun = Rerun::without(&name, "not_run", "not re-run: no effect carries over to it");
+        rerun.text.push_str(carry::to_text(&corrected.carried).trim_start());
+        rerun.json["carried_over"] = carry::to_json(&corrected.carried);
+        return Ok(rerun);
     }
     let nominal = Asked { study: nominal, text, carried: Vec::new() };
     let mut found = Vec::new();

@@ -34,8 +34,6 @@ pub struct CorrectedStudy {
     pub file: Value,
     /// Every correction, taken or not.
     pub carried: Vec<Carried>,
-    /// Number of effects taken.
-    pub effects: usize,
 }
 
 /// Records what is wrong with each effect of a study.
@@ -108,7 +106,7 @@ fn label(effect: &Effect) -> String {
 /// Puts what a measured arm's corrections mean for a study into the study's file: the effects of `arm`,
 /// and the factors within tolerance, `("j2.stiffness", 1.02)`, that it was calibrated with.
 pub fn carry_over(file: &Value, study: &Study, arm: &Arm, calibrated: &[(String, f64)]) -> CorrectedStudy {
-    let mut out = CorrectedStudy { file: file.clone(), carried: Vec::new(), effects: 0 };
+    let mut out = CorrectedStudy { file: file.clone(), carried: Vec::new() };
     arm.effects.iter().for_each(|effect| out.effect(&study.space, effect));
     calibrated.iter().for_each(|(name, factor)| out.calibration(&study.space, name, *factor));
     out
@@ -131,7 +129,6 @@ impl CorrectedStudy {
             Value::Array(list) => list.push(effect.to_json()),
             none => *none = json!([effect.to_json()]),
         }
-        self.effects += 1;
         self.say(what, true, parameters(effect));
     }
 
@@ -158,11 +155,7 @@ impl CorrectedStudy {
                     "stiffness" => write_curve(entry, &scaled(*curve, factor)),
                     _ => entry["mass_kg"] = json!(mass_kg * factor),
                 }
-                self.say(
-                    what,
-                    true,
-                    format!("the study gives {part} its drive: its {quantity} is calibrated"),
-                );
+                self.say(what, true, "the study gives this joint's drive: its value is calibrated");
             }
         }
     }

@@ -416,7 +416,10 @@ impl Built {
         let mut out = String::from("test,joint,torque_nm,branch,windup_arcmin,sigma_arcmin\n");
         let mut test = 0;
         for (name, _, k) in self.joints().into_iter().filter(|j| ["j2", "j3", "j5"].contains(&j.0.as_str())) {
-            let largest = (k * 9e-4 / 50.0).round() * 50.0;
+            let largest = match (k * 9e-4 / 50.0).round() * 50.0 {
+                0.0 => (k * 9e-4).ceil(),
+                coarse => coarse,
+            };
             let up: Vec<f64> = (-8..=8).map(|i| largest * i as f64 / 8.0).collect();
             let down: Vec<f64> = up.iter().rev().copied().collect();
             let (h, law) = (self.beyond.play.get(&name).copied().unwrap_or(0.0), self.law(&name, k));
