@@ -9,6 +9,7 @@
 pub mod archive;
 pub mod constraint;
 pub mod design;
+mod effects;
 mod figures;
 pub mod fixed;
 pub mod front;
