@@ -3,6 +3,7 @@
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
 use crate::fault::Document;
+use crate::report::html::{PLOTS, Page, study::StudyPage};
 use crate::report::front_svg::{FrontPicture, PlottedFront, mixed_designs};
 use crate::report::picks;
 use crate::report::summary::{
@@ -10,7 +11,7 @@ use crate::report::summary::{
 };
 use crate::search::{ArmProblem, Status};
 use crate::study::{
-    Study, StudyOutcome, empty_pieces, front_table, named, read_study, run_study, slug, why_infeasible,
+    Study, StudyOutcome, empty_pieces, front_table, named, read_study, run_study, slug, study_page, why_infeasible,
 };
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -130,20 +131,22 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     Ok(format!("{}\nwritten to {}: {}\n", output.terminal, dir.display(), names(&files)))
 }
 
+/// The files that were written, those of one kind counted.
 fn names(files: &[(String, Vec<u8>)]) -> String {
-    let fronts =
-        files.iter().filter(|(n, _)| n.starts_with("front.") && n != "front.csv" && n != "front.svg").count();
-    let mut names: Vec<&str> = files
-        .iter()
-        .map(|(n, _)| n.as_str())
-        .filter(|n| !n.starts_with("front.") || *n == "front.csv" || *n == "front.svg")
-        .collect();
-    let by_material = match fronts {
-        1 => "one front by material".to_string(),
-        n => format!("{n} fronts by material"),
+    let kind = |name: &str| match name {
+        n if n.starts_with(PLOTS) => 2,
+        n if n.starts_with("front.") && n != "front.csv" && n != "front.svg" => 1,
+        _ => 0,
     };
-    if fronts > 0 {
-        names.push(&by_material);
+    let count = |which: usize| files.iter().filter(|(n, _)| kind(n) == which).count();
+    let mut names: Vec<String> = files.iter().map(|(n, _)| n.clone()).filter(|n| kind(n) == 0).collect();
+    match count(1) {
+        0 => {}
+        1 => names.push("one front by material".into()),
+        n => names.push(format!("{n} fronts by material")),
+    }
+    if count(2) > 0 {
+        names.push(format!("{} files in {PLOTS}", count(2)));
     }
     names.join(", ")
 }
@@ -183,9 +186,12 @@ impl Finished<'_> {
         for material in &summary.materials {
             files.push((format!("front.{}.csv", slug(&material.name)), material.front.to_csv()));
         }
-        files.push(("front.svg".into(), picture(&summary).into_bytes()));
+        let picture = picture(&summary);
+        files.push(("front.svg".into(), picture.clone().into_bytes()));
         files.push(("summary.md".into(), summary_md(&summary).into_bytes()));
-        files.push(("run.json".into(), pretty(&self.run_json(&summary))));
+        let run = self.run_json(&summary);
+        files.push(("run.json".into(), pretty(&run)));
+        files.extend(self.page(&summary, picture, &run).into_files());
         files.push(("study.json".into(), self.text.as_bytes().to_vec()));
         Written { files, terminal: terminal_summary(&summary) }
     }
@@ -221,6 +227,12 @@ impl Finished<'_> {
                 })
                 .collect(),
         }
+    }
+
+    /// The page for a browser.
+    fn page(&self, summary: &SummaryInput, picture: String, run: &Value) -> Page {
+        let page = study_page(self.study, self.problem, self.catalogs, summary);
+        StudyPage { scatter_svg: picture, run: facts_of(run), ..page }.page()
     }
 
     fn judged_cases(&self) -> Vec<String> {
@@ -264,6 +276,24 @@ impl Finished<'_> {
             "catalogs_hash": catalogs_hash(self.catalogs),
         })
     }
+}
+
+/// The facts of `run.json` that are a word or a number, for people.
+fn facts_of(run: &Value) -> Vec<(String, String)> {
+    let plain = |value: &Value| match value {
+        Value::String(text) => Some(text.clone()),
+        Value::Number(number) => Some(number.to_string()),
+        Value::Object(map) => {
+            let parts = map.iter().filter_map(|(k, v)| Some(format!("{k} {}", v.as_str()?)));
+            Some(parts.collect::<Vec<_>>().join(", "))
+        }
+        _ => None,
+    };
+    let facts = run.as_object().into_iter().flatten();
+    facts
+        .filter(|(key, _)| !["schema_version", "study", "question"].contains(&key.as_str()))
+        .filter_map(|(key, value)| Some((key.replace('_', " "), plain(value)?)))
+        .collect()
 }
 
 /// The picture of the front: designs of mixed materials in grey, each material's own front in colour.

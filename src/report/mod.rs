@@ -3,6 +3,7 @@
 pub mod compare;
 pub mod front_svg;
 pub mod front_table;
+pub mod html;
 pub mod number;
 pub mod picks;
 pub mod summary;

@@ -161,6 +161,17 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
     out
 }
 
+/// The answer in two sentences.
+pub fn answer_words(input: &SummaryInput) -> String {
+    answer(input, &Found::of(input))
+}
+
+/// The materials side by side: size of each front, the best of each, share of the whole front.
+pub fn materials_side_by_side(input: &SummaryInput) -> Table {
+    let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
+    materials_table(input, &names, MARKDOWN_MATERIALS)
+}
+
 /// What the fronts say.
 struct Found {
     designs: Vec<Design>,

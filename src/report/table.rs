@@ -55,6 +55,11 @@ impl Table {
         self.rows.push(row);
     }
 
+    /// The columns.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
     /// The rows so far.
     pub fn rows(&self) -> &[Vec<String>] {
         &self.rows

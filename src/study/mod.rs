@@ -2,12 +2,14 @@
 
 mod diagnose;
 mod outcome;
+mod page;
 pub mod paper;
 mod read;
 mod sections;
 mod table;
 
 pub use diagnose::{empty_pieces, why_infeasible};
+pub use page::study_page;
 pub use outcome::{Front, Judged, StudyOutcome, run_study};
 pub use read::{Study, read_study};
 pub(crate) use table::sizing_rows;
