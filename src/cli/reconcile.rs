@@ -2,6 +2,8 @@
 
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
+use crate::reconcile::page::campaign_page;
+use crate::report::compare::text::wrap;
 use crate::reconcile::{Campaign, Outcome, reconcile};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -9,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// Arguments of `reconcile`.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  armwright reconcile campaigns/may --out results/may\n\n\
-    Writes verdict.json, verdict.txt, arm.corrected.json and residuals.csv. The verdict is one of no_gap, \
+    Writes verdict.json, verdict.txt, arm.corrected.json, residuals.csv, and report.html with its pictures in plots/. The verdict is one of no_gap, \
     explained, unexplained, insufficient_data; all four are answers, exit code 0.")]
 pub struct ReconcileArgs {
     /// Folder of a campaign: campaign.json, arm.json and any of static.csv, modal.csv, windup.csv,
@@ -34,9 +36,20 @@ pub fn run(args: &ReconcileArgs, catalogs: &Catalogs) -> Result<(Outcome, String
     let campaign = first.join(read).map_err(Failure::Usage)?;
     let out = args.out.clone().unwrap_or_else(|| Path::new("results").join(&campaign.statement.name));
     let outcome = reconcile(&campaign);
-    let files: Vec<(String, Vec<u8>)> =
+    let mut files: Vec<(String, Vec<u8>)> =
         outcome.files().into_iter().map(|(name, text)| (name.to_string(), text.into_bytes())).collect();
+    let page = campaign_page(&campaign, &outcome);
+    files.extend(page.page().into_files());
     write_all(&out, &files)?;
-    let text = format!("{}written to {}\n", outcome.to_text(), out.display());
+    let text = format!("{}{}written to {}\n", narrow(&outcome.to_text()), page.terminal(), out.display());
     Ok((outcome, text))
+}
+
+/// Lines of at most 80 columns, those broken indented like what they belong to.
+fn narrow(text: &str) -> String {
+    let line = |line: &str| {
+        let lead: String = line.chars().take_while(|c| *c == ' ').collect();
+        wrap(line, 80, &lead)
+    };
+    text.lines().map(line).collect()
 }

@@ -3,15 +3,17 @@
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
 use crate::fault::Document;
-use crate::report::html::{PLOTS, Page, study::StudyPage};
+use crate::report::html::{Figure, PLOTS, Page, document::DocumentPage, study::StudyPage};
+use crate::report::table::Table;
 use crate::report::front_svg::{FrontPicture, PlottedFront, mixed_designs};
+use crate::report::number::significant;
 use crate::report::picks;
 use crate::report::summary::{
     MaterialFront, SummaryFacts, SummaryInput, constraint_words, summary_md, terminal_summary,
 };
 use crate::search::{ArmProblem, Status};
 use crate::study::{
-    Study, StudyOutcome, empty_pieces, front_table, named, read_study, run_study, slug, study_page, why_infeasible,
+    Study, StudyOutcome, empty_pieces, front_table, named, paper_question, read_study, run_study, slug, study_page, why_infeasible,
 };
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -126,9 +128,27 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
         "catalogs_hash": catalogs_hash(catalogs),
     });
     let mut files = output.files;
+    let page = paper_page(&args.study, &files, &run).page();
     files.push(("run.json".into(), pretty(&run)));
+    files.extend(page.into_files());
     write_all(&dir, &files)?;
     Ok(format!("{}\nwritten to {}: {}\n", output.terminal, dir.display(), names(&files)))
+}
+
+/// The page of a study of the paper: its pictures and tables.
+fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> DocumentPage {
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let ending = |end: &'static str| files.iter().filter_map(move |(n, b)| Some((n.strip_suffix(end)?, b)));
+    DocumentPage {
+        title: study.to_string(),
+        question: paper_question(study).unwrap_or_default().to_string(),
+        words: Vec::new(),
+        figures: ending(".svg")
+            .map(|(name, bytes)| Figure { name: name.into(), svg: text(bytes), ..Figure::default() })
+            .collect(),
+        tables: ending(".csv").map(|(name, bytes)| (format!("{name}.csv"), Table::from_csv(&text(bytes)))).collect(),
+        facts: facts_of(run),
+    }
 }
 
 /// The files that were written, those of one kind counted.
@@ -282,6 +302,7 @@ impl Finished<'_> {
 fn facts_of(run: &Value) -> Vec<(String, String)> {
     let plain = |value: &Value| match value {
         Value::String(text) => Some(text.clone()),
+        Value::Number(number) if number.is_f64() => Some(significant(number.as_f64()?, 4)),
         Value::Number(number) => Some(number.to_string()),
         Value::Object(map) => {
             let parts = map.iter().filter_map(|(k, v)| Some(format!("{k} {}", v.as_str()?)));

@@ -1,5 +1,6 @@
 //! Numbers, tables and pictures on paper: csv, json, svg, terminal.
 
+pub mod braille;
 pub mod compare;
 pub mod front_svg;
 pub mod front_table;

@@ -50,6 +50,11 @@ pub fn list() -> String {
     out
 }
 
+/// What one of the paper's studies shows.
+pub fn paper_question(name: &str) -> Option<&'static str> {
+    paper::NAMES.iter().zip(PAPER_QUESTIONS).find(|(n, _)| **n == name).map(|(_, what)| what)
+}
+
 /// What each of the paper's studies shows, in the order of [`paper::NAMES`].
 const PAPER_QUESTIONS: [&str; 4] = [
     "Table 1: deflection, frequencies, stiffer drives; the paper's numbers beside ours",

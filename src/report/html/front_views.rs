@@ -28,7 +28,7 @@ pub struct FrontViews<'a> {
 
 impl FrontViews<'_> {
     /// The section's values for its template.
-    pub fn context(&self, gallery: &mut Gallery) -> Value {
+    pub(super) fn context(&self, gallery: &mut Gallery) -> Value {
         let data = &self.data;
         let shown = data.rows.len();
         let sampled = (shown < data.rows_total).then(|| {

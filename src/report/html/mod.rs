@@ -6,6 +6,9 @@
 //! views that are linked: hovering, brushing, filters. [`study`], [`campaign`] and [`comparison`] take plain
 //! values from the rooms below and fill the templates beside this file.
 
+pub mod campaign;
+pub mod comparison;
+pub mod document;
 pub mod front_data;
 pub mod front_views;
 pub mod pick;
@@ -21,11 +24,13 @@ pub const PLOTS: &str = "plots";
 
 const STYLE: &str = include_str!("page.css");
 const PROGRAM: &str = include_str!("page.js");
-const TEMPLATES: [(&str, &str); 5] = [
+const TEMPLATES: [(&str, &str); 7] = [
     ("macros.html", include_str!("macros.html")),
     ("base.html", include_str!("base.html")),
     ("front.html", include_str!("front.html")),
     ("study.html", include_str!("study.html")),
+    ("campaign.html", include_str!("campaign.html")),
+    ("comparison.html", include_str!("comparison.html")),
     ("document.html", include_str!("document.html")),
 ];
 
@@ -123,7 +128,7 @@ pub(super) fn table(table: &Table) -> Value {
 /// A picture to stand inside a page: names that pictures share are made its own, so that hiding one does
 /// not take the markers of another with it.
 fn inline(svg: &str, number: usize) -> String {
-    svg.replace("id=\"", &format!("id=\"p{number}-"))
+    svg.replace(" id=\"", &format!(" id=\"p{number}-"))
         .replace("url(#", &format!("url(#p{number}-"))
         .replacen("<svg ", "<svg class=\"plot\" ", 1)
 }
@@ -132,6 +137,7 @@ fn inline(svg: &str, number: usize) -> String {
 fn render(template: &str, title: &str, content: Value, data: &Value) -> String {
     let mut environment = Environment::new();
     environment.add_filter("anchor", |name: String| study::anchor(&name));
+    environment.add_filter("bound", |words: String| bound(&words));
     for (name, text) in TEMPLATES {
         environment.add_template(name, text).expect("the templates are part of the program and parse");
     }
@@ -149,6 +155,12 @@ fn render(template: &str, title: &str, content: Value, data: &Value) -> String {
     let mut values = content;
     values["page"] = page;
     template.render(minijinja::value::Serde(&values)).expect("the templates use only what the pages give them")
+}
+
+/// Words whose numbers do not part from their units at the end of a line.
+fn bound(words: &str) -> String {
+    let units = ["%", "mm", "kg", "Hz", "EUR"].map(|unit| (format!(" {unit}"), format!("\u{a0}{unit}")));
+    units.iter().fold(words.to_string(), |text, (apart, joined)| text.replace(apart, joined))
 }
 
 /// JSON that may stand in a script element: no `<`, which could end it.

@@ -169,6 +169,7 @@ function views(f) {
         && taken.every((t) => x + dx + wide < t[0] || x + dx > t[0] + t[2] || Math.abs(y + dy - t[1]) > 15);
       const [dx, dy] = spots.find(free) || spots[0];
       taken.push([x + dx, y + dy, wide]);
+      if (Math.abs(dy) > 20) { g.lineWidth = 1; g.strokeStyle = css("--ink"); g.beginPath(); g.moveTo(x, y + 8 * Math.sign(dy)); g.lineTo(x + dx + (dx < 0 ? wide : 0), y + dy + (dy < 0 ? 3 : -11)); g.stroke(); }
       g.lineWidth = 4.5; g.strokeStyle = css("--paper"); g.beginPath(); g.arc(x, y, 7, 0, 7); g.stroke();
       g.lineWidth = 2; g.strokeStyle = css("--ink"); g.beginPath(); g.arc(x, y, 7, 0, 7); g.stroke();
       g.lineWidth = 4; g.lineJoin = "round"; g.strokeStyle = css("--paper"); g.textAlign = "left";
@@ -177,7 +178,7 @@ function views(f) {
     g.font = FONT;
   }
 
-  const px = (a) => { const l = 74, r = parallel.w - 34; return axes.length > 1 ? l + (a * (r - l)) / (axes.length - 1) : l; };
+  const px = (a) => { const l = 74, r = parallel.w - 50; return axes.length > 1 ? l + (a * (r - l)) / (axes.length - 1) : l; };
   const py = (p) => parallel.h - 16 - p * (parallel.h - 16 - 62);
   function line(g, i) {
     let joined = false;
@@ -419,7 +420,7 @@ function views(f) {
     }));
   }
   const fields = () => boxes.forEach((update) => update());
-  const ROWS = 12;
+  const ROWS = 8;
   function table() {
     const columns = [MASS, TIP, MODE, ...axes.keys()].filter((a, i, all) => all.indexOf(a) === i).slice(0, 9);
     const rows = [];

@@ -117,11 +117,11 @@ impl PickedArm {
             significant(solved.tip_mm, 4)
         );
         sketch.description = format!(
-            "{} of the arm, pose {:?} degrees. Grey: without weight. Blue: bent by gravity and load, {factor} times exaggerated.",
-            view.words, solved.case.pose_deg
+            "{} Pose {}. Grey: without weight. Blue: bent by gravity and load, {factor} times exaggerated.",
+            view.words, degrees(&solved.case.pose_deg)
         );
         sketch.width_px = 620.0;
-        let caption = format!("{} Pose {:?}°, payload {} kg (orange).", view.words, solved.case.pose_deg, shortest(solved.case.payload.mass_kg));
+        let caption = format!("{} Pose {}, payload {} kg (orange).", view.words, degrees(&solved.case.pose_deg), shortest(solved.case.payload.mass_kg));
         Figure {
             name: format!("pick-{}-arm", self.slug()),
             caption,
@@ -136,12 +136,12 @@ impl PickedArm {
             let mut sketch = self.sketch(solved, line, &view);
             sketch.factor = sketch.fitting_factor();
             sketch.title = format!("mode {}: {} Hz", i + 1, significant(mode.frequency_hz, 4));
-            sketch.caption = energy_words(mode);
+            sketch.caption = energy_words(mode, 3);
             sketch.description = format!("{} Shape of mode {}, amplitude arbitrary.", view.words, i + 1);
             sketch.width_px = 400.0;
             Figure {
                 name: format!("pick-{}-mode-{}", self.slug(), i + 1),
-                caption: view.words.to_string(),
+                caption: format!("{} Strain energy: {}.", view.words, energy_words(mode, 6)),
                 svg: sketch.to_svg(),
                 csv: stations_csv(line),
             }
@@ -258,6 +258,11 @@ fn solve<'a>(arm: &Arm, case: &'a LoadCase) -> Solved<'a> {
     }
 }
 
+/// A pose in words: `0°, -45°, 90°`.
+pub fn degrees(pose_deg: &[f64]) -> String {
+    pose_deg.iter().map(|a| format!("{}°", shortest(*a))).collect::<Vec<_>>().join(", ")
+}
+
 fn payload_place(posed: &Posed, case: &LoadCase) -> Vector3<f64> {
     posed.tip_m + posed.tip_rotation * case.payload.cg_m
 }
@@ -297,11 +302,12 @@ fn parts_table(parts: &[DeflectionPart]) -> Table {
     table
 }
 
-fn energy_words(mode: &Mode) -> String {
-    let mut parts: Vec<&(String, f64)> = mode.strain_energy.iter().filter(|(_, e)| *e >= 0.05).collect();
+/// Where most of a mode's strain energy sits.
+fn energy_words(mode: &Mode, most: usize) -> String {
+    let mut parts: Vec<&(String, f64)> = mode.strain_energy.iter().filter(|(_, e)| *e >= 0.01).collect();
     parts.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let words: Vec<String> = parts.iter().take(4).map(|(n, e)| format!("{n} {:.0} %", 100.0 * e)).collect();
-    format!("strain energy: {}", words.join(", "))
+    let words: Vec<String> = parts.iter().take(most).map(|(n, e)| format!("{n} {:.0} %", 100.0 * e)).collect();
+    words.join(", ")
 }
 
 fn stations_csv(line: &[Station]) -> String {

@@ -95,7 +95,7 @@ impl ArmSketch {
         for tube in &self.tubes {
             tube.draw(&mut out, self.factor, scale, &at, "fill=\"#56B4E955\" stroke=\"#0072B2\" stroke-width=\"1.8\"");
         }
-        self.pivots(&mut out, &at);
+        self.pivots(&mut out, scale, &at);
         self.payload(&mut out, &at);
         self.foot(&mut out, scale, height);
         out.push_str("</svg>\n");
@@ -134,7 +134,9 @@ impl ArmSketch {
     }
 
     /// Joints at their places in the bent arm, with one label for those at one place.
-    fn pivots(&self, out: &mut String, at: &impl Fn(Place) -> (f64, f64)) {
+    fn pivots(&self, out: &mut String, scale: f64, at: &impl Fn(Place) -> (f64, f64)) {
+        // labels stand above the thickest link
+        let raised = 9.0 + self.tubes.iter().map(|t| t.size_m / 2.0 * scale).fold(8.0, f64::max);
         let mut labels: Vec<((f64, f64), Vec<&str>)> = Vec::new();
         for pivot in &self.pivots {
             let (x, y) = at(displaced(pivot.at, self.factor));
@@ -163,14 +165,17 @@ impl ArmSketch {
         for ((x, y), names) in labels {
             let words = names.join(" ");
             let x = x.clamp(8.0 + text_px(&words, FONT_PX) / 2.0, self.width_px - 8.0 - text_px(&words, FONT_PX) / 2.0);
-            let rim = " paint-order=\"stroke\" stroke=\"#FFFFFF\" stroke-width=\"3\"";
-            text(out, (x, (y - 16.0).max(TOP_PX)), "middle", rim, &words);
+            let rim = " font-size=\"12\" paint-order=\"stroke\" stroke=\"#FFFFFF\" stroke-width=\"3\"";
+            text(out, (x, (y - raised).max(TOP_PX - 2.0)), "middle", rim, &words);
         }
     }
 
     fn payload(&self, out: &mut String, at: &impl Fn(Place) -> (f64, f64)) {
         if let Some(payload) = self.payload {
             let (x, y) = at(displaced(payload, self.factor));
+            if let Some(tip) = self.tubes.last().and_then(|t| t.line.last()) {
+                line(out, at(displaced(*tip, self.factor)), (x, y), INK, 1.4);
+            }
             let _ = writeln!(
                 out,
                 "<rect x=\"{}\" y=\"{}\" width=\"13\" height=\"13\" fill=\"#D55E00\" stroke=\"{INK}\"><title>payload</title></rect>",
