@@ -3,6 +3,7 @@
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
 use crate::fault::Document;
+use crate::report::compare::text::wrap;
 use crate::report::html::{Figure, PLOTS, Page, document::DocumentPage, study::StudyPage};
 use crate::report::table::Table;
 use crate::report::front_svg::{FrontPicture, PlottedFront, mixed_designs};
@@ -107,7 +108,7 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
             };
             let written = finished.files();
             write_all(&dir, &written.files)?;
-            Ok(format!("{}\nwritten to {}: {}\n", written.terminal, dir.display(), names(&written.files)))
+            Ok(format!("{}\n{}", written.terminal, told(&dir, &written.files)))
         }
     }
 }
@@ -132,7 +133,7 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     files.push(("run.json".into(), pretty(&run)));
     files.extend(page.into_files());
     write_all(&dir, &files)?;
-    Ok(format!("{}\nwritten to {}: {}\n", output.terminal, dir.display(), names(&files)))
+    Ok(format!("{}\n{}", output.terminal, told(&dir, &files)))
 }
 
 /// The page of a study of the paper: its pictures and tables.
@@ -149,6 +150,11 @@ fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> Document
         tables: ending(".csv").map(|(name, bytes)| (format!("{name}.csv"), Table::from_csv(&text(bytes)))).collect(),
         facts: facts_of(run),
     }
+}
+
+/// Where the files are, in lines of at most 80 columns.
+fn told(dir: &Path, files: &[(String, Vec<u8>)]) -> String {
+    wrap(&format!("written to {}: {}", dir.display(), names(files)), 80, "")
 }
 
 /// The files that were written, those of one kind counted.

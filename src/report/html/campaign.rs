@@ -138,7 +138,9 @@ impl CampaignPage {
         let mut gallery = Gallery::default();
         let (channels, parts): (Vec<Compared>, Vec<Compared>) =
             self.parts.iter().cloned().partition(|p| !p.part.contains([',', ' ']));
-        let parts: Vec<Compared> = parts.into_iter().filter(|p| !p.part.starts_with("pose")).collect();
+        let mut parts: Vec<Compared> = parts.into_iter().filter(|p| !p.part.starts_with("pose")).collect();
+        // channel by channel, and in each what is of one kind together
+        parts.sort_by_key(|p| p.part.split(' ').take(2).map(String::from).collect::<Vec<_>>());
         let gap = |name: &str, title: &str, caption: &str, rows: Vec<Compared>| {
             (!rows.is_empty()).then(|| gap_figure(name, title, caption, rows))
         };
@@ -318,15 +320,15 @@ impl CampaignPage {
             marks: vec![Mark { value: w.score.max(LEAST_SCORE), interval: None, kind: 0 }],
             remark: format!("{}{}", if w.score < LEAST_SCORE { "\u{25c2} " } else { "" }, fixed(w.score, 1)),
         };
-        let caption = "Logarithm of each model's evidence less that of the best. Within 3 of it the readings hardly choose; \
-                       below 10 it is out of the question. An arrow marks what lies beyond the edge.";
+        let caption = "Logarithm of each model's evidence less that of the best. Right of the first dotted line (-3) \
+                       the readings hardly choose; left of the second (-10) a model is out of the question. An arrow marks what lies beyond the edge.";
         let plot = RowPlot {
             title: "What speaks for each candidate".into(),
             description: caption.into(),
             x: Axis { range: Some((LEAST_SCORE, 0.0)), ..Axis::new("log-evidence less the best's", Scale::Linear) },
             kinds: vec!["score".into()],
             rows: self.weighed.iter().map(row).collect(),
-            guides: vec![(-10.0, "out of the question".into()), (-3.0, "hardly".into())],
+            guides: vec![(-10.0, String::new()), (-3.0, String::new())],
         };
         let mut csv = String::from("model,score,chi_squared\n");
         for w in &self.weighed {

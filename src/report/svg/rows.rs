@@ -7,7 +7,7 @@ use super::{
 use std::fmt::Write;
 
 const ROW_PX: f64 = 26.0;
-const TOP_PX: f64 = 78.0;
+const TOP_PX: f64 = 88.0;
 const WIDTH_PX: f64 = 900.0;
 const FAINT: &str = "#E3E3E3";
 
