@@ -4,6 +4,7 @@ use super::{Failure, number_list, write_all};
 use crate::report::compare::{Comparison, Contender, Thresholds, compare, moved::moved};
 use crate::report::front_svg::{FrontPicture, PlottedFront};
 use crate::report::front_table::{FrontTable, FrontTableError};
+use crate::report::html::comparison::page as comparison_page;
 use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -32,7 +33,7 @@ pub struct CompareArgs {
     /// Lowest modes to compare masses at (Hz)
     #[arg(long, value_name = "HZ", value_parser = limits)]
     pub mode_hz: Option<Limits>,
-    /// Folder for compare.md, compare.csv and compare.svg
+    /// Folder for compare.md, compare.csv, compare.svg and report.html, a page for a browser
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print JSON instead of tables
@@ -69,7 +70,10 @@ pub fn run(args: &CompareArgs) -> Result<String, Failure> {
     if let Some(dir) = &args.out {
         write_all(dir, &files(&comparison, &loaded.contenders))?;
         if !args.json {
-            out.push_str(&format!("\nwritten to {}: compare.md, compare.csv, compare.svg\n", dir.display()));
+            out.push_str(&format!(
+                "\nwritten to {}: compare.md, compare.csv, compare.svg, report.html\n",
+                dir.display()
+            ));
         }
     }
     Ok(out)
@@ -97,11 +101,14 @@ fn files(comparison: &Comparison, contenders: &[Contender]) -> Vec<(String, Vec<
             .collect(),
         picks: Vec::new(),
     };
-    vec![
+    let svg = picture.to_svg();
+    let mut out: Vec<(String, Vec<u8>)> = vec![
         ("compare.md".into(), comparison.to_markdown().into_bytes()),
         ("compare.csv".into(), comparison.to_csv().into_bytes()),
-        ("compare.svg".into(), picture.to_svg().into_bytes()),
-    ]
+        ("compare.svg".into(), svg.clone().into_bytes()),
+    ];
+    out.extend(comparison_page(comparison, contenders, svg).into_files());
+    out
 }
 
 /// What is compared.

@@ -207,10 +207,13 @@ pub(crate) fn write_all(dir: &Path, files: &[(String, Vec<u8>)]) -> Result<(), F
     fs_err::create_dir_all(dir).map_err(|e| Failure::file(dir, "create", &e))?;
     let mut staged = Vec::with_capacity(files.len());
     for (name, bytes) in files {
+        let path = dir.join(name);
+        let folder = path.parent().unwrap_or(dir);
+        fs_err::create_dir_all(folder).map_err(|e| Failure::file(folder, "create", &e))?;
         let mut file =
-            tempfile::NamedTempFile::new_in(dir).map_err(|e| Failure::file(dir, "write in", &e))?;
+            tempfile::NamedTempFile::new_in(folder).map_err(|e| Failure::file(dir, "write in", &e))?;
         file.write_all(bytes).map_err(|e| Failure::file(dir, "write in", &e))?;
-        staged.push((file, dir.join(name)));
+        staged.push((file, path));
     }
     for (file, path) in staged {
         file.persist(&path).map_err(|e| Failure::file(&path, "write", &e.error))?;

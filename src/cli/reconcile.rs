@@ -3,7 +3,9 @@
 use super::rerun::{Rerun, rerun};
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
+use crate::reconcile::page::campaign_page;
 use crate::reconcile::{Campaign, Outcome, reconcile};
+use crate::report::compare::text::wrap;
 use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -12,8 +14,9 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  armwright reconcile campaigns/may --out results/may\n  \
     armwright reconcile campaigns/may --study compare-materials --out results/may\n\n\
-    Writes verdict.json, verdict.txt, arm.corrected.json and residuals.csv. The verdict is one of no_gap, \
-    explained, unexplained, insufficient_data; all four are answers, exit code 0.\n\n\
+    Writes verdict.json, verdict.txt, arm.corrected.json, residuals.csv, and report.html with its pictures in \
+    plots/. The verdict is one of no_gap, explained, unexplained, insufficient_data; all four are answers, \
+    exit code 0.\n\n\
     With --study and the verdict explained, the study is run without and with the effects found: \
     study/nominal and study/corrected are results as `armwright run` writes them, study_changes.csv has \
     every design of either front under both models, and verdict.json says under \"study\" which picks change.")]
@@ -54,8 +57,10 @@ pub fn run(
     let outcome = reconcile(&campaign);
     let mut files: Vec<(String, Vec<u8>)> =
         outcome.files().into_iter().map(|(name, text)| (name.to_string(), text.into_bytes())).collect();
+    let page = campaign_page(&campaign, &outcome);
+    files.extend(page.page().into_files());
     write_all(&out, &files)?;
-    let mut text = outcome.to_text();
+    let mut text = format!("{}{}", narrow(&outcome.to_text()), page.terminal());
     if let Some(study) = &args.study {
         let rerun = rerun(&outcome, study, catalogs, overlay, &out)?;
         text.push_str(&rerun.text);
@@ -79,4 +84,13 @@ fn add(files: &mut Vec<(String, Vec<u8>)>, outcome: &Outcome, rerun: Rerun) {
         }
     }
     files.extend(rerun.csv.map(|csv| ("study_changes.csv".to_string(), csv.into_bytes())));
+}
+
+/// Lines of at most 80 columns, those broken indented like what they belong to.
+fn narrow(text: &str) -> String {
+    let line = |line: &str| {
+        let lead: String = line.chars().take_while(|c| *c == ' ').collect();
+        wrap(line, 80, &lead)
+    };
+    text.lines().map(line).collect()
 }

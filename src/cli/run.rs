@@ -4,16 +4,20 @@ use super::{Failure, carry, write_all};
 use crate::arm::Effect;
 use crate::catalog::Catalogs;
 use crate::fault::Document;
+use crate::report::compare::text::wrap;
 use crate::report::front_svg::{FrontPicture, PlottedFront, mixed_designs};
 use crate::report::front_table::FrontTable;
+use crate::report::html::{Figure, PLOTS, Page, document::DocumentPage, study::StudyPage};
+use crate::report::number::significant;
 use crate::report::picks;
 use crate::report::summary::{
     MaterialFront, SummaryFacts, SummaryInput, constraint_words, summary_md, terminal_summary,
 };
+use crate::report::table::Table;
 use crate::search::{ArmProblem, Status};
 use crate::study::{
-    Carried, Study, StudyOutcome, empty_pieces, front_table, left_out, named, read_study, run_study, slug,
-    why_infeasible,
+    Carried, Study, StudyOutcome, empty_pieces, front_table, left_out, named, paper_question, read_study,
+    run_study, slug, study_page, why_infeasible,
 };
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -82,7 +86,7 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
     let written = search(&asked, catalogs, overlay, &dir)?;
     write_all(&dir, &written.files)?;
     let carried = carry::to_text(&asked.carried);
-    Ok(format!("{}{carried}\nwritten to {}: {}\n", written.terminal, dir.display(), names(&written.files)))
+    Ok(format!("{}{carried}\n{}", written.terminal, told(&dir, &written.files)))
 }
 
 /// A study to be searched.
@@ -160,25 +164,52 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
         "catalogs_hash": catalogs_hash(catalogs),
     });
     let mut files = output.files;
+    let page = paper_page(&args.study, &files, &run).page();
     files.push(("run.json".into(), pretty(&run)));
+    files.extend(page.into_files());
     write_all(&dir, &files)?;
-    Ok(format!("{}\nwritten to {}: {}\n", output.terminal, dir.display(), names(&files)))
+    Ok(format!("{}\n{}", output.terminal, told(&dir, &files)))
 }
 
+/// The page of a study of the paper: its pictures and tables.
+fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> DocumentPage {
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let ending = |end: &'static str| files.iter().filter_map(move |(n, b)| Some((n.strip_suffix(end)?, b)));
+    DocumentPage {
+        title: study.to_string(),
+        question: paper_question(study).unwrap_or_default().to_string(),
+        words: Vec::new(),
+        figures: ending(".svg")
+            .map(|(name, bytes)| Figure { name: name.into(), svg: text(bytes), ..Figure::default() })
+            .collect(),
+        tables: ending(".csv")
+            .map(|(name, bytes)| (format!("{name}.csv"), Table::from_csv(&text(bytes))))
+            .collect(),
+        facts: facts_of(run),
+    }
+}
+
+/// Where the files are, in lines of at most 80 columns.
+fn told(dir: &Path, files: &[(String, Vec<u8>)]) -> String {
+    wrap(&format!("written to {}: {}", dir.display(), names(files)), 80, "")
+}
+
+/// The files that were written, those of one kind counted.
 fn names(files: &[(String, Vec<u8>)]) -> String {
-    let fronts =
-        files.iter().filter(|(n, _)| n.starts_with("front.") && n != "front.csv" && n != "front.svg").count();
-    let mut names: Vec<&str> = files
-        .iter()
-        .map(|(n, _)| n.as_str())
-        .filter(|n| !n.starts_with("front.") || *n == "front.csv" || *n == "front.svg")
-        .collect();
-    let by_material = match fronts {
-        1 => "one front by material".to_string(),
-        n => format!("{n} fronts by material"),
+    let kind = |name: &str| match name {
+        n if n.starts_with(PLOTS) => 2,
+        n if n.starts_with("front.") && n != "front.csv" && n != "front.svg" => 1,
+        _ => 0,
     };
-    if fronts > 0 {
-        names.push(&by_material);
+    let count = |which: usize| files.iter().filter(|(n, _)| kind(n) == which).count();
+    let mut names: Vec<String> = files.iter().map(|(n, _)| n.clone()).filter(|n| kind(n) == 0).collect();
+    match count(1) {
+        0 => {}
+        1 => names.push("one front by material".into()),
+        n => names.push(format!("{n} fronts by material")),
+    }
+    if count(2) > 0 {
+        names.push(format!("{} files in {PLOTS}", count(2)));
     }
     names.join(", ")
 }
@@ -224,9 +255,12 @@ impl Finished<'_> {
         for material in &summary.materials {
             files.push((format!("front.{}.csv", slug(&material.name)), material.front.to_csv()));
         }
-        files.push(("front.svg".into(), picture(&summary).into_bytes()));
+        let picture = picture(&summary);
+        files.push(("front.svg".into(), picture.clone().into_bytes()));
         files.push(("summary.md".into(), summary_md(&summary).into_bytes()));
-        files.push(("run.json".into(), pretty(&self.run_json(&summary))));
+        let run = self.run_json(&summary);
+        files.push(("run.json".into(), pretty(&run)));
+        files.extend(self.page(&summary, picture, &run).into_files());
         files.push(("study.json".into(), self.text.as_bytes().to_vec()));
         Written { files, terminal: terminal_summary(&summary), front: summary.overall }
     }
@@ -274,6 +308,12 @@ impl Finished<'_> {
         self.study.space.effects.iter().map(counted).collect()
     }
 
+    /// The page for a browser.
+    fn page(&self, summary: &SummaryInput, picture: String, run: &Value) -> Page {
+        let page = study_page(self.study, self.problem, self.catalogs, summary);
+        StudyPage { scatter_svg: picture, run: facts_of(run), ..page }.page()
+    }
+
     fn judged_cases(&self) -> Vec<String> {
         let space = &self.study.space;
         space.judged_cases.iter().map(|&i| space.cases[i].name.clone()).collect()
@@ -318,6 +358,25 @@ impl Finished<'_> {
             "catalogs_hash": catalogs_hash(self.catalogs),
         })
     }
+}
+
+/// The facts of `run.json` that are a word or a number, for people.
+fn facts_of(run: &Value) -> Vec<(String, String)> {
+    let plain = |value: &Value| match value {
+        Value::String(text) => Some(text.clone()),
+        Value::Number(number) if number.is_f64() => Some(significant(number.as_f64()?, 4)),
+        Value::Number(number) => Some(number.to_string()),
+        Value::Object(map) => {
+            let parts = map.iter().filter_map(|(k, v)| Some(format!("{k} {}", v.as_str()?)));
+            Some(parts.collect::<Vec<_>>().join(", "))
+        }
+        _ => None,
+    };
+    let facts = run.as_object().into_iter().flatten();
+    facts
+        .filter(|(key, _)| !["schema_version", "study", "question"].contains(&key.as_str()))
+        .filter_map(|(key, value)| Some((key.replace('_', " "), plain(value)?)))
+        .collect()
 }
 
 /// The picture of the front: designs of mixed materials in grey, each material's own front in colour.

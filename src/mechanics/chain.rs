@@ -11,11 +11,11 @@ pub struct Chain {
     gravity_m_s2: f64,
     base_tilt_rad_per_nm: f64,
     water: Option<Water>,
-    pieces: Vec<Prepared>,
+    pub(super) pieces: Vec<Prepared>,
 }
 
 #[derive(Debug, Clone)]
-enum Prepared {
+pub(super) enum Prepared {
     Joint(JointPiece),
     Link(LinkPiece, Option<PreparedBeam>),
 }

@@ -12,10 +12,13 @@
 //!   compliance matrix diagonal, so that `C^½ M C^½ ψ = ψ/ω²` (Eqs 16-18 are the rigid-link case);
 //! - response ([`response`]): the modes summed under a harmonic force at the tip (F(t) of Eq 16).
 //!
+//! [`centre_line`] turns the coordinates of any of them into the places of the arm's points, for drawings.
+//!
 //! Twists and wrenches are written about the world origin: twist `(v, ω)` with `v` the velocity of the
 //! body point at the origin, wrench `(F, M)` with `M` the moment about the origin.
 
 pub mod beam;
+pub mod centre_line;
 pub mod chain;
 pub mod condensed;
 pub mod lanes;
@@ -25,6 +28,7 @@ pub mod modes;
 pub mod response;
 pub mod statics;
 
+pub use centre_line::Station;
 pub(crate) use chain::across;
 pub use chain::{Chain, Posed};
 pub use modes::{Mode, Modes};

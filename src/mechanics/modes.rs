@@ -21,6 +21,8 @@ pub struct Mode {
     pub strain_energy: Vec<(String, f64)>,
     /// Displacement of the tip, scaled so that the strain energy of the mode is ½ J \[m\].
     pub tip_shape_m: Vector3<f64>,
+    /// Value of each coordinate in that scale, element by element, base to tip.
+    pub coordinates: Vec<Vec<f64>>,
 }
 
 /// The modal solution of an arm in a pose: every mode of the model, lowest first.
@@ -127,7 +129,14 @@ impl Posed<'_> {
             plane: self.plane(shape),
             strain_energy: self.strain_energy(statics, shape),
             tip_shape_m: self.tip_motion(shape),
+            coordinates: self.by_element(shape),
         }
+    }
+
+    /// The coordinates of a shape, element by element.
+    fn by_element(&self, shape: &DVector<f64>) -> Vec<Vec<f64>> {
+        let mut rest = shape.iter().copied();
+        self.elements().map(|e| rest.by_ref().take(e.twists.len()).collect()).collect()
     }
 
     /// Displacement of the tip in a shape \[m\].

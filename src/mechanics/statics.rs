@@ -13,6 +13,8 @@ pub struct Statics {
     pub tip_displacement_m: Vector3<f64>,
     /// Each element's part of it, base to tip; the parts sum to the whole.
     pub shares_m: Vec<(String, Vector3<f64>)>,
+    /// Value of each coordinate, element by element, base to tip.
+    pub deformations: Vec<Vec<f64>>,
     /// Forces and moments at the root of each link.
     pub link_roots: Vec<LinkRoot>,
     /// Compliance of each coordinate to a small further force, element by element, base to tip.
@@ -41,6 +43,7 @@ impl Posed<'_> {
             joint_torques_nm: Vec::new(),
             tip_displacement_m: Vector3::zeros(),
             shares_m: Vec::new(),
+            deformations: Vec::new(),
             link_roots: Vec::new(),
             tangent_compliances: Vec::new(),
             base_wrench: Wrench::zeros(),
@@ -53,6 +56,7 @@ impl Posed<'_> {
         }
         out.joint_torques_nm.reverse();
         out.shares_m.reverse();
+        out.deformations.reverse();
         out.link_roots.reverse();
         out.tangent_compliances.reverse();
         out.tip_displacement_m = out.shares_m.iter().map(|(_, share)| share).sum();
@@ -63,23 +67,22 @@ impl Posed<'_> {
     /// One element under the outboard wrench: its deformation, its tangent, its share; then its own
     /// weight joins the wrench.
     fn yield_to(&self, element: &ElasticElement, wrench: &mut Wrench, out: &mut Statics) {
-        let mut motion = Twist::zeros();
-        let tangents = match &element.yielding {
+        let (yielded, tangents) = match &element.yielding {
             Yielding::Joint(law) => {
                 let torque_nm = element.twists[0].dot(wrench);
-                motion += element.twists[0] * law.rising_angle_rad(torque_nm);
                 out.joint_torques_nm.push((element.name.clone(), torque_nm));
-                vec![law.tangent_compliance_rad_per_nm(torque_nm)]
+                (vec![law.rising_angle_rad(torque_nm)], vec![law.tangent_compliance_rad_per_nm(torque_nm)])
             }
             Yielding::Linear(compliances) => {
-                for (i, (twist, compliance)) in element.twists.iter().zip(compliances).enumerate() {
-                    let own = element.own.as_ref().map_or(0.0, |own| own.weight_work[i]);
-                    motion += twist * (compliance * (twist.dot(wrench) + own));
-                }
-                compliances.clone()
+                let work = |i: usize| element.own.as_ref().map_or(0.0, |own| own.weight_work[i]);
+                let coordinates = element.twists.iter().zip(compliances).enumerate();
+                let yielded = coordinates.map(|(i, (twist, c))| c * (twist.dot(wrench) + work(i))).collect();
+                (yielded, compliances.clone())
             }
         };
+        let motion: Twist = element.twists.iter().zip(&yielded).map(|(twist, q)| twist * *q).sum();
         out.shares_m.push((element.name.clone(), displacement_at(&motion, &self.tip_m)));
+        out.deformations.push(yielded);
         out.tangent_compliances.push(tangents);
         if let Some(own) = &element.own {
             *wrench += own.weight;

@@ -5,7 +5,7 @@
 //! [`model`] says what is free; [`fit`] fits; [`select`] finds the effects; [`noise`] finds gross errors
 //! and wrongly declared deviations; [`lack_of_fit`] asks whether structure is left; [`kept_out`]
 //! confirms on poses kept out; [`interval`] gives the intervals; [`analysis`] draws the conclusion and
-//! [`verdict`] is its form; [`correct`] writes the corrected arm and [`next_test`] says what to measure.
+//! [`verdict`] is its form, [`page`] its page for a browser; [`correct`] writes the corrected arm and [`next_test`] says what to measure.
 
 pub mod analysis;
 pub mod campaign;
@@ -20,6 +20,7 @@ pub mod locate;
 pub mod model;
 pub mod next_test;
 pub mod noise;
+pub mod page;
 pub mod positions;
 pub mod predict;
 pub mod readings;

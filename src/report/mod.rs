@@ -1,8 +1,10 @@
 //! Numbers, tables and pictures on paper: csv, json, svg, terminal.
 
+pub mod braille;
 pub mod compare;
 pub mod front_svg;
 pub mod front_table;
+pub mod html;
 pub mod number;
 pub mod picks;
 pub mod summary;

@@ -8,6 +8,8 @@ use super::picks::{Design, Objective, Pick, best, choices, designs, knee, materi
 use super::table::{Column, Table};
 use crate::search::constraint::Constraints;
 
+/// Height of a small plot \[characters\].
+const PLOT_ROWS: usize = 8;
 /// Width of a terminal \[characters\].
 const TERMINAL: usize = 80;
 
@@ -141,6 +143,7 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
     let mut out = wrap(&format!("{}: {}", facts.study, facts.question), TERMINAL, "");
     out.push_str(&format!("\n{}", wrap(&answer(input, &found), TERMINAL, "")));
     if !found.picks.is_empty() {
+        out.push_str(&format!("\n{}", small_plots(&found.designs)));
         out.push_str(&format!("\n{}", picks_table(&found.picks, TERMINAL_PICKS).to_text()));
         let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
         out.push_str(&format!(
@@ -159,6 +162,28 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
         out.push_str(&format!("\narmwright design {results} {id}\narmwright compare {results}\n"));
     }
     out
+}
+
+/// The answer in two sentences.
+pub fn answer_words(input: &SummaryInput) -> String {
+    answer(input, &Found::of(input))
+}
+
+/// The materials side by side: size of each front, the best of each, share of the whole front.
+pub fn materials_side_by_side(input: &SummaryInput) -> Table {
+    let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
+    materials_table(input, &names, MARKDOWN_MATERIALS)
+}
+
+/// The front in two small plots, tip deflection and lowest mode over mass.
+fn small_plots(designs: &[Design]) -> String {
+    let plot = |title: &str, over: Objective| {
+        let points: Vec<(f64, f64)> = designs.iter().map(|d| (d.mass_kg, over.of(d))).collect();
+        super::braille::plot(title, "mass [kg]", &points, TERMINAL / 2 - 1, PLOT_ROWS)
+    };
+    let (left, right) =
+        (plot("tip deflection [mm]", Objective::Deflection), plot("lowest mode [Hz]", Objective::Mode));
+    super::braille::beside(&left, &right, TERMINAL / 2)
 }
 
 /// What the fronts say.

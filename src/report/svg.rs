@@ -18,15 +18,19 @@
 //! assert!(plot.to_svg().starts_with("<svg"));
 //! ```
 
+pub mod arm;
+pub mod bars;
 mod marker;
+pub mod parallel;
+pub mod rows;
 mod sheet;
 mod ticks;
 
 use super::number::fixed;
-use marker::outline;
+pub(super) use marker::outline;
 pub use sheet::Sheet;
 use std::fmt::Write;
-use ticks::{Ruling, rule};
+pub(super) use ticks::{Ruling, rule};
 
 /// The palette of Okabe and Ito, ordered so that the first stand out best on white.
 pub const PALETTE: [&str; 8] =
@@ -211,16 +215,7 @@ impl Plot {
     }
 
     fn head(&self) -> String {
-        let (w, h, title) = (px(self.width_px), px(self.height_px), escape(&self.title));
-        format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
-             role=\"img\" aria-label=\"{title}\" \
-             font-family=\"'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif\" \
-             font-size=\"{FONT_PX}\" fill=\"{INK}\">\n\
-             <title>{title}</title>\n<desc>{}</desc>\n\
-             <rect width=\"{w}\" height=\"{h}\" fill=\"#FFFFFF\"/>\n",
-            escape(&self.description)
-        )
+        head(&self.title, &self.description, self.width_px, self.height_px)
     }
 
     /// Ends of the data along one axis; with nothing to show, 1 to 10.
@@ -237,6 +232,20 @@ impl Plot {
     fn shows(&self, point: &(f64, f64)) -> bool {
         usable(self.x.scale, point.0) && usable(self.y.scale, point.1)
     }
+}
+
+/// The opening of a picture: size, title and description for those who cannot see it, white paper.
+fn head(title: &str, description: &str, width_px: f64, height_px: f64) -> String {
+    let (w, h, title) = (px(width_px), px(height_px), escape(title));
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
+         role=\"img\" aria-label=\"{title}\" \
+         font-family=\"'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif\" \
+         font-size=\"{FONT_PX}\" fill=\"{INK}\">\n\
+         <title>{title}</title>\n<desc>{}</desc>\n\
+         <rect width=\"{w}\" height=\"{h}\" fill=\"#FFFFFF\"/>\n",
+        escape(description)
+    )
 }
 
 /// Whether a value has a place on an axis.
@@ -422,7 +431,8 @@ fn wrap(words: &str, most: usize) -> Vec<String> {
     rows
 }
 
-fn colour(style: usize) -> &'static str {
+/// Colour of a style.
+pub(super) fn colour(style: usize) -> &'static str {
     if style == MUTED { "#A0A0A0" } else { PALETTE[style % PALETTE.len()] }
 }
 

@@ -45,6 +45,9 @@ pub struct JointSizingRow {
     pub mass_kg: Option<f64>,
     /// Mass that the next joint inward carries beyond this one: everything outboard and this drive \[kg\].
     pub mass_passed_inward_kg: f64,
+    /// Every check that was made or could not be.
+    #[serde(skip)]
+    pub checks: Vec<Check>,
     /// Checks that fail, in words; a fixed selection may have some.
     pub fails: Vec<String>,
     /// Checks that could not be made, in words.
@@ -87,6 +90,7 @@ impl JointSizingRow {
             mass_passed_inward_kg,
             fails: remarks(&checks, |state| state == CheckState::Fails),
             not_checked: remarks(&checks, |state| matches!(state, CheckState::NotChecked(_))),
+            checks,
         }
     }
 }

@@ -3,6 +3,7 @@
 mod diagnose;
 mod effects;
 mod outcome;
+mod page;
 pub mod paper;
 mod read;
 mod sections;
@@ -11,6 +12,7 @@ mod table;
 pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{Carried, CorrectedStudy, carry_over, left_out};
 pub use outcome::{Front, Judged, StudyOutcome, run_study};
+pub use page::study_page;
 pub use read::{Study, read_study};
 pub(crate) use table::sizing_rows;
 pub use table::{front_table, slug};
@@ -48,6 +50,11 @@ pub fn list() -> String {
         out.push_str(&format!("  {name:<20} {what}\n"));
     }
     out
+}
+
+/// What one of the paper's studies shows.
+pub fn paper_question(name: &str) -> Option<&'static str> {
+    paper::NAMES.iter().zip(PAPER_QUESTIONS).find(|(n, _)| **n == name).map(|(_, what)| what)
 }
 
 /// What each of the paper's studies shows, in the order of [`paper::NAMES`].

@@ -6,15 +6,27 @@ use crate::report::picks::{Design, Objective};
 use crate::report::table::{Column, Table, csv_line};
 
 /// Width that text tables keep to, if the labels allow it \[characters\].
-const WIDTH: usize = 110;
+const WIDTH: usize = 80;
 /// Labels longer than this are shortened in text tables \[characters\].
 const LABEL: usize = 24;
 
 impl Comparison {
-    /// Tables and sentences of at most about 110 columns; long labels are shortened.
+    /// The best of each front.
+    pub fn reach_table(&self) -> Table {
+        reach_table(&self.reach, &self.labels())
+    }
+
+    /// The answers to a question, one column a limit.
+    pub fn table(&self, question: Question) -> Table {
+        let rows: Vec<&Row> = self.rows.iter().filter(|r| r.question == question).collect();
+        table(&rows, &self.labels())
+    }
+
+    /// Tables and sentences of at most 80 columns; long labels are shortened.
     pub fn to_text(&self) -> String {
         let labels = short_labels(&self.labels());
-        let mut out = format!("{REACH_TITLE}\n{}", indent(&reach_table(&self.reach, &labels).to_text()));
+        let mut out =
+            format!("{SHORT_REACH_TITLE}\n{}", indent(&short_reach_table(&self.reach, &labels).to_text()));
         for question in Question::ALL {
             let rows: Vec<&Row> = self.rows.iter().filter(|r| r.question == question).collect();
             if rows.is_empty() {
@@ -105,6 +117,9 @@ impl Comparison {
     }
 }
 
+const SHORT_REACH_TITLE: &str =
+    "The best of each front, with its design: lightest, stiffest, highest lowest mode";
+
 const REACH_TITLE: &str = "The best of each front: lightest [kg], stiffest [mm] and highest lowest mode [Hz], \
                            each with its design\nand material cost [EUR]";
 
@@ -162,6 +177,19 @@ fn reach_table(reach: &[Reach], labels: &[String]) -> Table {
         table.row(cells);
     }
     table
+}
+
+/// The same without counts and cost, for a terminal.
+fn short_reach_table(reach: &[Reach], labels: &[String]) -> Table {
+    let mut columns = vec![Column::left("front")];
+    for unit in ["kg", "mm", "Hz"] {
+        columns.extend([Column::right(unit), Column::left("design")]);
+    }
+    let mut short = Table::new(columns);
+    for row in reach_table(reach, labels).rows() {
+        short.row([0, 2, 3, 5, 6, 8, 9].map(|i| row[i].clone()));
+    }
+    short
 }
 
 /// Whether no competing front reaches further.

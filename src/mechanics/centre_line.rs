@@ -1,0 +1,153 @@
+//! Where the arm's centre line is and how it moves, for drawings.
+//!
+//! Strain coordinates ([`Statics::deformations`](super::Statics), [`Mode::coordinates`](super::Mode)) move
+//! every point of the chain: each element's twists carry what is outboard of it, and inside a link the
+//! beam's own fields bend it. The walk is the one of [`super::Chain::pose_rad`], element by element.
+
+use super::chain::{ElasticElement, Posed, Prepared};
+use super::{Twist, displacement_at};
+use nalgebra::{DVector, Rotation3, Vector3};
+
+/// A point of the centre line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Station {
+    /// Joint or link it belongs to.
+    pub piece: String,
+    /// Where it is, world \[m\].
+    pub at_m: Vector3<f64>,
+    /// By how much it moves, world \[m\].
+    pub moved_m: Vector3<f64>,
+    /// Axis of the joint, world; `None` on a link.
+    pub axis: Option<Vector3<f64>>,
+}
+
+/// Points along a link, its ends included.
+const POINTS: usize = 9;
+
+impl Posed<'_> {
+    /// The centre line in a pose and its motion under the coordinates of every element: one station a
+    /// joint, several along a link, base to tip. `pose_rad` is the pose that `self` is in.
+    pub fn centre_line(&self, pose_rad: &[f64], coordinates: &[Vec<f64>]) -> Vec<Station> {
+        let mut elements = self.elements().zip(coordinates).peekable();
+        let mut walk = Walk::default();
+        let mut out = Vec::new();
+        if elements.peek().is_some_and(|(e, _)| e.name == "base") {
+            walk.yields(elements.next());
+        }
+        for piece in &self.chain.pieces {
+            match piece {
+                Prepared::Joint(joint) => {
+                    let axis = walk.rotation * joint.axis.into_inner();
+                    out.push(walk.station(&joint.name, walk.at_m, Some(axis)));
+                    if joint.tilt_rad_per_nm > 0.0 {
+                        walk.yields(elements.next());
+                    }
+                    walk.yields(elements.next());
+                    walk.rotation *= Rotation3::from_axis_angle(&joint.axis, joint.angle.of(pose_rad));
+                }
+                Prepared::Link(link, beam) => {
+                    let element = if beam.is_some() { elements.next() } else { None };
+                    let vector = walk.rotation * link.vector_m;
+                    for point in 0..POINTS {
+                        let xi = point as f64 / (POINTS - 1) as f64;
+                        let mut station = walk.station(&link.name, walk.at_m + vector * xi, None);
+                        if let (Some(beam), Some((element, q))) = (beam, element) {
+                            station.moved_m += self.inside(element, beam, q, xi);
+                        }
+                        out.push(station);
+                    }
+                    walk.yields(element);
+                    walk.at_m += vector;
+                }
+            }
+        }
+        out
+    }
+
+    /// Displacement of a link's point by the link's own coordinates, world \[m\].
+    fn inside(
+        &self,
+        element: &ElasticElement,
+        beam: &super::beam::PreparedBeam,
+        q: &[f64],
+        xi: f64,
+    ) -> Vector3<f64> {
+        let Some(own) = &element.own else { return Vector3::zeros() };
+        let fields = beam.fields(xi);
+        let local = fields.columns_range(6..) * DVector::from_column_slice(q);
+        own.frame * local.fixed_rows::<3>(0)
+    }
+}
+
+/// The way from base to tip.
+#[derive(Default)]
+struct Walk {
+    at_m: Vector3<f64>,
+    rotation: Rotation3<f64>,
+    motion: Twist,
+}
+
+impl Walk {
+    fn station(&self, piece: &str, at_m: Vector3<f64>, axis: Option<Vector3<f64>>) -> Station {
+        Station { piece: piece.to_string(), at_m, moved_m: displacement_at(&self.motion, &at_m), axis }
+    }
+
+    /// An element yields: everything outboard moves by its twists.
+    fn yields(&mut self, element: Option<(&ElasticElement, &Vec<f64>)>) {
+        if let Some((element, q)) = element {
+            self.motion += element.twists.iter().zip(q).map(|(twist, q)| twist * *q).sum::<Twist>();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::{JointModel, LinkModel, Payload, read_arm_document};
+    use crate::catalog::Catalogs;
+    use crate::fault::Document;
+    use crate::mechanics::Chain;
+
+    const ARM: &str = r#"{"name": "a",
+        "materials": {"steel": {"youngs_modulus_pa": 2.1e11, "shear_modulus_pa": 8.1e10, "density_kg_m3": 7850}},
+        "chain": [
+            {"type": "joint", "name": "j1", "axis": [0, 0, 1], "stiffness_nm_per_rad": 1e5, "mass_kg": 5},
+            {"type": "link", "name": "column", "vector_m": [0, 0, 0.3]},
+            {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e5, "mass_kg": 5},
+            {"type": "link", "name": "arm", "vector_m": [0.8, 0, 0], "material": "steel",
+             "section": {"shape": "round_tube", "diameter_m": 0.06, "wall_m": 0.002}}]}"#;
+
+    fn check(moved_m: impl Fn(&Posed) -> (Vec<Vec<f64>>, Vector3<f64>)) {
+        let document = Document::parse("a.json", ARM).expect("JSON");
+        let arm = read_arm_document(document, &Catalogs::default()).expect("an arm");
+        let structure = arm.structure(JointModel::ThreeSegment);
+        let chain = Chain::new(&structure, LinkModel::Full);
+        let pose = [0.3, -0.4];
+        let payload = Payload { mass_kg: 4.0, ..Payload::default() };
+        let posed = chain.pose_rad(&pose, &payload, Vector3::new(0.0, 30.0, 0.0));
+        let (coordinates, tip) = moved_m(&posed);
+        let line = posed.centre_line(&pose, &coordinates);
+        let last = line.last().expect("stations");
+        assert!((last.at_m - posed.tip_m).norm() < 1e-12);
+        assert!((last.moved_m - tip).norm() < 1e-12 * tip.norm().max(1.0), "{} {tip}", last.moved_m);
+        assert_eq!(line[0].moved_m, Vector3::zeros());
+    }
+
+    #[test]
+    fn the_end_of_the_centre_line_moves_like_the_tip_in_statics() {
+        check(|posed| {
+            let statics = posed.statics();
+            (statics.deformations, statics.tip_displacement_m)
+        });
+    }
+
+    #[test]
+    fn the_end_of_the_centre_line_moves_like_the_tip_in_every_mode() {
+        for mode in 0..3 {
+            check(|posed| {
+                let mode = posed.modes(&posed.statics(), 3).remove(mode);
+                (mode.coordinates, mode.tip_shape_m)
+            });
+        }
+    }
+}

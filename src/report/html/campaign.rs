@@ -1,0 +1,552 @@
+//! A campaign's page: the verdict in a sentence, the gap before and after, where it sits, what speaks for
+//! each candidate, what is known of its parameters, whether it holds on readings kept out, what to measure.
+
+use super::{Extra, Figure, Gallery, Page};
+use crate::report::number::{fixed, significant};
+use crate::report::svg::rows::{Mark, Row, RowPlot};
+use crate::report::svg::{Axis, Guide, MUTED, Plot, Scale, Series, Sheet, Stroke};
+use serde_json::{Value, json};
+
+/// Poses and joint ranges listed at most.
+const MOST_ROWS: usize = 26;
+/// Evidence below this is drawn at the edge.
+const LEAST_SCORE: f64 = -30.0;
+/// Parts of each joint's range that are looked at on their own.
+const THIRDS: usize = 3;
+const BEFORE_AFTER: [&str; 2] = ["before: the model as given, calibrated", "after: with what was found"];
+
+/// Root mean squares of some readings before and after \[standard deviations\].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Compared {
+    /// Which readings.
+    pub part: String,
+    /// How many numbers.
+    pub count: usize,
+    /// With the model as given.
+    pub before: f64,
+    /// With what was found.
+    pub after: f64,
+}
+
+/// One number that was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// `static`, `modal`, `windup`.
+    pub channel: &'static str,
+    /// Row of its file, from 1.
+    pub row: usize,
+    /// `dx_mm`, `frequency_hz` ...
+    pub quantity: &'static str,
+    /// Joint angles \[deg\]; none on a bench.
+    pub pose_deg: Option<Vec<f64>>,
+    /// Measured less predicted by the model as given \[standard deviations\].
+    pub before_sigma: f64,
+    /// With what was found.
+    pub after_sigma: f64,
+    /// With what was found, this pose kept out of the fit.
+    pub kept_out_sigma: Option<f64>,
+    /// Whether it was taken for a gross error.
+    pub gross: bool,
+}
+
+/// A value with its 95 % interval; an end the readings do not bound is `None`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ranged {
+    /// What it is, with its unit in the name.
+    pub name: String,
+    /// Best value.
+    pub value: f64,
+    /// Lower end.
+    pub low: Option<f64>,
+    /// Upper end.
+    pub high: Option<f64>,
+}
+
+/// An effect that was found or is suspected.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// `effect@place`.
+    pub label: String,
+    /// Its parameters.
+    pub parameters: Vec<Ranged>,
+    /// What these readings cannot tell it from.
+    pub like: Vec<String>,
+}
+
+/// A model that was weighed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Weighed {
+    /// Its effects, or `calibration only`.
+    pub model: String,
+    /// Logarithm of its evidence less that of the best.
+    pub score: f64,
+    /// Sum of squares.
+    pub chi_squared: f64,
+}
+
+/// A test worth making.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Test {
+    /// What to do, in words.
+    pub words: String,
+    /// What it tells apart.
+    pub separates: Vec<String>,
+    /// Expected difference \[standard deviations\].
+    pub expected_sigmas: f64,
+    /// Readings that settle it.
+    pub readings_needed: usize,
+}
+
+/// Everything on a campaign's page.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CampaignPage {
+    /// Name.
+    pub name: String,
+    /// The verdict in a sentence.
+    pub sentence: String,
+    /// Why, one sentence each.
+    pub reasons: Vec<String>,
+    /// Whether the effects explain the gap; else they are suspects.
+    pub explained: bool,
+    /// Names of the driven joints.
+    pub joints: Vec<String>,
+    /// The gap by part of the readings: channel, branch, load, mode, joint.
+    pub parts: Vec<Compared>,
+    /// Every number that was measured.
+    pub readings: Vec<Reading>,
+    /// What was found or is suspected.
+    pub found: Vec<Found>,
+    /// Models weighed, best first.
+    pub weighed: Vec<Weighed>,
+    /// Calibrated factors.
+    pub calibrated: Vec<Ranged>,
+    /// On readings of poses kept out: how many, root mean square before and after.
+    pub kept_out: Option<(usize, f64, f64)>,
+    /// Gross errors and wrongly declared deviations, in words.
+    pub quality: Vec<String>,
+    /// Tests worth making, best first.
+    pub tests: Vec<Test>,
+    /// What changes in the optimum with the corrected arm.
+    pub optimum: Option<Extra>,
+    /// Facts: names and values.
+    pub facts: Vec<(String, String)>,
+}
+
+impl CampaignPage {
+    /// The page and its pictures.
+    pub fn page(&self) -> Page {
+        let mut gallery = Gallery::default();
+        let (channels, parts): (Vec<Compared>, Vec<Compared>) =
+            self.parts.iter().cloned().partition(|p| !p.part.contains([',', ' ']));
+        let mut parts: Vec<Compared> = parts.into_iter().filter(|p| !p.part.starts_with("pose")).collect();
+        // channel by channel, and in each what is of one kind together
+        parts.sort_by_key(|p| p.part.split(' ').take(2).map(String::from).collect::<Vec<_>>());
+        let gap = |name: &str, title: &str, caption: &str, rows: Vec<Compared>| {
+            (!rows.is_empty()).then(|| gap_figure(name, title, caption, rows))
+        };
+        let located = [
+            gap(
+                "parts",
+                "Where the gap sits: by load, branch, mode and joint on the bench",
+                "Readings split by what was done.",
+                parts,
+            ),
+            gap(
+                "joints",
+                "Where the gap sits: joint by joint",
+                "Each joint's range of angles in three parts: which angle goes with the gap.",
+                self.by_joint(),
+            ),
+            gap(
+                "poses",
+                "Where the gap sits: pose by pose",
+                "The poses with the largest gap.",
+                self.by_pose(),
+            ),
+        ];
+        let show = |gallery: &mut Gallery, figure: Option<Figure>| figure.map(|f| gallery.show(&f));
+        let channels = gap(
+            "channels",
+            "The gap by channel",
+            "Root mean square of measured less predicted, in declared standard deviations; 1 is what noise alone leaves.",
+            channels,
+        );
+        let channels = show(&mut gallery, channels);
+        let located: Vec<Value> = located.into_iter().flatten().map(|f| gallery.show(&f)).collect();
+        let residuals: Vec<Value> = self.residual_figures().iter().map(|f| gallery.show(f)).collect();
+        let (evidence, intervals, kept_out) = (self.evidence(), self.intervals(), self.kept_out_figure());
+        let content = json!({
+            "name": self.name,
+            "sentence": self.sentence,
+            "reasons": self.reasons,
+            "explained": self.explained,
+            "channels": channels,
+            "located": located,
+            "residuals": residuals,
+            "found": self.found.iter().map(found).collect::<Vec<_>>(),
+            "evidence": show(&mut gallery, evidence),
+            "intervals": show(&mut gallery, intervals),
+            "kept_out": show(&mut gallery, kept_out),
+            "kept_out_words": self.kept_out_words(),
+            "quality": self.quality,
+            "tests": self.tests.iter().map(test).collect::<Vec<_>>(),
+            "optimum": self.optimum.as_ref().map(|e| gallery.extra(e)),
+            "facts": self.facts,
+        });
+        gallery.page("campaign.html", &self.name, content, &json!({}))
+    }
+
+    /// The gap by channel before and after, as bars for a terminal of 80 columns; bars count in ratios.
+    pub fn terminal(&self) -> String {
+        let rows = || self.parts.iter().filter(|p| !p.part.contains([',', ' ']));
+        let values = || rows().flat_map(|c| [c.before, c.after]).filter(|v| *v > 0.0);
+        let (low, high) = (values().fold(f64::INFINITY, f64::min).min(0.5), values().fold(1.0, f64::max));
+        let share = |v: f64| (v.max(low) / low).ln() / (high / low).ln().max(1e-9);
+        let line = |name: &str, when: &str, v: f64| {
+            format!(
+                "  {name:<10} {when:<6} {:>6} {}\n",
+                significant(v, 3),
+                crate::report::braille::bar(share(v), 50)
+            )
+        };
+        let lines: String =
+            rows().map(|c| line(&c.part, "before", c.before) + &line("", "after", c.after)).collect();
+        if lines.is_empty() {
+            lines
+        } else {
+            format!("\nGap by channel [declared standard deviations, bars in ratios]\n{lines}\n")
+        }
+    }
+
+    /// The gap at each pose, the worst first.
+    fn by_pose(&self) -> Vec<Compared> {
+        let name = |r: &Reading| r.pose_deg.as_ref().map(|p| super::pick::degrees(p));
+        let mut rows = self.split(|r| name(r).into_iter().collect());
+        rows.sort_by(|a, b| b.before.total_cmp(&a.before));
+        rows.truncate(MOST_ROWS);
+        rows
+    }
+
+    /// The gap in each third of each joint's range.
+    fn by_joint(&self) -> Vec<Compared> {
+        let range = |j: usize| {
+            let angles = self.readings.iter().filter_map(|r| r.pose_deg.as_ref()?.get(j).copied());
+            angles.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), a| (low.min(a), high.max(a)))
+        };
+        let ranges: Vec<(f64, f64)> = (0..self.joints.len()).map(range).collect();
+        let part = |j: usize, third: usize| {
+            let (low, high) = ranges[j];
+            let end = |i: usize| fixed(low + (high - low) * i as f64 / THIRDS as f64, 0);
+            format!("{} at {}° to {}°", self.joints[j], end(third), end(third + 1))
+        };
+        let names = |r: &Reading| -> Vec<String> {
+            let Some(pose) = &r.pose_deg else { return Vec::new() };
+            let moves = pose.iter().zip(&ranges).enumerate().filter(|(_, (_, (low, high)))| high > low);
+            moves
+                .map(|(j, (a, (low, high)))| {
+                    let third = (THIRDS as f64 * (a - low) / (high - low)).floor() as usize;
+                    part(j, third.min(THIRDS - 1))
+                })
+                .collect()
+        };
+        let mut rows = self.split(names);
+        let order = |c: &Compared| {
+            let all = (0..self.joints.len()).flat_map(|j| (0..THIRDS).map(move |t| (j, t)));
+            all.filter(|(j, _)| ranges[*j].0 < ranges[*j].1).position(|(j, t)| part(j, t) == c.part)
+        };
+        rows.sort_by_key(order);
+        rows.truncate(MOST_ROWS);
+        rows
+    }
+
+    /// Root mean squares of the readings by the names they go under, gross errors left out.
+    fn split(&self, names: impl Fn(&Reading) -> Vec<String>) -> Vec<Compared> {
+        let mut out: Vec<Compared> = Vec::new();
+        for reading in self.readings.iter().filter(|r| !r.gross) {
+            let squares = (reading.before_sigma.powi(2), reading.after_sigma.powi(2));
+            for part in names(reading) {
+                let place = out.iter().position(|c| c.part == part).unwrap_or_else(|| {
+                    out.push(Compared { part, count: 0, before: 0.0, after: 0.0 });
+                    out.len() - 1
+                });
+                let entry = &mut out[place];
+                entry.count += 1;
+                (entry.before, entry.after) = (entry.before + squares.0, entry.after + squares.1);
+            }
+        }
+        for entry in &mut out {
+            let mean = |sum: f64| (sum / entry.count as f64).sqrt();
+            (entry.before, entry.after) = (mean(entry.before), mean(entry.after));
+        }
+        out
+    }
+
+    /// Residuals before and after over the rows, one picture a channel.
+    fn residual_figures(&self) -> Vec<Figure> {
+        let mut channels: Vec<&'static str> = Vec::new();
+        for reading in &self.readings {
+            if !channels.contains(&reading.channel) {
+                channels.push(reading.channel);
+            }
+        }
+        channels.into_iter().map(|c| self.residual_figure(c)).collect()
+    }
+
+    fn residual_figure(&self, channel: &str) -> Figure {
+        let readings = || self.readings.iter().filter(|r| r.channel == channel);
+        let panel = |title: &str, label: &str, style: usize, open: bool, of: fn(&Reading) -> f64| {
+            let points = |gross: bool| -> Vec<(f64, f64)> {
+                readings().filter(|r| r.gross == gross).map(|r| (r.row as f64, of(r))).collect()
+            };
+            let look = |name: &str, style, open, points| Series {
+                open,
+                stroke: Stroke::None,
+                marker_px: 3.2,
+                ..Series::scatter(name, style, points)
+            };
+            let mut series = vec![look("", style, open, points(false))];
+            let gross = points(true);
+            if !gross.is_empty() {
+                series.push(look("", 1, false, gross));
+            }
+            Plot {
+                title: title.into(),
+                x: Axis::new(&format!("row of {channel}.csv"), Scale::Linear),
+                y: Axis::new(label, Scale::Linear),
+                series,
+                guides: [-2.0, 2.0]
+                    .map(|value| Guide { vertical: false, value, text: String::new() })
+                    .to_vec(),
+                width_px: 900.0,
+                height_px: 270.0,
+                ..Plot::default()
+            }
+        };
+        let title = format!("{channel}: measured less predicted, row by row");
+        let caption = "In declared standard deviations; the dotted lines are two of them. Above: the model as given, \
+                       calibrated within tolerance. Below: with what was found. Squares: gross errors, left out of the fit.";
+        let sheet = Sheet {
+            title: title.clone(),
+            description: caption.into(),
+            plots: vec![
+                panel(&title, "before [σ]", MUTED, true, |r| r.before_sigma),
+                panel("", "after [σ]", 0, false, |r| r.after_sigma),
+            ],
+        };
+        let mut csv = String::from("row,quantity,before_sigma,after_sigma,gross_error\n");
+        for r in readings() {
+            csv.push_str(&format!(
+                "{},{},{},{},{}\n",
+                r.row, r.quantity, r.before_sigma, r.after_sigma, r.gross
+            ));
+        }
+        Figure { name: format!("residuals-{channel}"), caption: caption.into(), svg: sheet.to_svg(), csv }
+    }
+
+    fn evidence(&self) -> Option<Figure> {
+        if self.weighed.is_empty() {
+            return None;
+        }
+        let row = |w: &Weighed| Row {
+            label: w.model.clone(),
+            marks: vec![Mark { value: w.score.max(LEAST_SCORE), interval: None, kind: 0 }],
+            remark: format!("{}{}", if w.score < LEAST_SCORE { "\u{25c2} " } else { "" }, fixed(w.score, 1)),
+        };
+        let caption = "Logarithm of each model's evidence less that of the best. Right of the first dotted line (-3) \
+                       the readings hardly choose; left of the second (-10) a model is out of the question. An arrow marks what lies beyond the edge.";
+        let plot = RowPlot {
+            title: "What speaks for each candidate".into(),
+            description: caption.into(),
+            x: Axis {
+                range: Some((LEAST_SCORE, 0.0)),
+                ..Axis::new("log-evidence less the best's", Scale::Linear)
+            },
+            kinds: vec!["score".into()],
+            rows: self.weighed.iter().map(row).collect(),
+            guides: vec![(-10.0, String::new()), (-3.0, String::new())],
+        };
+        let mut csv = String::from("model,score,chi_squared\n");
+        for w in &self.weighed {
+            csv.push_str(&crate::report::table::csv_line(&[
+                w.model.clone(),
+                w.score.to_string(),
+                w.chi_squared.to_string(),
+            ]));
+        }
+        Some(Figure { name: "evidence".into(), caption: caption.into(), svg: plot.to_svg(), csv })
+    }
+
+    fn intervals(&self) -> Option<Figure> {
+        if self.calibrated.is_empty() {
+            return None;
+        }
+        let caption = "Factor on the nominal value with its 95 % interval; a long bar means that the readings say little.";
+        let row = |c: &Ranged| Row {
+            label: c.name.clone(),
+            marks: vec![Mark { value: c.value, interval: Some((c.low, c.high)), kind: 0 }],
+            remark: format!("{} ({} to {})", fixed(c.value, 3), end(c.low, 3), end(c.high, 3)),
+        };
+        let plot = RowPlot {
+            title: "Calibrated within tolerance".into(),
+            description: caption.into(),
+            x: Axis::new("factor on the nominal value", Scale::Linear),
+            kinds: vec!["factor".into()],
+            rows: self.calibrated.iter().map(row).collect(),
+            guides: vec![(1.0, "nominal".into())],
+        };
+        Some(Figure {
+            name: "calibrated".into(),
+            caption: caption.into(),
+            csv: plot.to_csv(),
+            svg: plot.to_svg(),
+        })
+    }
+
+    /// Residuals of readings whose pose was kept out of the fit, one after another.
+    fn kept_out_figure(&self) -> Option<Figure> {
+        let predicted: Vec<(usize, &Reading, f64)> = self
+            .readings
+            .iter()
+            .filter_map(|r| Some((r, r.kept_out_sigma?)))
+            .enumerate()
+            .map(|(i, (r, k))| (i + 1, r, k))
+            .collect();
+        if predicted.is_empty() {
+            return None;
+        }
+        let mut series: Vec<Series> = Vec::new();
+        for (i, reading, sigma) in &predicted {
+            match series.iter_mut().find(|s| s.name == reading.channel) {
+                Some(one) => one.points.push((*i as f64, *sigma)),
+                None => series.push(Series {
+                    marker_px: 3.2,
+                    ..Series::scatter(reading.channel, series.len(), vec![(*i as f64, *sigma)])
+                }),
+            }
+        }
+        let caption = "Each reading predicted by the model fitted without its pose. Noise alone puts 95 of 100 between the \
+                       dotted lines.";
+        let plot = Plot {
+            title: "Readings kept out of the fit: measured less predicted".into(),
+            description: caption.into(),
+            x: Axis::new("reading", Scale::Linear),
+            y: Axis::new("measured less predicted [σ]", Scale::Linear),
+            series,
+            guides: [-2.0, 2.0].map(|value| Guide { vertical: false, value, text: String::new() }).to_vec(),
+            width_px: 900.0,
+            height_px: 360.0,
+            ..Plot::default()
+        };
+        let mut csv = String::from("reading,channel,row,quantity,kept_out_sigma\n");
+        for (i, r, sigma) in &predicted {
+            csv.push_str(&format!("{i},{},{},{},{sigma}\n", r.channel, r.row, r.quantity));
+        }
+        Some(Figure { name: "kept-out".into(), caption: caption.into(), svg: plot.to_svg(), csv })
+    }
+
+    fn kept_out_words(&self) -> Option<String> {
+        let (count, before, after) = self.kept_out?;
+        Some(format!(
+            "On {count} readings of poses kept out of the fit the gap is {} standard deviations before and {} after.",
+            fixed(before, 2),
+            fixed(after, 2)
+        ))
+    }
+}
+
+/// Rows of the gap before and after.
+fn gap_figure(name: &str, title: &str, caption: &str, rows: Vec<Compared>) -> Figure {
+    let row = |c: &Compared| Row {
+        label: c.part.clone(),
+        marks: [c.before, c.after]
+            .into_iter()
+            .enumerate()
+            .map(|(kind, value)| Mark { value, interval: None, kind })
+            .collect(),
+        remark: format!("{} → {}   n = {}", significant(c.before, 3), significant(c.after, 3), c.count),
+    };
+    let positive = rows.iter().all(|c| c.before > 0.0 && c.after > 0.0);
+    let plot = RowPlot {
+        title: title.into(),
+        description: caption.into(),
+        x: Axis::new(
+            "root mean square of measured less predicted [σ]",
+            if positive { Scale::Log } else { Scale::Linear },
+        ),
+        kinds: BEFORE_AFTER.map(String::from).to_vec(),
+        rows: rows.iter().map(row).collect(),
+        guides: vec![(1.0, "noise".into())],
+    };
+    Figure { name: name.into(), caption: caption.into(), csv: plot.to_csv(), svg: plot.to_svg() }
+}
+
+fn found(found: &Found) -> Value {
+    let parameters: Vec<Value> = found
+        .parameters
+        .iter()
+        .map(|p| json!({"name": p.name, "value": significant(p.value, 4), "low": end(p.low, 4), "high": end(p.high, 4)}))
+        .collect();
+    json!({"label": found.label, "parameters": parameters, "like": found.like})
+}
+
+fn test(test: &Test) -> Value {
+    json!({
+        "words": test.words, "separates": test.separates,
+        "sigmas": significant(test.expected_sigmas, 3), "needed": test.readings_needed,
+    })
+}
+
+/// An end of an interval, or that there is none.
+fn end(value: Option<f64>, digits: usize) -> String {
+    value.map_or("open".into(), |v| significant(v, digits))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reading(pose: f64, before: f64) -> Reading {
+        Reading {
+            channel: "static",
+            row: 1,
+            quantity: "dz_mm",
+            pose_deg: Some(vec![pose, 0.0]),
+            before_sigma: before,
+            after_sigma: 1.0,
+            kept_out_sigma: Some(0.5),
+            gross: false,
+        }
+    }
+
+    fn page() -> CampaignPage {
+        CampaignPage {
+            name: "c".into(),
+            sentence: "The gap is explained by lost motion at j2.".into(),
+            joints: vec!["j1".into(), "j2".into()],
+            readings: vec![reading(0.0, 3.0), reading(90.0, 4.0), reading(90.0, 4.0)],
+            ..CampaignPage::default()
+        }
+    }
+
+    #[test]
+    fn poses_are_listed_by_their_gap() {
+        let poses = page().by_pose();
+        assert_eq!((poses[0].part.as_str(), poses[0].count, poses[0].before), ("90°, 0°", 2, 4.0));
+    }
+
+    #[test]
+    fn a_joint_that_does_not_move_has_no_rows() {
+        let joints: Vec<String> = page().by_joint().into_iter().map(|c| c.part).collect();
+        assert_eq!(joints, ["j1 at 0° to 30°", "j1 at 60° to 90°"]);
+    }
+
+    #[test]
+    fn the_page_has_every_picture_as_a_file() {
+        let page = page().page();
+        assert!(page.html.contains("explained by lost motion at j2"));
+        let names: Vec<&str> = page.files.iter().map(|(n, _)| n.as_str()).collect();
+        for name in ["poses.svg", "joints.svg", "residuals-static.svg", "kept-out.csv"] {
+            assert!(names.contains(&name), "{name} of {names:?}");
+        }
+    }
+}

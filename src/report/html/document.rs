@@ -1,0 +1,36 @@
+//! The page of a study that is a handful of pictures and tables, such as the paper's own.
+
+use super::{Figure, Gallery, Page, table};
+use crate::report::table::Table;
+use serde_json::{Value, json};
+
+/// Pictures and tables with words before them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DocumentPage {
+    /// Title.
+    pub title: String,
+    /// What was asked.
+    pub question: String,
+    /// Paragraphs.
+    pub words: Vec<String>,
+    /// Pictures.
+    pub figures: Vec<Figure>,
+    /// Tables with their captions.
+    pub tables: Vec<(String, Table)>,
+    /// Facts of the run: names and values.
+    pub facts: Vec<(String, String)>,
+}
+
+impl DocumentPage {
+    /// The page and its pictures.
+    pub fn page(&self) -> Page {
+        let mut gallery = Gallery::default();
+        let figures: Vec<Value> = self.figures.iter().map(|f| gallery.show(f)).collect();
+        let tables: Vec<Value> =
+            self.tables.iter().map(|(caption, t)| json!({"caption": caption, "table": table(t)})).collect();
+        let content = json!({
+            "question": self.question, "words": self.words, "figures": figures, "tables": tables, "facts": self.facts,
+        });
+        gallery.page("document.html", &self.title, content, &json!({}))
+    }
+}

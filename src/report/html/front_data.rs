@@ -1,0 +1,429 @@
+//! The designs of fronts as columns: what the linked views draw, filter and name.
+//!
+//! Numbers are rounded to the digits that are shown ([`SHOWN_DIGITS`]), so that what is read on the page
+//! is `front.csv`'s number rounded once. A front with more rows than fit is sampled: the picks and the
+//! designs at the edge of each view stay, the rest is thinned evenly along the mass.
+
+use crate::report::front_table::FrontTable;
+use crate::report::number::significant;
+use crate::report::picks::Objective;
+use crate::report::svg::{Scale, rule};
+use serde_json::{Value, json};
+use std::cmp::Ordering;
+use std::collections::HashSet;
+
+/// Significant digits of the numbers on the page.
+pub const SHOWN_DIGITS: usize = 5;
+/// Designs drawn at most.
+pub const MOST_ROWS: usize = 10_000;
+/// Size of the data on the page at most \[bytes\].
+const MOST_BYTES: usize = 1_100_000;
+/// Axes with fewer values than this are labelled value by value.
+const FEW: usize = 14;
+
+/// Designs that are drawn alike.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Group {
+    /// Name in the legend.
+    pub name: String,
+    /// Colour and marker; [`crate::report::svg::MUTED`] stands back.
+    pub style: usize,
+}
+
+/// One design of a table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row<'a> {
+    /// Its table.
+    pub table: &'a FrontTable,
+    /// Its row there.
+    pub row: usize,
+    /// Its group.
+    pub group: usize,
+    /// Whether it is on the front of all designs.
+    pub on_front: bool,
+}
+
+/// One axis of the views: a choice or a result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// Column in `front.csv`.
+    pub column: String,
+    /// Words for people.
+    pub label: String,
+    /// Unit; empty if it has none.
+    pub unit: &'static str,
+    /// Ends and scale of an axis of numbers.
+    pub range: Option<(f64, f64, Scale)>,
+    /// Labelled values: place from 0 to 1, and words.
+    pub ticks: Vec<(f64, String)>,
+    /// Words of an axis of words, bottom to top.
+    pub words: Vec<String>,
+    /// Value of each row: a number, or the index of its word; `None` is blank.
+    pub values: Vec<Option<f64>>,
+}
+
+/// What the linked views show.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrontData<'a> {
+    /// The groups, in the order of the legend.
+    pub groups: Vec<Group>,
+    /// The rows that are drawn, lightest first.
+    pub rows: Vec<Row<'a>>,
+    /// Rows before sampling.
+    pub rows_total: usize,
+    /// Choices that differ among the rows, base to tip, then mass, tip deflection and lowest mode.
+    pub axes: Vec<Axis>,
+    /// Choices that are equal in all rows, in words.
+    pub constants: Vec<String>,
+}
+
+impl<'a> FrontData<'a> {
+    /// The data of these designs; `kept` are drawn even if the front has to be sampled.
+    pub fn new(groups: Vec<Group>, rows: Vec<Row<'a>>, kept: &[String]) -> Self {
+        let rows_total = rows.len();
+        let mut room = MOST_ROWS;
+        loop {
+            let rows = sampled(&rows, room, kept);
+            let data = Self::of(groups.clone(), rows, rows_total);
+            let bytes = data.to_json(&[]).to_string().len();
+            if bytes <= MOST_BYTES || room < 100 {
+                return data;
+            }
+            room = (data.rows.len() * MOST_BYTES / bytes).saturating_sub(1);
+        }
+    }
+
+    fn of(groups: Vec<Group>, rows: Vec<Row<'a>>, rows_total: usize) -> Self {
+        let mut constants = Vec::new();
+        let mut axes = Vec::new();
+        for column in choice_columns(&rows) {
+            let cells: Vec<&str> = rows.iter().map(|r| cell(r, column)).collect();
+            let first = cells.first().copied().unwrap_or_default();
+            if cells.iter().all(|c| *c == first) {
+                if !first.is_empty() {
+                    constants.push(format!("{} {first}", label(column).0));
+                }
+            } else if let Some(twin) = same_as_width(column, &rows, &cells) {
+                constants.push(twin);
+            } else {
+                axes.push(axis(column, &cells, &groups));
+            }
+        }
+        for objective in [Objective::Mass, Objective::Deflection, Objective::Mode] {
+            let column = objective_column(objective);
+            let cells: Vec<&str> = rows.iter().map(|r| cell(r, column)).collect();
+            axes.push(axis(column, &cells, &groups));
+        }
+        Self { groups, rows, rows_total, axes, constants }
+    }
+
+    /// The data as columns for the page's program; `picks` are names with their `design_id`.
+    pub fn to_json(&self, picks: &[(String, String)]) -> Value {
+        let ids: Vec<&str> = self.rows.iter().map(|r| cell(r, "design_id")).collect();
+        let picks: Vec<Value> = picks
+            .iter()
+            .filter_map(|(name, id)| Some(json!({"name": name, "row": ids.iter().position(|i| i == id)?})))
+            .collect();
+        let groups: Vec<Value> = self
+            .groups
+            .iter()
+            .map(|g| {
+                let (colour, path) =
+                    (crate::report::svg::colour(g.style), crate::report::svg::outline(g.style, 1.0));
+                json!({"name": g.name, "colour": colour, "path": path})
+            })
+            .collect();
+        json!({
+            "ids": ids.join(" "),
+            "groups": groups,
+            "group": self.rows.iter().map(|r| r.group).collect::<Vec<_>>(),
+            "front": self.rows.iter().map(|r| u8::from(r.on_front)).collect::<Vec<_>>(),
+            "axes": self.axes.iter().map(Axis::to_json).collect::<Vec<_>>(),
+            "digits": SHOWN_DIGITS,
+            "picks": picks,
+        })
+    }
+
+    /// Place of a row on each axis, 0 to 1.
+    pub fn places(&self, row: usize) -> Vec<Option<f64>> {
+        self.axes.iter().map(|a| a.values[row].map(|v| a.place(v))).collect()
+    }
+}
+
+impl Axis {
+    /// Where a value lies, 0 to 1.
+    pub fn place(&self, value: f64) -> f64 {
+        match self.range {
+            Some((low, high, Scale::Log)) => (value / low).ln() / (high / low).ln(),
+            Some((low, high, Scale::Linear)) => (value - low) / (high - low),
+            None => (value + 0.5) / self.words.len().max(1) as f64,
+        }
+    }
+
+    fn to_json(&self) -> Value {
+        let value = |v: &Option<f64>| match v {
+            None => Value::Null,
+            Some(v) if self.range.is_some() => json!(v),
+            Some(v) => json!(*v as u64),
+        };
+        let range = self.range.map(|(low, high, scale)| json!([low, high, u8::from(scale == Scale::Log)]));
+        json!({
+            "key": self.column, "label": self.label, "unit": self.unit, "range": range,
+            "ticks": self.ticks, "words": self.words,
+            "values": self.values.iter().map(value).map(whole).collect::<Vec<_>>(),
+        })
+    }
+}
+
+/// A number without a fraction as an integer: `80` is shorter than `80.0`.
+fn whole(value: Value) -> Value {
+    match value.as_f64() {
+        Some(v) if v.fract() == 0.0 && v.abs() < 1e15 => json!(v as i64),
+        _ => value,
+    }
+}
+
+/// A cell of a row; blank if its table lacks the column.
+fn cell<'a>(row: &Row<'a>, column: &str) -> &'a str {
+    row.table.column(column).map_or("", |c| row.table.rows[row.row][c].as_str())
+}
+
+/// The column of an objective.
+pub fn objective_column(objective: Objective) -> &'static str {
+    match objective {
+        Objective::Mass => "mass_kg",
+        Objective::Deflection => "tip_deflection_mm",
+        Objective::Mode => "lowest_mode_hz",
+    }
+}
+
+/// Columns of choices that every table has, in the order of the first.
+fn choice_columns<'a>(rows: &[Row<'a>]) -> Vec<&'a str> {
+    let Some(first) = rows.first() else { return Vec::new() };
+    let end = first.table.column("tip_deflection_mm").unwrap_or(0);
+    let everywhere = |c: &&String| {
+        rows.iter().all(|r| r.table.columns.len() == first.table.columns.len() || r.table.column(c).is_some())
+    };
+    first.table.columns[..end]
+        .iter()
+        .filter(|c| *c != "design_id")
+        .filter(everywhere)
+        .map(String::as_str)
+        .collect()
+}
+
+/// Words and unit of a column: `upper_arm_wall_mm` is `upper_arm wall` in mm.
+fn label(column: &str) -> (String, &'static str) {
+    let objective = match column {
+        "mass_kg" => Some(("mass", "kg")),
+        "tip_deflection_mm" => Some(("tip deflection", "mm")),
+        "lowest_mode_hz" => Some(("lowest mode", "Hz")),
+        _ => None,
+    };
+    if let Some((label, unit)) = objective {
+        return (label.into(), unit);
+    }
+    let (name, unit) = column.strip_suffix("_mm").map_or((column, ""), |name| (name, "mm"));
+    let (piece, what) = name.rsplit_once('_').unwrap_or(("", name));
+    (format!("{piece} {what}").trim().to_string(), unit)
+}
+
+/// A height that is everywhere the width is no choice of its own.
+fn same_as_width(column: &str, rows: &[Row], cells: &[&str]) -> Option<String> {
+    let width = format!("{}_width_mm", column.strip_suffix("_height_mm")?);
+    let same = rows.iter().zip(cells).all(|(row, c)| cell(row, &width) == *c);
+    same.then(|| format!("{} = width", label(column).0))
+}
+
+fn axis(column: &str, cells: &[&str], groups: &[Group]) -> Axis {
+    let (label, unit) = label(column);
+    let numbers: Vec<Option<f64>> = cells.iter().map(|c| c.parse().ok()).collect();
+    let is_number = |(cell, n): (&&str, &Option<f64>)| cell.is_empty() || n.is_some_and(f64::is_finite);
+    let empty = Axis {
+        column: column.into(),
+        label,
+        unit,
+        range: None,
+        ticks: Vec::new(),
+        words: Vec::new(),
+        values: Vec::new(),
+    };
+    if cells.iter().zip(&numbers).all(is_number) {
+        return number_axis(empty, &numbers);
+    }
+    let distinct: HashSet<&str> = cells.iter().copied().filter(|c| !c.is_empty()).collect();
+    let mut words: Vec<&str> = distinct.into_iter().collect();
+    let place = |w: &str| groups.iter().position(|g| g.name == w).map_or(0, |i| groups.len() - i);
+    words.sort_by(|a, b| place(a).cmp(&place(b)).then_with(|| natural(a, b)));
+    let values = cells.iter().map(|c| words.iter().position(|w| w == c).map(|i| i as f64)).collect();
+    let words: Vec<String> = words.into_iter().map(String::from).collect();
+    let mut axis = Axis { words, values, ..empty };
+    let every = axis.words.len().div_ceil(24).max(1);
+    let shown = axis.words.iter().enumerate().step_by(every);
+    axis.ticks = shown.map(|(i, w)| (axis.place(i as f64), w.clone())).collect();
+    axis
+}
+
+fn number_axis(empty: Axis, numbers: &[Option<f64>]) -> Axis {
+    let rounded = |v: f64| significant(v, SHOWN_DIGITS).parse::<f64>().unwrap_or(v);
+    let values: Vec<Option<f64>> = numbers.iter().map(|n| n.map(rounded)).collect();
+    let mut distinct: Vec<f64> = values.iter().flatten().copied().collect();
+    distinct.sort_by(f64::total_cmp);
+    distinct.dedup();
+    let (low, high) = (distinct.first().copied().unwrap_or(1.0), distinct.last().copied().unwrap_or(10.0));
+    let scale = if low > 0.0 && high > 10.0 * low { Scale::Log } else { Scale::Linear };
+    let ruling = rule(scale, low, high, 6);
+    let mut axis = Axis { range: Some((ruling.low, ruling.high, scale)), values, ..empty };
+    if distinct.len() <= FEW && distinct.len() > 1 {
+        let margin = 0.04 * (high - low);
+        axis.range = Some((low - margin, high + margin, Scale::Linear));
+        axis.ticks = distinct.iter().map(|v| (axis.place(*v), crate::report::number::shortest(*v))).collect();
+    } else {
+        let labelled = ruling.ticks.iter().filter_map(|t| Some((t.value, t.label.clone()?)));
+        axis.ticks = labelled.map(|(v, l)| (axis.place(v), l)).collect();
+    }
+    axis
+}
+
+/// Words in the order people expect: `CSG-14-100` before `CSG-100-50`.
+fn natural(a: &str, b: &str) -> Ordering {
+    // texts, each with the number behind it
+    let pieces = |word: &str| -> Vec<(String, u64)> {
+        let (mut out, mut rest) = (Vec::new(), word);
+        while !rest.is_empty() {
+            let (text, tail) = rest.split_at(rest.find(|c: char| c.is_ascii_digit()).unwrap_or(rest.len()));
+            let (digits, tail) =
+                tail.split_at(tail.find(|c: char| !c.is_ascii_digit()).unwrap_or(tail.len()));
+            out.push((text.to_string(), digits.parse().unwrap_or(0)));
+            rest = tail;
+        }
+        out
+    };
+    pieces(a).cmp(&pieces(b)).then_with(|| a.cmp(b))
+}
+
+/// At most `room` rows, lightest first: those kept, those at the edge of a view, and every so-manieth.
+fn sampled<'a>(rows: &[Row<'a>], room: usize, kept: &[String]) -> Vec<Row<'a>> {
+    let mass = |r: &Row| cell(r, "mass_kg").parse().unwrap_or(f64::INFINITY);
+    let mut order: Vec<(f64, usize)> = rows.iter().enumerate().map(|(i, r)| (mass(r), i)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    if rows.len() <= room {
+        return order.into_iter().map(|(_, i)| rows[i]).collect();
+    }
+    let named = |i: &usize| kept.iter().any(|k| k == cell(&rows[*i], "design_id"));
+    let mut chosen: HashSet<usize> = (0..rows.len()).filter(named).collect();
+    let mut edge: Vec<usize> = edges(rows);
+    thin(&mut edge, room / 2);
+    chosen.extend(edge);
+    let mut rest: Vec<usize> = order.iter().map(|o| o.1).filter(|i| !chosen.contains(i)).collect();
+    thin(&mut rest, room.saturating_sub(chosen.len()));
+    chosen.extend(rest);
+    order.into_iter().filter(|(_, i)| chosen.contains(i)).map(|(_, i)| rows[i]).collect()
+}
+
+/// Keeps `room` of a list, evenly.
+fn thin(list: &mut Vec<usize>, room: usize) {
+    let count = list.len();
+    if count > room {
+        *list = (0..room).map(|i| list[i * count / room]).collect();
+    }
+}
+
+/// Rows that are best at their mass in one of the views, by group.
+fn edges(rows: &[Row]) -> Vec<usize> {
+    let groups = rows.iter().map(|r| r.group).max().map_or(0, |g| g + 1);
+    let mut out = Vec::new();
+    for (group, objective) in
+        (0..groups).flat_map(|g| [Objective::Deflection, Objective::Mode].map(|o| (g, o)))
+    {
+        let number = |r: &Row, column: &str| cell(r, column).parse::<f64>().ok();
+        let sign = if objective == Objective::Mode { -1.0 } else { 1.0 };
+        let place = |r: &Row| Some((number(r, "mass_kg")?, sign * number(r, objective_column(objective))?));
+        let members = rows.iter().enumerate().filter(|(_, r)| r.group == group);
+        let mut own: Vec<((f64, f64), usize)> = members.filter_map(|(i, r)| Some((place(r)?, i))).collect();
+        own.sort_by(|a, b| a.0.0.total_cmp(&b.0.0).then(a.0.1.total_cmp(&b.0.1)));
+        let mut best = f64::INFINITY;
+        for ((_, value), i) in own {
+            if value < best {
+                best = value;
+                out.push(i);
+            }
+        }
+    }
+    out.sort_unstable();
+    out.dedup();
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(count: usize) -> FrontTable {
+        let columns = [
+            "design_id",
+            "a_material",
+            "a_width_mm",
+            "a_height_mm",
+            "j_gear",
+            "tip_deflection_mm",
+            "mass_kg",
+            "lowest_mode_hz",
+        ];
+        let row = |i: usize| {
+            let size = (60 + 20 * (i % 4)).to_string();
+            let (material, gear) = (["steel", "alu"][i % 2], ["CSG-100-50", "CSG-14-100"][i % 2]);
+            let x = i as f64 + 1.0;
+            [
+                format!("d{i}"),
+                material.into(),
+                size.clone(),
+                size,
+                gear.into(),
+                (9.0 / x).to_string(),
+                x.to_string(),
+                x.sqrt().to_string(),
+            ]
+            .to_vec()
+        };
+        FrontTable { columns: columns.map(String::from).to_vec(), rows: (0..count).map(row).collect() }
+    }
+
+    fn data(table: &FrontTable) -> FrontData<'_> {
+        let groups = ["steel", "alu"].iter().enumerate();
+        let groups = groups.map(|(style, name)| Group { name: (*name).into(), style }).collect();
+        let rows = (0..table.rows.len()).map(|row| Row { table, row, group: row % 2, on_front: true });
+        FrontData::new(groups, rows.collect(), &["d7".into()])
+    }
+
+    #[test]
+    fn axes_are_the_choices_that_differ_and_the_objectives() {
+        let table = table(40);
+        let data = data(&table);
+        let labels: Vec<&str> = data.axes.iter().map(|a| a.label.as_str()).collect();
+        assert_eq!(labels, ["a material", "a width", "j gear", "mass", "tip deflection", "lowest mode"]);
+        assert_eq!(data.constants, ["a height = width"]);
+        assert_eq!(data.axes[2].words, ["CSG-14-100", "CSG-100-50"]);
+    }
+
+    #[test]
+    fn numbers_are_those_of_the_table_to_the_digits_shown() {
+        let table = table(40);
+        let data = data(&table);
+        let deflection = &data.axes[4];
+        for (i, row) in data.rows.iter().enumerate() {
+            let exact: f64 = cell(row, "tip_deflection_mm").parse().expect("a number");
+            assert_eq!(deflection.values[i], significant(exact, 5).parse().ok());
+        }
+    }
+
+    #[test]
+    fn a_front_that_is_too_large_is_sampled_and_keeps_what_is_named() {
+        let table = table(30_000);
+        let data = data(&table);
+        assert!(data.rows.len() <= MOST_ROWS && data.rows.len() > MOST_ROWS / 2);
+        assert!(data.rows.iter().any(|r| cell(r, "design_id") == "d7"));
+        assert!(data.to_json(&[]).to_string().len() <= MOST_BYTES);
+        assert_eq!(data.rows_total, 30_000);
+    }
+}

@@ -1,0 +1,111 @@
+//! The front in linked views, as a study's and a comparison's page show it.
+
+use super::front_data::{Axis, FrontData, Row};
+use super::{Figure, Gallery};
+use crate::report::number::significant;
+use crate::report::picks::{Design, Pick};
+use crate::report::svg::parallel::{Parallel, ParallelAxis, ParallelLine};
+use serde_json::{Value, json};
+
+/// Lines of the still picture of parallel coordinates.
+const STILL_LINES: usize = 400;
+
+/// What a page says about its views.
+pub struct FrontViews<'a> {
+    /// Designs, groups and axes.
+    pub data: FrontData<'a>,
+    /// Picks, by name.
+    pub picks: &'a [Pick],
+    /// Still picture of both scatter views.
+    pub scatter: Figure,
+    /// What a colour stands for: `material`, `result`.
+    pub coloured_by: &'a str,
+    /// Whether some designs are only on the front of their group.
+    pub has_both: bool,
+    /// Where all designs are.
+    pub all_in: &'a str,
+}
+
+impl FrontViews<'_> {
+    /// The section's values for its template.
+    pub(super) fn context(&self, gallery: &mut Gallery) -> Value {
+        let data = &self.data;
+        let shown = data.rows.len();
+        let sampled = (shown < data.rows_total).then(|| {
+            format!(
+                "{} of {} designs are drawn: the picks, the best at each mass, and every so-manieth of the rest. {} has all.",
+                shown, data.rows_total, self.all_in
+            )
+        });
+        json!({
+            "scatter": gallery.show(&self.scatter),
+            "parallel": gallery.show(&self.parallel()),
+            "sampled": sampled,
+            "shown": shown,
+            "coloured_by": self.coloured_by,
+            "has_both": self.has_both,
+            "constants": data.constants,
+            "groups": data.groups.iter().map(|g| g.name.clone()).collect::<Vec<_>>(),
+        })
+    }
+
+    /// The data for the page's program.
+    pub fn json(&self) -> Value {
+        let mut out = self.data.to_json(&named(self.picks));
+        out["colouredBy"] = self.coloured_by.into();
+        out
+    }
+
+    /// Still parallel coordinates: some hundred designs, the picks drawn on top.
+    fn parallel(&self) -> Figure {
+        let data = &self.data;
+        let step = data.rows.len().div_ceil(STILL_LINES).max(1);
+        let line = |i: usize, name: Option<String>| ParallelLine {
+            places: data.places(i),
+            style: data.groups[data.rows[i].group].style,
+            name,
+        };
+        let mut lines: Vec<ParallelLine> =
+            (0..data.rows.len()).step_by(step).map(|i| line(i, None)).collect();
+        for pick in self.picks {
+            let is_pick = |r: &Row| {
+                r.table.column("design_id").is_some_and(|c| r.table.rows[r.row][c] == pick.design.design_id)
+            };
+            if let Some(i) = data.rows.iter().position(is_pick) {
+                lines.push(line(i, Some(pick.names.join(", "))));
+            }
+        }
+        let drawn = lines.iter().filter(|l| l.name.is_none()).count();
+        let caption = format!(
+            "Every choice that differs among the designs, and what comes of it: one line a design ({drawn} of {} drawn here), \
+             coloured by {}; the picks are drawn on top.",
+            data.rows_total, self.coloured_by
+        );
+        let axes = data.axes.iter().map(|a| ParallelAxis { label: named_axis(a), ticks: a.ticks.clone() });
+        let picture = Parallel {
+            title: "Every choice and what comes of it".into(),
+            description: caption.clone(),
+            axes: axes.collect(),
+            lines,
+        };
+        Figure { name: "parallel".into(), caption, svg: picture.to_svg(), csv: String::new() }
+    }
+}
+
+fn named_axis(axis: &Axis) -> String {
+    if axis.unit.is_empty() { axis.label.clone() } else { format!("{} [{}]", axis.label, axis.unit) }
+}
+
+/// Names of picks with their designs.
+fn named(picks: &[Pick]) -> Vec<(String, String)> {
+    picks.iter().map(|p| (p.names.join(", "), p.design.design_id.clone())).collect()
+}
+
+/// A design's objectives as the page and the terminal write them.
+pub fn headline(design: &Design) -> [(&'static str, String, &'static str); 3] {
+    [
+        ("tip deflection", significant(design.tip_deflection_mm, 4), "mm"),
+        ("mass", significant(design.mass_kg, 4), "kg"),
+        ("lowest mode", significant(design.lowest_mode_hz, 4), "Hz"),
+    ]
+}

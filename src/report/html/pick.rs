@@ -1,0 +1,415 @@
+//! One picked design: its arm drawn to scale, where its deflection comes from, its modes and its drives.
+
+use super::{Figure, Gallery, table};
+use crate::arm::{Arm, Element, Link, LinkBody, LoadCase};
+use crate::mechanics::{Chain, Mode, Posed, Statics, Station};
+use crate::report::number::{shortest, significant};
+use crate::report::picks::Pick;
+use crate::report::svg::arm::{ArmSketch, Pivot, Place, Tube};
+use crate::report::svg::bars::{Bar, Part, StackedBars};
+use crate::report::table::{Column, Table};
+use crate::sizing::{Check, CheckKind, CheckState, JointSizingRow};
+use nalgebra::Vector3;
+use serde_json::{Value, json};
+
+/// Modes drawn.
+const MODES: usize = 3;
+/// Motion below this share of the largest counts as none when a view is chosen.
+const SIDEWAYS: f64 = 0.5;
+
+/// A picked design with everything its card needs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PickedArm {
+    /// What it is picked for, and its objectives.
+    pub pick: Pick,
+    /// Its arm, every part resolved to numbers.
+    pub arm: Arm,
+    /// The cases it was judged in.
+    pub cases: Vec<LoadCase>,
+    /// Its drives, tip first.
+    pub drives: Vec<JointSizingRow>,
+    /// Its row of `front.csv`: columns and cells.
+    pub row: Vec<(String, String)>,
+}
+
+/// An arm in one case, solved.
+struct Solved<'a> {
+    case: &'a LoadCase,
+    tip_mm: f64,
+    parts: Vec<DeflectionPart>,
+    lines: Vec<Station>,
+    modes: Vec<(Mode, Vec<Station>)>,
+    payload_m: Vector3<f64>,
+}
+
+/// One element's part of the tip's deflection.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeflectionPart {
+    /// Joint or link.
+    pub element: String,
+    /// Torque on a joint \[N m\].
+    pub torque_nm: Option<f64>,
+    /// What it moves the tip by, world \[mm\].
+    pub moved_mm: [f64; 3],
+    /// Its part along the whole deflection \[mm\].
+    pub along_mm: f64,
+}
+
+impl PickedArm {
+    /// Words that name the pick.
+    pub fn title(&self) -> String {
+        self.pick.names.join(", ")
+    }
+
+    /// The pick's name in the names of its files.
+    fn slug(&self) -> String {
+        self.pick.names[0].replace(' ', "-")
+    }
+
+    /// The case with the largest tip deflection, solved.
+    fn worst(&self) -> Option<Solved<'_>> {
+        let solved = self.cases.iter().map(|case| solve(&self.arm, case));
+        solved.max_by(|a, b| a.tip_mm.total_cmp(&b.tip_mm))
+    }
+
+    /// The case with the slowest first mode, solved.
+    fn slowest(&self) -> Option<Solved<'_>> {
+        let first = |s: &Solved| s.modes.first().map_or(f64::INFINITY, |m| m.0.frequency_hz);
+        self.cases.iter().map(|case| solve(&self.arm, case)).min_by(|a, b| first(a).total_cmp(&first(b)))
+    }
+
+    /// What each element adds to the deflection in the worst case.
+    pub fn deflection_parts(&self) -> Vec<DeflectionPart> {
+        self.worst().map_or(Vec::new(), |s| s.parts)
+    }
+
+    /// The card's values for its template.
+    pub(super) fn context(&self, gallery: &mut Gallery) -> Value {
+        let (worst, slowest) = (self.worst(), self.slowest());
+        let drawing = worst.as_ref().map(|s| gallery.show(&self.drawing(s)));
+        let modes: Vec<Value> =
+            slowest.iter().flat_map(|s| self.mode_figures(s)).map(|figure| gallery.show(&figure)).collect();
+        json!({
+            "title": self.title(),
+            "id": self.pick.design.design_id,
+            "slug": self.slug(),
+            "headline": super::front_views::headline(&self.pick.design),
+            "cost": self.pick.design.material_cost_eur.map(crate::report::compare::cost_words),
+            "drawing": drawing,
+            "modes": modes,
+            "worst_case": worst.as_ref().map(|s| s.case.name.clone()),
+            "modal_case": slowest.as_ref().map(|s| s.case.name.clone()),
+            "parts": worst.as_ref().map(|s| table(&parts_table(&s.parts))),
+            "links": self.links(),
+            "drives": self.drives.iter().rev().map(drive).collect::<Vec<_>>(),
+            "row": self.row,
+        })
+    }
+
+    fn drawing(&self, solved: &Solved) -> Figure {
+        let view = View::of(&solved.lines, &solved.lines, true);
+        let mut sketch = self.sketch(solved, &solved.lines, &view);
+        sketch.factor = sketch.fitting_factor();
+        let factor = shortest(sketch.factor);
+        sketch.title = format!("{} in its worst pose: {}", self.title(), solved.case.name);
+        sketch.caption = format!(
+            "links to scale, joints as symbols; bent shape (blue) exaggerated {factor} times: {} mm at the tip",
+            significant(solved.tip_mm, 4)
+        );
+        sketch.description = format!(
+            "{} Pose {}. Grey: without weight. Blue: bent by gravity and load, {factor} times exaggerated.",
+            view.words,
+            degrees(&solved.case.pose_deg)
+        );
+        sketch.width_px = 620.0;
+        let caption = format!(
+            "{} Pose {}, payload {} kg (orange).",
+            view.words,
+            degrees(&solved.case.pose_deg),
+            shortest(solved.case.payload.mass_kg)
+        );
+        Figure {
+            name: format!("pick-{}-arm", self.slug()),
+            caption,
+            svg: sketch.to_svg(),
+            csv: stations_csv(&solved.lines),
+        }
+    }
+
+    fn mode_figures(&self, solved: &Solved) -> Vec<Figure> {
+        let figure = |(i, (mode, line)): (usize, &(Mode, Vec<Station>))| {
+            let view = View::of(line, &solved.lines, false);
+            let mut sketch = self.sketch(solved, line, &view);
+            sketch.factor = sketch.fitting_factor();
+            sketch.title = format!("mode {}: {} Hz", i + 1, significant(mode.frequency_hz, 4));
+            sketch.caption = energy_words(mode, 3);
+            sketch.description = format!("{} Shape of mode {}, amplitude arbitrary.", view.words, i + 1);
+            sketch.width_px = 400.0;
+            Figure {
+                name: format!("pick-{}-mode-{}", self.slug(), i + 1),
+                caption: format!("{} Strain energy: {}.", view.words, energy_words(mode, 6)),
+                svg: sketch.to_svg(),
+                csv: stations_csv(line),
+            }
+        };
+        solved.modes.iter().enumerate().map(figure).collect()
+    }
+
+    /// The arm in the plane of a view.
+    fn sketch(&self, solved: &Solved, line: &[Station], view: &View) -> ArmSketch {
+        let links: Vec<&Link> = self.arm.links().collect();
+        let own = |name: &str| -> Vec<(Place, Place)> {
+            let stations = line.iter().filter(|s| s.axis.is_none() && s.piece == name);
+            stations.map(|s| (view.place(&s.at_m), view.place(&s.moved_m))).collect()
+        };
+        let tubes = links.iter().map(|link| Tube {
+            name: link.name.clone(),
+            line: own(&link.name),
+            size_m: match &link.body {
+                LinkBody::Tube { section, .. } if view.upright => section.outer_m().1,
+                LinkBody::Tube { section, .. } => section.outer_m().0,
+                LinkBody::Offset { .. } => 0.0,
+            },
+        });
+        let pivots = line.iter().filter_map(|s| {
+            let axis = s.axis?;
+            let across = axis.dot(&view.across()).abs() > 0.7;
+            Some(Pivot {
+                name: s.piece.clone(),
+                at: (view.place(&s.at_m), view.place(&s.moved_m)),
+                axis: (!across).then(|| view.place(&axis)),
+            })
+        });
+        let tip = line.last().map_or(Vector3::zeros(), |s| s.moved_m);
+        ArmSketch {
+            tubes: tubes.collect(),
+            pivots: pivots.collect(),
+            payload: (solved.case.payload.mass_kg > 0.0)
+                .then(|| (view.place(&solved.payload_m), view.place(&tip))),
+            upright: view.upright,
+            ..ArmSketch::default()
+        }
+    }
+
+    /// Links with their sections and what follows from them (Eqs 5, 6).
+    fn links(&self) -> Vec<Value> {
+        let element = |e: &Element| match e {
+            Element::Link(link) => match &link.body {
+                LinkBody::Tube { material_name, material, section } => {
+                    let p = section.properties(material.poisson);
+                    let (width, height) = section.outer_m();
+                    let mm = |m: f64| significant(m * 1e3, 3);
+                    Some(json!({
+                        "name": link.name,
+                        "material": material_name,
+                        "length_m": significant(link.vector_m.norm(), 3),
+                        "size": format!("{} × {} × {} mm", mm(width), mm(height), shortest((section.wall_m() * 1e9).round() / 1e6)),
+                        "mass_kg": significant(e.mass_kg(), 4),
+                        "area_cm2": significant(p.area_m2 * 1e4, 4),
+                        "second_moment_cm4": significant(p.second_moment_y_m4 * 1e8, 4),
+                        "bending_knm2": significant(material.youngs_modulus_pa * p.second_moment_y_m4 / 1e3, 4),
+                    }))
+                }
+                LinkBody::Offset { .. } => None,
+            },
+            Element::Joint(_) => None,
+        };
+        self.arm.chain.iter().filter_map(element).collect()
+    }
+}
+
+/// Where the deflection of several picks comes from, side by side.
+pub fn deflection_bars(picks: &[PickedArm]) -> Figure {
+    let parts: Vec<(String, Vec<DeflectionPart>)> = picks
+        .iter()
+        .map(|p| (format!("{} ({})", p.title(), p.pick.design.design_id), p.deflection_parts()))
+        .collect();
+    let first: &[DeflectionPart] = parts.first().map_or(&[], |(_, list)| list);
+    let bars = StackedBars {
+        title: "Where the tip's deflection comes from".into(),
+        description: "One bar a picked design: its tip deflection in its worst pose, split into what each joint (solid, blue) \
+                      and each link (hatched, orange) adds along its direction."
+            .into(),
+        unit: "mm".into(),
+        parts: first.iter().map(|p| Part { name: p.element.clone(), hatched: p.torque_nm.is_none() }).collect(),
+        bars: parts
+            .iter()
+            .map(|(label, list)| Bar {
+                label: label.clone(),
+                total: format!("{} mm", significant(list.iter().map(|p| p.along_mm).sum(), 4)),
+                values: first
+                    .iter()
+                    .map(|f| list.iter().find(|p| p.element == f.element).map_or(0.0, |p| p.along_mm))
+                    .collect(),
+            })
+            .collect(),
+    };
+    let caption = "Joints solid, links hatched; each part is the element's deformation carried to the tip (Eqs 13 to 15), \
+                   along the direction of the whole deflection, in the design's worst pose.";
+    Figure { name: "deflection".into(), caption: caption.into(), svg: bars.to_svg(), csv: bars.to_csv() }
+}
+
+fn solve<'a>(arm: &Arm, case: &'a LoadCase) -> Solved<'a> {
+    let mut structure = arm.structure(case.joints);
+    structure.water = case.water.or(structure.water);
+    let chain = Chain::new(&structure, case.links);
+    let posed = chain.pose(case);
+    let statics = posed.statics();
+    let pose_rad: Vec<f64> = case.pose_deg.iter().map(|a| a.to_radians()).collect();
+    let modes = posed.modes(&statics, MODES);
+    Solved {
+        case,
+        tip_mm: statics.tip_displacement_m.norm() * 1e3,
+        parts: deflection_parts(&statics),
+        lines: posed.centre_line(&pose_rad, &statics.deformations),
+        modes: modes.into_iter().map(|m| (m.clone(), posed.centre_line(&pose_rad, &m.coordinates))).collect(),
+        payload_m: payload_place(&posed, case),
+    }
+}
+
+/// A pose in words: `0°, -45°, 90°`.
+pub fn degrees(pose_deg: &[f64]) -> String {
+    pose_deg.iter().map(|a| format!("{}°", shortest(*a))).collect::<Vec<_>>().join(", ")
+}
+
+fn payload_place(posed: &Posed, case: &LoadCase) -> Vector3<f64> {
+    posed.tip_m + posed.tip_rotation * case.payload.cg_m
+}
+
+fn deflection_parts(statics: &Statics) -> Vec<DeflectionPart> {
+    let whole = statics.tip_displacement_m;
+    let direction = if whole.norm() > 0.0 { whole.normalize() } else { Vector3::zeros() };
+    let shares = statics.shares_m.iter();
+    shares
+        .map(|(element, moved)| DeflectionPart {
+            element: element.clone(),
+            torque_nm: statics.joint_torques_nm.iter().find(|(n, _)| n == element).map(|(_, t)| *t),
+            moved_mm: (moved * 1e3).into(),
+            along_mm: moved.dot(&direction) * 1e3,
+        })
+        .collect()
+}
+
+fn parts_table(parts: &[DeflectionPart]) -> Table {
+    let mut table = Table::new(vec![
+        Column::left("element"),
+        Column::unit("torque (7)", "N m"),
+        Column::unit("x", "mm"),
+        Column::unit("y", "mm"),
+        Column::unit("z", "mm"),
+        Column::unit("along the whole (13-15)", "mm"),
+        Column::right("share"),
+    ]);
+    let whole: f64 = parts.iter().map(|p| p.along_mm).sum();
+    for part in parts {
+        let mm = |v: f64| crate::report::number::fixed(v, 4);
+        let [x, y, z] = part.moved_mm.map(mm);
+        let torque = part.torque_nm.map_or(String::new(), |t| significant(t, 4));
+        let share = crate::report::number::fixed(100.0 * part.along_mm / whole, 1);
+        table.row([part.element.clone(), torque, x, y, z, mm(part.along_mm), format!("{share} %")]);
+    }
+    table
+}
+
+/// Where most of a mode's strain energy sits.
+fn energy_words(mode: &Mode, most: usize) -> String {
+    let mut parts: Vec<&(String, f64)> = mode.strain_energy.iter().filter(|(_, e)| *e >= 0.01).collect();
+    parts.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let words: Vec<String> =
+        parts.iter().take(most).map(|(n, e)| format!("{n} {:.0} %", 100.0 * e)).collect();
+    words.join(", ")
+}
+
+fn stations_csv(line: &[Station]) -> String {
+    let mut out = String::from("piece,x_m,y_m,z_m,moved_x_m,moved_y_m,moved_z_m\n");
+    for s in line {
+        let numbers: Vec<String> = s.at_m.iter().chain(s.moved_m.iter()).map(|v| shortest(*v)).collect();
+        out.push_str(&format!("{},{}\n", s.piece, numbers.join(",")));
+    }
+    out
+}
+
+/// The plane a drawing lies in.
+struct View {
+    right: Vector3<f64>,
+    up: Vector3<f64>,
+    upright: bool,
+    words: &'static str,
+}
+
+impl View {
+    /// The upright plane through base and tip; from above, if `moving` moves mostly out of it.
+    fn of(moving: &[Station], arm: &[Station], keep_upright: bool) -> Self {
+        let tip = arm.last().map_or(Vector3::zeros(), |s| s.at_m);
+        let level = Vector3::new(tip.x, tip.y, 0.0);
+        let right = if level.norm() > 1e-6 { level.normalize() } else { Vector3::x() };
+        let side = Self { right, up: Vector3::z(), upright: true, words: "Seen from the side." };
+        let most =
+            |of: &dyn Fn(&Vector3<f64>) -> f64| moving.iter().map(|s| of(&s.moved_m)).fold(0.0, f64::max);
+        let sideways = most(&|m| m.dot(&side.across()).abs());
+        if keep_upright || sideways < SIDEWAYS * most(&|m| m.norm()) {
+            return side;
+        }
+        Self { right, up: Vector3::z().cross(&right), upright: false, words: "Seen from above." }
+    }
+
+    fn across(&self) -> Vector3<f64> {
+        self.right.cross(&self.up)
+    }
+
+    fn place(&self, at: &Vector3<f64>) -> Place {
+        (at.dot(&self.right), at.dot(&self.up))
+    }
+}
+
+/// Checks in the order of the table's columns.
+const CHECKS: [CheckKind; 10] = [
+    CheckKind::GearPeak,
+    CheckKind::GearMean,
+    CheckKind::GearStop,
+    CheckKind::GearTilt,
+    CheckKind::GearSpeed,
+    CheckKind::GearMeanSpeed,
+    CheckKind::GearLife,
+    CheckKind::MotorHold,
+    CheckKind::MotorPeak,
+    CheckKind::MotorSpeed,
+];
+
+/// A drive for its row: torques, parts and the margin of every check.
+fn drive(row: &JointSizingRow) -> Value {
+    let number = |v: f64| significant(v, 4);
+    let open = |v: Option<f64>| v.map_or("unknown".to_string(), number);
+    let made: Vec<Value> =
+        row.checks.iter().filter(|c| CHECKS.contains(&c.kind)).map(|c| check(c, row.binds)).collect();
+    json!({
+        "joint": row.joint,
+        "gear": row.gear,
+        "motor": row.motor,
+        "static_nm": number(row.static_torque_nm),
+        "linear_nm": number(row.linear_torque_nm),
+        "rotary_nm": open(row.rotary_torque_output_nm),
+        "total_nm": open(row.total_torque_nm),
+        "motor_rpm": format!("{:.0}", row.motor_speed_rpm),
+        "mass_kg": open(row.mass_kg),
+        "inward_kg": number(row.mass_passed_inward_kg),
+        "binds": row.binds,
+        "margin": row.margin.map(|m| significant(m, 3)),
+        "checks": made,
+    })
+}
+
+fn check(check: &Check, binds: Option<&str>) -> Value {
+    let number = |v: Option<f64>| v.filter(|v| v.is_finite()).map(|v| significant(v, 4));
+    let margin = check.margin().filter(|m| m.is_finite());
+    json!({
+        "name": check.kind.label(),
+        "unit": check.kind.unit(),
+        "needed": number(check.needed),
+        "allowed": number(check.allowed),
+        "margin": margin.map(|m| if m < 100.0 { significant(m, 3) } else { "> 100".into() }),
+        "binds": binds == Some(check.kind.label()),
+        "open": matches!(check.state, CheckState::NotChecked(_)),
+        "fails": check.state == CheckState::Fails,
+    })
+}

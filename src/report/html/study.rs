@@ -1,0 +1,167 @@
+//! A study's page: the question and its answer, the front in linked views, the picks with all that is
+//! behind them, the materials, the run, and where every number comes from.
+
+use super::front_data::{FrontData, Group, Row};
+use super::front_views::FrontViews;
+use super::pick::{PickedArm, deflection_bars};
+use super::{Extra, Figure, Gallery, Page, table};
+use crate::report::picks::{self, materials};
+use crate::report::summary::{SummaryInput, answer_words, materials_side_by_side};
+use crate::report::svg::MUTED;
+use serde_json::{Value, json};
+use std::collections::HashSet;
+
+/// A catalog row that a number on the page comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CatalogRow {
+    /// `gear`, `motor`, `material` or `profile`.
+    pub kind: &'static str,
+    /// Name of the part.
+    pub name: String,
+    /// File and line it was read from.
+    pub place: String,
+    /// Document the figures come from.
+    pub source: String,
+    /// How far it can be trusted, in a word.
+    pub confidence: String,
+    /// Columns of the row that no document was seen for.
+    pub unverified: Vec<String>,
+    /// The row as it stands in the file: columns and cells.
+    pub cells: Vec<(String, String)>,
+}
+
+/// Everything on a study's page.
+pub struct StudyPage<'a> {
+    /// Question, answer, fronts, counts.
+    pub summary: &'a SummaryInput,
+    /// The picks, each with its arm.
+    pub picks: Vec<PickedArm>,
+    /// The fronts as a still picture (`front.svg`).
+    pub scatter_svg: String,
+    /// Deflection against weight of the study's materials, as in the paper's Figs 2 to 4.
+    pub beams: Option<Figure>,
+    /// Catalog rows of the parts in the picks.
+    pub parts: Vec<CatalogRow>,
+    /// Facts of the run: names and values.
+    pub run: Vec<(String, String)>,
+    /// Where another newton metre per radian pays most.
+    pub budget: Option<Extra>,
+    /// The proof that the front is complete.
+    pub certificate: Option<Extra>,
+}
+
+impl StudyPage<'_> {
+    /// The page and its pictures.
+    pub fn page(&self) -> Page {
+        let mut gallery = Gallery::default();
+        let facts = &self.summary.facts;
+        let designs = picks::designs(&self.summary.overall);
+        let chosen = picks::picks(&designs);
+        let views = self.views(&chosen);
+        let data = views.json();
+        let extras = [&self.budget, &self.certificate].into_iter().flatten();
+        let extras: Vec<Value> = extras.map(|e| gallery.extra(e)).collect();
+        let content = json!({
+            "study": facts.study,
+            "question": facts.question,
+            "answer": answer_words(self.summary),
+            "facts": self.facts(designs.len()),
+            "front": views.context(&mut gallery),
+            "bars": (!self.picks.is_empty()).then(|| gallery.show(&deflection_bars(&self.picks))),
+            "picks": self.picks.iter().map(|p| p.context(&mut gallery)).collect::<Vec<_>>(),
+            "materials": table(&materials_side_by_side(self.summary)),
+            "beams": self.beams.as_ref().map(|f| gallery.show(f)),
+            "extras": extras,
+            "run": self.run,
+            "not_checked": facts.not_checked,
+            "parts": self.parts.iter().map(part).collect::<Vec<_>>(),
+            "results": facts.results,
+        });
+        gallery.page("study.html", &facts.study, content, &json!({"front": data}))
+    }
+
+    /// What was asked, in short: names and values.
+    fn facts(&self, front: usize) -> Vec<(&'static str, String)> {
+        let facts = &self.summary.facts;
+        let listed = |words: &[String]| if words.is_empty() { "none".into() } else { words.join("; ") };
+        vec![
+            ("designs searched", grouped(facts.designs_total)),
+            ("on the front", grouped(front as u128)),
+            ("limits", listed(&facts.constraints)),
+            ("poses, the worst of which counts", listed(&facts.cases)),
+        ]
+    }
+
+    /// The fronts as linked views: the front of all, and what only a material's own front has.
+    fn views<'v>(&'v self, chosen: &'v [picks::Pick]) -> FrontViews<'v> {
+        let summary = self.summary;
+        let names = summary.materials.iter().enumerate();
+        let mut groups: Vec<Group> = names.map(|(style, m)| Group { name: m.name.clone(), style }).collect();
+        let mixed = groups.len();
+        groups.push(Group { name: "mixed".into(), style: MUTED });
+        let group_of = |row: usize| match materials(&summary.overall, row).as_slice() {
+            [one] => summary.materials.iter().position(|m| m.name == *one).unwrap_or(mixed),
+            _ => mixed,
+        };
+        let mut rows: Vec<Row> = (0..summary.overall.rows.len())
+            .map(|row| Row { table: &summary.overall, row, group: group_of(row), on_front: true })
+            .collect();
+        let id = |r: &Row<'v>| r.table.column("design_id").map_or("", |c| r.table.rows[r.row][c].as_str());
+        let listed: HashSet<&str> = rows.iter().map(id).collect();
+        for (group, material) in summary.materials.iter().enumerate() {
+            let own = (0..material.front.rows.len()).map(|row| Row {
+                table: &material.front,
+                row,
+                group,
+                on_front: false,
+            });
+            rows.extend(own.filter(|r| !listed.contains(id(r))));
+        }
+        if rows.iter().all(|r| r.group != mixed) {
+            groups.pop();
+        }
+        let kept: Vec<String> = chosen.iter().map(|p| p.design.design_id.clone()).collect();
+        let has_both = rows.iter().any(|r| !r.on_front);
+        FrontViews {
+            data: FrontData::new(groups, rows, &kept),
+            picks: chosen,
+            scatter: Figure {
+                name: "front".into(),
+                caption: "Tip deflection and lowest mode over mass. Every dot is a design; a line joins the best of a \
+                          material at each mass; the picks are ringed."
+                    .into(),
+                svg: self.scatter_svg.clone(),
+                csv: String::new(),
+            },
+            coloured_by: "material",
+            has_both,
+            all_in: "front.csv",
+        }
+    }
+}
+
+fn part(row: &CatalogRow) -> Value {
+    json!({
+        "anchor": anchor(&row.name),
+        "kind": row.kind,
+        "name": row.name,
+        "place": row.place,
+        "source": row.source,
+        "confidence": row.confidence,
+        "unverified": row.unverified,
+        "cells": row.cells.iter().filter(|(_, cell)| !cell.is_empty()).collect::<Vec<_>>(),
+    })
+}
+
+/// The name a link on the page finds a part by.
+pub(super) fn anchor(name: &str) -> String {
+    let letters = name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' });
+    format!("part-{}", letters.collect::<String>())
+}
+
+/// A whole number in groups of three.
+fn grouped(n: u128) -> String {
+    let digits = n.to_string();
+    let groups: Vec<&[u8]> = digits.as_bytes().rchunks(3).rev().collect();
+    groups.iter().map(|g| String::from_utf8_lossy(g).into_owned()).collect::<Vec<_>>().join("\u{202f}")
+}

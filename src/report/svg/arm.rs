@@ -1,0 +1,297 @@
+//! An arm drawn to scale, with the way it bends exaggerated by a stated factor.
+//!
+//! Links have their true length and outer size; joints are symbols: a circle where the axis points out of
+//! the drawing, a bar along the axis where it lies in it.
+
+use super::{FONT_PX, INK, NOTE_PX, head, line, px, text, text_px};
+use std::fmt::Write;
+
+/// A place in the plane of the drawing \[m\], x to the right, y up.
+pub type Place = (f64, f64);
+
+/// A link.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tube {
+    /// Name.
+    pub name: String,
+    /// Points of its centre line with their motion \[m\].
+    pub line: Vec<(Place, Place)>,
+    /// Outer size across the line in the plane \[m\]; 0 draws a line.
+    pub size_m: f64,
+}
+
+/// A joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pivot {
+    /// Name.
+    pub name: String,
+    /// Where it is, and its motion \[m\].
+    pub at: (Place, Place),
+    /// Direction of the axis in the plane; `None` if it points out of it.
+    pub axis: Option<Place>,
+}
+
+/// An arm in a pose.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ArmSketch {
+    /// Title.
+    pub title: String,
+    /// What is shown, in a sentence or two, for those who cannot see it.
+    pub description: String,
+    /// Links from base to tip.
+    pub tubes: Vec<Tube>,
+    /// Joints from base to tip.
+    pub pivots: Vec<Pivot>,
+    /// The payload's centre and its motion.
+    pub payload: Option<(Place, Place)>,
+    /// Factor on every motion.
+    pub factor: f64,
+    /// Words below the drawing.
+    pub caption: String,
+    /// Whether gravity points down in the drawing.
+    pub upright: bool,
+    /// Width \[px\].
+    pub width_px: f64,
+}
+
+const MARGIN_PX: f64 = 44.0;
+const TOP_PX: f64 = 40.0;
+const FOOT_PX: f64 = 56.0;
+
+impl ArmSketch {
+    /// A round factor that makes the largest motion about a tenth of the arm's size.
+    pub fn fitting_factor(&self) -> f64 {
+        let places: Vec<Place> = self.stations().map(|(at, _)| at).collect();
+        let span = |of: fn(&Place) -> f64| {
+            let values = || places.iter().map(of);
+            values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+        };
+        let size = span(|p| p.0).max(span(|p| p.1));
+        let most = self.stations().map(|(_, moved)| moved.0.hypot(moved.1)).fold(0.0, f64::max);
+        let ideal = 0.12 * size / most;
+        if !ideal.is_finite() || ideal <= 0.0 {
+            return 1.0;
+        }
+        let power = 10f64.powf(ideal.log10().floor());
+        let step = [5.0, 2.0, 1.0].into_iter().find(|s| s * power <= ideal).unwrap_or(1.0);
+        step * power
+    }
+
+    /// The drawing as a self-contained SVG document.
+    pub fn to_svg(&self) -> String {
+        let (low, high) = self.bounds();
+        let room = self.width_px - 2.0 * MARGIN_PX;
+        let (wide, tall) = ((high.0 - low.0).max(1e-6), (high.1 - low.1).max(1e-6));
+        let scale = (room / wide).min(0.62 * room / tall);
+        let height = TOP_PX + tall * scale + FOOT_PX + 26.0;
+        let left = (self.width_px - wide * scale) / 2.0;
+        let at = |p: Place| (left + (p.0 - low.0) * scale, TOP_PX + 12.0 + (high.1 - p.1) * scale);
+        let mut out = head(&self.title, &self.description, self.width_px, height);
+        text(&mut out, (16.0, 24.0), "start", " font-size=\"15\" font-weight=\"bold\"", &self.title);
+        for tube in &self.tubes {
+            tube.draw(&mut out, 0.0, scale, &at, "fill=\"#D5D5D5\" stroke=\"#8A8A8A\"");
+        }
+        self.ground(&mut out, &at);
+        for tube in &self.tubes {
+            tube.draw(
+                &mut out,
+                self.factor,
+                scale,
+                &at,
+                "fill=\"#56B4E955\" stroke=\"#0072B2\" stroke-width=\"1.8\"",
+            );
+        }
+        self.pivots(&mut out, scale, &at);
+        self.payload(&mut out, &at);
+        self.foot(&mut out, scale, height);
+        out.push_str("</svg>\n");
+        out
+    }
+
+    fn stations(&self) -> impl Iterator<Item = (Place, Place)> + '_ {
+        let tubes = self.tubes.iter().flat_map(|t| t.line.iter().copied());
+        tubes.chain(self.pivots.iter().map(|p| p.at)).chain(self.payload)
+    }
+
+    /// Lower left and upper right corner of all that is drawn \[m\].
+    fn bounds(&self) -> (Place, Place) {
+        let half = self.tubes.iter().map(|t| t.size_m / 2.0).fold(0.02, f64::max);
+        let (mut low, mut high) = ((0.0f64, 0.0f64), (0.0f64, 0.0f64));
+        for (at, moved) in self.stations() {
+            for p in [at, displaced((at, moved), self.factor)] {
+                low = (low.0.min(p.0), low.1.min(p.1));
+                high = (high.0.max(p.0), high.1.max(p.1));
+            }
+        }
+        ((low.0 - half, low.1 - half), (high.0 + half, high.1 + half))
+    }
+
+    fn ground(&self, out: &mut String, at: &impl Fn(Place) -> (f64, f64)) {
+        let (x, y) = at((0.0, 0.0));
+        if self.upright {
+            let _ = writeln!(
+                out,
+                "<path d=\"M{} {}h44m-40 0l-8 9m18 -9l-8 9m18 -9l-8 9m18 -9l-8 9m14 -9\" fill=\"none\" stroke=\"{INK}\" \
+                 stroke-width=\"1.4\"/>",
+                px(x - 22.0),
+                px(y + 10.0)
+            );
+        }
+    }
+
+    /// Joints at their places in the bent arm, with one label for those at one place.
+    fn pivots(&self, out: &mut String, scale: f64, at: &impl Fn(Place) -> (f64, f64)) {
+        // labels stand above the thickest link
+        let raised = 9.0 + self.tubes.iter().map(|t| t.size_m / 2.0 * scale).fold(8.0, f64::max);
+        let mut labels: Vec<((f64, f64), Vec<&str>)> = Vec::new();
+        for pivot in &self.pivots {
+            let (x, y) = at(displaced(pivot.at, self.factor));
+            match pivot.axis {
+                None => {
+                    let _ = writeln!(
+                        out,
+                        "<circle cx=\"{0}\" cy=\"{1}\" r=\"6.5\" fill=\"#FFFFFF\" stroke=\"{INK}\" stroke-width=\"2\"/>\
+                         <circle cx=\"{0}\" cy=\"{1}\" r=\"1.8\"/>",
+                        px(x),
+                        px(y)
+                    );
+                }
+                Some(axis) => {
+                    let long = axis.0.hypot(axis.1).max(1e-9);
+                    let (dx, dy) = (11.0 * axis.0 / long, -11.0 * axis.1 / long);
+                    line(out, (x - dx, y - dy), (x + dx, y + dy), INK, 3.0);
+                }
+            }
+            let (x, y) = at(pivot.at.0);
+            match labels.iter_mut().find(|((lx, ly), _)| (lx - x).hypot(ly - y) < 24.0) {
+                Some((_, names)) => names.push(&pivot.name),
+                None => labels.push(((x, y), vec![&pivot.name])),
+            }
+        }
+        for ((x, y), names) in labels {
+            let words = names.join(" ");
+            let x = x.clamp(
+                8.0 + text_px(&words, FONT_PX) / 2.0,
+                self.width_px - 8.0 - text_px(&words, FONT_PX) / 2.0,
+            );
+            let rim = " font-size=\"12\" paint-order=\"stroke\" stroke=\"#FFFFFF\" stroke-width=\"3\"";
+            text(out, (x, (y - raised).max(TOP_PX - 2.0)), "middle", rim, &words);
+        }
+    }
+
+    fn payload(&self, out: &mut String, at: &impl Fn(Place) -> (f64, f64)) {
+        if let Some(payload) = self.payload {
+            let (x, y) = at(displaced(payload, self.factor));
+            if let Some(tip) = self.tubes.last().and_then(|t| t.line.last()) {
+                line(out, at(displaced(*tip, self.factor)), (x, y), INK, 1.4);
+            }
+            let _ = writeln!(
+                out,
+                "<rect x=\"{}\" y=\"{}\" width=\"13\" height=\"13\" fill=\"#D55E00\" stroke=\"{INK}\"><title>payload</title></rect>",
+                px(x - 6.5),
+                px(y - 6.5)
+            );
+        }
+    }
+
+    /// Scale bar, gravity and caption.
+    fn foot(&self, out: &mut String, scale: f64, height: f64) {
+        let bar_m =
+            [2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02].into_iter().find(|m| m * scale < 0.3 * self.width_px);
+        let bar_m = bar_m.unwrap_or(0.01);
+        let y = height - 34.0;
+        let end = 16.0 + bar_m * scale;
+        let _ = writeln!(
+            out,
+            "<path d=\"M16 {0}v6H{1}v-6\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"1.4\"/>",
+            px(y - 3.0),
+            px(end)
+        );
+        let small = format!(" font-size=\"{NOTE_PX}\"");
+        text(
+            out,
+            (end + 8.0, y + 4.0),
+            "start",
+            &small,
+            &format!("{} m", super::super::number::shortest(bar_m)),
+        );
+        if self.upright {
+            let x = self.width_px - 22.0;
+            let _ = writeln!(
+                out,
+                "<path d=\"M{0} {1}v22m-5 -7l5 7l5 -7\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"1.4\"/>",
+                px(x),
+                px(y - 22.0)
+            );
+            text(out, (x - 8.0, y - 6.0), "end", &small, "g");
+        }
+        text(out, (16.0, height - 10.0), "start", &small, &self.caption);
+    }
+}
+
+impl Tube {
+    fn draw(&self, out: &mut String, factor: f64, scale: f64, at: &impl Fn(Place) -> (f64, f64), look: &str) {
+        let points: Vec<(f64, f64)> = self.line.iter().map(|s| at(displaced(*s, factor))).collect();
+        let half = (self.size_m * scale / 2.0).max(1.6);
+        let normals: Vec<(f64, f64)> = (0..points.len()).map(|i| normal(&points, i)).collect();
+        let side = |sign: f64| -> Vec<String> {
+            let both = points.iter().zip(&normals);
+            both.map(|(p, n)| format!("{} {}", px(p.0 + sign * half * n.0), px(p.1 + sign * half * n.1)))
+                .collect()
+        };
+        let mut corners = side(1.0);
+        corners.extend(side(-1.0).into_iter().rev());
+        let _ = writeln!(
+            out,
+            "<path d=\"M{}z\" {look} stroke-linejoin=\"round\"><title>{}</title></path>",
+            corners.join("L"),
+            super::escape(&self.name)
+        );
+    }
+}
+
+/// Unit vector across a line at one of its points.
+fn normal(points: &[(f64, f64)], i: usize) -> (f64, f64) {
+    let (a, b) = (points[i.saturating_sub(1)], points[(i + 1).min(points.len() - 1)]);
+    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+    let long = dx.hypot(dy);
+    if long > 0.0 { (-dy / long, dx / long) } else { (0.0, 0.0) }
+}
+
+fn displaced(((x, y), (dx, dy)): (Place, Place), factor: f64) -> Place {
+    (x + factor * dx, y + factor * dy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sketch() -> ArmSketch {
+        let line = vec![((0.0, 0.0), (0.0, 0.0)), ((1.0, 0.0), (0.0, -0.002))];
+        ArmSketch {
+            title: "arm".into(),
+            tubes: vec![Tube { name: "a".into(), line, size_m: 0.1 }],
+            pivots: vec![Pivot { name: "j".into(), at: ((0.0, 0.0), (0.0, 0.0)), axis: None }],
+            factor: 50.0,
+            upright: true,
+            width_px: 500.0,
+            ..ArmSketch::default()
+        }
+    }
+
+    #[test]
+    fn the_factor_is_round_and_makes_the_motion_visible() {
+        assert_eq!(sketch().fitting_factor(), 50.0);
+        assert_eq!(ArmSketch::default().fitting_factor(), 1.0);
+    }
+
+    #[test]
+    fn a_tube_is_as_wide_as_it_is_beside_its_length() {
+        let svg = sketch().to_svg();
+        let path = svg.lines().find(|l| l.contains("#D5D5D5")).unwrap_or_default();
+        let numbers: Vec<f64> =
+            path.split(['M', 'L', ' ', 'z', '"']).filter_map(|w| w.parse().ok()).collect();
+        let (length, size) = (numbers[2] - numbers[0], (numbers[1] - numbers[7]).abs());
+        assert!((length / size - 10.0).abs() < 0.1, "{length} {size} {path}");
+    }
+}
