@@ -96,8 +96,7 @@ impl<'c> ArmProblem<'c> {
                 (SpacePiece::Choice(choice), Part::Link(option)) => Some(Element::Link(choice.link(option))),
                 (SpacePiece::Link(link), _) => Some(Element::Link(link.clone())),
                 (SpacePiece::Joint(joint), part) => {
-                    let (curve, mass_kg, names) = drive_of(&joint.drive, &part)?;
-                    let (gear, motor) = names.unzip();
+                    let (curve, mass_kg, [gear, motor]) = drive_of(&joint.drive, &part)?;
                     Some(Element::Joint(Joint {
                         name: joint.name.clone(),
                         axis: joint.axis,
@@ -134,15 +133,16 @@ impl<'c> ArmProblem<'c> {
     }
 }
 
-type NamedParts = Option<(String, String)>;
-
-fn drive_of(choice: &DriveChoice, part: &Part) -> Option<(Curve, f64, NamedParts)> {
+/// Curve, mass \[kg\], names of gear and motor.
+fn drive_of(choice: &DriveChoice, part: &Part) -> Option<(Curve, f64, [Option<String>; 2])> {
     match (choice, part) {
-        (DriveChoice::Given { curve, mass_kg, parts }, _) => Some((*curve, *mass_kg, parts.clone())),
+        (DriveChoice::Given { curve, mass_kg, gear, motor }, _) => {
+            Some((*curve, *mass_kg, [gear.clone(), motor.clone()]))
+        }
         (_, Part::Drive(drive)) => {
             let curve = windup_of(drive.gear).map_or(Curve::Rigid, Curve::Windup);
-            let names = (drive.gear.id.clone(), drive.motor.id.clone());
-            Some((curve, drive.mass_kg().ok()?, Some(names)))
+            let names = [&drive.gear.id, &drive.motor.id].map(|id| Some(id.clone()));
+            Some((curve, drive.mass_kg().ok()?, names))
         }
         _ => None,
     }
