@@ -35,7 +35,7 @@ pub fn run(args: &ReconcileArgs, catalogs: &Catalogs) -> Result<(Outcome, String
     let out = args.out.clone().unwrap_or_else(|| Path::new("results").join(&campaign.statement.name));
     let outcome = reconcile(&campaign);
     let files: Vec<(String, Vec<u8>)> =
-        outcome.files().into_iter().map(|(name, text)| (name.to_string(), text.into_bytes())).collect();
+        outcome.files().into_iter().map(|(name, text)| (name, text.into_bytes())).collect();
     write_all(&out, &files)?;
     let text = format!("{}written to {}\n", outcome.to_text(), out.display());
     Ok((outcome, text))

@@ -10,12 +10,10 @@ use super::model::{Calibration, Candidate, Knob, Model, Nuisance, candidates};
 use super::noise::Noise;
 use super::select::{Scored, Search, Selection};
 use super::verdict::{Calibrated, Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict};
-use super::{correct, locate, next_test};
+use super::{correct, few_rows, locate, next_test};
 
 /// Most alternatives an effect may have and still be named.
 const MOST_ALTERNATIVES: usize = 3;
-/// Fewest rows that can speak.
-const FEWEST_ROWS: usize = 11;
 /// Fewest poses that can speak.
 const FEWEST_POSES: usize = 3;
 
@@ -27,7 +25,11 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     let mut forward = Forward::new(campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
     let candidates = candidates(&forward);
-    let found = settle(&mut forward, &nuisance, &candidates);
+    let few = rows(campaign) < few_rows::FEWEST_ROWS;
+    let found = match few {
+        true => Settled::of_few(&forward, &nuisance, &candidates),
+        false => settle(&mut forward, &nuisance, &candidates),
+    };
     let weights = found.noise.weights(&forward);
     let coefficients = {
         let search =
@@ -42,6 +44,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     let bare = search.fit(&[], &found.selection.bare.u, Effort::default());
     let fit_test = lack_of_fit(campaign, &forward, &best, &weights);
     let alternatives = search.alternatives(&found.selection.best, &found.selection.others);
+    let explaining = few.then(|| few_rows::explaining(&search, &found.selection.others));
     let left_out = [&bare, &best].map(|f| kept_out::residuals(&forward, &f.model, &f.point.u, &weights));
     let analysis = Analysis {
         campaign,
@@ -55,6 +58,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         bare,
         lack_of_fit: fit_test,
         alternatives,
+        explaining,
         left_out,
     };
     analysis.conclude()
@@ -66,6 +70,16 @@ struct Settled {
     noise: Noise,
     /// Modes missing from lists, in words.
     missed: Vec<String>,
+}
+
+impl Settled {
+    /// A handful of readings: taken as declared, every small set of effects weighed.
+    fn of_few(forward: &Forward, nuisance: &Nuisance, candidates: &[Candidate]) -> Self {
+        let noise = Noise::default();
+        let weights = noise.weights(forward);
+        let search = Search { forward, nuisance, candidates, weights: &weights };
+        Self { selection: few_rows::weigh(&search), noise, missed: Vec::new() }
+    }
 }
 
 /// Searches with the deviations as declared, takes out gross errors and counts missed modes, searches
@@ -115,6 +129,8 @@ struct Analysis<'a> {
     bare: Fit<'a>,
     lack_of_fit: LackOfFit,
     alternatives: Vec<Vec<Scored>>,
+    /// With few rows: every set of effects that explains them.
+    explaining: Option<Vec<Scored>>,
     left_out: [Vec<Option<f64>>; 2],
 }
 
@@ -155,8 +171,10 @@ impl Analysis<'_> {
             lack_of_fit: Some(self.lack_of_fit.clone()),
             calibrated,
             evidence: if verdict == Verdict::Unexplained { Vec::new() } else { self.evidence() },
+            stages: Vec::new(),
             residuals: self.residuals(),
             corrected,
+            other_corrected: Vec::new(),
             provenance,
         }
     }
@@ -164,6 +182,9 @@ impl Analysis<'_> {
     fn verdict(&self, kept_out: &Option<KeptOut>) -> (Verdict, Vec<String>) {
         let mut reasons = too_little(self.campaign);
         if !reasons.is_empty() {
+            if let Some(explaining) = &self.explaining {
+                reasons.extend(few_rows::sentences(self.search, &self.bare, explaining));
+            }
             reasons.extend(self.unidentified());
             return (Verdict::InsufficientData, reasons);
         }
@@ -239,7 +260,8 @@ impl Analysis<'_> {
             let each = list.iter().zip(&self.forward.data);
             rms(each.filter_map(|(r, d)| Some((*r)? / self.noise.scale[d.channel as usize])))
         };
-        (count > 0).then(|| KeptOut {
+        // the readings of a single pose would be predicted from nothing
+        (count > 0 && self.forward.groups.len() > 1).then(|| KeptOut {
             rms_before: scaled(before),
             rms_after: scaled(after),
             rms_declared_after: rms(after.iter().flatten().copied()),
@@ -251,7 +273,7 @@ impl Analysis<'_> {
         let ends = intervals(self.forward, &self.best, self.weights);
         let mut knob = 0;
         let effects = self.best.model.effects.iter().enumerate();
-        effects
+        let mut findings: Vec<Finding> = effects
             .map(|(i, effect)| {
                 let first = self.best.model.first_knob(i);
                 let own = first..first + effect.knobs.len();
@@ -264,7 +286,11 @@ impl Analysis<'_> {
                 knob += effect.knobs.len();
                 finding
             })
-            .collect()
+            .collect();
+        if let Some(explaining) = &self.explaining {
+            few_rows::widen(self.search, explaining, &mut findings);
+        }
+        findings
     }
 
     fn rivals(&self, effect: usize) -> Vec<(String, String)> {
@@ -388,12 +414,16 @@ impl Analysis<'_> {
     }
 }
 
+fn rows(campaign: &Campaign) -> usize {
+    campaign.statics.len() + campaign.modal.len() + campaign.windup.len()
+}
+
 /// Why the readings cannot speak at all.
 fn too_little(campaign: &Campaign) -> Vec<String> {
     let mut reasons = Vec::new();
-    let rows = campaign.statics.len() + campaign.modal.len() + campaign.windup.len();
-    if rows < FEWEST_ROWS {
-        reasons.push(format!("{rows} rows are too few: give at least {FEWEST_ROWS}"));
+    let rows = rows(campaign);
+    if rows < few_rows::FEWEST_ROWS {
+        reasons.push(format!("{rows} rows are too few: give at least {}", few_rows::FEWEST_ROWS));
     }
     let mut poses: Vec<&Vec<f64>> = campaign
         .statics
@@ -403,7 +433,7 @@ fn too_little(campaign: &Campaign) -> Vec<String> {
         .collect();
     poses.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
     poses.dedup();
-    if poses.len() < FEWEST_POSES && !(poses.is_empty() && rows >= FEWEST_ROWS) {
+    if poses.len() < FEWEST_POSES && !(poses.is_empty() && rows >= few_rows::FEWEST_ROWS) {
         reasons.push(format!(
             "{} distinct pose(s): effects at different places look alike; measure at least {FEWEST_POSES}",
             poses.len()
@@ -425,8 +455,8 @@ fn too_little(campaign: &Campaign) -> Vec<String> {
 /// A fitted effect's parameters with their intervals.
 fn parameters(effect: &Candidate, u: &[f64], ends: &[Interval]) -> Vec<(String, Vec<Estimate>)> {
     let mut out: Vec<(String, Vec<Estimate>)> = Vec::new();
-    for ((knob, &u), interval) in effect.knobs.iter().zip(u).zip(ends) {
-        let estimate = estimate(knob, u, interval);
+    for ((knob, value), interval) in effect.knobs.iter().zip(effect.numbers(u)).zip(ends) {
+        let estimate = estimate(knob, value, interval);
         match out.iter_mut().find(|(name, _)| name == knob.name) {
             Some((_, list)) => list.push(estimate),
             None => out.push((knob.name.to_string(), vec![estimate])),
@@ -439,10 +469,10 @@ fn parameters(effect: &Candidate, u: &[f64], ends: &[Interval]) -> Vec<(String, 
     out
 }
 
-fn estimate(knob: &Knob, u: f64, interval: &Interval) -> Estimate {
+fn estimate(knob: &Knob, value: f64, interval: &Interval) -> Estimate {
     let (low, high) = match knob.reversed() {
         true => (interval.high, interval.low),
         false => (interval.low, interval.high),
     };
-    Estimate { value: knob.value(u), low: low.map(|u| knob.value(u)), high: high.map(|u| knob.value(u)) }
+    Estimate { value, low: low.map(|u| knob.value(u)), high: high.map(|u| knob.value(u)) }
 }

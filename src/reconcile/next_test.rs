@@ -31,7 +31,7 @@ const STATIC_POSES: usize = 24;
 const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
 /// Separation that settles a question \[standard deviations\].
-const ENOUGH: f64 = 4.0;
+pub const ENOUGH: f64 = 4.0;
 /// Deviations that are assumed where a channel was not measured.
 const DEFAULT_SIGMA_MM: f64 = 0.01;
 const DEFAULT_SIGMA_PART: f64 = 0.003;
@@ -121,6 +121,15 @@ fn ranges(campaign: &Campaign) -> Vec<(f64, f64)> {
         .collect()
 }
 
+/// A pose of Halton's sequence within ranges of angles \[deg\], in whole degrees.
+pub fn spread_pose(ranges: &[(f64, f64)], index: usize) -> Vec<f64> {
+    ranges
+        .iter()
+        .enumerate()
+        .map(|(j, (low, high))| (low + (high - low) * halton(index, PRIMES[j % PRIMES.len()])).round())
+        .collect()
+}
+
 /// Halton's sequence.
 fn halton(mut index: usize, base: usize) -> f64 {
     let (mut f, mut r) = (1.0, 0.0);
@@ -132,17 +141,12 @@ fn halton(mut index: usize, base: usize) -> f64 {
     r
 }
 
-const PRIMES: [usize; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
+const PRIMES: [usize; 20] =
+    [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71];
 
 fn tests(campaign: &Campaign) -> Vec<Test> {
     let ranges = ranges(campaign);
-    let pose = |index: usize| -> Vec<f64> {
-        ranges
-            .iter()
-            .enumerate()
-            .map(|(j, (low, high))| (low + (high - low) * halton(index, PRIMES[j % PRIMES.len()])).round())
-            .collect()
-    };
+    let pose = |index: usize| spread_pose(&ranges, index);
     let payload = largest_payload(campaign);
     let sigma_mm = campaign.statics.first().map_or(DEFAULT_SIGMA_MM, |r| r.sigma_mm);
     let force = campaign.statics.iter().map(|r| r.force_n.norm()).fold(0.0, f64::max).max(100.0).round();
