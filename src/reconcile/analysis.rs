@@ -6,7 +6,7 @@ use super::forward::Forward;
 use super::interval::{Interval, deviations, intervals};
 use super::kept_out::{self, KeptOut, rms};
 use super::lack_of_fit::{LackOfFit, lack_of_fit};
-use super::model::{Calibration, Candidate, Knob, Model, Nuisance, candidates};
+use super::model::{Calibration, Candidate, Model, Nuisance, candidates};
 use super::noise::Noise;
 use super::select::{Scored, Search, Selection};
 use super::verdict::{Calibrated, Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict};
@@ -44,7 +44,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     let bare = search.fit(&[], &found.selection.bare.u, Effort::default());
     let fit_test = lack_of_fit(campaign, &forward, &best, &weights);
     let alternatives = search.alternatives(&found.selection.best, &found.selection.others);
-    let explaining = few.then(|| few_rows::explaining(&search, &found.selection.others));
+    let explaining = few.then(|| found.selection.others.clone());
     let left_out = [&bare, &best].map(|f| kept_out::residuals(&forward, &f.model, &f.point.u, &weights));
     let analysis = Analysis {
         campaign,
@@ -183,7 +183,7 @@ impl Analysis<'_> {
         let mut reasons = too_little(self.campaign);
         if !reasons.is_empty() {
             if let Some(explaining) = &self.explaining {
-                reasons.extend(few_rows::sentences(self.search, &self.bare, explaining));
+                reasons.extend(few_rows::sentences(self.search, self.campaign, &self.bare, explaining));
             }
             reasons.extend(self.unidentified());
             return (Verdict::InsufficientData, reasons);
@@ -270,10 +270,13 @@ impl Analysis<'_> {
     }
 
     fn findings(&self) -> Vec<Finding> {
+        if let Some(explaining) = &self.explaining {
+            return few_rows::suspects(self.search, explaining, self.weights);
+        }
         let ends = intervals(self.forward, &self.best, self.weights);
         let mut knob = 0;
         let effects = self.best.model.effects.iter().enumerate();
-        let mut findings: Vec<Finding> = effects
+        effects
             .map(|(i, effect)| {
                 let first = self.best.model.first_knob(i);
                 let own = first..first + effect.knobs.len();
@@ -286,11 +289,7 @@ impl Analysis<'_> {
                 knob += effect.knobs.len();
                 finding
             })
-            .collect();
-        if let Some(explaining) = &self.explaining {
-            few_rows::widen(self.search, explaining, &mut findings);
-        }
-        findings
+            .collect()
     }
 
     fn rivals(&self, effect: usize) -> Vec<(String, String)> {
@@ -382,10 +381,12 @@ impl Analysis<'_> {
     fn next_question(&self, verdict: Verdict) -> next_test::Question<'_> {
         let subject = |model: &Model, u: &[f64]| model.subject(self.forward, u);
         let best = (self.best.model.label(), subject(&self.best.model, &self.best.point.u));
-        let mut rivals: Vec<(String, crate::arm::effect::Subject)> = self
-            .alternatives
-            .iter()
-            .flatten()
+        let others: Vec<&Scored> = match &self.explaining {
+            Some(sets) => sets.iter().skip(1).collect(),
+            None => self.alternatives.iter().flatten().collect(),
+        };
+        let mut rivals: Vec<(String, crate::arm::effect::Subject)> = others
+            .into_iter()
             .take(4)
             .map(|s| {
                 let model = self.search.model(&s.effects);
@@ -456,7 +457,7 @@ fn too_little(campaign: &Campaign) -> Vec<String> {
 fn parameters(effect: &Candidate, u: &[f64], ends: &[Interval]) -> Vec<(String, Vec<Estimate>)> {
     let mut out: Vec<(String, Vec<Estimate>)> = Vec::new();
     for ((knob, value), interval) in effect.knobs.iter().zip(effect.numbers(u)).zip(ends) {
-        let estimate = estimate(knob, value, interval);
+        let estimate = knob.estimate(value, interval);
         match out.iter_mut().find(|(name, _)| name == knob.name) {
             Some((_, list)) => list.push(estimate),
             None => out.push((knob.name.to_string(), vec![estimate])),
@@ -467,12 +468,4 @@ fn parameters(effect: &Candidate, u: &[f64], ends: &[Interval]) -> Vec<(String, 
         out.push(("factor".into(), effect.numbers(&[]).into_iter().map(stated).collect()));
     }
     out
-}
-
-fn estimate(knob: &Knob, value: f64, interval: &Interval) -> Estimate {
-    let (low, high) = match knob.reversed() {
-        true => (interval.high, interval.low),
-        false => (interval.low, interval.high),
-    };
-    Estimate { value, low: low.map(|u| knob.value(u)), high: high.map(|u| knob.value(u)) }
 }

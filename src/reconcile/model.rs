@@ -2,6 +2,8 @@
 
 use super::campaign::Tolerance;
 use super::forward::{Coefficients, Forward};
+use super::interval::Interval;
+use super::verdict::Estimate;
 use crate::arm::effect::{Channel, Effect, KINDS, Kind, Parameter, Place, Scale, Subject, fits_nominal};
 use crate::arm::{Arm, Curve, Element, LinkBody, Piece};
 
@@ -61,6 +63,15 @@ impl Knob {
             Scale::Reciprocal => 1.0 / value,
             Scale::Log => value.ln(),
         }
+    }
+
+    /// A fitted value with the interval of its `u`.
+    pub fn estimate(&self, value: f64, interval: &Interval) -> Estimate {
+        let (low, high) = match self.reversed() {
+            true => (interval.high, interval.low),
+            false => (interval.low, interval.high),
+        };
+        Estimate { value, low: low.map(|u| self.value(u)), high: high.map(|u| self.value(u)) }
     }
 
     /// Whether the value falls when `u` rises.

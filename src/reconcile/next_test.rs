@@ -206,19 +206,20 @@ fn bench(campaign: &Campaign, joint: &str) -> Test {
 fn predict(exact: &Exact, test: &Test) -> Vec<f64> {
     match test {
         Test::Static(rows) => exact.statics_mm(rows).into_iter().flatten().collect(),
-        Test::Modal(rows) => exact.frequencies_hz(rows).into_iter().map(|f| f.unwrap_or_default()).collect(),
+        Test::Modal(rows) => exact.frequencies_hz(rows).into_iter().map(|f| f.unwrap_or(f64::NAN)).collect(),
         Test::Bench(rows) => exact.windups_arcmin(rows),
     }
 }
 
-/// Root of the sum of squares of the difference \[standard deviations\].
+/// Root of the sum of squares of the difference \[standard deviations\], over the modes that both have.
 fn separation(test: &Test, a: &[f64], b: &[f64]) -> f64 {
     let sigma = |value: f64| match test {
         Test::Static(rows) => rows[0].sigma_mm,
         Test::Modal(_) => DEFAULT_SIGMA_PART * value.abs().max(1e-9),
         Test::Bench(rows) => rows[0].sigma_arcmin,
     };
-    a.iter().zip(b).map(|(a, b)| ((a - b) / sigma(*a)).powi(2)).sum::<f64>().sqrt()
+    let squares = a.iter().zip(b).map(|(a, b)| ((a - b) / sigma(*a)).powi(2));
+    squares.filter(|s| s.is_finite()).sum::<f64>().sqrt()
 }
 
 fn describe(question: &Question, test: &Test, sigmas: f64, gaps: Vec<(f64, &String)>) -> NextTest {

@@ -178,6 +178,14 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_given_gear_keeps_its_name_without_a_motor() {
+        let gear = Some("HFUC-50-100".to_string());
+        let choice =
+            DriveChoice::Given { curve: Curve::Linear(4e5), mass_kg: 3.2, gear: gear.clone(), motor: None };
+        assert_eq!(drive_of(&choice, &Part::Given), Some((Curve::Linear(4e5), 3.2, [gear, None])));
+    }
+
+    #[test]
     fn numbers_and_names_are_one_to_one() {
         let sizes = [3, 7, 2];
         for n in 0..42 {

@@ -61,8 +61,14 @@ struct Ready {
     point_m: Vector3<f64>,
 }
 
-/// The sag at every row.
-pub fn sags(campaign: &Campaign, tree: &Tree, geometry: &Geometry, candidates: &[Yielding], points: &[String]) -> Vec<Sag> {
+/// The sag at every row; `points`: the point of each.
+pub fn sags(
+    campaign: &Campaign,
+    tree: &Tree,
+    geometry: &Geometry,
+    candidates: &[Yielding],
+    points: &[usize],
+) -> Vec<Sag> {
     let ready: Vec<Vec<Ready>> = campaign
         .arms()
         .iter()
@@ -77,10 +83,8 @@ pub fn sags(campaign: &Campaign, tree: &Tree, geometry: &Geometry, candidates: &
     campaign
         .positions
         .par_iter()
-        .map(|row| {
-            let point = points.iter().position(|p| *p == row.point).unwrap_or_default();
-            sag(tree, &ready, trunk, candidates, row, point)
-        })
+        .zip(points)
+        .map(|(row, &point)| sag(tree, &ready, trunk, candidates, row, point))
         .collect()
 }
 
@@ -163,7 +167,7 @@ fn sag(
         known.items.splice(known_trunk..known_trunk, hanging().map(Item::Body));
         unit.items.splice(unit_trunk..unit_trunk, hanging().map(Item::Body));
     }
-    let (per_compliance, levers) = signatures(&unit, own, candidates);
+    let (per_compliance, levers) = signatures(tree, &unit, own, candidates);
     Sag { known_m: known.statics().tip_displacement_m, per_compliance, levers }
 }
 
@@ -189,15 +193,19 @@ fn own_body(element: &ElasticElement, structure: &Structure) -> Option<Body> {
 }
 
 /// Every candidate's displacement at unit compliance per direction of gravity, and its lever and torque.
-fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Matrix3<f64>>, Vec<(Vector3<f64>, f64)>) {
+fn signatures(tree: &Tree, unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Matrix3<f64>>, Vec<(Vector3<f64>, f64)>) {
     let mut per_compliance = vec![Matrix3::zeros(); candidates.len()];
     let mut levers = vec![(Vector3::zeros(), 0.0); candidates.len()];
     // weight and its first moment of everything outboard
+    let mut follower: Option<(Vec<(String, f64)>, Vector3<f64>, Vector3<f64>)> = None;
     let (mut weight_n, mut moment_nm) = (0.0, Vector3::zeros());
     for item in unit.items.iter().rev() {
         let body = match item {
             Item::Body(body) => Some(body.clone()),
             Item::Elastic(element) => {
+                if let Some(joint) = followers(tree, &element.name) {
+                    follower = Some((joint, displacement_at(&element.twists[0], &unit.tip_m), pull(&element.twists[0], weight_n, &moment_nm)));
+                }
                 if let Some(i) = candidates.iter().position(|c| share_name(c) == element.name) {
                     let answer = |t: &Twist| pull(t, weight_n, &moment_nm);
                     per_compliance[i] = element
@@ -205,6 +213,10 @@ fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Matrix
                         .iter()
                         .map(|t| displacement_at(t, &unit.tip_m) * answer(t).transpose())
                         .sum();
+                    if std::env::var_os("AW_LINK").is_some() && let Some((terms, disp, pulled)) = &follower && let Some((_, f)) = terms.iter().find(|(n, _)| *n == element.name) {
+                        let t = &element.twists[0];
+                        per_compliance[i] = (displacement_at(t, &unit.tip_m) + disp * *f) * (answer(t) + pulled * *f).transpose();
+                    }
                     let first = &element.twists[0];
                     levers[i] = (displacement_at(first, &unit.tip_m), -answer(first).z);
                 }
@@ -222,6 +234,16 @@ fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Matrix
 /// Generalized force of gravity on a twist, per direction of gravity.
 fn pull(twist: &Twist, weight_n: f64, moment_nm: &Vector3<f64>) -> Vector3<f64> {
     linear(twist) * weight_n + angular(twist).cross(moment_nm)
+}
+
+fn followers(tree: &Tree, name: &str) -> Option<Vec<(String, f64)>> {
+    tree.pieces.iter().find_map(|p| match p {
+        Piece::Joint(j) if j.name == name => match &j.angle {
+            crate::arm::JointAngle::Coupled(terms) => Some(terms.iter().map(|(i, f)| (tree.driven[*i].clone(), *f)).collect()),
+            _ => None,
+        },
+        _ => None,
+    })
 }
 
 fn share_name(candidate: &Yielding) -> String {

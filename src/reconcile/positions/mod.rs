@@ -10,6 +10,7 @@ pub mod fit;
 pub mod kinematics;
 pub mod loads;
 mod outcome;
+mod sessions;
 mod structure;
 mod tree;
 
@@ -69,7 +70,10 @@ pub struct Positions {
     samples: Vec<Sample>,
     numbers: Vec<Number>,
     tree: Tree,
+    /// Points, those of separate sessions apart.
     points: Vec<String>,
+    /// Where sessions were told apart, in words.
+    sessions: Vec<String>,
     /// Errors of the last stage's kept-out predictions \[m\], by row.
     kept_out: Vec<Vector3<f64>>,
 }
@@ -78,6 +82,12 @@ pub struct Positions {
 pub fn analyze(campaign: &Campaign) -> Positions {
     let mut found = Positions::new(campaign);
     found.calibrate(campaign);
+    if campaign.statement.positions.tool_offset {
+        found.sessions = found.find_sessions();
+        if !found.sessions.is_empty() {
+            found.stage("sessions".into());
+        }
+    }
     found.rigid = found.fitted.clone();
     for class in CLASSES {
         while let Some((added, next)) = found.add(class) {
@@ -112,6 +122,7 @@ impl Positions {
             numbers: Vec::new(),
             tree,
             points,
+            sessions: Vec::new(),
             kept_out: Vec::new(),
         }
     }
@@ -139,7 +150,8 @@ impl Positions {
     /// Computes what gravity does anew, for the geometry as fitted.
     fn refresh(&mut self, campaign: &Campaign) {
         self.fitted.geometry.relevel();
-        let sags = sags(campaign, &self.tree, &self.fitted.geometry, &self.candidates, &self.points);
+        let points: Vec<usize> = self.samples.iter().map(|s| s.point).collect();
+        let sags = sags(campaign, &self.tree, &self.fitted.geometry, &self.candidates, &points);
         self.samples.iter_mut().zip(sags).for_each(|(sample, sag)| sample.sag = sag);
     }
 
@@ -268,10 +280,15 @@ fn samples(
     candidates: &[Yielding],
     points: &[String],
 ) -> Vec<Sample> {
-    let sags = sags(campaign, tree, geometry, candidates, points);
+    let points: Vec<usize> = campaign
+        .positions
+        .iter()
+        .map(|row| points.iter().position(|p| *p == row.point).unwrap_or_default())
+        .collect();
+    let sags = sags(campaign, tree, geometry, candidates, &points);
     let mut poses: Vec<&Vec<f64>> = Vec::new();
-    let rows = campaign.positions.iter().zip(sags);
-    rows.map(|(row, sag)| {
+    let rows = campaign.positions.iter().zip(sags).zip(points);
+    rows.map(|((row, sag), point)| {
         let known = poses.iter().position(|p| **p == row.pose_deg);
         let group = known.unwrap_or_else(|| {
             poses.push(&row.pose_deg);
@@ -280,7 +297,7 @@ fn samples(
         Sample {
             pose_rad: row.pose_deg.iter().map(|a| a.to_radians()).collect(),
             arm: row.arm,
-            point: points.iter().position(|p| *p == row.point).unwrap_or_default(),
+            point,
             group,
             measured_m: Vector3::from(row.position_mm) / 1e3,
             sag,

@@ -32,7 +32,8 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     let lack_of_fit = found.lack_of_fit(campaign);
     let rivals: Vec<Vec<(usize, Fitted)>> = (0..found.fitted.effects.len()).map(|i| found.rivals(i)).collect();
     let findings: Vec<Finding> = (0..found.fitted.effects.len()).map(|i| found.finding(i, &rivals[i])).collect();
-    let (verdict, reasons) = found.verdict(campaign, &lack_of_fit, &findings);
+    let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings);
+    reasons.extend(found.sessions.iter().cloned());
     let next_tests = found.next_tests(campaign, verdict, &rivals);
     let (effects, suspects) = match verdict {
         Verdict::Explained => (findings, Vec::new()),
