@@ -19,6 +19,7 @@ pub mod beam;
 pub mod chain;
 pub mod condensed;
 pub mod lanes;
+pub mod linkage;
 pub mod lowest;
 pub mod lowest_lanes;
 pub mod modes;

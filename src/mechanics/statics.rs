@@ -1,6 +1,7 @@
 //! How far the tip moves under gravity and load (Eqs 4, 7, 13-15).
 
 use super::chain::{ElasticElement, Item, Posed, Yielding};
+use super::linkage::Carried;
 use super::{Twist, Wrench, angular, displacement_at, force_wrench, linear};
 use nalgebra::Vector3;
 
@@ -37,6 +38,7 @@ impl Posed<'_> {
     /// and what that answer moves the tip by.
     pub fn statics(&self) -> Statics {
         let mut wrench = force_wrench(&self.tip_force_n, &self.tip_m);
+        let carried = self.carried();
         let mut out = Statics {
             joint_torques_nm: Vec::new(),
             tip_displacement_m: Vector3::zeros(),
@@ -48,7 +50,7 @@ impl Posed<'_> {
         for item in self.items.iter().rev() {
             match item {
                 Item::Body(body) => wrench += body.weight(),
-                Item::Elastic(element) => self.yield_to(element, &mut wrench, &mut out),
+                Item::Elastic(element) => self.yield_to(element, &carried, &mut wrench, &mut out),
             }
         }
         out.joint_torques_nm.reverse();
@@ -62,12 +64,16 @@ impl Posed<'_> {
 
     /// One element under the outboard wrench: its deformation, its tangent, its share; then its own
     /// weight joins the wrench.
-    fn yield_to(&self, element: &ElasticElement, wrench: &mut Wrench, out: &mut Statics) {
+    fn yield_to(&self, element: &ElasticElement, carried: &[Carried], wrench: &mut Wrench, out: &mut Statics) {
         let mut motion = Twist::zeros();
         let tangents = match &element.yielding {
             Yielding::Joint(law) => {
-                let torque_nm = element.twists[0].dot(wrench);
-                motion += element.twists[0] * law.rising_angle_rad(torque_nm);
+                let (mut twist, mut torque_nm) = (element.twists[0], element.twists[0].dot(wrench));
+                for passive in carried.iter().filter(|c| c.driver == element.name) {
+                    twist += passive.twist;
+                    torque_nm += passive.torque_nm;
+                }
+                motion += twist * law.rising_angle_rad(torque_nm);
                 out.joint_torques_nm.push((element.name.clone(), torque_nm));
                 vec![law.tangent_compliance_rad_per_nm(torque_nm)]
             }

@@ -24,7 +24,8 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     }
     let mut forward = Forward::new(campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
-    let candidates = candidates(&forward);
+    let mut candidates = candidates(&forward);
+    candidates.retain(|c| campaign.statement.considers(c.kind.name));
     let few = rows(campaign) < few_rows::FEWEST_ROWS;
     let found = match few {
         true => Settled::of_few(&forward, &nuisance, &candidates),

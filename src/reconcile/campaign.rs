@@ -4,7 +4,7 @@ use super::readings::{
     ModalRow, PositionRow, StaticRow, WindupRow, modal_rows, position_rows, static_rows, windup_rows,
 };
 use super::table::Table;
-use crate::arm::effect::Channel;
+use crate::arm::effect::{Channel, KINDS};
 use crate::arm::{Arm, Element, read_arm};
 use crate::catalog::Catalogs;
 use crate::fault::{Document, Fault, Faults, InputError, Node, Object};
@@ -49,6 +49,8 @@ pub struct Statement {
     pub payload_density_kg_m3: f64,
     /// Whether the nominal model holds the links rigid.
     pub rigid_links: bool,
+    /// The effects that come into question; all without a list.
+    pub effects: Option<Vec<String>>,
     /// What is free in absolute positions.
     pub positions: PositionsSpec,
     arm_file: String,
@@ -108,6 +110,7 @@ fn statement(node: &Node) -> Option<Statement> {
         "windup",
         "positions",
         "links",
+        "effects",
         "description",
         "machine",
         "date",
@@ -129,12 +132,14 @@ fn statement(node: &Node) -> Option<Statement> {
         "full" => Some(false),
         other => n.fault(format!("\"{other}\" is not known"), "choose one of: rigid, full"),
     });
+    let effects = root.or("effects", None, |n| read_effect_names(n).map(Some));
     let positions = root.or("positions", PositionsSpec::default(), read_positions);
     Some(Statement {
         name: name?,
         tolerance: tolerance?,
         payload_density_kg_m3: payload_density_kg_m3?,
         rigid_links: rigid_links?,
+        effects: effects?,
         positions: positions?,
         arm_file: arm_file?,
         other_arm_files: other_arm_files?,
@@ -173,6 +178,16 @@ fn read_positions(node: &Node) -> Option<PositionsSpec> {
     })
 }
 
+fn read_effect_names(node: &Node) -> Option<Vec<String>> {
+    let known: Vec<&str> = KINDS.iter().map(|k| k.name).collect();
+    let read = |n: &Node| match n.string()? {
+        name if known.contains(&name) => Some(name.to_string()),
+        name => n.fault(format!("effect \"{name}\" is not known"), &format!("known effects: {}", known.join(", "))),
+    };
+    let names: Vec<Option<String>> = node.array()?.iter().map(read).collect();
+    names.into_iter().collect()
+}
+
 fn read_names(node: &Node) -> Option<Vec<String>> {
     node.array()?.iter().map(|n| n.string().map(String::from)).collect()
 }
@@ -183,6 +198,13 @@ fn file_of(root: &Object, channel: Channel) -> Option<String> {
     match node.value().get("file").and_then(|v| v.as_str()) {
         Some(file) => Some(file.to_string()),
         None => Some(DEFAULT_FILES[channel as usize].to_string()),
+    }
+}
+
+impl Statement {
+    /// Whether an effect comes into question.
+    pub fn considers(&self, effect: &str) -> bool {
+        self.effects.as_ref().is_none_or(|list| list.iter().any(|name| name == effect))
     }
 }
 

@@ -5,7 +5,7 @@ use super::forward::{ARCMIN_PER_RAD, bench_twists_rad};
 use super::readings::{ModalRow, PositionRow, StaticRow, WindupRow};
 use crate::arm::effect::{Channel, Subject};
 use crate::arm::{JointLaw, LinkModel, LinkPiece, Payload, Piece, Structure};
-use crate::mechanics::chain::{Item, Posed, Yielding};
+use crate::mechanics::chain::{Posed, Yielding};
 use crate::mechanics::{Chain, Twist, displacement_at};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
@@ -162,12 +162,13 @@ pub fn seen_from_tool(payload: &Payload, tool_m: &Vector3<f64>) -> Payload {
 /// Each joint's law, twist and torque, base to tip.
 fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
     let torques = posed.statics().joint_torques_nm;
-    let laws = posed.items.iter().filter_map(|item| match item {
-        Item::Elastic(element) => match element.yielding {
-            Yielding::Joint(law) => Some((law, element.twists[0])),
+    let mut twists = posed.tip_twists().into_iter();
+    let laws = posed.elements().filter_map(|element| {
+        let first = twists.by_ref().take(element.twists.len()).collect::<Vec<_>>()[0];
+        match element.yielding {
+            Yielding::Joint(law) => Some((law, first)),
             Yielding::Linear(_) => None,
-        },
-        Item::Body(_) => None,
+        }
     });
     laws.zip(torques).map(|((law, twist), (_, torque))| (law, twist, torque)).collect()
 }

@@ -167,7 +167,7 @@ fn sag(
         known.items.splice(known_trunk..known_trunk, hanging().map(Item::Body));
         unit.items.splice(unit_trunk..unit_trunk, hanging().map(Item::Body));
     }
-    let (per_compliance, levers) = signatures(tree, &unit, own, candidates);
+    let (per_compliance, levers) = signatures(&unit, own, candidates);
     Sag { known_m: known.statics().tip_displacement_m, per_compliance, levers }
 }
 
@@ -193,33 +193,40 @@ fn own_body(element: &ElasticElement, structure: &Structure) -> Option<Body> {
 }
 
 /// Every candidate's displacement at unit compliance per direction of gravity, and its lever and torque.
-fn signatures(tree: &Tree, unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Matrix3<f64>>, Vec<(Vector3<f64>, f64)>) {
-    let mut per_compliance = vec![Matrix3::zeros(); candidates.len()];
-    let mut levers = vec![(Vector3::zeros(), 0.0); candidates.len()];
+fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Matrix3<f64>>, Vec<(Vector3<f64>, f64)>) {
+    let answers = answers(unit, own);
+    let of = |name: &str| answers.iter().find(|(n, _)| *n == name).map_or(Vec::new(), |(_, list)| list.clone());
+    candidates
+        .iter()
+        .map(|candidate| {
+            let mut list = of(&share_name(candidate));
+            for linkage in unit.chain.linkages().iter().filter(|l| l.driver == share_name(candidate)) {
+                for (driver, passive) in list.iter_mut().zip(of(&linkage.passive)) {
+                    driver.0 += passive.0 * linkage.factor;
+                    driver.1 += passive.1 * linkage.factor;
+                }
+            }
+            let per_compliance: Matrix3<f64> = list.iter().map(|(motion, pull)| motion * pull.transpose()).sum();
+            let lever = list.first().map_or((Vector3::zeros(), 0.0), |(motion, pull)| (*motion, -pull.z));
+            (per_compliance, lever)
+        })
+        .unzip()
+}
+
+/// What a twist moves the point by, and the force of gravity on it per direction.
+type Answer = (Vector3<f64>, Vector3<f64>);
+
+/// The answers of every element's twists.
+fn answers<'a>(unit: &'a Posed, own: &Ready) -> Vec<(&'a str, Vec<Answer>)> {
+    let mut out = Vec::new();
     // weight and its first moment of everything outboard
-    let mut follower: Option<(Vec<(String, f64)>, Vector3<f64>, Vector3<f64>)> = None;
     let (mut weight_n, mut moment_nm) = (0.0, Vector3::zeros());
     for item in unit.items.iter().rev() {
         let body = match item {
             Item::Body(body) => Some(body.clone()),
             Item::Elastic(element) => {
-                if let Some(joint) = followers(tree, &element.name) {
-                    follower = Some((joint, displacement_at(&element.twists[0], &unit.tip_m), pull(&element.twists[0], weight_n, &moment_nm)));
-                }
-                if let Some(i) = candidates.iter().position(|c| share_name(c) == element.name) {
-                    let answer = |t: &Twist| pull(t, weight_n, &moment_nm);
-                    per_compliance[i] = element
-                        .twists
-                        .iter()
-                        .map(|t| displacement_at(t, &unit.tip_m) * answer(t).transpose())
-                        .sum();
-                    if std::env::var_os("AW_LINK").is_some() && let Some((terms, disp, pulled)) = &follower && let Some((_, f)) = terms.iter().find(|(n, _)| *n == element.name) {
-                        let t = &element.twists[0];
-                        per_compliance[i] = (displacement_at(t, &unit.tip_m) + disp * *f) * (answer(t) + pulled * *f).transpose();
-                    }
-                    let first = &element.twists[0];
-                    levers[i] = (displacement_at(first, &unit.tip_m), -answer(first).z);
-                }
+                let answer = |t: &Twist| (displacement_at(t, &unit.tip_m), pull(t, weight_n, &moment_nm));
+                out.push((element.name.as_str(), element.twists.iter().map(answer).collect()));
                 own_body(element, &own.unit_structure)
             }
         };
@@ -228,22 +235,12 @@ fn signatures(tree: &Tree, unit: &Posed, own: &Ready, candidates: &[Yielding]) -
             moment_nm += body.cg_m * body.weight_n;
         }
     }
-    (per_compliance, levers)
+    out
 }
 
 /// Generalized force of gravity on a twist, per direction of gravity.
 fn pull(twist: &Twist, weight_n: f64, moment_nm: &Vector3<f64>) -> Vector3<f64> {
     linear(twist) * weight_n + angular(twist).cross(moment_nm)
-}
-
-fn followers(tree: &Tree, name: &str) -> Option<Vec<(String, f64)>> {
-    tree.pieces.iter().find_map(|p| match p {
-        Piece::Joint(j) if j.name == name => match &j.angle {
-            crate::arm::JointAngle::Coupled(terms) => Some(terms.iter().map(|(i, f)| (tree.driven[*i].clone(), *f)).collect()),
-            _ => None,
-        },
-        _ => None,
-    })
 }
 
 fn share_name(candidate: &Yielding) -> String {

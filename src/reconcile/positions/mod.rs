@@ -109,7 +109,8 @@ impl Positions {
         let tree = Tree::new(campaign);
         let points = points(campaign);
         let geometry = Geometry::nominal(&tree, points.len());
-        let candidates = candidates(&tree);
+        let mut candidates = candidates(&tree);
+        candidates.retain(|c| campaign.statement.considers(c.effect));
         let samples = samples(campaign, &tree, &geometry, &candidates, &points);
         let fitted = Fitted::rigid(geometry, ROUGH_M);
         Self {
