@@ -31,7 +31,11 @@ fn the_papers_frequencies_want_more_mass_at_the_wrist_than_its_table_has() {
 #[test]
 fn the_papers_third_spring_cannot_be_identified_from_three_frequencies() {
     let outcome = outcome();
-    assert!(outcome.reasons.iter().any(|r| r.contains("stiffness of wrist cannot be identified")), "{}", outcome.to_text());
+    assert!(
+        outcome.reasons.iter().any(|r| r.contains("stiffness of wrist cannot be identified")),
+        "{}",
+        outcome.to_text()
+    );
     let spring = suspect(&outcome, "connection_compliance@wrist").parameters[0].1[0];
     assert_eq!(spring.high, None, "it may not be there at all");
 }

@@ -125,7 +125,8 @@ fn an_arm_that_leans_is_told_by_the_direction_of_gravity() {
     let outcome = |folder: &Path| reconcile(&read(folder));
     let upright = outcome(folder.path());
     let text = std::fs::read_to_string(&statement).expect("text");
-    std::fs::write(&statement, text.replace("\"geometry\"", "\"gravity_direction\":true,\"geometry\"")).expect("written");
+    std::fs::write(&statement, text.replace("\"geometry\"", "\"gravity_direction\":true,\"geometry\""))
+        .expect("written");
     let campaign = read(folder.path());
     let leaning = reconcile(&campaign);
     let last = |o: &Outcome| o.stages.last().expect("stages").median_mm;
@@ -139,7 +140,11 @@ fn an_arm_that_leans_is_told_by_the_direction_of_gravity() {
 fn a_reflector_that_was_put_back_elsewhere_is_a_session_of_its_own() {
     let outcome = reconcile(&read(standard().write(&Made::put_back).path()));
     assert_eq!(outcome.verdict, Verdict::Explained, "{}", outcome.to_text());
-    assert!(outcome.reasons.iter().any(|r| r.contains("tip sat 3") && r.contains("before row 41")), "{:?}", outcome.reasons);
+    assert!(
+        outcome.reasons.iter().any(|r| r.contains("tip sat 3") && r.contains("before row 41")),
+        "{:?}",
+        outcome.reasons
+    );
 }
 
 #[test]
@@ -156,10 +161,16 @@ fn displacements_beside_positions_are_refused_and_told_what_to_do() {
 fn arms_that_share_no_trunk_and_mounts_that_are_no_links_are_faults() {
     let folder = standard().write(&Made::rigid);
     let arm = std::fs::read_to_string(folder.path().join("arm.json")).expect("text");
-    std::fs::write(folder.path().join("other.json"), arm.replace("[0.0,0.0,1.0]", "[1.0,0.0,0.0]").replace("\"made\"", "\"other\"")).expect("written");
+    std::fs::write(
+        folder.path().join("other.json"),
+        arm.replace("[0.0,0.0,1.0]", "[1.0,0.0,0.0]").replace("\"made\"", "\"other\""),
+    )
+    .expect("written");
     let statement = folder.path().join("campaign.json");
     let text = std::fs::read_to_string(&statement).expect("text");
-    let text = text.replacen('{', "{\"other_arms\": [\"other.json\"],", 1).replace("\"geometry\"", "\"mounts\": [\"nowhere\"], \"geometry\"");
+    let text = text
+        .replacen('{', "{\"other_arms\": [\"other.json\"],", 1)
+        .replace("\"geometry\"", "\"mounts\": [\"nowhere\"], \"geometry\"");
     std::fs::write(&statement, text).expect("written");
     let faults = Campaign::read(folder.path(), &Catalogs::default()).expect_err("faulty").to_string();
     assert!(faults.contains("\"q1\" of other is also in another arm, but not the same"), "{faults}");

@@ -65,7 +65,8 @@ impl Walk {
     }
 
     fn push_link(&mut self, name: &str, vector: Vector3<f64>, mass_kg: f64) {
-        self.chain.push(json!({"type": "link", "name": name, "vector_m": vector.as_slice(), "mass_kg": mass_kg}));
+        self.chain
+            .push(json!({"type": "link", "name": name, "vector_m": vector.as_slice(), "mass_kg": mass_kg}));
         self.written_m += vector;
     }
 }

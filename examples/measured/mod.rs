@@ -23,7 +23,8 @@ pub fn write(folder: &Path, files: &[(&str, String)]) -> io::Result<()> {
 /// The file cannot be read, or a cell is no number.
 pub fn read_numbers(path: &Path) -> io::Result<Vec<Vec<f64>>> {
     let text = std::fs::read_to_string(path)?;
-    let bad = |cell: &str| io::Error::new(io::ErrorKind::InvalidData, format!("{}: \"{cell}\"", path.display()));
+    let bad =
+        |cell: &str| io::Error::new(io::ErrorKind::InvalidData, format!("{}: \"{cell}\"", path.display()));
     let row = |line: &str| line.split(',').map(|c| c.trim().parse().map_err(|_| bad(c))).collect();
     text.lines().skip(1).map(row).collect()
 }

@@ -53,11 +53,23 @@ pub fn campaign(data: &Path, folder: &Path) -> io::Result<()> {
     for row in read_numbers(data)? {
         let angles: Vec<String> = row[1..8].iter().map(|q| q.to_degrees().to_string()).collect();
         let at: Vec<String> = row[8..11].iter().map(|x| (1e3 * x).to_string()).collect();
-        positions.push_str(&format!("{},{},reflector,{},{SIGMA_MM}\n", row[0], angles.join(","), at.join(",")));
+        positions.push_str(&format!(
+            "{},{},reflector,{},{SIGMA_MM}\n",
+            row[0],
+            angles.join(","),
+            at.join(",")
+        ));
     }
     let free = json!({
         "base_placement": true, "tool_offset": true, "joint_offsets": true, "geometry": true,
     });
     let statement = json!({"name": "motoman-ma1400", "positions": free});
-    write(folder, &[("positions.csv", positions), ("arm.json", arm().to_string()), ("campaign.json", statement.to_string())])
+    write(
+        folder,
+        &[
+            ("positions.csv", positions),
+            ("arm.json", arm().to_string()),
+            ("campaign.json", statement.to_string()),
+        ],
+    )
 }

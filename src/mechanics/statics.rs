@@ -64,7 +64,13 @@ impl Posed<'_> {
 
     /// One element under the outboard wrench: its deformation, its tangent, its share; then its own
     /// weight joins the wrench.
-    fn yield_to(&self, element: &ElasticElement, carried: &[Carried], wrench: &mut Wrench, out: &mut Statics) {
+    fn yield_to(
+        &self,
+        element: &ElasticElement,
+        carried: &[Carried],
+        wrench: &mut Wrench,
+        out: &mut Statics,
+    ) {
         let mut motion = Twist::zeros();
         let tangents = match &element.yielding {
             Yielding::Joint(law) => {

@@ -182,7 +182,10 @@ fn read_effect_names(node: &Node) -> Option<Vec<String>> {
     let known: Vec<&str> = KINDS.iter().map(|k| k.name).collect();
     let read = |n: &Node| match n.string()? {
         name if known.contains(&name) => Some(name.to_string()),
-        name => n.fault(format!("effect \"{name}\" is not known"), &format!("known effects: {}", known.join(", "))),
+        name => n.fault(
+            format!("effect \"{name}\" is not known"),
+            &format!("known effects: {}", known.join(", ")),
+        ),
     };
     let names: Vec<Option<String>> = node.array()?.iter().map(read).collect();
     names.into_iter().collect()
@@ -282,9 +285,8 @@ impl Campaign {
 
     /// How many elements all arms begin with: the trunk.
     pub fn trunk(&self) -> usize {
-        let shared = |other: &Arm| {
-            self.arm.chain.iter().zip(&other.chain).take_while(|(a, b)| a == b).count()
-        };
+        let shared =
+            |other: &Arm| self.arm.chain.iter().zip(&other.chain).take_while(|(a, b)| a == b).count();
         self.other_arms.iter().map(shared).min().unwrap_or(self.arm.chain.len())
     }
 
@@ -296,13 +298,22 @@ impl Campaign {
         let mut names = vec![self.arm.name.as_str()];
         for other in &self.other_arms {
             if names.contains(&other.name.as_str()) {
-                out.push(self.fault("other_arms", format!("two arms are called \"{}\"", other.name), "give each a name of its own"));
+                out.push(self.fault(
+                    "other_arms",
+                    format!("two arms are called \"{}\"", other.name),
+                    "give each a name of its own",
+                ));
             }
             names.push(&other.name);
             for name in other.chain.iter().map(Element::name).filter(|n| !trunk.contains(n)) {
                 if taken.contains(&name) {
-                    let problem = format!("\"{name}\" of {} is also in another arm, but not the same", other.name);
-                    out.push(self.fault("other_arms", problem, "elements of the trunk are alike in all arms; others have names of their own"));
+                    let problem =
+                        format!("\"{name}\" of {} is also in another arm, but not the same", other.name);
+                    out.push(self.fault(
+                        "other_arms",
+                        problem,
+                        "elements of the trunk are alike in all arms; others have names of their own",
+                    ));
                 }
                 taken.push(name);
             }
@@ -337,7 +348,8 @@ impl Campaign {
         let mut hasher = blake3::Hasher::new();
         let others = self.statement.other_arm_files.iter();
         let named = ["campaign.json", &self.statement.arm_file].into_iter().chain(others.map(String::as_str));
-        let files = named.map(|f| self.folder.join(f)).chain(Channel::ALL.into_iter().filter_map(|c| self.file(c)));
+        let files =
+            named.map(|f| self.folder.join(f)).chain(Channel::ALL.into_iter().filter_map(|c| self.file(c)));
         for file in files {
             hasher.update(&std::fs::read(file).unwrap_or_default());
         }

@@ -154,7 +154,8 @@ fn gap(search: &Search, bare: &Fit) -> String {
 
 /// The outermost joint at and beyond which every set wants more mass than the arm file has, or less.
 fn missing_mass(forward: &Forward, campaign: &Campaign, subjects: &[Subject]) -> Option<String> {
-    let payloads = campaign.modal.iter().map(|r| &r.payload).chain(campaign.statics.iter().map(|r| &r.payload));
+    let payloads =
+        campaign.modal.iter().map(|r| &r.payload).chain(campaign.statics.iter().map(|r| &r.payload));
     let stated = payloads.max_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg)).copied().unwrap_or_default();
     let names: Vec<String> = forward.nominal.structure.joints().map(|j| j.name.clone()).collect();
     names.iter().rev().find_map(|joint| {
@@ -239,7 +240,12 @@ fn estimates(search: &Search, set: &Scored, weights: &Weights) -> Vec<(usize, Ve
     set.effects.iter().enumerate().map(of).collect()
 }
 
-fn suspect(search: &Search, explaining: &[Scored], fits: &[Vec<(usize, Vec<Estimate>)>], effect: usize) -> Finding {
+fn suspect(
+    search: &Search,
+    explaining: &[Scored],
+    fits: &[Vec<(usize, Vec<Estimate>)>],
+    effect: usize,
+) -> Finding {
     let candidate = &search.candidates[effect];
     let own: Vec<&Vec<Estimate>> =
         fits.iter().flatten().filter(|(e, _)| *e == effect).map(|(_, list)| list).collect();

@@ -141,8 +141,7 @@ fn halton(mut index: usize, base: usize) -> f64 {
     r
 }
 
-const PRIMES: [usize; 20] =
-    [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71];
+const PRIMES: [usize; 20] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71];
 
 fn tests(campaign: &Campaign) -> Vec<Test> {
     let ranges = ranges(campaign);

@@ -264,7 +264,12 @@ fn arm_named(table: &Table, row: usize, column: usize, arms: &[&str]) -> Option<
     let name = table.text(row, column);
     let found = arms.iter().position(|a| *a == name);
     if found.is_none() {
-        table.row_fault(row, "arm", format!("\"{name}\" is no arm"), &format!("the arms: {}", arms.join(", ")));
+        table.row_fault(
+            row,
+            "arm",
+            format!("\"{name}\" is no arm"),
+            &format!("the arms: {}", arms.join(", ")),
+        );
     }
     found
 }

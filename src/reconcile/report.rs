@@ -57,7 +57,10 @@ impl Outcome {
         if self.stages.is_empty() {
             return;
         }
-        let _ = writeln!(out, "  position error [mm], each line adds to those above    fitted    on poses kept out of the fit");
+        let _ = writeln!(
+            out,
+            "  position error [mm], each line adds to those above    fitted    on poses kept out of the fit"
+        );
         let _ = writeln!(out, "  {:<50} {:>8} {:>8} {:>8} {:>8}", "", "median", "median", "mean", "largest");
         for s in &self.stages {
             let _ = writeln!(

@@ -61,7 +61,10 @@ impl Made {
 
     /// Joints yield, and the point sat 3 mm away before row 41.
     pub fn put_back(&self, pose_rad: &[f64; 3], row: usize) -> Truth {
-        self.truth(pose_rad, Truths { sag: true, moved_m: if row < 40 { 3.2e-3 } else { 0.0 }, ..Truths::default() })
+        self.truth(
+            pose_rad,
+            Truths { sag: true, moved_m: if row < 40 { 3.2e-3 } else { 0.0 }, ..Truths::default() },
+        )
     }
 
     /// The stiffness that the truth has somewhere.
@@ -104,14 +107,16 @@ impl Made {
         for row in 0..self.poses {
             let pose_deg = [170.0, 80.0, 140.0].map(|reach| (reach * (2.0 * noise.part() - 1.0)).round());
             let at_mm = truth(self, &pose_deg.map(f64::to_radians), row).position_m * 1e3;
-            let read: Vec<String> = at_mm.iter().map(|x| format!("{:.4}", x + self.sigma_mm * noise.normal())).collect();
+            let read: Vec<String> =
+                at_mm.iter().map(|x| format!("{:.4}", x + self.sigma_mm * noise.normal())).collect();
             let [a, b, c] = pose_deg;
             rows.push_str(&format!("{row},{a},{b},{c},{},{}\n", read.join(","), self.sigma_mm));
         }
         let statement = json!({"name": "made", "positions": {
             "base_placement": true, "tool_offset": true, "joint_offsets": true, "geometry": true,
         }});
-        let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).expect("written");
+        let write =
+            |name: &str, text: String| std::fs::write(folder.path().join(name), text).expect("written");
         write("positions.csv", rows);
         write("arm.json", arm().to_string());
         write("campaign.json", statement.to_string());

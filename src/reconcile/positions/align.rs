@@ -47,7 +47,8 @@ fn settle_mount(
     spec: &PositionsSpec,
     placed: bool,
 ) -> Geometry {
-    let points: Vec<usize> = (0..geometry.tools_m.len()).filter(|p| own.iter().any(|s| s.point == *p)).collect();
+    let points: Vec<usize> =
+        (0..geometry.tools_m.len()).filter(|p| own.iter().any(|s| s.point == *p)).collect();
     if spec.tool_offset {
         numbers.extend(points.iter().flat_map(|&p| (0..3).map(move |c| Number::Tool(p, c))));
     }
@@ -86,8 +87,7 @@ fn cube() -> Vec<Rotation3<f64>> {
 /// 90 %.
 fn nearest_motion(samples: &[&Sample], geometry: &mut Geometry) {
     (geometry.base, geometry.origin_m) = (Rotation3::identity(), Vector3::zeros());
-    let nominal: Vec<Vector3<f64>> =
-        samples.iter().map(|s| geometry.place(s.arm, &s.pose_rad, s.point, &[]).at_m).collect();
+    let nominal: Vec<Vector3<f64>> = samples.iter().map(|s| geometry.place(s.placing(), &[]).at_m).collect();
     let mut kept: Vec<usize> = (0..samples.len()).collect();
     for _ in 0..4 {
         let count = kept.len() as f64;

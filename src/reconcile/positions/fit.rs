@@ -5,7 +5,7 @@
 //! weights `(ν+3)/(ν + |r|²/s²)` let gross errors fade. What yields moves the point by `c P ĝ`, `P` its
 //! displacement at unit compliance per direction of gravity ([`super::loads`]).
 
-use super::kinematics::{Geometry, Number};
+use super::kinematics::{Geometry, Number, Placing};
 use super::loads::Sag;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Vector3};
 
@@ -24,12 +24,23 @@ pub struct Sample {
     pub arm: usize,
     /// Point on the tool.
     pub point: usize,
+    /// Session of the instrument.
+    pub station: usize,
+    /// Place among the samples.
+    pub index: usize,
     /// Which pose: samples of one pose are kept out together.
     pub group: usize,
     /// Position \[m\].
     pub measured_m: Vector3<f64>,
     /// What gravity does to it.
     pub sag: Sag,
+}
+
+impl Sample {
+    /// What is asked of the geometry.
+    pub fn placing(&self) -> Placing<'_> {
+        Placing { arm: self.arm, pose_rad: &self.pose_rad, point: self.point, station: self.station }
+    }
 }
 
 /// A fitted model.
@@ -60,8 +71,8 @@ impl Fitted {
 
     /// Where the model has the point \[m\].
     pub fn predicted_m(&self, sample: &Sample) -> Vector3<f64> {
-        let rigid = self.geometry.place(sample.arm, &sample.pose_rad, sample.point, &[]).at_m;
-        rigid + self.geometry.from_level() * self.displacement(sample)
+        let rigid = self.geometry.place(sample.placing(), &[]).at_m;
+        rigid + self.geometry.level_to_instrument() * self.displacement(sample)
     }
 
     /// Error of a sample \[m\].
@@ -158,9 +169,9 @@ pub fn normal(
     let width = own + samples.first().map_or(0, |s| further(s).len());
     let mut rows = DMatrix::zeros(3 * samples.len(), width);
     let mut right = DVector::zeros(3 * samples.len());
-    let from_level = here.geometry.from_level();
+    let from_level = here.geometry.level_to_instrument();
     for (i, sample) in samples.iter().enumerate() {
-        let placed = here.geometry.place(sample.arm, &sample.pose_rad, sample.point, numbers);
+        let placed = here.geometry.place(sample.placing(), numbers);
         let error = sample.measured_m - placed.at_m - from_level * here.displacement(sample);
         let root = here.weight(&error).sqrt();
         let mut columns = placed.slopes;
@@ -245,7 +256,13 @@ fn step(samples: &[&Sample], numbers: &[Number], here: &mut Fitted) -> Vec<f64> 
 }
 
 /// Takes the compliances of a step and returns its geometry.
-fn take(here: &mut Fitted, free: &[usize], x: &DVector<f64>, deviations: &DVector<f64>, n: usize) -> Vec<f64> {
+fn take(
+    here: &mut Fitted,
+    free: &[usize],
+    x: &DVector<f64>,
+    deviations: &DVector<f64>,
+    n: usize,
+) -> Vec<f64> {
     let mut out = vec![0.0; n];
     let m = here.effects.len();
     let old = std::mem::replace(&mut here.compliances, vec![0.0; m]);

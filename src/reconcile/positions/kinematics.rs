@@ -26,6 +26,10 @@ pub enum Number {
     Vector(usize, usize),
     /// Component of the direction of gravity across the arm's vertical.
     Gravity(usize),
+    /// Rotation of everything in another session, about the base's origin and an instrument axis \[rad\].
+    StationRotation(usize, usize),
+    /// Shift of everything in another session \[m\].
+    StationPosition(usize, usize),
 }
 
 impl Number {
@@ -38,7 +42,8 @@ impl Number {
             Number::Zero(_) => 0.03,
             Number::Axis(..) => 0.01,
             Number::Vector(..) => 0.01,
-            Number::Gravity(_) => 0.05,
+            Number::Gravity(_) | Number::StationPosition(..) => 0.05,
+            Number::StationRotation(..) => 0.02,
         }
     }
 
@@ -119,6 +124,8 @@ pub struct Geometry {
     pub origin_m: Vector3<f64>,
     /// Points on the last frame of their arm \[m\].
     pub tools_m: Vec<Vector3<f64>>,
+    /// Rotation about the base's origin and shift \[m\] of everything in each session; the first is none.
+    pub stations: Vec<(Rotation3<f64>, Vector3<f64>)>,
     /// Carries the base frame to the level one, whose z is up.
     pub level: Rotation3<f64>,
     /// Direction of gravity in the level frame; -z unless it has moved since the frame was levelled.
@@ -129,6 +136,19 @@ pub struct Geometry {
     mounts: Vec<Rotation3<f64>>,
     angles: Vec<Option<JointAngle>>,
     arms: Vec<Vec<usize>>,
+}
+
+/// Which point of which arm is asked for, in which pose and session.
+#[derive(Debug, Clone, Copy)]
+pub struct Placing<'a> {
+    /// Arm.
+    pub arm: usize,
+    /// Joint angles \[rad\].
+    pub pose_rad: &'a [f64],
+    /// Point on the tool.
+    pub point: usize,
+    /// Session of the instrument.
+    pub station: usize,
 }
 
 /// A point and its motion with each number, instrument's frame.
@@ -167,6 +187,7 @@ impl Geometry {
             base: Rotation3::identity(),
             origin_m: Vector3::zeros(),
             tools_m: vec![Vector3::zeros(); points],
+            stations: vec![(Rotation3::identity(), Vector3::zeros())],
             level: Rotation3::identity(),
             gravity: -Vector3::z(),
             zeros_rad: vec![0.0; tree.driven.len()],
@@ -192,6 +213,8 @@ impl Geometry {
                 Number::BaseRotation(c) => self.base = about(c, by) * self.base,
                 Number::BasePosition(c) => self.origin_m[c] += by,
                 Number::Tool(p, c) => self.tools_m[p][c] += by,
+                Number::StationRotation(s, c) => self.stations[s].0 = about(c, by) * self.stations[s].0,
+                Number::StationPosition(s, c) => self.stations[s].1[c] += by,
                 Number::Mount(i, c) => self.mounts[i] = about(c, by) * self.mounts[i],
                 Number::Zero(j) => self.zeros_rad[j] += by,
                 Number::Axis(i, k) => {
@@ -216,7 +239,7 @@ impl Geometry {
     }
 
     /// Turns the level frame's vectors into the instrument's.
-    pub fn from_level(&self) -> Rotation3<f64> {
+    pub fn level_to_instrument(&self) -> Rotation3<f64> {
         self.base * self.level.inverse()
     }
 
@@ -244,11 +267,11 @@ impl Geometry {
     }
 
     /// A point of an arm in a pose with its derivatives.
-    pub fn place(&self, arm: usize, pose_rad: &[f64], point: usize, numbers: &[Number]) -> Placed {
-        let pose: Vec<f64> = pose_rad.iter().zip(&self.zeros_rad).map(|(q, z)| q + z).collect();
+    pub fn place(&self, asked: Placing, numbers: &[Number]) -> Placed {
+        let pose: Vec<f64> = asked.pose_rad.iter().zip(&self.zeros_rad).map(|(q, z)| q + z).collect();
         let mut frames: Frames = vec![None; self.axes.len()];
         let mut last = Frame { rotation: self.base, at_m: self.origin_m };
-        for &i in &self.arms[arm] {
+        for &i in &self.arms[asked.arm] {
             let before = last;
             match &self.angles[i] {
                 Some(angle) => last.rotation *= Rotation3::from_axis_angle(&self.axes[i], angle.of(&pose)),
@@ -259,9 +282,12 @@ impl Geometry {
             }
             frames[i] = Some((before, last));
         }
-        let at_m = last.at_m + last.rotation * self.tools_m[point];
-        let slope = |n: &Number| self.slope(n, &frames, &last, &at_m, point);
-        Placed { at_m, slopes: numbers.iter().map(slope).collect() }
+        let at_m = last.at_m + last.rotation * self.tools_m[asked.point];
+        let slope = |n: &Number| self.slope(n, &frames, &last, &at_m, asked);
+        // a session's turn is small: the slopes are as in the first
+        let slopes = numbers.iter().map(slope).collect();
+        let (turn, shift_m) = &self.stations[asked.station];
+        Placed { at_m: self.origin_m + turn * (at_m - self.origin_m) + shift_m, slopes }
     }
 
     fn slope(
@@ -270,13 +296,18 @@ impl Geometry {
         frames: &Frames,
         last: &Frame,
         at_m: &Vector3<f64>,
-        point: usize,
+        asked: Placing,
     ) -> Vector3<f64> {
         let zero = Vector3::zeros();
         match *number {
             Number::BaseRotation(c) => Vector3::ith(c, 1.0).cross(&(at_m - self.origin_m)),
             Number::BasePosition(c) => Vector3::ith(c, 1.0),
-            Number::Tool(p, c) if p == point => last.rotation * Vector3::ith(c, 1.0),
+            Number::StationRotation(s, c) if s == asked.station => {
+                Vector3::ith(c, 1.0).cross(&(at_m - self.origin_m))
+            }
+            Number::StationPosition(s, c) if s == asked.station => Vector3::ith(c, 1.0),
+            Number::StationRotation(..) | Number::StationPosition(..) => zero,
+            Number::Tool(p, c) if p == asked.point => last.rotation * Vector3::ith(c, 1.0),
             Number::Tool(..) | Number::Gravity(_) => zero,
             Number::Zero(j) => (0..self.axes.len())
                 .filter_map(|i| Some((i, frames[i]?.0, rate(self.angles[i].as_ref()?, j))))

@@ -141,7 +141,8 @@ fn trunk_items(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> [usize
             Piece::Link(l) => names.contains(&l.name.as_str()),
         });
         // the payload is the last item
-        Chain::new(&trunk, LinkModel::Full).pose_rad(&rest, &Payload::default(), Vector3::zeros()).items.len() - 1
+        Chain::new(&trunk, LinkModel::Full).pose_rad(&rest, &Payload::default(), Vector3::zeros()).items.len()
+            - 1
     };
     [of(&first.unit_structure), of(&first.structure)]
 }
@@ -193,9 +194,14 @@ fn own_body(element: &ElasticElement, structure: &Structure) -> Option<Body> {
 }
 
 /// Every candidate's displacement at unit compliance per direction of gravity, and its lever and torque.
-fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Matrix3<f64>>, Vec<(Vector3<f64>, f64)>) {
+fn signatures(
+    unit: &Posed,
+    own: &Ready,
+    candidates: &[Yielding],
+) -> (Vec<Matrix3<f64>>, Vec<(Vector3<f64>, f64)>) {
     let answers = answers(unit, own);
-    let of = |name: &str| answers.iter().find(|(n, _)| *n == name).map_or(Vec::new(), |(_, list)| list.clone());
+    let of =
+        |name: &str| answers.iter().find(|(n, _)| *n == name).map_or(Vec::new(), |(_, list)| list.clone());
     candidates
         .iter()
         .map(|candidate| {
@@ -206,7 +212,8 @@ fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Matrix
                     driver.1 += passive.1 * linkage.factor;
                 }
             }
-            let per_compliance: Matrix3<f64> = list.iter().map(|(motion, pull)| motion * pull.transpose()).sum();
+            let per_compliance: Matrix3<f64> =
+                list.iter().map(|(motion, pull)| motion * pull.transpose()).sum();
             let lever = list.first().map_or((Vector3::zeros(), 0.0), |(motion, pull)| (*motion, -pull.z));
             (per_compliance, lever)
         })

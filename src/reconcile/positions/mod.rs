@@ -82,11 +82,10 @@ pub struct Positions {
 pub fn analyze(campaign: &Campaign) -> Positions {
     let mut found = Positions::new(campaign);
     found.calibrate(campaign);
-    if campaign.statement.positions.tool_offset {
-        found.sessions = found.find_sessions();
-        if !found.sessions.is_empty() {
-            found.stage("sessions".into());
-        }
+    let spec = &campaign.statement.positions;
+    found.sessions = found.find_sessions(spec.tool_offset, spec.base_placement);
+    if !found.sessions.is_empty() {
+        found.stage("sessions".into());
     }
     found.rigid = found.fitted.clone();
     for class in CLASSES {
@@ -201,7 +200,7 @@ impl Positions {
     /// By how much the model made linear says each candidate would raise the ln of the likelihood.
     fn gains(&self, base: &Fitted) -> Vec<(usize, f64)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
-        let from_level = base.geometry.from_level();
+        let from_level = base.geometry.level_to_instrument();
         let columns = |s: &Sample| -> Vec<Vector3<f64>> {
             s.sag.per_compliance.iter().map(|p| from_level * p * base.geometry.gravity).collect()
         };
@@ -212,7 +211,8 @@ impl Positions {
         (0..self.candidates.len())
             .map(|c| {
                 let p = normal.own + c;
-                let cross: DVector<f64> = normal.curvature.view((0, p), (normal.own, 1)).column(0).into_owned();
+                let cross: DVector<f64> =
+                    normal.curvature.view((0, p), (normal.own, 1)).column(0).into_owned();
                 let left = normal.curvature[(p, p)] - cross.dot(&factor.solve(&cross));
                 let gradient = normal.gradient[p] - cross.dot(&answer);
                 let seen = left > 1e-9 * normal.curvature[(p, p)] && gradient > 0.0;
@@ -289,20 +289,23 @@ fn samples(
     let sags = sags(campaign, tree, geometry, candidates, &points);
     let mut poses: Vec<&Vec<f64>> = Vec::new();
     let rows = campaign.positions.iter().zip(sags).zip(points);
-    rows.map(|((row, sag), point)| {
-        let known = poses.iter().position(|p| **p == row.pose_deg);
-        let group = known.unwrap_or_else(|| {
-            poses.push(&row.pose_deg);
-            poses.len() - 1
-        });
-        Sample {
-            pose_rad: row.pose_deg.iter().map(|a| a.to_radians()).collect(),
-            arm: row.arm,
-            point,
-            group,
-            measured_m: Vector3::from(row.position_mm) / 1e3,
-            sag,
-        }
-    })
-    .collect()
+    rows.enumerate()
+        .map(|(index, ((row, sag), point))| {
+            let known = poses.iter().position(|p| **p == row.pose_deg);
+            let group = known.unwrap_or_else(|| {
+                poses.push(&row.pose_deg);
+                poses.len() - 1
+            });
+            Sample {
+                pose_rad: row.pose_deg.iter().map(|a| a.to_radians()).collect(),
+                arm: row.arm,
+                point,
+                station: 0,
+                index,
+                group,
+                measured_m: Vector3::from(row.position_mm) / 1e3,
+                sag,
+            }
+        })
+        .collect()
 }

@@ -30,8 +30,10 @@ const WORST_POSES: usize = 3;
 pub fn reconcile(campaign: &Campaign) -> Outcome {
     let found = analyze(campaign);
     let lack_of_fit = found.lack_of_fit(campaign);
-    let rivals: Vec<Vec<(usize, Fitted)>> = (0..found.fitted.effects.len()).map(|i| found.rivals(i)).collect();
-    let findings: Vec<Finding> = (0..found.fitted.effects.len()).map(|i| found.finding(i, &rivals[i])).collect();
+    let rivals: Vec<Vec<(usize, Fitted)>> =
+        (0..found.fitted.effects.len()).map(|i| found.rivals(i)).collect();
+    let findings: Vec<Finding> =
+        (0..found.fitted.effects.len()).map(|i| found.finding(i, &rivals[i])).collect();
     let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings);
     reasons.extend(found.sessions.iter().cloned());
     let next_tests = found.next_tests(campaign, verdict, &rivals);
@@ -97,7 +99,8 @@ impl Positions {
             return (Verdict::NoGap, vec![text.into()]);
         }
         if let Some(f) = findings.iter().find(|f| f.indistinguishable_from.len() > MOST_ALTERNATIVES) {
-            let text = format!("{} other effects fit as well as {}", f.indistinguishable_from.len(), f.label());
+            let text =
+                format!("{} other effects fit as well as {}", f.indistinguishable_from.len(), f.label());
             return (Verdict::InsufficientData, vec![text]);
         }
         let [before, after] = self.before_and_after();
@@ -122,7 +125,9 @@ impl Positions {
             left.chi2_per_dof.sqrt()
         )];
         let telling = left.structures.iter().filter(|s| s.ln_p < (1e-6f64).ln()).take(3);
-        out.extend(telling.map(|s| format!("{}: {:.0} % of what is left", s.sentence(), 100.0 * self.part(s))));
+        out.extend(
+            telling.map(|s| format!("{}: {:.0} % of what is left", s.sentence(), 100.0 * self.part(s))),
+        );
         if out.len() == 1 {
             out.push("what is left follows neither order, angles, torques nor payload".into());
         }
@@ -163,7 +168,14 @@ impl Positions {
     }
 
     /// One arm with its calibrated geometry and its effects; notes in the provenance where it stands.
-    fn corrected(&self, campaign: &Campaign, arm: usize, shown: &Fitted, effects: &[Finding], provenance: &mut Value) -> Arm {
+    fn corrected(
+        &self,
+        campaign: &Campaign,
+        arm: usize,
+        shown: &Fitted,
+        effects: &[Finding],
+        provenance: &mut Value,
+    ) -> Arm {
         let mut out = campaign.arms()[arm].clone();
         let mut geometry = shown.geometry.clone();
         geometry.relevel();
@@ -171,14 +183,15 @@ impl Positions {
         let names: Vec<String> = out.chain.iter().map(|e| e.name().to_string()).collect();
         let own = effects.iter().filter(|f| f.at == "base" || names.contains(&f.at));
         out.effects.extend(own.map(|f| as_effect(campaign, f)));
-        let rotation = geometry.from_level().into_inner();
+        let rotation = geometry.level_to_instrument().into_inner();
         let rows: Vec<Vec<f64>> = (0..3).map(|i| rotation.row(i).iter().copied().collect()).collect();
         let on_arm = |p: usize| self.samples.iter().any(|s| s.arm == arm && s.point == p);
         let points: serde_json::Map<String, Value> = (0..self.points.len())
             .filter(|&p| on_arm(p))
             .map(|p| (self.points[p].clone(), json!((turned * geometry.tools_m[p]).as_slice())))
             .collect();
-        let placement = json!({"rotation": rows, "origin_m": geometry.origin_m.as_slice(), "points_m": points});
+        let placement =
+            json!({"rotation": rows, "origin_m": geometry.origin_m.as_slice(), "points_m": points});
         match arm {
             0 => provenance["placement"] = placement,
             _ => provenance["other_placements"][&out.name] = placement,
@@ -189,7 +202,9 @@ impl Positions {
     /// By how much every calibrated number has moved from nominal.
     fn calibrated(&self, shown: &Fitted) -> Vec<Value> {
         let numbers = self.numbers.iter().zip(&shown.moved);
-        let inside = numbers.filter(|(n, _)| matches!(n, Number::Zero(_) | Number::Axis(..) | Number::Vector(..) | Number::Gravity(_)));
+        let inside = numbers.filter(|(n, _)| {
+            matches!(n, Number::Zero(_) | Number::Axis(..) | Number::Vector(..) | Number::Gravity(_))
+        });
         inside
             .map(|(n, moved)| json!({"value": self.name(n), "moved": moved, "source": "calibrated geometry"}))
             .collect()
@@ -206,6 +221,8 @@ impl Positions {
             Number::Vector(i, c) | Number::MountVector(i, c) => format!("{}.vector_m[{c}]", piece(*i)),
             Number::Mount(i, c) => format!("{}.attitude_rad[{c}]", piece(*i)),
             Number::Gravity(c) => format!("gravity_direction[{c}]"),
+            Number::StationRotation(s, c) => format!("session_{s}.rotation_rad[{c}]"),
+            Number::StationPosition(s, c) => format!("session_{s}.position_m[{c}]"),
             Number::BaseRotation(c) => format!("base_rotation_rad[{c}]"),
             Number::BasePosition(c) => format!("base_position_m[{c}]"),
             Number::Tool(p, c) => format!("{}.tool_m[{c}]", self.points[*p]),
@@ -277,7 +294,12 @@ impl Positions {
     }
 
     /// Poses where the model differs most from what it is to be told from.
-    fn next_tests(&self, campaign: &Campaign, verdict: Verdict, rivals: &[Vec<(usize, Fitted)>]) -> Vec<NextTest> {
+    fn next_tests(
+        &self,
+        campaign: &Campaign,
+        verdict: Verdict,
+        rivals: &[Vec<(usize, Fitted)>],
+    ) -> Vec<NextTest> {
         if verdict == Verdict::Unexplained {
             return self.repeat_worst(campaign).into_iter().collect();
         }
@@ -288,11 +310,10 @@ impl Positions {
         };
         let proposed = self.proposals(campaign);
         let own = samples(&proposed, &self.tree, &self.fitted.geometry, &self.candidates, &self.points);
-        let sigma_mm = campaign.positions.iter().map(|r| r.sigma_mm).fold(1e3 * self.fitted.scale_m, f64::max);
+        let sigma_mm =
+            campaign.positions.iter().map(|r| r.sigma_mm).fold(1e3 * self.fitted.scale_m, f64::max);
         let gap = |s: &Sample| 1e3 * (self.fitted.predicted_m(s) - rival.predicted_m(s)).norm() / sigma_mm;
-        let Some((best, sigmas)) =
-            own.iter().map(gap).enumerate().max_by(|a, b| a.1.total_cmp(&b.1))
-        else {
+        let Some((best, sigmas)) = own.iter().map(gap).enumerate().max_by(|a, b| a.1.total_cmp(&b.1)) else {
             return Vec::new();
         };
         let row = &proposed.positions[best];
@@ -307,7 +328,11 @@ impl Positions {
             joint: None,
             separates: vec![model, name],
             expected_sigmas: sigmas,
-            readings_needed: if sigmas > 1e-3 { (ENOUGH / sigmas).powi(2).ceil().min(9999.0) as usize } else { 9999 },
+            readings_needed: if sigmas > 1e-3 {
+                (ENOUGH / sigmas).powi(2).ceil().min(9999.0) as usize
+            } else {
+                9999
+            },
         }]
     }
 
@@ -320,7 +345,8 @@ impl Positions {
             (angles().fold(f64::INFINITY, f64::min), angles().fold(f64::NEG_INFINITY, f64::max))
         };
         let ranges: Vec<(f64, f64)> = (0..self.tree.driven.len()).map(range).collect();
-        let heaviest = campaign.positions.iter().map(|r| r.payload).max_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
+        let heaviest =
+            campaign.positions.iter().map(|r| r.payload).max_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
         out.positions.clear();
         for name in &self.points {
             let Some(like) = campaign.positions.iter().find(|r| r.point == *name) else { continue };
@@ -341,7 +367,8 @@ impl Positions {
         let row = &campaign.positions[worst];
         Some(NextTest {
             kind: "positions".into(),
-            description: "repeat this pose, which the best model misses most, from both sides, on another day".into(),
+            description:
+                "repeat this pose, which the best model misses most, from both sides, on another day".into(),
             pose_deg: Some(row.pose_deg.clone()),
             payload_kg: row.payload.mass_kg,
             force_n: [0.0; 3],

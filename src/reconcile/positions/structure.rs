@@ -42,13 +42,20 @@ impl Positions {
             let answered = DMatrix::from_columns(
                 &(0..*count).map(|k| factor.solve(&cross.column(k).into_owned())).collect::<Vec<_>>(),
             );
-            let s = normal.curvature.view((block[0], block[0]), (*count, *count)) - cross.transpose() * &answered;
+            let s =
+                normal.curvature.view((block[0], block[0]), (*count, *count)) - cross.transpose() * &answered;
             let z = normal.gradient.rows(block[0], *count)
                 - answered.transpose() * normal.gradient.rows(0, normal.own);
             let (statistic, dof) = squares(&s, &z.into_owned());
             if dof > 0.0 {
                 let ln_p = ln_chi_squared_tail(statistic, dof);
-                structures.push(Structure { channel: Channel::Positions, follows: follows.clone(), statistic, dof, ln_p });
+                structures.push(Structure {
+                    channel: Channel::Positions,
+                    follows: follows.clone(),
+                    statistic,
+                    dof,
+                    ln_p,
+                });
             }
         }
         let asked = (structures.len() as f64).max(1.0).ln();
@@ -116,7 +123,8 @@ impl<'a> Asker<'a> {
         let largest_payload_kg = payloads_kg.iter().copied().fold(0.0, f64::max);
         let mut questions = vec![("the order of the readings".to_string(), 18)];
         questions.extend(found.tree.driven.iter().map(|name| (format!("the angle of {name}"), 16)));
-        questions.extend(joints.iter().map(|(c, _)| (format!("the torque on {}", found.candidates[*c].at), 2)));
+        questions
+            .extend(joints.iter().map(|(c, _)| (format!("the torque on {}", found.candidates[*c].at), 2)));
         if largest_payload_kg > 0.0 {
             questions.push(("the payload".into(), 6));
         }
@@ -126,10 +134,10 @@ impl<'a> Asker<'a> {
     fn columns(&self, sample: &Sample) -> Vec<Vector3<f64>> {
         let mut out = Vec::new();
         let along = |size: f64| (0..3).map(move |c| Vector3::ith(c, size));
-        let index = self.found.samples.iter().position(|s| std::ptr::eq(s, sample)).unwrap_or_default();
+        let index = sample.index;
         let order = order_functions(index as f64 / self.found.samples.len() as f64);
         out.extend(order.into_iter().flat_map(along));
-        let from_level = self.found.fitted.geometry.from_level();
+        let from_level = self.found.fitted.geometry.level_to_instrument();
         for (j, &candidate) in self.driven.iter().enumerate() {
             let lever = from_level * sample.sag.levers[candidate].0;
             for wave in waves(sample.pose_rad[j].to_degrees()) {
