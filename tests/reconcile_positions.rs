@@ -137,6 +137,27 @@ fn an_arm_that_leans_is_told_by_the_direction_of_gravity() {
 }
 
 #[test]
+fn the_lean_of_an_arm_whose_stiffness_is_known_is_found_too() {
+    let made = standard();
+    let folder = made.write(&Made::leaning);
+    let edit = |file: &str, pairs: &[(&str, &str)]| {
+        let path = folder.path().join(file);
+        let text = std::fs::read_to_string(&path).expect("text");
+        let text = pairs.iter().fold(text, |t, (from, to)| t.replace(from, to));
+        std::fs::write(path, text).expect("written");
+    };
+    let rigid =
+        |name: &str| format!("\"name\":\"{name}\",\"axis\":[0.0,1.0,0.0],\"stiffness_nm_per_rad\":null");
+    let known = |name: &str, k: &str| rigid(name).replace("null", k);
+    edit("arm.json", &[(&rigid("q2"), &known("q2", "4e4")), (&rigid("q3"), &known("q3", "3e4"))]);
+    edit("campaign.json", &[("\"geometry\"", "\"gravity_direction\":true,\"geometry\"")]);
+    let campaign = read(folder.path());
+    let outcome = reconcile(&campaign);
+    assert_eq!(outcome.verdict, Verdict::NoGap, "{}", outcome.to_text());
+    assert!(predicted_median_mm(&campaign, &outcome) < 1.3 * 1.538 * made.sigma_mm);
+}
+
+#[test]
 fn a_reflector_that_was_put_back_elsewhere_is_a_session_of_its_own() {
     let outcome = reconcile(&read(standard().write(&Made::put_back).path()));
     assert_eq!(outcome.verdict, Verdict::Explained, "{}", outcome.to_text());

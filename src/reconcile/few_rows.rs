@@ -1,11 +1,11 @@
 //! What a handful of readings can say: every small set of effects that explains them is listed, because
 //! with few rows several always do.
 //!
-//! Sets of one, two and three effects are fitted, none with more effects than there are readings. Those
-//! that explain every reading within its standard deviation, and that would not without any one of their
-//! effects, are kept, unless the evidence is far behind the best. What all of them share, masses and
-//! stiffnesses included, is what the readings say; a number on which they differ is one that the readings
-//! cannot give.
+//! Sets of one, two and three effects are fitted, up to one effect more than the smallest set that explains
+//! the readings has. Those that explain every reading within its standard deviation, and that would not
+//! without any one of their effects, are kept, unless the evidence is far behind the best. What all of them
+//! share, masses and stiffnesses included, is what the readings say; a number on which they differ is one
+//! that the readings cannot give.
 
 use super::campaign::Campaign;
 use super::fit::{Effort, Fit, Weights};
@@ -36,7 +36,13 @@ pub fn weigh(search: &Search) -> Selection {
     let bare = scored(search, &[], &[]);
     let mut tried = vec![bare.clone()];
     let mut level = tried.clone();
+    // one effect more than the smallest set that explains needs: as many numbers can sit in other effects
+    let mut beyond = false;
     for _ in 0..MOST_EFFECTS.min(search.forward.data.len()) {
+        if beyond {
+            break;
+        }
+        beyond = level.iter().any(|s| explains(search, s));
         level = extend(search, &level);
         tried.extend(level.iter().cloned());
     }

@@ -83,7 +83,9 @@ impl Fitted {
     fn displacement(&self, sample: &Sample) -> Vector3<f64> {
         let effects = self.effects.iter().zip(&self.compliances);
         let pulled = effects.map(|(&e, c)| sample.sag.per_compliance[e] * self.geometry.gravity * *c);
-        sample.sag.known_m + pulled.sum::<Vector3<f64>>()
+        let gravity = &self.geometry.gravity;
+        let leaning = sample.sag.known_slopes_m[0] * gravity.x + sample.sag.known_slopes_m[1] * gravity.y;
+        sample.sag.known_m + leaning + pulled.sum::<Vector3<f64>>()
     }
 
     /// Weight of a sample with this error \[1/m²\].
@@ -183,7 +185,7 @@ pub fn normal(
             let effects = here.effects.iter().zip(&here.compliances);
             let pull: Vector3<f64> =
                 effects.map(|(&e, amount)| sample.sag.per_compliance[e].column(c) * *amount).sum();
-            columns[n] = from_level * pull;
+            columns[n] = from_level * (pull + sample.sag.known_slopes_m[c]);
         }
         columns.extend(
             here.effects.iter().map(|&e| from_level * sample.sag.per_compliance[e] * here.geometry.gravity),

@@ -30,6 +30,8 @@ pub struct Yielding {
 pub struct Sag {
     /// Displacement that the model already has \[m\].
     pub known_m: Vector3<f64>,
+    /// Its change with gravity's components across the vertical \[m\].
+    pub known_slopes_m: [Vector3<f64>; 2],
     /// Displacement at unit compliance of each candidate, per direction of gravity.
     pub per_compliance: Vec<Matrix3<f64>>,
     /// Twist of each candidate's first axis at the point, and the torque about it under gravity along -z:
@@ -169,7 +171,12 @@ fn sag(
         unit.items.splice(unit_trunk..unit_trunk, hanging().map(Item::Body));
     }
     let (per_compliance, levers) = signatures(&unit, own, candidates);
-    Sag { known_m: known.statics().tip_displacement_m, per_compliance, levers }
+    Sag {
+        known_m: known.statics().tip_displacement_m,
+        known_slopes_m: [Vector3::zeros(); 2],
+        per_compliance,
+        levers,
+    }
 }
 
 /// Everything that weighs, as points.

@@ -36,6 +36,9 @@ const ROUGH_M: f64 = 0.01;
 /// Models within this ln of the likelihood cannot be told apart.
 const TIE: f64 = 3.0;
 
+/// Step of gravity's direction for slopes \[rad\].
+const LEAN: f64 = 1e-3;
+
 /// The classes of effects in the order in which they are looked for.
 const CLASSES: [&[&str]; 2] =
     [&["joint_compliance", "connection_compliance"], &["bearing_tilt", "base_compliance"]];
@@ -153,6 +156,22 @@ impl Positions {
         let points: Vec<usize> = self.samples.iter().map(|s| s.point).collect();
         let sags = sags(campaign, &self.tree, &self.fitted.geometry, &self.candidates, &points);
         self.samples.iter_mut().zip(sags).for_each(|(sample, sag)| sample.sag = sag);
+        if campaign.statement.positions.gravity_direction {
+            (0..2).for_each(|c| self.lean(campaign, &points, c));
+        }
+    }
+
+    /// How the sag that the model already has changes with one component of the direction of gravity.
+    fn lean(&mut self, campaign: &Campaign, points: &[usize], component: usize) {
+        let upright = &self.fitted.geometry;
+        let mut leaning = upright.clone();
+        leaning.step(&[Number::Gravity(component)], &[LEAN]);
+        leaning.relevel();
+        let back = upright.level * leaning.level.inverse();
+        let sags = sags(campaign, &self.tree, &leaning, &self.candidates, points);
+        for (sample, sag) in self.samples.iter_mut().zip(sags) {
+            sample.sag.known_slopes_m[component] = (back * sag.known_m - sample.sag.known_m) / LEAN;
+        }
     }
 
     fn label(&self, candidate: usize) -> String {
