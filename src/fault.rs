@@ -5,6 +5,8 @@
 //! it records a [`Fault`] and returns `None`, so that one pass over a file finds all of its faults.
 //! [`Document::finish`] turns them into an error.
 
+mod duplicates;
+
 use serde_json::{Map, Value};
 use std::cell::RefCell;
 use std::fmt;
@@ -109,7 +111,12 @@ impl Document {
                 hint: "JSON has no NaN, no comments and no trailing commas".into(),
             }])
         })?;
-        Ok(Self { file: file.to_string(), text: text.to_string(), value, faults: RefCell::default() })
+        let document =
+            Self { file: file.to_string(), text: text.to_string(), value, faults: RefCell::default() };
+        for path in duplicates::duplicate_keys(text) {
+            document.fault(&path, "is given more than once".into(), "keep the one that holds");
+        }
+        Ok(document)
     }
 
     /// The whole document as a node.
@@ -487,6 +494,13 @@ mod tests {
         assert_eq!(line_of(TEXT, "d"), Some(5));
         assert_eq!(line_of(TEXT, "a[0]"), Some(2));
         assert_eq!(line_of(TEXT, "a[2]"), None);
+    }
+
+    #[test]
+    fn a_key_given_twice_is_a_fault_whoever_reads_the_document() {
+        let doc = Document::parse("x.json", "{\"a\": 1,\n \"b\": {\"c\": 1, \"c\": 2}}").expect("valid");
+        let faults = doc.finish(Some(())).expect_err("one fault").0;
+        assert_eq!(faults[0].to_string(), "x.json:2: b.c: is given more than once; keep the one that holds");
     }
 
     #[test]

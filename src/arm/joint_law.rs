@@ -1,5 +1,7 @@
 //! How far a joint twists about its axis under a torque.
 
+use super::JointModel;
+
 /// The three-segment torsion curve of a harmonic-drive gear: odd in the torque, slope 1/K1 up to T1,
 /// 1/K2 up to T2, 1/K3 beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,6 +73,14 @@ impl Curve {
         }
     }
 
+    /// The curve that a joint model uses.
+    pub fn reduced(&self, model: JointModel) -> Curve {
+        match model {
+            JointModel::K2 => self.middle_slope(),
+            JointModel::ThreeSegment => *self,
+        }
+    }
+
     /// The single number that stands for the curve in the paper's model: K2 of a gear.
     pub fn middle_slope(&self) -> Curve {
         match self {
@@ -126,28 +136,25 @@ impl JointLaw {
         self.curve.tangent_compliance_rad_per_nm(torque_nm) + self.connection_rad_per_nm + play
     }
 
-    /// Twist when the torque has risen from rest to `torque_nm` \[rad\]: the friction play holds back
-    /// up to its half width.
+    /// Twist when the torque has risen from rest to `torque_nm` \[rad\]: the friction play, at 0 at rest,
+    /// holds back up to its half width.
     pub fn rising_angle_rad(&self, torque_nm: f64) -> f64 {
-        let angle = self.angle_rad(torque_nm);
-        angle - angle.clamp(-self.hysteresis_rad, self.hysteresis_rad)
+        self.play_angle_rad(torque_nm, &mut 0.0)
     }
 
     /// Stiffness of the spring that the friction play drags: the gear's middle slope with the
-    /// connection in series \[N m/rad\].
-    pub fn play_stiffness_nm_per_rad(&self) -> f64 {
+    /// connection in series \[N m/rad\]; none without play, or where nothing twists for friction to hold.
+    fn play_stiffness_nm_per_rad(&self) -> Option<f64> {
         let gear = self.curve.middle_slope().tangent_compliance_rad_per_nm(0.0);
-        1.0 / (gear + self.connection_rad_per_nm)
+        let compliance = gear + self.connection_rad_per_nm;
+        (self.hysteresis_rad > 0.0 && compliance > 0.0).then(|| 1.0 / compliance)
     }
 
     /// Twist at a torque when the friction play stands at `state` (a torque \[N m\], updated): the play
     /// follows the torque at a distance of at most k h.
     pub fn play_angle_rad(&self, torque_nm: f64, state: &mut f64) -> f64 {
         let angle = self.angle_rad(torque_nm);
-        if self.hysteresis_rad == 0.0 {
-            return angle;
-        }
-        let stiffness = self.play_stiffness_nm_per_rad();
+        let Some(stiffness) = self.play_stiffness_nm_per_rad() else { return angle };
         let reach = stiffness * self.hysteresis_rad;
         *state = state.max(torque_nm - reach).min(torque_nm + reach);
         angle + (*state - torque_nm) / stiffness
@@ -156,7 +163,7 @@ impl JointLaw {
     /// Where the play stands after the torque's size has risen from rest to `torque_nm` \[N m\].
     pub fn play_at_rest_nm(&self, torque_nm: f64) -> f64 {
         let sign = if torque_nm.abs() < REST_NM { 0.0 } else { torque_nm.signum() };
-        torque_nm - sign * self.play_stiffness_nm_per_rad() * self.hysteresis_rad
+        torque_nm - sign * self.play_stiffness_nm_per_rad().unwrap_or_default() * self.hysteresis_rad
     }
 
     /// Whether nothing twists.
@@ -185,6 +192,28 @@ mod tests {
             let slope = (HFUC_58.angle_rad(t + 2.0 * step) - HFUC_58.angle_rad(t + step)) / step;
             assert!((slope * HFUC_58.tangent_nm_per_rad(t + step) - 1.0).abs() < 1e-4);
         }
+    }
+
+    #[test]
+    fn friction_play_on_a_rigid_joint_twists_nothing() {
+        let law = JointLaw { hysteresis_rad: 1e-4, ..Curve::Rigid.into() };
+        let mut state = law.play_at_rest_nm(20.0);
+        for torque_nm in [20.0, 50.0, -30.0] {
+            assert_eq!(law.play_angle_rad(torque_nm, &mut state), 0.0);
+            assert_eq!(law.rising_angle_rad(torque_nm), 0.0);
+        }
+    }
+
+    #[test]
+    fn a_torque_that_rises_from_rest_follows_the_play_with_a_curve_in_series() {
+        let law = JointLaw { hysteresis_rad: 1e-4, ..Curve::Windup(HFUC_58).into() };
+        let mut state = 0.0;
+        for torque_nm in [1.0, 40.0, 100.0, 300.0, 700.0] {
+            let followed = law.play_angle_rad(torque_nm, &mut state);
+            assert!((law.rising_angle_rad(torque_nm) - followed).abs() < 1e-18, "{torque_nm}");
+            assert_eq!(law.rising_angle_rad(-torque_nm), -law.rising_angle_rad(torque_nm));
+        }
+        assert!((law.rising_angle_rad(700.0) - (law.angle_rad(700.0) - 1e-4)).abs() < 1e-15);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The arm as mechanics sees it: pieces with their physics, effects applied, part names gone.
 
-use super::{Arm, Curve, Element, Joint, JointLaw, JointModel, Link, LinkBody, LinkMaterial, Section};
+use super::{Arm, Element, Joint, JointLaw, JointModel, Link, LinkBody, LinkMaterial, Section};
 use nalgebra::{Unit, Vector3};
 
 /// Everything mechanics needs to know of an arm.
@@ -131,17 +131,10 @@ fn joint_piece(joint: &Joint, driven: &[&str], model: JointModel) -> JointPiece 
     JointPiece {
         name: joint.name.clone(),
         axis: joint.axis,
-        law: JointLaw::from(curve(joint.curve, model)),
+        law: JointLaw::from(joint.curve.reduced(model)),
         tilt_rad_per_nm: 0.0,
         mass_kg: joint.mass_kg,
         angle,
-    }
-}
-
-fn curve(curve: Curve, model: JointModel) -> Curve {
-    match model {
-        JointModel::K2 => curve.middle_slope(),
-        JointModel::ThreeSegment => curve,
     }
 }
 

@@ -56,7 +56,7 @@ pub fn run(
     let out = args.out.clone().unwrap_or_else(|| Path::new("results").join(&campaign.statement.name));
     let outcome = reconcile(&campaign);
     let mut files: Vec<(String, Vec<u8>)> =
-        outcome.files().into_iter().map(|(name, text)| (name.to_string(), text.into_bytes())).collect();
+        outcome.files().into_iter().map(|(name, text)| (name, text.into_bytes())).collect();
     let page = campaign_page(&campaign, &outcome);
     files.extend(page.page().into_files());
     write_all(&out, &files)?;

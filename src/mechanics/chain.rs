@@ -1,6 +1,7 @@
 //! The arm put into a pose: elements with their twists, bodies with their inertia, from base to tip.
 
 use super::beam::PreparedBeam;
+use super::linkage::{Linkage, linkages};
 use super::{Twist, Wrench, body_inertia, force_wrench, rotation_twist, stack};
 use crate::arm::{JointLaw, JointPiece, LinkModel, LinkPiece, LoadCase, Payload, Piece, Structure, Water};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Matrix6xX, Rotation3, Vector3};
@@ -12,6 +13,7 @@ pub struct Chain {
     base_tilt_rad_per_nm: f64,
     water: Option<Water>,
     pub(super) pieces: Vec<Prepared>,
+    linkages: Vec<Linkage>,
 }
 
 #[derive(Debug, Clone)]
@@ -116,6 +118,7 @@ impl Chain {
             base_tilt_rad_per_nm: structure.base_tilt_rad_per_nm,
             water: structure.water,
             pieces,
+            linkages: linkages(structure),
         }
     }
 
@@ -139,6 +142,11 @@ impl Chain {
         }
         walk.items.push(Item::Body(self.payload_body(payload, &walk)));
         Posed { chain: self, items: walk.items, tip_m: walk.at_m, tip_rotation: walk.rotation, tip_force_n }
+    }
+
+    /// What turns the passive joints.
+    pub fn linkages(&self) -> &[Linkage] {
+        &self.linkages
     }
 
     /// The prepared beam of a piece, for interior fields.

@@ -22,6 +22,7 @@ pub mod centre_line;
 pub mod chain;
 pub mod condensed;
 pub mod lanes;
+pub mod linkage;
 pub mod lowest;
 pub mod lowest_lanes;
 pub mod modes;

@@ -120,7 +120,7 @@ impl Posed<'_> {
                 }
             }
         }
-        mass
+        self.with_linkages(mass)
     }
 
     fn describe(&self, statics: &Statics, shape: &DVector<f64>, frequency_hz: f64) -> Mode {
@@ -141,8 +141,7 @@ impl Posed<'_> {
 
     /// Displacement of the tip in a shape \[m\].
     pub(crate) fn tip_motion(&self, shape: &DVector<f64>) -> Vector3<f64> {
-        let motion: Twist =
-            self.elements().flat_map(|e| &e.twists).zip(shape.iter()).map(|(t, q)| t * *q).sum();
+        let motion: Twist = self.tip_twists().iter().zip(shape.iter()).map(|(t, q)| t * *q).sum();
         displacement_at(&motion, &self.tip_m)
     }
 
@@ -172,6 +171,7 @@ impl Posed<'_> {
         const PLANES: [(&str, usize); 3] = [("xz", 1), ("xy", 2), ("yz", 0)];
         let mut energy = PlaneEnergy::default();
         let mut motion = Twist::zeros();
+        let shape = self.with_passive(shape);
         let mut coordinate = shape.iter();
         for item in &self.items {
             match item {

@@ -1,6 +1,7 @@
 //! How far the tip moves under gravity and load (Eqs 4, 7, 13-15).
 
 use super::chain::{ElasticElement, Item, Posed, Yielding};
+use super::linkage::Carried;
 use super::{Twist, Wrench, angular, displacement_at, force_wrench, linear};
 use nalgebra::Vector3;
 
@@ -39,6 +40,7 @@ impl Posed<'_> {
     /// and what that answer moves the tip by.
     pub fn statics(&self) -> Statics {
         let mut wrench = force_wrench(&self.tip_force_n, &self.tip_m);
+        let carried = self.carried();
         let mut out = Statics {
             joint_torques_nm: Vec::new(),
             tip_displacement_m: Vector3::zeros(),
@@ -51,7 +53,7 @@ impl Posed<'_> {
         for item in self.items.iter().rev() {
             match item {
                 Item::Body(body) => wrench += body.weight(),
-                Item::Elastic(element) => self.yield_to(element, &mut wrench, &mut out),
+                Item::Elastic(element) => self.yield_to(element, &carried, &mut wrench, &mut out),
             }
         }
         out.joint_torques_nm.reverse();
@@ -66,12 +68,26 @@ impl Posed<'_> {
 
     /// One element under the outboard wrench: its deformation, its tangent, its share; then its own
     /// weight joins the wrench.
-    fn yield_to(&self, element: &ElasticElement, wrench: &mut Wrench, out: &mut Statics) {
+    fn yield_to(
+        &self,
+        element: &ElasticElement,
+        carried: &[Carried],
+        wrench: &mut Wrench,
+        out: &mut Statics,
+    ) {
+        let mut motion = Twist::zeros();
         let (yielded, tangents) = match &element.yielding {
             Yielding::Joint(law) => {
-                let torque_nm = element.twists[0].dot(wrench);
+                let mut torque_nm = element.twists[0].dot(wrench);
+                let mut passive_twist = Twist::zeros();
+                for passive in carried.iter().filter(|c| c.driver == element.name) {
+                    passive_twist += passive.twist;
+                    torque_nm += passive.torque_nm;
+                }
+                let angle_rad = law.rising_angle_rad(torque_nm);
+                motion += passive_twist * angle_rad;
                 out.joint_torques_nm.push((element.name.clone(), torque_nm));
-                (vec![law.rising_angle_rad(torque_nm)], vec![law.tangent_compliance_rad_per_nm(torque_nm)])
+                (vec![angle_rad], vec![law.tangent_compliance_rad_per_nm(torque_nm)])
             }
             Yielding::Linear(compliances) => {
                 let work = |i: usize| element.own.as_ref().map_or(0.0, |own| own.weight_work[i]);
@@ -80,7 +96,7 @@ impl Posed<'_> {
                 (yielded, compliances.clone())
             }
         };
-        let motion: Twist = element.twists.iter().zip(&yielded).map(|(twist, q)| twist * *q).sum();
+        motion += element.twists.iter().zip(&yielded).map(|(twist, q)| twist * *q).sum::<Twist>();
         out.shares_m.push((element.name.clone(), displacement_at(&motion, &self.tip_m)));
         out.deformations.push(yielded);
         out.tangent_compliances.push(tangents);

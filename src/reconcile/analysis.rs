@@ -6,16 +6,14 @@ use super::forward::Forward;
 use super::interval::{Interval, deviations, intervals};
 use super::kept_out::{self, KeptOut, rms};
 use super::lack_of_fit::{LackOfFit, lack_of_fit};
-use super::model::{Calibration, Candidate, Knob, Model, Nuisance, candidates};
+use super::model::{Calibration, Candidate, Model, Nuisance, candidates};
 use super::noise::Noise;
 use super::select::{Scored, Search, Selection};
 use super::verdict::{Calibrated, Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict};
-use super::{correct, locate, next_test};
+use super::{correct, few_rows, locate, next_test};
 
 /// Most alternatives an effect may have and still be named.
 const MOST_ALTERNATIVES: usize = 3;
-/// Fewest rows that can speak.
-const FEWEST_ROWS: usize = 11;
 /// Fewest poses that can speak.
 const FEWEST_POSES: usize = 3;
 
@@ -26,8 +24,13 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     }
     let mut forward = Forward::new(campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
-    let candidates = candidates(&forward);
-    let found = settle(&mut forward, &nuisance, &candidates);
+    let mut candidates = candidates(&forward);
+    candidates.retain(|c| campaign.statement.considers(c.kind.name));
+    let few = rows(campaign) < few_rows::FEWEST_ROWS;
+    let found = match few {
+        true => Settled::of_few(&forward, &nuisance, &candidates),
+        false => settle(&mut forward, &nuisance, &candidates),
+    };
     let weights = found.noise.weights(&forward);
     let coefficients = {
         let search =
@@ -42,6 +45,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     let bare = search.fit(&[], &found.selection.bare.u, Effort::default());
     let fit_test = lack_of_fit(campaign, &forward, &best, &weights);
     let alternatives = search.alternatives(&found.selection.best, &found.selection.others);
+    let explaining = few.then(|| found.selection.others.clone());
     let left_out = [&bare, &best].map(|f| kept_out::residuals(&forward, &f.model, &f.point.u, &weights));
     let analysis = Analysis {
         campaign,
@@ -55,6 +59,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         bare,
         lack_of_fit: fit_test,
         alternatives,
+        explaining,
         left_out,
     };
     analysis.conclude()
@@ -66,6 +71,16 @@ struct Settled {
     noise: Noise,
     /// Modes missing from lists, in words.
     missed: Vec<String>,
+}
+
+impl Settled {
+    /// A handful of readings: taken as declared, every small set of effects weighed.
+    fn of_few(forward: &Forward, nuisance: &Nuisance, candidates: &[Candidate]) -> Self {
+        let noise = Noise::default();
+        let weights = noise.weights(forward);
+        let search = Search { forward, nuisance, candidates, weights: &weights };
+        Self { selection: few_rows::weigh(&search), noise, missed: Vec::new() }
+    }
 }
 
 /// Searches with the deviations as declared, takes out gross errors and counts missed modes, searches
@@ -115,6 +130,8 @@ struct Analysis<'a> {
     bare: Fit<'a>,
     lack_of_fit: LackOfFit,
     alternatives: Vec<Vec<Scored>>,
+    /// With few rows: every set of effects that explains them.
+    explaining: Option<Vec<Scored>>,
     left_out: [Vec<Option<f64>>; 2],
 }
 
@@ -155,8 +172,10 @@ impl Analysis<'_> {
             lack_of_fit: Some(self.lack_of_fit.clone()),
             calibrated,
             evidence: if verdict == Verdict::Unexplained { Vec::new() } else { self.evidence() },
+            stages: Vec::new(),
             residuals: self.residuals(),
             corrected,
+            other_corrected: Vec::new(),
             provenance,
         }
     }
@@ -164,6 +183,9 @@ impl Analysis<'_> {
     fn verdict(&self, kept_out: &Option<KeptOut>) -> (Verdict, Vec<String>) {
         let mut reasons = too_little(self.campaign);
         if !reasons.is_empty() {
+            if let Some(explaining) = &self.explaining {
+                reasons.extend(few_rows::sentences(self.search, self.campaign, &self.bare, explaining));
+            }
             reasons.extend(self.unidentified());
             return (Verdict::InsufficientData, reasons);
         }
@@ -239,7 +261,8 @@ impl Analysis<'_> {
             let each = list.iter().zip(&self.forward.data);
             rms(each.filter_map(|(r, d)| Some((*r)? / self.noise.scale[d.channel as usize])))
         };
-        (count > 0).then(|| KeptOut {
+        // the readings of a single pose would be predicted from nothing
+        (count > 0 && self.forward.groups.len() > 1).then(|| KeptOut {
             rms_before: scaled(before),
             rms_after: scaled(after),
             rms_declared_after: rms(after.iter().flatten().copied()),
@@ -248,6 +271,9 @@ impl Analysis<'_> {
     }
 
     fn findings(&self) -> Vec<Finding> {
+        if let Some(explaining) = &self.explaining {
+            return few_rows::suspects(self.search, explaining, self.weights);
+        }
         let ends = intervals(self.forward, &self.best, self.weights);
         let mut knob = 0;
         let effects = self.best.model.effects.iter().enumerate();
@@ -356,10 +382,12 @@ impl Analysis<'_> {
     fn next_question(&self, verdict: Verdict) -> next_test::Question<'_> {
         let subject = |model: &Model, u: &[f64]| model.subject(self.forward, u);
         let best = (self.best.model.label(), subject(&self.best.model, &self.best.point.u));
-        let mut rivals: Vec<(String, crate::arm::effect::Subject)> = self
-            .alternatives
-            .iter()
-            .flatten()
+        let others: Vec<&Scored> = match &self.explaining {
+            Some(sets) => sets.iter().skip(1).collect(),
+            None => self.alternatives.iter().flatten().collect(),
+        };
+        let mut rivals: Vec<(String, crate::arm::effect::Subject)> = others
+            .into_iter()
             .take(4)
             .map(|s| {
                 let model = self.search.model(&s.effects);
@@ -388,12 +416,16 @@ impl Analysis<'_> {
     }
 }
 
+fn rows(campaign: &Campaign) -> usize {
+    campaign.statics.len() + campaign.modal.len() + campaign.windup.len()
+}
+
 /// Why the readings cannot speak at all.
 fn too_little(campaign: &Campaign) -> Vec<String> {
     let mut reasons = Vec::new();
-    let rows = campaign.statics.len() + campaign.modal.len() + campaign.windup.len();
-    if rows < FEWEST_ROWS {
-        reasons.push(format!("{rows} rows are too few: give at least {FEWEST_ROWS}"));
+    let rows = rows(campaign);
+    if rows < few_rows::FEWEST_ROWS {
+        reasons.push(format!("{rows} rows are too few: give at least {}", few_rows::FEWEST_ROWS));
     }
     let mut poses: Vec<&Vec<f64>> = campaign
         .statics
@@ -403,7 +435,7 @@ fn too_little(campaign: &Campaign) -> Vec<String> {
         .collect();
     poses.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
     poses.dedup();
-    if poses.len() < FEWEST_POSES && !(poses.is_empty() && rows >= FEWEST_ROWS) {
+    if poses.len() < FEWEST_POSES && !(poses.is_empty() && rows >= few_rows::FEWEST_ROWS) {
         reasons.push(format!(
             "{} distinct pose(s): effects at different places look alike; measure at least {FEWEST_POSES}",
             poses.len()
@@ -425,8 +457,8 @@ fn too_little(campaign: &Campaign) -> Vec<String> {
 /// A fitted effect's parameters with their intervals.
 fn parameters(effect: &Candidate, u: &[f64], ends: &[Interval]) -> Vec<(String, Vec<Estimate>)> {
     let mut out: Vec<(String, Vec<Estimate>)> = Vec::new();
-    for ((knob, &u), interval) in effect.knobs.iter().zip(u).zip(ends) {
-        let estimate = estimate(knob, u, interval);
+    for ((knob, value), interval) in effect.knobs.iter().zip(effect.numbers(u)).zip(ends) {
+        let estimate = knob.estimate(value, interval);
         match out.iter_mut().find(|(name, _)| name == knob.name) {
             Some((_, list)) => list.push(estimate),
             None => out.push((knob.name.to_string(), vec![estimate])),
@@ -437,12 +469,4 @@ fn parameters(effect: &Candidate, u: &[f64], ends: &[Interval]) -> Vec<(String, 
         out.push(("factor".into(), effect.numbers(&[]).into_iter().map(stated).collect()));
     }
     out
-}
-
-fn estimate(knob: &Knob, u: f64, interval: &Interval) -> Estimate {
-    let (low, high) = match knob.reversed() {
-        true => (interval.high, interval.low),
-        false => (interval.low, interval.high),
-    };
-    Estimate { value: knob.value(u), low: low.map(|u| knob.value(u)), high: high.map(|u| knob.value(u)) }
 }

@@ -4,10 +4,10 @@ use super::readings::{
     ModalRow, PositionRow, StaticRow, WindupRow, modal_rows, position_rows, static_rows, windup_rows,
 };
 use super::table::Table;
-use crate::arm::effect::Channel;
-use crate::arm::{Arm, read_arm};
+use crate::arm::effect::{Channel, KINDS};
+use crate::arm::{Arm, Element, read_arm};
 use crate::catalog::Catalogs;
-use crate::fault::{Document, Faults, InputError, Node, Object};
+use crate::fault::{Document, Fault, Faults, InputError, Node, Object};
 use std::path::{Path, PathBuf};
 
 /// Within what honest parts lie: 95 % limits, as parts of the nominal value.
@@ -34,6 +34,8 @@ pub struct PositionsSpec {
     pub geometry: bool,
     /// Gravity need not point along the arm's -z.
     pub gravity_direction: bool,
+    /// Links behind which place and attitude are unknown, as of an arm mounted anyhow on a trunk.
+    pub mounts: Vec<String>,
 }
 
 /// What `campaign.json` states.
@@ -47,9 +49,12 @@ pub struct Statement {
     pub payload_density_kg_m3: f64,
     /// Whether the nominal model holds the links rigid.
     pub rigid_links: bool,
+    /// The effects that come into question; all without a list.
+    pub effects: Option<Vec<String>>,
     /// What is free in absolute positions.
     pub positions: PositionsSpec,
     arm_file: String,
+    other_arm_files: Vec<String>,
     files: [Option<String>; 4],
 }
 
@@ -62,6 +67,8 @@ pub struct Campaign {
     pub statement: Statement,
     /// The nominal arm.
     pub arm: Arm,
+    /// Further arms on the same trunk, for absolute positions.
+    pub other_arms: Vec<Arm>,
     /// Tip displacements, in the order of the file.
     pub statics: Vec<StaticRow>,
     /// Natural frequencies.
@@ -77,6 +84,10 @@ pub struct Campaign {
 const DEFAULT_FILES: [&str; 4] = ["static.csv", "modal.csv", "windup.csv", "positions.csv"];
 const DEFAULT_PAYLOAD_DENSITY_KG_M3: f64 = 7850.0;
 
+const BESIDE_POSITIONS: &str = "absolute positions stand beside displacements, frequencies or bench readings: \
+     positions calibrate the geometry that the others take as given, so they are reconciled on their own, and \
+     the arm.corrected.json of one campaign can be the arm of the next";
+
 /// Reads `campaign.json`.
 ///
 /// # Errors
@@ -91,6 +102,7 @@ fn statement(node: &Node) -> Option<Statement> {
     let root = node.object(&[
         "name",
         "arm",
+        "other_arms",
         "conventions",
         "tolerance",
         "static",
@@ -98,6 +110,7 @@ fn statement(node: &Node) -> Option<Statement> {
         "windup",
         "positions",
         "links",
+        "effects",
         "description",
         "machine",
         "date",
@@ -105,6 +118,7 @@ fn statement(node: &Node) -> Option<Statement> {
     ])?;
     let name = root.or("name", "campaign".to_string(), |n| n.string().map(String::from));
     let arm_file = root.or("arm", "arm.json".to_string(), |n| n.string().map(String::from));
+    let other_arm_files = root.or("other_arms", Vec::new(), read_names);
     let tolerance = root.or("tolerance", DEFAULT_TOLERANCE, read_tolerance);
     let payload_density_kg_m3 = root.or("conventions", DEFAULT_PAYLOAD_DENSITY_KG_M3, |n| {
         match n.value().get("payload_density_kg_m3").and_then(|v| v.as_f64()) {
@@ -118,14 +132,17 @@ fn statement(node: &Node) -> Option<Statement> {
         "full" => Some(false),
         other => n.fault(format!("\"{other}\" is not known"), "choose one of: rigid, full"),
     });
+    let effects = root.or("effects", None, |n| read_effect_names(n).map(Some));
     let positions = root.or("positions", PositionsSpec::default(), read_positions);
     Some(Statement {
         name: name?,
         tolerance: tolerance?,
         payload_density_kg_m3: payload_density_kg_m3?,
         rigid_links: rigid_links?,
+        effects: effects?,
         positions: positions?,
         arm_file: arm_file?,
+        other_arm_files: other_arm_files?,
         files: Channel::ALL.map(|c| file_of(&root, c)),
     })
 }
@@ -148,15 +165,34 @@ fn read_tolerance(node: &Node) -> Option<Tolerance> {
 fn read_positions(node: &Node) -> Option<PositionsSpec> {
     const KEYS: [&str; 5] =
         ["base_placement", "tool_offset", "joint_offsets", "geometry", "gravity_direction"];
-    let object = node.object(&[KEYS.as_slice(), &["file", "boundary", "reference"]].concat())?;
+    let object = node.object(&[KEYS.as_slice(), &["mounts", "file", "boundary", "reference"]].concat())?;
     let flags = KEYS.map(|key| object.or(key, false, Node::boolean));
+    let mounts = object.or("mounts", Vec::new(), read_names);
     Some(PositionsSpec {
         base_placement: flags[0]?,
         tool_offset: flags[1]?,
         joint_offsets: flags[2]?,
         geometry: flags[3]?,
         gravity_direction: flags[4]?,
+        mounts: mounts?,
     })
+}
+
+fn read_effect_names(node: &Node) -> Option<Vec<String>> {
+    let known: Vec<&str> = KINDS.iter().map(|k| k.name).collect();
+    let read = |n: &Node| match n.string()? {
+        name if known.contains(&name) => Some(name.to_string()),
+        name => n.fault(
+            format!("effect \"{name}\" is not known"),
+            &format!("known effects: {}", known.join(", ")),
+        ),
+    };
+    let names: Vec<Option<String>> = node.array()?.iter().map(read).collect();
+    names.into_iter().collect()
+}
+
+fn read_names(node: &Node) -> Option<Vec<String>> {
+    node.array()?.iter().map(|n| n.string().map(String::from)).collect()
 }
 
 /// The file of a channel that `campaign.json` names.
@@ -165,6 +201,13 @@ fn file_of(root: &Object, channel: Channel) -> Option<String> {
     match node.value().get("file").and_then(|v| v.as_str()) {
         Some(file) => Some(file.to_string()),
         None => Some(DEFAULT_FILES[channel as usize].to_string()),
+    }
+}
+
+impl Statement {
+    /// Whether an effect comes into question.
+    pub fn considers(&self, effect: &str) -> bool {
+        self.effects.as_ref().is_none_or(|list| list.iter().any(|name| name == effect))
     }
 }
 
@@ -181,23 +224,32 @@ impl Campaign {
         let statement = keep_faults(read_statement(&folder.join("campaign.json")), &mut faults)?;
         let arm_file = statement.as_ref().map_or("arm.json", |s| s.arm_file.as_str());
         let arm = keep_faults(read_arm(&folder.join(arm_file), catalogs), &mut faults)?;
+        let mut other_arms = Vec::new();
+        for file in statement.iter().flat_map(|s| &s.other_arm_files) {
+            other_arms.extend(keep_faults(read_arm(&folder.join(file), catalogs), &mut faults)?);
+        }
         let (Some(statement), Some(arm)) = (statement, arm) else { return Err(Faults(faults).into()) };
         let mut campaign = Self {
             folder: folder.to_path_buf(),
             statement,
             arm,
+            other_arms,
             statics: Vec::new(),
             modal: Vec::new(),
             windup: Vec::new(),
             positions: Vec::new(),
             hash: String::new(),
         };
+        faults.extend(campaign.faults());
         for channel in Channel::ALL {
             if let Some(file) = campaign.file(channel) {
                 let table = Table::read(&file)?;
                 campaign.read_channel(channel, &table);
                 faults.extend(table.into_faults());
             }
+        }
+        if !campaign.positions.is_empty() && campaign.has_displacements() {
+            faults.push(campaign.fault("positions", BESIDE_POSITIONS.into(), "put them into two folders"));
         }
         campaign.hash = campaign.hash_files();
         if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults).into()) }
@@ -208,8 +260,79 @@ impl Campaign {
             Channel::Static => self.statics = static_rows(table, &self.arm),
             Channel::Modal => self.modal = modal_rows(table, &self.arm),
             Channel::Windup => self.windup = windup_rows(table, &self.arm),
-            Channel::Positions => self.positions = position_rows(table, &self.arm),
+            Channel::Positions => {
+                let names: Vec<&str> = self.arms().iter().map(|a| a.name.as_str()).collect();
+                self.positions = position_rows(table, &names, &self.driven_joint_names());
+            }
         }
+    }
+
+    /// The arm and the others on its trunk.
+    pub fn arms(&self) -> Vec<&Arm> {
+        std::iter::once(&self.arm).chain(&self.other_arms).collect()
+    }
+
+    /// Joints that have an entry in a pose: the arm's, then those that only other arms have.
+    pub fn driven_joint_names(&self) -> Vec<String> {
+        let mut out: Vec<String> = Vec::new();
+        for name in self.arms().into_iter().flat_map(|arm| arm.driven_joint_names()) {
+            if !out.iter().any(|known| known == name) {
+                out.push(name.to_string());
+            }
+        }
+        out
+    }
+
+    /// How many elements all arms begin with: the trunk.
+    pub fn trunk(&self) -> usize {
+        let shared =
+            |other: &Arm| self.arm.chain.iter().zip(&other.chain).take_while(|(a, b)| a == b).count();
+        self.other_arms.iter().map(shared).min().unwrap_or(self.arm.chain.len())
+    }
+
+    /// What is wrong with the arms together and with the names in `campaign.json`.
+    fn faults(&self) -> Vec<Fault> {
+        let mut out = Vec::new();
+        let trunk: Vec<&str> = self.arm.chain[..self.trunk()].iter().map(Element::name).collect();
+        let mut taken: Vec<&str> = self.arm.chain.iter().map(Element::name).collect();
+        let mut names = vec![self.arm.name.as_str()];
+        for other in &self.other_arms {
+            if names.contains(&other.name.as_str()) {
+                out.push(self.fault(
+                    "other_arms",
+                    format!("two arms are called \"{}\"", other.name),
+                    "give each a name of its own",
+                ));
+            }
+            names.push(&other.name);
+            for name in other.chain.iter().map(Element::name).filter(|n| !trunk.contains(n)) {
+                if taken.contains(&name) {
+                    let problem =
+                        format!("\"{name}\" of {} is also in another arm, but not the same", other.name);
+                    out.push(self.fault(
+                        "other_arms",
+                        problem,
+                        "elements of the trunk are alike in all arms; others have names of their own",
+                    ));
+                }
+                taken.push(name);
+            }
+        }
+        let links: Vec<&str> = self.arms().iter().flat_map(|a| a.links()).map(|l| l.name.as_str()).collect();
+        for name in self.statement.positions.mounts.iter().filter(|m| !links.contains(&m.as_str())) {
+            let hint = format!("the arms' links: {}", links.join(", "));
+            out.push(self.fault("positions.mounts", format!("\"{name}\" is no link"), &hint));
+        }
+        out
+    }
+
+    fn has_displacements(&self) -> bool {
+        !self.statics.is_empty() || !self.modal.is_empty() || !self.windup.is_empty()
+    }
+
+    fn fault(&self, field: &str, problem: String, hint: &str) -> Fault {
+        let file = self.folder.join("campaign.json").display().to_string();
+        Fault { file, line: None, field: field.into(), problem, hint: hint.into() }
     }
 
     /// The file of a channel: the one named in `campaign.json`, else the usual one if it is there.
@@ -223,8 +346,10 @@ impl Campaign {
 
     fn hash_files(&self) -> String {
         let mut hasher = blake3::Hasher::new();
-        let named = [self.folder.join("campaign.json"), self.folder.join(&self.statement.arm_file)];
-        let files = named.into_iter().chain(Channel::ALL.into_iter().filter_map(|c| self.file(c)));
+        let others = self.statement.other_arm_files.iter();
+        let named = ["campaign.json", &self.statement.arm_file].into_iter().chain(others.map(String::as_str));
+        let files =
+            named.map(|f| self.folder.join(f)).chain(Channel::ALL.into_iter().filter_map(|c| self.file(c)));
         for file in files {
             hasher.update(&std::fs::read(file).unwrap_or_default());
         }
@@ -237,7 +362,8 @@ impl Campaign {
     /// The arms or what is stated of them differ.
     pub fn join(mut self, others: Vec<Campaign>) -> Result<Self, String> {
         for other in others {
-            if other.arm != self.arm || other.statement.tolerance != self.statement.tolerance {
+            let alike = other.arm == self.arm && other.other_arms == self.other_arms;
+            if !alike || other.statement.tolerance != self.statement.tolerance {
                 return Err(format!(
                     "{} and {} measure different arms or state different tolerances: reconcile them one by one",
                     self.folder.display(),
@@ -248,6 +374,9 @@ impl Campaign {
             self.modal.extend(other.modal);
             self.windup.extend(other.windup);
             self.positions.extend(other.positions);
+            if !self.positions.is_empty() && self.has_displacements() {
+                return Err(BESIDE_POSITIONS.into());
+            }
             self.statement.name = format!("{}+{}", self.statement.name, other.statement.name);
             self.hash = blake3::hash(format!("{}{}", self.hash, other.hash).as_bytes()).to_hex().to_string();
         }

@@ -4,8 +4,8 @@
 use super::forward::{ARCMIN_PER_RAD, bench_twists_rad};
 use super::readings::{ModalRow, PositionRow, StaticRow, WindupRow};
 use crate::arm::effect::{Channel, Subject};
-use crate::arm::{JointLaw, LinkModel, Payload};
-use crate::mechanics::chain::{Item, Posed, Yielding};
+use crate::arm::{JointLaw, LinkModel, LinkPiece, Payload, Piece, Structure};
+use crate::mechanics::chain::{Posed, Yielding};
 use crate::mechanics::{Chain, Twist, displacement_at};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
@@ -115,15 +115,24 @@ impl<'a> Exact<'a> {
     /// \[mm\].
     pub fn positions_mm(&self, rows: &[PositionRow], placement: &Placement) -> Vec<[f64; 3]> {
         let reading = &self.subject.channels[Channel::Positions as usize];
-        rows.iter()
-            .map(|row| {
-                let posed = self.posed(&row.pose_deg, &row.payload, Vector3::zeros());
-                let tool = posed.tip_rotation * placement.point_m(&row.point);
-                let own = posed.tip_m + tool + posed.statics().tip_displacement_m;
-                let at = placement.rotation * own + placement.origin_m;
-                std::array::from_fn(|c| reading.of(1e3 * at[c], c, row.row))
-            })
-            .collect()
+        let mut chains: Vec<(&str, Vector3<f64>, Chain)> = Vec::new();
+        let mut out = Vec::with_capacity(rows.len());
+        for row in rows {
+            if !chains.iter().any(|(name, ..)| *name == row.point) {
+                let tool_m = placement.point_m(&row.point);
+                let structure = with_tool(&self.subject.structure, tool_m);
+                chains.push((&row.point, tool_m, Chain::new(&structure, LinkModel::Full)));
+            }
+            let known = chains.iter().find(|(name, ..)| *name == row.point);
+            let (_, tool_m, chain) = known.expect("just made");
+            let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
+            let payload = seen_from_tool(&self.subject.payload(&row.payload), tool_m);
+            let posed = chain.pose_rad(&pose_rad, &payload, Vector3::zeros());
+            let own = posed.tip_m + posed.statics().tip_displacement_m;
+            let at = placement.rotation * own + placement.origin_m;
+            out.push(std::array::from_fn(|c| reading.of(1e3 * at[c], c, row.row)));
+        }
+        out
     }
 
     fn posed(&self, pose_deg: &[f64], stated: &Payload, force_n: Vector3<f64>) -> Posed<'_> {
@@ -132,15 +141,34 @@ impl<'a> Exact<'a> {
     }
 }
 
+/// The structure with its tip moved to a point of the last frame.
+pub fn with_tool(structure: &Structure, tool_m: Vector3<f64>) -> Structure {
+    let mut out = structure.clone();
+    out.pieces.push(Piece::Link(LinkPiece {
+        name: "point".into(),
+        vector_m: tool_m,
+        beam: None,
+        point_mass_kg: 0.0,
+        harness_kg_per_m: 0.0,
+    }));
+    out
+}
+
+/// A payload stated from the tip, as seen from a point of the last frame.
+pub fn seen_from_tool(payload: &Payload, tool_m: &Vector3<f64>) -> Payload {
+    Payload { cg_m: payload.cg_m - tool_m, ..*payload }
+}
+
 /// Each joint's law, twist and torque, base to tip.
 fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
     let torques = posed.statics().joint_torques_nm;
-    let laws = posed.items.iter().filter_map(|item| match item {
-        Item::Elastic(element) => match element.yielding {
-            Yielding::Joint(law) => Some((law, element.twists[0])),
+    let mut twists = posed.tip_twists().into_iter();
+    let laws = posed.elements().filter_map(|element| {
+        let first = twists.by_ref().take(element.twists.len()).collect::<Vec<_>>()[0];
+        match element.yielding {
+            Yielding::Joint(law) => Some((law, first)),
             Yielding::Linear(_) => None,
-        },
-        Item::Body(_) => None,
+        }
     });
     laws.zip(torques).map(|((law, twist), (_, torque))| (law, twist, torque)).collect()
 }

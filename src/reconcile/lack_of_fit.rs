@@ -149,13 +149,14 @@ fn spread(forward: &Forward, channel: Channel, value: impl Fn(usize, usize) -> f
     out
 }
 
-fn waves(angle_deg: f64) -> [f64; 4] {
+/// Sine and cosine of an angle, once and twice a turn.
+pub fn waves(angle_deg: f64) -> [f64; 4] {
     let a = angle_deg.to_radians();
     [a.sin(), a.cos(), (2.0 * a).sin(), (2.0 * a).cos()]
 }
 
 /// Slow and fast waves and a line over the order of the rows.
-fn order_functions(part: f64) -> [f64; 6] {
+pub fn order_functions(part: f64) -> [f64; 6] {
     let (a, b) = (TAU * part, 2.0 * TAU * part);
     [part - 0.5, (part - 0.5).powi(2), a.sin(), a.cos(), b.sin(), b.cos()]
 }

@@ -3,7 +3,8 @@
 //!
 //! [`campaign`] reads the readings; [`forward`] predicts them fast, [`exact`] by mechanics directly;
 //! [`model`] says what is free; [`fit`] fits; [`select`] finds the effects; [`noise`] finds gross errors
-//! and wrongly declared deviations; [`lack_of_fit`] asks whether structure is left; [`kept_out`]
+//! and wrongly declared deviations; [`lack_of_fit`] asks whether structure is left; [`few_rows`] says what a
+//! handful of readings can; [`kept_out`]
 //! confirms on poses kept out; [`interval`] gives the intervals; [`analysis`] draws the conclusion and
 //! [`verdict`] is its form, [`page`] its page for a browser; [`correct`] writes the corrected arm and [`next_test`] says what to measure.
 
@@ -11,6 +12,7 @@ pub mod analysis;
 pub mod campaign;
 pub mod correct;
 pub mod exact;
+pub mod few_rows;
 pub mod fit;
 pub mod forward;
 pub mod interval;

@@ -2,6 +2,8 @@
 
 use super::campaign::Tolerance;
 use super::forward::{Coefficients, Forward};
+use super::interval::Interval;
+use super::verdict::Estimate;
 use crate::arm::effect::{Channel, Effect, KINDS, Kind, Parameter, Place, Scale, Subject, fits_nominal};
 use crate::arm::{Arm, Curve, Element, LinkBody, Piece};
 
@@ -19,6 +21,8 @@ pub struct Knob {
     pub low: f64,
     /// Largest `u`.
     pub high: f64,
+    /// Another number of the effect that this one is not below.
+    not_below: Option<&'static str>,
 }
 
 /// A stiffness no reading can tell from rigid \[N m/rad\].
@@ -36,7 +40,8 @@ impl Knob {
             Scale::Reciprocal => (1.0, low, high),
             Scale::Log => (1.0, low.ln(), high.ln()),
         };
-        Self { name: parameter.name, component, scale: parameter.scale, reference, low, high }
+        let not_below = parameter.not_below;
+        Self { name: parameter.name, component, scale: parameter.scale, reference, low, high, not_below }
     }
 
     /// The parameter's value.
@@ -58,6 +63,15 @@ impl Knob {
             Scale::Reciprocal => 1.0 / value,
             Scale::Log => value.ln(),
         }
+    }
+
+    /// A fitted value with the interval of its `u`.
+    pub fn estimate(&self, value: f64, interval: &Interval) -> Estimate {
+        let (low, high) = match self.reversed() {
+            true => (interval.high, interval.low),
+            false => (interval.low, interval.high),
+        };
+        Estimate { value, low: low.map(|u| self.value(u)), high: high.map(|u| self.value(u)) }
     }
 
     /// Whether the value falls when `u` rises.
@@ -99,9 +113,16 @@ impl Candidate {
         format!("{}@{}", self.kind.name, self.at)
     }
 
-    /// Numbers of all parameters in the kind's order.
+    /// Numbers of all parameters in the kind's order, those that keep an order in it.
     pub fn numbers(&self, u: &[f64]) -> Vec<f64> {
-        self.knobs.iter().zip(u).map(|(k, u)| k.value(*u)).chain(self.fixed.iter().copied()).collect()
+        let mut out: Vec<f64> = self.knobs.iter().zip(u).map(|(k, u)| k.value(*u)).collect();
+        for (i, knob) in self.knobs.iter().enumerate() {
+            if let Some(least) = self.knobs.iter().position(|k| Some(k.name) == knob.not_below) {
+                out[i] = out[i].max(out[least]);
+            }
+        }
+        out.extend(&self.fixed);
+        out
     }
 
     /// The effect as an arm file has it.

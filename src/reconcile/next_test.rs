@@ -31,7 +31,7 @@ const STATIC_POSES: usize = 24;
 const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
 /// Separation that settles a question \[standard deviations\].
-const ENOUGH: f64 = 4.0;
+pub const ENOUGH: f64 = 4.0;
 /// Deviations that are assumed where a channel was not measured.
 const DEFAULT_SIGMA_MM: f64 = 0.01;
 const DEFAULT_SIGMA_PART: f64 = 0.003;
@@ -121,6 +121,15 @@ fn ranges(campaign: &Campaign) -> Vec<(f64, f64)> {
         .collect()
 }
 
+/// A pose of Halton's sequence within ranges of angles \[deg\], in whole degrees.
+pub fn spread_pose(ranges: &[(f64, f64)], index: usize) -> Vec<f64> {
+    ranges
+        .iter()
+        .enumerate()
+        .map(|(j, (low, high))| (low + (high - low) * halton(index, PRIMES[j % PRIMES.len()])).round())
+        .collect()
+}
+
 /// Halton's sequence.
 fn halton(mut index: usize, base: usize) -> f64 {
     let (mut f, mut r) = (1.0, 0.0);
@@ -132,17 +141,11 @@ fn halton(mut index: usize, base: usize) -> f64 {
     r
 }
 
-const PRIMES: [usize; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
+const PRIMES: [usize; 20] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71];
 
 fn tests(campaign: &Campaign) -> Vec<Test> {
     let ranges = ranges(campaign);
-    let pose = |index: usize| -> Vec<f64> {
-        ranges
-            .iter()
-            .enumerate()
-            .map(|(j, (low, high))| (low + (high - low) * halton(index, PRIMES[j % PRIMES.len()])).round())
-            .collect()
-    };
+    let pose = |index: usize| spread_pose(&ranges, index);
     let payload = largest_payload(campaign);
     let sigma_mm = campaign.statics.first().map_or(DEFAULT_SIGMA_MM, |r| r.sigma_mm);
     let force = campaign.statics.iter().map(|r| r.force_n.norm()).fold(0.0, f64::max).max(100.0).round();
@@ -202,19 +205,20 @@ fn bench(campaign: &Campaign, joint: &str) -> Test {
 fn predict(exact: &Exact, test: &Test) -> Vec<f64> {
     match test {
         Test::Static(rows) => exact.statics_mm(rows).into_iter().flatten().collect(),
-        Test::Modal(rows) => exact.frequencies_hz(rows).into_iter().map(|f| f.unwrap_or_default()).collect(),
+        Test::Modal(rows) => exact.frequencies_hz(rows).into_iter().map(|f| f.unwrap_or(f64::NAN)).collect(),
         Test::Bench(rows) => exact.windups_arcmin(rows),
     }
 }
 
-/// Root of the sum of squares of the difference \[standard deviations\].
+/// Root of the sum of squares of the difference \[standard deviations\], over the modes that both have.
 fn separation(test: &Test, a: &[f64], b: &[f64]) -> f64 {
     let sigma = |value: f64| match test {
         Test::Static(rows) => rows[0].sigma_mm,
         Test::Modal(_) => DEFAULT_SIGMA_PART * value.abs().max(1e-9),
         Test::Bench(rows) => rows[0].sigma_arcmin,
     };
-    a.iter().zip(b).map(|(a, b)| ((a - b) / sigma(*a)).powi(2)).sum::<f64>().sqrt()
+    let squares = a.iter().zip(b).map(|(a, b)| ((a - b) / sigma(*a)).powi(2));
+    squares.filter(|s| s.is_finite()).sum::<f64>().sqrt()
 }
 
 fn describe(question: &Question, test: &Test, sigmas: f64, gaps: Vec<(f64, &String)>) -> NextTest {

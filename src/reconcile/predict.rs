@@ -47,7 +47,7 @@ pub fn predict(
             (&["model_windup_arcmin"], rows.iter().map(|w| vec![*w]).collect())
         }
         Some(Channel::Positions) => {
-            let rows = exact.positions_mm(&position_rows(&table, arm), placement);
+            let rows = exact.positions_mm(&position_rows(&table, &[&arm.name], &driven(arm)), placement);
             (&["model_x_mm", "model_y_mm", "model_z_mm"], rows.iter().map(|r| r.to_vec()).collect())
         }
         None => {
@@ -76,6 +76,10 @@ fn subject(arm: &Arm, statement: &Statement) -> Subject {
         water.payload_density_kg_m3 = statement.payload_density_kg_m3;
     }
     nominal
+}
+
+fn driven(arm: &Arm) -> Vec<String> {
+    arm.driven_joint_names().into_iter().map(String::from).collect()
 }
 
 fn text(table: &Table, names: &[&str], columns: &[Vec<f64>]) -> String {

@@ -67,6 +67,8 @@ pub struct PositionRow {
     pub pose_deg: Vec<f64>,
     /// Stated payload.
     pub payload: Payload,
+    /// Which arm the point is on: index among the campaign's.
+    pub arm: usize,
     /// Name of the point.
     pub point: String,
     /// Position in the frame of the instrument \[mm\].
@@ -82,8 +84,7 @@ struct StateColumns {
 }
 
 impl StateColumns {
-    fn find(table: &Table, arm: &Arm, payload_needed: bool) -> Option<Self> {
-        let joints = arm.driven_joint_names();
+    fn find(table: &Table, joints: &[&str], payload_needed: bool) -> Option<Self> {
         let expected: Vec<String> = joints.iter().map(|j| format!("q_{j}_deg")).collect();
         for column in table.columns.iter().filter(|c| c.starts_with("q_") && !expected.contains(c)) {
             table.fault(
@@ -139,7 +140,7 @@ fn sigma(table: &Table, row: usize, column: usize) -> Option<f64> {
 
 /// Reads static rows.
 pub fn static_rows(table: &Table, arm: &Arm) -> Vec<StaticRow> {
-    let state = StateColumns::find(table, arm, true);
+    let state = StateColumns::find(table, &arm.driven_joint_names(), true);
     let find = |names: [&str; 3]| names.map(|n| table.required(n));
     let (force, d) = (find(["force_x_n", "force_y_n", "force_z_n"]), find(["dx_mm", "dy_mm", "dz_mm"]));
     let (branch, sigma_mm) = (table.optional("branch"), table.required("sigma_mm"));
@@ -169,7 +170,7 @@ pub fn static_rows(table: &Table, arm: &Arm) -> Vec<StaticRow> {
 
 /// Reads modal rows.
 pub fn modal_rows(table: &Table, arm: &Arm) -> Vec<ModalRow> {
-    let state = StateColumns::find(table, arm, true);
+    let state = StateColumns::find(table, &arm.driven_joint_names(), true);
     let columns = ["mode", "frequency_hz", "sigma_hz"].map(|n| table.required(n));
     let (Some(state), [Some(mode), Some(frequency), Some(sigma_hz)]) = (state, columns) else {
         return Vec::new();
@@ -226,21 +227,30 @@ pub fn windup_rows(table: &Table, arm: &Arm) -> Vec<WindupRow> {
 }
 
 /// Reads absolute positions.
-pub fn position_rows(table: &Table, arm: &Arm) -> Vec<PositionRow> {
-    let state = StateColumns::find(table, arm, false);
+///
+/// `arms`: names of the arms; `driven`: the joints that have a column.
+pub fn position_rows(table: &Table, arms: &[&str], driven: &[String]) -> Vec<PositionRow> {
+    let joints: Vec<&str> = driven.iter().map(String::as_str).collect();
+    let state = StateColumns::find(table, &joints, false);
     let columns = ["x_mm", "y_mm", "z_mm", "sigma_mm"].map(|n| table.required(n));
     let point = table.optional("point");
+    let arm = table.optional("arm");
     let (Some(state), [Some(x), Some(y), Some(z), Some(sigma_mm)]) = (state, columns) else {
         return Vec::new();
     };
     let rows = each_row(table, |row| {
         let (pose_deg, payload) = (state.pose(table, row), state.payload(table, row));
         let position = [x, y, z].map(|c| table.number(row, c));
+        let arm = match arm {
+            Some(column) => arm_named(table, row, column, arms),
+            None => Some(0),
+        };
         let sigma_mm = sigma(table, row, sigma_mm);
         Some(PositionRow {
             row,
             pose_deg: pose_deg?,
             payload: payload?,
+            arm: arm?,
             point: point.map_or("tip".to_string(), |c| table.text(row, c).to_string()),
             position_mm: [position[0]?, position[1]?, position[2]?],
             sigma_mm: sigma_mm?,
@@ -248,6 +258,20 @@ pub fn position_rows(table: &Table, arm: &Arm) -> Vec<PositionRow> {
     });
     check_angles(table, rows.iter().map(|r| r.pose_deg.as_slice()));
     rows
+}
+
+fn arm_named(table: &Table, row: usize, column: usize, arms: &[&str]) -> Option<usize> {
+    let name = table.text(row, column);
+    let found = arms.iter().position(|a| *a == name);
+    if found.is_none() {
+        table.row_fault(
+            row,
+            "arm",
+            format!("\"{name}\" is no arm"),
+            &format!("the arms: {}", arms.join(", ")),
+        );
+    }
+    found
 }
 
 fn each_row<T>(table: &Table, read: impl Fn(usize) -> Option<T>) -> Vec<T> {

@@ -22,6 +22,7 @@ impl Outcome {
                 k.count, k.rms_before, k.rms_after
             );
         }
+        self.stages_table(&mut out);
         self.quality(&mut out);
         if let Some(test) = self.next_tests.first() {
             let pose = test.pose_deg.as_ref().map_or(String::new(), |p| format!(" at {p:?} deg"));
@@ -52,6 +53,24 @@ impl Outcome {
         }
     }
 
+    fn stages_table(&self, out: &mut String) {
+        if self.stages.is_empty() {
+            return;
+        }
+        let _ = writeln!(
+            out,
+            "  position error [mm], each line adds to those above    fitted    on poses kept out of the fit"
+        );
+        let _ = writeln!(out, "  {:<50} {:>8} {:>8} {:>8} {:>8}", "", "median", "median", "mean", "largest");
+        for s in &self.stages {
+            let _ = writeln!(
+                out,
+                "  {:<50} {:>8.3} {:>8.3} {:>8.3} {:>8.3}",
+                s.added, s.fitted_median_mm, s.median_mm, s.mean_mm, s.max_mm
+            );
+        }
+    }
+
     fn quality(&self, out: &mut String) {
         for (channel, row, size) in &self.noise.outliers {
             let _ = writeln!(
@@ -69,14 +88,17 @@ impl Outcome {
     }
 
     /// The files of the outcome with their names.
-    pub fn files(&self) -> Vec<(&'static str, String)> {
+    pub fn files(&self) -> Vec<(String, String)> {
         let json = |value: &serde_json::Value| format!("{value:#}\n");
-        vec![
-            ("verdict.json", json(&self.to_json())),
-            ("verdict.txt", self.to_text()),
-            ("arm.corrected.json", json(&self.corrected_json())),
-            ("residuals.csv", self.residuals_csv()),
-        ]
+        let mut out = vec![
+            ("verdict.json".to_string(), json(&self.to_json())),
+            ("verdict.txt".to_string(), self.to_text()),
+            ("arm.corrected.json".to_string(), json(&self.corrected_json())),
+            ("residuals.csv".to_string(), self.residuals_csv()),
+        ];
+        let others = self.other_corrected.iter();
+        out.extend(others.map(|arm| (format!("{}.corrected.json", arm.name), json(&self.other_json(arm)))));
+        out
     }
 
     /// Writes `verdict.json`, `verdict.txt`, `arm.corrected.json` and `residuals.csv` into a folder.

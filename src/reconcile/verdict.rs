@@ -3,6 +3,7 @@
 use super::kept_out::KeptOut;
 use super::lack_of_fit::LackOfFit;
 use super::noise::Noise;
+use super::positions::Stage;
 use crate::arm::Arm;
 use crate::arm::effect::Channel;
 use serde_json::{Map, Value, json};
@@ -166,10 +167,14 @@ pub struct Outcome {
     pub calibrated: Vec<Calibrated>,
     /// Models that were weighed.
     pub evidence: Vec<Evidence>,
+    /// Absolute positions: how the error falls as each effect is added.
+    pub stages: Vec<Stage>,
     /// Readings and residuals.
     pub residuals: Vec<ReadingResidual>,
     /// The corrected arm.
     pub corrected: Arm,
+    /// Further corrected arms on the same trunk.
+    pub other_corrected: Vec<Arm>,
     /// Provenance of the corrected arm's values.
     pub provenance: Value,
 }
@@ -253,6 +258,7 @@ impl Outcome {
             "calibrated": self.calibrated.iter().map(|c| json!({
                 "name": c.name, "factor": c.factor.json(), "learnt": c.learnt,
             })).collect::<Vec<_>>(),
+            "stages": self.stages.iter().map(Stage::json).collect::<Vec<_>>(),
             "evidence": self.evidence.iter().map(|e| json!({
                 "model": e.model, "score": e.score, "chi_squared": e.objective,
             })).collect::<Vec<_>>(),
@@ -304,6 +310,14 @@ impl Outcome {
                 r.gross
             ));
         }
+        out
+    }
+
+    /// A further corrected arm as its file, with its own placement.
+    pub fn other_json(&self, arm: &Arm) -> Value {
+        let mut out = arm.to_json();
+        out["provenance"] = self.provenance.clone();
+        out["provenance"]["placement"] = self.provenance["other_placements"][&arm.name].clone();
         out
     }
 

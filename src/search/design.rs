@@ -96,8 +96,7 @@ impl<'c> ArmProblem<'c> {
                 (SpacePiece::Choice(choice), Part::Link(option)) => Some(Element::Link(choice.link(option))),
                 (SpacePiece::Link(link), _) => Some(Element::Link(link.clone())),
                 (SpacePiece::Joint(joint), part) => {
-                    let (curve, mass_kg, names) = drive_of(&joint.drive, &part)?;
-                    let (gear, motor) = names.unzip();
+                    let (curve, mass_kg, [gear, motor]) = drive_of(&joint.drive, &part)?;
                     Some(Element::Joint(Joint {
                         name: joint.name.clone(),
                         axis: joint.axis,
@@ -139,15 +138,16 @@ impl<'c> ArmProblem<'c> {
     }
 }
 
-type NamedParts = Option<(String, String)>;
-
-fn drive_of(choice: &DriveChoice, part: &Part) -> Option<(Curve, f64, NamedParts)> {
+/// Curve, mass \[kg\], names of gear and motor.
+fn drive_of(choice: &DriveChoice, part: &Part) -> Option<(Curve, f64, [Option<String>; 2])> {
     match (choice, part) {
-        (DriveChoice::Given { curve, mass_kg, parts }, _) => Some((*curve, *mass_kg, parts.clone())),
+        (DriveChoice::Given { curve, mass_kg, gear, motor }, _) => {
+            Some((*curve, *mass_kg, [gear.clone(), motor.clone()]))
+        }
         (_, Part::Drive(drive)) => {
             let curve = windup_of(drive.gear).map_or(Curve::Rigid, Curve::Windup);
-            let names = (drive.gear.id.clone(), drive.motor.id.clone());
-            Some((curve, drive.mass_kg().ok()?, Some(names)))
+            let names = [&drive.gear.id, &drive.motor.id].map(|id| Some(id.clone()));
+            Some((curve, drive.mass_kg().ok()?, names))
         }
         _ => None,
     }
@@ -181,6 +181,14 @@ pub fn evaluate(problem: &ArmProblem, number: u128) -> Option<Evaluated> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_given_gear_keeps_its_name_without_a_motor() {
+        let gear = Some("HFUC-50-100".to_string());
+        let choice =
+            DriveChoice::Given { curve: Curve::Linear(4e5), mass_kg: 3.2, gear: gear.clone(), motor: None };
+        assert_eq!(drive_of(&choice, &Part::Given), Some((Curve::Linear(4e5), 3.2, [gear, None])));
+    }
 
     #[test]
     fn numbers_and_names_are_one_to_one() {

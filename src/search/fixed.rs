@@ -23,7 +23,7 @@ impl ArmProblem<'_> {
     pub fn fixed_drive<'c>(&self, piece: usize, catalogs: &'c Catalogs) -> Option<FixedDrive<'c>> {
         let space = self.space();
         let SpacePiece::Joint(joint) = &space.pieces[piece] else { return None };
-        let DriveChoice::Given { parts: Some((gear, motor)), mass_kg, .. } = &joint.drive else {
+        let DriveChoice::Given { gear: Some(gear), motor: Some(motor), mass_kg, .. } = &joint.drive else {
             return None;
         };
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);

@@ -80,8 +80,10 @@ pub enum DriveChoice {
         curve: Curve,
         /// Mass \[kg\].
         mass_kg: f64,
-        /// Gear and motor by name.
-        parts: Option<(String, String)>,
+        /// Gear by name.
+        gear: Option<String>,
+        /// Motor by name.
+        motor: Option<String>,
     },
     /// The lightest drive of the catalogs that holds (the paper's way).
     FirstFit(DriveFilter),

@@ -333,7 +333,7 @@ fn read_given_drive(object: &Object, open: &Open) -> Option<DriveChoice> {
     let mass_kg = read_joint_mass(object, open.catalogs);
     let text = |key| object.or(key, None, |n| n.string().map(|s| Some(s.to_string())));
     let (gear, motor) = (text("gear")?, text("motor")?);
-    Some(DriveChoice::Given { curve: curve?, mass_kg: mass_kg?, parts: gear.zip(motor) })
+    Some(DriveChoice::Given { curve: curve?, mass_kg: mass_kg?, gear, motor })
 }
 
 fn read_space_link(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> Option<SpacePiece> {

@@ -58,7 +58,7 @@ fn columns(problem: &ArmProblem, catalogs: &Catalogs) -> Vec<String> {
 }
 
 fn has_parts(drive: &DriveChoice) -> bool {
-    !matches!(drive, DriveChoice::Given { parts: None, .. })
+    !matches!(drive, DriveChoice::Given { gear: None, motor: None, .. })
 }
 
 fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::Judged) -> Option<Vec<String>> {
@@ -71,8 +71,10 @@ fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::Judged) -> Opt
                 out.extend([drive.gear.id.clone(), drive.motor.id.clone()]);
             }
             (SpacePiece::Joint(joint), _) => {
-                if let DriveChoice::Given { parts: Some((gear, motor)), .. } = &joint.drive {
-                    out.extend([gear.clone(), motor.clone()]);
+                if let DriveChoice::Given { gear, motor, .. } = &joint.drive
+                    && has_parts(&joint.drive)
+                {
+                    out.extend([gear, motor].map(|part| part.clone().unwrap_or_default()));
                 }
             }
             _ => {}

@@ -122,12 +122,15 @@ pub struct Parameter {
     pub scale: Scale,
     /// The value when it is left out; such a parameter is stated, not fitted.
     pub default: Option<f64>,
+    /// Another parameter that this one is not below.
+    pub not_below: Option<&'static str>,
 }
 
 impl Parameter {
     /// A single number that must be given.
     pub const fn number(name: &'static str, low: f64, high: f64, typical: f64, scale: Scale) -> Self {
-        Self { name, count: 1, low, high, typical, prior: (low, high), scale, default: None }
+        let prior = (low, high);
+        Self { name, count: 1, low, high, typical, prior, scale, default: None, not_below: None }
     }
 
     /// The same parameter, expected within narrower limits.
@@ -135,9 +138,14 @@ impl Parameter {
         Self { prior: (low, high), ..self }
     }
 
+    /// The same parameter, not below another.
+    pub const fn at_least(self, other: &'static str) -> Self {
+        Self { not_below: Some(other), ..self }
+    }
+
     /// Three numbers that must be given.
     pub const fn vector(name: &'static str, low: f64, high: f64, typical: f64) -> Self {
-        Self { name, count: 3, low, high, typical, prior: (low, high), scale: Scale::Linear, default: None }
+        Self { count: 3, ..Self::number(name, low, high, typical, Scale::Linear) }
     }
 }
 

@@ -9,7 +9,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter::number("k2_nm_per_rad", 1.0, 1e10, 1.5e5, Scale::Stiffness).expected(0.9, 1.1),
     Parameter::number("k3_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.25, 0.98),
     Parameter::number("t1_nm", 0.01, 1e5, 50.0, Scale::Log).expected(0.5, 5e3),
-    Parameter::number("t2_nm", 0.01, 1e5, 150.0, Scale::Log).expected(0.5, 5e3),
+    Parameter::number("t2_nm", 0.01, 1e5, 150.0, Scale::Log).expected(0.5, 5e3).at_least("t1_nm"),
 ];
 
 /// The effect.
@@ -29,7 +29,7 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
             k2_nm_per_rad: numbers[1],
             k3_nm_per_rad: numbers[2],
             t1_nm: numbers[3],
-            t2_nm: numbers[4].max(numbers[3]),
+            t2_nm: numbers[4],
         });
     }
 }

@@ -1,7 +1,7 @@
 //! What can be wrong with an effect in a file, and the effects a calculation leaves out.
 
 use super::{Effect, KINDS, Kind, Parameter, Place, Subject, kind};
-use crate::arm::{Arm, JointModel, Payload, Structure};
+use crate::arm::{Arm, JointModel, Payload, Piece, Structure};
 use crate::fault::closest;
 
 /// One thing wrong with an effect: the key it concerns, the problem, and what to try.
@@ -69,6 +69,10 @@ impl Effect {
                 format!("has {} numbers, not {}", numbers.len(), parameter.count),
                 format!("give {}", parameter.count),
             ),
+            Some((_, numbers)) if self.is_below_another(parameter, numbers[0]).is_some() => {
+                let (name, least) = self.is_below_another(parameter, numbers[0])?;
+                (format!("= {} is below {name} = {least}", numbers[0]), format!("give at least {name}"))
+            }
             Some((_, numbers)) => {
                 let outside = numbers.iter().find(|n| !(parameter.low..=parameter.high).contains(*n))?;
                 (
@@ -79,6 +83,13 @@ impl Effect {
         };
         Some(EffectFault { field: format!("parameters.{}", parameter.name), problem, hint })
     }
+
+    /// The parameter, with its value, that this one must not be below and is.
+    fn is_below_another(&self, parameter: &Parameter, value: f64) -> Option<(&str, f64)> {
+        let (name, numbers) =
+            self.parameters.iter().find(|(name, _)| Some(name.as_str()) == parameter.not_below)?;
+        numbers.first().filter(|least| value < **least).map(|least| (name.as_str(), *least))
+    }
 }
 
 impl Arm {
@@ -87,10 +98,16 @@ impl Arm {
         self.effects.iter().filter(|e| e.is_of_test()).collect()
     }
 
-    /// The arm with all of its effects, those of the payload and of the channels included.
+    /// The arm with all of its effects, those of the payload and of the channels included; a curve that
+    /// an effect brings is reduced as the model asks, like the arm's own.
     pub fn subject(&self, joints: JointModel) -> Subject {
         let mut subject = Subject::new(self.nominal_structure(joints));
         self.effects.iter().for_each(|effect| subject.apply(effect));
+        for piece in &mut subject.structure.pieces {
+            if let Piece::Joint(joint) = piece {
+                joint.law.curve = joint.law.curve.reduced(joints);
+            }
+        }
         subject
     }
 }
@@ -169,6 +186,25 @@ mod tests {
         assert_eq!(structure.joint_mut("j2").expect("j2").tilt_rad_per_nm, 1.0 / 2e5);
         assert_eq!(arm.ignored_effects().len(), 1);
         assert_eq!(arm.ignored_effects()[0].effect, "sensor_gain");
+    }
+
+    const CURVE: &str = r#"[{"effect": "soft_windup", "at": "j2", "parameters": {"k1_nm_per_rad": 1e4,
+        "k2_nm_per_rad": 2e4, "k3_nm_per_rad": 3e4, "t1_nm": T1, "t2_nm": 30}}]"#;
+
+    #[test]
+    fn a_curve_that_an_effect_brings_is_reduced_to_its_middle_slope() {
+        let arm = read_with(&CURVE.replace("T1", "10")).expect("sound arm");
+        let curve = |model| arm.structure(model).joint_mut("j2").expect("j2").law.curve;
+        assert_eq!(curve(JointModel::K2), crate::arm::Curve::Linear(2e4));
+        assert!(matches!(curve(JointModel::ThreeSegment), crate::arm::Curve::Windup(_)));
+    }
+
+    #[test]
+    fn break_points_in_the_wrong_order_are_a_fault_and_not_changed() {
+        let faults = read_with(&CURVE.replace("T1", "40")).expect_err("a fault").0;
+        assert_eq!(faults.len(), 1);
+        assert_eq!(faults[0].field, "effects[0].parameters.t2_nm");
+        assert!(faults[0].to_string().contains("= 30 is below t1_nm = 40"), "{}", faults[0]);
     }
 
     #[test]

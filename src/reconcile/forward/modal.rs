@@ -11,8 +11,8 @@ use super::statics::PoseGeometry;
 use super::{Datum, group_of};
 use crate::arm::effect::{Channel, Subject};
 use crate::arm::{Curve, JointLaw, Payload};
-use crate::mechanics::chain::{Item, Posed};
-use crate::mechanics::{Twist, displacement_at};
+use crate::mechanics::chain::Posed;
+use crate::mechanics::displacement_at;
 use crate::reconcile::campaign::Campaign;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3xX, SymmetricEigen, Vector3};
 use std::f64::consts::TAU;
@@ -340,15 +340,7 @@ fn tangent(law: &JointLaw, torque_nm: f64, width: f64) -> f64 {
 
 /// Motion of the tip and rotation of the last frame per coordinate.
 fn tip_jacobians(posed: &Posed) -> (Matrix3xX<f64>, Matrix3xX<f64>) {
-    let twists: Vec<Twist> = posed
-        .items
-        .iter()
-        .filter_map(|i| match i {
-            Item::Elastic(e) => Some(e.twists.clone()),
-            Item::Body(_) => None,
-        })
-        .flatten()
-        .collect();
+    let twists = posed.tip_twists();
     let tip: Vec<Vector3<f64>> = twists.iter().map(|t| displacement_at(t, &posed.tip_m)).collect();
     let spin: Vec<Vector3<f64>> = twists.iter().map(|t| t.fixed_rows::<3>(3).into_owned()).collect();
     (Matrix3xX::from_columns(&tip), Matrix3xX::from_columns(&spin))

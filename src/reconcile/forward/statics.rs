@@ -94,7 +94,7 @@ impl PoseGeometry {
         let pose_rad: Vec<f64> = pose_deg.iter().map(|a| a.to_radians()).collect();
         let empty = Payload::default();
         let posed = layout.template.pose_rad(&pose_rad, &empty, Vector3::zeros());
-        let twists: Vec<Twist> = posed.elements().flat_map(|e| e.twists.iter().copied()).collect();
+        let twists = posed.tip_twists();
         let mover = |index: usize| Mover {
             index,
             twist: twists[index],
@@ -156,12 +156,15 @@ impl PoseGeometry {
 fn dead_torques(posed: &Posed) -> Vec<f64> {
     let mut wrench = Wrench::zeros();
     let mut torques = Vec::new();
+    let carried = posed.carried();
     for item in posed.items.iter().rev() {
         match item {
             Item::Body(body) => wrench += body.weight(),
             Item::Elastic(element) => {
                 if let crate::mechanics::chain::Yielding::Joint(_) = element.yielding {
-                    torques.push(element.twists[0].dot(&wrench));
+                    let passive = carried.iter().filter(|c| c.driver == element.name);
+                    let passive_nm: f64 = passive.map(|c| c.torque_nm).sum();
+                    torques.push(element.twists[0].dot(&wrench) + passive_nm);
                 }
                 if let Some(own) = &element.own {
                     wrench += own.weight;

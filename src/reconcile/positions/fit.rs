@@ -2,35 +2,54 @@
 //!
 //! The tracker's deviation is far below what any model of an arm leaves, so the scale of the errors is
 //! fitted too: each position's error is a three-dimensional Student variable (4 degrees of freedom), whose
-//! weights `(ν+3)/(ν + |r|²/s²)` let gross errors fade. What yields moves the point by `c a(pose)`, `a`
-//! the displacement at unit compliance, from mechanics.
+//! weights `(ν+3)/(ν + |r|²/s²)` let gross errors fade. What yields moves the point by `c P ĝ`, `P` its
+//! displacement at unit compliance per direction of gravity ([`super::loads`]).
 
-use super::kinematics::{Geometry, Number};
-use nalgebra::{Cholesky, DMatrix, DVector, Vector3};
+use super::kinematics::{Geometry, Number, Placing};
+use super::loads::Sag;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Vector3};
 
 /// Degrees of freedom of the errors.
 const NU: f64 = 4.0;
 const MOST_STEPS: usize = 40;
+/// Largest turn of a frame in one step \[rad\].
+const MOST_TURN_RAD: f64 = 0.3;
 
 /// One measured position.
+#[derive(Debug, Clone)]
 pub struct Sample {
     /// Joint angles \[rad\].
     pub pose_rad: Vec<f64>,
+    /// Which arm.
+    pub arm: usize,
     /// Point on the tool.
     pub point: usize,
+    /// Session of the instrument.
+    pub station: usize,
+    /// Place among the samples.
+    pub index: usize,
+    /// Which pose: samples of one pose are kept out together.
+    pub group: usize,
     /// Position \[m\].
     pub measured_m: Vector3<f64>,
-    /// Displacement that the model already has, arm's frame \[m\].
-    pub known_m: Vector3<f64>,
-    /// Displacement at unit compliance of each candidate, arm's frame \[m\].
-    pub signatures: Vec<Vector3<f64>>,
+    /// What gravity does to it.
+    pub sag: Sag,
+}
+
+impl Sample {
+    /// What is asked of the geometry.
+    pub fn placing(&self) -> Placing<'_> {
+        Placing { arm: self.arm, pose_rad: &self.pose_rad, point: self.point, station: self.station }
+    }
 }
 
 /// A fitted model.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Fitted {
     /// Geometry.
     pub geometry: Geometry,
+    /// By how much each number has moved from nominal.
+    pub moved: Vec<f64>,
     /// Indices of the candidates in it.
     pub effects: Vec<usize>,
     /// Their compliances \[rad/(N m)\].
@@ -44,19 +63,38 @@ pub struct Fitted {
 }
 
 impl Fitted {
+    /// A geometry without effects.
+    pub fn rigid(geometry: Geometry, scale_m: f64) -> Self {
+        let (effects, compliances, deviations) = (Vec::new(), Vec::new(), Vec::new());
+        Self { geometry, moved: Vec::new(), effects, compliances, deviations, scale_m, ln_likelihood: 0.0 }
+    }
+
+    /// Where the model has the point \[m\].
+    pub fn predicted_m(&self, sample: &Sample) -> Vector3<f64> {
+        let rigid = self.geometry.place(sample.placing(), &[]).at_m;
+        rigid + self.geometry.level_to_instrument() * self.displacement(sample)
+    }
+
     /// Error of a sample \[m\].
     pub fn error(&self, sample: &Sample) -> Vector3<f64> {
-        let rigid = self.geometry.place(&sample.pose_rad, sample.point, &[]).at_m;
-        sample.measured_m - rigid - self.geometry.base * self.displacement(sample)
+        sample.measured_m - self.predicted_m(sample)
     }
 
     fn displacement(&self, sample: &Sample) -> Vector3<f64> {
         let effects = self.effects.iter().zip(&self.compliances);
-        sample.known_m + effects.map(|(&e, c)| sample.signatures[e] * *c).sum::<Vector3<f64>>()
+        let pulled = effects.map(|(&e, c)| sample.sag.per_compliance[e] * self.geometry.gravity * *c);
+        let gravity = &self.geometry.gravity;
+        let leaning = sample.sag.known_slopes_m[0] * gravity.x + sample.sag.known_slopes_m[1] * gravity.y;
+        sample.sag.known_m + leaning + pulled.sum::<Vector3<f64>>()
+    }
+
+    /// Weight of a sample with this error \[1/m²\].
+    pub fn weight(&self, error: &Vector3<f64>) -> f64 {
+        weight(error, self.scale_m) / (self.scale_m * self.scale_m)
     }
 }
 
-/// Fits geometry and the named compliances to the samples, from a geometry.
+/// Fits geometry and the named compliances to the samples, from a model.
 pub fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &Fitted) -> Fitted {
     let mut here = start.clone();
     here.compliances = effects
@@ -64,20 +102,27 @@ pub fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &F
         .map(|e| start.effects.iter().position(|s| s == e).map_or(0.0, |i| start.compliances[i]))
         .collect();
     here.effects = effects.to_vec();
-    let mut moved = vec![0.0; numbers.len()];
+    here.moved.resize(numbers.len(), 0.0);
     for _ in 0..MOST_STEPS {
         let before = here.scale_m;
-        let step = step(samples, numbers, &mut here, &moved);
+        let step = shortened(numbers, step(samples, numbers, &mut here));
         here.geometry.step(numbers, &step);
-        moved.iter_mut().zip(&step).for_each(|(m, s)| *m += s);
+        here.moved.iter_mut().zip(&step).for_each(|(m, s)| *m += s);
         here.scale_m = scale(samples, &here);
         let largest = step.iter().map(|s| s.abs()).fold(0.0, f64::max);
-        if (here.scale_m / before - 1.0).abs() < 1e-6 && largest < 1e-7 {
+        if (here.scale_m / before - 1.0).abs() < 1e-6 && largest < 1e-6 {
             break;
         }
     }
     here.ln_likelihood = ln_likelihood(samples, &here);
     here
+}
+
+/// A step that turns no frame too far for a straight line.
+fn shortened(numbers: &[Number], step: Vec<f64>) -> Vec<f64> {
+    let turns = numbers.iter().zip(&step).filter(|(n, _)| n.turns()).map(|(_, s)| s.abs());
+    let part = (MOST_TURN_RAD / turns.fold(0.0, f64::max)).min(1.0);
+    step.into_iter().map(|s| s * part).collect()
 }
 
 fn weight(error: &Vector3<f64>, scale_m: f64) -> f64 {
@@ -105,65 +150,105 @@ fn ln_likelihood(samples: &[&Sample], fitted: &Fitted) -> f64 {
         .sum()
 }
 
-/// One weighted Gauss-Newton step of the geometry; the compliances are set to their best, not negative.
-fn step(samples: &[&Sample], numbers: &[Number], here: &mut Fitted, moved: &[f64]) -> Vec<f64> {
-    let (n, m) = (numbers.len(), here.effects.len());
-    let mut a = DMatrix::zeros(n + m, n + m);
-    let mut b = DVector::zeros(n + m);
-    for sample in samples {
-        let placed = here.geometry.place(&sample.pose_rad, sample.point, numbers);
-        let error = here.error(sample);
-        let w = weight(&error, here.scale_m) / (here.scale_m * here.scale_m);
-        let effects = here.effects.iter().map(|&e| here.geometry.base * sample.signatures[e]);
-        let columns: Vec<Vector3<f64>> = placed.slopes.into_iter().chain(effects).collect();
-        for (i, ci) in columns.iter().enumerate() {
-            b[i] += w * ci.dot(&error);
-            for (j, cj) in columns[..=i].iter().enumerate() {
-                a[(i, j)] += w * ci.dot(cj);
-            }
-        }
-    }
-    a.fill_upper_triangle_with_lower_triangle();
-    for (i, number) in numbers.iter().enumerate() {
-        let precision = number.prior().powi(-2);
-        a[(i, i)] += precision;
-        b[i] -= precision * moved[i];
-    }
-    solve_bounded(&a, &b, here, n)
+/// Weighted normal equations of a model: its numbers, its effects, and further columns.
+pub struct Normal {
+    /// Curvature, priors included.
+    pub curvature: DMatrix<f64>,
+    /// Gradient towards the readings.
+    pub gradient: DVector<f64>,
+    /// How many of the columns belong to the model.
+    pub own: usize,
 }
 
-/// Solves with the compliances kept from falling below zero.
-fn solve_bounded(a: &DMatrix<f64>, b: &DVector<f64>, here: &mut Fitted, n: usize) -> Vec<f64> {
-    let m = here.effects.len();
+/// The normal equations at a model; `further` gives a sample's further columns \[m per unit\].
+pub fn normal(
+    samples: &[&Sample],
+    numbers: &[Number],
+    here: &Fitted,
+    further: &dyn Fn(&Sample) -> Vec<Vector3<f64>>,
+) -> Normal {
+    let own = numbers.len() + here.effects.len();
+    let width = own + samples.first().map_or(0, |s| further(s).len());
+    let mut rows = DMatrix::zeros(3 * samples.len(), width);
+    let mut right = DVector::zeros(3 * samples.len());
+    let from_level = here.geometry.level_to_instrument();
+    for (i, sample) in samples.iter().enumerate() {
+        let placed = here.geometry.place(sample.placing(), numbers);
+        let error = sample.measured_m - placed.at_m - from_level * here.displacement(sample);
+        let root = here.weight(&error).sqrt();
+        let mut columns = placed.slopes;
+        let gravity = numbers.iter().enumerate().filter_map(|(n, number)| match number {
+            Number::Gravity(c) => Some((n, *c)),
+            _ => None,
+        });
+        for (n, c) in gravity {
+            let effects = here.effects.iter().zip(&here.compliances);
+            let pull: Vector3<f64> =
+                effects.map(|(&e, amount)| sample.sag.per_compliance[e].column(c) * *amount).sum();
+            columns[n] = from_level * (pull + sample.sag.known_slopes_m[c]);
+        }
+        columns.extend(
+            here.effects.iter().map(|&e| from_level * sample.sag.per_compliance[e] * here.geometry.gravity),
+        );
+        columns.extend(further(sample));
+        for (j, column) in columns.iter().enumerate() {
+            rows.fixed_view_mut::<3, 1>(3 * i, j).copy_from(&(column * root));
+        }
+        right.fixed_rows_mut::<3>(3 * i).copy_from(&(error * root));
+    }
+    let transposed = rows.transpose();
+    let mut curvature = &transposed * &rows;
+    let mut gradient = &transposed * right;
+    for (i, (number, moved)) in numbers.iter().zip(&here.moved).enumerate() {
+        let precision = number.prior().powi(-2);
+        curvature[(i, i)] += precision;
+        gradient[i] -= precision * moved;
+    }
+    Normal { curvature, gradient, own }
+}
+
+/// A factorized curvature, scaled to a unit diagonal.
+pub struct Factor {
+    cholesky: Cholesky<f64, Dyn>,
+    diagonal: DVector<f64>,
+}
+
+impl Factor {
+    /// Of the rows and columns that are free.
+    pub fn new(curvature: &DMatrix<f64>, free: &[usize]) -> Option<Self> {
+        let sub = DMatrix::from_fn(free.len(), free.len(), |i, j| curvature[(free[i], free[j])]);
+        let diagonal = sub.diagonal().map(|d| 1.0 / d.max(1e-300).sqrt());
+        let scaled = DMatrix::from_fn(free.len(), free.len(), |i, j| {
+            diagonal[i] * sub[(i, j)] * diagonal[j] + if i == j { 1e-12 } else { 0.0 }
+        });
+        Some(Self { cholesky: Cholesky::new(scaled)?, diagonal })
+    }
+
+    /// Solves for one right side.
+    pub fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
+        self.cholesky.solve(&right.component_mul(&self.diagonal)).component_mul(&self.diagonal)
+    }
+
+    /// Standard deviations.
+    fn deviations(&self) -> DVector<f64> {
+        let inverse = self.cholesky.inverse();
+        DVector::from_fn(self.diagonal.len(), |i, _| inverse[(i, i)].sqrt() * self.diagonal[i])
+    }
+}
+
+/// One weighted Gauss-Newton step of the geometry; the compliances are set to their best, not negative.
+fn step(samples: &[&Sample], numbers: &[Number], here: &mut Fitted) -> Vec<f64> {
+    let normal = normal(samples, numbers, here, &|_| Vec::new());
+    let (n, m) = (numbers.len(), here.effects.len());
     let mut free: Vec<usize> = (0..n + m).collect();
     loop {
-        let sub = DMatrix::from_fn(free.len(), free.len(), |i, j| a[(free[i], free[j])]);
-        let diagonal = sub.diagonal().map(|d| 1.0 / d.max(1e-300).sqrt());
-        let scaled = DMatrix::from_diagonal(&diagonal) * &sub * DMatrix::from_diagonal(&diagonal)
-            + DMatrix::identity(free.len(), free.len()) * 1e-12;
-        let right = DVector::from_fn(free.len(), |i, _| b[free[i]] * diagonal[i]);
-        let Some(cholesky) = Cholesky::new(scaled) else { return vec![0.0; n] };
-        let x = cholesky.solve(&right).component_mul(&diagonal);
-        let negative: Vec<usize> = free
-            .iter()
-            .zip(x.iter())
-            .filter(|(p, x)| **p >= n && here.compliances[**p - n] + **x < 0.0)
-            .map(|(p, _)| *p)
-            .collect();
+        let Some(factor) = Factor::new(&normal.curvature, &free) else { return vec![0.0; n] };
+        let x = factor.solve(&DVector::from_fn(free.len(), |i, _| normal.gradient[free[i]]));
+        let falls = |(p, x): (&usize, &f64)| *p >= n && here.compliances[*p - n] + *x < 0.0;
+        let negative: Vec<usize> =
+            free.iter().zip(x.iter()).filter(|(p, x)| falls((p, x))).map(|(p, _)| *p).collect();
         if negative.is_empty() {
-            let inverse = cholesky.inverse();
-            let mut out = vec![0.0; n];
-            let old = std::mem::replace(&mut here.compliances, vec![0.0; m]);
-            here.deviations = vec![f64::INFINITY; m];
-            for (k, &p) in free.iter().enumerate() {
-                if p < n {
-                    out[p] = x[k];
-                } else {
-                    here.compliances[p - n] = old[p - n] + x[k];
-                    here.deviations[p - n] = inverse[(k, k)].sqrt() * diagonal[k];
-                }
-            }
-            return out;
+            return take(here, &free, &x, &factor.deviations(), n);
         }
         free.retain(|p| !negative.contains(p));
         for p in negative {
@@ -172,30 +257,25 @@ fn solve_bounded(a: &DMatrix<f64>, b: &DVector<f64>, here: &mut Fitted, n: usize
     }
 }
 
-/// The rotation and origin that carry nominal points onto measured ones (Kabsch), refined on the nearest
-/// 90 %.
-pub fn align(samples: &[&Sample], geometry: &mut Geometry) {
-    let nominal: Vec<Vector3<f64>> =
-        samples.iter().map(|s| geometry.place(&s.pose_rad, s.point, &[]).at_m).collect();
-    let mut kept: Vec<usize> = (0..samples.len()).collect();
-    for _ in 0..4 {
-        let count = kept.len() as f64;
-        let from = kept.iter().map(|&i| nominal[i]).sum::<Vector3<f64>>() / count;
-        let to = kept.iter().map(|&i| samples[i].measured_m).sum::<Vector3<f64>>() / count;
-        let h: nalgebra::Matrix3<f64> =
-            kept.iter().map(|&i| (nominal[i] - from) * (samples[i].measured_m - to).transpose()).sum();
-        let svd = h.svd(true, true);
-        let (Some(u), Some(vt)) = (svd.u, svd.v_t) else { return };
-        let mut flip = nalgebra::Matrix3::identity();
-        flip[(2, 2)] = (vt.transpose() * u.transpose()).determinant().signum();
-        let rotation = nalgebra::Rotation3::from_matrix_unchecked(vt.transpose() * flip * u.transpose());
-        let origin = to - rotation * from;
-        geometry.base = rotation;
-        geometry.origin_m = origin;
-        let error = |i: usize| (samples[i].measured_m - origin - rotation * nominal[i]).norm();
-        let mut order: Vec<usize> = (0..samples.len()).collect();
-        order.sort_by(|&i, &j| error(i).total_cmp(&error(j)));
-        order.truncate((samples.len() * 9).div_ceil(10).max(4));
-        kept = order;
+/// Takes the compliances of a step and returns its geometry.
+fn take(
+    here: &mut Fitted,
+    free: &[usize],
+    x: &DVector<f64>,
+    deviations: &DVector<f64>,
+    n: usize,
+) -> Vec<f64> {
+    let mut out = vec![0.0; n];
+    let m = here.effects.len();
+    let old = std::mem::replace(&mut here.compliances, vec![0.0; m]);
+    here.deviations = vec![f64::INFINITY; m];
+    for (k, &p) in free.iter().enumerate() {
+        if p < n {
+            out[p] = x[k];
+        } else {
+            here.compliances[p - n] = old[p - n] + x[k];
+            here.deviations[p - n] = deviations[k];
+        }
     }
+    out
 }

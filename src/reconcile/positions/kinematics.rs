@@ -1,6 +1,7 @@
 //! Where a point on the tool is, for any calibrated geometry, and how it moves with each number of it.
 
-use crate::arm::{Arm, Element, JointAngle, Piece, Structure};
+use super::tree::Tree;
+use crate::arm::{Arm, Element, JointAngle, Piece};
 use crate::reconcile::campaign::PositionsSpec;
 use nalgebra::{Rotation3, Unit, Vector3};
 
@@ -13,47 +14,102 @@ pub enum Number {
     BasePosition(usize),
     /// Offset of a point on the last frame \[m\].
     Tool(usize, usize),
+    /// Attitude behind a link of unknown mounting \[rad\]: piece, and axis of the frame before it.
+    Mount(usize, usize),
+    /// Vector of a link of unknown mounting \[m\]: piece, component.
+    MountVector(usize, usize),
     /// Zero of a driven joint \[rad\]: index in the pose.
     Zero(usize),
     /// Tilt of a joint's axis \[rad\]: piece, and which of the two axes across.
     Axis(usize, usize),
     /// Component of a link's vector \[m\]: piece, component.
     Vector(usize, usize),
+    /// Component of the direction of gravity across the arm's vertical.
+    Gravity(usize),
+    /// Rotation of everything in another session, about the base's origin and an instrument axis \[rad\].
+    StationRotation(usize, usize),
+    /// Shift of everything in another session \[m\].
+    StationPosition(usize, usize),
 }
 
 impl Number {
     /// Standard deviation before anything is measured.
     pub fn prior(&self) -> f64 {
         match self {
-            Number::BaseRotation(_) => 10.0,
+            Number::BaseRotation(_) | Number::Mount(..) => 10.0,
             Number::BasePosition(_) => 100.0,
-            Number::Tool(..) => 1.0,
+            Number::Tool(..) | Number::MountVector(..) => 1.0,
             Number::Zero(_) => 0.03,
             Number::Axis(..) => 0.01,
             Number::Vector(..) => 0.01,
+            Number::Gravity(_) | Number::StationPosition(..) => 0.05,
+            Number::StationRotation(..) => 0.02,
         }
+    }
+
+    /// Whether it turns a frame by any angle.
+    pub fn turns(&self) -> bool {
+        matches!(self, Number::BaseRotation(_) | Number::Mount(..))
     }
 }
 
-/// The numbers a campaign leaves free.
-pub fn numbers(structure: &Structure, spec: &PositionsSpec, points: usize, driven: usize) -> Vec<Number> {
-    let mut out = Vec::new();
+/// The numbers a campaign leaves free, in the groups in which they are let free: where arm and points
+/// are, the joints' zeros, the geometry, the direction of gravity.
+pub fn number_groups(tree: &Tree, spec: &PositionsSpec, points: usize) -> Vec<(&'static str, Vec<Number>)> {
+    let mut placement = Vec::new();
     if spec.base_placement {
-        out.extend((0..3).map(Number::BaseRotation));
-        out.extend((0..3).map(Number::BasePosition));
+        placement.extend((0..3).map(Number::BaseRotation));
+        placement.extend((0..3).map(Number::BasePosition));
     }
     if spec.tool_offset {
-        out.extend((0..points).flat_map(|p| (0..3).map(move |c| Number::Tool(p, c))));
+        placement.extend((0..points).flat_map(|p| (0..3).map(move |c| Number::Tool(p, c))));
     }
+    placement.extend(mount_numbers(tree, spec));
+    let mut out = vec![("nominal arm, placed", placement)];
     if spec.joint_offsets {
-        out.extend((0..driven).map(Number::Zero));
+        out.push(("joint offsets", (0..tree.driven.len()).map(Number::Zero).collect()));
     }
     if spec.geometry {
-        for (i, piece) in structure.pieces.iter().enumerate() {
-            match piece {
-                Piece::Joint(_) => out.extend((0..2).map(|k| Number::Axis(i, k))),
-                Piece::Link(_) => out.extend((0..3).map(|c| Number::Vector(i, c))),
+        out.push(("geometry", geometry_numbers(tree, spec)));
+    }
+    if spec.gravity_direction {
+        out.push(("direction of gravity", (0..2).map(Number::Gravity).collect()));
+    }
+    out
+}
+
+/// Attitude and place behind the links whose mounting is unknown.
+pub fn mount_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
+    let mounts = (0..tree.pieces.len()).filter(|&i| is_mount(&tree.pieces[i], spec));
+    mounts
+        .flat_map(|i| {
+            (0..3).map(move |c| Number::Mount(i, c)).chain((0..3).map(move |c| Number::MountVector(i, c)))
+        })
+        .collect()
+}
+
+fn is_mount(piece: &Piece, spec: &PositionsSpec) -> bool {
+    matches!(piece, Piece::Link(link) if spec.mounts.contains(&link.name))
+}
+
+/// Of links in a row the last one's vector stands for all; those before the first joint and after the
+/// last are the base placement and the tool offsets.
+fn geometry_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
+    let is_joint = |i: usize| matches!(tree.pieces[i], Piece::Joint(_));
+    let between = |i: usize| {
+        tree.arms.iter().any(|chain| {
+            let Some(at) = chain.iter().position(|&p| p == i) else { return false };
+            chain[..at].iter().any(|&p| is_joint(p)) && chain.get(at + 1).is_some_and(|&next| is_joint(next))
+        })
+    };
+    let mut out = Vec::new();
+    for (i, piece) in tree.pieces.iter().enumerate() {
+        match piece {
+            Piece::Joint(_) => out.extend((0..2).map(|k| Number::Axis(i, k))),
+            Piece::Link(_) if between(i) && !is_mount(piece, spec) => {
+                out.extend((0..3).map(|c| Number::Vector(i, c)));
             }
+            Piece::Link(_) => {}
         }
     }
     out
@@ -66,30 +122,55 @@ pub struct Geometry {
     pub base: Rotation3<f64>,
     /// Base origin \[m\].
     pub origin_m: Vector3<f64>,
-    /// Points on the last frame \[m\].
+    /// Points on the last frame of their arm \[m\].
     pub tools_m: Vec<Vector3<f64>>,
+    /// Rotation about the base's origin and shift \[m\] of everything in each session; the first is none.
+    pub stations: Vec<(Rotation3<f64>, Vector3<f64>)>,
+    /// Carries the base frame to the level one, whose z is up.
+    pub level: Rotation3<f64>,
+    /// Direction of gravity in the level frame; -z unless it has moved since the frame was levelled.
+    pub gravity: Vector3<f64>,
     zeros_rad: Vec<f64>,
     axes: Vec<Unit<Vector3<f64>>>,
     vectors_m: Vec<Vector3<f64>>,
+    mounts: Vec<Rotation3<f64>>,
     angles: Vec<Option<JointAngle>>,
+    arms: Vec<Vec<usize>>,
 }
 
-/// A point and its motion with each number, base frame of the arm.
+/// Which point of which arm is asked for, in which pose and session.
+#[derive(Debug, Clone, Copy)]
+pub struct Placing<'a> {
+    /// Arm.
+    pub arm: usize,
+    /// Joint angles \[rad\].
+    pub pose_rad: &'a [f64],
+    /// Point on the tool.
+    pub point: usize,
+    /// Session of the instrument.
+    pub station: usize,
+}
+
+/// A point and its motion with each number, instrument's frame.
 pub struct Placed {
-    /// Position, instrument's frame \[m\].
+    /// Position \[m\].
     pub at_m: Vector3<f64>,
     /// Its derivatives.
     pub slopes: Vec<Vector3<f64>>,
 }
 
+#[derive(Clone, Copy)]
 struct Frame {
     rotation: Rotation3<f64>,
     at_m: Vector3<f64>,
 }
 
+/// The frames before and behind each piece of an arm; none for pieces of other arms.
+type Frames = Vec<Option<(Frame, Frame)>>;
+
 impl Geometry {
     /// The nominal geometry, the arm standing at the instrument's origin.
-    pub fn nominal(structure: &Structure, points: usize, driven: usize) -> Self {
+    pub fn nominal(tree: &Tree, points: usize) -> Self {
         let axis = |p: &Piece| match p {
             Piece::Joint(j) => j.axis,
             Piece::Link(_) => Vector3::z_axis(),
@@ -106,39 +187,68 @@ impl Geometry {
             base: Rotation3::identity(),
             origin_m: Vector3::zeros(),
             tools_m: vec![Vector3::zeros(); points],
-            zeros_rad: vec![0.0; driven],
-            axes: structure.pieces.iter().map(axis).collect(),
-            vectors_m: structure.pieces.iter().map(vector).collect(),
-            angles: structure.pieces.iter().map(angle).collect(),
+            stations: vec![(Rotation3::identity(), Vector3::zeros())],
+            level: Rotation3::identity(),
+            gravity: -Vector3::z(),
+            zeros_rad: vec![0.0; tree.driven.len()],
+            axes: tree.pieces.iter().map(axis).collect(),
+            vectors_m: tree.pieces.iter().map(vector).collect(),
+            mounts: vec![Rotation3::identity(); tree.pieces.len()],
+            angles: tree.pieces.iter().map(angle).collect(),
+            arms: tree.arms.clone(),
         }
+    }
+
+    /// Sets the attitude behind a link of unknown mounting.
+    pub fn set_mount(&mut self, piece: usize, rotation: Rotation3<f64>) {
+        self.mounts[piece] = rotation;
     }
 
     /// Moves the numbers by a step.
     pub fn step(&mut self, numbers: &[Number], step: &[f64]) {
+        let about =
+            |c: usize, by: f64| Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::ith(c, 1.0)), by);
         for (number, &by) in numbers.iter().zip(step) {
             match *number {
-                Number::BaseRotation(c) => {
-                    let turn = Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::ith(c, 1.0)), by);
-                    self.base = turn * self.base;
-                }
+                Number::BaseRotation(c) => self.base = about(c, by) * self.base,
                 Number::BasePosition(c) => self.origin_m[c] += by,
                 Number::Tool(p, c) => self.tools_m[p][c] += by,
+                Number::StationRotation(s, c) => self.stations[s].0 = about(c, by) * self.stations[s].0,
+                Number::StationPosition(s, c) => self.stations[s].1[c] += by,
+                Number::Mount(i, c) => self.mounts[i] = about(c, by) * self.mounts[i],
                 Number::Zero(j) => self.zeros_rad[j] += by,
                 Number::Axis(i, k) => {
                     let turn = Rotation3::from_axis_angle(&across(&self.axes[i])[k], by);
                     self.axes[i] = Unit::new_normalize(turn * self.axes[i].into_inner());
                 }
-                Number::Vector(i, c) => self.vectors_m[i][c] += by,
+                Number::Vector(i, c) | Number::MountVector(i, c) => self.vectors_m[i][c] += by,
+                Number::Gravity(c) => {
+                    self.gravity[c] += by;
+                    self.gravity.normalize_mut();
+                }
             }
         }
     }
 
-    /// Writes the calibrated axes and vectors into the arm. A joint's zero turns everything outboard of
-    /// it, so the later axes and vectors, and the points on the last frame, are turned with it; returns
-    /// the points as they are then.
-    pub fn write_into(&self, arm: &mut Arm) -> Vec<Vector3<f64>> {
-        let mut turned = Rotation3::identity();
-        for (i, element) in arm.chain.iter_mut().enumerate() {
+    /// Turns the level frame so that gravity points along its -z again.
+    pub fn relevel(&mut self) {
+        if let Some(turn) = Rotation3::rotation_between(&self.gravity, &-Vector3::z()) {
+            self.level = turn * self.level;
+            self.gravity = -Vector3::z();
+        }
+    }
+
+    /// Turns the level frame's vectors into the instrument's.
+    pub fn level_to_instrument(&self) -> Rotation3<f64> {
+        self.base * self.level.inverse()
+    }
+
+    /// Writes the calibrated axes and vectors into one of the arms, in the level frame. A joint's zero and
+    /// a mounting turn everything outboard, so later axes and vectors are turned with them; returns by
+    /// how much the last frame is turned.
+    pub fn write_into(&self, index: usize, arm: &mut Arm) -> Rotation3<f64> {
+        let mut turned = self.level;
+        for (&i, element) in self.arms[index].iter().zip(&mut arm.chain) {
             match element {
                 Element::Joint(joint) => {
                     joint.axis = Unit::new_normalize(turned * self.axes[i].into_inner());
@@ -147,50 +257,74 @@ impl Geometry {
                         turned *= Rotation3::from_axis_angle(&self.axes[i], zero);
                     }
                 }
-                Element::Link(link) => link.vector_m = turned * self.vectors_m[i],
+                Element::Link(link) => {
+                    link.vector_m = turned * self.vectors_m[i];
+                    turned *= self.mounts[i];
+                }
             }
         }
-        self.tools_m.iter().map(|t| turned * t).collect()
+        turned
     }
 
-    /// A point in a pose with its derivatives.
-    pub fn place(&self, pose_rad: &[f64], point: usize, numbers: &[Number]) -> Placed {
-        let pose: Vec<f64> = pose_rad.iter().zip(&self.zeros_rad).map(|(q, z)| q + z).collect();
-        let mut frames = vec![Frame { rotation: self.base, at_m: self.origin_m }];
-        for i in 0..self.axes.len() {
-            let last = &frames[i];
-            let (mut rotation, mut at_m) = (last.rotation, last.at_m);
+    /// A point of an arm in a pose with its derivatives.
+    pub fn place(&self, asked: Placing, numbers: &[Number]) -> Placed {
+        let pose: Vec<f64> = asked.pose_rad.iter().zip(&self.zeros_rad).map(|(q, z)| q + z).collect();
+        let mut frames: Frames = vec![None; self.axes.len()];
+        let mut last = Frame { rotation: self.base, at_m: self.origin_m };
+        for &i in &self.arms[asked.arm] {
+            let before = last;
             match &self.angles[i] {
-                Some(angle) => rotation *= Rotation3::from_axis_angle(&self.axes[i], angle.of(&pose)),
-                None => at_m += rotation * self.vectors_m[i],
+                Some(angle) => last.rotation *= Rotation3::from_axis_angle(&self.axes[i], angle.of(&pose)),
+                None => {
+                    last.at_m += last.rotation * self.vectors_m[i];
+                    last.rotation *= self.mounts[i];
+                }
             }
-            frames.push(Frame { rotation, at_m });
+            frames[i] = Some((before, last));
         }
-        let last = &frames[frames.len() - 1];
-        let at_m = last.at_m + last.rotation * self.tools_m[point];
-        let slopes = numbers.iter().map(|n| self.slope(n, &frames, &at_m, point)).collect();
-        Placed { at_m, slopes }
+        let at_m = last.at_m + last.rotation * self.tools_m[asked.point];
+        let slope = |n: &Number| self.slope(n, &frames, &last, &at_m, asked);
+        // a session's turn is small: the slopes are as in the first
+        let slopes = numbers.iter().map(slope).collect();
+        let (turn, shift_m) = &self.stations[asked.station];
+        Placed { at_m: self.origin_m + turn * (at_m - self.origin_m) + shift_m, slopes }
     }
 
-    fn slope(&self, number: &Number, frames: &[Frame], at_m: &Vector3<f64>, point: usize) -> Vector3<f64> {
+    fn slope(
+        &self,
+        number: &Number,
+        frames: &Frames,
+        last: &Frame,
+        at_m: &Vector3<f64>,
+        asked: Placing,
+    ) -> Vector3<f64> {
+        let zero = Vector3::zeros();
         match *number {
             Number::BaseRotation(c) => Vector3::ith(c, 1.0).cross(&(at_m - self.origin_m)),
             Number::BasePosition(c) => Vector3::ith(c, 1.0),
-            Number::Tool(p, c) if p == point => frames[frames.len() - 1].rotation * Vector3::ith(c, 1.0),
-            Number::Tool(..) => Vector3::zeros(),
+            Number::StationRotation(s, c) if s == asked.station => {
+                Vector3::ith(c, 1.0).cross(&(at_m - self.origin_m))
+            }
+            Number::StationPosition(s, c) if s == asked.station => Vector3::ith(c, 1.0),
+            Number::StationRotation(..) | Number::StationPosition(..) => zero,
+            Number::Tool(p, c) if p == asked.point => last.rotation * Vector3::ith(c, 1.0),
+            Number::Tool(..) | Number::Gravity(_) => zero,
             Number::Zero(j) => (0..self.axes.len())
-                .filter_map(|i| Some((i, rate(self.angles[i].as_ref()?, j))))
-                .filter(|(_, rate)| *rate != 0.0)
-                .map(|(i, rate)| {
-                    rate * (frames[i].rotation * self.axes[i].into_inner()).cross(&(at_m - frames[i].at_m))
+                .filter_map(|i| Some((i, frames[i]?.0, rate(self.angles[i].as_ref()?, j))))
+                .map(|(i, before, rate)| {
+                    rate * (before.rotation * self.axes[i].into_inner()).cross(&(at_m - before.at_m))
                 })
                 .sum(),
-            Number::Axis(i, k) => {
+            Number::Axis(i, k) => frames[i].map_or(zero, |(before, behind)| {
                 let tilt = across(&self.axes[i])[k].into_inner();
-                let turn = frames[i].rotation * tilt - frames[i + 1].rotation * tilt;
-                turn.cross(&(at_m - frames[i].at_m))
+                (before.rotation * tilt - behind.rotation * tilt).cross(&(at_m - before.at_m))
+            }),
+            Number::Mount(i, c) => frames[i].map_or(zero, |(before, behind)| {
+                (before.rotation * Vector3::ith(c, 1.0)).cross(&(at_m - behind.at_m))
+            }),
+            Number::Vector(i, c) | Number::MountVector(i, c) => {
+                frames[i].map_or(zero, |(before, _)| before.rotation * Vector3::ith(c, 1.0))
             }
-            Number::Vector(i, c) => frames[i].rotation * Vector3::ith(c, 1.0),
         }
     }
 }

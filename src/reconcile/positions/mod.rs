@@ -1,39 +1,47 @@
-//! Absolute positions: base placement, tool offsets, joint zeros and geometry are calibrated, what yields
-//! is found effect by effect, each stage judged on poses kept out of the fit.
+//! Absolute positions: placement, tool offsets, joint zeros, geometry and the direction of gravity are
+//! calibrated, what yields is found effect by effect, each stage judged on poses kept out of the fit.
+//!
+//! [`tree`] joins the arms that stand on one trunk; [`kinematics`] says where a point is and [`loads`] how
+//! gravity moves it; [`align`] places the arm from nothing, [`fit`] fits; [`structure`] asks what is left
+//! and [`outcome`] concludes.
 
+mod align;
 pub mod fit;
 pub mod kinematics;
+pub mod loads;
+mod outcome;
+mod sessions;
+mod structure;
+mod tree;
+
+pub use outcome::reconcile;
 
 use super::campaign::Campaign;
-use super::correct;
-use super::kept_out::KeptOut;
-use super::noise::Noise;
 use super::stats::median;
-use super::verdict::{Estimate, Evidence, Finding, Outcome, Verdict};
-use crate::arm::effect::{Channel, Effect};
-use crate::arm::{Curve, JointModel, LinkModel, Piece, Structure};
-use crate::mechanics::Chain;
-use fit::{Fitted, Sample, align, fit};
-use kinematics::{Geometry, Number, numbers};
-use nalgebra::Vector3;
+use fit::{Factor, Fitted, Sample, fit, normal};
+use kinematics::{Geometry, Number, number_groups};
+use loads::{Yielding, candidates, sags};
+use nalgebra::{DVector, Vector3};
 use rayon::prelude::*;
-use serde_json::json;
+use tree::Tree;
 
 /// Hands the poses are dealt into; one is kept out at a time.
 const HANDS: usize = 5;
 /// Errors beyond this many scales are gross.
 const GROSS: f64 = 8.0;
-/// Fewest positions that can speak.
-const FEWEST: usize = 20;
+/// Candidates that are fitted in full at each stage.
+const FULL_FITS: usize = 4;
+/// Scale of the errors before anything is fitted \[m\].
+const ROUGH_M: f64 = 0.01;
+/// Models within this ln of the likelihood cannot be told apart.
+const TIE: f64 = 3.0;
 
-/// What yields, as a candidate.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Yielding {
-    /// Effect.
-    pub effect: &'static str,
-    /// Place.
-    pub at: String,
-}
+/// Step of gravity's direction for slopes \[rad\].
+const LEAN: f64 = 1e-3;
+
+/// The classes of effects in the order in which they are looked for.
+const CLASSES: [&[&str]; 2] =
+    [&["joint_compliance", "connection_compliance"], &["bearing_tilt", "base_compliance"]];
 
 /// How well a model predicts positions.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +54,8 @@ pub struct Stage {
     pub median_mm: f64,
     /// Their mean error \[mm\].
     pub mean_mm: f64,
+    /// Their largest error \[mm\].
+    pub max_mm: f64,
 }
 
 /// Everything a positions campaign tells.
@@ -56,91 +66,220 @@ pub struct Positions {
     pub candidates: Vec<Yielding>,
     /// The final fit.
     pub fitted: Fitted,
+    /// The same geometry's numbers fitted without any effect.
+    pub rigid: Fitted,
     /// Rows that are gross errors, from 0, with their error \[mm\].
     pub gross: Vec<(usize, f64)>,
     samples: Vec<Sample>,
     numbers: Vec<Number>,
+    tree: Tree,
+    /// Points, those of separate sessions apart.
+    points: Vec<String>,
+    /// Where sessions were told apart, in words.
+    sessions: Vec<String>,
+    /// Errors of the last stage's kept-out predictions \[m\], by row.
+    kept_out: Vec<Vector3<f64>>,
 }
 
 /// Calibrates and finds what yields.
 pub fn analyze(campaign: &Campaign) -> Positions {
-    let mut nominal = campaign.arm.structure(JointModel::ThreeSegment);
-    if campaign.statement.rigid_links {
-        nominal.pieces.iter_mut().for_each(|p| {
-            if let Piece::Link(link) = p
-                && let Some(beam) = &mut link.beam
-            {
-                beam.flexibility = 0.0;
-            }
-        });
+    let mut found = Positions::new(campaign);
+    found.calibrate(campaign);
+    let spec = &campaign.statement.positions;
+    found.sessions = found.find_sessions(spec.tool_offset, spec.base_placement);
+    if !found.sessions.is_empty() {
+        found.stage("sessions".into());
     }
-    let points = points(campaign);
-    let driven = campaign.arm.driven_joint_names().len();
-    let candidates = candidates(&nominal);
-    let samples = samples(campaign, &nominal, &points, &candidates);
-    let numbers = numbers(&nominal, &campaign.statement.positions, points.len(), driven);
-    let mut geometry = Geometry::nominal(&nominal, points.len(), driven);
-    let all: Vec<&Sample> = samples.iter().collect();
-    if campaign.statement.positions.base_placement {
-        align(&all, &mut geometry);
-    }
-    let start = Fitted {
-        geometry,
-        effects: Vec::new(),
-        compliances: Vec::new(),
-        deviations: Vec::new(),
-        scale_m: 0.01,
-        ln_likelihood: 0.0,
-    };
-    let mut fitted = fit(&all, &numbers, &[], &start);
-    let mut out = Positions {
-        stages: vec![stage("calibrated geometry", &samples, &numbers, &fitted)],
-        candidates,
-        fitted: fitted.clone(),
-        gross: Vec::new(),
-        samples,
-        numbers,
-    };
-    // joints first, then what yields across them: each class one effect at a time
-    for class in [["joint_compliance", "connection_compliance"], ["bearing_tilt", "base_compliance"]] {
-        while let Some((added, next)) = out.add(&fitted, &class) {
-            fitted = out.without_idle(next);
-            let label = format!("{}@{}", out.candidates[added].effect, out.candidates[added].at);
-            out.stages.push(stage(&label, &out.samples, &out.numbers, &fitted));
+    found.rigid = found.fitted.clone();
+    for class in CLASSES {
+        while let Some((added, next)) = found.add(class) {
+            found.fitted = found.without_idle(next);
+            found.refresh(campaign);
+            found.refit();
+            let label = found.label(added);
+            found.stage(label);
         }
     }
-    out.gross = gross(&out.samples, &fitted);
-    out.fitted = fitted;
-    out
+    let errors = found.samples.iter().map(|s| found.fitted.error(s).norm()).enumerate();
+    let gross = errors.filter(|(_, e)| *e > GROSS * found.fitted.scale_m).map(|(i, e)| (i, 1e3 * e));
+    found.gross = gross.collect();
+    found
 }
 
 impl Positions {
+    fn new(campaign: &Campaign) -> Self {
+        let tree = Tree::new(campaign);
+        let points = points(campaign);
+        let geometry = Geometry::nominal(&tree, points.len());
+        let mut candidates = candidates(&tree);
+        candidates.retain(|c| campaign.statement.considers(c.effect));
+        let samples = samples(campaign, &tree, &geometry, &candidates, &points);
+        let fitted = Fitted::rigid(geometry, ROUGH_M);
+        Self {
+            stages: Vec::new(),
+            candidates,
+            rigid: fitted.clone(),
+            fitted,
+            gross: Vec::new(),
+            samples,
+            numbers: Vec::new(),
+            tree,
+            points,
+            sessions: Vec::new(),
+            kept_out: Vec::new(),
+        }
+    }
+
+    /// Places the arm and lets one group of numbers free after the other.
+    fn calibrate(&mut self, campaign: &Campaign) {
+        let spec = &campaign.statement.positions;
+        align::align(&self.tree, spec, &self.samples, &mut self.fitted.geometry);
+        for (name, group) in number_groups(&self.tree, spec, self.points.len()) {
+            self.numbers.extend(group);
+            // the sag depends on the geometry, a little
+            for _ in 0..2 {
+                self.refresh(campaign);
+                self.refit();
+            }
+            self.stage(name.into());
+        }
+    }
+
+    fn refit(&mut self) {
+        let all: Vec<&Sample> = self.samples.iter().collect();
+        self.fitted = fit(&all, &self.numbers, &self.fitted.effects, &self.fitted);
+    }
+
+    /// Computes what gravity does anew, for the geometry as fitted.
+    fn refresh(&mut self, campaign: &Campaign) {
+        self.fitted.geometry.relevel();
+        let points: Vec<usize> = self.samples.iter().map(|s| s.point).collect();
+        let sags = sags(campaign, &self.tree, &self.fitted.geometry, &self.candidates, &points);
+        self.samples.iter_mut().zip(sags).for_each(|(sample, sag)| sample.sag = sag);
+        if campaign.statement.positions.gravity_direction {
+            (0..2).for_each(|c| self.lean(campaign, &points, c));
+        }
+    }
+
+    /// How the sag that the model already has changes with one component of the direction of gravity.
+    fn lean(&mut self, campaign: &Campaign, points: &[usize], component: usize) {
+        let upright = &self.fitted.geometry;
+        let mut leaning = upright.clone();
+        leaning.step(&[Number::Gravity(component)], &[LEAN]);
+        leaning.relevel();
+        let back = upright.level * leaning.level.inverse();
+        let sags = sags(campaign, &self.tree, &leaning, &self.candidates, points);
+        for (sample, sag) in self.samples.iter_mut().zip(sags) {
+            sample.sag.known_slopes_m[component] = (back * sag.known_m - sample.sag.known_m) / LEAN;
+        }
+    }
+
+    fn label(&self, candidate: usize) -> String {
+        format!("{}@{}", self.candidates[candidate].effect, self.candidates[candidate].at)
+    }
+
     /// The fit without effects that a later one has taken the place of.
     fn without_idle(&self, fitted: Fitted) -> Fitted {
         let pairs = fitted.effects.iter().zip(&fitted.compliances);
-        let busy: Vec<usize> = pairs.filter(|(_, c)| **c > 1e-10).map(|(e, _)| *e).collect();
-        if busy.len() == fitted.effects.len() {
+        let kept: Vec<usize> = pairs.filter(|(_, c)| **c > 0.0).map(|(e, _)| *e).collect();
+        if kept.len() == fitted.effects.len() {
             return fitted;
         }
         let all: Vec<&Sample> = self.samples.iter().collect();
-        fit(&all, &self.numbers, &busy, &fitted)
+        fit(&all, &self.numbers, &kept, &fitted)
     }
 
-    /// The effect of a class that raises the evidence most, if one does.
-    fn add(&self, base: &Fitted, class: &[&str]) -> Option<(usize, Fitted)> {
+    /// What an effect must bring in ln of the likelihood: for its number, and for having looked everywhere.
+    fn price(&self) -> f64 {
+        0.5 * (3.0 * self.samples.len() as f64).ln() + (self.candidates.len() as f64).ln() + 3.0
+    }
+
+    /// The effect of a class that raises the likelihood most, if one is worth its price.
+    fn add(&self, class: &[&str]) -> Option<(usize, Fitted)> {
+        let base = &self.fitted;
+        let tried = self.best_additions(base, |c| class.contains(&self.candidates[c].effect));
+        let worth = tried.into_iter().filter(|(_, f)| f.ln_likelihood > base.ln_likelihood + self.price());
+        worth.max_by(|a, b| a.1.ln_likelihood.total_cmp(&b.1.ln_likelihood))
+    }
+
+    /// Models with one more effect: all allowed ones screened by the model made linear, the most promising
+    /// fitted in full.
+    fn best_additions(&self, base: &Fitted, allowed: impl Fn(usize) -> bool) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
-        let penalty = 0.5 * (3.0 * all.len() as f64).ln() + (self.candidates.len() as f64).ln() + 3.0;
-        (0..self.candidates.len())
+        let mut gains = self.gains(base);
+        gains.retain(|(c, gain)| allowed(*c) && !base.effects.contains(c) && *gain > 0.0);
+        gains.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        gains.truncate(FULL_FITS);
+        gains
             .into_par_iter()
-            .filter(|i| class.contains(&self.candidates[*i].effect) && !base.effects.contains(i))
-            .map(|i| {
-                let effects = [base.effects.as_slice(), &[i]].concat();
-                (i, fit(&all, &self.numbers, &effects, base))
+            .map(|(c, _)| (c, fit(&all, &self.numbers, &[base.effects.as_slice(), &[c]].concat(), base)))
+            .collect()
+    }
+
+    /// By how much the model made linear says each candidate would raise the ln of the likelihood.
+    fn gains(&self, base: &Fitted) -> Vec<(usize, f64)> {
+        let all: Vec<&Sample> = self.samples.iter().collect();
+        let from_level = base.geometry.level_to_instrument();
+        let columns = |s: &Sample| -> Vec<Vector3<f64>> {
+            s.sag.per_compliance.iter().map(|p| from_level * p * base.geometry.gravity).collect()
+        };
+        let normal = normal(&all, &self.numbers, base, &columns);
+        let own: Vec<usize> = (0..normal.own).collect();
+        let Some(factor) = Factor::new(&normal.curvature, &own) else { return Vec::new() };
+        let answer = factor.solve(&normal.gradient.rows(0, normal.own).into_owned());
+        (0..self.candidates.len())
+            .map(|c| {
+                let p = normal.own + c;
+                let cross: DVector<f64> =
+                    normal.curvature.view((0, p), (normal.own, 1)).column(0).into_owned();
+                let left = normal.curvature[(p, p)] - cross.dot(&factor.solve(&cross));
+                let gradient = normal.gradient[p] - cross.dot(&answer);
+                let seen = left > 1e-9 * normal.curvature[(p, p)] && gradient > 0.0;
+                (c, if seen { 0.5 * gradient * gradient / left } else { 0.0 })
             })
-            .filter(|(_, f)| f.ln_likelihood > base.ln_likelihood + penalty)
-            .collect::<Vec<_>>()
-            .into_iter()
-            .max_by(|a, b| a.1.ln_likelihood.total_cmp(&b.1.ln_likelihood))
+            .collect()
+    }
+
+    /// Candidates that could stand in the place of one of the effects and fit as well.
+    fn rivals(&self, position: usize) -> Vec<(usize, Fitted)> {
+        let all: Vec<&Sample> = self.samples.iter().collect();
+        let own = self.fitted.effects[position];
+        let rest: Vec<usize> = self.fitted.effects.iter().copied().filter(|e| *e != own).collect();
+        let without = fit(&all, &self.numbers, &rest, &self.fitted);
+        let mut tried = self.best_additions(&without, |c| c != own);
+        tried.retain(|(_, f)| f.ln_likelihood > self.fitted.ln_likelihood - TIE);
+        tried
+    }
+
+    /// Notes how well the model of the moment does.
+    fn stage(&mut self, added: String) {
+        self.kept_out = self.kept_out_errors_m(&self.fitted);
+        let mm: Vec<f64> = self.kept_out.iter().map(|e| 1e3 * e.norm()).collect();
+        let fitted = self.samples.iter().map(|s| 1e3 * self.fitted.error(s).norm());
+        self.stages.push(Stage {
+            added,
+            fitted_median_mm: median(fitted.collect()),
+            mean_mm: mm.iter().sum::<f64>() / mm.len().max(1) as f64,
+            max_mm: mm.iter().copied().fold(0.0, f64::max),
+            median_mm: median(mm),
+        });
+    }
+
+    /// Error of every position when the hand of its pose is kept out \[m\].
+    fn kept_out_errors_m(&self, fitted: &Fitted) -> Vec<Vector3<f64>> {
+        let mut out = vec![Vector3::zeros(); self.samples.len()];
+        let hands: Vec<Vec<(usize, Vector3<f64>)>> = (0..HANDS)
+            .into_par_iter()
+            .map(|hand| {
+                let (own, rest): (Vec<(usize, &Sample)>, Vec<_>) =
+                    self.samples.iter().enumerate().partition(|(_, s)| s.group % HANDS == hand);
+                let rest: Vec<&Sample> = rest.into_iter().map(|(_, s)| s).collect();
+                let again = fit(&rest, &self.numbers, &fitted.effects, fitted);
+                own.into_iter().map(|(i, s)| (i, again.error(s))).collect()
+            })
+            .collect();
+        hands.into_iter().flatten().for_each(|(i, error)| out[i] = error);
+        out
     }
 }
 
@@ -154,190 +293,38 @@ fn points(campaign: &Campaign) -> Vec<String> {
     out
 }
 
-fn candidates(nominal: &Structure) -> Vec<Yielding> {
-    let mut out = Vec::new();
-    for joint in nominal.joints() {
-        let effect = if joint.law.is_rigid() { "joint_compliance" } else { "connection_compliance" };
-        out.push(Yielding { effect, at: joint.name.clone() });
-        out.push(Yielding { effect: "bearing_tilt", at: joint.name.clone() });
-    }
-    out.push(Yielding { effect: "base_compliance", at: "base".into() });
-    out
-}
-
-/// Poses with what mechanics says of each: the displacement the model has, and that of each candidate at
-/// unit compliance.
 fn samples(
     campaign: &Campaign,
-    nominal: &Structure,
-    points: &[String],
+    tree: &Tree,
+    geometry: &Geometry,
     candidates: &[Yielding],
+    points: &[String],
 ) -> Vec<Sample> {
-    let known = Chain::new(nominal, LinkModel::Full);
-    let mut unit = nominal.clone();
-    unit.base_tilt_rad_per_nm = 1.0;
-    for piece in &mut unit.pieces {
-        if let Piece::Joint(joint) = piece {
-            joint.law = Curve::Linear(1.0).into();
-            joint.tilt_rad_per_nm = 1.0;
-        }
-    }
-    let unit = Chain::new(&unit, LinkModel::Full);
-    let share_name = |c: &Yielding| match c.effect {
-        "bearing_tilt" => format!("{}.bearing_tilt", c.at),
-        _ => c.at.clone(),
-    };
-    campaign
+    let points: Vec<usize> = campaign
         .positions
         .iter()
-        .map(|row| {
-            let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
-            let zero = Vector3::zeros();
-            let shares = unit.pose_rad(&pose_rad, &row.payload, zero).statics().shares_m;
-            let share = |name: String| shares.iter().find(|(n, _)| *n == name).map_or(zero, |(_, s)| *s);
+        .map(|row| points.iter().position(|p| *p == row.point).unwrap_or_default())
+        .collect();
+    let sags = sags(campaign, tree, geometry, candidates, &points);
+    let mut poses: Vec<&Vec<f64>> = Vec::new();
+    let rows = campaign.positions.iter().zip(sags).zip(points);
+    rows.enumerate()
+        .map(|(index, ((row, sag), point))| {
+            let known = poses.iter().position(|p| **p == row.pose_deg);
+            let group = known.unwrap_or_else(|| {
+                poses.push(&row.pose_deg);
+                poses.len() - 1
+            });
             Sample {
-                known_m: known.pose_rad(&pose_rad, &row.payload, zero).statics().tip_displacement_m,
-                signatures: candidates.iter().map(|c| share(share_name(c))).collect(),
-                point: points.iter().position(|p| *p == row.point).unwrap_or_default(),
+                pose_rad: row.pose_deg.iter().map(|a| a.to_radians()).collect(),
+                arm: row.arm,
+                point,
+                station: 0,
+                index,
+                group,
                 measured_m: Vector3::from(row.position_mm) / 1e3,
-                pose_rad,
+                sag,
             }
         })
         .collect()
-}
-
-fn stage(added: &str, samples: &[Sample], numbers: &[Number], fitted: &Fitted) -> Stage {
-    let kept_out = kept_out_errors_mm(samples, numbers, fitted);
-    Stage {
-        added: added.into(),
-        fitted_median_mm: median(samples.iter().map(|s| 1e3 * fitted.error(s).norm()).collect()),
-        mean_mm: kept_out.iter().sum::<f64>() / kept_out.len().max(1) as f64,
-        median_mm: median(kept_out),
-    }
-}
-
-/// Error of every position when its hand is kept out \[mm\].
-fn kept_out_errors_mm(samples: &[Sample], numbers: &[Number], fitted: &Fitted) -> Vec<f64> {
-    let hands: Vec<Vec<f64>> = (0..HANDS)
-        .into_par_iter()
-        .map(|hand| {
-            let rest: Vec<&Sample> =
-                samples.iter().enumerate().filter(|(i, _)| i % HANDS != hand).map(|(_, s)| s).collect();
-            let again = fit(&rest, numbers, &fitted.effects, fitted);
-            let own = samples.iter().skip(hand).step_by(HANDS);
-            own.map(|s| 1e3 * again.error(s).norm()).collect()
-        })
-        .collect();
-    hands.concat()
-}
-
-fn gross(samples: &[Sample], fitted: &Fitted) -> Vec<(usize, f64)> {
-    let errors = samples.iter().enumerate().map(|(i, s)| (i, fitted.error(s).norm()));
-    errors.filter(|(_, e)| *e > GROSS * fitted.scale_m).map(|(i, e)| (i, 1e3 * e)).collect()
-}
-
-/// Reconciles a campaign of absolute positions.
-pub fn reconcile(campaign: &Campaign) -> Outcome {
-    let few = campaign.positions.len() < FEWEST;
-    let found = analyze(campaign);
-    let findings: Vec<Finding> = (0..found.fitted.effects.len()).map(|i| found.finding(i)).collect();
-    let (first, last) = (&found.stages[0], &found.stages[found.stages.len() - 1]);
-    let verdict = match () {
-        () if few => Verdict::InsufficientData,
-        () if findings.is_empty() => Verdict::NoGap,
-        () if last.median_mm > first.median_mm => Verdict::InsufficientData,
-        () => Verdict::Explained,
-    };
-    let mut reasons: Vec<String> = found
-        .stages
-        .iter()
-        .map(|s| {
-            format!(
-                "with {}: {:.2} mm median, {:.2} mm mean on poses kept out of the fit ({:.2} mm fitted)",
-                s.added, s.median_mm, s.mean_mm, s.fitted_median_mm
-            )
-        })
-        .collect();
-    if few {
-        reasons
-            .insert(0, format!("{} positions are too few: give at least {FEWEST}", campaign.positions.len()));
-    }
-    let (effects, suspects) =
-        if verdict == Verdict::Explained { (findings, Vec::new()) } else { (Vec::new(), findings) };
-    let scale_mm = 1e3 * found.fitted.scale_m;
-    let mut corrected = campaign.arm.clone();
-    corrected.effects.extend(effects.iter().map(|f| found.effect(campaign, f)));
-    let tools = found.fitted.geometry.write_into(&mut corrected);
-    let mut provenance = correct::provenance(campaign, verdict, Vec::new());
-    provenance["placement"] = found.placement(&points(campaign), &tools);
-    let sigma = campaign.positions.first().map_or(1.0, |r| r.sigma_mm);
-    Outcome {
-        campaign: campaign.statement.name.clone(),
-        hash: campaign.hash.clone(),
-        verdict,
-        reasons,
-        suspects,
-        kept_out: Some(KeptOut {
-            rms_before: first.median_mm / scale_mm / 1.538,
-            rms_after: last.median_mm / scale_mm / 1.538,
-            rms_declared_after: last.median_mm / sigma / 1.538,
-            count: campaign.positions.len(),
-        }),
-        located: Vec::new(),
-        next_tests: Vec::new(),
-        noise: Noise {
-            scale: [1.0; 3],
-            outliers: found.gross.iter().map(|(row, mm)| (Channel::Positions, *row, mm / scale_mm)).collect(),
-        },
-        lack_of_fit: None,
-        calibrated: Vec::new(),
-        evidence: found.evidence(),
-        residuals: Vec::new(),
-        provenance,
-        corrected,
-        effects,
-    }
-}
-
-impl Positions {
-    fn finding(&self, i: usize) -> Finding {
-        let candidate = &self.candidates[self.fitted.effects[i]];
-        let (c, sd) = (self.fitted.compliances[i], self.fitted.deviations[i]);
-        let stiffness = |c: f64| (c > 0.0).then(|| 1.0 / c);
-        let value = stiffness(c).unwrap_or(1e15);
-        let estimate = Estimate { value, low: stiffness(c + 1.96 * sd), high: stiffness(c - 1.96 * sd) };
-        Finding {
-            effect: candidate.effect.into(),
-            at: candidate.at.clone(),
-            parameters: vec![("stiffness_nm_per_rad".into(), vec![estimate])],
-            indistinguishable_from: Vec::new(),
-        }
-    }
-
-    /// Where the arm stands in the instrument's frame and where the points sit on its last frame.
-    fn placement(&self, names: &[String], tools_m: &[Vector3<f64>]) -> serde_json::Value {
-        let base = self.fitted.geometry.base.matrix();
-        let rotation: Vec<Vec<f64>> = (0..3).map(|i| base.row(i).iter().copied().collect()).collect();
-        let tools: serde_json::Map<String, serde_json::Value> =
-            names.iter().zip(tools_m).map(|(n, t)| (n.clone(), json!(t.as_slice()))).collect();
-        json!({"rotation": rotation, "origin_m": self.fitted.geometry.origin_m.as_slice(), "points_m": tools})
-    }
-
-    fn effect(&self, campaign: &Campaign, finding: &Finding) -> Effect {
-        let parameters = finding
-            .parameters
-            .iter()
-            .map(|(name, list)| (name.clone(), list.iter().map(|e| e.value).collect()))
-            .collect();
-        let source = json!({"campaign": campaign.statement.name, "campaign_blake3": campaign.hash});
-        Effect { effect: finding.effect.clone(), at: finding.at.clone(), parameters, source: Some(source) }
-    }
-
-    fn evidence(&self) -> Vec<Evidence> {
-        let best = self.stages.last().map_or(0.0, |s| s.median_mm);
-        self.stages
-            .iter()
-            .map(|s| Evidence { model: s.added.clone(), score: best - s.median_mm, objective: s.median_mm })
-            .collect()
-    }
 }

@@ -1,0 +1,155 @@
+//! Passive joints: a linkage turns them with the joints that drive them, deflections included.
+//!
+//! A driver's unit of twist moves what is outboard of it by its own twist, and what is outboard of the
+//! passive joint by that joint's twist times the linkage's factor besides. The force on the driver is the
+//! work of the loads on both: `Tᵀ f`, and the mass matrix `Tᵀ M T`, with `T` the unit matrix and the factor
+//! in the passive joint's row and the driver's column.
+
+use super::chain::{Item, Posed};
+use super::{Twist, Wrench, force_wrench};
+use crate::arm::{JointAngle, Piece, Structure};
+use nalgebra::{DMatrix, DVector};
+
+/// One driver of a passive joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Linkage {
+    /// The joint that drives.
+    pub driver: String,
+    /// The passive joint.
+    pub passive: String,
+    /// Turn of the passive joint per turn of the driver.
+    pub factor: f64,
+}
+
+/// What a linkage adds to its driver in a pose under a load.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Carried {
+    /// The joint that drives.
+    pub driver: String,
+    /// Motion of what is outboard of the passive joint per unit of the driver's twist.
+    pub twist: Twist,
+    /// Work of the loads on it \[N m\].
+    pub torque_nm: f64,
+}
+
+/// Every driver of every passive joint.
+pub fn linkages(structure: &Structure) -> Vec<Linkage> {
+    let driver = |index: usize| {
+        structure.joints().find(|j| j.angle == JointAngle::Driven(index)).map(|j| j.name.clone())
+    };
+    let mut out = Vec::new();
+    for piece in &structure.pieces {
+        if let Piece::Joint(joint) = piece
+            && let JointAngle::Coupled(terms) = &joint.angle
+        {
+            let of = |(index, factor): &(usize, f64)| {
+                Some(Linkage { driver: driver(*index)?, passive: joint.name.clone(), factor: *factor })
+            };
+            out.extend(terms.iter().filter_map(of));
+        }
+    }
+    out
+}
+
+impl Posed<'_> {
+    /// What the linkages add to their drivers under weight and tip force.
+    pub fn carried(&self) -> Vec<Carried> {
+        let linkages = self.chain.linkages();
+        let mut out = Vec::new();
+        if linkages.is_empty() {
+            return out;
+        }
+        let mut wrench: Wrench = force_wrench(&self.tip_force_n, &self.tip_m);
+        for item in self.items.iter().rev() {
+            match item {
+                Item::Body(body) => wrench += body.weight(),
+                Item::Elastic(element) => {
+                    out.extend(linkages.iter().filter(|l| l.passive == element.name).map(|l| {
+                        let twist = element.twists[0] * l.factor;
+                        Carried { driver: l.driver.clone(), twist, torque_nm: twist.dot(&wrench) }
+                    }));
+                    if let Some(own) = &element.own {
+                        wrench += own.weight;
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// Motion of the tip's frame per unit of every coordinate.
+    pub fn tip_twists(&self) -> Vec<Twist> {
+        let mut twists: Vec<Twist> = self.elements().flat_map(|e| e.twists.iter().copied()).collect();
+        for (driver, passive, factor) in self.linked_coordinates() {
+            let carried = twists[passive] * factor;
+            twists[driver] += carried;
+        }
+        twists
+    }
+
+    /// The shape with the passive joints' turns in it.
+    pub(crate) fn with_passive(&self, shape: &DVector<f64>) -> DVector<f64> {
+        let mut out = shape.clone();
+        for (driver, passive, factor) in self.linked_coordinates() {
+            out[passive] += factor * shape[driver];
+        }
+        out
+    }
+
+    /// `Tᵀ M T`.
+    pub(crate) fn with_linkages(&self, mut mass: DMatrix<f64>) -> DMatrix<f64> {
+        for (driver, passive, factor) in self.linked_coordinates() {
+            let column = mass.column(passive) * factor;
+            mass.column_mut(driver).zip_apply(&column, |m, c| *m += c);
+            let row = mass.row(passive) * factor;
+            mass.row_mut(driver).zip_apply(&row, |m, r| *m += r);
+        }
+        mass
+    }
+
+    /// Coordinates of each driver and its passive joint, with the factor.
+    fn linked_coordinates(&self) -> Vec<(usize, usize, f64)> {
+        let coordinate = |name: &str| {
+            let before = self.elements().take_while(|e| e.name != name);
+            before.map(|e| e.twists.len()).sum::<usize>()
+        };
+        let linkages = self.chain.linkages().iter();
+        linkages.map(|l| (coordinate(&l.driver), coordinate(&l.passive), l.factor)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::arm::{JointModel, LinkModel, Payload, read_arm_document};
+    use crate::catalog::Catalogs;
+    use crate::fault::Document;
+    use crate::mechanics::Chain;
+    use nalgebra::Vector3;
+
+    /// A driven shoulder, and a wrist that a linkage keeps level.
+    const ARM: &str = r#"{"chain": [
+        {"type": "joint", "name": "shoulder", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e4},
+        {"type": "link", "name": "arm", "vector_m": [0.6, 0, 0]},
+        {"type": "joint", "name": "wrist", "axis": [0, 1, 0], "stiffness_nm_per_rad": null,
+         "coupled": {"shoulder": -1}},
+        {"type": "link", "name": "hand", "vector_m": [0.2, 0, 0]}]}"#;
+
+    #[test]
+    fn what_a_linkage_keeps_level_moves_without_turning() {
+        let document = Document::parse("arm.json", ARM).expect("JSON");
+        let arm = read_arm_document(document, &Catalogs::default()).expect("sound");
+        let chain = Chain::new(&arm.structure(JointModel::ThreeSegment), LinkModel::Full);
+        let payload = Payload { mass_kg: 5.0, ..Payload::default() };
+        let posed = chain.pose_rad(&[0.0], &payload, Vector3::zeros());
+        let statics = posed.statics();
+        // the hand stays level: weight and sag act at the wrist's lever, 0.6 m, not at 0.8 m
+        let (weight_n, lever_m) = (5.0 * 9.81, 0.6);
+        assert!((statics.joint_torques_nm[0].1 - weight_n * lever_m).abs() < 1e-9);
+        let sag_m = weight_n * lever_m / 1e4 * lever_m;
+        assert!((statics.tip_displacement_m.z + sag_m).abs() < 1e-12, "{}", statics.tip_displacement_m);
+        let frequency_hz = posed.modes(&statics, 1)[0].frequency_hz;
+        let by_hand = (1e4 / (5.0 * lever_m * lever_m)).sqrt() / std::f64::consts::TAU;
+        assert!((frequency_hz / by_hand - 1.0).abs() < 1e-9, "{frequency_hz} {by_hand}");
+        assert!(posed.modes(&statics, 1)[0].tip_shape_m.z.abs() > 0.0);
+    }
+}

@@ -1,0 +1,112 @@
+//! Where the arm stands in the instrument's frame, and how what is mounted anyhow is mounted, found from
+//! nothing.
+
+use super::fit::{Fitted, Sample, fit};
+use super::kinematics::{Geometry, Number, mount_numbers};
+use super::tree::Tree;
+use crate::reconcile::campaign::PositionsSpec;
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use rayon::prelude::*;
+
+/// Size of errors that a wrong attitude leaves \[m\].
+const ROUGH_M: f64 = 0.3;
+
+/// Places the arm: attitudes behind unknown mountings from the 24 of a cube, arm by arm, each settled by
+/// a fit; without mountings the nearest rigid motion.
+pub fn align(tree: &Tree, spec: &PositionsSpec, samples: &[Sample], geometry: &mut Geometry) {
+    let mounts = mount_numbers(tree, spec);
+    let mut placed = false;
+    for arm in 0..tree.arms.len() {
+        let own: Vec<&Sample> = samples.iter().filter(|s| s.arm == arm).collect();
+        let pieces: Vec<usize> = tree.arms[arm].clone();
+        let numbers: Vec<Number> = mounts
+            .iter()
+            .filter(|n| matches!(n, Number::Mount(i, _) | Number::MountVector(i, _) if pieces.contains(i)))
+            .cloned()
+            .collect();
+        match numbers.first() {
+            Some(Number::Mount(piece, _)) => {
+                *geometry = settle_mount(&own, geometry, *piece, numbers, spec, placed);
+                placed = true;
+            }
+            _ if !placed && spec.base_placement => {
+                nearest_motion(&own, geometry);
+                placed = true;
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The best of the cube's attitudes behind one mounting; `placed`: the base is known.
+fn settle_mount(
+    own: &[&Sample],
+    geometry: &Geometry,
+    piece: usize,
+    mut numbers: Vec<Number>,
+    spec: &PositionsSpec,
+    placed: bool,
+) -> Geometry {
+    let points: Vec<usize> =
+        (0..geometry.tools_m.len()).filter(|p| own.iter().any(|s| s.point == *p)).collect();
+    if spec.tool_offset {
+        numbers.extend(points.iter().flat_map(|&p| (0..3).map(move |c| Number::Tool(p, c))));
+    }
+    if spec.base_placement && !placed {
+        numbers.extend((0..3).map(Number::BaseRotation).chain((0..3).map(Number::BasePosition)));
+    }
+    let tried: Vec<Fitted> = cube()
+        .into_par_iter()
+        .map(|rotation| {
+            let mut start = geometry.clone();
+            start.set_mount(piece, rotation);
+            if spec.base_placement && !placed {
+                nearest_motion(own, &mut start);
+            }
+            fit(own, &numbers, &[], &Fitted::rigid(start, ROUGH_M))
+        })
+        .collect();
+    let best = tried.into_iter().min_by(|a, b| a.scale_m.total_cmp(&b.scale_m));
+    best.expect("24 attitudes").geometry
+}
+
+/// The 24 attitudes that carry a cube onto itself.
+fn cube() -> Vec<Rotation3<f64>> {
+    let axes: Vec<Vector3<f64>> =
+        (0..3).flat_map(|c| [Vector3::ith(c, 1.0), Vector3::ith(c, -1.0)]).collect();
+    let mut out = Vec::new();
+    for x in &axes {
+        for y in axes.iter().filter(|y| y.dot(x) == 0.0) {
+            out.push(Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[*x, *y, x.cross(y)])));
+        }
+    }
+    out
+}
+
+/// The rotation and origin that carry nominal points onto measured ones (Kabsch), refined on the nearest
+/// 90 %.
+fn nearest_motion(samples: &[&Sample], geometry: &mut Geometry) {
+    (geometry.base, geometry.origin_m) = (Rotation3::identity(), Vector3::zeros());
+    let nominal: Vec<Vector3<f64>> = samples.iter().map(|s| geometry.place(s.placing(), &[]).at_m).collect();
+    let mut kept: Vec<usize> = (0..samples.len()).collect();
+    for _ in 0..4 {
+        let count = kept.len() as f64;
+        let from = kept.iter().map(|&i| nominal[i]).sum::<Vector3<f64>>() / count;
+        let to = kept.iter().map(|&i| samples[i].measured_m).sum::<Vector3<f64>>() / count;
+        let h: Matrix3<f64> =
+            kept.iter().map(|&i| (nominal[i] - from) * (samples[i].measured_m - to).transpose()).sum();
+        let svd = h.svd(true, true);
+        let (Some(u), Some(vt)) = (svd.u, svd.v_t) else { return };
+        let mut flip = Matrix3::identity();
+        flip[(2, 2)] = (vt.transpose() * u.transpose()).determinant().signum();
+        let rotation = Rotation3::from_matrix_unchecked(vt.transpose() * flip * u.transpose());
+        let origin = to - rotation * from;
+        geometry.base = rotation;
+        geometry.origin_m = origin;
+        let error = |i: usize| (samples[i].measured_m - origin - rotation * nominal[i]).norm();
+        let mut order: Vec<usize> = (0..samples.len()).collect();
+        order.sort_by(|&i, &j| error(i).total_cmp(&error(j)));
+        order.truncate((samples.len() * 9).div_ceil(10).max(4));
+        kept = order;
+    }
+}

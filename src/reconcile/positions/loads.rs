@@ -1,0 +1,265 @@
+//! What gravity does to the arm in each measured pose: the displacement of the point that the model
+//! already has, and that of each candidate per unit of its compliance, from mechanics.
+//!
+//! A joint that yields by `c` about an axis `u` through `p` moves a point `x` by
+//! `c g (u x (x - p)) (u x (S - m p))ᵀ ĝ`: `m` and `S` are mass and first moment of everything outboard, `g` the
+//! strength and `ĝ` the direction of gravity. What hangs on the trunk beside the measured arm counts too.
+
+use super::kinematics::Geometry;
+use super::tree::Tree;
+use crate::arm::{Arm, Curve, JointLaw, JointModel, LinkModel, Payload, Piece, Structure};
+use crate::mechanics::chain::{Body, ElasticElement, Item, Posed};
+use crate::mechanics::{Chain, Twist, angular, displacement_at, linear};
+use crate::reconcile::campaign::Campaign;
+use crate::reconcile::exact::{seen_from_tool, with_tool};
+use crate::reconcile::readings::PositionRow;
+use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
+
+/// What yields, as a candidate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Yielding {
+    /// Effect.
+    pub effect: &'static str,
+    /// Place.
+    pub at: String,
+}
+
+/// Gravity's effect on one measured position, level frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sag {
+    /// Displacement that the model already has \[m\].
+    pub known_m: Vector3<f64>,
+    /// Its change with gravity's components across the vertical \[m\].
+    pub known_slopes_m: [Vector3<f64>; 2],
+    /// Displacement at unit compliance of each candidate, per direction of gravity.
+    pub per_compliance: Vec<Matrix3<f64>>,
+    /// Twist of each candidate's first axis at the point, and the torque about it under gravity along -z:
+    /// where a joint's own errors would show.
+    pub levers: Vec<(Vector3<f64>, f64)>,
+}
+
+/// The arm's candidates: every joint about and across its axis, and the base.
+pub fn candidates(tree: &Tree) -> Vec<Yielding> {
+    let mut out = Vec::new();
+    for piece in &tree.pieces {
+        if let Piece::Joint(joint) = piece {
+            let effect = if joint.law.is_rigid() { "joint_compliance" } else { "connection_compliance" };
+            out.push(Yielding { effect, at: joint.name.clone() });
+            out.push(Yielding { effect: "bearing_tilt", at: joint.name.clone() });
+        }
+    }
+    out.push(Yielding { effect: "base_compliance", at: "base".into() });
+    out
+}
+
+/// One arm in the level frame with its calibrated geometry, ready to be posed.
+struct Ready {
+    gravity_m_s2: f64,
+    known: Chain,
+    unit: Chain,
+    structure: Structure,
+    unit_structure: Structure,
+    point_m: Vector3<f64>,
+}
+
+/// The sag at every row; `points`: the point of each.
+pub fn sags(
+    campaign: &Campaign,
+    tree: &Tree,
+    geometry: &Geometry,
+    candidates: &[Yielding],
+    points: &[usize],
+) -> Vec<Sag> {
+    let ready: Vec<Vec<Ready>> = campaign
+        .arms()
+        .iter()
+        .enumerate()
+        .map(|(i, arm)| {
+            let mut calibrated = (*arm).clone();
+            let turned = geometry.write_into(i, &mut calibrated);
+            geometry.tools_m.iter().map(|t| Ready::new(campaign, &calibrated, turned * t)).collect()
+        })
+        .collect();
+    let trunk = trunk_items(campaign, tree, &ready);
+    campaign
+        .positions
+        .par_iter()
+        .zip(points)
+        .map(|(row, &point)| sag(tree, &ready, trunk, candidates, row, point))
+        .collect()
+}
+
+impl Ready {
+    fn new(campaign: &Campaign, arm: &Arm, point_m: Vector3<f64>) -> Self {
+        let mut structure = arm.structure(JointModel::ThreeSegment);
+        for piece in &mut structure.pieces {
+            if let Piece::Link(link) = piece
+                && let Some(beam) = &mut link.beam
+                && campaign.statement.rigid_links
+            {
+                beam.flexibility = 0.0;
+            }
+        }
+        let structure = with_tool(&structure, point_m);
+        let unit_structure = yielding_everywhere(&structure);
+        Self {
+            gravity_m_s2: structure.gravity_m_s2,
+            known: Chain::new(&structure, LinkModel::Full),
+            unit: Chain::new(&unit_structure, LinkModel::Full),
+            structure,
+            unit_structure,
+            point_m,
+        }
+    }
+
+    fn pose<'a>(&self, chain: &'a Chain, pose_rad: &[f64], payload: &Payload) -> Posed<'a> {
+        chain.pose_rad(pose_rad, &seen_from_tool(payload, &self.point_m), Vector3::zeros())
+    }
+}
+
+/// The structure with unit compliances about and across every joint and of the base.
+fn yielding_everywhere(structure: &Structure) -> Structure {
+    let mut unit = structure.clone();
+    unit.base_tilt_rad_per_nm = 1.0;
+    for piece in &mut unit.pieces {
+        if let Piece::Joint(joint) = piece {
+            joint.law = JointLaw::from(Curve::Linear(1.0));
+            joint.tilt_rad_per_nm = 1.0;
+        }
+    }
+    unit
+}
+
+/// How many items of a posed arm belong to the trunk: with unit compliances, and as the arm is.
+fn trunk_items(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> [usize; 2] {
+    let rest = vec![0.0; tree.driven.len()];
+    let first = &ready[0][0];
+    let names: Vec<&str> = campaign.arm.chain[..tree.trunk].iter().map(|e| e.name()).collect();
+    let of = |structure: &Structure| {
+        let mut trunk = structure.clone();
+        trunk.pieces.retain(|p| match p {
+            Piece::Joint(j) => names.contains(&j.name.as_str()),
+            Piece::Link(l) => names.contains(&l.name.as_str()),
+        });
+        // the payload is the last item
+        Chain::new(&trunk, LinkModel::Full).pose_rad(&rest, &Payload::default(), Vector3::zeros()).items.len()
+            - 1
+    };
+    [of(&first.unit_structure), of(&first.structure)]
+}
+
+fn sag(
+    tree: &Tree,
+    ready: &[Vec<Ready>],
+    [unit_trunk, known_trunk]: [usize; 2],
+    candidates: &[Yielding],
+    row: &PositionRow,
+    point: usize,
+) -> Sag {
+    let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
+    let own = &ready[row.arm][point];
+    let own_pose = tree.pose_of(row.arm, &pose_rad);
+    let mut known = own.pose(&own.known, &own_pose, &row.payload);
+    let mut unit = own.pose(&own.unit, &own_pose, &row.payload);
+    let empty = Payload::default();
+    for other in (0..ready.len()).filter(|&other| other != row.arm) {
+        let beside = &ready[other][0];
+        let posed = beside.pose(&beside.unit, &tree.pose_of(other, &pose_rad), &empty);
+        let hanging = || bodies(&posed.items[unit_trunk..], &beside.unit_structure);
+        known.items.splice(known_trunk..known_trunk, hanging().map(Item::Body));
+        unit.items.splice(unit_trunk..unit_trunk, hanging().map(Item::Body));
+    }
+    let (per_compliance, levers) = signatures(&unit, own, candidates);
+    Sag {
+        known_m: known.statics().tip_displacement_m,
+        known_slopes_m: [Vector3::zeros(); 2],
+        per_compliance,
+        levers,
+    }
+}
+
+/// Everything that weighs, as points.
+fn bodies<'a>(items: &'a [Item], structure: &'a Structure) -> impl Iterator<Item = Body> + 'a {
+    items.iter().filter_map(|item| match item {
+        Item::Body(body) => Some(body.clone()),
+        Item::Elastic(element) => own_body(element, structure),
+    })
+}
+
+/// A link's distributed mass, as a point at its middle.
+fn own_body(element: &ElasticElement, structure: &Structure) -> Option<Body> {
+    let own = element.own.as_ref()?;
+    let Piece::Link(link) = &structure.pieces[own.piece] else { return None };
+    let weight_n = -linear(&own.weight).z;
+    Some(Body {
+        mass_kg: weight_n / structure.gravity_m_s2,
+        cg_m: own.root_m + own.frame.column(0) * (link.vector_m.norm() / 2.0),
+        inertia_kgm2: Matrix3::zeros(),
+        weight_n,
+    })
+}
+
+/// Every candidate's displacement at unit compliance per direction of gravity, and its lever and torque.
+fn signatures(
+    unit: &Posed,
+    own: &Ready,
+    candidates: &[Yielding],
+) -> (Vec<Matrix3<f64>>, Vec<(Vector3<f64>, f64)>) {
+    let answers = answers(unit, own);
+    let of =
+        |name: &str| answers.iter().find(|(n, _)| *n == name).map_or(Vec::new(), |(_, list)| list.clone());
+    candidates
+        .iter()
+        .map(|candidate| {
+            let mut list = of(&share_name(candidate));
+            for linkage in unit.chain.linkages().iter().filter(|l| l.driver == share_name(candidate)) {
+                for (driver, passive) in list.iter_mut().zip(of(&linkage.passive)) {
+                    driver.0 += passive.0 * linkage.factor;
+                    driver.1 += passive.1 * linkage.factor;
+                }
+            }
+            let per_compliance: Matrix3<f64> =
+                list.iter().map(|(motion, pull)| motion * pull.transpose()).sum();
+            let lever = list.first().map_or((Vector3::zeros(), 0.0), |(motion, pull)| (*motion, -pull.z));
+            (per_compliance, lever)
+        })
+        .unzip()
+}
+
+/// What a twist moves the point by, and the force of gravity on it per direction.
+type Answer = (Vector3<f64>, Vector3<f64>);
+
+/// The answers of every element's twists.
+fn answers<'a>(unit: &'a Posed, own: &Ready) -> Vec<(&'a str, Vec<Answer>)> {
+    let mut out = Vec::new();
+    // weight and its first moment of everything outboard
+    let (mut weight_n, mut moment_nm) = (0.0, Vector3::zeros());
+    for item in unit.items.iter().rev() {
+        let body = match item {
+            Item::Body(body) => Some(body.clone()),
+            Item::Elastic(element) => {
+                let answer = |t: &Twist| (displacement_at(t, &unit.tip_m), pull(t, weight_n, &moment_nm));
+                out.push((element.name.as_str(), element.twists.iter().map(answer).collect()));
+                own_body(element, &own.unit_structure)
+            }
+        };
+        if let Some(body) = body.filter(|_| own.gravity_m_s2 > 0.0) {
+            weight_n += body.weight_n;
+            moment_nm += body.cg_m * body.weight_n;
+        }
+    }
+    out
+}
+
+/// Generalized force of gravity on a twist, per direction of gravity.
+fn pull(twist: &Twist, weight_n: f64, moment_nm: &Vector3<f64>) -> Vector3<f64> {
+    linear(twist) * weight_n + angular(twist).cross(moment_nm)
+}
+
+fn share_name(candidate: &Yielding) -> String {
+    match candidate.effect {
+        "bearing_tilt" => format!("{}.bearing_tilt", candidate.at),
+        _ => candidate.at.clone(),
+    }
+}

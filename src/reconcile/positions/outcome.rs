@@ -1,0 +1,388 @@
+//! What a campaign of absolute positions concludes.
+
+use super::fit::{Fitted, Sample};
+use super::kinematics::Number;
+use super::structure::{MATERIAL_VARIANCE, MEDIAN_LENGTH};
+use super::{Positions, Stage, analyze, samples};
+use crate::arm::effect::{Channel, Effect};
+use crate::arm::{Arm, Piece};
+use crate::reconcile::campaign::Campaign;
+use crate::reconcile::correct;
+use crate::reconcile::kept_out::{KeptOut, rms};
+use crate::reconcile::lack_of_fit::LackOfFit;
+use crate::reconcile::next_test::{ENOUGH, spread_pose};
+use crate::reconcile::noise::Noise;
+use crate::reconcile::verdict::{
+    Estimate, Evidence, Finding, Located, NextTest, Outcome, ReadingResidual, Verdict,
+};
+use serde_json::{Value, json};
+
+/// Fewest positions that can speak.
+const FEWEST: usize = 20;
+/// Most alternatives an effect may have and still be named.
+const MOST_ALTERNATIVES: usize = 3;
+/// Poses among which the next test is chosen.
+const PROPOSED_POSES: usize = 60;
+/// Poses listed where the gap sits.
+const WORST_POSES: usize = 3;
+
+/// Reconciles a campaign of absolute positions.
+pub fn reconcile(campaign: &Campaign) -> Outcome {
+    let found = analyze(campaign);
+    let lack_of_fit = found.lack_of_fit(campaign);
+    let rivals: Vec<Vec<(usize, Fitted)>> =
+        (0..found.fitted.effects.len()).map(|i| found.rivals(i)).collect();
+    let findings: Vec<Finding> =
+        (0..found.fitted.effects.len()).map(|i| found.finding(i, &rivals[i])).collect();
+    let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings);
+    reasons.extend(found.sessions.iter().cloned());
+    let next_tests = found.next_tests(campaign, verdict, &rivals);
+    let (effects, suspects) = match verdict {
+        Verdict::Explained => (findings, Vec::new()),
+        Verdict::InsufficientData => (Vec::new(), findings),
+        Verdict::NoGap | Verdict::Unexplained => (Vec::new(), Vec::new()),
+    };
+    let shown = if verdict == Verdict::Explained { &found.fitted } else { &found.rigid };
+    let mut provenance = correct::provenance(campaign, verdict, found.calibrated(shown));
+    let corrected: Vec<Arm> = (0..campaign.arms().len())
+        .map(|i| found.corrected(campaign, i, shown, &effects, &mut provenance))
+        .collect();
+    let scale_mm = 1e3 * found.fitted.scale_m;
+    Outcome {
+        campaign: campaign.statement.name.clone(),
+        hash: campaign.hash.clone(),
+        verdict,
+        reasons,
+        suspects,
+        kept_out: Some(found.confirmation(campaign)),
+        located: found.located(campaign),
+        next_tests,
+        noise: Noise {
+            scale: [1.0; 3],
+            outliers: found.gross.iter().map(|(row, mm)| (Channel::Positions, *row, mm / scale_mm)).collect(),
+        },
+        lack_of_fit: Some(lack_of_fit),
+        calibrated: Vec::new(),
+        evidence: found.evidence(),
+        residuals: found.residuals(campaign),
+        provenance,
+        corrected: corrected[0].clone(),
+        other_corrected: corrected[1..].to_vec(),
+        stages: found.stages.clone(),
+        effects,
+    }
+}
+
+impl Stage {
+    /// As in `verdict.json`.
+    pub fn json(&self) -> Value {
+        json!({
+            "added": self.added, "fitted_median_mm": self.fitted_median_mm, "kept_out_median_mm": self.median_mm,
+            "kept_out_mean_mm": self.mean_mm, "kept_out_largest_mm": self.max_mm,
+        })
+    }
+}
+
+impl Positions {
+    fn verdict(&self, campaign: &Campaign, left: &LackOfFit, findings: &[Finding]) -> (Verdict, Vec<String>) {
+        let count = campaign.positions.len();
+        if count < FEWEST {
+            let text = format!("{count} positions are too few: give at least {FEWEST}");
+            return (Verdict::InsufficientData, vec![text]);
+        }
+        let excess = left.chi2_per_dof > MATERIAL_VARIANCE;
+        if left.fails || (findings.is_empty() && excess) {
+            return (Verdict::Unexplained, self.left_over(left));
+        }
+        if findings.is_empty() {
+            let text = "noise and calibration of what is free explain every position";
+            return (Verdict::NoGap, vec![text.into()]);
+        }
+        if let Some(f) = findings.iter().find(|f| f.indistinguishable_from.len() > MOST_ALTERNATIVES) {
+            let text =
+                format!("{} other effects fit as well as {}", f.indistinguishable_from.len(), f.label());
+            return (Verdict::InsufficientData, vec![text]);
+        }
+        let [before, after] = self.before_and_after();
+        if after.median_mm > before.median_mm {
+            let text = "the effects do not predict poses that they were not fitted to".to_string();
+            return (Verdict::InsufficientData, vec![text]);
+        }
+        let mut reasons = vec![format!(
+            "on poses kept out of the fit the median error falls from {:.3} to {:.3} mm",
+            before.median_mm, after.median_mm
+        )];
+        if excess {
+            reasons.extend(self.left_over(left));
+        }
+        (Verdict::Explained, reasons)
+    }
+
+    /// What is left, naming no effect.
+    fn left_over(&self, left: &LackOfFit) -> Vec<String> {
+        let mut out = vec![format!(
+            "the best model leaves {:.2} times the declared standard deviation",
+            left.chi2_per_dof.sqrt()
+        )];
+        let telling = left.structures.iter().filter(|s| s.ln_p < (1e-6f64).ln()).take(3);
+        out.extend(
+            telling.map(|s| format!("{}: {:.0} % of what is left", s.sentence(), 100.0 * self.part(s))),
+        );
+        if out.len() == 1 {
+            out.push("what is left follows neither order, angles, torques nor payload".into());
+        }
+        out
+    }
+
+    /// The stages without effects and with all of them.
+    fn before_and_after(&self) -> [&Stage; 2] {
+        let calibration = self.stages.iter().rposition(|s| !s.added.contains('@')).unwrap_or_default();
+        [&self.stages[calibration], &self.stages[self.stages.len() - 1]]
+    }
+
+    fn confirmation(&self, campaign: &Campaign) -> KeptOut {
+        let scale_mm = 1e3 * self.fitted.scale_m;
+        let sigma_mm = campaign.positions.first().map_or(1.0, |r| r.sigma_mm);
+        let [before, after] = self.before_and_after();
+        KeptOut {
+            rms_before: before.median_mm / scale_mm / MEDIAN_LENGTH,
+            rms_after: after.median_mm / scale_mm / MEDIAN_LENGTH,
+            rms_declared_after: after.median_mm / sigma_mm / MEDIAN_LENGTH,
+            count: campaign.positions.len(),
+        }
+    }
+
+    fn finding(&self, i: usize, rivals: &[(usize, Fitted)]) -> Finding {
+        let candidate = &self.candidates[self.fitted.effects[i]];
+        let (c, sd) = (self.fitted.compliances[i], self.fitted.deviations[i]);
+        let stiffness = |c: f64| (c > 0.0).then(|| 1.0 / c);
+        let value = stiffness(c).unwrap_or(1e15);
+        let estimate = Estimate { value, low: stiffness(c + 1.96 * sd), high: stiffness(c - 1.96 * sd) };
+        let names = rivals.iter().map(|(r, _)| &self.candidates[*r]);
+        Finding {
+            effect: candidate.effect.into(),
+            at: candidate.at.clone(),
+            parameters: vec![("stiffness_nm_per_rad".into(), vec![estimate])],
+            indistinguishable_from: names.map(|r| (r.effect.to_string(), r.at.clone())).collect(),
+        }
+    }
+
+    /// One arm with its calibrated geometry and its effects; notes in the provenance where it stands.
+    fn corrected(
+        &self,
+        campaign: &Campaign,
+        arm: usize,
+        shown: &Fitted,
+        effects: &[Finding],
+        provenance: &mut Value,
+    ) -> Arm {
+        let mut out = campaign.arms()[arm].clone();
+        let mut geometry = shown.geometry.clone();
+        geometry.relevel();
+        let turned = geometry.write_into(arm, &mut out);
+        let names: Vec<String> = out.chain.iter().map(|e| e.name().to_string()).collect();
+        let own = effects.iter().filter(|f| f.at == "base" || names.contains(&f.at));
+        out.effects.extend(own.map(|f| as_effect(campaign, f)));
+        let rotation = geometry.level_to_instrument().into_inner();
+        let rows: Vec<Vec<f64>> = (0..3).map(|i| rotation.row(i).iter().copied().collect()).collect();
+        let on_arm = |p: usize| self.samples.iter().any(|s| s.arm == arm && s.point == p);
+        let points: serde_json::Map<String, Value> = (0..self.points.len())
+            .filter(|&p| on_arm(p))
+            .map(|p| (self.points[p].clone(), json!((turned * geometry.tools_m[p]).as_slice())))
+            .collect();
+        let placement =
+            json!({"rotation": rows, "origin_m": geometry.origin_m.as_slice(), "points_m": points});
+        match arm {
+            0 => provenance["placement"] = placement,
+            _ => provenance["other_placements"][&out.name] = placement,
+        }
+        out
+    }
+
+    /// By how much every calibrated number has moved from nominal.
+    fn calibrated(&self, shown: &Fitted) -> Vec<Value> {
+        let numbers = self.numbers.iter().zip(&shown.moved);
+        let inside = numbers.filter(|(n, _)| {
+            matches!(n, Number::Zero(_) | Number::Axis(..) | Number::Vector(..) | Number::Gravity(_))
+        });
+        inside
+            .map(|(n, moved)| json!({"value": self.name(n), "moved": moved, "source": "calibrated geometry"}))
+            .collect()
+    }
+
+    fn name(&self, number: &Number) -> String {
+        let piece = |i: usize| match &self.tree.pieces[i] {
+            Piece::Joint(joint) => joint.name.clone(),
+            Piece::Link(link) => link.name.clone(),
+        };
+        match number {
+            Number::Zero(j) => format!("{}.zero_rad", self.tree.driven[*j]),
+            Number::Axis(i, k) => format!("{}.axis_rad[{k}]", piece(*i)),
+            Number::Vector(i, c) | Number::MountVector(i, c) => format!("{}.vector_m[{c}]", piece(*i)),
+            Number::Mount(i, c) => format!("{}.attitude_rad[{c}]", piece(*i)),
+            Number::Gravity(c) => format!("gravity_direction[{c}]"),
+            Number::StationRotation(s, c) => format!("session_{s}.rotation_rad[{c}]"),
+            Number::StationPosition(s, c) => format!("session_{s}.position_m[{c}]"),
+            Number::BaseRotation(c) => format!("base_rotation_rad[{c}]"),
+            Number::BasePosition(c) => format!("base_position_m[{c}]"),
+            Number::Tool(p, c) => format!("{}.tool_m[{c}]", self.points[*p]),
+        }
+    }
+
+    fn evidence(&self) -> Vec<Evidence> {
+        let best = self.stages.last().map_or(0.0, |s| s.median_mm);
+        self.stages
+            .iter()
+            .map(|s| Evidence { model: s.added.clone(), score: best - s.median_mm, objective: s.median_mm })
+            .collect()
+    }
+
+    /// Root mean squares of every part of the positions in declared standard deviations, gross errors left
+    /// out.
+    fn located(&self, campaign: &Campaign) -> Vec<Located> {
+        let gross = |i: usize| self.gross.iter().any(|(row, _)| *row == i);
+        let mut parts: Vec<(String, Vec<usize>)> = Vec::new();
+        for (i, row) in campaign.positions.iter().enumerate().filter(|(i, _)| !gross(*i)) {
+            let pose: Vec<String> = row.pose_deg.iter().map(|a| format!("{a}")).collect();
+            let names = [
+                "positions".to_string(),
+                format!("positions, point {}", row.point),
+                format!("positions, payload {} kg", row.payload.mass_kg),
+                format!("pose {} deg", pose.join(",")),
+            ];
+            for name in names {
+                match parts.iter_mut().find(|(n, _)| *n == name) {
+                    Some((_, list)) => list.push(i),
+                    None => parts.push((name, vec![i])),
+                }
+            }
+        }
+        let sigmas = |fitted: &Fitted, i: usize| {
+            1e3 * fitted.error(&self.samples[i]).norm() / campaign.positions[i].sigma_mm / 3f64.sqrt()
+        };
+        let all = parts.into_iter().map(|(part, list)| Located {
+            count: 3 * list.len(),
+            rms_before: rms(list.iter().map(|&i| sigmas(&self.rigid, i))),
+            rms_after: rms(list.iter().map(|&i| sigmas(&self.fitted, i))),
+            part,
+        });
+        let (mut poses, mut rest): (Vec<_>, Vec<_>) = all.partition(|l| l.part.starts_with("pose"));
+        poses.sort_by(|a, b| b.rms_before.total_cmp(&a.rms_before));
+        rest.extend(poses.into_iter().take(WORST_POSES));
+        rest
+    }
+
+    fn residuals(&self, campaign: &Campaign) -> Vec<ReadingResidual> {
+        let rows = campaign.positions.iter().zip(&self.samples).enumerate();
+        rows.flat_map(|(i, (row, sample))| {
+            let [before, after] = [&self.rigid, &self.fitted].map(|f| 1e3 * f.predicted_m(sample));
+            let gross = self.gross.iter().any(|(g, _)| *g == i);
+            let left_out = 1e3 * self.kept_out[i] / row.sigma_mm;
+            (0..3).map(move |c| ReadingResidual {
+                channel: Channel::Positions,
+                row: row.row + 1,
+                quantity: ["x_mm", "y_mm", "z_mm"][c],
+                measured: row.position_mm[c],
+                sigma: row.sigma_mm,
+                before: before[c],
+                after: after[c],
+                kept_out: Some(left_out[c]),
+                gross,
+            })
+        })
+        .collect()
+    }
+
+    /// Poses where the model differs most from what it is to be told from.
+    fn next_tests(
+        &self,
+        campaign: &Campaign,
+        verdict: Verdict,
+        rivals: &[Vec<(usize, Fitted)>],
+    ) -> Vec<NextTest> {
+        if verdict == Verdict::Unexplained {
+            return self.repeat_worst(campaign).into_iter().collect();
+        }
+        let known = rivals.iter().flatten().next();
+        let (name, rival) = match known {
+            Some((candidate, fitted)) => (self.label(*candidate), fitted),
+            None => ("calibration only".into(), &self.rigid),
+        };
+        let proposed = self.proposals(campaign);
+        let own = samples(&proposed, &self.tree, &self.fitted.geometry, &self.candidates, &self.points);
+        let sigma_mm =
+            campaign.positions.iter().map(|r| r.sigma_mm).fold(1e3 * self.fitted.scale_m, f64::max);
+        let gap = |s: &Sample| 1e3 * (self.fitted.predicted_m(s) - rival.predicted_m(s)).norm() / sigma_mm;
+        let Some((best, sigmas)) = own.iter().map(gap).enumerate().max_by(|a, b| a.1.total_cmp(&b.1)) else {
+            return Vec::new();
+        };
+        let row = &proposed.positions[best];
+        let model: Vec<String> = self.fitted.effects.iter().map(|&e| self.label(e)).collect();
+        let model = if model.is_empty() { "calibration only".into() } else { model.join(" + ") };
+        vec![NextTest {
+            kind: "positions".into(),
+            description: format!("position of {}", row.point),
+            pose_deg: Some(row.pose_deg.clone()),
+            payload_kg: row.payload.mass_kg,
+            force_n: [0.0; 3],
+            joint: None,
+            separates: vec![model, name],
+            expected_sigmas: sigmas,
+            readings_needed: if sigmas > 1e-3 {
+                (ENOUGH / sigmas).powi(2).ceil().min(9999.0) as usize
+            } else {
+                9999
+            },
+        }]
+    }
+
+    /// The campaign with proposed poses in place of its own, within the ranges of its own, each with the
+    /// largest payload it used.
+    fn proposals(&self, campaign: &Campaign) -> Campaign {
+        let mut out = campaign.clone();
+        let range = |j: usize| {
+            let angles = || campaign.positions.iter().map(move |r| r.pose_deg[j]);
+            (angles().fold(f64::INFINITY, f64::min), angles().fold(f64::NEG_INFINITY, f64::max))
+        };
+        let ranges: Vec<(f64, f64)> = (0..self.tree.driven.len()).map(range).collect();
+        let heaviest =
+            campaign.positions.iter().map(|r| r.payload).max_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
+        out.positions.clear();
+        for name in &self.points {
+            let Some(like) = campaign.positions.iter().find(|r| r.point == *name) else { continue };
+            for index in 1..=PROPOSED_POSES {
+                let mut row = like.clone();
+                row.pose_deg = spread_pose(&ranges, index);
+                row.payload = heaviest.unwrap_or_default();
+                out.positions.push(row);
+            }
+        }
+        out
+    }
+
+    fn repeat_worst(&self, campaign: &Campaign) -> Option<NextTest> {
+        let gross = |i: usize| self.gross.iter().any(|(row, _)| *row == i);
+        let errors = self.samples.iter().map(|s| self.fitted.error(s).norm()).enumerate();
+        let worst = errors.filter(|(i, _)| !gross(*i)).max_by(|a, b| a.1.total_cmp(&b.1))?.0;
+        let row = &campaign.positions[worst];
+        Some(NextTest {
+            kind: "positions".into(),
+            description:
+                "repeat this pose, which the best model misses most, from both sides, on another day".into(),
+            pose_deg: Some(row.pose_deg.clone()),
+            payload_kg: row.payload.mass_kg,
+            force_n: [0.0; 3],
+            joint: None,
+            separates: Vec::new(),
+            expected_sigmas: 0.0,
+            readings_needed: 1,
+        })
+    }
+}
+
+fn as_effect(campaign: &Campaign, finding: &Finding) -> Effect {
+    let numbers = |list: &[Estimate]| list.iter().map(|e| e.value).collect();
+    let parameters = finding.parameters.iter().map(|(name, list)| (name.clone(), numbers(list))).collect();
+    let source = json!({"campaign": campaign.statement.name, "campaign_blake3": campaign.hash});
+    Effect { effect: finding.effect.clone(), at: finding.at.clone(), parameters, source: Some(source) }
+}

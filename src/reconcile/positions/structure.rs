@@ -1,0 +1,159 @@
+//! Whether the errors that the best model leaves follow anything.
+//!
+//! Each question is a few columns `X` that the errors could be made of; with the part that the model could
+//! still fit taken out, the sum of squares they explain is chi-squared if there is nothing, in units of the
+//! fitted scale of the errors. It is a tenth of what is left, or more, that makes a structure material.
+
+use super::Positions;
+use super::fit::{Factor, Sample, normal};
+use crate::arm::effect::Channel;
+use crate::reconcile::campaign::Campaign;
+use crate::reconcile::lack_of_fit::{LackOfFit, Structure, order_functions, waves};
+use crate::reconcile::stats::{ln_chi_squared_tail, median};
+use nalgebra::{DMatrix, SymmetricEigen, Vector3};
+
+/// Part of the errors' sum of squares that a structure must account for to matter.
+pub const MATERIAL_PART: f64 = 0.1;
+/// Variance over the declared one that is put down to the declaration.
+pub const MATERIAL_VARIANCE: f64 = 1.75;
+/// Probability from which a structure is taken for real.
+const IMPROBABLE: f64 = 1e-6;
+/// Median length of a vector of three normal deviates.
+pub const MEDIAN_LENGTH: f64 = 1.538;
+
+/// One question: what the errors would follow, and how many columns it has.
+type Question = (String, usize);
+
+impl Positions {
+    /// Asks all questions.
+    pub(super) fn lack_of_fit(&self, campaign: &Campaign) -> LackOfFit {
+        let all: Vec<&Sample> = self.samples.iter().collect();
+        let asker = Asker::new(self, campaign);
+        let normal = normal(&all, &self.numbers, &self.fitted, &|s| asker.columns(s));
+        let own: Vec<usize> = (0..normal.own).collect();
+        let mut structures = Vec::new();
+        let mut at = normal.own;
+        let factor = Factor::new(&normal.curvature, &own);
+        for (follows, count) in &asker.questions {
+            let block: Vec<usize> = (at..at + count).collect();
+            at += count;
+            let Some(factor) = &factor else { break };
+            let cross = normal.curvature.view((0, block[0]), (normal.own, *count)).into_owned();
+            let answered = DMatrix::from_columns(
+                &(0..*count).map(|k| factor.solve(&cross.column(k).into_owned())).collect::<Vec<_>>(),
+            );
+            let s =
+                normal.curvature.view((block[0], block[0]), (*count, *count)) - cross.transpose() * &answered;
+            let z = normal.gradient.rows(block[0], *count)
+                - answered.transpose() * normal.gradient.rows(0, normal.own);
+            let (statistic, dof) = squares(&s, &z.into_owned());
+            if dof > 0.0 {
+                let ln_p = ln_chi_squared_tail(statistic, dof);
+                structures.push(Structure {
+                    channel: Channel::Positions,
+                    follows: follows.clone(),
+                    statistic,
+                    dof,
+                    ln_p,
+                });
+            }
+        }
+        let asked = (structures.len() as f64).max(1.0).ln();
+        structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
+        structures.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
+        let fails = structures.iter().any(|s| self.is_material(s));
+        LackOfFit { structures, chi2_per_dof: self.variance_ratio(campaign), fails }
+    }
+
+    /// Part of the errors' sum of squares that a structure accounts for.
+    pub(super) fn part(&self, structure: &Structure) -> f64 {
+        structure.statistic / (3 * self.samples.len()) as f64
+    }
+
+    /// Whether a structure is real and accounts for enough.
+    pub(super) fn is_material(&self, structure: &Structure) -> bool {
+        structure.ln_p < IMPROBABLE.ln() && self.part(structure) > MATERIAL_PART
+    }
+
+    /// Variance of the errors over the declared one, by their median.
+    fn variance_ratio(&self, campaign: &Campaign) -> f64 {
+        let rows = campaign.positions.iter().zip(&self.samples);
+        let lengths = rows.map(|(row, s)| 1e3 * self.fitted.error(s).norm() / row.sigma_mm).collect();
+        let free = (self.numbers.len() + self.fitted.effects.len()) as f64;
+        let count = (3 * self.samples.len()) as f64;
+        (median(lengths) / MEDIAN_LENGTH).powi(2) * count / (count - free).max(1.0)
+    }
+}
+
+/// `zᵀ S⁻¹ z` over the directions in which `S` is not singular, and how many they are.
+fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64) {
+    let eigen = SymmetricEigen::new((s + s.transpose()) * 0.5);
+    let largest = eigen.eigenvalues.max();
+    let (mut statistic, mut dof) = (0.0, 0.0);
+    for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+        if *value > 1e-6 * largest && *value > 1e-9 {
+            statistic += vector.dot(z).powi(2) / value;
+            dof += 1.0;
+        }
+    }
+    (statistic, dof)
+}
+
+/// Every question's columns for a sample \[m per unit\].
+struct Asker<'a> {
+    found: &'a Positions,
+    questions: Vec<Question>,
+    /// For each joint its candidate, and its largest torque \[N m\].
+    joints: Vec<(usize, f64)>,
+    /// For each driven joint the candidate at it.
+    driven: Vec<usize>,
+    largest_payload_kg: f64,
+    payloads_kg: Vec<f64>,
+}
+
+impl<'a> Asker<'a> {
+    fn new(found: &'a Positions, campaign: &Campaign) -> Self {
+        let joint = |c: &usize| !matches!(found.candidates[*c].effect, "bearing_tilt" | "base_compliance");
+        let torque = |c: usize| found.samples.iter().map(|s| s.sag.levers[c].1.abs()).fold(1e-9, f64::max);
+        let joints: Vec<(usize, f64)> =
+            (0..found.candidates.len()).filter(joint).map(|c| (c, torque(c))).collect();
+        let at = |name: &String| joints.iter().find(|(c, _)| found.candidates[*c].at == *name).map(|j| j.0);
+        let driven: Vec<usize> = found.tree.driven.iter().filter_map(at).collect();
+        let payloads_kg: Vec<f64> = campaign.positions.iter().map(|r| r.payload.mass_kg).collect();
+        let largest_payload_kg = payloads_kg.iter().copied().fold(0.0, f64::max);
+        let mut questions = vec![("the order of the readings".to_string(), 18)];
+        questions.extend(found.tree.driven.iter().map(|name| (format!("the angle of {name}"), 16)));
+        questions
+            .extend(joints.iter().map(|(c, _)| (format!("the torque on {}", found.candidates[*c].at), 2)));
+        if largest_payload_kg > 0.0 {
+            questions.push(("the payload".into(), 6));
+        }
+        Self { found, questions, joints, driven, largest_payload_kg, payloads_kg }
+    }
+
+    fn columns(&self, sample: &Sample) -> Vec<Vector3<f64>> {
+        let mut out = Vec::new();
+        let along = |size: f64| (0..3).map(move |c| Vector3::ith(c, size));
+        let index = sample.index;
+        let order = order_functions(index as f64 / self.found.samples.len() as f64);
+        out.extend(order.into_iter().flat_map(along));
+        let from_level = self.found.fitted.geometry.level_to_instrument();
+        for (j, &candidate) in self.driven.iter().enumerate() {
+            let lever = from_level * sample.sag.levers[candidate].0;
+            for wave in waves(sample.pose_rad[j].to_degrees()) {
+                out.extend(along(wave));
+                out.push(lever * wave);
+            }
+        }
+        for (candidate, largest_nm) in &self.joints {
+            let (lever, torque_nm) = sample.sag.levers[*candidate];
+            let part = torque_nm / largest_nm;
+            out.extend([(8.0 * part).tanh(), part.powi(3)].map(|size| from_level * lever * size));
+        }
+        if self.largest_payload_kg > 0.0 {
+            let part = self.payloads_kg[index] / self.largest_payload_kg;
+            out.extend([part, part * part].into_iter().flat_map(along));
+        }
+        out
+    }
+}

@@ -1,0 +1,62 @@
+//! One arm, or several that stand on a common trunk, as one list of pieces.
+
+use crate::arm::{Arm, JointAngle, JointModel, Piece};
+use crate::reconcile::campaign::Campaign;
+
+/// The pieces of all arms of a campaign, those of the trunk once.
+#[derive(Debug, Clone)]
+pub struct Tree {
+    /// Joints and links; a joint's angle is read from the campaign's pose.
+    pub pieces: Vec<Piece>,
+    /// The pieces of each arm, base to tip.
+    pub arms: Vec<Vec<usize>>,
+    /// How many pieces all arms begin with.
+    pub trunk: usize,
+    /// Joints that have an entry in a pose.
+    pub driven: Vec<String>,
+    /// For each arm, where the angles of its own driven joints are in a pose.
+    poses: Vec<Vec<usize>>,
+}
+
+impl Tree {
+    /// The arms of a campaign.
+    pub fn new(campaign: &Campaign) -> Self {
+        let driven = campaign.driven_joint_names();
+        let arms = campaign.arms();
+        let trunk = campaign.trunk();
+        let mut tree = Self { pieces: Vec::new(), arms: Vec::new(), trunk, driven, poses: Vec::new() };
+        for arm in arms {
+            tree.add(arm);
+        }
+        tree
+    }
+
+    fn add(&mut self, arm: &Arm) {
+        let own: Vec<usize> = arm
+            .driven_joint_names()
+            .iter()
+            .filter_map(|name| self.driven.iter().position(|d| d == name))
+            .collect();
+        let known = if self.arms.is_empty() { 0 } else { self.trunk };
+        let mut chain: Vec<usize> = (0..known).collect();
+        for mut piece in arm.nominal_structure(JointModel::ThreeSegment).pieces.into_iter().skip(known) {
+            if let Piece::Joint(joint) = &mut piece {
+                joint.angle = match &joint.angle {
+                    JointAngle::Driven(i) => JointAngle::Driven(own[*i]),
+                    JointAngle::Coupled(terms) => {
+                        JointAngle::Coupled(terms.iter().map(|(i, f)| (own[*i], *f)).collect())
+                    }
+                };
+            }
+            chain.push(self.pieces.len());
+            self.pieces.push(piece);
+        }
+        self.arms.push(chain);
+        self.poses.push(own);
+    }
+
+    /// The pose of one arm out of that of all.
+    pub fn pose_of(&self, arm: usize, pose: &[f64]) -> Vec<f64> {
+        self.poses[arm].iter().map(|&i| pose[i]).collect()
+    }
+}

@@ -1,0 +1,153 @@
+//! Made campaigns of absolute positions, by small rotations of rigid bodies, independent of the library:
+//! a true arm with offset zeros stands askew, sags about its joints, and is read with noise.
+
+use nalgebra::{Rotation3, Unit, Vector3};
+use serde_json::{Value, json};
+
+/// A true arm of three joints.
+pub struct Made {
+    /// Noise of each coordinate \[mm\].
+    pub sigma_mm: f64,
+    poses: usize,
+}
+
+/// The truth of one position, before noise.
+pub struct Truth {
+    position_m: Vector3<f64>,
+}
+
+const AXES: [[f64; 3]; 3] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+const LINKS_M: [[f64; 3]; 3] = [[0.0, 0.0, 0.4], [0.7, 0.0, 0.0], [0.5, 0.0, 0.0]];
+const MASSES_KG: [f64; 3] = [20.0, 15.0, 10.0];
+const ZEROS_RAD: [f64; 3] = [0.01, -0.006, 0.008];
+const STIFFNESS_NM_PER_RAD: [f64; 3] = [f64::INFINITY, 4e4, 3e4];
+const TOOL_M: [f64; 3] = [0.05, 0.02, -0.03];
+const GRAVITY_M_S2: f64 = 9.81;
+
+/// The arm of the tests.
+pub fn standard() -> Made {
+    Made { sigma_mm: 0.05, poses: 120 }
+}
+
+/// What may be untrue of an arm in a row.
+#[derive(Clone, Copy, Default)]
+struct Truths {
+    sag: bool,
+    lean_rad: f64,
+    wobble_rad: f64,
+    moved_m: f64,
+}
+
+impl Made {
+    /// Nothing yields.
+    pub fn rigid(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
+        self.truth(pose_rad, Truths::default())
+    }
+
+    /// Joints yield about their axes.
+    pub fn sagging(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
+        self.truth(pose_rad, Truths { sag: true, ..Truths::default() })
+    }
+
+    /// Joints yield, and the base leans.
+    pub fn leaning(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
+        self.truth(pose_rad, Truths { sag: true, lean_rad: 0.12, ..Truths::default() })
+    }
+
+    /// Joints yield, and the third turns unevenly, twice a turn.
+    pub fn wobbling(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
+        self.truth(pose_rad, Truths { sag: true, wobble_rad: 2e-3, ..Truths::default() })
+    }
+
+    /// Joints yield, and the point sat 3 mm away before row 41.
+    pub fn put_back(&self, pose_rad: &[f64; 3], row: usize) -> Truth {
+        self.truth(
+            pose_rad,
+            Truths { sag: true, moved_m: if row < 40 { 3.2e-3 } else { 0.0 }, ..Truths::default() },
+        )
+    }
+
+    /// The stiffness that the truth has somewhere.
+    pub fn stiffness_nm_per_rad(&self, at: &str, effect: &str) -> Option<f64> {
+        let joint = ["q1", "q2", "q3"].iter().position(|n| *n == at)?;
+        (effect == "joint_compliance").then_some(STIFFNESS_NM_PER_RAD[joint])
+    }
+
+    fn truth(&self, pose_rad: &[f64; 3], truths: Truths) -> Truth {
+        let mut places = Vec::new();
+        let mut bodies = Vec::new();
+        let (mut at, mut rotation) = (Vector3::zeros(), Rotation3::identity());
+        for j in 0..3 {
+            let axis = Unit::new_normalize(Vector3::from(AXES[j]));
+            places.push((rotation * axis.into_inner(), at));
+            let wobble = if j == 2 { truths.wobble_rad * (2.0 * pose_rad[2]).sin() } else { 0.0 };
+            rotation *= Rotation3::from_axis_angle(&axis, pose_rad[j] + ZEROS_RAD[j] + wobble);
+            let link = rotation * Vector3::from(LINKS_M[j]);
+            bodies.push((MASSES_KG[j], at + link / 2.0));
+            at += link;
+        }
+        let tool = Vector3::from(TOOL_M) + Vector3::y() * truths.moved_m;
+        let point = at + rotation * tool;
+        let down = Vector3::new(truths.lean_rad.sin(), 0.0, -truths.lean_rad.cos()) * GRAVITY_M_S2;
+        let mut sag = Vector3::zeros();
+        for (j, (axis, pivot)) in places.iter().enumerate().filter(|_| truths.sag) {
+            let outboard = bodies[j..].iter();
+            let torque: f64 = outboard.map(|(m, cg)| axis.dot(&(cg - pivot).cross(&(down * *m)))).sum();
+            sag += axis.cross(&(point - pivot)) * (torque / STIFFNESS_NM_PER_RAD[j]);
+        }
+        let askew = Rotation3::from_euler_angles(0.3, -0.2, 2.1);
+        Truth { position_m: askew * (point + sag) + Vector3::new(1.0, -2.0, 0.5) }
+    }
+
+    /// A campaign folder of a truth.
+    pub fn write(&self, truth: &dyn Fn(&Self, &[f64; 3], usize) -> Truth) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let mut noise = Noise(20_240_607);
+        let mut rows = String::from("test,q_q1_deg,q_q2_deg,q_q3_deg,x_mm,y_mm,z_mm,sigma_mm\n");
+        for row in 0..self.poses {
+            let pose_deg = [170.0, 80.0, 140.0].map(|reach| (reach * (2.0 * noise.part() - 1.0)).round());
+            let at_mm = truth(self, &pose_deg.map(f64::to_radians), row).position_m * 1e3;
+            let read: Vec<String> =
+                at_mm.iter().map(|x| format!("{:.4}", x + self.sigma_mm * noise.normal())).collect();
+            let [a, b, c] = pose_deg;
+            rows.push_str(&format!("{row},{a},{b},{c},{},{}\n", read.join(","), self.sigma_mm));
+        }
+        let statement = json!({"name": "made", "positions": {
+            "base_placement": true, "tool_offset": true, "joint_offsets": true, "geometry": true,
+        }});
+        let write =
+            |name: &str, text: String| std::fs::write(folder.path().join(name), text).expect("written");
+        write("positions.csv", rows);
+        write("arm.json", arm().to_string());
+        write("campaign.json", statement.to_string());
+        folder
+    }
+}
+
+fn arm() -> Value {
+    let pieces = (0..3).flat_map(|j| {
+        let (joint, link) = (format!("q{}", j + 1), format!("link{}", j + 1));
+        [
+            json!({"type": "joint", "name": joint, "axis": AXES[j], "stiffness_nm_per_rad": null}),
+            json!({"type": "link", "name": link, "vector_m": LINKS_M[j], "mass_kg": MASSES_KG[j]}),
+        ]
+    });
+    json!({"name": "made", "chain": pieces.collect::<Vec<_>>()})
+}
+
+/// A small generator of pseudo-random numbers (splitmix64).
+struct Noise(u64);
+
+impl Noise {
+    fn part(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn normal(&mut self) -> f64 {
+        (0..12).map(|_| self.part()).sum::<f64>() - 6.0
+    }
+}
