@@ -1,6 +1,6 @@
 //! Makes campaigns with hidden effects from the independent witness.
 //!
-//! `cargo run --release --example reconcile_generate -- OUT SEED COUNT plain|hard|none|pair`
+//! `cargo run --release --example reconcile_generate -- OUT SEED COUNT plain|hard one|two|none|unknown`
 
 use std::path::Path;
 
@@ -9,37 +9,16 @@ mod reconcile_generator;
 #[path = "../tests/witness/mod.rs"]
 mod witness;
 
-use reconcile_generator::{Dice, Plan, arm, effect, everything, write};
+use reconcile_generator::make;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [out, seed, count, class] = arguments.as_slice() else {
-        eprintln!("give OUT SEED COUNT plain|hard|none|pair");
+    let [out, seed, count, set, class] = arguments.as_slice() else {
+        eprintln!("give OUT SEED COUNT plain|hard one|two|none|unknown");
         std::process::exit(2)
     };
     let (seed, count) = (seed.parse::<u64>().expect("seed"), count.parse::<usize>().expect("count"));
-    let out = Path::new(out);
-    std::fs::create_dir_all(out.join("keys")).expect("folder");
-    let all = everything();
-    for i in 0..count {
-        let mut dice = Dice(seed.wrapping_mul(1000).wrapping_add(i as u64));
-        let arm = arm(&mut dice);
-        let plan = match class.as_str() {
-            "hard" => Plan::hard(&mut dice),
-            _ => Plan::plain(),
-        };
-        let mut hidden = Vec::new();
-        let effects = match class.as_str() {
-            "none" => 0,
-            "pair" => 2,
-            _ => 1,
-        };
-        for k in 0..effects {
-            let (name, at) = all[(i + k * (7 + i % 11)) % all.len()];
-            hidden.push(effect(&mut dice, &arm, name, at, plan.size));
-        }
-        let name = format!("{class}-{seed}-{i:03}");
-        let key = out.join("keys").join(format!("{name}.json"));
-        write(&mut dice, &out.join("campaigns").join(&name), &key, &arm, &hidden, &plan);
+    for number in 0..count {
+        make(Path::new(out), set, class, seed, number);
     }
 }
