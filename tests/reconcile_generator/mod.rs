@@ -174,14 +174,27 @@ pub fn effect(dice: &mut Dice, arm: &Value, name: &str, at: &str, size: f64) -> 
 }
 
 /// Makes one campaign below `out`: `set` is `plain` or `hard`, `class` is `one`, `two`, `none` or
-/// `unknown`; numbers go through all effects in turn.
-pub fn make(out: &Path, set: &str, class: &str, seed: u64, number: usize) {
+/// `unknown`; numbers go through all effects in turn. `eased` makes an effect that nobody could see
+/// larger, by 40 % a step, and from the third step on leaves no file out. Returns the campaign's name
+/// and what is hidden in it.
+pub fn make(
+    out: &Path,
+    set: &str,
+    class: &str,
+    seed: u64,
+    number: usize,
+    eased: i32,
+) -> (String, Vec<Value>) {
     let mut dice = Dice(seed.wrapping_mul(1000).wrapping_add(number as u64));
     let arm = arm(&mut dice);
-    let plan = match set {
+    let mut plan = match set {
         "hard" => Plan::hard(&mut dice),
         _ => Plan::plain(),
     };
+    plan.size *= 1.4f64.powi(eased);
+    if eased >= 3 {
+        (plan.modal_poses, plan.bench) = (plan.modal_poses.max(6), true);
+    }
     let (known, strange) = (everything(), unknown::everything());
     let mut draw = |k: usize| {
         let (name, at) = known[(number + k * (7 + number % 11)) % known.len()];
@@ -201,6 +214,7 @@ pub fn make(out: &Path, set: &str, class: &str, seed: u64, number: usize) {
     std::fs::create_dir_all(out.join("keys")).expect("folder");
     let key = out.join("keys").join(format!("{name}.json"));
     write(&mut dice, &out.join("campaigns").join(&name), &key, &arm, &hidden, &plan);
+    (name, hidden)
 }
 
 /// What the witness does not know: play of joints, and how a channel reads.
@@ -260,6 +274,9 @@ pub fn write(dice: &mut Dice, folder: &Path, key: &Path, arm: &Value, hidden: &[
         "static": {"file": "static.csv"},
     });
     let save = |file: &str, text: String| std::fs::write(folder.join(file), text).expect("written");
+    for file in ["modal.csv", "windup.csv"] {
+        let _ = std::fs::remove_file(folder.join(file));
+    }
     save("static.csv", built.statics(dice, plan));
     if plan.modal_poses > 0 {
         campaign["modal"] = json!({"file": "modal.csv"});

@@ -73,13 +73,10 @@ impl Unknown {
     /// Twist of a joint beyond torque over stiffness, and the slope of that: \[rad\], \[rad/N m\].
     pub fn further_twist(&self, joint: &str, torque_nm: f64, k: f64) -> (f64, f64) {
         if self.is("cubic_stiffness", joint) {
-            // hardening: the compliance falls with the square of the torque, to `1 - amount` at full load
-            let full = 9e-4 * k;
-            let part = torque_nm / full;
-            return (
-                -self.amount * part.powi(2) * torque_nm / k / 3.0,
-                -self.amount * part.powi(2) / k,
-            );
+            // hardening: the twist falls behind with the cube of the torque, at last in proportion
+            let square = (torque_nm / (9e-4 * k)).powi(2);
+            let behind = self.amount / k * square / (1.0 + square);
+            return (-behind * torque_nm, -behind * (3.0 + square) / (1.0 + square));
         }
         if self.is("one_sided_stiffness", joint) && torque_nm > 0.0 {
             return (self.amount * torque_nm / k, self.amount / k);
