@@ -69,18 +69,15 @@ pub fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec<Interv
 }
 
 /// The lowest objective that is found from `u` on. Break points of a gear's curve make the frequencies
-/// step, and steps stop a descent: from a smoothed curve, sharpened by and by, it may get further.
-fn refit(forward: &Forward, mut model: Model, u: &[f64], weights: &Weights) -> f64 {
-    let effort = Effort { steps: 8, tolerance: 0.02 };
+/// step, and steps stop a descent: unless that is low `enough`, it is tried again from a smoothed curve.
+fn refit(forward: &Forward, mut model: Model, u: &[f64], weights: &Weights, enough: f64) -> f64 {
+    let effort = Effort { steps: 5, tolerance: 0.02 };
     let straight = fit(forward, &model, u, weights, effort).point.objective;
-    if model.break_points().is_empty() || forward.modal.is_empty() {
+    if straight < enough || model.break_points().is_empty() || forward.modal.is_empty() {
         return straight;
     }
-    let mut start = u.to_vec();
-    for smoothing in [0.05, 0.01] {
-        model.smoothing = smoothing;
-        start = fit(forward, &model, &start, weights, Effort { steps: 4, tolerance: 0.1 }).point.u;
-    }
+    model.smoothing = 0.03;
+    let start = fit(forward, &model, u, weights, Effort { steps: 4, tolerance: 0.1 }).point.u;
     model.smoothing = 0.0;
     straight.min(fit(forward, &model, &start, weights, effort).point.objective)
 }
@@ -93,7 +90,8 @@ fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64
     let rise = |value: f64| {
         let mut model = best.model.clone();
         model.held = vec![(p, value)];
-        refit(forward, model, &best.point.u, weights) - best.point.objective
+        let objective = best.point.objective;
+        refit(forward, model, &best.point.u, weights, objective + RISE) - objective
     };
     let clamp = |value: f64| value.clamp(low, high);
     let mut near = (u, 0.0);

@@ -40,10 +40,14 @@ pub struct LackOfFit {
     pub fails: bool,
 }
 
-/// Sum of squares over degrees of freedom that wrong declared deviations could leave.
-const MATERIAL: f64 = 1.75;
+/// Sum of squares over degrees of freedom that wrong declared deviations could hardly leave.
+const MATERIAL: f64 = 2.5;
+/// The same where a structure is suspected.
+const SUSPICIOUS: f64 = 1.6;
 /// Probability, all questions together, below which a structure is no chance.
-const CHANCE: f64 = 1e-4;
+const CHANCE: f64 = 1e-3;
+/// Probability below which a structure is suspected.
+const SUSPECTED: f64 = 0.1;
 
 /// Asks all questions.
 pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> LackOfFit {
@@ -63,8 +67,11 @@ pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &
     structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
     structures.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
     let chi2_per_dof = tester.chi2_per_dof(forward, fit);
-    let structured = structures.first().is_some_and(|s| s.ln_p < CHANCE.ln());
-    LackOfFit { structures, chi2_per_dof, fails: structured || chi2_per_dof > MATERIAL }
+    let ln_p = structures.first().map_or(0.0, |s| s.ln_p);
+    let fails = ln_p < CHANCE.ln()
+        || chi2_per_dof > MATERIAL
+        || (ln_p < SUSPECTED.ln() && chi2_per_dof > SUSPICIOUS);
+    LackOfFit { structures, chi2_per_dof, fails }
 }
 
 struct Tester {
