@@ -82,29 +82,31 @@ fn settle(forward: &mut Forward, nuisance: &Nuisance, candidates: &[Candidate]) 
         };
         let best = search.fit(&selection.best.effects, &selection.best.u, Effort::default());
         let judged = Noise::from_fit(forward, &best);
-        (selection, judged, best.point.coefficients)
+        let hopeful = search.may_explain(&selection.best);
+        (selection, judged, best.point.coefficients, hopeful)
     };
     let mut noise = first_look(forward, nuisance);
-    let (mut selection, mut judged, coefficients) = run(forward, &noise, Before::Nothing);
+    let (mut selection, mut judged, coefficients, mut hopeful) = run(forward, &noise, Before::Nothing);
     let missed = forward.find_missed_modes(&coefficients);
     if !missed.is_empty() {
-        (selection, judged, _) = run(forward, &noise, Before::Nothing);
+        (selection, judged, _, hopeful) = run(forward, &noise, Before::Nothing);
     }
-    for _ in 0..2 {
-        if judged.same_rows(&noise) {
+    for again in 0..2 {
+        if judged.same_rows(&noise) || (again > 0 && !hopeful) {
             break;
         }
         noise = Noise { scale: [1.0; 3], outliers: judged.outliers.clone() };
-        (selection, judged, _) = run(forward, &noise, Before::Best(&selection.best));
+        (selection, judged, _, hopeful) = run(forward, &noise, Before::Best(&selection.best));
     }
     for _ in 0..2 {
-        if judged.agrees(&noise) {
+        // no scale of the noise makes a hopeless model right
+        if judged.agrees(&noise) || !hopeful {
             break;
         }
         let same_rows = judged.same_rows(&noise);
         noise = judged;
         let before = if same_rows { Before::Weights(&selection) } else { Before::Best(&selection.best) };
-        (selection, judged, _) = run(forward, &noise, before);
+        (selection, judged, _, hopeful) = run(forward, &noise, before);
     }
     Settled { selection, noise, missed }
 }
@@ -434,7 +436,7 @@ fn too_little(campaign: &Campaign) -> Vec<String> {
     }
     let first = campaign.statics.first();
     let same_load = |r: &super::readings::StaticRow| {
-        first.is_some_and(|f| f.payload == r.payload && f.force_n == r.force_n)
+        first.is_some_and(|f| f.payload.mass_kg == r.payload.mass_kg && f.force_n == r.force_n)
     };
     if first.is_some() && campaign.statics.iter().all(same_load) {
         reasons.push(

@@ -25,6 +25,8 @@ const HOPELESS: f64 = 40.0;
 const PROMISING: f64 = 12.0;
 /// Most effects.
 pub const MOST_EFFECTS: usize = 3;
+/// Objective per datum above which a model cannot become the explanation, whatever the declared deviations.
+const BEYOND_HOPE: f64 = 2.0;
 /// Candidates fitted in full at each stage.
 const FULL_FITS: usize = 7;
 
@@ -163,6 +165,11 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Whether a model comes near enough to the readings to be worth refining.
+    pub fn may_explain(&self, scored: &Scored) -> bool {
+        scored.objective < BEYOND_HOPE * self.forward.data.len() as f64
+    }
+
     /// In how many ways an effect could be named; a unit slip counts once a channel.
     fn places(&self) -> usize {
         let mut labels: Vec<String> = self.candidates.iter().map(|c| c.label()).collect();
@@ -192,7 +199,7 @@ impl<'a> Search<'a> {
             let worth = if best.effects.is_empty() { FIRST_WORTH } else { WORTH };
             let Some(next) = better(&tried, best.score + worth) else { break };
             best = next;
-            if best.effects.len() > 1 {
+            if best.effects.len() > 1 && (best.effects.len() < MOST_EFFECTS || self.may_explain(&best)) {
                 best = self.repair(best, &mut seen);
             }
         }
