@@ -1,57 +1,55 @@
 //! Makes campaigns with hidden effects from the independent witness.
 //!
-//! `cargo run --release --example reconcile_generate -- OUT SEED COUNT plain|hard|none|pair`
+//! `cargo run --release --example reconcile_generate -- OUT SEED COUNT plain|hard one|two|none|unknown [SIGMA]`
 //!
-//! or one campaign in the folder OUT of a six-axis arm file, j1 to j6, with the effects of a JSON list:
+//! With `SIGMA` an effect that departs by less from what calibration within tolerance can imitate is made
+//! larger until it does not: one that nobody could see is no question. Or one campaign in the folder OUT of
+//! a six-axis arm file, j1 to j6, with the effects of a JSON list:
 //!
 //! `cargo run --release --example reconcile_generate -- OUT SEED arm ARM.json EFFECTS.json`
 
+use armwright::catalog::Catalogs;
+use armwright::reconcile::Campaign;
 use serde_json::Value;
 use std::path::Path;
 
+#[path = "../tests/reconcile_scoring/detectability.rs"]
+mod detectability;
 #[path = "../tests/reconcile_generator/mod.rs"]
 mod reconcile_generator;
 #[path = "../tests/witness/mod.rs"]
 mod witness;
 
-use reconcile_generator::{Dice, Plan, arm, effect, everything, write};
+use reconcile_generator::{Dice, Plan, write};
 
-fn main() {
+/// Most steps by which an effect is made larger.
+const MOST_STEPS: i32 = 8;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     if let [out, seed, word, arm, effects] = arguments.as_slice()
         && word == "arm"
     {
-        return measured(Path::new(out), seed, arm, effects);
+        measured(Path::new(out), seed, arm, effects);
+        return Ok(());
     }
-    let [out, seed, count, class] = arguments.as_slice() else {
-        eprintln!("give OUT SEED COUNT plain|hard|none|pair, or OUT SEED arm ARM.json EFFECTS.json");
-        std::process::exit(2)
+    let [out, seed, count, set, class, sigma @ ..] = arguments.as_slice() else {
+        return Err("give OUT SEED COUNT plain|hard one|two|none|unknown [SIGMA]".into());
     };
-    let (seed, count) = (seed.parse::<u64>().expect("seed"), count.parse::<usize>().expect("count"));
     let out = Path::new(out);
-    std::fs::create_dir_all(out.join("keys")).expect("folder");
-    let all = everything();
-    for i in 0..count {
-        let mut dice = Dice(seed.wrapping_mul(1000).wrapping_add(i as u64));
-        let arm = arm(&mut dice);
-        let plan = match class.as_str() {
-            "hard" => Plan::hard(&mut dice),
-            _ => Plan::plain(),
-        };
-        let mut hidden = Vec::new();
-        let effects = match class.as_str() {
-            "none" => 0,
-            "pair" => 2,
-            _ => 1,
-        };
-        for k in 0..effects {
-            let (name, at) = all[(i + k * (7 + i % 11)) % all.len()];
-            hidden.push(effect(&mut dice, &arm, name, at, plan.size));
+    let (seed, count) = (seed.parse::<u64>()?, count.parse::<usize>()?);
+    let least = sigma.first().map_or(Ok(0.0), |s| s.parse::<f64>())?;
+    for number in 0..count {
+        for eased in 0..MOST_STEPS {
+            let (name, hidden) = reconcile_generator::make(out, set, class, seed, number, eased);
+            let campaign = Campaign::read(&out.join("campaigns").join(name), &Catalogs::default())?;
+            let seen = detectability::detectable_sigmas(&campaign, &hidden);
+            if hidden.is_empty() || class == "unknown" || seen.unwrap_or(0.0) >= least {
+                break;
+            }
         }
-        let name = format!("{class}-{seed}-{i:03}");
-        let key = out.join("keys").join(format!("{name}.json"));
-        write(&mut dice, &out.join("campaigns").join(&name), &key, &arm, &hidden, &plan);
     }
+    Ok(())
 }
 
 /// A campaign of a given arm with given effects; the key is written beside the folder.

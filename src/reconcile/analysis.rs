@@ -1,7 +1,7 @@
 //! The workflow: is there a gap, what is missing, how sure is that, does it hold on kept-out poses.
 
 use super::campaign::Campaign;
-use super::fit::{Effort, Fit, Weights};
+use super::fit::{Effort, Fit, Weights, fit};
 use super::forward::Forward;
 use super::interval::{Interval, deviations, intervals};
 use super::kept_out::{self, KeptOut, rms};
@@ -83,39 +83,64 @@ impl Settled {
     }
 }
 
-/// Searches with the deviations as declared, takes out gross errors and counts missed modes, searches
-/// again, and lets the best model say whether the declaration was right; if it was not, searches with
-/// what it says.
+/// Takes out the gross errors that show at once, searches with the deviations as declared, takes out
+/// further gross errors and counts missed modes, searches again, and lets the best model say whether the
+/// declaration was right; if it was not, weighs the models again with what it says.
 fn settle(forward: &mut Forward, nuisance: &Nuisance, candidates: &[Candidate]) -> Settled {
-    let run = |forward: &Forward, noise: &Noise, before: Option<&Scored>| {
+    let run = |forward: &Forward, noise: &Noise, before: Before| {
         let weights = noise.weights(forward);
         let search = Search { forward, nuisance, candidates, weights: &weights };
-        let selection = search.run(before);
+        let selection = match before {
+            Before::Nothing => search.run(None),
+            Before::Best(scored) => search.run(Some(scored)),
+            Before::Weights(selection) => search.weigh_again(selection),
+        };
         let best = search.fit(&selection.best.effects, &selection.best.u, Effort::default());
         let judged = Noise::from_fit(forward, &best);
-        (selection, judged, best.point.coefficients)
+        let hopeful = search.may_explain(&selection.best);
+        (selection, judged, best.point.coefficients, hopeful)
     };
-    let mut noise = Noise::default();
-    let (mut selection, mut judged, coefficients) = run(forward, &noise, None);
+    let mut noise = first_look(forward, nuisance);
+    let (mut selection, mut judged, coefficients, mut hopeful) = run(forward, &noise, Before::Nothing);
     let missed = forward.find_missed_modes(&coefficients);
     if !missed.is_empty() {
-        (selection, judged, _) = run(forward, &noise, None);
+        (selection, judged, _, hopeful) = run(forward, &noise, Before::Nothing);
     }
-    for _ in 0..2 {
-        if judged.outliers == noise.outliers {
+    for again in 0..2 {
+        if judged.same_rows(&noise) || (again > 0 && !hopeful) {
             break;
         }
         noise = Noise { scale: [1.0; 3], outliers: judged.outliers.clone() };
-        (selection, judged, _) = run(forward, &noise, Some(&selection.best));
+        (selection, judged, _, hopeful) = run(forward, &noise, Before::Best(&selection.best));
     }
     for _ in 0..2 {
-        if judged.agrees(&noise) {
+        // no scale of the noise makes a hopeless model right
+        if judged.agrees(&noise) || !hopeful {
             break;
         }
+        let same_rows = judged.same_rows(&noise);
         noise = judged;
-        (selection, judged, _) = run(forward, &noise, Some(&selection.best));
+        let before = if same_rows { Before::Weights(&selection) } else { Before::Best(&selection.best) };
+        (selection, judged, _, hopeful) = run(forward, &noise, before);
     }
     Settled { selection, noise, missed }
+}
+
+/// What a search can start from.
+enum Before<'a> {
+    Nothing,
+    /// The best model so far; other rows count now.
+    Best(&'a Scored),
+    /// A selection; only the scale of the deviations is another.
+    Weights(&'a Selection),
+}
+
+/// What calibration alone says of the readings.
+fn first_look(forward: &Forward, nuisance: &Nuisance) -> Noise {
+    let bare = Model::bare(nuisance);
+    let weights = Noise::default().weights(forward);
+    let fitted = fit(forward, &bare, &vec![0.0; bare.len()], &weights, Effort::default());
+    Noise::first_look(forward, &fitted)
 }
 
 struct Analysis<'a> {
@@ -443,7 +468,7 @@ fn too_little(campaign: &Campaign) -> Vec<String> {
     }
     let first = campaign.statics.first();
     let same_load = |r: &super::readings::StaticRow| {
-        first.is_some_and(|f| f.payload == r.payload && f.force_n == r.force_n)
+        first.is_some_and(|f| f.payload.mass_kg == r.payload.mass_kg && f.force_n == r.force_n)
     };
     if first.is_some() && campaign.statics.iter().all(same_load) {
         reasons.push(

@@ -328,8 +328,9 @@ pub fn finish<'a>(
     let mut evidence = -0.5 * point.objective;
     for (i, knob) in model.knobs().enumerate() {
         let p = model.calibrated() + i;
-        curvature[(p, p)] += 12.0 / (knob.range() * knob.range());
-        evidence += 0.5 * TAU.ln() - knob.range().ln();
+        let width = knob.width(point.u[p]);
+        curvature[(p, p)] += 12.0 / (width * width);
+        evidence += 0.5 * TAU.ln() - width.ln();
     }
     let determinant = Cholesky::new(curvature.clone())
         .map_or(f64::INFINITY, |c| 2.0 * c.l().diagonal().iter().map(|d| d.ln()).sum::<f64>());

@@ -6,6 +6,7 @@
 
 use super::fit::{Effort, Fit, Weights, fit};
 use super::forward::Forward;
+use super::model::Model;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
@@ -30,7 +31,7 @@ pub fn deviations(fit: &Fit) -> Vec<f64> {
     for (i, knob) in fit.model.knobs().enumerate() {
         // the width of the prior belongs to the evidence, not to what the data say
         let p = fit.model.calibrated() + i;
-        curvature[(p, p)] -= 11.9 / knob.range().powi(2);
+        curvature[(p, p)] -= 11.9 / knob.width(fit.point.u[p]).powi(2);
     }
     let covariance = curvature.try_inverse().unwrap_or_else(|| DMatrix::from_element(n, n, f64::INFINITY));
     (0..n).map(|p| covariance[(p, p)].abs().sqrt()).collect()
@@ -67,6 +68,20 @@ pub fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec<Interv
         .collect()
 }
 
+/// The lowest objective that is found from `u` on. Break points of a gear's curve make the frequencies
+/// step, and steps stop a descent: unless that is low `enough`, it is tried again from a smoothed curve.
+fn refit(forward: &Forward, mut model: Model, u: &[f64], weights: &Weights, enough: f64) -> f64 {
+    let effort = Effort { steps: 5, tolerance: 0.02 };
+    let straight = fit(forward, &model, u, weights, effort).point.objective;
+    if straight < enough || model.break_points().is_empty() || forward.modal.is_empty() {
+        return straight;
+    }
+    model.smoothing = 0.03;
+    let start = fit(forward, &model, u, weights, Effort { steps: 4, tolerance: 0.1 }).point.u;
+    model.smoothing = 0.0;
+    straight.min(fit(forward, &model, &start, weights, effort).point.objective)
+}
+
 /// Where the profile has risen enough on one side; `None` if it does not within the prior.
 fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64, sd: f64) -> Option<f64> {
     let (low, high) = best.model.bounds(p);
@@ -75,8 +90,8 @@ fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64
     let rise = |value: f64| {
         let mut model = best.model.clone();
         model.held = vec![(p, value)];
-        let effort = Effort { steps: 5, tolerance: 0.02 };
-        fit(forward, &model, &best.point.u, weights, effort).point.objective - best.point.objective
+        let objective = best.point.objective;
+        refit(forward, model, &best.point.u, weights, objective + RISE) - objective
     };
     let clamp = |value: f64| value.clamp(low, high);
     let mut near = (u, 0.0);

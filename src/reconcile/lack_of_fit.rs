@@ -8,6 +8,7 @@
 use super::campaign::Campaign;
 use super::fit::{Fit, Weights};
 use super::forward::Forward;
+use super::model::Calibration;
 use super::stats::ln_chi_squared_tail;
 use crate::arm::effect::Channel;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -39,8 +40,14 @@ pub struct LackOfFit {
     pub fails: bool,
 }
 
-/// Sum of squares over degrees of freedom that wrong declared deviations could leave.
-const MATERIAL: f64 = 1.75;
+/// Sum of squares over degrees of freedom that wrong declared deviations could hardly leave.
+const MATERIAL: f64 = 2.5;
+/// The same where a structure is suspected.
+const SUSPICIOUS: f64 = 1.6;
+/// Probability, all questions together, below which a structure is no chance.
+const CHANCE: f64 = 1e-3;
+/// Probability below which a structure is suspected.
+const SUSPECTED: f64 = 0.1;
 
 /// Asks all questions.
 pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> LackOfFit {
@@ -50,7 +57,7 @@ pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &
         let range = forward.range(channel);
         if range.len() >= 8 {
             structures.extend(
-                questions(campaign, forward, fit, channel)
+                questions(campaign, forward, fit, weights, channel)
                     .into_iter()
                     .filter_map(|(follows, regressors)| tester.ask(channel, follows, &regressors)),
             );
@@ -60,8 +67,11 @@ pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &
     structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
     structures.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
     let chi2_per_dof = tester.chi2_per_dof(forward, fit);
-    let structured = structures.first().is_some_and(|s| s.ln_p < (1e-6f64).ln());
-    LackOfFit { structures, chi2_per_dof, fails: structured || chi2_per_dof > MATERIAL }
+    let ln_p = structures.first().map_or(0.0, |s| s.ln_p);
+    let fails = ln_p < CHANCE.ln()
+        || chi2_per_dof > MATERIAL
+        || (ln_p < SUSPECTED.ln() && chi2_per_dof > SUSPICIOUS);
+    LackOfFit { structures, chi2_per_dof, fails }
 }
 
 struct Tester {
@@ -131,13 +141,60 @@ fn questions(
     campaign: &Campaign,
     forward: &Forward,
     fit: &Fit,
+    weights: &Weights,
     channel: Channel,
 ) -> Vec<(String, Vec<Vec<f64>>)> {
-    match channel {
+    let mut out = match channel {
         Channel::Static => static_questions(campaign, forward, fit),
         Channel::Modal => modal_questions(campaign, forward),
-        _ => windup_questions(campaign, forward),
+        _ => return windup_questions(campaign, forward),
+    };
+    out.extend(stiffness_questions(campaign, forward, fit, weights, channel));
+    out
+}
+
+/// Whether a joint's stiffness changes with its angle, its torque or the order of the tests: what a
+/// small change of it does to each reading, times functions of these.
+fn stiffness_questions(
+    campaign: &Campaign,
+    forward: &Forward,
+    fit: &Fit,
+    weights: &Weights,
+    channel: Channel,
+) -> Vec<(String, Vec<Vec<f64>>)> {
+    let mut out = Vec::new();
+    let torques = forward.torques_nm(&fit.point.coefficients);
+    let names: Vec<String> = campaign.arm.joints().map(|j| j.name.clone()).collect();
+    let driven = campaign.arm.driven_joint_names();
+    let count = forward.range(channel).len() as f64;
+    for (p, (calibration, _)) in fit.model.nuisance.numbers.iter().enumerate() {
+        let Calibration::Stiffness(name) = calibration else { continue };
+        let Some(joint) = names.iter().position(|n| n == name) else { continue };
+        let largest = torques.iter().map(|t| t[joint].abs()).fold(1e-9, f64::max);
+        let times = |f: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            let mut column = vec![0.0; forward.data.len()];
+            for i in forward.range(channel) {
+                column[i] = fit.jacobian[(i, p)] * weights.inverse[i] * f(i);
+            }
+            column
+        };
+        if let Some(j) = driven.iter().position(|n| n == name) {
+            let pose = |i: usize| match channel {
+                Channel::Static => &campaign.statics[i / 3].pose_deg,
+                _ => &campaign.modal[i - forward.starts[1]].pose_deg,
+            };
+            let angle = (0..4).map(|k| times(&|i| waves(pose(i)[j])[k])).collect();
+            out.push((format!("a stiffness of {name} that changes with its angle"), angle));
+        }
+        let first = forward.range(channel).start;
+        let part = |i: usize| (i - first) as f64 / count;
+        let order = (0..4).map(|k| times(&|i| order_functions(part(i))[k])).collect();
+        out.push((format!("a stiffness of {name} that changes with the order of the tests"), order));
+        let law: [fn(f64) -> f64; 4] = [|t| t.abs(), |t| t * t, |t| t.signum(), |t| t];
+        let torque = law.iter().map(|f| times(&|i| f(torques[i][joint] / largest))).collect();
+        out.push((format!("a stiffness of {name} that changes with its torque"), torque));
     }
+    out
 }
 
 /// Values at the data of a channel, zero elsewhere.

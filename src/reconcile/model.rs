@@ -23,7 +23,12 @@ pub struct Knob {
     pub high: f64,
     /// Another number of the effect that this one is not below.
     not_below: Option<&'static str>,
+    /// The `u` at which the effect is absent; `None` where the number says how and not how much.
+    absent: Option<f64>,
 }
+
+/// Part of the prior's width below which sizes of an effect are equally likely.
+const SMALL: f64 = 0.01;
 
 /// A stiffness no reading can tell from rigid \[N m/rad\].
 const RIGID_NM_PER_RAD: f64 = 1e15;
@@ -41,7 +46,14 @@ impl Knob {
             Scale::Log => (1.0, low.ln(), high.ln()),
         };
         let not_below = parameter.not_below;
-        Self { name: parameter.name, component, scale: parameter.scale, reference, low, high, not_below }
+        let absent = match (parameter.scale, parameter.name) {
+            (Scale::Log, _) | (_, "added_mass_coefficient") => None,
+            (Scale::Stiffness, "k1_nm_per_rad" | "k2_nm_per_rad" | "k3_nm_per_rad") => None,
+            (Scale::Reciprocal, _) => Some(1.0),
+            (Scale::Linear, "gain") => Some(1.0 / reference),
+            _ => Some(0.0),
+        };
+        Self { name: parameter.name, component, scale: parameter.scale, reference, low, high, not_below, absent }
     }
 
     /// The parameter's value.
@@ -84,9 +96,15 @@ impl Knob {
         self.scale == Scale::Stiffness && u <= 1e-6
     }
 
-    /// Width of the prior.
-    pub fn range(&self) -> f64 {
-        self.high - self.low
+    /// Width of the prior about a value: one over its density there. The size of an effect may be of any
+    /// order of magnitude, so small sizes are as likely as large ones, decade by decade; what only says
+    /// how it acts is equally likely anywhere within its limits.
+    pub fn width(&self, u: f64) -> f64 {
+        let range = self.high - self.low;
+        let Some(absent) = self.absent else { return range };
+        let small = SMALL * range;
+        let decades = |end: f64| ((end - absent).abs() / small).ln_1p();
+        (decades(self.low) + decades(self.high)) * ((u - absent).abs() + small)
     }
 }
 
@@ -403,7 +421,18 @@ fn candidate(forward: &Forward, kind: &'static Kind, place: Place, at: String) -
             Some(default) => fixed.push(default),
         }
     }
-    let starts = starts(forward, kind, &at, &knobs);
+    let torque = largest_torque_nm(forward, &at).max(1.0);
+    for knob in &mut knobs {
+        let parts = match knob.name {
+            "t1_nm" => (0.02, 1.0),
+            "t2_nm" => (0.05, 1.5),
+            "torque_nm" => (0.003, 1.0),
+            _ => continue,
+        };
+        // a law that changes where no torque of the campaign reaches cannot be told from another
+        (knob.low, knob.high) = ((parts.0 * torque).ln(), (parts.1 * torque).ln());
+    }
+    let starts = starts(kind, torque, &knobs);
     Candidate { kind, at, knobs, fixed, starts, twins: Vec::new() }
 }
 
@@ -429,8 +458,7 @@ const BREAKS: [(f64, f64); 8] = [
     (0.5, 0.85),
 ];
 
-fn starts(forward: &Forward, kind: &Kind, at: &str, knobs: &[Knob]) -> Vec<Vec<f64>> {
-    let torque = largest_torque_nm(forward, at).max(1.0);
+fn starts(kind: &Kind, torque: f64, knobs: &[Knob]) -> Vec<Vec<f64>> {
     match kind.name {
         "connection_compliance" | "bearing_tilt" | "base_compliance" => vec![vec![0.1], vec![0.5]],
         "joint_compliance" => vec![vec![0.5], vec![2.0]],

@@ -20,6 +20,8 @@ const GROSS: f64 = 5.5;
 const FEW: f64 = 0.10;
 /// Largest factor on declared deviations that is put down to the declaration.
 const LARGEST_SCALE: f64 = 1.3;
+/// Spread of the residuals, in declared standard deviations, up to which a model fits most readings.
+const CLOSE: f64 = 1.5;
 /// Weight of the declaration, in readings.
 const TRUST: f64 = 15.0;
 
@@ -39,17 +41,26 @@ impl Noise {
         Weights { inverse: inverse.collect(), smooth_only: false }
     }
 
+    /// Gross errors that show before any effect is looked for: only where calibration alone comes close
+    /// to most readings, because what an effect does must not be taken for an error.
+    pub fn first_look(forward: &Forward, bare: &Fit) -> Self {
+        let residuals = declared_residuals(forward, bare);
+        let close = |channel| spread(&residuals[forward.range(channel)]) < CLOSE;
+        match [Channel::Static, Channel::Modal, Channel::Windup].into_iter().all(close) {
+            true => Self { outliers: Self::from_fit(forward, bare).outliers, ..Self::default() },
+            false => Self::default(),
+        }
+    }
+
     /// Judges the readings by the residuals of a fit.
     pub fn from_fit(forward: &Forward, fit: &Fit) -> Self {
         let mut noise = Self::default();
-        let residuals: Vec<f64> =
-            forward.data.iter().zip(&fit.point.predicted).map(|(d, p)| (d.value - p) / d.sigma).collect();
+        let residuals = declared_residuals(forward, fit);
         let free = fit.point.u.len() as f64 / forward.data.len().max(1) as f64;
         for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
             let range = forward.range(channel);
             let own = &residuals[range.clone()];
-            let spread = 1.4826 * median(own.iter().map(|r| r.abs()).collect());
-            let limit = GROSS * spread.clamp(1.0, 3.0);
+            let limit = GROSS * spread(own).clamp(1.0, 3.0);
             let mut gross: Vec<(usize, f64)> = Vec::new();
             for (r, datum) in own.iter().zip(&forward.data[range.clone()]) {
                 if r.abs() > limit {
@@ -69,12 +80,27 @@ impl Noise {
         noise
     }
 
-    /// Whether two judgements lead to the same weights, nearly.
-    pub fn agrees(&self, other: &Self) -> bool {
+    /// Whether two judgements leave out the same rows.
+    pub fn same_rows(&self, other: &Self) -> bool {
         let rows = |n: &Self| n.outliers.iter().map(|(c, r, _)| (*c, *r)).collect::<Vec<_>>();
         rows(self) == rows(other)
+    }
+
+    /// Whether two judgements lead to the same weights, nearly.
+    pub fn agrees(&self, other: &Self) -> bool {
+        self.same_rows(other)
             && self.scale.iter().zip(&other.scale).all(|(a, b)| (a / b - 1.0).abs() < 0.03)
     }
+}
+
+/// Measured less predicted, in declared standard deviations.
+fn declared_residuals(forward: &Forward, fit: &Fit) -> Vec<f64> {
+    forward.data.iter().zip(&fit.point.predicted).map(|(d, p)| (d.value - p) / d.sigma).collect()
+}
+
+/// Standard deviation of most residuals, whatever the few largest are.
+fn spread(residuals: &[f64]) -> f64 {
+    1.4826 * median(residuals.iter().map(|r| r.abs()).collect())
 }
 
 fn scale(
@@ -92,5 +118,5 @@ fn scale(
     }
     let scale = (sum / count).sqrt();
     // within what chance does to honestly declared deviations nothing is changed
-    if scale < 1.0 + 2.0 / (2.0 * count).sqrt() { 1.0 } else { scale.min(LARGEST_SCALE) }
+    if scale < 1.0 + 1.0 / (2.0 * count).sqrt() { 1.0 } else { scale.min(LARGEST_SCALE) }
 }

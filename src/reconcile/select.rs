@@ -13,16 +13,20 @@ use super::model::{Candidate, Model, Nuisance};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// Rise of the score that an effect must bring.
+/// Rise of the score that a further effect must bring: two things missing at once are rarer than one.
 const WORTH: f64 = 3.0;
-/// Models within this score of the best cannot be told from it.
-const TIE: f64 = 3.0;
+/// Rise of the score that the first effect must bring: that something is missing is as likely as not.
+const FIRST_WORTH: f64 = 0.0;
+/// Part of the probability that an effect and its alternatives must hold together.
+const CREDIBLE: f64 = 0.95;
 /// Models this far behind after a few steps are not fitted further.
 const HOPELESS: f64 = 40.0;
 /// Models within this score of a stage's best are worth a closer look.
 const PROMISING: f64 = 12.0;
 /// Most effects.
 pub const MOST_EFFECTS: usize = 3;
+/// Objective per datum above which a model cannot become the explanation, whatever the declared deviations.
+const BEYOND_HOPE: f64 = 2.0;
 /// Candidates fitted in full at each stage.
 const FULL_FITS: usize = 7;
 
@@ -161,6 +165,11 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Whether a model comes near enough to the readings to be worth refining.
+    pub fn may_explain(&self, scored: &Scored) -> bool {
+        scored.objective < BEYOND_HOPE * self.forward.data.len() as f64
+    }
+
     /// In how many ways an effect could be named; a unit slip counts once a channel.
     fn places(&self) -> usize {
         let mut labels: Vec<String> = self.candidates.iter().map(|c| c.label()).collect();
@@ -180,19 +189,47 @@ impl<'a> Search<'a> {
             let effort = Effort { steps: 12, tolerance: 0.02 };
             let again = fit(self.forward, &self.model(&known.effects), &known.u, self.weights, effort);
             best = self.repair(self.scored(&known.effects, &again), &mut seen);
-            if best.score < bare.score + WORTH {
+            if best.score < bare.score + FIRST_WORTH {
                 best = bare.clone();
             }
         }
         while best.effects.len() < MOST_EFFECTS {
             let tried = self.extend(&best);
             seen.extend(tried.iter().cloned());
-            let Some(next) = better(&tried, best.score + WORTH) else { break };
+            let worth = if best.effects.is_empty() { FIRST_WORTH } else { WORTH };
+            let Some(next) = better(&tried, best.score + worth) else { break };
             best = next;
-            if best.effects.len() > 1 {
+            if best.effects.len() > 1 && (best.effects.len() < MOST_EFFECTS || self.may_explain(&best)) {
                 best = self.repair(best, &mut seen);
             }
         }
+        seen.sort_by(|a, b| b.score.total_cmp(&a.score));
+        Selection { best, bare, others: seen }
+    }
+
+    /// Fits the promising models of a selection again, with other weights, and chooses among them.
+    pub fn weigh_again(&self, before: &Selection) -> Selection {
+        let mut promising: Vec<&Scored> = vec![&before.bare];
+        let near = before.others.iter().filter(|s| s.score > before.best.score - PROMISING);
+        for scored in [&before.best].into_iter().chain(near) {
+            if promising.iter().all(|p| p.effects != scored.effects) {
+                promising.push(scored);
+            }
+        }
+        let effort = Effort { steps: 12, tolerance: 0.02 };
+        let again = |s: &&Scored| {
+            let fitted = fit(self.forward, &self.model(&s.effects), &s.u, self.weights, effort);
+            self.scored(&s.effects, &fitted)
+        };
+        let mut seen: Vec<Scored> = promising.par_iter().map(again).collect();
+        let bare = seen.remove(0);
+        let worth = |s: &Scored| match s.effects.len() {
+            0 => 0.0,
+            n => FIRST_WORTH + (n - 1) as f64 * WORTH,
+        };
+        let net = |s: &&Scored| s.score - worth(s);
+        let best = seen.iter().chain([&bare]).max_by(|a, b| net(a).total_cmp(&net(b)));
+        let best = best.cloned().unwrap_or_else(|| bare.clone());
         seen.sort_by(|a, b| b.score.total_cmp(&a.score));
         Selection { best, bare, others: seen }
     }
@@ -373,27 +410,40 @@ impl<'a> Search<'a> {
         let mut score = -0.5 * objective;
         for (i, knob) in model.knobs().enumerate() {
             let p = model.calibrated() + i;
-            let width = 1.0 / (curvature[(p, p)] + 12.0 / knob.range().powi(2)).sqrt();
-            score += (width / knob.range()).ln() + 0.9;
+            let prior = knob.width(u[p]);
+            let width = 1.0 / (curvature[(p, p)] + 12.0 / prior.powi(2)).sqrt();
+            score += (width / prior).ln() + 0.9;
         }
         (u, score)
     }
 
     /// Models with as many effects as the best, one of them another, that the data cannot tell from it:
-    /// for each effect of the best the candidates that could stand in its place.
+    /// for each effect of the best the candidates that could stand in its place, the likeliest first, as
+    /// many as make the right one be among them with 95 %.
     pub fn alternatives(&self, best: &Scored, seen: &[Scored]) -> Vec<Vec<Scored>> {
         (0..best.effects.len())
             .map(|i| {
                 let mut rest = best.effects.clone();
                 let own = rest.remove(i);
-                let mut rivals: Vec<Scored> = seen
-                    .iter()
-                    .filter(|s| s.score > best.score - TIE)
-                    .filter(|s| s.effects.len() == best.effects.len() && !s.effects.contains(&own))
-                    .filter(|s| rest.iter().all(|e| s.effects.contains(e)))
-                    .cloned()
-                    .collect();
-                rivals.dedup_by(|a, b| a.effects == b.effects);
+                let in_its_place = |s: &&Scored| {
+                    s.effects.len() == best.effects.len()
+                        && !s.effects.contains(&own)
+                        && rest.iter().all(|e| s.effects.contains(e))
+                };
+                let mut rivals: Vec<Scored> = Vec::new();
+                for rival in seen.iter().filter(in_its_place) {
+                    if rivals.iter().all(|r| r.effects != rival.effects) {
+                        rivals.push(rival.clone());
+                    }
+                }
+                let odds = |s: &Scored| (s.score - best.score).exp();
+                let all = 1.0 + rivals.iter().map(odds).sum::<f64>();
+                let mut held = 1.0;
+                rivals.retain(|s| {
+                    let needed = held < CREDIBLE * all;
+                    held += odds(s);
+                    needed
+                });
                 rivals
             })
             .collect()

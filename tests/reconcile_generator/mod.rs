@@ -4,11 +4,14 @@
 //! Friction play, which the witness lacks, is added here from its torques and from kinematics written
 //! for this file.
 
+pub mod unknown;
+
 use super::witness::{self, Effects, LoadCase, Options, Payload, ThreeSegment};
 use nalgebra::{Rotation3, Unit, Vector3};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;
+use unknown::Unknown;
 
 const ARCMIN_PER_RAD: f64 = 10800.0 / std::f64::consts::PI;
 
@@ -170,6 +173,50 @@ pub fn effect(dice: &mut Dice, arm: &Value, name: &str, at: &str, size: f64) -> 
     json!({"effect": name, "at": at, "parameters": parameters})
 }
 
+/// Makes one campaign below `out`: `set` is `plain` or `hard`, `class` is `one`, `two`, `none` or
+/// `unknown`; numbers go through all effects in turn. `eased` makes an effect that nobody could see
+/// larger, by 40 % a step, and from the third step on leaves no file out. Returns the campaign's name
+/// and what is hidden in it.
+pub fn make(
+    out: &Path,
+    set: &str,
+    class: &str,
+    seed: u64,
+    number: usize,
+    eased: i32,
+) -> (String, Vec<Value>) {
+    let mut dice = Dice(seed.wrapping_mul(1000).wrapping_add(number as u64));
+    let arm = arm(&mut dice);
+    let mut plan = match set {
+        "hard" => Plan::hard(&mut dice),
+        _ => Plan::plain(),
+    };
+    plan.size *= 1.4f64.powi(eased);
+    if eased >= 3 {
+        (plan.modal_poses, plan.bench) = (plan.modal_poses.max(6), true);
+    }
+    let (known, strange) = (everything(), unknown::everything());
+    let mut draw = |k: usize| {
+        let (name, at) = known[(number + k * (7 + number % 11)) % known.len()];
+        effect(&mut dice, &arm, name, at, plan.size)
+    };
+    let hidden = match class {
+        "none" => Vec::new(),
+        "one" => vec![draw(0)],
+        "two" => vec![draw(0), draw(1)],
+        "unknown" => {
+            let (name, at) = strange[number % strange.len()];
+            vec![unknown::effect(&mut dice, name, at, plan.size)]
+        }
+        other => panic!("{other} is none of one, two, none, unknown"),
+    };
+    let name = format!("{set}-{class}-{seed}-{number:03}");
+    std::fs::create_dir_all(out.join("keys")).expect("folder");
+    let key = out.join("keys").join(format!("{name}.json"));
+    write(&mut dice, &out.join("campaigns").join(&name), &key, &arm, &hidden, &plan);
+    (name, hidden)
+}
+
 /// What the witness does not know: play of joints, and how a channel reads.
 #[derive(Default)]
 struct Beyond {
@@ -178,6 +225,7 @@ struct Beyond {
     modal_gain: f64,
     bias_mm: [f64; 3],
     drift_mm: [f64; 3],
+    unknown: Unknown,
 }
 
 fn three(v: &Value) -> [f64; 3] {
@@ -188,6 +236,10 @@ fn split(hidden: &[Value]) -> (Value, Beyond) {
     let mut beyond = Beyond { static_gain: 1.0, modal_gain: 1.0, ..Beyond::default() };
     let mut rest = Vec::new();
     for effect in hidden {
+        if let Some(unknown) = Unknown::from_json(effect) {
+            beyond.unknown = unknown;
+            continue;
+        }
         let p = &effect["parameters"];
         let at = effect["at"].as_str().expect("place").to_string();
         match effect["effect"].as_str().expect("name") {
@@ -222,6 +274,9 @@ pub fn write(dice: &mut Dice, folder: &Path, key: &Path, arm: &Value, hidden: &[
         "static": {"file": "static.csv"},
     });
     let save = |file: &str, text: String| std::fs::write(folder.join(file), text).expect("written");
+    for file in ["modal.csv", "windup.csv"] {
+        let _ = std::fs::remove_file(folder.join(file));
+    }
     save("static.csv", built.statics(dice, plan));
     if plan.modal_poses > 0 {
         campaign["modal"] = json!({"file": "modal.csv"});
@@ -289,8 +344,34 @@ impl Built {
             .collect()
     }
 
-    /// Motion of the tip per radian of each joint.
-    fn levers(&self, pose_deg: &[f64]) -> Vec<Vector3<f64>> {
+    /// The arm in a pose when `part` of the tests are done.
+    fn arm_during(&self, pose_deg: &[f64], part: f64) -> Value {
+        self.with_stiffness(|j, name, k| k * self.beyond.unknown.stiffness_factor(name, pose_deg[j], part))
+    }
+
+    /// The arm with other stiffnesses of its joints: number, name and stiffness of each are given.
+    fn with_stiffness(&self, of: impl Fn(usize, &str, f64) -> f64) -> Value {
+        let mut arm = self.arm.clone();
+        let parts = arm["chain"].as_array_mut().expect("chain").iter_mut();
+        for (j, part) in parts.filter(|p| p["type"] == "joint").enumerate() {
+            let k = part["stiffness_nm_per_rad"].as_f64().expect("k");
+            part["stiffness_nm_per_rad"] = json!(of(j, part["name"].as_str().expect("name"), k));
+        }
+        arm
+    }
+
+    /// The arm with the stiffness its joints have for small motions about a load.
+    fn arm_about(&self, pose_deg: &[f64], case: &LoadCase, part: f64) -> Value {
+        let unknown = &self.beyond.unknown;
+        let answer = witness::analyze(&self.arm_during(pose_deg, part), case, &self.options(0));
+        self.with_stiffness(|j, name, k| {
+            let further = unknown.further_twist(name, torque(&answer, name), k).1;
+            k * unknown.stiffness_factor(name, pose_deg[j], part) / (1.0 + k * further)
+        })
+    }
+
+    /// Where the tip is, and its motion per radian of each joint.
+    fn levers(&self, pose_deg: &[f64]) -> (Vector3<f64>, Vec<Vector3<f64>>) {
         let (mut at, mut frame) = (Vector3::zeros(), Rotation3::identity());
         let mut axes = Vec::new();
         for part in self.arm["chain"].as_array().expect("chain") {
@@ -303,7 +384,7 @@ impl Built {
                 at += frame * Vector3::from(three(&part["vector_m"]));
             }
         }
-        axes.into_iter().map(|(axis, point)| axis.cross(&(at - point))).collect()
+        (at, axes.into_iter().map(|(axis, point)| axis.cross(&(at - point))).collect())
     }
 
     fn statics(&self, dice: &mut Dice, plan: &Plan) -> String {
@@ -312,7 +393,8 @@ impl Built {
             "test,q_j1_deg,q_j2_deg,q_j3_deg,q_j4_deg,q_j5_deg,q_j6_deg,payload_kg,payload_cg_x_m,payload_cg_y_m,payload_cg_z_m,force_x_n,force_y_n,force_z_n,branch,dx_mm,dy_mm,dz_mm,sigma_mm\n",
         );
         let mut row = 0;
-        for _ in 0..plan.static_poses {
+        for number in 0..plan.static_poses {
+            let part = number as f64 / plan.static_poses as f64;
             let pose = pose(dice);
             let cg = dice.rounded(0.03, 0.1, 3);
             let force: [f64; 3] = std::array::from_fn(|_| dice.rounded(-100.0, 100.0, 1));
@@ -329,7 +411,7 @@ impl Built {
                     }
                 })
                 .collect();
-            for (i, d) in self.displacements_mm(&pose, &cases).into_iter().enumerate() {
+            for (i, d) in self.displacements_mm(&pose, &cases, part).into_iter().enumerate() {
                 let (kg, branch) = loads[i];
                 let f = if kg > 0.0 { [0.0; 3] } else { force };
                 let gross = if dice.uniform() < plan.gross { 0.15 * dice.normal().signum() } else { 0.0 };
@@ -355,10 +437,12 @@ impl Built {
     }
 
     /// Displacements from the unloaded reference, friction play following the order of the loads.
-    fn displacements_mm(&self, pose: &[f64], cases: &[LoadCase]) -> Vec<Vector3<f64>> {
+    fn displacements_mm(&self, pose: &[f64], cases: &[LoadCase], part: f64) -> Vec<Vector3<f64>> {
         let options = self.options(0);
-        let reference = witness::analyze(&self.arm, &LoadCase::unloaded(pose), &options);
-        let levers = self.levers(pose);
+        let unknown = &self.beyond.unknown;
+        let reference = witness::analyze(&self.arm_during(pose, 0.0), &LoadCase::unloaded(pose), &options);
+        let arm = self.arm_during(pose, part);
+        let (tip_m, levers) = self.levers(pose);
         let mut play: Vec<(usize, f64, f64, f64)> = Vec::new();
         for (j, (name, _, k)) in self.joints().iter().enumerate() {
             if let Some(h) = self.beyond.play.get(name) {
@@ -376,12 +460,19 @@ impl Built {
                 })
                 .sum()
         };
-        let zero = reference.tip_displacement_m + lag(&mut play, &reference);
+        let further = |answer: &witness::Answer| -> Vector3<f64> {
+            let joints = self.joints().into_iter().zip(&levers);
+            joints
+                .map(|((name, _, k), lever)| lever * unknown.further_twist(&name, torque(answer, &name), k).0)
+                .sum()
+        };
+        let zero = reference.tip_displacement_m + lag(&mut play, &reference) + further(&reference);
         cases
             .iter()
             .map(|case| {
-                let answer = witness::analyze(&self.arm, case, &options);
-                1e3 * (answer.tip_displacement_m + lag(&mut play, &answer) - zero)
+                let answer = witness::analyze(&arm, case, &options);
+                let moved = answer.tip_displacement_m + lag(&mut play, &answer) + further(&answer);
+                unknown.reading_mm(1e3 * (moved - zero), tip_m, part)
             })
             .collect()
     }
@@ -391,12 +482,14 @@ impl Built {
             "test,q_j1_deg,q_j2_deg,q_j3_deg,q_j4_deg,q_j5_deg,q_j6_deg,payload_kg,payload_cg_x_m,payload_cg_y_m,payload_cg_z_m,mode,frequency_hz,sigma_hz\n",
         );
         let mut test = 0;
-        for _ in 0..plan.modal_poses {
+        for number in 0..plan.modal_poses {
+            let part = number as f64 / plan.modal_poses as f64;
             let pose = pose(dice);
             for kg in [0.0, 5.0] {
                 test += 1;
                 let case = LoadCase::unloaded(&pose).with_payload(Payload::point(kg, [0.08, 0.0, 0.0]));
-                let answer = witness::analyze(&self.arm, &case, &self.options(4));
+                let arm = self.arm_about(&pose, &case, part);
+                let answer = witness::analyze(&arm, &case, &self.options(4));
                 for (m, mode) in answer.modes.iter().enumerate() {
                     let f = mode.frequency_hz * self.beyond.modal_gain;
                     let sigma = 0.003 * f;
@@ -448,6 +541,7 @@ impl Built {
         let parts = self.arm["chain"].as_array().expect("chain");
         let own = parts.iter().find(|p| p["name"] == name).map(|p| &p["windup"]).filter(|w| w.is_object());
         let curve = e.soft_windup.get(name).copied().or(own.map(ThreeSegment::from_json));
+        let (unknown, name) = (self.beyond.unknown.clone(), name.to_string());
         Box::new(move |t| {
             let gear = match curve {
                 None => t / k,
@@ -458,6 +552,7 @@ impl Built {
                     (first + second + (size - w.t2_nm).max(0.0) / w.k3_nm_per_rad) * t.signum()
                 }
             };
+            let gear = gear + unknown.further_twist(&name, t, k).0;
             gear + series * t + lost.map_or(0.0, |l| l.half_width_rad * (t / l.torque_nm).tanh())
         })
     }

@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::fmt::Write;
 use std::path::Path;
 
 /// What a set of verdicts is worth.
@@ -11,8 +12,14 @@ pub struct Score {
     pub classes: BTreeMap<String, (usize, usize)>,
     /// Hidden -> said, where they differ.
     pub confusions: Vec<String>,
+    /// (Hidden, said) -> how often, places left out.
+    pub said: BTreeMap<(String, String), usize>,
+    /// Every campaign: name, hidden effects, whether the verdict is right.
+    pub each: Vec<(String, Vec<Value>, bool)>,
     /// Parameters within their interval, all.
     pub covered: (usize, usize),
+    /// The same for each effect's parameter.
+    pub covered_by: BTreeMap<String, (usize, usize)>,
     /// Parameters outside.
     pub misses: Vec<String>,
     /// Kept-out rms after, of the explained.
@@ -23,7 +30,8 @@ fn read(path: &Path) -> Result<Value, Box<dyn std::error::Error>> {
     Ok(serde_json::from_str(&std::fs::read_to_string(path)?)?)
 }
 
-fn label(v: &Value) -> String {
+/// `effect@place`.
+pub fn label(v: &Value) -> String {
     format!("{}@{}", v["effect"].as_str().unwrap_or("?"), v["at"].as_str().unwrap_or("?"))
 }
 
@@ -63,6 +71,8 @@ impl Score {
         entry.0 += usize::from(right);
         entry.1 += 1;
         let list = |v: &[Value]| v.iter().map(label).collect::<Vec<_>>().join(" + ");
+        *self.said.entry((kinds(&hidden, "none"), kinds(&said, word))).or_default() += 1;
+        self.each.push((name.to_string(), hidden.clone(), right));
         if !right {
             self.confusions.push(format!(
                 "{name}: hidden {}, said {word} {} (suspects {}) size {}",
@@ -96,8 +106,12 @@ impl Score {
                 let Some(t) = t else { continue };
                 let end = |list: &[Option<f64>]| list.get(i).copied().flatten();
                 let inside = end(&low).is_none_or(|l| l <= *t) && end(&high).is_none_or(|h| *t <= h);
-                self.covered.0 += usize::from(inside);
-                self.covered.1 += 1;
+                let by = self.covered_by.entry(format!("{}.{parameter}", said["effect"].as_str().unwrap_or("?")));
+                let by = by.or_default();
+                for counts in [&mut self.covered, by] {
+                    counts.0 += usize::from(inside);
+                    counts.1 += 1;
+                }
                 if !inside {
                     self.misses.push(format!(
                         "{name} {} {parameter}: {t} not in {:?}..{:?}",
@@ -117,6 +131,9 @@ impl Score {
             out.push_str(&format!("{class:<26} {right:>6} {all:>3}\n"));
         }
         out.push_str(&format!("\nintervals that hold: {} of {}\n", self.covered.0, self.covered.1));
+        for (parameter, (inside, all)) in self.covered_by.iter().filter(|(_, (inside, all))| inside < all) {
+            out.push_str(&format!("  {parameter:<44} {inside:>3} of {all:>3}\n"));
+        }
         self.misses.iter().for_each(|m| out.push_str(&format!("  {m}\n")));
         let worst = self.kept_out.iter().map(|k| k.1).fold(0.0, f64::max);
         let mean = self.kept_out.iter().map(|k| k.1).sum::<f64>() / self.kept_out.len().max(1) as f64;
@@ -124,6 +141,24 @@ impl Score {
         self.confusions.iter().for_each(|c| out.push_str(&format!("  {c}\n")));
         out
     }
+}
+
+impl Score {
+    /// The confusion table as CSV: what was hidden, what was said, how often.
+    pub fn confusion_csv(&self) -> String {
+        let mut out = String::from("hidden,said,campaigns\n");
+        for ((hidden, said), count) in &self.said {
+            let _ = writeln!(out, "{hidden},{said},{count}");
+        }
+        out
+    }
+}
+
+/// Names of effects without their places, in the order of the alphabet.
+fn kinds(effects: &[Value], otherwise: &str) -> String {
+    let mut names: Vec<&str> = effects.iter().filter_map(|e| e["effect"].as_str()).collect();
+    names.sort_unstable();
+    if names.is_empty() { otherwise.into() } else { names.join(" + ") }
 }
 
 /// Whether a hidden effect is said, at first choice or among at most three alternatives.

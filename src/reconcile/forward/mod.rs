@@ -127,6 +127,23 @@ impl Forward {
         self.bench.iter().filter(move |b| b.joint == joint).flat_map(|b| b.torques_nm.iter().map(|t| t.abs()))
     }
 
+    /// Torque on every joint at each static or modal datum \[N m\].
+    pub fn torques_nm(&self, coefficients: &Coefficients) -> Vec<Vec<f64>> {
+        let mut out = vec![Vec::new(); self.starts[2]];
+        let statics = self.statics.iter().flat_map(|pose| {
+            let loads = pose.torques_nm(&self.layout, coefficients);
+            loads.into_iter().skip(1)
+        });
+        for (row, torques) in statics.enumerate() {
+            out[3 * row..3 * row + 3].fill(torques);
+        }
+        for test in &self.modal {
+            let torques = test.torques_nm(&self.layout, coefficients);
+            test.modes.iter().for_each(|(datum, _)| out[*datum] = torques.clone());
+        }
+        out
+    }
+
     /// What the subject is seen through.
     pub fn coefficients(&self, subject: &Subject) -> Coefficients {
         Coefficients::new(&self.layout, &self.nominal, subject)

@@ -31,6 +31,8 @@ pub struct ModalTest {
     pub modes: Vec<(usize, usize)>,
     mass: DMatrix<f64>,
     added: Vec<DMatrix<f64>>,
+    /// How many leading coordinates move each added mass: those inboard of it.
+    reach: Vec<usize>,
     /// Factors `L` of the added matrices, `L Lᵀ`: few columns, quick energies.
     factors: Vec<DMatrix<f64>>,
     tip: Matrix3xX<f64>,
@@ -99,9 +101,11 @@ impl ModalTest {
             .map(|c| c.pose_rad(&pose_rad, &empty, Vector3::zeros()).mass_matrix() - &mass)
             .collect();
         let factors = added.iter().map(factor).collect();
+        let reach = added.iter().map(leading).collect();
         let (tip, spin) = tip_jacobians(&posed);
         Self {
             factors,
+            reach,
             geometry: PoseGeometry::new(layout, nominal, pose_deg),
             payload: *payload,
             modes: Vec::new(),
@@ -143,9 +147,10 @@ impl ModalTest {
 
     fn mass_matrix(&self, coefficients: &Coefficients) -> DMatrix<f64> {
         let mut mass = self.mass.clone();
-        for (added, amount) in self.added.iter().zip(&coefficients.masses) {
+        for ((added, amount), &n) in self.added.iter().zip(&coefficients.masses).zip(&self.reach) {
             if *amount != 0.0 {
-                mass.zip_apply(added, |m, a| *m += amount * a);
+                let block = added.view((0, 0), (n, n));
+                mass.view_mut((0, 0), (n, n)).zip_apply(&block, |m, a| *m += amount * a);
             }
         }
         let (mass_kg, jacobian) = self.payload_jacobian(coefficients);
@@ -302,6 +307,12 @@ impl ModalTest {
             out[datum] = -0.5 * d_mu / s.mu / (TAU * s.mu.sqrt());
         }
     }
+}
+
+/// Number of leading coordinates beyond which a symmetric matrix is zero.
+fn leading(matrix: &DMatrix<f64>) -> usize {
+    let floor = 1e-14 * matrix.amax();
+    (0..matrix.nrows()).rev().find(|&i| matrix.row(i).amax() > floor).map_or(0, |i| i + 1)
 }
 
 /// Pivoted Cholesky factor of a positive semidefinite matrix: as many columns as its rank.
