@@ -90,11 +90,13 @@ fn line_matches(shown: &str, printed: &str) -> bool {
 /// Runs the commands of a page, one after another, in a folder with the project's examples.
 fn run_page(page: &str) -> usize {
     let here = tempfile::tempdir().expect("a temporary folder");
-    for folder in ["examples", "tests/data/campaigns/plain-0251e"] {
+    for folder in ["examples", "examples/measured-arm", "tests/data/campaigns/plain-0251e"] {
         fs::create_dir_all(here.path().join(folder)).expect("created");
         for entry in fs::read_dir(project().join(folder)).expect(folder) {
             let entry = entry.expect("an entry");
-            fs::copy(entry.path(), here.path().join(folder).join(entry.file_name())).expect("copied");
+            if entry.path().is_file() {
+                fs::copy(entry.path(), here.path().join(folder).join(entry.file_name())).expect("copied");
+            }
         }
     }
     let mut commands = 0;

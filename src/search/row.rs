@@ -16,7 +16,7 @@ use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 
 /// Most pieces from the innermost level to the base that a row handles; beyond, designs are finished
 /// one by one.
-pub(super) const MOST_SLOTS: usize = 8;
+pub(super) const MOST_SLOTS: usize = 12;
 
 /// The pieces from the innermost level to the base.
 pub(super) struct Row {

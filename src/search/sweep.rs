@@ -243,6 +243,9 @@ impl<'p, P: OutwardIn> Sweep<'p, P> {
             buffer: Vec::new(),
             group_buffers: vec![Vec::new(); groups.len()],
         };
+        if self.stop.load(Ordering::Relaxed) {
+            return worker.finish();
+        }
         let mut partial = root.clone();
         for (level, &option) in beginning.iter().enumerate() {
             let mut next = root.clone();
