@@ -123,7 +123,8 @@ function views(f) {
   const frame = (s) => ({ l: 56, r: s.w - 14, t: 30, b: s.h - 44 });
   const sx = (s, p) => { const q = frame(s); return q.l + p * (q.r - q.l); };
   const sy = (s, p) => { const q = frame(s); return q.b - p * (q.b - q.t); };
-  const paint = (g) => dark() && f.groups[g].colour === "#000000" ? "#f2f2f2" : f.groups[g].colour;
+  const LIGHTER = { "#000000": "#f2f2f2", "#0072B2": "#3d97d3" };
+  const paint = (g) => (dark() && LIGHTER[f.groups[g].colour]) || f.groups[g].colour;
   const dark = () => matchMedia("(prefers-color-scheme: dark)").matches;
 
   function scatter(s) {
@@ -164,8 +165,12 @@ function views(f) {
     for (const p of f.picks) {
       if (!visible(p.row)) continue;
       const x = sx(s, s.x.places[p.row]), y = sy(s, s.y.places[p.row]), wide = g.measureText(p.name).width;
-      const spots = [[12, -10], [12, 18], [-12 - wide, -10], [-12 - wide, 18], [12, -28], [-12 - wide, -28], [12, 36], [-12 - wide, 36]];
+      const spots = [[12, -10], [12, 18], [-wide / 2, -13], [-wide / 2, 22], [-12 - wide, -10], [-12 - wide, 18], [12, -28], [-12 - wide, -28], [12, 36], [-12 - wide, 36]];
       const free = ([dx, dy]) => x + dx > q.l + 2 && x + dx + wide < q.r - 2 && y + dy > q.t + 12 && y + dy < q.b - 4
+        && f.picks.every((o) => {
+          const ox = sx(s, s.x.places[o.row]), oy = sy(s, s.y.places[o.row]);
+          return o === p || !visible(o.row) || ox + 8 < x + dx || ox - 8 > x + dx + wide || oy + 8 < y + dy - 11 || oy - 8 > y + dy + 3;
+        })
         && taken.every((t) => x + dx + wide < t[0] || x + dx > t[0] + t[2] || Math.abs(y + dy - t[1]) > 15);
       const [dx, dy] = spots.find(free) || spots[0];
       taken.push([x + dx, y + dy, wide]);
