@@ -29,7 +29,8 @@ fn armwright(arguments: &[&str]) {
 fn bench_arm(folder: &Path) -> PathBuf {
     let text = std::fs::read_to_string(project("examples/bench-arm.json")).expect("the study");
     let mut study: Value = serde_json::from_str(&text).expect("JSON");
-    study["drives"] = json!({"gear_series": ["CSG"], "ratios": [100], "motor_models": ["ILM70x18", "ILM85x26"]});
+    study["drives"] =
+        json!({"gear_series": ["CSG"], "ratios": [100], "motor_models": ["ILM70x18", "ILM85x26"]});
     let (file, out) = (folder.join("bench.json"), folder.join("bench"));
     std::fs::write(&file, study.to_string()).expect("the study is written");
     armwright(&["run", file.to_str().expect("a path"), "--out", out.to_str().expect("a path")]);
@@ -48,7 +49,11 @@ fn quiet(browser: &Browser, page: &Path) {
     let bytes = std::fs::metadata(page).expect("the page").len();
     assert!(bytes < MOST_BYTES, "{bytes} bytes");
     let mark = browser.value("performance.getEntriesByName('interactive')[0].startTime");
-    println!("{}: {bytes} bytes, interactive after {:.0} ms", page.display(), mark.as_f64().unwrap_or_default());
+    println!(
+        "{}: {bytes} bytes, interactive after {:.0} ms",
+        page.display(),
+        mark.as_f64().unwrap_or_default()
+    );
 }
 
 /// Saves a picture where the environment asks for one.
@@ -113,7 +118,8 @@ fn the_page_of_a_study_shows_the_numbers_of_its_front() {
     );
     let summary = std::fs::read_to_string(results.join("summary.md")).expect("the summary");
     for card in cards.as_array().expect("cards") {
-        let row = column(&front, "design_id").iter().position(|id| *id == card[0]).expect("a design of the front");
+        let row =
+            column(&front, "design_id").iter().position(|id| *id == card[0]).expect("a design of the front");
         let exact = |name: &str| significant(column(&front, name)[row].parse().expect("a number"), 4);
         for (i, (name, unit)) in
             [("tip_deflection_mm", "mm"), ("mass_kg", "kg"), ("lowest_mode_hz", "Hz")].into_iter().enumerate()
@@ -141,7 +147,10 @@ fn the_views_of_a_study_follow_pointer_brush_filters_and_keys() {
     browser.value("document.getElementById('by-deflection').focus()");
     for row in 0..2 {
         browser.key("ArrowRight");
-        assert_eq!(browser.value("document.getElementById('reading').dataset.design"), column(&front, "design_id")[row]);
+        assert_eq!(
+            browser.value("document.getElementById('reading').dataset.design"),
+            column(&front, "design_id")[row]
+        );
         let mass: f64 = column(&front, "mass_kg")[row].parse().expect("a number");
         assert!(browser.text("#reading").contains(&format!("mass {} kg", significant(mass, 5))));
     }
@@ -149,7 +158,11 @@ fn the_views_of_a_study_follow_pointer_brush_filters_and_keys() {
     // the pointer: somewhere along the middle of the plot lies a design
     let [left, top, width, height] = browser.place("#by-deflection");
     let found = (0..60).any(|i| {
-        browser.mouse("mouseMoved", left + 70.0 + f64::from(i) * 4.0, top + height * (0.25 + 0.008 * f64::from(i)));
+        browser.mouse(
+            "mouseMoved",
+            left + 70.0 + f64::from(i) * 4.0,
+            top + height * (0.25 + 0.008 * f64::from(i)),
+        );
         browser.value("new Promise(r => requestAnimationFrame(() => requestAnimationFrame(() => r(1))))");
         browser.text("#reading").starts_with("design ")
     });
@@ -178,13 +191,19 @@ fn the_views_of_a_study_follow_pointer_brush_filters_and_keys() {
         "(() => { const n = document.querySelector('[aria-label=\"mass [kg], most\"]'); n.value = '10'; \
          n.dispatchEvent(new Event('change')); })()",
     );
-    let light = column(&front, "mass_kg").iter().filter(|m| m.parse::<f64>().expect("a number") <= 10.0).count();
+    let light =
+        column(&front, "mass_kg").iter().filter(|m| m.parse::<f64>().expect("a number") <= 10.0).count();
     assert_eq!(selected(), light);
     // the picks
-    for tab in browser.value("[...document.querySelectorAll('.tabs button')].map(b => b.id)").as_array().expect("tabs") {
+    for tab in browser
+        .value("[...document.querySelectorAll('.tabs button')].map(b => b.id)")
+        .as_array()
+        .expect("tabs")
+    {
         let tab = tab.as_str().expect("an id");
         browser.click(&format!("#{tab}"));
-        let open = browser.value("[...document.querySelectorAll('.pick')].filter(p => !p.hidden).map(p => p.id)");
+        let open =
+            browser.value("[...document.querySelectorAll('.pick')].filter(p => !p.hidden).map(p => p.id)");
         assert_eq!(open, json!([tab.replace("tab-", "pick-")]));
     }
     assert_eq!(browser.complaints(), Vec::<String>::new());
@@ -216,7 +235,8 @@ fn a_page_can_be_read_on_a_phone_on_paper_and_without_its_program() {
     browser.media("", "light");
     browser.call("Emulation.setScriptExecutionDisabled", json!({"value": true}));
     browser.call("Page.navigate", json!({"url": format!("file://{}", page.display())}));
-    browser.until("document.readyState === 'complete' && document.documentElement.dataset.ready === undefined");
+    browser
+        .until("document.readyState === 'complete' && document.documentElement.dataset.ready === undefined");
     assert!(shown(".pick") && shown(".stills svg"));
     assert_eq!(browser.value("document.getElementById('views').hidden"), json!(true));
 }
@@ -232,7 +252,8 @@ fn the_page_of_a_campaign_is_quiet_and_says_its_verdict() {
     browser.size(1280, 900);
     browser.open(&page);
     let verdict: Value =
-        serde_json::from_str(&std::fs::read_to_string(out.join("verdict.json")).expect("the verdict")).expect("JSON");
+        serde_json::from_str(&std::fs::read_to_string(out.join("verdict.json")).expect("the verdict"))
+            .expect("JSON");
     let sentence = browser.text(".verdict");
     let expected = match verdict["verdict"].as_str().expect("a word") {
         "no_gap" => "no gap",
@@ -241,7 +262,9 @@ fn the_page_of_a_campaign_is_quiet_and_says_its_verdict() {
         _ => "do not suffice",
     };
     assert!(sentence.contains(expected), "{sentence}");
-    for part in verdict["located"]["parts"].as_array().expect("parts").iter().filter(|p| p["part"] == "static") {
+    for part in
+        verdict["located"]["parts"].as_array().expect("parts").iter().filter(|p| p["part"] == "static")
+    {
         let before = significant(part["rms_sigma_before"].as_f64().expect("a number"), 3);
         assert!(browser.text("#fig-channels").contains(&before), "{before}");
     }
@@ -267,7 +290,10 @@ fn the_page_of_a_comparison_overlays_the_fronts() {
 fn large() -> SummaryInput {
     let mut columns = vec!["design_id".to_string()];
     for link in ["upper_arm", "forearm", "hand"] {
-        columns.extend(["material", "shape", "width_mm", "height_mm", "wall_mm", "profile"].map(|c| format!("{link}_{c}")));
+        columns.extend(
+            ["material", "shape", "width_mm", "height_mm", "wall_mm", "profile"]
+                .map(|c| format!("{link}_{c}")),
+        );
     }
     columns.extend((1..=6).flat_map(|j| ["gear", "motor"].map(|c| format!("j{j}_{c}"))));
     columns.extend(["tip_deflection_mm", "mass_kg", "lowest_mode_hz"].map(String::from));
@@ -278,12 +304,21 @@ fn large() -> SummaryInput {
         for link in 0..3 {
             let size = (60 + 10 * ((i + link) % 12)).to_string();
             let shape = ["rectangular_tube", "round_tube"][i % 2];
-            cells.extend([materials[material], shape, &size, &size, ["2", "2.5", "3", "4"][(i / 7 + link) % 4], ""].map(String::from));
+            cells.extend(
+                [materials[material], shape, &size, &size, ["2", "2.5", "3", "4"][(i / 7 + link) % 4], ""]
+                    .map(String::from),
+            );
         }
         for joint in 0..6 {
-            cells.extend([format!("CSG-{}-{}", [14, 17, 25, 32, 40, 58][(i / 3 + joint) % 6], [50, 100][i % 2]), format!("ILM{}x18", 25 + (i + joint) % 40)]);
+            cells.extend([
+                format!("CSG-{}-{}", [14, 17, 25, 32, 40, 58][(i / 3 + joint) % 6], [50, 100][i % 2]),
+                format!("ILM{}x18", 25 + (i + joint) % 40),
+            ]);
         }
-        cells.extend([0.5 + 12.0 * (-4.0 * x).exp() + 0.01 * (material as f64), 6.0 + 70.0 * x, 2.0 + 20.0 * x.sqrt()].map(|v| v.to_string()));
+        cells.extend(
+            [0.5 + 12.0 * (-4.0 * x).exp() + 0.01 * (material as f64), 6.0 + 70.0 * x, 2.0 + 20.0 * x.sqrt()]
+                .map(|v| v.to_string()),
+        );
         cells
     };
     let table = |rows: Vec<Vec<String>>| FrontTable { columns: columns.clone(), rows };
@@ -293,7 +328,12 @@ fn large() -> SummaryInput {
         front: table((0..10_000).filter(|i| i % 4 == m).map(|i| row(i, m)).collect()),
     };
     SummaryInput {
-        facts: SummaryFacts { study: "large".into(), status: "complete".into(), designs_total: 100_000_000, ..SummaryFacts::default() },
+        facts: SummaryFacts {
+            study: "large".into(),
+            status: "complete".into(),
+            designs_total: 100_000_000,
+            ..SummaryFacts::default()
+        },
         overall: table((0..10_000).map(|i| row(i, i % 4)).collect()),
         materials: (0..4).map(per_material).collect(),
     }

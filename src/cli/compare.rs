@@ -2,9 +2,9 @@
 
 use super::{Failure, number_list, write_all};
 use crate::report::compare::{Comparison, Contender, Thresholds, compare, moved::moved};
-use crate::report::html::comparison::page as comparison_page;
 use crate::report::front_svg::{FrontPicture, PlottedFront};
 use crate::report::front_table::{FrontTable, FrontTableError};
+use crate::report::html::comparison::page as comparison_page;
 use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -70,7 +70,10 @@ pub fn run(args: &CompareArgs) -> Result<String, Failure> {
     if let Some(dir) = &args.out {
         write_all(dir, &files(&comparison, &loaded.contenders))?;
         if !args.json {
-            out.push_str(&format!("\nwritten to {}: compare.md, compare.csv, compare.svg, report.html\n", dir.display()));
+            out.push_str(&format!(
+                "\nwritten to {}: compare.md, compare.csv, compare.svg, report.html\n",
+                dir.display()
+            ));
         }
     }
     Ok(out)

@@ -3,8 +3,8 @@
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
 use crate::reconcile::page::campaign_page;
-use crate::report::compare::text::wrap;
 use crate::reconcile::{Campaign, Outcome, reconcile};
+use crate::report::compare::text::wrap;
 use clap::Args;
 use std::path::{Path, PathBuf};
 

@@ -4,17 +4,18 @@ use super::{Failure, write_all};
 use crate::catalog::Catalogs;
 use crate::fault::Document;
 use crate::report::compare::text::wrap;
-use crate::report::html::{Figure, PLOTS, Page, document::DocumentPage, study::StudyPage};
-use crate::report::table::Table;
 use crate::report::front_svg::{FrontPicture, PlottedFront, mixed_designs};
+use crate::report::html::{Figure, PLOTS, Page, document::DocumentPage, study::StudyPage};
 use crate::report::number::significant;
 use crate::report::picks;
 use crate::report::summary::{
     MaterialFront, SummaryFacts, SummaryInput, constraint_words, summary_md, terminal_summary,
 };
+use crate::report::table::Table;
 use crate::search::{ArmProblem, Status};
 use crate::study::{
-    Study, StudyOutcome, empty_pieces, front_table, named, paper_question, read_study, run_study, slug, study_page, why_infeasible,
+    Study, StudyOutcome, empty_pieces, front_table, named, paper_question, read_study, run_study, slug,
+    study_page, why_infeasible,
 };
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -147,7 +148,9 @@ fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> Document
         figures: ending(".svg")
             .map(|(name, bytes)| Figure { name: name.into(), svg: text(bytes), ..Figure::default() })
             .collect(),
-        tables: ending(".csv").map(|(name, bytes)| (format!("{name}.csv"), Table::from_csv(&text(bytes)))).collect(),
+        tables: ending(".csv")
+            .map(|(name, bytes)| (format!("{name}.csv"), Table::from_csv(&text(bytes))))
+            .collect(),
         facts: facts_of(run),
     }
 }

@@ -103,10 +103,10 @@ impl Walk {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::Chain;
     use crate::arm::{JointModel, LinkModel, Payload, read_arm_document};
     use crate::catalog::Catalogs;
     use crate::fault::Document;
+    use crate::mechanics::Chain;
 
     const ARM: &str = r#"{"name": "a",
         "materials": {"steel": {"youngs_modulus_pa": 2.1e11, "shear_modulus_pa": 8.1e10, "density_kg_m3": 7850}},

@@ -19,7 +19,12 @@ pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
         parts: outcome
             .located
             .iter()
-            .map(|l| Compared { part: l.part.clone(), count: l.count, before: l.rms_before, after: l.rms_after })
+            .map(|l| Compared {
+                part: l.part.clone(),
+                count: l.count,
+                before: l.rms_before,
+                after: l.rms_after,
+            })
             .collect(),
         readings: readings(campaign, outcome),
         found: outcome.effects.iter().chain(&outcome.suspects).map(found).collect(),
@@ -44,7 +49,9 @@ fn sentence(outcome: &Outcome) -> String {
         at => format!("{} at {at}", f.effect.replace('_', " ")),
     };
     match outcome.verdict {
-        Verdict::NoGap => "There is no gap: noise and the tolerance of the parts explain every reading.".into(),
+        Verdict::NoGap => {
+            "There is no gap: noise and the tolerance of the parts explain every reading.".into()
+        }
         Verdict::Explained => {
             let names: Vec<String> = outcome.effects.iter().map(place).collect();
             format!("The gap between model and measurement is explained by {}.", names.join(" and "))
@@ -143,7 +150,10 @@ fn facts(campaign: &Campaign, outcome: &Outcome) -> Vec<(String, String)> {
         named("blake3 of the campaign", outcome.hash.clone()),
     ];
     if let Some(fit) = &outcome.lack_of_fit {
-        out.push(named("squares per degree of freedom", crate::report::number::significant(fit.chi2_per_dof, 3)));
+        out.push(named(
+            "squares per degree of freedom",
+            crate::report::number::significant(fit.chi2_per_dof, 3),
+        ));
     }
     out
 }

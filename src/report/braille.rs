@@ -24,7 +24,8 @@ pub fn plot(title: &str, x_label: &str, points: &[(f64, f64)], width: usize, hei
             _ if i + 1 == height => significant(y.low, 3),
             _ => String::new(),
         };
-        let dots: String = row.iter().map(|bits| char::from_u32(0x2800 + u32::from(*bits)).unwrap_or(' ')).collect();
+        let dots: String =
+            row.iter().map(|bits| char::from_u32(0x2800 + u32::from(*bits)).unwrap_or(' ')).collect();
         out.push(format!("{label:>w$} \u{2502}{dots}", w = MARGIN - 1));
     }
     let (low, high) = (significant(x.low, 3), significant(x.high, 3));

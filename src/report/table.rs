@@ -58,11 +58,15 @@ impl Table {
     /// A table from CSV text; columns of which every cell is a number or blank stand at the right.
     pub fn from_csv(text: &str) -> Self {
         let mut reader = csv::Reader::from_reader(text.as_bytes());
-        let headers: Vec<String> = reader.headers().map_or(Vec::new(), |h| h.iter().map(String::from).collect());
+        let headers: Vec<String> =
+            reader.headers().map_or(Vec::new(), |h| h.iter().map(String::from).collect());
         let cells = |r: csv::StringRecord| r.iter().map(String::from).collect::<Vec<_>>();
         let rows: Vec<Vec<String>> = reader.records().flatten().map(cells).collect();
-        let number = |i: usize| rows.iter().all(|r| r.get(i).is_none_or(|c| c.is_empty() || c.parse::<f64>().is_ok()));
-        let column = |(i, header): (usize, &String)| if number(i) { Column::right(header) } else { Column::left(header) };
+        let number =
+            |i: usize| rows.iter().all(|r| r.get(i).is_none_or(|c| c.is_empty() || c.parse::<f64>().is_ok()));
+        let column = |(i, header): (usize, &String)| {
+            if number(i) { Column::right(header) } else { Column::left(header) }
+        };
         let mut table = Self::new(headers.iter().enumerate().map(column).collect());
         rows.into_iter().for_each(|row| table.row(row));
         table

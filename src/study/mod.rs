@@ -9,8 +9,8 @@ mod sections;
 mod table;
 
 pub use diagnose::{empty_pieces, why_infeasible};
-pub use page::study_page;
 pub use outcome::{Front, Judged, StudyOutcome, run_study};
+pub use page::study_page;
 pub use read::{Study, read_study};
 pub(crate) use table::sizing_rows;
 pub use table::{front_table, slug};

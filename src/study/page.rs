@@ -95,7 +95,10 @@ fn parts(catalogs: &Catalogs, picks: &[PickedArm]) -> Vec<CatalogRow> {
 
 /// Designations of the catalog profiles in a pick's row.
 fn profiles(pick: &PickedArm) -> impl Iterator<Item = &str> {
-    pick.row.iter().filter(|(c, cell)| c.ends_with("_profile") && !cell.is_empty()).map(|(_, cell)| cell.as_str())
+    pick.row
+        .iter()
+        .filter(|(c, cell)| c.ends_with("_profile") && !cell.is_empty())
+        .map(|(_, cell)| cell.as_str())
 }
 
 fn catalog_row(catalogs: &Catalogs, kind: &'static str, name: &str, provenance: &Provenance) -> CatalogRow {
@@ -128,5 +131,10 @@ fn beams(study: &Study, catalogs: &Catalogs) -> Option<Figure> {
     let mut plot = deflection_plot("Deflection against weight of the materials", caption);
     plot.series = curves.iter().enumerate().map(series).collect();
     let points: Vec<BeamPoint> = curves.into_iter().flatten().collect();
-    Some(Figure { name: "materials".into(), caption: caption.into(), svg: plot.to_svg(), csv: points_csv(&points) })
+    Some(Figure {
+        name: "materials".into(),
+        caption: caption.into(),
+        svg: plot.to_svg(),
+        csv: points_csv(&points),
+    })
 }

@@ -100,8 +100,10 @@ impl Browser {
 
     /// The value of an expression in the page.
     pub fn value(&self, expression: &str) -> Value {
-        let result =
-            self.call("Runtime.evaluate", json!({"expression": expression, "returnByValue": true, "awaitPromise": true}));
+        let result = self.call(
+            "Runtime.evaluate",
+            json!({"expression": expression, "returnByValue": true, "awaitPromise": true}),
+        );
         assert!(result.get("exceptionDetails").is_none(), "{expression}: {result}");
         result["result"]["value"].clone()
     }
@@ -199,7 +201,10 @@ impl Browser {
 
     /// A picture of a part of the page, as PNG.
     pub fn picture(&self, clip: Value) -> Vec<u8> {
-        let shot = self.call("Page.captureScreenshot", json!({"format": "png", "clip": clip, "captureBeyondViewport": true}));
+        let shot = self.call(
+            "Page.captureScreenshot",
+            json!({"format": "png", "clip": clip, "captureBeyondViewport": true}),
+        );
         decoded(&shot["data"])
     }
 

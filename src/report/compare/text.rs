@@ -25,7 +25,8 @@ impl Comparison {
     /// Tables and sentences of at most 80 columns; long labels are shortened.
     pub fn to_text(&self) -> String {
         let labels = short_labels(&self.labels());
-        let mut out = format!("{SHORT_REACH_TITLE}\n{}", indent(&short_reach_table(&self.reach, &labels).to_text()));
+        let mut out =
+            format!("{SHORT_REACH_TITLE}\n{}", indent(&short_reach_table(&self.reach, &labels).to_text()));
         for question in Question::ALL {
             let rows: Vec<&Row> = self.rows.iter().filter(|r| r.question == question).collect();
             if rows.is_empty() {

@@ -145,12 +145,32 @@ impl CampaignPage {
             (!rows.is_empty()).then(|| gap_figure(name, title, caption, rows))
         };
         let located = [
-            gap("parts", "Where the gap sits: by load, branch, mode and joint on the bench", "Readings split by what was done.", parts),
-            gap("joints", "Where the gap sits: joint by joint", "Each joint's range of angles in three parts: which angle goes with the gap.", self.by_joint()),
-            gap("poses", "Where the gap sits: pose by pose", "The poses with the largest gap.", self.by_pose()),
+            gap(
+                "parts",
+                "Where the gap sits: by load, branch, mode and joint on the bench",
+                "Readings split by what was done.",
+                parts,
+            ),
+            gap(
+                "joints",
+                "Where the gap sits: joint by joint",
+                "Each joint's range of angles in three parts: which angle goes with the gap.",
+                self.by_joint(),
+            ),
+            gap(
+                "poses",
+                "Where the gap sits: pose by pose",
+                "The poses with the largest gap.",
+                self.by_pose(),
+            ),
         ];
         let show = |gallery: &mut Gallery, figure: Option<Figure>| figure.map(|f| gallery.show(&f));
-        let channels = gap("channels", "The gap by channel", "Root mean square of measured less predicted, in declared standard deviations; 1 is what noise alone leaves.", channels);
+        let channels = gap(
+            "channels",
+            "The gap by channel",
+            "Root mean square of measured less predicted, in declared standard deviations; 1 is what noise alone leaves.",
+            channels,
+        );
         let channels = show(&mut gallery, channels);
         let located: Vec<Value> = located.into_iter().flatten().map(|f| gallery.show(&f)).collect();
         let residuals: Vec<Value> = self.residual_figures().iter().map(|f| gallery.show(f)).collect();
@@ -180,15 +200,22 @@ impl CampaignPage {
     pub fn terminal(&self) -> String {
         let rows = || self.parts.iter().filter(|p| !p.part.contains([',', ' ']));
         let values = || rows().flat_map(|c| [c.before, c.after]).filter(|v| *v > 0.0);
-        let (low, high) =
-            (values().fold(f64::INFINITY, f64::min).min(0.5), values().fold(1.0, f64::max));
+        let (low, high) = (values().fold(f64::INFINITY, f64::min).min(0.5), values().fold(1.0, f64::max));
         let share = |v: f64| (v.max(low) / low).ln() / (high / low).ln().max(1e-9);
         let line = |name: &str, when: &str, v: f64| {
-            format!("  {name:<10} {when:<6} {:>6} {}\n", significant(v, 3), crate::report::braille::bar(share(v), 50))
+            format!(
+                "  {name:<10} {when:<6} {:>6} {}\n",
+                significant(v, 3),
+                crate::report::braille::bar(share(v), 50)
+            )
         };
         let lines: String =
             rows().map(|c| line(&c.part, "before", c.before) + &line("", "after", c.after)).collect();
-        if lines.is_empty() { lines } else { format!("\nGap by channel [declared standard deviations, bars in ratios]\n{lines}\n") }
+        if lines.is_empty() {
+            lines
+        } else {
+            format!("\nGap by channel [declared standard deviations, bars in ratios]\n{lines}\n")
+        }
     }
 
     /// The gap at each pose, the worst first.
@@ -287,7 +314,9 @@ impl CampaignPage {
                 x: Axis::new(&format!("row of {channel}.csv"), Scale::Linear),
                 y: Axis::new(label, Scale::Linear),
                 series,
-                guides: [-2.0, 2.0].map(|value| Guide { vertical: false, value, text: String::new() }).to_vec(),
+                guides: [-2.0, 2.0]
+                    .map(|value| Guide { vertical: false, value, text: String::new() })
+                    .to_vec(),
                 width_px: 900.0,
                 height_px: 270.0,
                 ..Plot::default()
@@ -306,7 +335,10 @@ impl CampaignPage {
         };
         let mut csv = String::from("row,quantity,before_sigma,after_sigma,gross_error\n");
         for r in readings() {
-            csv.push_str(&format!("{},{},{},{},{}\n", r.row, r.quantity, r.before_sigma, r.after_sigma, r.gross));
+            csv.push_str(&format!(
+                "{},{},{},{},{}\n",
+                r.row, r.quantity, r.before_sigma, r.after_sigma, r.gross
+            ));
         }
         Figure { name: format!("residuals-{channel}"), caption: caption.into(), svg: sheet.to_svg(), csv }
     }
@@ -325,14 +357,21 @@ impl CampaignPage {
         let plot = RowPlot {
             title: "What speaks for each candidate".into(),
             description: caption.into(),
-            x: Axis { range: Some((LEAST_SCORE, 0.0)), ..Axis::new("log-evidence less the best's", Scale::Linear) },
+            x: Axis {
+                range: Some((LEAST_SCORE, 0.0)),
+                ..Axis::new("log-evidence less the best's", Scale::Linear)
+            },
             kinds: vec!["score".into()],
             rows: self.weighed.iter().map(row).collect(),
             guides: vec![(-10.0, String::new()), (-3.0, String::new())],
         };
         let mut csv = String::from("model,score,chi_squared\n");
         for w in &self.weighed {
-            csv.push_str(&crate::report::table::csv_line(&[w.model.clone(), w.score.to_string(), w.chi_squared.to_string()]));
+            csv.push_str(&crate::report::table::csv_line(&[
+                w.model.clone(),
+                w.score.to_string(),
+                w.chi_squared.to_string(),
+            ]));
         }
         Some(Figure { name: "evidence".into(), caption: caption.into(), svg: plot.to_svg(), csv })
     }
@@ -355,7 +394,12 @@ impl CampaignPage {
             rows: self.calibrated.iter().map(row).collect(),
             guides: vec![(1.0, "nominal".into())],
         };
-        Some(Figure { name: "calibrated".into(), caption: caption.into(), csv: plot.to_csv(), svg: plot.to_svg() })
+        Some(Figure {
+            name: "calibrated".into(),
+            caption: caption.into(),
+            csv: plot.to_csv(),
+            svg: plot.to_svg(),
+        })
     }
 
     /// Residuals of readings whose pose was kept out of the fit, one after another.

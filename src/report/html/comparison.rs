@@ -49,7 +49,10 @@ fn views(contenders: &[Contender], picture: String) -> FrontViews<'_> {
     let rows = contenders.iter().enumerate().flat_map(|(group, c)| {
         // the front of all materials repeats what the competing fronts have: here its mixed designs alone
         let shown = |row: &usize| !c.reference || picks::materials(&c.front, *row).len() > 1;
-        (0..c.front.rows.len()).filter(shown).map(move |row| Row { table: &c.front, row, group, on_front: true }).collect::<Vec<_>>()
+        (0..c.front.rows.len())
+            .filter(shown)
+            .map(move |row| Row { table: &c.front, row, group, on_front: true })
+            .collect::<Vec<_>>()
     });
     FrontViews {
         data: FrontData::new(groups.collect(), rows.collect(), &[]),

@@ -200,8 +200,15 @@ pub fn objective_column(objective: Objective) -> &'static str {
 fn choice_columns<'a>(rows: &[Row<'a>]) -> Vec<&'a str> {
     let Some(first) = rows.first() else { return Vec::new() };
     let end = first.table.column("tip_deflection_mm").unwrap_or(0);
-    let everywhere = |c: &&String| rows.iter().all(|r| r.table.columns.len() == first.table.columns.len() || r.table.column(c).is_some());
-    first.table.columns[..end].iter().filter(|c| *c != "design_id").filter(everywhere).map(String::as_str).collect()
+    let everywhere = |c: &&String| {
+        rows.iter().all(|r| r.table.columns.len() == first.table.columns.len() || r.table.column(c).is_some())
+    };
+    first.table.columns[..end]
+        .iter()
+        .filter(|c| *c != "design_id")
+        .filter(everywhere)
+        .map(String::as_str)
+        .collect()
 }
 
 /// Words and unit of a column: `upper_arm_wall_mm` is `upper_arm wall` in mm.
@@ -269,8 +276,7 @@ fn number_axis(empty: Axis, numbers: &[Option<f64>]) -> Axis {
     if distinct.len() <= FEW && distinct.len() > 1 {
         let margin = 0.04 * (high - low);
         axis.range = Some((low - margin, high + margin, Scale::Linear));
-        axis.ticks =
-            distinct.iter().map(|v| (axis.place(*v), crate::report::number::shortest(*v))).collect();
+        axis.ticks = distinct.iter().map(|v| (axis.place(*v), crate::report::number::shortest(*v))).collect();
     } else {
         let labelled = ruling.ticks.iter().filter_map(|t| Some((t.value, t.label.clone()?)));
         axis.ticks = labelled.map(|(v, l)| (axis.place(v), l)).collect();
@@ -285,7 +291,8 @@ fn natural(a: &str, b: &str) -> Ordering {
         let (mut out, mut rest) = (Vec::new(), word);
         while !rest.is_empty() {
             let (text, tail) = rest.split_at(rest.find(|c: char| c.is_ascii_digit()).unwrap_or(rest.len()));
-            let (digits, tail) = tail.split_at(tail.find(|c: char| !c.is_ascii_digit()).unwrap_or(tail.len()));
+            let (digits, tail) =
+                tail.split_at(tail.find(|c: char| !c.is_ascii_digit()).unwrap_or(tail.len()));
             out.push((text.to_string(), digits.parse().unwrap_or(0)));
             rest = tail;
         }
@@ -352,13 +359,31 @@ mod tests {
     use super::*;
 
     fn table(count: usize) -> FrontTable {
-        let columns =
-            ["design_id", "a_material", "a_width_mm", "a_height_mm", "j_gear", "tip_deflection_mm", "mass_kg", "lowest_mode_hz"];
+        let columns = [
+            "design_id",
+            "a_material",
+            "a_width_mm",
+            "a_height_mm",
+            "j_gear",
+            "tip_deflection_mm",
+            "mass_kg",
+            "lowest_mode_hz",
+        ];
         let row = |i: usize| {
             let size = (60 + 20 * (i % 4)).to_string();
             let (material, gear) = (["steel", "alu"][i % 2], ["CSG-100-50", "CSG-14-100"][i % 2]);
             let x = i as f64 + 1.0;
-            [format!("d{i}"), material.into(), size.clone(), size, gear.into(), (9.0 / x).to_string(), x.to_string(), x.sqrt().to_string()].to_vec()
+            [
+                format!("d{i}"),
+                material.into(),
+                size.clone(),
+                size,
+                gear.into(),
+                (9.0 / x).to_string(),
+                x.to_string(),
+                x.sqrt().to_string(),
+            ]
+            .to_vec()
         };
         FrontTable { columns: columns.map(String::from).to_vec(), rows: (0..count).map(row).collect() }
     }

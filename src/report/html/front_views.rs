@@ -65,9 +65,12 @@ impl FrontViews<'_> {
             style: data.groups[data.rows[i].group].style,
             name,
         };
-        let mut lines: Vec<ParallelLine> = (0..data.rows.len()).step_by(step).map(|i| line(i, None)).collect();
+        let mut lines: Vec<ParallelLine> =
+            (0..data.rows.len()).step_by(step).map(|i| line(i, None)).collect();
         for pick in self.picks {
-            let is_pick = |r: &Row| r.table.column("design_id").is_some_and(|c| r.table.rows[r.row][c] == pick.design.design_id);
+            let is_pick = |r: &Row| {
+                r.table.column("design_id").is_some_and(|c| r.table.rows[r.row][c] == pick.design.design_id)
+            };
             if let Some(i) = data.rows.iter().position(is_pick) {
                 lines.push(line(i, Some(pick.names.join(", "))));
             }

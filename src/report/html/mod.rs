@@ -16,8 +16,8 @@ pub mod study;
 
 use super::table::Table;
 use minijinja::Environment;
-use serde_json::{Value, json};
 use serde::Serialize;
+use serde_json::{Value, json};
 
 /// Folder beside a page that holds its pictures and the numbers behind them.
 pub const PLOTS: &str = "plots";
@@ -104,8 +104,11 @@ impl Gallery {
     /// A part that another room filled, as its template shows it.
     pub(super) fn extra(&mut self, extra: &Extra) -> Value {
         let figures: Vec<Value> = extra.figures.iter().map(|f| self.show(f)).collect();
-        let tables: Vec<Value> =
-            extra.tables.iter().map(|(caption, t)| json!({ "caption": caption, "table": table(t) })).collect();
+        let tables: Vec<Value> = extra
+            .tables
+            .iter()
+            .map(|(caption, t)| json!({ "caption": caption, "table": table(t) }))
+            .collect();
         json!({ "title": extra.title, "words": extra.words, "tables": tables, "figures": figures })
     }
 
@@ -154,7 +157,9 @@ fn render(template: &str, title: &str, content: Value, data: &Value) -> String {
     let template = environment.get_template(template).expect("the template is listed above");
     let mut values = content;
     values["page"] = page;
-    template.render(minijinja::value::Serde(&values)).expect("the templates use only what the pages give them")
+    template
+        .render(minijinja::value::Serde(&values))
+        .expect("the templates use only what the pages give them")
 }
 
 /// Words whose numbers do not part from their units at the end of a line.
@@ -195,6 +200,9 @@ mod tests {
     #[test]
     fn pictures_in_one_page_have_names_of_their_own() {
         let svg = "<svg x><marker id=\"m0\"/><path marker-mid=\"url(#m0)\"/></svg>";
-        assert_eq!(inline(svg, 3), "<svg class=\"plot\" x><marker id=\"p3-m0\"/><path marker-mid=\"url(#p3-m0)\"/></svg>");
+        assert_eq!(
+            inline(svg, 3),
+            "<svg class=\"plot\" x><marker id=\"p3-m0\"/><path marker-mid=\"url(#p3-m0)\"/></svg>"
+        );
     }
 }

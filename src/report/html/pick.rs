@@ -2,15 +2,15 @@
 
 use super::{Figure, Gallery, table};
 use crate::arm::{Arm, Element, Link, LinkBody, LoadCase};
-use crate::mechanics::{Chain, Mode, Posed, Station, Statics};
+use crate::mechanics::{Chain, Mode, Posed, Statics, Station};
 use crate::report::number::{shortest, significant};
 use crate::report::picks::Pick;
 use crate::report::svg::arm::{ArmSketch, Pivot, Place, Tube};
 use crate::report::svg::bars::{Bar, Part, StackedBars};
 use crate::report::table::{Column, Table};
 use crate::sizing::{Check, CheckKind, CheckState, JointSizingRow};
-use serde_json::{Value, json};
 use nalgebra::Vector3;
+use serde_json::{Value, json};
 
 /// Modes drawn.
 const MODES: usize = 3;
@@ -118,10 +118,16 @@ impl PickedArm {
         );
         sketch.description = format!(
             "{} Pose {}. Grey: without weight. Blue: bent by gravity and load, {factor} times exaggerated.",
-            view.words, degrees(&solved.case.pose_deg)
+            view.words,
+            degrees(&solved.case.pose_deg)
         );
         sketch.width_px = 620.0;
-        let caption = format!("{} Pose {}, payload {} kg (orange).", view.words, degrees(&solved.case.pose_deg), shortest(solved.case.payload.mass_kg));
+        let caption = format!(
+            "{} Pose {}, payload {} kg (orange).",
+            view.words,
+            degrees(&solved.case.pose_deg),
+            shortest(solved.case.payload.mass_kg)
+        );
         Figure {
             name: format!("pick-{}-arm", self.slug()),
             caption,
@@ -178,7 +184,8 @@ impl PickedArm {
         ArmSketch {
             tubes: tubes.collect(),
             pivots: pivots.collect(),
-            payload: (solved.case.payload.mass_kg > 0.0).then(|| (view.place(&solved.payload_m), view.place(&tip))),
+            payload: (solved.case.payload.mass_kg > 0.0)
+                .then(|| (view.place(&solved.payload_m), view.place(&tip))),
             upright: view.upright,
             ..ArmSketch::default()
         }
@@ -213,8 +220,10 @@ impl PickedArm {
 
 /// Where the deflection of several picks comes from, side by side.
 pub fn deflection_bars(picks: &[PickedArm]) -> Figure {
-    let parts: Vec<(String, Vec<DeflectionPart>)> =
-        picks.iter().map(|p| (format!("{} ({})", p.title(), p.pick.design.design_id), p.deflection_parts())).collect();
+    let parts: Vec<(String, Vec<DeflectionPart>)> = picks
+        .iter()
+        .map(|p| (format!("{} ({})", p.title(), p.pick.design.design_id), p.deflection_parts()))
+        .collect();
     let first: &[DeflectionPart] = parts.first().map_or(&[], |(_, list)| list);
     let bars = StackedBars {
         title: "Where the tip's deflection comes from".into(),
@@ -306,7 +315,8 @@ fn parts_table(parts: &[DeflectionPart]) -> Table {
 fn energy_words(mode: &Mode, most: usize) -> String {
     let mut parts: Vec<&(String, f64)> = mode.strain_energy.iter().filter(|(_, e)| *e >= 0.01).collect();
     parts.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let words: Vec<String> = parts.iter().take(most).map(|(n, e)| format!("{n} {:.0} %", 100.0 * e)).collect();
+    let words: Vec<String> =
+        parts.iter().take(most).map(|(n, e)| format!("{n} {:.0} %", 100.0 * e)).collect();
     words.join(", ")
 }
 
@@ -334,7 +344,8 @@ impl View {
         let level = Vector3::new(tip.x, tip.y, 0.0);
         let right = if level.norm() > 1e-6 { level.normalize() } else { Vector3::x() };
         let side = Self { right, up: Vector3::z(), upright: true, words: "Seen from the side." };
-        let most = |of: &dyn Fn(&Vector3<f64>) -> f64| moving.iter().map(|s| of(&s.moved_m)).fold(0.0, f64::max);
+        let most =
+            |of: &dyn Fn(&Vector3<f64>) -> f64| moving.iter().map(|s| of(&s.moved_m)).fold(0.0, f64::max);
         let sideways = most(&|m| m.dot(&side.across()).abs());
         if keep_upright || sideways < SIDEWAYS * most(&|m| m.norm()) {
             return side;
@@ -369,7 +380,8 @@ const CHECKS: [CheckKind; 10] = [
 fn drive(row: &JointSizingRow) -> Value {
     let number = |v: f64| significant(v, 4);
     let open = |v: Option<f64>| v.map_or("unknown".to_string(), number);
-    let made: Vec<Value> = row.checks.iter().filter(|c| CHECKS.contains(&c.kind)).map(|c| check(c, row.binds)).collect();
+    let made: Vec<Value> =
+        row.checks.iter().filter(|c| CHECKS.contains(&c.kind)).map(|c| check(c, row.binds)).collect();
     json!({
         "joint": row.joint,
         "gear": row.gear,

@@ -93,7 +93,13 @@ impl ArmSketch {
         }
         self.ground(&mut out, &at);
         for tube in &self.tubes {
-            tube.draw(&mut out, self.factor, scale, &at, "fill=\"#56B4E955\" stroke=\"#0072B2\" stroke-width=\"1.8\"");
+            tube.draw(
+                &mut out,
+                self.factor,
+                scale,
+                &at,
+                "fill=\"#56B4E955\" stroke=\"#0072B2\" stroke-width=\"1.8\"",
+            );
         }
         self.pivots(&mut out, scale, &at);
         self.payload(&mut out, &at);
@@ -164,7 +170,10 @@ impl ArmSketch {
         }
         for ((x, y), names) in labels {
             let words = names.join(" ");
-            let x = x.clamp(8.0 + text_px(&words, FONT_PX) / 2.0, self.width_px - 8.0 - text_px(&words, FONT_PX) / 2.0);
+            let x = x.clamp(
+                8.0 + text_px(&words, FONT_PX) / 2.0,
+                self.width_px - 8.0 - text_px(&words, FONT_PX) / 2.0,
+            );
             let rim = " font-size=\"12\" paint-order=\"stroke\" stroke=\"#FFFFFF\" stroke-width=\"3\"";
             text(out, (x, (y - raised).max(TOP_PX - 2.0)), "middle", rim, &words);
         }
@@ -187,7 +196,8 @@ impl ArmSketch {
 
     /// Scale bar, gravity and caption.
     fn foot(&self, out: &mut String, scale: f64, height: f64) {
-        let bar_m = [2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02].into_iter().find(|m| m * scale < 0.3 * self.width_px);
+        let bar_m =
+            [2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02].into_iter().find(|m| m * scale < 0.3 * self.width_px);
         let bar_m = bar_m.unwrap_or(0.01);
         let y = height - 34.0;
         let end = 16.0 + bar_m * scale;
@@ -198,7 +208,13 @@ impl ArmSketch {
             px(end)
         );
         let small = format!(" font-size=\"{NOTE_PX}\"");
-        text(out, (end + 8.0, y + 4.0), "start", &small, &format!("{} m", super::super::number::shortest(bar_m)));
+        text(
+            out,
+            (end + 8.0, y + 4.0),
+            "start",
+            &small,
+            &format!("{} m", super::super::number::shortest(bar_m)),
+        );
         if self.upright {
             let x = self.width_px - 22.0;
             let _ = writeln!(
@@ -220,7 +236,8 @@ impl Tube {
         let normals: Vec<(f64, f64)> = (0..points.len()).map(|i| normal(&points, i)).collect();
         let side = |sign: f64| -> Vec<String> {
             let both = points.iter().zip(&normals);
-            both.map(|(p, n)| format!("{} {}", px(p.0 + sign * half * n.0), px(p.1 + sign * half * n.1))).collect()
+            both.map(|(p, n)| format!("{} {}", px(p.0 + sign * half * n.0), px(p.1 + sign * half * n.1)))
+                .collect()
         };
         let mut corners = side(1.0);
         corners.extend(side(-1.0).into_iter().rev());
@@ -272,10 +289,8 @@ mod tests {
     fn a_tube_is_as_wide_as_it_is_beside_its_length() {
         let svg = sketch().to_svg();
         let path = svg.lines().find(|l| l.contains("#D5D5D5")).unwrap_or_default();
-        let numbers: Vec<f64> = path
-            .split(['M', 'L', ' ', 'z', '"'])
-            .filter_map(|w| w.parse().ok())
-            .collect();
+        let numbers: Vec<f64> =
+            path.split(['M', 'L', ' ', 'z', '"']).filter_map(|w| w.parse().ok()).collect();
         let (length, size) = (numbers[2] - numbers[0], (numbers[1] - numbers[7]).abs());
         assert!((length / size - 10.0).abs() < 0.1, "{length} {size} {path}");
     }

@@ -83,7 +83,11 @@ impl Parallel {
                 None => joined = false,
             }
         }
-        let stroke = if look.contains("stroke=") { String::new() } else { format!(" stroke=\"{}\"", colour(line.style)) };
+        let stroke = if look.contains("stroke=") {
+            String::new()
+        } else {
+            format!(" stroke=\"{}\"", colour(line.style))
+        };
         let _ = writeln!(out, "<path d=\"{d}\" fill=\"none\"{stroke} {look}/>");
     }
 
@@ -126,8 +130,10 @@ mod tests {
     #[test]
     fn a_line_is_broken_where_a_design_has_no_place() {
         let axis = |label: &str| ParallelAxis { label: label.into(), ticks: vec![(0.0, "0".into())] };
-        let line = ParallelLine { places: vec![Some(0.0), None, Some(1.0)], style: 0, name: Some("knee".into()) };
-        let plot = Parallel { axes: ["a", "b", "c"].map(axis).to_vec(), lines: vec![line], ..Parallel::default() };
+        let line =
+            ParallelLine { places: vec![Some(0.0), None, Some(1.0)], style: 0, name: Some("knee".into()) };
+        let plot =
+            Parallel { axes: ["a", "b", "c"].map(axis).to_vec(), lines: vec![line], ..Parallel::default() };
         let svg = plot.to_svg();
         let path = svg.lines().find(|l| l.contains("stroke-width=\"2.2\"")).unwrap_or_default();
         assert_eq!(path.matches('M').count(), 2, "{path}");

@@ -148,7 +148,14 @@ impl RowPlot {
         for (end, known, side) in [(from, low.is_some(), 1.0), (to, high.is_some(), -1.0)] {
             let d = match known {
                 true => format!("M{} {}v10", px(end), px(y - 5.0)),
-                false => format!("M{} {}L{} {}l{} 5", px(end + 6.0 * side), px(y - 5.0), px(end), px(y), px(6.0 * side)),
+                false => format!(
+                    "M{} {}L{} {}l{} 5",
+                    px(end + 6.0 * side),
+                    px(y - 5.0),
+                    px(end),
+                    px(y),
+                    px(6.0 * side)
+                ),
             };
             let _ = writeln!(out, "<path d=\"{d}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"/>");
         }
