@@ -4,6 +4,7 @@ use super::front_data::{FrontData, Group, Row};
 use super::front_views::FrontViews;
 use super::{Figure, Gallery, Page, table};
 use crate::report::compare::{Comparison, Contender, Question};
+use crate::report::picks;
 use crate::report::svg::MUTED;
 use serde_json::{Value, json};
 
@@ -41,12 +42,17 @@ fn title(question: Question) -> &'static str {
 
 fn views(contenders: &[Contender], picture: String) -> FrontViews<'_> {
     let style = |i: usize| contenders[..i].iter().filter(|c| !c.reference).count();
-    let groups = contenders
-        .iter()
-        .enumerate()
-        .map(|(i, c)| Group { name: c.label.clone(), style: if c.reference { MUTED } else { style(i) } });
+    let groups = contenders.iter().enumerate().map(|(i, c)| match c.reference {
+        true => Group { name: "mixed".into(), style: MUTED },
+        false => Group { name: c.label.clone(), style: style(i) },
+    });
     let rows = contenders.iter().enumerate().flat_map(|(group, c)| {
-        (0..c.front.rows.len()).map(move |row| Row { table: &c.front, row, group, on_front: true })
+        // the front of all materials repeats what the competing fronts have: here its mixed designs alone
+        let shown = |row: &usize| !c.reference || picks::materials(&c.front, *row).len() > 1;
+        (0..c.front.rows.len())
+            .filter(shown)
+            .map(move |row| Row { table: &c.front, row, group, on_front: true })
+            .collect::<Vec<_>>()
     });
     FrontViews {
         data: FrontData::new(groups.collect(), rows.collect(), &[]),

@@ -7,7 +7,7 @@
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
 use crate::report::picks::Objective;
-use crate::report::svg::{Scale, rule};
+use crate::report::svg::{self, MUTED, Scale, rule};
 use serde_json::{Value, json};
 use std::cmp::Ordering;
 use std::collections::HashSet;
@@ -128,9 +128,8 @@ impl<'a> FrontData<'a> {
             .groups
             .iter()
             .map(|g| {
-                let (colour, path) =
-                    (crate::report::svg::colour(g.style), crate::report::svg::outline(g.style, 1.0));
-                json!({"name": g.name, "colour": colour, "path": path})
+                let (colour, path) = (svg::colour(g.style), svg::outline(g.style, 1.0));
+                json!({"name": g.name, "colour": colour, "path": path, "muted": u8::from(g.style == MUTED)})
             })
             .collect();
         json!({

@@ -56,6 +56,8 @@ function views(f) {
   const at = (key) => axes.findIndex((a) => a.key === key);
   const MASS = at("mass_kg"), TIP = at("tip_deflection_mm"), MODE = at("lowest_mode_hz");
   const shapes = f.groups.map((g) => new Path2D(g.path));
+  /* what stands back is drawn first, then the last of the legend, so that the first lies on top */
+  const order = [...f.groups.keys()].sort((a, b) => f.groups[b].muted - f.groups[a].muted || b - a);
   const pickOf = new Map(f.picks.map((p) => [p.row, p.name]));
   axes.forEach((a) => {
     a.place = a.range
@@ -123,7 +125,8 @@ function views(f) {
   const frame = (s) => ({ l: 56, r: s.w - 14, t: 30, b: s.h - 44 });
   const sx = (s, p) => { const q = frame(s); return q.l + p * (q.r - q.l); };
   const sy = (s, p) => { const q = frame(s); return q.b - p * (q.b - q.t); };
-  const paint = (g) => dark() && f.groups[g].colour === "#000000" ? "#f2f2f2" : f.groups[g].colour;
+  const LIGHTER = { "#000000": "#f2f2f2", "#0072B2": "#3d97d3" };
+  const paint = (g) => (dark() && LIGHTER[f.groups[g].colour]) || f.groups[g].colour;
   const dark = () => matchMedia("(prefers-color-scheme: dark)").matches;
 
   function scatter(s) {
@@ -150,7 +153,7 @@ function views(f) {
     for (let i = 0; i < count; i++) if (!on[i] && visible(i)) g.fillRect(sx(s, s.x.places[i]) - 1, sy(s, s.y.places[i]) - 1, 2, 2);
     g.globalAlpha = count > 3000 ? 0.75 : 0.9;
     const size = count > 3000 ? 2.3 : count > 600 ? 2.8 : 3.6;
-    for (let grp = f.groups.length - 1; grp >= 0; grp--) {
+    for (const grp of order) {
       g.fillStyle = paint(grp);
       for (let i = 0; i < count; i++) if (on[i] && f.group[i] === grp) mark(i, size);
     }
@@ -164,12 +167,16 @@ function views(f) {
     for (const p of f.picks) {
       if (!visible(p.row)) continue;
       const x = sx(s, s.x.places[p.row]), y = sy(s, s.y.places[p.row]), wide = g.measureText(p.name).width;
-      const spots = [[12, -10], [12, 18], [-12 - wide, -10], [-12 - wide, 18], [12, -28], [-12 - wide, -28], [12, 36], [-12 - wide, 36]];
+      const spots = [[12, -10], [12, 18], [-wide / 2, -13], [-wide / 2, 22], [-12 - wide, -10], [-12 - wide, 18], [12, -28], [-12 - wide, -28], [12, 36], [-12 - wide, 36]];
       const free = ([dx, dy]) => x + dx > q.l + 2 && x + dx + wide < q.r - 2 && y + dy > q.t + 12 && y + dy < q.b - 4
+        && f.picks.every((o) => {
+          const ox = sx(s, s.x.places[o.row]), oy = sy(s, s.y.places[o.row]);
+          return o === p || !visible(o.row) || ox + 8 < x + dx || ox - 8 > x + dx + wide || oy + 8 < y + dy - 11 || oy - 8 > y + dy + 3;
+        })
         && taken.every((t) => x + dx + wide < t[0] || x + dx > t[0] + t[2] || Math.abs(y + dy - t[1]) > 15);
       const [dx, dy] = spots.find(free) || spots[0];
       taken.push([x + dx, y + dy, wide]);
-      if (Math.abs(dy) > 20) { g.lineWidth = 1; g.strokeStyle = css("--ink"); g.beginPath(); g.moveTo(x, y + 8 * Math.sign(dy)); g.lineTo(x + dx + (dx < 0 ? wide : 0), y + dy + (dy < 0 ? 3 : -11)); g.stroke(); }
+      if (Math.abs(dy) > 24) { g.lineWidth = 1; g.strokeStyle = css("--ink"); g.beginPath(); g.moveTo(x, y + 8 * Math.sign(dy)); g.lineTo(Math.max(x + dx, Math.min(x, x + dx + wide)), y + dy + (dy < 0 ? 3 : -11)); g.stroke(); }
       g.lineWidth = 4.5; g.strokeStyle = css("--paper"); g.beginPath(); g.arc(x, y, 7, 0, 7); g.stroke();
       g.lineWidth = 2; g.strokeStyle = css("--ink"); g.beginPath(); g.arc(x, y, 7, 0, 7); g.stroke();
       g.lineWidth = 4; g.lineJoin = "round"; g.strokeStyle = css("--paper"); g.textAlign = "left";
@@ -195,7 +202,7 @@ function views(f) {
     g.lineWidth = 1;
     /* never more lines than can be seen: the rest would only cost time */
     const every = Math.max(1, Math.ceil(chosen / 2500));
-    for (let grp = f.groups.length - 1; grp >= 0; grp--) {
+    for (const grp of order) {
       g.strokeStyle = paint(grp); g.globalAlpha = chosen > 800 ? 0.16 : chosen > 120 ? 0.35 : 0.75;
       let n = 0, seen = 0;
       g.beginPath();
@@ -455,7 +462,7 @@ function views(f) {
   if ($("which")) $("which").addEventListener("change", (e) => { state.which = e.target.value; select(); });
   const all = () => { [...scatters, parallel].forEach(fit); redraw(); };
   const wide = $("by-choice");
-  if (axes.length > 9) wide.style.minWidth = Math.min(1500, 76 * axes.length) + "px";
+  if (axes.length > 9) wide.style.minWidth = Math.min(2000, 90 * axes.length) + "px";
   legend(); filters();
   [...scatters, parallel].forEach(fit);
   select();
