@@ -1,7 +1,7 @@
 //! One complete design: its parts, its arm, and its objectives by the full model.
 
 use super::outward::ArmProblem;
-use super::space::{DriveChoice, LinkOption, SpacePiece};
+use super::space::{DesignSpace, DriveChoice, LinkOption, SpaceJoint, SpacePiece};
 use super::{Objectives, OutwardIn};
 use crate::arm::{Arm, Curve, Element, Joint, LoadCase, windup_of};
 use crate::mechanics::Chain;
@@ -95,19 +95,7 @@ impl<'c> ArmProblem<'c> {
             .map(|(piece, part)| match (piece, part) {
                 (SpacePiece::Choice(choice), Part::Link(option)) => Some(Element::Link(choice.link(option))),
                 (SpacePiece::Link(link), _) => Some(Element::Link(link.clone())),
-                (SpacePiece::Joint(joint), part) => {
-                    let (curve, mass_kg, names) = drive_of(&joint.drive, &part)?;
-                    let (gear, motor) = names.unzip();
-                    Some(Element::Joint(Joint {
-                        name: joint.name.clone(),
-                        axis: joint.axis,
-                        curve,
-                        mass_kg,
-                        gear,
-                        motor,
-                        coupled: None,
-                    }))
-                }
+                (SpacePiece::Joint(joint), part) => Some(Element::Joint(joint.with(&part)?)),
                 _ => None,
             })
             .collect::<Option<Vec<_>>>()?;
@@ -116,21 +104,35 @@ impl<'c> ArmProblem<'c> {
 
     /// The cases that objectives are taken over, as load cases.
     pub fn load_cases(&self) -> Vec<LoadCase> {
-        let space = self.space();
-        space
-            .judged_cases
+        self.space().load_cases()
+    }
+}
+
+impl DesignSpace {
+    /// The cases that objectives are taken over, as load cases.
+    pub fn load_cases(&self) -> Vec<LoadCase> {
+        self.judged_cases
             .iter()
-            .map(|&i| &space.cases[i])
+            .map(|&i| &self.cases[i])
             .map(|case| LoadCase {
                 name: case.name.clone(),
                 pose_deg: case.pose_deg.clone(),
                 payload: case.payload,
                 tip_force_n: case.tip_force_n,
-                links: space.links,
-                joints: space.joints,
+                links: self.links,
+                joints: self.joints,
                 water: case.water,
             })
             .collect()
+    }
+}
+
+impl SpaceJoint {
+    /// The joint with its drive; `None` if the drive has no known mass.
+    pub(super) fn with(&self, part: &Part) -> Option<Joint> {
+        let (curve, mass_kg, names) = drive_of(&self.drive, part)?;
+        let (gear, motor) = names.unzip();
+        Some(Joint { name: self.name.clone(), axis: self.axis, curve, mass_kg, gear, motor, coupled: None })
     }
 }
 

@@ -9,6 +9,7 @@
 pub mod archive;
 pub mod constraint;
 pub mod design;
+pub mod exact;
 mod figures;
 pub mod fixed;
 pub mod front;
