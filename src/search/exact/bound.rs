@@ -8,11 +8,13 @@
 //!
 //! A joint or link that cannot hold even the least demand makes the whole box infeasible.
 
+use super::check::Inertia;
 use super::parts::{CurveBox, DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
 use super::pose::{Pose, degree_factor, RESISTED};
 use super::problem::{Part, Problem};
 use super::shape::{Ideal, Shape, Work as ShapeWork};
 use crate::arm::{Arm, Element, Windup};
+use crate::search::Objectives;
 use crate::search::design::Part as DesignPart;
 use crate::search::space::SpacePiece;
 use crate::sizing::{JointDemand, JointMotion};
@@ -69,6 +71,36 @@ impl<'c> Problem<'c> {
     /// The box of everything.
     pub fn root(&self) -> Cell {
         vec![0; self.level_pieces.len()]
+    }
+
+    /// The inertia matrices of every judged case.
+    pub fn with_inertias(mut self) -> Self {
+        let mut work = Work::default();
+        if self.fill(&self.root(), ROUNDING, &mut work).is_some() {
+            self.least_tip_m(&mut work);
+            self.inertias = self
+                .judged_cases()
+                .map(|case| {
+                    let stiffness = stiffness_in(case, &work);
+                    Inertia::new(&self.poses[case], &Ideal { stiffness: &stiffness, inertia: &work.light })
+                })
+                .collect();
+        }
+        self
+    }
+
+    /// The objectives of a box of one whose ceiling is known: the ceiling, with its mode made sure of.
+    pub fn objectives(&self, ceiling: &Ceiling, work: &Work) -> Objectives {
+        let quotient = (ceiling.hz * std::f64::consts::TAU).powi(2);
+        let lowest = self.judged_cases().zip(&self.inertias).fold(quotient, |lowest, (case, inertia)| {
+            let stiffness = stiffness_in(case, work);
+            inertia.lowest(&self.poses[case], &Ideal { stiffness: &stiffness, inertia: &work.light }, lowest)
+        });
+        Objectives {
+            tip_deflection_m: ceiling.tip_m,
+            mass_kg: ceiling.mass_kg,
+            lowest_mode_hz: lowest.sqrt() / std::f64::consts::TAU,
+        }
     }
 
     /// First shapes: the box of everything, started vertically and sideways in each judged case.

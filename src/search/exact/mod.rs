@@ -9,6 +9,7 @@
 
 mod archive;
 mod bound;
+mod check;
 mod parts;
 mod pose;
 mod problem;

@@ -1,6 +1,7 @@
 //! A design space compiled for the bound: a tree of boxes for every level, rows of numbers for every
 //! case.
 
+use super::check::Inertia;
 use super::parts::{CurveBox, DriveBox, LinkBox};
 use super::pose::Pose;
 use super::tree::{Bounds, Tree};
@@ -19,6 +20,8 @@ pub(super) struct Problem<'c> {
     /// Options of each level.
     pub level_sizes: Vec<u32>,
     pub poses: Vec<Pose>,
+    /// Inertia matrices of the judged cases.
+    pub inertias: Vec<Inertia>,
     /// Peak over static stress in sizing cases.
     pub peak_factor: f64,
 }
@@ -93,6 +96,7 @@ impl<'c> Problem<'c> {
             level_pieces: Vec::new(),
             level_sizes: Vec::new(),
             poses: (0..space.cases.len()).map(|i| Pose::new(space, i)).collect(),
+            inertias: Vec::new(),
             peak_factor: 1.0
                 + space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE),
         };

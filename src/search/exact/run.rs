@@ -1,15 +1,14 @@
 //! Branch and bound: cut, halve, judge.
 
-use super::archive::{Found, is_better};
-use super::bound::{Cell, Verdict, Work};
+use super::archive::Found;
+use super::bound::{Ceiling, Cell, Verdict, Work};
 use super::problem::{Part, Problem, Restriction};
 use super::shape::Shape;
 use crate::catalog::Catalogs;
 use crate::search::Objectives;
-use crate::search::design::{full_objectives, number};
+use crate::search::design::number;
 use crate::search::space::DesignSpace;
 use crate::search::sweep::Candidate;
-use crate::arm::LoadCase;
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::sync::Mutex;
@@ -46,7 +45,6 @@ pub struct ExactOutcome {
 struct Search<'s, 'p> {
     exact: &'s Exact<'p>,
     problem: &'s Problem<'p>,
-    cases: &'s [LoadCase],
     found: &'s Found,
     kept: &'s Mutex<Vec<Candidate>>,
     evaluated: &'s AtomicU64,
@@ -73,17 +71,15 @@ impl<'p> Exact<'p> {
 
     /// Finds the front.
     pub fn run(&self) -> ExactOutcome {
-        let cases = self.space.load_cases();
         let found = Found::new();
         let kept = Mutex::new(Vec::new());
         let (evaluated, open) = (AtomicU64::new(0), AtomicU64::new(0));
-        let whole = Problem::new(self.space, self.catalogs, None);
+        let whole = Problem::new(self.space, self.catalogs, None).map(Problem::with_inertias);
         if let Some(whole) = &whole {
             let search = |problem: &Problem| {
                 Search {
                     exact: self,
                     problem,
-                    cases: &cases,
                     found: &found,
                     kept: &kept,
                     evaluated: &evaluated,
@@ -95,7 +91,7 @@ impl<'p> Exact<'p> {
             for keep in [THIN, 8 * THIN] {
                 let thinned = thinned(whole, keep);
                 if let Some(problem) = thinned.and_then(|t| Problem::new(self.space, self.catalogs, Some(&t))) {
-                    search(&problem);
+                    search(&problem.with_inertias());
                     if std::env::var("DBG").is_ok() {
                         eprintln!("seed {keep}: boxes {} kept {}", self.boxes(), kept.lock().unwrap().len());
                     }
@@ -104,6 +100,7 @@ impl<'p> Exact<'p> {
             search(whole);
         }
         let mut front = kept.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        clear(&mut front);
         front.sort_unstable_by_key(|c| c.number);
         front.dedup_by_key(|c| c.number);
         ExactOutcome {
@@ -188,9 +185,9 @@ impl Search<'_, '_> {
         self.exact.boxes.fetch_add(1, Ordering::Relaxed);
         let verdict =
             self.problem.bound(&here.cell, &mut here.shapes, work, |ceiling| self.found.beats(ceiling));
-        let Verdict::Open(_) = verdict else { return };
+        let Verdict::Open(ceiling) = verdict else { return };
         let Some(level) = self.problem.widest_level(&here.cell, &here.shapes, work) else {
-            self.judge(&here.cell, work);
+            self.judge(&here.cell, &ceiling, work);
             return;
         };
         let Some([first, second]) = self.problem.halves(&here.cell, level) else { return };
@@ -201,12 +198,11 @@ impl Search<'_, '_> {
         child(here);
     }
 
-    /// One design, by the full model.
-    fn judge(&self, cell: &[u32], work: &mut Work) {
+    /// One design: its ceiling is its objectives once its mode is made sure of.
+    fn judge(&self, cell: &[u32], ceiling: &Ceiling, work: &Work) {
         let Some(options) = self.problem.options(cell) else { return };
-        let Some(arm) = self.problem.arm(cell, work) else { return };
         self.evaluated.fetch_add(1, Ordering::Relaxed);
-        let objectives = full_objectives(&arm, self.cases);
+        let objectives = self.problem.objectives(ceiling, work);
         if !self.meets(&objectives) {
             return;
         }
@@ -232,5 +228,4 @@ fn clear(kept: &mut Vec<Candidate>) {
     let points: Vec<[f64; 3]> = kept.iter().map(|c| c.objectives.minimized()).collect();
     let stay = crate::search::front::not_clearly_beaten(&points, crate::search::sweep::SLACK);
     *kept = stay.into_iter().map(|i| kept[i]).collect();
-    let _ = is_better;
 }

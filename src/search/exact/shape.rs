@@ -75,51 +75,17 @@ impl Shape {
 
     /// `x ← C M x`, with the base moving by `base` in the right-hand side.
     fn iterate(&mut self, pose: &Pose, ideal: &Ideal, base: &Twist, work: &mut Work) {
-        work.momenta.clear();
-        let mut twist = *base;
-        for (piece, posed) in pose.pieces.iter().enumerate().rev() {
-            let x = &self.x[piece * COORDINATES..(piece + 1) * COORDINATES];
-            match posed {
-                PosedPiece::Joint { twist: axis, at_m } => {
-                    let momentum = displacement(&twist, at_m) * ideal.inertia[piece][inertia::MASS];
-                    work.momenta.push(Momentum::Body(stack(&momentum, &at_m.cross(&momentum))));
-                    twist += axis * x[0];
-                }
-                PosedPiece::Body(body) => work.momenta.push(Momentum::Body(body * twist)),
-                PosedPiece::Tube(tube) => {
-                    let local = Local::new(tube, &twist, x);
-                    work.momenta.push(Momentum::Tube(local.momentum(tube, &ideal.inertia[piece])));
-                    tube.carry(&mut twist, x);
-                }
-            }
-        }
-        let mut wrench: Wrench = pose.payload_inertia * twist;
+        inertia_forces(pose, ideal.inertia, base, &self.x, work);
         let mut largest = 0.0f64;
         for (piece, posed) in pose.pieces.iter().enumerate() {
-            let x = &mut self.x[piece * COORDINATES..(piece + 1) * COORDINATES];
+            let here = piece * COORDINATES..(piece + 1) * COORDINATES;
+            let (x, forces) = (&mut self.x[here.clone()], &work.forces[here]);
             let stiffness = &ideal.stiffness[piece];
-            match (posed, work.momenta.pop()) {
-                (PosedPiece::Joint { twist: axis, .. }, Some(Momentum::Body(momentum))) => {
-                    x[0] = if stiffness[0] > 0.0 { axis.dot(&wrench) / stiffness[0] } else { 0.0 };
-                    wrench += momentum;
-                }
-                (PosedPiece::Body(_), Some(Momentum::Body(momentum))) => wrench += momentum,
-                (PosedPiece::Tube(tube), Some(Momentum::Tube(local))) => {
-                    let mut forces = local.forces;
-                    for (end, coordinate) in ENDS.into_iter().enumerate() {
-                        forces[coordinate] += tube.ends[end].dot(&wrench);
-                    }
-                    for (c, force) in forces.into_iter().enumerate() {
-                        let s = stiffness[RESISTED[c].0];
-                        x[c] = if s > 0.0 { force * degree_factor(c) / (s * tube.length_m) } else { 0.0 };
-                    }
-                    let force = tube.frame * local.root_force;
-                    let moment = tube.frame * local.root_moment + tube.root_m.cross(&force);
-                    wrench += stack(&force, &moment);
-                }
-                _ => {}
+            for (c, (x, force)) in x.iter_mut().zip(forces).enumerate().take(posed.coordinates()) {
+                let stiffness = posed.coordinate_stiffness(c, stiffness);
+                *x = if stiffness > 0.0 { force / stiffness } else { 0.0 };
+                largest = largest.max(x.abs());
             }
-            largest = x.iter().fold(largest, |most, x| most.max(x.abs()));
         }
         if largest > 0.0 {
             self.x.iter_mut().for_each(|x| *x /= largest);
@@ -154,10 +120,85 @@ impl Shape {
     }
 }
 
+/// `M x` into `work.forces`: the inertia forces on every coordinate when the arm moves by `x` and its base
+/// by `base`.
+pub(super) fn inertia_forces(
+    pose: &Pose,
+    inertia: &[[f64; INERTIAS]],
+    base: &Twist,
+    x: &[f64],
+    work: &mut Work,
+) {
+    work.momenta.clear();
+    work.forces.resize(x.len(), 0.0);
+    let mut twist = *base;
+    for (piece, posed) in pose.pieces.iter().enumerate().rev() {
+        let x = &x[piece * COORDINATES..(piece + 1) * COORDINATES];
+        match posed {
+            PosedPiece::Joint { twist: axis, at_m } => {
+                let momentum = displacement(&twist, at_m) * inertia[piece][inertia::MASS];
+                work.momenta.push(Momentum::Body(stack(&momentum, &at_m.cross(&momentum))));
+                twist += axis * x[0];
+            }
+            PosedPiece::Body(body) => work.momenta.push(Momentum::Body(body * twist)),
+            PosedPiece::Tube(tube) => {
+                let local = Local::new(tube, &twist, x);
+                work.momenta.push(Momentum::Tube(local.momentum(tube, &inertia[piece])));
+                tube.carry(&mut twist, x);
+            }
+        }
+    }
+    let mut wrench: Wrench = pose.payload_inertia * twist;
+    for (piece, posed) in pose.pieces.iter().enumerate() {
+        let forces = &mut work.forces[piece * COORDINATES..(piece + 1) * COORDINATES];
+        match (posed, work.momenta.pop()) {
+            (PosedPiece::Joint { twist: axis, .. }, Some(Momentum::Body(momentum))) => {
+                forces[0] = axis.dot(&wrench);
+                wrench += momentum;
+            }
+            (PosedPiece::Body(_), Some(Momentum::Body(momentum))) => wrench += momentum,
+            (PosedPiece::Tube(tube), Some(Momentum::Tube(local))) => {
+                forces.copy_from_slice(&local.forces);
+                for (end, coordinate) in ENDS.into_iter().enumerate() {
+                    forces[coordinate] += tube.ends[end].dot(&wrench);
+                }
+                let force = tube.frame * local.root_force;
+                let moment = tube.frame * local.root_moment + tube.root_m.cross(&force);
+                wrench += stack(&force, &moment);
+            }
+            _ => {}
+        }
+    }
+}
+
+impl PosedPiece {
+    /// Number of strain coordinates.
+    pub fn coordinates(&self) -> usize {
+        match self {
+            PosedPiece::Joint { .. } => 1,
+            PosedPiece::Body(_) => 0,
+            PosedPiece::Tube(_) => COORDINATES,
+        }
+    }
+
+    /// Stiffness of a coordinate; 0 where nothing yields.
+    #[inline]
+    pub fn coordinate_stiffness(&self, coordinate: usize, stiffness: &[f64; STIFFNESSES]) -> f64 {
+        match self {
+            PosedPiece::Tube(tube) => {
+                stiffness[RESISTED[coordinate].0] * tube.length_m / degree_factor(coordinate)
+            }
+            _ => stiffness[0],
+        }
+    }
+}
+
 /// Room for a step.
 #[derive(Default)]
 pub(super) struct Work {
     momenta: Vec<Momentum>,
+    /// Force on each coordinate, [`COORDINATES`] a piece.
+    pub forces: Vec<f64>,
 }
 
 enum Momentum {
