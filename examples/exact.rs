@@ -17,7 +17,18 @@ fn main() {
     let stop = AtomicBool::new(false);
     let started = Instant::now();
     let exact = Exact::new(&study.space, &catalogs, &stop);
-    let outcome = exact.run();
+    let finished = AtomicBool::new(false);
+    let outcome = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            while !finished.load(std::sync::atomic::Ordering::Relaxed) {
+                std::thread::sleep(std::time::Duration::from_secs(2));
+                eprintln!("{:.0} s: {}", started.elapsed().as_secs_f64(), exact.progress());
+            }
+        });
+        let outcome = exact.run();
+        finished.store(true, std::sync::atomic::Ordering::Relaxed);
+        outcome
+    });
     let seconds = started.elapsed().as_secs_f64();
     let points: Vec<_> = outcome.front.iter().map(|c| c.objectives.minimized()).collect();
     let front = nondominated(&points);

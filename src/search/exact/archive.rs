@@ -13,6 +13,8 @@ use std::sync::RwLock;
 const EQUAL: f64 = 1e-9;
 /// By how much the better design must be better in one objective.
 const BETTER: f64 = 1e-7;
+/// How much a better trial shape may lower a ceiling's frequency.
+const NEAR: f64 = 0.9;
 /// Steps an octave of the lists.
 const STEPS: f64 = 64.0;
 
@@ -66,6 +68,14 @@ impl Found {
         };
         let (row, column) = (step(best.mass_kg), step(best.tip_deflection_m));
         in_list(&self.rows, row) || in_list(&self.columns, column)
+    }
+}
+
+impl Found {
+    /// Whether some design found would beat the box if its ceiling were a little lower in frequency: then
+    /// a better trial shape is worth its price.
+    pub fn nearly_beats(&self, ceiling: &Ceiling) -> bool {
+        self.beats(&Ceiling { hz: ceiling.hz * NEAR, ..*ceiling })
     }
 }
 

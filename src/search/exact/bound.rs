@@ -49,7 +49,7 @@ pub(super) enum Verdict {
 /// Numbers of one box, kept by a worker.
 #[derive(Default)]
 pub(super) struct Work {
-    /// Greatest stiffness and least inertia of each piece; the joints' stiffnesses a case.
+    /// Greatest and least stiffness and inertia of each piece.
     stiff: Vec<[f64; STIFFNESSES]>,
     soft: Vec<[f64; STIFFNESSES]>,
     light: Vec<[f64; INERTIAS]>,
@@ -57,12 +57,15 @@ pub(super) struct Work {
     /// Weight interval of each piece of the case at hand \[N\].
     weights: Vec<Vec<[f64; 2]>>,
     curves: Vec<Option<CurveBox>>,
-    joint_stiff: Vec<Vec<f64>>,
+    /// Greatest stiffness of each piece, and least of each joint, by case: a gear's slope depends on its
+    /// torque.
+    stiff_in: Vec<Vec<[f64; STIFFNESSES]>>,
     joint_soft: Vec<Vec<f64>>,
     masses: Vec<[f64; 2]>,
     /// The lightest drive that may be the first fit, by piece.
     fits: Vec<u32>,
     shape: ShapeWork,
+    pub reason: usize,
     /// Judged case and start whose quotient is least.
     worst: (usize, usize),
 }
@@ -81,8 +84,7 @@ impl<'c> Problem<'c> {
             self.inertias = self
                 .judged_cases()
                 .map(|case| {
-                    let stiffness = stiffness_in(case, &work);
-                    Inertia::new(&self.poses[case], &Ideal { stiffness: &stiffness, inertia: &work.light })
+                    Inertia::new(&self.poses[case], &Ideal { stiffness: &work.stiff_in[case], inertia: &work.light })
                 })
                 .collect();
         }
@@ -93,8 +95,7 @@ impl<'c> Problem<'c> {
     pub fn objectives(&self, ceiling: &Ceiling, work: &Work) -> Objectives {
         let quotient = (ceiling.hz * std::f64::consts::TAU).powi(2);
         let lowest = self.judged_cases().zip(&self.inertias).fold(quotient, |lowest, (case, inertia)| {
-            let stiffness = stiffness_in(case, work);
-            inertia.lowest(&self.poses[case], &Ideal { stiffness: &stiffness, inertia: &work.light }, lowest)
+            inertia.lowest(&self.poses[case], &Ideal { stiffness: &work.stiff_in[case], inertia: &work.light }, lowest)
         });
         Objectives {
             tip_deflection_m: ceiling.tip_m,
@@ -110,8 +111,7 @@ impl<'c> Problem<'c> {
         let mut shapes = Vec::new();
         for (case, pose) in self.poses.iter().enumerate().filter(|(_, p)| p.judged) {
             for direction in [Vector3::z(), Vector3::new(0.3, 1.0, 0.0)] {
-                let stiffness = stiffness_in(case, work);
-                let ideal = Ideal { stiffness: &stiffness, inertia: &work.light };
+                    let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
                 shapes.push(Shape::start(pose, &ideal, direction, 6));
             }
         }
@@ -126,7 +126,9 @@ impl<'c> Problem<'c> {
         shapes: &mut [Shape],
         work: &mut Work,
         beaten: impl Fn(&Ceiling) -> bool,
+        near: impl Fn(&Ceiling) -> bool,
     ) -> Verdict {
+        work.reason = 0;
         if self.fill(cell, ROUNDING, work).is_none() {
             return Verdict::Cut;
         }
@@ -141,14 +143,15 @@ impl<'c> Problem<'c> {
         }
         let required_hz = limits.required_mode_hz();
         let mut ceiling = Ceiling { mass_kg, tip_m, hz: f64::INFINITY };
+        work.reason = 1;
         let fails = |ceiling: &Ceiling| ceiling.hz < required_hz || beaten(ceiling);
         if fails(&Ceiling { hz: f64::MAX, ..ceiling }) {
             return Verdict::Cut;
         }
+        work.reason = 2;
         let starts = shapes.len() / self.poses.iter().filter(|p| p.judged).count().max(1);
         for (judged, case) in self.judged_cases().enumerate() {
-            let stiffness = stiffness_in(case, work);
-            let ideal = Ideal { stiffness: &stiffness, inertia: &work.light };
+            let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
             for start in 0..starts {
                 let hz = hertz(shapes[judged * starts + start].quotient(&ideal));
                 if hz < ceiling.hz {
@@ -159,6 +162,9 @@ impl<'c> Problem<'c> {
             if fails(&ceiling) {
                 return Verdict::Cut;
             }
+        }
+        if !work.is_point() && !near(&ceiling) {
+            return Verdict::Open(ceiling);
         }
         self.refine(&mut ceiling, shapes, starts, work, fails)
     }
@@ -172,15 +178,15 @@ impl<'c> Problem<'c> {
         work: &mut Work,
         fails: impl Fn(&Ceiling) -> bool,
     ) -> Verdict {
+        work.reason = if work.is_point() { 4 } else { 3 };
         let steps = if work.is_point() { MOST_STEPS } else { 1 };
         for _ in 0..steps {
             let before = ceiling.hz;
             let mut judged = 0;
             for (case, pose) in self.poses.iter().enumerate().filter(|(_, p)| p.judged) {
-                let stiffness = stiffness_in(case, work);
-                for start in 0..starts {
+                    for start in 0..starts {
                     let shape = &mut shapes[judged * starts + start];
-                    let ideal = Ideal { stiffness: &stiffness, inertia: &work.light };
+                    let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
                     shape.improve(pose, &ideal, &mut work.shape);
                     let hz = hertz(shape.quotient(&ideal));
                     if hz < ceiling.hz {
@@ -294,6 +300,7 @@ impl<'c> Problem<'c> {
     fn least_tip_m(&self, work: &mut Work) -> f64 {
         let mut worst = 0.0f64;
         for (case, pose) in self.poses.iter().enumerate().filter(|(_, p)| p.judged) {
+            work.stiff_in[case].clone_from(&work.stiff);
             let mut tip_m = [[0.0f64; 2]; 3];
             for row in &pose.rows {
                 let force = interval(row.fixed, &row.per_n, &work.weights[case]);
@@ -301,7 +308,7 @@ impl<'c> Problem<'c> {
                     Some(curve) => {
                         let size = force[0].abs().max(force[1].abs());
                         let least = force[0].max(-force[1]).max(0.0);
-                        work.joint_stiff[case][row.piece] = curve.stiff.tangent_nm_per_rad(size * (1.0 + ROUNDING));
+                        work.stiff_in[case][row.piece][0] = curve.stiff.tangent_nm_per_rad(size * (1.0 + ROUNDING));
                         work.joint_soft[case][row.piece] = curve.soft.tangent_nm_per_rad(least * (1.0 - ROUNDING));
                         twist(curve, force)
                     }
@@ -325,8 +332,8 @@ impl<'c> Problem<'c> {
         let (judged, start) = work.worst;
         let shape = &shapes[judged * starts + start];
         let case = self.poses.iter().enumerate().filter(|(_, p)| p.judged).nth(judged)?.0;
-        let stiffness = stiffness_in(case, work);
-        let ideal = Ideal { stiffness: &stiffness, inertia: &work.light };
+        let stiffness = &work.stiff_in[case];
+        let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
         let strain: f64 = products(&shape.strain, ideal.stiffness);
         let kinetic: f64 = shape.kinetic_fixed + products(&shape.kinetic, ideal.inertia);
         let mass_kg: f64 = work.masses.iter().map(|m| m[0]).sum();
@@ -428,17 +435,6 @@ fn hertz(lambda: f64) -> f64 {
     lambda.sqrt() / std::f64::consts::TAU * (1.0 + ROUNDING)
 }
 
-/// Stiffnesses of the pieces in a case: links as they are, joints by their slope there.
-fn stiffness_in(case: usize, work: &Work) -> Vec<[f64; STIFFNESSES]> {
-    let mut out = work.stiff.clone();
-    for (piece, curve) in work.curves.iter().enumerate() {
-        if curve.is_some() {
-            out[piece][0] = work.joint_stiff[case][piece];
-        }
-    }
-    out
-}
-
 /// Twist of a joint between two torques \[rad\].
 fn twist(curve: &CurveBox, [low, high]: [f64; 2]) -> [f64; 2] {
     let outer = |windup: &Windup, t: f64| windup.angle_rad(t);
@@ -498,11 +494,10 @@ impl Work {
         zero(&mut self.masses, pieces, [0.0; 2]);
         zero(&mut self.fits, pieces, 0);
         self.weights.resize_with(cases, Vec::new);
-        self.joint_stiff.resize_with(cases, Vec::new);
+        self.stiff_in.resize_with(cases, Vec::new);
         self.joint_soft.resize_with(cases, Vec::new);
         for case in 0..cases {
             zero(&mut self.weights[case], pieces, [0.0; 2]);
-            zero(&mut self.joint_stiff[case], pieces, 0.0);
             zero(&mut self.joint_soft[case], pieces, 0.0);
         }
     }
@@ -539,6 +534,6 @@ impl Work {
     fn is_point(&self) -> bool {
         self.light == self.heavy
             && self.stiff == self.soft
-            && self.joint_stiff == self.joint_soft
+            && self.curves.iter().flatten().all(|c| c.stiff == c.soft)
     }
 }

@@ -25,6 +25,7 @@ pub struct Exact<'p> {
     catalogs: &'p Catalogs,
     stop: &'p AtomicBool,
     boxes: AtomicU64,
+    counts: [AtomicU64; 8],
 }
 
 /// What the search found.
@@ -61,12 +62,17 @@ struct Box_ {
 impl<'p> Exact<'p> {
     /// A search of a space; it ends early when `stop` is set.
     pub fn new(space: &'p DesignSpace, catalogs: &'p Catalogs, stop: &'p AtomicBool) -> Self {
-        Self { space, catalogs, stop, boxes: AtomicU64::new(0) }
+        Self { space, catalogs, stop, boxes: AtomicU64::new(0), counts: Default::default() }
     }
 
     /// Boxes bounded so far.
     pub fn boxes(&self) -> u64 {
         self.boxes.load(Ordering::Relaxed)
+    }
+
+    /// dbg
+    pub fn progress(&self) -> String {
+        format!("boxes {} {:?}", self.boxes(), self.counts)
     }
 
     /// Finds the front.
@@ -184,8 +190,18 @@ impl Search<'_, '_> {
     fn open(&self, mut here: Box_, work: &mut Work, child: &mut dyn FnMut(Box_)) {
         self.exact.boxes.fetch_add(1, Ordering::Relaxed);
         let verdict =
-            self.problem.bound(&here.cell, &mut here.shapes, work, |ceiling| self.found.beats(ceiling));
-        let Verdict::Open(ceiling) = verdict else { return };
+            self.problem.bound(
+                &here.cell,
+                &mut here.shapes,
+                work,
+                |ceiling| self.found.beats(ceiling),
+                |ceiling| self.found.nearly_beats(ceiling),
+            );
+        let Verdict::Open(ceiling) = verdict else {
+            self.exact.counts[work.reason].fetch_add(1, Ordering::Relaxed);
+            return;
+        };
+        self.exact.counts[6].fetch_add(1, Ordering::Relaxed);
         let Some(level) = self.problem.widest_level(&here.cell, &here.shapes, work) else {
             self.judge(&here.cell, &ceiling, work);
             return;
@@ -202,6 +218,7 @@ impl Search<'_, '_> {
     fn judge(&self, cell: &[u32], ceiling: &Ceiling, work: &Work) {
         let Some(options) = self.problem.options(cell) else { return };
         self.evaluated.fetch_add(1, Ordering::Relaxed);
+        self.exact.counts[7].fetch_add(1, Ordering::Relaxed);
         let objectives = self.problem.objectives(ceiling, work);
         if !self.meets(&objectives) {
             return;
