@@ -1,7 +1,12 @@
 //! Makes campaigns with hidden effects from the independent witness.
 //!
 //! `cargo run --release --example reconcile_generate -- OUT SEED COUNT plain|hard|none|pair`
+//!
+//! or one campaign in the folder OUT of a six-axis arm file, j1 to j6, with the effects of a JSON list:
+//!
+//! `cargo run --release --example reconcile_generate -- OUT SEED arm ARM.json EFFECTS.json`
 
+use serde_json::Value;
 use std::path::Path;
 
 #[path = "../tests/reconcile_generator/mod.rs"]
@@ -13,8 +18,13 @@ use reconcile_generator::{Dice, Plan, arm, effect, everything, write};
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let [out, seed, word, arm, effects] = arguments.as_slice()
+        && word == "arm"
+    {
+        return measured(Path::new(out), seed, arm, effects);
+    }
     let [out, seed, count, class] = arguments.as_slice() else {
-        eprintln!("give OUT SEED COUNT plain|hard|none|pair");
+        eprintln!("give OUT SEED COUNT plain|hard|none|pair, or OUT SEED arm ARM.json EFFECTS.json");
         std::process::exit(2)
     };
     let (seed, count) = (seed.parse::<u64>().expect("seed"), count.parse::<usize>().expect("count"));
@@ -42,4 +52,17 @@ fn main() {
         let key = out.join("keys").join(format!("{name}.json"));
         write(&mut dice, &out.join("campaigns").join(&name), &key, &arm, &hidden, &plan);
     }
+}
+
+/// A campaign of a given arm with given effects; the key is written beside the folder.
+fn measured(out: &Path, seed: &str, arm: &str, effects: &str) {
+    let read = |file: &str| -> Value {
+        let text = std::fs::read_to_string(file).unwrap_or_else(|e| panic!("{file}: {e}"));
+        serde_json::from_str(&text).expect("JSON")
+    };
+    let (arm, hidden) = (read(arm), read(effects));
+    let plan = Plan { static_poses: 24, modal_poses: 8, ..Plan::plain() };
+    let dice = &mut Dice(seed.parse().expect("seed"));
+    let key = out.with_extension("key.json");
+    write(dice, out, &key, &arm, hidden.as_array().expect("a list"), &plan);
 }

@@ -273,6 +273,49 @@ fn sold() -> Value {
     study
 }
 
+/// Effects of every kind that the finite elements know, at sized and at given joints, on open links and on an offset;
+/// the arm in folded and twisted poses.
+fn with_effects() -> Value {
+    let mut study = spatial();
+    study["name"] = json!("brute-effects");
+    let spring = |c: f64| json!({"stiffness_nm_per_rad": c});
+    study["effects"] = json!([
+        {"effect": "connection_compliance", "at": "j2", "parameters": spring(6e5)},
+        {"effect": "lost_motion", "at": "j5", "parameters": {"half_width_rad": 2e-4, "torque_nm": 8.0}},
+        {"effect": "bearing_tilt", "at": "j3", "parameters": spring(1.5e5)},
+        {"effect": "base_compliance", "at": "base", "parameters": spring(4e5)},
+        {"effect": "extra_mass", "at": "j4", "parameters": {"delta_kg": 2.5}},
+        {"effect": "harness_mass", "at": "upper_arm", "parameters": {"kg_per_m": 2.0}},
+        {"effect": "harness_mass", "at": "shoulder", "parameters": {"kg_per_m": 1.5}},
+        {"effect": "modulus_error", "at": "forearm", "parameters": {"factor": 0.8}},
+        {"effect": "soft_windup", "at": "j3", "parameters": {"k1_nm_per_rad": 0.8e5, "k2_nm_per_rad": 1.6e5,
+            "k3_nm_per_rad": 2.3e5, "t1_nm": 30, "t2_nm": 120}},
+        {"effect": "joint_compliance", "at": "j1", "parameters": spring(9e5)}
+    ]);
+    // a spring in place of a joint's own is for rigid joints
+    study["chain"][0] = json!({"type": "joint", "name": "j1", "axis": [0, 0, 1], "stiffness_nm_per_rad": null, "mass_kg": 14});
+    study
+}
+
+/// The plane case of the named study, where motions within the plane and across it are solved apart.
+fn flat_with_effects() -> Value {
+    let mut study = compare_materials();
+    study["name"] = json!("brute-flat-effects");
+    study["effects"] = json!([
+        {"effect": "bearing_tilt", "at": "j2", "parameters": {"stiffness_nm_per_rad": 1.2e5}},
+        {"effect": "harness_mass", "at": "forearm", "parameters": {"kg_per_m": 3.0}}
+    ]);
+    study
+}
+
+#[test]
+fn finds_the_same_front_of_an_arm_with_effects() {
+    let agreement = assert_same(&with_effects());
+    assert!(agreement.front > 3, "{agreement:?}");
+    let agreement = assert_same(&flat_with_effects());
+    assert!(agreement.front > 10, "{agreement:?}");
+}
+
 #[test]
 fn finds_the_same_fronts_of_a_six_axis_arm_in_three_materials() {
     let agreement = assert_same(&compare_materials());
@@ -336,7 +379,7 @@ fn finds_the_same_front_of_each_material_when_links_offer_different_ones() {
 
 #[test]
 fn gives_any_design_of_a_front_as_an_arm_file_that_analyzes_to_the_same_numbers() {
-    for study in [compare_materials(), spatial(), sold(), free_second_drive()] {
+    for study in [compare_materials(), spatial(), sold(), free_second_drive(), with_effects()] {
         let dir = tempfile::tempdir().expect("a temporary folder");
         let results = run_study(dir.path(), &study);
         let step = results.front.len().div_ceil(5);

@@ -215,7 +215,8 @@ fn every_study_object() -> Value {
                 "section": {"shape": "round_tube", "diameter_m": 0.1, "wall_m": 0.01}}],
         "payload": {"mass_kg": 1}, "poses": [{"pose_deg": [0, 0]}],
         "environments": [{"name": "sea", "water": {"density_kg_m3": 1025}}],
-        "motion": {}, "drives": {}, "constraints": {}, "models": {}
+        "motion": {}, "drives": {}, "constraints": {}, "models": {},
+        "effects": [{"effect": "bearing_tilt", "at": "j1", "parameters": {"stiffness_nm_per_rad": 1e5}}]
     })
 }
 
@@ -234,6 +235,9 @@ fn every_key_of_a_study_file_is_described() {
         study[part] = with_unknown_keys(&study[part]);
         keys.extend(known_keys(&read(&study).expect_err("unknown keys")));
     }
+    let mut study = every_study_object();
+    study["effects"][0]["zzzzzzzz"] = json!(0);
+    keys.extend(known_keys(&read(&study).expect_err("unknown keys")));
     assert_described("docs/study-format.md", &keys, 70);
 }
 

@@ -331,7 +331,8 @@ pub(crate) fn read_section(node: &Node) -> Option<Section> {
     Some(section)
 }
 
-fn read_effects(node: &Node) -> Option<Vec<Effect>> {
+/// Reads a list of effects; whether each fits its arm is checked apart.
+pub(crate) fn read_effects(node: &Node) -> Option<Vec<Effect>> {
     let read: Vec<_> = node.array()?.iter().map(read_effect).collect();
     read.into_iter().collect()
 }

@@ -15,7 +15,9 @@ mod write;
 
 pub use effect::Effect;
 pub use file::{read_arm, read_arm_document};
-pub(crate) use file::{read_axis, read_curve, read_joint_mass, read_link, read_name, windup_of};
+pub(crate) use file::{
+    read_axis, read_curve, read_effects, read_joint_mass, read_link, read_name, windup_of,
+};
 pub use joint_law::{Curve, JointLaw, LostMotion, Windup};
 pub use load::{LoadCase, Payload, read_load_cases};
 pub(crate) use load::{read_pose, vector, word};

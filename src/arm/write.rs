@@ -50,17 +50,8 @@ impl Joint {
         map.insert("type".into(), json!("joint"));
         map.insert("name".into(), json!(self.name));
         map.insert("axis".into(), json!(self.axis.as_slice()));
-        match &self.curve {
-            Curve::Rigid => map.insert("stiffness_nm_per_rad".into(), Value::Null),
-            Curve::Linear(k) => map.insert("stiffness_nm_per_rad".into(), json!(k)),
-            Curve::Windup(w) => map.insert(
-                "windup".into(),
-                json!({
-                    "k1_nm_per_rad": w.k1_nm_per_rad, "k2_nm_per_rad": w.k2_nm_per_rad,
-                    "k3_nm_per_rad": w.k3_nm_per_rad, "t1_nm": w.t1_nm, "t2_nm": w.t2_nm,
-                }),
-            ),
-        };
+        let (key, stiffness) = self.curve.to_json();
+        map.insert(key.into(), stiffness);
         map.insert("mass_kg".into(), json!(self.mass_kg));
         for (key, part) in [("gear", &self.gear), ("motor", &self.motor)] {
             if let Some(part) = part {
@@ -72,6 +63,23 @@ impl Joint {
             map.insert("coupled".into(), Value::Object(terms));
         }
         Value::Object(map)
+    }
+}
+
+impl Curve {
+    /// The key and the value by which files give the curve.
+    pub fn to_json(&self) -> (&'static str, Value) {
+        match self {
+            Curve::Rigid => ("stiffness_nm_per_rad", Value::Null),
+            Curve::Linear(k) => ("stiffness_nm_per_rad", json!(k)),
+            Curve::Windup(w) => (
+                "windup",
+                json!({
+                    "k1_nm_per_rad": w.k1_nm_per_rad, "k2_nm_per_rad": w.k2_nm_per_rad,
+                    "k3_nm_per_rad": w.k3_nm_per_rad, "t1_nm": w.t1_nm, "t2_nm": w.t2_nm,
+                }),
+            ),
+        }
     }
 }
 
@@ -105,7 +113,8 @@ impl Section {
 }
 
 impl Effect {
-    fn to_json(&self) -> Value {
+    /// The effect as files write it.
+    pub fn to_json(&self) -> Value {
         let parameters: Map<String, Value> = self
             .parameters
             .iter()

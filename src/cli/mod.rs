@@ -2,11 +2,13 @@
 //! that writes to standard output.
 
 mod analyze;
+mod carry;
 pub mod catalog;
 pub mod compare;
 mod design;
 pub mod predict;
 pub mod reconcile;
+mod rerun;
 mod run;
 mod size;
 
@@ -173,7 +175,7 @@ pub fn run(cli: Cli) -> Result<String, Failure> {
         Verb::Compare(args) => compare::run(&args),
         Verb::Analyze(args) => analyze::run(&args, &catalogs?),
         Verb::Design(args) => design::run(&args, &catalogs?),
-        Verb::Reconcile(args) => reconcile::run(&args, &catalogs?).map(|(_, text)| text),
+        Verb::Reconcile(args) => reconcile::run(&args, &catalogs?, overlay).map(|(_, text)| text),
         Verb::Predict(args) => predict::run(&args, &catalogs?),
     }
 }

@@ -1,21 +1,31 @@
-//! `armwright reconcile`: where model and measurement disagree, and what is missing.
+//! `armwright reconcile`: where model and measurement disagree, what is missing, and what that changes.
 
+use super::rerun::{Rerun, rerun};
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
 use crate::reconcile::{Campaign, Outcome, reconcile};
 use clap::Args;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `reconcile`.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  armwright reconcile campaigns/may --out results/may\n\n\
+#[command(after_help = "Example:\n  armwright reconcile campaigns/may --out results/may\n  \
+    armwright reconcile campaigns/may --study compare-materials --out results/may\n\n\
     Writes verdict.json, verdict.txt, arm.corrected.json and residuals.csv. The verdict is one of no_gap, \
-    explained, unexplained, insufficient_data; all four are answers, exit code 0.")]
+    explained, unexplained, insufficient_data; all four are answers, exit code 0.\n\n\
+    With --study and the verdict explained, the study is run without and with the effects found: \
+    study/nominal and study/corrected are results as `armwright run` writes them, study_changes.csv has \
+    every design of either front under both models, and verdict.json says under \"study\" which picks change.")]
 pub struct ReconcileArgs {
     /// Folder of a campaign: campaign.json, arm.json and any of static.csv, modal.csv, windup.csv,
     /// positions.csv. Several campaigns of one arm are reconciled together.
     #[arg(required = true, value_name = "CAMPAIGN")]
     pub campaigns: Vec<PathBuf>,
+    /// A built-in study or a study file to run again with the corrected arm: effects carry over to the
+    /// joints and links of the same name.
+    #[arg(long, value_name = "STUDY")]
+    pub study: Option<String>,
     /// Folder to write into, made with its parents; default: `results/<campaign>`.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -25,7 +35,15 @@ pub struct ReconcileArgs {
 ///
 /// # Errors
 /// All faults of the input files, or a file that cannot be written.
-pub fn run(args: &ReconcileArgs, catalogs: &Catalogs) -> Result<(Outcome, String), Failure> {
+pub fn run(
+    args: &ReconcileArgs,
+    catalogs: &Catalogs,
+    overlay: Option<&Path>,
+) -> Result<(Outcome, String), Failure> {
+    if let Some(study) = &args.study {
+        // a study that does not read fails now, not after the fits
+        super::run::load_study(study, catalogs)?;
+    }
     let mut read = Vec::new();
     for folder in &args.campaigns {
         read.push(Campaign::read(folder, catalogs)?);
@@ -34,9 +52,31 @@ pub fn run(args: &ReconcileArgs, catalogs: &Catalogs) -> Result<(Outcome, String
     let campaign = first.join(read).map_err(Failure::Usage)?;
     let out = args.out.clone().unwrap_or_else(|| Path::new("results").join(&campaign.statement.name));
     let outcome = reconcile(&campaign);
-    let files: Vec<(String, Vec<u8>)> =
+    let mut files: Vec<(String, Vec<u8>)> =
         outcome.files().into_iter().map(|(name, text)| (name.to_string(), text.into_bytes())).collect();
     write_all(&out, &files)?;
-    let text = format!("{}written to {}\n", outcome.to_text(), out.display());
-    Ok((outcome, text))
+    let mut text = outcome.to_text();
+    if let Some(study) = &args.study {
+        let rerun = rerun(&outcome, study, catalogs, overlay, &out)?;
+        text.push_str(&rerun.text);
+        add(&mut files, &outcome, rerun);
+        write_all(&out, &files)?;
+    }
+    Ok((outcome, format!("{text}written to {}\n", out.display())))
+}
+
+/// Puts what the study's second run changed into the verdict, and its table beside it.
+fn add(files: &mut Vec<(String, Vec<u8>)>, outcome: &Outcome, rerun: Rerun) {
+    for (name, bytes) in files.iter_mut() {
+        match name.as_str() {
+            "verdict.json" => {
+                let mut verdict: Value = outcome.to_json();
+                verdict["study"] = rerun.json.clone();
+                *bytes = format!("{verdict:#}\n").into_bytes();
+            }
+            "verdict.txt" => bytes.extend(rerun.text.as_bytes()),
+            _ => {}
+        }
+    }
+    files.extend(rerun.csv.map(|csv| ("study_changes.csv".to_string(), csv.into_bytes())));
 }

@@ -1,16 +1,19 @@
 //! `armwright run`: find a study's front and write it.
 
-use super::{Failure, write_all};
+use super::{Failure, carry, write_all};
+use crate::arm::Effect;
 use crate::catalog::Catalogs;
 use crate::fault::Document;
 use crate::report::front_svg::{FrontPicture, PlottedFront, mixed_designs};
+use crate::report::front_table::FrontTable;
 use crate::report::picks;
 use crate::report::summary::{
     MaterialFront, SummaryFacts, SummaryInput, constraint_words, summary_md, terminal_summary,
 };
 use crate::search::{ArmProblem, Status};
 use crate::study::{
-    Study, StudyOutcome, empty_pieces, front_table, named, read_study, run_study, slug, why_infeasible,
+    Carried, Study, StudyOutcome, empty_pieces, front_table, left_out, named, read_study, run_study, slug,
+    why_infeasible,
 };
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -25,14 +28,19 @@ use std::time::{Duration, Instant};
 /// lowest mode, and one front per material.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Example: armwright run compare-materials\n         armwright run my-study.json --out results/mine"
+    after_help = "Example: armwright run compare-materials\n         armwright run my-study.json --out results/mine\n         \
+                  armwright run my-study.json --effects results/may/arm.corrected.json"
 )]
 pub struct RunArgs {
     /// A built-in study (see `armwright studies`) or a study file
     study: String,
-    /// Folder for the results; default results/<study>
+    /// Folder for the results; default results/<study>, or results/<study>-with-effects
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Arm file, such as the arm.corrected.json of `reconcile`, whose effects the study's arm has too, at the
+    /// joints and links of the same name; every effect that does not carry over is listed
+    #[arg(long, value_name = "ARM")]
+    effects: Option<PathBuf>,
 }
 
 /// The text of a study and the name it goes by in messages.
@@ -65,21 +73,49 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
         return run_paper(args, catalogs);
     }
     let (study, text) = load_study(&args.study, catalogs)?;
-    let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(slug(&study.name)));
+    let (asked, suffix) = match &args.effects {
+        None => (Asked { carried: left_out(&study), study, text }, ""),
+        Some(path) => (carry::from_arm_file(path, &study, &text, catalogs)?, "-with-effects"),
+    };
+    let name = format!("{}{suffix}", slug(&asked.study.name));
+    let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(name));
+    let written = search(&asked, catalogs, overlay, &dir)?;
+    write_all(&dir, &written.files)?;
+    let carried = carry::to_text(&asked.carried);
+    Ok(format!("{}{carried}\nwritten to {}: {}\n", written.terminal, dir.display(), names(&written.files)))
+}
+
+/// A study to be searched.
+pub(super) struct Asked {
+    /// The study.
+    pub study: Study,
+    /// Its file's text.
+    pub text: String,
+    /// What of a measured arm carries over to it, and what does not.
+    pub carried: Vec<Carried>,
+}
+
+/// Searches a study; the folder is where its results go, and nothing is written yet.
+pub(super) fn search(
+    Asked { study, text, carried }: &Asked,
+    catalogs: &Catalogs,
+    overlay: Option<&Path>,
+    dir: &Path,
+) -> Result<Written, Failure> {
     let problem = ArmProblem::new(&study.space, catalogs);
-    refuse_empty(&study, &problem)?;
+    refuse_empty(study, &problem)?;
     // a folder that cannot be written fails now, not after the search
-    write_all(&dir, &[])?;
+    write_all(dir, &[])?;
     let stop = Arc::new(AtomicBool::new(false));
     let on_signal = Arc::clone(&stop);
     // a second handler cannot be set; the first one serves
     let _ = ctrlc::set_handler(move || on_signal.store(true, Ordering::Relaxed));
     let started = Instant::now();
-    let outcome = run_study(&study, catalogs, &stop, watch);
+    let outcome = run_study(study, catalogs, &stop, watch);
     let elapsed_s = started.elapsed().as_secs_f64();
     match outcome.sweep.status {
         Status::Interrupted => {
-            let _ = std::fs::remove_dir(&dir);
+            let _ = std::fs::remove_dir(dir);
             let done = u128::from(outcome.sweep.designs_evaluated) + outcome.sweep.designs_excluded;
             Err(Failure::Interrupted(format!(
                 "stopped after {done} of {} designs; nothing was written, run again to start over",
@@ -88,23 +124,22 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
         }
         Status::Infeasible => {
             // succeeds only on an empty folder: earlier results stay
-            let _ = std::fs::remove_dir(&dir);
-            Err(Failure::Infeasible(why_infeasible(&study, catalogs, &outcome)))
+            let _ = std::fs::remove_dir(dir);
+            Err(Failure::Infeasible(why_infeasible(study, catalogs, &outcome)))
         }
         Status::Complete => {
             let finished = Finished {
-                study: &study,
-                text: &text,
+                study,
+                text,
+                carried,
                 problem: &problem,
                 outcome: &outcome,
                 elapsed_s,
                 overlay,
                 catalogs,
-                dir: &dir,
+                dir,
             };
-            let written = finished.files();
-            write_all(&dir, &written.files)?;
-            Ok(format!("{}\nwritten to {}: {}\n", written.terminal, dir.display(), names(&written.files)))
+            Ok(finished.files())
         }
     }
 }
@@ -159,15 +194,21 @@ fn refuse_empty(study: &Study, problem: &ArmProblem) -> Result<(), Failure> {
     }
 }
 
-struct Written {
-    files: Vec<(String, Vec<u8>)>,
-    terminal: String,
+/// What a finished search has to say.
+pub(super) struct Written {
+    /// Files by name.
+    pub files: Vec<(String, Vec<u8>)>,
+    /// Text for the terminal.
+    pub terminal: String,
+    /// The front of all designs.
+    pub front: FrontTable,
 }
 
 /// A finished search and what it was made with.
 struct Finished<'a> {
     study: &'a Study,
     text: &'a str,
+    carried: &'a [Carried],
     problem: &'a ArmProblem<'a>,
     outcome: &'a StudyOutcome,
     elapsed_s: f64,
@@ -187,7 +228,7 @@ impl Finished<'_> {
         files.push(("summary.md".into(), summary_md(&summary).into_bytes()));
         files.push(("run.json".into(), pretty(&self.run_json(&summary))));
         files.push(("study.json".into(), self.text.as_bytes().to_vec()));
-        Written { files, terminal: terminal_summary(&summary) }
+        Written { files, terminal: terminal_summary(&summary), front: summary.overall }
     }
 
     fn summary(&self) -> SummaryInput {
@@ -221,6 +262,16 @@ impl Finished<'_> {
                 })
                 .collect(),
         }
+    }
+
+    /// The study's effects, each with whether it counts: those that describe a test do not.
+    fn effects(&self) -> Vec<Value> {
+        let counted = |effect: &Effect| {
+            let mut value = effect.to_json();
+            value["counts"] = json!(!effect.is_of_test());
+            value
+        };
+        self.study.space.effects.iter().map(counted).collect()
     }
 
     fn judged_cases(&self) -> Vec<String> {
@@ -259,6 +310,9 @@ impl Finished<'_> {
             "cases": summary.facts.cases,
             "materials": materials,
             "not_checked": study.not_checked,
+            "effects": self.effects(),
+            "effects_mass_kg": study.space.effects_mass_kg(),
+            "carried_over": carry::to_json(self.carried),
             "catalogs": self.overlay.map(|p| p.display().to_string()),
             "study_hash": blake3::hash(self.text.as_bytes()).to_hex().to_string(),
             "catalogs_hash": catalogs_hash(self.catalogs),

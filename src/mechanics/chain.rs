@@ -243,7 +243,7 @@ impl Walk {
 }
 
 /// Two unit axes across `axis` and each other.
-fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
+pub(crate) fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let least = axis.iamin();
     let first = axis.cross(&Vector3::ith(least, 1.0)).normalize();
     [first, axis.cross(&first)]

@@ -25,6 +25,7 @@ pub mod modes;
 pub mod response;
 pub mod statics;
 
+pub(crate) use chain::across;
 pub use chain::{Chain, Posed};
 pub use modes::{Mode, Modes};
 pub use response::{Response, frequency_response};

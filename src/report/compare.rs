@@ -7,6 +7,7 @@
 //! comparison for people, [`thresholds`] chooses round limits where the user gives none, [`moved`]
 //! tells what changed between two runs of a study.
 
+pub mod changes;
 pub mod moved;
 pub mod text;
 pub mod thresholds;

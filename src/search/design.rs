@@ -99,7 +99,12 @@ impl<'c> ArmProblem<'c> {
                 _ => None,
             })
             .collect::<Option<Vec<_>>>()?;
-        Some(Arm { name: space.name.clone(), gravity_m_s2: space.gravity_m_s2, chain, effects: Vec::new() })
+        Some(Arm {
+            name: space.name.clone(),
+            gravity_m_s2: space.gravity_m_s2,
+            chain,
+            effects: space.effects.clone(),
+        })
     }
 
     /// The cases that objectives are taken over, as load cases.

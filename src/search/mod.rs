@@ -10,6 +10,7 @@ pub mod archive;
 pub mod constraint;
 pub mod design;
 pub mod exact;
+mod effects;
 mod figures;
 pub mod fixed;
 pub mod front;

@@ -1,16 +1,17 @@
 //! The arm behind the search's trait: built from the tip inward, each joint sized when everything
 //! outboard of it is known (Eqs 7-12), deflection and inertia carried along (Eqs 13-16).
 
+use super::effects::Layer;
 use super::figures::OptionFigures;
 use super::row::{Row, RowScratch};
 use super::row_lanes::{MOST_CASES, RowWork};
 pub use super::slot::SizedJoint;
-pub(super) use super::slot::{Slot, link_piece};
+pub(super) use super::slot::Slot;
 use super::slot::{choice_slot, joint_slot, link_slot};
 use super::space::{DesignSpace, SpacePiece};
 use super::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot, reaches_m};
 use super::{Finished, Objectives, OutwardIn};
-use crate::arm::Curve;
+use crate::arm::JointLaw;
 use crate::catalog::Catalogs;
 use crate::mechanics::Wrench;
 use crate::mechanics::lanes::{LANES, in_lanes};
@@ -23,6 +24,8 @@ use std::ops::Range;
 pub struct ArmProblem<'c> {
     space: &'c DesignSpace,
     slots: Vec<Slot<'c>>,
+    /// Slot of each piece, base to tip; effects may have slots of their own beside them.
+    piece_slots: Vec<usize>,
     level_slots: Vec<usize>,
     level_sizes: Vec<u32>,
     stations: Vec<Station>,
@@ -71,19 +74,24 @@ impl<'c> ArmProblem<'c> {
     /// Tabulates drives and compiles poses.
     pub fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Self {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
-        let mut reaches = reaches_m(space, sizing).into_iter();
-        let mut slots: Vec<Slot> = space
-            .pieces
-            .iter()
-            .map(|piece| match piece {
-                SpacePiece::Joint(joint) => {
-                    joint_slot(space, joint, reaches.next().unwrap_or_default(), catalogs)
+        let mut reaches = reaches_m(space, sizing);
+        let mut piece_slots = vec![0; space.pieces.len()];
+        let mut slots: Vec<Slot> = Vec::new();
+        for (piece, layer) in space.layers() {
+            if let Layer::Piece(_) = layer {
+                piece_slots[piece] = slots.len();
+            }
+            slots.push(match layer {
+                Layer::Piece(SpacePiece::Joint(joint)) => {
+                    joint_slot(space, joint, reaches.pop().unwrap_or_default(), catalogs)
                 }
-                SpacePiece::Link(link) => link_slot(space, link),
-                SpacePiece::Choice(choice) => choice_slot(space, choice),
-            })
-            .collect();
-        slots.reverse();
+                Layer::Piece(SpacePiece::Link(link)) => link_slot(space, link),
+                Layer::Piece(SpacePiece::Choice(choice)) => choice_slot(space, choice),
+                Layer::Tilt(tilt) => Slot::Given { law: tilt.law(), mass_kg: 0.0 },
+                // it weighs, but is none of the links and drives whose mass counts
+                Layer::Mass(_) => Slot::Offset { mass_kg: 0.0 },
+            });
+        }
         let level_slots: Vec<usize> = (0..slots.len()).filter(|&i| slots[i].is_level()).collect();
         let level_sizes = level_slots.iter().map(|&i| slots[i].options()).collect();
         let a_over_g = space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE);
@@ -95,6 +103,7 @@ impl<'c> ArmProblem<'c> {
             materials: space.material_names().len(),
             peak_factor: 1.0 + a_over_g,
             slots,
+            piece_slots,
             row: None,
         };
         problem.row = Row::new(&problem);
@@ -108,7 +117,7 @@ impl<'c> ArmProblem<'c> {
 
     /// The table of a sized joint by its place among the pieces, base to tip.
     pub fn sized_joint(&self, piece: usize) -> Option<&SizedJoint<'c>> {
-        match &self.slots[self.slots.len() - 1 - piece] {
+        match &self.slots[self.piece_slots[piece]] {
             Slot::Sized(sized) => Some(sized),
             _ => None,
         }
@@ -145,8 +154,8 @@ impl<'c> ArmProblem<'c> {
     }
 
     /// Option of every piece of a complete arm, base to tip.
-    pub fn options<'p>(&self, complete: &'p Partial) -> impl Iterator<Item = u32> + 'p {
-        complete.options.iter().rev().copied()
+    pub fn options<'p>(&'p self, complete: &'p Partial) -> impl Iterator<Item = u32> + 'p {
+        self.piece_slots.iter().map(|&slot| complete.options[slot])
     }
 
     /// What each sized joint of an arm is asked for, base to tip, as pairs of piece and demand; and the mass
@@ -155,14 +164,16 @@ impl<'c> ArmProblem<'c> {
         self.demand(&partial.stations, slot, self.slots[slot].motion())
     }
 
-    /// Walks a complete choice (one option a level) and shows every joint's demand on the way, tip first:
-    /// `(slot, demand, mass outboard)`. Returns the arm, or the slot at which it fails.
+    /// Walks a complete choice (one option a level) and shows the arm outboard of every piece on the way,
+    /// tip first. Returns the arm, or the slot at which it fails.
     pub fn walk(&self, options: &[u32], mut see: impl FnMut(usize, &Partial)) -> Result<Partial, usize> {
         let mut partial = self.empty();
         let mut levels = options.iter();
         while partial.next_slot < self.slots.len() {
             let slot = partial.next_slot;
-            see(slot, &partial);
+            if self.piece_slots.contains(&slot) {
+                see(slot, &partial);
+            }
             let option = if self.slots[slot].is_level() { levels.next().copied().unwrap_or(0) } else { 0 };
             if !self.add(slot, option, &mut partial) {
                 return Err(slot);
@@ -173,7 +184,7 @@ impl<'c> ArmProblem<'c> {
 
     /// The piece (base to tip) that stands in a slot (tip first).
     pub fn piece_of_slot(&self, slot: usize) -> usize {
-        self.slots.len() - 1 - slot
+        self.piece_slots.iter().position(|&s| s == slot).unwrap_or_default()
     }
 
     pub(super) fn slots(&self) -> &[Slot<'c>] {
@@ -246,7 +257,7 @@ impl<'c> ArmProblem<'c> {
         to.next_slot = slot + 1;
         to.options[slot] = option;
         let added = match &self.slots[slot] {
-            Slot::Given { curve, mass_kg } => self.add_joint(slot, curve, *mass_kg, to),
+            Slot::Given { law, mass_kg } => self.add_joint(slot, law, *mass_kg, to),
             Slot::Sized(sized) => self.add_sized(slot, sized, option, to),
             Slot::Link { options, .. } => self.add_link(slot, option, &options[option as usize], to),
             Slot::Offset { mass_kg } => self.add_offset(slot, *mass_kg, to),
@@ -262,7 +273,7 @@ impl<'c> ArmProblem<'c> {
         };
         let Some(index) = index else { return false };
         to.options[slot] = index as u32;
-        self.add_joint(slot, &sized.curves[index], sized.table.mass_kg(index), to)
+        self.add_joint(slot, &sized.laws[index], sized.table.mass_kg(index), to)
     }
 
     /// What a joint is asked for: worst static torque and worst outboard inertia over the sizing cases.
@@ -285,12 +296,12 @@ impl<'c> ArmProblem<'c> {
         )
     }
 
-    fn add_joint(&self, slot: usize, curve: &Curve, mass_kg: f64, to: &mut Partial) -> bool {
+    fn add_joint(&self, slot: usize, law: &JointLaw, mass_kg: f64, to: &mut Partial) -> bool {
         to.mass_kg += mass_kg;
         to.masses_kg[slot] = mass_kg;
         for (station, state) in self.stations.iter().zip(&mut to.stations) {
             if let StationSlot::Joint(joint) = &station.slots[slot] {
-                state.add_joint(slot, joint, curve, mass_kg);
+                state.add_joint(slot, joint, law, mass_kg);
             }
         }
         true
@@ -389,10 +400,10 @@ pub(super) fn block_steps<'a, const N: usize>(
 }
 
 impl StationState {
-    fn add_joint(&mut self, slot: usize, joint: &StationJoint, curve: &Curve, mass_kg: f64) {
+    fn add_joint(&mut self, slot: usize, joint: &StationJoint, law: &JointLaw, mass_kg: f64) {
         let torque_nm = joint.twist.dot(&self.wrench);
-        let compliance = curve.tangent_compliance_rad_per_nm(torque_nm);
-        self.tip_m += joint.tip_m_per_rad * curve.angle_rad(torque_nm);
+        let compliance = law.tangent_compliance_rad_per_nm(torque_nm);
+        self.tip_m += joint.tip_m_per_rad * law.rising_angle_rad(torque_nm);
         self.compliances[slot] = compliance;
         self.trace_s2[joint.block] += compliance * joint.twist.dot(&(self.inertia * joint.twist));
         self.inertia += joint.inertia_per_kg * mass_kg;

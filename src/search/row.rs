@@ -9,7 +9,7 @@ use super::figures::OptionFigures;
 use super::outward::{ArmProblem, Partial, Slot, block_steps};
 use super::row_lanes::MOST_CASES;
 use super::station::{Block, BlockSlot, Modal, Station, StationLink, StationSlot};
-use crate::arm::Curve;
+use crate::arm::{Curve, JointLaw};
 use crate::mechanics::lanes::{Eight, LANES};
 use crate::mechanics::lowest_lanes::{LaneLink, Outboard};
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
@@ -27,6 +27,8 @@ pub(super) struct Row {
     pub cases: Vec<RowCase>,
     /// Drives by inner slot, then by index; empty for links.
     pub drives: Vec<Vec<DriveFigures>>,
+    /// Whether a joint's drives twist by their three segments alone, by inner slot.
+    pub segmented: Vec<bool>,
 }
 
 /// What depends on the pose but not on the option.
@@ -45,7 +47,7 @@ pub(super) struct RowCase {
     pub sizing: bool,
 }
 
-/// A torsion curve as one of three segments, and the drive's mass.
+/// A torsion curve with the connection in series as one of three segments, and the drive's mass.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DriveFigures {
     pub mass_kg: f64,
@@ -121,13 +123,17 @@ pub(super) enum CaseOutboard {
 }
 
 impl DriveFigures {
-    pub fn new(mass_kg: f64, curve: &Curve) -> Self {
-        let (stiffness, ends_nm) = match curve {
+    pub fn new(mass_kg: f64, law: &JointLaw) -> Self {
+        let (stiffness, ends_nm) = match &law.curve {
             Curve::Rigid => ([f64::INFINITY; 3], [f64::INFINITY; 2]),
             Curve::Linear(k) => ([*k; 3], [f64::INFINITY; 2]),
             Curve::Windup(w) => ([w.k1_nm_per_rad, w.k2_nm_per_rad, w.k3_nm_per_rad], [w.t1_nm, w.t2_nm]),
         };
-        Self { mass_kg, stiffness, ends_nm }
+        let series = |k: f64| match law.connection_rad_per_nm {
+            0.0 => k,
+            compliance => 1.0 / (1.0 / k + compliance),
+        };
+        Self { mass_kg, stiffness: stiffness.map(series), ends_nm }
     }
 }
 
@@ -160,20 +166,36 @@ impl Row {
                 .collect(),
             _ => Vec::new(),
         };
-        Some(Self { first, chunks, cases, drives: slots.iter().map(drive_figures).collect() })
+        Some(Self {
+            first,
+            chunks,
+            cases,
+            drives: slots.iter().map(drive_figures).collect(),
+            segmented: slots.iter().map(is_segmented).collect(),
+        })
     }
 }
 
 fn drive_figures(slot: &Slot) -> Vec<DriveFigures> {
     match slot {
-        Slot::Given { curve, mass_kg } => vec![DriveFigures::new(*mass_kg, curve)],
+        Slot::Given { law, mass_kg } => vec![DriveFigures::new(*mass_kg, law)],
         Slot::Sized(sized) => sized
-            .curves
+            .laws
             .iter()
             .enumerate()
-            .map(|(i, curve)| DriveFigures::new(sized.table.mass_kg(i), curve))
+            .map(|(i, law)| DriveFigures::new(sized.table.mass_kg(i), law))
             .collect(),
         _ => Vec::new(),
+    }
+}
+
+/// Neither play nor friction, which no three segments describe.
+fn is_segmented(slot: &Slot) -> bool {
+    let plain = |law: &JointLaw| law.lost_motion.is_none() && law.hysteresis_rad == 0.0;
+    match slot {
+        Slot::Given { law, .. } => plain(law),
+        Slot::Sized(sized) => sized.laws.iter().all(plain),
+        _ => true,
     }
 }
 

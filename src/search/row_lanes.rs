@@ -117,13 +117,13 @@ impl<const CASES: usize> RowWork<'_, '_, CASES> {
             match slot {
                 Slot::Link { .. } => self.add_link(&self.row.chunks[self.chunk], arms),
                 Slot::Offset { mass_kg } => self.add_offset(k, *mass_kg, arms),
-                Slot::Given { .. } => self.add_joint(k, [self.row.drives[k][0]; LANES], arms),
+                Slot::Given { .. } => self.add_joint(k, [0; LANES], arms),
                 Slot::Sized(sized) => {
                     let indices = self.pick(k, sized, arms);
                     if arms.held == 0 {
                         return;
                     }
-                    self.add_joint(k, indices.map(|i| self.row.drives[k][i]), arms);
+                    self.add_joint(k, indices, arms);
                 }
             }
         }
@@ -261,7 +261,8 @@ impl<const CASES: usize> RowWork<'_, '_, CASES> {
     }
 
     #[inline(always)]
-    fn add_joint<V: Lanes>(&self, k: usize, drives: [DriveFigures; LANES], arms: &mut Growing<V, CASES>) {
+    fn add_joint<V: Lanes>(&self, k: usize, indices: [usize; LANES], arms: &mut Growing<V, CASES>) {
+        let drives = indices.map(|i| self.row.drives[k][i]);
         let mass = gather(&drives, |d| d.mass_kg);
         let stiffness = [
             gather(&drives, |d| d.stiffness[0]),
@@ -274,7 +275,11 @@ impl<const CASES: usize> RowWork<'_, '_, CASES> {
         for (c, case) in self.row.cases.iter().enumerate() {
             let Some(joint) = self.joint(c, k) else { continue };
             let lanes = &mut arms.cases[c];
-            let (angle, compliance) = windup(torque(joint, lanes), &stiffness, &ends);
+            let torque_nm = torque(joint, lanes);
+            let (angle, compliance) = match self.row.segmented[k] {
+                true => windup(torque_nm, &stiffness, &ends),
+                false => self.each_by_itself(k, indices, torque_nm),
+            };
             lanes.compliance[k] = compliance;
             for i in (0..3).filter(|&i| joint.tip_m_per_rad[i] != 0.0) {
                 lanes.tip_m[i] = lanes.tip_m[i] + V::splat(joint.tip_m_per_rad[i]) * angle;
@@ -287,6 +292,19 @@ impl<const CASES: usize> RowWork<'_, '_, CASES> {
                 lanes.inertia_at[j] = lanes.inertia_at[j] + V::splat(case.carried[k][j]) * mass;
             }
         }
+    }
+
+    /// Twist under a torque and twist per further torque of joints with play or friction.
+    fn each_by_itself<V: Lanes>(&self, k: usize, indices: [usize; LANES], torque_nm: V) -> (V, V) {
+        let slot = &self.problem.slots()[self.row.first + k];
+        let (torques_nm, mut angles, mut compliances) = (torque_nm.store(), [0.0; LANES], [0.0; LANES]);
+        for lane in 0..LANES {
+            if let Some(law) = slot.law(indices[lane]) {
+                angles[lane] = law.rising_angle_rad(torques_nm[lane]);
+                compliances[lane] = law.tangent_compliance_rad_per_nm(torques_nm[lane]);
+            }
+        }
+        (V::load(&angles), V::load(&compliances))
     }
 
     #[inline(always)]

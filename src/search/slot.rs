@@ -2,13 +2,13 @@
 
 use super::figures::{OptionFigures, figures};
 use super::space::{DesignSpace, DriveChoice, LinkChoice, LinkOption, SpaceJoint};
-use crate::arm::{Curve, Link, LinkBody, LinkPiece, windup_of};
+use crate::arm::{Curve, JointLaw, Link, LinkBody, windup_of};
 use crate::catalog::Catalogs;
 use crate::sizing::{DriveFilter, DriveTable, JointMotion};
 
-/// One piece of the chain, tip first.
+/// What the search adds in one step, tip first.
 pub(super) enum Slot<'c> {
-    Given { curve: Curve, mass_kg: f64 },
+    Given { law: JointLaw, mass_kg: f64 },
     Sized(SizedJoint<'c>),
     Link { options: Vec<OptionFigures>, open: bool },
     Offset { mass_kg: f64 },
@@ -18,7 +18,7 @@ pub(super) enum Slot<'c> {
 pub struct SizedJoint<'c> {
     /// Every legal drive, lightest first.
     pub table: DriveTable<'c>,
-    pub(super) curves: Vec<Curve>,
+    pub(super) laws: Vec<JointLaw>,
     pub(super) all_fits: bool,
 }
 
@@ -42,6 +42,15 @@ impl Slot<'_> {
         }
     }
 
+    /// How the joint twists with one of its drives.
+    pub fn law(&self, option: usize) -> Option<&JointLaw> {
+        match self {
+            Slot::Given { law, .. } => Some(law),
+            Slot::Sized(sized) => Some(&sized.laws[option]),
+            _ => None,
+        }
+    }
+
     pub fn motion(&self) -> Option<&JointMotion> {
         match self {
             Slot::Sized(sized) => Some(sized.table.motion()),
@@ -58,7 +67,7 @@ pub(super) fn joint_slot<'c>(
 ) -> Slot<'c> {
     let (filter, all_fits) = match &joint.drive {
         DriveChoice::Given { curve, mass_kg, .. } => {
-            return Slot::Given { curve: space.curve(*curve), mass_kg: *mass_kg };
+            return Slot::Given { law: space.joint_piece(joint, *curve).law, mass_kg: *mass_kg };
         }
         DriveChoice::FirstFit(filter) => (filter, false),
         DriveChoice::AllFits(filter) => (filter, true),
@@ -71,10 +80,11 @@ pub(super) fn joint_slot<'c>(
         &catalogs.gears,
         &catalogs.motors,
     );
-    let curves = (0..table.len())
-        .map(|i| windup_of(table.drive(i).gear).map_or(Curve::Rigid, |w| space.curve(Curve::Windup(w))))
+    let laws = (0..table.len())
+        .map(|i| windup_of(table.drive(i).gear).map_or(Curve::Rigid, Curve::Windup))
+        .map(|curve| space.joint_piece(joint, curve).law)
         .collect();
-    Slot::Sized(SizedJoint { table, curves, all_fits })
+    Slot::Sized(SizedJoint { table, laws, all_fits })
 }
 
 /// Leaves out gears without a complete torsion curve: what they would deflect cannot be said.
@@ -131,9 +141,14 @@ impl LinkChoice {
             },
         }
     }
-}
 
-/// A link as mechanics sees it.
-pub(super) fn link_piece(link: &Link) -> LinkPiece {
-    crate::arm::link_piece(link)
+    /// The link with its first option; a rigid offset if there is none.
+    pub(super) fn first_link(&self) -> Link {
+        let nothing = || Link {
+            name: self.name.clone(),
+            vector_m: self.vector_m,
+            body: LinkBody::Offset { mass_kg: 0.0 },
+        };
+        self.options.first().map_or_else(nothing, |option| self.link(option))
+    }
 }

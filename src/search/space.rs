@@ -1,7 +1,7 @@
 //! What there is to choose: the arm with its open links and drives, and what it is asked to do.
 
 use super::constraint::Constraints;
-use crate::arm::{Curve, JointModel, Link, LinkMaterial, LinkModel, Payload, Section, Water};
+use crate::arm::{Curve, Effect, JointModel, Link, LinkMaterial, LinkModel, Payload, Section, Water};
 use crate::sizing::{DriveFilter, MotionRequirement};
 use nalgebra::{Unit, Vector3};
 
@@ -28,6 +28,8 @@ pub struct DesignSpace {
     pub joints: JointModel,
     /// What every design must meet.
     pub constraints: Constraints,
+    /// Physics beyond the nominal model; effects that describe a test are left out of every calculation.
+    pub effects: Vec<Effect>,
 }
 
 /// One case of a study: a pose, a load, and what is around the arm.

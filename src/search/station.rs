@@ -4,8 +4,9 @@
 //! the plane (x, z, rotation about y) and across it (y, rotations about x and z) do not couple, and the
 //! lowest mode is found in two blocks of three motions instead of one of six.
 
-use super::space::{Case, DesignSpace, SpacePiece};
-use crate::arm::{LinkModel, Structure};
+use super::effects::Layer;
+use super::space::{Case, DesignSpace, LinkChoice, SpacePiece};
+use crate::arm::{Link, Structure};
 use crate::mechanics::beam::{PreparedBeam, section_frame};
 use crate::mechanics::condensed::{CondensedLink, PlacedLink};
 use crate::mechanics::lowest::BlockLink;
@@ -24,11 +25,11 @@ pub(super) struct Station {
     pub start_inertia: Matrix6<f64>,
 }
 
-/// One piece in a pose.
+/// What the search adds in one step, in a pose.
 pub(super) enum StationSlot {
     /// A joint.
     Joint(StationJoint),
-    /// A point mass on a rigid offset.
+    /// A rigid body: a point mass, or a rigid offset with what is along it.
     Body { inertia: Matrix6<f64>, weight: Wrench },
     /// A tube: one entry per option.
     Link { options: Vec<StationLink>, place: Place },
@@ -97,12 +98,8 @@ const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
 impl Station {
     /// Compiles a case.
     pub fn new(space: &DesignSpace, case: &Case) -> Self {
-        let structure = Structure {
-            gravity_m_s2: space.gravity_m_s2,
-            base_tilt_rad_per_nm: 0.0,
-            water: case.water,
-            pieces: Vec::new(),
-        };
+        let around = space.surroundings();
+        let structure = Structure { water: case.water.or(around.water), ..around };
         let walk = Walk::new(space, case);
         let rotation = walk.tip_rotation.matrix();
         let payload = &case.payload;
@@ -110,15 +107,16 @@ impl Station {
         let inertia_kgm2 =
             rotation * Matrix3::from_diagonal(&payload.inertia_about_cg_kgm2) * rotation.transpose();
         let start_inertia = body_inertia(payload.mass_kg, &cg_m, &inertia_kgm2);
-        let buoyancy = case.water.map_or(0.0, |w| w.density_kg_m3 / w.payload_density_kg_m3);
+        let buoyancy = structure.water.map_or(0.0, |w| w.density_kg_m3 / w.payload_density_kg_m3);
         let weight_n = payload.mass_kg * space.gravity_m_s2 * (1.0 - buoyancy);
         let start_wrench = force_wrench(&case.tip_force_n, &walk.tip_m) + weight_wrench(weight_n, &cg_m);
         let built: Vec<Built> = space
-            .pieces
-            .iter()
-            .zip(&walk.places)
-            .rev()
-            .map(|(piece, place)| build(piece, place, &walk.tip_m, &structure, space.links))
+            .layers()
+            .into_iter()
+            .map(|(piece, layer)| {
+                Builder { space, structure: &structure, place: &walk.places[piece], tip_m: &walk.tip_m }
+                    .build(layer)
+            })
             .collect();
         let modal = match planar(&built, &start_inertia) {
             true => Modal::Planar(Box::new(PLANES.map(|p| block(&built, &start_inertia, p)))),
@@ -189,47 +187,75 @@ enum Built {
     Link { options: Vec<(PlacedLink, StationLink)>, place: Place },
 }
 
-fn build(
-    piece: &SpacePiece,
-    (at_m, rotation): &(Vector3<f64>, Rotation3<f64>),
-    tip_m: &Vector3<f64>,
-    structure: &Structure,
-    model: LinkModel,
-) -> Built {
-    match piece {
-        SpacePiece::Joint(joint) => {
-            let twist = rotation_twist(&(rotation * joint.axis), at_m);
-            Built::Joint(StationJoint {
-                twist,
-                tip_m_per_rad: displacement_at(&twist, tip_m),
-                inertia_per_kg: body_inertia(1.0, at_m, &Matrix3::zeros()),
-                weight_per_kg: weight_wrench(structure.gravity_m_s2, at_m),
-                block: usize::from(PLANES[1].iter().any(|&i| twist[i].abs() > 1e-12 * twist.amax())),
-            })
+/// Builds what stands at one place of a pose.
+struct Builder<'a> {
+    space: &'a DesignSpace,
+    structure: &'a Structure,
+    place: &'a (Vector3<f64>, Rotation3<f64>),
+    tip_m: &'a Vector3<f64>,
+}
+
+impl Builder<'_> {
+    fn build(&self, layer: Layer) -> Built {
+        let (at_m, rotation) = self.place;
+        match layer {
+            Layer::Tilt(tilt) => self.hinge(&tilt.axis(rotation)),
+            Layer::Mass(mass_kg) => self.body(mass_kg, at_m),
+            Layer::Piece(SpacePiece::Joint(joint)) => self.hinge(&(rotation * joint.axis)),
+            Layer::Piece(SpacePiece::Link(link)) => self.link(link),
+            Layer::Piece(SpacePiece::Choice(choice)) => self.choice(choice),
         }
-        SpacePiece::Link(link) => {
-            let piece = super::outward::link_piece(link);
-            match PreparedBeam::new(&piece, structure, model) {
-                Some(beam) => built_link(&[beam], &link.vector_m, at_m, rotation, tip_m),
-                None => {
-                    let centre = at_m + rotation * link.vector_m / 2.0;
-                    Built::Body {
-                        inertia: body_inertia(piece.point_mass_kg, &centre, &Matrix3::zeros()),
-                        weight: weight_wrench(piece.point_mass_kg * structure.gravity_m_s2, &centre),
-                    }
-                }
+    }
+
+    fn hinge(&self, axis: &Vector3<f64>) -> Built {
+        let (at_m, _) = self.place;
+        let twist = rotation_twist(axis, at_m);
+        Built::Joint(StationJoint {
+            twist,
+            tip_m_per_rad: displacement_at(&twist, self.tip_m),
+            inertia_per_kg: body_inertia(1.0, at_m, &Matrix3::zeros()),
+            weight_per_kg: weight_wrench(self.structure.gravity_m_s2, at_m),
+            block: usize::from(PLANES[1].iter().any(|&i| twist[i].abs() > 1e-12 * twist.amax())),
+        })
+    }
+
+    fn body(&self, mass_kg: f64, centre_m: &Vector3<f64>) -> Built {
+        Built::Body {
+            inertia: body_inertia(mass_kg, centre_m, &Matrix3::zeros()),
+            weight: weight_wrench(mass_kg * self.structure.gravity_m_s2, centre_m),
+        }
+    }
+
+    /// A tube, or a rigid offset with its point mass and what a harness along it weighs.
+    fn link(&self, link: &Link) -> Built {
+        let (at_m, rotation) = self.place;
+        let piece = self.space.link_piece(link);
+        let beam = PreparedBeam::new(&piece, self.structure, self.space.links);
+        if piece.beam.is_some()
+            && let Some(beam) = beam
+        {
+            return self.tube(&[beam], &link.vector_m);
+        }
+        let point = self.body(piece.point_mass_kg, &(at_m + rotation * link.vector_m / 2.0));
+        match (point, beam.map(|beam| self.tube(&[beam], &link.vector_m))) {
+            (Built::Body { inertia, weight }, Some(Built::Link { options, .. })) => {
+                let along = &options[0].1;
+                Built::Body { inertia: inertia + along.inertia, weight: weight + along.weight }
             }
+            (point, _) => point,
         }
-        SpacePiece::Choice(choice) => {
-            let beams: Vec<PreparedBeam> = choice
-                .options
-                .iter()
-                .filter_map(|o| {
-                    PreparedBeam::new(&super::outward::link_piece(&choice.link(o)), structure, model)
-                })
-                .collect();
-            built_link(&beams, &choice.vector_m, at_m, rotation, tip_m)
-        }
+    }
+
+    fn choice(&self, choice: &LinkChoice) -> Built {
+        let pieces = choice.options.iter().map(|option| self.space.link_piece(&choice.link(option)));
+        let beams: Vec<PreparedBeam> =
+            pieces.filter_map(|p| PreparedBeam::new(&p, self.structure, self.space.links)).collect();
+        self.tube(&beams, &choice.vector_m)
+    }
+
+    fn tube(&self, beams: &[PreparedBeam], vector_m: &Vector3<f64>) -> Built {
+        let (at_m, rotation) = self.place;
+        built_link(beams, vector_m, at_m, rotation, self.tip_m)
     }
 }
 

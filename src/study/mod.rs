@@ -1,6 +1,7 @@
 //! Named questions: read, resolve, run.
 
 mod diagnose;
+mod effects;
 mod outcome;
 pub mod paper;
 mod read;
@@ -8,6 +9,7 @@ mod sections;
 mod table;
 
 pub use diagnose::{empty_pieces, why_infeasible};
+pub use effects::{Carried, CorrectedStudy, carry_over, left_out};
 pub use outcome::{Front, Judged, StudyOutcome, run_study};
 pub use read::{Study, read_study};
 pub(crate) use table::sizing_rows;

@@ -3,9 +3,10 @@
 //! Lengths of sections and limits are in millimetres because that is how profiles are sold; everything
 //! else is SI. The resolved [`DesignSpace`] is SI throughout.
 
+use super::effects::check_effects;
 use super::sections::{read_materials, read_sections};
 use crate::arm::{JointModel, LinkModel, Payload};
-use crate::arm::{read_curve, read_joint_mass, read_link, read_name, read_pose, vector, word};
+use crate::arm::{read_curve, read_effects, read_joint_mass, read_link, read_name, read_pose, vector, word};
 use crate::catalog::{Catalogs, GearMass, MotorKind};
 use crate::fault::{Document, Faults, Node, Object};
 use crate::search::constraint::{Constraints, Servo};
@@ -26,7 +27,7 @@ pub struct Study {
     pub not_checked: Vec<String>,
 }
 
-const KEYS: [&str; 13] = [
+const KEYS: [&str; 14] = [
     "name",
     "question",
     "gravity_m_s2",
@@ -39,6 +40,7 @@ const KEYS: [&str; 13] = [
     "drives",
     "constraints",
     "models",
+    "effects",
     "notes",
 ];
 
@@ -73,6 +75,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let cases = read_cases(&root, &joints);
     let motion = root.or("motion", MotionRequirement::default(), read_motion);
     let (links, joint_model) = root.or("models", Default::default(), read_models)?;
+    let effects = root.or("effects", Vec::new(), read_effects);
     let Cases { cases, judged, sizing } = cases?;
     let mut motion = motion?;
     motion.gravity_m_s2 = gravity?;
@@ -87,7 +90,9 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         links,
         joints: joint_model,
         constraints: constraints?,
+        effects: effects?,
     };
+    check_effects(&space, &root)?;
     Some(Study { name: name?, question: question?, space, not_checked })
 }
 

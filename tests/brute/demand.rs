@@ -51,7 +51,7 @@ pub fn demand(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: 
     let speed_rad_s = max_speed_rad_s.unwrap_or(study.motion.tip_speed_m_s / lever_m);
     let acceleration_rad_s2 = speed_rad_s / study.motion.ramp_time_s;
     let torques = |(pose, posed): &(&Pose, Posed)| {
-        let bodies = bodies(pose, posed, index, outboard);
+        let bodies = bodies(study, pose, posed, index, outboard);
         let (axis, at_m) = (axis_in(posed), posed.places[index].start_m);
         let force_nm = axis.dot(&(posed.tip_m - at_m).cross(&pose.case.tip_force_n));
         let gravity_nm = |body: &Body| {
@@ -71,9 +71,11 @@ pub fn demand(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: 
 }
 
 /// Everything beyond the piece at `index`, the payload too.
-pub fn bodies(pose: &Pose, posed: &Posed, index: usize, outboard: &[Chosen]) -> Vec<Body> {
+pub fn bodies(study: &Study, pose: &Pose, posed: &Posed, index: usize, outboard: &[Chosen]) -> Vec<Body> {
     let pieces = outboard.iter().zip(&posed.places[index + 1..]);
     let mut bodies: Vec<Body> = pieces.map(|(piece, place)| piece.body(place)).collect();
+    let beyond = study.pieces.iter().zip(&posed.places).skip(index + 1);
+    bodies.extend(beyond.filter_map(|(piece, place)| study.added(piece, place)));
     let frame = &posed.places[posed.places.len() - 1].frame;
     let payload = &pose.case.payload;
     bodies.push(Body {

@@ -137,7 +137,8 @@ fn wall_slenderness(option: &LinkOption) -> f64 {
 }
 
 fn judged(study: &Study, poses: &[(&Pose, Posed)], chain: &[Chosen]) -> Design {
-    let arm = arm_file(study.gravity_m_s2, chain);
+    let mut arm = arm_file(study.gravity_m_s2, chain);
+    arm["effects"] = study.effects.clone();
     let (tip_deflection_mm, lowest_mode_hz) = objectives(&arm, study.poses.iter().map(|pose| &pose.case));
     Design {
         chain: chain.to_vec(),
@@ -160,6 +161,7 @@ fn link_cost_eur(piece: &Chosen) -> Option<f64> {
 pub fn objectives<'a>(arm: &Value, cases: impl Iterator<Item = &'a witness::LoadCase>) -> (f64, f64) {
     let mut options = witness::Options::default().with_modes(1);
     options.elements_per_link = ELEMENTS_PER_LINK;
+    options.effects = witness::Effects::from_json(&arm["effects"]);
     cases.fold((0.0, f64::INFINITY), |(deflection_mm, mode_hz): (f64, f64), case| {
         let answer = witness::analyze(arm, case, &options);
         let first_hz = answer.modes.first().map_or(f64::INFINITY, |mode| mode.frequency_hz);

@@ -54,7 +54,8 @@ pub struct Results {
 }
 
 impl Results {
-    fn read(dir: &Path) -> Self {
+    /// The results in a folder.
+    pub fn read(dir: &Path) -> Self {
         let run: Value = read_json(&dir.join("run.json"));
         let materials = run["materials"].as_array().expect("a list of materials").clone();
         let front_of = |m: &Value| {

@@ -40,13 +40,14 @@ fn wrench(
     chain: &[Chosen],
     is_root: bool,
 ) -> (Vector3<f64>, Vector3<f64>) {
-    let mut beyond = bodies(pose, posed, index, &chain[index + 1..]);
+    let mut beyond = bodies(study, pose, posed, index, &chain[index + 1..]);
     let at_m = match is_root {
         true => posed.places[index].start_m,
         false => posed.places.get(index + 1).map_or(posed.tip_m, |place| place.start_m),
     };
     if is_root {
         beyond.push(chain[index].body(&posed.places[index]));
+        beyond.extend(study.added(&study.pieces[index], &posed.places[index]));
     }
     let tip_force_n = pose.case.tip_force_n;
     let mut total = (tip_force_n, (posed.tip_m - at_m).cross(&tip_force_n));

@@ -1,9 +1,9 @@
 //! A study, read from its JSON into lists to loop over.
 
-use nalgebra::{Rotation3, Unit, Vector3};
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use serde_json::{Value, json};
 
-use super::arm::{Link, LinkOption};
+use super::arm::{Body, Link, LinkOption};
 use super::catalog::{Catalog, Row};
 use super::drive::{Drive, candidates};
 use crate::witness::LoadCase;
@@ -46,6 +46,8 @@ pub struct Study {
     /// Drives that may be chosen, lightest first.
     pub drives: Vec<Drive>,
     pub constraints: Value,
+    /// As an arm file has them.
+    pub effects: Value,
 }
 
 impl Study {
@@ -58,6 +60,7 @@ impl Study {
             motion: read_motion(&study["motion"]),
             drives: candidates(&study["drives"], catalog),
             constraints: study["constraints"].clone(),
+            effects: study["effects"].clone(),
         }
     }
 
@@ -79,6 +82,23 @@ impl Study {
             places.push(Place { start_m, frame });
         }
         Posed { places, tip_m: at_m }
+    }
+
+    /// What effects add to the weight of a piece: a mass at a joint, a harness along a link.
+    pub fn added(&self, piece: &Piece, place: &Place) -> Option<Body> {
+        let (name, vector_m) = match piece {
+            Piece::Joint { name, .. } => (name, Vector3::zeros()),
+            Piece::Fixed(link) => (&link.name, link.vector_m),
+            Piece::Choice { name, vector_m, .. } => (name, *vector_m),
+        };
+        let here = self.effects.as_array()?.iter().filter(|effect| effect["at"] == *name);
+        let figure = |effect: &Value, key: &str| effect["parameters"][key].as_f64().unwrap_or(0.0);
+        let length_m = vector_m.norm();
+        let mass_kg: f64 = here.map(|e| figure(e, "delta_kg") + figure(e, "kg_per_m") * length_m).sum();
+        let span_m = place.frame * vector_m;
+        let across = Matrix3::identity() * span_m.norm_squared() - span_m * span_m.transpose();
+        let centre_m = place.start_m + 0.5 * span_m;
+        (mass_kg != 0.0).then_some(Body { mass_kg, centre_m, inertia_kgm2: across * (mass_kg / 12.0) })
     }
 
     /// A limit of the study, if it sets one.

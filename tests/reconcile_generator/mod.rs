@@ -246,7 +246,14 @@ fn scattered(dice: &mut Dice, arm: &Value) -> Value {
     };
     for part in arm["chain"].as_array_mut().expect("chain") {
         if part["type"] == "joint" {
-            times(&mut part["stiffness_nm_per_rad"], 0.05);
+            if part["windup"].is_object() {
+                let factor = times(&mut part["windup"]["k2_nm_per_rad"], 0.05);
+                for key in ["k1_nm_per_rad", "k3_nm_per_rad"] {
+                    part["windup"][key] = json!(part["windup"][key].as_f64().expect("number") * factor);
+                }
+            } else {
+                times(&mut part["stiffness_nm_per_rad"], 0.05);
+            }
             times(&mut part["mass_kg"], 0.01);
         }
     }
@@ -276,7 +283,8 @@ impl Built {
         parts
             .map(|p| {
                 let name = p["name"].as_str().expect("name").to_string();
-                (name, Vector3::from(three(&p["axis"])), p["stiffness_nm_per_rad"].as_f64().expect("k"))
+                let k = p["stiffness_nm_per_rad"].as_f64().or(p["windup"]["k2_nm_per_rad"].as_f64());
+                (name, Vector3::from(three(&p["axis"])), k.expect("k"))
             })
             .collect()
     }
@@ -408,7 +416,10 @@ impl Built {
         let mut out = String::from("test,joint,torque_nm,branch,windup_arcmin,sigma_arcmin\n");
         let mut test = 0;
         for (name, _, k) in self.joints().into_iter().filter(|j| ["j2", "j3", "j5"].contains(&j.0.as_str())) {
-            let largest = (k * 9e-4 / 50.0).round() * 50.0;
+            let largest = match (k * 9e-4 / 50.0).round() * 50.0 {
+                0.0 => (k * 9e-4).ceil(),
+                coarse => coarse,
+            };
             let up: Vec<f64> = (-8..=8).map(|i| largest * i as f64 / 8.0).collect();
             let down: Vec<f64> = up.iter().rev().copied().collect();
             let (h, law) = (self.beyond.play.get(&name).copied().unwrap_or(0.0), self.law(&name, k));
@@ -434,7 +445,9 @@ impl Built {
         let e = &self.effects;
         let series = e.connection_compliance_nm_per_rad.get(name).map_or(0.0, |c| 1.0 / c);
         let lost = e.lost_motion.get(name).copied();
-        let curve: Option<ThreeSegment> = e.soft_windup.get(name).copied();
+        let parts = self.arm["chain"].as_array().expect("chain");
+        let own = parts.iter().find(|p| p["name"] == name).map(|p| &p["windup"]).filter(|w| w.is_object());
+        let curve = e.soft_windup.get(name).copied().or(own.map(ThreeSegment::from_json));
         Box::new(move |t| {
             let gear = match curve {
                 None => t / k,

@@ -19,6 +19,7 @@ use crate::search::design::Part as DesignPart;
 use crate::search::space::SpacePiece;
 use crate::sizing::{JointDemand, JointMotion};
 use nalgebra::Vector3;
+use std::sync::Arc;
 
 /// Rounding of a sum of a few dozen terms, with room.
 const ROUNDING: f64 = 1e-12;
@@ -123,7 +124,7 @@ impl<'c> Problem<'c> {
     pub fn bound(
         &self,
         cell: &[u32],
-        shapes: &mut [Shape],
+        shapes: &mut Arc<Vec<Shape>>,
         work: &mut Work,
         beaten: impl Fn(&Ceiling) -> bool,
         near: impl Fn(&Ceiling) -> bool,
@@ -166,7 +167,7 @@ impl<'c> Problem<'c> {
         if !work.is_point() && !near(&ceiling) {
             return Verdict::Open(ceiling);
         }
-        self.refine(&mut ceiling, shapes, starts, work, fails)
+        self.refine(&mut ceiling, &mut Arc::make_mut(shapes)[..], starts, work, fails)
     }
 
     /// Improves the shapes until the box is cut or none moves any more.

@@ -117,7 +117,7 @@ impl<'c> Problem<'c> {
         let space = self.space;
         Some(match piece {
             SpacePiece::Joint(joint) => match joint_slot(space, joint, reach_m, catalogs) {
-                Slot::Given { curve, mass_kg } => Part::Given { mass_kg, curve: CurveBox::of(&curve) },
+                Slot::Given { law, mass_kg } => Part::Given { mass_kg, curve: CurveBox::of(&law.curve) },
                 Slot::Sized(sized) if sized.all_fits => {
                     let allowed = self.level(sized.table.len(), only);
                     let tree = Tree::build(allowed.into_iter().map(|i| (i, drive_box(&sized, i))))?;
@@ -187,6 +187,6 @@ fn drive_box(sized: &SizedJoint, index: u32) -> DriveBox {
     DriveBox {
         mass_kg: [mass_kg; 2],
         limits: *sized.table.limits(index),
-        curve: CurveBox::of(&sized.curves[index]),
+        curve: CurveBox::of(&sized.laws[index].curve),
     }
 }

@@ -11,7 +11,7 @@ use crate::search::space::DesignSpace;
 use crate::search::sweep::Candidate;
 use rayon::prelude::*;
 use std::collections::VecDeque;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Boxes to open before the workers start.
@@ -56,7 +56,7 @@ struct Search<'s, 'p> {
 
 struct Box_ {
     cell: Cell,
-    shapes: Vec<Shape>,
+    shapes: Arc<Vec<Shape>>,
 }
 
 impl<'p> Exact<'p> {
@@ -167,7 +167,7 @@ impl Search<'_, '_> {
     fn run(&self) {
         let mut work = Work::default();
         let Some(shapes) = self.problem.first_shapes(&mut work) else { return };
-        let mut queue = VecDeque::from([Box_ { cell: self.problem.root(), shapes }]);
+        let mut queue = VecDeque::from([Box_ { cell: self.problem.root(), shapes: Arc::new(shapes) }]);
         while queue.len() < TASKS {
             let Some(next) = queue.pop_front() else { break };
             let mut children = Vec::new();
@@ -207,7 +207,7 @@ impl Search<'_, '_> {
             return;
         };
         let Some([first, second]) = self.problem.halves(&here.cell, level) else { return };
-        let mut other = Box_ { cell: here.cell.clone(), shapes: here.shapes.clone() };
+        let mut other = Box_ { cell: here.cell.clone(), shapes: Arc::clone(&here.shapes) };
         other.cell[level] = second;
         here.cell[level] = first;
         child(other);

@@ -1,0 +1,115 @@
+//! A study run twice, as it stands and with what a reconciled arm taught, and what that changes.
+
+use super::run::{Asked, Written, load_study, search};
+use super::{Failure, carry, write_all};
+use crate::catalog::Catalogs;
+use crate::reconcile::{Outcome, Verdict};
+use crate::report::compare::changes::{Changes, Model, Values};
+use crate::search::design::number_of;
+use crate::search::{ArmProblem, evaluate};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// What the second run changes.
+pub(super) struct Rerun {
+    /// For the terminal.
+    pub text: String,
+    /// For `verdict.json`.
+    pub json: Value,
+    /// `study_changes.csv`, where both runs have a front.
+    pub csv: Option<String>,
+}
+
+impl Rerun {
+    /// The study was not run, or found nothing.
+    fn without(study: &str, status: &str, why: &str) -> Self {
+        Self {
+            text: format!("\nstudy {study}: {why}\n"),
+            json: json!({"study": study, "status": status, "why": why}),
+            csv: None,
+        }
+    }
+}
+
+/// Runs the study without and with the outcome's corrections; both results go into `dir`.
+///
+/// # Errors
+/// The study does not read, its results cannot be written, or the user stops it.
+pub(super) fn rerun(
+    outcome: &Outcome,
+    study: &str,
+    catalogs: &Catalogs,
+    overlay: Option<&Path>,
+    dir: &Path,
+) -> Result<Rerun, Failure> {
+    if outcome.verdict != Verdict::Explained {
+        let why = format!(
+            "not re-run: the verdict is {}, so there is no effect to put into it",
+            outcome.verdict.word()
+        );
+        return Ok(Rerun::without(study, "not_run", &why));
+    }
+    let (nominal, text) = load_study(study, catalogs)?;
+    let name = nominal.name.clone();
+    let calibrated: Vec<(String, f64)> =
+        outcome.calibrated.iter().map(|c| (c.name.clone(), c.factor.value)).collect();
+    let corrected = carry::corrected(&nominal, &text, &outcome.corrected, &calibrated, catalogs)?;
+    if corrected.study.space.effects.len() == nominal.space.effects.len() {
+        let mut rerun = Rerun::without(&name, "not_run", "not re-run: no effect carries over to it");
+        rerun.text.push_str(carry::to_text(&corrected.carried).trim_start());
+        rerun.json["carried_over"] = carry::to_json(&corrected.carried);
+        return Ok(rerun);
+    }
+    let nominal = Asked { study: nominal, text, carried: Vec::new() };
+    let mut found = Vec::new();
+    for (asked, folder) in [(&nominal, "nominal"), (&corrected, "corrected")] {
+        let results = dir.join("study").join(folder);
+        match search(asked, catalogs, overlay, &results) {
+            Ok(written) => {
+                write_all(&results, &written.files)?;
+                found.push(written);
+            }
+            Err(Failure::Infeasible(why)) => {
+                let words = format!("the {folder} model finds no design: {why}");
+                return Ok(Rerun::without(&name, "infeasible", &words));
+            }
+            Err(other) => return Err(other),
+        }
+    }
+    let changes = changes([&nominal, &corrected], &found, catalogs);
+    Ok(told(&name, &corrected, &found, &changes))
+}
+
+fn changes(asked: [&Asked; 2], found: &[Written], catalogs: &Catalogs) -> Changes {
+    let problems = asked.map(|a| ArmProblem::new(&a.study.space, catalogs));
+    let judge = |model: Model, id: &str| {
+        let objectives = evaluate(&problems[model as usize], number_of(id)?)?.objectives;
+        Some(Values {
+            tip_deflection_mm: objectives.tip_deflection_m * 1e3,
+            mass_kg: objectives.mass_kg,
+            lowest_mode_hz: objectives.lowest_mode_hz,
+        })
+    };
+    Changes::new([&found[0].front, &found[1].front], judge)
+}
+
+fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> Rerun {
+    let [stay, leave, enter] = changes.counts();
+    let sizes: Vec<usize> = found.iter().map(|w| w.front.rows.len()).collect();
+    let json = json!({
+        "study": name,
+        "status": "complete",
+        "carried_over": carry::to_json(&corrected.carried),
+        "effects_mass_kg": corrected.study.space.effects_mass_kg(),
+        "nominal": {"results": "study/nominal", "front_size": sizes[0]},
+        "corrected": {"results": "study/corrected", "front_size": sizes[1]},
+        "front": {"stay": stay, "leave": leave, "enter": enter},
+        "picks": changes.picks(),
+    });
+    let text = format!(
+        "\nstudy {name}, re-run with the corrected arm\n{}\n{}",
+        carry::to_text(&corrected.carried).trim_start(),
+        changes.to_text()
+    );
+    Rerun { text, json, csv: Some(changes.to_csv()) }
+}

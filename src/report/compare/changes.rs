@@ -1,0 +1,228 @@
+//! What another model of the same arm does to a study: the designs of the front before and after, each
+//! judged by both models, and which of the picks change.
+//!
+//! Designs are told apart by what the search chose, their `design_id`. Drives that the study sizes are
+//! sized anew under the other model.
+
+use crate::report::front_table::FrontTable;
+use crate::report::number::significant;
+use crate::report::picks::{choices, designs, picks};
+use crate::report::table::{Column, Table};
+use serde::Serialize;
+
+/// What a design is worth under one model.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Values {
+    /// Tip deflection \[mm\].
+    pub tip_deflection_mm: f64,
+    /// Mass \[kg\].
+    pub mass_kg: f64,
+    /// Lowest mode \[Hz\].
+    pub lowest_mode_hz: f64,
+}
+
+/// One of two models.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Model {
+    /// Without the corrections.
+    Nominal,
+    /// With them.
+    Corrected,
+}
+
+/// A design of either front.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Changed {
+    /// Name of the design.
+    pub design_id: String,
+    /// Whether it is on the front of either model, nominal first.
+    pub on_front: [bool; 2],
+    /// What each model makes of it; `None`: no drive of the catalogs holds it, or it breaks a limit.
+    pub values: [Option<Values>; 2],
+    /// What it is picked for under each model.
+    pub picks: [Vec<&'static str>; 2],
+    /// Its parts in words.
+    pub choices: String,
+}
+
+/// One of the designs a reader looks for first, under both models.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PickChange {
+    /// `lightest`, `stiffest`, `highest mode` or `knee`.
+    pub pick: &'static str,
+    /// Whether another design takes its place.
+    pub changes: bool,
+    /// The pick of the nominal model.
+    pub nominal_design_id: String,
+    /// What the nominal model says of it.
+    pub nominal: Option<Values>,
+    /// What the corrected model says of it; `None`: it no longer holds.
+    pub nominal_under_corrected: Option<Values>,
+    /// The pick of the corrected model.
+    pub corrected_design_id: String,
+    /// What the corrected model says of that.
+    pub corrected: Option<Values>,
+}
+
+/// Both fronts side by side.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Changes {
+    /// Every design of either front: those of the nominal front first.
+    pub designs: Vec<Changed>,
+}
+
+const PICKS: [&str; 4] = ["lightest", "stiffest", "highest mode", "knee"];
+
+impl Changes {
+    /// Compares two fronts of one study; `judge` says what a model makes of a design.
+    pub fn new(fronts: [&FrontTable; 2], judge: impl Fn(Model, &str) -> Option<Values>) -> Self {
+        let mut out = Self { designs: Vec::new() };
+        for (side, front) in fronts.into_iter().enumerate() {
+            let all = designs(front);
+            let picked = picks(&all);
+            for design in &all {
+                let at = out.entry(&design.design_id, || choices(front, design.row).join("; "), &judge);
+                at.on_front[side] = true;
+                let own = picked.iter().find(|p| p.design.row == design.row);
+                at.picks[side] = own.map_or(Vec::new(), |p| p.names.clone());
+            }
+        }
+        out
+    }
+
+    fn entry(
+        &mut self,
+        id: &str,
+        choices: impl FnOnce() -> String,
+        judge: &impl Fn(Model, &str) -> Option<Values>,
+    ) -> &mut Changed {
+        let known = self.designs.iter().position(|d| d.design_id == id);
+        let index = known.unwrap_or_else(|| {
+            self.designs.push(Changed {
+                design_id: id.to_string(),
+                on_front: [false; 2],
+                values: [Model::Nominal, Model::Corrected].map(|model| judge(model, id)),
+                picks: [Vec::new(), Vec::new()],
+                choices: choices(),
+            });
+            self.designs.len() - 1
+        });
+        &mut self.designs[index]
+    }
+
+    /// Number of designs on both fronts, on the nominal alone and on the corrected alone.
+    pub fn counts(&self) -> [usize; 3] {
+        [[true, true], [true, false], [false, true]]
+            .map(|on| self.designs.iter().filter(|d| d.on_front == on).count())
+    }
+
+    /// The picks under both models; none if a front is empty.
+    pub fn picks(&self) -> Vec<PickChange> {
+        let of = |side: usize, pick: &str| self.designs.iter().find(|d| d.picks[side].contains(&pick));
+        PICKS
+            .into_iter()
+            .filter_map(|pick| {
+                let (nominal, corrected) = (of(0, pick)?, of(1, pick)?);
+                Some(PickChange {
+                    pick,
+                    changes: nominal.design_id != corrected.design_id,
+                    nominal_design_id: nominal.design_id.clone(),
+                    nominal: nominal.values[0],
+                    nominal_under_corrected: nominal.values[1],
+                    corrected_design_id: corrected.design_id.clone(),
+                    corrected: corrected.values[1],
+                })
+            })
+            .collect()
+    }
+
+    /// Counts and picks for a terminal.
+    pub fn to_text(&self) -> String {
+        let [stay, leave, enter] = self.counts();
+        let mut table = Table::new(vec![
+            Column::left("pick"),
+            Column::left("design"),
+            Column::left("model"),
+            Column::unit("tip", "mm"),
+            Column::unit("mass", "kg"),
+            Column::unit("lowest mode", "Hz"),
+        ]);
+        let cells = |pick: &str, id: &str, model: &str, values: Option<Values>| {
+            let numbers = values.map_or([const { String::new() }; 3], |v| {
+                [v.tip_deflection_mm, v.mass_kg, v.lowest_mode_hz].map(|x| significant(x, 4))
+            });
+            let model = if values.is_some() { model.to_string() } else { "no longer holds".to_string() };
+            [pick.to_string(), id.to_string(), model].into_iter().chain(numbers)
+        };
+        for p in self.picks() {
+            table.row(cells(p.pick, &p.nominal_design_id, "nominal", p.nominal));
+            table.row(cells("", &p.nominal_design_id, "corrected", p.nominal_under_corrected));
+            if p.changes {
+                table.row(cells("", &p.corrected_design_id, "corrected, new pick", p.corrected));
+            }
+        }
+        format!("front: {stay} designs stay, {leave} leave, {enter} enter\n\n{}", table.to_text())
+    }
+
+    /// One line a design.
+    pub fn to_csv(&self) -> String {
+        let names = ["design_id", "front", "nominal_pick", "corrected_pick"];
+        let figures = ["tip_deflection_mm", "mass_kg", "lowest_mode_hz"];
+        let both = figures.iter().flat_map(|f| [format!("{f}_nominal"), format!("{f}_corrected")]);
+        let header = names.iter().map(ToString::to_string).chain(both).chain(["choices".to_string()]);
+        let mut table = Table::new(header.map(|h| Column::left(&h)).collect());
+        for d in &self.designs {
+            let front = match d.on_front {
+                [true, true] => "stays",
+                [true, false] => "leaves",
+                _ => "enters",
+            };
+            let of = |value: fn(&Values) -> f64| {
+                d.values.map(|v| v.map_or(String::new(), |v| crate::report::number::shortest(value(&v))))
+            };
+            let numbers = [of(|v| v.tip_deflection_mm), of(|v| v.mass_kg), of(|v| v.lowest_mode_hz)].concat();
+            let [before, after] = [0, 1].map(|side| d.picks[side].join(", "));
+            let names = [d.design_id.clone(), front.to_string(), before, after];
+            table.row(names.into_iter().chain(numbers).chain([d.choices.clone()]));
+        }
+        table.to_csv()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn front(rows: &[(&str, f64, f64, f64)]) -> FrontTable {
+        let columns = ["design_id", "tip_deflection_mm", "mass_kg", "lowest_mode_hz"].map(String::from);
+        let cells = |r: &(&str, f64, f64, f64)| {
+            vec![r.0.to_string(), r.1.to_string(), r.2.to_string(), r.3.to_string()]
+        };
+        FrontTable { columns: columns.to_vec(), rows: rows.iter().map(cells).collect() }
+    }
+
+    #[test]
+    fn a_pick_that_another_design_takes_is_shown_under_both_models() {
+        let nominal = front(&[("a", 1.0, 10.0, 20.0), ("b", 2.0, 5.0, 10.0)]);
+        let corrected = front(&[("c", 1.5, 10.0, 15.0), ("b", 2.5, 5.0, 9.0)]);
+        let judge = |model: Model, id: &str| {
+            let table = if model == Model::Nominal { &nominal } else { &corrected };
+            let found = designs(table).into_iter().find(|d| d.design_id == id)?;
+            Some(Values {
+                tip_deflection_mm: found.tip_deflection_mm,
+                mass_kg: found.mass_kg,
+                lowest_mode_hz: found.lowest_mode_hz,
+            })
+        };
+        let changes = Changes::new([&nominal, &corrected], judge);
+        assert_eq!(changes.counts(), [1, 1, 1]);
+        let picks = changes.picks();
+        let stiffest = picks.iter().find(|p| p.pick == "stiffest").expect("a pick");
+        assert!(stiffest.changes && stiffest.nominal_under_corrected.is_none());
+        assert_eq!([&stiffest.nominal_design_id, &stiffest.corrected_design_id], ["a", "c"]);
+        let lightest = picks.iter().find(|p| p.pick == "lightest").expect("a pick");
+        assert!(!lightest.changes);
+        assert_eq!(lightest.nominal_under_corrected.map(|v| v.tip_deflection_mm), Some(2.5));
+        assert!(changes.to_csv().contains("\na,leaves,"), "{}", changes.to_csv());
+    }
+}

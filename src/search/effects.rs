@@ -1,0 +1,151 @@
+//! The effects of a study on its arm as the search builds it.
+//!
+//! An effect is a piece of the arm: it changes a joint's law or a link's tube, or stands in the chain as a
+//! piece of its own, a spring that tilts or a mass that weighs. Each is applied by the same code that
+//! applies it to an arm file, so that the search, `analyze` and `reconcile` see it alike; stations, rows and
+//! lanes only ever see pieces.
+
+use super::space::{DesignSpace, SpaceJoint, SpacePiece};
+use crate::arm::effect::Subject;
+use crate::arm::{Curve, JointAngle, JointLaw, JointPiece, Link, LinkPiece, Piece, Structure, link_piece};
+use crate::mechanics::across;
+use nalgebra::{Rotation3, Vector3};
+
+/// What the search adds to an arm in one step.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Layer<'s> {
+    /// A piece of the chain.
+    Piece(&'s SpacePiece),
+    /// A spring about an axis across a joint's.
+    Tilt(Tilt<'s>),
+    /// A point mass at a joint beyond its drive's \[kg\].
+    Mass(f64),
+}
+
+/// One of the two springs of a bearing that tilts, or of the base.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tilt<'s> {
+    /// The joint whose bearing it is; `None` is the base.
+    joint: Option<&'s SpaceJoint>,
+    which: usize,
+    /// Tilt per moment \[rad/(N m)\].
+    pub rad_per_nm: f64,
+}
+
+impl Tilt<'_> {
+    /// The spring's axis where the joint's inboard side is turned by `rotation`.
+    pub fn axis(&self, rotation: &Rotation3<f64>) -> Vector3<f64> {
+        match self.joint {
+            Some(joint) => across(&(rotation * joint.axis))[self.which],
+            None => [Vector3::x(), Vector3::y()][self.which],
+        }
+    }
+
+    /// Twist under a moment.
+    pub fn law(&self) -> JointLaw {
+        JointLaw { connection_rad_per_nm: self.rad_per_nm, ..JointLaw::from(Curve::Rigid) }
+    }
+}
+
+impl DesignSpace {
+    /// Everything the search adds, tip first, each with the piece (base to tip) it stands at.
+    ///
+    /// The springs of a bearing turn about the joint's own place: they may come before the joint, where
+    /// everything outboard of an open drive is worked out once.
+    pub(super) fn layers(&self) -> Vec<(usize, Layer<'_>)> {
+        let mut out = Vec::with_capacity(self.pieces.len());
+        for (index, piece) in self.pieces.iter().enumerate().rev() {
+            let SpacePiece::Joint(joint) = piece else {
+                out.push((index, Layer::Piece(piece)));
+                continue;
+            };
+            let affected = self.joint_piece(joint, Curve::Rigid);
+            out.extend(tilts(Some(joint), affected.tilt_rad_per_nm).map(|tilt| (index, tilt)));
+            out.push((index, Layer::Piece(piece)));
+            if affected.mass_kg != 0.0 {
+                out.push((index, Layer::Mass(affected.mass_kg)));
+            }
+        }
+        out.extend(tilts(None, self.surroundings().base_tilt_rad_per_nm).map(|tilt| (0, tilt)));
+        out
+    }
+
+    /// A joint with this torsion curve under the study's joint model and with the effects at it; the mass
+    /// is what the effects add.
+    pub(super) fn joint_piece(&self, joint: &SpaceJoint, curve: Curve) -> JointPiece {
+        let nominal = nominal_joint(joint, self.curve(curve));
+        match self.affected(Piece::Joint(nominal.clone())) {
+            Some(Piece::Joint(joint)) => joint,
+            _ => nominal,
+        }
+    }
+
+    /// A link with the effects at it.
+    pub(super) fn link_piece(&self, link: &Link) -> LinkPiece {
+        let nominal = link_piece(link);
+        match self.affected(Piece::Link(nominal.clone())) {
+            Some(Piece::Link(link)) => link,
+            _ => nominal,
+        }
+    }
+
+    /// The arm's surroundings: gravity, the base, water.
+    pub(super) fn surroundings(&self) -> Structure {
+        self.with_effects(Vec::new())
+    }
+
+    /// Mass that the effects add to the arm \[kg\]: on top of links and drives, the same for every design.
+    pub fn effects_mass_kg(&self) -> f64 {
+        self.nominal_structure()
+            .pieces
+            .into_iter()
+            .filter_map(|piece| self.affected(piece))
+            .map(|piece| match piece {
+                Piece::Joint(joint) => joint.mass_kg,
+                Piece::Link(link) => link.harness_kg_per_m * link.vector_m.norm(),
+            })
+            .sum()
+    }
+
+    /// Names and kinds of all pieces without any effect, for checking where effects can sit: joints are
+    /// rigid and massless, open links have their first option.
+    pub fn nominal_structure(&self) -> Structure {
+        let piece = |piece: &SpacePiece| match piece {
+            SpacePiece::Joint(joint) => Piece::Joint(nominal_joint(joint, Curve::Rigid)),
+            SpacePiece::Link(link) => Piece::Link(link_piece(link)),
+            SpacePiece::Choice(choice) => Piece::Link(link_piece(&choice.first_link())),
+        };
+        self.bare(self.pieces.iter().map(piece).collect())
+    }
+
+    fn bare(&self, pieces: Vec<Piece>) -> Structure {
+        Structure { gravity_m_s2: self.gravity_m_s2, base_tilt_rad_per_nm: 0.0, water: None, pieces }
+    }
+
+    fn affected(&self, piece: Piece) -> Option<Piece> {
+        self.with_effects(vec![piece]).pieces.pop()
+    }
+
+    fn with_effects(&self, pieces: Vec<Piece>) -> Structure {
+        let mut subject = Subject::new(self.bare(pieces));
+        self.effects.iter().filter(|effect| !effect.is_of_test()).for_each(|effect| subject.apply(effect));
+        subject.structure
+    }
+}
+
+fn nominal_joint(joint: &SpaceJoint, curve: Curve) -> JointPiece {
+    JointPiece {
+        name: joint.name.clone(),
+        axis: joint.axis,
+        law: JointLaw::from(curve),
+        tilt_rad_per_nm: 0.0,
+        mass_kg: 0.0,
+        angle: JointAngle::Driven(0),
+    }
+}
+
+/// The two springs of a bearing or base that tilts; none if it does not.
+fn tilts(joint: Option<&SpaceJoint>, rad_per_nm: f64) -> impl Iterator<Item = Layer<'_>> {
+    let count = if rad_per_nm > 0.0 { 2 } else { 0 };
+    (0..count).map(move |which| Layer::Tilt(Tilt { joint, which, rad_per_nm }))
+}

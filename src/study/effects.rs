@@ -1,0 +1,179 @@
+//! The effects of a study: whether they fit its arm, and what of a measured arm's corrections carries
+//! over to it.
+//!
+//! A study asks which arm to build, a campaign measured one that was built. What the measured arm turned
+//! out to have (its effects) the next one has too, at the joints and links of the same name. How far its
+//! parts lay within their tolerance (calibration) belongs to those parts: a joint whose drive the study
+//! gives keeps that drive, so its calibrated value counts; a drive or a tube that the study chooses is
+//! another part, and keeps its catalog figures.
+
+use super::Study;
+use crate::arm::{Arm, Curve, Effect, LinkModel};
+use crate::fault::Object;
+use crate::reconcile::model::scaled;
+use crate::report::number::significant;
+use crate::search::DesignSpace;
+use crate::search::space::{DriveChoice, SpaceJoint, SpacePiece};
+use serde_json::{Value, json};
+
+/// One correction of a measured arm, and whether a study takes it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Carried {
+    /// The correction: `bearing_tilt at j3`, `j2.stiffness x 1.02`.
+    pub what: String,
+    /// Whether the study takes it.
+    pub carried: bool,
+    /// What it does there, or why it is left out.
+    pub words: String,
+}
+
+/// A study with what carries over to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CorrectedStudy {
+    /// The study's file with the corrections in it: a study like any other.
+    pub file: Value,
+    /// Every correction, taken or not.
+    pub carried: Vec<Carried>,
+}
+
+/// Records what is wrong with each effect of a study.
+pub(super) fn check_effects(space: &DesignSpace, root: &Object) -> Option<()> {
+    let Some(node) = root.optional("effects") else { return Some(()) };
+    let mut sound = true;
+    for (effect, node) in space.effects.iter().zip(node.array()?) {
+        if let Some((field, problem, hint)) = unfit(space, effect) {
+            sound = false;
+            node.fault_below::<()>(&field, problem, &hint);
+        }
+    }
+    sound.then_some(())
+}
+
+/// Why an effect does not fit a study's arm: the field, the problem, what to try.
+fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String)> {
+    if let Some(fault) = effect.faults(&space.nominal_structure()).into_iter().next() {
+        return Some((fault.field, fault.problem, fault.hint));
+    }
+    let at_joint = space.pieces.iter().find_map(|piece| match piece {
+        SpacePiece::Joint(joint) if joint.name == effect.at => Some(joint),
+        _ => None,
+    });
+    match (effect.effect.as_str(), at_joint.map(|joint| &joint.drive)) {
+        ("soft_windup", Some(DriveChoice::FirstFit(_) | DriveChoice::AllFits(_))) => Some((
+            "effect".into(),
+            format!(
+                "soft_windup is the torsion curve of one drive, and the study chooses the drive of {} from the \
+                 catalogs, each with a curve of its own",
+                effect.at
+            ),
+            "give the joint its drive in the study (gear and motor, or windup), or remove the effect".into(),
+        )),
+        ("extra_mass", Some(DriveChoice::Given { mass_kg, .. }))
+            if mass_kg + added_kg(space, effect) < 0.0 =>
+        {
+            Some((
+                "parameters.delta_kg".into(),
+                format!("takes more off {} than the {mass_kg} kg it weighs", effect.at),
+                "give the joint its mass_kg, or a smaller loss".into(),
+            ))
+        }
+        ("modulus_error" | "link_flexibility", _) if space.links == LinkModel::Rigid => Some((
+            "effect".into(),
+            format!("{} changes how a link bends, and the study holds its links rigid", effect.effect),
+            "set \"links\" of \"models\" to \"full\", or remove the effect".into(),
+        )),
+        _ => None,
+    }
+}
+
+/// Mass that an effect adds by itself \[kg\].
+fn added_kg(space: &DesignSpace, effect: &Effect) -> f64 {
+    DesignSpace { effects: vec![effect.clone()], ..space.clone() }.effects_mass_kg()
+}
+
+/// The study's own effects that describe a test, which change nothing.
+pub fn left_out(study: &Study) -> Vec<Carried> {
+    let of_test = study.space.effects.iter().filter(|effect| effect.is_of_test());
+    of_test.map(|effect| Carried { what: label(effect), carried: false, words: OF_TEST.into() }).collect()
+}
+
+const OF_TEST: &str = "it describes how the arm was tested, not the arm";
+
+fn label(effect: &Effect) -> String {
+    format!("{} at {}", effect.effect, effect.at)
+}
+
+/// Puts what a measured arm's corrections mean for a study into the study's file: the effects of `arm`,
+/// and the factors within tolerance, `("j2.stiffness", 1.02)`, that it was calibrated with.
+pub fn carry_over(file: &Value, study: &Study, arm: &Arm, calibrated: &[(String, f64)]) -> CorrectedStudy {
+    let mut out = CorrectedStudy { file: file.clone(), carried: Vec::new() };
+    arm.effects.iter().for_each(|effect| out.effect(&study.space, effect));
+    calibrated.iter().for_each(|(name, factor)| out.calibration(&study.space, name, *factor));
+    out
+}
+
+impl CorrectedStudy {
+    fn say(&mut self, what: String, carried: bool, words: impl Into<String>) {
+        self.carried.push(Carried { what, carried, words: words.into() });
+    }
+
+    fn effect(&mut self, space: &DesignSpace, effect: &Effect) {
+        let what = label(effect);
+        if effect.is_of_test() {
+            return self.say(what, false, OF_TEST);
+        }
+        if let Some((_, problem, hint)) = unfit(space, effect) {
+            return self.say(what, false, format!("{problem}; {hint}"));
+        }
+        match &mut self.file["effects"] {
+            Value::Array(list) => list.push(effect.to_json()),
+            none => *none = json!([effect.to_json()]),
+        }
+        self.say(what, true, parameters(effect));
+    }
+
+    fn calibration(&mut self, space: &DesignSpace, name: &str, factor: f64) {
+        let what = format!("{name} x {factor:.4}");
+        let (part, quantity) = name.rsplit_once('.').unwrap_or((name, ""));
+        if !matches!(quantity, "stiffness" | "mass") {
+            let words =
+                "it belongs to the measured arm; the study keeps its geometry and the catalog's materials";
+            return self.say(what, false, words);
+        }
+        let found = space.pieces.iter().enumerate().find_map(|(index, piece)| match piece {
+            SpacePiece::Joint(joint) if joint.name == part => Some((index, joint)),
+            _ => None,
+        });
+        match found {
+            None => self.say(what, false, format!("the study has no joint {part}")),
+            Some((_, SpaceJoint { drive: DriveChoice::FirstFit(_) | DriveChoice::AllFits(_), .. })) => {
+                self.say(what, false, "the study chooses this joint's drive: it keeps its catalog figures");
+            }
+            Some((index, SpaceJoint { drive: DriveChoice::Given { curve, mass_kg, .. }, .. })) => {
+                let entry = &mut self.file["chain"][index];
+                match quantity {
+                    "stiffness" => write_curve(entry, &scaled(*curve, factor)),
+                    _ => entry["mass_kg"] = json!(mass_kg * factor),
+                }
+                self.say(what, true, "the study gives this joint's drive: its value is calibrated");
+            }
+        }
+    }
+}
+
+/// The numbers of an effect: `stiffness_nm_per_rad = 200000`.
+fn parameters(effect: &Effect) -> String {
+    let numbers = |list: &[f64]| list.iter().map(|x| significant(*x, 4)).collect::<Vec<_>>();
+    let each = effect.parameters.iter().map(|(name, list)| format!("{name} = {}", numbers(list).join(", ")));
+    each.collect::<Vec<_>>().join("; ")
+}
+
+/// Replaces what a joint's entry says of its stiffness.
+fn write_curve(entry: &mut Value, curve: &Curve) {
+    if let Some(entry) = entry.as_object_mut() {
+        entry.shift_remove("stiffness_nm_per_rad");
+        entry.shift_remove("windup");
+    }
+    let (key, value) = curve.to_json();
+    entry[key] = value;
+}
