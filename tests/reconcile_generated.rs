@@ -24,8 +24,9 @@ fn score(set: &str, class: &str, seed: u64, numbers: impl Iterator<Item = usize>
         reconcile(&campaign).write(&folder.path().join("verdicts").join(&name)).expect("written");
         names.push(name);
     }
-    let score = reconcile_scoring::score(&names, &folder.path().join("verdicts"), &folder.path().join("keys"))
-        .expect("scored");
+    let score =
+        reconcile_scoring::score(&names, &folder.path().join("verdicts"), &folder.path().join("keys"))
+            .expect("scored");
     println!("{}\n{}", score.table(), score.confusion_csv());
     score
 }

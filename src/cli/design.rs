@@ -4,8 +4,8 @@ use super::run::catalogs_hash;
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
 use crate::fault::Document;
-use crate::search::design::{full_objectives, number_of, options};
-use crate::search::{ArmProblem, OutwardIn};
+use crate::search::ArmProblem;
+use crate::search::design::{full_objectives, number_of};
 use crate::study::read_study;
 use clap::Args;
 use serde_json::{Value, json};
@@ -30,7 +30,6 @@ pub struct DesignArgs {
 pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     check_catalogs(args, catalogs)?;
     let study = read_study(Document::read(&args.results.join("study.json"))?, catalogs)?;
-    let problem = ArmProblem::new(&study.space, catalogs);
     let unknown = || {
         Failure::Usage(format!(
             "{} has no design \"{}\": take a design_id from its front.csv",
@@ -39,7 +38,9 @@ pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Fail
         ))
     };
     let number = number_of(&args.id).ok_or_else(unknown)?;
-    let chosen = options(problem.level_sizes(), number).ok_or_else(unknown)?;
+    let space = study.space.excerpt(catalogs, &[number]).ok_or_else(unknown)?;
+    let problem = ArmProblem::new(&space, catalogs);
+    let chosen = problem.options_of_whole(number).ok_or_else(unknown)?;
     let mut arm = problem.arm(&chosen).ok_or_else(unknown)?;
     arm.name = format!("{} {}", study.name, args.id);
     let cases = problem.load_cases();

@@ -14,12 +14,12 @@ use crate::report::summary::{
     MaterialFront, SummaryFacts, SummaryInput, constraint_words, summary_md, terminal_summary,
 };
 use crate::report::table::Table;
-use crate::search::{ArmProblem, Status};
+use crate::search::{ArmProblem, Status, exact};
 use crate::study::{
-    Carried, Study, StudyOutcome, empty_pieces, front_table, left_out, named, paper_question, read_study,
-    run_study, slug, study_page, why_infeasible,
+    Carried, ExactStudy, Study, StudyOutcome, empty_pieces, front_table, left_out, named, paper_question,
+    read_study, run_exact, run_study, slug, study_page, why_infeasible,
 };
-use clap::Args;
+use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 use std::io::IsTerminal;
@@ -45,7 +45,25 @@ pub struct RunArgs {
     /// joints and links of the same name; every effect that does not carry over is listed
     #[arg(long, value_name = "ARM")]
     effects: Option<PathBuf>,
+    /// How the front is looked for; default exhaustive up to 1e9 designs, exact beyond
+    #[arg(long, value_enum)]
+    search: Option<SearchKind>,
+    /// Stop the exact search after so long and write what it found, with how much it may lack
+    #[arg(long, value_name = "SECONDS")]
+    time_limit: Option<f64>,
 }
+
+/// How a front is looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum SearchKind {
+    /// Every design is visited
+    Exhaustive,
+    /// Boxes of designs that cannot be on the front are cut unvisited: for spaces of any size
+    Exact,
+}
+
+/// Above this many designs the exact search is the default.
+const MOST_VISITED: u128 = 1_000_000_000;
 
 /// The text of a study and the name it goes by in messages.
 pub(super) fn study_text(name: &str) -> Result<(String, String), Failure> {
@@ -83,7 +101,10 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
     };
     let name = format!("{}{suffix}", slug(&asked.study.name));
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(name));
-    let written = search(&asked, catalogs, overlay, &dir)?;
+    let written = match search_kind(args, &asked.study, catalogs)? {
+        SearchKind::Exhaustive => search(&asked, catalogs, overlay, &dir)?,
+        SearchKind::Exact => search_exactly(&asked, catalogs, overlay, &dir, args.time_limit)?,
+    };
     write_all(&dir, &written.files)?;
     let carried = carry::to_text(&asked.carried);
     Ok(format!("{}{carried}\n{}", written.terminal, told(&dir, &written.files)))
@@ -110,10 +131,7 @@ pub(super) fn search(
     refuse_empty(study, &problem)?;
     // a folder that cannot be written fails now, not after the search
     write_all(dir, &[])?;
-    let stop = Arc::new(AtomicBool::new(false));
-    let on_signal = Arc::clone(&stop);
-    // a second handler cannot be set; the first one serves
-    let _ = ctrlc::set_handler(move || on_signal.store(true, Ordering::Relaxed));
+    let stop = stopped_by_signal();
     let started = Instant::now();
     let outcome = run_study(study, catalogs, &stop, watch);
     let elapsed_s = started.elapsed().as_secs_f64();
@@ -131,13 +149,14 @@ pub(super) fn search(
             let _ = std::fs::remove_dir(dir);
             Err(Failure::Infeasible(why_infeasible(study, catalogs, &outcome)))
         }
-        Status::Complete => {
+        _ => {
             let finished = Finished {
                 study,
                 text,
                 carried,
                 problem: &problem,
                 outcome: &outcome,
+                exact: None,
                 elapsed_s,
                 overlay,
                 catalogs,
@@ -146,6 +165,126 @@ pub(super) fn search(
             Ok(finished.files())
         }
     }
+}
+
+fn stopped_by_signal() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let on_signal = Arc::clone(&stop);
+    // a second handler cannot be set; the first one serves
+    let _ = ctrlc::set_handler(move || on_signal.store(true, Ordering::Relaxed));
+    stop
+}
+
+/// The search that was asked for, or the one that suits the number of designs.
+fn search_kind(args: &RunArgs, study: &Study, catalogs: &Catalogs) -> Result<SearchKind, Failure> {
+    let designs = study.space.designs(catalogs).ok_or_else(|| {
+        Failure::Usage(format!("the study \"{}\" has more than 1e38 designs; thin a grid", study.name))
+    })?;
+    let large = designs > MOST_VISITED;
+    let kind = args.search.unwrap_or(if large { SearchKind::Exact } else { SearchKind::Exhaustive });
+    if let (SearchKind::Exact, Err(why)) = (kind, exact::conditions(&study.space)) {
+        return Err(Failure::Usage(format!(
+            "the exact search cannot certify the study \"{}\": {why}; use --search exhaustive{}",
+            study.name,
+            if large { ", with fewer options" } else { "" }
+        )));
+    }
+    if kind == SearchKind::Exhaustive && args.time_limit.is_some() {
+        return Err(Failure::Usage("--time-limit goes with --search exact".into()));
+    }
+    if args.time_limit.is_some_and(|s| s.is_nan() || s <= 0.0) {
+        return Err(Failure::Usage("--time-limit is a number of seconds above zero".into()));
+    }
+    Ok(kind)
+}
+
+/// Finds the front of a study without visiting every design.
+fn search_exactly(
+    Asked { study, text, carried }: &Asked,
+    catalogs: &Catalogs,
+    overlay: Option<&Path>,
+    dir: &Path,
+    time_limit_s: Option<f64>,
+) -> Result<Written, Failure> {
+    write_all(dir, &[])?;
+    let stop = stopped_by_signal();
+    let started = Instant::now();
+    let deadline = time_limit_s.map(|s| started + Duration::from_secs_f64(s));
+    let ExactStudy { study: part, outcome, boxes, gap } =
+        run_exact(study, catalogs, &stop, deadline, watch_boxes);
+    let nothing = |problem: String| {
+        let _ = std::fs::remove_dir(dir);
+        problem
+    };
+    let designs = outcome.sweep.designs_total as f64;
+    match outcome.sweep.status {
+        Status::Interrupted => Err(Failure::Interrupted(nothing(format!(
+            "stopped after {} boxes; nothing was written, run again to start over, or give --time-limit",
+            boxes[0]
+        )))),
+        Status::Infeasible => Err(Failure::Infeasible(nothing(format!(
+            "none of the {designs:.3e} designs of the study \"{}\" meets its constraints (proved by {} boxes); \
+             loosen one, or run a coarser grid with --search exhaustive to see which of them it is",
+            study.name, boxes[0]
+        )))),
+        Status::Partial if outcome.front.is_empty() => Err(Failure::Interrupted(nothing(format!(
+            "no design was found in the time limit ({} boxes); nothing was written, allow more time",
+            boxes[0]
+        )))),
+        _ => {
+            let problem = ArmProblem::new(&part.space, catalogs);
+            let finished = Finished {
+                study: &part,
+                text,
+                carried,
+                problem: &problem,
+                outcome: &outcome,
+                exact: Some((boxes, gap)),
+                elapsed_s: started.elapsed().as_secs_f64(),
+                overlay,
+                catalogs,
+                dir,
+            };
+            let mut written = finished.files();
+            written.terminal.push_str(&certificate(boxes, gap));
+            Ok(written)
+        }
+    }
+}
+
+/// What an exact search proves, in words.
+fn certificate([boxes, open]: [u64; 2], gap: Option<f64>) -> String {
+    match (open, gap) {
+        (0, _) => format!("certified: no design that is not listed is on the front ({boxes} boxes)\n"),
+        (_, Some(gap)) => format!(
+            "partial: no design beats every one listed by more than {:.2} % in all three objectives at once\n\
+             ({boxes} boxes bounded, {open} open)\n",
+            100.0 * gap
+        ),
+        (_, None) => {
+            format!("partial: nothing can be said about what is missing ({boxes} boxes, {open} open)\n")
+        }
+    }
+}
+
+/// Shows that an exact search goes on.
+fn watch_boxes(boxes: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool) {
+    let started = Instant::now();
+    let bar = std::io::stderr().is_terminal().then(ProgressBar::new_spinner);
+    let mut next = LINE_EVERY;
+    while !finished.load(Ordering::Relaxed) {
+        std::thread::sleep(Duration::from_millis(50));
+        let line = || format!("{:.0} s: {:.3e} boxes", started.elapsed().as_secs_f64(), boxes() as f64);
+        match &bar {
+            Some(bar) => bar.set_message(line()),
+            None if started.elapsed() >= next => {
+                next += LINE_EVERY;
+                eprintln!("{}", line());
+            }
+            None => {}
+        }
+    }
+    bar.iter().for_each(ProgressBar::finish_and_clear);
 }
 
 /// Runs one of the paper's studies, which have a course of their own.
@@ -242,6 +381,8 @@ struct Finished<'a> {
     carried: &'a [Carried],
     problem: &'a ArmProblem<'a>,
     outcome: &'a StudyOutcome,
+    /// Boxes bounded and left open, and the gap, of an exact search.
+    exact: Option<([u64; 2], Option<f64>)>,
     elapsed_s: f64,
     overlay: Option<&'a Path>,
     catalogs: &'a Catalogs,
@@ -356,6 +497,10 @@ impl Finished<'_> {
             "catalogs": self.overlay.map(|p| p.display().to_string()),
             "study_hash": blake3::hash(self.text.as_bytes()).to_hex().to_string(),
             "catalogs_hash": catalogs_hash(self.catalogs),
+            "search": if self.exact.is_some() { "exact" } else { "exhaustive" },
+            "boxes": self.exact.map(|([boxes, _], _)| boxes),
+            "boxes_open": self.exact.map(|([_, open], _)| open),
+            "gap": self.exact.and_then(|(_, gap)| gap),
         })
     }
 }

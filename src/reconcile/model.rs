@@ -53,7 +53,16 @@ impl Knob {
             (Scale::Linear, "gain") => Some(1.0 / reference),
             _ => Some(0.0),
         };
-        Self { name: parameter.name, component, scale: parameter.scale, reference, low, high, not_below, absent }
+        Self {
+            name: parameter.name,
+            component,
+            scale: parameter.scale,
+            reference,
+            low,
+            high,
+            not_below,
+            absent,
+        }
     }
 
     /// The parameter's value.

@@ -88,8 +88,7 @@ impl Noise {
 
     /// Whether two judgements lead to the same weights, nearly.
     pub fn agrees(&self, other: &Self) -> bool {
-        self.same_rows(other)
-            && self.scale.iter().zip(&other.scale).all(|(a, b)| (a / b - 1.0).abs() < 0.03)
+        self.same_rows(other) && self.scale.iter().zip(&other.scale).all(|(a, b)| (a / b - 1.0).abs() < 0.03)
     }
 }
 

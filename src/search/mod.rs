@@ -10,6 +10,8 @@ pub mod archive;
 pub mod constraint;
 pub mod design;
 mod effects;
+pub mod exact;
+mod excerpt;
 mod figures;
 pub mod fixed;
 pub mod front;

@@ -100,6 +100,17 @@ pub struct LinkChoice {
     pub vector_m: Vector3<f64>,
     /// What it can be made of.
     pub options: Vec<LinkOption>,
+    /// Where the options stand in the whole list, if this is only a part of it.
+    pub excerpt: Option<Excerpt>,
+}
+
+/// Part of a list of options.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Excerpt {
+    /// Place of each option in the whole list, ascending.
+    pub places: Vec<u32>,
+    /// Options in the whole list.
+    pub of: u32,
 }
 
 /// One material and section.
@@ -119,6 +130,13 @@ pub struct LinkOption {
     pub strength_pa: Option<f64>,
     /// Cost of the material \[EUR/kg\].
     pub cost_eur_per_kg: Option<f64>,
+}
+
+impl DriveChoice {
+    /// Whether the drive is a choice of the search.
+    pub fn is_open(&self) -> bool {
+        matches!(self, DriveChoice::AllFits(_))
+    }
 }
 
 impl LinkOption {

@@ -133,14 +133,14 @@ fn weight_wrench(weight_n: f64, at_m: &Vector3<f64>) -> Wrench {
 }
 
 /// Where each piece is in a pose.
-struct Walk {
-    places: Vec<(Vector3<f64>, Rotation3<f64>)>,
-    tip_m: Vector3<f64>,
-    tip_rotation: Rotation3<f64>,
+pub(super) struct Walk {
+    pub(super) places: Vec<(Vector3<f64>, Rotation3<f64>)>,
+    pub(super) tip_m: Vector3<f64>,
+    pub(super) tip_rotation: Rotation3<f64>,
 }
 
 impl Walk {
-    fn new(space: &DesignSpace, case: &Case) -> Self {
+    pub(super) fn new(space: &DesignSpace, case: &Case) -> Self {
         let mut angles = case.pose_deg.iter().map(|a| a.to_radians());
         let (mut at_m, mut rotation) = (Vector3::zeros(), Rotation3::identity());
         let mut places = Vec::with_capacity(space.pieces.len());

@@ -24,8 +24,12 @@ const TASKS: u128 = 512;
 /// How a search ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
+    /// No design outside the front can be on it: proved without visiting every one.
+    Certified,
     /// Every design was visited.
     Complete,
+    /// Stopped at a time limit: what was found, and how much it may lack.
+    Partial,
     /// Every design was visited and none meets the constraints.
     Infeasible,
     /// Stopped before every design was visited.
@@ -36,7 +40,9 @@ impl Status {
     /// The word in files.
     pub fn word(self) -> &'static str {
         match self {
+            Status::Certified => "certified",
             Status::Complete => "complete",
+            Status::Partial => "partial",
             Status::Infeasible => "infeasible",
             Status::Interrupted => "interrupted",
         }

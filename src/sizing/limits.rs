@@ -73,7 +73,7 @@ impl DriveLimits {
     }
 
     /// The larger of each limit of two drives.
-    pub(super) fn max(&self, other: &Self) -> Self {
+    pub(crate) fn max(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.max(other.static_torque_nm),
             peak_torque_nm: self.peak_torque_nm.max(other.peak_torque_nm),

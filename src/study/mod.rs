@@ -11,18 +11,19 @@ mod table;
 
 pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{Carried, CorrectedStudy, carry_over, left_out};
-pub use outcome::{Front, Judged, StudyOutcome, run_study};
+pub use outcome::{ExactStudy, Front, Judged, StudyOutcome, run_exact, run_study};
 pub use page::study_page;
 pub use read::{Study, read_study};
 pub(crate) use table::sizing_rows;
 pub use table::{front_table, slug};
 
 /// The built-in studies: name and text.
-pub const NAMED: [(&str, &str); 6] = [
+pub const NAMED: [(&str, &str); 7] = [
     ("compare-materials", include_str!("../../studies/compare-materials.json")),
     ("light-arm", include_str!("../../studies/light-arm.json")),
     ("stiff-arm", include_str!("../../studies/stiff-arm.json")),
     ("underwater-arm", include_str!("../../studies/underwater-arm.json")),
+    ("full-catalog", include_str!("../../studies/full-catalog.json")),
     ("paper-hydraulic", include_str!("../../studies/paper-hydraulic.json")),
     ("paper-electric", include_str!("../../studies/paper-electric.json")),
 ];

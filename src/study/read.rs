@@ -356,7 +356,7 @@ fn read_space_link(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> O
     let sections = choices.required("sections").and_then(|n| read_sections(&n, open.catalogs));
     let options =
         super::sections::options(&materials?, &sections?, open.constraints, name.as_deref()?, not_checked);
-    Some(SpacePiece::Choice(LinkChoice { name: name?, vector_m: vector_m?, options }))
+    Some(SpacePiece::Choice(LinkChoice { name: name?, vector_m: vector_m?, options, excerpt: None }))
 }
 
 /// Every case, and which of them are judged and sized in.

@@ -63,7 +63,7 @@ fn has_parts(drive: &DriveChoice) -> bool {
 
 fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::Judged) -> Option<Vec<String>> {
     let chosen = options(problem.level_sizes(), judged.design.number)?;
-    let mut out = vec![id_of(judged.design.number)];
+    let mut out = vec![id_of(problem.whole_number(judged.design.number))];
     for (piece, part) in problem.space().pieces.iter().zip(problem.parts(&chosen)?) {
         match (piece, part) {
             (SpacePiece::Choice(_), Part::Link(option)) => out.extend(link_cells(option)),

@@ -1,0 +1,105 @@
+//! The designs found so far, and whether one of them beats a box.
+//!
+//! A table ([`Archive`]) answers for designs that are better by a cell in mass and deflection; a list a
+//! row and a list a column of cells hold the designs that share one of them.
+
+use super::bound::Ceiling;
+use crate::search::Objectives;
+use crate::search::archive::Archive;
+use std::collections::HashMap;
+use std::sync::RwLock;
+
+/// What two objectives may differ by and still count as equal.
+const EQUAL: f64 = 1e-9;
+/// By how much the better design must be better in one objective.
+const BETTER: f64 = 1e-7;
+/// How much a better trial shape may lower a ceiling's frequency.
+const NEAR: f64 = 0.9;
+/// Steps an octave of the lists.
+const STEPS: f64 = 64.0;
+
+/// Shared by all workers.
+pub(super) struct Found {
+    table: Archive,
+    rows: Vec<RwLock<HashMap<i32, Vec<Objectives>>>>,
+    columns: Vec<RwLock<HashMap<i32, Vec<Objectives>>>>,
+}
+
+const SHARDS: usize = 64;
+
+impl Default for Found {
+    fn default() -> Self {
+        let lists = || (0..SHARDS).map(|_| RwLock::new(HashMap::new())).collect();
+        Self { table: Archive::new(6), rows: lists(), columns: lists() }
+    }
+}
+
+impl Found {
+    /// Enters a design that meets every constraint.
+    pub fn enter(&self, found: &Objectives) {
+        self.table.enter(found);
+        for (lists, key) in [(&self.rows, step(found.mass_kg)), (&self.columns, step(found.tip_deflection_m))]
+        {
+            let mut shard = write(&lists[shard(key)]);
+            let list = shard.entry(key).or_default();
+            let is_beaten = |by: &Objectives, o: &Objectives| {
+                by.mass_kg <= o.mass_kg
+                    && by.tip_deflection_m <= o.tip_deflection_m
+                    && by.lowest_mode_hz >= o.lowest_mode_hz
+            };
+            if !list.iter().any(|o| is_beaten(o, found)) {
+                list.retain(|o| !is_beaten(found, o));
+                list.push(*found);
+            }
+        }
+    }
+
+    /// Whether some design found beats every member of a box.
+    pub fn beats(&self, ceiling: &Ceiling) -> bool {
+        let best = Objectives {
+            mass_kg: ceiling.mass_kg,
+            tip_deflection_m: ceiling.tip_m,
+            lowest_mode_hz: ceiling.hz,
+        };
+        if self.table.rejects(&best) {
+            return true;
+        }
+        let in_list = |lists: &[RwLock<HashMap<i32, Vec<Objectives>>>], key: i32| {
+            let lists = lists[shard(key)].read().unwrap_or_else(std::sync::PoisonError::into_inner);
+            lists.get(&key).is_some_and(|list| list.iter().any(|o| is_better(o, &best)))
+        };
+        let (row, column) = (step(best.mass_kg), step(best.tip_deflection_m));
+        in_list(&self.rows, row) || in_list(&self.columns, column)
+    }
+}
+
+impl Found {
+    /// Whether some design found would beat the box if its ceiling were a little lower in frequency: then
+    /// a better trial shape is worth its price.
+    pub fn nearly_beats(&self, ceiling: &Ceiling) -> bool {
+        self.beats(&Ceiling { hz: ceiling.hz * NEAR, ..*ceiling })
+    }
+}
+
+fn write<T>(lock: &RwLock<T>) -> std::sync::RwLockWriteGuard<'_, T> {
+    lock.write().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+fn shard(key: i32) -> usize {
+    key.rem_euclid(SHARDS as i32) as usize
+}
+
+/// The step of a positive number on a logarithmic scale.
+fn step(x: f64) -> i32 {
+    (x.max(f64::MIN_POSITIVE).log2() * STEPS).floor() as i32
+}
+
+/// Better in one objective, and not worse in any by more than rounding.
+fn is_better(a: &Objectives, b: &Objectives) -> bool {
+    let pairs = [
+        (a.mass_kg, b.mass_kg),
+        (a.tip_deflection_m, b.tip_deflection_m),
+        (b.lowest_mode_hz, a.lowest_mode_hz),
+    ];
+    pairs.iter().all(|(a, b)| *a <= b * (1.0 + EQUAL)) && pairs.iter().any(|(a, b)| *a < b * (1.0 - BETTER))
+}

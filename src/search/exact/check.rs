@@ -1,0 +1,130 @@
+//! Whether a frequency is the lowest of one arm: an inertia count, independent of any trial shape.
+//!
+//! With `A = C^½ M C^½` all eigenvalues of `K φ = λ M φ` lie above `λ` exactly if `1/λ - A` is positive
+//! definite, which a Cholesky factorization decides (Sylvester).
+
+use super::parts::INERTIAS;
+use super::pose::{COORDINATES, Pose};
+use super::shape::{Ideal, Work, inertia_forces};
+use crate::mechanics::Twist;
+
+/// How far below a quotient the lowest eigenvalue may lie.
+const TOLERANCE: f64 = 1e-9;
+
+/// The inertia of a case, matrix by matrix: it is linear in the inertias of the parts.
+pub(super) struct Inertia {
+    /// Piece and coordinate of each row.
+    coordinates: Vec<(usize, usize)>,
+    fixed: Vec<f64>,
+    /// Piece, place in its inertias, and the matrix per unit of it.
+    forms: Vec<(usize, usize, Vec<f64>)>,
+}
+
+impl Inertia {
+    /// The matrices of a case, over the coordinates that yield in an arm.
+    pub fn new(pose: &Pose, some_arm: &Ideal) -> Self {
+        let mut coordinates = Vec::new();
+        for (piece, posed) in pose.pieces.iter().enumerate() {
+            for c in 0..posed.coordinates() {
+                if posed.coordinate_stiffness(c, &some_arm.stiffness[piece]) > 0.0 {
+                    coordinates.push((piece, c));
+                }
+            }
+        }
+        let nothing = vec![[0.0; INERTIAS]; pose.pieces.len()];
+        let fixed = matrix(pose, &coordinates, &nothing);
+        let mut forms = Vec::new();
+        for piece in 0..pose.pieces.len() {
+            for k in 0..INERTIAS {
+                let mut unit = nothing.clone();
+                unit[piece][k] = 1.0;
+                let mut form = matrix(pose, &coordinates, &unit);
+                form.iter_mut().zip(&fixed).for_each(|(a, b)| *a -= b);
+                if form.iter().any(|x| x.abs() > 0.0) {
+                    forms.push((piece, k, form));
+                }
+            }
+        }
+        Self { coordinates, fixed, forms }
+    }
+
+    /// The lowest eigenvalue of an arm, given that it is at most `quotient`.
+    pub fn lowest(&self, pose: &Pose, arm: &Ideal, quotient: f64) -> f64 {
+        let scaled = self.scaled(pose, arm);
+        let (mut low, mut high) = (quotient * (1.0 - TOLERANCE), quotient);
+        if self.all_above(&scaled, low) {
+            return quotient;
+        }
+        low = 0.0;
+        while high - low > TOLERANCE * high {
+            let middle = 0.5 * (low + high);
+            if self.all_above(&scaled, middle) { low = middle } else { high = middle }
+        }
+        low
+    }
+
+    /// `C^½ M C^½`.
+    fn scaled(&self, pose: &Pose, arm: &Ideal) -> Vec<f64> {
+        let n = self.coordinates.len();
+        let mut m = self.fixed.clone();
+        for (piece, k, form) in &self.forms {
+            let amount = arm.inertia[*piece][*k];
+            m.iter_mut().zip(form).for_each(|(m, f)| *m += amount * f);
+        }
+        let root: Vec<f64> = self
+            .coordinates
+            .iter()
+            .map(|&(piece, c)| {
+                pose.pieces[piece].coordinate_stiffness(c, &arm.stiffness[piece]).sqrt().recip()
+            })
+            .collect();
+        for i in 0..n {
+            for j in 0..n {
+                m[i * n + j] *= root[i] * root[j];
+            }
+        }
+        m
+    }
+
+    /// Whether `1/λ - A` is positive definite.
+    fn all_above(&self, scaled: &[f64], lambda: f64) -> bool {
+        let n = self.coordinates.len();
+        let mut l: Vec<f64> = scaled.iter().map(|a| -a).collect();
+        for i in 0..n {
+            l[i * n + i] += 1.0 / lambda;
+        }
+        for j in 0..n {
+            let pivot = l[j * n + j];
+            if pivot <= 0.0 {
+                return false;
+            }
+            let (done, below) = l.split_at_mut((j + 1) * n);
+            let row = &done[j * n..];
+            for i in j + 1..n {
+                let target = &mut below[(i - j - 1) * n..(i - j) * n];
+                let factor = target[j] / pivot;
+                if factor != 0.0 {
+                    target[j + 1..].iter_mut().zip(&row[j + 1..]).for_each(|(t, r)| *t -= factor * r);
+                }
+            }
+        }
+        true
+    }
+}
+
+/// `M` by columns of unit motions.
+fn matrix(pose: &Pose, coordinates: &[(usize, usize)], inertia: &[[f64; INERTIAS]]) -> Vec<f64> {
+    let n = coordinates.len();
+    let mut work = Work::default();
+    let mut out = vec![0.0; n * n];
+    let mut x = vec![0.0; pose.pieces.len() * COORDINATES];
+    for (j, &(piece, c)) in coordinates.iter().enumerate() {
+        x[piece * COORDINATES + c] = 1.0;
+        inertia_forces(pose, inertia, &Twist::zeros(), &x, &mut work);
+        x[piece * COORDINATES + c] = 0.0;
+        for (i, &(piece, c)) in coordinates.iter().enumerate() {
+            out[i * n + j] = work.forces[piece * COORDINATES + c];
+        }
+    }
+    out
+}

@@ -1,0 +1,183 @@
+//! What the bound sees of a part, and of a box of parts: every number as an interval.
+
+use super::tree::Bounds;
+use crate::arm::{Curve, LinkMaterial, LinkModel, Section, Windup};
+use crate::search::figures::StressCheck;
+use crate::search::space::LinkOption;
+use crate::sizing::DriveLimits;
+
+/// Number of [`Line`]'s inertias and of its stiffnesses.
+pub(super) const INERTIAS: usize = 5;
+pub(super) const STIFFNESSES: usize = 5;
+
+/// A tube per metre: what moves and what yields.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Line {
+    /// Mass \[kg/m\], outer area \[m²\], rotary inertia about the link, its y and its z \[kg m\].
+    pub inertias: [f64; INERTIAS],
+    /// `EI` about y, `EI` about z, `κGA`, `GJ`, `EA`; infinite where the link model has no such strain.
+    pub stiffnesses: [f64; STIFFNESSES],
+}
+
+/// Places in [`Line::inertias`].
+pub(super) mod inertia {
+    pub const MASS: usize = 0;
+    pub const OUTER_AREA: usize = 1;
+    pub const POLAR: usize = 2;
+    pub const ROTARY_Y: usize = 3;
+    pub const ROTARY_Z: usize = 4;
+}
+
+impl Line {
+    /// The tube of a section in a material under a link model.
+    pub fn new(material: &LinkMaterial, section: &Section, model: LinkModel) -> Self {
+        let p = section.properties(material.poisson);
+        let (e, g, density) = (material.youngs_modulus_pa, material.shear_modulus_pa, material.density_kg_m3);
+        let across = if model == LinkModel::Bending { 0.0 } else { density };
+        let bends = |x: f64| if model == LinkModel::Rigid { f64::INFINITY } else { x };
+        let full = |x: f64| if model == LinkModel::Full { x } else { f64::INFINITY };
+        Self {
+            inertias: [
+                density * p.area_m2,
+                p.outer_area_m2,
+                density * (p.second_moment_y_m4 + p.second_moment_z_m4),
+                across * p.second_moment_y_m4,
+                across * p.second_moment_z_m4,
+            ],
+            stiffnesses: [
+                bends(e * p.second_moment_y_m4),
+                bends(e * p.second_moment_z_m4),
+                full(p.shear_factor * g * p.area_m2),
+                full(g * p.torsion_constant_m4),
+                full(e * p.area_m2),
+            ],
+        }
+    }
+}
+
+/// A box of link options.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct LinkBox {
+    pub low: Line,
+    pub high: Line,
+    /// Least stress over strength per axial force, moments about y and z, and torsion; zero where a
+    /// strength is unknown.
+    pub stress: [f64; 4],
+    /// Least cost of the material \[EUR/m\].
+    pub cost_eur_per_m: f64,
+}
+
+impl LinkBox {
+    /// The box of one option.
+    pub fn of(option: &LinkOption, model: LinkModel) -> Self {
+        let line = Line::new(&option.material, &option.section, model);
+        let stress = StressCheck::new(option).map_or([0.0; 4], |s| {
+            [s.per_axial_n, s.per_moment_y, s.per_moment_z, s.per_torsion].map(|x| x / s.strength_pa)
+        });
+        Self {
+            low: line,
+            high: line,
+            stress,
+            cost_eur_per_m: option.cost_eur_per_kg.unwrap_or(0.0) * line.inertias[inertia::MASS],
+        }
+    }
+}
+
+fn pairwise<const N: usize>(a: &[f64; N], b: &[f64; N], pick: fn(f64, f64) -> f64) -> [f64; N] {
+    std::array::from_fn(|i| pick(a[i], b[i]))
+}
+
+impl Bounds for LinkBox {
+    fn join(&self, other: &Self) -> Self {
+        let line = |a: &Line, b: &Line, pick| Line {
+            inertias: pairwise(&a.inertias, &b.inertias, pick),
+            stiffnesses: pairwise(&a.stiffnesses, &b.stiffnesses, pick),
+        };
+        Self {
+            low: line(&self.low, &other.low, f64::min),
+            high: line(&self.high, &other.high, f64::max),
+            stress: pairwise(&self.stress, &other.stress, f64::min),
+            cost_eur_per_m: self.cost_eur_per_m.min(other.cost_eur_per_m),
+        }
+    }
+
+    /// Mass counts twice: it is an objective, and it loads everything inboard. Shear and stretch hardly
+    /// move any objective.
+    fn key(&self) -> Vec<f64> {
+        let s = self.low.stiffnesses.map(|s| if s.is_finite() { s.ln() } else { 0.0 });
+        vec![2.0 * self.low.inertias[inertia::MASS].ln(), s[0], 0.7 * s[1], 0.1 * s[2], 0.3 * s[3]]
+    }
+}
+
+/// A torsion curve between two: stiffest and softest slope at every torque.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct CurveBox {
+    /// Nowhere softer than a member: slopes do not fall with torque.
+    pub stiff: Windup,
+    /// Nowhere stiffer than a member.
+    pub soft: Windup,
+}
+
+impl CurveBox {
+    /// The box of one curve; a rigid joint has none.
+    pub fn of(curve: &Curve) -> Option<Self> {
+        let windup = match *curve {
+            Curve::Rigid => return None,
+            Curve::Linear(k) => Windup {
+                k1_nm_per_rad: k,
+                k2_nm_per_rad: k,
+                k3_nm_per_rad: k,
+                t1_nm: f64::INFINITY,
+                t2_nm: f64::INFINITY,
+            },
+            Curve::Windup(windup) => windup,
+        };
+        let (k1, k2, k3) = (windup.k1_nm_per_rad, windup.k2_nm_per_rad, windup.k3_nm_per_rad);
+        let rising = Windup { k2_nm_per_rad: k1.max(k2), k3_nm_per_rad: k1.max(k2).max(k3), ..windup };
+        let falling = Windup { k1_nm_per_rad: k1.min(k2).min(k3), k2_nm_per_rad: k2.min(k3), ..windup };
+        Some(Self { stiff: rising, soft: falling })
+    }
+
+    fn join(&self, other: &Self) -> Self {
+        let extreme = |a: &Windup, b: &Windup, k: fn(f64, f64) -> f64, t: fn(f64, f64) -> f64| Windup {
+            k1_nm_per_rad: k(a.k1_nm_per_rad, b.k1_nm_per_rad),
+            k2_nm_per_rad: k(a.k2_nm_per_rad, b.k2_nm_per_rad),
+            k3_nm_per_rad: k(a.k3_nm_per_rad, b.k3_nm_per_rad),
+            t1_nm: t(a.t1_nm, b.t1_nm),
+            t2_nm: t(a.t2_nm, b.t2_nm),
+        };
+        Self {
+            stiff: extreme(&self.stiff, &other.stiff, f64::max, f64::min),
+            soft: extreme(&self.soft, &other.soft, f64::min, f64::max),
+        }
+    }
+}
+
+/// A box of drives.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct DriveBox {
+    /// Least and largest mass \[kg\].
+    pub mass_kg: [f64; 2],
+    /// The largest of each limit.
+    pub limits: DriveLimits,
+    pub curve: Option<CurveBox>,
+}
+
+impl Bounds for DriveBox {
+    fn join(&self, other: &Self) -> Self {
+        Self {
+            mass_kg: [self.mass_kg[0].min(other.mass_kg[0]), self.mass_kg[1].max(other.mass_kg[1])],
+            limits: self.limits.max(&other.limits),
+            // a rigid member makes the stiff side rigid
+            curve: self.curve.zip(other.curve).map(|(a, b)| a.join(&b)),
+        }
+    }
+
+    /// First by curve: drives with one gear share it. Then by mass.
+    fn key(&self) -> Vec<f64> {
+        let k = self.curve.map_or([0.0; 3], |c| {
+            [c.stiff.k1_nm_per_rad.ln(), c.stiff.k3_nm_per_rad.ln(), 0.2 * c.stiff.t1_nm.min(1e9).ln()]
+        });
+        vec![4.0 * k[0], 2.0 * k[1], k[2], self.mass_kg[0].max(1e-3).ln()]
+    }
+}

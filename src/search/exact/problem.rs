@@ -1,0 +1,192 @@
+//! A design space compiled for the bound: a tree of boxes for every level, rows of numbers for every
+//! case.
+
+use super::check::Inertia;
+use super::parts::{CurveBox, DriveBox, LinkBox};
+use super::pose::Pose;
+use super::tree::{Bounds, Tree};
+use crate::arm::LinkBody;
+use crate::catalog::Catalogs;
+use crate::search::slot::{SizedJoint, Slot, joint_slot};
+use crate::search::space::{DesignSpace, LinkOption, SpacePiece};
+use crate::search::station::reaches_m;
+
+/// A design space as branch and bound sees it. Pieces count from the tip.
+pub(super) struct Problem<'c> {
+    pub space: &'c DesignSpace,
+    pub parts: Vec<Part<'c>>,
+    /// The piece of each level, tip first.
+    pub level_pieces: Vec<usize>,
+    /// Options of each level.
+    pub level_sizes: Vec<u32>,
+    pub poses: Vec<Pose>,
+    /// Inertia matrices of the judged cases.
+    pub inertias: Vec<Inertia>,
+    /// Peak over static stress in sizing cases.
+    pub peak_factor: f64,
+}
+
+/// What may stand at a place of the chain.
+pub(super) enum Part<'c> {
+    /// A given joint.
+    Given { mass_kg: f64, curve: Option<CurveBox> },
+    /// A joint whose drive is a choice.
+    Drives { sized: SizedJoint<'c>, tree: Tree<DriveBox> },
+    /// A joint that takes the lightest drive that holds.
+    FirstFit { sized: SizedJoint<'c>, ladder: Ladder },
+    /// A link to choose.
+    Links { length_m: f64, tree: Tree<LinkBox> },
+    /// A given tube.
+    Tube { length_m: f64, tube: Box<LinkBox> },
+    /// A rigid offset.
+    Offset { mass_kg: f64 },
+}
+
+/// The drives that can be a first fit, and the box around any run of them.
+pub(super) struct Ladder {
+    /// `runs[k][i]`: the box of the drives `i..i + 2^k`.
+    runs: Vec<Vec<DriveBox>>,
+}
+
+impl Ladder {
+    fn new(steps: Vec<DriveBox>) -> Self {
+        let mut runs = vec![steps];
+        let mut width = 1;
+        while 2 * width <= runs[0].len() {
+            let last = &runs[runs.len() - 1];
+            let next = (0..=runs[0].len() - 2 * width).map(|i| last[i].join(&last[i + width])).collect();
+            runs.push(next);
+            width *= 2;
+        }
+        Self { runs }
+    }
+
+    /// Number of steps.
+    pub fn len(&self) -> usize {
+        self.runs[0].len()
+    }
+
+    /// The box around the steps `first..=last`.
+    pub fn run(&self, first: usize, last: usize) -> DriveBox {
+        let k = (last - first + 1).ilog2() as usize;
+        let run = &self.runs[k];
+        run[first].join(&run[last + 1 - (1 << k)])
+    }
+}
+
+/// Which options of each level a problem is restricted to; `None` keeps all.
+pub(super) type Restriction = Vec<Option<Vec<u32>>>;
+
+impl<'c> Problem<'c> {
+    /// Compiles a space; `None` if some level has no option.
+    pub fn new(space: &'c DesignSpace, catalogs: &'c Catalogs, only: Option<&Restriction>) -> Option<Self> {
+        let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
+        let mut reaches = reaches_m(space, sizing).into_iter();
+        let mut pieces: Vec<(&SpacePiece, f64)> = Vec::new();
+        for piece in &space.pieces {
+            let reach_m = match piece {
+                SpacePiece::Joint(_) => reaches.next().unwrap_or_default(),
+                _ => 0.0,
+            };
+            pieces.push((piece, reach_m));
+        }
+        let mut problem = Self {
+            space,
+            parts: Vec::new(),
+            level_pieces: Vec::new(),
+            level_sizes: Vec::new(),
+            poses: (0..space.cases.len()).map(|i| Pose::new(space, i)).collect(),
+            inertias: Vec::new(),
+            peak_factor: 1.0
+                + space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE),
+        };
+        for (piece, reach_m) in pieces.into_iter().rev() {
+            let part = problem.part(piece, reach_m, catalogs, only)?;
+            problem.parts.push(part);
+        }
+        Some(problem)
+    }
+
+    fn part(
+        &mut self,
+        piece: &'c SpacePiece,
+        reach_m: f64,
+        catalogs: &'c Catalogs,
+        only: Option<&Restriction>,
+    ) -> Option<Part<'c>> {
+        let space = self.space;
+        Some(match piece {
+            SpacePiece::Joint(joint) => match joint_slot(space, joint, reach_m, catalogs) {
+                Slot::Given { law, mass_kg } => Part::Given { mass_kg, curve: CurveBox::of(&law.curve) },
+                Slot::Sized(sized) if sized.all_fits => {
+                    let allowed = self.level(sized.table.len(), only);
+                    let tree = Tree::build(allowed.into_iter().map(|i| (i, drive_box(&sized, i))))?;
+                    Part::Drives { sized, tree }
+                }
+                Slot::Sized(sized) => {
+                    let steps: Vec<DriveBox> =
+                        sized.table.first_fit_candidates().iter().map(|&i| drive_box(&sized, i)).collect();
+                    (!steps.is_empty()).then(|| Part::FirstFit { ladder: Ladder::new(steps), sized })?
+                }
+                Slot::Link { .. } | Slot::Offset { .. } => return None,
+            },
+            SpacePiece::Choice(choice) => {
+                let slender = |option: &LinkOption| {
+                    space.constraints.wall_slenderness_max.is_some_and(|max| option.wall_slenderness() > max)
+                };
+                let allowed = self.level(choice.options.len(), only);
+                let boxes = allowed
+                    .into_iter()
+                    .filter(|&i| !slender(&choice.options[i as usize]))
+                    .map(|i| (i, LinkBox::of(&choice.options[i as usize], space.links)));
+                Part::Links { length_m: choice.vector_m.norm(), tree: Tree::build(boxes)? }
+            }
+            SpacePiece::Link(link) => match &link.body {
+                LinkBody::Offset { mass_kg } => Part::Offset { mass_kg: *mass_kg },
+                LinkBody::Tube { material, section, .. } => {
+                    let option = LinkOption {
+                        material_index: 0,
+                        material_name: String::new(),
+                        material: *material,
+                        section: *section,
+                        profile: None,
+                        strength_pa: None,
+                        cost_eur_per_kg: None,
+                    };
+                    let slender = space.constraints.wall_slenderness_max;
+                    if slender.is_some_and(|max| option.wall_slenderness() > max) {
+                        return None;
+                    }
+                    let tube = Box::new(LinkBox::of(&option, space.links));
+                    Part::Tube { length_m: link.vector_m.norm(), tube }
+                }
+            },
+        })
+    }
+
+    /// Opens the next level and returns its options.
+    fn level(&mut self, size: usize, only: Option<&Restriction>) -> Vec<u32> {
+        let level = self.level_pieces.len();
+        self.level_pieces.push(self.parts.len());
+        self.level_sizes.push(size as u32);
+        match only.and_then(|only| only[level].as_ref()) {
+            Some(kept) => kept.clone(),
+            None => (0..size as u32).collect(),
+        }
+    }
+
+    /// Designs in the space.
+    pub fn designs(&self) -> u128 {
+        self.level_sizes.iter().map(|&s| u128::from(s)).product()
+    }
+}
+
+fn drive_box(sized: &SizedJoint, index: u32) -> DriveBox {
+    let index = index as usize;
+    let mass_kg = sized.table.mass_kg(index);
+    DriveBox {
+        mass_kg: [mass_kg; 2],
+        limits: *sized.table.limits(index),
+        curve: CurveBox::of(&sized.laws[index].curve),
+    }
+}

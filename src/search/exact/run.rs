@@ -1,0 +1,262 @@
+//! Branch and bound: cut, halve, judge.
+
+use super::archive::Found;
+use super::bound::{Ceiling, Cell, Verdict, Work};
+use super::gap::gap;
+use super::problem::{Part, Problem, Restriction};
+use super::shape::Shape;
+use crate::catalog::Catalogs;
+use crate::search::Objectives;
+use crate::search::design::number;
+use crate::search::front::{nondominated, not_clearly_beaten};
+use crate::search::space::DesignSpace;
+use crate::search::sweep::{Candidate, SLACK};
+use rayon::prelude::*;
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
+
+/// Boxes to open before the workers start.
+const TASKS: usize = 2048;
+/// Options a level has at most in the first, coarse searches: what they find lets the full search cut early.
+const COARSE: [usize; 2] = [24, 192];
+/// Designs are filtered whenever their number reaches a power of two above this.
+const BUFFER: usize = 4096;
+
+/// A search for the exact front that others can watch and stop.
+pub struct Exact<'p> {
+    space: &'p DesignSpace,
+    catalogs: &'p Catalogs,
+    stop: &'p AtomicBool,
+    deadline: Option<Instant>,
+    boxes: AtomicU64,
+}
+
+/// What the search found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExactOutcome {
+    /// Designs in the space.
+    pub designs_total: u128,
+    /// Designs whose three objectives were computed.
+    pub designs_evaluated: u64,
+    /// Boxes bounded.
+    pub boxes: u64,
+    /// Boxes left unopened because the search was stopped; none if the front is certified.
+    pub boxes_open: u64,
+    /// By what factor, at most, a design in an open box may be better than a design of the front in every
+    /// objective at once; 0 if no box is open, `None` if nothing can be said.
+    pub gap: Option<f64>,
+    /// Designs that no other one found beats.
+    pub front: Vec<Candidate>,
+}
+
+/// Why the search does not see a space as it is.
+///
+/// # Errors
+/// What it does not see, in words.
+pub fn conditions(space: &DesignSpace) -> Result<(), String> {
+    match space.effects.iter().find(|effect| !effect.is_of_test()) {
+        Some(effect) => Err(format!("its bounds do not know the effect {} at {}", effect.effect, effect.at)),
+        None => Ok(()),
+    }
+}
+
+/// What all searches of a run share.
+#[derive(Default)]
+struct Shared {
+    found: Found,
+    kept: Mutex<Vec<Candidate>>,
+    evaluated: AtomicU64,
+    open: Mutex<Vec<Ceiling>>,
+}
+
+/// A box on its way, with what its parent knew.
+struct Opened {
+    cell: Cell,
+    shapes: Arc<Vec<Shape>>,
+    ceiling: Ceiling,
+}
+
+impl<'p> Exact<'p> {
+    /// A search of a space; it ends early when `stop` is set or the deadline has passed.
+    pub fn new(
+        space: &'p DesignSpace,
+        catalogs: &'p Catalogs,
+        stop: &'p AtomicBool,
+        deadline: Option<Instant>,
+    ) -> Self {
+        Self { space, catalogs, stop, deadline, boxes: AtomicU64::new(0) }
+    }
+
+    /// Boxes bounded so far.
+    pub fn boxes(&self) -> u64 {
+        self.boxes.load(Ordering::Relaxed)
+    }
+
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+    }
+
+    /// Finds the front, starting from designs that are known already.
+    pub fn run(&self, known: &[Objectives]) -> ExactOutcome {
+        let shared = Shared::default();
+        known.iter().for_each(|objectives| shared.found.enter(objectives));
+        let whole = Problem::new(self.space, self.catalogs, None).map(Problem::with_inertias);
+        if let Some(whole) = &whole {
+            let search = |problem: &Problem| {
+                Search { exact: self, problem, shared: &shared, sizes: &whole.level_sizes }.run()
+            };
+            if known.is_empty() {
+                for options in COARSE {
+                    let coarse = coarse(whole, options);
+                    let problem = coarse.and_then(|c| Problem::new(self.space, self.catalogs, Some(&c)));
+                    if let Some(problem) = problem {
+                        search(&problem.with_inertias());
+                    }
+                }
+            }
+            // what a coarse search left open, the full one covers
+            lock(&shared.open).clear();
+            search(whole);
+        }
+        let mut front = shared.kept.into_inner().unwrap_or_else(PoisonError::into_inner);
+        clear(&mut front);
+        front.sort_unstable_by_key(|c| c.number);
+        front.dedup_by_key(|c| c.number);
+        let open = shared.open.into_inner().unwrap_or_else(PoisonError::into_inner);
+        ExactOutcome {
+            designs_total: whole.as_ref().map_or(0, Problem::designs),
+            designs_evaluated: shared.evaluated.into_inner(),
+            boxes: self.boxes(),
+            boxes_open: open.len() as u64,
+            gap: gap(&open, &front),
+            front,
+        }
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Every level with at most so many options, evenly among those that no other beats in mass and stiffness.
+/// `None` if no level has more.
+fn coarse(problem: &Problem, options: usize) -> Option<Restriction> {
+    let levels: Restriction = problem
+        .level_pieces
+        .iter()
+        .zip(&problem.level_sizes)
+        .map(|(&piece, &size)| {
+            let merits = match &problem.parts[piece] {
+                _ if size as usize <= options => return None,
+                Part::Drives { tree, .. } => tree.leaves(|d| {
+                    let k = d.curve.map_or(0.0, |c| c.stiff.k1_nm_per_rad);
+                    [d.mass_kg[0], -k, -d.limits.peak_torque_nm]
+                }),
+                Part::Links { tree, .. } => {
+                    tree.leaves(|l| [l.low.inertias[0], -l.low.stiffnesses[0], -l.low.stiffnesses[1]])
+                }
+                _ => return None,
+            };
+            Some(evenly(best(&merits), options))
+        })
+        .collect();
+    levels.iter().any(Option::is_some).then_some(levels)
+}
+
+/// The options that no other beats in all three merits, lightest first.
+fn best(merits: &[(u32, [f64; 3])]) -> Vec<u32> {
+    let points: Vec<[f64; 3]> = merits.iter().map(|(_, m)| *m).collect();
+    nondominated(&points).into_iter().map(|group| merits[group[0]].0).collect()
+}
+
+fn evenly(options: Vec<u32>, keep: usize) -> Vec<u32> {
+    let n = options.len();
+    match n <= keep {
+        true => options,
+        false => (0..keep).map(|i| options[i * (n - 1) / (keep - 1)]).collect(),
+    }
+}
+
+/// The search of one problem.
+struct Search<'s, 'p> {
+    exact: &'s Exact<'p>,
+    problem: &'s Problem<'p>,
+    shared: &'s Shared,
+    /// Options of each level of the whole space, in which designs are numbered.
+    sizes: &'s [u32],
+}
+
+impl Search<'_, '_> {
+    fn run(&self) {
+        let mut work = Work::default();
+        let Some(shapes) = self.problem.first_shapes(&mut work) else { return };
+        let root = Opened { cell: self.problem.root(), shapes: Arc::new(shapes), ceiling: Ceiling::OPEN };
+        let mut queue = VecDeque::from([root]);
+        while queue.len() < TASKS && !self.exact.stopped() {
+            let Some(next) = queue.pop_front() else { break };
+            let mut children = Vec::new();
+            self.open(next, &mut work, &mut children);
+            queue.extend(children);
+        }
+        queue.into_par_iter().for_each_init(Work::default, |work, start| {
+            let mut stack = vec![start];
+            while let Some(next) = stack.pop() {
+                if self.exact.stopped() {
+                    let left = stack.iter().chain([&next]).map(|opened| opened.ceiling);
+                    lock(&self.shared.open).extend(left);
+                    return;
+                }
+                self.open(next, work, &mut stack);
+            }
+        });
+    }
+
+    /// Bounds a box and halves it, or judges it if it is one design.
+    fn open(&self, mut here: Opened, work: &mut Work, children: &mut Vec<Opened>) {
+        self.exact.boxes.fetch_add(1, Ordering::Relaxed);
+        let found = &self.shared.found;
+        let verdict = self.problem.bound(
+            &here.cell,
+            &mut here.shapes,
+            work,
+            |ceiling| found.beats(ceiling),
+            |ceiling| found.nearly_beats(ceiling),
+        );
+        let Verdict::Open(ceiling) = verdict else { return };
+        let Some(level) = self.problem.widest_level(&here.cell, &here.shapes, work) else {
+            self.judge(&here.cell, &ceiling, work);
+            return;
+        };
+        let Some(halves) = self.problem.halves(&here.cell, level) else { return };
+        // the first half is opened first
+        for half in [halves[1], halves[0]] {
+            let mut cell = here.cell.clone();
+            cell[level] = half;
+            children.push(Opened { cell, shapes: Arc::clone(&here.shapes), ceiling });
+        }
+    }
+
+    /// One design: its ceiling is its objectives once its mode is made sure of.
+    fn judge(&self, cell: &[u32], ceiling: &Ceiling, work: &Work) {
+        let Some(options) = self.problem.options(cell) else { return };
+        self.shared.evaluated.fetch_add(1, Ordering::Relaxed);
+        let objectives = self.problem.objectives(ceiling, work);
+        if !self.problem.meets(&objectives) {
+            return;
+        }
+        self.shared.found.enter(&objectives);
+        let mut kept = lock(&self.shared.kept);
+        kept.push(Candidate { number: number(self.sizes, &options), objectives });
+        if kept.len().is_power_of_two() && kept.len() > BUFFER {
+            clear(&mut kept);
+        }
+    }
+}
+
+/// Drops what another candidate beats.
+fn clear(kept: &mut Vec<Candidate>) {
+    let points: Vec<[f64; 3]> = kept.iter().map(|c| c.objectives.minimized()).collect();
+    *kept = not_clearly_beaten(&points, SLACK).into_iter().map(|i| kept[i]).collect();
+}

@@ -1,0 +1,284 @@
+//! Trial shapes: an upper bound of the lowest mode of every arm in a box.
+//!
+//! For any motion `x` of an arm, `λ₁ ≤ xᵀKx / xᵀMx` (Rayleigh). `K` is diagonal in the strain
+//! coordinates, so `xᵀKx` is a sum over the stiffnesses of the parts; the inertia of the arm does not
+//! depend on its stiffness, so `xᵀMx` is a sum over the masses and line inertias, none of whose factors
+//! is negative. A shape is thus two rows of numbers, and with every stiffness at its greatest and every
+//! inertia at its least the quotient bounds the lowest mode of each member of a box, whatever the shape.
+//! A good shape is the box's own mode: one step of inverse iteration from the shape of the box above.
+
+use super::parts::{INERTIAS, STIFFNESSES, inertia};
+use super::pose::{COORDINATES, ENDS, Pose, PosedPiece, PosedTube, RESISTED, degree_factor};
+use crate::mechanics::{Twist, Wrench, angular, linear, stack};
+use nalgebra::{SMatrix, SVector, Vector3};
+
+/// A motion and what it strains and moves, pieces from the tip.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Shape {
+    /// Strain coordinates: one a joint, [`COORDINATES`] a tube.
+    x: Vec<f64>,
+    /// `xᵀKx` per unit of each stiffness of each piece.
+    pub strain: Vec<[f64; STIFFNESSES]>,
+    /// `xᵀMx` per unit of each inertia of each piece.
+    pub kinetic: Vec<[f64; INERTIAS]>,
+    /// `xᵀMx` of what is not chosen.
+    pub kinetic_fixed: f64,
+}
+
+/// The stiffnesses and inertias of an arm, or the best of a box, pieces from the tip.
+pub(super) struct Ideal<'a> {
+    pub stiffness: &'a [[f64; STIFFNESSES]],
+    pub inertia: &'a [[f64; INERTIAS]],
+}
+
+impl Shape {
+    /// The lowest shapes of an ideal arm: started by a vertical and by two lateral accelerations.
+    pub fn start(pose: &Pose, ideal: &Ideal, direction: Vector3<f64>, steps: usize) -> Self {
+        let mut shape = Self {
+            x: vec![0.0; pose.pieces.len() * COORDINATES],
+            strain: vec![[0.0; STIFFNESSES]; pose.pieces.len()],
+            kinetic: vec![[0.0; INERTIAS]; pose.pieces.len()],
+            kinetic_fixed: 0.0,
+        };
+        let mut work = Work::default();
+        shape.iterate(pose, ideal, &stack(&direction, &Vector3::zeros()), &mut work);
+        for _ in 1..steps {
+            shape.iterate(pose, ideal, &Twist::zeros(), &mut work);
+        }
+        shape.energies(pose);
+        shape
+    }
+
+    /// One step of inverse iteration towards the ideal arm's lowest mode.
+    pub fn improve(&mut self, pose: &Pose, ideal: &Ideal, work: &mut Work) {
+        self.iterate(pose, ideal, &Twist::zeros(), work);
+        self.energies(pose);
+    }
+
+    /// `xᵀKx / xᵀMx` \[1/s²\]; infinite if the shape moves nothing.
+    #[inline]
+    pub fn quotient(&self, ideal: &Ideal) -> f64 {
+        let mut strain = 0.0;
+        let mut kinetic = self.kinetic_fixed;
+        for (s, k) in self.strain.iter().zip(ideal.stiffness) {
+            for i in 0..STIFFNESSES {
+                strain += s[i] * k[i];
+            }
+        }
+        for (t, m) in self.kinetic.iter().zip(ideal.inertia) {
+            for i in 0..INERTIAS {
+                kinetic += t[i] * m[i];
+            }
+        }
+        if kinetic > 0.0 { strain / kinetic } else { f64::INFINITY }
+    }
+
+    /// `x ← C M x`, with the base moving by `base` in the right-hand side.
+    fn iterate(&mut self, pose: &Pose, ideal: &Ideal, base: &Twist, work: &mut Work) {
+        inertia_forces(pose, ideal.inertia, base, &self.x, work);
+        let mut largest = 0.0f64;
+        for (piece, posed) in pose.pieces.iter().enumerate() {
+            let here = piece * COORDINATES..(piece + 1) * COORDINATES;
+            let (x, forces) = (&mut self.x[here.clone()], &work.forces[here]);
+            let stiffness = &ideal.stiffness[piece];
+            for (c, (x, force)) in x.iter_mut().zip(forces).enumerate().take(posed.coordinates()) {
+                let stiffness = posed.coordinate_stiffness(c, stiffness);
+                *x = if stiffness > 0.0 { force / stiffness } else { 0.0 };
+                largest = largest.max(x.abs());
+            }
+        }
+        if largest > 0.0 {
+            self.x.iter_mut().for_each(|x| *x /= largest);
+        }
+    }
+
+    /// The rows of the quotient.
+    fn energies(&mut self, pose: &Pose) {
+        let mut twist = Twist::zeros();
+        self.kinetic_fixed = 0.0;
+        for (piece, posed) in pose.pieces.iter().enumerate().rev() {
+            let x = &self.x[piece * COORDINATES..(piece + 1) * COORDINATES];
+            let (strain, kinetic) = (&mut self.strain[piece], &mut self.kinetic[piece]);
+            match posed {
+                PosedPiece::Joint { twist: axis, at_m } => {
+                    kinetic[inertia::MASS] = displacement(&twist, at_m).norm_squared();
+                    strain[0] = x[0] * x[0];
+                    twist += axis * x[0];
+                }
+                PosedPiece::Body(body) => self.kinetic_fixed += twist.dot(&(body * twist)),
+                PosedPiece::Tube(tube) => {
+                    *kinetic = Local::new(tube, &twist, x).kinetic(tube);
+                    *strain = [0.0; STIFFNESSES];
+                    for (c, x) in x.iter().enumerate() {
+                        strain[RESISTED[c].0] += x * x * tube.length_m / degree_factor(c);
+                    }
+                    tube.carry(&mut twist, x);
+                }
+            }
+        }
+        self.kinetic_fixed += twist.dot(&(pose.payload_inertia * twist));
+    }
+}
+
+/// `M x` into `work.forces`: the inertia forces on every coordinate when the arm moves by `x` and its base
+/// by `base`.
+pub(super) fn inertia_forces(
+    pose: &Pose,
+    inertia: &[[f64; INERTIAS]],
+    base: &Twist,
+    x: &[f64],
+    work: &mut Work,
+) {
+    work.momenta.clear();
+    work.forces.resize(x.len(), 0.0);
+    let mut twist = *base;
+    for (piece, posed) in pose.pieces.iter().enumerate().rev() {
+        let x = &x[piece * COORDINATES..(piece + 1) * COORDINATES];
+        match posed {
+            PosedPiece::Joint { twist: axis, at_m } => {
+                let momentum = displacement(&twist, at_m) * inertia[piece][inertia::MASS];
+                work.momenta.push(Momentum::Body(stack(&momentum, &at_m.cross(&momentum))));
+                twist += axis * x[0];
+            }
+            PosedPiece::Body(body) => work.momenta.push(Momentum::Body(body * twist)),
+            PosedPiece::Tube(tube) => {
+                let local = Local::new(tube, &twist, x);
+                work.momenta.push(Momentum::Tube(local.momentum(tube, &inertia[piece])));
+                tube.carry(&mut twist, x);
+            }
+        }
+    }
+    let mut wrench: Wrench = pose.payload_inertia * twist;
+    for (piece, posed) in pose.pieces.iter().enumerate() {
+        let forces = &mut work.forces[piece * COORDINATES..(piece + 1) * COORDINATES];
+        match (posed, work.momenta.pop()) {
+            (PosedPiece::Joint { twist: axis, .. }, Some(Momentum::Body(momentum))) => {
+                forces[0] = axis.dot(&wrench);
+                wrench += momentum;
+            }
+            (PosedPiece::Body(_), Some(Momentum::Body(momentum))) => wrench += momentum,
+            (PosedPiece::Tube(tube), Some(Momentum::Tube(local))) => {
+                forces.copy_from_slice(&local.forces);
+                for (end, coordinate) in ENDS.into_iter().enumerate() {
+                    forces[coordinate] += tube.ends[end].dot(&wrench);
+                }
+                let force = tube.frame * local.root_force;
+                let moment = tube.frame * local.root_moment + tube.root_m.cross(&force);
+                wrench += stack(&force, &moment);
+            }
+            _ => {}
+        }
+    }
+}
+
+impl PosedPiece {
+    /// Number of strain coordinates.
+    pub fn coordinates(&self) -> usize {
+        match self {
+            PosedPiece::Joint { .. } => 1,
+            PosedPiece::Body(_) => 0,
+            PosedPiece::Tube(_) => COORDINATES,
+        }
+    }
+
+    /// Stiffness of a coordinate; 0 where nothing yields.
+    #[inline]
+    pub fn coordinate_stiffness(&self, coordinate: usize, stiffness: &[f64; STIFFNESSES]) -> f64 {
+        match self {
+            PosedPiece::Tube(tube) => {
+                stiffness[RESISTED[coordinate].0] * tube.length_m / degree_factor(coordinate)
+            }
+            _ => stiffness[0],
+        }
+    }
+}
+
+/// Room for a step.
+#[derive(Default)]
+pub(super) struct Work {
+    momenta: Vec<Momentum>,
+    /// Force on each coordinate, [`COORDINATES`] a piece.
+    pub forces: Vec<f64>,
+}
+
+enum Momentum {
+    Body(Wrench),
+    Tube(TubeMomentum),
+}
+
+struct TubeMomentum {
+    root_force: Vector3<f64>,
+    root_moment: Vector3<f64>,
+    forces: [f64; COORDINATES],
+}
+
+#[inline]
+fn displacement(twist: &Twist, at_m: &Vector3<f64>) -> Vector3<f64> {
+    linear(twist) + angular(twist).cross(at_m)
+}
+
+impl PosedTube {
+    /// Adds what the tube's own coordinates do to everything outboard.
+    #[inline]
+    fn carry(&self, twist: &mut Twist, x: &[f64]) {
+        for (end, coordinate) in ENDS.into_iter().enumerate() {
+            *twist += self.ends[end] * x[coordinate];
+        }
+    }
+}
+
+/// A tube's motion in its own planes.
+struct Local {
+    z: SVector<f64, 9>,
+    y: SVector<f64, 9>,
+    turn: SVector<f64, 4>,
+    along: SVector<f64, 4>,
+}
+
+impl Local {
+    #[inline]
+    fn new(tube: &PosedTube, twist: &Twist, x: &[f64]) -> Self {
+        let v = tube.frame.tr_mul(&displacement(twist, &tube.root_m));
+        let w = tube.frame.tr_mul(&angular(twist));
+        Self {
+            z: SVector::from([v.z, w.y, x[0], x[1], x[2], x[3], x[8], x[9], x[10]]),
+            y: SVector::from([v.y, w.z, x[4], x[5], x[6], x[7], x[11], x[12], x[13]]),
+            turn: SVector::from([w.x, x[14], x[15], x[16]]),
+            along: SVector::from([v.x, x[17], x[18], x[19]]),
+        }
+    }
+
+    #[inline]
+    fn momentum(&self, tube: &PosedTube, line: &[f64; INERTIAS]) -> TubeMomentum {
+        let f = &tube.forms;
+        let across = line[inertia::MASS] + tube.added_kg_m3 * line[inertia::OUTER_AREA];
+        let z = f.across_z * self.z * across + f.rotary_y * self.z * line[inertia::ROTARY_Y];
+        let y = f.across_y * self.y * across + f.rotary_z * self.y * line[inertia::ROTARY_Z];
+        let turn = f.polar * self.turn * line[inertia::POLAR];
+        let along = f.along * self.along * line[inertia::MASS];
+        TubeMomentum {
+            root_force: Vector3::new(along[0], y[0], z[0]),
+            root_moment: Vector3::new(turn[0], z[1], y[1]),
+            forces: [
+                z[2], z[3], z[4], z[5], y[2], y[3], y[4], y[5], z[6], z[7], z[8], y[6], y[7], y[8], turn[1],
+                turn[2], turn[3], along[1], along[2], along[3],
+            ],
+        }
+    }
+
+    #[inline]
+    fn kinetic(&self, tube: &PosedTube) -> [f64; INERTIAS] {
+        let f = &tube.forms;
+        fn form<const N: usize>(m: &SMatrix<f64, N, N>, x: &SVector<f64, N>) -> f64 {
+            x.dot(&(m * x)).max(0.0)
+        }
+        let across = form(&f.across_z, &self.z) + form(&f.across_y, &self.y);
+        [
+            across + form(&f.along, &self.along),
+            across * tube.added_kg_m3,
+            form(&f.polar, &self.turn),
+            form(&f.rotary_y, &self.z),
+            form(&f.rotary_z, &self.y),
+        ]
+    }
+}
