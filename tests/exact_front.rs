@@ -8,12 +8,15 @@
 
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
+use armwright::search::design::options;
 use armwright::search::exact::Exact;
 use armwright::search::front::nondominated;
-use armwright::search::{ArmProblem, Sweep, evaluate};
+use armwright::search::sweep::Candidate;
+use armwright::search::{ArmProblem, Objectives, OutwardIn, Sweep, evaluate};
 use armwright::study::{Study, read_study};
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
+use std::time::Instant;
 
 /// A small generator with a recorded seed.
 struct Dice(u64);
@@ -150,46 +153,132 @@ fn read(study: &Value, catalogs: &Catalogs) -> Study {
     read_study(document, catalogs).unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
-/// Designs of the front by the exact search.
-fn exact_front(study: &Study, catalogs: &Catalogs) -> Vec<u128> {
-    let stop = AtomicBool::new(false);
-    let outcome = Exact::new(&study.space, catalogs, &stop, None).run(&[]);
-    let points: Vec<_> = outcome.front.iter().map(|c| c.objectives.minimized()).collect();
-    let mut numbers: Vec<u128> =
-        nondominated(&points).into_iter().flatten().map(|i| outcome.front[i].number).collect();
-    numbers.sort_unstable();
-    numbers
-}
-
-/// Designs of the front by visiting every one, and how many there are.
-fn swept_front(study: &Study, catalogs: &Catalogs) -> (Vec<u128>, u64) {
-    let stop = AtomicBool::new(false);
-    let problem = ArmProblem::new(&study.space, catalogs);
-    let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
-    let judged: Vec<_> = sweep.front.iter().filter_map(|c| evaluate(&problem, c.number)).collect();
+/// The designs of a front, judged by the full model.
+fn judged(problem: &ArmProblem, candidates: &[Candidate]) -> Vec<u128> {
+    let judged: Vec<_> = candidates.iter().filter_map(|c| evaluate(problem, c.number)).collect();
     let points: Vec<_> = judged.iter().map(|d| d.objectives.minimized()).collect();
     let mut numbers: Vec<u128> =
         nondominated(&points).into_iter().flatten().map(|i| judged[i].number).collect();
     numbers.sort_unstable();
-    (numbers, sweep.designs_evaluated)
+    numbers
 }
 
 #[test]
 fn the_exact_front_is_the_front_of_every_design() {
     let studies: u64 =
         std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(40);
-    let catalogs = Catalogs::builtin();
+    let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
     let (mut points, mut feasible) = (0, 0);
     for seed in 0..studies {
         let text = random_study(seed);
         let study = read(&text, &catalogs);
-        let (swept, evaluated) = swept_front(&study, &catalogs);
-        let exact = exact_front(&study, &catalogs);
-        assert_eq!(exact, swept, "seed {seed}, {evaluated} designs: {text}");
+        let problem = ArmProblem::new(&study.space, &catalogs);
+        let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
+        let exact = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
+        assert_eq!((exact.boxes_open, exact.gap), (0, Some(0.0)));
+        let swept = judged(&problem, &sweep.front);
+        assert_eq!(
+            judged(&problem, &exact.front),
+            swept,
+            "seed {seed}, {} designs: {text}",
+            sweep.designs_total
+        );
         points += swept.len();
         feasible += u64::from(!swept.is_empty());
     }
     println!("{studies} studies, {feasible} feasible, {points} front designs, the same in both");
     assert!(feasible * 2 > studies, "only {feasible} of {studies} studies are feasible");
     assert!(points as u64 > 10 * feasible, "fronts are too small to say much: {points} designs");
+}
+
+/// An arm whose heavier wrist drives press joint 2 into a stiffer segment of its gear.
+fn ballast_study() -> Value {
+    let wrist = json!({"gear_series": ["CSG"], "ratios": [100], "motors": ["electric"]});
+    json!({"name": "ballast", "chain": [
+        {"type": "joint", "name": "j2", "axis": [0, 1, 0], "mass_kg": 10,
+            "windup": {"k1_nm_per_rad": 2e5, "k2_nm_per_rad": 3.6e5, "k3_nm_per_rad": 4.4e5, "t1_nm": 90, "t2_nm": 130}},
+        {"type": "link", "name": "arm", "vector_m": [0.8, 0, 0], "choose": {"materials": ["Aluminium 6061-T6"],
+            "sections": [{"shape": "rectangular_tube", "width_mm": [80, 100, 120], "height_mm": [100, 140], "wall_mm": [3, 5]}]}},
+        {"type": "joint", "name": "j3", "axis": [0, 1, 0], "drive": "all_fits", "drives": wrist},
+        {"type": "link", "name": "flange", "vector_m": [0.2, 0, 0]}],
+        "payload": {"mass_kg": 3}, "poses": [{"pose_deg": [0, 0]}]})
+}
+
+/// Designs without those whose drive another drive beats in mass, in every slope and in every break point.
+fn without_dominated_drives(problem: &ArmProblem, numbers: impl Iterator<Item = u128>) -> Vec<u128> {
+    let sized = problem.sized_joint(2).expect("joint 3 is sized");
+    let merits = |drive: usize| {
+        let gear = sized.table.drive(drive).gear;
+        let slopes = [gear.k1_nm_per_rad, gear.k2_nm_per_rad, gear.k3_nm_per_rad].map(|k| k.unwrap_or(0.0));
+        (sized.table.mass_kg(drive), slopes, *sized.table.limits(drive))
+    };
+    let beats = |a: usize, b: usize| {
+        let ((mass_a, slopes_a, limits_a), (mass_b, slopes_b, limits_b)) = (merits(a), merits(b));
+        mass_a < mass_b && slopes_a.iter().zip(slopes_b).all(|(a, b)| *a >= b) && limits_a.cover(&limits_b)
+    };
+    let drives = sized.table.len();
+    let kept: Vec<bool> = (0..drives).map(|b| !(0..drives).any(|a| beats(a, b))).collect();
+    numbers.filter(|&n| kept[options(problem.level_sizes(), n).expect("in range")[0] as usize]).collect()
+}
+
+#[test]
+fn dropping_dominated_drives_would_lose_designs_that_the_exact_search_keeps() {
+    let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
+    let study = read(&ballast_study(), &catalogs);
+    let problem = ArmProblem::new(&study.space, &catalogs);
+    let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
+    let exact = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
+    let front = judged(&problem, &exact.front);
+    assert_eq!(front, judged(&problem, &sweep.front));
+    let total = u64::try_from(sweep.designs_total).expect("a small study");
+    let kept = without_dominated_drives(&problem, (0..u128::from(total)).into_iter());
+    let all: Vec<_> = kept.into_iter().filter_map(|n| evaluate(&problem, n)).collect();
+    let points: Vec<_> = all.iter().map(|d| d.objectives.minimized()).collect();
+    let naive: Vec<u128> = nondominated(&points).into_iter().flatten().map(|i| all[i].number).collect();
+    let lost = front.iter().filter(|n| !naive.contains(n)).count();
+    assert!(lost > 0, "the example no longer shows what dropping dominated drives loses");
+    println!("{lost} of {} designs of the front are lost when dominated drives are dropped", front.len());
+}
+
+#[test]
+fn a_search_that_is_stopped_says_by_how_much_it_may_be_bettered_and_is_right() {
+    let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
+    let study = read(&random_study(1), &catalogs);
+    let whole = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
+    assert!(!whole.front.is_empty());
+    // the deadline passes at once: what is found is little, and it says so
+    let cut = Exact::new(&study.space, &catalogs, &stop, Some(Instant::now())).run(&[]);
+    assert!(cut.boxes_open > 0 && cut.boxes < whole.boxes);
+    let Some(gap) = cut.gap else { return };
+    for design in &whole.front {
+        let o = &design.objectives;
+        let within = cut.front.iter().any(|c| {
+            let f = &c.objectives;
+            f.mass_kg <= o.mass_kg * (1.0 + gap)
+                && f.tip_deflection_m <= o.tip_deflection_m * (1.0 + gap)
+                && f.lowest_mode_hz * (1.0 + gap) >= o.lowest_mode_hz
+        });
+        assert!(within, "{o:?} is further than {gap} from what was found");
+    }
+}
+
+#[test]
+fn a_front_with_a_design_dropped_is_found_out_by_searching_from_it() {
+    let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
+    let study = read(&random_study(1), &catalogs);
+    let problem = ArmProblem::new(&study.space, &catalogs);
+    let whole = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
+    let front = judged(&problem, &whole.front);
+    let known = |numbers: &[u128]| -> Vec<Objectives> {
+        numbers.iter().map(|&n| evaluate(&problem, n).expect("a design of the front").objectives).collect()
+    };
+    let found_beside = |known: &[Objectives]| -> Vec<u128> {
+        let again = Exact::new(&study.space, &catalogs, &stop, None).run(known);
+        again.front.iter().map(|c| c.number).collect()
+    };
+    let again = found_beside(&known(&front));
+    assert!(front.iter().all(|n| again.contains(n)), "what is known is found again: it ties with itself");
+    let dropped = front[front.len() / 2];
+    let lacking: Vec<u128> = front.iter().copied().filter(|&n| n != dropped).collect();
+    assert!(found_beside(&known(&lacking)).contains(&dropped));
 }

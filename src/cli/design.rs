@@ -9,7 +9,7 @@ use crate::search::design::{full_objectives, number_of};
 use crate::study::read_study;
 use clap::Args;
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Takes a design out of a result: its arm with every part resolved to numbers, and the cases it was
 /// judged in, so that `analyze` reproduces its objectives.
@@ -28,7 +28,7 @@ pub struct DesignArgs {
 
 /// Carries out the verb.
 pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Failure> {
-    check_catalogs(args, catalogs)?;
+    check_catalogs(&args.results, catalogs)?;
     let study = read_study(Document::read(&args.results.join("study.json"))?, catalogs)?;
     let unknown = || {
         Failure::Usage(format!(
@@ -70,18 +70,19 @@ fn pretty(value: &Value) -> Vec<u8> {
     serde_json::to_vec_pretty(value).expect("a value of numbers and strings serializes")
 }
 
-/// Refuses catalogs other than those the result was made with: the id would name another design.
-fn check_catalogs(args: &DesignArgs, catalogs: &Catalogs) -> Result<(), Failure> {
-    let path = args.results.join("run.json");
+/// The facts of a result's run. Refuses catalogs other than those the result was made with: an id would
+/// name another design.
+pub(super) fn check_catalogs(results: &Path, catalogs: &Catalogs) -> Result<Value, Failure> {
+    let path = results.join("run.json");
     let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;
     let run: Value =
         serde_json::from_str(&text).map_err(|e| Failure::File(format!("{}: {e}", path.display())))?;
     if run["catalogs_hash"].as_str() == Some(&catalogs_hash(catalogs)) {
-        return Ok(());
+        return Ok(run);
     }
     let hint = match run["catalogs"].as_str() {
         Some(folder) => format!("it used --catalogs {folder}; give the same folder, unchanged"),
         None => "it used the built-in catalogs of another version; run the study again".into(),
     };
-    Err(Failure::Check(format!("{} was made with other catalogs: {hint}", args.results.display())))
+    Err(Failure::Check(format!("{} was made with other catalogs: {hint}", results.display())))
 }

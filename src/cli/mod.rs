@@ -6,6 +6,7 @@ mod carry;
 pub mod catalog;
 pub mod compare;
 mod design;
+mod front;
 pub mod predict;
 pub mod reconcile;
 mod rerun;
@@ -53,6 +54,8 @@ enum Verb {
     Analyze(analyze::AnalyzeArgs),
     /// Take a design out of a result as an arm file
     Design(design::DesignArgs),
+    /// Check a finished front
+    Front(front::FrontArgs),
     /// Put fronts side by side: materials of one study, or several studies
     Compare(compare::CompareArgs),
     /// Find where an arm and its measurements disagree and which physics is missing
@@ -175,6 +178,7 @@ pub fn run(cli: Cli) -> Result<String, Failure> {
         Verb::Compare(args) => compare::run(&args),
         Verb::Analyze(args) => analyze::run(&args, &catalogs?),
         Verb::Design(args) => design::run(&args, &catalogs?),
+        Verb::Front(args) => front::run(&args, &catalogs?),
         Verb::Reconcile(args) => reconcile::run(&args, &catalogs?, overlay).map(|(_, text)| text),
         Verb::Predict(args) => predict::run(&args, &catalogs?),
     }

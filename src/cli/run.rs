@@ -167,7 +167,8 @@ pub(super) fn search(
     }
 }
 
-fn stopped_by_signal() -> Arc<AtomicBool> {
+/// A flag that is set when the user wants to stop.
+pub(super) fn stopped_by_signal() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let on_signal = Arc::clone(&stop);
     // a second handler cannot be set; the first one serves

@@ -1,5 +1,6 @@
 //! Named questions: read, resolve, run.
 
+mod check;
 mod diagnose;
 mod effects;
 mod outcome;
@@ -9,6 +10,7 @@ mod read;
 mod sections;
 mod table;
 
+pub use check::{FrontCheck, check_front};
 pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{Carried, CorrectedStudy, carry_over, left_out};
 pub use outcome::{ExactStudy, Front, Judged, StudyOutcome, run_exact, run_study};

@@ -124,7 +124,7 @@ pub fn run_exact(
 }
 
 /// Judges candidates by the full model and keeps what nothing dominates.
-fn judge(problem: &ArmProblem, candidates: &[Candidate]) -> Front {
+pub(super) fn judge(problem: &ArmProblem, candidates: &[Candidate]) -> Front {
     let judged: Vec<Evaluated> = candidates.par_iter().filter_map(|c| evaluate(problem, c.number)).collect();
     let points: Vec<[f64; 3]> = judged.iter().map(|d| d.objectives.minimized()).collect();
     nondominated(&points)

@@ -1,0 +1,80 @@
+//! `armwright front check`: is a finished front right, and is it all of it?
+
+use super::Failure;
+use super::design::check_catalogs;
+use super::run::stopped_by_signal;
+use crate::catalog::Catalogs;
+use crate::fault::Document;
+use crate::report::front_table::FrontTable;
+use crate::study::{check_front, read_study};
+use clap::{Args, Subcommand};
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+/// Works on a finished front.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: armwright front check results/compare-materials")]
+pub struct FrontArgs {
+    #[command(subcommand)]
+    verb: FrontVerb,
+}
+
+#[derive(Debug, Subcommand)]
+enum FrontVerb {
+    /// Try to find fault with a front: every row, rows against each other, designs that are missing
+    Check(CheckArgs),
+}
+
+#[derive(Debug, Args)]
+struct CheckArgs {
+    /// Result folder of a study
+    results: PathBuf,
+    /// Stop looking for missing designs after so long, and say so
+    #[arg(long, value_name = "SECONDS")]
+    time_limit: Option<f64>,
+}
+
+/// Carries out the verb.
+pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+    let FrontVerb::Check(args) = &args.verb;
+    if args.time_limit.is_some_and(|s| s.is_nan() || s <= 0.0) {
+        return Err(Failure::Usage("--time-limit is a number of seconds above zero".into()));
+    }
+    let run = check_catalogs(&args.results, catalogs)?;
+    let file = args.results.join("study.json");
+    let text = fs_err::read_to_string(&file).map_err(|e| Failure::File(e.to_string()))?;
+    let study = read_study(Document::parse(&file.display().to_string(), &text)?, catalogs)?;
+    let table =
+        FrontTable::read(&args.results.join("front.csv")).map_err(|e| Failure::File(e.to_string()))?;
+    let mut faults = Vec::new();
+    if run["study_hash"].as_str() != Some(&blake3::hash(text.as_bytes()).to_hex().to_string()) {
+        faults.push("study.json is not the study that was run".to_string());
+    }
+    if run["front_size"].as_u64() != Some(table.rows.len() as u64) {
+        faults.push(format!(
+            "front.csv has {} designs, run.json says {}",
+            table.rows.len(),
+            run["front_size"]
+        ));
+    }
+    let claims_all = matches!(run["status"].as_str(), Some("certified" | "complete"));
+    let stop = stopped_by_signal();
+    let deadline = args.time_limit.map(|s| Instant::now() + Duration::from_secs_f64(s));
+    let check = check_front(&study, catalogs, &table, claims_all, &stop, deadline);
+    if stop.load(Ordering::Relaxed) {
+        return Err(Failure::Interrupted("stopped before the check was done".into()));
+    }
+    faults.extend(check.faults);
+    let completeness = match &check.completeness {
+        Ok(boxes) => format!("no design is missing ({boxes} boxes)"),
+        Err(why) => format!("whether a design is missing was not settled: {why}"),
+    };
+    if faults.is_empty() {
+        let rows = check.rows;
+        return Ok(format!(
+            "{rows} designs are as the model gives them, none beats another; {completeness}\n"
+        ));
+    }
+    Err(Failure::Check(format!("{}:\n  {}", args.results.display(), faults.join("\n  "))))
+}

@@ -1,0 +1,170 @@
+//! Finding fault with a finished front.
+
+use super::Study;
+use super::outcome::{Front, judge};
+use super::table::front_table;
+use crate::catalog::Catalogs;
+use crate::report::front_table::FrontTable;
+use crate::search::design::{Evaluated, id_of, number, number_of};
+use crate::search::exact::{Exact, conditions};
+use crate::search::front::nondominated;
+use crate::search::sweep::Candidate;
+use crate::search::{ArmProblem, Objectives, OutwardIn, evaluate};
+use std::collections::BTreeSet;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// Largest relative difference of a number in a row from what the full model gives.
+const AGREE: f64 = 1e-9;
+/// Faults of one kind that are listed one by one.
+const LISTED: usize = 10;
+
+/// What a check of a front found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrontCheck {
+    /// What is wrong, in words; empty if nothing is.
+    pub faults: Vec<String>,
+    /// Rows checked.
+    pub rows: usize,
+    /// Boxes bounded in looking for designs that are missing; `None` if that was not done, and why.
+    pub completeness: Result<u64, String>,
+}
+
+/// Checks a front against its study: every row by the full model, rows against each other, and, unless
+/// `claims_all` is false, all other designs by a search that starts from the rows.
+pub fn check_front(
+    study: &Study,
+    catalogs: &Catalogs,
+    table: &FrontTable,
+    claims_all: bool,
+    stop: &AtomicBool,
+    deadline: Option<Instant>,
+) -> FrontCheck {
+    let mut faults = Vec::new();
+    let ids: Vec<&str> = table.rows.iter().map(|row| row[0].as_str()).collect();
+    let numbers: BTreeSet<u128> = ids.iter().filter_map(|id| number_of(id)).collect();
+    let (known, unknown) =
+        numbers.iter().partition::<Vec<u128>, _>(|n| study.space.excerpt(catalogs, &[**n]).is_some());
+    let strange = ids.iter().filter(|id| number_of(id).is_none_or(|n| unknown.contains(&n)));
+    faults.extend(strange.map(|id| format!("design_id {id}: the study has no such design")));
+    if known.len() + unknown.len() < ids.len() {
+        faults.push("a design_id is there twice, or is none".into());
+    }
+    let Some(space) = study.space.excerpt(catalogs, &known) else {
+        return FrontCheck { faults, rows: table.rows.len(), completeness: Err("no row is a design".into()) };
+    };
+    let problem = ArmProblem::new(&space, catalogs);
+    let candidates: Vec<Candidate> = known.iter().filter_map(|&n| candidate(&problem, n)).collect();
+    let front = judge(&problem, &candidates);
+    compare_rows(&front_table(&problem, catalogs, &front), table, &front, &problem, &mut faults);
+    broken_limits(study, &front, &problem, &mut faults);
+    let completeness = match (claims_all, conditions(&study.space)) {
+        (false, _) => Err("the run was stopped early and claims no more than its rows".into()),
+        (true, Err(why)) => Err(format!("the exact search does not see this study as it is: {why}")),
+        (true, Ok(())) => Ok(()),
+    };
+    let completeness = completeness.and_then(|()| {
+        let objectives: Vec<Objectives> = front.iter().map(|d| d.design.objectives).collect();
+        let found = Exact::new(&study.space, catalogs, stop, deadline).run(&objectives);
+        list(&mut faults, missing(study, catalogs, &front, &problem, &found.front), "designs are missing");
+        match found.boxes_open {
+            0 => Ok(found.boxes),
+            open => Err(format!("stopped with {open} boxes unopened")),
+        }
+    });
+    FrontCheck { faults, rows: table.rows.len(), completeness }
+}
+
+fn candidate(problem: &ArmProblem, whole: u128) -> Option<Candidate> {
+    let options = problem.options_of_whole(whole)?;
+    let number = number(problem.level_sizes(), &options);
+    let objectives = Objectives { tip_deflection_m: 0.0, mass_kg: 0.0, lowest_mode_hz: 0.0 };
+    Some(Candidate { number, objectives })
+}
+
+/// Every row against what it should be.
+fn compare_rows(
+    expected: &FrontTable,
+    table: &FrontTable,
+    front: &Front,
+    problem: &ArmProblem,
+    faults: &mut Vec<String>,
+) {
+    let mut found = Vec::new();
+    for row in &table.rows {
+        let whole = number_of(&row[0]);
+        let place = front.iter().position(|d| Some(problem.whole_number(d.design.number)) == whole);
+        let Some(right) = place.and_then(|_| expected.rows.iter().find(|r| r[0] == row[0])) else {
+            found.push(format!("design {}: does not hold, or another row beats it", row[0]));
+            continue;
+        };
+        for (name, value) in table.columns.iter().zip(row) {
+            let Some(column) = expected.columns.iter().position(|c| c == name) else { continue };
+            if name != "tie_group" && !agree(value, &right[column]) {
+                found
+                    .push(format!("design {}: {name} is {value}, the model gives {}", row[0], right[column]));
+            }
+        }
+    }
+    list(faults, found, "cells or rows are wrong");
+}
+
+fn agree(a: &str, b: &str) -> bool {
+    match (a.parse::<f64>(), b.parse::<f64>()) {
+        (Ok(a), Ok(b)) => (a - b).abs() <= AGREE * b.abs(),
+        _ => a == b,
+    }
+}
+
+fn broken_limits(study: &Study, front: &Front, problem: &ArmProblem, faults: &mut Vec<String>) {
+    let c = &study.space.constraints;
+    let breaks = |o: &Objectives| {
+        c.tip_deflection_max_m.is_some_and(|max| o.tip_deflection_m > max)
+            || c.mass_max_kg.is_some_and(|max| o.mass_kg > max)
+            || o.lowest_mode_hz < c.required_mode_hz()
+    };
+    let broken = front.iter().filter(|d| breaks(&d.design.objectives));
+    let ids = broken.map(|d| id_of(problem.whole_number(d.design.number)));
+    list(
+        faults,
+        ids.map(|id| format!("design {id}: breaks a constraint")).collect(),
+        "designs break a constraint",
+    );
+}
+
+/// Designs found by the search that belong on the front and are not in it.
+fn missing(
+    study: &Study,
+    catalogs: &Catalogs,
+    front: &Front,
+    problem: &ArmProblem,
+    found: &[Candidate],
+) -> Vec<String> {
+    let listed: BTreeSet<u128> = front.iter().map(|d| problem.whole_number(d.design.number)).collect();
+    let others: Vec<u128> = found.iter().map(|c| c.number).filter(|n| !listed.contains(n)).collect();
+    let Some(space) = study.space.excerpt(catalogs, &others) else { return Vec::new() };
+    let beyond = ArmProblem::new(&space, catalogs);
+    let judged: Vec<(u128, Evaluated)> = others
+        .iter()
+        .filter_map(|&whole| Some((whole, evaluate(&beyond, candidate(&beyond, whole)?.number)?)))
+        .collect();
+    let own = front.iter().map(|d| d.design.objectives.minimized());
+    let points: Vec<[f64; 3]> = own.chain(judged.iter().map(|(_, d)| d.objectives.minimized())).collect();
+    let mut ids: Vec<u128> = nondominated(&points)
+        .into_iter()
+        .flatten()
+        .filter_map(|i| i.checked_sub(front.len()))
+        .map(|i| judged[i].0)
+        .collect();
+    ids.sort_unstable();
+    ids.into_iter().map(|n| format!("design {} belongs on the front and is not there", id_of(n))).collect()
+}
+
+/// The first few of many faults, and how many there are.
+fn list(faults: &mut Vec<String>, found: Vec<String>, what: &str) {
+    let more = found.len().saturating_sub(LISTED);
+    faults.extend(found.into_iter().take(LISTED));
+    if more > 0 {
+        faults.push(format!("and {more} more {what}"));
+    }
+}
