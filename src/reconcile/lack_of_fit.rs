@@ -68,9 +68,8 @@ pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &
     structures.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
     let chi2_per_dof = tester.chi2_per_dof(forward, fit);
     let ln_p = structures.first().map_or(0.0, |s| s.ln_p);
-    let fails = ln_p < CHANCE.ln()
-        || chi2_per_dof > MATERIAL
-        || (ln_p < SUSPECTED.ln() && chi2_per_dof > SUSPICIOUS);
+    let fails =
+        ln_p < CHANCE.ln() || chi2_per_dof > MATERIAL || (ln_p < SUSPECTED.ln() && chi2_per_dof > SUSPICIOUS);
     LackOfFit { structures, chi2_per_dof, fails }
 }
 

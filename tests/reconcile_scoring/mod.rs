@@ -106,7 +106,8 @@ impl Score {
                 let Some(t) = t else { continue };
                 let end = |list: &[Option<f64>]| list.get(i).copied().flatten();
                 let inside = end(&low).is_none_or(|l| l <= *t) && end(&high).is_none_or(|h| *t <= h);
-                let by = self.covered_by.entry(format!("{}.{parameter}", said["effect"].as_str().unwrap_or("?")));
+                let by =
+                    self.covered_by.entry(format!("{}.{parameter}", said["effect"].as_str().unwrap_or("?")));
                 let by = by.or_default();
                 for counts in [&mut self.covered, by] {
                     counts.0 += usize::from(inside);
