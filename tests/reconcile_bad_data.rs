@@ -114,7 +114,7 @@ fn only_static(keep: impl Fn(usize, &str) -> bool) -> tempfile::TempDir {
 }
 
 #[test]
-fn ten_rows_one_pose_or_one_load_are_insufficient() {
+fn ten_rows_one_pose_one_load_or_a_dead_instrument_are_insufficient() {
     for (folder, word) in [
         (only_static(|line, _| line <= 11), "too few"),
         (only_static(|line, _| line <= 6), "distinct pose"),
@@ -124,6 +124,17 @@ fn ten_rows_one_pose_or_one_load_are_insufficient() {
                 (line == 1 || has_payload_of_ten_kg(text)).then(|| text.to_string())
             }),
             "same load",
+        ),
+        (
+            edited("static.csv", |line, text| {
+                let dead = |text: &str, column| cells(text, column, "0.01");
+                Some(if line == 1 {
+                    text.into()
+                } else {
+                    (15..18).fold(text.to_string(), |t, c| dead(&t, c))
+                })
+            }),
+            "the instrument did not follow",
         ),
     ] {
         let outcome = outcome(folder.path());

@@ -24,7 +24,7 @@ fn made_campaigns_are_named_as_their_keys_say() {
         reconcile(&campaign).write(&out.path().join(name)).expect("written");
     }
     let score = reconcile_scoring::score(&names, out.path(), &data("campaign_keys")).expect("scored");
-    println!("{}", score.table());
+    println!("{}\n{}", score.table(), score.confusion_csv());
     assert!(score.classes.values().all(|(right, all)| right == all), "{}", score.table());
     assert!(score.covered.0 * 10 >= score.covered.1 * 8, "{}", score.table());
     let limit = |name: &str| if name.starts_with("hard") { 1.45 } else { 1.1 };

@@ -470,6 +470,10 @@ fn too_little(campaign: &Campaign) -> Vec<String> {
     let same_load = |r: &super::readings::StaticRow| {
         first.is_some_and(|f| f.payload.mass_kg == r.payload.mass_kg && f.force_n == r.force_n)
     };
+    let same_reading = |r: &super::readings::StaticRow| first.is_some_and(|f| f.d_mm == r.d_mm);
+    if first.is_some() && campaign.statics.iter().all(same_reading) {
+        reasons.push("every static reading is the same: the instrument did not follow the arm".into());
+    }
     if first.is_some() && campaign.statics.iter().all(same_load) {
         reasons.push(
             "every static reading has the same load: what grows with it cannot be told from what does not"

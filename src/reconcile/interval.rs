@@ -6,7 +6,7 @@
 
 use super::fit::{Effort, Fit, Weights, fit};
 use super::forward::Forward;
-use super::model::Model;
+use super::model::{Calibration, Model};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
@@ -47,6 +47,7 @@ pub fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec<Interv
         let owner = best.model.effects.iter().find(|e| e.knobs.iter().any(|k| std::ptr::eq(k, knob)));
         owner.is_some_and(|e| matches!(e.kind.name, "soft_windup" | "lost_motion" | "immersion"))
     };
+    let breaks = best.model.break_points();
     (0..knobs.len())
         .into_par_iter()
         .map(|i| {
@@ -61,11 +62,20 @@ pub fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec<Interv
                 } else {
                     Some(straight)
                 };
-                value.filter(|v| *v > low && *v < high)
+                let slack = if breaks.contains(&p) { Z95 * torque_doubt(best) } else { 0.0 };
+                value.map(|v| v + side * slack).filter(|v| *v > low && *v < high)
             };
             Interval { low: end(-1.0), high: end(1.0) }
         })
         .collect()
+}
+
+/// Standard deviation of ln of the torques that calibrated masses leave: a step of the frequencies at a
+/// break point is placed no better, and a refit cannot carry a test across the step to find that out.
+fn torque_doubt(best: &Fit) -> f64 {
+    let numbers = best.model.nuisance.numbers.iter();
+    let masses = numbers.filter(|(calibration, _)| matches!(calibration, Calibration::Mass(_)));
+    masses.map(|(_, sd)| *sd).fold(0.0, f64::max)
 }
 
 /// The lowest objective that is found from `u` on. Break points of a gear's curve make the frequencies

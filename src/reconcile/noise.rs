@@ -16,6 +16,8 @@ pub struct Noise {
 
 /// Standard deviations from which a reading is a gross error.
 const GROSS: f64 = 5.5;
+/// The same before any effect is looked for: play or a break point can put a single reading ten off.
+const UNMISTAKABLE: f64 = 16.0;
 /// Part of a channel's rows that can be gross errors; more are structure.
 const FEW: f64 = 0.10;
 /// Largest factor on declared deviations that is put down to the declaration.
@@ -46,10 +48,12 @@ impl Noise {
     pub fn first_look(forward: &Forward, bare: &Fit) -> Self {
         let residuals = declared_residuals(forward, bare);
         let close = |channel| spread(&residuals[forward.range(channel)]) < CLOSE;
-        match [Channel::Static, Channel::Modal, Channel::Windup].into_iter().all(close) {
-            true => Self { outliers: Self::from_fit(forward, bare).outliers, ..Self::default() },
-            false => Self::default(),
+        if ![Channel::Static, Channel::Modal, Channel::Windup].into_iter().all(close) {
+            return Self::default();
         }
+        let mut outliers = Self::from_fit(forward, bare).outliers;
+        outliers.retain(|(_, _, size)| *size > UNMISTAKABLE);
+        Self { outliers, ..Self::default() }
     }
 
     /// Judges the readings by the residuals of a fit.

@@ -8,7 +8,8 @@ use armwright::reconcile::noise::Noise;
 use serde_json::Value;
 
 /// By how many standard deviations readings without noise depart from the best that calibration within
-/// tolerance can do without the hidden effects; `None` if the library does not have one of them.
+/// tolerance can do without a hidden effect, the others being known: of several effects the least; `None`
+/// if the library does not have one of them.
 pub fn detectable_sigmas(campaign: &Campaign, hidden: &[Value]) -> Option<f64> {
     let mut forward = Forward::new(campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
@@ -29,7 +30,13 @@ pub fn detectable_sigmas(campaign: &Campaign, hidden: &[Value]) -> Option<f64> {
     let seen = forward.predict(&truth.coefficients(&forward, &u));
     forward.data.iter_mut().zip(seen).for_each(|(datum, value)| datum.value = value);
     let weights = Noise::default().weights(&forward);
-    let bare = Model::bare(&nuisance);
-    let without = fit(&forward, &bare, &vec![0.0; bare.len()], &weights, Effort::default());
-    Some(without.point.objective.sqrt())
+    let departure = |i: usize| {
+        let model = truth.without(i);
+        let mut start = u.clone();
+        let first = truth.first_knob(i);
+        start.drain(first..first + truth.effects[i].knobs.len());
+        fit(&forward, &model, &start, &weights, Effort::default()).point.objective.sqrt()
+    };
+    let least = (0..truth.effects.len()).map(departure).fold(f64::INFINITY, f64::min);
+    Some(if least.is_finite() { least } else { 0.0 })
 }
