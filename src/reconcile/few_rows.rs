@@ -24,8 +24,9 @@ pub const FEWEST_ROWS: usize = 11;
 const MOST_FITS: usize = 6000;
 /// Probability below which a set does not explain the readings.
 const IMPROBABLE: f64 = 0.01;
-/// Explaining sets that are this far behind the best in evidence are not listed.
-const IMPLAUSIBLE: f64 = 6.0;
+/// Explaining sets this far behind the best in evidence are not listed; with few readings the evidence is
+/// little more than what was expected before, so this is wide.
+const IMPLAUSIBLE: f64 = 15.0;
 /// Part of a mass by which every set must differ from the arm file to be told.
 const MATERIAL: f64 = 0.02;
 /// Largest over smallest stiffness from which it is not identified.

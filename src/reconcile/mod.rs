@@ -3,10 +3,10 @@
 //!
 //! [`campaign`] reads the readings; [`forward`] predicts them fast, [`exact`] by mechanics directly;
 //! [`model`] says what is free; [`fit`] fits; [`select`] finds the effects; [`noise`] finds gross errors
-//! and wrongly declared deviations; [`lack_of_fit`] asks whether structure is left; [`few_rows`] says what a
-//! handful of readings can; [`kept_out`]
-//! confirms on poses kept out; [`interval`] gives the intervals; [`analysis`] draws the conclusion and
-//! [`verdict`] is its form, [`page`] its page for a browser; [`correct`] writes the corrected arm and [`next_test`] says what to measure.
+//! and wrongly declared deviations; [`lack_of_fit`] asks whether structure is left; [`few_rows`] says
+//! what a handful of readings can; [`kept_out`] confirms on poses kept out; [`interval`] gives the
+//! intervals; [`analysis`] draws the conclusion and [`verdict`] is its form, [`page`] its page
+//! for a browser; [`correct`] writes the arm and [`next_test`] says what to measure; [`positions`] does all of it for absolute ones.
 
 pub mod analysis;
 pub mod campaign;

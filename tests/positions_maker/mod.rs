@@ -77,8 +77,8 @@ impl Made {
         let mut places = Vec::new();
         let mut bodies = Vec::new();
         let (mut at, mut rotation) = (Vector3::zeros(), Rotation3::identity());
-        for j in 0..3 {
-            let axis = Unit::new_normalize(Vector3::from(AXES[j]));
+        for (j, axis) in AXES.into_iter().enumerate() {
+            let axis = Unit::new_normalize(Vector3::from(axis));
             places.push((rotation * axis.into_inner(), at));
             let wobble = if j == 2 { truths.wobble_rad * (2.0 * pose_rad[2]).sin() } else { 0.0 };
             rotation *= Rotation3::from_axis_angle(&axis, pose_rad[j] + ZEROS_RAD[j] + wobble);

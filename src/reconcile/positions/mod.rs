@@ -1,9 +1,9 @@
 //! Absolute positions: placement, tool offsets, joint zeros, geometry and the direction of gravity are
 //! calibrated, what yields is found effect by effect, each stage judged on poses kept out of the fit.
 //!
-//! [`tree`] joins the arms that stand on one trunk; [`kinematics`] says where a point is and [`loads`] how
-//! gravity moves it; [`align`] places the arm from nothing, [`fit`] fits; [`structure`] asks what is left
-//! and [`outcome`] concludes.
+//! `tree` joins the arms that stand on one trunk; [`kinematics`] says where a point is and [`loads`] how
+//! gravity moves it; `align` places the arm from nothing, [`fit`](mod@fit) fits, `sessions` tells sessions
+//! apart; `structure` asks what is left and `outcome` concludes.
 
 mod align;
 pub mod fit;
