@@ -12,11 +12,14 @@ pub mod design;
 mod figures;
 pub mod fixed;
 pub mod front;
+pub mod hypervolume;
 pub mod outward;
 mod row;
 mod row_lanes;
+mod sieve;
 mod slot;
 pub mod space;
+mod staircase;
 pub mod station;
 pub mod sweep;
 
