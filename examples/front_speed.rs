@@ -1,8 +1,8 @@
 //! How fast the Pareto filter and the hypervolume are on a file of points, for a comparison with other programs.
 //!
-//! `front_speed POINTS A,B,C MASK` reads points (three little-endian `f64` each), writes one byte a point to MASK (1 if
-//! nothing dominates it) and prints seconds: filter, hypervolume below the reference point, its value.
-//! `benches/peers/moocore_front.py` runs it.
+//! `front_speed POINTS A,B,C MASK REPEATS` reads points (three little-endian `f64` each), writes one byte a point to MASK
+//! (1 if nothing dominates it) and prints the least seconds of so many repeats, filter and hypervolume below the
+//! reference point, and the hypervolume. `benches/peers/moocore_front.py` runs it.
 
 use armwright::search::front::exact_front;
 use armwright::search::hypervolume::hypervolume;
@@ -10,8 +10,8 @@ use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let [file, reference, mask] = words.as_slice() else {
-        return Err("usage: front_speed POINTS A,B,C MASK".into());
+    let [file, reference, mask, repeats] = words.as_slice() else {
+        return Err("usage: front_speed POINTS A,B,C MASK REPEATS".into());
     };
     let bytes = std::fs::read(file)?;
     let points: Vec<[f64; 3]> = bytes
@@ -22,14 +22,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .collect();
     let reference: Vec<f64> = reference.split(',').map(str::parse).collect::<Result<_, _>>()?;
     let reference: [f64; 3] = reference.try_into().map_err(|_| "the reference point has three numbers")?;
-    // the pool's threads are started before the clock is
-    rayon::join(|| (), || ());
-    let started = Instant::now();
-    let front = exact_front(&points)?;
-    let filter_s = started.elapsed().as_secs_f64();
-    let started = Instant::now();
-    let volume = hypervolume(&points, reference)?;
-    let volume_s = started.elapsed().as_secs_f64();
+    let (mut filter_s, mut volume_s) = (f64::INFINITY, f64::INFINITY);
+    let (mut front, mut volume) = (Vec::new(), 0.0);
+    for _ in 0..repeats.parse::<u32>()? {
+        let started = Instant::now();
+        front = exact_front(&points)?;
+        filter_s = filter_s.min(started.elapsed().as_secs_f64());
+        let started = Instant::now();
+        volume = hypervolume(&points, reference)?;
+        volume_s = volume_s.min(started.elapsed().as_secs_f64());
+    }
     let mut on_front = vec![0u8; points.len()];
     front.iter().for_each(|&i| on_front[i] = 1);
     std::fs::write(mask, on_front)?;

@@ -4,7 +4,8 @@
 //! the other two: O(n log n) whatever the points look like, exact, duplicates kept.
 
 use super::sieve::sieve;
-use super::staircase::{Ranking, Staircase};
+use super::ranking::{Ranked, Ranking};
+use super::staircase::Staircase;
 use rayon::prelude::*;
 
 /// Decimal digits that count when two objectives are compared: what lies below is rounding.
@@ -63,11 +64,11 @@ pub fn nondominated(points: &[[f64; 3]]) -> Result<Vec<Vec<usize>>, NotANumber> 
 /// Indices of the points that no other dominates, in the order of the sweep: equal points side by side,
 /// their indices ascending.
 fn swept(points: &[[f64; 3]]) -> Vec<u32> {
-    let Ranking { order, rank, second } = Ranking::new(points);
+    let Ranking { order, second } = Ranking::new(points);
     let mut stairs = Staircase::new(second.len());
     let mut kept: Vec<u32> = Vec::new();
-    for i in order {
-        let (point, rank) = (&points[i as usize], rank[i as usize]);
+    for Ranked { point: i, rank } in order {
+        let point = &points[i as usize];
         // whatever was swept before and differs is no larger in the first objective
         if !stairs.covers(rank, point[2]) {
             stairs.insert(rank, point[2], |_, _| ());
@@ -83,20 +84,20 @@ fn swept(points: &[[f64; 3]]) -> Vec<u32> {
 /// objectives, in the order of `points`.
 pub fn not_clearly_beaten(points: &[[f64; 3]], slack: f64) -> Vec<usize> {
     let lowered = |x: f64| x - slack * x.abs();
-    let Ranking { order, rank, second } = Ranking::new(points);
+    let Ranking { order, second } = Ranking::new(points);
     let reach = reaches(&second, lowered);
     let mut stairs = Staircase::new(second.len());
     let mut entered = order.iter().peekable();
     let mut kept = Vec::new();
-    for &i in &order {
+    for &Ranked { point: i, rank } in &order {
         let [first, _, third] = points[i as usize].map(lowered);
-        while let Some(&next) = entered.next_if(|&&next| points[next as usize][0] <= first) {
-            let (rank, third) = (rank[next as usize], points[next as usize][2]);
+        while let Some(next) = entered.next_if(|next| points[next.point as usize][0] <= first) {
+            let (rank, third) = (next.rank, points[next.point as usize][2]);
             if !stairs.covers(rank, third) {
                 stairs.insert(rank, third, |_, _| ());
             }
         }
-        let beaten = reach[rank[i as usize] as usize].is_some_and(|rank| stairs.covers(rank, third));
+        let beaten = reach[rank as usize].is_some_and(|rank| stairs.covers(rank, third));
         if !beaten {
             kept.push(i as usize);
         }

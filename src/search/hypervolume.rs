@@ -6,7 +6,8 @@
 
 use super::front::{NotANumber, all_numbers};
 use super::sieve::sieve;
-use super::staircase::{Ranking, Staircase};
+use super::ranking::{Ranked, Ranking};
+use super::staircase::Staircase;
 use rayon::prelude::*;
 
 /// Volume of the part of space that is dominated by a point and dominates the reference point, all three
@@ -16,12 +17,11 @@ pub fn hypervolume(points: &[[f64; 3]], reference: [f64; 3]) -> Result<f64, NotA
     let inside = |p: &[f64; 3]| p.iter().zip(&reference).all(|(x, r)| x < r);
     let sieved = sieve(points, 0.0);
     let left: Vec<[f64; 3]> = sieved.par_iter().map(|&i| points[i as usize]).filter(inside).collect();
-    let Ranking { order, rank, second } = Ranking::new(&left);
+    let Ranking { order, second } = Ranking::new(&left);
     let mut stairs = Staircase::new(second.len());
     let mut volume = Sum::default();
-    for i in order {
-        let [first, start, third] = left[i as usize];
-        let rank = rank[i as usize];
+    for Ranked { point, rank } in order {
+        let [first, start, third] = left[point as usize];
         let mut height = stairs.best(rank).unwrap_or(reference[2]);
         if height <= third {
             continue;

@@ -14,6 +14,7 @@ pub mod fixed;
 pub mod front;
 pub mod hypervolume;
 pub mod outward;
+mod ranking;
 mod row;
 mod row_lanes;
 mod sieve;

@@ -7,62 +7,6 @@
 //! the level above. Finding a neighbour or changing a step costs one word a level, whatever the points
 //! look like; with the two sorts this makes a sweep O(n log n) (Kung, Luccio & Preparata 1975).
 
-use rayon::prelude::*;
-
-/// A key in the order of the numbers; both zeros are one.
-pub(super) fn key(x: f64) -> u64 {
-    let bits = (x + 0.0).to_bits();
-    if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
-}
-
-/// Points in the order of a sweep, and the rank of each one's second objective.
-pub(super) struct Ranking {
-    /// Indices, by first objective, then second, then third, then index.
-    pub order: Vec<u32>,
-    /// Rank of each point's second objective; equal objectives have equal ranks.
-    pub rank: Vec<u32>,
-    /// The second objective of each rank.
-    pub second: Vec<f64>,
-}
-
-impl Ranking {
-    /// Ranks points; both sorts run at once.
-    pub fn new(points: &[[f64; 3]]) -> Self {
-        let (order, by_second) = rayon::join(|| sweep_order(points), || sorted(points, 1));
-        let mut rank = vec![0; points.len()];
-        let mut second = Vec::new();
-        let mut last = None;
-        for (key, point) in by_second {
-            if last.replace(key) != Some(key) {
-                second.push(points[point as usize][1]);
-            }
-            rank[point as usize] = second.len() as u32 - 1;
-        }
-        Self { order, rank, second }
-    }
-}
-
-/// Keys of one objective with their points, in order.
-fn sorted(points: &[[f64; 3]], objective: usize) -> Vec<(u64, u32)> {
-    let index = |i: usize| u32::try_from(i).expect("fewer than 2^32 points fit into memory");
-    let mut keys: Vec<(u64, u32)> =
-        points.par_iter().enumerate().map(|(i, p)| (key(p[objective]), index(i))).collect();
-    keys.par_sort_unstable();
-    keys
-}
-
-fn sweep_order(points: &[[f64; 3]]) -> Vec<u32> {
-    let mut keys = sorted(points, 0);
-    // runs of equal first objectives are put in order by the others
-    for run in keys.chunk_by_mut(|a, b| a.0 == b.0).filter(|run| run.len() > 1) {
-        run.par_sort_unstable_by_key(|&(_, i)| {
-            let [_, second, third] = points[i as usize];
-            (key(second), key(third), i)
-        });
-    }
-    keys.into_iter().map(|(_, i)| i).collect()
-}
-
 /// The steps: ranks of second objectives, each with its third.
 pub(super) struct Staircase {
     steps: RankSet,
@@ -202,12 +146,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn keys_have_the_order_of_the_numbers() {
-        let numbers = [f64::NEG_INFINITY, -2.0, -1e-300, 0.0, 1e-300, 1.0, f64::INFINITY];
-        assert!(numbers.windows(2).all(|w| key(w[0]) < key(w[1])));
-        assert_eq!(key(0.0), key(-0.0));
     }
 }
