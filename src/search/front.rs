@@ -3,8 +3,8 @@
 //! A sieve drops what is plainly dominated, the rest is swept along the first objective over a staircase of
 //! the other two: O(n log n) whatever the points look like, exact, duplicates kept.
 
-use super::sieve::sieve;
 use super::ranking::{Ranked, Ranking};
+use super::sieve::sieve;
 use super::staircase::Staircase;
 use rayon::prelude::*;
 

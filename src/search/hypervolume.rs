@@ -4,9 +4,10 @@
 //! and third objective, times its distance from the reference along the first. Every term is positive, so
 //! nothing cancels; the sum is compensated (Neumaier). O(n log n). See Beume et al. 2009 for the problem.
 
+use super::Objectives;
 use super::front::{NotANumber, all_numbers};
-use super::sieve::sieve;
 use super::ranking::{Ranked, Ranking};
+use super::sieve::sieve;
 use super::staircase::Staircase;
 use rayon::prelude::*;
 
@@ -39,6 +40,17 @@ pub fn hypervolume(points: &[[f64; 3]], reference: [f64; 3]) -> Result<f64, NotA
         }
     }
     Ok(volume.total())
+}
+
+/// The point below which a study's front is measured, the same for every study: 100 mm, 1 t, 0.1 Hz.
+pub const REFERENCE: Objectives = Objectives { tip_deflection_m: 0.1, mass_kg: 1000.0, lowest_mode_hz: 0.1 };
+
+/// Hypervolume of designs below [`REFERENCE`] in the natural logarithms of mass, deflection and lowest mode, so that
+/// halving any of them counts alike; designs with an objective that has no logarithm add nothing.
+pub fn front_hypervolume(designs: impl Iterator<Item = Objectives>) -> f64 {
+    let logarithms = |o: Objectives| [o.mass_kg.ln(), o.tip_deflection_m.ln(), -o.lowest_mode_hz.ln()];
+    let points: Vec<[f64; 3]> = designs.map(logarithms).filter(|p| p.iter().all(|x| x.is_finite())).collect();
+    hypervolume(&points, logarithms(REFERENCE)).unwrap_or_default()
 }
 
 /// A sum that carries what rounding took from it.
@@ -103,6 +115,22 @@ mod tests {
         assert_eq!(hypervolume(&[], [1.0; 3]).unwrap(), 0.0);
         assert_eq!(hypervolume(&[[1.0, 2.0, 3.0]], [2.0, 4.0, 6.0]).unwrap(), 6.0);
         assert_eq!(hypervolume(&[[1.0, 2.0, 3.0]], [2.0, 2.0, 6.0]).unwrap(), 0.0);
+    }
+
+    #[test]
+    fn a_design_that_halves_an_objective_adds_the_same_whichever_it_is() {
+        let design = |kg: f64, mm: f64, hz: f64| Objectives {
+            tip_deflection_m: mm / 1e3,
+            mass_kg: kg,
+            lowest_mode_hz: hz,
+        };
+        let one = |o: Objectives| front_hypervolume([o].into_iter());
+        let cube = one(design(100.0, 10.0, 1.0));
+        assert!((cube - 10f64.ln().powi(3)).abs() < 1e-12);
+        for better in [design(50.0, 10.0, 1.0), design(100.0, 5.0, 1.0), design(100.0, 10.0, 2.0)] {
+            assert!((one(better) / cube - 20f64.ln() / 10f64.ln()).abs() < 1e-12);
+        }
+        assert_eq!(one(design(100.0, 10.0, f64::INFINITY)), 0.0);
     }
 
     #[test]

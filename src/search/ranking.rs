@@ -28,8 +28,14 @@ impl Ranking {
         let count = u32::try_from(points.len()).expect("fewer than 2^32 points fit into memory");
         let order: Vec<Ranked> = (0..count).map(|point| Ranked { point, rank: 0 }).collect();
         let objective = |k: usize| move |r: &Ranked| key(points[r.point as usize][k]);
-        let mut order = sorted(order, objective(1), |r| (key(points[r.point as usize][1]), 0, 0, 0));
-        let second = rank(&mut order, points);
+        let by = |k: usize, order| sorted(order, objective(k), objective(k));
+        let mut order = by(1, order);
+        let mut second = rank(&mut order, points);
+        if second.len() < order.len() / 16 {
+            // many ties: radix sort by the third first spares the comparisons that would settle them
+            order = by(1, by(2, order));
+            second = rank(&mut order, points);
+        }
         let all = |r: &Ranked| {
             let [first, _, third] = points[r.point as usize];
             (key(first), r.rank, key(third), r.point)

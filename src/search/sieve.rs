@@ -7,6 +7,7 @@
 //! drop a point that is not dominated.
 
 use rayon::prelude::*;
+use std::cmp::Ordering;
 
 /// Fewer points than this are sorted as they are.
 const WORTH_IT: usize = 1 << 12;
@@ -28,7 +29,8 @@ pub(super) fn sieve(points: &[[f64; 3]], slack: f64) -> Vec<u32> {
     let stays = |p: &[f64; 3]| {
         let lowered = p.map(|x| x - slack * x.abs());
         // an infinite objective cannot be lowered and stays
-        !(table.best_below(bins[0].of(lowered[0]), bins[1].of(lowered[1])) < lowered[2])
+        table.best_below(bins[0].of(lowered[0]), bins[1].of(lowered[1])).partial_cmp(&lowered[2])
+            != Some(Ordering::Less)
     };
     points.par_iter().enumerate().filter(|(_, p)| stays(p)).map(|(i, _)| index(i)).collect()
 }
