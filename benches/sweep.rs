@@ -6,7 +6,6 @@ mod common;
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
 use armwright::search::design::full_objectives;
-use armwright::search::front::nondominated;
 use armwright::search::{ArmProblem, OutwardIn, Sweep};
 use armwright::study::{Study, named, read_study};
 use divan::Bencher;
@@ -53,24 +52,6 @@ fn full_model_one_pose(bencher: Bencher) {
 fn full_model_compare_materials(bencher: Bencher) {
     let catalogs = Catalogs::builtin();
     sweep(bencher, &compare_materials(&catalogs), &catalogs);
-}
-
-/// Exact filter of points spread about a curved front.
-#[divan::bench(args = [100_000, 1_000_000], sample_count = 5)]
-fn pareto_filter(bencher: Bencher, points: usize) {
-    let mut state = 1u64;
-    let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
-    let points: Vec<[f64; 3]> = (0..points)
-        .map(|_| {
-            let p = [0; 3].map(|_| 0.01 + random());
-            let length = p.iter().map(|x| x * x).sum::<f64>().sqrt() / (1.0 + 0.2 * random());
-            p.map(|x| 1.5 - x / length)
-        })
-        .collect();
-    bencher.counter(ItemsCount::new(points.len())).bench(|| nondominated(&points).len());
 }
 
 /// The full model of one six-axis arm in two poses: what `analyze` prints.

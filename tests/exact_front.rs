@@ -158,7 +158,7 @@ fn judged(problem: &ArmProblem, candidates: &[Candidate]) -> Vec<u128> {
     let judged: Vec<_> = candidates.iter().filter_map(|c| evaluate(problem, c.number)).collect();
     let points: Vec<_> = judged.iter().map(|d| d.objectives.minimized()).collect();
     let mut numbers: Vec<u128> =
-        nondominated(&points).into_iter().flatten().map(|i| judged[i].number).collect();
+        nondominated(&points).expect("numbers").into_iter().flatten().map(|i| judged[i].number).collect();
     numbers.sort_unstable();
     numbers
 }
@@ -234,7 +234,8 @@ fn dropping_dominated_drives_would_lose_designs_that_the_exact_search_keeps() {
     let kept = without_dominated_drives(&problem, (0..u128::from(total)).into_iter());
     let all: Vec<_> = kept.into_iter().filter_map(|n| evaluate(&problem, n)).collect();
     let points: Vec<_> = all.iter().map(|d| d.objectives.minimized()).collect();
-    let naive: Vec<u128> = nondominated(&points).into_iter().flatten().map(|i| all[i].number).collect();
+    let naive: Vec<u128> =
+        nondominated(&points).expect("numbers").into_iter().flatten().map(|i| all[i].number).collect();
     let lost = front.iter().filter(|n| !naive.contains(n)).count();
     assert!(lost > 0, "the example no longer shows what dropping dominated drives loses");
     println!("{lost} of {} designs of the front are lost when dominated drives are dropped", front.len());

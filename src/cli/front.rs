@@ -48,7 +48,7 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
     let table =
         FrontTable::read(&args.results.join("front.csv")).map_err(|e| Failure::File(e.to_string()))?;
     let mut faults = Vec::new();
-    if run["study_hash"].as_str() != Some(&blake3::hash(text.as_bytes()).to_hex().to_string()) {
+    if run["study_hash"].as_str() != Some(blake3::hash(text.as_bytes()).to_hex().as_str()) {
         faults.push("study.json is not the study that was run".to_string());
     }
     if run["front_size"].as_u64() != Some(table.rows.len() as u64) {

@@ -14,6 +14,7 @@ use crate::report::summary::{
     MaterialFront, SummaryFacts, SummaryInput, constraint_words, summary_md, terminal_summary,
 };
 use crate::report::table::Table;
+use crate::search::hypervolume::front_hypervolume;
 use crate::search::{ArmProblem, Status, exact};
 use crate::study::{
     Carried, ExactStudy, Study, StudyOutcome, empty_pieces, front_table, left_out, named, paper_question,
@@ -482,6 +483,7 @@ impl Finished<'_> {
             "designs_evaluated": sweep.designs_evaluated,
             "designs_excluded": count(sweep.designs_excluded),
             "front_size": self.outcome.front.len(),
+            "hypervolume": front_hypervolume(self.outcome.front.iter().map(|d| d.design.objectives)),
             "elapsed_s": self.elapsed_s,
             "designs_per_s": sweep.designs_evaluated as f64 / self.elapsed_s,
             "threads": rayon::current_num_threads(),

@@ -351,6 +351,15 @@ fn ties(pick: &Pick, designs: &[Design]) -> String {
 
 /// Designs total, evaluated, excluded, and the rate.
 fn counts(facts: &SummaryFacts) -> String {
+    if ["certified", "partial"].contains(&facts.status.as_str()) {
+        return format!(
+            "{} designs: {} judged one by one, the others cut in boxes, in {} s; search {}.",
+            large(facts.designs_total),
+            grouped(facts.designs_evaluated),
+            significant(facts.elapsed_s, 3),
+            facts.status
+        );
+    }
     let rate = facts.designs_evaluated as f64 / facts.elapsed_s;
     let rate = if rate.is_finite() && rate > 0.0 {
         let threads = match facts.threads {
@@ -370,6 +379,11 @@ fn counts(facts: &SummaryFacts) -> String {
         significant(facts.elapsed_s, 3),
         facts.status
     )
+}
+
+/// A count in digits, or as a power of ten where nobody counts digits.
+fn large(n: u128) -> String {
+    if n < 1_000_000_000_000 { grouped(n) } else { format!("{:.2e}", n as f64) }
 }
 
 /// The commands that take a design out and analyse it, one a line.

@@ -15,11 +15,15 @@ mod excerpt;
 mod figures;
 pub mod fixed;
 pub mod front;
+pub mod hypervolume;
 pub mod outward;
+mod ranking;
 mod row;
 mod row_lanes;
+mod sieve;
 mod slot;
 pub mod space;
+mod staircase;
 pub mod station;
 pub mod sweep;
 

@@ -5,7 +5,7 @@ use super::outcome::{Front, judge};
 use super::table::front_table;
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
-use crate::search::design::{Evaluated, id_of, number, number_of};
+use crate::search::design::{Evaluated, id_of, number, number_of, options};
 use crate::search::exact::{Exact, conditions};
 use crate::search::front::nondominated;
 use crate::search::sweep::Candidate;
@@ -42,9 +42,9 @@ pub fn check_front(
 ) -> FrontCheck {
     let mut faults = Vec::new();
     let ids: Vec<&str> = table.rows.iter().map(|row| row[0].as_str()).collect();
+    let sizes = study.space.level_sizes(catalogs);
     let numbers: BTreeSet<u128> = ids.iter().filter_map(|id| number_of(id)).collect();
-    let (known, unknown) =
-        numbers.iter().partition::<Vec<u128>, _>(|n| study.space.excerpt(catalogs, &[**n]).is_some());
+    let (known, unknown) = numbers.iter().partition::<Vec<u128>, _>(|n| options(&sizes, **n).is_some());
     let strange = ids.iter().filter(|id| number_of(id).is_none_or(|n| unknown.contains(&n)));
     faults.extend(strange.map(|id| format!("design_id {id}: the study has no such design")));
     if known.len() + unknown.len() < ids.len() {
@@ -151,6 +151,7 @@ fn missing(
     let own = front.iter().map(|d| d.design.objectives.minimized());
     let points: Vec<[f64; 3]> = own.chain(judged.iter().map(|(_, d)| d.objectives.minimized())).collect();
     let mut ids: Vec<u128> = nondominated(&points)
+        .expect("objectives are numbers")
         .into_iter()
         .flatten()
         .filter_map(|i| i.checked_sub(front.len()))

@@ -128,6 +128,7 @@ pub(super) fn judge(problem: &ArmProblem, candidates: &[Candidate]) -> Front {
     let judged: Vec<Evaluated> = candidates.par_iter().filter_map(|c| evaluate(problem, c.number)).collect();
     let points: Vec<[f64; 3]> = judged.iter().map(|d| d.objectives.minimized()).collect();
     nondominated(&points)
+        .expect("the full model answers in numbers")
         .into_iter()
         .enumerate()
         .flat_map(|(group, members)| members.into_iter().map(move |i| (group + 1, i)))

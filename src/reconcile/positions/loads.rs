@@ -200,12 +200,11 @@ fn own_body(element: &ElasticElement, structure: &Structure) -> Option<Body> {
     })
 }
 
+/// A joint's lever to the tip \[m\] and the torque on it \[N m\].
+type Lever = (Vector3<f64>, f64);
+
 /// Every candidate's displacement at unit compliance per direction of gravity, and its lever and torque.
-fn signatures(
-    unit: &Posed,
-    own: &Ready,
-    candidates: &[Yielding],
-) -> (Vec<Matrix3<f64>>, Vec<(Vector3<f64>, f64)>) {
+fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Matrix3<f64>>, Vec<Lever>) {
     let answers = answers(unit, own);
     let of =
         |name: &str| answers.iter().find(|(n, _)| *n == name).map_or(Vec::new(), |(_, list)| list.clone());

@@ -186,19 +186,17 @@ impl<'c> Problem<'c> {
         let steps = if work.is_point() { MOST_STEPS } else { 1 };
         for _ in 0..steps {
             let before = ceiling.hz;
-            let mut judged = 0;
-            for (case, pose) in self.poses.iter().enumerate().filter(|(_, p)| p.judged) {
+            for (judged, case) in self.judged_cases().enumerate() {
                 for start in 0..starts {
                     let shape = &mut shapes[judged * starts + start];
                     let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
-                    shape.improve(pose, &ideal, &mut work.shape);
+                    shape.improve(&self.poses[case], &ideal, &mut work.shape);
                     let hz = hertz(shape.quotient(&ideal));
                     if hz < ceiling.hz {
                         ceiling.hz = hz;
                         work.worst = (judged, start);
                     }
                 }
-                judged += 1;
             }
             if fails(ceiling) {
                 return Verdict::Cut;

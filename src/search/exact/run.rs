@@ -168,7 +168,7 @@ fn coarse(problem: &Problem, options: usize) -> Option<Restriction> {
 /// The options that no other beats in all three merits, lightest first.
 fn best(merits: &[(u32, [f64; 3])]) -> Vec<u32> {
     let points: Vec<[f64; 3]> = merits.iter().map(|(_, m)| *m).collect();
-    nondominated(&points).into_iter().map(|group| merits[group[0]].0).collect()
+    nondominated(&points).expect("merits are numbers").into_iter().map(|group| merits[group[0]].0).collect()
 }
 
 fn evenly(options: Vec<u32>, keep: usize) -> Vec<u32> {
