@@ -205,7 +205,7 @@ function views(f) {
     g.clearRect(0, 0, parallel.w, parallel.h);
     g.lineWidth = 1;
     /* never more lines than can be seen: the rest would only cost time */
-    const every = Math.max(1, Math.ceil(chosen / 2500));
+    const every = Math.max(1, Math.ceil(chosen / 1500));
     for (const grp of order) {
       g.strokeStyle = paint(grp); g.globalAlpha = chosen > 800 ? 0.16 : chosen > 120 ? 0.35 : 0.75;
       let n = 0, seen = 0;
