@@ -189,7 +189,7 @@ function views(f) {
     g.font = FONT;
   }
 
-  const px = (a) => { const l = 74, r = parallel.w - 50; return axes.length > 1 ? l + (a * (r - l)) / (axes.length - 1) : l; };
+  const px = (a) => { const l = 74, r = parallel.w - 58; return axes.length > 1 ? l + (a * (r - l)) / (axes.length - 1) : l; };
   const py = (p) => parallel.h - 16 - p * (parallel.h - 16 - 62);
   function line(g, i) {
     let joined = false;
