@@ -236,7 +236,7 @@ fn a_page_can_be_read_on_a_phone_on_paper_and_without_its_program() {
     browser.call("Emulation.setScriptExecutionDisabled", json!({"value": true}));
     browser.call("Page.navigate", json!({"url": format!("file://{}", page.display())}));
     browser
-        .until("document.readyState === 'complete' && document.documentElement.dataset.ready === undefined");
+        .until("document.readyState === 'complete' && document.documentElement?.dataset.ready === undefined");
     assert!(shown(".pick") && shown(".stills svg"));
     assert_eq!(browser.value("document.getElementById('views').hidden"), json!(true));
 }

@@ -30,6 +30,7 @@ pub fn plot(title: &str, x_label: &str, points: &[(f64, f64)], width: usize, hei
     }
     let (low, high) = (significant(x.low, 3), significant(x.high, 3));
     let rest = columns.saturating_sub(low.len() + high.len());
+    let x_label = if x_label.len() + 2 <= rest { x_label } else { "" };
     out.push(format!("{:w$} \u{2514}{}", "", "\u{2500}".repeat(columns), w = MARGIN - 1));
     out.push(format!("{:MARGIN$} {low}{x_label:^rest$}{high}", ""));
     out

@@ -95,7 +95,7 @@ impl Browser {
     pub fn open(&self, page: &Path) {
         self.events.borrow_mut().clear();
         self.call("Page.navigate", json!({"url": format!("file://{}", page.display())}));
-        self.until("document.documentElement.dataset.ready === 'yes'");
+        self.until("document.documentElement?.dataset.ready === 'yes'");
     }
 
     /// The value of an expression in the page.

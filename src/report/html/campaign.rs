@@ -295,8 +295,11 @@ impl CampaignPage {
     fn residual_figure(&self, channel: &str) -> Figure {
         let readings = || self.readings.iter().filter(|r| r.channel == channel);
         let panel = |title: &str, label: &str, style: usize, open: bool, of: fn(&Reading) -> f64| {
+            // gross errors do not set the range: beyond it they stand at the edge
+            let most = readings().filter(|r| !r.gross).map(|r| of(r).abs()).fold(3.0, f64::max).ceil();
             let points = |gross: bool| -> Vec<(f64, f64)> {
-                readings().filter(|r| r.gross == gross).map(|r| (r.row as f64, of(r))).collect()
+                let own = readings().filter(|r| r.gross == gross);
+                own.map(|r| (r.row as f64, of(r).clamp(-most, most))).collect()
             };
             let look = |name: &str, style, open, points| Series {
                 open,
@@ -312,7 +315,7 @@ impl CampaignPage {
             Plot {
                 title: title.into(),
                 x: Axis::new(&format!("row of {channel}.csv"), Scale::Linear),
-                y: Axis::new(label, Scale::Linear),
+                y: Axis { range: Some((-most, most)), ..Axis::new(label, Scale::Linear) },
                 series,
                 guides: [-2.0, 2.0]
                     .map(|value| Guide { vertical: false, value, text: String::new() })
@@ -324,7 +327,7 @@ impl CampaignPage {
         };
         let title = format!("{channel}: measured less predicted, row by row");
         let caption = "In declared standard deviations; the dotted lines are two of them. Above: the model as given, \
-                       calibrated within tolerance. Below: with what was found. Squares: gross errors, left out of the fit.";
+                       calibrated within tolerance. Below: with what was found. Squares: gross errors, left out of the fit; at the edge where they lie beyond it.";
         let sheet = Sheet {
             title: title.clone(),
             description: caption.into(),
@@ -465,13 +468,14 @@ fn gap_figure(name: &str, title: &str, caption: &str, rows: Vec<Compared>) -> Fi
             .collect(),
         remark: format!("{} → {}   n = {}", significant(c.before, 3), significant(c.after, 3), c.count),
     };
-    let positive = rows.iter().all(|c| c.before > 0.0 && c.after > 0.0);
+    let values = || rows.iter().flat_map(|c| [c.before, c.after]);
+    let (low, high) = (values().fold(1.0, f64::min), values().fold(1.0, f64::max));
     let plot = RowPlot {
         title: title.into(),
         description: caption.into(),
         x: Axis::new(
             "root mean square of measured less predicted [σ]",
-            if positive { Scale::Log } else { Scale::Linear },
+            if low > 0.0 && high > 3.0 * low { Scale::Log } else { Scale::Linear },
         ),
         kinds: BEFORE_AFTER.map(String::from).to_vec(),
         rows: rows.iter().map(row).collect(),

@@ -129,6 +129,14 @@ function views(f) {
   const paint = (g) => (dark() && LIGHTER[f.groups[g].colour]) || f.groups[g].colour;
   const dark = () => matchMedia("(prefers-color-scheme: dark)").matches;
 
+  /* a group's marker, drawn once and stamped at every design: ten thousand outlines would take their time */
+  function marker(grp, size) {
+    const ratio = devicePixelRatio || 1, stamp = document.createElement("canvas"), g = stamp.getContext("2d");
+    stamp.width = stamp.height = Math.ceil(3.2 * size * ratio);
+    g.scale(stamp.width / 3.2, stamp.width / 3.2); g.translate(1.6, 1.6);
+    g.fillStyle = paint(grp); g.fill(shapes[grp]);
+    return stamp;
+  }
   function scatter(s) {
     const { g } = s, q = frame(s), ink = css("--ink"), faint = css("--faint"), soft = css("--soft");
     g.clearRect(0, 0, s.w, s.h);
@@ -145,17 +153,13 @@ function views(f) {
     g.textAlign = "center"; g.fillText(s.x.title, (q.l + q.r) / 2, s.h - 10);
     g.textAlign = "left"; g.font = "600 " + FONT; g.fillText(s.y.title, 10, 18);
     g.font = FONT; g.fillStyle = soft; g.textAlign = "right"; g.fillText(s.down ? "down and left is better" : "up and left is better", s.w - 14, 18);
-    const mark = (i, size) => {
-      const x = sx(s, s.x.places[i]), y = sy(s, s.y.places[i]);
-      g.save(); g.translate(x, y); g.scale(size, size); g.fill(shapes[f.group[i]]); g.restore();
-    };
     g.fillStyle = dark() ? "#5b656f" : "#c3c9cf"; g.globalAlpha = 0.55;
     for (let i = 0; i < count; i++) if (!on[i] && visible(i)) g.fillRect(sx(s, s.x.places[i]) - 1, sy(s, s.y.places[i]) - 1, 2, 2);
     g.globalAlpha = count > 3000 ? 0.75 : 0.9;
     const size = count > 3000 ? 2.3 : count > 600 ? 2.8 : 3.6;
     for (const grp of order) {
-      g.fillStyle = paint(grp);
-      for (let i = 0; i < count; i++) if (on[i] && f.group[i] === grp) mark(i, size);
+      const stamp = marker(grp, size), half = 1.6 * size;
+      for (let i = 0; i < count; i++) if (on[i] && f.group[i] === grp) g.drawImage(stamp, sx(s, s.x.places[i]) - half, sy(s, s.y.places[i]) - half, 2 * half, 2 * half);
     }
     g.globalAlpha = 1;
     names(s);
@@ -185,7 +189,7 @@ function views(f) {
     g.font = FONT;
   }
 
-  const px = (a) => { const l = 74, r = parallel.w - 50; return axes.length > 1 ? l + (a * (r - l)) / (axes.length - 1) : l; };
+  const px = (a) => { const l = 74, r = parallel.w - 58; return axes.length > 1 ? l + (a * (r - l)) / (axes.length - 1) : l; };
   const py = (p) => parallel.h - 16 - p * (parallel.h - 16 - 62);
   function line(g, i) {
     let joined = false;
@@ -201,7 +205,7 @@ function views(f) {
     g.clearRect(0, 0, parallel.w, parallel.h);
     g.lineWidth = 1;
     /* never more lines than can be seen: the rest would only cost time */
-    const every = Math.max(1, Math.ceil(chosen / 2500));
+    const every = Math.max(1, Math.ceil(chosen / 1500));
     for (const grp of order) {
       g.strokeStyle = paint(grp); g.globalAlpha = chosen > 800 ? 0.16 : chosen > 120 ? 0.35 : 0.75;
       let n = 0, seen = 0;
@@ -466,7 +470,8 @@ function views(f) {
   legend(); filters();
   [...scatters, parallel].forEach(fit);
   select();
-  new ResizeObserver(() => later(all)).observe($("views"));
+  const moved = (s) => Math.abs(s.canvas.getBoundingClientRect().width - s.w) > 0.5;
+  new ResizeObserver(() => { if ([...scatters, parallel].some(moved)) later(all); }).observe($("views"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { legend(); all(); });
 }
 })();
