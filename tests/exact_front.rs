@@ -31,7 +31,7 @@ impl Dice {
     }
 
     fn chance(&mut self, one_in: u64) -> bool {
-        self.next() % one_in == 0
+        self.next().is_multiple_of(one_in)
     }
 
     fn within(&mut self, low: f64, high: f64) -> f64 {
@@ -231,7 +231,7 @@ fn dropping_dominated_drives_would_lose_designs_that_the_exact_search_keeps() {
     let front = judged(&problem, &exact.front);
     assert_eq!(front, judged(&problem, &sweep.front));
     let total = u64::try_from(sweep.designs_total).expect("a small study");
-    let kept = without_dominated_drives(&problem, (0..u128::from(total)).into_iter());
+    let kept = without_dominated_drives(&problem, 0..u128::from(total));
     let all: Vec<_> = kept.into_iter().filter_map(|n| evaluate(&problem, n)).collect();
     let points: Vec<_> = all.iter().map(|d| d.objectives.minimized()).collect();
     let naive: Vec<u128> =
