@@ -74,10 +74,13 @@ impl DesignSpace {
     /// is what the effects add.
     pub(super) fn joint_piece(&self, joint: &SpaceJoint, curve: Curve) -> JointPiece {
         let nominal = nominal_joint(joint, self.curve(curve));
-        match self.affected(Piece::Joint(nominal.clone())) {
+        let mut affected = match self.affected(Piece::Joint(nominal.clone())) {
             Some(Piece::Joint(joint)) => joint,
             _ => nominal,
-        }
+        };
+        // an effect may bring a curve of its own
+        affected.law.curve = affected.law.curve.reduced(self.joints);
+        affected
     }
 
     /// A link with the effects at it.

@@ -121,10 +121,7 @@ pub(super) fn choice_slot<'c>(space: &DesignSpace, choice: &LinkChoice) -> Slot<
 impl DesignSpace {
     /// A torsion curve under the study's joint model.
     pub fn curve(&self, curve: Curve) -> Curve {
-        match self.joints {
-            crate::arm::JointModel::K2 => curve.middle_slope(),
-            crate::arm::JointModel::ThreeSegment => curve,
-        }
+        curve.reduced(self.joints)
     }
 }
 
