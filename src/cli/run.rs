@@ -66,6 +66,9 @@ enum SearchKind {
 /// Above this many designs the exact search is the default.
 const MOST_VISITED: u128 = 1_000_000_000;
 
+/// Above this many designs nobody lives to see the end of an exhaustive search.
+const MOST_CONCEIVABLE: u128 = 1_000_000_000_000_000;
+
 /// The text of a study and the name it goes by in messages.
 pub(super) fn study_text(name: &str) -> Result<(String, String), Failure> {
     if let Some(text) = named(name) {
@@ -189,6 +192,12 @@ fn search_kind(args: &RunArgs, study: &Study, catalogs: &Catalogs) -> Result<Sea
             "the exact search cannot certify the study \"{}\": {why}; use --search exhaustive{}",
             study.name,
             if large { ", with fewer options" } else { "" }
+        )));
+    }
+    if kind == SearchKind::Exhaustive && designs > MOST_CONCEIVABLE {
+        return Err(Failure::Usage(format!(
+            "visiting the {:.1e} designs of the study \"{}\" would take years; use --search exact",
+            designs as f64, study.name
         )));
     }
     if kind == SearchKind::Exhaustive && args.time_limit.is_some() {

@@ -3,8 +3,7 @@
 use super::run::load_study;
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
-use crate::search::OutwardIn;
-use crate::search::design::{number_of, options};
+use crate::search::design::number_of;
 use crate::search::outward::{ArmProblem, Partial};
 use crate::search::space::SpacePiece;
 use crate::sizing::render_rows;
@@ -43,8 +42,17 @@ pub struct SizeArgs {
 /// Carries out the verb.
 pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let (study, _) = load_study(&args.study, catalogs)?;
-    let problem = ArmProblem::new(&study.space, catalogs);
-    let chosen = chosen(args, &study, &problem)?;
+    let named = |id: &String| number_of(id).ok_or_else(|| no_design(args, &study));
+    let number = args.design.as_ref().map(named).transpose()?;
+    let space = match number {
+        Some(number) => study.space.excerpt(catalogs, &[number]).ok_or_else(|| no_design(args, &study))?,
+        None => study.space.middle(MOST_OPTIONS),
+    };
+    let problem = ArmProblem::new(&space, catalogs);
+    let chosen = match number {
+        Some(number) => problem.options_of_whole(number).ok_or_else(|| no_design(args, &study))?,
+        None => middle(&problem),
+    };
     if let Some(joint) = &args.explain {
         return explain(&problem, &chosen, joint);
     }
@@ -61,15 +69,12 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     Ok(if args.json { json } else { text })
 }
 
-/// One option a level: the named design's, or the middle of each open link and the first drive.
-fn chosen(args: &SizeArgs, study: &Study, problem: &ArmProblem) -> Result<Vec<u32>, Failure> {
-    let sizes = problem.level_sizes();
-    match &args.design {
-        Some(id) => number_of(id)
-            .and_then(|n| options(sizes, n))
-            .ok_or_else(|| Failure::Usage(format!("the study \"{}\" has no design \"{id}\"", study.name))),
-        None => Ok(middle(problem)),
-    }
+/// Options of a link among which the middle one that holds is looked for.
+const MOST_OPTIONS: u32 = 4096;
+
+fn no_design(args: &SizeArgs, study: &Study) -> Failure {
+    let id = args.design.as_deref().unwrap_or_default();
+    Failure::Usage(format!("the study \"{}\" has no design \"{id}\"", study.name))
 }
 
 /// The middle option of every open link; a joint whose drive is a choice takes the first that holds.

@@ -7,7 +7,7 @@
 use super::design::{number, options};
 use super::outward::ArmProblem;
 use super::slot::joint_slot;
-use super::space::{DesignSpace, Excerpt, LinkOption, SpacePiece};
+use super::space::{DesignSpace, Excerpt, LinkChoice, LinkOption, SpacePiece};
 use super::station::reaches_m;
 use crate::catalog::Catalogs;
 use std::collections::BTreeSet;
@@ -52,12 +52,7 @@ impl DesignSpace {
         let mut levels = used.iter();
         for piece in out.pieces.iter_mut().rev() {
             match piece {
-                SpacePiece::Choice(choice) => {
-                    let places: Vec<u32> = levels.next()?.iter().copied().collect();
-                    let of = choice.options.len() as u32;
-                    choice.options = places.iter().map(|&i| choice.options[i as usize].clone()).collect();
-                    choice.excerpt = Some(Excerpt { places, of });
-                }
+                SpacePiece::Choice(choice) => choice.keep(levels.next()?.iter().copied().collect()),
                 SpacePiece::Joint(joint) if joint.drive.is_open() => {
                     levels.next()?;
                 }
@@ -66,6 +61,21 @@ impl DesignSpace {
         }
         out.renumber_materials();
         Some(out)
+    }
+
+    /// The space with at most so many options of every open link, those in the middle of its list.
+    pub fn middle(&self, most: u32) -> DesignSpace {
+        let mut out = self.clone();
+        for piece in &mut out.pieces {
+            if let SpacePiece::Choice(choice) = piece
+                && choice.options.len() as u32 > most
+            {
+                let first = choice.options.len() as u32 / 2 - most / 2;
+                choice.keep((first..first + most).collect());
+            }
+        }
+        out.renumber_materials();
+        out
     }
 
     /// Materials are numbered without gaps, in the study's order.
@@ -85,6 +95,15 @@ impl DesignSpace {
                 choice.options = taken;
             }
         }
+    }
+}
+
+impl LinkChoice {
+    /// Keeps the options at these places of the whole list.
+    fn keep(&mut self, places: Vec<u32>) {
+        let of = self.options.len() as u32;
+        self.options = places.iter().map(|&i| self.options[i as usize].clone()).collect();
+        self.excerpt = Some(Excerpt { places, of });
     }
 }
 

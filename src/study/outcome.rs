@@ -8,6 +8,7 @@ use crate::search::front::nondominated;
 use crate::search::sweep::{Candidate, Sweep, SweepOutcome};
 use crate::search::{ArmProblem, Evaluated, OutwardIn, Status, evaluate};
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -51,9 +52,12 @@ pub fn run_study(
         finished.store(true, Ordering::Relaxed);
         outcome
     });
+    // a design may be a candidate of two fronts
+    let all = outcome.groups.iter().flatten().chain(&outcome.front).map(|c| c.number);
+    let judged = by_full_model(&problem, all.collect());
     StudyOutcome {
-        front: judge(&problem, &outcome.front),
-        by_material: outcome.groups.iter().map(|g| judge(&problem, g)).collect(),
+        front: front_of(&judged, &outcome.front),
+        by_material: outcome.groups.iter().map(|g| front_of(&judged, g)).collect(),
         sweep: outcome,
     }
 }
@@ -125,7 +129,19 @@ pub fn run_exact(
 
 /// Judges candidates by the full model and keeps what nothing dominates.
 pub(super) fn judge(problem: &ArmProblem, candidates: &[Candidate]) -> Front {
-    let judged: Vec<Evaluated> = candidates.par_iter().filter_map(|c| evaluate(problem, c.number)).collect();
+    front_of(&by_full_model(problem, candidates.iter().map(|c| c.number).collect()), candidates)
+}
+
+/// Numbered designs by the full model, each once; those that cannot hold are left out.
+fn by_full_model(problem: &ArmProblem, mut numbers: Vec<u128>) -> HashMap<u128, Evaluated> {
+    numbers.sort_unstable();
+    numbers.dedup();
+    numbers.into_par_iter().filter_map(|n| Some((n, evaluate(problem, n)?))).collect()
+}
+
+/// The candidates that no other dominates.
+fn front_of(judged: &HashMap<u128, Evaluated>, candidates: &[Candidate]) -> Front {
+    let judged: Vec<&Evaluated> = candidates.iter().filter_map(|c| judged.get(&c.number)).collect();
     let points: Vec<[f64; 3]> = judged.iter().map(|d| d.objectives.minimized()).collect();
     nondominated(&points)
         .expect("the full model answers in numbers")

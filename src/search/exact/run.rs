@@ -21,6 +21,8 @@ use std::time::Instant;
 const TASKS: usize = 2048;
 /// Options a level has at most in the first, coarse searches: what they find lets the full search cut early.
 const COARSE: [usize; 2] = [24, 192];
+/// Boxes that a coarse search may open: it only has to find something.
+const COARSE_BOXES: u64 = 1_000_000;
 /// Designs are filtered whenever their number reaches a power of two above this.
 const BUFFER: usize = 4096;
 
@@ -104,21 +106,21 @@ impl<'p> Exact<'p> {
         known.iter().for_each(|objectives| shared.found.enter(objectives));
         let whole = Problem::new(self.space, self.catalogs, None).map(Problem::with_inertias);
         if let Some(whole) = &whole {
-            let search = |problem: &Problem| {
-                Search { exact: self, problem, shared: &shared, sizes: &whole.level_sizes }.run()
+            let search = |problem: &Problem, most_boxes: u64| {
+                Search { exact: self, problem, shared: &shared, sizes: &whole.level_sizes, most_boxes }.run();
             };
             if known.is_empty() {
                 for options in COARSE {
                     let coarse = coarse(whole, options);
                     let problem = coarse.and_then(|c| Problem::new(self.space, self.catalogs, Some(&c)));
                     if let Some(problem) = problem {
-                        search(&problem.with_inertias());
+                        search(&problem.with_inertias(), self.boxes() + COARSE_BOXES);
                     }
                 }
             }
             // what a coarse search left open, the full one covers
             lock(&shared.open).clear();
-            search(whole);
+            search(whole, u64::MAX);
         }
         let mut front = shared.kept.into_inner().unwrap_or_else(PoisonError::into_inner);
         clear(&mut front);
@@ -186,15 +188,21 @@ struct Search<'s, 'p> {
     shared: &'s Shared,
     /// Options of each level of the whole space, in which designs are numbered.
     sizes: &'s [u32],
+    /// The count of boxes at which this search gives up.
+    most_boxes: u64,
 }
 
 impl Search<'_, '_> {
+    fn stopped(&self) -> bool {
+        self.exact.boxes() >= self.most_boxes || self.exact.stopped()
+    }
+
     fn run(&self) {
         let mut work = Work::default();
         let Some(shapes) = self.problem.first_shapes(&mut work) else { return };
         let root = Opened { cell: self.problem.root(), shapes: Arc::new(shapes), ceiling: Ceiling::OPEN };
         let mut queue = VecDeque::from([root]);
-        while queue.len() < TASKS && !self.exact.stopped() {
+        while queue.len() < TASKS && !self.stopped() {
             let Some(next) = queue.pop_front() else { break };
             let mut children = Vec::new();
             self.open(next, &mut work, &mut children);
@@ -203,7 +211,7 @@ impl Search<'_, '_> {
         queue.into_par_iter().for_each_init(Work::default, |work, start| {
             let mut stack = vec![start];
             while let Some(next) = stack.pop() {
-                if self.exact.stopped() {
+                if self.stopped() {
                     let left = stack.iter().chain([&next]).map(|opened| opened.ceiling);
                     lock(&self.shared.open).extend(left);
                     return;
