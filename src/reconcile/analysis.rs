@@ -420,8 +420,9 @@ impl Analysis<'_> {
             })
             .collect();
         if rivals.is_empty() && verdict != Verdict::Unexplained {
-            // nothing is confusable: the runner-up, or the arm without the effect
-            rivals.push(("calibration only".into(), subject(&self.bare.model, &self.bare.point.u)));
+            // nothing is confusable: what shows the effect most, on the same arm with and without it. The bare
+            // model's own fit would not do: it bends stiffnesses that are not in question
+            rivals.push(("the same arm without it".into(), subject(&self.bare.model, &self.best.point.u)));
         }
         next_test::Question { campaign: self.campaign, best, rivals, residuals: self.worst_pose(), verdict }
     }
