@@ -95,7 +95,7 @@ fn step(x: f64) -> i32 {
 }
 
 /// Better in one objective, and not worse in any by more than rounding.
-fn is_better(a: &Objectives, b: &Objectives) -> bool {
+pub(super) fn is_better(a: &Objectives, b: &Objectives) -> bool {
     let pairs = [
         (a.mass_kg, b.mass_kg),
         (a.tip_deflection_m, b.tip_deflection_m),

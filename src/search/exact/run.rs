@@ -1,6 +1,6 @@
 //! Branch and bound: cut, halve, judge.
 
-use super::archive::Found;
+use super::archive::{Found, is_better};
 use super::bound::{Ceiling, Cell, Verdict, Work};
 use super::gap::gap;
 use super::problem::{Part, Problem, Restriction};
@@ -126,6 +126,9 @@ impl<'p> Exact<'p> {
         clear(&mut front);
         front.sort_unstable_by_key(|c| c.number);
         front.dedup_by_key(|c| c.number);
+        // what would have been cut had it come later goes, so that the order of discovery does not show
+        let all = front.clone();
+        front.retain(|c| !all.iter().any(|other| is_better(&other.objectives, &c.objectives)));
         let open = shared.open.into_inner().unwrap_or_else(PoisonError::into_inner);
         ExactOutcome {
             designs_total: whole.as_ref().map_or(0, Problem::designs),
