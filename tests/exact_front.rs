@@ -256,6 +256,47 @@ fn dropping_dominated_drives_would_lose_designs_that_the_exact_search_keeps() {
     println!("{lost} of {} designs of the front are lost when dominated drives are dropped", front.len());
 }
 
+/// Asserts that both searches find the same designs, and returns how many.
+fn agree(text: &Value) -> usize {
+    let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
+    let study = read(text, &catalogs);
+    let problem = ArmProblem::new(&study.space, &catalogs);
+    let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
+    let exact = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
+    let swept = with_merit(&problem, judged(&problem, &sweep.front));
+    assert_eq!(judged(&problem, &exact.front), swept, "{text}");
+    swept.len()
+}
+
+#[test]
+fn a_rectangular_tube_bent_about_both_axes_is_as_weak_as_in_the_sweep() {
+    let study = |safety: f64| {
+        json!({"name": "rolled", "chain": [
+            {"type": "joint", "name": "j1", "axis": [0, 1, 0], "stiffness_nm_per_rad": 2e5, "mass_kg": 3},
+            {"type": "joint", "name": "j2", "axis": [1, 0, 0], "stiffness_nm_per_rad": 2e5, "mass_kg": 2},
+            {"type": "link", "name": "arm", "vector_m": [0.9, 0, 0], "choose": {"materials": ["Aluminium 6061-T6", "Structural steel S355"],
+                "sections": [{"shape": "rectangular_tube", "width_mm": [40, 50, 60, 80], "height_mm": [40, 60, 80, 100], "wall_mm": [1, 2, 3]},
+                             {"shape": "round_tube", "diameter_mm": [50, 70], "wall_mm": [1, 2, 3]}]}}],
+            "payload": {"mass_kg": 12}, "poses": [{"pose_deg": [0, 45]}],
+            "constraints": {"stress_safety_factor_min": safety}})
+    };
+    let sizes: Vec<usize> = (4..40).map(|k| agree(&study(0.5 * f64::from(k)))).collect();
+    assert!(sizes[0] > sizes[sizes.len() - 1], "the limit binds: {sizes:?}");
+}
+
+#[test]
+fn a_gear_that_softens_under_load_is_bounded_too() {
+    let study = |t1: f64| {
+        json!({"name": "softening", "chain": [
+            {"type": "joint", "name": "j1", "axis": [0, 1, 0], "mass_kg": 3,
+                "windup": {"k1_nm_per_rad": 4e5, "k2_nm_per_rad": 1e5, "k3_nm_per_rad": 2e5, "t1_nm": t1, "t2_nm": 1.5 * t1}},
+            {"type": "link", "name": "arm", "vector_m": [0.9, 0, 0], "choose": {"materials": ["Aluminium 6061-T6", "Structural steel S355"],
+                "sections": [{"shape": "rectangular_tube", "width_mm": [40, 60, 80, 120], "height_mm": [40, 60, 80, 120], "wall_mm": [2, 3, 5]}]}}],
+            "payload": {"mass_kg": 6}, "poses": [{"pose_deg": [0]}]})
+    };
+    assert!((50..130).step_by(5).map(|t| agree(&study(f64::from(t)))).sum::<usize>() > 100);
+}
+
 #[test]
 fn a_search_that_is_stopped_says_by_how_much_it_may_be_bettered_and_is_right() {
     let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));

@@ -53,8 +53,13 @@ impl StressCheck {
         let bending = if self.round { y.hypot(z) } else { y + z };
         let normal = force.x.abs() * self.per_axial_n + bending;
         let shear = moment.x.abs() * self.per_torsion;
-        (normal * normal + 3.0 * shear * shear).sqrt() / self.strength_pa
+        von_mises(normal, shear) / self.strength_pa
     }
+}
+
+/// The uniaxial stress that strains a ductile material as much as a normal and a shear stress.
+pub(super) fn von_mises(normal: f64, shear: f64) -> f64 {
+    (normal * normal + 3.0 * shear * shear).sqrt()
 }
 
 /// The figures of an option of a link of this length.

@@ -15,6 +15,7 @@ use super::problem::{Part, Problem};
 use super::shape::{Ideal, Shape, Work as ShapeWork};
 use crate::arm::Windup;
 use crate::search::Objectives;
+use crate::search::figures::von_mises;
 use crate::sizing::{JointDemand, JointMotion};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -290,8 +291,8 @@ impl<'c> Problem<'c> {
                     let [low, high] = interval(*fixed, per_n, weights);
                     low.max(-high).max(0.0) * links.stress[k]
                 });
-                let normal = axial + y.hypot(z);
-                let ratio = (normal * normal + 3.0 * torsion * torsion).sqrt();
+                let bending = if links.round { y.hypot(z) } else { y + z };
+                let ratio = von_mises(axial + bending, torsion);
                 ratio * factor * safety * (1.0 - ROUNDING) <= 1.0
             })
         })
@@ -309,10 +310,9 @@ impl<'c> Problem<'c> {
                     Some(curve) => {
                         let size = force[0].abs().max(force[1].abs());
                         let least = force[0].max(-force[1]).max(0.0);
-                        work.stiff_in[case][row.piece][0] =
-                            curve.stiff.tangent_nm_per_rad(size * (1.0 + ROUNDING));
-                        work.joint_soft[case][row.piece] =
-                            curve.soft.tangent_nm_per_rad(least * (1.0 - ROUNDING));
+                        let range = (least * (1.0 - ROUNDING), size * (1.0 + ROUNDING));
+                        work.stiff_in[case][row.piece][0] = curve.stiffest(range.0, range.1);
+                        work.joint_soft[case][row.piece] = curve.softest(range.0, range.1);
                         twist(curve, force)
                     }
                     None => stretch(row.coordinate, pose, row.piece, force, work),
@@ -509,7 +509,7 @@ impl Work {
     }
 
     /// Whether the box has no width in anything a mode sees.
-    fn is_point(&self) -> bool {
+    pub fn is_point(&self) -> bool {
         self.light == self.heavy
             && self.stiff == self.soft
             && self.curves.iter().flatten().all(|c| c.stiff == c.soft)

@@ -63,6 +63,8 @@ pub(super) struct LinkBox {
     /// Least stress over strength per axial force, moments about y and z, and torsion; zero where a
     /// strength is unknown.
     pub stress: [f64; 4],
+    /// Whether some member is a round tube, whose bending about two axes adds up as a vector.
+    pub round: bool,
     /// Least cost of the material \[EUR/m\].
     pub cost_eur_per_m: f64,
 }
@@ -71,13 +73,15 @@ impl LinkBox {
     /// The box of one option.
     pub fn of(option: &LinkOption, model: LinkModel) -> Self {
         let line = Line::new(&option.material, &option.section, model);
-        let stress = StressCheck::new(option).map_or([0.0; 4], |s| {
+        let check = StressCheck::new(option);
+        let stress = check.as_ref().map_or([0.0; 4], |s| {
             [s.per_axial_n, s.per_moment_y, s.per_moment_z, s.per_torsion].map(|x| x / s.strength_pa)
         });
         Self {
             low: line,
             high: line,
             stress,
+            round: check.is_none_or(|s| s.round),
             cost_eur_per_m: option.cost_eur_per_kg.unwrap_or(0.0) * line.inertias[inertia::MASS],
         }
     }
@@ -97,6 +101,7 @@ impl Bounds for LinkBox {
             low: line(&self.low, &other.low, f64::min),
             high: line(&self.high, &other.high, f64::max),
             stress: pairwise(&self.stress, &other.stress, f64::min),
+            round: self.round || other.round,
             cost_eur_per_m: self.cost_eur_per_m.min(other.cost_eur_per_m),
         }
     }
@@ -112,9 +117,9 @@ impl Bounds for LinkBox {
 /// A torsion curve between two: stiffest and softest slope at every torque.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct CurveBox {
-    /// Nowhere softer than a member: slopes do not fall with torque.
+    /// Nowhere softer than a member; of one curve, the curve.
     pub stiff: Windup,
-    /// Nowhere stiffer than a member.
+    /// Nowhere stiffer than a member; of one curve, the curve.
     pub soft: Windup,
 }
 
@@ -132,10 +137,17 @@ impl CurveBox {
             },
             Curve::Windup(windup) => windup,
         };
-        let (k1, k2, k3) = (windup.k1_nm_per_rad, windup.k2_nm_per_rad, windup.k3_nm_per_rad);
-        let rising = Windup { k2_nm_per_rad: k1.max(k2), k3_nm_per_rad: k1.max(k2).max(k3), ..windup };
-        let falling = Windup { k1_nm_per_rad: k1.min(k2).min(k3), k2_nm_per_rad: k2.min(k3), ..windup };
-        Some(Self { stiff: rising, soft: falling })
+        Some(Self { stiff: windup, soft: windup })
+    }
+
+    /// The greatest slope at torques of these sizes \[N m\].
+    pub fn stiffest(&self, least_nm: f64, most_nm: f64) -> f64 {
+        slopes(&self.stiff, least_nm, most_nm).fold(0.0, f64::max)
+    }
+
+    /// The least slope at torques of these sizes \[N m\].
+    pub fn softest(&self, least_nm: f64, most_nm: f64) -> f64 {
+        slopes(&self.soft, least_nm, most_nm).fold(f64::INFINITY, f64::min)
     }
 
     fn join(&self, other: &Self) -> Self {
@@ -147,10 +159,35 @@ impl CurveBox {
             t2_nm: t(a.t2_nm, b.t2_nm),
         };
         Self {
-            stiff: extreme(&self.stiff, &other.stiff, f64::max, f64::min),
-            soft: extreme(&self.soft, &other.soft, f64::min, f64::max),
+            stiff: extreme(&rising(&self.stiff), &rising(&other.stiff), f64::max, f64::min),
+            soft: extreme(&rising_below(&self.soft), &rising_below(&other.soft), f64::min, f64::max),
         }
     }
+}
+
+/// The lowest curve of slopes that do not fall with torque and are nowhere below these: of such curves the
+/// largest slopes and the smallest break points make one that is nowhere below either.
+fn rising(w: &Windup) -> Windup {
+    let k2 = w.k1_nm_per_rad.max(w.k2_nm_per_rad);
+    Windup { k2_nm_per_rad: k2, k3_nm_per_rad: k2.max(w.k3_nm_per_rad), ..*w }
+}
+
+/// The highest curve of slopes that do not fall with torque and are nowhere above these.
+fn rising_below(w: &Windup) -> Windup {
+    let k2 = w.k2_nm_per_rad.min(w.k3_nm_per_rad);
+    Windup { k1_nm_per_rad: k2.min(w.k1_nm_per_rad), k2_nm_per_rad: k2, ..*w }
+}
+
+/// The slopes of the segments that torques of these sizes lie in.
+fn slopes(w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
+    let segments = [
+        (w.k1_nm_per_rad, 0.0, w.t1_nm),
+        (w.k2_nm_per_rad, w.t1_nm, w.t2_nm),
+        (w.k3_nm_per_rad, w.t2_nm, f64::INFINITY),
+    ];
+    // a break point belongs to the segment below it
+    let touched = move |&(_, from, to): &(f64, f64, f64)| least_nm <= to && (most_nm > from || from == 0.0);
+    segments.into_iter().filter(touched).map(|(slope, ..)| slope)
 }
 
 /// A box of drives.

@@ -69,6 +69,8 @@ pub fn conditions(space: &DesignSpace) -> Result<(), String> {
 struct Shared {
     found: Found,
     kept: Mutex<Vec<Candidate>>,
+    /// Designs whose ceiling is not their objectives: a demand lies on a threshold. The full model judges them.
+    unsure: Mutex<Vec<Candidate>>,
     evaluated: AtomicU64,
     open: Mutex<Vec<Ceiling>>,
 }
@@ -129,6 +131,7 @@ impl<'p> Exact<'p> {
         // what would have been cut had it come later goes, so that the order of discovery does not show
         let all = front.clone();
         front.retain(|c| !all.iter().any(|other| is_better(&other.objectives, &c.objectives)));
+        front.append(&mut lock(&shared.unsure));
         let open = shared.open.into_inner().unwrap_or_else(PoisonError::into_inner);
         ExactOutcome {
             designs_total: whole.as_ref().map_or(0, Problem::designs),
@@ -254,6 +257,10 @@ impl Search<'_, '_> {
         let Some(options) = self.problem.options(cell) else { return };
         self.shared.evaluated.fetch_add(1, Ordering::Relaxed);
         let objectives = self.problem.objectives(ceiling, work);
+        if !work.is_point() {
+            lock(&self.shared.unsure).push(Candidate { number: number(self.sizes, &options), objectives });
+            return;
+        }
         if !self.problem.meets(&objectives) {
             return;
         }
