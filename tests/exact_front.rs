@@ -6,6 +6,8 @@
 //!
 //! `ARMWRIGHT_EXACT_STUDIES=500 cargo test --release --test exact_front` runs more of them.
 
+mod dice;
+
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
 use armwright::search::design::options;
@@ -14,39 +16,10 @@ use armwright::search::front::nondominated;
 use armwright::search::sweep::Candidate;
 use armwright::search::{ArmProblem, Objectives, OutwardIn, Sweep, evaluate};
 use armwright::study::{Study, read_study};
+use dice::Dice;
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
-
-/// A small generator with a recorded seed.
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn chance(&mut self, one_in: u64) -> bool {
-        self.next().is_multiple_of(one_in)
-    }
-
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn of<T: Clone>(&mut self, list: &[T]) -> T {
-        list[(self.next() % list.len() as u64) as usize].clone()
-    }
-
-    fn some<T: Clone>(&mut self, list: &[T], least: usize) -> Vec<T> {
-        let kept: Vec<T> = list.iter().filter(|_| self.0 != 0 && self.chance(2)).cloned().collect();
-        if kept.len() < least { list[..least].to_vec() } else { kept }
-    }
-}
 
 const MATERIALS: [&str; 4] = [
     "Structural steel S355",
@@ -55,23 +28,29 @@ const MATERIALS: [&str; 4] = [
     "CFRP T300/5208 (standard modulus) quasi-isotropic",
 ];
 
+/// Some of a list, at least the first `least` of it.
+fn some<T: Clone>(dice: &mut Dice, list: &[T], least: usize) -> Vec<T> {
+    let kept: Vec<T> = list.iter().filter(|_| dice.below(2) == 0).cloned().collect();
+    if kept.len() < least { list[..least].to_vec() } else { kept }
+}
+
 fn link(dice: &mut Dice, name: &str, vector_m: [f64; 3]) -> Value {
-    let sizes = dice.some(&[50, 70, 90, 120, 150], 2);
-    let walls = dice.some(&[2.0, 3.0, 5.0], 1);
-    let section = match dice.chance(3) {
+    let sizes = some(dice, &[50, 70, 90, 120, 150], 2);
+    let walls = some(dice, &[2.0, 3.0, 5.0], 1);
+    let section = match dice.below(3) == 0 {
         true => json!({"shape": "round_tube", "diameter_mm": sizes, "wall_mm": walls}),
         false => {
-            json!({"shape": "rectangular_tube", "width_mm": sizes, "height_mm": dice.some(&[60, 80, 110, 140], 1),
+            json!({"shape": "rectangular_tube", "width_mm": sizes, "height_mm": some(dice, &[60, 80, 110, 140], 1),
             "wall_mm": walls})
         }
     };
     json!({"type": "link", "name": name, "vector_m": vector_m,
-        "choose": {"materials": dice.some(&MATERIALS, 1), "sections": [section]}})
+        "choose": {"materials": some(dice, &MATERIALS, 1), "sections": [section]}})
 }
 
 fn joint(dice: &mut Dice, name: &str, axis: [f64; 3], open: &mut usize) -> Value {
     let drives = json!({"gear_series": [dice.of(&["CSG", "HFUC"])], "ratios": [100], "motors": ["electric"]});
-    match dice.next() % 5 {
+    match dice.below(5) {
         0 | 1 if *open > 0 => {
             *open -= 1;
             let motors = dice.of(&[["ILM70x18", "ILM85x26"], ["ILM50x14", "ILM85x26"]]);
@@ -88,7 +67,7 @@ fn joint(dice: &mut Dice, name: &str, axis: [f64; 3], open: &mut usize) -> Value
 }
 
 fn pose(dice: &mut Dice) -> Value {
-    let angles = match dice.next() % 6 {
+    let angles = match dice.below(6) {
         0 | 1 => vec![0.0; 4],
         2 => vec![0.0, -45.0, 90.0, 45.0],
         // folded back over the shoulder, and straight up
@@ -107,7 +86,7 @@ fn random_study(seed: u64) -> Value {
     let (k2, k1) =
         (joint(dice, "j2", [0.0, 1.0, 0.0], &mut open), joint(dice, "j1", [0.0, 0.0, 1.0], &mut open));
     let mut chain = vec![k1, json!({"type": "link", "name": "shoulder", "vector_m": [0, 0, 0.3]}), k2];
-    if dice.chance(3) {
+    if dice.below(3) == 0 {
         // a counterweight: behind the shoulder, and back again
         chain.push(json!({"type": "link", "name": "back", "vector_m": [-0.5, 0, 0], "mass_kg": dice.within(5.0, 40.0)}));
         chain.push(json!({"type": "link", "name": "front", "vector_m": [0.5, 0, 0]}));
@@ -119,28 +98,28 @@ fn random_study(seed: u64) -> Value {
     chain.push(link(dice, "forearm", [fore_m, side, 0.0]));
     chain.push(k4);
     chain.push(json!({"type": "link", "name": "flange", "vector_m": [0.1, 0, 0]}));
-    let poses: Vec<Value> = (0..1 + dice.next() % 2).map(|_| pose(dice)).collect();
+    let poses: Vec<Value> = (0..1 + dice.below(2)).map(|_| pose(dice)).collect();
     let mut study = json!({"name": format!("random-{seed}"), "chain": chain, "poses": poses,
         "payload": {"mass_kg": dice.within(1.0, 8.0), "cg_m": [0.03, dice.of(&[0.0, 0.05]), 0.02]},
         "models": {"links": dice.of(&["full", "full", "full", "bending"]),
                    "joints": dice.of(&["three_segment", "three_segment", "three_segment", "k2"])}});
-    if dice.chance(4) {
+    if dice.below(4) == 0 {
         study["tip_force_n"] = json!([dice.within(-30.0, 30.0), 0.0, dice.within(-50.0, 120.0)]);
     }
-    if dice.chance(5) {
+    if dice.below(5) == 0 {
         study["environments"] = json!([{"name": "dry"}, {"name": "sea", "water": {"density_kg_m3": 1025}}]);
     }
     let mut constraints = json!({});
-    if dice.chance(2) {
+    if dice.below(2) == 0 {
         constraints["stress_safety_factor_min"] = json!(dice.within(1.5, 6.0));
     }
-    if dice.chance(3) {
+    if dice.below(3) == 0 {
         constraints["tip_deflection_max_mm"] = json!(dice.within(0.5, 3.0));
     }
-    if dice.chance(4) {
+    if dice.below(4) == 0 {
         constraints["lowest_mode_min_hz"] = json!(dice.within(5.0, 12.0));
     }
-    if dice.chance(4) {
+    if dice.below(4) == 0 {
         constraints["mass_max_kg"] = json!(dice.within(25.0, 60.0));
     }
     study["constraints"] = constraints;

@@ -4,40 +4,18 @@
 //! payloads with an offset centre and inertia, water, tip force, given and sized joints, and in what the
 //! innermost level is; once without and once with effects at random joints and links. A design must hold in both or in neither, and all objectives must agree to 1e-10 (half of them to 1e-13).
 
+mod dice;
+
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
 use armwright::search::{ArmProblem, Finished, OutwardIn, Status, Sweep, design, evaluate};
 use armwright::study::{Study, named, read_study};
+use dice::Dice;
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 
 /// Largest relative difference of an objective.
 const AGREE: f64 = 1e-10;
-
-/// A small generator with a recorded seed.
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: u64) -> u64 {
-        self.next() % n
-    }
-
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn of<T: Clone>(&mut self, list: &[T]) -> T {
-        list[self.below(list.len() as u64) as usize].clone()
-    }
-}
 
 fn link(dice: &mut Dice, name: &str, length_m: f64, largest_mm: u32) -> Value {
     let section = match dice.below(3) {

@@ -8,6 +8,7 @@ pub mod compare;
 mod design;
 mod front;
 pub mod predict;
+mod progress;
 pub mod reconcile;
 mod rerun;
 mod run;

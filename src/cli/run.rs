@@ -1,5 +1,6 @@
 //! `armwright run`: find a study's front and write it.
 
+use super::progress::{watch, watch_boxes};
 use super::{Failure, carry, write_all};
 use crate::arm::Effect;
 use crate::catalog::Catalogs;
@@ -21,9 +22,7 @@ use crate::study::{
     read_study, run_exact, run_study, slug, study_page, why_infeasible,
 };
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -276,26 +275,6 @@ fn certificate([boxes, open]: [u64; 2], gap: Option<f64>) -> String {
             format!("partial: nothing can be said about what is missing ({boxes} boxes, {open} open)\n")
         }
     }
-}
-
-/// Shows that an exact search goes on.
-fn watch_boxes(boxes: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool) {
-    let started = Instant::now();
-    let bar = std::io::stderr().is_terminal().then(ProgressBar::new_spinner);
-    let mut next = LINE_EVERY;
-    while !finished.load(Ordering::Relaxed) {
-        std::thread::sleep(Duration::from_millis(50));
-        let line = || format!("{:.0} s: {:.3e} boxes", started.elapsed().as_secs_f64(), boxes() as f64);
-        match &bar {
-            Some(bar) => bar.set_message(line()),
-            None if started.elapsed() >= next => {
-                next += LINE_EVERY;
-                eprintln!("{}", line());
-            }
-            None => {}
-        }
-    }
-    bar.iter().for_each(ProgressBar::finish_and_clear);
 }
 
 /// Runs one of the paper's studies, which have a course of their own.
@@ -561,47 +540,4 @@ fn count(n: u128) -> Value {
 /// A hash of every figure of every part: results taken from other catalogs are told apart.
 pub(super) fn catalogs_hash(catalogs: &Catalogs) -> String {
     blake3::hash(format!("{catalogs:?}").as_bytes()).to_hex().to_string()
-}
-
-/// Shows progress: a bar on a terminal, a plain line every ten seconds otherwise.
-fn watch(total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool) {
-    if std::io::stderr().is_terminal() {
-        bar(total, visited, finished);
-    } else {
-        lines(total, visited, finished);
-    }
-}
-
-fn bar(total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool) {
-    let bar = ProgressBar::new(u64::try_from(total).unwrap_or(u64::MAX));
-    let style =
-        ProgressStyle::with_template("{bar:30} {human_pos}/{human_len} designs, {per_sec}, {eta} left");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    while !finished.load(Ordering::Relaxed) {
-        bar.set_position(visited());
-        std::thread::sleep(Duration::from_millis(100));
-    }
-    bar.finish_and_clear();
-}
-
-const LINE_EVERY: Duration = Duration::from_secs(10);
-
-fn lines(total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool) {
-    let started = Instant::now();
-    let mut next = LINE_EVERY;
-    while !finished.load(Ordering::Relaxed) {
-        std::thread::sleep(Duration::from_millis(50));
-        if started.elapsed() < next {
-            continue;
-        }
-        next += LINE_EVERY;
-        let (done, elapsed_s) = (visited() as f64, started.elapsed().as_secs_f64());
-        let rate = done / elapsed_s;
-        eprintln!(
-            "{elapsed_s:.0} s: {done:.3e} of {:.3e} designs ({:.0} %), {rate:.0} designs/s, about {:.0} s left",
-            total as f64,
-            100.0 * done / total as f64,
-            (total as f64 - done) / rate.max(1.0)
-        );
-    }
 }

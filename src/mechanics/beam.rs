@@ -215,21 +215,29 @@ pub fn compliances(link: &LinkPiece, model: LinkModel) -> Vec<f64> {
     coordinates.into_iter().map(|(_, _, compliance)| compliance).collect()
 }
 
-/// The strain coordinates of a tube with their compliances.
-fn coordinates(beam: &Beam, length_m: f64, model: LinkModel) -> Vec<(Strain, usize, f64)> {
+/// Stiffnesses of a tube: `E I` about y and about z \[N m²\], `κ G A` \[N\], `G J` \[N m²\], `E A` \[N\].
+pub fn line_stiffnesses(beam: &Beam) -> [f64; 5] {
     let material = &beam.material;
     let section = beam.section.properties(material.poisson);
     let (e, g) = (material.youngs_modulus_pa, material.shear_modulus_pa);
-    let shear = section.shear_factor * g * section.area_m2;
-    let bending = [
-        (Strain::CurvatureZ, CURVATURES, e * section.second_moment_y_m4),
-        (Strain::CurvatureY, CURVATURES, e * section.second_moment_z_m4),
-    ];
+    [
+        e * section.second_moment_y_m4,
+        e * section.second_moment_z_m4,
+        section.shear_factor * g * section.area_m2,
+        g * section.torsion_constant_m4,
+        e * section.area_m2,
+    ]
+}
+
+/// The strain coordinates of a tube with their compliances.
+fn coordinates(beam: &Beam, length_m: f64, model: LinkModel) -> Vec<(Strain, usize, f64)> {
+    let [bending_y, bending_z, shear, torsion, stretch] = line_stiffnesses(beam);
+    let bending = [(Strain::CurvatureZ, CURVATURES, bending_y), (Strain::CurvatureY, CURVATURES, bending_z)];
     let rest = [
         (Strain::ShearZ, OTHERS, shear),
         (Strain::ShearY, OTHERS, shear),
-        (Strain::Twist, OTHERS, g * section.torsion_constant_m4),
-        (Strain::Stretch, OTHERS, e * section.area_m2),
+        (Strain::Twist, OTHERS, torsion),
+        (Strain::Stretch, OTHERS, stretch),
     ];
     let strains = match model {
         LinkModel::Rigid => vec![],
@@ -253,16 +261,24 @@ fn line_inertia(link: &LinkPiece, structure: &Structure, model: LinkModel) -> Li
             ..LineInertia::default()
         };
     };
+    let tube = tube_inertia(&beam, model);
+    let along = tube.along_kg_per_m + link.harness_kg_per_m;
     let section = beam.section.properties(beam.material.poisson);
-    let density = beam.material.density_kg_m3;
-    let along = density * section.area_m2 + link.harness_kg_per_m;
     let added =
         structure.water.map_or(0.0, |w| w.added_mass_coefficient * w.density_kg_m3 * section.outer_area_m2);
+    LineInertia { along_kg_per_m: along, across_kg_per_m: along + added, ..tube }
+}
+
+/// Mass and rotary inertia per length of a bare tube in air.
+pub fn tube_inertia(beam: &Beam, model: LinkModel) -> LineInertia {
+    let section = beam.section.properties(beam.material.poisson);
+    let density = beam.material.density_kg_m3;
+    let mass = density * section.area_m2;
     // Euler-Bernoulli has no rotary inertia across the beam; its spin about itself remains
     let across = if model == LinkModel::Bending { 0.0 } else { density };
     LineInertia {
-        along_kg_per_m: along,
-        across_kg_per_m: along + added,
+        along_kg_per_m: mass,
+        across_kg_per_m: mass,
         polar_kg_m: density * (section.second_moment_y_m4 + section.second_moment_z_m4),
         rotary_y_kg_m: across * section.second_moment_y_m4,
         rotary_z_kg_m: across * section.second_moment_z_m4,

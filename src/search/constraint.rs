@@ -1,5 +1,7 @@
 //! What every design must meet.
 
+use super::Objectives;
+
 /// Limits on a design; `None` is no limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Constraints {
@@ -29,6 +31,15 @@ pub struct Servo {
 }
 
 impl Constraints {
+    /// Whether a design breaks the limit on its deflection, its mass, its lowest mode.
+    pub fn broken(&self, o: &Objectives) -> [bool; 3] {
+        [
+            self.tip_deflection_max_m.is_some_and(|max| o.tip_deflection_m > max),
+            self.mass_max_kg.is_some_and(|max| o.mass_kg > max),
+            o.lowest_mode_hz < self.required_mode_hz(),
+        ]
+    }
+
     /// The lowest mode that is asked for \[Hz\].
     pub fn required_mode_hz(&self) -> f64 {
         let servo = self.servo.map_or(0.0, |s| s.bandwidth_hz * s.ratio);

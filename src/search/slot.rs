@@ -97,15 +97,7 @@ pub(super) fn link_slot<'c>(space: &DesignSpace, link: &Link) -> Slot<'c> {
     match &link.body {
         LinkBody::Offset { mass_kg } => Slot::Offset { mass_kg: *mass_kg },
         LinkBody::Tube { material, section, .. } => {
-            let option = LinkOption {
-                material_index: 0,
-                material_name: String::new(),
-                material: *material,
-                section: *section,
-                profile: None,
-                strength_pa: None,
-                cost_eur_per_kg: None,
-            };
+            let option = LinkOption::given(*material, *section);
             let mut figures = figures(space, &option, link.vector_m.norm());
             figures.material = None;
             Slot::Link { options: vec![figures], open: false }

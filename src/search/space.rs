@@ -140,6 +140,19 @@ impl DriveChoice {
 }
 
 impl LinkOption {
+    /// A tube that is given: no choice, no strength, no cost.
+    pub(super) fn given(material: LinkMaterial, section: Section) -> Self {
+        Self {
+            material_index: 0,
+            material_name: String::new(),
+            material,
+            section,
+            profile: None,
+            strength_pa: None,
+            cost_eur_per_kg: None,
+        }
+    }
+
     /// Mass per length \[kg/m\].
     pub fn mass_kg_per_m(&self) -> f64 {
         self.material.density_kg_m3 * self.section.properties(self.material.poisson).area_m2

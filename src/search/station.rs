@@ -6,7 +6,7 @@
 
 use super::effects::Layer;
 use super::space::{Case, DesignSpace, LinkChoice, SpacePiece};
-use crate::arm::{Link, Structure};
+use crate::arm::{Link, Structure, Water};
 use crate::mechanics::beam::{PreparedBeam, section_frame};
 use crate::mechanics::condensed::{CondensedLink, PlacedLink};
 use crate::mechanics::lowest::BlockLink;
@@ -101,15 +101,7 @@ impl Station {
         let around = space.surroundings();
         let structure = Structure { water: case.water.or(around.water), ..around };
         let walk = Walk::new(space, case);
-        let rotation = walk.tip_rotation.matrix();
-        let payload = &case.payload;
-        let cg_m = walk.tip_m + rotation * payload.cg_m;
-        let inertia_kgm2 =
-            rotation * Matrix3::from_diagonal(&payload.inertia_about_cg_kgm2) * rotation.transpose();
-        let start_inertia = body_inertia(payload.mass_kg, &cg_m, &inertia_kgm2);
-        let buoyancy = structure.water.map_or(0.0, |w| w.density_kg_m3 / w.payload_density_kg_m3);
-        let weight_n = payload.mass_kg * space.gravity_m_s2 * (1.0 - buoyancy);
-        let start_wrench = force_wrench(&case.tip_force_n, &walk.tip_m) + weight_wrench(weight_n, &cg_m);
+        let (start_wrench, start_inertia) = payload_in(space, case, structure.water, &walk);
         let built: Vec<Built> = space
             .layers()
             .into_iter()
@@ -128,7 +120,25 @@ impl Station {
     }
 }
 
-fn weight_wrench(weight_n: f64, at_m: &Vector3<f64>) -> Wrench {
+/// Payload and tip force as a wrench, and the payload's inertia, both about the world origin.
+pub(super) fn payload_in(
+    space: &DesignSpace,
+    case: &Case,
+    water: Option<Water>,
+    walk: &Walk,
+) -> (Wrench, Matrix6<f64>) {
+    let rotation = walk.tip_rotation.matrix();
+    let payload = &case.payload;
+    let cg_m = walk.tip_m + rotation * payload.cg_m;
+    let inertia_kgm2 =
+        rotation * Matrix3::from_diagonal(&payload.inertia_about_cg_kgm2) * rotation.transpose();
+    let buoyancy = water.map_or(0.0, |w| w.density_kg_m3 / w.payload_density_kg_m3);
+    let weight_n = payload.mass_kg * space.gravity_m_s2 * (1.0 - buoyancy);
+    let wrench = force_wrench(&case.tip_force_n, &walk.tip_m) + weight_wrench(weight_n, &cg_m);
+    (wrench, body_inertia(payload.mass_kg, &cg_m, &inertia_kgm2))
+}
+
+pub(super) fn weight_wrench(weight_n: f64, at_m: &Vector3<f64>) -> Wrench {
     force_wrench(&Vector3::new(0.0, 0.0, -weight_n), at_m)
 }
 

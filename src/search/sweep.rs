@@ -157,11 +157,7 @@ impl Tally {
 
     /// Whether the design meets every constraint; if it breaks just one, how nearly.
     fn meets(&mut self, constraints: &Constraints, o: &Objectives) -> bool {
-        let broken = [
-            constraints.tip_deflection_max_m.is_some_and(|max| o.tip_deflection_m > max),
-            constraints.mass_max_kg.is_some_and(|max| o.mass_kg > max),
-            o.lowest_mode_hz < constraints.required_mode_hz(),
-        ];
+        let broken = constraints.broken(o);
         if broken.iter().filter(|b| **b).count() == 1 {
             let values = [o.tip_deflection_m, o.mass_kg, -o.lowest_mode_hz];
             for (k, _) in broken.iter().enumerate().filter(|(_, b)| **b) {

@@ -117,12 +117,7 @@ fn agree(a: &str, b: &str) -> bool {
 }
 
 fn broken_limits(study: &Study, front: &Front, problem: &ArmProblem, faults: &mut Vec<String>) {
-    let c = &study.space.constraints;
-    let breaks = |o: &Objectives| {
-        c.tip_deflection_max_m.is_some_and(|max| o.tip_deflection_m > max)
-            || c.mass_max_kg.is_some_and(|max| o.mass_kg > max)
-            || o.lowest_mode_hz < c.required_mode_hz()
-    };
+    let breaks = |o: &Objectives| study.space.constraints.broken(o).contains(&true);
     let broken = front.iter().filter(|d| breaks(&d.design.objectives));
     let ids = broken.map(|d| id_of(problem.whole_number(d.design.number)));
     list(

@@ -24,6 +24,8 @@ use std::sync::Arc;
 const ROUNDING: f64 = 1e-12;
 /// A shape that improves by less than this is as good as it gets.
 const SETTLED: f64 = 1e-10;
+/// Accelerations of the base that trial shapes start from: vertical, and sideways with a little forward.
+const STARTS: [[f64; 3]; 2] = [[0.0, 0.0, 1.0], [0.3, 1.0, 0.0]];
 /// Steps at the most on one box.
 const MOST_STEPS: usize = 30;
 
@@ -118,10 +120,11 @@ impl<'c> Problem<'c> {
         self.fill(&self.root(), work)?;
         self.least_tip_m(work);
         let mut shapes = Vec::new();
-        for (case, pose) in self.poses.iter().enumerate().filter(|(_, p)| p.judged) {
-            for direction in [Vector3::z(), Vector3::new(0.3, 1.0, 0.0)] {
+        for case in self.judged_cases() {
+            for [x, y, z] in STARTS {
+                let direction = Vector3::new(x, y, z);
                 let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
-                shapes.push(Shape::start(pose, &ideal, direction, 6));
+                shapes.push(Shape::start(&self.poses[case], &ideal, direction, 6));
             }
         }
         Some(shapes)
@@ -155,11 +158,10 @@ impl<'c> Problem<'c> {
         if fails(&Ceiling { hz: f64::MAX, ..ceiling }) {
             return Verdict::Cut;
         }
-        let starts = shapes.len() / self.poses.iter().filter(|p| p.judged).count().max(1);
         for (judged, case) in self.judged_cases().enumerate() {
             let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
-            for start in 0..starts {
-                let hz = hertz(shapes[judged * starts + start].quotient(&ideal));
+            for start in 0..STARTS.len() {
+                let hz = hertz(shapes[judged * STARTS.len() + start].quotient(&ideal));
                 if hz < ceiling.hz {
                     ceiling.hz = hz;
                     work.worst = (judged, start);
@@ -172,7 +174,7 @@ impl<'c> Problem<'c> {
         if !work.is_point() && !near(&ceiling) {
             return Verdict::Open(ceiling);
         }
-        self.refine(&mut ceiling, &mut Arc::make_mut(shapes)[..], starts, work, fails)
+        self.refine(&mut ceiling, Arc::make_mut(shapes).as_mut_slice(), work, fails)
     }
 
     /// Improves the shapes until the box is cut or none moves any more.
@@ -180,7 +182,6 @@ impl<'c> Problem<'c> {
         &self,
         ceiling: &mut Ceiling,
         shapes: &mut [Shape],
-        starts: usize,
         work: &mut Work,
         fails: impl Fn(&Ceiling) -> bool,
     ) -> Verdict {
@@ -188,8 +189,8 @@ impl<'c> Problem<'c> {
         for _ in 0..steps {
             let before = ceiling.hz;
             for (judged, case) in self.judged_cases().enumerate() {
-                for start in 0..starts {
-                    let shape = &mut shapes[judged * starts + start];
+                for start in 0..STARTS.len() {
+                    let shape = &mut shapes[judged * STARTS.len() + start];
                     let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
                     shape.improve(&self.poses[case], &ideal, &mut work.shape);
                     let hz = hertz(shape.quotient(&ideal));
@@ -331,10 +332,9 @@ impl<'c> Problem<'c> {
 
     /// The level whose halving should sharpen the bound most; `None` if every level is down to one option.
     pub fn widest_level(&self, cell: &[u32], shapes: &[Shape], work: &Work) -> Option<usize> {
-        let starts = shapes.len() / self.poses.iter().filter(|p| p.judged).count().max(1);
         let (judged, start) = work.worst;
-        let shape = &shapes[judged * starts + start];
-        let case = self.poses.iter().enumerate().filter(|(_, p)| p.judged).nth(judged)?.0;
+        let shape = &shapes[judged * STARTS.len() + start];
+        let case = self.judged_cases().nth(judged)?;
         let stiffness = &work.stiff_in[case];
         let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
         let strain: f64 = products(&shape.strain, ideal.stiffness);
@@ -372,14 +372,6 @@ impl<'c> Problem<'c> {
             }
         }
         best.map(|(_, level)| level)
-    }
-
-    /// Whether a design meets the constraints on its objectives.
-    pub fn meets(&self, o: &Objectives) -> bool {
-        let c = &self.space.constraints;
-        c.tip_deflection_max_m.is_none_or(|max| o.tip_deflection_m <= max)
-            && c.mass_max_kg.is_none_or(|max| o.mass_kg <= max)
-            && o.lowest_mode_hz >= c.required_mode_hz()
     }
 
     fn judged_cases(&self) -> impl Iterator<Item = usize> + '_ {

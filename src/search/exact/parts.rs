@@ -1,7 +1,8 @@
 //! What the bound sees of a part, and of a box of parts: every number as an interval.
 
 use super::tree::Bounds;
-use crate::arm::{Curve, LinkMaterial, LinkModel, Section, Windup};
+use crate::arm::{Beam, Curve, LinkMaterial, LinkModel, Section, Windup};
+use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
 use crate::search::figures::StressCheck;
 use crate::search::space::LinkOption;
 use crate::sizing::DriveLimits;
@@ -31,26 +32,28 @@ pub(super) mod inertia {
 impl Line {
     /// The tube of a section in a material under a link model.
     pub fn new(material: &LinkMaterial, section: &Section, model: LinkModel) -> Self {
-        let p = section.properties(material.poisson);
-        let (e, g, density) = (material.youngs_modulus_pa, material.shear_modulus_pa, material.density_kg_m3);
-        let across = if model == LinkModel::Bending { 0.0 } else { density };
-        let bends = |x: f64| if model == LinkModel::Rigid { f64::INFINITY } else { x };
-        let full = |x: f64| if model == LinkModel::Full { x } else { f64::INFINITY };
+        let beam = Beam { material: *material, section: *section, flexibility: 1.0 };
+        let tube = tube_inertia(&beam, model);
+        let yields = |place: usize| match model {
+            LinkModel::Rigid => false,
+            LinkModel::Bending => place < 2,
+            LinkModel::Full => true,
+        };
+        let mut stiffnesses = line_stiffnesses(&beam);
+        for (place, stiffness) in stiffnesses.iter_mut().enumerate() {
+            if !yields(place) {
+                *stiffness = f64::INFINITY;
+            }
+        }
         Self {
             inertias: [
-                density * p.area_m2,
-                p.outer_area_m2,
-                density * (p.second_moment_y_m4 + p.second_moment_z_m4),
-                across * p.second_moment_y_m4,
-                across * p.second_moment_z_m4,
+                tube.along_kg_per_m,
+                section.properties(material.poisson).outer_area_m2,
+                tube.polar_kg_m,
+                tube.rotary_y_kg_m,
+                tube.rotary_z_kg_m,
             ],
-            stiffnesses: [
-                bends(e * p.second_moment_y_m4),
-                bends(e * p.second_moment_z_m4),
-                full(p.shear_factor * g * p.area_m2),
-                full(g * p.torsion_constant_m4),
-                full(e * p.area_m2),
-            ],
+            stiffnesses,
         }
     }
 }

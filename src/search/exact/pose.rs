@@ -8,11 +8,9 @@
 use super::parts::{INERTIAS, inertia};
 use crate::arm::{LinkModel, LinkPiece, Structure};
 use crate::mechanics::beam::{PreparedBeam, section_frame};
-use crate::mechanics::{
-    Twist, Wrench, angular, body_inertia, displacement_at, force_wrench, linear, rotation_twist,
-};
+use crate::mechanics::{Twist, Wrench, angular, body_inertia, displacement_at, linear, rotation_twist};
 use crate::search::space::{Case, DesignSpace, SpacePiece};
-use crate::search::station::Walk;
+use crate::search::station::{Walk, payload_in, weight_wrench};
 use nalgebra::{DMatrix, Matrix3, Matrix6, SMatrix, Vector3};
 
 /// Coordinates of a tube: curvatures along z and y (4 each), shears (3 each), twist, stretch (3 each).
@@ -130,7 +128,7 @@ impl Pose {
     pub fn new(space: &DesignSpace, index: usize) -> Self {
         let case = &space.cases[index];
         let walk = Walk::new(space, case);
-        let (payload_wrench, payload_inertia) = payload(space, case, &walk);
+        let (payload_wrench, payload_inertia) = payload_in(space, case, case.water, &walk);
         let pieces: Vec<PosedPiece> = space
             .pieces
             .iter()
@@ -181,14 +179,14 @@ impl Pose {
                     self.inertia_about.push(Some(outboard.inertia_row(&fixed_inertia, twist)));
                     let mut forms = [Matrix6::zeros(); INERTIAS];
                     forms[inertia::MASS] = body_inertia(1.0, at_m, &Matrix3::zeros());
-                    outboard.push(weight(1.0, at_m), forms);
+                    outboard.push(weight_wrench(1.0, at_m), forms);
                 }
                 PosedPiece::Body(body) => {
                     fixed_inertia += body;
                     let mass_kg = body[(0, 0)];
                     if mass_kg > 0.0 {
                         let moment = Vector3::new(body[(5, 1)], body[(3, 2)], body[(4, 0)]) / mass_kg;
-                        outboard.fixed += weight(mass_kg * space.gravity_m_s2, &moment);
+                        outboard.fixed += weight_wrench(mass_kg * space.gravity_m_s2, &moment);
                     }
                     self.inertia_about.push(None);
                     outboard.push(Wrench::zeros(), [Matrix6::zeros(); INERTIAS]);
@@ -207,7 +205,7 @@ impl Pose {
                         self.rows.push(outboard.row(piece, coordinate, &tube.ends[end], own, tip_m));
                     }
                     let middle_m = tube.root_m + tube.frame * Vector3::x() * (tube.length_m / 2.0);
-                    outboard.push(weight(1.0, &middle_m), tube.rigid_forms());
+                    outboard.push(weight_wrench(1.0, &middle_m), tube.rigid_forms());
                     if chosen {
                         self.stress.push(outboard.stress(piece, tube, &tube.root_m));
                     }
@@ -219,21 +217,6 @@ impl Pose {
         let strained = |row: &Row| matches!(self.pieces[row.piece], PosedPiece::Joint { .. });
         self.rows.retain(|row| strained(row) || row.largest() > 1e-13 * scale);
     }
-}
-
-fn payload(space: &DesignSpace, case: &Case, walk: &Walk) -> (Wrench, Matrix6<f64>) {
-    let rotation = walk.tip_rotation.matrix();
-    let payload = &case.payload;
-    let cg_m = walk.tip_m + rotation * payload.cg_m;
-    let about_cg = rotation * Matrix3::from_diagonal(&payload.inertia_about_cg_kgm2) * rotation.transpose();
-    let buoyancy = case.water.map_or(0.0, |w| w.density_kg_m3 / w.payload_density_kg_m3);
-    let weight_n = payload.mass_kg * space.gravity_m_s2 * (1.0 - buoyancy);
-    let wrench = force_wrench(&case.tip_force_n, &walk.tip_m) + weight(weight_n, &cg_m);
-    (wrench, body_inertia(payload.mass_kg, &cg_m, &about_cg))
-}
-
-fn weight(newtons: f64, at_m: &Vector3<f64>) -> Wrench {
-    force_wrench(&Vector3::new(0.0, 0.0, -newtons), at_m)
 }
 
 fn posed_tube(

@@ -144,15 +144,7 @@ impl<'c> Problem<'c> {
             SpacePiece::Link(link) => match &link.body {
                 LinkBody::Offset { mass_kg } => Part::Offset { mass_kg: *mass_kg },
                 LinkBody::Tube { material, section, .. } => {
-                    let option = LinkOption {
-                        material_index: 0,
-                        material_name: String::new(),
-                        material: *material,
-                        section: *section,
-                        profile: None,
-                        strength_pa: None,
-                        cost_eur_per_kg: None,
-                    };
+                    let option = LinkOption::given(*material, *section);
                     let slender = space.constraints.wall_slenderness_max;
                     if slender.is_some_and(|max| option.wall_slenderness() > max) {
                         return None;

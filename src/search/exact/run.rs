@@ -261,7 +261,7 @@ impl Search<'_, '_> {
             lock(&self.shared.unsure).push(Candidate { number: number(self.sizes, &options), objectives });
             return;
         }
-        if !self.problem.meets(&objectives) {
+        if self.problem.space.constraints.broken(&objectives).contains(&true) {
             return;
         }
         self.shared.found.enter(&objectives);
