@@ -155,30 +155,35 @@ fn the_views_of_a_study_follow_pointer_brush_filters_and_keys() {
         assert!(browser.text("#reading").contains(&format!("mass {} kg", significant(mass, 5))));
     }
     browser.key("Escape");
-    // the pointer: somewhere along the middle of the plot lies a design
-    let [left, top, width, height] = browser.place("#by-deflection");
-    let found = (0..60).any(|i| {
-        browser.mouse(
-            "mouseMoved",
-            left + 70.0 + f64::from(i) * 4.0,
-            top + height * (0.25 + 0.008 * f64::from(i)),
-        );
-        browser.value("new Promise(r => requestAnimationFrame(() => requestAnimationFrame(() => r(1))))");
-        browser.text("#reading").starts_with("design ")
+    // the pointer: no point of the grid is further than a plot's reach from the next, so one finds a design
+    browser.keep_trying("a design under the pointer", || {
+        let [left, top, width, height] = browser.place("#by-deflection");
+        let steps = |length: f64| (0..).map(|i| 30.0 * f64::from(i)).take_while(move |&at| at < length);
+        steps(height).flat_map(|y| steps(width).map(move |x| (left + x, top + y))).any(|(x, y)| {
+            browser.mouse("mouseMoved", x, y);
+            browser.value("new Promise(r => requestAnimationFrame(() => requestAnimationFrame(() => r(1))))");
+            browser.text("#reading").starts_with("design ")
+        })
     });
-    assert!(found, "no design under the pointer");
-    // a brush selects fewer, and what is left is what the file has there
-    browser.mouse("mouseMoved", left + width / 2.0, top + 2.0);
-    browser.drag((left + 60.0, top + 40.0), (left + width * 0.4, top + height - 60.0));
-    let brushed = selected();
-    assert!(brushed > 0 && brushed < front.rows.len(), "{brushed}");
-    browser.click("#reset");
-    assert_eq!(selected(), front.rows.len());
-    // a brush along an axis of choices
-    let [left, top, _, height] = browser.place("#by-choice");
-    browser.drag((left + 74.0, top + height - 20.0), (left + 74.0, top + height * 0.6));
-    assert!(selected() < front.rows.len());
-    browser.click("#reset");
+    // a brush selects fewer
+    let fewer = |what: &str, brush: &dyn Fn()| {
+        browser.keep_trying(what, || {
+            browser.click("#reset");
+            brush();
+            (1..front.rows.len()).contains(&selected())
+        });
+        browser.click("#reset");
+        assert_eq!(selected(), front.rows.len());
+    };
+    fewer("a brush in a plot", &|| {
+        let [left, top, width, height] = browser.place("#by-deflection");
+        browser.mouse("mouseMoved", left + width / 2.0, top + 2.0);
+        browser.drag((left + 60.0, top + 40.0), (left + width * 0.4, top + height - 60.0));
+    });
+    fewer("a brush along an axis of choices", &|| {
+        let [left, top, _, height] = browser.place("#by-choice");
+        browser.drag((left + 74.0, top + height - 20.0), (left + 74.0, top + height * 0.6));
+    });
     // the legend as a filter: what is left are the designs of other materials
     browser.click("#legend button:nth-child(2)");
     let (upper, fore) = (column(&front, "upper_arm_material"), column(&front, "forearm_material"));

@@ -121,9 +121,14 @@ impl Browser {
 
     /// Waits until an expression is true.
     pub fn until(&self, expression: &str) {
+        self.keep_trying(expression, || self.value(expression) == json!(true));
+    }
+
+    /// Repeats an attempt until it succeeds: a page on a busy machine may not be laid out yet.
+    pub fn keep_trying(&self, what: &str, attempt: impl Fn() -> bool) {
         let started = Instant::now();
-        while self.value(expression) != json!(true) {
-            assert!(started.elapsed() < PATIENCE, "never became true: {expression}");
+        while !attempt() {
+            assert!(started.elapsed() < PATIENCE, "never came true: {what}");
             std::thread::sleep(Duration::from_millis(20));
         }
     }
