@@ -267,8 +267,8 @@ fn certificate([boxes, open]: [u64; 2], gap: Option<f64>) -> String {
     match (open, gap) {
         (0, _) => format!("certified: no design that is not listed is on the front ({boxes} boxes)\n"),
         (_, Some(gap)) => format!(
-            "partial: no design beats every one listed by more than {:.2} % in all three objectives at once\n\
-             ({boxes} boxes bounded, {open} open)\n",
+            "partial: no design beats every one listed by more than {:.3} % in all three\n\
+             objectives at once ({boxes} boxes bounded, {open} open)\n",
             100.0 * gap
         ),
         (_, None) => {

@@ -83,6 +83,26 @@ impl DriveLimits {
         }
     }
 
+    /// The smaller of each limit of two drives.
+    pub(crate) fn min(&self, other: &Self) -> Self {
+        Self {
+            static_torque_nm: self.static_torque_nm.min(other.static_torque_nm),
+            peak_torque_nm: self.peak_torque_nm.min(other.peak_torque_nm),
+            stop_torque_nm: self.stop_torque_nm.min(other.stop_torque_nm),
+            mean_torque_cubed_nm3: self.mean_torque_cubed_nm3.min(other.mean_torque_cubed_nm3),
+            tilting_moment_nm: self.tilting_moment_nm.min(other.tilting_moment_nm),
+        }
+    }
+
+    /// How many times a demand the drive holds; infinite if nothing is asked for.
+    pub(crate) fn multiple_of(&self, demand: &JointDemand) -> f64 {
+        let times = |limit: f64, asked: f64| if asked > 0.0 { limit / asked } else { f64::INFINITY };
+        times(self.static_torque_nm, demand.static_torque_nm)
+            .min(times(self.peak_torque_nm, demand.peak_torque_nm()))
+            .min(times(self.stop_torque_nm, demand.stop_torque_nm))
+            .min(times(self.mean_torque_cubed_nm3, demand.mean_torque_cubed_nm3).cbrt())
+    }
+
     /// Whether every limit is at least that of `other`.
     #[inline]
     pub fn cover(&self, other: &Self) -> bool {

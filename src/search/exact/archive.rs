@@ -14,7 +14,7 @@ const EQUAL: f64 = 1e-9;
 /// By how much the better design must be better in one objective.
 const BETTER: f64 = 1e-7;
 /// How much a better trial shape may lower a ceiling's frequency.
-const NEAR: f64 = 0.9;
+const NEAR: f64 = 0.4;
 /// Steps an octave of the lists.
 const STEPS: f64 = 64.0;
 

@@ -9,14 +9,15 @@
 //! A joint or link that cannot hold even the least demand makes the whole box infeasible.
 
 use super::check::Inertia;
-use super::parts::{CurveBox, DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::parts::{Asked, CurveBox, DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
 use super::pose::{Pose, RESISTED, degree_factor};
 use super::problem::{Part, Problem};
 use super::shape::{Ideal, Shape, Work as ShapeWork};
+use super::tree::{Bounds, Tree};
 use crate::arm::Windup;
 use crate::search::Objectives;
 use crate::search::figures::von_mises;
-use crate::sizing::{JointDemand, JointMotion};
+use crate::sizing::JointDemand;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
@@ -25,7 +26,7 @@ const ROUNDING: f64 = 1e-12;
 /// A shape that improves by less than this is as good as it gets.
 const SETTLED: f64 = 1e-10;
 /// Accelerations of the base that trial shapes start from: vertical, and sideways with a little forward.
-const STARTS: [[f64; 3]; 2] = [[0.0, 0.0, 1.0], [0.3, 1.0, 0.0]];
+pub(super) const STARTS: [[f64; 3]; 2] = [[0.0, 0.0, 1.0], [0.3, 1.0, 0.0]];
 /// Steps at the most on one box.
 const MOST_STEPS: usize = 30;
 
@@ -43,6 +44,12 @@ pub(super) struct Ceiling {
 impl Ceiling {
     /// Of a box of which nothing is known.
     pub const OPEN: Self = Self { mass_kg: 0.0, tip_m: 0.0, hz: f64::INFINITY };
+
+    /// The ceiling worsened by a part in all three.
+    pub fn slackened(&self, slack: f64) -> Self {
+        let factor = 1.0 + slack;
+        Self { mass_kg: self.mass_kg * factor, tip_m: self.tip_m * factor, hz: self.hz / factor }
+    }
 }
 
 /// What is known of a box.
@@ -57,21 +64,25 @@ pub(super) enum Verdict {
 #[derive(Default)]
 pub(super) struct Work {
     /// Greatest and least stiffness and inertia of each piece.
-    stiff: Vec<[f64; STIFFNESSES]>,
-    soft: Vec<[f64; STIFFNESSES]>,
-    light: Vec<[f64; INERTIAS]>,
-    heavy: Vec<[f64; INERTIAS]>,
+    pub(super) stiff: Vec<[f64; STIFFNESSES]>,
+    pub(super) soft: Vec<[f64; STIFFNESSES]>,
+    pub(super) light: Vec<[f64; INERTIAS]>,
+    pub(super) heavy: Vec<[f64; INERTIAS]>,
     /// Weight interval of each piece of the case at hand \[N\].
-    weights: Vec<Vec<[f64; 2]>>,
-    curves: Vec<Option<CurveBox>>,
+    pub(super) weights: Vec<Vec<[f64; 2]>>,
+    pub(super) curves: Vec<Option<CurveBox>>,
     /// Greatest stiffness of each piece, and least of each joint, by case: a gear's slope depends on its
     /// torque.
-    stiff_in: Vec<Vec<[f64; STIFFNESSES]>>,
-    joint_soft: Vec<Vec<f64>>,
-    masses: Vec<[f64; 2]>,
+    pub(super) stiff_in: Vec<Vec<[f64; STIFFNESSES]>>,
+    pub(super) joint_soft: Vec<Vec<f64>>,
+    pub(super) masses: Vec<[f64; 2]>,
+    /// The case whose tip moves most at least, and in which direction.
+    pub(super) sagging: Option<(usize, Vector3<f64>)>,
+    /// By what part the deflection would grow if a piece were middling.
+    pub(super) tip_yields: Vec<f64>,
     shape: ShapeWork,
     /// Judged case and start whose quotient is least.
-    worst: (usize, usize),
+    pub(super) worst: (usize, usize),
 }
 
 impl<'c> Problem<'c> {
@@ -83,7 +94,7 @@ impl<'c> Problem<'c> {
     /// The inertia matrices of every judged case.
     pub fn with_inertias(mut self) -> Self {
         let mut work = Work::default();
-        if self.fill(&self.root(), &mut work).is_some() {
+        if self.fill(&mut self.root(), &mut work).is_some() {
             self.least_tip_m(&mut work);
             self.inertias = self
                 .judged_cases()
@@ -117,7 +128,7 @@ impl<'c> Problem<'c> {
 
     /// First shapes: the box of everything, started vertically and sideways in each judged case.
     pub fn first_shapes(&self, work: &mut Work) -> Option<Vec<Shape>> {
-        self.fill(&self.root(), work)?;
+        self.fill(&mut self.root(), work)?;
         self.least_tip_m(work);
         let mut shapes = Vec::new();
         for case in self.judged_cases() {
@@ -134,7 +145,7 @@ impl<'c> Problem<'c> {
     /// `beaten` tells whether a design found is better than a ceiling.
     pub fn bound(
         &self,
-        cell: &[u32],
+        cell: &mut [u32],
         shapes: &mut Arc<Vec<Shape>>,
         work: &mut Work,
         beaten: impl Fn(&Ceiling) -> bool,
@@ -211,24 +222,26 @@ impl<'c> Problem<'c> {
     }
 
     /// Fills in every interval from the tip inward; `None` if a part cannot hold.
-    fn fill(&self, cell: &[u32], work: &mut Work) -> Option<()> {
+    fn fill(&self, cell: &mut [u32], work: &mut Work) -> Option<()> {
         work.clear(self.parts.len(), self.poses.len());
         let mut level = 0;
         let mut cost_eur = 0.0;
         for (piece, part) in self.parts.iter().enumerate() {
             match part {
                 Part::Given { mass_kg, curve } => work.joint(self, piece, [*mass_kg; 2], *curve),
-                Part::Drives { sized, tree } => {
-                    let drives = &tree.node(cell[level]).bounds;
+                Part::Drives { sized, tree, rays } => {
+                    let (static_nm, inertia_kgm2) = self.loads(piece, work);
+                    let least = Asked::new(sized.table.motion(), rays, static_nm[0], inertia_kgm2[0]);
+                    let node = &mut cell[level];
                     level += 1;
-                    let [least, _] = self.demands(piece, work, sized.table.motion());
-                    if !drives.limits.hold(&least) {
-                        return None;
-                    }
+                    *node = tree.narrowed(*node, |drives| drives.may_hold(&least))?;
+                    let drives = holding(tree, *node, &least, DEPTH)?;
                     work.joint(self, piece, drives.mass_kg, drives.curve);
                 }
                 Part::FirstFit { sized, ladder } => {
-                    let [least, most] = self.demands(piece, work, sized.table.motion());
+                    let (static_nm, inertia_kgm2) = self.loads(piece, work);
+                    let demand = |i: usize| sized.table.motion().demand(static_nm[i], inertia_kgm2[i]);
+                    let (least, most) = (demand(0), demand(1));
                     let step = |demand: &JointDemand| {
                         let fit = sized.table.first_fit(demand)? as u32;
                         sized.table.first_fit_candidates().binary_search(&fit).ok()
@@ -239,17 +252,20 @@ impl<'c> Problem<'c> {
                     work.joint(self, piece, mass_kg, curve);
                 }
                 Part::Links { length_m, tree } => {
-                    let links = &tree.node(cell[level]).bounds;
+                    let node = &mut cell[level];
                     level += 1;
+                    work.tube(self, piece, *length_m, &tree.node(*node).bounds);
+                    if let Some(safety) = self.space.constraints.stress_safety_factor_min {
+                        let loads = self.least_loads(piece, safety, work);
+                        *node = tree.narrowed(*node, |links| loads.iter().all(|l| stress_holds(links, l)))?;
+                    }
+                    let links = &tree.node(*node).bounds;
                     cost_eur += links.cost_eur_per_m * length_m;
                     let max = self.space.constraints.material_cost_max_eur;
                     if max.is_some_and(|max| cost_eur * (1.0 - ROUNDING) > max) {
                         return None;
                     }
                     work.tube(self, piece, *length_m, links);
-                    if !self.stress_holds(piece, links, work) {
-                        return None;
-                    }
                 }
                 Part::Tube { length_m, tube } => work.tube(self, piece, *length_m, tube),
                 Part::Offset { mass_kg } => {
@@ -260,8 +276,8 @@ impl<'c> Problem<'c> {
         Some(())
     }
 
-    /// The least and the most that is asked of a joint.
-    fn demands(&self, piece: usize, work: &Work, motion: &JointMotion) -> [JointDemand; 2] {
+    /// The least and the largest static torque on a joint and inertia about it.
+    fn loads(&self, piece: usize, work: &Work) -> ([f64; 2], [f64; 2]) {
         let (mut static_nm, mut inertia_kgm2) = ([0.0f64; 2], [0.0f64; 2]);
         for (pose, weights) in self.poses.iter().zip(&work.weights).filter(|(p, _)| p.sizing) {
             let Some(row) = &pose.inertia_about[piece] else { continue };
@@ -274,34 +290,32 @@ impl<'c> Problem<'c> {
                 *bound = bound.max(row.fixed + chosen);
             }
         }
-        let demand = |i: usize, factor: f64| motion.demand(static_nm[i] * factor, inertia_kgm2[i] * factor);
-        [demand(0, 1.0 - ROUNDING), demand(1, 1.0 + ROUNDING)]
+        let rounded = |[least, most]: [f64; 2]| [least * (1.0 - ROUNDING), most * (1.0 + ROUNDING)];
+        (rounded(static_nm), rounded(inertia_kgm2))
     }
 
-    /// Whether some option of a box may hold the least stress at its ends.
-    fn stress_holds(&self, piece: usize, links: &LinkBox, work: &Work) -> bool {
-        let Some(safety) = self.space.constraints.stress_safety_factor_min else { return true };
-        if links.stress[0] == 0.0 {
-            return true;
-        }
-        self.poses.iter().zip(&work.weights).all(|(pose, weights)| {
-            let factor = if pose.sizing { self.peak_factor } else { 1.0 };
-            pose.stress.iter().filter(|s| s.piece == piece).all(|row| {
-                let [axial, y, z, torsion] = std::array::from_fn(|k| {
-                    let (fixed, per_n) = &row.loads[k];
-                    let [low, high] = interval(*fixed, per_n, weights);
-                    low.max(-high).max(0.0) * links.stress[k]
-                });
-                let bending = if links.round { y.hypot(z) } else { y + z };
-                let ratio = von_mises(axial + bending, torsion);
-                ratio * factor * safety * (1.0 - ROUNDING) <= 1.0
+    /// The least axial force, moments and torsion at the ends of a tube in every case, times what they are
+    /// to be multiplied with before they are compared with the strength.
+    fn least_loads(&self, piece: usize, safety: f64, work: &Work) -> Vec<[f64; 4]> {
+        let cases = self.poses.iter().zip(&work.weights);
+        cases
+            .flat_map(|(pose, weights)| {
+                let peak = if pose.sizing { self.peak_factor } else { 1.0 };
+                let factor = peak * safety * (1.0 - ROUNDING);
+                pose.stress.iter().filter(|s| s.piece == piece).map(move |row| {
+                    row.loads.each_ref().map(|(fixed, per_n)| {
+                        let [low, high] = interval(*fixed, per_n, weights);
+                        low.max(-high).max(0.0) * factor
+                    })
+                })
             })
-        })
+            .collect()
     }
 
     /// Least deflection of the tip in the worst judged case \[m\].
     fn least_tip_m(&self, work: &mut Work) -> f64 {
         let mut worst = 0.0f64;
+        work.sagging = None;
         for (case, pose) in self.poses.iter().enumerate().filter(|(_, p)| p.judged) {
             work.stiff_in[case].clone_from(&work.stiff);
             let mut tip_m = [[0.0f64; 2]; 3];
@@ -324,67 +338,17 @@ impl<'c> Problem<'c> {
                     tip[1] += a.max(b);
                 }
             }
-            let nearest = tip_m.map(|[low, high]| low.max(-high).max(0.0));
-            worst = worst.max(Vector3::from(nearest).norm());
+            let nearest = Vector3::from(tip_m.map(|[low, high]| if low > 0.0 { low } else { high.min(0.0) }));
+            if nearest.norm() > worst {
+                worst = nearest.norm();
+                work.sagging = nearest.try_normalize(0.0).map(|d| (case, d));
+            }
         }
         worst
     }
 
-    /// The level whose halving should sharpen the bound most; `None` if every level is down to one option.
-    pub fn widest_level(&self, cell: &[u32], shapes: &[Shape], work: &Work) -> Option<usize> {
-        let (judged, start) = work.worst;
-        let shape = &shapes[judged * STARTS.len() + start];
-        let case = self.judged_cases().nth(judged)?;
-        let stiffness = &work.stiff_in[case];
-        let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
-        let strain: f64 = products(&shape.strain, ideal.stiffness);
-        let kinetic: f64 = shape.kinetic_fixed + products(&shape.kinetic, ideal.inertia);
-        let mass_kg: f64 = work.masses.iter().map(|m| m[0]).sum();
-        let mut best: Option<(f64, usize)> = None;
-        for (level, &piece) in self.level_pieces.iter().enumerate() {
-            let leaf = match &self.parts[piece] {
-                Part::Drives { tree, .. } => tree.option(cell[level]).is_some(),
-                Part::Links { tree, .. } => tree.option(cell[level]).is_some(),
-                _ => true,
-            };
-            if leaf {
-                continue;
-            }
-            let mut score = (work.masses[piece][1] - work.masses[piece][0]) / mass_kg.max(1e-9);
-            let joint = work.curves[piece].is_some();
-            for i in 0..STIFFNESSES {
-                let (high, low) = match joint && i == 0 {
-                    true => (stiffness[piece][0], work.joint_soft[case][piece]),
-                    false => (work.stiff[piece][i], work.soft[piece][i]),
-                };
-                if low > 0.0 && high > low {
-                    score += 2.0 * shape.strain[piece][i] * high / strain * (high / low).ln();
-                }
-            }
-            for i in 0..INERTIAS {
-                let (low, high) = (work.light[piece][i], work.heavy[piece][i]);
-                if low > 0.0 && high > low {
-                    score += shape.kinetic[piece][i] * low / kinetic * (high / low).ln();
-                }
-            }
-            if best.is_none_or(|(most, _)| score > most) {
-                best = Some((score, level));
-            }
-        }
-        best.map(|(_, level)| level)
-    }
-
-    fn judged_cases(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn judged_cases(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.poses.len()).filter(|&case| self.poses[case].judged)
-    }
-
-    /// The two halves of a box along a level.
-    pub fn halves(&self, cell: &[u32], level: usize) -> Option<[u32; 2]> {
-        match &self.parts[self.level_pieces[level]] {
-            Part::Drives { tree, .. } => tree.children(cell[level]),
-            Part::Links { tree, .. } => tree.children(cell[level]),
-            _ => None,
-        }
     }
 
     /// The options of a box of one, tip first.
@@ -401,16 +365,38 @@ impl<'c> Problem<'c> {
     }
 }
 
-fn products<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>()).sum()
-}
-
 fn hertz(lambda: f64) -> f64 {
     lambda.sqrt() / std::f64::consts::TAU * (1.0 + ROUNDING)
 }
 
+/// Levels of a tree to look down for drives that cannot hold.
+const DEPTH: usize = 6;
+
+/// The box around the drives below a node that may hold a demand; looks a few levels down.
+fn holding(tree: &Tree<DriveBox>, node: u32, asked: &Asked, depth: usize) -> Option<DriveBox> {
+    let drives = &tree.node(node).bounds;
+    if !drives.may_hold(asked) {
+        return None;
+    }
+    let (Some([a, b]), false) = (tree.children(node), depth == 0 || drives.least_limits.hold(&asked.demand))
+    else {
+        return Some(drives.clone());
+    };
+    match (holding(tree, a, asked, depth - 1), holding(tree, b, asked, depth - 1)) {
+        (Some(a), Some(b)) => Some(a.join(&b)),
+        (one, other) => one.or(other),
+    }
+}
+
+/// Whether some option of a box may hold a load.
+fn stress_holds(links: &LinkBox, load: &[f64; 4]) -> bool {
+    let [axial, y, z, torsion]: [f64; 4] = std::array::from_fn(|k| load[k] * links.stress[k]);
+    let bending = if links.round { y.hypot(z) } else { y + z };
+    von_mises(axial + bending, torsion) <= 1.0
+}
+
 /// Twist of a joint between two torques \[rad\].
-fn twist(curve: &CurveBox, [low, high]: [f64; 2]) -> [f64; 2] {
+pub(super) fn twist(curve: &CurveBox, [low, high]: [f64; 2]) -> [f64; 2] {
     let outer = |windup: &Windup, t: f64| windup.angle_rad(t);
     [
         outer(if low >= 0.0 { &curve.stiff } else { &curve.soft }, low),
@@ -419,7 +405,13 @@ fn twist(curve: &CurveBox, [low, high]: [f64; 2]) -> [f64; 2] {
 }
 
 /// A tube's coordinate between two forces.
-fn stretch(coordinate: usize, pose: &Pose, piece: usize, [low, high]: [f64; 2], work: &Work) -> [f64; 2] {
+pub(super) fn stretch(
+    coordinate: usize,
+    pose: &Pose,
+    piece: usize,
+    [low, high]: [f64; 2],
+    work: &Work,
+) -> [f64; 2] {
     let super::pose::PosedPiece::Tube(tube) = &pose.pieces[piece] else { return [0.0; 2] };
     let (resisted, _) = RESISTED[coordinate];
     let (stiff, soft) = (work.stiff[piece][resisted], work.soft[piece][resisted]);
@@ -433,7 +425,7 @@ fn stretch(coordinate: usize, pose: &Pose, piece: usize, [low, high]: [f64; 2], 
 
 /// `fixed + Σ per_n · weight` as an interval.
 #[inline]
-fn interval(fixed: f64, per_n: &[f64], weights: &[[f64; 2]]) -> [f64; 2] {
+pub(super) fn interval(fixed: f64, per_n: &[f64], weights: &[[f64; 2]]) -> [f64; 2] {
     let (mut low, mut high) = (fixed, fixed);
     for (c, w) in per_n.iter().zip(weights) {
         let (a, b) = (c * w[0], c * w[1]);
@@ -448,6 +440,11 @@ impl Pose {
     fn torque(&self, piece: usize, weights: &[[f64; 2]]) -> [f64; 2] {
         let row = self.rows.iter().find(|row| row.piece == piece);
         row.map_or([0.0; 2], |row| interval(row.fixed, &row.per_n, weights))
+    }
+
+    /// Torque on a joint without the weight of any part \[N m\].
+    pub fn payload_torque_nm(&self, piece: usize) -> f64 {
+        self.rows.iter().find(|row| row.piece == piece).map_or(0.0, |row| row.fixed)
     }
 }
 

@@ -9,10 +9,12 @@
 
 mod archive;
 mod bound;
+mod branch;
 mod check;
 mod gap;
 mod parts;
 mod pose;
+mod probe;
 mod problem;
 mod run;
 mod shape;

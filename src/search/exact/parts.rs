@@ -5,7 +5,7 @@ use crate::arm::{Beam, Curve, LinkMaterial, LinkModel, Section, Windup};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
 use crate::search::figures::StressCheck;
 use crate::search::space::LinkOption;
-use crate::sizing::DriveLimits;
+use crate::sizing::{DriveLimits, JointDemand, JointMotion};
 
 /// Number of [`Line`]'s inertias and of its stiffnesses.
 pub(super) const INERTIAS: usize = 5;
@@ -193,6 +193,54 @@ fn slopes(w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> 
     segments.into_iter().filter(touched).map(|(slope, ..)| slope)
 }
 
+/// Proportions of static torque and inertia in which a box of drives knows what it holds.
+pub(super) const RAYS: usize = 12;
+
+/// Demands in fixed proportions. A drive that holds a demand holds every ray's multiple below it, so a box
+/// none of whose members does holds no demand above, though each single limit may be met by some member.
+pub(super) struct Rays {
+    /// Static torque \[N m\] and inertia \[kg m²\].
+    loads: [(f64, f64); RAYS],
+    demands: [JointDemand; RAYS],
+}
+
+impl Rays {
+    /// Around the proportion that the payload alone asks for.
+    pub fn new(motion: &JointMotion, payload_static_nm: f64, payload_inertia_kgm2: f64) -> Self {
+        let loads = std::array::from_fn(|k| match k {
+            0 => (0.0, 1.0),
+            1 => (1.0, 0.0),
+            _ if payload_static_nm > 0.0 => {
+                (1.0, 1.25 * 0.8f64.powi(k as i32 - 2) * payload_inertia_kgm2 / payload_static_nm)
+            }
+            _ => (0.0, 1.0),
+        });
+        Self { demands: loads.map(|(static_nm, inertia)| motion.demand(static_nm, inertia)), loads }
+    }
+
+    /// How many times each ray's demand a drive holds.
+    pub fn held(&self, limits: &DriveLimits) -> [f64; RAYS] {
+        self.demands.each_ref().map(|demand| limits.multiple_of(demand))
+    }
+}
+
+/// What a joint is asked for at least.
+pub(super) struct Asked {
+    pub demand: JointDemand,
+    /// Multiples of the rays below it.
+    multiples: [f64; RAYS],
+}
+
+impl Asked {
+    /// A static torque and an inertia.
+    pub fn new(motion: &JointMotion, rays: &Rays, static_nm: f64, inertia_kgm2: f64) -> Self {
+        let times = |asked: f64, unit: f64| if unit > 0.0 { asked / unit } else { f64::INFINITY };
+        let multiples =
+            rays.loads.map(|(t, i)| times(static_nm, t).min(times(inertia_kgm2, i)) * (1.0 - 1e-12));
+        Self { demand: motion.demand(static_nm, inertia_kgm2), multiples }
+    }
+}
+
 /// A box of drives.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct DriveBox {
@@ -200,7 +248,20 @@ pub(super) struct DriveBox {
     pub mass_kg: [f64; 2],
     /// The largest of each limit.
     pub limits: DriveLimits,
+    /// The smallest of each limit.
+    pub least_limits: DriveLimits,
+    /// The largest multiple of each ray's demand that a member holds.
+    pub multiples: [f64; RAYS],
     pub curve: Option<CurveBox>,
+}
+
+impl DriveBox {
+    /// Whether a member may hold what is asked.
+    #[inline]
+    pub fn may_hold(&self, asked: &Asked) -> bool {
+        self.limits.hold(&asked.demand)
+            && self.multiples.iter().zip(&asked.multiples).all(|(held, asked)| held >= asked)
+    }
 }
 
 impl Bounds for DriveBox {
@@ -208,6 +269,8 @@ impl Bounds for DriveBox {
         Self {
             mass_kg: [self.mass_kg[0].min(other.mass_kg[0]), self.mass_kg[1].max(other.mass_kg[1])],
             limits: self.limits.max(&other.limits),
+            least_limits: self.least_limits.min(&other.least_limits),
+            multiples: pairwise(&self.multiples, &other.multiples, f64::max),
             // a rigid member makes the stiff side rigid
             curve: self.curve.zip(other.curve).map(|(a, b)| a.join(&b)),
         }
@@ -218,6 +281,12 @@ impl Bounds for DriveBox {
         let k = self.curve.map_or([0.0; 3], |c| {
             [c.stiff.k1_nm_per_rad.ln(), c.stiff.k3_nm_per_rad.ln(), 0.2 * c.stiff.t1_nm.min(1e9).ln()]
         });
-        vec![4.0 * k[0], 2.0 * k[1], k[2], self.mass_kg[0].max(1e-3).ln()]
+        vec![
+            4.0 * k[0],
+            2.0 * k[1],
+            k[2],
+            self.mass_kg[0].max(1e-3).ln(),
+            3.0 * self.multiples[RAYS / 2].clamp(1e-9, 1e9).ln(),
+        ]
     }
 }

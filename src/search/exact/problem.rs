@@ -2,7 +2,7 @@
 //! case.
 
 use super::check::Inertia;
-use super::parts::{CurveBox, DriveBox, LinkBox};
+use super::parts::{CurveBox, DriveBox, LinkBox, Rays};
 use super::pose::Pose;
 use super::tree::{Bounds, Tree};
 use crate::arm::LinkBody;
@@ -10,6 +10,7 @@ use crate::catalog::Catalogs;
 use crate::search::slot::{SizedJoint, Slot, joint_slot};
 use crate::search::space::{DesignSpace, LinkOption, SpacePiece};
 use crate::search::station::reaches_m;
+use crate::sizing::JointMotion;
 
 /// A design space as branch and bound sees it. Pieces count from the tip.
 pub(super) struct Problem<'c> {
@@ -31,7 +32,7 @@ pub(super) enum Part<'c> {
     /// A given joint.
     Given { mass_kg: f64, curve: Option<CurveBox> },
     /// A joint whose drive is a choice.
-    Drives { sized: SizedJoint<'c>, tree: Tree<DriveBox> },
+    Drives { sized: SizedJoint<'c>, tree: Tree<DriveBox>, rays: Rays },
     /// A joint that takes the lightest drive that holds.
     FirstFit { sized: SizedJoint<'c>, ladder: Ladder },
     /// A link to choose.
@@ -74,12 +75,9 @@ impl Ladder {
     }
 }
 
-/// Which options of each level a problem is restricted to; `None` keeps all.
-pub(super) type Restriction = Vec<Option<Vec<u32>>>;
-
 impl<'c> Problem<'c> {
     /// Compiles a space; `None` if some level has no option.
-    pub fn new(space: &'c DesignSpace, catalogs: &'c Catalogs, only: Option<&Restriction>) -> Option<Self> {
+    pub fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Option<Self> {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let mut reaches = reaches_m(space, sizing).into_iter();
         let mut pieces: Vec<(&SpacePiece, f64)> = Vec::new();
@@ -101,31 +99,31 @@ impl<'c> Problem<'c> {
                 + space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE),
         };
         for (piece, reach_m) in pieces.into_iter().rev() {
-            let part = problem.part(piece, reach_m, catalogs, only)?;
+            let part = problem.part(piece, reach_m, catalogs)?;
             problem.parts.push(part);
         }
         Some(problem)
     }
 
-    fn part(
-        &mut self,
-        piece: &'c SpacePiece,
-        reach_m: f64,
-        catalogs: &'c Catalogs,
-        only: Option<&Restriction>,
-    ) -> Option<Part<'c>> {
+    fn part(&mut self, piece: &'c SpacePiece, reach_m: f64, catalogs: &'c Catalogs) -> Option<Part<'c>> {
         let space = self.space;
         Some(match piece {
             SpacePiece::Joint(joint) => match joint_slot(space, joint, reach_m, catalogs) {
                 Slot::Given { law, mass_kg } => Part::Given { mass_kg, curve: CurveBox::of(&law.curve) },
                 Slot::Sized(sized) if sized.all_fits => {
-                    let allowed = self.level(sized.table.len(), only);
-                    let tree = Tree::build(allowed.into_iter().map(|i| (i, drive_box(&sized, i))))?;
-                    Part::Drives { sized, tree }
+                    let options = self.level(sized.table.len());
+                    let rays = self.rays(self.parts.len(), sized.table.motion());
+                    let tree = Tree::build(options.map(|i| (i, drive_box(&sized, i, &rays))))?;
+                    Part::Drives { sized, tree, rays }
                 }
                 Slot::Sized(sized) => {
-                    let steps: Vec<DriveBox> =
-                        sized.table.first_fit_candidates().iter().map(|&i| drive_box(&sized, i)).collect();
+                    let rays = self.rays(self.parts.len(), sized.table.motion());
+                    let steps: Vec<DriveBox> = sized
+                        .table
+                        .first_fit_candidates()
+                        .iter()
+                        .map(|&i| drive_box(&sized, i, &rays))
+                        .collect();
                     (!steps.is_empty()).then(|| Part::FirstFit { ladder: Ladder::new(steps), sized })?
                 }
                 Slot::Link { .. } | Slot::Offset { .. } => return None,
@@ -134,9 +132,8 @@ impl<'c> Problem<'c> {
                 let slender = |option: &LinkOption| {
                     space.constraints.wall_slenderness_max.is_some_and(|max| option.wall_slenderness() > max)
                 };
-                let allowed = self.level(choice.options.len(), only);
-                let boxes = allowed
-                    .into_iter()
+                let options = self.level(choice.options.len());
+                let boxes = options
                     .filter(|&i| !slender(&choice.options[i as usize]))
                     .map(|i| (i, LinkBox::of(&choice.options[i as usize], space.links)));
                 Part::Links { length_m: choice.vector_m.norm(), tree: Tree::build(boxes)? }
@@ -157,14 +154,21 @@ impl<'c> Problem<'c> {
     }
 
     /// Opens the next level and returns its options.
-    fn level(&mut self, size: usize, only: Option<&Restriction>) -> Vec<u32> {
-        let level = self.level_pieces.len();
+    fn level(&mut self, size: usize) -> std::ops::Range<u32> {
         self.level_pieces.push(self.parts.len());
         self.level_sizes.push(size as u32);
-        match only.and_then(|only| only[level].as_ref()) {
-            Some(kept) => kept.clone(),
-            None => (0..size as u32).collect(),
+        0..size as u32
+    }
+
+    /// Proportions around that of the payload alone.
+    fn rays(&self, piece: usize, motion: &JointMotion) -> Rays {
+        let (mut static_nm, mut inertia_kgm2) = (0.0f64, 0.0f64);
+        for pose in self.poses.iter().filter(|pose| pose.sizing) {
+            let Some(row) = &pose.inertia_about[piece] else { continue };
+            static_nm = static_nm.max(pose.payload_torque_nm(piece).abs());
+            inertia_kgm2 = inertia_kgm2.max(row.fixed);
         }
+        Rays::new(motion, static_nm, inertia_kgm2)
     }
 
     /// Designs in the space.
@@ -173,12 +177,14 @@ impl<'c> Problem<'c> {
     }
 }
 
-fn drive_box(sized: &SizedJoint, index: u32) -> DriveBox {
+fn drive_box(sized: &SizedJoint, index: u32, rays: &Rays) -> DriveBox {
     let index = index as usize;
     let mass_kg = sized.table.mass_kg(index);
     DriveBox {
         mass_kg: [mass_kg; 2],
         limits: *sized.table.limits(index),
+        least_limits: *sized.table.limits(index),
+        multiples: rays.held(sized.table.limits(index)),
         curve: CurveBox::of(&sized.laws[index].curve),
     }
 }

@@ -1,14 +1,15 @@
-//! Branch and bound: cut, halve, judge.
+//! Branch and bound: cut, halve, judge. First with slack, so that little is left open if time runs out.
 
 use super::archive::{Found, is_better};
 use super::bound::{Ceiling, Cell, Verdict, Work};
 use super::gap::gap;
-use super::problem::{Part, Problem, Restriction};
+use super::probe::probe;
+use super::problem::Problem;
 use super::shape::Shape;
 use crate::catalog::Catalogs;
 use crate::search::Objectives;
 use crate::search::design::number;
-use crate::search::front::{nondominated, not_clearly_beaten};
+use crate::search::front::not_clearly_beaten;
 use crate::search::space::DesignSpace;
 use crate::search::sweep::{Candidate, SLACK};
 use rayon::prelude::*;
@@ -19,10 +20,13 @@ use std::time::Instant;
 
 /// Boxes to open before the workers start.
 const TASKS: usize = 2048;
-/// Options a level has at most in the first, coarse searches: what they find lets the full search cut early.
-const COARSE: [usize; 2] = [24, 192];
-/// Boxes that a coarse search may open: it only has to find something.
-const COARSE_BOXES: u64 = 1_000_000;
+/// Slacks of the passes over a large space: with slack a box is also cut if a design found comes that close
+/// to its ceiling, so a pass that comes to its end proves that nothing is missing by more.
+const SLACKS: [f64; 9] = [1.0, 0.5, 0.35, 0.25, 0.18, 0.12, 0.06, 0.03, 0.0];
+/// Designs above which a space is large.
+const LARGE: u128 = 1_000_000_000;
+/// Probes for every power of ten of designs.
+const PROBES_A_DECADE: f64 = 8.0;
 /// Designs are filtered whenever their number reaches a power of two above this.
 const BUFFER: usize = 4096;
 
@@ -106,23 +110,24 @@ impl<'p> Exact<'p> {
     pub fn run(&self, known: &[Objectives]) -> ExactOutcome {
         let shared = Shared::default();
         known.iter().for_each(|objectives| shared.found.enter(objectives));
-        let whole = Problem::new(self.space, self.catalogs, None).map(Problem::with_inertias);
+        let whole = Problem::new(self.space, self.catalogs).map(Problem::with_inertias);
+        let (mut proven, mut last_slack) = (None, 0.0);
         if let Some(whole) = &whole {
-            let search = |problem: &Problem, most_boxes: u64| {
-                Search { exact: self, problem, shared: &shared, sizes: &whole.level_sizes, most_boxes }.run();
-            };
+            let designs = whole.designs();
+            let search = |slack: f64| Search { exact: self, problem: whole, shared: &shared, slack };
             if known.is_empty() {
-                for options in COARSE {
-                    let coarse = coarse(whole, options);
-                    let problem = coarse.and_then(|c| Problem::new(self.space, self.catalogs, Some(&c)));
-                    if let Some(problem) = problem {
-                        search(&problem.with_inertias(), self.boxes() + COARSE_BOXES);
-                    }
-                }
+                probe(&search(0.0), (PROBES_A_DECADE * (designs as f64).log10()) as usize);
             }
-            // what a coarse search left open, the full one covers
-            lock(&shared.open).clear();
-            search(whole, u64::MAX);
+            let passes = if designs > LARGE && known.is_empty() { &SLACKS[..] } else { &[0.0] };
+            for &slack in passes {
+                lock(&shared.open).clear();
+                search(slack).run();
+                if !lock(&shared.open).is_empty() {
+                    last_slack = slack;
+                    break;
+                }
+                proven = Some(slack);
+            }
         }
         let mut front = shared.kept.into_inner().unwrap_or_else(PoisonError::into_inner);
         clear(&mut front);
@@ -138,69 +143,40 @@ impl<'p> Exact<'p> {
             designs_evaluated: shared.evaluated.into_inner(),
             boxes: self.boxes(),
             boxes_open: open.len() as u64,
-            gap: gap(&open, &front),
+            gap: match open.is_empty() {
+                true => Some(0.0),
+                false => least(proven, gap(&open, &front).map(|gap| gap.max(last_slack))),
+            },
             front,
         }
     }
+}
+
+/// The smaller of two bounds that may be unknown.
+fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    a.into_iter().chain(b).reduce(f64::min)
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Every level with at most so many options, evenly among those that no other beats in mass and stiffness.
-/// `None` if no level has more.
-fn coarse(problem: &Problem, options: usize) -> Option<Restriction> {
-    let levels: Restriction = problem
-        .level_pieces
-        .iter()
-        .zip(&problem.level_sizes)
-        .map(|(&piece, &size)| {
-            let merits = match &problem.parts[piece] {
-                _ if size as usize <= options => return None,
-                Part::Drives { tree, .. } => tree.leaves(|d| {
-                    let k = d.curve.map_or(0.0, |c| c.stiff.k1_nm_per_rad);
-                    [d.mass_kg[0], -k, -d.limits.peak_torque_nm]
-                }),
-                Part::Links { tree, .. } => {
-                    tree.leaves(|l| [l.low.inertias[0], -l.low.stiffnesses[0], -l.low.stiffnesses[1]])
-                }
-                _ => return None,
-            };
-            Some(evenly(best(&merits), options))
-        })
-        .collect();
-    levels.iter().any(Option::is_some).then_some(levels)
-}
-
-/// The options that no other beats in all three merits, lightest first.
-fn best(merits: &[(u32, [f64; 3])]) -> Vec<u32> {
-    let points: Vec<[f64; 3]> = merits.iter().map(|(_, m)| *m).collect();
-    nondominated(&points).expect("merits are numbers").into_iter().map(|group| merits[group[0]].0).collect()
-}
-
-fn evenly(options: Vec<u32>, keep: usize) -> Vec<u32> {
-    let n = options.len();
-    match n <= keep {
-        true => options,
-        false => (0..keep).map(|i| options[i * (n - 1) / (keep - 1)]).collect(),
-    }
-}
-
-/// The search of one problem.
-struct Search<'s, 'p> {
+/// One pass over a problem.
+pub(super) struct Search<'s, 'p> {
     exact: &'s Exact<'p>,
-    problem: &'s Problem<'p>,
+    pub problem: &'s Problem<'p>,
     shared: &'s Shared,
-    /// Options of each level of the whole space, in which designs are numbered.
-    sizes: &'s [u32],
-    /// The count of boxes at which this search gives up.
-    most_boxes: u64,
+    /// How close a design found must come to a box's ceiling to cut it.
+    slack: f64,
 }
 
 impl Search<'_, '_> {
-    fn stopped(&self) -> bool {
-        self.exact.boxes() >= self.most_boxes || self.exact.stopped()
+    pub fn stopped(&self) -> bool {
+        self.exact.stopped()
+    }
+
+    pub fn count_box(&self) {
+        self.exact.boxes.fetch_add(1, Ordering::Relaxed);
     }
 
     fn run(&self) {
@@ -229,14 +205,14 @@ impl Search<'_, '_> {
 
     /// Bounds a box and halves it, or judges it if it is one design.
     fn open(&self, mut here: Opened, work: &mut Work, children: &mut Vec<Opened>) {
-        self.exact.boxes.fetch_add(1, Ordering::Relaxed);
+        self.count_box();
         let found = &self.shared.found;
         let verdict = self.problem.bound(
-            &here.cell,
+            &mut here.cell,
             &mut here.shapes,
             work,
-            |ceiling| found.beats(ceiling),
-            |ceiling| found.nearly_beats(ceiling),
+            |ceiling| found.beats(&ceiling.slackened(self.slack)),
+            |ceiling| found.nearly_beats(&ceiling.slackened(self.slack)),
         );
         let Verdict::Open(ceiling) = verdict else { return };
         let Some(level) = self.problem.widest_level(&here.cell, &here.shapes, work) else {
@@ -253,12 +229,13 @@ impl Search<'_, '_> {
     }
 
     /// One design: its ceiling is its objectives once its mode is made sure of.
-    fn judge(&self, cell: &[u32], ceiling: &Ceiling, work: &Work) {
+    pub fn judge(&self, cell: &[u32], ceiling: &Ceiling, work: &Work) {
         let Some(options) = self.problem.options(cell) else { return };
         self.shared.evaluated.fetch_add(1, Ordering::Relaxed);
         let objectives = self.problem.objectives(ceiling, work);
         if !work.is_point() {
-            lock(&self.shared.unsure).push(Candidate { number: number(self.sizes, &options), objectives });
+            lock(&self.shared.unsure)
+                .push(Candidate { number: number(&self.problem.level_sizes, &options), objectives });
             return;
         }
         if self.problem.space.constraints.broken(&objectives).contains(&true) {
@@ -266,7 +243,7 @@ impl Search<'_, '_> {
         }
         self.shared.found.enter(&objectives);
         let mut kept = lock(&self.shared.kept);
-        kept.push(Candidate { number: number(self.sizes, &options), objectives });
+        kept.push(Candidate { number: number(&self.problem.level_sizes, &options), objectives });
         if kept.len().is_power_of_two() && kept.len() > BUFFER {
             clear(&mut kept);
         }

@@ -50,6 +50,22 @@ impl<B: Bounds> Tree<B> {
         &self.nodes[index as usize]
     }
 
+    /// The smallest box with all the options below a node that may hold; `None` if there are none.
+    pub fn narrowed(&self, mut node: u32, holds: impl Fn(&B) -> bool) -> Option<u32> {
+        if !holds(&self.node(node).bounds) {
+            return None;
+        }
+        while let Some([a, b]) = self.children(node) {
+            node = match (holds(&self.node(a).bounds), holds(&self.node(b).bounds)) {
+                (true, true) => return Some(node),
+                (true, false) => a,
+                (false, true) => b,
+                (false, false) => return None,
+            };
+        }
+        Some(node)
+    }
+
     /// The children of a node.
     #[inline]
     pub fn children(&self, index: u32) -> Option<[u32; 2]> {
@@ -57,20 +73,6 @@ impl<B: Bounds> Tree<B> {
             NodeKind::Split { second } => Some([index + 1, second]),
             NodeKind::Option(_) => None,
         }
-    }
-
-    /// Every option with something of its box.
-    pub fn leaves<T>(&self, of: impl Fn(&B) -> T) -> Vec<(u32, T)> {
-        let mut leaves: Vec<(u32, T)> = self
-            .nodes
-            .iter()
-            .filter_map(|node| match node.kind {
-                NodeKind::Option(option) => Some((option, of(&node.bounds))),
-                NodeKind::Split { .. } => None,
-            })
-            .collect();
-        leaves.sort_unstable_by_key(|(option, _)| *option);
-        leaves
     }
 
     /// The option of a box of one.

@@ -1,0 +1,100 @@
+//! Which level of a box to halve.
+//!
+//! The ceiling of a box takes every part at its lightest and at its stiffest. A level matters as much as
+//! the ceiling would worsen if its part were a middling one: the geometric mean of lightest and heaviest,
+//! of stiffest and softest. The halves themselves are a worse guide: a box has to be halved several times
+//! before the ceiling moves at all.
+
+use super::bound::{STARTS, Work, interval, stretch, twist};
+use super::parts::{INERTIAS, STIFFNESSES};
+use super::pose::RESISTED;
+use super::problem::{Part, Problem};
+use super::shape::Shape;
+
+/// A middling number over the least or the greatest of a range, less one.
+fn middling(low: f64, high: f64) -> f64 {
+    if low > 0.0 && high > low { (high / low).sqrt() - 1.0 } else { 0.0 }
+}
+
+impl Problem<'_> {
+    /// The level whose halving should sharpen the bound most; `None` if every level is down to one option.
+    pub fn widest_level(&self, cell: &[u32], shapes: &[Shape], work: &mut Work) -> Option<usize> {
+        self.weigh_tip(work);
+        let (judged, start) = work.worst;
+        let shape = &shapes[judged * STARTS.len() + start];
+        let case = self.judged_cases().nth(judged)?;
+        let strain = products(&shape.strain, &work.stiff_in[case]);
+        let kinetic = shape.kinetic_fixed + products(&shape.kinetic, &work.light);
+        let mass_kg: f64 = work.masses.iter().map(|m| m[0]).sum();
+        let mut best: Option<(f64, usize)> = None;
+        for (level, &piece) in self.level_pieces.iter().enumerate() {
+            if self.halves(cell, level).is_none() {
+                continue;
+            }
+            let joint = work.curves[piece].is_some();
+            let (mut softer, mut heavier) = (0.0, 0.0);
+            for k in 0..STIFFNESSES {
+                let (soft, stiff) = match joint && k == 0 {
+                    true => (work.joint_soft[case][piece], work.stiff_in[case][piece][0]),
+                    false => (work.soft[piece][k], work.stiff[piece][k]),
+                };
+                softer += shape.strain[piece][k] * stiff / strain * middling(soft, stiff);
+            }
+            for k in 0..INERTIAS {
+                let (light, heavy) = (work.light[piece][k], work.heavy[piece][k]);
+                heavier += shape.kinetic[piece][k] * light / kinetic * middling(light, heavy);
+            }
+            let [light, heavy] = work.masses[piece];
+            let mass = light * middling(light, heavy) / mass_kg.max(f64::MIN_POSITIVE);
+            let score = f64::ln_1p(mass)
+                + f64::ln_1p(work.tip_yields[piece])
+                + 0.5 * (f64::ln_1p(softer) + f64::ln_1p(heavier));
+            if best.is_none_or(|(most, _)| score > most) {
+                best = Some((score, level));
+            }
+        }
+        best.map(|(_, level)| level)
+    }
+
+    /// By what part the least deflection would grow if a piece were middling, for every piece.
+    fn weigh_tip(&self, work: &mut Work) {
+        work.tip_yields.clear();
+        work.tip_yields.resize(self.parts.len(), 0.0);
+        let Some((case, direction)) = work.sagging else { return };
+        let pose = &self.poses[case];
+        let mut total = 0.0;
+        for row in &pose.rows {
+            let force = interval(row.fixed, &row.per_n, &work.weights[case]);
+            let (moved, softer) = match &work.curves[row.piece] {
+                Some(curve) => {
+                    (twist(curve, force), middling(curve.soft.k2_nm_per_rad, curve.stiff.k2_nm_per_rad))
+                }
+                None => {
+                    let (resisted, _) = RESISTED[row.coordinate];
+                    let (soft, stiff) = (work.soft[row.piece][resisted], work.stiff[row.piece][resisted]);
+                    (stretch(row.coordinate, pose, row.piece, force, work), middling(soft, stiff))
+                }
+            };
+            let least = if moved[0] >= 0.0 { moved[0] } else { moved[1].min(0.0) };
+            let part_m = direction.dot(&row.tip_m) * least;
+            total += part_m;
+            work.tip_yields[row.piece] += part_m.abs() * softer;
+        }
+        if total > 0.0 {
+            work.tip_yields.iter_mut().for_each(|yields| *yields /= total);
+        }
+    }
+
+    /// The two halves of a box along a level.
+    pub fn halves(&self, cell: &[u32], level: usize) -> Option<[u32; 2]> {
+        match &self.parts[self.level_pieces[level]] {
+            Part::Drives { tree, .. } => tree.children(cell[level]),
+            Part::Links { tree, .. } => tree.children(cell[level]),
+            _ => None,
+        }
+    }
+}
+
+fn products<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>()).sum()
+}

@@ -1,0 +1,143 @@
+//! Good designs to start from: what the bounds think best, then each part at its best given the others.
+//!
+//! A probe minimizes one weighting of the logarithms of mass, deflection and mode. It follows the better
+//! half of every box down to one design, then lets one level at a time go free. What it finds proves
+//! nothing and is not lost: a search that knows good designs cuts early.
+
+use super::bound::{Ceiling, Cell, Verdict, Work};
+use super::run::Search;
+use super::shape::Shape;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Boxes that the way down from the box of everything may open.
+const DIVE_BOXES: usize = 2_000;
+/// Boxes that a level left free may open.
+const LEVEL_BOXES: usize = 300;
+/// Times every level is let go free.
+const ROUNDS: usize = 3;
+
+/// Weights of mass, deflection and mode.
+#[derive(Clone, Copy)]
+struct Merit([f64; 3]);
+
+impl Merit {
+    /// Spread evenly over all proportions: Roberts' sequence with the plastic number, folded into the
+    /// triangle of weights that add up to one.
+    fn nth(n: usize) -> Self {
+        const PLASTIC: f64 = 1.324_717_957_244_746;
+        let at = |step: f64| (0.5 + (n + 1) as f64 / step).fract();
+        let (u, v) = (at(PLASTIC), at(PLASTIC * PLASTIC));
+        let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+        Self([u, v, 1.0 - u - v])
+    }
+
+    /// Less is better.
+    fn of(&self, ceiling: &Ceiling) -> f64 {
+        let [mass, tip, mode] = self.0;
+        mass * ceiling.mass_kg.ln() + tip * ceiling.tip_m.max(1e-12).ln() - mode * ceiling.hz.ln()
+    }
+}
+
+/// The best design so far of one probe.
+struct Best {
+    merit: f64,
+    cell: Cell,
+    shapes: Arc<Vec<Shape>>,
+}
+
+/// Probes the space in so many proportions of the objectives.
+pub(super) fn probe(search: &Search, probes: usize) {
+    let Some(shapes) = search.problem.first_shapes(&mut Work::default()) else { return };
+    let shapes = Arc::new(shapes);
+    (0..probes).into_par_iter().for_each_init(Work::default, |work, n| {
+        let merit = Merit::nth(n);
+        let mut best = None;
+        descend(search, merit, search.problem.root(), &shapes, DIVE_BOXES, &mut best, work);
+        let Some(mut best) = best else { return };
+        for _ in 0..ROUNDS {
+            let before = best.merit;
+            for level in 0..best.cell.len() {
+                let mut cell = best.cell.clone();
+                cell[level] = 0;
+                let shapes = Arc::clone(&best.shapes);
+                let mut found = Some(best);
+                descend(search, merit, cell, &shapes, LEVEL_BOXES, &mut found, work);
+                let Some(better) = found else { return };
+                best = better;
+            }
+            if best.merit >= before || search.stopped() {
+                return;
+            }
+        }
+    });
+}
+
+/// Looks for the design of most merit in a box, the better half first.
+fn descend(
+    search: &Search,
+    merit: Merit,
+    cell: Cell,
+    shapes: &Arc<Vec<Shape>>,
+    most_boxes: usize,
+    best: &mut Option<Best>,
+    work: &mut Work,
+) {
+    let mut stack: Vec<Promising> = look(search, merit, cell, shapes, best, work).into_iter().collect();
+    let mut boxes = 1;
+    while let Some(next) = stack.pop() {
+        if boxes >= most_boxes || search.stopped() {
+            return;
+        }
+        if best.as_ref().is_some_and(|b| next.merit >= b.merit) {
+            continue;
+        }
+        let Some(halves) = search.problem.halves(&next.cell, next.level) else { continue };
+        let half = |node: u32| {
+            let mut cell = next.cell.clone();
+            cell[next.level] = node;
+            cell
+        };
+        let mut open: Vec<Promising> = halves
+            .iter()
+            .filter_map(|&node| look(search, merit, half(node), &next.shapes, best, work))
+            .collect();
+        boxes += 2;
+        open.sort_by(|a, b| b.merit.total_cmp(&a.merit));
+        stack.append(&mut open);
+    }
+}
+
+/// A box that may hold a design of more merit than the best.
+struct Promising {
+    merit: f64,
+    cell: Cell,
+    shapes: Arc<Vec<Shape>>,
+    level: usize,
+}
+
+/// Bounds a box; a box of one design is judged and remembered if it is the best.
+fn look(
+    search: &Search,
+    merit: Merit,
+    mut cell: Cell,
+    shapes: &Arc<Vec<Shape>>,
+    best: &mut Option<Best>,
+    work: &mut Work,
+) -> Option<Promising> {
+    let mut shapes = Arc::clone(shapes);
+    let least = best.as_ref().map_or(f64::INFINITY, |b| b.merit);
+    search.count_box();
+    let verdict =
+        search.problem.bound(&mut cell, &mut shapes, work, |ceiling| merit.of(ceiling) >= least, |_| true);
+    let Verdict::Open(ceiling) = verdict else { return None };
+    let merit = merit.of(&ceiling);
+    match search.problem.widest_level(&cell, &shapes, work) {
+        Some(level) => Some(Promising { merit, cell, shapes, level }),
+        None => {
+            search.judge(&cell, &ceiling, work);
+            *best = Some(Best { merit, cell, shapes });
+            None
+        }
+    }
+}
