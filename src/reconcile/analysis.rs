@@ -9,6 +9,7 @@ use super::lack_of_fit::{LackOfFit, lack_of_fit};
 use super::model::{Calibration, Candidate, Model, Nuisance, candidates};
 use super::noise::Noise;
 use super::select::{Scored, Search, Selection};
+use super::unnamed::{self, Better};
 use super::verdict::{Calibrated, Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict};
 use super::{correct, few_rows, locate, next_test};
 
@@ -27,6 +28,9 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     let mut candidates = candidates(&forward);
     candidates.retain(|c| campaign.statement.considers(c.kind.name));
     let few = rows(campaign) < few_rows::FEWEST_ROWS;
+    if few {
+        candidates = candidates.iter().map(|c| c.widened(&forward.nominal.structure)).collect();
+    }
     let found = match few {
         true => Settled::of_few(&forward, &nuisance, &candidates),
         false => settle(&mut forward, &nuisance, &candidates),
@@ -46,6 +50,14 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     let fit_test = lack_of_fit(campaign, &forward, &best, &weights);
     let alternatives = search.alternatives(&found.selection.best, &found.selection.others);
     let explaining = few.then(|| found.selection.others.clone());
+    let unnamed = match () {
+        () if few => None,
+        () if fit_test.fails => unnamed::beside_calibration(campaign, &search, &bare),
+        () if best.model.effects.is_empty() => None,
+        () => {
+            unnamed::instead(campaign, &search, &search.scored(&found.selection.best.effects, &best), &bare)
+        }
+    };
     let left_out = [&bare, &best].map(|f| kept_out::residuals(&forward, &f.model, &f.point.u, &weights));
     let analysis = Analysis {
         campaign,
@@ -58,6 +70,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         best,
         bare,
         lack_of_fit: fit_test,
+        unnamed,
         alternatives,
         explaining,
         left_out,
@@ -154,6 +167,9 @@ struct Analysis<'a> {
     best: Fit<'a>,
     bare: Fit<'a>,
     lack_of_fit: LackOfFit,
+    /// A law that no effect of the library has and that is better than what was named, or, where the model
+    /// fails, than calibration alone.
+    unnamed: Option<Better>,
     alternatives: Vec<Vec<Scored>>,
     /// With few rows: every set of effects that explains them.
     explaining: Option<Vec<Scored>>,
@@ -221,6 +237,9 @@ impl Analysis<'_> {
             let text = "noise and calibration within tolerance explain every reading".to_string();
             return (Verdict::NoGap, vec![text]);
         }
+        if let Some(better) = &self.unnamed {
+            return (Verdict::Unexplained, vec![self.beaten(better)]);
+        }
         for (effect, rivals) in self.best.model.effects.iter().zip(&self.alternatives) {
             if rivals.len() > MOST_ALTERNATIVES {
                 let text = format!("{} other effects fit as well as {}", rivals.len(), effect.label());
@@ -264,7 +283,27 @@ impl Analysis<'_> {
             "the best model leaves {:.2} times the declared variance; no effect of the library accounts for it",
             self.lack_of_fit.chi2_per_dof
         ));
+        out.extend(self.unnamed.as_ref().map(|law| {
+            format!(
+                "of laws without a name {} does best: beside calibration alone it takes chi-squared from {:.0} to {:.0}",
+                law.what, self.bare.point.objective, law.objective
+            )
+        }));
         out
+    }
+
+    /// That a law without a name is better than the effects of the library, naming none of them.
+    fn beaten(&self, law: &Better) -> String {
+        format!(
+            "{}, which no effect of the library is, accounts for the readings better than any that is \
+             (chi-squared {:.0} with {} number(s) of it, {:.0} with {} of the best effects; the evidence rises by {:.1})",
+            law.what,
+            law.objective,
+            law.numbers,
+            self.best.point.objective,
+            self.best.model.knobs().count(),
+            law.gain
+        )
     }
 
     /// Calibrated values of which the readings say nothing.

@@ -164,9 +164,10 @@ fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
     let torques = posed.statics().joint_torques_nm;
     let mut twists = posed.tip_twists().into_iter();
     let laws = posed.elements().filter_map(|element| {
-        let first = twists.by_ref().take(element.twists.len()).collect::<Vec<_>>()[0];
+        // a rigid link has no twist of its own
+        let own: Vec<Twist> = twists.by_ref().take(element.twists.len()).collect();
         match element.yielding {
-            Yielding::Joint(law) => Some((law, first)),
+            Yielding::Joint(law) => Some((law, own[0])),
             Yielding::Linear(_) => None,
         }
     });

@@ -3,13 +3,14 @@
 //! The residuals of a right model are noise: they do not follow the order of the tests, a joint's angle,
 //! the load, the branch, the torque. Each such question is a few regressors `X`; with the part that the
 //! model could still fit removed, `zᵀ S⁻¹ z` with `z = Xᵀr`, `S = XᵀX - XᵀJ (JᵀWJ)⁻¹ JᵀX` is
-//! chi-squared if there is nothing.
+//! chi-squared if there is nothing. The smooth laws of [`unnamed`](super::unnamed) are asked beside these.
 
 use super::campaign::Campaign;
 use super::fit::{Fit, Weights};
 use super::forward::Forward;
 use super::model::Calibration;
 use super::stats::ln_chi_squared_tail;
+use super::unnamed;
 use crate::arm::effect::Channel;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use std::f64::consts::TAU;
@@ -17,8 +18,8 @@ use std::f64::consts::TAU;
 /// One question put to the residuals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Structure {
-    /// Channel.
-    pub channel: Channel,
+    /// Channel; all of them together if none.
+    pub channel: Option<Channel>,
     /// What the residuals would follow, in words.
     pub follows: String,
     /// Test statistic.
@@ -65,6 +66,7 @@ pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &
     }
     let asked = (structures.len() as f64).max(1.0).ln();
     structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
+    structures.extend(unnamed::beside(campaign, forward, fit, weights));
     structures.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
     let chi2_per_dof = tester.chi2_per_dof(forward, fit);
     let ln_p = structures.first().map_or(0.0, |s| s.ln_p);
@@ -115,7 +117,7 @@ impl Tester {
             }
         }
         (dof > 0.0).then(|| Structure {
-            channel,
+            channel: Some(channel),
             follows,
             statistic,
             dof,
@@ -300,12 +302,10 @@ fn windup_questions(campaign: &Campaign, forward: &Forward) -> Vec<(String, Vec<
 impl Structure {
     /// The structure in one line.
     pub fn sentence(&self) -> String {
+        let of = self.channel.map_or(String::new(), |c| format!(" of {}", c.word()));
         format!(
-            "the residuals of {} follow {} (chi-squared {:.0} on {} degrees of freedom)",
-            self.channel.word(),
-            self.follows,
-            self.statistic,
-            self.dof
+            "the residuals{of} follow {} (chi-squared {:.0} on {} degrees of freedom)",
+            self.follows, self.statistic, self.dof
         )
     }
 }

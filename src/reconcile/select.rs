@@ -171,7 +171,7 @@ impl<'a> Search<'a> {
     }
 
     /// In how many ways an effect could be named; a unit slip counts once a channel.
-    fn places(&self) -> usize {
+    pub fn places(&self) -> usize {
         let mut labels: Vec<String> = self.candidates.iter().map(|c| c.label()).collect();
         labels.dedup();
         labels.len()
@@ -239,9 +239,7 @@ impl<'a> Search<'a> {
         for _ in 0..4 {
             let mut improved = false;
             for i in 0..best.effects.len() {
-                let mut effects = best.effects.clone();
-                effects.remove(i);
-                let start = self.drop_knobs(&best, i);
+                let (effects, start) = self.without(&best, i);
                 let dropped = self.scored(&effects, &self.fit(&effects, &start, Effort::default()));
                 let swapped = self.extend(&dropped);
                 seen.push(dropped.clone());
@@ -260,13 +258,14 @@ impl<'a> Search<'a> {
         best
     }
 
-    /// Parameters of a model without those of one of its effects.
-    fn drop_knobs(&self, scored: &Scored, effect: usize) -> Vec<f64> {
+    /// A model without one of its effects, and where to start it from.
+    pub fn without(&self, scored: &Scored, effect: usize) -> (Vec<usize>, Vec<f64>) {
         let model = self.model(&scored.effects);
         let first = model.first_knob(effect);
-        let mut u = scored.u.clone();
+        let (mut effects, mut u) = (scored.effects.clone(), scored.u.clone());
+        effects.remove(effect);
         u.drain(first..first + model.effects[effect].knobs.len());
-        u
+        (effects, u)
     }
 
     /// The best models with one more effect.
