@@ -32,31 +32,43 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         candidates = candidates.iter().map(|c| c.widened(&forward.nominal.structure)).collect();
     }
     let found = match few {
-        true => Settled::of_few(&forward, &nuisance, &candidates),
-        false => settle(&mut forward, &nuisance, &candidates),
+        true => Settled::of_few(campaign, &forward, &nuisance, &candidates),
+        false => settle(campaign, &mut forward, &nuisance, &candidates),
     };
     let weights = found.noise.weights(&forward);
     let coefficients = {
-        let search =
-            Search { forward: &forward, nuisance: &nuisance, candidates: &candidates, weights: &weights };
+        let search = Search {
+            campaign,
+            forward: &forward,
+            nuisance: &nuisance,
+            candidates: &candidates,
+            weights: &weights,
+        };
         let best = &found.selection.best;
         search.model(&best.effects).coefficients(&forward, &best.u)
     };
     forward.refresh(&coefficients);
-    let search =
-        Search { forward: &forward, nuisance: &nuisance, candidates: &candidates, weights: &weights };
-    let best = search.polish(&found.selection.best.effects, &found.selection.best.u);
+    let search = Search {
+        campaign,
+        forward: &forward,
+        nuisance: &nuisance,
+        candidates: &candidates,
+        weights: &weights,
+    };
+    let chosen = &found.selection.best;
+    let best = match found.selection.given_up {
+        true => search.fit(&chosen.effects, &chosen.u, Effort::default()),
+        false => search.polish(&chosen.effects, &chosen.u),
+    };
     let bare = search.fit(&[], &found.selection.bare.u, Effort::default());
     let fit_test = lack_of_fit(campaign, &forward, &best, &weights);
-    let alternatives = search.alternatives(&found.selection.best, &found.selection.others);
+    let alternatives = search.alternatives(chosen, &found.selection.others);
     let explaining = few.then(|| found.selection.others.clone());
     let unnamed = match () {
         () if few => None,
-        () if fit_test.fails => unnamed::beside_calibration(campaign, &search, &bare),
+        () if fit_test.fails => unnamed::beside_calibration(&search, &bare),
         () if best.model.effects.is_empty() => None,
-        () => {
-            unnamed::instead(campaign, &search, &search.scored(&found.selection.best.effects, &best), &bare)
-        }
+        () => unnamed::instead(&search, &search.scored(&chosen.effects, &best), &bare),
     };
     let left_out = [&bare, &best].map(|f| kept_out::residuals(&forward, &f.model, &f.point.u, &weights));
     let analysis = Analysis {
@@ -88,10 +100,10 @@ struct Settled {
 
 impl Settled {
     /// A handful of readings: taken as declared, every small set of effects weighed.
-    fn of_few(forward: &Forward, nuisance: &Nuisance, candidates: &[Candidate]) -> Self {
+    fn of_few(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, candidates: &[Candidate]) -> Self {
         let noise = Noise::default();
         let weights = noise.weights(forward);
-        let search = Search { forward, nuisance, candidates, weights: &weights };
+        let search = Search { campaign, forward, nuisance, candidates, weights: &weights };
         Self { selection: few_rows::weigh(&search), noise, missed: Vec::new() }
     }
 }
@@ -99,10 +111,15 @@ impl Settled {
 /// Takes out the gross errors that show at once, searches with the deviations as declared, takes out
 /// further gross errors and counts missed modes, searches again, and lets the best model say whether the
 /// declaration was right; if it was not, weighs the models again with what it says.
-fn settle(forward: &mut Forward, nuisance: &Nuisance, candidates: &[Candidate]) -> Settled {
+fn settle(
+    campaign: &Campaign,
+    forward: &mut Forward,
+    nuisance: &Nuisance,
+    candidates: &[Candidate],
+) -> Settled {
     let run = |forward: &Forward, noise: &Noise, before: Before| {
         let weights = noise.weights(forward);
-        let search = Search { forward, nuisance, candidates, weights: &weights };
+        let search = Search { campaign, forward, nuisance, candidates, weights: &weights };
         let selection = match before {
             Before::Nothing => search.run(None),
             Before::Best(scored) => search.run(Some(scored)),
@@ -110,7 +127,7 @@ fn settle(forward: &mut Forward, nuisance: &Nuisance, candidates: &[Candidate]) 
         };
         let best = search.fit(&selection.best.effects, &selection.best.u, Effort::default());
         let judged = Noise::from_fit(forward, &best);
-        let hopeful = search.may_explain(&selection.best);
+        let hopeful = search.may_explain(&selection.best) && !selection.given_up;
         (selection, judged, best.point.coefficients, hopeful)
     };
     let mut noise = first_look(forward, nuisance);

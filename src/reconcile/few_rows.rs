@@ -54,7 +54,7 @@ pub fn weigh(search: &Search) -> Selection {
     }
     let others = explaining(search, tried);
     let best = others.first().cloned().unwrap_or_else(|| bare.clone());
-    Selection { best, bare, others }
+    Selection { best, bare, others, given_up: false }
 }
 
 /// The sets that explain the readings, no smaller part of which does, best first.

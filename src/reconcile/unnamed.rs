@@ -73,15 +73,15 @@ pub fn beside(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weigh
 }
 
 /// The law that explains the readings better, beside calibration alone, than calibration does.
-pub fn beside_calibration(campaign: &Campaign, search: &Search, bare: &Fit) -> Option<Better> {
+pub fn beside_calibration(search: &Search, bare: &Fit) -> Option<Better> {
     let places = search.places() as f64;
-    let laws = laws(campaign, search.forward, bare);
+    let laws = laws(search.campaign, search.forward, bare);
     best_of(rivals(search.forward, bare, &laws, search.weights), bare.evidence, places)
 }
 
 /// The law that explains the readings better, in place of one of the named effects or of all of them, than
 /// they do.
-pub fn instead(campaign: &Campaign, search: &Search, best: &Scored, bare: &Fit) -> Option<Better> {
+pub fn instead(search: &Search, best: &Scored, bare: &Fit) -> Option<Better> {
     let (named, places) = (best.effects.len(), search.places() as f64);
     let single = (0..named).filter(|_| named > 1).map(|i| {
         let (effects, u) = search.without(best, i);
@@ -89,7 +89,7 @@ pub fn instead(campaign: &Campaign, search: &Search, best: &Scored, bare: &Fit) 
     });
     let fits: Vec<Fit> = single.collect();
     let better = |fit: &Fit| {
-        let laws = laws(campaign, search.forward, fit);
+        let laws = laws(search.campaign, search.forward, fit);
         let evidence = best.score + fit.model.effects.len() as f64 * places.ln();
         best_of(rivals(search.forward, fit, &laws, search.weights), evidence, places)
     };
