@@ -475,12 +475,25 @@ impl Analysis<'_> {
                 (model.label(), subject(&model, &s.u))
             })
             .collect();
-        if rivals.is_empty() && verdict != Verdict::Unexplained {
-            // nothing is confusable: what shows the effect most, on the same arm with and without it. The bare
-            // model's own fit would not do: it bends stiffnesses that are not in question
-            rivals.push(("the same arm without it".into(), subject(&self.bare.model, &self.best.point.u)));
+        if rivals.is_empty() {
+            rivals = self.without_each();
         }
         next_test::Question { campaign: self.campaign, best, rivals, residuals: self.worst_pose(), verdict }
+    }
+
+    /// The same arm without each of the named effects: what shows one that nothing else could be confirms it. A refit
+    /// would not do: it bends stiffnesses that are not in question.
+    fn without_each(&self) -> Vec<(String, crate::arm::effect::Subject)> {
+        let best = &self.best;
+        (0..best.model.effects.len())
+            .map(|i| {
+                let first = best.model.first_knob(i);
+                let mut u = best.point.u.clone();
+                u.drain(first..first + best.model.effects[i].knobs.len());
+                let name = format!("the same arm without {}", best.model.effects[i].label());
+                (name, best.model.without(i).subject(self.forward, &u))
+            })
+            .collect()
     }
 
     /// The pose whose readings the best model misses most.

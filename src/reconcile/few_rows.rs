@@ -9,7 +9,6 @@
 
 use super::campaign::Campaign;
 use super::fit::{Effort, Fit, Weights, fit};
-use super::forward::Forward;
 use super::interval::intervals;
 use super::model::{Calibration, Knob, Model};
 use super::select::{MOST_EFFECTS, Scored, Search, Selection};

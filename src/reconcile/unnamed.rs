@@ -358,3 +358,41 @@ fn one_or_both(what: &str, columns: [Vec<f64>; 2]) -> Vec<Law> {
     let law = |columns| Law { what: what.to_string(), columns };
     vec![law(vec![a.clone()]), law(vec![b.clone()]), law(vec![a, b])]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::fit::fit;
+    use super::super::model::{Calibration, Model, Nuisance};
+    use super::super::noise::Noise;
+    use super::*;
+    use crate::catalog::Catalogs;
+    use std::path::Path;
+
+    #[test]
+    fn a_further_twist_in_proportion_to_the_torque_is_a_softer_joint() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e");
+        let campaign = Campaign::read(&folder, &Catalogs::default()).expect("sound");
+        let forward = Forward::new(&campaign);
+        let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
+        let bare = Model::bare(&nuisance);
+        let weights = Noise::default().weights(&forward);
+        let effort = Effort { steps: 0, tolerance: 0.0 };
+        let fit = fit(&forward, &bare, &vec![0.0; bare.len()], &weights, effort);
+        let torques_nm = forward.torques_nm(&fit.point.coefficients);
+        let builder = Builder { campaign: &campaign, forward: &forward, fit: &fit, torques_nm };
+        for (joint, slot) in forward.layout.joints.iter().enumerate() {
+            let law = &fit.point.coefficients.laws[joint];
+            let compliance = law.tangent_compliance_rad_per_nm(0.0);
+            let column = builder.joint_column(joint, compliance, &|s| (s.torque_nm, 1.0));
+            let is_own = |c: &Calibration| *c == Calibration::Stiffness(slot.name.clone());
+            let p = nuisance.numbers.iter().position(|(c, _)| is_own(c)).expect("calibrated");
+            let largest = fit.jacobian.column(p).amax();
+            assert!(largest > 0.0, "{} moves nothing", slot.name);
+            for (i, own) in column.iter().enumerate() {
+                let softer = -fit.jacobian[(i, p)] / nuisance.numbers[p].1;
+                let scale = largest / nuisance.numbers[p].1;
+                assert!((own - softer).abs() < 1e-3 * scale, "{} datum {i}: {own} and {softer}", slot.name);
+            }
+        }
+    }
+}
