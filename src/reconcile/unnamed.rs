@@ -188,6 +188,9 @@ struct State {
 /// A twist beyond torque over stiffness and its slope, each in torque over stiffness.
 type Shape<'a> = &'a dyn Fn(&State) -> (f64, f64);
 
+/// A column of a channel from a function of the datum and its predicted reading.
+type ColumnOf<'a> = &'a dyn Fn(&dyn Fn(usize, f64) -> f64) -> Vec<f64>;
+
 struct Builder<'a> {
     campaign: &'a Campaign,
     forward: &'a Forward,
@@ -324,7 +327,7 @@ impl Builder<'_> {
     }
 
     /// A gain of its own for each direction; a turned frame.
-    fn direction_laws(&self, column: &dyn Fn(&dyn Fn(usize, f64) -> f64) -> Vec<f64>) -> Vec<Law> {
+    fn direction_laws(&self, column: ColumnOf) -> Vec<Law> {
         let data = &self.forward.data;
         let gain = |c: usize| column(&|i, d| if data[i].component == c { d } else { 0.0 });
         let turned = |axis: usize| {
