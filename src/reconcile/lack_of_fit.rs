@@ -75,6 +75,21 @@ pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &
     LackOfFit { structures, chi2_per_dof, fails }
 }
 
+/// Part of a regressor's square that the model leaves below which it counts as the model's own: what is left of
+/// it then tells how well the fit converged.
+const ABSORBED: f64 = 1e-3;
+
+/// Columns of length 1.
+fn unit_columns(mut x: DMatrix<f64>) -> DMatrix<f64> {
+    for mut column in x.column_iter_mut() {
+        let length = column.norm();
+        if length > 0.0 {
+            column /= length;
+        }
+    }
+    x
+}
+
 struct Tester {
     residual: DVector<f64>,
     jacobian: DMatrix<f64>,
@@ -104,6 +119,7 @@ impl Tester {
                     if self.weight[i] > 0.0 { regressors[k][i] } else { 0.0 }
                 },
             );
+        let x = unit_columns(x);
         let z = x.tr_mul(&self.residual);
         let xj = x.tr_mul(&self.jacobian);
         let s = x.tr_mul(&x) - &xj * &self.covariance * xj.transpose();
@@ -111,7 +127,7 @@ impl Tester {
         let largest = eigen.eigenvalues.max();
         let (mut statistic, mut dof) = (0.0, 0.0);
         for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-            if *value > 1e-6 * largest && *value > 1e-9 {
+            if *value > ABSORBED * largest && *value > 1e-9 {
                 statistic += vector.dot(&z).powi(2) / value;
                 dof += 1.0;
             }

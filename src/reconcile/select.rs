@@ -331,13 +331,16 @@ impl<'a> Search<'a> {
         fits
     }
 
-    /// Break points of promising gear curves that are new found over a grid, with the frequencies left out at
-    /// first.
+    /// Break points of the promising gear curves found over a grid, with the frequencies left out at first; in
+    /// threes only those of a curve that is new, for the others have been found in pairs.
     fn regrid(&self, fits: &mut [Scored], least: f64) {
-        let is_curve =
-            |effect: Option<&usize>| effect.is_some_and(|&e| self.candidates[e].kind.name == "soft_windup");
-        for scored in fits.iter_mut().filter(|s| s.score > least && is_curve(s.effects.last())) {
-            let fit = self.over_breaks(scored, scored.effects.len() - 1);
+        for scored in fits.iter_mut().filter(|s| s.score > least) {
+            let curve = scored.effects.iter().rposition(|&e| self.candidates[e].kind.name == "soft_windup");
+            let Some(position) = curve else { continue };
+            if position + 1 < scored.effects.len() && scored.effects.len() > 2 {
+                continue;
+            }
+            let fit = self.over_breaks(scored, position);
             let again = self.scored(&scored.effects, &fit);
             if again.score > scored.score {
                 *scored = again;
