@@ -72,3 +72,9 @@ fn physics_that_the_library_lacks_is_called_unexplained_and_no_effect_is_named()
     let score = score("plain", "unknown", 73, [1, 3].into_iter());
     assert!(score.each.iter().all(|(_, _, right)| *right), "{}", score.table());
 }
+
+#[test]
+fn a_hardening_joint_and_a_bent_sensor_of_a_third_the_size_get_no_name_of_the_library() {
+    let score = score("hard", "unknown", 43, [4, 10, 14].into_iter());
+    assert!(score.each.iter().all(|(_, _, right)| *right), "{}", score.table());
+}

@@ -5,10 +5,14 @@ use super::run::Asked;
 use crate::arm::{Arm, read_arm_document};
 use crate::catalog::Catalogs;
 use crate::fault::Document;
+use crate::report::compare::text::wrap;
 use crate::study::{Carried, Study, carry_over, read_study};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
+
+/// Width of the terminal's text.
+const COLUMNS: usize = 80;
 
 /// A study with what carries over to it from an arm file.
 ///
@@ -75,7 +79,7 @@ pub(super) fn to_text(carried: &[Carried]) -> String {
             let _ = writeln!(out, "\n{head}:");
         }
         for (words, what) in lines {
-            let _ = writeln!(out, "  {}: {words}", what.join(", "));
+            out.push_str(&wrap(&format!("{}: {words}", what.join(", ")), COLUMNS, "  "));
         }
     }
     out
@@ -84,4 +88,20 @@ pub(super) fn to_text(carried: &[Carried]) -> String {
 /// The same for programs.
 pub(super) fn to_json(carried: &[Carried]) -> Value {
     carried.iter().map(|c| json!({"what": c.what, "carried": c.carried, "words": c.words})).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_lines_are_broken_and_indented_at_80_columns() {
+        let carried =
+            |what: &str, words: &str| Carried { what: what.into(), carried: false, words: words.into() };
+        let words = "the study chooses this joint's gear, so that what was measured of another gear says nothing of it";
+        let text = to_text(&[carried("j2.stiffness", words), carried("j3.stiffness", words)]);
+        assert!(text.lines().all(|l| l.chars().count() <= COLUMNS), "{text}");
+        assert_eq!(text.matches("says nothing of it").count(), 1, "{text}");
+        assert!(text.lines().skip(2).all(|l| l.starts_with("  ")), "{text}");
+    }
 }

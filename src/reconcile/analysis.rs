@@ -9,6 +9,7 @@ use super::lack_of_fit::{LackOfFit, lack_of_fit};
 use super::model::{Calibration, Candidate, Model, Nuisance, candidates};
 use super::noise::Noise;
 use super::select::{Scored, Search, Selection};
+use super::unnamed::{self, Better};
 use super::verdict::{Calibrated, Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict};
 use super::{correct, few_rows, locate, next_test};
 
@@ -27,25 +28,48 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     let mut candidates = candidates(&forward);
     candidates.retain(|c| campaign.statement.considers(c.kind.name));
     let few = rows(campaign) < few_rows::FEWEST_ROWS;
+    if few {
+        candidates = candidates.iter().map(|c| c.widened(&forward.nominal.structure)).collect();
+    }
     let found = match few {
-        true => Settled::of_few(&forward, &nuisance, &candidates),
-        false => settle(&mut forward, &nuisance, &candidates),
+        true => Settled::of_few(campaign, &forward, &nuisance, &candidates),
+        false => settle(campaign, &mut forward, &nuisance, &candidates),
     };
     let weights = found.noise.weights(&forward);
     let coefficients = {
-        let search =
-            Search { forward: &forward, nuisance: &nuisance, candidates: &candidates, weights: &weights };
+        let search = Search {
+            campaign,
+            forward: &forward,
+            nuisance: &nuisance,
+            candidates: &candidates,
+            weights: &weights,
+        };
         let best = &found.selection.best;
         search.model(&best.effects).coefficients(&forward, &best.u)
     };
     forward.refresh(&coefficients);
-    let search =
-        Search { forward: &forward, nuisance: &nuisance, candidates: &candidates, weights: &weights };
-    let best = search.polish(&found.selection.best.effects, &found.selection.best.u);
+    let search = Search {
+        campaign,
+        forward: &forward,
+        nuisance: &nuisance,
+        candidates: &candidates,
+        weights: &weights,
+    };
+    let chosen = &found.selection.best;
+    let best = match found.selection.given_up {
+        true => search.fit(&chosen.effects, &chosen.u, Effort::default()),
+        false => search.polish(&chosen.effects, &chosen.u),
+    };
     let bare = search.fit(&[], &found.selection.bare.u, Effort::default());
     let fit_test = lack_of_fit(campaign, &forward, &best, &weights);
-    let alternatives = search.alternatives(&found.selection.best, &found.selection.others);
+    let alternatives = search.alternatives(chosen, &found.selection.others);
     let explaining = few.then(|| found.selection.others.clone());
+    let unnamed = match () {
+        () if few => None,
+        () if fit_test.fails => unnamed::beside_calibration(&search, &bare),
+        () if best.model.effects.is_empty() => None,
+        () => unnamed::instead(&search, &search.scored(&chosen.effects, &best), &bare),
+    };
     let left_out = [&bare, &best].map(|f| kept_out::residuals(&forward, &f.model, &f.point.u, &weights));
     let analysis = Analysis {
         campaign,
@@ -58,6 +82,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         best,
         bare,
         lack_of_fit: fit_test,
+        unnamed,
         alternatives,
         explaining,
         left_out,
@@ -75,10 +100,10 @@ struct Settled {
 
 impl Settled {
     /// A handful of readings: taken as declared, every small set of effects weighed.
-    fn of_few(forward: &Forward, nuisance: &Nuisance, candidates: &[Candidate]) -> Self {
+    fn of_few(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, candidates: &[Candidate]) -> Self {
         let noise = Noise::default();
         let weights = noise.weights(forward);
-        let search = Search { forward, nuisance, candidates, weights: &weights };
+        let search = Search { campaign, forward, nuisance, candidates, weights: &weights };
         Self { selection: few_rows::weigh(&search), noise, missed: Vec::new() }
     }
 }
@@ -86,10 +111,15 @@ impl Settled {
 /// Takes out the gross errors that show at once, searches with the deviations as declared, takes out
 /// further gross errors and counts missed modes, searches again, and lets the best model say whether the
 /// declaration was right; if it was not, weighs the models again with what it says.
-fn settle(forward: &mut Forward, nuisance: &Nuisance, candidates: &[Candidate]) -> Settled {
+fn settle(
+    campaign: &Campaign,
+    forward: &mut Forward,
+    nuisance: &Nuisance,
+    candidates: &[Candidate],
+) -> Settled {
     let run = |forward: &Forward, noise: &Noise, before: Before| {
         let weights = noise.weights(forward);
-        let search = Search { forward, nuisance, candidates, weights: &weights };
+        let search = Search { campaign, forward, nuisance, candidates, weights: &weights };
         let selection = match before {
             Before::Nothing => search.run(None),
             Before::Best(scored) => search.run(Some(scored)),
@@ -97,7 +127,7 @@ fn settle(forward: &mut Forward, nuisance: &Nuisance, candidates: &[Candidate]) 
         };
         let best = search.fit(&selection.best.effects, &selection.best.u, Effort::default());
         let judged = Noise::from_fit(forward, &best);
-        let hopeful = search.may_explain(&selection.best);
+        let hopeful = search.may_explain(&selection.best) && !selection.given_up;
         (selection, judged, best.point.coefficients, hopeful)
     };
     let mut noise = first_look(forward, nuisance);
@@ -154,6 +184,9 @@ struct Analysis<'a> {
     best: Fit<'a>,
     bare: Fit<'a>,
     lack_of_fit: LackOfFit,
+    /// A law that no effect of the library has and that is better than what was named, or, where the model
+    /// fails, than calibration alone.
+    unnamed: Option<Better>,
     alternatives: Vec<Vec<Scored>>,
     /// With few rows: every set of effects that explains them.
     explaining: Option<Vec<Scored>>,
@@ -221,6 +254,9 @@ impl Analysis<'_> {
             let text = "noise and calibration within tolerance explain every reading".to_string();
             return (Verdict::NoGap, vec![text]);
         }
+        if let Some(better) = &self.unnamed {
+            return (Verdict::Unexplained, vec![self.beaten(better)]);
+        }
         for (effect, rivals) in self.best.model.effects.iter().zip(&self.alternatives) {
             if rivals.len() > MOST_ALTERNATIVES {
                 let text = format!("{} other effects fit as well as {}", rivals.len(), effect.label());
@@ -264,7 +300,27 @@ impl Analysis<'_> {
             "the best model leaves {:.2} times the declared variance; no effect of the library accounts for it",
             self.lack_of_fit.chi2_per_dof
         ));
+        out.extend(self.unnamed.as_ref().map(|law| {
+            format!(
+                "of laws without a name {} does best: beside calibration alone it takes chi-squared from {:.0} to {:.0}",
+                law.what, self.bare.point.objective, law.objective
+            )
+        }));
         out
+    }
+
+    /// That a law without a name is better than the effects of the library, naming none of them.
+    fn beaten(&self, law: &Better) -> String {
+        format!(
+            "{}, which no effect of the library is, accounts for the readings better than any that is \
+             (chi-squared {:.0} with {} number(s) of it, {:.0} with {} of the best effects; the evidence rises by {:.1})",
+            law.what,
+            law.objective,
+            law.numbers,
+            self.best.point.objective,
+            self.best.model.knobs().count(),
+            law.gain
+        )
     }
 
     /// Calibrated values of which the readings say nothing.
@@ -419,12 +475,25 @@ impl Analysis<'_> {
                 (model.label(), subject(&model, &s.u))
             })
             .collect();
-        if rivals.is_empty() && verdict != Verdict::Unexplained {
-            // nothing is confusable: what shows the effect most, on the same arm with and without it. The bare
-            // model's own fit would not do: it bends stiffnesses that are not in question
-            rivals.push(("the same arm without it".into(), subject(&self.bare.model, &self.best.point.u)));
+        if rivals.is_empty() {
+            rivals = self.without_each();
         }
         next_test::Question { campaign: self.campaign, best, rivals, residuals: self.worst_pose(), verdict }
+    }
+
+    /// The same arm without each of the named effects: what shows one that nothing else could be confirms it. A refit
+    /// would not do: it bends stiffnesses that are not in question.
+    fn without_each(&self) -> Vec<(String, crate::arm::effect::Subject)> {
+        let best = &self.best;
+        (0..best.model.effects.len())
+            .map(|i| {
+                let first = best.model.first_knob(i);
+                let mut u = best.point.u.clone();
+                u.drain(first..first + best.model.effects[i].knobs.len());
+                let name = format!("the same arm without {}", best.model.effects[i].label());
+                (name, best.model.without(i).subject(self.forward, &u))
+            })
+            .collect()
     }
 
     /// The pose whose readings the best model misses most.

@@ -135,6 +135,13 @@ impl<'a> Exact<'a> {
         out
     }
 
+    /// Torque on every joint by name \[N m\].
+    pub fn torques_nm(&self, row: &StaticRow) -> Vec<(String, f64)> {
+        let posed = self.posed(&row.pose_deg, &row.payload, row.force_n);
+        let torques = posed.statics().joint_torques_nm;
+        torques.into_iter().map(|(joint, torque_nm)| (joint.to_string(), torque_nm)).collect()
+    }
+
     fn posed(&self, pose_deg: &[f64], stated: &Payload, force_n: Vector3<f64>) -> Posed<'_> {
         let pose_rad: Vec<f64> = pose_deg.iter().map(|a| a.to_radians()).collect();
         self.chain.pose_rad(&pose_rad, &self.subject.payload(stated), force_n)
@@ -164,9 +171,10 @@ fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
     let torques = posed.statics().joint_torques_nm;
     let mut twists = posed.tip_twists().into_iter();
     let laws = posed.elements().filter_map(|element| {
-        let first = twists.by_ref().take(element.twists.len()).collect::<Vec<_>>()[0];
+        // a rigid link has no twist of its own
+        let own: Vec<Twist> = twists.by_ref().take(element.twists.len()).collect();
         match element.yielding {
-            Yielding::Joint(law) => Some((law, first)),
+            Yielding::Joint(law) => Some((law, own[0])),
             Yielding::Linear(_) => None,
         }
     });

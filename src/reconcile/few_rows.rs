@@ -8,9 +8,9 @@
 //! that the readings cannot give.
 
 use super::campaign::Campaign;
-use super::fit::{Effort, Fit, Weights};
-use super::forward::Forward;
+use super::fit::{Effort, Fit, Weights, fit};
 use super::interval::intervals;
+use super::model::{Calibration, Knob, Model};
 use super::select::{MOST_EFFECTS, Scored, Search, Selection};
 use super::stats::ln_chi_squared_tail;
 use super::verdict::{Estimate, Finding};
@@ -31,6 +31,10 @@ const IMPLAUSIBLE: f64 = 15.0;
 const MATERIAL: f64 = 0.02;
 /// Largest over smallest stiffness from which it is not identified.
 const WIDE: f64 = 1.2;
+/// Factors on a stiffness that are tried in turn, and their reciprocals.
+const FACTORS: [f64; 9] = [1.1, 1.2, 1.4, 1.7, 2.0, 3.0, 4.0, 6.0, 10.0];
+/// Sets whose stiffnesses are tried.
+const MOST_PROFILES: usize = 6;
 
 /// Weighs every small set of effects; `others` are those that explain the readings, best first.
 pub fn weigh(search: &Search) -> Selection {
@@ -49,7 +53,7 @@ pub fn weigh(search: &Search) -> Selection {
     }
     let others = explaining(search, tried);
     let best = others.first().cloned().unwrap_or_else(|| bare.clone());
-    Selection { best, bare, others }
+    Selection { best, bare, others, given_up: false }
 }
 
 /// The sets that explain the readings, no smaller part of which does, best first.
@@ -67,10 +71,15 @@ fn explaining(search: &Search, tried: Vec<Scored>) -> Vec<Scored> {
 
 /// Whether the readings are as near to the set's predictions as their standard deviations say.
 fn explains(search: &Search, scored: &Scored) -> bool {
+    is_probable(search, scored, scored.objective)
+}
+
+/// Whether chance leaves such a misfit to a set.
+fn is_probable(search: &Search, set: &Scored, misfit: f64) -> bool {
     let readings = search.forward.data.len();
-    let free = knobs(search, &scored.effects);
+    let free = knobs(search, &set.effects);
     let dof = readings.saturating_sub(free).max(1) as f64;
-    ln_chi_squared_tail(scored.objective, dof) > IMPROBABLE.ln()
+    ln_chi_squared_tail(misfit, dof) > IMPROBABLE.ln()
 }
 
 fn knobs(search: &Search, effects: &[usize]) -> usize {
@@ -111,8 +120,18 @@ fn scored(search: &Search, effects: &[usize], starts: &[Vec<f64>]) -> Scored {
     let nothing = [vec![0.0; search.nuisance.numbers.len()]];
     let starts = if starts.is_empty() { &nothing } else { starts };
     let fits = starts.iter().map(|u| search.fit(effects, u, Effort::default()));
-    let best = fits.min_by(|a, b| a.point.objective.total_cmp(&b.point.objective));
-    search.scored(effects, &best.expect("at least one start"))
+    let best =
+        fits.min_by(|a, b| a.point.objective.total_cmp(&b.point.objective)).expect("at least one start");
+    let strange: f64 =
+        best.model.knobs().zip(&best.point.u[best.model.calibrated()..]).map(|(k, u)| surprise(k, *u)).sum();
+    let scored = search.scored(effects, &best);
+    Scored { score: scored.score - strange, ..scored }
+}
+
+/// What a number beyond the expected costs, in ln of the evidence: as much as a normal deviate whose
+/// standard deviation is a quarter of the expected width.
+fn surprise(knob: &Knob, u: f64) -> f64 {
+    0.5 * (knob.beyond_expected(u) / 0.25).powi(2)
 }
 
 /// What the sets that explain the readings have in common, and what they do not.
@@ -136,8 +155,8 @@ pub fn sentences(search: &Search, campaign: &Campaign, bare: &Fit, explaining: &
     });
     let subjects: Vec<Subject> =
         explaining.iter().map(|s| search.model(&s.effects).subject(search.forward, &s.u)).collect();
-    out.extend(missing_mass(search.forward, campaign, &subjects));
-    out.extend(unidentified_stiffnesses(search.forward, &subjects));
+    out.extend(missing_mass(search, campaign, explaining, &subjects));
+    out.extend(unidentified_stiffnesses(search, explaining, &subjects));
     out
 }
 
@@ -159,24 +178,51 @@ fn gap(search: &Search, bare: &Fit) -> String {
     )
 }
 
-/// The outermost joint at and beyond which every set wants more mass than the arm file has, or less.
-fn missing_mass(forward: &Forward, campaign: &Campaign, subjects: &[Subject]) -> Option<String> {
+/// The outermost joint at and beyond which every set that leaves the stiffnesses as they are wants more mass
+/// than the arm file has, or less.
+fn missing_mass(
+    search: &Search,
+    campaign: &Campaign,
+    explaining: &[Scored],
+    subjects: &[Subject],
+) -> Option<String> {
+    let forward = search.forward;
+    let nominal = &forward.nominal;
+    let as_stiff: Vec<usize> = (0..subjects.len()).filter(|&i| is_as_stiff(&subjects[i], nominal)).collect();
+    let first = explaining.get(*as_stiff.first()?)?;
     let payloads =
         campaign.modal.iter().map(|r| &r.payload).chain(campaign.statics.iter().map(|r| &r.payload));
     let stated = payloads.max_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg)).copied().unwrap_or_default();
-    let names: Vec<String> = forward.nominal.structure.joints().map(|j| j.name.clone()).collect();
+    let names: Vec<String> = nominal.structure.joints().map(|j| j.name.clone()).collect();
     names.iter().rev().find_map(|joint| {
         let outboard = |s: &Subject| s.payload(&stated).mass_kg + outboard_kg(s, joint);
-        let nominal = outboard(&forward.nominal);
-        let (low, high) = span(subjects.iter().map(|s| outboard(s) - nominal));
+        let known_kg = outboard(nominal);
+        let missing_kg = |i: &usize| outboard(&subjects[*i]) - known_kg;
+        let (low, high) = span(as_stiff.iter().map(missing_kg));
         let (word, low, high) = if high < 0.0 { ("too much", -high, -low) } else { ("missing", low, high) };
-        (low > MATERIAL * nominal).then(|| {
+        let kg =
+            if high - low < 0.005 { format!("{low:.2} kg") } else { format!("{low:.2} to {high:.2} kg") };
+        (low > MATERIAL * known_kg).then(|| {
             format!(
-                "in all of them {low:.2} to {high:.2} kg are {word} at and beyond {joint}: the arm file and the payload have \
-                 {nominal:.2} kg there"
+                "with the stiffnesses as given the masses cannot give the readings: {kg} are {word} at and beyond {joint}, \
+                 where the arm file and the payload have {known_kg:.2} kg; most probably {} with {:.2} kg",
+                search.model(&first.effects).label(),
+                missing_kg(&as_stiff[0]).abs()
             )
         })
     })
+}
+
+/// Whether the joints, the bearings, the links and the base yield as in the arm file.
+fn is_as_stiff(subject: &Subject, nominal: &Subject) -> bool {
+    let pieces = subject.structure.pieces.iter().zip(&nominal.structure.pieces);
+    let alike = |(a, b): (&Piece, &Piece)| match (a, b) {
+        (Piece::Joint(a), Piece::Joint(b)) => a.law == b.law && a.tilt_rad_per_nm == b.tilt_rad_per_nm,
+        (Piece::Link(a), Piece::Link(b)) => a.beam == b.beam,
+        _ => false,
+    };
+    subject.structure.base_tilt_rad_per_nm == nominal.structure.base_tilt_rad_per_nm
+        && pieces.into_iter().all(alike)
 }
 
 /// Mass of everything from a joint outward, without the payload \[kg\].
@@ -196,23 +242,63 @@ fn outboard_kg(subject: &Subject, joint: &str) -> f64 {
         .sum()
 }
 
-/// Joints whose stiffness differs between the sets.
-fn unidentified_stiffnesses(forward: &Forward, subjects: &[Subject]) -> Vec<String> {
-    let names: Vec<String> = forward.nominal.structure.joints().map(|j| j.name.clone()).collect();
-    let stiffness = |s: &Subject, name: &str| {
-        let joint = s.structure.joints().find(|j| j.name == name);
-        joint.map_or(f64::INFINITY, |j| 1.0 / j.law.tangent_compliance_rad_per_nm(0.0))
-    };
-    names
-        .iter()
-        .map(|name| (name, span(subjects.iter().map(|s| stiffness(s, name)))))
-        .filter(|(_, (low, high))| high / low > WIDE)
-        .map(|(name, (low, high))| {
+/// Joints whose stiffness may have very different values with every reading explained, the widest first.
+fn unidentified_stiffnesses(search: &Search, explaining: &[Scored], subjects: &[Subject]) -> Vec<String> {
+    let joints = search.forward.nominal.structure.joints().filter(|j| !j.law.is_rigid());
+    let mut ranges: Vec<(String, f64, f64)> = joints
+        .map(|joint| {
+            let ends = explaining.par_iter().zip(subjects).take(MOST_PROFILES).map(|(set, subject)| {
+                let stiffness = stiffness_nm_per_rad(subject, &joint.name);
+                let (low, high) = free_factors(search, set, &joint.name);
+                (low * stiffness, high * stiffness)
+            });
+            let ends: Vec<(f64, f64)> = ends.collect();
+            let (low, high) = span(ends.into_iter().flat_map(|(low, high)| [low, high]));
+            (joint.name.clone(), low, high)
+        })
+        .filter(|(_, low, high)| high / low > WIDE)
+        .collect();
+    ranges.sort_by(|a, b| (b.2 / b.1).total_cmp(&(a.2 / a.1)));
+    ranges
+        .into_iter()
+        .map(|(name, low, high)| {
             format!(
-                "the stiffness of {name} cannot be identified: it is {low:.0} in one of them and {high:.0} N m/rad in another"
+                "the stiffness of {name} cannot be identified: the readings are explained as well with {low:.0} as with \
+                 {high:.0} N m/rad"
             )
         })
         .collect()
+}
+
+fn stiffness_nm_per_rad(subject: &Subject, joint: &str) -> f64 {
+    let joint = subject.structure.joints().find(|j| j.name == joint);
+    joint.map_or(f64::INFINITY, |j| 1.0 / j.law.tangent_compliance_rad_per_nm(0.0))
+}
+
+/// The least and the largest factor on a joint's stiffness with which a set, its other numbers refitted,
+/// still explains the readings.
+fn free_factors(search: &Search, set: &Scored, joint: &str) -> (f64, f64) {
+    let mut nuisance = search.nuisance.clone();
+    let index = nuisance.numbers.len();
+    nuisance.numbers.push((Calibration::Stiffness(joint.to_string()), 1.0));
+    let mut model = Model { nuisance: &nuisance, ..search.model(&set.effects) };
+    let mut reach = |factors: &[f64]| {
+        let mut u = set.u.clone();
+        u.insert(index, 0.0);
+        let mut reached = 1.0;
+        for factor in factors {
+            model.held = vec![(index, factor.ln())];
+            let fitted = fit(search.forward, &model, &u, search.weights, Effort::default());
+            // what holding the factor costs is no misfit
+            let misfit = fitted.point.objective - factor.ln().powi(2);
+            if !is_probable(search, set, misfit) {
+                break;
+            }
+            (reached, u) = (*factor, fitted.point.u);
+        }
+        reached
+    };
+    (reach(&FACTORS.map(|f| 1.0 / f)), reach(&FACTORS))
 }
 
 fn span(values: impl Iterator<Item = f64>) -> (f64, f64) {

@@ -3,13 +3,14 @@
 //! The residuals of a right model are noise: they do not follow the order of the tests, a joint's angle,
 //! the load, the branch, the torque. Each such question is a few regressors `X`; with the part that the
 //! model could still fit removed, `zᵀ S⁻¹ z` with `z = Xᵀr`, `S = XᵀX - XᵀJ (JᵀWJ)⁻¹ JᵀX` is
-//! chi-squared if there is nothing.
+//! chi-squared if there is nothing. The smooth laws of [`unnamed`](super::unnamed) are asked beside these.
 
 use super::campaign::Campaign;
 use super::fit::{Fit, Weights};
 use super::forward::Forward;
 use super::model::Calibration;
 use super::stats::ln_chi_squared_tail;
+use super::unnamed;
 use crate::arm::effect::Channel;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use std::f64::consts::TAU;
@@ -17,8 +18,8 @@ use std::f64::consts::TAU;
 /// One question put to the residuals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Structure {
-    /// Channel.
-    pub channel: Channel,
+    /// Channel; all of them together if none.
+    pub channel: Option<Channel>,
     /// What the residuals would follow, in words.
     pub follows: String,
     /// Test statistic.
@@ -65,12 +66,28 @@ pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &
     }
     let asked = (structures.len() as f64).max(1.0).ln();
     structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
+    structures.extend(unnamed::beside(campaign, forward, fit, weights));
     structures.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
     let chi2_per_dof = tester.chi2_per_dof(forward, fit);
     let ln_p = structures.first().map_or(0.0, |s| s.ln_p);
     let fails =
         ln_p < CHANCE.ln() || chi2_per_dof > MATERIAL || (ln_p < SUSPECTED.ln() && chi2_per_dof > SUSPICIOUS);
     LackOfFit { structures, chi2_per_dof, fails }
+}
+
+/// Part of a regressor's square that the model leaves below which it counts as the model's own: what is left of
+/// it then tells how well the fit converged.
+const ABSORBED: f64 = 1e-3;
+
+/// Columns of length 1.
+fn unit_columns(mut x: DMatrix<f64>) -> DMatrix<f64> {
+    for mut column in x.column_iter_mut() {
+        let length = column.norm();
+        if length > 0.0 {
+            column /= length;
+        }
+    }
+    x
 }
 
 struct Tester {
@@ -102,6 +119,7 @@ impl Tester {
                     if self.weight[i] > 0.0 { regressors[k][i] } else { 0.0 }
                 },
             );
+        let x = unit_columns(x);
         let z = x.tr_mul(&self.residual);
         let xj = x.tr_mul(&self.jacobian);
         let s = x.tr_mul(&x) - &xj * &self.covariance * xj.transpose();
@@ -109,13 +127,13 @@ impl Tester {
         let largest = eigen.eigenvalues.max();
         let (mut statistic, mut dof) = (0.0, 0.0);
         for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-            if *value > 1e-6 * largest && *value > 1e-9 {
+            if *value > ABSORBED * largest && *value > 1e-9 {
                 statistic += vector.dot(&z).powi(2) / value;
                 dof += 1.0;
             }
         }
         (dof > 0.0).then(|| Structure {
-            channel,
+            channel: Some(channel),
             follows,
             statistic,
             dof,
@@ -300,12 +318,10 @@ fn windup_questions(campaign: &Campaign, forward: &Forward) -> Vec<(String, Vec<
 impl Structure {
     /// The structure in one line.
     pub fn sentence(&self) -> String {
+        let of = self.channel.map_or(String::new(), |c| format!(" of {}", c.word()));
         format!(
-            "the residuals of {} follow {} (chi-squared {:.0} on {} degrees of freedom)",
-            self.channel.word(),
-            self.follows,
-            self.statistic,
-            self.dof
+            "the residuals{of} follow {} (chi-squared {:.0} on {} degrees of freedom)",
+            self.follows, self.statistic, self.dof
         )
     }
 }

@@ -3,7 +3,8 @@
 //!
 //! [`campaign`] reads the readings; [`forward`] predicts them fast, [`exact`] by mechanics directly;
 //! [`model`] says what is free; [`fit`] fits; [`select`] finds the effects; [`noise`] finds gross errors
-//! and wrongly declared deviations; [`lack_of_fit`] asks whether structure is left; [`few_rows`] says
+//! and wrongly declared deviations; [`lack_of_fit`] asks whether structure is left and [`unnamed`] whether
+//! a law that no effect has does better; [`few_rows`] says
 //! what a handful of readings can; [`kept_out`] confirms on poses kept out; [`interval`] gives the
 //! intervals; [`analysis`] draws the conclusion and [`verdict`] is its form, [`page`] its page
 //! for a browser; [`correct`] writes the arm and [`next_test`] says what to measure; [`positions`] does all of it for absolute ones.
@@ -30,6 +31,7 @@ pub mod report;
 pub mod select;
 pub mod stats;
 pub mod table;
+pub mod unnamed;
 pub mod verdict;
 
 pub use analysis::reconcile;

@@ -5,7 +5,7 @@ use super::forward::{Coefficients, Forward};
 use super::interval::Interval;
 use super::verdict::Estimate;
 use crate::arm::effect::{Channel, Effect, KINDS, Kind, Parameter, Place, Scale, Subject, fits_nominal};
-use crate::arm::{Arm, Curve, Element, LinkBody, Piece};
+use crate::arm::{Arm, Curve, Element, LinkBody, Piece, Structure};
 
 /// One fitted number of an effect: `u` is what the fit moves, near 1 in size.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,6 +25,8 @@ pub struct Knob {
     not_below: Option<&'static str>,
     /// The `u` at which the effect is absent; `None` where the number says how and not how much.
     absent: Option<f64>,
+    /// Within what `u` is expected.
+    expected: (f64, f64),
 }
 
 /// Part of the prior's width below which sizes of an effect are equally likely.
@@ -62,7 +64,24 @@ impl Knob {
             high,
             not_below,
             absent,
+            expected: (low, high),
         }
+    }
+
+    /// The same number within what a part can be instead of what is expected.
+    fn widened(&self, parameter: &Parameter) -> Self {
+        match parameter.scale {
+            Scale::Linear => {
+                Self { low: self.u(parameter.low), high: self.u(parameter.high), ..self.clone() }
+            }
+            _ => self.clone(),
+        }
+    }
+
+    /// How far a number is beyond what is expected, in the width of that.
+    pub fn beyond_expected(&self, u: f64) -> f64 {
+        let (low, high) = self.expected;
+        (u - high).max(low - u).max(0.0) / (high - low)
     }
 
     /// The parameter's value.
@@ -140,6 +159,20 @@ impl Candidate {
         format!("{}@{}", self.kind.name, self.at)
     }
 
+    /// The same effect with its numbers within what a part can be instead of what is expected: where few
+    /// readings are all there is, an expectation must not decide between effects.
+    pub fn widened(&self, structure: &Structure) -> Self {
+        let mut out = self.clone();
+        let Some(place) = structure.place(&self.at, self.kind.places) else { return out };
+        for knob in &mut out.knobs {
+            if let Some(parameter) = (self.kind.parameters)(place).iter().find(|p| p.name == knob.name) {
+                *knob = knob.widened(parameter);
+            }
+        }
+        out.starts.extend(corners(&out.knobs));
+        out
+    }
+
     /// Numbers of all parameters in the kind's order, those that keep an order in it.
     pub fn numbers(&self, u: &[f64]) -> Vec<f64> {
         let mut out: Vec<f64> = self.knobs.iter().zip(u).map(|(k, u)| k.value(*u)).collect();
@@ -166,6 +199,17 @@ impl Candidate {
             .collect();
         Effect { effect: self.kind.name.into(), at: self.at.clone(), parameters, source: None }
     }
+}
+
+/// Starts for the components of a vector, a fifth of the way from nothing to each corner of their range:
+/// with nothing everywhere a descent may see no slope.
+fn corners(knobs: &[Knob]) -> Vec<Vec<f64>> {
+    if knobs.len() < 2 || knobs.iter().any(|k| k.name != knobs[0].name) {
+        return Vec::new();
+    }
+    let end = |k: &Knob, up: bool| 0.2 * if up { k.high } else { k.low };
+    let corner = |bits: usize| knobs.iter().enumerate().map(|(i, k)| end(k, bits >> i & 1 == 1)).collect();
+    (0..1 << knobs.len()).map(corner).collect()
 }
 
 /// One calibrated number.

@@ -50,8 +50,11 @@ pub fn propose(question: &Question) -> Vec<NextTest> {
     if question.verdict == Verdict::Unexplained {
         return question.residuals.iter().map(|pose| repeat(question.campaign, pose)).collect();
     }
-    let tests = tests(question.campaign);
+    if question.rivals.is_empty() {
+        return Vec::new();
+    }
     let best = Exact::new(&question.best.1);
+    let tests = tests(question.campaign, &best);
     let mut out: Vec<NextTest> = tests
         .par_iter()
         .map(|test| {
@@ -143,7 +146,7 @@ fn halton(mut index: usize, base: usize) -> f64 {
 
 const PRIMES: [usize; 20] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71];
 
-fn tests(campaign: &Campaign) -> Vec<Test> {
+fn tests(campaign: &Campaign, best: &Exact) -> Vec<Test> {
     let ranges = ranges(campaign);
     let pose = |index: usize| spread_pose(&ranges, index);
     let payload = largest_payload(campaign);
@@ -181,13 +184,28 @@ fn tests(campaign: &Campaign) -> Vec<Test> {
             out.push(Test::Modal((1..=MODES).map(row).collect()));
         }
     }
-    out.extend(campaign.arm.joints().map(|joint| bench(campaign, &joint.name)));
+    out.extend(benches(campaign, best, &out));
     out
 }
 
-fn bench(campaign: &Campaign, joint: &str) -> Test {
-    let largest = campaign.windup.iter().map(|r| r.torque_nm.abs()).fold(0.0, f64::max);
-    let largest = if largest > 0.0 { largest } else { 100.0 };
+/// A cycle on the bench for each joint that has not been there, up to the largest torque that it carries in the
+/// static tests: one that has been there is known as well as its readings say.
+fn benches(campaign: &Campaign, best: &Exact, statics: &[Test]) -> Vec<Test> {
+    let mut largest: Vec<(String, f64)> = Vec::new();
+    for row in statics.iter().filter_map(|t| if let Test::Static(rows) = t { rows.first() } else { None }) {
+        for (joint, torque_nm) in best.torques_nm(row) {
+            match largest.iter_mut().find(|(name, _)| *name == joint) {
+                Some((_, most)) => *most = most.max(torque_nm.abs()),
+                None => largest.push((joint, torque_nm.abs())),
+            }
+        }
+    }
+    let measured = |joint: &str| campaign.windup.iter().any(|r| r.joint == joint);
+    let fresh = largest.into_iter().filter(|(joint, most)| *most > 0.0 && !measured(joint));
+    fresh.map(|(joint, most)| bench(campaign, &joint, most.ceil())).collect()
+}
+
+fn bench(campaign: &Campaign, joint: &str, largest: f64) -> Test {
     let sigma_arcmin = campaign.windup.first().map_or(DEFAULT_SIGMA_ARCMIN, |r| r.sigma_arcmin);
     let up = (-4..=4).map(|k| k as f64 / 4.0 * largest);
     let torques: Vec<f64> = up.clone().chain(up.rev()).collect();

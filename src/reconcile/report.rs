@@ -27,16 +27,17 @@ impl Outcome {
         if let Some(test) = self.next_tests.first() {
             let pose = test.pose_deg.as_ref().map_or(String::new(), |p| format!(" at {p:?} deg"));
             let joint = test.joint.as_ref().map_or(String::new(), |j| format!(" of {j}"));
-            let _ = writeln!(
-                out,
-                "  next test: {} ({}){joint}{pose}, payload {} kg, force {:?} N: expect {:.1} sigma, {} needed",
-                test.kind,
-                test.description,
-                test.payload_kg,
-                test.force_n,
-                test.expected_sigmas,
-                test.readings_needed
-            );
+            let expect = match test.expected_sigmas {
+                0.0 => String::new(),
+                s if s > 100.0 => format!(": expect more than 100 sigma, {} needed", test.readings_needed),
+                s => format!(": expect {s:.1} sigma, {} needed", test.readings_needed),
+            };
+            let load = match test.kind.as_str() {
+                "windup" => String::new(),
+                _ => format!(", payload {} kg, force {:?} N", test.payload_kg, test.force_n),
+            };
+            let _ =
+                writeln!(out, "  next test: {} ({}){joint}{pose}{load}{expect}", test.kind, test.description);
         }
         out
     }

@@ -5,13 +5,16 @@
 //! far, the best are fitted in full. From two effects on each is dropped and swapped against all others
 //! until nothing improves, which repairs greedy mistakes.
 
+use super::campaign::Campaign;
 use super::fit::{
     Effort, Fit, Normal, Weights, bounded_step, change, evaluate, fit, jacobian, normal, objective,
 };
 use super::forward::Forward;
 use super::model::{Candidate, Model, Nuisance};
+use super::unnamed::{self, Better};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use std::cell::OnceCell;
 
 /// Rise of the score that a further effect must bring: two things missing at once are rarer than one.
 const WORTH: f64 = 3.0;
@@ -27,11 +30,15 @@ const PROMISING: f64 = 12.0;
 pub const MOST_EFFECTS: usize = 3;
 /// Objective per datum above which a model cannot become the explanation, whatever the declared deviations.
 const BEYOND_HOPE: f64 = 2.0;
+/// Rise of the evidence over the best effects by which a law without a name settles that they are not it.
+const SETTLES: f64 = 12.0;
 /// Candidates fitted in full at each stage.
 const FULL_FITS: usize = 7;
 
 /// All that a search needs.
 pub struct Search<'a> {
+    /// Campaign.
+    pub campaign: &'a Campaign,
     /// Prepared campaign.
     pub forward: &'a Forward,
     /// Calibration.
@@ -63,6 +70,8 @@ pub struct Selection {
     pub bare: Scored,
     /// Every other model that was fitted, best first.
     pub others: Vec<Scored>,
+    /// Whether a law without a name is so much better that the search was given up.
+    pub given_up: bool,
 }
 
 impl<'a> Search<'a> {
@@ -171,7 +180,7 @@ impl<'a> Search<'a> {
     }
 
     /// In how many ways an effect could be named; a unit slip counts once a channel.
-    fn places(&self) -> usize {
+    pub fn places(&self) -> usize {
         let mut labels: Vec<String> = self.candidates.iter().map(|c| c.label()).collect();
         labels.dedup();
         labels.len()
@@ -193,18 +202,35 @@ impl<'a> Search<'a> {
                 best = bare.clone();
             }
         }
+        let law = OnceCell::new();
+        let mut given_up = false;
         while best.effects.len() < MOST_EFFECTS {
-            let tried = self.extend(&best);
+            let law = || law.get_or_init(|| unnamed::beside_calibration(self, &bare_fit));
+            let tried = self.extend(&best, &seen);
             seen.extend(tried.iter().cloned());
             let worth = if best.effects.is_empty() { FIRST_WORTH } else { WORTH };
             let Some(next) = better(&tried, best.score + worth) else { break };
             best = next;
+            given_up = self.is_settled_by(law(), &bare, &best);
+            if given_up {
+                break;
+            }
             if best.effects.len() > 1 && (best.effects.len() < MOST_EFFECTS || self.may_explain(&best)) {
                 best = self.repair(best, &mut seen);
             }
         }
         seen.sort_by(|a, b| b.score.total_cmp(&a.score));
-        Selection { best, bare, others: seen }
+        Selection { best, bare, others: seen, given_up }
+    }
+
+    /// Whether further effects are not worth looking for, because a law without a name is far better than the best
+    /// so far: than one effect where the law leaves no more than noise, for two could be better still.
+    fn is_settled_by(&self, law: &Option<Better>, bare: &Scored, best: &Scored) -> bool {
+        let readings = self.forward.data.len() as f64;
+        let noise = readings + 2.0 * (2.0 * readings).sqrt();
+        law.as_ref().is_some_and(|law| {
+            bare.score + law.gain > best.score + SETTLES && (best.effects.len() > 1 || law.objective < noise)
+        })
     }
 
     /// Fits the promising models of a selection again, with other weights, and chooses among them.
@@ -231,7 +257,7 @@ impl<'a> Search<'a> {
         let best = seen.iter().chain([&bare]).max_by(|a, b| net(a).total_cmp(&net(b)));
         let best = best.cloned().unwrap_or_else(|| bare.clone());
         seen.sort_by(|a, b| b.score.total_cmp(&a.score));
-        Selection { best, bare, others: seen }
+        Selection { best, bare, others: seen, given_up: before.given_up }
     }
 
     /// Drops and swaps effects until nothing improves.
@@ -239,11 +265,9 @@ impl<'a> Search<'a> {
         for _ in 0..4 {
             let mut improved = false;
             for i in 0..best.effects.len() {
-                let mut effects = best.effects.clone();
-                effects.remove(i);
-                let start = self.drop_knobs(&best, i);
+                let (effects, start) = self.without(&best, i);
                 let dropped = self.scored(&effects, &self.fit(&effects, &start, Effort::default()));
-                let swapped = self.extend(&dropped);
+                let swapped = self.extend(&dropped, seen);
                 seen.push(dropped.clone());
                 seen.extend(swapped.iter().cloned());
                 let fewer = (dropped.score + WORTH > best.score).then(|| dropped.clone());
@@ -260,17 +284,18 @@ impl<'a> Search<'a> {
         best
     }
 
-    /// Parameters of a model without those of one of its effects.
-    fn drop_knobs(&self, scored: &Scored, effect: usize) -> Vec<f64> {
+    /// A model without one of its effects, and where to start it from.
+    pub fn without(&self, scored: &Scored, effect: usize) -> (Vec<usize>, Vec<f64>) {
         let model = self.model(&scored.effects);
         let first = model.first_knob(effect);
-        let mut u = scored.u.clone();
+        let (mut effects, mut u) = (scored.effects.clone(), scored.u.clone());
+        effects.remove(effect);
         u.drain(first..first + model.effects[effect].knobs.len());
-        u
+        (effects, u)
     }
 
-    /// The best models with one more effect.
-    pub fn extend(&self, base: &Scored) -> Vec<Scored> {
+    /// The best models with one more effect; those that were fitted before are not fitted again.
+    fn extend(&self, base: &Scored, seen: &[Scored]) -> Vec<Scored> {
         let screened = self.screen(base);
         let round = |starts: Vec<(Vec<usize>, Vec<f64>)>, fresh: bool, steps: usize| -> Vec<Scored> {
             let effort = Effort { steps, tolerance: 0.02 };
@@ -286,22 +311,35 @@ impl<'a> Search<'a> {
                 .collect()
         };
         let starts = screened.into_iter().map(|(c, u, _)| ([base.effects.as_slice(), &[c]].concat(), u));
-        let first = round(starts.collect(), true, 4);
-        let top = first.iter().map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
+        let mut known: Vec<Scored> = Vec::new();
+        let mut fresh: Vec<(Vec<usize>, Vec<f64>)> = Vec::new();
+        for (effects, u) in starts {
+            match seen.iter().filter(|s| same_set(&s.effects, &effects)).max_by(by_score) {
+                Some(before) => known.push(before.clone()),
+                None => fresh.push((effects, u)),
+            }
+        }
+        let first = round(fresh, true, 4);
+        let top = first.iter().chain(&known).map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
         let (near, far): (Vec<Scored>, Vec<Scored>) =
             first.into_iter().partition(|s| s.score > top - HOPELESS);
         let mut fits = round(near.into_iter().map(|s| (s.effects, s.u)).collect(), false, 14);
+        let top = fits.iter().chain(&known).map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
+        self.regrid(&mut fits, top - PROMISING);
         fits.extend(far);
-        self.regrid(&mut fits);
+        fits.extend(known);
         fits
     }
 
-    /// Break points of the promising gear curves found over a grid, with the frequencies left out at first.
-    fn regrid(&self, fits: &mut [Scored]) {
-        let top = fits.iter().map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
-        for scored in fits.iter_mut().filter(|s| s.score > top - PROMISING) {
-            let curves = scored.effects.iter().rposition(|&e| self.candidates[e].kind.name == "soft_windup");
-            let Some(position) = curves else { continue };
+    /// Break points of the promising gear curves found over a grid, with the frequencies left out at first; in
+    /// threes only those of a curve that is new, for the others have been found in pairs.
+    fn regrid(&self, fits: &mut [Scored], least: f64) {
+        for scored in fits.iter_mut().filter(|s| s.score > least) {
+            let curve = scored.effects.iter().rposition(|&e| self.candidates[e].kind.name == "soft_windup");
+            let Some(position) = curve else { continue };
+            if position + 1 < scored.effects.len() && scored.effects.len() > 2 {
+                continue;
+            }
             let fit = self.over_breaks(scored, position);
             let again = self.scored(&scored.effects, &fit);
             if again.score > scored.score {
@@ -448,6 +486,14 @@ impl<'a> Search<'a> {
             })
             .collect()
     }
+}
+
+fn by_score(a: &&Scored, b: &&Scored) -> std::cmp::Ordering {
+    a.score.total_cmp(&b.score)
+}
+
+fn same_set(a: &[usize], b: &[usize]) -> bool {
+    a.len() == b.len() && a.iter().all(|e| b.contains(e))
 }
 
 fn better(tried: &[Scored], than: f64) -> Option<Scored> {

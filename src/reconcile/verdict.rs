@@ -283,7 +283,7 @@ impl Outcome {
             .iter()
             .take(5)
             .map(|s| {
-                json!({"channel": s.channel.word(), "follows": s.follows, "chi_squared": s.statistic,
+                json!({"channel": s.channel.map_or("all", |c| c.word()), "follows": s.follows, "chi_squared": s.statistic,
                        "degrees_of_freedom": s.dof, "log10_probability": s.ln_p / std::f64::consts::LN_10})
             })
             .collect();

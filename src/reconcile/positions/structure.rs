@@ -50,7 +50,7 @@ impl Positions {
             if dof > 0.0 {
                 let ln_p = ln_chi_squared_tail(statistic, dof);
                 structures.push(Structure {
-                    channel: Channel::Positions,
+                    channel: Some(Channel::Positions),
                     follows: follows.clone(),
                     statistic,
                     dof,
