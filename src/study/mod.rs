@@ -1,5 +1,6 @@
 //! Named questions: read, resolve, run.
 
+
 mod check;
 mod diagnose;
 mod effects;
