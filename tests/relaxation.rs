@@ -61,7 +61,8 @@ fn effects(dice: &mut Dice) -> Value {
 
 /// One or two poses, folded ones among them; now and then a force that opposes gravity, or water.
 fn study(dice: &mut Dice) -> Value {
-    let pose = |dice: &mut Dice| -> Vec<f64> { (0..3).map(|_| 15.0 * (dice.below(13) as f64 - 6.0)).collect() };
+    let pose =
+        |dice: &mut Dice| -> Vec<f64> { (0..3).map(|_| 15.0 * (dice.below(13) as f64 - 6.0)).collect() };
     let mut poses = vec![json!({"name": "a", "pose_deg": [0, 0, 0]})];
     if dice.below(2) == 0 {
         poses.push(json!({"name": "b", "pose_deg": pose(dice)}));

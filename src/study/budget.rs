@@ -7,155 +7,119 @@
 //! kilogram; a difference between two parts one can buy. Drives further inboard are not sized again.
 
 use super::Front;
-use crate::arm::{Arm, Curve, Element, LinkBody, LoadCase, Windup, windup_of};
+use crate::arm::{Arm, Curve, Element, Joint, LoadCase, Piece, Structure, Windup, windup_of};
+use crate::mechanics::Chain;
+use crate::report::budget::{BudgetRow, Gain, NextPart, PickBound, PickBudget};
 use crate::report::front_table::FrontTable;
-use crate::report::number::{fixed, shortest, significant};
-use crate::report::picks::{designs, picks};
-use crate::report::table::{Column, Table, csv_line};
-use crate::search::design::{full_objectives, number_of, options};
-use crate::search::relax::{MassBound, mass_lower_bound};
+use crate::report::number::significant;
+use crate::report::picks::{Pick, designs, picks};
+use crate::search::design::{full_objectives, number_of, objectives_with};
+use crate::search::relax::mass_lower_bound;
 use crate::search::space::{LinkOption, SpacePiece};
-use crate::search::{ArmProblem, Objectives, OutwardIn};
-use serde_json::{Value, json};
+use crate::search::{ArmProblem, Objectives};
+use crate::sizing::Drive;
+use rayon::prelude::*;
 
 /// Relative step of the derivative in place.
 const STEP: f64 = 1e-3;
 /// Parts heavier than the one in place by more than this part of the arm are not looked at.
 const MOST_OF_ARM: f64 = 0.25;
 
-/// What one more kilogram buys.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Gain {
-    /// Change of the tip's deflection \[mm/kg\]; negative is better.
-    pub mm_per_kg: f64,
-    /// Change of the lowest mode \[Hz/kg\].
-    pub hz_per_kg: f64,
-}
-
-/// One piece of an arm and what a kilogram buys there.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BudgetRow {
-    /// Joint or link.
-    pub piece: String,
-    /// Its mass \[kg\].
-    pub mass_kg: f64,
-    /// Mass and stiffness in proportion; none for a piece without mass.
-    pub in_place: Option<Gain>,
-    /// The best heavier part: its name, mass \[kg\] and gain.
-    pub next_part: Option<(String, f64, Gain)>,
-}
-
-/// A pick with its bound and its budget.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PickBudget {
-    /// What it was picked for.
-    pub names: Vec<&'static str>,
-    /// Name of the design.
-    pub design_id: String,
-    /// Its objectives.
-    pub objectives: Objectives,
-    /// What is known of lighter designs as good as it.
-    pub bound: MassBound,
-    /// Pieces, base to tip.
-    pub rows: Vec<BudgetRow>,
-}
-
-impl PickBudget {
-    /// The keys of `run.json`.
-    pub fn to_json(&self) -> Value {
-        json!({
-            "names": self.names,
-            "design_id": self.design_id,
-            "mass_kg": self.objectives.mass_kg,
-            "mass_lower_bound_kg": self.bound.mass_lower_bound_kg,
-            "loads_oppose": self.bound.loads_oppose,
-        })
-    }
-}
-
-/// Budgets of the picks of a front.
+/// Budgets of the picks of a front. A bound is given only if the problem has all options of the study.
 pub fn budgets(problem: &ArmProblem, front: &Front, table: &FrontTable) -> Vec<PickBudget> {
-    let picked = picks(&designs(table));
-    let judged = |id: &str| front.iter().find(|d| number_of(id) == Some(d.design.number));
-    picked
-        .into_iter()
-        .filter_map(|pick| {
-            let design = &judged(&pick.design.design_id)?.design;
-            let options = options(problem.level_sizes(), design.number)?;
-            Some(PickBudget {
-                bound: mass_lower_bound(problem, &options, &design.objectives)?,
-                rows: budget(problem, &options, &design.objectives)?,
-                names: pick.names,
-                design_id: pick.design.design_id,
-                objectives: design.objectives,
-            })
-        })
-        .collect()
+    picks(&designs(table)).into_par_iter().filter_map(|pick| pick_budget(problem, front, pick)).collect()
+}
+
+fn pick_budget(problem: &ArmProblem, front: &Front, pick: Pick) -> Option<PickBudget> {
+    let number = number_of(&pick.design.design_id)?;
+    let design = &front.iter().find(|d| problem.whole_number(d.design.number) == number)?.design;
+    let options = problem.options_of_whole(number)?;
+    let bound = (!is_excerpt(problem)).then(|| mass_lower_bound(problem, &options, &design.objectives));
+    let bound =
+        bound.flatten().map(|b| PickBound { mass_kg: b.mass_lower_bound_kg, loads_oppose: b.loads_oppose });
+    Some(PickBudget {
+        bound,
+        rows: budget(problem, &options, &design.objectives)?,
+        names: pick.names,
+        design_id: pick.design.design_id,
+        mass_kg: design.objectives.mass_kg,
+    })
+}
+
+fn is_excerpt(problem: &ArmProblem) -> bool {
+    let kept = |piece: &SpacePiece| matches!(piece, SpacePiece::Choice(choice) if choice.excerpt.is_some());
+    problem.space().pieces.iter().any(kept)
 }
 
 fn budget(problem: &ArmProblem, options: &[u32], objectives: &Objectives) -> Option<Vec<BudgetRow>> {
     let arm = problem.arm(options)?;
     let cases = problem.load_cases();
-    let mut alternatives: Vec<Vec<(String, Element)>> = vec![Vec::new(); arm.chain.len()];
+    let others = alternatives(problem, options, &arm)?;
+    let shares = shares(&arm, &cases);
+    let heaviest_kg = objectives.mass_kg * MOST_OF_ARM;
+    let pieces: Vec<(usize, &Element)> =
+        arm.chain.iter().enumerate().filter(|(_, e)| e.mass_kg() > 0.0).collect();
+    let row = |&(piece, element): &(usize, &Element)| {
+        let mass_kg = element.mass_kg();
+        let with = |other: &Element| {
+            let mut changed = arm.clone();
+            changed.chain[piece] = other.clone();
+            gain(objectives, &full_objectives(&changed, &cases))
+        };
+        let heavier = |kg: f64| kg > mass_kg * (1.0 + 1e-6) && kg - mass_kg <= heaviest_kg;
+        let next_part = others[piece]
+            .iter()
+            .filter(|(_, other)| heavier(other.mass_kg()))
+            .map(|(name, other)| NextPart { name: name.clone(), mass_kg: other.mass_kg(), gain: with(other) })
+            .min_by(|a, b| a.gain.mm_per_kg.total_cmp(&b.gain.mm_per_kg));
+        BudgetRow {
+            piece: element.name().to_string(),
+            is_joint: matches!(element, Element::Joint(_)),
+            mass_kg,
+            share: shares[piece],
+            in_place: in_place(&arm, piece, &cases),
+            next_part,
+        }
+    };
+    Some(pieces.par_iter().map(row).collect())
+}
+
+/// What else may stand in each place, by name.
+fn alternatives(problem: &ArmProblem, options: &[u32], arm: &Arm) -> Option<Vec<Vec<(String, Element)>>> {
+    let mut others: Vec<Vec<(String, Element)>> = vec![Vec::new(); arm.chain.len()];
     let complete = problem.walk(options, |slot, outboard| {
         let piece = problem.piece_of_slot(slot);
-        if let Some(sized) = problem.sized_joint(piece) {
+        if let (Some(sized), Element::Joint(joint)) = (problem.sized_joint(piece), &arm.chain[piece]) {
             let demand = problem.demand_at(outboard, slot);
-            alternatives[piece] = drives(
-                &arm.chain[piece],
-                sized.table.all_fits(&demand).map(|i| (sized.table.drive(i), sized.table.mass_kg(i))),
-            );
+            let holding =
+                sized.table.all_fits(&demand).map(|i| (sized.table.drive(i), sized.table.mass_kg(i)));
+            others[piece] = drives(joint, holding);
         }
     });
     complete.ok()?;
     for (piece, what) in problem.space().pieces.iter().enumerate() {
         if let SpacePiece::Choice(choice) = what {
             let links = stiffest_by_mass(&choice.options);
-            alternatives[piece] =
+            others[piece] =
                 links.map(|option| (section_words(option), Element::Link(choice.link(option)))).collect();
         }
     }
-    let heaviest_kg = objectives.mass_kg * MOST_OF_ARM;
-    let rows = arm.chain.iter().zip(&alternatives).enumerate().filter_map(|(piece, (element, others))| {
-        let mass_kg = element.mass_kg();
-        if mass_kg <= 0.0 {
-            return None;
-        }
-        let with = |element: Element| {
-            let mut changed = arm.clone();
-            changed.chain[piece] = element;
-            full_objectives(&changed, &cases)
-        };
-        let next = others
-            .iter()
-            .map(|(name, other)| (name, other, other.mass_kg()))
-            .filter(|(_, _, kg)| *kg > mass_kg * (1.0 + 1e-6) && kg - mass_kg <= heaviest_kg)
-            .map(|(name, other, kg)| (name.clone(), kg, gain(objectives, &with(other.clone()))))
-            .min_by(|a, b| a.2.mm_per_kg.total_cmp(&b.2.mm_per_kg));
-        Some(BudgetRow {
-            piece: element.name().to_string(),
-            mass_kg,
-            in_place: in_place(&arm, piece, &cases),
-            next_part: next,
-        })
-    });
-    Some(rows.collect())
+    Some(others)
 }
 
-/// The drives that hold at a joint, one a gear (the lightest), as pieces of the arm.
-fn drives<'c>(
-    joint: &Element,
-    drives: impl Iterator<Item = (crate::sizing::Drive<'c>, f64)>,
-) -> Vec<(String, Element)> {
-    let Element::Joint(joint) = joint else { return Vec::new() };
+/// The drives that hold at a joint, lightest first, each with a gear that no lighter one matches in stiffness.
+fn drives<'c>(joint: &Joint, drives: impl Iterator<Item = (Drive<'c>, f64)>) -> Vec<(String, Element)> {
     let mut out: Vec<(String, Element)> = Vec::new();
+    let mut kept: Vec<[f64; 3]> = Vec::new();
     for (drive, mass_kg) in drives {
-        let name = &drive.gear.id;
-        if out.iter().any(|(n, _)| n == name) {
+        let Some(windup) = windup_of(drive.gear) else { continue };
+        let stiffness = [windup.k1_nm_per_rad, windup.k2_nm_per_rad, windup.k3_nm_per_rad];
+        if kept.iter().any(|other| (0..3).all(|i| other[i] >= stiffness[i])) {
             continue;
         }
-        let curve = windup_of(drive.gear).map_or(Curve::Rigid, Curve::Windup);
-        out.push((name.clone(), Element::Joint(crate::arm::Joint { curve, mass_kg, ..joint.clone() })));
+        kept.push(stiffness);
+        let curve = Curve::Windup(windup);
+        out.push((drive.gear.id.clone(), Element::Joint(Joint { curve, mass_kg, ..joint.clone() })));
     }
     out
 }
@@ -181,6 +145,8 @@ fn stiffest_by_mass(options: &[LinkOption]) -> impl Iterator<Item = &LinkOption>
 fn section_words(option: &LinkOption) -> String {
     let (width, height) = option.section.outer_m();
     let sizes = [width, height, option.section.wall_m()].map(|m| significant(m * 1e3, 4));
+    let sizes =
+        sizes.map(|s| if s.contains('.') { s.trim_end_matches('0').trim_end_matches('.').into() } else { s });
     format!("{} mm {}", sizes.join(" x "), option.material_name)
 }
 
@@ -193,118 +159,58 @@ fn gain(from: &Objectives, to: &Objectives) -> Gain {
     }
 }
 
-/// Central difference with a piece's mass and stiffness in proportion.
-fn in_place(arm: &Arm, piece: usize, cases: &[LoadCase]) -> Option<Gain> {
-    let with = |factor: f64| {
-        let mut changed = arm.clone();
-        scale(&mut changed.chain[piece], factor);
-        full_objectives(&changed, cases)
+/// Each piece's part of the tip's deflection in the worst case, along it; a bearing's tilt is its joint's.
+fn shares(arm: &Arm, cases: &[LoadCase]) -> Vec<f64> {
+    let solve = |case: &LoadCase| Chain::new(&arm.structure_in(case), case.links).pose(case).statics();
+    let statics = cases.iter().map(solve);
+    let worst = statics.max_by(|a, b| a.tip_displacement_m.norm().total_cmp(&b.tip_displacement_m.norm()));
+    let Some(worst) = worst else { return vec![0.0; arm.chain.len()] };
+    let whole = worst.tip_displacement_m;
+    let of = |name: &str| {
+        let own = worst.shares_m.iter().filter(|(n, _)| n.strip_suffix(".bearing_tilt").unwrap_or(n) == name);
+        own.map(|(_, moved)| moved.dot(&whole)).sum::<f64>() / whole.norm_squared().max(f64::MIN_POSITIVE)
     };
-    let gain = gain(&with(1.0 - STEP), &with(1.0 + STEP));
-    (gain.mm_per_kg.is_finite() && gain.hz_per_kg.is_finite()).then_some(gain)
+    arm.chain.iter().map(|element| of(element.name())).collect()
 }
 
-fn scale(element: &mut Element, factor: f64) {
-    match element {
-        Element::Joint(joint) => {
-            joint.mass_kg *= factor;
-            joint.curve = match joint.curve {
-                Curve::Rigid => Curve::Rigid,
-                Curve::Linear(stiffness) => Curve::Linear(stiffness * factor),
-                Curve::Windup(w) => Curve::Windup(Windup {
-                    k1_nm_per_rad: w.k1_nm_per_rad * factor,
-                    k2_nm_per_rad: w.k2_nm_per_rad * factor,
-                    k3_nm_per_rad: w.k3_nm_per_rad * factor,
-                    ..w
-                }),
-            };
+/// Central difference with a piece's mass and stiffness in proportion.
+fn in_place(arm: &Arm, piece: usize, cases: &[LoadCase]) -> Gain {
+    let mass_kg = arm.chain[piece].mass_kg();
+    let with = |step: f64| Objectives {
+        mass_kg: arm.mass_kg() + step * mass_kg,
+        ..objectives_with(arm, cases, |structure| grow(structure, piece, step, mass_kg))
+    };
+    gain(&with(-STEP), &with(STEP))
+}
+
+/// Lets mass and stiffness of a piece grow by a part of themselves; what effects add to it stays.
+fn grow(structure: &mut Structure, piece: usize, step: f64, mass_kg: f64) {
+    let factor = 1.0 + step;
+    match &mut structure.pieces[piece] {
+        Piece::Joint(joint) => {
+            joint.mass_kg += step * mass_kg;
+            joint.law.curve = stiffer(joint.law.curve, factor);
         }
-        Element::Link(link) => match &mut link.body {
-            LinkBody::Tube { material, .. } => {
-                material.youngs_modulus_pa *= factor;
-                material.shear_modulus_pa *= factor;
-                material.density_kg_m3 *= factor;
+        Piece::Link(link) => match &mut link.beam {
+            Some(beam) => {
+                beam.material.youngs_modulus_pa *= factor;
+                beam.material.shear_modulus_pa *= factor;
+                beam.material.density_kg_m3 *= factor;
             }
-            LinkBody::Offset { mass_kg } => *mass_kg *= factor,
+            None => link.point_mass_kg += step * mass_kg,
         },
     }
 }
 
-/// `budget.csv`.
-pub fn budget_csv(budgets: &[PickBudget]) -> String {
-    let header = [
-        "pick",
-        "design_id",
-        "piece",
-        "mass_kg",
-        "in_place_mm_per_kg",
-        "in_place_hz_per_kg",
-        "next_part",
-        "next_mass_kg",
-        "next_mm_per_kg",
-        "next_hz_per_kg",
-    ];
-    let mut out = csv_line(&header.map(String::from));
-    for pick in budgets {
-        for row in &pick.rows {
-            let gain = |g: Option<Gain>| {
-                [g.map(|g| g.mm_per_kg), g.map(|g| g.hz_per_kg)].map(|x| x.map_or(String::new(), shortest))
-            };
-            let [mm, hz] = gain(row.in_place);
-            let (name, kg, next) = match &row.next_part {
-                Some((name, kg, next)) => (name.clone(), shortest(*kg), Some(*next)),
-                None => Default::default(),
-            };
-            let [next_mm, next_hz] = gain(next);
-            out.push_str(&csv_line(&[
-                pick.names.join(", "),
-                pick.design_id.clone(),
-                row.piece.clone(),
-                shortest(row.mass_kg),
-                mm,
-                hz,
-                name,
-                kg,
-                next_mm,
-                next_hz,
-            ]));
-        }
+fn stiffer(curve: Curve, factor: f64) -> Curve {
+    match curve {
+        Curve::Rigid => Curve::Rigid,
+        Curve::Linear(stiffness) => Curve::Linear(stiffness * factor),
+        Curve::Windup(w) => Curve::Windup(Windup {
+            k1_nm_per_rad: w.k1_nm_per_rad * factor,
+            k2_nm_per_rad: w.k2_nm_per_rad * factor,
+            k3_nm_per_rad: w.k3_nm_per_rad * factor,
+            ..w
+        }),
     }
-    out
-}
-
-/// The block for a terminal: how far each pick is from its bound, and the budget of the last pick (the knee, where
-/// there is one).
-pub fn budget_text(budgets: &[PickBudget]) -> String {
-    let Some(shown) = budgets.iter().find(|b| b.names.contains(&"knee")).or(budgets.first()) else {
-        return String::new();
-    };
-    let mut table = Table::new(vec![
-        Column::left("piece"),
-        Column::unit("mass", "kg"),
-        Column::unit("deflection", "mm/kg"),
-        Column::unit("mode", "Hz/kg"),
-        Column::left("next part"),
-        Column::unit("deflection", "mm/kg"),
-    ]);
-    for row in &shown.rows {
-        let (mm, hz) =
-            row.in_place.map_or(Default::default(), |g| (fixed(g.mm_per_kg, 4), fixed(g.hz_per_kg, 3)));
-        let (name, next) =
-            row.next_part.as_ref().map_or(Default::default(), |(n, _, g)| (n.clone(), fixed(g.mm_per_kg, 4)));
-        table.row([row.piece.clone(), significant(row.mass_kg, 4), mm, hz, name, next]);
-    }
-    let mut out = format!("What one more kilogram buys ({}, {}):\n", shown.names.join(", "), shown.design_id);
-    out.push_str(&table.to_text());
-    for pick in budgets {
-        let (bound, mass) = (pick.bound.mass_lower_bound_kg, pick.objectives.mass_kg);
-        out.push_str(&format!(
-            "{}: {} kg; no design as stiff and as fast is below {} kg{}\n",
-            pick.names.join(", "),
-            significant(mass, 5),
-            significant(bound, 5),
-            if pick.bound.loads_oppose { " (loads oppose each other: the bound is weaker)" } else { "" }
-        ));
-    }
-    out
 }

@@ -116,7 +116,8 @@ impl Search<'_> {
         for &case in &self.problem.space().sizing_cases {
             rows.extend(self.cases[case].torque_rows(self.problem, &self.parts));
         }
-        rows.extend(self.shapes.iter().map(|(model, shape)| self.shape_row(*model, shape)));
+        let stiffness = self.stiffness();
+        rows.extend(self.shapes.iter().map(|(model, shape)| self.shape_row(&stiffness, *model, shape)));
         rows
     }
 
@@ -125,21 +126,25 @@ impl Search<'_> {
         omega * omega * (1.0 - ROUNDING)
     }
 
-    fn shape_row(&self, model: usize, shape: &nalgebra::DVector<f64>) -> Row {
-        let model = &self.models[model];
-        let stiffness = self.cases[model.case].stiffest(self.problem, &self.parts);
-        model.row(&self.parts, &stiffness, shape, self.eigenvalue())
+    /// Largest stiffness of every joint's options, by slot, for each model.
+    fn stiffness(&self) -> Vec<Vec<Vec<f64>>> {
+        self.models.iter().map(|m| self.cases[m.case].stiffest(self.problem, &self.parts)).collect()
+    }
+
+    fn shape_row(&self, stiffness: &[Vec<Vec<f64>>], model: usize, shape: &nalgebra::DVector<f64>) -> Row {
+        self.models[model].row(&self.parts, &stiffness[model], shape, self.eigenvalue())
     }
 
     /// Solves the program, adding shapes that the mixture violates and options that it lacks.
     fn solve(&mut self) {
+        let stiffness = self.stiffness();
         let mut program = Program::new(&self.parts, self.rows());
         for _ in 0..STEPS {
             let Some(solution) = program.solve() else { return };
             self.best_kg = self.best_kg.max(solution.bound_kg);
-            let found = self.violated(&solution.weights);
+            let found = self.violated(&stiffness, &solution.weights);
             for (model, shape) in &found {
-                program.add(self.shape_row(*model, shape));
+                program.add(self.shape_row(&stiffness, *model, shape));
             }
             self.shapes.extend(found.iter().cloned());
             if found.is_empty() && !solution.grew {
@@ -149,11 +154,14 @@ impl Search<'_> {
         program.drop_options(&mut self.parts, self.asked.mass_kg * (1.0 + ROUNDING));
     }
 
-    fn violated(&self, weights: &[Vec<f64>]) -> Vec<(usize, nalgebra::DVector<f64>)> {
+    fn violated(
+        &self,
+        stiffness: &[Vec<Vec<f64>>],
+        weights: &[Vec<f64>],
+    ) -> Vec<(usize, nalgebra::DVector<f64>)> {
         let mut found = Vec::new();
         for (index, model) in self.models.iter().enumerate() {
-            let stiffness = self.cases[model.case].stiffest(self.problem, &self.parts);
-            let shapes = model.violated(&self.parts, &stiffness, weights, self.eigenvalue());
+            let shapes = model.violated(&self.parts, &stiffness[index], weights, self.eigenvalue());
             found.extend(shapes.into_iter().map(|shape| (index, shape)));
         }
         found

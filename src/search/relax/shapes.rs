@@ -84,7 +84,8 @@ impl ShapeModel {
                 StationSlot::Link { place, .. } => {
                     let Some(beam) = beam(slot) else { continue };
                     let frame = rotation.matrix() * beam.frame;
-                    let stiffness = |l: &LinkPiece| compliances(l, space.links).iter().map(|c| 1.0 / c).collect();
+                    let stiffness =
+                        |l: &LinkPiece| compliances(l, space.links).iter().map(|c| 1.0 / c).collect();
                     model.links.push(LinkShape {
                         slot,
                         first: column,

@@ -69,14 +69,14 @@ mod tests {
             t2_nm,
         });
         let lost = prop::option::of((1e-5..1e-3f64, 1.0..50.0f64));
-        (curve, 0.0..1e-5f64, lost, prop::option::of(1e-5..1e-3f64)).prop_map(|(curve, connection, lost, play)| {
-            JointLaw {
+        (curve, 0.0..1e-5f64, lost, prop::option::of(1e-5..1e-3f64)).prop_map(
+            |(curve, connection, lost, play)| JointLaw {
                 curve: Curve::Windup(curve),
                 connection_rad_per_nm: connection,
                 lost_motion: lost.map(|(half_width_rad, torque_nm)| LostMotion { half_width_rad, torque_nm }),
                 hysteresis_rad: play.unwrap_or(0.0),
-            }
-        })
+            },
+        )
     }
 
     proptest! {

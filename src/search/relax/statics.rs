@@ -145,8 +145,9 @@ impl CaseLoads {
                     return Vec::new();
                 }
                 let torque = self.torque_range(problem, parts, slot);
-                let stiffest =
-                    |&o: &u32| piece.law(o as usize).map_or(f64::INFINITY, |law| 1.0 / tangent_range(law, torque)[0]);
+                let stiffest = |&o: &u32| {
+                    piece.law(o as usize).map_or(f64::INFINITY, |law| 1.0 / tangent_range(law, torque)[0])
+                };
                 parts.alive[slot].iter().map(stiffest).collect()
             })
             .collect()
