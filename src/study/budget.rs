@@ -14,7 +14,7 @@ use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
 use crate::report::picks::{Pick, designs, picks};
 use crate::search::design::{full_objectives, number_of, objectives_with};
-use crate::search::relax::mass_lower_bound;
+use crate::search::relax::Relaxation;
 use crate::search::space::{LinkOption, SpacePiece};
 use crate::search::{ArmProblem, Objectives};
 use crate::sizing::Drive;
@@ -27,16 +27,22 @@ const MOST_OF_ARM: f64 = 0.25;
 
 /// Budgets of the picks of a front. A bound is given only if the problem has all options of the study.
 pub fn budgets(problem: &ArmProblem, front: &Front, table: &FrontTable) -> Vec<PickBudget> {
-    picks(&designs(table)).into_par_iter().filter_map(|pick| pick_budget(problem, front, pick)).collect()
+    let relaxation = (!is_excerpt(problem)).then(|| Relaxation::new(problem));
+    let picks = picks(&designs(table)).into_par_iter();
+    picks.filter_map(|pick| pick_budget(problem, relaxation.as_ref(), front, pick)).collect()
 }
 
-fn pick_budget(problem: &ArmProblem, front: &Front, pick: Pick) -> Option<PickBudget> {
+fn pick_budget(
+    problem: &ArmProblem,
+    relaxation: Option<&Relaxation>,
+    front: &Front,
+    pick: Pick,
+) -> Option<PickBudget> {
     let number = number_of(&pick.design.design_id)?;
     let design = &front.iter().find(|d| problem.whole_number(d.design.number) == number)?.design;
     let options = problem.options_of_whole(number)?;
-    let bound = (!is_excerpt(problem)).then(|| mass_lower_bound(problem, &options, &design.objectives));
-    let bound =
-        bound.flatten().map(|b| PickBound { mass_kg: b.mass_lower_bound_kg, loads_oppose: b.loads_oppose });
+    let bound = relaxation.and_then(|r| r.mass_lower_bound(&options, &design.objectives));
+    let bound = bound.map(|b| PickBound { mass_kg: b.mass_lower_bound_kg, loads_oppose: b.loads_oppose });
     Some(PickBudget {
         bound,
         rows: budget(problem, &options, &design.objectives)?,

@@ -29,48 +29,69 @@ const STEPS: usize = 40;
 /// What rounding may do to an objective, relative.
 const ROUNDING: f64 = 1e-9;
 
-/// What is known of the designs at least as good as one.
+/// What is known of the designs that are good enough.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MassBound {
     /// No design with at most the deflection and at least the lowest mode is lighter \[kg\].
     pub mass_lower_bound_kg: f64,
-    /// Options of each piece, base to tip, that such a design of at most the mass may have.
+    /// Options of each piece, tilting bearings and added masses included, base to tip, that such a design of
+    /// at most the known one's mass may have.
     pub options_left: Vec<usize>,
     /// Whether a load changes sign within what is left somewhere, so that the bound had to take the better sign.
     pub loads_oppose: bool,
 }
 
-/// Bounds the mass of every design that has at most the deflection and at least the lowest mode of a known
-/// one; `None` if the known design (one option a level) does not hold.
-pub fn mass_lower_bound(problem: &ArmProblem, known: &[u32], asked: &Objectives) -> Option<MassBound> {
-    let arm = problem.walk(known, |_, _| {}).ok()?;
-    let mut search = Search {
-        problem,
-        asked,
-        cases: (0..problem.stations().len()).map(|c| CaseLoads::new(problem, c)).collect(),
-        directions: problem.judged_directions(&arm),
-        models: problem.space().judged_cases.iter().map(|&c| ShapeModel::new(problem, c)).collect(),
-        parts: Parts::new(problem, &arm.options),
-        shapes: Vec::new(),
-        best_kg: 0.0,
-    };
-    search.run();
-    // nothing else is left: the known design is the lightest
-    let alone = search.parts.alive.iter().all(|options| options.len() == 1);
-    Some(MassBound {
-        mass_lower_bound_kg: if alone { asked.mass_kg } else { search.best_kg.min(asked.mass_kg) },
-        options_left: search.parts.alive.iter().rev().map(Vec::len).collect(),
-        loads_oppose: search.cases.iter().any(|case| case.opposes(problem, &search.parts)),
-    })
+/// A design space compiled for bounds.
+pub struct Relaxation<'a> {
+    problem: &'a ArmProblem<'a>,
+    cases: Vec<CaseLoads>,
+    /// One for each judged case.
+    models: Vec<ShapeModel>,
+}
+
+impl<'a> Relaxation<'a> {
+    /// Compiles every case.
+    pub fn new(problem: &'a ArmProblem<'a>) -> Self {
+        Self {
+            problem,
+            cases: (0..problem.stations().len()).map(|c| CaseLoads::new(problem, c)).collect(),
+            models: problem.space().judged_cases.iter().map(|&c| ShapeModel::new(problem, c)).collect(),
+        }
+    }
+
+    /// Bounds the mass of every design that deflects no more and vibrates no lower than is asked, by means
+    /// of a known one (one option a level) that does, of at most the mass asked; `None` if the known design
+    /// does not hold.
+    pub fn mass_lower_bound(&self, known: &[u32], asked: &Objectives) -> Option<MassBound> {
+        let arm = self.problem.walk(known, |_, _| {}).ok()?;
+        let mut search = Search {
+            problem: self.problem,
+            asked,
+            cases: &self.cases,
+            directions: self.problem.judged_directions(&arm),
+            models: &self.models,
+            parts: Parts::new(self.problem, &arm.options),
+            shapes: Vec::new(),
+            best_kg: 0.0,
+        };
+        search.run();
+        // nothing else is left: the known design is the lightest
+        let alone = search.parts.alive.iter().all(|options| options.len() == 1);
+        Some(MassBound {
+            mass_lower_bound_kg: if alone { asked.mass_kg } else { search.best_kg.min(asked.mass_kg) },
+            options_left: search.parts.alive.iter().rev().map(Vec::len).collect(),
+            loads_oppose: self.cases.iter().any(|case| case.opposes(self.problem, &search.parts)),
+        })
+    }
 }
 
 struct Search<'a> {
     problem: &'a ArmProblem<'a>,
     asked: &'a Objectives,
-    cases: Vec<CaseLoads>,
+    cases: &'a [CaseLoads],
     /// For each judged case, the direction in which the known design's tip moves.
     directions: Vec<(usize, nalgebra::Vector3<f64>)>,
-    models: Vec<ShapeModel>,
+    models: &'a [ShapeModel],
     parts: Parts,
     /// Trial shapes: judged case and strain coordinates.
     shapes: Vec<(usize, nalgebra::DVector<f64>)>,
@@ -94,7 +115,7 @@ impl Search<'_> {
     /// Drops options that no row of inequalities admits, whatever the other pieces are.
     fn narrow(&mut self) {
         loop {
-            let mut dropped = self.parts.drop_drives(self.problem, &self.cases);
+            let mut dropped = self.parts.drop_drives(self.problem, self.cases);
             let mass =
                 Row { coefficients: self.parts.masses(), limit: self.asked.mass_kg * (1.0 + ROUNDING) };
             for row in self.rows().iter().chain([&mass]) {

@@ -12,15 +12,18 @@ use crate::arm::JointLaw;
 use crate::mechanics::Wrench;
 use crate::search::ArmProblem;
 use crate::search::outward::Slot;
-use crate::search::station::{StationJoint, StationSlot};
+use crate::search::station::{Station, StationJoint, StationSlot};
 use crate::sizing::LinearReading;
-use nalgebra::Vector3;
+use nalgebra::{Matrix6, Vector3};
 
 /// One case: where each slot's weight acts, and how much of it each option has.
 pub(super) struct CaseLoads {
     case: usize,
     unit: Vec<Wrench>,
     amount: Vec<Vec<f64>>,
+    /// Inertia about each joint's axis of every option of every slot outboard of it \[kg m²\]; nothing
+    /// where a slot is no joint.
+    inertia: Vec<Vec<Vec<f64>>>,
 }
 
 /// A corner of the box of loads.
@@ -61,7 +64,8 @@ impl CaseLoads {
                 }
             }
         }
-        Self { case, unit, amount }
+        let inertia = (0..unit.len()).map(|slot| inertias(station, slot, &amount)).collect();
+        Self { case, unit, amount, inertia }
     }
 
     /// Least and greatest amount of what is left of a slot.
@@ -112,24 +116,12 @@ impl CaseLoads {
         })
     }
 
-    /// Inertia about a joint's axis of an option outboard of it \[kg m²\].
-    fn inertia(&self, problem: &ArmProblem, joint: &StationJoint, slot: usize, option: u32) -> f64 {
-        let twist = &joint.twist;
-        match &problem.stations()[self.case].slots[slot] {
-            StationSlot::Joint(outboard) => {
-                self.amount[slot][option as usize] * twist.dot(&(outboard.inertia_per_kg * twist))
-            }
-            StationSlot::Body { inertia, .. } => twist.dot(&(inertia * twist)),
-            StationSlot::Link { options, .. } => twist.dot(&(options[option as usize].inertia * twist)),
-        }
-    }
-
     /// Least and greatest inertia outboard of a joint about its axis \[kg m²\].
     pub fn inertia_range(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let Some(joint) = self.joint(problem, slot) else { return [0.0; 2] };
         let start = joint.twist.dot(&(problem.stations()[self.case].start_inertia * joint.twist));
         (0..slot).fold([start; 2], |[low, high], j| {
-            let all = parts.alive[j].iter().map(|&o| self.inertia(problem, joint, j, o));
+            let all = parts.alive[j].iter().map(|&o| self.inertia[slot][j][o as usize]);
             let [least, most] = all.fold([f64::INFINITY, 0.0], |[a, b]: [f64; 2], x| [a.min(x), b.max(x)]);
             [low + least, high + most]
         })
@@ -255,7 +247,7 @@ impl CaseLoads {
                     false => 0.0,
                     true => {
                         own(&self.unit[j]) * self.amount[j][o as usize]
-                            + if inertia == 0.0 { 0.0 } else { inertia * self.inertia(problem, joint, j, o) }
+                            + if inertia == 0.0 { 0.0 } else { inertia * self.inertia[slot][j][o as usize] }
                     }
                 });
                 coefficients[slot] = allowed.iter().map(|x| -x).collect();
@@ -269,6 +261,23 @@ impl CaseLoads {
         }
         rows
     }
+}
+
+/// Inertia about a joint's axis of every option outboard of it \[kg m²\].
+fn inertias(station: &Station, slot: usize, amount: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let StationSlot::Joint(StationJoint { twist, .. }) = &station.slots[slot] else { return Vec::new() };
+    let about = |inertia: &Matrix6<f64>| twist.dot(&(inertia * twist));
+    let outboard = station.slots[..slot].iter().zip(amount);
+    outboard
+        .map(|(placed, amount)| match placed {
+            StationSlot::Joint(joint) => {
+                let per_kg = about(&joint.inertia_per_kg);
+                amount.iter().map(|kg| kg * per_kg).collect()
+            }
+            StationSlot::Body { inertia, .. } => vec![about(inertia)],
+            StationSlot::Link { options, .. } => options.iter().map(|o| about(&o.inertia)).collect(),
+        })
+        .collect()
 }
 
 fn joint_masses(slot: &Slot) -> Vec<f64> {
