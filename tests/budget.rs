@@ -63,7 +63,7 @@ fn at_a_single_spring_a_kilogram_more_buys_the_deflection_over_the_mass() {
 fn bench() -> Value {
     let mut study: Value = serde_json::from_str(include_str!("../examples/bench-arm.json")).expect("JSON");
     study["drives"] = json!({"gear_series": ["CSG"], "ratios": [100],
-        "motor_models": ["MF0060008 48V", "MF0076008 48V", "MF0095014 48V"]});
+        "motor_models": ["MF0060008 48V", "MF0076008 48V", "MF0076032 48V"]});
     study["effects"] = json!([
         {"effect": "connection_compliance", "at": "elbow", "parameters": {"stiffness_nm_per_rad": 3e4}},
         {"effect": "harness_mass", "at": "forearm", "parameters": {"kg_per_m": 0.5}}]);
@@ -168,6 +168,8 @@ fn every_pick_has_a_bound_and_every_text_its_budget() {
         let bound = pick.bound.expect("all options are at hand").mass_kg;
         // after an exhaustive search a pick is the lightest of those as good
         assert!(bound > 0.9 * pick.mass_kg && bound <= pick.mass_kg, "{pick:?}");
+        let mixture = pick.bound.expect("all options are at hand").mixture_kg;
+        assert!(mixture > 0.5 * pick.mass_kg && mixture <= bound * (1.0 + 1e-9), "{pick:?}");
     }
     let text = budget_text(&all, 80);
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");

@@ -41,7 +41,7 @@ fn choice(dice: &mut Dice, name: &str) -> Value {
 }
 
 /// Physics beyond the nominal model, now and then.
-fn effects(dice: &mut Dice) -> Value {
+fn effects(dice: &mut Dice, models: &Value) -> Value {
     let spring = |effect: &str, at: &str| json!({"effect": effect, "at": at, "parameters": {"stiffness_nm_per_rad": 2e5}});
     let all = [
         spring("bearing_tilt", "j3"),
@@ -53,8 +53,10 @@ fn effects(dice: &mut Dice) -> Value {
         json!({"effect": "extra_mass", "at": "j3", "parameters": {"delta_kg": 1.5}}),
         json!({"effect": "modulus_error", "at": "upper_arm", "parameters": {"factor": 0.8}}),
     ];
-    match dice.below(3) {
-        0 => json!([dice.of(&all[..4]), dice.of(&all[4..])]),
+    // rigid links have no modulus
+    let second = if models["links"] == "rigid" { &all[4..7] } else { &all[4..] };
+    match dice.below(2) {
+        0 => json!([dice.of(&all[..4]), dice.of(second)]),
         _ => json!([]),
     }
 }
@@ -75,6 +77,7 @@ fn study(dice: &mut Dice) -> Value {
         poses[0]["pose_deg"] = json!(pose(dice));
     }
     let models = [json!({}), json!({"links": "rigid"}), json!({"links": "bending", "joints": "k2"})];
+    let models = dice.of(&models);
     let mut study = json!({
         "name": "random", "question": "is the bound one?",
         "chain": [
@@ -83,7 +86,7 @@ fn study(dice: &mut Dice) -> Value {
             joint(dice, "j2"), choice(dice, "upper_arm"), joint(dice, "j3"), choice(dice, "forearm"),
         ],
         "payload": {"mass_kg": dice.within(0.0, 15.0), "cg_m": [0.05, 0, 0]},
-        "poses": poses, "models": dice.of(&models), "effects": effects(dice),
+        "poses": poses, "models": models, "effects": effects(dice, &models),
     });
     if dice.below(4) == 0 {
         study["environments"] = json!([{"name": "wet", "water": {"density_kg_m3": 1025.0,

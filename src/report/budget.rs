@@ -48,6 +48,8 @@ pub struct BudgetRow {
 pub struct PickBound {
     /// No design of the study that sags no more and vibrates no lower is lighter \[kg\].
     pub mass_kg: f64,
+    /// About the mass of the lightest mixture of catalog parts that is as good \[kg\]; at most the bound.
+    pub mixture_kg: f64,
     /// Whether loads may oppose each other somewhere, which weakens the bound.
     pub loads_oppose: bool,
 }
@@ -68,9 +70,9 @@ pub struct PickBudget {
 }
 
 impl PickBudget {
-    /// How much heavier it is than the bound \[%\].
-    pub fn above_bound_percent(&self) -> Option<f64> {
-        self.bound.filter(|b| b.mass_kg > 0.0).map(|b| 100.0 * (self.mass_kg / b.mass_kg - 1.0))
+    /// How much heavier it is than a mass \[%\].
+    fn above_percent(&self, mass_kg: f64) -> f64 {
+        100.0 * (self.mass_kg / mass_kg - 1.0)
     }
 
     /// Part of the tip's deflection that the joints give, 0 to 1.
@@ -109,13 +111,26 @@ impl PickBudget {
                 });
                 let place = if best.is_joint { "the drive of" } else { "the link" };
                 format!(
-                    "{lead}; effort goes into {place} {} first, where one more kilogram {}{other}.",
+                    "{lead}; effort goes into {place} {} first, where one more kilogram {}{other}.{}",
                     best.piece,
-                    effect(&best.in_place)
+                    effect(&best.in_place),
+                    self.mode_advice(best)
                 )
             }
             _ => format!("{lead}; a kilogram more anywhere only weighs: the tip sinks."),
         }
+    }
+
+    /// Where the mode rises most, if elsewhere.
+    fn mode_advice(&self, told: &BudgetRow) -> String {
+        let best = self.rows.iter().max_by(|a, b| a.in_place.hz_per_kg.total_cmp(&b.in_place.hz_per_kg));
+        best.filter(|b| b.piece != told.piece && b.in_place.hz_per_kg > NOTHING).map_or(
+            String::new(),
+            |best| {
+                let hz = significant(best.in_place.hz_per_kg, 2);
+                format!(" The mode rises most at {}, by {hz} Hz.", best.piece)
+            },
+        )
     }
 
     /// `pick`, `design_id`, mass and bound, for `run.json`.
@@ -125,6 +140,7 @@ impl PickBudget {
             "design_id": self.design_id,
             "mass_kg": self.mass_kg,
             "mass_lower_bound_kg": self.bound.map(|b| b.mass_kg),
+            "mixture_kg": self.bound.map(|b| b.mixture_kg),
             "loads_oppose": self.bound.map(|b| b.loads_oppose),
         })
     }
@@ -134,16 +150,19 @@ fn kind(row: &BudgetRow) -> &'static str {
     if row.is_joint { "joint" } else { "link" }
 }
 
-/// `lowers the tip by 0.021 mm and raises the mode by 0.40 Hz`, with its sign in words.
+/// Changes smaller than this in a kilogram are rounding errors \[mm or Hz\].
+const NOTHING: f64 = 1e-6;
+
+/// `lowers the sag by 0.021 mm and raises the mode by 0.40 Hz`, its signs in words.
 fn effect(gain: &Gain) -> String {
-    let verb = |better: bool, good: &str, bad: &str| if better { good.to_string() } else { bad.to_string() };
-    format!(
-        "{} the sag by {} mm and {} the mode by {} Hz",
-        verb(gain.mm_per_kg <= 0.0, "lowers", "raises"),
-        significant(gain.mm_per_kg.abs(), 2),
-        verb(gain.hz_per_kg >= 0.0, "raises", "lowers"),
-        significant(gain.hz_per_kg.abs(), 2)
-    )
+    let part = |change: f64, what: &str, unit: &str| {
+        if change.abs() < NOTHING {
+            return format!("leaves the {what} as it is");
+        }
+        let verb = if change < 0.0 { "lowers" } else { "raises" };
+        format!("{verb} the {what} by {} {unit}", significant(change.abs(), 2))
+    };
+    format!("{} and {}", part(gain.mm_per_kg, "sag", "mm"), part(gain.hz_per_kg, "mode", "Hz"))
 }
 
 /// The pick that stands for all: the knee, where there is one.
@@ -201,25 +220,30 @@ fn bounds_table(budgets: &[PickBudget]) -> Option<Table> {
     let mut table = Table::new(vec![
         Column::left("pick"),
         Column::left("design"),
-        Column::unit("mass", "kg"),
-        Column::unit("none lighter than", "kg"),
-        Column::unit("above it", "%"),
+        Column::right("mass kg"),
+        Column::right("none below kg"),
+        Column::right("above it %"),
+        Column::right("mixture kg"),
+        Column::right("above it %"),
     ]);
     for pick in budgets {
-        let (bound, above) = (pick.bound?, pick.above_bound_percent());
+        let bound = pick.bound?;
         let mark = if bound.loads_oppose { " *" } else { "" };
         table.row([
-            pick.names.join(", "),
+            format!("{}{mark}", pick.names.join(", ")),
             pick.design_id.clone(),
             significant(pick.mass_kg, 5),
             significant(bound.mass_kg, 5),
-            above.map_or(String::new(), |a| format!("{}{mark}", fixed(a, 2))),
+            fixed(pick.above_percent(bound.mass_kg), 2),
+            significant(bound.mixture_kg, 5),
+            fixed(pick.above_percent(bound.mixture_kg), 2),
         ]);
     }
     (!table.rows().is_empty()).then_some(table)
 }
 
-const BOUND_WORDS: &str = "No arm of the study that sags no more and vibrates no lower is lighter than the bound, a convex relaxation.";
+const BOUND_WORDS: &str = "None below: no arm of the study that sags no more and vibrates no lower is lighter. Mixture: what \
+                           the convex relaxation gives at first, in which every piece may be a mixture of its catalog options.";
 const OPPOSED_WORDS: &str = "* loads may oppose each other, which weakens the bound.";
 const IN_PLACE_WORDS: &str = "Per kilogram added to a piece, its stiffness growing in proportion; minus lowers the tip's \
                               deflection. Next part: of the heavier parts that may stand there the best per kilogram, all \

@@ -42,7 +42,11 @@ fn pick_budget(
     let design = &front.iter().find(|d| problem.whole_number(d.design.number) == number)?.design;
     let options = problem.options_of_whole(number)?;
     let bound = relaxation.and_then(|r| r.mass_lower_bound(&options, &design.objectives));
-    let bound = bound.map(|b| PickBound { mass_kg: b.mass_lower_bound_kg, loads_oppose: b.loads_oppose });
+    let bound = bound.map(|b| PickBound {
+        mass_kg: b.mass_lower_bound_kg,
+        mixture_kg: b.mixture_kg,
+        loads_oppose: b.loads_oppose,
+    });
     Some(PickBudget {
         bound,
         rows: budget(problem, &options, &design.objectives)?,

@@ -34,6 +34,9 @@ const ROUNDING: f64 = 1e-9;
 pub struct MassBound {
     /// No design with at most the deflection and at least the lowest mode is lighter \[kg\].
     pub mass_lower_bound_kg: f64,
+    /// What the program gave at first, before options were dropped by it: about the mass of the lightest
+    /// mixture of catalog parts \[kg\].
+    pub mixture_kg: f64,
     /// Options of each piece, tilting bearings and added masses included, base to tip, that such a design of
     /// at most the known one's mass may have.
     pub options_left: Vec<usize>,
@@ -73,12 +76,14 @@ impl<'a> Relaxation<'a> {
             parts: Parts::new(self.problem, &arm.options),
             shapes: Vec::new(),
             best_kg: 0.0,
+            first_kg: 0.0,
         };
         search.run();
         // nothing else is left: the known design is the lightest
         let alone = search.parts.alive.iter().all(|options| options.len() == 1);
         Some(MassBound {
             mass_lower_bound_kg: if alone { asked.mass_kg } else { search.best_kg.min(asked.mass_kg) },
+            mixture_kg: search.first_kg.min(asked.mass_kg),
             options_left: search.parts.alive.iter().rev().map(Vec::len).collect(),
             loads_oppose: self.cases.iter().any(|case| case.opposes(self.problem, &search.parts)),
         })
@@ -96,14 +101,19 @@ struct Search<'a> {
     /// Trial shapes: judged case and strain coordinates.
     shapes: Vec<(usize, nalgebra::DVector<f64>)>,
     best_kg: f64,
+    /// The best after the first round of solving.
+    first_kg: f64,
 }
 
 impl Search<'_> {
     fn run(&mut self) {
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
             self.narrow();
             let before: usize = self.parts.alive.iter().map(Vec::len).sum();
             self.solve();
+            if round == 0 {
+                self.first_kg = self.best_kg;
+            }
             self.narrow();
             let after: usize = self.parts.alive.iter().map(Vec::len).sum();
             if after == before || self.best_kg >= self.asked.mass_kg * (1.0 - 1e-6) {
