@@ -175,7 +175,8 @@ fn every_pick_has_a_bound_and_every_text_its_budget() {
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     let markdown = budget_markdown(&all);
     for pick in &all {
-        assert!(markdown.contains(&pick.design_id) && text.contains(&pick.design_id), "{text}{markdown}");
+        let names = pick.names.join(", ");
+        assert!(markdown.contains(&pick.design_id) && text.contains(&names), "{text}{markdown}");
     }
     let rows: Vec<&BudgetRow> = all.iter().flat_map(|p| &p.rows).collect();
     assert_eq!(budget_csv(&all).lines().count(), 1 + rows.len());

@@ -170,9 +170,11 @@ fn shown(budgets: &[PickBudget]) -> Option<&PickBudget> {
     budgets.iter().find(|b| b.names.contains(&"knee")).or(budgets.last())
 }
 
+/// A change with its sign, in at most seven characters where it is below a thousand.
 fn signed(value: f64) -> String {
-    let text = if value.abs() < 5e-5 { "0.0000".to_string() } else { significant(value, 3) };
-    if value > 0.0 && text.bytes().any(|b| (b'1'..=b'9').contains(&b)) { format!("+{text}") } else { text }
+    let text = if value.abs() < 0.1 { fixed(value, 4) } else { significant(value, 3) };
+    let rises = value > 0.0 && text.bytes().any(|b| (b'1'..=b'9').contains(&b));
+    if rises { format!("+{text}") } else { text }
 }
 
 const FULL: [&str; 9] = [
@@ -219,24 +221,20 @@ fn budget_table(pick: &PickBudget, headers: [&str; 9]) -> Table {
 fn bounds_table(budgets: &[PickBudget]) -> Option<Table> {
     let mut table = Table::new(vec![
         Column::left("pick"),
-        Column::left("design"),
         Column::right("mass kg"),
-        Column::right("none below kg"),
-        Column::right("above it %"),
-        Column::right("mixture kg"),
-        Column::right("above it %"),
+        Column::right("none below"),
+        Column::right("above %"),
+        Column::right("mixture"),
     ]);
     for pick in budgets {
         let bound = pick.bound?;
         let mark = if bound.loads_oppose { " *" } else { "" };
         table.row([
             format!("{}{mark}", pick.names.join(", ")),
-            pick.design_id.clone(),
-            significant(pick.mass_kg, 5),
-            significant(bound.mass_kg, 5),
-            fixed(pick.above_percent(bound.mass_kg), 2),
-            significant(bound.mixture_kg, 5),
-            fixed(pick.above_percent(bound.mixture_kg), 2),
+            significant(pick.mass_kg, 4),
+            significant(bound.mass_kg, 4),
+            fixed(pick.above_percent(bound.mass_kg), 1),
+            significant(bound.mixture_kg, 4),
         ]);
     }
     (!table.rows().is_empty()).then_some(table)
