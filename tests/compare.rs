@@ -300,6 +300,7 @@ fn input() -> SummaryInput {
             material("Carbon", None, &CARBON),
             material("Lead", None, &[]),
         ],
+        budgets: Vec::new(),
     }
 }
 

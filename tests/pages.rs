@@ -341,6 +341,7 @@ fn large() -> SummaryInput {
         },
         overall: table((0..10_000).map(|i| row(i, i % 4)).collect()),
         materials: (0..4).map(per_material).collect(),
+        budgets: Vec::new(),
     }
 }
 

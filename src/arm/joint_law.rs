@@ -144,7 +144,7 @@ impl JointLaw {
 
     /// Stiffness of the spring that the friction play drags: the gear's middle slope with the
     /// connection in series \[N m/rad\]; none without play, or where nothing twists for friction to hold.
-    fn play_stiffness_nm_per_rad(&self) -> Option<f64> {
+    pub(crate) fn play_stiffness_nm_per_rad(&self) -> Option<f64> {
         let gear = self.curve.middle_slope().tangent_compliance_rad_per_nm(0.0);
         let compliance = gear + self.connection_rad_per_nm;
         (self.hysteresis_rad > 0.0 && compliance > 0.0).then(|| 1.0 / compliance)

@@ -1,6 +1,6 @@
 //! The arm as mechanics sees it: pieces with their physics, effects applied, part names gone.
 
-use super::{Arm, Element, Joint, JointLaw, JointModel, Link, LinkBody, LinkMaterial, Section};
+use super::{Arm, Element, Joint, JointLaw, JointModel, Link, LinkBody, LinkMaterial, LoadCase, Section};
 use nalgebra::{Unit, Vector3};
 
 /// Everything mechanics needs to know of an arm.
@@ -103,6 +103,14 @@ impl Arm {
     /// product applied. Effects of a test are left out: see [`Arm::ignored_effects`].
     pub fn structure(&self, joints: JointModel) -> Structure {
         self.subject(joints).structure
+    }
+
+    /// The arm as mechanics sees it in a load case: its joint model, and its water, if it has some, before
+    /// that of an effect.
+    pub fn structure_in(&self, case: &LoadCase) -> Structure {
+        let mut structure = self.structure(case.joints);
+        structure.water = case.water.or(structure.water);
+        structure
     }
 
     /// The arm as mechanics sees it without any effect.

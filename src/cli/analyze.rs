@@ -169,8 +169,7 @@ fn case_of_flags(args: &AnalyzeArgs, arm: &Arm) -> Result<LoadCase, Failure> {
 }
 
 fn solve(args: &AnalyzeArgs, arm: &Arm, case: LoadCase) -> Solved {
-    let mut structure = arm.structure(case.joints);
-    structure.water = case.water.or(structure.water);
+    let structure = arm.structure_in(&case);
     let chain = Chain::new(&structure, case.links);
     let posed = chain.pose(&case);
     let statics = posed.statics();

@@ -5,6 +5,7 @@ use super::{Failure, carry, write_all};
 use crate::arm::Effect;
 use crate::catalog::Catalogs;
 use crate::fault::Document;
+use crate::report::budget::{PickBudget, budget_csv};
 use crate::report::compare::text::wrap;
 use crate::report::front_svg::{FrontPicture, PlottedFront, mixed_designs};
 use crate::report::front_table::FrontTable;
@@ -18,8 +19,8 @@ use crate::report::table::Table;
 use crate::search::hypervolume::front_hypervolume;
 use crate::search::{ArmProblem, Status, exact};
 use crate::study::{
-    Carried, ExactStudy, Study, StudyOutcome, empty_pieces, front_table, left_out, named, paper_question,
-    read_study, run_exact, run_study, slug, study_page, why_infeasible,
+    Carried, ExactStudy, Study, StudyOutcome, budgets, empty_pieces, front_table, left_out, named,
+    paper_question, read_study, run_exact, run_study, slug, study_page, why_infeasible,
 };
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -389,6 +390,7 @@ impl Finished<'_> {
         let picture = picture(&summary);
         files.push(("front.svg".into(), picture.clone().into_bytes()));
         files.push(("summary.md".into(), summary_md(&summary).into_bytes()));
+        files.push(("budget.csv".into(), budget_csv(&summary.budgets).into_bytes()));
         let run = self.run_json(&summary);
         files.push(("run.json".into(), pretty(&run)));
         files.extend(self.page(&summary, picture, &run).into_files());
@@ -400,7 +402,9 @@ impl Finished<'_> {
         let (study, sweep) = (self.study, &self.outcome.sweep);
         let cost = |name: &str| self.catalogs.materials.iter().find(|m| m.name == name)?.cost_eur_per_kg;
         let materials = study.space.material_names();
+        let overall = front_table(self.problem, self.catalogs, &self.outcome.front);
         SummaryInput {
+            budgets: budgets(self.problem, &self.outcome.front, &overall),
             facts: SummaryFacts {
                 study: study.name.clone(),
                 question: study.question.clone(),
@@ -416,7 +420,7 @@ impl Finished<'_> {
                 not_checked: study.not_checked.clone(),
                 results: self.dir.display().to_string(),
             },
-            overall: front_table(self.problem, self.catalogs, &self.outcome.front),
+            overall,
             materials: materials
                 .into_iter()
                 .zip(&self.outcome.by_material)
@@ -472,6 +476,7 @@ impl Finished<'_> {
             "designs_excluded": count(sweep.designs_excluded),
             "front_size": self.outcome.front.len(),
             "hypervolume": front_hypervolume(self.outcome.front.iter().map(|d| d.design.objectives)),
+            "picks": summary.budgets.iter().map(PickBudget::to_json).collect::<Vec<Value>>(),
             "elapsed_s": self.elapsed_s,
             "designs_per_s": sweep.designs_evaluated as f64 / self.elapsed_s,
             "threads": rayon::current_num_threads(),

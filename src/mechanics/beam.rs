@@ -69,6 +69,20 @@ pub struct LineInertia {
     pub rotary_z_kg_m: f64,
 }
 
+impl LineInertia {
+    /// Inertia per length of each displacement and rotation component, section frame.
+    fn densities(&self) -> [f64; 6] {
+        [
+            self.along_kg_per_m,
+            self.across_kg_per_m,
+            self.across_kg_per_m,
+            self.polar_kg_m,
+            self.rotary_y_kg_m,
+            self.rotary_z_kg_m,
+        ]
+    }
+}
+
 /// A link prepared for any pose: all that does not depend on where it is.
 #[derive(Debug, Clone)]
 pub struct PreparedBeam {
@@ -141,15 +155,7 @@ impl PreparedBeam {
 
     /// Inertia per length of each displacement and rotation component.
     pub fn line_densities(&self) -> [f64; 6] {
-        let l = &self.line;
-        [
-            l.along_kg_per_m,
-            l.across_kg_per_m,
-            l.across_kg_per_m,
-            l.polar_kg_m,
-            l.rotary_y_kg_m,
-            l.rotary_z_kg_m,
-        ]
+        self.line.densities()
     }
 
     /// Gauss points with weights times length.
@@ -213,6 +219,12 @@ pub fn compliances(link: &LinkPiece, model: LinkModel) -> Vec<f64> {
     let length_m = link.vector_m.norm();
     let coordinates = link.beam.map_or_else(Vec::new, |beam| coordinates(&beam, length_m, model));
     coordinates.into_iter().map(|(_, _, compliance)| compliance).collect()
+}
+
+/// Inertia per length of each displacement and rotation component of a link, as
+/// [`PreparedBeam::line_densities`].
+pub fn line_densities(link: &LinkPiece, structure: &Structure, model: LinkModel) -> [f64; 6] {
+    line_inertia(link, structure, model).densities()
 }
 
 /// Stiffnesses of a tube: `E I` about y and about z \[N m²\], `κ G A` \[N\], `G J` \[N m²\], `E A` \[N\].

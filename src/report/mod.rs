@@ -1,6 +1,7 @@
 //! Numbers, tables and pictures on paper: csv, json, svg, terminal.
 
 pub mod braille;
+pub mod budget;
 pub mod compare;
 pub mod front_svg;
 pub mod front_table;

@@ -1,5 +1,6 @@
 //! What a finished study found: the question, the answer in two sentences, picks, materials, counts.
 
+use super::budget::{PickBudget, budget_markdown, budget_text};
 use super::compare::cost_words;
 use super::compare::text::{short_labels, wrap};
 use super::front_table::FrontTable;
@@ -64,6 +65,8 @@ pub struct SummaryInput {
     pub overall: FrontTable,
     /// Front of each material, in the study's order.
     pub materials: Vec<MaterialFront>,
+    /// What one more kilogram buys in each pick, and how light it could be.
+    pub budgets: Vec<PickBudget>,
 }
 
 /// Constraints in words, one a line; empty if there are none.
@@ -115,6 +118,7 @@ pub fn summary_md(input: &SummaryInput) -> String {
         ));
         out.push_str("\nThe front of a material holds the designs whose links are all of it; its share counts its designs on the front of all.\n");
     }
+    out.push_str(&budget_markdown(&input.budgets));
     out.push_str(&format!("\n## What was searched\n\n- {}\n", counts(facts)));
     out.push_str(&format!(
         "- Constraints: {}.\n- Cases, the worst of which counts: {}.\n",
@@ -150,6 +154,7 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
             "\n{}",
             materials_table(input, &short_labels(&names), TERMINAL_MATERIALS).to_text()
         ));
+        out.push_str(&format!("\n{}", budget_text(&input.budgets, TERMINAL)));
     }
     out.push_str(&format!("\n{}", wrap(&counts(facts), TERMINAL, "")));
     if !facts.not_checked.is_empty() {

@@ -3,7 +3,7 @@
 use super::outward::ArmProblem;
 use super::space::{DriveChoice, LinkOption, SpacePiece};
 use super::{Objectives, OutwardIn};
-use crate::arm::{Arm, Curve, Element, Joint, LoadCase, windup_of};
+use crate::arm::{Arm, Curve, Element, Joint, LoadCase, Structure, windup_of};
 use crate::mechanics::Chain;
 use crate::sizing::Drive;
 
@@ -155,10 +155,15 @@ fn drive_of(choice: &DriveChoice, part: &Part) -> Option<(Curve, f64, [Option<St
 
 /// Objectives of an arm over load cases by the full model: what `analyze` prints.
 pub fn full_objectives(arm: &Arm, cases: &[LoadCase]) -> Objectives {
+    objectives_with(arm, cases, |_| ())
+}
+
+/// The same of an arm whose structure, effects applied, is changed; the mass is that of the arm as it was.
+pub fn objectives_with(arm: &Arm, cases: &[LoadCase], change: impl Fn(&mut Structure)) -> Objectives {
     let mut out = Objectives { tip_deflection_m: 0.0, mass_kg: arm.mass_kg(), lowest_mode_hz: f64::INFINITY };
     for case in cases {
-        let mut structure = arm.structure(case.joints);
-        structure.water = case.water.or(structure.water);
+        let mut structure = arm.structure_in(case);
+        change(&mut structure);
         let chain = Chain::new(&structure, case.links);
         let posed = chain.pose(case);
         let statics = posed.statics();

@@ -18,6 +18,7 @@ pub mod front;
 pub mod hypervolume;
 pub mod outward;
 mod ranking;
+pub mod relax;
 mod row;
 mod row_lanes;
 mod sieve;

@@ -1,5 +1,6 @@
 //! Named questions: read, resolve, run.
 
+mod budget;
 mod check;
 mod diagnose;
 mod effects;
@@ -10,6 +11,7 @@ mod read;
 mod sections;
 mod table;
 
+pub use budget::budgets;
 pub use check::{FrontCheck, check_front};
 pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{Carried, CorrectedStudy, carry_over, left_out};

@@ -4,14 +4,15 @@ use super::Study;
 use super::paper::figures::{BeamPoint, deflection_plot, points_csv, sizes};
 use crate::arm::{Element, LinkBody};
 use crate::catalog::{Catalogs, Provenance};
+use crate::report::budget::budget_extra;
 use crate::report::html::Figure;
 use crate::report::html::pick::PickedArm;
 use crate::report::html::study::{CatalogRow, StudyPage};
 use crate::report::picks;
 use crate::report::summary::SummaryInput;
 use crate::report::svg::Series;
-use crate::search::design::{number_of, options};
-use crate::search::{ArmProblem, OutwardIn};
+use crate::search::ArmProblem;
+use crate::search::design::number_of;
 
 /// Everything on the page of a finished study but the facts of the run.
 pub fn study_page<'a>(
@@ -31,7 +32,7 @@ pub fn study_page<'a>(
         scatter_svg: String::new(),
         beams: beams(study, catalogs),
         run: Vec::new(),
-        budget: None,
+        budget: budget_extra(&summary.budgets),
         certificate: None,
     }
 }
@@ -44,7 +45,7 @@ fn picked(
     summary: &SummaryInput,
     pick: picks::Pick,
 ) -> Option<PickedArm> {
-    let chosen = options(problem.level_sizes(), number_of(&pick.design.design_id)?)?;
+    let chosen = problem.options_of_whole(number_of(&pick.design.design_id)?)?;
     let mut arm = problem.arm(&chosen)?;
     arm.name = format!("{} {}", study.name, pick.design.design_id);
     let row = &summary.overall.rows[pick.design.row];

@@ -250,8 +250,7 @@ pub fn deflection_bars(picks: &[PickedArm]) -> Figure {
 }
 
 fn solve<'a>(arm: &Arm, case: &'a LoadCase) -> Solved<'a> {
-    let mut structure = arm.structure(case.joints);
-    structure.water = case.water.or(structure.water);
+    let structure = arm.structure_in(case);
     let chain = Chain::new(&structure, case.links);
     let posed = chain.pose(case);
     let statics = posed.statics();

@@ -44,7 +44,7 @@ pub struct StudyPage<'a> {
     pub parts: Vec<CatalogRow>,
     /// Facts of the run: names and values.
     pub run: Vec<(String, String)>,
-    /// Where another newton metre per radian pays most.
+    /// What one more kilogram buys at each joint and link, and how light the picks could be.
     pub budget: Option<Extra>,
     /// The proof that the front is complete.
     pub certificate: Option<Extra>,

@@ -1,0 +1,345 @@
+//! The stiffness budget of a front's picks as words, tables and CSV: what one more kilogram buys at each joint
+//! and link, and how far each pick is from the lightest arm that could do as well.
+
+use super::compare::text::wrap;
+use super::html::Extra;
+use super::number::{fixed, shortest, significant};
+use super::table::{Column, Table, csv_line};
+
+/// Change per kilogram added.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gain {
+    /// Change of the tip's deflection \[mm/kg\]; negative is better.
+    pub mm_per_kg: f64,
+    /// Change of the lowest mode \[Hz/kg\]; positive is better.
+    pub hz_per_kg: f64,
+}
+
+/// A heavier part that may stand in a piece's place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NextPart {
+    /// Gear, or size and material of a tube.
+    pub name: String,
+    /// Mass of the piece with it \[kg\].
+    pub mass_kg: f64,
+    /// Change to the design with it, per kilogram added.
+    pub gain: Gain,
+}
+
+/// One piece of an arm and what a kilogram buys there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BudgetRow {
+    /// Joint or link.
+    pub piece: String,
+    /// Whether it is a joint.
+    pub is_joint: bool,
+    /// Its mass \[kg\].
+    pub mass_kg: f64,
+    /// Its part of the tip's deflection in the worst case, from 0 to 1; negative if it lifts the tip.
+    pub share: f64,
+    /// What a kilogram buys if mass and stiffness of the piece grow in proportion.
+    pub in_place: Gain,
+    /// The heavier part with the best change of deflection per kilogram.
+    pub next_part: Option<NextPart>,
+}
+
+/// What is known of lighter designs as good as a pick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PickBound {
+    /// No design of the study that sags no more and vibrates no lower is lighter \[kg\].
+    pub mass_kg: f64,
+    /// About the mass of the lightest mixture of catalog parts that is as good \[kg\]; at most the bound.
+    pub mixture_kg: f64,
+    /// Whether loads may oppose each other somewhere, which weakens the bound.
+    pub loads_oppose: bool,
+}
+
+/// A pick with its budget.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PickBudget {
+    /// What it was picked for.
+    pub names: Vec<&'static str>,
+    /// Name of the design.
+    pub design_id: String,
+    /// Its mass \[kg\].
+    pub mass_kg: f64,
+    /// What is known of lighter designs; `None` where only a part of the study's options is at hand.
+    pub bound: Option<PickBound>,
+    /// Pieces that weigh, base to tip.
+    pub rows: Vec<BudgetRow>,
+}
+
+impl PickBudget {
+    /// How much heavier it is than a mass \[%\].
+    fn above_percent(&self, mass_kg: f64) -> f64 {
+        100.0 * (self.mass_kg / mass_kg - 1.0)
+    }
+
+    /// Part of the tip's deflection that the joints give, 0 to 1.
+    fn joints_share(&self) -> f64 {
+        self.rows.iter().filter(|r| r.is_joint).map(|r| r.share).sum()
+    }
+
+    /// The joint or link where a kilogram lowers the tip most.
+    fn best(&self, joint: bool) -> Option<&BudgetRow> {
+        let of_kind = self.rows.iter().filter(|r| r.is_joint == joint);
+        of_kind.min_by(|a, b| a.in_place.mm_per_kg.total_cmp(&b.in_place.mm_per_kg))
+    }
+
+    fn title(&self) -> String {
+        format!("{} ({})", self.names.join(", "), self.design_id)
+    }
+
+    /// Where effort should go, in a sentence.
+    fn advice(&self) -> String {
+        let lead = format!(
+            "{}: joints give {} % of the tip's deflection",
+            self.title(),
+            fixed(100.0 * self.joints_share(), 0)
+        );
+        let (joint, link) = (self.best(true), self.best(false));
+        let paying = |row: Option<&BudgetRow>| row.is_some_and(|r| r.in_place.mm_per_kg < 0.0);
+        let [first, second] = match (joint, link) {
+            (Some(j), Some(l)) if l.in_place.mm_per_kg < j.in_place.mm_per_kg => [link, joint],
+            (None, _) => [link, joint],
+            _ => [joint, link],
+        };
+        match (first, second) {
+            (Some(best), other) if paying(first) => {
+                let other = other.map_or(String::new(), |o| {
+                    format!("; at the best {} ({}) it {}", kind(o), o.piece, effect(&o.in_place))
+                });
+                let place = if best.is_joint { "the drive of" } else { "the link" };
+                format!(
+                    "{lead}; effort goes into {place} {} first, where one more kilogram {}{other}.{}",
+                    best.piece,
+                    effect(&best.in_place),
+                    self.mode_advice(best)
+                )
+            }
+            _ => format!("{lead}; a kilogram more anywhere only weighs: the tip sinks."),
+        }
+    }
+
+    /// Where the mode rises most, if elsewhere.
+    fn mode_advice(&self, told: &BudgetRow) -> String {
+        let best = self.rows.iter().max_by(|a, b| a.in_place.hz_per_kg.total_cmp(&b.in_place.hz_per_kg));
+        best.filter(|b| b.piece != told.piece && b.in_place.hz_per_kg > NOTHING).map_or(
+            String::new(),
+            |best| {
+                let hz = significant(best.in_place.hz_per_kg, 2);
+                format!(" The mode rises most at {}, by {hz} Hz.", best.piece)
+            },
+        )
+    }
+
+    /// `pick`, `design_id`, mass and bound, for `run.json`.
+    pub fn to_json(&self) -> serde_json::Value {
+        serde_json::json!({
+            "names": self.names,
+            "design_id": self.design_id,
+            "mass_kg": self.mass_kg,
+            "mass_lower_bound_kg": self.bound.map(|b| b.mass_kg),
+            "mixture_kg": self.bound.map(|b| b.mixture_kg),
+            "loads_oppose": self.bound.map(|b| b.loads_oppose),
+        })
+    }
+}
+
+fn kind(row: &BudgetRow) -> &'static str {
+    if row.is_joint { "joint" } else { "link" }
+}
+
+/// Changes smaller than this in a kilogram are rounding errors \[mm or Hz\].
+const NOTHING: f64 = 1e-6;
+
+/// `lowers the sag by 0.021 mm and raises the mode by 0.40 Hz`, its signs in words.
+fn effect(gain: &Gain) -> String {
+    let part = |change: f64, what: &str, unit: &str| {
+        if change.abs() < NOTHING {
+            return format!("leaves the {what} as it is");
+        }
+        let verb = if change < 0.0 { "lowers" } else { "raises" };
+        format!("{verb} the {what} by {} {unit}", significant(change.abs(), 2))
+    };
+    format!("{} and {}", part(gain.mm_per_kg, "sag", "mm"), part(gain.hz_per_kg, "mode", "Hz"))
+}
+
+/// The pick that stands for all: the knee, where there is one.
+fn shown(budgets: &[PickBudget]) -> Option<&PickBudget> {
+    budgets.iter().find(|b| b.names.contains(&"knee")).or(budgets.last())
+}
+
+/// A change with its sign, in at most seven characters where it is below a thousand.
+fn signed(value: f64) -> String {
+    let text = if value.abs() < 0.1 { fixed(value, 4) } else { significant(value, 3) };
+    let rises = value > 0.0 && text.bytes().any(|b| (b'1'..=b'9').contains(&b));
+    if rises { format!("+{text}") } else { text }
+}
+
+const FULL: [&str; 9] = [
+    "piece",
+    "mass [kg]",
+    "share of deflection [%]",
+    "tip [mm/kg]",
+    "mode [Hz/kg]",
+    "next part to buy",
+    "adds [kg]",
+    "with it: tip [mm/kg]",
+    "mode [Hz/kg]",
+];
+const TERMINAL: [&str; 9] =
+    ["piece", "mass kg", "% of sag", "mm/kg", "Hz/kg", "", "next: kg", "mm/kg", "Hz/kg"];
+
+/// The budget of a pick under these headers; an empty header leaves its column out.
+fn budget_table(pick: &PickBudget, headers: [&str; 9]) -> Table {
+    let shown: Vec<usize> = (0..headers.len()).filter(|&i| !headers[i].is_empty()).collect();
+    let words = |i: usize| i == 0 || i == 5;
+    let column = |&i: &usize| if words(i) { Column::left(headers[i]) } else { Column::right(headers[i]) };
+    let mut table = Table::new(shown.iter().map(column).collect());
+    for row in &pick.rows {
+        let next = row.next_part.as_ref();
+        let of_next =
+            |cell: fn(&NextPart, &BudgetRow) -> String| next.map_or(String::new(), |n| cell(n, row));
+        let cells = [
+            row.piece.clone(),
+            significant(row.mass_kg, 4),
+            fixed(100.0 * row.share, 1),
+            signed(row.in_place.mm_per_kg),
+            signed(row.in_place.hz_per_kg),
+            next.map_or("none".into(), |n| n.name.clone()),
+            of_next(|n, row| significant(n.mass_kg - row.mass_kg, 3)),
+            of_next(|n, _| signed(n.gain.mm_per_kg)),
+            of_next(|n, _| signed(n.gain.hz_per_kg)),
+        ];
+        table.row(shown.iter().map(|&i| cells[i].clone()));
+    }
+    table
+}
+
+/// How far each pick is from the bound; `None` if no bound is known.
+fn bounds_table(budgets: &[PickBudget]) -> Option<Table> {
+    let mut table = Table::new(vec![
+        Column::left("pick"),
+        Column::right("mass kg"),
+        Column::right("none below"),
+        Column::right("above %"),
+        Column::right("mixture"),
+    ]);
+    for pick in budgets {
+        let bound = pick.bound?;
+        let mark = if bound.loads_oppose { " *" } else { "" };
+        table.row([
+            format!("{}{mark}", pick.names.join(", ")),
+            significant(pick.mass_kg, 4),
+            significant(bound.mass_kg, 4),
+            fixed(pick.above_percent(bound.mass_kg), 1),
+            significant(bound.mixture_kg, 4),
+        ]);
+    }
+    (!table.rows().is_empty()).then_some(table)
+}
+
+const BOUND_WORDS: &str = "None below: no arm of the study that sags no more and vibrates no lower is lighter. Mixture: what \
+                           the convex relaxation gives at first, in which every piece may be a mixture of its catalog options.";
+const OPPOSED_WORDS: &str = "* loads may oppose each other, which weakens the bound.";
+const IN_PLACE_WORDS: &str = "Per kilogram added to a piece, its stiffness growing in proportion; minus lowers the tip's \
+                              deflection. Next part: of the heavier parts that may stand there the best per kilogram, all \
+                              others kept.";
+
+fn opposed(budgets: &[PickBudget]) -> bool {
+    budgets.iter().any(|b| b.bound.is_some_and(|b| b.loads_oppose))
+}
+
+/// The block of the terminal's summary, within `width` columns: the knee's budget and every pick's bound.
+pub fn budget_text(budgets: &[PickBudget], width: usize) -> String {
+    let Some(pick) = shown(budgets) else { return String::new() };
+    let mut out = format!("What one more kilogram buys at each joint and link: {}\n", pick.title());
+    out.push_str(&budget_table(pick, TERMINAL).to_text());
+    out.push_str(&wrap(&pick.advice(), width, ""));
+    if let Some(table) = bounds_table(budgets) {
+        out.push_str(&format!("\n{}", table.to_text()));
+        out.push_str(&wrap(BOUND_WORDS, width, ""));
+        if opposed(budgets) {
+            out.push_str(&format!("{OPPOSED_WORDS}\n"));
+        }
+    }
+    out
+}
+
+/// The section of `summary.md`; empty if there is no budget.
+pub fn budget_markdown(budgets: &[PickBudget]) -> String {
+    if budgets.is_empty() {
+        return String::new();
+    }
+    let mut out = String::from("\n## Stiffness budget\n\n");
+    budgets.iter().for_each(|pick| out.push_str(&format!("- {}\n", pick.advice())));
+    for pick in budgets {
+        out.push_str(&format!("\n{}:\n\n{}", pick.title(), budget_table(pick, FULL).to_markdown()));
+    }
+    out.push_str(&format!("\n{IN_PLACE_WORDS}\n"));
+    if let Some(table) = bounds_table(budgets) {
+        out.push_str(&format!("\n## How light could they be?\n\n{}\n{BOUND_WORDS}\n", table.to_markdown()));
+        if opposed(budgets) {
+            out.push_str(&format!("\n{}\n", OPPOSED_WORDS.replace('*', "\\*")));
+        }
+    }
+    out
+}
+
+/// The part of the page; `None` if there is no budget.
+pub fn budget_extra(budgets: &[PickBudget]) -> Option<Extra> {
+    let mut tables: Vec<(String, Table)> = budgets
+        .iter()
+        .map(|pick| (format!("What one more kilogram buys: {}", pick.title()), budget_table(pick, FULL)))
+        .collect();
+    let mut words: Vec<String> = budgets.iter().map(PickBudget::advice).collect();
+    words.push(IN_PLACE_WORDS.into());
+    if let Some(table) = bounds_table(budgets) {
+        let note = if opposed(budgets) { format!(" {OPPOSED_WORDS}") } else { String::new() };
+        tables.push((format!("How light could the picks be? {BOUND_WORDS}{note}"), table));
+    }
+    (!budgets.is_empty()).then(|| Extra {
+        title: "Stiffness budget".into(),
+        words,
+        tables,
+        ..Extra::default()
+    })
+}
+
+/// `budget.csv`.
+pub fn budget_csv(budgets: &[PickBudget]) -> String {
+    let header = [
+        "pick",
+        "design_id",
+        "piece",
+        "kind",
+        "mass_kg",
+        "share_of_deflection",
+        "in_place_mm_per_kg",
+        "in_place_hz_per_kg",
+        "next_part",
+        "next_mass_kg",
+        "next_mm_per_kg",
+        "next_hz_per_kg",
+    ];
+    let mut out = csv_line(&header.map(String::from));
+    for pick in budgets {
+        for row in &pick.rows {
+            let mut cells =
+                vec![pick.names.join(", "), pick.design_id.clone(), row.piece.clone(), kind(row).to_string()];
+            let numbers = [row.mass_kg, row.share, row.in_place.mm_per_kg, row.in_place.hz_per_kg];
+            cells.extend(numbers.map(shortest));
+            match &row.next_part {
+                Some(next) => {
+                    cells.push(next.name.clone());
+                    let numbers = [next.mass_kg, next.gain.mm_per_kg, next.gain.hz_per_kg];
+                    cells.extend(numbers.map(shortest));
+                }
+                None => cells.extend(["", "", "", ""].map(String::from)),
+            }
+            out.push_str(&csv_line(&cells));
+        }
+    }
+    out
+}

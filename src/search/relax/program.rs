@@ -1,0 +1,213 @@
+//! The lightest mixture: a linear program by Clarabel, its bound by Lagrange.
+//!
+//! Minimise `Σ m_so w_so` with `Σ_o w_so = 1`, `w ≥ 0` and the rows `Σ c_rso w_so ≤ b_r`. The solver sees a few
+//! options of each piece; for its multipliers `y ≥ 0`
+//!
+//! ```text
+//! L(y) = Σ_s min_o (m_so + Σ_r y_r c_rso) - Σ_r y_r b_r
+//! ```
+//!
+//! over *all* options left is a lower bound for any `y`, and the options that set the minima are those the
+//! solver lacks.
+
+use super::parts::Parts;
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
+
+/// What rounding may do to an inequality, relative to its largest terms.
+const ROUNDING: f64 = 1e-9;
+/// Options a slot that are added at a time.
+const ADDED: usize = 3;
+
+/// `Σ coefficient × weight ≤ limit`, coefficients by slot and by option left.
+#[derive(Clone)]
+pub(super) struct Row {
+    pub coefficients: Vec<Vec<f64>>,
+    pub limit: f64,
+}
+
+impl Row {
+    /// Smallest coefficient of each slot.
+    pub fn least(&self) -> Vec<f64> {
+        self.coefficients.iter().map(|c| c.iter().copied().fold(f64::INFINITY, f64::min)).collect()
+    }
+
+    /// Whether some choice of options exceeds the limit.
+    pub fn can_bind(&self) -> bool {
+        let most: f64 =
+            self.coefficients.iter().map(|c| c.iter().copied().fold(f64::NEG_INFINITY, f64::max)).sum();
+        most > self.limit
+    }
+
+    /// The same inequality, its limit raised by what rounding may do to it, with no number larger than 1.
+    pub fn ready(mut self) -> Self {
+        let largest_of = |c: &Vec<f64>| c.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
+        let terms: Vec<f64> = self.coefficients.iter().map(largest_of).collect();
+        self.limit += ROUNDING * (self.limit.abs() + terms.iter().sum::<f64>());
+        let largest = terms.iter().fold(self.limit.abs(), |largest, x| largest.max(*x));
+        if largest > 0.0 {
+            self.coefficients.iter_mut().flatten().for_each(|c| *c /= largest);
+            self.limit /= largest;
+        }
+        self
+    }
+}
+
+/// The program and the options it is solved over.
+pub(super) struct Program {
+    masses: Vec<Vec<f64>>,
+    rows: Vec<Row>,
+    /// Places, among the options left, that the solver sees.
+    seen: Vec<Vec<usize>>,
+    best: (f64, Vec<f64>),
+}
+
+/// What one solution says.
+pub(super) struct Solution {
+    /// Lower bound on the mass \[kg\].
+    pub bound_kg: f64,
+    /// Weight of every option left.
+    pub weights: Vec<Vec<f64>>,
+    /// Whether options were added that may make the mixture lighter.
+    pub grew: bool,
+}
+
+impl Program {
+    /// Starts from the known design, the lightest options and those that ease each row most.
+    pub fn new(parts: &Parts, rows: Vec<Row>) -> Self {
+        let masses = parts.masses();
+        let seen = (0..masses.len())
+            .map(|slot| {
+                let known = parts.alive[slot].iter().position(|&o| o == parts.known[slot]);
+                let mut seen: Vec<usize> = known.into_iter().chain([place_of_least(&masses[slot])]).collect();
+                seen.extend(rows.iter().map(|row| place_of_least(&row.coefficients[slot])));
+                seen.sort_unstable();
+                seen.dedup();
+                seen
+            })
+            .collect();
+        Self { masses, rows, seen, best: (0.0, Vec::new()) }
+    }
+
+    /// Adds an inequality.
+    pub fn add(&mut self, row: Row) {
+        for (slot, seen) in self.seen.iter_mut().enumerate() {
+            see(seen, place_of_least(&row.coefficients[slot]));
+        }
+        self.rows.push(row);
+    }
+
+    /// Solves; `None` if the solver finds no solution.
+    pub fn solve(&mut self) -> Option<Solution> {
+        let (flat, multipliers) = self.solver()?;
+        let mut weights: Vec<Vec<f64>> = self.masses.iter().map(|m| vec![0.0; m.len()]).collect();
+        let mut value_kg = 0.0;
+        let places =
+            self.seen.iter().enumerate().flat_map(|(slot, seen)| seen.iter().map(move |&at| (slot, at)));
+        for ((slot, at), weight) in places.zip(flat) {
+            weights[slot][at] = weight.max(0.0);
+            value_kg += weight * self.masses[slot][at];
+        }
+        let reduced = self.reduced(&multipliers);
+        let bound_kg = self.bound(&reduced, &multipliers);
+        if bound_kg > self.best.0 {
+            self.best = (bound_kg, multipliers);
+        }
+        let grew = bound_kg < value_kg * (1.0 - 1e-5) && self.see_more(&reduced);
+        Some(Solution { bound_kg, weights, grew })
+    }
+
+    /// Drops options with which no design is as light as `mass_kg`.
+    pub fn drop_options(&self, parts: &mut Parts, mass_kg: f64) {
+        let (bound_kg, multipliers) = &self.best;
+        let reduced = self.reduced(multipliers);
+        for (slot, reduced) in reduced.iter().enumerate() {
+            let least = reduced.iter().copied().fold(f64::INFINITY, f64::min);
+            parts.keep(slot, |at, _| bound_kg + (reduced[at] - least) <= mass_kg);
+        }
+    }
+
+    /// Mass plus what each option costs in the rows; rows beyond the multipliers cost nothing.
+    fn reduced(&self, multipliers: &[f64]) -> Vec<Vec<f64>> {
+        let mut out = self.masses.clone();
+        for (row, y) in self.rows.iter().zip(multipliers).filter(|(_, y)| **y > 0.0) {
+            for (sums, coefficients) in out.iter_mut().zip(&row.coefficients) {
+                sums.iter_mut().zip(coefficients).for_each(|(sum, c)| *sum += y * c);
+            }
+        }
+        out
+    }
+
+    fn bound(&self, reduced: &[Vec<f64>], multipliers: &[f64]) -> f64 {
+        let least: f64 = reduced.iter().map(|r| r.iter().copied().fold(f64::INFINITY, f64::min)).sum();
+        least - self.rows.iter().zip(multipliers).map(|(row, y)| y * row.limit).sum::<f64>()
+    }
+
+    fn see_more(&mut self, reduced: &[Vec<f64>]) -> bool {
+        let mut grew = false;
+        for (seen, reduced) in self.seen.iter_mut().zip(reduced) {
+            let mut order: Vec<usize> = (0..reduced.len()).collect();
+            let most = ADDED.min(order.len());
+            if most < order.len() {
+                order.select_nth_unstable_by(most, |&a, &b| reduced[a].total_cmp(&reduced[b]));
+            }
+            for &at in &order[..most] {
+                grew |= see(seen, at);
+            }
+        }
+        grew
+    }
+
+    /// Weights of the options seen, slot by slot, and the rows' multipliers, none negative.
+    fn solver(&self) -> Option<(Vec<f64>, Vec<f64>)> {
+        let (slots, rows) = (self.seen.len(), self.rows.len());
+        let columns: usize = self.seen.iter().map(Vec::len).sum();
+        let (mut starts, mut places, mut values, mut costs) = (vec![0], Vec::new(), Vec::new(), Vec::new());
+        for (slot, seen) in self.seen.iter().enumerate() {
+            for &at in seen {
+                costs.push(self.masses[slot][at]);
+                let mut put = |row: usize, value: f64| {
+                    if value != 0.0 {
+                        places.push(row);
+                        values.push(value);
+                    }
+                };
+                put(slot, 1.0);
+                for (r, row) in self.rows.iter().enumerate() {
+                    put(slots + r, row.coefficients[slot][at]);
+                }
+                put(slots + rows + costs.len() - 1, -1.0);
+                starts.push(places.len());
+            }
+        }
+        let height = slots + rows + columns;
+        let matrix = CscMatrix::new(height, columns, starts, places, values);
+        let mut right = vec![1.0; slots];
+        right.extend(self.rows.iter().map(|row| row.limit));
+        right.resize(height, 0.0);
+        let cones = [SupportedConeT::ZeroConeT(slots), SupportedConeT::NonnegativeConeT(rows + columns)];
+        let settings = DefaultSettingsBuilder::default().verbose(false).build().ok()?;
+        let none = CscMatrix::zeros((columns, columns));
+        let mut solver = DefaultSolver::new(&none, &costs, &matrix, &right, &cones, settings).ok()?;
+        solver.solve();
+        let solution = &solver.solution;
+        let sound = |v: &[f64]| v.iter().all(|x| x.is_finite());
+        let multipliers: Vec<f64> = solution.z[slots..slots + rows].iter().map(|z| z.max(0.0)).collect();
+        (sound(&solution.x) && sound(&multipliers)).then(|| (solution.x.clone(), multipliers))
+    }
+}
+
+fn place_of_least(numbers: &[f64]) -> usize {
+    (0..numbers.len()).min_by(|&a, &b| numbers[a].total_cmp(&numbers[b])).unwrap_or_default()
+}
+
+/// Adds a place to a sorted list; says whether it was new.
+fn see(seen: &mut Vec<usize>, at: usize) -> bool {
+    match seen.binary_search(&at) {
+        Ok(_) => false,
+        Err(place) => {
+            seen.insert(place, at);
+            true
+        }
+    }
+}
