@@ -412,6 +412,7 @@ impl Finished<'_> {
                 designs_total: sweep.designs_total,
                 designs_evaluated: sweep.designs_evaluated.into(),
                 designs_excluded: sweep.designs_excluded,
+                gap: self.exact.and_then(|(_, gap)| gap),
                 elapsed_s: self.elapsed_s,
                 threads: rayon::current_num_threads(),
                 tool_version: env!("CARGO_PKG_VERSION").into(),

@@ -29,6 +29,9 @@ pub struct SummaryFacts {
     pub designs_evaluated: u128,
     /// Designs left out because a limit cannot hold.
     pub designs_excluded: u128,
+    /// By what part at most a design that is not listed beats every listed one in all three objectives, of a
+    /// search that was stopped.
+    pub gap: Option<f64>,
     /// Duration of the search \[s\].
     pub elapsed_s: f64,
     /// Worker threads; 0 = not known.
@@ -112,11 +115,13 @@ pub fn summary_md(input: &SummaryInput) -> String {
         }
         out.push_str(KNEE);
         let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
-        out.push_str(&format!(
-            "\n## Materials\n\n{}",
-            materials_table(input, &names, MARKDOWN_MATERIALS).to_markdown()
-        ));
-        out.push_str("\nThe front of a material holds the designs whose links are all of it; its share counts its designs on the front of all.\n");
+        if !names.is_empty() {
+            out.push_str(&format!(
+                "\n## Materials\n\n{}",
+                materials_table(input, &names, MARKDOWN_MATERIALS).to_markdown()
+            ));
+            out.push_str("\nThe front of a material holds the designs whose links are all of it; its share counts its designs on the front of all.\n");
+        }
     }
     out.push_str(&budget_markdown(&input.budgets));
     out.push_str(&format!("\n## What was searched\n\n- {}\n", counts(facts)));
@@ -150,10 +155,12 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
         out.push_str(&format!("\n{}", small_plots(&found.designs)));
         out.push_str(&format!("\n{}", picks_table(&found.picks, TERMINAL_PICKS).to_text()));
         let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
-        out.push_str(&format!(
-            "\n{}",
-            materials_table(input, &short_labels(&names), TERMINAL_MATERIALS).to_text()
-        ));
+        if !names.is_empty() {
+            out.push_str(&format!(
+                "\n{}",
+                materials_table(input, &short_labels(&names), TERMINAL_MATERIALS).to_text()
+            ));
+        }
         out.push_str(&format!("\n{}", budget_text(&input.budgets, TERMINAL)));
     }
     out.push_str(&format!("\n{}", wrap(&counts(facts), TERMINAL, "")));
@@ -218,9 +225,16 @@ fn answer(input: &SummaryInput, found: &Found) -> String {
             _ => "No design meets the constraints.".into(),
         };
     };
-    let caution = match facts.status.as_str() {
-        "interrupted" | "partial" => "The search did not visit every design, so better ones may exist. ",
-        _ => "",
+    let caution = match (facts.status.as_str(), facts.gap) {
+        ("partial", Some(gap)) => format!(
+            "The search was stopped: better designs may exist, but none that beats every listed one by more than {} % \
+             in all three objectives at once. ",
+            significant(100.0 * gap, 2)
+        ),
+        ("interrupted" | "partial", _) => {
+            "The search did not visit every design, so better ones may exist. ".to_string()
+        }
+        _ => String::new(),
     };
     format!("{caution}{} {}", winners(input, found), compromise(input, found, knee))
 }
@@ -272,9 +286,27 @@ fn owners(input: &SummaryInput) -> Vec<(String, usize)> {
         (0..input.overall.rows.len()).map(|r| materials(&input.overall, r)).collect();
     let alone = |name: &str| of_row.iter().filter(|m| m.len() == 1 && m[0] == name).count();
     let mut out: Vec<(String, usize)> =
-        input.materials.iter().map(|m| (m.name.clone(), alone(&m.name))).collect();
+        single_materials(input).into_iter().map(|m| (m.to_string(), alone(m))).collect();
     out.push((MIXED.into(), of_row.iter().filter(|m| m.len() > 1).count()));
     out
+}
+
+/// The materials a design may be of alone: those with a front of their own, or, where the search made no such
+/// fronts, those of the designs found.
+pub(super) fn single_materials(input: &SummaryInput) -> Vec<&str> {
+    if !input.materials.is_empty() {
+        return input.materials.iter().map(|m| m.name.as_str()).collect();
+    }
+    let mut names: Vec<&str> = Vec::new();
+    for row in 0..input.overall.rows.len() {
+        if let [one] = materials(&input.overall, row).as_slice()
+            && !names.contains(one)
+        {
+            names.push(one);
+        }
+    }
+    names.sort_unstable();
+    names
 }
 
 const MIXED: &str = "of mixed materials";
@@ -387,7 +419,7 @@ fn counts(facts: &SummaryFacts) -> String {
 }
 
 /// A count in digits, or as a power of ten where nobody counts digits.
-fn large(n: u128) -> String {
+pub(super) fn large(n: u128) -> String {
     if n < 1_000_000_000_000 { grouped(n) } else { format!("{:.2e}", n as f64) }
 }
 

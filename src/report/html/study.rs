@@ -6,7 +6,7 @@ use super::front_views::FrontViews;
 use super::pick::{PickedArm, deflection_bars};
 use super::{Extra, Figure, Gallery, Page, table};
 use crate::report::picks::{self, materials};
-use crate::report::summary::{SummaryInput, answer_words, materials_side_by_side};
+use crate::report::summary::{SummaryInput, answer_words, large, materials_side_by_side, single_materials};
 use crate::report::svg::MUTED;
 use serde_json::{Value, json};
 use std::collections::HashSet;
@@ -69,6 +69,7 @@ impl StudyPage<'_> {
             "front": views.context(&mut gallery),
             "bars": (!self.picks.is_empty()).then(|| gallery.show(&deflection_bars(&self.picks))),
             "picks": self.picks.iter().map(|p| p.context(&mut gallery)).collect::<Vec<_>>(),
+            "own_fronts": !self.summary.materials.is_empty(),
             "materials": table(&materials_side_by_side(self.summary)),
             "beams": self.beams.as_ref().map(|f| gallery.show(f)),
             "extras": extras,
@@ -85,7 +86,7 @@ impl StudyPage<'_> {
         let facts = &self.summary.facts;
         let listed = |words: &[String]| if words.is_empty() { "none".into() } else { words.join("; ") };
         vec![
-            ("designs searched", grouped(facts.designs_total)),
+            ("designs searched", large(facts.designs_total)),
             ("on the front", grouped(front as u128)),
             ("limits", listed(&facts.constraints)),
             ("poses, the worst of which counts", listed(&facts.cases)),
@@ -95,12 +96,13 @@ impl StudyPage<'_> {
     /// The fronts as linked views: the front of all, and what only a material's own front has.
     fn views<'v>(&'v self, chosen: &'v [picks::Pick]) -> FrontViews<'v> {
         let summary = self.summary;
-        let names = summary.materials.iter().enumerate();
-        let mut groups: Vec<Group> = names.map(|(style, m)| Group { name: m.name.clone(), style }).collect();
+        let names = single_materials(summary);
+        let mut groups: Vec<Group> =
+            names.iter().enumerate().map(|(style, m)| Group { name: m.to_string(), style }).collect();
         let mixed = groups.len();
         groups.push(Group { name: "mixed".into(), style: MUTED });
         let group_of = |row: usize| match materials(&summary.overall, row).as_slice() {
-            [one] => summary.materials.iter().position(|m| m.name == *one).unwrap_or(mixed),
+            [one] => names.iter().position(|m| m == one).unwrap_or(mixed),
             _ => mixed,
         };
         let mut rows: Vec<Row> = (0..summary.overall.rows.len())
