@@ -22,7 +22,8 @@ use std::time::Instant;
 const TASKS: usize = 2048;
 /// Slacks of the passes over a large space: with slack a box is also cut if a design found comes that close
 /// to its ceiling, so a pass that comes to its end proves that nothing is missing by more.
-const SLACKS: [f64; 9] = [1.0, 0.5, 0.35, 0.25, 0.18, 0.12, 0.06, 0.03, 0.0];
+const SLACKS: [f64; 15] =
+    [1.0, 0.7, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.16, 0.12, 0.09, 0.06, 0.04, 0.02, 0.0];
 /// Designs above which a space is large.
 const LARGE: u128 = 1_000_000_000;
 /// Probes for every power of ten of designs.
