@@ -73,6 +73,21 @@ impl Curve {
         }
     }
 
+    /// The curve of a gear that is stiffer by a factor under every torque; its break points stay.
+    #[must_use]
+    pub fn stiffened(&self, factor: f64) -> Curve {
+        match self {
+            Curve::Rigid => Curve::Rigid,
+            Curve::Linear(stiffness) => Curve::Linear(stiffness * factor),
+            Curve::Windup(windup) => Curve::Windup(Windup {
+                k1_nm_per_rad: windup.k1_nm_per_rad * factor,
+                k2_nm_per_rad: windup.k2_nm_per_rad * factor,
+                k3_nm_per_rad: windup.k3_nm_per_rad * factor,
+                ..*windup
+            }),
+        }
+    }
+
     /// The curve that a joint model uses.
     pub fn reduced(&self, model: JointModel) -> Curve {
         match model {

@@ -24,6 +24,18 @@ pub struct LinkMaterial {
     pub poisson: f64,
 }
 
+impl LinkMaterial {
+    /// The material with E and G both larger by a factor.
+    #[must_use]
+    pub fn stiffened(&self, factor: f64) -> LinkMaterial {
+        LinkMaterial {
+            youngs_modulus_pa: self.youngs_modulus_pa * factor,
+            shear_modulus_pa: self.shear_modulus_pa * factor,
+            ..*self
+        }
+    }
+}
+
 /// A hollow cross-section. Height is along the section's z axis, width along its y axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Section {

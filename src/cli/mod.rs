@@ -2,6 +2,7 @@
 //! that writes to standard output.
 
 mod analyze;
+mod beside;
 mod carry;
 pub mod catalog;
 pub mod compare;

@@ -1,5 +1,6 @@
 //! `armwright run`: find a study's front and write it.
 
+use super::beside::{Beside, BesideArgs, Found};
 use super::progress::{watch, watch_boxes};
 use super::{Failure, carry, write_all};
 use crate::arm::Effect;
@@ -34,7 +35,8 @@ use std::time::{Duration, Instant};
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: armwright run compare-materials\n         armwright run my-study.json --out results/mine\n         \
-                  armwright run my-study.json --effects results/may/arm.corrected.json"
+                  armwright run my-study.json --effects results/may/arm.corrected.json\n         \
+                  armwright run my-study.json --within 2% --tolerance gear_stiffness=20%"
 )]
 pub struct RunArgs {
     /// A built-in study (see `armwright studies`) or a study file
@@ -52,6 +54,8 @@ pub struct RunArgs {
     /// Stop the exact search after so long and write what it found, with how much it may lack
     #[arg(long, value_name = "SECONDS")]
     time_limit: Option<f64>,
+    #[command(flatten)]
+    beside: BesideArgs,
 }
 
 /// How a front is looked for.
@@ -106,8 +110,8 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
     let name = format!("{}{suffix}", slug(&asked.study.name));
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(name));
     let written = match search_kind(args, &asked.study, catalogs)? {
-        SearchKind::Exhaustive => search(&asked, catalogs, overlay, &dir)?,
-        SearchKind::Exact => search_exactly(&asked, catalogs, overlay, &dir, args.time_limit)?,
+        SearchKind::Exhaustive => search_with(&asked, catalogs, overlay, &dir, &args.beside)?,
+        SearchKind::Exact => search_exactly(&asked, catalogs, overlay, &dir, args)?,
     };
     write_all(&dir, &written.files)?;
     let carried = carry::to_text(&asked.carried);
@@ -126,10 +130,21 @@ pub(super) struct Asked {
 
 /// Searches a study; the folder is where its results go, and nothing is written yet.
 pub(super) fn search(
+    asked: &Asked,
+    catalogs: &Catalogs,
+    overlay: Option<&Path>,
+    dir: &Path,
+) -> Result<Written, Failure> {
+    search_with(asked, catalogs, overlay, dir, &BesideArgs::default())
+}
+
+/// Searches a study and works out what is asked for beside its front.
+fn search_with(
     Asked { study, text, carried }: &Asked,
     catalogs: &Catalogs,
     overlay: Option<&Path>,
     dir: &Path,
+    beside: &BesideArgs,
 ) -> Result<Written, Failure> {
     let problem = ArmProblem::new(&study.space, catalogs);
     refuse_empty(study, &problem)?;
@@ -166,7 +181,7 @@ pub(super) fn search(
                 catalogs,
                 dir,
             };
-            Ok(finished.files())
+            finished.files(beside, &stop)
         }
     }
 }
@@ -187,6 +202,9 @@ fn search_kind(args: &RunArgs, study: &Study, catalogs: &Catalogs) -> Result<Sea
     })?;
     let large = designs > MOST_VISITED;
     let kind = args.search.unwrap_or(if large { SearchKind::Exact } else { SearchKind::Exhaustive });
+    if kind == SearchKind::Exact {
+        args.beside.refuse_exact()?;
+    }
     if let (SearchKind::Exact, Err(why)) = (kind, exact::conditions(&study.space)) {
         return Err(Failure::Usage(format!(
             "the exact search cannot certify the study \"{}\": {why}; use --search exhaustive{}",
@@ -215,12 +233,12 @@ fn search_exactly(
     catalogs: &Catalogs,
     overlay: Option<&Path>,
     dir: &Path,
-    time_limit_s: Option<f64>,
+    args: &RunArgs,
 ) -> Result<Written, Failure> {
     write_all(dir, &[])?;
     let stop = stopped_by_signal();
     let started = Instant::now();
-    let deadline = time_limit_s.map(|s| started + Duration::from_secs_f64(s));
+    let deadline = args.time_limit.map(|s| started + Duration::from_secs_f64(s));
     let ExactStudy { study: part, outcome, boxes, gap } =
         run_exact(study, catalogs, &stop, deadline, watch_boxes);
     let nothing = |problem: String| {
@@ -256,7 +274,7 @@ fn search_exactly(
                 catalogs,
                 dir,
             };
-            let mut written = finished.files();
+            let mut written = finished.files(&args.beside, &stop)?;
             written.terminal.push_str(&certificate(boxes, gap));
             Ok(written)
         }
@@ -381,21 +399,29 @@ struct Finished<'a> {
 }
 
 impl Finished<'_> {
-    fn files(&self) -> Written {
+    fn files(&self, asked: &BesideArgs, stop: &AtomicBool) -> Result<Written, Failure> {
         let summary = self.summary();
+        let Self { problem, catalogs, outcome, .. } = *self;
+        let beside = asked.work(&Found { problem, catalogs, outcome, stop }, &summary.overall);
+        // succeeds only on an empty folder: earlier results stay
+        let beside = beside.inspect_err(|_| drop(std::fs::remove_dir(self.dir)))?;
         let mut files = vec![("front.csv".to_string(), summary.overall.to_csv())];
         for material in &summary.materials {
             files.push((format!("front.{}.csv", slug(&material.name)), material.front.to_csv()));
         }
         let picture = picture(&summary);
         files.push(("front.svg".into(), picture.clone().into_bytes()));
-        files.push(("summary.md".into(), summary_md(&summary).into_bytes()));
         files.push(("budget.csv".into(), budget_csv(&summary.budgets).into_bytes()));
-        let run = self.run_json(&summary);
+        let Beside { files: more, markdown, terminal, run: mut facts } = beside;
+        files.extend(more);
+        files.push(("summary.md".into(), (summary_md(&summary) + &markdown).into_bytes()));
+        let mut run = self.run_json(&summary);
+        run.as_object_mut().into_iter().for_each(|run| run.append(&mut facts));
         files.push(("run.json".into(), pretty(&run)));
         files.extend(self.page(&summary, picture, &run).into_files());
         files.push(("study.json".into(), self.text.as_bytes().to_vec()));
-        Written { files, terminal: terminal_summary(&summary), front: summary.overall }
+        let terminal = terminal_summary(&summary) + &terminal;
+        Ok(Written { files, terminal, front: summary.overall })
     }
 
     fn summary(&self) -> SummaryInput {
@@ -510,7 +536,7 @@ fn facts_of(run: &Value) -> Vec<(String, String)> {
         Value::Number(number) => Some(number.to_string()),
         Value::Object(map) => {
             let parts = map.iter().filter_map(|(k, v)| Some(format!("{k} {}", v.as_str()?)));
-            Some(parts.collect::<Vec<_>>().join(", "))
+            Some(parts.collect::<Vec<_>>().join(", ")).filter(|words| !words.is_empty())
         }
         _ => None,
     };

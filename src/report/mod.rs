@@ -11,3 +11,4 @@ pub mod picks;
 pub mod summary;
 pub mod svg;
 pub mod table;
+pub mod tolerance;

@@ -7,6 +7,7 @@
 //! trait, [`sweep`] visits every design in parallel, [`front`] keeps what nothing dominates.
 
 pub mod archive;
+pub mod ballast;
 pub mod constraint;
 pub mod design;
 mod effects;
@@ -16,17 +17,20 @@ mod figures;
 pub mod fixed;
 pub mod front;
 pub mod hypervolume;
+pub mod near;
 pub mod outward;
 mod ranking;
 pub mod relax;
 mod row;
 mod row_lanes;
+pub mod scatter;
 mod sieve;
 mod slot;
 pub mod space;
 mod staircase;
 pub mod station;
 pub mod sweep;
+mod visit;
 
 pub use design::{Evaluated, evaluate};
 pub use outward::ArmProblem;

@@ -187,6 +187,11 @@ impl<'c> ArmProblem<'c> {
         self.piece_slots.iter().position(|&s| s == slot).unwrap_or_default()
     }
 
+    /// The piece of the chain that stands in a slot; none in a slot of an effect.
+    pub(super) fn piece_in_slot(&self, slot: usize) -> Option<&'c SpacePiece> {
+        self.piece_slots.iter().position(|&s| s == slot).map(|piece| &self.space.pieces[piece])
+    }
+
     pub(super) fn slots(&self) -> &[Slot<'c>] {
         &self.slots
     }
@@ -311,8 +316,7 @@ impl<'c> ArmProblem<'c> {
         to.mass_kg += mass_kg;
         for (station, state) in self.stations.iter().zip(&mut to.stations) {
             if let StationSlot::Body { inertia, weight } = &station.slots[slot] {
-                state.inertia += inertia;
-                state.wrench += weight;
+                state.add_body(inertia, weight);
             }
         }
         true
@@ -343,28 +347,44 @@ impl<'c> ArmProblem<'c> {
     }
 
     /// The cases that objectives are taken over.
-    fn judged<'s>(&'s self, complete: &'s Partial) -> impl Iterator<Item = (&'s Station, &'s StationState)> {
+    fn judged<'s>(
+        &'s self,
+        complete: &'s Partial,
+    ) -> impl Iterator<Item = (&'s Station, &'s StationState)> + Clone {
         self.space.judged_cases.iter().map(|&i| (&self.stations[i], &complete.stations[i]))
     }
+}
 
-    fn lowest_mode_hz(&self, complete: &Partial) -> f64 {
-        let lowest = self
-            .judged(complete)
-            .map(|(station, state)| match &station.modal {
-                Modal::Planar(blocks) => {
-                    let [within, across] = &**blocks;
-                    block_eigenvalue(within, complete, state, state.trace_s2[0]).min(block_eigenvalue(
-                        across,
-                        complete,
-                        state,
-                        state.trace_s2[1],
-                    ))
-                }
-                Modal::Spatial(block) => block_eigenvalue(block, complete, state, state.trace_s2[0]),
-            })
-            .fold(f64::INFINITY, f64::min);
-        frequency_hz(lowest)
-    }
+/// Objectives of a complete arm from what it does in each judged case.
+pub(super) fn objectives_over<'s>(
+    judged: impl Iterator<Item = (&'s Station, &'s StationState)> + Clone,
+    complete: &Partial,
+) -> Objectives {
+    let tip_deflection_m = judged.clone().map(|(_, s)| s.tip_m.norm()).fold(0.0, f64::max);
+    let lowest_mode_hz = lowest_mode_hz(judged, complete);
+    Objectives { tip_deflection_m, mass_kg: complete.mass_kg, lowest_mode_hz }
+}
+
+/// Smallest first natural frequency over the cases \[Hz\].
+fn lowest_mode_hz<'s>(
+    judged: impl Iterator<Item = (&'s Station, &'s StationState)>,
+    complete: &Partial,
+) -> f64 {
+    let lowest = judged
+        .map(|(station, state)| match &station.modal {
+            Modal::Planar(blocks) => {
+                let [within, across] = &**blocks;
+                block_eigenvalue(within, complete, state, state.trace_s2[0]).min(block_eigenvalue(
+                    across,
+                    complete,
+                    state,
+                    state.trace_s2[1],
+                ))
+            }
+            Modal::Spatial(block) => block_eigenvalue(block, complete, state, state.trace_s2[0]),
+        })
+        .fold(f64::INFINITY, f64::min);
+    frequency_hz(lowest)
 }
 
 fn block_eigenvalue<const N: usize>(
@@ -400,7 +420,7 @@ pub(super) fn block_steps<'a, const N: usize>(
 }
 
 impl StationState {
-    fn add_joint(&mut self, slot: usize, joint: &StationJoint, law: &JointLaw, mass_kg: f64) {
+    pub(super) fn add_joint(&mut self, slot: usize, joint: &StationJoint, law: &JointLaw, mass_kg: f64) {
         let torque_nm = joint.twist.dot(&self.wrench);
         let compliance = law.tangent_compliance_rad_per_nm(torque_nm);
         self.tip_m += joint.tip_m_per_rad * law.rising_angle_rad(torque_nm);
@@ -410,7 +430,12 @@ impl StationState {
         self.wrench += joint.weight_per_kg * mass_kg;
     }
 
-    fn add_link(&mut self, link: &StationLink) {
+    pub(super) fn add_body(&mut self, inertia: &Matrix6<f64>, weight: &Wrench) {
+        self.inertia += inertia;
+        self.wrench += weight;
+    }
+
+    pub(super) fn add_link(&mut self, link: &StationLink) {
         let end = link.end.tr_mul(&self.wrench) + link.sag;
         self.tip_m += link.tip * end;
         let carried = self.inertia * link.end;
@@ -442,9 +467,7 @@ impl OutwardIn for ArmProblem<'_> {
     }
 
     fn objectives(&self, complete: &Partial) -> Option<Objectives> {
-        let tip_deflection_m = self.judged(complete).map(|(_, s)| s.tip_m.norm()).fold(0.0, f64::max);
-        let lowest_mode_hz = self.lowest_mode_hz(complete);
-        Some(Objectives { tip_deflection_m, mass_kg: complete.mass_kg, lowest_mode_hz })
+        Some(objectives_over(self.judged(complete), complete))
     }
 
     fn groups(&self) -> usize {

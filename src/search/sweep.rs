@@ -1,14 +1,13 @@
 //! Visiting every design, in parallel and in constant memory.
 //!
-//! The tree's first levels are cut into tasks; each task walks its part depth first with one partial
-//! arm a level. Designs that something else clearly beats are dropped at once ([`Archive`]); the rest
+//! [`Visit`] walks the tree in tasks. Designs that something else clearly beats are dropped at once ([`Archive`]); the rest
 //! are filtered exactly now and then, so that memory follows the front and not the space. What is kept
 //! at the end does not depend on the order of visits or the number of threads.
 
 use super::archive::Archive;
 use super::constraint::Constraints;
-use super::design::number;
 use super::front::not_clearly_beaten;
+use super::visit::{Keep, Visit};
 use super::{Finished, Objectives, OutwardIn};
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -18,8 +17,6 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 pub const SLACK: f64 = 1e-7;
 /// Candidates are filtered whenever there are this many more than after the last filtering.
 const BUFFER: usize = 1 << 15;
-/// Tasks to aim for: enough for balance and for a progress report.
-const TASKS: u128 = 512;
 
 /// How a search ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -195,10 +192,16 @@ impl<'p, P: OutwardIn> Sweep<'p, P> {
         let groups: Vec<Pool> = (0..self.problem.groups()).map(|_| Pool::new(5)).collect();
         let tally = match self.problem.root() {
             None => Tally { excluded: self.total(), ..Tally::default() },
-            Some(root) => self
-                .tasks()
-                .into_par_iter()
-                .map(|beginning| self.task(&beginning, &root, &overall, &groups))
+            Some(root) => Visit { problem: self.problem, visited: &self.visited, stop: self.stop }
+                .every_design(&root, || Worker {
+                    constraints: &self.constraints,
+                    overall: &overall,
+                    groups: &groups,
+                    tally: Tally::default(),
+                    buffer: Vec::new(),
+                    group_buffers: vec![Vec::new(); groups.len()],
+                })
+                .map(Worker::finish)
                 .reduce(Tally::default, Tally::merge),
         };
         let front = overall.finish();
@@ -217,110 +220,22 @@ impl<'p, P: OutwardIn> Sweep<'p, P> {
             near_misses: tally.near_misses,
         }
     }
-
-    /// Beginnings of designs, tip first, each a task.
-    fn tasks(&self) -> Vec<Vec<u32>> {
-        let sizes = self.problem.level_sizes();
-        let mut tasks: Vec<Vec<u32>> = vec![Vec::new()];
-        for &size in sizes.iter().take(sizes.len().saturating_sub(1)) {
-            if tasks.len() as u128 >= TASKS {
-                break;
-            }
-            tasks = tasks
-                .into_iter()
-                .flat_map(|t| (0..size).map(move |option| [t.as_slice(), &[option]].concat()))
-                .collect();
-        }
-        tasks
-    }
-
-    fn task(&self, beginning: &[u32], root: &P::Partial, overall: &Pool, groups: &[Pool]) -> Tally {
-        let mut worker = Worker {
-            sweep: self,
-            overall,
-            groups,
-            options: beginning.to_vec(),
-            tally: Tally::default(),
-            scratch: None,
-            buffer: Vec::new(),
-            group_buffers: vec![Vec::new(); groups.len()],
-        };
-        if self.stop.load(Ordering::Relaxed) {
-            return worker.finish();
-        }
-        let mut partial = root.clone();
-        for (level, &option) in beginning.iter().enumerate() {
-            let mut next = root.clone();
-            if !self.problem.extend(level, option, &partial, &mut next) {
-                // other tasks with this beginning count their own designs
-                worker.exclude(beginning.len());
-                return worker.finish();
-            }
-            partial = next;
-        }
-        let levels_left = self.problem.level_sizes().len() - beginning.len();
-        let mut stack = vec![partial; levels_left.max(1)];
-        worker.descend(beginning.len(), &mut stack);
-        worker.finish()
-    }
 }
 
-/// One task at work.
-struct Worker<'s, 'p, P: OutwardIn> {
-    sweep: &'s Sweep<'p, P>,
+/// What one task keeps.
+struct Worker<'s> {
+    constraints: &'s Constraints,
     overall: &'s Pool,
     groups: &'s [Pool],
-    options: Vec<u32>,
     tally: Tally,
-    scratch: Option<P::Scratch>,
     buffer: Vec<Candidate>,
     group_buffers: Vec<Vec<Candidate>>,
 }
 
-impl<P: OutwardIn> Worker<'_, '_, P> {
-    fn descend(&mut self, level: usize, stack: &mut [P::Partial]) {
-        let sizes = self.sweep.problem.level_sizes();
-        if level + 1 >= sizes.len() {
-            self.finish_row(&stack[0]);
-            return;
-        }
-        for option in 0..sizes[level] {
-            if self.sweep.stop.load(Ordering::Relaxed) {
-                return;
-            }
-            let (here, beyond) = stack.split_at_mut(1);
-            if !self.sweep.problem.extend(level, option, &here[0], &mut beyond[0]) {
-                self.exclude(level + 1);
-                continue;
-            }
-            self.options.push(option);
-            self.descend(level + 1, beyond);
-            self.options.pop();
-        }
-    }
-
-    /// Every option of the innermost level. A space without levels is one design.
-    fn finish_row(&mut self, from: &P::Partial) {
-        let problem = self.sweep.problem;
-        let Some(&size) = problem.level_sizes().last() else {
-            if let Some(objectives) = problem.objectives(from) {
-                self.complete(0, Finished { objectives, group: problem.group(from) });
-            }
-            return;
-        };
-        let first = number(problem.level_sizes(), &self.options) * u128::from(size);
-        let mut scratch = self.scratch.take().unwrap_or_else(|| problem.scratch());
-        problem.finish(from, 0..size, &mut scratch, |option, finished| match finished {
-            Some(finished) => self.complete(first + u128::from(option), finished),
-            None => self.tally.excluded += 1,
-        });
-        self.scratch = Some(scratch);
-        self.sweep.visited.fetch_add(u64::from(size), Ordering::Relaxed);
-    }
-
+impl Keep for Worker<'_> {
     fn complete(&mut self, number: u128, Finished { objectives, group }: Finished) {
         self.tally.evaluated += 1;
-        if !self.tally.meets(&self.sweep.constraints, &objectives) {
+        if !self.tally.meets(self.constraints, &objectives) {
             return;
         }
         let candidate = Candidate { number, objectives };
@@ -332,16 +247,12 @@ impl<P: OutwardIn> Worker<'_, '_, P> {
         }
     }
 
-    /// Counts every design with the present beginning of `levels` levels as excluded.
-    fn exclude(&mut self, levels: usize) {
-        let sizes = self.sweep.problem.level_sizes();
-        let below: u128 = sizes[levels..].iter().map(|&s| u128::from(s)).product();
-        self.tally.excluded += below;
-        if levels < sizes.len() {
-            self.sweep.visited.fetch_add(u64::try_from(below).unwrap_or(u64::MAX), Ordering::Relaxed);
-        }
+    fn exclude(&mut self, designs: u128) {
+        self.tally.excluded += designs;
     }
+}
 
+impl Worker<'_> {
     fn finish(mut self) -> Tally {
         self.overall.empty(&mut self.buffer);
         for (pool, buffer) in self.groups.iter().zip(&mut self.group_buffers) {

@@ -1,25 +1,31 @@
 //! Named questions: read, resolve, run.
 
+mod ballast;
 mod budget;
 mod check;
 mod diagnose;
 mod effects;
+mod near;
 mod outcome;
 mod page;
 pub mod paper;
 mod read;
 mod sections;
 mod table;
+mod tolerance;
 
+pub use ballast::{BallastFlags, ballast_flags};
 pub use budget::budgets;
 pub use check::{FrontCheck, check_front};
 pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{Carried, CorrectedStudy, carry_over, left_out};
+pub use near::{NearFront, near_front};
 pub use outcome::{ExactStudy, Front, Judged, StudyOutcome, run_exact, run_study};
 pub use page::study_page;
 pub use read::{Study, read_study};
 pub(crate) use table::sizing_rows;
 pub use table::{front_table, slug};
+pub use tolerance::{Sampling, Tolerance, part, scatter_front};
 
 /// The built-in studies: name and text.
 pub const NAMED: [(&str, &str); 7] = [

@@ -133,7 +133,7 @@ pub(super) fn judge(problem: &ArmProblem, candidates: &[Candidate]) -> Front {
 }
 
 /// Numbered designs by the full model, each once; those that cannot hold are left out.
-fn by_full_model(problem: &ArmProblem, mut numbers: Vec<u128>) -> HashMap<u128, Evaluated> {
+pub(super) fn by_full_model(problem: &ArmProblem, mut numbers: Vec<u128>) -> HashMap<u128, Evaluated> {
     numbers.sort_unstable();
     numbers.dedup();
     numbers.into_par_iter().filter_map(|n| Some((n, evaluate(problem, n)?))).collect()

@@ -109,6 +109,13 @@ fn link_cells(option: &LinkOption) -> [String; 6] {
     ]
 }
 
+/// A tube in words: `120 x 100 x 3 mm Aluminium 6061-T6`.
+pub(super) fn link_words(option: &LinkOption) -> String {
+    let [material, shape, width, height, wall, _] = link_cells(option);
+    let round = if shape == "round_tube" { "round " } else { "" };
+    format!("{round}{width} x {height} x {wall} mm {material}")
+}
+
 /// A length as the millimetres it was given in: the shortest decimal that reads back the same.
 fn millimetres(length_m: f64) -> String {
     let near = (length_m * 1e3 * 1e9).round() / 1e9;

@@ -1,0 +1,130 @@
+//! What `armwright run` works out beside the front: files, words and facts of the run.
+
+use super::Failure;
+use crate::catalog::Catalogs;
+use crate::report::compare::text::wrap;
+use crate::report::front_table::FrontTable;
+use crate::report::picks;
+use crate::report::tolerance::Scattered;
+use crate::search::ArmProblem;
+use crate::search::near::Slack;
+use crate::study::{
+    NearFront, Sampling, StudyOutcome, Tolerance, ballast_flags, near_front, part, scatter_front,
+};
+use clap::Args;
+use serde_json::{Map, Value, json};
+use std::sync::atomic::AtomicBool;
+
+/// What may be asked for beside a front.
+#[derive(Debug, Clone, Default, Args)]
+pub(super) struct BesideArgs {
+    /// How far catalog figures scatter, such as gear_stiffness=20%,modulus=3%,mass=2%: the front is sampled,
+    /// and each design's share of samples on the front goes to tolerance.csv. A name alone stands for the
+    /// number above. 95 % of the rows of a catalog lie within it (log-normal)
+    #[arg(long, value_name = "SCATTER")]
+    tolerance: Option<Tolerance>,
+    /// Number of samples of --tolerance
+    #[arg(long, value_name = "N", default_value_t = 1000, requires = "tolerance",
+          value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    samples: u32,
+    /// Seed of the samples; the same seed gives the same samples on any number of threads
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "tolerance")]
+    seed: u64,
+    /// Also list the designs that no design of the front beats by more than this part in mass, deflection and
+    /// lowest mode at once, such as 2%, in near.csv; every design is visited a second time. Not with the exact
+    /// search, which does not visit them
+    #[arg(long, value_name = "PERCENT", value_parser = part)]
+    within: Option<f64>,
+    /// How many designs --within lists at most, the nearest first
+    #[arg(long, value_name = "N", default_value_t = 10_000, requires = "within",
+          value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    within_most: u32,
+}
+
+/// Files, words and facts that go beside a front's own.
+#[derive(Debug, Default)]
+pub(super) struct Beside {
+    /// Files by name.
+    pub files: Vec<(String, Vec<u8>)>,
+    /// Sections of `summary.md`.
+    pub markdown: String,
+    /// Text for the terminal.
+    pub terminal: String,
+    /// Keys of `run.json`.
+    pub run: Map<String, Value>,
+}
+
+/// A finished search.
+pub(super) struct Found<'a> {
+    pub problem: &'a ArmProblem<'a>,
+    pub catalogs: &'a Catalogs,
+    pub outcome: &'a StudyOutcome,
+    pub stop: &'a AtomicBool,
+}
+
+impl BesideArgs {
+    /// Works out what was asked for; `front` is the table of the front.
+    pub(super) fn work(&self, found: &Found, front: &FrontTable) -> Result<Beside, Failure> {
+        let mut beside = Beside::default();
+        let flags = ballast_flags(found.problem, &found.outcome.front);
+        beside.run.insert("ballast_designs".into(), json!(flags.len()));
+        if !flags.is_empty() {
+            beside.files.push(("ballast.csv".into(), flags.to_csv()));
+            beside.markdown.push_str(&flags.to_markdown());
+            beside.terminal.push_str(&format!("\n{}", wrap(&flags.sentence(), 80, "")));
+        }
+        let stopped = || Failure::Interrupted("stopped after the search; nothing was written".into());
+        let scattered = self.scattered(found, front).map_err(|()| stopped())?;
+        beside.run.insert("tolerance".into(), scattered.as_ref().map_or(Value::Null, Scattered::to_json));
+        if let Some(scattered) = scattered {
+            beside.files.push(("tolerance.csv".into(), scattered.to_csv().into_bytes()));
+            beside.markdown.push_str(&scattered.to_markdown());
+            let sentences: String = scattered.sentences().iter().map(|s| wrap(s, 80, "")).collect();
+            beside.terminal.push_str(&format!("\n{}\n{sentences}", scattered.table().to_text()));
+        }
+        let near = self.near(found).map_err(|()| stopped())?;
+        beside.run.insert("within".into(), near.as_ref().map_or(Value::Null, near_json));
+        if let Some(near) = near {
+            beside.files.push(("near.csv".into(), near.table.to_csv()));
+            beside.markdown.push_str(&near.to_markdown());
+            let sentences: String = near.sentences().iter().map(|s| wrap(s, 80, "")).collect();
+            beside.terminal.push_str(&format!("\n{sentences}"));
+        }
+        Ok(beside)
+    }
+
+    /// Refuses what a search that does not visit every design cannot give.
+    pub(super) fn refuse_exact(&self) -> Result<(), Failure> {
+        match self.within {
+            None => Ok(()),
+            Some(_) => Err(Failure::Usage(
+                "--within needs --search exhaustive: the exact search cuts near designs unvisited".into(),
+            )),
+        }
+    }
+
+    /// The designs near the front, if they were asked for.
+    fn near(&self, found: &Found) -> Result<Option<NearFront>, ()> {
+        let Some(part) = self.within else { return Ok(None) };
+        let slack = Slack { part, most: self.within_most as usize };
+        near_front(found.problem, found.catalogs, found.outcome, slack, found.stop).map(Some).ok_or(())
+    }
+
+    /// The front under scatter, if that was asked for.
+    fn scattered(&self, found: &Found, front: &FrontTable) -> Result<Option<Scattered>, ()> {
+        let Some(tolerance) = self.tolerance else { return Ok(None) };
+        let sampling = Sampling { tolerance, samples: self.samples, seed: self.seed };
+        let designs = picks::designs(front);
+        let (problem, outcome) = (found.problem, found.outcome);
+        scatter_front(problem, found.catalogs, &outcome.front, &designs, &sampling, found.stop)
+            .map(Some)
+            .ok_or(())
+    }
+}
+
+fn near_json(near: &NearFront) -> Value {
+    json!({
+        "slack_percent": 100.0 * near.slack, "designs": near.total, "listed": near.table.rows.len(),
+        "capped": near.capped,
+    })
+}

@@ -1,0 +1,221 @@
+//! What becomes of a front when the catalog figures scatter: how often a design stays on it, how often a
+//! pick stays the pick, and what takes its place.
+
+use super::number::{shortest, significant};
+use super::picks::{Design, Objective};
+use super::table::{Column, Table, csv_line};
+use serde_json::{Value, json};
+
+/// What a design may be picked for, in the order of [`Fate::picked`].
+pub const PICKS: [&str; 4] = ["lightest", "stiffest", "highest mode", "knee"];
+/// Shares of the samples that lie below the values that are given, in percent.
+pub const PERCENTILES: [u32; 3] = [5, 50, 95];
+
+/// One design of the front over all samples.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fate {
+    /// The design by its catalog figures.
+    pub design: Design,
+    /// What it is picked for by its catalog figures.
+    pub picks: Vec<&'static str>,
+    /// Samples in which it is on the front.
+    pub on_front: u32,
+    /// Samples in which it keeps the limits on deflection, mass and lowest mode.
+    pub keeps_limits: u32,
+    /// Samples in which it is each of [`PICKS`].
+    pub picked: [u32; 4],
+    /// [`PERCENTILES`] of tip deflection \[mm\], mass \[kg\] and lowest mode \[Hz\], of a pick alone.
+    pub percentiles: Option<[[f64; 3]; 3]>,
+}
+
+/// A front under scatter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scattered {
+    /// The scatter in words: `gear_stiffness 20 %`.
+    pub words: Vec<String>,
+    /// The scatter by name, as a part.
+    pub parts: Vec<(&'static str, f64)>,
+    /// Samples taken.
+    pub samples: u32,
+    /// Seed of the samples.
+    pub seed: u64,
+    /// Samples in which no design keeps the limits.
+    pub without_design: u32,
+    /// Every design of the front, lightest first.
+    pub fates: Vec<Fate>,
+}
+
+impl Scattered {
+    /// One row a design of the front.
+    pub fn to_csv(&self) -> String {
+        let mut columns = vec![
+            "design_id".to_string(),
+            "picks".into(),
+            "on_front_share".into(),
+            "keeps_limits_share".into(),
+        ];
+        columns.extend(PICKS.iter().map(|p| format!("{}_share", p.replace(' ', "_"))));
+        for objective in ["tip_deflection_mm", "mass_kg", "lowest_mode_hz"] {
+            columns.extend(PERCENTILES.iter().map(|p| format!("{objective}_p{p:02}")));
+        }
+        let row = |fate: &Fate| {
+            let mut cells = vec![fate.design.design_id.clone(), fate.picks.join("; ")];
+            cells.extend([fate.on_front, fate.keeps_limits].map(|n| shortest(self.share(n))));
+            cells.extend(fate.picked.map(|n| shortest(self.share(n))));
+            match &fate.percentiles {
+                Some(values) => cells.extend(values.iter().flatten().map(|&x| shortest(x))),
+                None => cells.extend(std::iter::repeat_n(String::new(), 9)),
+            }
+            csv_line(&cells)
+        };
+        std::iter::once(csv_line(&columns)).chain(self.fates.iter().map(row)).collect()
+    }
+
+    /// Each pick: how often it is on the front, how often it is still the pick, and what its objectives are.
+    pub fn table(&self) -> Table {
+        let mut table = Table::new(vec![
+            Column::left("pick"),
+            Column::left("design"),
+            Column::right("on front"),
+            Column::right("picked"),
+            Column::right("tip mm 5-95 %"),
+            Column::right("mode Hz 5-95 %"),
+        ]);
+        for (name, fate) in self.picks() {
+            let band = |objective: usize| {
+                fate.percentiles.map_or(String::new(), |p| {
+                    format!("{} - {}", significant(p[objective][0], 4), significant(p[objective][2], 4))
+                })
+            };
+            table.row([
+                PICKS[name].to_string(),
+                fate.design.design_id.clone(),
+                percent(self.share(fate.on_front)),
+                percent(self.share(fate.picked[name])),
+                band(0),
+                band(2),
+            ]);
+        }
+        table
+    }
+
+    /// Sentences: what was sampled, what takes a pick's place, how much of the front stays.
+    pub fn sentences(&self) -> Vec<String> {
+        let mut out = vec![format!(
+            "{} samples (seed {}) of {}: 95 % of the rows' true figures lie within it.",
+            self.samples,
+            self.seed,
+            self.words.join(", ")
+        )];
+        out.extend(self.picks().filter_map(|(name, fate)| self.displaced(name, fate)));
+        let mut shares: Vec<f64> = self.fates.iter().map(|f| self.share(f.on_front)).collect();
+        shares.sort_unstable_by(f64::total_cmp);
+        let firm = shares.iter().filter(|s| **s >= 0.9).count();
+        out.push(format!(
+            "Of the {} designs of the front, {firm} stay on it in at least 90 % of the samples; the least firm stays in {}.",
+            shares.len(),
+            shares.first().map_or_else(String::new, |&s| percent(s)),
+        ));
+        let meets = self.fates.iter().filter(|f| f.keeps_limits < self.samples).count();
+        if meets > 0 {
+            out.push(format!("{meets} of them break a limit in some sample."));
+        }
+        if self.without_design > 0 {
+            let share = percent(self.share(self.without_design));
+            out.push(format!("In {share} of the samples no design of the front keeps the limits."));
+        }
+        out
+    }
+
+    /// The section of a summary.
+    pub fn to_markdown(&self) -> String {
+        let lines: Vec<String> = self.sentences().iter().map(|s| format!("- {s}\n")).collect();
+        format!(
+            "\n## Under scatter\n\n{}\n{}- The parts stay as they were sized; only designs of this front compete. Every design: tolerance.csv.\n",
+            self.table().to_markdown(),
+            lines.concat()
+        )
+    }
+
+    /// What `run.json` says of it.
+    pub fn to_json(&self) -> Value {
+        let scatter: serde_json::Map<String, Value> =
+            self.parts.iter().map(|(name, part)| ((*name).to_string(), json!(part))).collect();
+        let picks: Vec<Value> = self
+            .picks()
+            .map(|(name, fate)| {
+                json!({
+                    "pick": PICKS[name], "design": fate.design.design_id,
+                    "on_front_share": self.share(fate.on_front),
+                    "still_picked_share": self.share(fate.picked[name]),
+                })
+            })
+            .collect();
+        json!({"scatter": scatter, "samples": self.samples, "seed": self.seed, "picks": picks})
+    }
+
+    /// Every pick by its place in [`PICKS`], with the design that it is by the catalogs' figures.
+    fn picks(&self) -> impl Iterator<Item = (usize, &Fate)> {
+        PICKS.iter().enumerate().filter_map(|(name, word)| {
+            Some((name, self.fates.iter().find(|fate| fate.picks.contains(word))?))
+        })
+    }
+
+    /// Which designs take a pick's place, most often first.
+    fn displaced(&self, name: usize, fate: &Fate) -> Option<String> {
+        let mut others: Vec<&Fate> =
+            self.fates.iter().filter(|f| f.picked[name] > 0 && f.design.row != fate.design.row).collect();
+        others.sort_by_key(|f| std::cmp::Reverse(f.picked[name]));
+        let most: Vec<String> = others
+            .iter()
+            .take(3)
+            .map(|f| format!("{} in {}", f.design.design_id, percent(self.share(f.picked[name]))))
+            .collect();
+        let more = match others.len().saturating_sub(3) {
+            0 => String::new(),
+            n => format!(" and {n} more"),
+        };
+        (!most.is_empty()).then(|| {
+            format!("{} is displaced as {} by {}{more}.", fate.design.design_id, PICKS[name], most.join(", "))
+        })
+    }
+
+    fn share(&self, samples: u32) -> f64 {
+        f64::from(samples) / f64::from(self.samples)
+    }
+}
+
+/// A share in percent, with a tenth where it is neither all nor nothing.
+fn percent(share: f64) -> String {
+    let text = format!("{:.1}", 100.0 * share);
+    format!("{} %", text.strip_suffix(".0").unwrap_or(&text))
+}
+
+/// The value below which a share of sorted values lies, between neighbours in proportion.
+pub fn percentile(sorted: &[f64], percent: u32) -> f64 {
+    let place = f64::from(percent) / 100.0 * (sorted.len().saturating_sub(1)) as f64;
+    let below = place.floor() as usize;
+    let above = (below + 1).min(sorted.len() - 1);
+    sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
+}
+
+/// [`PERCENTILES`] of tip deflection \[mm\], mass \[kg\] and lowest mode \[Hz\].
+pub fn percentiles(samples: &[Design]) -> [[f64; 3]; 3] {
+    Objective::ALL.map(|objective| {
+        let mut values: Vec<f64> = samples.iter().map(|d| objective.of(d)).collect();
+        values.sort_unstable_by(f64::total_cmp);
+        PERCENTILES.map(|p| percentile(&values, p))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_percentile_lies_between_its_neighbours() {
+        let values = [1.0, 2.0, 3.0, 4.0, 5.0];
+        assert_eq!([0, 5, 50, 100].map(|p| percentile(&values, p)), [1.0, 1.2, 3.0, 5.0]);
+        assert_eq!(percentile(&[7.0], 95), 7.0);
+    }
+}

@@ -1,0 +1,208 @@
+//! Parts that a design has only for their weight.
+//!
+//! A gear's torsion curve grows steeper with torque: something heavy outboard presses it past a break point, its
+//! tangent stiffness rises a segment, and with it the lowest mode. A design can be on a front for that alone: with
+//! a lighter part that is at least as stiff in everything it would weigh less and sag no more, and only its lowest
+//! mode would fall, because an inboard gear falls to a softer segment.
+
+use super::design::{number, options};
+use super::outward::{ArmProblem, Partial};
+use super::slot::Slot;
+use super::space::{LinkOption, SpacePiece};
+use super::station::{Station, StationSlot};
+use super::{Objectives, OutwardIn};
+use crate::arm::{Curve, JointLaw};
+use crate::mechanics::Wrench;
+
+/// Objectives that differ by less than this part are equal.
+const ROUNDING: f64 = 1e-9;
+
+/// A part that a design has for its weight.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ballast {
+    /// Where it is: a piece of the chain, base to tip.
+    pub piece: usize,
+    /// Number of the design with a lighter part instead.
+    pub lighter: u128,
+    /// The joint whose gear falls to a softer segment then: a piece of the chain.
+    pub pressed: usize,
+    /// The case in which it does.
+    pub case: usize,
+}
+
+/// A design at work.
+struct Weighed<'p, 'c> {
+    problem: &'p ArmProblem<'c>,
+    options: Vec<u32>,
+    arm: Partial,
+    objectives: Objectives,
+    /// Torque on every joint in every case \[N m\], by slot.
+    torques_nm: Vec<Vec<f64>>,
+}
+
+impl ArmProblem<'_> {
+    /// The part that a design has for its weight; of several, the one whose replacement is the lightest design.
+    pub fn ballast(&self, design: u128) -> Option<Ballast> {
+        let weighed = Weighed::new(self, options(self.level_sizes(), design)?)?;
+        let found = (0..weighed.options.len()).flat_map(|level| weighed.at(level));
+        found
+            .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.lighter.cmp(&b.1.lighter)))
+            .map(|(_, ballast)| ballast)
+    }
+}
+
+impl<'p, 'c> Weighed<'p, 'c> {
+    fn new(problem: &'p ArmProblem<'c>, options: Vec<u32>) -> Option<Self> {
+        let mut torques_nm = vec![vec![0.0; problem.stations().len()]; problem.slots().len()];
+        let torque = |station: &Station, slot: usize, wrench: &Wrench| match &station.slots[slot] {
+            StationSlot::Joint(joint) => joint.twist.dot(wrench),
+            _ => 0.0,
+        };
+        let arm = problem
+            .walk(&options, |slot, outboard| {
+                for (case, state) in outboard.stations.iter().enumerate() {
+                    torques_nm[slot][case] = torque(&problem.stations()[case], slot, &state.wrench);
+                }
+            })
+            .ok()?;
+        let objectives = problem.objectives(&arm)?;
+        Some(Self { problem, options, arm, objectives, torques_nm })
+    }
+
+    /// Replacements of one level's part that show it to be ballast, each with its design's mass \[kg\].
+    fn at(&self, level: usize) -> Vec<(f64, Ballast)> {
+        let slot = self.problem.level_slots()[level];
+        let now = self.options[level];
+        let size = self.problem.level_sizes()[level];
+        let better =
+            (0..size).filter(|&option| option != now && self.lighter_and_as_stiff(slot, option, now));
+        better.filter_map(|option| self.without_weight(level, slot, option)).collect()
+    }
+
+    fn lighter_and_as_stiff(&self, slot: usize, option: u32, now: u32) -> bool {
+        match (&self.problem.slots()[slot], self.problem.piece_in_slot(slot)) {
+            (Slot::Sized(sized), _) => {
+                let mass_kg = |option: u32| sized.table.mass_kg(option as usize);
+                let curve = |option: u32| sized.laws[option as usize].curve;
+                mass_kg(option) < mass_kg(now) && never_softer(&curve(option), &curve(now))
+            }
+            (_, Some(SpacePiece::Choice(choice))) => {
+                let [option, now] = [option, now].map(|o| &choice.options[o as usize]);
+                option.mass_kg_per_m() < now.mass_kg_per_m()
+                    && stiffnesses(option).iter().zip(stiffnesses(now)).all(|(a, b)| *a >= b)
+            }
+            _ => false,
+        }
+    }
+
+    /// The design with a lighter part, if only its lowest mode is worse and a gear that falls to a softer segment
+    /// is why.
+    fn without_weight(&self, level: usize, slot: usize, option: u32) -> Option<(f64, Ballast)> {
+        let (pressed, case) = self.relieved(slot, option)?;
+        let mut options = self.options.clone();
+        options[level] = option;
+        let lighter = self.problem.walk(&options, |_, _| {}).ok()?;
+        let others_stay =
+            (0..lighter.options.len()).all(|s| s == slot || lighter.options[s] == self.arm.options[s]);
+        let o = self.problem.objectives(&lighter)?;
+        let mode_alone_is_worse = o.mass_kg < self.objectives.mass_kg
+            && o.tip_deflection_m <= self.objectives.tip_deflection_m * (1.0 + ROUNDING)
+            && o.lowest_mode_hz < self.objectives.lowest_mode_hz * (1.0 - ROUNDING);
+        let shows = others_stay && mode_alone_is_worse && self.gears_are_why(&lighter, slot);
+        let piece = self.problem.piece_of_slot(slot);
+        shows.then(|| {
+            let lighter = number(self.problem.level_sizes(), &options);
+            (o.mass_kg, Ballast { piece, lighter, pressed: self.problem.piece_of_slot(pressed), case })
+        })
+    }
+
+    /// The joint inboard, and the case, in which a gear falls to a softer segment when a part's weight changes.
+    fn relieved(&self, slot: usize, option: u32) -> Option<(usize, usize)> {
+        let cases = &self.problem.space().judged_cases;
+        let inboard = slot + 1..self.problem.slots().len();
+        inboard.flat_map(|joint| cases.iter().map(move |&case| (joint, case))).find(|&(joint, case)| {
+            let station = &self.problem.stations()[case];
+            let (StationSlot::Joint(place), Some(law)) = (&station.slots[joint], self.law(joint)) else {
+                return false;
+            };
+            let torque_nm = self.torques_nm[joint][case];
+            let change_nm = place.twist.dot(&self.change_of_weight(station, slot, option));
+            let softness = |torque_nm| law.curve.tangent_compliance_rad_per_nm(torque_nm);
+            softness(torque_nm + change_nm) > softness(torque_nm)
+        })
+    }
+
+    /// How a joint twists in this design.
+    fn law(&self, slot: usize) -> Option<&JointLaw> {
+        self.problem.slots()[slot].law(self.arm.options[slot] as usize)
+    }
+
+    /// What another option weighs more, as a wrench.
+    fn change_of_weight(&self, station: &Station, slot: usize, option: u32) -> Wrench {
+        let now = self.arm.options[slot] as usize;
+        match (&station.slots[slot], &self.problem.slots()[slot]) {
+            (StationSlot::Joint(joint), Slot::Sized(sized)) => {
+                joint.weight_per_kg * (sized.table.mass_kg(option as usize) - sized.table.mass_kg(now))
+            }
+            (StationSlot::Link { options, .. }, _) => options[option as usize].weight - options[now].weight,
+            _ => Wrench::zeros(),
+        }
+    }
+
+    /// Whether the lighter design's lowest mode would be no worse if the gears inboard kept their segments.
+    fn gears_are_why(&self, lighter: &Partial, slot: usize) -> bool {
+        let mut held = lighter.clone();
+        for (state, before) in held.stations.iter_mut().zip(&self.arm.stations) {
+            for inboard in slot + 1..before.compliances.len() {
+                state.compliances[inboard] = state.compliances[inboard].min(before.compliances[inboard]);
+            }
+        }
+        let held = self.problem.objectives(&held);
+        held.is_some_and(|o| o.lowest_mode_hz >= self.objectives.lowest_mode_hz * (1.0 - ROUNDING))
+    }
+}
+
+/// Whether a curve is at least as stiff as another under every torque.
+fn never_softer(a: &Curve, b: &Curve) -> bool {
+    let breaks = |curve: &Curve| match curve {
+        Curve::Windup(w) => vec![w.t1_nm, w.t2_nm],
+        _ => Vec::new(),
+    };
+    // at a break point the tangent is that of the segment below: one torque in every segment of either
+    let torques_nm = [breaks(a), breaks(b), vec![f64::INFINITY]].concat();
+    let softness = |curve: &Curve, torque_nm| curve.tangent_compliance_rad_per_nm(torque_nm);
+    torques_nm.into_iter().all(|t| softness(a, t) <= softness(b, t))
+}
+
+/// Stiffnesses of a tube per length: stretch, bending about both axes, torsion, shear.
+fn stiffnesses(option: &LinkOption) -> [f64; 5] {
+    let material = &option.material;
+    let section = option.section.properties(material.poisson);
+    let (e, g) = (material.youngs_modulus_pa, material.shear_modulus_pa);
+    [
+        e * section.area_m2,
+        e * section.second_moment_y_m4,
+        e * section.second_moment_z_m4,
+        g * section.torsion_constant_m4,
+        g * section.area_m2 * section.shear_factor,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::Windup;
+
+    #[test]
+    fn a_curve_that_bends_later_is_softer_in_between_though_its_slopes_are_the_same() {
+        let curve = |t1_nm: f64| {
+            let (k1_nm_per_rad, k2_nm_per_rad, k3_nm_per_rad) = (1e4, 2e4, 3e4);
+            Curve::Windup(Windup { k1_nm_per_rad, k2_nm_per_rad, k3_nm_per_rad, t1_nm, t2_nm: 100.0 })
+        };
+        assert!(never_softer(&curve(10.0), &curve(20.0)));
+        assert!(!never_softer(&curve(20.0), &curve(10.0)));
+        assert!(never_softer(&curve(10.0), &curve(10.0)));
+        assert!(!never_softer(&Curve::Linear(2.5e4), &curve(10.0)), "softer beyond 100 N m");
+        assert!(never_softer(&Curve::Rigid, &curve(10.0)));
+    }
+}

@@ -1,0 +1,217 @@
+//! Designs as they might be built: the parts that were chosen, each a little off its catalog figures.
+//!
+//! Sizing is not done again: drives and sections stay, whatever their figures turn out to be. A gear's
+//! stiffness is one factor on its whole torsion curve (K1, K2 and K3; the break points T1 and T2 stay), a
+//! material's modulus one factor on E and G, a gear's or motor's mass one factor. A factor belongs to a
+//! catalog row: wherever the row is used, in whichever design, it is the same.
+
+use super::Objectives;
+use super::outward::{ArmProblem, Partial, objectives_over};
+use super::slot::Slot;
+use super::space::{DesignSpace, DriveChoice, SpacePiece};
+use super::station::{Station, StationSlot};
+use crate::arm::{JointLaw, Link, LinkBody};
+use crate::sizing::Drive;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A catalog figure that is not quite what it says, by the row it stands in.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Figure {
+    /// The torsion curve of a gear.
+    GearStiffness(String),
+    /// E and G of a material.
+    Modulus(String),
+    /// The mass of a gear.
+    GearMass(String),
+    /// The mass of a motor.
+    MotorMass(String),
+}
+
+/// True value over the catalog's, by figure; a figure that is not listed is exact.
+pub type Factors = BTreeMap<Figure, f64>;
+
+/// Designs of a problem whose parts are to be scattered.
+pub struct ChosenParts<'p, 'c> {
+    problem: &'p ArmProblem<'c>,
+    /// Option of every slot of every design.
+    designs: Vec<Vec<u32>>,
+    /// Options that some design has, slot by slot.
+    used: Vec<BTreeSet<u32>>,
+}
+
+/// A joint as it might be built.
+struct BuiltJoint {
+    law: JointLaw,
+    mass_kg: f64,
+}
+
+/// The parts of [`ChosenParts`] with one set of factors.
+pub struct BuiltParts<'p, 'c> {
+    chosen: &'p ChosenParts<'p, 'c>,
+    /// Cases with links of other moduli; `None`: the problem's own.
+    stations: Option<Vec<Station>>,
+    joints: Vec<BTreeMap<u32, BuiltJoint>>,
+}
+
+impl<'p, 'c> ChosenParts<'p, 'c> {
+    /// The parts of designs, given by their options, one a level; a design that cannot hold is refused.
+    pub fn new(problem: &'p ArmProblem<'c>, designs: &[Vec<u32>]) -> Option<Self> {
+        let complete =
+            designs.iter().map(|options| problem.walk(options, |_, _| {}).ok().map(|arm| arm.options));
+        let designs = complete.collect::<Option<Vec<_>>>()?;
+        let used = (0..problem.slots().len()).map(|s| designs.iter().map(|d| d[s]).collect()).collect();
+        Some(Self { problem, designs, used })
+    }
+
+    /// Number of designs.
+    pub fn len(&self) -> usize {
+        self.designs.len()
+    }
+
+    /// Whether there is no design.
+    pub fn is_empty(&self) -> bool {
+        self.designs.is_empty()
+    }
+
+    /// Every catalog figure that the designs depend on.
+    pub fn figures(&self) -> BTreeSet<Figure> {
+        let used = self.used.iter().enumerate().flat_map(|(slot, used)| used.iter().map(move |&o| (slot, o)));
+        used.flat_map(|(slot, option)| {
+            let drive = self.drive(slot, option);
+            [
+                self.gear(slot, option).map(Figure::GearStiffness),
+                self.material(slot, option).map(Figure::Modulus),
+                drive.map(|d| Figure::GearMass(d.gear.id.clone())),
+                drive.map(|d| Figure::MotorMass(d.motor.id.clone())),
+            ]
+        })
+        .flatten()
+        .collect()
+    }
+
+    /// The parts with their true figures.
+    pub fn built(&self, factors: &Factors) -> BuiltParts<'_, 'c> {
+        let bends = factors.keys().any(|figure| matches!(figure, Figure::Modulus(_)));
+        let stations = bends.then(|| {
+            let space = with_moduli(self.problem.space(), factors);
+            space.cases.iter().map(|case| Station::new(&space, case)).collect()
+        });
+        let joint = |slot: usize, option: u32| Some((option, self.built_joint(slot, option, factors)?));
+        let joints = self
+            .used
+            .iter()
+            .enumerate()
+            .map(|(slot, used)| used.iter().filter_map(|&option| joint(slot, option)).collect())
+            .collect();
+        BuiltParts { chosen: self, stations, joints }
+    }
+
+    fn built_joint(&self, slot: usize, option: u32, factors: &Factors) -> Option<BuiltJoint> {
+        let factor = |figure: Figure| factors.get(&figure).copied().unwrap_or(1.0);
+        let law = *self.problem.slots()[slot].law(option as usize)?;
+        let stiffness = self.gear(slot, option).map_or(1.0, |gear| factor(Figure::GearStiffness(gear)));
+        let mass_kg = match &self.problem.slots()[slot] {
+            Slot::Given { mass_kg, .. } => *mass_kg,
+            Slot::Sized(sized) => {
+                let (drive, mass_kg) =
+                    (sized.table.drive(option as usize), sized.table.mass_kg(option as usize));
+                let motor_kg = drive.motor.mass_kg.unwrap_or(0.0);
+                let gear_off = factor(Figure::GearMass(drive.gear.id.clone())) - 1.0;
+                let motor_off = factor(Figure::MotorMass(drive.motor.id.clone())) - 1.0;
+                mass_kg + (mass_kg - motor_kg) * gear_off + motor_kg * motor_off
+            }
+            _ => 0.0,
+        };
+        Some(BuiltJoint { law: JointLaw { curve: law.curve.stiffened(stiffness), ..law }, mass_kg })
+    }
+
+    /// The catalog gear of a joint, chosen or given by name.
+    fn gear(&self, slot: usize, option: u32) -> Option<String> {
+        match (self.drive(slot, option), self.problem.piece_in_slot(slot)) {
+            (Some(drive), _) => Some(drive.gear.id.clone()),
+            (None, Some(SpacePiece::Joint(joint))) => match &joint.drive {
+                DriveChoice::Given { gear, .. } => gear.clone(),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// The drive of a joint that the study leaves open. That of a given joint has the mass that the study
+    /// gives it.
+    fn drive(&self, slot: usize, option: u32) -> Option<Drive<'c>> {
+        match &self.problem.slots()[slot] {
+            Slot::Sized(sized) => Some(sized.table.drive(option as usize)),
+            _ => None,
+        }
+    }
+
+    fn material(&self, slot: usize, option: u32) -> Option<String> {
+        match self.problem.piece_in_slot(slot)? {
+            SpacePiece::Choice(choice) => Some(choice.options[option as usize].material_name.clone()),
+            SpacePiece::Link(Link { body: LinkBody::Tube { material_name, .. }, .. }) => {
+                Some(material_name.clone())
+            }
+            _ => None,
+        }
+    }
+}
+
+impl BuiltParts<'_, '_> {
+    /// Objectives of a design by its place in the list that the parts were taken from.
+    pub fn objectives(&self, design: usize) -> Objectives {
+        let problem = self.chosen.problem;
+        let stations = self.stations.as_deref().unwrap_or(problem.stations());
+        let arm = self.arm(stations, &self.chosen.designs[design]);
+        objectives_over(problem.space().judged_cases.iter().map(|&i| (&stations[i], &arm.stations[i])), &arm)
+    }
+
+    /// The arm of a design in its judged cases.
+    fn arm(&self, stations: &[Station], options: &[u32]) -> Partial {
+        let problem = self.chosen.problem;
+        let mut arm = problem.empty();
+        for (slot, (piece, &option)) in problem.slots().iter().zip(options).enumerate() {
+            arm.options[slot] = option;
+            let joint = self.joints[slot].get(&option);
+            let mass_kg = match piece {
+                Slot::Given { .. } | Slot::Sized(_) => joint.map_or(0.0, |j| j.mass_kg),
+                Slot::Link { options, .. } => options[option as usize].mass_kg,
+                Slot::Offset { mass_kg } => *mass_kg,
+            };
+            arm.mass_kg += mass_kg;
+            for &case in &problem.space().judged_cases {
+                let state = &mut arm.stations[case];
+                match (&stations[case].slots[slot], joint) {
+                    (StationSlot::Joint(place), Some(joint)) => {
+                        arm.masses_kg[slot] = mass_kg;
+                        state.add_joint(slot, place, &joint.law, mass_kg);
+                    }
+                    (StationSlot::Link { options, .. }, _) => state.add_link(&options[option as usize]),
+                    (StationSlot::Body { inertia, weight }, _) => state.add_body(inertia, weight),
+                    _ => {}
+                }
+            }
+        }
+        arm
+    }
+}
+
+/// The space with every tube's material as it is.
+fn with_moduli(space: &DesignSpace, factors: &Factors) -> DesignSpace {
+    let factor = |name: &str| factors.get(&Figure::Modulus(name.to_string())).copied().unwrap_or(1.0);
+    let mut out = space.clone();
+    for piece in &mut out.pieces {
+        match piece {
+            SpacePiece::Choice(choice) => {
+                for option in &mut choice.options {
+                    option.material = option.material.stiffened(factor(&option.material_name));
+                }
+            }
+            SpacePiece::Link(Link { body: LinkBody::Tube { material_name, material, .. }, .. }) => {
+                *material = material.stiffened(factor(material_name));
+            }
+            _ => {}
+        }
+    }
+    out
+}

@@ -1,0 +1,115 @@
+//! Designs of a front that are there only because ballast preloads a gear, as a table.
+
+use super::table::link_words;
+use super::{Front, Judged};
+use crate::report::front_table::FrontTable;
+use crate::report::number::{shortest, significant};
+use crate::search::ballast::Ballast;
+use crate::search::design::{Part, id_of, options};
+use crate::search::space::SpacePiece;
+use crate::search::{ArmProblem, Objectives, OutwardIn, evaluate};
+use rayon::prelude::*;
+
+/// A flagged design of a front.
+#[derive(Debug, Clone, PartialEq)]
+struct Flagged {
+    row: Vec<String>,
+    words: String,
+}
+
+/// The designs of a front that have a part for its weight.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BallastFlags {
+    flagged: Vec<Flagged>,
+    front: usize,
+}
+
+const COLUMNS: [&str; 13] = [
+    "design_id",
+    "at",
+    "part",
+    "lighter_part",
+    "lighter_design_id",
+    "pressed_joint",
+    "pose",
+    "mass_kg",
+    "lighter_mass_kg",
+    "tip_deflection_mm",
+    "lighter_tip_deflection_mm",
+    "lowest_mode_hz",
+    "lighter_lowest_mode_hz",
+];
+
+/// Flags the designs of a front that have a part for its weight.
+pub fn ballast_flags(problem: &ArmProblem, front: &Front) -> BallastFlags {
+    let flag = |judged: &Judged| flagged(problem, judged, &problem.ballast(judged.design.number)?);
+    BallastFlags { flagged: front.par_iter().filter_map(flag).collect(), front: front.len() }
+}
+
+fn flagged(problem: &ArmProblem, judged: &Judged, ballast: &Ballast) -> Option<Flagged> {
+    let space = problem.space();
+    let name = |piece: usize| match &space.pieces[piece] {
+        SpacePiece::Joint(joint) => joint.name.clone(),
+        SpacePiece::Choice(choice) => choice.name.clone(),
+        SpacePiece::Link(link) => link.name.clone(),
+    };
+    let part = |design: u128| {
+        let parts = problem.parts(&options(problem.level_sizes(), design)?)?;
+        Some(match &parts[ballast.piece] {
+            Part::Drive(drive) => drive.name(),
+            Part::Link(option) => link_words(option),
+            Part::Given => return None,
+        })
+    };
+    let (heavy, light) = (judged.design.objectives, evaluate(problem, ballast.lighter)?.objectives);
+    let id = id_of(problem.whole_number(judged.design.number));
+    let (at, pressed) = (name(ballast.piece), name(ballast.pressed));
+    let (kept, lighter) = (part(judged.design.number)?, part(ballast.lighter)?);
+    let words = format!(
+        "{id}: with {lighter} instead of {kept} at {at} it weighs {} kg less, sags no more, and its lowest mode falls from {} to {} Hz, because {pressed} falls to a softer segment of its gear.",
+        significant(heavy.mass_kg - light.mass_kg, 3),
+        significant(heavy.lowest_mode_hz, 4),
+        significant(light.lowest_mode_hz, 4),
+    );
+    let each = |value: fn(&Objectives) -> f64| [value(&heavy), value(&light)].map(shortest);
+    let mut row = vec![id, at, kept, lighter, id_of(problem.whole_number(ballast.lighter)), pressed];
+    row.push(space.cases[ballast.case].name.clone());
+    row.extend(each(|o| o.mass_kg));
+    row.extend(each(|o| o.tip_deflection_m * 1e3));
+    row.extend(each(|o| o.lowest_mode_hz));
+    Some(Flagged { row, words })
+}
+
+impl BallastFlags {
+    /// Number of designs.
+    pub fn len(&self) -> usize {
+        self.flagged.len()
+    }
+
+    /// Whether no design is flagged.
+    pub fn is_empty(&self) -> bool {
+        self.flagged.is_empty()
+    }
+
+    /// One row a flagged design.
+    pub fn to_csv(&self) -> Vec<u8> {
+        let rows = self.flagged.iter().map(|f| f.row.clone()).collect();
+        FrontTable { columns: COLUMNS.map(String::from).into(), rows }.to_csv()
+    }
+
+    /// How many there are, and what that means, in a sentence.
+    pub fn sentence(&self) -> String {
+        let designs = if self.len() == 1 { "design is" } else { "designs are" };
+        format!(
+            "{} of the front's {} {designs} there only because ballast presses a gear into a stiffer segment: ballast.csv.",
+            self.len(),
+            self.front
+        )
+    }
+
+    /// The section of a summary: the first few in words.
+    pub fn to_markdown(&self) -> String {
+        let lines: Vec<String> = self.flagged.iter().take(5).map(|f| format!("- {}\n", f.words)).collect();
+        format!("\n## Ballast\n\n{}\n\n{}", self.sentence(), lines.concat())
+    }
+}

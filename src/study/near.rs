@@ -1,0 +1,168 @@
+//! Designs near a front, as a table: what is in stock is what gets built.
+
+use super::outcome::by_full_model;
+use super::{Front, Judged, StudyOutcome, front_table};
+use crate::catalog::Catalogs;
+use crate::report::front_table::FrontTable;
+use crate::report::number::shortest;
+use crate::report::picks::choices;
+use crate::search::design::id_of;
+use crate::search::front::rounded;
+use crate::search::near::{Shortfall, Slack, near_designs, worst_of};
+use crate::search::{ArmProblem, Evaluated, Objectives};
+use std::collections::{BTreeMap, HashSet};
+use std::sync::atomic::AtomicBool;
+
+/// The designs near a front.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NearFront {
+    /// Largest shortfall asked for, as a part.
+    pub slack: f64,
+    /// The nearest of them with every choice, objective and margin, how near each is, and which parts may be
+    /// exchanged; nearest first.
+    pub table: FrontTable,
+    /// How many there are, those left out by the cap included.
+    pub total: u64,
+    /// Whether the cap left some out.
+    pub capped: bool,
+}
+
+/// Finds the designs near a front that was found by visiting every design; `None` if it was stopped.
+pub fn near_front(
+    problem: &ArmProblem,
+    catalogs: &Catalogs,
+    outcome: &StudyOutcome,
+    slack: Slack,
+    stop: &AtomicBool,
+) -> Option<NearFront> {
+    // the sweep's candidates are more than the front: those that the full model took off it are near it
+    let numbers: HashSet<u128> = outcome.front.iter().map(|j| j.design.number).collect();
+    let on_front: Vec<_> =
+        outcome.sweep.front.iter().filter(|c| numbers.contains(&c.number)).copied().collect();
+    let found = near_designs(problem, &problem.space().constraints, &on_front, slack, stop)?;
+    let judged = by_full_model(problem, found.nearest.iter().map(|n| n.candidate.number).collect());
+    let shortfall = Shortfall::of(outcome.front.iter().map(|j| j.design.objectives));
+    let near: Vec<(f64, Evaluated)> = judged
+        .into_values()
+        .filter_map(|d| Some((shortfall.within(slack.part, &d.objectives)?, d)))
+        .collect();
+    let left_out = found.nearest.len() - near.len();
+    Some(NearFront {
+        slack: slack.part,
+        capped: found.total > found.nearest.len() as u64,
+        total: found.total - left_out as u64,
+        table: table(problem, catalogs, &outcome.front, near),
+    })
+}
+
+/// Three objectives to twelve digits, as words that can be compared.
+fn key(o: &Objectives) -> [u64; 3] {
+    o.minimized().map(|x| rounded(x).to_bits())
+}
+
+/// Designs of equal objectives side by side, the nearest group first.
+fn grouped(near: Vec<(f64, Evaluated)>) -> Vec<Vec<(f64, Evaluated)>> {
+    let mut groups: BTreeMap<[u64; 3], Vec<(f64, Evaluated)>> = BTreeMap::new();
+    for (shortfall, design) in near {
+        groups.entry(key(&design.objectives)).or_default().push((shortfall, design));
+    }
+    let mut groups: Vec<Vec<(f64, Evaluated)>> = groups.into_values().collect();
+    groups.iter_mut().for_each(|group| group.sort_by_key(|(_, d)| d.number));
+    groups.sort_by(|a, b| a[0].0.total_cmp(&b[0].0).then(a[0].1.number.cmp(&b[0].1.number)));
+    groups
+}
+
+fn table(
+    problem: &ArmProblem,
+    catalogs: &Catalogs,
+    front: &Front,
+    near: Vec<(f64, Evaluated)>,
+) -> FrontTable {
+    let groups = grouped(near);
+    let members = groups.iter().enumerate().flat_map(|(g, group)| group.iter().map(move |d| (g + 1, d)));
+    let as_front: Front =
+        members.clone().map(|(tie_group, (_, d))| Judged { design: d.clone(), tie_group }).collect();
+    let mut table = front_table(problem, catalogs, &as_front);
+    let words: Vec<Vec<String>> = (0..table.rows.len()).map(|row| choices(&table, row)).collect();
+    let mut first = 0;
+    for group in &groups {
+        let rows = first..first + group.len();
+        for ((shortfall, design), row) in group.iter().zip(rows.clone()) {
+            let (rival, worse) = nearest(front, &design.objectives);
+            let swaps = rows.clone().filter_map(|other| {
+                Some(format!("{} ({})", only_difference(&words[row], &words[other])?, table.rows[other][0]))
+            });
+            let swaps = swaps.collect::<Vec<_>>().join("; ");
+            let [deflection, mass, mode] = worse.map(|part| shortest(100.0 * part));
+            let near_to = id_of(problem.whole_number(rival));
+            table.rows[row].extend([shortest(100.0 * shortfall), near_to, deflection, mass, mode, swaps]);
+        }
+        first += group.len();
+    }
+    table.columns.extend(
+        [
+            "shortfall_percent",
+            "near_to",
+            "tip_deflection_worse_percent",
+            "mass_worse_percent",
+            "lowest_mode_worse_percent",
+            "interchangeable",
+        ]
+        .map(String::from),
+    );
+    table
+}
+
+/// The design of the front that differs least from a design in the objective in which it differs most, and by
+/// how much the design is worse than it in each.
+fn nearest(front: &Front, design: &Objectives) -> (u128, [f64; 3]) {
+    let apart = |worse: &[f64; 3]| worse.iter().fold(0.0f64, |most, part| most.max(part.abs()));
+    let all = front.iter().map(|j| (j.design.number, worst_of(design, &j.design.objectives)));
+    all.min_by(|a, b| apart(&a.1).total_cmp(&apart(&b.1)).then(a.0.cmp(&b.0))).unwrap_or_default()
+}
+
+/// The choice of `other` that differs from `one`, if just one does.
+fn only_difference<'w>(one: &[String], other: &'w [String]) -> Option<&'w str> {
+    let mut different = one.iter().zip(other).filter(|(a, b)| a != b);
+    let (_, word) = different.next()?;
+    different.next().is_none().then_some(word)
+}
+
+impl NearFront {
+    /// Sentences about it.
+    pub fn sentences(&self) -> Vec<String> {
+        let percent = shortest((100.0 * self.slack * 1e9).round() / 1e9);
+        let groups = self.tied_groups();
+        let mut out = vec![match self.total {
+            0 => format!("No design off the front is within {percent} % of it."),
+            n => format!(
+                "Within {percent} % of the front: {n} designs that are not on it, nearest first in near.csv."
+            ),
+        }];
+        if self.capped {
+            out.push(format!(
+                "Only the nearest {} are listed; --within-most takes more.",
+                self.table.rows.len()
+            ));
+        }
+        if groups > 0 {
+            out.push(format!(
+                "In {groups} groups of them all objectives are equal: their column interchangeable says which part may be exchanged for which."
+            ));
+        }
+        out
+    }
+
+    /// Number of groups of more than one design.
+    fn tied_groups(&self) -> usize {
+        let Some(column) = self.table.column("tie_group") else { return 0 };
+        let groups: Vec<&str> = self.table.rows.iter().map(|r| r[column].as_str()).collect();
+        groups.chunk_by(|a, b| a == b).filter(|group| group.len() > 1).count()
+    }
+
+    /// The section of a summary.
+    pub fn to_markdown(&self) -> String {
+        let lines: Vec<String> = self.sentences().iter().map(|s| format!("- {s}\n")).collect();
+        format!("\n## Near the front\n\n{}", lines.concat())
+    }
+}

@@ -1,0 +1,339 @@
+//! A front under scatter: catalog figures are averages, and a real part is a little off.
+//!
+//! A stated scatter of `p` is a log-normal factor on a catalog figure, its median 1: 95 % of the factors lie
+//! between `1/(1+p)` and `1+p`, as with the tolerances of a campaign. One factor belongs to one row of a
+//! catalog, and so to every joint and design that uses it. Each figure has a stream of random numbers of its
+//! own, made from the seed and the row's name: its factors do not depend on what else is on the front, on the
+//! number of samples or on threads.
+//!
+//! | scatter | of | default | source |
+//! |---|---|---|---|
+//! | `gear_stiffness` | K1, K2 and K3 of a gear, together | 20 % | an assumption: the vendor calls them "average values" and states no scatter (Harmonic Drive SE, engineering data 1018856, 08/2018, p. 70) |
+//! | `modulus` | E and G of a material, together | 3 % | an assumption, for metals; a laminate's is larger |
+//! | `mass` | a gear's and a motor's mass, each | 2 % | an assumption |
+
+use super::Front;
+use crate::catalog::Catalogs;
+use crate::report::picks::{self, Design};
+use crate::report::tolerance::{Fate, PICKS, Scattered, percentiles};
+use crate::search::constraint::Constraints;
+use crate::search::front::nondominated;
+use crate::search::scatter::{ChosenParts, Factors, Figure};
+use crate::search::space::SpacePiece;
+use crate::search::{ArmProblem, DesignSpace, Objectives};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::str::FromStr;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Samples that are worked out before their counts are added up.
+const BATCH: u32 = 256;
+/// Ninety-five percent of a normal distribution lie within so many standard deviations.
+const SIGMAS_95: f64 = 1.959_963_984_540_054;
+
+/// Names of what may scatter, with the scatter that a name alone stands for.
+const KINDS: [(&str, f64); 3] = [("gear_stiffness", 0.20), ("modulus", 0.03), ("mass", 0.02)];
+
+/// Scatter of catalog figures, as parts: 0.2 is 20 %.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Tolerance {
+    /// Of [`KINDS`], in that order; 0 is exact.
+    parts: [f64; 3],
+}
+
+/// A scatter with how it is sampled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sampling {
+    /// The scatter.
+    pub tolerance: Tolerance,
+    /// Number of samples.
+    pub samples: u32,
+    /// Seed.
+    pub seed: u64,
+}
+
+impl FromStr for Tolerance {
+    type Err = String;
+
+    /// `gear_stiffness=20%,modulus=3%,mass=2%`; a name alone stands for its default.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut parts = [0.0; 3];
+        for item in text.split(',').map(str::trim) {
+            let (name, value) =
+                item.split_once('=').map_or((item, None), |(n, v)| (n.trim(), Some(v.trim())));
+            let Some(kind) = KINDS.iter().position(|(n, _)| *n == name) else {
+                let known: Vec<&str> = KINDS.iter().map(|(n, _)| *n).collect();
+                return Err(format!("\"{name}\" does not scatter; choose from {}", known.join(", ")));
+            };
+            if parts[kind] > 0.0 {
+                return Err(format!("{name} is given twice"));
+            }
+            parts[kind] = value.map_or(Ok(KINDS[kind].1), part)?;
+        }
+        Ok(Self { parts })
+    }
+}
+
+/// A percentage or a part between 0 and 1: `20%`, `0.2`.
+pub fn part(text: &str) -> Result<f64, String> {
+    let (number, scale) = text.strip_suffix('%').map_or((text, 1.0), |n| (n.trim_end(), 0.01));
+    match number.parse::<f64>() {
+        Ok(x) if x > 0.0 && x * scale < 1.0 => Ok(x * scale),
+        _ => Err(format!("\"{text}\" is not a percentage between 0 % and 100 %, such as 20%")),
+    }
+}
+
+impl Tolerance {
+    /// What scatters, by name.
+    fn named(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        KINDS.iter().zip(self.parts).map(|((name, _), part)| (*name, part)).filter(|(_, part)| *part > 0.0)
+    }
+
+    /// Scatter of a figure.
+    fn of(&self, figure: &Figure) -> f64 {
+        let [gear_stiffness, modulus, mass] = self.parts;
+        match figure {
+            Figure::GearStiffness(_) => gear_stiffness,
+            Figure::Modulus(_) => modulus,
+            Figure::GearMass(_) | Figure::MotorMass(_) => mass,
+        }
+    }
+}
+
+/// The stream of random factors of one figure.
+struct Stream {
+    generator: Xoshiro256PlusPlus,
+    sigma: f64,
+}
+
+impl Stream {
+    fn new(seed: u64, figure: &Figure, part: f64) -> Self {
+        let named = blake3::hash(format!("{seed} {figure:?}").as_bytes());
+        Self { generator: Xoshiro256PlusPlus::from_seed(*named.as_bytes()), sigma: part.ln_1p() / SIGMAS_95 }
+    }
+
+    /// A number in (0, 1].
+    fn uniform(&mut self) -> f64 {
+        ((self.generator.next_u64() >> 11) + 1) as f64 / (1u64 << 53) as f64
+    }
+
+    /// The next factor: Box and Muller's normal number as the logarithm.
+    fn factor(&mut self) -> f64 {
+        let (radius, angle) = ((-2.0 * self.uniform().ln()).sqrt(), TAU * self.uniform());
+        (self.sigma * radius * angle.cos()).exp()
+    }
+}
+
+/// What one sample shows.
+struct Sample {
+    keeps_limits: Vec<bool>,
+    on_front: Vec<usize>,
+    /// Design that is each of [`PICKS`].
+    picked: [Option<usize>; 4],
+    /// The nominal picks as they come out.
+    picks: Vec<Design>,
+}
+
+/// A front at work under scatter.
+struct Trial<'a> {
+    parts: &'a ChosenParts<'a, 'a>,
+    constraints: &'a Constraints,
+    /// The front by the catalogs' figures.
+    designs: &'a [Design],
+    /// Places of the nominal picks in it.
+    picks: &'a [usize],
+}
+
+impl Trial<'_> {
+    fn sample(&self, factors: &Factors) -> Sample {
+        let built = self.parts.built(factors);
+        let all: Vec<Objectives> = (0..self.parts.len()).map(|i| built.objectives(i)).collect();
+        let keeps_limits: Vec<bool> =
+            all.iter().map(|o| !self.constraints.broken(o).contains(&true)).collect();
+        let keeping: Vec<usize> = (0..all.len()).filter(|&i| keeps_limits[i]).collect();
+        let points: Vec<[f64; 3]> = keeping.iter().map(|&i| all[i].minimized()).collect();
+        let groups = nondominated(&points).expect("the model answers in numbers");
+        let on_front: Vec<usize> = groups.concat().into_iter().map(|i| keeping[i]).collect();
+        let as_built = |i: usize| with_objectives(&self.designs[i], i, &all[i]);
+        let front: Vec<Design> = on_front.iter().map(|&i| as_built(i)).collect();
+        let chosen = picks::picks(&front);
+        let pick = |name| chosen.iter().find(|p| p.names.contains(&name)).map(|p| p.design.row);
+        Sample {
+            keeps_limits,
+            on_front,
+            picked: PICKS.map(pick),
+            picks: self.picks.iter().map(|&i| as_built(i)).collect(),
+        }
+    }
+}
+
+/// A design with the objectives of a sample; its row is its place in the list.
+fn with_objectives(design: &Design, row: usize, o: &Objectives) -> Design {
+    Design {
+        tip_deflection_mm: o.tip_deflection_m * 1e3,
+        mass_kg: o.mass_kg,
+        lowest_mode_hz: o.lowest_mode_hz,
+        row,
+        ..design.clone()
+    }
+}
+
+/// Samples a front; `designs` are its rows. `None` if it was stopped.
+pub fn scatter_front(
+    problem: &ArmProblem,
+    catalogs: &Catalogs,
+    front: &Front,
+    designs: &[Design],
+    sampling: &Sampling,
+    stop: &AtomicBool,
+) -> Option<Scattered> {
+    // what a sample tabulates again is tabulated for the options of these designs alone
+    let numbers: Vec<u128> = designs.iter().map(|d| front[d.row].design.number).collect();
+    let place = |(row, design): (usize, &Design)| Design { row, ..design.clone() };
+    let designs: &[Design] = &designs.iter().enumerate().map(place).collect::<Vec<_>>();
+    let bare = without_excerpt(problem);
+    let space = bare.excerpt(catalogs, &numbers)?;
+    let small = ArmProblem::new(&space, catalogs);
+    let chosen: Option<Vec<Vec<u32>>> = numbers.iter().map(|&n| small.options_of_whole(n)).collect();
+    let parts = ChosenParts::new(&small, &chosen?)?;
+    let tolerance = &sampling.tolerance;
+    let mut streams: BTreeMap<Figure, Stream> = parts
+        .figures()
+        .into_iter()
+        .filter(|figure| tolerance.of(figure) > 0.0)
+        .map(|figure| (figure.clone(), Stream::new(sampling.seed, &figure, tolerance.of(&figure))))
+        .collect();
+    let nominal = picks::picks(designs);
+    let picks: Vec<usize> = nominal.iter().map(|p| p.design.row).collect();
+    let trial = Trial { parts: &parts, constraints: &space.constraints, designs, picks: &picks };
+    let mut tally = Tally::new(designs.len(), picks.len());
+    let mut left = sampling.samples;
+    while left > 0 {
+        if stop.load(Ordering::Relaxed) {
+            return None;
+        }
+        let batch = left.min(BATCH);
+        left -= batch;
+        let draw = |_| streams.iter_mut().map(|(figure, s)| (figure.clone(), s.factor())).collect();
+        let factors: Vec<Factors> = (0..batch).map(draw).collect();
+        let samples: Vec<Sample> = factors.par_iter().map(|factors| trial.sample(factors)).collect();
+        samples.into_iter().for_each(|sample| tally.add(sample));
+    }
+    Some(tally.told(designs, &nominal, sampling))
+}
+
+/// The space of a problem as a whole of its own: places in it are those of its designs' numbers.
+fn without_excerpt(problem: &ArmProblem) -> DesignSpace {
+    let mut space = problem.space().clone();
+    for piece in &mut space.pieces {
+        if let SpacePiece::Choice(choice) = piece {
+            choice.excerpt = None;
+        }
+    }
+    space
+}
+
+/// Counts over samples.
+struct Tally {
+    on_front: Vec<u32>,
+    keeps_limits: Vec<u32>,
+    picked: Vec<[u32; 4]>,
+    without_design: u32,
+    /// Every sample of each nominal pick.
+    picks: Vec<Vec<Design>>,
+}
+
+impl Tally {
+    fn new(designs: usize, picks: usize) -> Self {
+        Self {
+            on_front: vec![0; designs],
+            keeps_limits: vec![0; designs],
+            picked: vec![[0; 4]; designs],
+            without_design: 0,
+            picks: vec![Vec::new(); picks],
+        }
+    }
+
+    fn add(&mut self, sample: Sample) {
+        self.without_design += u32::from(sample.on_front.is_empty());
+        sample.on_front.iter().for_each(|&i| self.on_front[i] += 1);
+        for (count, keeps) in self.keeps_limits.iter_mut().zip(sample.keeps_limits) {
+            *count += u32::from(keeps);
+        }
+        for (name, picked) in sample.picked.into_iter().enumerate() {
+            picked.into_iter().for_each(|i| self.picked[i][name] += 1);
+        }
+        for (all, one) in self.picks.iter_mut().zip(sample.picks) {
+            all.push(one);
+        }
+    }
+
+    fn told(self, designs: &[Design], nominal: &[picks::Pick], sampling: &Sampling) -> Scattered {
+        let place = |row: usize| nominal.iter().position(|p| p.design.row == row);
+        let fate = |(i, design): (usize, &Design)| Fate {
+            design: design.clone(),
+            picks: place(design.row).map_or(Vec::new(), |p| nominal[p].names.clone()),
+            on_front: self.on_front[i],
+            keeps_limits: self.keeps_limits[i],
+            picked: self.picked[i],
+            percentiles: place(design.row).map(|p| percentiles(&self.picks[p])),
+        };
+        Scattered {
+            words: sampling
+                .tolerance
+                .named()
+                .map(|(name, part)| format!("{name} {} %", round(100.0 * part)))
+                .collect(),
+            parts: sampling.tolerance.named().collect(),
+            samples: sampling.samples,
+            seed: sampling.seed,
+            without_design: self.without_design,
+            fates: designs.iter().enumerate().map(fate).collect(),
+        }
+    }
+}
+
+/// A percentage without the rounding of its conversion.
+fn round(percent: f64) -> f64 {
+    (percent * 1e9).round() / 1e9
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scatter_is_read_with_defaults_and_faults_are_named() {
+        let read = |text: &str| text.parse::<Tolerance>();
+        assert_eq!(read("gear_stiffness=15%, mass"), Ok(Tolerance { parts: [0.15, 0.0, 0.02] }));
+        assert_eq!(read("modulus=0.05"), Ok(Tolerance { parts: [0.0, 0.05, 0.0] }));
+        for faulty in ["stiffness=20%", "mass=0", "mass=120%", "mass=1%,mass=2%", "mass=x", ""] {
+            assert!(read(faulty).is_err(), "{faulty}");
+        }
+    }
+
+    #[test]
+    fn ninety_five_percent_of_the_factors_lie_within_the_stated_scatter_and_half_below_one() {
+        let figure = Figure::GearStiffness("CSG-25-100".into());
+        let mut stream = Stream::new(1, &figure, 0.2);
+        let factors: Vec<f64> = (0..40_000).map(|_| stream.factor()).collect();
+        let share = |within: &dyn Fn(f64) -> bool| {
+            factors.iter().filter(|f| within(**f)).count() as f64 / factors.len() as f64
+        };
+        // three standard errors of a share of 40,000
+        assert!((share(&|f| f <= 1.2 && f >= 1.0 / 1.2) - 0.95).abs() < 0.0033);
+        assert!((share(&|f| f > 1.2) - 0.025).abs() < 0.0024);
+        assert!((share(&|f| f < 1.0) - 0.5).abs() < 0.0075);
+    }
+
+    #[test]
+    fn a_row_has_a_stream_of_its_own() {
+        let first = |seed, name: &str| Stream::new(seed, &Figure::GearMass(name.into()), 0.1).factor();
+        assert_eq!(first(1, "a"), first(1, "a"));
+        assert_ne!(first(1, "a"), first(1, "b"));
+        assert_ne!(first(1, "a"), first(2, "a"));
+    }
+}
