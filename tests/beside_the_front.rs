@@ -223,12 +223,12 @@ fn near_by_definition(all: &[(u128, Objectives)], front: &BTreeSet<u128>, slack:
     let on: Vec<[f64; 3]> =
         all.iter().filter(|(n, _)| front.contains(n)).map(|(_, o)| o.minimized()).collect();
     let near = |o: &Objectives| {
-        let better = [
+        let worst = [
             o.mass_kg / (1.0 + slack),
             o.tip_deflection_m / (1.0 + slack),
             -o.lowest_mode_hz * (1.0 + slack),
         ];
-        !on.iter().any(|f| (0..3).all(|k| f[k] <= better[k]) && (0..3).any(|k| f[k] < better[k]))
+        on.iter().any(|f| (0..3).all(|k| worst[k] <= f[k]))
     };
     all.iter().filter(|(n, o)| !front.contains(n) && near(o)).map(|(n, _)| *n).collect()
 }

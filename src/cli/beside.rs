@@ -30,8 +30,8 @@ pub(super) struct BesideArgs {
     /// Seed of the samples; the same seed gives the same samples on any number of threads
     #[arg(long, value_name = "N", default_value_t = 1, requires = "tolerance")]
     seed: u64,
-    /// Also list the designs that no design of the front beats by more than this part in mass, deflection and
-    /// lowest mode at once, such as 2%, in near.csv; every design is visited a second time. Not with the exact
+    /// Also list the designs that come within this part of a design of the front in mass, in deflection and in
+    /// lowest mode, such as 2%, in near.csv; every design is visited a second time. Not with the exact
     /// search, which does not visit them
     #[arg(long, value_name = "PERCENT", value_parser = part)]
     within: Option<f64>,

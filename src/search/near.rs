@@ -1,14 +1,15 @@
 //! Designs that are nearly on the front.
 //!
-//! The *shortfall* of a design is the smallest `s` for which the design with its mass and deflection divided by
-//! `1+s` and its lowest mode multiplied by `1+s` is beaten by no design of the front in all three objectives:
+//! The *shortfall* of a design is the smallest `s` for which some design of the front is better by at most the
+//! part `s` in every objective (the multiplicative epsilon of multi-objective search):
 //!
 //! ```text
-//! s(d) = max over f of the front of min(m_d/m_f, u_d/u_f, f_f/f_d) - 1
+//! s(d) = min over f of the front of max(m_d/m_f, u_d/u_f, f_f/f_d) - 1
 //! ```
 //!
 //! Designs of the front have none. All designs are visited a second time, with the front known: a table of the
-//! front, worsened by the slack, rejects most of them at once ([`Archive`]); what it lets through is compared
+//! front, worsened by the slack, rejects most of them at once ([`Archive`]: what a worsened design of the front beats
+//! has none near it, for designs of the front do not beat each other); what it lets through is compared
 //! with every design of the front. Memory follows the number of designs that are asked for.
 
 use super::archive::Archive;
@@ -38,22 +39,17 @@ impl Shortfall {
         Self { front }
     }
 
-    /// The shortfall of a design, 0 if nothing on the front beats it; `None` if it is more than `most`.
+    /// The shortfall of a design; `None` if it is more than `most`.
     pub fn within(&self, most: f64, design: &Objectives) -> Option<f64> {
-        let mut shortfall = 0.0f64;
-        for rival in self.front.iter().take_while(|f| f.mass_kg <= design.mass_kg) {
-            shortfall = shortfall.max(worst_of(design, rival).into_iter().fold(f64::INFINITY, f64::min));
-            if shortfall > most {
-                return None;
-            }
-        }
-        Some(shortfall)
+        let first = self.front.partition_point(|f| design.mass_kg > f.mass_kg * (1.0 + most));
+        let worst = |rival: &Objectives| worse_by(design, rival).into_iter().fold(0.0, f64::max);
+        self.front[first..].iter().map(worst).reduce(f64::min).filter(|shortfall| *shortfall <= most)
     }
 }
 
 /// By how much a design is worse than another in deflection, mass and lowest mode, as parts; negative where it
 /// is better.
-pub fn worst_of(design: &Objectives, rival: &Objectives) -> [f64; 3] {
+pub fn worse_by(design: &Objectives, rival: &Objectives) -> [f64; 3] {
     let over = |a: f64, b: f64| if a == b { 0.0 } else { a / b - 1.0 };
     [
         over(design.tip_deflection_m, rival.tip_deflection_m),

@@ -8,7 +8,7 @@ use crate::report::number::shortest;
 use crate::report::picks::choices;
 use crate::search::design::id_of;
 use crate::search::front::rounded;
-use crate::search::near::{Shortfall, Slack, near_designs, worst_of};
+use crate::search::near::{Shortfall, Slack, near_designs, worse_by};
 use crate::search::{ArmProblem, Evaluated, Objectives};
 use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
@@ -113,12 +113,16 @@ fn table(
     table
 }
 
-/// The design of the front that differs least from a design in the objective in which it differs most, and by
-/// how much the design is worse than it in each.
+/// The design of the front that a design is near to, and by how much the design is worse than it in each
+/// objective; of several the one that differs least.
 fn nearest(front: &Front, design: &Objectives) -> (u128, [f64; 3]) {
+    let shortfall = |worse: &[f64; 3]| worse.iter().fold(0.0f64, |most, part| most.max(*part));
     let apart = |worse: &[f64; 3]| worse.iter().fold(0.0f64, |most, part| most.max(part.abs()));
-    let all = front.iter().map(|j| (j.design.number, worst_of(design, &j.design.objectives)));
-    all.min_by(|a, b| apart(&a.1).total_cmp(&apart(&b.1)).then(a.0.cmp(&b.0))).unwrap_or_default()
+    let all = front.iter().map(|j| (j.design.number, worse_by(design, &j.design.objectives)));
+    all.min_by(|(m, a), (n, b)| {
+        shortfall(a).total_cmp(&shortfall(b)).then(apart(a).total_cmp(&apart(b))).then(m.cmp(n))
+    })
+    .unwrap_or_default()
 }
 
 /// The choice of `other` that differs from `one`, if just one does.

@@ -324,7 +324,7 @@ mod tests {
             factors.iter().filter(|f| within(**f)).count() as f64 / factors.len() as f64
         };
         // three standard errors of a share of 40,000
-        assert!((share(&|f| f <= 1.2 && f >= 1.0 / 1.2) - 0.95).abs() < 0.0033);
+        assert!((share(&|f| (1.0 / 1.2..=1.2).contains(&f)) - 0.95).abs() < 0.0033);
         assert!((share(&|f| f > 1.2) - 0.025).abs() < 0.0024);
         assert!((share(&|f| f < 1.0) - 0.5).abs() < 0.0075);
     }
