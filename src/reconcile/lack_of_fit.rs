@@ -3,7 +3,7 @@
 //! The residuals of a right model are noise: they do not follow the order of the tests, a joint's angle,
 //! the load, the branch, the torque. Each such question is a few regressors `X`; with the part that the
 //! model could still fit removed, `zᵀ S⁻¹ z` with `z = Xᵀr`, `S = XᵀX - XᵀJ (JᵀWJ)⁻¹ JᵀX` is
-//! chi-squared if there is nothing. The smooth laws of [`unnamed`](super::unnamed) are asked beside these.
+//! chi-squared if there is nothing. The smooth laws of `unnamed` are asked beside these.
 
 use super::campaign::Campaign;
 use super::fit::{Fit, Weights};

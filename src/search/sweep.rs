@@ -1,6 +1,6 @@
 //! Visiting every design, in parallel and in constant memory.
 //!
-//! [`Visit`] walks the tree in tasks. Designs that something else clearly beats are dropped at once ([`Archive`]); the rest
+//! `Visit` walks the tree in tasks. Designs that something else clearly beats are dropped at once ([`Archive`]); the rest
 //! are filtered exactly now and then, so that memory follows the front and not the space. What is kept
 //! at the end does not depend on the order of visits or the number of threads.
 
