@@ -60,13 +60,14 @@ impl Outcome {
         }
         let _ = writeln!(
             out,
-            "  position error [mm], each line adds to those above    fitted    on poses kept out of the fit"
+            "  {:<41} {:>8} {:>26}",
+            "position error [mm], each line adds", "fitted", "kept out"
         );
-        let _ = writeln!(out, "  {:<50} {:>8} {:>8} {:>8} {:>8}", "", "median", "median", "mean", "largest");
+        let _ = writeln!(out, "  {:<41} {:>8} {:>8} {:>8} {:>8}", "", "median", "median", "mean", "largest");
         for s in &self.stages {
             let _ = writeln!(
                 out,
-                "  {:<50} {:>8.3} {:>8.3} {:>8.3} {:>8.3}",
+                "  {:<41} {:>8.3} {:>8.3} {:>8.3} {:>8.3}",
                 s.added, s.fitted_median_mm, s.median_mm, s.mean_mm, s.max_mm
             );
         }

@@ -7,7 +7,7 @@
 //! kilogram; a difference between two parts one can buy. Drives further inboard are not sized again.
 
 use super::Front;
-use crate::arm::{Arm, Curve, Element, Joint, LoadCase, Piece, Structure, Windup, windup_of};
+use crate::arm::{Arm, Curve, Element, Joint, LoadCase, Piece, Structure, windup_of};
 use crate::mechanics::Chain;
 use crate::report::budget::{BudgetRow, Gain, NextPart, PickBound, PickBudget};
 use crate::report::front_table::FrontTable;
@@ -199,7 +199,7 @@ fn grow(structure: &mut Structure, piece: usize, step: f64, mass_kg: f64) {
     match &mut structure.pieces[piece] {
         Piece::Joint(joint) => {
             joint.mass_kg += step * mass_kg;
-            joint.law.curve = stiffer(joint.law.curve, factor);
+            joint.law.curve = joint.law.curve.stiffened(factor);
         }
         Piece::Link(link) => match &mut link.beam {
             Some(beam) => {
@@ -209,18 +209,5 @@ fn grow(structure: &mut Structure, piece: usize, step: f64, mass_kg: f64) {
             }
             None => link.point_mass_kg += step * mass_kg,
         },
-    }
-}
-
-fn stiffer(curve: Curve, factor: f64) -> Curve {
-    match curve {
-        Curve::Rigid => Curve::Rigid,
-        Curve::Linear(stiffness) => Curve::Linear(stiffness * factor),
-        Curve::Windup(w) => Curve::Windup(Windup {
-            k1_nm_per_rad: w.k1_nm_per_rad * factor,
-            k2_nm_per_rad: w.k2_nm_per_rad * factor,
-            k3_nm_per_rad: w.k3_nm_per_rad * factor,
-            ..w
-        }),
     }
 }
