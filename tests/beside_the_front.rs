@@ -404,6 +404,11 @@ fn a_run_writes_what_was_asked_for_beside_its_front() {
     assert_eq!((&facts["within"]["designs"], &facts["within"]["capped"]), (&json!(near_rows), &json!(false)));
     let summary = String::from_utf8(read("one", "summary.md").expect("summary.md")).expect("text");
     assert!(summary.contains("## Under scatter") && summary.contains("## Near the front"));
+    let page = |folder: &str| String::from_utf8(read(folder, "report.html").expect("a page")).expect("text");
+    let says = |folder: &str, words: &str| page(folder).contains(words);
+    let sections = ["<h2>Under scatter</h2>", "<h2>Near the front</h2>"];
+    assert!(sections.iter().all(|section| says("one", section) && !says("plain", section)));
+    assert!(says("one", "seed 7") && says("plain", "Every design was visited"));
     let (_, _, _) = run(dir.path(), "few", &["--within", "20%", "--within-most", "3"]);
     let few = read("few", "near.csv").expect("near.csv");
     assert_eq!(csv::Reader::from_reader(&few[..]).into_records().count(), 3);

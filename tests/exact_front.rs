@@ -102,7 +102,7 @@ fn random_study(seed: u64) -> Value {
     let mut study = json!({"name": format!("random-{seed}"), "chain": chain, "poses": poses,
         "payload": {"mass_kg": dice.within(1.0, 8.0), "cg_m": [0.03, dice.of(&[0.0, 0.05]), 0.02]},
         "models": {"links": dice.of(&["full", "full", "full", "bending"]),
-                   "joints": dice.of(&["three_segment", "three_segment", "three_segment", "k2"])}});
+                   "joints": dice.of(&["three_segment", "three_segment", "three_segment_k1", "k2"])}});
     if dice.below(4) == 0 {
         study["tip_force_n"] = json!([dice.within(-30.0, 30.0), 0.0, dice.within(-50.0, 120.0)]);
     }

@@ -355,8 +355,7 @@ fn a_front_of_ten_thousand_designs_makes_a_page_that_is_light() {
         beams: None,
         parts: Vec::new(),
         run: Vec::new(),
-        budget: None,
-        certificate: None,
+        extras: Vec::new(),
     };
     let html = page.page().html;
     assert!(html.len() < MOST_BYTES as usize, "{} bytes", html.len());

@@ -143,7 +143,7 @@ fn random_study(dice: &mut Dice) -> Value {
         "poses": poses, "environments": environments,
         "drives": {"motors": ["electric"], "gear_mass": "housed_unit"},
         "models": {"links": dice.of(&["rigid", "bending", "full", "full"]),
-            "joints": dice.of(&["k2", "three_segment"])},
+            "joints": dice.of(&["k2", "three_segment", "three_segment_k1"])},
         "constraints": dice.of(&[json!({}), json!({"stress_safety_factor_min": 2, "wall_slenderness_max": 50})]),
     })
 }

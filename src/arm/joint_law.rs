@@ -41,6 +41,17 @@ impl Windup {
             self.k3_nm_per_rad
         }
     }
+
+    /// The curve of a gear that is stiffer by a factor under every torque; its break points stay.
+    #[must_use]
+    pub fn stiffened(&self, factor: f64) -> Self {
+        Self {
+            k1_nm_per_rad: self.k1_nm_per_rad * factor,
+            k2_nm_per_rad: self.k2_nm_per_rad * factor,
+            k3_nm_per_rad: self.k3_nm_per_rad * factor,
+            ..*self
+        }
+    }
 }
 
 /// A joint's torsion curve.
@@ -52,6 +63,8 @@ pub enum Curve {
     Linear(f64),
     /// The three-segment curve of a gear.
     Windup(Windup),
+    /// The three-segment curve of a gear that is taken to vibrate with its first slope under any torque.
+    WindupK1(Windup),
 }
 
 impl Curve {
@@ -60,7 +73,7 @@ impl Curve {
         match self {
             Curve::Rigid => 0.0,
             Curve::Linear(stiffness) => torque_nm / stiffness,
-            Curve::Windup(windup) => windup.angle_rad(torque_nm),
+            Curve::Windup(windup) | Curve::WindupK1(windup) => windup.angle_rad(torque_nm),
         }
     }
 
@@ -70,6 +83,7 @@ impl Curve {
             Curve::Rigid => 0.0,
             Curve::Linear(stiffness) => 1.0 / stiffness,
             Curve::Windup(windup) => 1.0 / windup.tangent_nm_per_rad(torque_nm),
+            Curve::WindupK1(windup) => 1.0 / windup.k1_nm_per_rad,
         }
     }
 
@@ -79,12 +93,8 @@ impl Curve {
         match self {
             Curve::Rigid => Curve::Rigid,
             Curve::Linear(stiffness) => Curve::Linear(stiffness * factor),
-            Curve::Windup(windup) => Curve::Windup(Windup {
-                k1_nm_per_rad: windup.k1_nm_per_rad * factor,
-                k2_nm_per_rad: windup.k2_nm_per_rad * factor,
-                k3_nm_per_rad: windup.k3_nm_per_rad * factor,
-                ..*windup
-            }),
+            Curve::Windup(windup) => Curve::Windup(windup.stiffened(factor)),
+            Curve::WindupK1(windup) => Curve::WindupK1(windup.stiffened(factor)),
         }
     }
 
@@ -93,13 +103,17 @@ impl Curve {
         match model {
             JointModel::K2 => self.middle_slope(),
             JointModel::ThreeSegment => *self,
+            JointModel::ThreeSegmentK1 => match *self {
+                Curve::Windup(windup) => Curve::WindupK1(windup),
+                other => other,
+            },
         }
     }
 
     /// The single number that stands for the curve in the paper's model: K2 of a gear.
     pub fn middle_slope(&self) -> Curve {
         match self {
-            Curve::Windup(windup) => Curve::Linear(windup.k2_nm_per_rad),
+            Curve::Windup(windup) | Curve::WindupK1(windup) => Curve::Linear(windup.k2_nm_per_rad),
             other => *other,
         }
     }
@@ -198,6 +212,17 @@ mod tests {
         t1_nm: 168.0,
         t2_nm: 598.0,
     };
+
+    #[test]
+    fn with_k1_in_modes_only_small_oscillations_change() {
+        let (tangent, k1) =
+            (Curve::Windup(HFUC_58), Curve::Windup(HFUC_58).reduced(JointModel::ThreeSegmentK1));
+        for torque_nm in [0.0, 50.0, -300.0, 900.0] {
+            assert_eq!(tangent.angle_rad(torque_nm), k1.angle_rad(torque_nm));
+            assert_eq!(k1.tangent_compliance_rad_per_nm(torque_nm), 1.0 / 400e3);
+        }
+        assert_eq!(Curve::Linear(3.0).reduced(JointModel::ThreeSegmentK1), Curve::Linear(3.0));
+    }
 
     #[test]
     fn the_curve_is_odd_continuous_and_has_the_segment_slopes() {

@@ -47,6 +47,9 @@ pub enum JointModel {
     /// The catalog's three-segment curve, where there is one.
     #[default]
     ThreeSegment,
+    /// The three-segment curve for what a load bends, its first slope K1 for what vibrates: the lowest
+    /// frequencies that a gear with rising slopes can have, whatever its torque.
+    ThreeSegmentK1,
 }
 
 /// The words of a two-way choice in files and on the command line.
@@ -71,7 +74,11 @@ impl Words for LinkModel {
 }
 
 impl Words for JointModel {
-    const WORDS: &'static [(&'static str, Self)] = &[("k2", Self::K2), ("three_segment", Self::ThreeSegment)];
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("k2", Self::K2),
+        ("three_segment", Self::ThreeSegment),
+        ("three_segment_k1", Self::ThreeSegmentK1),
+    ];
 }
 
 impl LinkModel {
@@ -91,6 +98,7 @@ impl JointModel {
         match self {
             JointModel::K2 => "k2",
             JointModel::ThreeSegment => "three_segment",
+            JointModel::ThreeSegmentK1 => "three_segment_k1",
         }
     }
 }

@@ -72,7 +72,7 @@ impl Curve {
         match self {
             Curve::Rigid => ("stiffness_nm_per_rad", Value::Null),
             Curve::Linear(k) => ("stiffness_nm_per_rad", json!(k)),
-            Curve::Windup(w) => (
+            Curve::Windup(w) | Curve::WindupK1(w) => (
                 "windup",
                 json!({
                     "k1_nm_per_rad": w.k1_nm_per_rad, "k2_nm_per_rad": w.k2_nm_per_rad,

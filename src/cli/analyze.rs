@@ -39,7 +39,8 @@ pub struct AnalyzeArgs {
     /// Link model: rigid, bending (Eqs 1-6) or full
     #[arg(long, default_value = "full", value_parser = choice::<LinkModel>)]
     links: LinkModel,
-    /// Joint model: k2 (the paper's single number) or three_segment
+    /// Joint model: k2 (the paper's single number), three_segment, or three_segment_k1 (modes with the
+    /// gears' first slope)
     #[arg(long, default_value = "three_segment", value_parser = choice::<JointModel>)]
     joints: JointModel,
     /// How many modes to print

@@ -4,6 +4,7 @@ use super::Failure;
 use crate::catalog::Catalogs;
 use crate::report::compare::text::wrap;
 use crate::report::front_table::FrontTable;
+use crate::report::html::Extra;
 use crate::report::picks;
 use crate::report::tolerance::Scattered;
 use crate::search::ArmProblem;
@@ -50,6 +51,8 @@ pub(super) struct Beside {
     pub markdown: String,
     /// Text for the terminal.
     pub terminal: String,
+    /// Sections of the page.
+    pub sections: Vec<Extra>,
     /// Keys of `run.json`.
     pub run: Map<String, Value>,
 }
@@ -71,6 +74,7 @@ impl BesideArgs {
         if !flags.is_empty() {
             beside.files.push(("ballast.csv".into(), flags.to_csv()));
             beside.markdown.push_str(&flags.to_markdown());
+            beside.sections.push(flags.section());
             beside.terminal.push_str(&format!("\n{}", wrap(&flags.sentence(), 80, "")));
         }
         let stopped = || Failure::Interrupted("stopped after the search; nothing was written".into());
@@ -79,6 +83,7 @@ impl BesideArgs {
         if let Some(scattered) = scattered {
             beside.files.push(("tolerance.csv".into(), scattered.to_csv().into_bytes()));
             beside.markdown.push_str(&scattered.to_markdown());
+            beside.sections.push(scattered.section());
             let sentences: String = scattered.sentences().iter().map(|s| wrap(s, 80, "")).collect();
             beside.terminal.push_str(&format!("\n{}\n{sentences}", scattered.table().to_text()));
         }
@@ -87,6 +92,7 @@ impl BesideArgs {
         if let Some(near) = near {
             beside.files.push(("near.csv".into(), near.table.to_csv()));
             beside.markdown.push_str(&near.to_markdown());
+            beside.sections.push(near.section());
             let sentences: String = near.sentences().iter().map(|s| wrap(s, 80, "")).collect();
             beside.terminal.push_str(&format!("\n{sentences}"));
         }

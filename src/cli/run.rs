@@ -7,10 +7,11 @@ use crate::arm::Effect;
 use crate::catalog::Catalogs;
 use crate::fault::Document;
 use crate::report::budget::{PickBudget, budget_csv};
+use crate::report::certificate::certificate_section;
 use crate::report::compare::text::wrap;
 use crate::report::front_svg::{FrontPicture, PlottedFront, mixed_designs};
 use crate::report::front_table::FrontTable;
-use crate::report::html::{Figure, PLOTS, Page, document::DocumentPage, study::StudyPage};
+use crate::report::html::{Extra, Figure, PLOTS, Page, document::DocumentPage, study::StudyPage};
 use crate::report::number::significant;
 use crate::report::picks;
 use crate::report::summary::{
@@ -319,6 +320,9 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     Ok(format!("{}\n{}", output.terminal, told(&dir, &files)))
 }
 
+/// Digits of the numbers in the tables of a page; files have all.
+const PAGE_DIGITS: usize = 5;
+
 /// The page of a study of the paper: its pictures and tables.
 fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> DocumentPage {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
@@ -331,7 +335,10 @@ fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> Document
             .map(|(name, bytes)| Figure { name: name.into(), svg: text(bytes), ..Figure::default() })
             .collect(),
         tables: ending(".csv")
-            .map(|(name, bytes)| (format!("{name}.csv"), Table::from_csv(&text(bytes))))
+            .map(|(name, bytes)| {
+                let caption = format!("{name}.csv, its numbers to {PAGE_DIGITS} digits");
+                (caption, Table::from_csv(&text(bytes)).rounded(PAGE_DIGITS))
+            })
             .collect(),
         facts: facts_of(run),
     }
@@ -412,13 +419,13 @@ impl Finished<'_> {
         let picture = picture(&summary);
         files.push(("front.svg".into(), picture.clone().into_bytes()));
         files.push(("budget.csv".into(), budget_csv(&summary.budgets).into_bytes()));
-        let Beside { files: more, markdown, terminal, run: mut facts } = beside;
+        let Beside { files: more, markdown, terminal, sections, run: mut facts } = beside;
         files.extend(more);
         files.push(("summary.md".into(), (summary_md(&summary) + &markdown).into_bytes()));
         let mut run = self.run_json(&summary);
         run.as_object_mut().into_iter().for_each(|run| run.append(&mut facts));
         files.push(("run.json".into(), pretty(&run)));
-        files.extend(self.page(&summary, picture, &run).into_files());
+        files.extend(self.page(&summary, picture, sections, &run).into_files());
         files.push(("study.json".into(), self.text.as_bytes().to_vec()));
         let terminal = terminal_summary(&summary) + &terminal;
         Ok(Written { files, terminal, front: summary.overall })
@@ -471,8 +478,10 @@ impl Finished<'_> {
     }
 
     /// The page for a browser.
-    fn page(&self, summary: &SummaryInput, picture: String, run: &Value) -> Page {
-        let page = study_page(self.study, self.problem, self.catalogs, summary);
+    fn page(&self, summary: &SummaryInput, picture: String, sections: Vec<Extra>, run: &Value) -> Page {
+        let mut page = study_page(self.study, self.problem, self.catalogs, summary);
+        page.extras.extend(sections);
+        page.extras.push(certificate_section(&summary.facts, self.exact.map(|(boxes, _)| boxes)));
         StudyPage { scatter_svg: picture, run: facts_of(run), ..page }.page()
     }
 

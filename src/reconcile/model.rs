@@ -308,16 +308,7 @@ fn materials(arm: &Arm) -> Vec<(String, Vec<String>)> {
 
 /// A curve with every stiffness multiplied by a factor.
 pub fn scaled(curve: Curve, factor: f64) -> Curve {
-    match curve {
-        Curve::Rigid => Curve::Rigid,
-        Curve::Linear(k) => Curve::Linear(k * factor),
-        Curve::Windup(mut w) => {
-            w.k1_nm_per_rad *= factor;
-            w.k2_nm_per_rad *= factor;
-            w.k3_nm_per_rad *= factor;
-            Curve::Windup(w)
-        }
-    }
+    curve.stiffened(factor)
 }
 
 /// A model: calibration and effects. Its parameter vector is the calibration first, then each

@@ -2,6 +2,7 @@
 
 pub mod braille;
 pub mod budget;
+pub mod certificate;
 pub mod compare;
 pub mod front_svg;
 pub mod front_table;

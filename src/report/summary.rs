@@ -48,6 +48,13 @@ pub struct SummaryFacts {
     pub results: String,
 }
 
+impl SummaryFacts {
+    /// Whether the search did not come to its end.
+    pub fn is_stopped(&self) -> bool {
+        ["partial", "interrupted"].contains(&self.status.as_str())
+    }
+}
+
 /// The front of one material's designs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaterialFront {
@@ -457,7 +464,7 @@ fn percent(part: usize, whole: usize) -> String {
         _ if part == 0 => "0 %".into(),
         s if part > 0 && s < 0.1 => "<0.1 %".into(),
         s if part < whole && s > 99.9 => ">99.9 %".into(),
-        s if s < 10.0 => format!("{s:.1} %"),
+        s if s < 10.0 || (part < whole && s >= 99.0) => format!("{s:.1} %"),
         s => format!("{s:.0} %"),
     }
 }

@@ -1,5 +1,7 @@
 //! Small aligned tables: as text for a terminal, as Markdown for a summary, as CSV for programs.
 
+use super::number::significant;
+
 /// On which side a column's cells stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
@@ -70,6 +72,20 @@ impl Table {
         let mut table = Self::new(headers.iter().enumerate().map(column).collect());
         rows.into_iter().for_each(|row| table.row(row));
         table
+    }
+
+    /// The same with no number of more than so many digits, for people: whole numbers stay.
+    #[must_use]
+    pub fn rounded(mut self, digits: usize) -> Self {
+        for cell in self.rows.iter_mut().flatten() {
+            if let Ok(value) = cell.parse::<f64>()
+                && cell.contains('.')
+                && cell.len() > digits + 1
+            {
+                *cell = significant(value, digits);
+            }
+        }
+        self
     }
 
     /// The columns.
@@ -179,6 +195,14 @@ mod tests {
         table.row(["j2", "568.3"]);
         table.row(["j3 | wrist, \"bent\"", "2.45"]);
         table
+    }
+
+    #[test]
+    fn numbers_are_rounded_for_people_and_words_and_whole_numbers_are_not() {
+        let csv = "what,value,count\nlength 1.23456789 m,0.123456789,1234567\nnothing,,0.5\n";
+        let table = Table::from_csv(csv).rounded(4);
+        let rows = [["length 1.23456789 m", "0.1235", "1234567"], ["nothing", "", "0.5"]];
+        assert_eq!(table.rows(), rows.map(|row| row.map(String::from).to_vec()));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What becomes of a front when the catalog figures scatter: how often a design stays on it, how often a
 //! pick stays the pick, and what takes its place.
 
+use super::html::Extra;
 use super::number::{shortest, significant};
 use super::picks::{Design, Objective};
 use super::table::{Column, Table, csv_line};
@@ -125,6 +126,18 @@ impl Scattered {
             out.push(format!("In {share} of the samples no design of the front keeps the limits."));
         }
         out
+    }
+
+    /// The section of a page.
+    pub fn section(&self) -> Extra {
+        let mut words = self.sentences();
+        words.push("The parts stay as they were sized; only designs of this front compete.".into());
+        Extra {
+            title: "Under scatter".into(),
+            words,
+            tables: vec![("Picks under scatter; tolerance.csv has every design".into(), self.table())],
+            figures: Vec::new(),
+        }
     }
 
     /// The section of a summary.

@@ -165,7 +165,7 @@ impl<'p, 'c> Weighed<'p, 'c> {
 /// Whether a curve is at least as stiff as another under every torque.
 fn never_softer(a: &Curve, b: &Curve) -> bool {
     let breaks = |curve: &Curve| match curve {
-        Curve::Windup(w) => vec![w.t1_nm, w.t2_nm],
+        Curve::Windup(w) | Curve::WindupK1(w) => vec![w.t1_nm, w.t2_nm],
         _ => Vec::new(),
     };
     // at a break point the tangent is that of the segment below: one torque in every segment of either

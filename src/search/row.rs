@@ -53,6 +53,8 @@ pub(super) struct DriveFigures {
     pub mass_kg: f64,
     /// Stiffnesses \[N m/rad\].
     pub stiffness: [f64; 3],
+    /// What the segments count as in modes \[N m/rad\].
+    pub mode_stiffness: [f64; 3],
     /// Ends of the first two segments \[N m\].
     pub ends_nm: [f64; 2],
 }
@@ -127,13 +129,24 @@ impl DriveFigures {
         let (stiffness, ends_nm) = match &law.curve {
             Curve::Rigid => ([f64::INFINITY; 3], [f64::INFINITY; 2]),
             Curve::Linear(k) => ([*k; 3], [f64::INFINITY; 2]),
-            Curve::Windup(w) => ([w.k1_nm_per_rad, w.k2_nm_per_rad, w.k3_nm_per_rad], [w.t1_nm, w.t2_nm]),
+            Curve::Windup(w) | Curve::WindupK1(w) => {
+                ([w.k1_nm_per_rad, w.k2_nm_per_rad, w.k3_nm_per_rad], [w.t1_nm, w.t2_nm])
+            }
+        };
+        let mode_stiffness = match &law.curve {
+            Curve::WindupK1(w) => [w.k1_nm_per_rad; 3],
+            _ => stiffness,
         };
         let series = |k: f64| match law.connection_rad_per_nm {
             0.0 => k,
             compliance => 1.0 / (1.0 / k + compliance),
         };
-        Self { mass_kg, stiffness: stiffness.map(series), ends_nm }
+        Self {
+            mass_kg,
+            stiffness: stiffness.map(series),
+            mode_stiffness: mode_stiffness.map(series),
+            ends_nm,
+        }
     }
 }
 

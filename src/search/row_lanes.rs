@@ -264,12 +264,11 @@ impl<const CASES: usize> RowWork<'_, '_, CASES> {
     fn add_joint<V: Lanes>(&self, k: usize, indices: [usize; LANES], arms: &mut Growing<V, CASES>) {
         let drives = indices.map(|i| self.row.drives[k][i]);
         let mass = gather(&drives, |d| d.mass_kg);
-        let stiffness = [
-            gather(&drives, |d| d.stiffness[0]),
-            gather(&drives, |d| d.stiffness[1]),
-            gather(&drives, |d| d.stiffness[2]),
-        ];
-        let ends = [gather(&drives, |d| d.ends_nm[0]), gather(&drives, |d| d.ends_nm[1])];
+        let segments = Segments {
+            stiffness: [0, 1, 2].map(|i| gather(&drives, |d| d.stiffness[i])),
+            mode_stiffness: [0, 1, 2].map(|i| gather(&drives, |d| d.mode_stiffness[i])),
+            ends_nm: [0, 1].map(|i| gather(&drives, |d| d.ends_nm[i])),
+        };
         arms.mass_kg = arms.mass_kg + mass;
         arms.masses_kg[k] = mass;
         for (c, case) in self.row.cases.iter().enumerate() {
@@ -277,7 +276,7 @@ impl<const CASES: usize> RowWork<'_, '_, CASES> {
             let lanes = &mut arms.cases[c];
             let torque_nm = torque(joint, lanes);
             let (angle, compliance) = match self.row.segmented[k] {
-                true => windup(torque_nm, &stiffness, &ends),
+                true => windup(torque_nm, &segments),
                 false => self.each_by_itself(k, indices, torque_nm),
             };
             lanes.compliance[k] = compliance;
@@ -537,9 +536,17 @@ fn gather<V: Lanes>(drives: &[DriveFigures; LANES], of: impl Fn(&DriveFigures) -
     V::load(&out)
 }
 
-/// Twist under a torque and twist per further torque, by the three-segment curve.
+/// The three-segment curves of eight gears.
+struct Segments<V> {
+    stiffness: [V; 3],
+    mode_stiffness: [V; 3],
+    ends_nm: [V; 2],
+}
+
+/// Twist under a torque, and compliance in modes.
 #[inline(always)]
-fn windup<V: Lanes>(torque_nm: V, stiffness: &[V; 3], ends_nm: &[V; 2]) -> (V, V) {
+fn windup<V: Lanes>(torque_nm: V, gears: &Segments<V>) -> (V, V) {
+    let Segments { stiffness, mode_stiffness, ends_nm } = gears;
     let t = torque_nm.abs();
     let first = t.min(ends_nm[0]) / stiffness[0];
     let second = (t.min(ends_nm[1]) - ends_nm[0]).max(V::zero()) / stiffness[1];
@@ -548,8 +555,8 @@ fn windup<V: Lanes>(torque_nm: V, stiffness: &[V; 3], ends_nm: &[V; 2]) -> (V, V
     let angle = V::choose(torque_nm.less(V::zero()), V::zero() - size, size);
     let tangent = V::choose(
         ends_nm[0].less(t),
-        V::choose(ends_nm[1].less(t), stiffness[2], stiffness[1]),
-        stiffness[0],
+        V::choose(ends_nm[1].less(t), mode_stiffness[2], mode_stiffness[1]),
+        mode_stiffness[0],
     );
     (angle, V::splat(1.0) / tangent)
 }

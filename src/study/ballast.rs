@@ -3,6 +3,7 @@
 use super::table::link_words;
 use super::{Front, Judged};
 use crate::report::front_table::FrontTable;
+use crate::report::html::Extra;
 use crate::report::number::{shortest, significant};
 use crate::search::ballast::Ballast;
 use crate::search::design::{Part, id_of, options};
@@ -105,6 +106,13 @@ impl BallastFlags {
             self.len(),
             self.front
         )
+    }
+
+    /// The section of a page.
+    pub fn section(&self) -> Extra {
+        let words =
+            std::iter::once(self.sentence()).chain(self.flagged.iter().take(5).map(|f| f.words.clone()));
+        Extra { title: "Ballast".into(), words: words.collect(), tables: Vec::new(), figures: Vec::new() }
     }
 
     /// The section of a summary: the first few in words.

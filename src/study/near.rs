@@ -4,8 +4,10 @@ use super::outcome::by_full_model;
 use super::{Front, Judged, StudyOutcome, front_table};
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
-use crate::report::number::shortest;
+use crate::report::html::Extra;
+use crate::report::number::{shortest, significant};
 use crate::report::picks::choices;
+use crate::report::table::{Column, Table};
 use crate::search::design::id_of;
 use crate::search::front::rounded;
 use crate::search::near::{Shortfall, Slack, near_designs, worse_by};
@@ -132,6 +134,9 @@ fn only_difference<'w>(one: &[String], other: &'w [String]) -> Option<&'w str> {
     different.next().is_none().then_some(word)
 }
 
+/// Designs that a page lists.
+const NEAREST: usize = 12;
+
 impl NearFront {
     /// Sentences about it.
     pub fn sentences(&self) -> Vec<String> {
@@ -162,6 +167,31 @@ impl NearFront {
         let Some(column) = self.table.column("tie_group") else { return 0 };
         let groups: Vec<&str> = self.table.rows.iter().map(|r| r[column].as_str()).collect();
         groups.chunk_by(|a, b| a == b).filter(|group| group.len() > 1).count()
+    }
+
+    /// The section of a page: how many there are, and the nearest.
+    pub fn section(&self) -> Extra {
+        let shown = ["design_id", "near_to", "shortfall_percent", "interchangeable"];
+        let columns = shown.map(|name| self.table.column(name));
+        let mut nearest = Table::new(vec![
+            Column::left("design"),
+            Column::left("near to"),
+            Column::right("worse by at most %"),
+            Column::left("the one part that differs"),
+        ]);
+        let cell = |row: &[String], column: Option<usize>| column.map_or("", |c| &row[c]).to_string();
+        for row in self.table.rows.iter().take(NEAREST) {
+            let [id, to, worse, part] = columns.map(|c| cell(row, c));
+            let worse = worse.parse().map_or(worse, |x| significant(x, 3));
+            nearest.row([id, to, worse, part]);
+        }
+        let some = !self.table.rows.is_empty();
+        Extra {
+            title: "Near the front".into(),
+            words: self.sentences(),
+            tables: some.then(|| ("The nearest; near.csv has all".into(), nearest)).into_iter().collect(),
+            figures: Vec::new(),
+        }
     }
 
     /// The section of a summary.

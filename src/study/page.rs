@@ -32,8 +32,7 @@ pub fn study_page<'a>(
         scatter_svg: String::new(),
         beams: beams(study, catalogs),
         run: Vec::new(),
-        budget: budget_extra(&summary.budgets),
-        certificate: None,
+        extras: budget_extra(&summary.budgets).into_iter().collect(),
     }
 }
 

@@ -14,7 +14,7 @@ pub mod front_views;
 pub mod pick;
 pub mod study;
 
-use super::table::Table;
+use super::table::{Align, Table};
 use minijinja::Environment;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -118,12 +118,24 @@ impl Gallery {
     }
 }
 
+/// Letters from which on a cell needs room to be read.
+const WORDY: usize = 40;
+
 /// A table as its template shows it: headers and rows of cells, with the side each column stands on.
 pub(super) fn table(table: &Table) -> Value {
+    let is_wordy = |i: usize| table.rows().iter().any(|row| row[i].chars().count() > WORDY);
     let columns: Vec<Value> = table
         .columns()
         .iter()
-        .map(|c| json!({ "name": c.header, "number": c.align == super::table::Align::Right }))
+        .enumerate()
+        .map(|(i, c)| {
+            let class = match c.align {
+                Align::Right => "n",
+                Align::Left if is_wordy(i) => "wordy",
+                Align::Left => "",
+            };
+            json!({ "name": c.header, "class": class })
+        })
         .collect();
     json!({ "columns": columns, "rows": table.rows() })
 }

@@ -44,10 +44,8 @@ pub struct StudyPage<'a> {
     pub parts: Vec<CatalogRow>,
     /// Facts of the run: names and values.
     pub run: Vec<(String, String)>,
-    /// What one more kilogram buys at each joint and link, and how light the picks could be.
-    pub budget: Option<Extra>,
-    /// The proof that the front is complete.
-    pub certificate: Option<Extra>,
+    /// Further sections: the stiffness budget, the front under scatter, how sure the front is, ...
+    pub extras: Vec<Extra>,
 }
 
 impl StudyPage<'_> {
@@ -59,12 +57,12 @@ impl StudyPage<'_> {
         let chosen = picks::picks(&designs);
         let views = self.views(&chosen);
         let data = views.json();
-        let extras = [&self.budget, &self.certificate].into_iter().flatten();
-        let extras: Vec<Value> = extras.map(|e| gallery.extra(e)).collect();
+        let extras: Vec<Value> = self.extras.iter().map(|e| gallery.extra(e)).collect();
         let content = json!({
             "study": facts.study,
             "question": facts.question,
             "answer": answer_words(self.summary),
+            "stopped": facts.is_stopped(),
             "facts": self.facts(designs.len()),
             "front": views.context(&mut gallery),
             "bars": (!self.picks.is_empty()).then(|| gallery.show(&deflection_bars(&self.picks))),

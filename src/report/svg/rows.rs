@@ -57,7 +57,7 @@ impl RowPlot {
         let mut out = head(&self.title, &self.description, WIDTH_PX, bottom + 52.0);
         text(&mut out, (16.0, 26.0), "start", " font-size=\"16\" font-weight=\"bold\"", &self.title);
         let widest = |of: fn(&Row) -> &str| {
-            self.rows.iter().map(|r| text_px(of(r), FONT_PX)).fold(0.0, f64::max).min(330.0)
+            self.rows.iter().map(|r| text_px(of(r), FONT_PX)).fold(0.0, f64::max).min(0.55 * WIDTH_PX)
         };
         let (left, right) = (26.0 + widest(|r| &r.label), WIDTH_PX - 30.0 - widest(|r| &r.remark));
         let (low, high) = self.extent();

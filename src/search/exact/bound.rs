@@ -9,7 +9,7 @@
 //! A joint or link that cannot hold even the least demand makes the whole box infeasible.
 
 use super::check::Inertia;
-use super::parts::{Asked, CurveBox, DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::parts::{Asked, Breaks, CurveBox, DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
 use super::pose::{Pose, RESISTED, degree_factor};
 use super::problem::{Part, Problem};
 use super::shape::{Ideal, Shape, Work as ShapeWork};
@@ -76,8 +76,16 @@ pub(super) struct Work {
     pub(super) stiff_in: Vec<Vec<[f64; STIFFNESSES]>>,
     pub(super) joint_soft: Vec<Vec<f64>>,
     pub(super) masses: Vec<[f64; 2]>,
+    /// The most that is asked of each drive that is a choice.
+    pub(super) demands: Vec<Option<JointDemand>>,
+    /// Break points of the curves of each joint.
+    pub(super) breaks: Vec<Breaks>,
+    /// Least and greatest size of the torque on each joint, by judged case \[N m\].
+    pub(super) torques: Vec<Vec<[f64; 2]>>,
     /// The case whose tip moves most at least, and in which direction.
     pub(super) sagging: Option<(usize, Vector3<f64>)>,
+    /// No less than the tip moves in each judged case in which parts may move it against each other \[m\].
+    pub(super) most_tip_m: Vec<f64>,
     /// By what part the deflection would grow if a piece were middling.
     pub(super) tip_yields: Vec<f64>,
     shape: ShapeWork,
@@ -151,23 +159,36 @@ impl<'c> Problem<'c> {
         beaten: impl Fn(&Ceiling) -> bool,
         near: impl Fn(&Ceiling) -> bool,
     ) -> Verdict {
-        if self.fill(cell, work).is_none() {
-            return Verdict::Cut;
+        let fails =
+            |ceiling: &Ceiling| ceiling.hz < self.space.constraints.required_mode_hz() || beaten(ceiling);
+        let Some(mut ceiling) = self.look(cell, shapes, work, &fails) else { return Verdict::Cut };
+        if !work.is_point() && !near(&ceiling) {
+            return Verdict::Open(ceiling);
         }
+        self.refine(&mut ceiling, Arc::make_mut(shapes).as_mut_slice(), work, fails)
+    }
+
+    /// The ceiling of a box with the shapes of the box above; `None` if no member can be on the front.
+    fn look(
+        &self,
+        cell: &mut [u32],
+        shapes: &[Shape],
+        work: &mut Work,
+        fails: &impl Fn(&Ceiling) -> bool,
+    ) -> Option<Ceiling> {
+        self.fill(cell, work)?;
         let mass_kg = work.masses.iter().map(|m| m[0]).sum::<f64>() * (1.0 - ROUNDING);
         let limits = &self.space.constraints;
         if limits.mass_max_kg.is_some_and(|max| mass_kg > max) {
-            return Verdict::Cut;
+            return None;
         }
         let tip_m = self.least_tip_m(work) * (1.0 - ROUNDING);
         if limits.tip_deflection_max_m.is_some_and(|max| tip_m > max) {
-            return Verdict::Cut;
+            return None;
         }
-        let required_hz = limits.required_mode_hz();
         let mut ceiling = Ceiling { mass_kg, tip_m, hz: f64::INFINITY };
-        let fails = |ceiling: &Ceiling| ceiling.hz < required_hz || beaten(ceiling);
         if fails(&Ceiling { hz: f64::MAX, ..ceiling }) {
-            return Verdict::Cut;
+            return None;
         }
         for (judged, case) in self.judged_cases().enumerate() {
             let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
@@ -179,13 +200,10 @@ impl<'c> Problem<'c> {
                 }
             }
             if fails(&ceiling) {
-                return Verdict::Cut;
+                return None;
             }
         }
-        if !work.is_point() && !near(&ceiling) {
-            return Verdict::Open(ceiling);
-        }
-        self.refine(&mut ceiling, Arc::make_mut(shapes).as_mut_slice(), work, fails)
+        Some(ceiling)
     }
 
     /// Improves the shapes until the box is cut or none moves any more.
@@ -237,6 +255,8 @@ impl<'c> Problem<'c> {
                     *node = tree.narrowed(*node, |drives| drives.may_hold(&least))?;
                     let drives = holding(tree, *node, &least, DEPTH)?;
                     work.joint(self, piece, drives.mass_kg, drives.curve);
+                    work.breaks[piece] = drives.breaks;
+                    work.demands[piece] = Some(sized.table.motion().demand(static_nm[1], inertia_kgm2[1]));
                 }
                 Part::FirstFit { sized, ladder } => {
                     let (static_nm, inertia_kgm2) = self.loads(piece, work);
@@ -316,9 +336,11 @@ impl<'c> Problem<'c> {
     fn least_tip_m(&self, work: &mut Work) -> f64 {
         let mut worst = 0.0f64;
         work.sagging = None;
+        work.most_tip_m.clear();
         for (case, pose) in self.poses.iter().enumerate().filter(|(_, p)| p.judged) {
             work.stiff_in[case].clone_from(&work.stiff);
             let mut tip_m = [[0.0f64; 2]; 3];
+            let mut most_m = 0.0;
             for row in &pose.rows {
                 let force = interval(row.fixed, &row.per_n, &work.weights[case]);
                 let moved = match &work.curves[row.piece] {
@@ -328,15 +350,20 @@ impl<'c> Problem<'c> {
                         let range = (least * (1.0 - ROUNDING), size * (1.0 + ROUNDING));
                         work.stiff_in[case][row.piece][0] = curve.stiffest(range.0, range.1);
                         work.joint_soft[case][row.piece] = curve.softest(range.0, range.1);
+                        work.torques[case][row.piece] = range.into();
                         twist(curve, force)
                     }
                     None => stretch(row.coordinate, pose, row.piece, force, work),
                 };
+                most_m += moved[1].max(-moved[0]) * row.way_m;
                 for (tip, d) in tip_m.iter_mut().zip(row.tip_m.iter()) {
                     let (a, b) = (d * moved[0], d * moved[1]);
                     tip[0] += a.min(b);
                     tip[1] += a.max(b);
                 }
+            }
+            if !pose.parts_sag_together {
+                work.most_tip_m.push(most_m);
             }
             let nearest = Vector3::from(tip_m.map(|[low, high]| if low > 0.0 { low } else { high.min(0.0) }));
             if nearest.norm() > worst {
@@ -460,12 +487,16 @@ impl Work {
         zero(&mut self.heavy, pieces, [0.0; INERTIAS]);
         zero(&mut self.curves, pieces, None);
         zero(&mut self.masses, pieces, [0.0; 2]);
+        zero(&mut self.demands, pieces, None);
+        zero(&mut self.breaks, pieces, Breaks::default());
         self.weights.resize_with(cases, Vec::new);
         self.stiff_in.resize_with(cases, Vec::new);
         self.joint_soft.resize_with(cases, Vec::new);
+        self.torques.resize_with(cases, Vec::new);
         for case in 0..cases {
             zero(&mut self.weights[case], pieces, [0.0; 2]);
             zero(&mut self.joint_soft[case], pieces, 0.0);
+            zero(&mut self.torques[case], pieces, [0.0; 2]);
         }
     }
 

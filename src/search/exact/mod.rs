@@ -13,6 +13,7 @@ mod branch;
 mod check;
 mod gap;
 mod parts;
+mod pointless;
 mod pose;
 mod probe;
 mod problem;

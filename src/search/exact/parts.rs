@@ -124,6 +124,8 @@ pub(super) struct CurveBox {
     pub stiff: Windup,
     /// Nowhere stiffer than a member; of one curve, the curve.
     pub soft: Windup,
+    /// Whether modes see the first slope under any torque.
+    pub k1_in_modes: bool,
 }
 
 impl CurveBox {
@@ -138,19 +140,35 @@ impl CurveBox {
                 t1_nm: f64::INFINITY,
                 t2_nm: f64::INFINITY,
             },
-            Curve::Windup(windup) => windup,
+            Curve::Windup(windup) | Curve::WindupK1(windup) => windup,
         };
-        Some(Self { stiff: windup, soft: windup })
+        Some(Self { stiff: windup, soft: windup, k1_in_modes: !matches!(curve, Curve::Windup(_)) })
+    }
+
+    /// Whether modes see one slope under all torques of these sizes, whichever gear it is.
+    pub fn keeps_its_segment(&self, least_nm: f64, most_nm: f64, breaks: Breaks) -> bool {
+        let between = |t_nm: f64| least_nm <= t_nm && t_nm <= most_nm;
+        self.k1_in_modes
+            || match self.stiff == self.soft {
+                true => !between(self.stiff.t1_nm) && !between(self.stiff.t2_nm),
+                false => !breaks.any_between(least_nm, most_nm),
+            }
     }
 
     /// The greatest slope at torques of these sizes \[N m\].
     pub fn stiffest(&self, least_nm: f64, most_nm: f64) -> f64 {
-        slopes(&self.stiff, least_nm, most_nm).fold(0.0, f64::max)
+        self.slopes(&self.stiff, least_nm, most_nm).fold(0.0, f64::max)
     }
 
     /// The least slope at torques of these sizes \[N m\].
     pub fn softest(&self, least_nm: f64, most_nm: f64) -> f64 {
-        slopes(&self.soft, least_nm, most_nm).fold(f64::INFINITY, f64::min)
+        self.slopes(&self.soft, least_nm, most_nm).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The slopes that modes may see.
+    fn slopes(&self, w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
+        let (least_nm, most_nm) = if self.k1_in_modes { (0.0, 0.0) } else { (least_nm, most_nm) };
+        slopes(w, least_nm, most_nm)
     }
 
     fn join(&self, other: &Self) -> Self {
@@ -164,6 +182,7 @@ impl CurveBox {
         Self {
             stiff: extreme(&rising(&self.stiff), &rising(&other.stiff), f64::max, f64::min),
             soft: extreme(&rising_below(&self.soft), &rising_below(&other.soft), f64::min, f64::max),
+            k1_in_modes: self.k1_in_modes && other.k1_in_modes,
         }
     }
 }
@@ -192,6 +211,54 @@ fn slopes(w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> 
     let touched = move |&(_, from, to): &(f64, f64, f64)| least_nm <= to && (most_nm > from || from == 0.0);
     segments.into_iter().filter(touched).map(|(slope, ..)| slope)
 }
+
+/// Whether a curve's slope is at least that of another under every torque up to one \[N m\].
+pub(super) fn never_softer(a: &Windup, b: &Windup, most_nm: f64) -> bool {
+    let slope_beyond = |w: &Windup, t_nm: f64| match t_nm {
+        t if t < w.t1_nm => w.k1_nm_per_rad,
+        t if t < w.t2_nm => w.k2_nm_per_rad,
+        _ => w.k3_nm_per_rad,
+    };
+    let starts = [0.0, a.t1_nm, a.t2_nm, b.t1_nm, b.t2_nm];
+    starts.into_iter().all(|t| t > most_nm || slope_beyond(a, t) >= slope_beyond(b, t))
+}
+
+/// The break points of a set of curves, on a grid of about 5 %.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Breaks([u64; 4]);
+
+impl Breaks {
+    const CELLS: f64 = 256.0;
+    const OCTAVES: f64 = 18.0;
+    const LEAST_LOG2: f64 = -4.0;
+
+    /// Those of one curve.
+    pub fn of(w: &Windup) -> Self {
+        [w.t1_nm, w.t2_nm].into_iter().filter(|t| t.is_finite()).fold(Self::default(), |mut set, t_nm| {
+            let cell = Self::cell(t_nm);
+            set.0[cell / 64] |= 1 << (cell % 64);
+            set
+        })
+    }
+
+    fn join(&self, other: &Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] | other.0[i]))
+    }
+
+    /// Whether a break point may lie between two torques \[N m\].
+    fn any_between(&self, least_nm: f64, most_nm: f64) -> bool {
+        (Self::cell(least_nm)..=Self::cell(most_nm)).any(|cell| self.0[cell / 64] >> (cell % 64) & 1 == 1)
+    }
+
+    /// Torques beyond the grid count to its ends.
+    fn cell(t_nm: f64) -> usize {
+        let at = (t_nm.log2() - Self::LEAST_LOG2) * (Self::CELLS / Self::OCTAVES);
+        at.clamp(0.0, Self::CELLS - 1.0) as usize
+    }
+}
+
+/// Torques that differ by less than this part may lie on the same side of a break point or not.
+pub(super) const SAME_TORQUE: f64 = 1e-12;
 
 /// Proportions of static torque and inertia in which a box of drives knows what it holds.
 pub(super) const RAYS: usize = 12;
@@ -253,6 +320,7 @@ pub(super) struct DriveBox {
     /// The largest multiple of each ray's demand that a member holds.
     pub multiples: [f64; RAYS],
     pub curve: Option<CurveBox>,
+    pub breaks: Breaks,
 }
 
 impl DriveBox {
@@ -273,6 +341,7 @@ impl Bounds for DriveBox {
             multiples: pairwise(&self.multiples, &other.multiples, f64::max),
             // a rigid member makes the stiff side rigid
             curve: self.curve.zip(other.curve).map(|(a, b)| a.join(&b)),
+            breaks: self.breaks.join(&other.breaks),
         }
     }
 

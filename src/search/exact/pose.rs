@@ -50,6 +50,8 @@ pub(super) fn degree_factor(coordinate: usize) -> f64 {
 pub(super) struct Pose {
     pub judged: bool,
     pub sizing: bool,
+    /// Whether no two parts move the tip against each other.
+    pub parts_sag_together: bool,
     /// Weight of the water in a tube's outer area over that of its mass: net weight per length is
     /// `g (mass - water area)`.
     pub water_kg_m3: f64,
@@ -106,8 +108,9 @@ pub(super) struct Row {
     pub fixed: f64,
     /// Force per newton of each piece's weight, up to and including `piece`.
     pub per_n: Vec<f64>,
-    /// Displacement of the tip per unit of the coordinate.
+    /// Displacement of the tip per unit of the coordinate, and how far that is.
     pub tip_m: Vector3<f64>,
+    pub way_m: f64,
 }
 
 /// Force and moments at an end of an open tube.
@@ -157,6 +160,7 @@ impl Pose {
         let mut pose = Self {
             judged: space.judged_cases.contains(&index),
             sizing: space.sizing_cases.contains(&index),
+            parts_sag_together: false,
             water_kg_m3: case.water.map_or(0.0, |w| w.density_kg_m3),
             pieces,
             payload_inertia,
@@ -165,6 +169,7 @@ impl Pose {
             inertia_about: Vec::new(),
         };
         pose.compile(space, payload_wrench, &walk.tip_m);
+        pose.parts_sag_together = pose.parts_sag_together();
         pose
     }
 
@@ -349,7 +354,8 @@ impl Outboard {
     ) -> Row {
         let mut per_n: Vec<f64> = self.per_n.iter().map(|w| twist.dot(w)).collect();
         per_n.push(own_per_n);
-        Row { piece, coordinate, fixed: twist.dot(&self.fixed), per_n, tip_m: displacement_at(twist, tip_m) }
+        let tip_m = displacement_at(twist, tip_m);
+        Row { piece, coordinate, fixed: twist.dot(&self.fixed), per_n, tip_m, way_m: tip_m.norm() }
     }
 
     fn inertia_row(&self, fixed: &Matrix6<f64>, twist: &Twist) -> InertiaRow {

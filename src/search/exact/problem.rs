@@ -2,7 +2,7 @@
 //! case.
 
 use super::check::Inertia;
-use super::parts::{CurveBox, DriveBox, LinkBox, Rays};
+use super::parts::{Breaks, CurveBox, DriveBox, LinkBox, Rays};
 use super::pose::Pose;
 use super::tree::{Bounds, Tree};
 use crate::arm::LinkBody;
@@ -25,6 +25,8 @@ pub(super) struct Problem<'c> {
     pub inertias: Vec<Inertia>,
     /// Peak over static stress in sizing cases.
     pub peak_factor: f64,
+    /// Whether a lighter arm that is no softer is no worse.
+    pub lighter_is_better: bool,
 }
 
 /// What may stand at a place of the chain.
@@ -97,11 +99,13 @@ impl<'c> Problem<'c> {
             inertias: Vec::new(),
             peak_factor: 1.0
                 + space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE),
+            lighter_is_better: false,
         };
         for (piece, reach_m) in pieces.into_iter().rev() {
             let part = problem.part(piece, reach_m, catalogs)?;
             problem.parts.push(part);
         }
+        problem.lighter_is_better = problem.grows_with_weight();
         Some(problem)
     }
 
@@ -180,11 +184,13 @@ impl<'c> Problem<'c> {
 fn drive_box(sized: &SizedJoint, index: u32, rays: &Rays) -> DriveBox {
     let index = index as usize;
     let mass_kg = sized.table.mass_kg(index);
+    let curve = CurveBox::of(&sized.laws[index].curve);
     DriveBox {
         mass_kg: [mass_kg; 2],
         limits: *sized.table.limits(index),
         least_limits: *sized.table.limits(index),
         multiples: rays.held(sized.table.limits(index)),
-        curve: CurveBox::of(&sized.laws[index].curve),
+        curve,
+        breaks: curve.map_or_else(Breaks::default, |c| Breaks::of(&c.stiff)),
     }
 }

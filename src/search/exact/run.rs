@@ -27,7 +27,7 @@ const SLACKS: [f64; 15] =
 /// Designs above which a space is large.
 const LARGE: u128 = 1_000_000_000;
 /// Probes for every power of ten of designs.
-const PROBES_A_DECADE: f64 = 8.0;
+const PROBES_A_DECADE: f64 = 2.0;
 /// Designs are filtered whenever their number reaches a power of two above this.
 const BUFFER: usize = 4096;
 
@@ -216,6 +216,11 @@ impl Search<'_, '_> {
             |ceiling| found.nearly_beats(&ceiling.slackened(self.slack)),
         );
         let Verdict::Open(ceiling) = verdict else { return };
+        match self.problem.without_pointless(&mut here.cell, ceiling.tip_m, work) {
+            None => return,
+            Some(true) => return children.push(here),
+            Some(false) => {}
+        }
         let Some(level) = self.problem.widest_level(&here.cell, &here.shapes, work) else {
             self.judge(&here.cell, &ceiling, work);
             return;

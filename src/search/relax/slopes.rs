@@ -35,6 +35,7 @@ fn curve_range(curve: &Curve, [near, far]: [f64; 2]) -> [f64; 2] {
     match curve {
         Curve::Rigid => [0.0; 2],
         Curve::Linear(stiffness) => [1.0 / stiffness; 2],
+        Curve::WindupK1(w) => [1.0 / w.k1_nm_per_rad; 2],
         Curve::Windup(w) => {
             let segments = [
                 (0.0, w.t1_nm, w.k1_nm_per_rad),

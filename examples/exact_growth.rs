@@ -1,0 +1,72 @@
+//! How the time of the exact search grows with the size of the space.
+//!
+//! `cargo run --release --example exact_growth -- 60` searches `full-catalog` with every n-th gear, motor and link
+//! option, from few to all, at most 60 s each: once with the slope that a gear has at its torque in the modes, once with
+//! its first slope K1.
+
+use armwright::arm::JointModel;
+use armwright::catalog::Catalogs;
+use armwright::fault::Document;
+use armwright::search::exact::Exact;
+use armwright::search::space::{DesignSpace, DriveChoice, SpacePiece};
+use armwright::study::{named, read_study};
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// Every how manyth gear, motor and link option is kept.
+const THINNED: [(usize, usize); 8] =
+    [(40, 4000), (25, 2000), (15, 1000), (10, 400), (6, 100), (4, 30), (2, 6), (1, 1)];
+
+fn main() {
+    let limit_s = std::env::args().nth(1).and_then(|word| word.parse().ok()).unwrap_or(60);
+    let catalogs = Catalogs::builtin();
+    let text = named("full-catalog").expect("a named study");
+    let document = Document::parse("full-catalog", text).expect("a named study is JSON");
+    let study = read_study(document, &catalogs).expect("a named study is whole");
+    println!("{:<18}{:>10}{:>10}{:>12}{:>10}{:>9}", "modes", "designs", "front", "boxes", "s", "gap");
+    for joints in [JointModel::ThreeSegment, JointModel::ThreeSegmentK1] {
+        for (parts, options) in THINNED {
+            let space = DesignSpace { joints, ..thinned(&study.space, &catalogs, parts, options) };
+            search(&space, &catalogs, Duration::from_secs(limit_s));
+        }
+    }
+}
+
+fn search(space: &DesignSpace, catalogs: &Catalogs, limit: Duration) {
+    let stop = AtomicBool::new(false);
+    let started = Instant::now();
+    let outcome = Exact::new(space, catalogs, &stop, Some(started + limit)).run(&[]);
+    println!(
+        "{:<18}{:>10.1e}{:>10}{:>12.2e}{:>10.2}{:>9}",
+        space.joints.word(),
+        outcome.designs_total as f64,
+        outcome.front.len(),
+        outcome.boxes as f64,
+        started.elapsed().as_secs_f64(),
+        outcome.gap.map_or("-".into(), |gap| format!("{:.0} %", 100.0 * gap)),
+    );
+}
+
+/// The space with every n-th gear and motor of the catalogs and every m-th option of its links.
+fn thinned(space: &DesignSpace, catalogs: &Catalogs, parts: usize, options: usize) -> DesignSpace {
+    let mut space = space.clone();
+    for piece in &mut space.pieces {
+        match piece {
+            SpacePiece::Joint(joint) => {
+                if let DriveChoice::AllFits(filter) = &mut joint.drive {
+                    // gears by torque within a series: every n-th spans all sizes
+                    filter.gear_ids =
+                        Some(catalogs.gears.iter().step_by(parts).map(|g| g.id.clone()).collect());
+                    filter.motor_ids = Some(
+                        catalogs.motors.iter().step_by(parts.div_ceil(4)).map(|m| m.id.clone()).collect(),
+                    );
+                }
+            }
+            SpacePiece::Choice(choice) => {
+                choice.options = choice.options.iter().step_by(options).cloned().collect();
+            }
+            SpacePiece::Link(_) => {}
+        }
+    }
+    space
+}

@@ -1,0 +1,51 @@
+//! How sure a front is: what was visited, what was cut and why, what may be missing.
+
+use super::html::Extra;
+use super::number::significant;
+use super::summary::{SummaryFacts, large};
+
+/// The section of a page; `boxes` are those bounded and left open by an exact search.
+pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Extra {
+    let words = match (boxes, facts.is_stopped()) {
+        (None, false) => vec![format!(
+            "Every design was visited: of {} the objectives of {} were worked out, and {} were excluded because a drive, \
+             a link or a limit does not hold. None is missing.",
+            large(facts.designs_total),
+            large(facts.designs_evaluated),
+            large(facts.designs_excluded),
+        )],
+        (None, true) => vec![format!(
+            "The search was stopped after {} of {} designs: any design that was not visited may be missing.",
+            large(facts.designs_evaluated + facts.designs_excluded),
+            large(facts.designs_total),
+        )],
+        (Some([bounded, _]), false) => vec![
+            format!(
+                "The front is proved complete without visiting all {} designs: {} boxes of parts cover them. Each was cut \
+                 because not even the best its members could be meets the limits, or because a design listed here is \
+                 better than that.",
+                large(facts.designs_total),
+                large(bounded.into()),
+            ),
+            "Designs that differ by less than a part in 1e9 in every objective count as equal.".into(),
+        ],
+        (Some([bounded, open]), true) => vec![
+            format!(
+                "The search was stopped: of the {} boxes of parts that were bounded {} were left open.",
+                large(bounded.into()),
+                large(open.into()),
+            ),
+            match facts.gap {
+                Some(gap) => format!(
+                    "No design that was missed is better than every listed one by more than {} % in tip deflection, \
+                     mass and lowest mode at once. A longer --time-limit narrows this.",
+                    significant(100.0 * gap, 2)
+                ),
+                None => "Nothing can be said of what they hold. A longer --time-limit helps.".into(),
+            },
+        ],
+    };
+    let how = "Check it again with another search from this front: armwright front check";
+    let words = words.into_iter().chain([format!("{how} {}", facts.results)]).collect();
+    Extra { title: "How sure is this front?".into(), words, tables: Vec::new(), figures: Vec::new() }
+}
