@@ -126,7 +126,7 @@ fn settle(
             Before::Weights(selection) => search.weigh_again(selection),
         };
         let best = search.fit(&selection.best.effects, &selection.best.u, Effort::default());
-        let judged = Noise::from_fit(forward, &best);
+        let judged = Noise::from_fit(forward, &best, &weights);
         let hopeful = search.may_explain(&selection.best) && !selection.given_up;
         (selection, judged, best.point.coefficients, hopeful)
     };
@@ -170,7 +170,7 @@ fn first_look(forward: &Forward, nuisance: &Nuisance) -> Noise {
     let bare = Model::bare(nuisance);
     let weights = Noise::default().weights(forward);
     let fitted = fit(forward, &bare, &vec![0.0; bare.len()], &weights, Effort::default());
-    Noise::first_look(forward, &fitted)
+    Noise::first_look(forward, &fitted, &weights)
 }
 
 struct Analysis<'a> {

@@ -339,6 +339,20 @@ pub fn finish<'a>(
 }
 
 impl Fit<'_> {
+    /// Part of each datum's variance that the parameters take up, `wJᵢC(wJᵢ)ᵀ` with the covariance `C`; 0 where
+    /// a datum is left out.
+    pub fn leverages(&self, weights: &Weights) -> Vec<f64> {
+        let n = self.curvature.nrows();
+        let Some(cholesky) = Cholesky::new(self.curvature.clone()) else {
+            return vec![0.0; self.jacobian.nrows()];
+        };
+        let root =
+            cholesky.l().solve_lower_triangular(&DMatrix::identity(n, n)).unwrap_or(DMatrix::zeros(n, n));
+        let reach = &self.jacobian * root.transpose();
+        let rows = reach.row_iter().zip(&weights.inverse);
+        rows.map(|(row, w)| (row.norm_squared() * w * w).min(1.0)).collect()
+    }
+
     /// Residuals, measured less predicted, in scaled standard deviations.
     pub fn residuals(&self, forward: &Forward, weights: &Weights) -> Vec<f64> {
         forward

@@ -45,22 +45,22 @@ impl Noise {
 
     /// Gross errors that show before any effect is looked for: only where calibration alone comes close
     /// to most readings, because what an effect does must not be taken for an error.
-    pub fn first_look(forward: &Forward, bare: &Fit) -> Self {
+    pub fn first_look(forward: &Forward, bare: &Fit, weights: &Weights) -> Self {
         let residuals = declared_residuals(forward, bare);
         let close = |channel| spread(&residuals[forward.range(channel)]) < CLOSE;
         if ![Channel::Static, Channel::Modal, Channel::Windup].into_iter().all(close) {
             return Self::default();
         }
-        let mut outliers = Self::from_fit(forward, bare).outliers;
+        let mut outliers = Self::from_fit(forward, bare, weights).outliers;
         outliers.retain(|(_, _, size)| *size > UNMISTAKABLE);
         Self { outliers, ..Self::default() }
     }
 
-    /// Judges the readings by the residuals of a fit.
-    pub fn from_fit(forward: &Forward, fit: &Fit) -> Self {
+    /// Judges the readings by the residuals of a fit, which had these weights.
+    pub fn from_fit(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
         let mut noise = Self::default();
         let residuals = declared_residuals(forward, fit);
-        let free = fit.point.u.len() as f64 / forward.data.len().max(1) as f64;
+        let leverages = fit.leverages(weights);
         for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
             let range = forward.range(channel);
             let own = &residuals[range.clone()];
@@ -79,7 +79,8 @@ impl Noise {
                 continue;
             }
             noise.outliers.extend(gross.iter().map(|(row, size)| (channel, *row, *size)));
-            noise.scale[channel as usize] = scale(own, &forward.data[range], &gross, free);
+            let kept = range.filter(|i| !gross.iter().any(|(row, _)| *row == forward.data[*i].row));
+            noise.scale[channel as usize] = scale(kept.map(|i| (residuals[i], leverages[i])));
         }
         noise
     }
@@ -106,20 +107,30 @@ fn spread(residuals: &[f64]) -> f64 {
     1.4826 * median(residuals.iter().map(|r| r.abs()).collect())
 }
 
-fn scale(
-    residuals: &[f64],
-    data: &[super::forward::Datum],
-    gross: &[(usize, f64)],
-    parameters_per_datum: f64,
-) -> f64 {
-    let (mut sum, mut count) = (TRUST, TRUST);
-    for (r, datum) in residuals.iter().zip(data) {
-        if !gross.iter().any(|(row, _)| *row == datum.row) {
-            sum += r * r;
-            count += 1.0 - 0.7 * parameters_per_datum;
-        }
+/// Factor on declared deviations from residuals and their leverages. The square of a residual is expected to be
+/// `1 - leverage`, for the rest of it the parameters have taken up. A factor within what chance does to honest
+/// declarations counts too: to wait until it is significant would leave intervals too narrow wherever a channel
+/// has few readings.
+fn scale(kept: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let (sum, count) =
+        kept.fold((TRUST, TRUST), |(sum, count), (r, leverage)| (sum + r * r, count + 1.0 - leverage));
+    (sum / count).sqrt().clamp(1.0, LARGEST_SCALE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forty_readings_a_sixth_noisier_than_declared_are_scaled_though_chance_could_do_that() {
+        // of 40 squares with a quarter of each taken up by parameters, declared 1, true 1.15
+        let readings = (0..40).map(|_| (1.15 * 0.75f64.sqrt(), 0.25));
+        assert!((scale(readings) - ((15.0 + 30.0 * 1.15f64.powi(2)) / 45.0).sqrt()).abs() < 1e-12);
     }
-    let scale = (sum / count).sqrt();
-    // within what chance does to honestly declared deviations nothing is changed
-    if scale < 1.0 + 1.0 / (2.0 * count).sqrt() { 1.0 } else { scale.min(LARGEST_SCALE) }
+
+    #[test]
+    fn a_declaration_is_neither_improved_nor_blamed_for_missing_physics() {
+        assert_eq!(scale((0..40).map(|_| (0.5, 0.0))), 1.0);
+        assert_eq!(scale((0..40).map(|_| (5.0, 0.0))), LARGEST_SCALE);
+    }
 }
