@@ -36,17 +36,8 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         false => settle(campaign, &mut forward, &nuisance, &candidates),
     };
     let weights = found.noise.weights(&forward);
-    let coefficients = {
-        let search = Search {
-            campaign,
-            forward: &forward,
-            nuisance: &nuisance,
-            candidates: &candidates,
-            weights: &weights,
-        };
-        let best = &found.selection.best;
-        search.model(&best.effects).coefficients(&forward, &best.u)
-    };
+    let chosen = &found.selection.best;
+    let coefficients = Model::of(&nuisance, &candidates, &chosen.effects).coefficients(&forward, &chosen.u);
     forward.refresh(&coefficients);
     let search = Search {
         campaign,
@@ -55,8 +46,8 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         candidates: &candidates,
         weights: &weights,
     };
-    let chosen = &found.selection.best;
-    let best = match found.selection.given_up {
+    let hopeless = found.selection.given_up || !search.may_explain(chosen);
+    let best = match hopeless {
         true => search.fit(&chosen.effects, &chosen.u, Effort::default()),
         false => search.polish(&chosen.effects, &chosen.u),
     };

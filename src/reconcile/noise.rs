@@ -20,6 +20,10 @@ const GROSS: f64 = 5.5;
 const UNMISTAKABLE: f64 = 16.0;
 /// Part of a channel's rows that can be gross errors; more are structure.
 const FEW: f64 = 0.10;
+/// The same before any effect is looked for: the few frequencies that an effect moves must not be taken away.
+const FEW_UNSEEN: f64 = 0.05;
+/// Channels whose readings are judged.
+const CHANNELS: [Channel; 3] = [Channel::Static, Channel::Modal, Channel::Windup];
 /// Largest factor on declared deviations that is put down to the declaration.
 const LARGEST_SCALE: f64 = 1.3;
 /// Spread of the residuals, in declared standard deviations, up to which a model fits most readings.
@@ -48,11 +52,17 @@ impl Noise {
     pub fn first_look(forward: &Forward, bare: &Fit, weights: &Weights) -> Self {
         let residuals = declared_residuals(forward, bare);
         let close = |channel| spread(&residuals[forward.range(channel)]) < CLOSE;
-        if ![Channel::Static, Channel::Modal, Channel::Windup].into_iter().all(close) {
+        if !CHANNELS.into_iter().all(close) {
             return Self::default();
         }
         let mut outliers = Self::from_fit(forward, bare, weights).outliers;
         outliers.retain(|(_, _, size)| *size > UNMISTAKABLE);
+        let in_channel = |channel| outliers.iter().filter(|(c, _, _)| *c == channel).count();
+        let few: Vec<Channel> = CHANNELS
+            .into_iter()
+            .filter(|c| in_channel(*c) <= at_most(FEW_UNSEEN, rows(forward, *c)))
+            .collect();
+        outliers.retain(|(channel, _, _)| few.contains(channel));
         Self { outliers, ..Self::default() }
     }
 
@@ -61,7 +71,7 @@ impl Noise {
         let mut noise = Self::default();
         let residuals = declared_residuals(forward, fit);
         let leverages = fit.leverages(weights);
-        for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
+        for channel in CHANNELS {
             let range = forward.range(channel);
             let own = &residuals[range.clone()];
             let limit = GROSS * spread(own).clamp(1.0, 3.0);
@@ -74,8 +84,7 @@ impl Noise {
                     }
                 }
             }
-            let rows = forward.data[range.clone()].iter().map(|d| d.row).max().map_or(0, |r| r + 1);
-            if gross.len() as f64 > (FEW * rows as f64).max(1.0) {
+            if gross.len() > at_most(FEW, rows(forward, channel)) {
                 continue;
             }
             noise.outliers.extend(gross.iter().map(|(row, size)| (channel, *row, *size)));
@@ -95,6 +104,16 @@ impl Noise {
     pub fn agrees(&self, other: &Self) -> bool {
         self.same_rows(other) && self.scale.iter().zip(&other.scale).all(|(a, b)| (a / b - 1.0).abs() < 0.03)
     }
+}
+
+/// Rows of a channel's file.
+fn rows(forward: &Forward, channel: Channel) -> usize {
+    forward.data[forward.range(channel)].iter().map(|d| d.row).max().map_or(0, |r| r + 1)
+}
+
+/// A part of the rows of a file, one at least.
+fn at_most(part: f64, rows: usize) -> usize {
+    ((part * rows as f64) as usize).max(1)
 }
 
 /// Measured less predicted, in declared standard deviations.
