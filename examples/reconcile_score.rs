@@ -70,13 +70,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         writeln!(lines, "{name},{},{right},{seen},{wall_s:.2},{cpu_s:.2}", list.join(" + "))?;
     }
     std::fs::write(out.join("campaigns.csv"), lines)?;
-    std::fs::write(out.join("intervals.csv"), score.intervals_csv())?;
+    std::fs::write(out.join("intervals.csv"), intervals_csv(&score.intervals))?;
     std::fs::write(out.join("confusion.csv"), score.confusion_csv())?;
     println!("by how many sigma the hidden effect can be seen at all: right, of");
     bands.iter().for_each(|(band, (right, all))| println!("  {band:<42} {right:>3} {all:>3}"));
     summarise("time by the clock", times.iter().map(|t| t.0).collect());
     summarise("time of the processor", times.iter().map(|t| t.1).collect());
     Ok(())
+}
+
+fn intervals_csv(lines: &[String]) -> String {
+    format!("campaign,effect,at,parameter,true,value,low,high,holds\n{}\n", lines.join("\n"))
 }
 
 fn summarise(what: &str, mut seconds: Vec<f64>) {

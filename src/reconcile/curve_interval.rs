@@ -28,7 +28,7 @@ const STEP: f64 = 0.5;
 const STEPS: (f64, f64) = (0.004, 0.08);
 /// Each step over the one before it, going out.
 const GROWTH: f64 = 1.4;
-/// Every how manieth node is looked at wherever its neighbours are.
+/// Of so many neighbouring nodes one is looked at in any case.
 const COARSE: usize = 3;
 /// How hard a fit with both break points held tries.
 const HELD: Effort = Effort { steps: 4, tolerance: 0.05 };

@@ -158,19 +158,6 @@ impl Score {
 }
 
 impl Score {
-    /// The intervals as CSV.
-    pub fn intervals_csv(&self) -> String {
-        let head = "campaign,effect,at,parameter,true,value,low,high,holds";
-        std::iter::once(head).chain(self.intervals.iter().map(String::as_str)).fold(
-            String::new(),
-            |mut out, line| {
-                out.push_str(line);
-                out.push('\n');
-                out
-            },
-        )
-    }
-
     /// The confusion table as CSV: what was hidden, what was said, how often.
     pub fn confusion_csv(&self) -> String {
         let mut out = String::from("hidden,said,campaigns\n");
