@@ -5,7 +5,8 @@
 //!
 //! `OUT/confusion.csv` counts what was said of what was hidden; `OUT/campaigns.csv` has a line a
 //! campaign: right or not, by how many standard deviations the hidden effect can be seen at all, and the
-//! time it took.
+//! time it took, by the clock and of the processor; `OUT/intervals.csv` one a parameter: true value,
+//! estimate, ends of the interval.
 
 use armwright::catalog::Catalogs;
 use armwright::reconcile::{Campaign, reconcile};
@@ -18,6 +19,15 @@ use std::time::Instant;
 mod detectability;
 #[path = "../tests/reconcile_scoring/mod.rs"]
 mod scoring;
+
+/// Processor seconds of this process and its threads so far; 0 where the system does not tell.
+fn processor_s() -> f64 {
+    const TICKS_PER_S: f64 = 100.0;
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let after_name = stat.rsplit(')').next().unwrap_or_default();
+    let ticks = after_name.split_whitespace().skip(11).take(2).filter_map(|t| t.parse::<f64>().ok());
+    ticks.sum::<f64>() / TICKS_PER_S
+}
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -32,17 +42,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let read = |name: &str| Campaign::read(&Path::new(folder).join(name), &Catalogs::default());
     let mut times = Vec::new();
     for name in &names {
-        let start = Instant::now();
+        let (start, before_s) = (Instant::now(), processor_s());
         let outcome = reconcile(&read(name)?);
-        times.push(start.elapsed().as_secs_f64());
+        let (wall_s, cpu_s) = (start.elapsed().as_secs_f64(), processor_s() - before_s);
+        times.push((wall_s, cpu_s));
         outcome.write(&out.join(name))?;
-        print!("[{:.2} s] {}", times[times.len() - 1], outcome.to_text());
+        print!("[{wall_s:.2} s, processor {cpu_s:.2} s] {}", outcome.to_text());
     }
     let score = scoring::score(&names, out, Path::new(keys))?;
     print!("{}", score.table());
-    let mut lines = String::from("campaign,hidden,right,detectable_sigma,seconds\n");
+    let mut lines = String::from("campaign,hidden,right,detectable_sigma,seconds,processor_seconds\n");
     let mut bands = BTreeMap::<&str, (usize, usize)>::new();
-    for ((name, hidden, right), time) in score.each.iter().zip(&times) {
+    for ((name, hidden, right), (wall_s, cpu_s)) in score.each.iter().zip(&times) {
         let seen = detectability::detectable_sigmas(&read(name)?, hidden);
         let band = match seen {
             _ if hidden.is_empty() => "nothing hidden",
@@ -56,13 +67,26 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         *entry = (entry.0 + usize::from(*right), entry.1 + 1);
         let seen = seen.map_or(String::new(), |s| format!("{s:.2}"));
         let list: Vec<String> = hidden.iter().map(scoring::label).collect();
-        writeln!(lines, "{name},{},{right},{seen},{time:.2}", list.join(" + "))?;
+        writeln!(lines, "{name},{},{right},{seen},{wall_s:.2},{cpu_s:.2}", list.join(" + "))?;
     }
     std::fs::write(out.join("campaigns.csv"), lines)?;
+    std::fs::write(out.join("intervals.csv"), intervals_csv(&score.intervals))?;
     std::fs::write(out.join("confusion.csv"), score.confusion_csv())?;
     println!("by how many sigma the hidden effect can be seen at all: right, of");
     bands.iter().for_each(|(band, (right, all))| println!("  {band:<42} {right:>3} {all:>3}"));
-    let worst = times.iter().copied().fold(0.0, f64::max);
-    println!("time: mean {:.2} s, worst {worst:.2} s", times.iter().sum::<f64>() / times.len() as f64);
+    summarise("time by the clock", times.iter().map(|t| t.0).collect());
+    summarise("time of the processor", times.iter().map(|t| t.1).collect());
     Ok(())
+}
+
+fn intervals_csv(lines: &[String]) -> String {
+    format!("campaign,effect,at,parameter,true,value,low,high,holds\n{}\n", lines.join("\n"))
+}
+
+fn summarise(what: &str, mut seconds: Vec<f64>) {
+    seconds.sort_by(f64::total_cmp);
+    let mean = seconds.iter().sum::<f64>() / seconds.len().max(1) as f64;
+    let at = |part: f64| seconds.get((part * seconds.len() as f64) as usize).or(seconds.last()).copied();
+    let (middle, worst) = (at(0.5).unwrap_or(0.0), at(1.0).unwrap_or(0.0));
+    println!("{what}: mean {mean:.2} s, median {middle:.2} s, worst {worst:.2} s");
 }

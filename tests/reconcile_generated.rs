@@ -59,6 +59,30 @@ fn four_of_five_small_effects_in_few_bad_readings_are_named() {
     assert!(score.covered.0 * 10 >= score.covered.1 * 8, "{}", score.table());
 }
 
+/// The third segment of the curve is hardly to be seen: where it begins must be left open, not put where the noise
+/// suits it best.
+#[test]
+fn a_break_point_that_readings_hardly_show_is_left_open() {
+    let score = score("hard", "one", 122, [31].into_iter());
+    assert_eq!(score.covered, (5, 5), "{}", score.table());
+    let t2 = score.intervals.iter().find(|line| line.contains(",t2_nm,")).expect("a curve is named");
+    assert!(t2.ends_with(",,true"), "{t2}");
+}
+
+/// At little torque a soft gear moves a few first modes by twenty standard deviations: they are no slips.
+#[test]
+fn frequencies_that_a_break_point_moves_are_not_left_out() {
+    let score = score("hard", "one", 622, [1].into_iter());
+    assert_eq!(right_of(&score), (1, 1), "{}", score.table());
+}
+
+/// The frequencies' steps stop a descent to the curve; no further effect may be named to make that good.
+#[test]
+fn a_curve_is_fitted_to_the_end_before_a_further_effect_is_named() {
+    let score = score("hard", "one", 722, [1].into_iter());
+    assert_eq!(right_of(&score), (1, 1), "{}", score.table());
+}
+
 #[test]
 fn an_honest_arm_has_no_gap() {
     for set in ["plain", "hard"] {

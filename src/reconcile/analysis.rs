@@ -36,17 +36,8 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         false => settle(campaign, &mut forward, &nuisance, &candidates),
     };
     let weights = found.noise.weights(&forward);
-    let coefficients = {
-        let search = Search {
-            campaign,
-            forward: &forward,
-            nuisance: &nuisance,
-            candidates: &candidates,
-            weights: &weights,
-        };
-        let best = &found.selection.best;
-        search.model(&best.effects).coefficients(&forward, &best.u)
-    };
+    let chosen = &found.selection.best;
+    let coefficients = Model::of(&nuisance, &candidates, &chosen.effects).coefficients(&forward, &chosen.u);
     forward.refresh(&coefficients);
     let search = Search {
         campaign,
@@ -55,8 +46,8 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         candidates: &candidates,
         weights: &weights,
     };
-    let chosen = &found.selection.best;
-    let best = match found.selection.given_up {
+    let hopeless = found.selection.given_up || !search.may_explain(chosen);
+    let best = match hopeless {
         true => search.fit(&chosen.effects, &chosen.u, Effort::default()),
         false => search.polish(&chosen.effects, &chosen.u),
     };
@@ -126,7 +117,7 @@ fn settle(
             Before::Weights(selection) => search.weigh_again(selection),
         };
         let best = search.fit(&selection.best.effects, &selection.best.u, Effort::default());
-        let judged = Noise::from_fit(forward, &best);
+        let judged = Noise::from_fit(forward, &best, &weights);
         let hopeful = search.may_explain(&selection.best) && !selection.given_up;
         (selection, judged, best.point.coefficients, hopeful)
     };
@@ -170,7 +161,7 @@ fn first_look(forward: &Forward, nuisance: &Nuisance) -> Noise {
     let bare = Model::bare(nuisance);
     let weights = Noise::default().weights(forward);
     let fitted = fit(forward, &bare, &vec![0.0; bare.len()], &weights, Effort::default());
-    Noise::first_look(forward, &fitted)
+    Noise::first_look(forward, &fitted, &weights)
 }
 
 struct Analysis<'a> {

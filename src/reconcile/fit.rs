@@ -184,18 +184,19 @@ pub fn normal(
     jacobian: &DMatrix<f64>,
     weights: &Weights,
 ) -> Normal {
-    let n = forward.data.len();
+    let residual = DVector::from_iterator(
+        forward.data.len(),
+        forward.data.iter().zip(predicted).zip(&weights.inverse).map(|((d, p), w)| (p - d.value) * w),
+    );
+    let robust = residual.map(|r| if r.abs() <= HUBER { 1.0 } else { (HUBER / r.abs()).sqrt() });
+    let row_factors =
+        DVector::from_iterator(robust.len(), robust.iter().zip(&weights.inverse).map(|(r, w)| r * w));
     let mut scaled = jacobian.clone();
-    let mut residual = DVector::zeros(n);
-    for i in 0..n {
-        let w = weights.inverse[i];
-        let r = (predicted[i] - forward.data[i].value) * w;
-        let robust = if r.abs() <= HUBER { 1.0 } else { (HUBER / r.abs()).sqrt() };
-        residual[i] = r * robust;
-        scaled.row_mut(i).scale_mut(w * robust);
-    }
-    let mut gradient = scaled.tr_mul(&residual);
-    let mut curvature = scaled.tr_mul(&scaled);
+    scaled.column_iter_mut().for_each(|mut column| column.component_mul_assign(&row_factors));
+    // a product with the transpose written out is several times as fast as one that reads columns as rows
+    let transposed = scaled.transpose();
+    let mut gradient = &transposed * residual.component_mul(&robust);
+    let mut curvature = &transposed * &scaled;
     for p in 0..calibrated {
         gradient[p] += u[p];
         curvature[(p, p)] += 1.0;
@@ -339,6 +340,20 @@ pub fn finish<'a>(
 }
 
 impl Fit<'_> {
+    /// Part of each datum's variance that the parameters take up, `wJᵢC(wJᵢ)ᵀ` with the covariance `C`; 0 where
+    /// a datum is left out.
+    pub fn leverages(&self, weights: &Weights) -> Vec<f64> {
+        let n = self.curvature.nrows();
+        let Some(cholesky) = Cholesky::new(self.curvature.clone()) else {
+            return vec![0.0; self.jacobian.nrows()];
+        };
+        let root =
+            cholesky.l().solve_lower_triangular(&DMatrix::identity(n, n)).unwrap_or(DMatrix::zeros(n, n));
+        let reach = &self.jacobian * root.transpose();
+        let rows = reach.row_iter().zip(&weights.inverse);
+        rows.map(|(row, w)| (row.norm_squared() * w * w).min(1.0)).collect()
+    }
+
     /// Residuals, measured less predicted, in scaled standard deviations.
     pub fn residuals(&self, forward: &Forward, weights: &Weights) -> Vec<f64> {
         forward

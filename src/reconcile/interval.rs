@@ -1,9 +1,10 @@
 //! 95 % intervals of fitted parameters.
 //!
-//! From the curvature where the objective is a parabola; where it may not be (break points, torque
-//! scales, ends of a range) by its profile: the parameter is held, everything else refitted, until the
+//! From the curvature where the objective is a parabola; a gear's curve has a posterior of its own
+//! (`curve_interval`); where else the objective may be no parabola (torque scales, ends of a range) by its profile: the parameter is held, everything else refitted, until the
 //! objective has risen by 3.84.
 
+use super::curve_interval::curve_intervals;
 use super::fit::{Effort, Fit, Weights, fit};
 use super::forward::Forward;
 use super::model::{Calibration, Model};
@@ -27,47 +28,76 @@ pub struct Interval {
 /// Standard deviation of every parameter from the curvature.
 pub fn deviations(fit: &Fit) -> Vec<f64> {
     let n = fit.curvature.nrows();
+    let covariance =
+        data_curvature(fit).try_inverse().unwrap_or_else(|| DMatrix::from_element(n, n, f64::INFINITY));
+    (0..n).map(|p| covariance[(p, p)].abs().sqrt()).collect()
+}
+
+/// The curvature without most of the prior's width of the knobs: that belongs to the evidence, not to what the
+/// data say.
+pub fn data_curvature(fit: &Fit) -> DMatrix<f64> {
     let mut curvature = fit.curvature.clone();
     for (i, knob) in fit.model.knobs().enumerate() {
-        // the width of the prior belongs to the evidence, not to what the data say
         let p = fit.model.calibrated() + i;
         curvature[(p, p)] -= 11.9 / knob.width(fit.point.u[p]).powi(2);
     }
-    let covariance = curvature.try_inverse().unwrap_or_else(|| DMatrix::from_element(n, n, f64::INFINITY));
-    (0..n).map(|p| covariance[(p, p)].abs().sqrt()).collect()
+    curvature
 }
 
 /// Intervals of the effects' knobs, in their order.
 pub fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec<Interval> {
     let deviations = deviations(best);
-    let first = best.model.calibrated();
-    let knobs: Vec<_> = best.model.knobs().collect();
-    let crooked = |i: usize| {
-        let knob = knobs[i];
-        let owner = best.model.effects.iter().find(|e| e.knobs.iter().any(|k| std::ptr::eq(k, knob)));
-        owner.is_some_and(|e| matches!(e.kind.name, "soft_windup" | "lost_motion" | "immersion"))
-    };
     let breaks = best.model.break_points();
-    (0..knobs.len())
-        .into_par_iter()
-        .map(|i| {
-            let p = first + i;
-            let (low, high) = (knobs[i].low, knobs[i].high);
-            let (u, sd) = (best.point.u[p], deviations[p]);
-            let end = |side: f64| {
-                let straight = u + side * Z95 * sd;
-                let outside = !(low..=high).contains(&straight);
-                let value = if crooked(i) || outside {
-                    profile(forward, best, weights, p, side, sd)
-                } else {
-                    Some(straight)
+    let of_effect = |effect: usize| {
+        let first = best.model.first_knob(effect);
+        let own = first..first + best.model.effects[effect].knobs.len();
+        let pair: Vec<usize> = breaks.iter().copied().filter(|p| own.contains(p)).collect();
+        match pair.as_slice() {
+            [a, b] => {
+                let ends = curve_intervals(forward, best, weights, own.clone(), [*a, *b], &deviations);
+                let slack = |p| if pair.contains(&p) { Z95 * torque_doubt(best) } else { 0.0 };
+                let widened = |(p, ends): (usize, Interval)| {
+                    ends.with(best.point.u[p]).wider(slack(p), best.model.bounds(p))
                 };
-                let slack = if breaks.contains(&p) { Z95 * torque_doubt(best) } else { 0.0 };
-                value.map(|v| v + side * slack).filter(|v| *v > low && *v < high)
-            };
-            Interval { low: end(-1.0), high: end(1.0) }
-        })
+                own.zip(ends).map(widened).collect()
+            }
+            _ => own.map(|p| interval(forward, best, weights, effect, p, deviations[p])).collect(),
+        }
+    };
+    (0..best.model.effects.len())
+        .into_par_iter()
+        .flat_map_iter(|e| -> Vec<Interval> { of_effect(e) })
         .collect()
+}
+
+/// The interval of one number of an effect.
+fn interval(forward: &Forward, best: &Fit, weights: &Weights, effect: usize, p: usize, sd: f64) -> Interval {
+    let crooked = matches!(best.model.effects[effect].kind.name, "lost_motion" | "immersion");
+    let (low, high) = best.model.bounds(p);
+    let end = |side: f64| {
+        let straight = best.point.u[p] + side * Z95 * sd;
+        let value = match crooked || !(low..=high).contains(&straight) {
+            true => profile(forward, best, weights, p, side, sd),
+            false => Some(straight),
+        };
+        value.filter(|v| *v > low && *v < high)
+    };
+    Interval { low: end(-1.0), high: end(1.0) }
+}
+
+impl Interval {
+    /// So wide that it holds the best value.
+    fn with(self, u: f64) -> Self {
+        Self { low: self.low.map(|v| v.min(u)), high: self.high.map(|v| v.max(u)) }
+    }
+
+    /// With ends moved out, but not beyond bounds.
+    fn wider(self, by: f64, (low, high): (f64, f64)) -> Self {
+        Self {
+            low: self.low.map(|v| v - by).filter(|v| *v > low),
+            high: self.high.map(|v| v + by).filter(|v| *v < high),
+        }
+    }
 }
 
 /// Standard deviation of ln of the torques that calibrated masses leave: a step of the frequencies at a

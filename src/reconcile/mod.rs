@@ -12,6 +12,7 @@
 pub mod analysis;
 pub mod campaign;
 pub mod correct;
+pub mod curve_interval;
 pub mod exact;
 pub mod few_rows;
 pub mod fit;

@@ -331,6 +331,11 @@ impl<'a> Model<'a> {
         Self { nuisance, effects: Vec::new(), smoothing: 0.0, held: Vec::new() }
     }
 
+    /// A model of some of the candidates, by their indices.
+    pub fn of(nuisance: &'a Nuisance, candidates: &'a [Candidate], effects: &[usize]) -> Self {
+        Self { effects: effects.iter().map(|&i| &candidates[i]).collect(), ..Self::bare(nuisance) }
+    }
+
     /// The same model with one more effect.
     pub fn with(&self, effect: &'a Candidate) -> Self {
         let mut out = self.clone();

@@ -20,6 +20,10 @@ const GROSS: f64 = 5.5;
 const UNMISTAKABLE: f64 = 16.0;
 /// Part of a channel's rows that can be gross errors; more are structure.
 const FEW: f64 = 0.10;
+/// The same before any effect is looked for: the few frequencies that an effect moves must not be taken away.
+const FEW_UNSEEN: f64 = 0.05;
+/// Channels whose readings are judged.
+const CHANNELS: [Channel; 3] = [Channel::Static, Channel::Modal, Channel::Windup];
 /// Largest factor on declared deviations that is put down to the declaration.
 const LARGEST_SCALE: f64 = 1.3;
 /// Spread of the residuals, in declared standard deviations, up to which a model fits most readings.
@@ -45,23 +49,29 @@ impl Noise {
 
     /// Gross errors that show before any effect is looked for: only where calibration alone comes close
     /// to most readings, because what an effect does must not be taken for an error.
-    pub fn first_look(forward: &Forward, bare: &Fit) -> Self {
+    pub fn first_look(forward: &Forward, bare: &Fit, weights: &Weights) -> Self {
         let residuals = declared_residuals(forward, bare);
         let close = |channel| spread(&residuals[forward.range(channel)]) < CLOSE;
-        if ![Channel::Static, Channel::Modal, Channel::Windup].into_iter().all(close) {
+        if !CHANNELS.into_iter().all(close) {
             return Self::default();
         }
-        let mut outliers = Self::from_fit(forward, bare).outliers;
+        let mut outliers = Self::from_fit(forward, bare, weights).outliers;
         outliers.retain(|(_, _, size)| *size > UNMISTAKABLE);
+        let in_channel = |channel| outliers.iter().filter(|(c, _, _)| *c == channel).count();
+        let few: Vec<Channel> = CHANNELS
+            .into_iter()
+            .filter(|c| in_channel(*c) <= at_most(FEW_UNSEEN, rows(forward, *c)))
+            .collect();
+        outliers.retain(|(channel, _, _)| few.contains(channel));
         Self { outliers, ..Self::default() }
     }
 
-    /// Judges the readings by the residuals of a fit.
-    pub fn from_fit(forward: &Forward, fit: &Fit) -> Self {
+    /// Judges the readings by the residuals of a fit, which had these weights.
+    pub fn from_fit(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
         let mut noise = Self::default();
         let residuals = declared_residuals(forward, fit);
-        let free = fit.point.u.len() as f64 / forward.data.len().max(1) as f64;
-        for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
+        let leverages = fit.leverages(weights);
+        for channel in CHANNELS {
             let range = forward.range(channel);
             let own = &residuals[range.clone()];
             let limit = GROSS * spread(own).clamp(1.0, 3.0);
@@ -74,12 +84,12 @@ impl Noise {
                     }
                 }
             }
-            let rows = forward.data[range.clone()].iter().map(|d| d.row).max().map_or(0, |r| r + 1);
-            if gross.len() as f64 > (FEW * rows as f64).max(1.0) {
+            if gross.len() > at_most(FEW, rows(forward, channel)) {
                 continue;
             }
             noise.outliers.extend(gross.iter().map(|(row, size)| (channel, *row, *size)));
-            noise.scale[channel as usize] = scale(own, &forward.data[range], &gross, free);
+            let kept = range.filter(|i| !gross.iter().any(|(row, _)| *row == forward.data[*i].row));
+            noise.scale[channel as usize] = scale(kept.map(|i| (residuals[i], leverages[i])));
         }
         noise
     }
@@ -96,6 +106,16 @@ impl Noise {
     }
 }
 
+/// Rows of a channel's file.
+fn rows(forward: &Forward, channel: Channel) -> usize {
+    forward.data[forward.range(channel)].iter().map(|d| d.row).max().map_or(0, |r| r + 1)
+}
+
+/// A part of the rows of a file, one at least.
+fn at_most(part: f64, rows: usize) -> usize {
+    ((part * rows as f64) as usize).max(1)
+}
+
 /// Measured less predicted, in declared standard deviations.
 fn declared_residuals(forward: &Forward, fit: &Fit) -> Vec<f64> {
     forward.data.iter().zip(&fit.point.predicted).map(|(d, p)| (d.value - p) / d.sigma).collect()
@@ -106,20 +126,30 @@ fn spread(residuals: &[f64]) -> f64 {
     1.4826 * median(residuals.iter().map(|r| r.abs()).collect())
 }
 
-fn scale(
-    residuals: &[f64],
-    data: &[super::forward::Datum],
-    gross: &[(usize, f64)],
-    parameters_per_datum: f64,
-) -> f64 {
-    let (mut sum, mut count) = (TRUST, TRUST);
-    for (r, datum) in residuals.iter().zip(data) {
-        if !gross.iter().any(|(row, _)| *row == datum.row) {
-            sum += r * r;
-            count += 1.0 - 0.7 * parameters_per_datum;
-        }
+/// Factor on declared deviations from residuals and their leverages. The square of a residual is expected to be
+/// `1 - leverage`, for the rest of it the parameters have taken up. A factor within what chance does to honest
+/// declarations counts too: to wait until it is significant would leave intervals too narrow wherever a channel
+/// has few readings.
+fn scale(kept: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let (sum, count) =
+        kept.fold((TRUST, TRUST), |(sum, count), (r, leverage)| (sum + r * r, count + 1.0 - leverage));
+    (sum / count).sqrt().clamp(1.0, LARGEST_SCALE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forty_readings_a_sixth_noisier_than_declared_are_scaled_though_chance_could_do_that() {
+        // of 40 squares with a quarter of each taken up by parameters, declared 1, true 1.15
+        let readings = (0..40).map(|_| (1.15 * 0.75f64.sqrt(), 0.25));
+        assert!((scale(readings) - ((15.0 + 30.0 * 1.15f64.powi(2)) / 45.0).sqrt()).abs() < 1e-12);
     }
-    let scale = (sum / count).sqrt();
-    // within what chance does to honestly declared deviations nothing is changed
-    if scale < 1.0 + 1.0 / (2.0 * count).sqrt() { 1.0 } else { scale.min(LARGEST_SCALE) }
+
+    #[test]
+    fn a_declaration_is_neither_improved_nor_blamed_for_missing_physics() {
+        assert_eq!(scale((0..40).map(|_| (0.5, 0.0))), 1.0);
+        assert_eq!(scale((0..40).map(|_| (5.0, 0.0))), LARGEST_SCALE);
+    }
 }

@@ -4,6 +4,9 @@ use super::verdict::{Estimate, Finding, Outcome, Verdict};
 use std::fmt::Write as _;
 use std::path::Path;
 
+/// Factor on declared standard deviations from which it is put into words: less is within what chance does.
+const WORTH_SAYING: f64 = 1.05;
+
 impl Outcome {
     /// A short verdict for the terminal.
     pub fn to_text(&self) -> String {
@@ -83,7 +86,7 @@ impl Outcome {
             );
         }
         for (word, scale) in ["static", "modal", "windup"].iter().zip(self.noise.scale) {
-            if scale > 1.0 {
+            if scale > WORTH_SAYING {
                 let _ = writeln!(out, "  the sigma declared for {word} appears {scale:.2} times too small");
             }
         }

@@ -24,6 +24,12 @@ const FIRST_WORTH: f64 = 0.0;
 const CREDIBLE: f64 = 0.95;
 /// Models this far behind after a few steps are not fitted further.
 const HOPELESS: f64 = 40.0;
+/// Smoothing of a gear's curve, in ln of the torque: so that a descent sees past the frequencies' steps, and so
+/// that they are nearly sharp.
+const WIDE: f64 = 0.1;
+const NARROW: f64 = 0.01;
+/// Rise of the objective beyond which a break point is not followed further.
+const RULED_OUT: f64 = 14.0;
 /// Models within this score of a stage's best are worth a closer look.
 const PROMISING: f64 = 12.0;
 /// Most effects.
@@ -77,12 +83,7 @@ pub struct Selection {
 impl<'a> Search<'a> {
     /// A model of the named candidates.
     pub fn model(&self, effects: &[usize]) -> Model<'a> {
-        Model {
-            nuisance: self.nuisance,
-            effects: effects.iter().map(|&i| &self.candidates[i]).collect(),
-            smoothing: 0.0,
-            held: Vec::new(),
-        }
+        Model::of(self.nuisance, self.candidates, effects)
     }
 
     /// Fits the model of the named candidates from `u`.
@@ -97,7 +98,7 @@ impl<'a> Search<'a> {
         if !self.forward.modal.is_empty()
             && model.effects.last().is_some_and(|e| e.kind.name == "soft_windup")
         {
-            for smoothing in [0.1, 0.03, 0.01] {
+            for smoothing in [WIDE, 0.03, NARROW] {
                 model.smoothing = smoothing;
                 let steps = Effort { steps: 8, tolerance: 0.05 };
                 start = fit(self.forward, &model, &start, self.weights, steps).point.u;
@@ -105,6 +106,21 @@ impl<'a> Search<'a> {
             model.smoothing = 0.0;
         }
         fit(self.forward, &model, &start, self.weights, effort)
+    }
+
+    /// A few steps, enough to see whether a model is near; where its last effect is a gear's curve, after a few
+    /// with the frequencies' steps smoothed widely.
+    fn rough(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
+        let mut model = self.model(effects);
+        let mut start = u.to_vec();
+        let few = Effort { steps: 4, tolerance: 0.02 };
+        if model.effects.last().is_some_and(|e| e.kind.name == "soft_windup") {
+            let smoothed = Effort { steps: 6, tolerance: 0.05 };
+            model.smoothing = WIDE;
+            start = fit(self.forward, &model, &start, self.weights, smoothed).point.u;
+            model.smoothing = NARROW;
+        }
+        fit(self.forward, &model, &start, self.weights, few)
     }
 
     /// Fits a model to the end: the break points of a gear's curve are moved in steps, because the
@@ -125,6 +141,16 @@ impl<'a> Search<'a> {
             }
         }
         if breaks.is_empty() { best } else { self.centre_breaks(best) }
+    }
+
+    /// A model that may be the explanation, fitted to the end if it has break points: else a further effect is
+    /// found that only makes good what the descent left.
+    fn settled(&self, scored: Scored) -> Scored {
+        if self.model(&scored.effects).break_points().is_empty() || !self.may_explain(&scored) {
+            return scored;
+        }
+        let polished = self.scored(&scored.effects, &self.polish(&scored.effects, &scored.u));
+        if polished.score > scored.score { polished } else { scored }
     }
 
     /// Moves break points from the brink of a frequency's step into the middle of where the objective is
@@ -154,12 +180,15 @@ impl<'a> Search<'a> {
         fit(self.forward, &best.model, &settled.point.u, self.weights, Effort { steps: 0, tolerance: 0.0 })
     }
 
-    /// Fits with a parameter held at a value, then lets it go.
+    /// Fits with a parameter held at a value, then lets it go, unless the readings rule the value out.
     fn held_then_free(&self, from: &Fit<'a>, parameter: usize, value: f64) -> Fit<'a> {
         let effort = Effort { steps: 5, tolerance: 0.02 };
         let mut model = from.model.clone();
         model.held = vec![(parameter, value)];
         let held = fit(self.forward, &model, &from.point.u, self.weights, effort);
+        if held.point.objective > from.point.objective + RULED_OUT {
+            return held;
+        }
         fit(self.forward, &from.model, &held.point.u, self.weights, effort)
     }
 
@@ -210,7 +239,7 @@ impl<'a> Search<'a> {
             seen.extend(tried.iter().cloned());
             let worth = if best.effects.is_empty() { FIRST_WORTH } else { WORTH };
             let Some(next) = better(&tried, best.score + worth) else { break };
-            best = next;
+            best = self.settled(next);
             given_up = self.is_settled_by(law(), &bare, &best);
             if given_up {
                 break;
@@ -267,6 +296,7 @@ impl<'a> Search<'a> {
             for i in 0..best.effects.len() {
                 let (effects, start) = self.without(&best, i);
                 let dropped = self.scored(&effects, &self.fit(&effects, &start, Effort::default()));
+                let dropped = self.settled(dropped);
                 let swapped = self.extend(&dropped, seen);
                 seen.push(dropped.clone());
                 seen.extend(swapped.iter().cloned());
@@ -297,19 +327,6 @@ impl<'a> Search<'a> {
     /// The best models with one more effect; those that were fitted before are not fitted again.
     fn extend(&self, base: &Scored, seen: &[Scored]) -> Vec<Scored> {
         let screened = self.screen(base);
-        let round = |starts: Vec<(Vec<usize>, Vec<f64>)>, fresh: bool, steps: usize| -> Vec<Scored> {
-            let effort = Effort { steps, tolerance: 0.02 };
-            starts
-                .into_par_iter()
-                .map(|(effects, u)| {
-                    let fitted = match fresh {
-                        true => self.fit(&effects, &u, effort),
-                        false => fit(self.forward, &self.model(&effects), &u, self.weights, effort),
-                    };
-                    self.scored(&effects, &fitted)
-                })
-                .collect()
-        };
         let starts = screened.into_iter().map(|(c, u, _)| ([base.effects.as_slice(), &[c]].concat(), u));
         let mut known: Vec<Scored> = Vec::new();
         let mut fresh: Vec<(Vec<usize>, Vec<f64>)> = Vec::new();
@@ -319,11 +336,14 @@ impl<'a> Search<'a> {
                 None => fresh.push((effects, u)),
             }
         }
-        let first = round(fresh, true, 4);
+        let rough = |(effects, u): (Vec<usize>, Vec<f64>)| self.scored(&effects, &self.rough(&effects, &u));
+        let first: Vec<Scored> = fresh.into_par_iter().map(rough).collect();
         let top = first.iter().chain(&known).map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
         let (near, far): (Vec<Scored>, Vec<Scored>) =
             first.into_iter().partition(|s| s.score > top - HOPELESS);
-        let mut fits = round(near.into_iter().map(|s| (s.effects, s.u)).collect(), false, 14);
+        let effort = Effort { steps: 14, tolerance: 0.02 };
+        let in_full = |s: Scored| self.scored(&s.effects, &self.fit(&s.effects, &s.u, effort));
+        let mut fits: Vec<Scored> = near.into_par_iter().map(in_full).collect();
         let top = fits.iter().chain(&known).map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
         self.regrid(&mut fits, top - PROMISING);
         fits.extend(far);

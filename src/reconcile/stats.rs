@@ -14,6 +14,12 @@ pub fn ln_normal_tail(z: f64) -> f64 {
     ln_chi_squared_tail(z * z, 1.0)
 }
 
+/// Probability of a standard normal deviate below `z`.
+pub fn normal_below(z: f64) -> f64 {
+    let beyond = 0.5 * ln_normal_tail(z).exp();
+    if z < 0.0 { beyond } else { 1.0 - beyond }
+}
+
 fn ln_tail_by_series(a: f64, x: f64) -> f64 {
     let (mut term, mut sum, mut n) = (1.0 / a, 1.0 / a, a);
     while term > sum * 1e-16 {
@@ -91,6 +97,10 @@ mod tests {
             assert!((ln_chi_squared_tail(x, dof).exp() / p - 1.0).abs() < 1e-3, "{x} {dof}");
         }
         assert!((ln_normal_tail(1.959_964).exp() - 0.05).abs() < 1e-6);
+        assert!(
+            (normal_below(1.959_964) - 0.975).abs() < 1e-6 && (normal_below(-1.0) - 0.158_655).abs() < 1e-6
+        );
+        assert!((normal_below(0.0) - 0.5).abs() < 1e-12);
         assert!(ln_chi_squared_tail(2000.0, 10.0) < -900.0);
     }
 }

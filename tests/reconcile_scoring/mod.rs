@@ -22,6 +22,9 @@ pub struct Score {
     pub covered_by: BTreeMap<String, (usize, usize)>,
     /// Parameters outside.
     pub misses: Vec<String>,
+    /// Every parameter of an effect named at its place: campaign, effect, place, parameter, true value,
+    /// estimate, ends of its interval, whether that holds.
+    pub intervals: Vec<String>,
     /// Kept-out rms after, of the explained.
     pub kept_out: Vec<(String, f64)>,
 }
@@ -101,7 +104,8 @@ impl Score {
             };
             let truth = hidden.get(parameter).or_else(|| hidden["parameters"].get(parameter));
             let Some(truth) = truth else { continue };
-            let (truth, low, high) = (numbers(truth), numbers(&interval["low"]), numbers(&interval["high"]));
+            let (truth, value) = (numbers(truth), numbers(&interval["value"]));
+            let (low, high) = (numbers(&interval["low"]), numbers(&interval["high"]));
             for (i, t) in truth.iter().enumerate() {
                 let Some(t) = t else { continue };
                 let end = |list: &[Option<f64>]| list.get(i).copied().flatten();
@@ -113,6 +117,15 @@ impl Score {
                     counts.0 += usize::from(inside);
                     counts.1 += 1;
                 }
+                let text = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
+                self.intervals.push(format!(
+                    "{name},{},{},{parameter},{t},{},{},{},{inside}",
+                    said["effect"].as_str().unwrap_or("?"),
+                    said["at"].as_str().unwrap_or("?"),
+                    text(end(&value)),
+                    text(end(&low)),
+                    text(end(&high)),
+                ));
                 if !inside {
                     self.misses.push(format!(
                         "{name} {} {parameter}: {t} not in {:?}..{:?}",

@@ -11,6 +11,7 @@ use super::statics::PoseGeometry;
 use super::{Datum, group_of};
 use crate::arm::effect::{Channel, Subject};
 use crate::arm::{Curve, JointLaw, Payload};
+use crate::mechanics::Chain;
 use crate::mechanics::chain::Posed;
 use crate::mechanics::displacement_at;
 use crate::reconcile::campaign::Campaign;
@@ -30,10 +31,8 @@ pub struct ModalTest {
     /// Datum and mode index (from 0) it is compared with.
     pub modes: Vec<(usize, usize)>,
     mass: DMatrix<f64>,
-    added: Vec<DMatrix<f64>>,
-    /// How many leading coordinates move each added mass: those inboard of it.
-    reach: Vec<usize>,
-    /// Factors `L` of the added matrices, `L Lᵀ`: few columns, quick energies.
+    /// Factors `L` of the matrices of a unit of each added mass, `L Lᵀ`: few columns, and only the rows of the
+    /// coordinates that move it, those inboard of it.
     factors: Vec<DMatrix<f64>>,
     tip: Matrix3xX<f64>,
     spin: Matrix3xX<f64>,
@@ -95,22 +94,15 @@ impl ModalTest {
         let empty = Payload::default();
         let posed = layout.template.pose_rad(&pose_rad, &empty, Vector3::zeros());
         let mass = posed.mass_matrix();
-        let added: Vec<DMatrix<f64>> = layout
-            .with_mass
-            .iter()
-            .map(|c| c.pose_rad(&pose_rad, &empty, Vector3::zeros()).mass_matrix() - &mass)
-            .collect();
-        let factors = added.iter().map(factor).collect();
-        let reach = added.iter().map(leading).collect();
+        let added = |c: &Chain| c.pose_rad(&pose_rad, &empty, Vector3::zeros()).mass_matrix() - &mass;
+        let factors = layout.with_mass.iter().map(|chain| factor(&added(chain))).collect();
         let (tip, spin) = tip_jacobians(&posed);
         Self {
             factors,
-            reach,
             geometry: PoseGeometry::new(layout, nominal, pose_deg),
             payload: *payload,
             modes: Vec::new(),
             mass,
-            added,
             tip,
             spin,
             forces: DMatrix::zeros(layout.n, 0),
@@ -126,7 +118,7 @@ impl ModalTest {
     pub fn refresh(&mut self, layout: &Layout, coefficients: &Coefficients) {
         let compliances = self.compliances(layout, coefficients);
         let roots = DVector::from_iterator(layout.n, compliances.iter().map(|c| c.sqrt()));
-        let mass = self.mass_matrix(coefficients);
+        let mass = self.momenta(coefficients, &DMatrix::identity(layout.n, layout.n));
         let mut a = mass.clone();
         for (mut column, root) in a.column_iter_mut().zip(roots.iter()) {
             column.component_mul_assign(&roots);
@@ -145,26 +137,29 @@ impl ModalTest {
         self.forces = DMatrix::from_columns(&columns);
     }
 
-    fn mass_matrix(&self, coefficients: &Coefficients) -> DMatrix<f64> {
-        let mut mass = self.mass.clone();
-        for ((added, amount), &n) in self.added.iter().zip(&coefficients.masses).zip(&self.reach) {
+    /// The mass matrix times shapes: the parts that parameters change are of low rank, so that the matrix itself
+    /// need not be put together.
+    fn momenta(&self, coefficients: &Coefficients, shapes: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut out = &self.mass * shapes;
+        for (factor, amount) in self.factors.iter().zip(&coefficients.masses) {
             if *amount != 0.0 {
-                let block = added.view((0, 0), (n, n));
-                mass.view_mut((0, 0), (n, n)).zip_apply(&block, |m, a| *m += amount * a);
+                let reach = factor.nrows();
+                let moved = factor.tr_mul(&shapes.rows(0, reach));
+                out.rows_mut(0, reach).gemm(*amount, factor, &moved, 1.0);
             }
         }
         let (mass_kg, jacobian) = self.payload_jacobian(coefficients);
         if mass_kg != 0.0 {
-            mass.gemm_tr(mass_kg, &jacobian, &jacobian, 1.0);
+            out.gemm_tr(mass_kg, &jacobian, &(&jacobian * shapes), 1.0);
             let inertia = &self.payload.inertia_about_cg_kgm2;
             if *inertia != Vector3::zeros() {
                 let local = self.geometry.rotation.matrix().transpose() * &self.spin;
-                let mut weighted = local.clone();
-                weighted.row_iter_mut().zip(inertia.iter()).for_each(|(mut row, i)| row *= *i);
-                mass.gemm_tr(1.0, &local, &weighted, 1.0);
+                let mut turned = &local * shapes;
+                turned.row_iter_mut().zip(inertia.iter()).for_each(|(mut row, i)| row *= *i);
+                out.gemm_tr(1.0, &local, &turned, 1.0);
             }
         }
-        mass
+        out
     }
 
     /// Payload mass \[kg\] and the motion of its centre per coordinate.
@@ -200,14 +195,14 @@ impl ModalTest {
     /// The lowest modes.
     pub fn solve(&self, layout: &Layout, coefficients: &Coefficients, count: usize) -> Vec<Solved> {
         let compliances = self.compliances(layout, coefficients);
-        let mass = self.mass_matrix(coefficients);
         let mut shapes = self.forces.clone();
         for mut column in shapes.column_iter_mut() {
             column.iter_mut().zip(&compliances).for_each(|(f, c)| *f *= c);
         }
-        let momenta = &mass * &shapes;
-        let reduced_mass = shapes.tr_mul(&momenta);
-        let strain = self.forces.tr_mul(&shapes);
+        let momenta = self.momenta(coefficients, &shapes);
+        // products with a transpose written out are the fast ones
+        let reduced_mass = shapes.transpose() * &momenta;
+        let strain = self.forces.transpose() * &shapes;
         let Some(cholesky) = Cholesky::new(strain) else { return Vec::new() };
         let l = cholesky.l();
         let Some(half) = l.solve_lower_triangular(&reduced_mass) else { return Vec::new() };
@@ -269,6 +264,12 @@ impl ModalTest {
         }
     }
 
+    /// `xᵀ M x` of a unit of an added mass.
+    fn energy(&self, mass: usize, shape: &DVector<f64>) -> f64 {
+        let factor = &self.factors[mass];
+        factor.tr_mul(&shape.rows(0, factor.nrows())).norm_squared()
+    }
+
     /// Change of the frequencies \[Hz\] from `from` to the near `to`, to first order.
     pub fn change(
         &self,
@@ -299,7 +300,7 @@ impl ModalTest {
                 }
             }
             for (i, amount) in &masses {
-                d_mu += amount * self.factors[*i].tr_mul(&s.x).norm_squared();
+                d_mu += amount * self.energy(*i, &s.x);
             }
             if let Some(((m0, j0), (m1, j1))) = payloads.as_ref().filter(|((m0, _), _)| *m0 != 0.0) {
                 d_mu += m1 * (j1 * &s.x).norm_squared() - m0 * (j0 * &s.x).norm_squared();
@@ -315,7 +316,8 @@ fn leading(matrix: &DMatrix<f64>) -> usize {
     (0..matrix.nrows()).rev().find(|&i| matrix.row(i).amax() > floor).map_or(0, |i| i + 1)
 }
 
-/// Pivoted Cholesky factor of a positive semidefinite matrix: as many columns as its rank.
+/// Pivoted Cholesky factor of a positive semidefinite matrix: as many columns as its rank, and the leading rows
+/// that are not zero.
 fn factor(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let mut rest = matrix.clone();
     let floor = 1e-13 * matrix.diagonal().max();
@@ -331,8 +333,8 @@ fn factor(matrix: &DMatrix<f64>) -> DMatrix<f64> {
         columns.push(column);
     }
     match columns.is_empty() {
-        true => DMatrix::zeros(matrix.nrows(), 0),
-        false => DMatrix::from_columns(&columns),
+        true => DMatrix::zeros(0, 0),
+        false => DMatrix::from_columns(&columns).rows(0, leading(matrix)).into_owned(),
     }
 }
 
