@@ -427,7 +427,9 @@ impl<'a> Model<'a> {
 pub fn candidates(forward: &Forward) -> Vec<Candidate> {
     let structure = &forward.nominal.structure;
     let mut out = Vec::new();
-    for kind in KINDS.iter().filter(|k| !matches!(k.name, "outlier" | "time_shift" | "wrong_unit")) {
+    for kind in KINDS.iter().filter(|k| {
+        !matches!(k.name, "outlier" | "time_shift" | "wrong_unit" | "frame_compliance" | "transmission_error")
+    }) {
         for place in kind.places {
             for at in structure.places(*place) {
                 if fits_nominal(kind, *place, &at, structure) && channel_is_read(forward, *place) {
