@@ -75,7 +75,10 @@ impl Positions {
         let price = self.price(self.candidates[self.fitted.effects[position]].count(), self.candidates.len());
         let numbers = self.fitted.compliances[position].iter().zip(&self.fitted.deviations[position]);
         // an effect that can stand for another has large deviations
-        numbers.into_iter().all(|(c, deviation)| 0.5 * (c / deviation).powi(2) < 2.0 * price)
+        let is_small = |(c, deviation): (&f64, &f64)| 0.5 * (c / deviation).powi(2) < 2.0 * price;
+        // beside what is held at the edge of being a spring the deviations are too small
+        let is_held = self.fitted.deviations.iter().flatten().any(|d| !d.is_finite());
+        is_held || numbers.into_iter().all(is_small)
     }
 
     pub(super) fn label(&self, candidate: usize) -> String {
