@@ -11,9 +11,11 @@ use armwright::arm::{JointModel, read_arm_document};
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
 use armwright::reconcile::exact::{Exact, Placement};
+use armwright::reconcile::page::campaign_page;
 use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};
 use nalgebra::Vector3;
-use positions_maker::{Made, standard};
+use positions_maker::{LOPSIDED_RAD_PER_NM, Made, UNEVEN_RAD, standard};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Where a machine's measurements are; says aloud when they are nowhere.
@@ -63,6 +65,8 @@ fn the_motoman_bends_in_its_joints_and_across_them() {
     assert!(median_mm(&outcome, "joint_compliance") < 0.65);
     assert!(median_mm(&outcome, "bearing_tilt") < 0.46);
     assert!(mean_mm(&outcome, "bearing_tilt") < 1.02);
+    assert!(median_mm(&outcome, "frame_compliance") < 0.30);
+    assert!(median_mm(&outcome, "transmission_error") < 0.28);
     assert!(outcome.reasons.iter().any(|r| r.contains("before row 48")), "the reflector was put back");
 }
 
@@ -111,10 +115,145 @@ fn a_rigid_arm_that_stands_askew_has_no_gap() {
 
 #[test]
 fn an_error_that_no_effect_has_is_unexplained_and_says_what_it_follows() {
-    let outcome = reconcile(&read(standard().write(&Made::wobbling).path()));
+    let outcome = reconcile(&read(standard().write(&Made::pulled).path()));
     assert_eq!(outcome.verdict, Verdict::Unexplained, "{}", outcome.to_text());
     assert!(outcome.effects.is_empty());
     assert!(outcome.reasons.iter().any(|r| r.contains("follow the angle of q3")), "{}", outcome.to_text());
+    // no pose is worth anything where no model fits
+    let test = &outcome.next_tests[0];
+    assert_eq!(test.kind, "another kind");
+    assert!(
+        test.description.contains("no further pose") && test.description.contains("turn q3 alone"),
+        "{test:?}"
+    );
+}
+
+/// The finding of an effect, with its numbers and whether each interval holds the truth.
+fn assert_found(outcome: &Outcome, label: &str, truths: &[f64]) {
+    assert_eq!(outcome.verdict, Verdict::Explained, "{}", outcome.to_text());
+    let finding = outcome.effects.iter().find(|f| f.label() == label);
+    let finding = finding.unwrap_or_else(|| panic!("{label}: {}", outcome.to_text()));
+    let estimates = finding.parameters.iter().flat_map(|(_, list)| list);
+    let largest = truths.iter().fold(0.0f64, |m, t| m.max(t.abs()));
+    for (estimate, truth) in estimates.zip(truths) {
+        // an end may miss by a little: these are 95 % intervals
+        let slack = 0.05 * largest;
+        let holds = estimate.low.is_none_or(|low| low < truth + slack)
+            && estimate.high.is_none_or(|high| high > truth - slack);
+        assert!(holds, "{label}: {truth} {estimate:?}");
+    }
+}
+
+#[test]
+fn a_joint_that_turns_unevenly_is_named_with_its_error() {
+    let made = standard();
+    let campaign = read(made.write(&Made::wobbling).path());
+    let outcome = reconcile(&campaign);
+    assert_found(&outcome, "transmission_error@q3", &[0.0, 0.0, UNEVEN_RAD, 0.0]);
+    assert!(predicted_median_mm(&campaign, &outcome) < 1.3 * 1.538 * made.sigma_mm);
+    let at = outcome.stages.iter().position(|s| s.added.contains("transmission")).expect("a stage");
+    let before = &outcome.stages[at - 1];
+    assert!(median_mm(&outcome, "transmission") < 0.7 * before.median_mm, "on poses kept out");
+}
+
+#[test]
+fn a_base_that_is_stiffer_one_way_is_named_with_its_couplings() {
+    let made = standard();
+    let campaign = read(made.write(&Made::lopsided).path());
+    let outcome = reconcile(&campaign);
+    assert_found(&outcome, "frame_compliance@base", &LOPSIDED_RAD_PER_NM.concat());
+    assert!(!outcome.effects.iter().any(|f| f.effect == "base_compliance"), "{}", outcome.to_text());
+    assert!(predicted_median_mm(&campaign, &outcome) < 1.3 * 1.538 * made.sigma_mm);
+}
+
+#[test]
+fn what_no_pose_separates_is_said_and_another_test_proposed() {
+    let outcome = reconcile(&read(standard().write(&Made::tilting).path()));
+    assert_eq!(outcome.verdict, Verdict::Explained, "{}", outcome.to_text());
+    let test = outcome.next_tests.iter().find(|t| t.kind == "another kind").expect("honest");
+    assert!(test.description.contains("no position separates"), "{test:?}");
+    assert!(
+        test.description.contains("bearing_tilt@q1") && test.description.contains("base_compliance@base")
+    );
+    assert!(outcome.next_tests.iter().all(|t| t.kind != "positions" || t.expected_sigmas > 0.1));
+}
+
+#[test]
+fn a_session_of_seven_rows_is_told_apart() {
+    let outcome = reconcile(&read(standard().write(&Made::put_back_soon).path()));
+    let told = outcome.reasons.iter().any(|r| r.contains("tip sat 3") && r.contains("before row 8"));
+    assert!(told, "{:?}", outcome.reasons);
+}
+
+#[test]
+fn the_page_shows_how_the_error_falls_and_where_it_sits() {
+    let campaign = read(standard().write(&Made::sagging).path());
+    let page = campaign_page(&campaign, &reconcile(&campaign)).page();
+    let names: Vec<&str> = page.files.iter().map(|(name, _)| name.as_str()).collect();
+    for name in ["stages.svg", "stages.csv", "errors.svg", "axes.csv", "angles.svg", "angles.csv"] {
+        assert!(names.contains(&name), "{name} of {names:?}");
+    }
+    assert!(page.html.contains("Step by step") && page.html.contains("joint_compliance@q2"));
+}
+
+#[test]
+fn predict_takes_both_arms_of_a_trunk_and_loads_it_with_both() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let joint = |name: &str, axis: [f64; 3]| json!({"type": "joint", "name": name, "axis": axis, "stiffness_nm_per_rad": null});
+    let link = |name: &str, vector: [f64; 3], mass: f64| json!({"type": "link", "name": name, "vector_m": vector, "mass_kg": mass});
+    let trunk = || vec![joint("t1", [0.0, 0.0, 1.0]), link("column", [0.0, 0.0, 0.6], 10.0)];
+    let base =
+        json!([{"effect": "base_compliance", "at": "base", "parameters": {"stiffness_nm_per_rad": 2e4}}]);
+    let arm = |name: &str, side: f64| {
+        let own =
+            [joint(&format!("{name}_j"), [0.0, 1.0, 0.0]), link(&format!("{name}_l"), [0.5, side, 0.0], 8.0)];
+        let uneven = json!({"effect": "transmission_error", "at": format!("{name}_j"),
+            "parameters": {"sin_cos_sin2_cos2_rad": [0.0, 0.01, 0.0, 0.0]}});
+        let effects = [base.as_array().expect("list").clone(), vec![uneven]].concat();
+        let chain = [trunk(), own.to_vec()].concat();
+        json!({"name": name, "chain": chain, "effects": effects})
+    };
+    let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).expect("written");
+    write("right.json", arm("right", -0.3).to_string());
+    write("left.json", arm("left", 0.3).to_string());
+    write("campaign.json", json!({"arm": "right.json", "other_arms": ["left.json"]}).to_string());
+    let (turn, angles) = (0.4f64, [0.3f64, -0.5f64]);
+    let degrees = [turn, angles[0], angles[1]].map(|a| a.to_degrees().to_string()).join(",");
+    write(
+        "positions.csv",
+        format!(
+            "test,q_t1_deg,q_right_j_deg,q_left_j_deg,arm,point,x_mm,y_mm,z_mm,sigma_mm\n\
+             1,{degrees},right,tip,0,0,0,0.1\n2,{degrees},left,tip,0,0,0,0.1\n"
+        ),
+    );
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let run = std::process::Command::new(env!("CARGO_BIN_EXE_armwright"))
+        .args(["predict", &file("right.json"), &file("positions.csv"), "--campaign", &file("campaign.json")])
+        .output()
+        .expect("run");
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let shown: Vec<Vec<f64>> = String::from_utf8_lossy(&run.stdout)
+        .lines()
+        .skip(1)
+        .map(|l| l.split(',').rev().take(3).map(|c| c.parse().expect("a number")).collect())
+        .collect();
+    // by hand: both arms' weights tilt the base
+    let about = |axis: Vector3<f64>, angle: f64| nalgebra::Rotation3::new(axis * angle);
+    let column = about(Vector3::z(), turn);
+    let shoulder = Vector3::new(0.0, 0.0, 0.6);
+    let reach = |i: usize, side: f64| {
+        let angle = angles[i] + 0.01 * angles[i].cos();
+        column * about(Vector3::y(), angle) * Vector3::new(0.5, side, 0.0)
+    };
+    let reaches = [reach(0, -0.3), reach(1, 0.3)];
+    let weight = Vector3::new(0.0, 0.0, -9.81);
+    let moment: Vector3<f64> = reaches.iter().map(|r| (shoulder + r / 2.0).cross(&(weight * 8.0))).sum();
+    for (row, reach) in shown.iter().zip(&reaches) {
+        let tip = shoulder + reach;
+        let at_mm = 1e3 * (tip + (moment / 2e4).cross(&tip));
+        let read = Vector3::new(row[2], row[1], row[0]);
+        assert!((read - at_mm).norm() < 0.02, "{read} {at_mm}");
+    }
 }
 
 #[test]

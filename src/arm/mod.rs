@@ -23,7 +23,7 @@ pub use load::{LoadCase, Payload, read_load_cases};
 pub(crate) use load::{read_pose, vector, word};
 pub use section::{LinkMaterial, Section, SectionProperties};
 pub(crate) use structure::link_piece;
-pub use structure::{Beam, JointAngle, JointPiece, LinkPiece, Piece, Structure, Water};
+pub use structure::{Beam, FrameCompliance, JointAngle, JointPiece, LinkPiece, Piece, Structure, Water};
 
 use nalgebra::{Unit, Vector3};
 

@@ -1,7 +1,7 @@
 //! The arm as mechanics sees it: pieces with their physics, effects applied, part names gone.
 
 use super::{Arm, Element, Joint, JointLaw, JointModel, Link, LinkBody, LinkMaterial, LoadCase, Section};
-use nalgebra::{Unit, Vector3};
+use nalgebra::{Matrix3, SymmetricEigen, Unit, Vector3};
 
 /// Everything mechanics needs to know of an arm.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,10 +10,29 @@ pub struct Structure {
     pub gravity_m_s2: f64,
     /// Tilt of the base about world x and y per moment \[rad/(N m)\].
     pub base_tilt_rad_per_nm: f64,
+    /// How what the arm stands on yields besides, about the chain's origin.
+    pub base_frame: FrameCompliance,
     /// The water the arm is in.
     pub water: Option<Water>,
     /// Joints and links from base to tip.
     pub pieces: Vec<Piece>,
+}
+
+/// Rotation per moment about three axes of a frame, coupled \[rad/(N m)\].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FrameCompliance(pub Matrix3<f64>);
+
+impl FrameCompliance {
+    /// The same as springs in series, each about one of the principal axes: axis in the frame, compliance.
+    pub fn springs(&self) -> Vec<(Vector3<f64>, f64)> {
+        if self.0 == Matrix3::zeros() {
+            return Vec::new();
+        }
+        let eigen = SymmetricEigen::new(self.0);
+        let least = 1e-12 * eigen.eigenvalues.max();
+        let springs = eigen.eigenvectors.column_iter().zip(eigen.eigenvalues.iter());
+        springs.filter(|(_, c)| **c > least).map(|(axis, c)| (axis.into_owned(), *c)).collect()
+    }
 }
 
 /// Water around the arm.
@@ -85,6 +104,8 @@ pub struct LinkPiece {
     pub point_mass_kg: f64,
     /// Cables and hoses along the axis \[kg/m\].
     pub harness_kg_per_m: f64,
+    /// How the structure about its root yields, in the carried frame.
+    pub root_frame: FrameCompliance,
 }
 
 /// A straight tube of constant section.
@@ -124,7 +145,13 @@ impl Arm {
                 Element::Link(link) => Piece::Link(link_piece(link)),
             })
             .collect();
-        Structure { gravity_m_s2: self.gravity_m_s2, base_tilt_rad_per_nm: 0.0, water: None, pieces }
+        Structure {
+            gravity_m_s2: self.gravity_m_s2,
+            base_tilt_rad_per_nm: 0.0,
+            base_frame: FrameCompliance::default(),
+            water: None,
+            pieces,
+        }
     }
 }
 
@@ -153,5 +180,12 @@ pub(crate) fn link_piece(link: &Link) -> LinkPiece {
         }
         LinkBody::Offset { mass_kg } => (None, *mass_kg),
     };
-    LinkPiece { name: link.name.clone(), vector_m: link.vector_m, beam, point_mass_kg, harness_kg_per_m: 0.0 }
+    LinkPiece {
+        name: link.name.clone(),
+        vector_m: link.vector_m,
+        beam,
+        point_mass_kg,
+        harness_kg_per_m: 0.0,
+        root_frame: FrameCompliance::default(),
+    }
 }

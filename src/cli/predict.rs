@@ -3,19 +3,21 @@
 use super::Failure;
 use crate::arm::read_arm;
 use crate::catalog::Catalogs;
-use crate::reconcile::campaign::read_statement;
+use crate::reconcile::campaign::{Statement, read_statement};
 use crate::reconcile::exact::Placement;
-use crate::reconcile::predict::predict;
+use crate::reconcile::predict::{Placed, predict};
 use crate::reconcile::table::Table;
 use clap::Args;
-use std::path::PathBuf;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
 
 /// Arguments of `predict`.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example:\n  armwright predict results/may/arm.corrected.json campaigns/june/static.csv \
     --campaign campaigns/june/campaign.json --out june.csv\n\nThe kind of readings is known by their columns. \
-    Effects of the payload and of the measuring channels are used here too."
+    Effects of the payload and of the measuring channels are used here too. A corrected arm finds the other arms \
+    on its trunk beside itself; those of a nominal arm are the campaign's `other_arms`."
 )]
 pub struct PredictArgs {
     /// Arm file, corrected or not.
@@ -32,16 +34,38 @@ pub struct PredictArgs {
     pub out: Option<PathBuf>,
 }
 
+fn json_of(file: &Path) -> Value {
+    let text = std::fs::read_to_string(file).unwrap_or_default();
+    serde_json::from_str(&text).unwrap_or_default()
+}
+
+fn placed(file: &Path, catalogs: &Catalogs) -> Result<Placed, Failure> {
+    Ok(Placed { arm: read_arm(file, catalogs)?, placement: Placement::from_json(&json_of(file)) })
+}
+
+/// The other arms on the trunk: those that a corrected arm names beside itself, else the campaign's.
+fn other_arms(args: &PredictArgs, statement: &Statement) -> Vec<PathBuf> {
+    let folder = |file: &Path| file.parent().map(Path::to_path_buf).unwrap_or_default();
+    let corrected = json_of(&args.arm);
+    match corrected["provenance"]["other_arms"].as_array() {
+        Some(names) => {
+            names.iter().filter_map(Value::as_str).map(|name| folder(&args.arm).join(name)).collect()
+        }
+        None => statement.other_arm_files.iter().map(|name| folder(&args.campaign).join(name)).collect(),
+    }
+}
+
 /// The readings with the model's columns, or where they were written.
 ///
 /// # Errors
 /// All faults of the input files, or a file that cannot be written.
 pub fn run(args: &PredictArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let statement = read_statement(&args.campaign)?;
-    let arm = read_arm(&args.arm, catalogs)?;
-    let file = std::fs::read_to_string(&args.arm).unwrap_or_default();
-    let placement = Placement::from_json(&serde_json::from_str(&file).unwrap_or_default());
-    let text = predict(&arm, &statement, &placement, Table::read(&args.readings)?)?;
+    let mut arms = vec![placed(&args.arm, catalogs)?];
+    for file in other_arms(args, &statement) {
+        arms.push(placed(&file, catalogs)?);
+    }
+    let text = predict(&arms, &statement, Table::read(&args.readings)?)?;
     let Some(out) = &args.out else { return Ok(text) };
     if let Some(folder) = out.parent().filter(|f| !f.as_os_str().is_empty()) {
         fs_err::create_dir_all(folder).map_err(|e| Failure::file(folder, "create", &e))?;

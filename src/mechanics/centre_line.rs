@@ -34,6 +34,10 @@ impl Posed<'_> {
         if elements.peek().is_some_and(|(e, _)| e.name == "base") {
             walk.yields(elements.next());
         }
+        let is_frame = |e: &ElasticElement| e.name.ends_with(".frame_compliance");
+        if elements.peek().is_some_and(|(e, _)| is_frame(e)) {
+            walk.yields(elements.next());
+        }
         for piece in &self.chain.pieces {
             match piece {
                 Prepared::Joint(joint) => {
@@ -46,6 +50,9 @@ impl Posed<'_> {
                     walk.rotation *= Rotation3::from_axis_angle(&joint.axis, joint.angle.of(pose_rad));
                 }
                 Prepared::Link(link, beam) => {
+                    if elements.peek().is_some_and(|(e, _)| is_frame(e)) {
+                        walk.yields(elements.next());
+                    }
                     let element = if beam.is_some() { elements.next() } else { None };
                     let vector = walk.rotation * link.vector_m;
                     for point in 0..POINTS {

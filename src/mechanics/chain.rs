@@ -3,7 +3,9 @@
 use super::beam::PreparedBeam;
 use super::linkage::{Linkage, linkages};
 use super::{Twist, Wrench, body_inertia, force_wrench, rotation_twist, stack};
-use crate::arm::{JointLaw, JointPiece, LinkModel, LinkPiece, LoadCase, Payload, Piece, Structure, Water};
+use crate::arm::{
+    FrameCompliance, JointLaw, JointPiece, LinkModel, LinkPiece, LoadCase, Payload, Piece, Structure, Water,
+};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Matrix6xX, Rotation3, Vector3};
 
 /// An arm prepared for many poses and loads.
@@ -11,6 +13,7 @@ use nalgebra::{DMatrix, Matrix3, Matrix6, Matrix6xX, Rotation3, Vector3};
 pub struct Chain {
     gravity_m_s2: f64,
     base_tilt_rad_per_nm: f64,
+    base_frame: FrameCompliance,
     water: Option<Water>,
     pub(super) pieces: Vec<Prepared>,
     linkages: Vec<Linkage>,
@@ -34,7 +37,7 @@ pub enum Yielding {
 /// One elastic element of an arm in a pose.
 #[derive(Debug, Clone)]
 pub struct ElasticElement {
-    /// Name: of a joint or link, `NAME.bearing_tilt`, or `base`.
+    /// Name: of a joint or link, `NAME.bearing_tilt`, `NAME.frame_compliance`, or `base`.
     pub name: String,
     /// Motion of everything outboard per unit of each coordinate.
     pub twists: Vec<Twist>,
@@ -116,6 +119,7 @@ impl Chain {
         Self {
             gravity_m_s2: structure.gravity_m_s2,
             base_tilt_rad_per_nm: structure.base_tilt_rad_per_nm,
+            base_frame: structure.base_frame,
             water: structure.water,
             pieces,
             linkages: linkages(structure),
@@ -134,6 +138,7 @@ impl Chain {
         if self.base_tilt_rad_per_nm > 0.0 {
             walk.tilt("base".into(), &[Vector3::x(), Vector3::y()], self.base_tilt_rad_per_nm);
         }
+        walk.frame("base", &self.base_frame);
         for (index, piece) in self.pieces.iter().enumerate() {
             match piece {
                 Prepared::Joint(joint) => walk.joint(joint, joint.angle.of(pose_rad), self.gravity_m_s2),
@@ -196,6 +201,7 @@ impl Walk {
     }
 
     fn link(&mut self, piece: usize, link: &LinkPiece, beam: Option<&PreparedBeam>, gravity_m_s2: f64) {
+        self.frame(&link.name, &link.root_frame);
         let vector = self.rotation * link.vector_m;
         self.point_mass(link.point_mass_kg, self.at_m + vector / 2.0, gravity_m_s2);
         let end_m = self.at_m + vector;
@@ -234,6 +240,20 @@ impl Walk {
             name,
             twists: axes.iter().map(|axis| rotation_twist(axis, &self.at_m)).collect(),
             yielding: Yielding::Linear(vec![compliance; 2]),
+            own: None,
+        }));
+    }
+
+    fn frame(&mut self, name: &str, frame: &FrameCompliance) {
+        let (axes, compliances): (Vec<_>, Vec<_>) = frame.springs().into_iter().unzip();
+        if axes.is_empty() {
+            return;
+        }
+        let turn = |axis: &Vector3<f64>| rotation_twist(&(self.rotation * axis), &self.at_m);
+        self.items.push(Item::Elastic(ElasticElement {
+            name: format!("{name}.frame_compliance"),
+            twists: axes.iter().map(turn).collect(),
+            yielding: Yielding::Linear(compliances),
             own: None,
         }));
     }

@@ -54,7 +54,8 @@ pub struct Statement {
     /// What is free in absolute positions.
     pub positions: PositionsSpec,
     arm_file: String,
-    other_arm_files: Vec<String>,
+    /// Files of further arms on the same trunk, beside `campaign.json`.
+    pub other_arm_files: Vec<String>,
     files: [Option<String>; 4],
 }
 
@@ -274,13 +275,31 @@ impl Campaign {
 
     /// Joints that have an entry in a pose: the arm's, then those that only other arms have.
     pub fn driven_joint_names(&self) -> Vec<String> {
-        let mut out: Vec<String> = Vec::new();
-        for name in self.arms().into_iter().flat_map(|arm| arm.driven_joint_names()) {
-            if !out.iter().any(|known| known == name) {
-                out.push(name.to_string());
-            }
-        }
-        out
+        driven_joint_names(&self.arms())
+    }
+
+    /// Arms with absolute positions of points on them, as if they were a campaign.
+    ///
+    /// # Errors
+    /// The arms do not stand on one trunk.
+    pub fn of_positions(
+        statement: &Statement,
+        arms: &[&Arm],
+        rows: Vec<PositionRow>,
+    ) -> Result<Self, Faults> {
+        let campaign = Self {
+            folder: PathBuf::new(),
+            statement: statement.clone(),
+            arm: arms[0].clone(),
+            other_arms: arms[1..].iter().map(|arm| (*arm).clone()).collect(),
+            statics: Vec::new(),
+            modal: Vec::new(),
+            windup: Vec::new(),
+            positions: rows,
+            hash: String::new(),
+        };
+        let faults = campaign.faults();
+        if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults)) }
     }
 
     /// How many elements all arms begin with: the trunk.
@@ -326,7 +345,8 @@ impl Campaign {
         out
     }
 
-    fn has_displacements(&self) -> bool {
+    /// Whether there are readings other than absolute positions.
+    pub fn has_displacements(&self) -> bool {
         !self.statics.is_empty() || !self.modal.is_empty() || !self.windup.is_empty()
     }
 
@@ -382,6 +402,17 @@ impl Campaign {
         }
         Ok(self)
     }
+}
+
+/// Joints of several arms that have an entry in a pose: the first arm's, then those that only others have.
+pub fn driven_joint_names(arms: &[&Arm]) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    for name in arms.iter().flat_map(|arm| arm.driven_joint_names()) {
+        if !out.iter().any(|known| known == name) {
+            out.push(name.to_string());
+        }
+    }
+    out
 }
 
 fn keep_faults<T>(

@@ -3,7 +3,7 @@
 use super::campaign::Campaign;
 use super::fit::Fit;
 use super::forward::Forward;
-use super::model::{Calibration, scaled};
+use super::model::Calibration;
 use super::verdict::{Calibrated, Finding, Verdict};
 use crate::arm::effect::Place;
 use crate::arm::{Arm, Element, LinkBody};
@@ -72,7 +72,7 @@ fn calibrate(arm: &mut Arm, calibration: &Calibration, factor: f64) {
     for element in &mut arm.chain {
         match (calibration, element) {
             (Calibration::Stiffness(name), Element::Joint(joint)) if joint.name == *name => {
-                joint.curve = scaled(joint.curve, factor);
+                joint.curve = joint.curve.stiffened(factor);
             }
             (Calibration::Mass(name), Element::Joint(joint)) if joint.name == *name => {
                 joint.mass_kg *= factor;

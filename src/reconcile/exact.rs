@@ -4,7 +4,7 @@
 use super::forward::{ARCMIN_PER_RAD, bench_twists_rad};
 use super::readings::{ModalRow, PositionRow, StaticRow, WindupRow};
 use crate::arm::effect::{Channel, Subject};
-use crate::arm::{JointLaw, LinkModel, LinkPiece, Payload, Piece, Structure};
+use crate::arm::{FrameCompliance, JointLaw, LinkModel, LinkPiece, Payload, Piece, Structure};
 use crate::mechanics::chain::{Posed, Yielding};
 use crate::mechanics::{Chain, Twist, displacement_at};
 use nalgebra::{Matrix3, Vector3};
@@ -126,6 +126,7 @@ impl<'a> Exact<'a> {
             let known = chains.iter().find(|(name, ..)| *name == row.point);
             let (_, tool_m, chain) = known.expect("just made");
             let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
+            let pose_rad = self.subject.turned_rad(&pose_rad);
             let payload = seen_from_tool(&self.subject.payload(&row.payload), tool_m);
             let posed = chain.pose_rad(&pose_rad, &payload, Vector3::zeros());
             let own = posed.tip_m + posed.statics().tip_displacement_m;
@@ -157,6 +158,7 @@ pub fn with_tool(structure: &Structure, tool_m: Vector3<f64>) -> Structure {
         beam: None,
         point_mass_kg: 0.0,
         harness_kg_per_m: 0.0,
+        root_frame: FrameCompliance::default(),
     }));
     out
 }

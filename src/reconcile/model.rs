@@ -269,7 +269,7 @@ impl Nuisance {
             match calibration {
                 Calibration::Stiffness(name) => {
                     if let Some(joint) = structure.joint_mut(name) {
-                        joint.law.curve = scaled(joint.law.curve, factor);
+                        joint.law.curve = joint.law.curve.stiffened(factor);
                     }
                 }
                 Calibration::Mass(name) => {
@@ -304,11 +304,6 @@ fn materials(arm: &Arm) -> Vec<(String, Vec<String>)> {
         }
     }
     out
-}
-
-/// A curve with every stiffness multiplied by a factor.
-pub fn scaled(curve: Curve, factor: f64) -> Curve {
-    curve.stiffened(factor)
 }
 
 /// A model: calibration and effects. Its parameter vector is the calibration first, then each
@@ -423,7 +418,9 @@ impl<'a> Model<'a> {
 pub fn candidates(forward: &Forward) -> Vec<Candidate> {
     let structure = &forward.nominal.structure;
     let mut out = Vec::new();
-    for kind in KINDS.iter().filter(|k| !matches!(k.name, "outlier" | "time_shift" | "wrong_unit")) {
+    for kind in KINDS.iter().filter(|k| {
+        !matches!(k.name, "outlier" | "time_shift" | "wrong_unit" | "frame_compliance" | "transmission_error")
+    }) {
         for place in kind.places {
             for at in structure.places(*place) {
                 if fits_nominal(kind, *place, &at, structure) && channel_is_read(forward, *place) {

@@ -1,10 +1,12 @@
 //! What `reconcile` found, as the values of its page.
 
 use super::campaign::Campaign;
-use super::verdict::{Estimate, Finding, NextTest, Outcome, Verdict};
+use super::positions::Stage;
+use super::verdict::{Estimate, Finding, NextTest, Outcome, ReadingResidual, Verdict};
 use crate::arm::effect::Channel;
 use crate::report::html::campaign::{CampaignPage, Compared, Found, Ranged, Reading, Test, Weighed};
 use crate::report::html::pick::degrees;
+use crate::report::html::positions::{Position, Step};
 use crate::report::number::shortest;
 
 /// The page of a campaign and its outcome.
@@ -15,7 +17,7 @@ pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
         sentence: sentence(outcome),
         reasons: outcome.reasons.clone(),
         explained: outcome.verdict == Verdict::Explained,
-        joints: campaign.arm.driven_joint_names().into_iter().map(String::from).collect(),
+        joints: campaign.driven_joint_names(),
         parts: outcome
             .located
             .iter()
@@ -27,10 +29,14 @@ pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
             })
             .collect(),
         readings: readings(campaign, outcome),
+        steps: outcome.stages.iter().map(step).collect(),
+        positions: positions(campaign, outcome),
         found: outcome.effects.iter().chain(&outcome.suspects).map(found).collect(),
+        // positions are weighed by the error of kept-out poses: that is what `steps` shows
         weighed: outcome
             .evidence
             .iter()
+            .filter(|_| campaign.has_displacements())
             .map(|e| Weighed { model: e.model.clone(), score: e.score, chi_squared: e.objective })
             .collect(),
         calibrated: outcome.calibrated.iter().map(|c| ranged(c.name.clone(), &c.factor)).collect(),
@@ -69,33 +75,60 @@ fn is_quality(line: &str) -> bool {
 /// The residuals with the poses they were taken in: rows come channel by channel, in the files' order.
 fn readings(campaign: &Campaign, outcome: &Outcome) -> Vec<Reading> {
     let mut seen = [0usize; 2];
-    outcome
-        .residuals
-        .iter()
-        .map(|r| {
-            let pose = match r.channel {
-                Channel::Static => {
-                    seen[0] += 1;
-                    campaign.statics.get((seen[0] - 1) / 3).map(|s| s.pose_deg.clone())
-                }
-                Channel::Modal => {
-                    seen[1] += 1;
-                    campaign.modal.get(seen[1] - 1).map(|m| m.pose_deg.clone())
-                }
-                Channel::Windup | Channel::Positions => None,
-            };
-            Reading {
-                channel: r.channel.word(),
-                row: r.row,
-                quantity: r.quantity,
-                pose_deg: pose,
-                before_sigma: (r.measured - r.before) / r.sigma,
-                after_sigma: (r.measured - r.after) / r.sigma,
-                kept_out_sigma: r.kept_out,
-                gross: r.gross,
+    let own = outcome.residuals.iter().filter(|r| r.channel != Channel::Positions);
+    own.map(|r| {
+        let pose = match r.channel {
+            Channel::Static => {
+                seen[0] += 1;
+                campaign.statics.get((seen[0] - 1) / 3).map(|s| s.pose_deg.clone())
             }
-        })
-        .collect()
+            Channel::Modal => {
+                seen[1] += 1;
+                campaign.modal.get(seen[1] - 1).map(|m| m.pose_deg.clone())
+            }
+            Channel::Windup | Channel::Positions => None,
+        };
+        Reading {
+            channel: r.channel.word(),
+            row: r.row,
+            quantity: r.quantity,
+            pose_deg: pose,
+            before_sigma: (r.measured - r.before) / r.sigma,
+            after_sigma: (r.measured - r.after) / r.sigma,
+            kept_out_sigma: r.kept_out,
+            gross: r.gross,
+        }
+    })
+    .collect()
+}
+
+/// The errors of absolute positions, their three coordinates together.
+fn positions(campaign: &Campaign, outcome: &Outcome) -> Vec<Position> {
+    let own: Vec<&ReadingResidual> =
+        outcome.residuals.iter().filter(|r| r.channel == Channel::Positions).collect();
+    let rows = own.chunks_exact(3).zip(&campaign.positions);
+    rows.map(|(axes, row)| {
+        let along = |of: fn(&ReadingResidual) -> f64| std::array::from_fn(|c| of(axes[c]));
+        Position {
+            row: axes[0].row,
+            pose_deg: row.pose_deg.clone(),
+            before_mm: along(|r| r.measured - r.before),
+            after_mm: along(|r| r.measured - r.after),
+            kept_out_mm: along(|r| r.kept_out.unwrap_or_default() * r.sigma),
+        }
+    })
+    .collect()
+}
+
+fn step(stage: &Stage) -> Step {
+    let Stage { added, fitted_median_mm, median_mm, mean_mm, max_mm, .. } = stage;
+    Step {
+        added: added.clone(),
+        fitted_median: *fitted_median_mm,
+        median: *median_mm,
+        mean: *mean_mm,
+        max: *max_mm,
+    }
 }
 
 fn found(finding: &Finding) -> Found {
@@ -120,7 +153,8 @@ fn test(test: &NextTest) -> Test {
         words.push_str(&format!(" of {joint}"));
     }
     if let Some(pose) = &test.pose_deg {
-        words.push_str(&format!(" at pose {}", degrees(pose)));
+        let rounded: Vec<f64> = pose.iter().map(|a| (10.0 * a).round() / 10.0).collect();
+        words.push_str(&format!(" at pose {}", degrees(&rounded)));
     }
     if test.payload_kg > 0.0 {
         words.push_str(&format!(", payload {} kg", shortest(test.payload_kg)));

@@ -1,8 +1,9 @@
 //! `predict`: the model's value beside every reading of a file.
 
-use super::campaign::Statement;
+use super::campaign::{Campaign, Statement, driven_joint_names};
 use super::exact::{Exact, Placement};
 use super::forward::make_links_rigid;
+use super::positions;
 use super::readings::{modal_rows, position_rows, static_rows, windup_rows};
 use super::table::Table;
 use crate::arm::effect::{Channel, Subject};
@@ -21,16 +22,22 @@ pub fn channel_of(table: &Table) -> Option<Channel> {
     }
 }
 
-/// The file with the model's columns added; `placement` counts for absolute positions.
+/// An arm with where it stands.
+#[derive(Debug, Clone)]
+pub struct Placed {
+    /// The arm.
+    pub arm: Arm,
+    /// Its placement, for absolute positions.
+    pub placement: Placement,
+}
+
+/// The file with the model's columns added, by the first of the arms that stand on one trunk; absolute
+/// positions may be of any of them.
 ///
 /// # Errors
 /// All faults of the file.
-pub fn predict(
-    arm: &Arm,
-    statement: &Statement,
-    placement: &Placement,
-    table: Table,
-) -> Result<String, Faults> {
+pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<String, Faults> {
+    let arm = &arms[0].arm;
     let subject = subject(arm, statement);
     let exact = Exact::new(&subject);
     let (names, columns): (&[&str], Vec<Vec<f64>>) = match channel_of(&table) {
@@ -47,7 +54,7 @@ pub fn predict(
             (&["model_windup_arcmin"], rows.iter().map(|w| vec![*w]).collect())
         }
         Some(Channel::Positions) => {
-            let rows = exact.positions_mm(&position_rows(&table, &[&arm.name], &driven(arm)), placement);
+            let rows = positions_mm(arms, statement, &exact, &table)?;
             (&["model_x_mm", "model_y_mm", "model_z_mm"], rows.iter().map(|r| r.to_vec()).collect())
         }
         None => {
@@ -78,8 +85,24 @@ fn subject(arm: &Arm, statement: &Statement) -> Subject {
     nominal
 }
 
-fn driven(arm: &Arm) -> Vec<String> {
-    arm.driven_joint_names().into_iter().map(String::from).collect()
+/// Positions by one arm, or by several that load each other's trunk \[mm\].
+fn positions_mm(
+    arms: &[Placed],
+    statement: &Statement,
+    exact: &Exact,
+    table: &Table,
+) -> Result<Vec<[f64; 3]>, Faults> {
+    let all: Vec<&Arm> = arms.iter().map(|a| &a.arm).collect();
+    let names: Vec<&str> = all.iter().map(|a| a.name.as_str()).collect();
+    let rows = position_rows(table, &names, &driven_joint_names(&all));
+    match arms {
+        [one] => Ok(exact.positions_mm(&rows, &one.placement)),
+        several => {
+            let subjects: Vec<Subject> = all.iter().map(|arm| subject(arm, statement)).collect();
+            let campaign = Campaign::of_positions(statement, &all, rows)?;
+            Ok(positions::predicted_mm(campaign, several, &subjects))
+        }
+    }
 }
 
 fn text(table: &Table, names: &[&str], columns: &[Vec<f64>]) -> String {

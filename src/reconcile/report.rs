@@ -1,11 +1,20 @@
 //! The verdict in words that can be read aloud, and the files.
 
 use super::verdict::{Estimate, Finding, Outcome, Verdict};
+use crate::arm::Arm;
 use std::fmt::Write as _;
 use std::path::Path;
 
 /// Factor on declared standard deviations from which it is put into words: less is within what chance does.
 const WORTH_SAYING: f64 = 1.05;
+
+/// File of the first corrected arm.
+pub const CORRECTED_FILE: &str = "arm.corrected.json";
+
+/// File of a further corrected arm.
+pub fn corrected_file(arm: &Arm) -> String {
+    format!("{}.corrected.json", arm.name)
+}
 
 impl Outcome {
     /// A short verdict for the terminal.
@@ -28,7 +37,8 @@ impl Outcome {
         self.stages_table(&mut out);
         self.quality(&mut out);
         if let Some(test) = self.next_tests.first() {
-            let pose = test.pose_deg.as_ref().map_or(String::new(), |p| format!(" at {p:?} deg"));
+            let angles = |p: &Vec<f64>| p.iter().map(|a| format!("{a:.1}")).collect::<Vec<_>>().join(", ");
+            let pose = test.pose_deg.as_ref().map_or(String::new(), |p| format!(" at [{}] deg", angles(p)));
             let joint = test.joint.as_ref().map_or(String::new(), |j| format!(" of {j}"));
             let expect = match test.expected_sigmas {
                 0.0 => String::new(),
@@ -36,7 +46,7 @@ impl Outcome {
                 s => format!(": expect {s:.1} sigma, {} needed", test.readings_needed),
             };
             let load = match test.kind.as_str() {
-                "windup" => String::new(),
+                "windup" | "another kind" => String::new(),
                 _ => format!(", payload {} kg, force {:?} N", test.payload_kg, test.force_n),
             };
             let _ =
@@ -73,6 +83,7 @@ impl Outcome {
                 "  {:<41} {:>8.3} {:>8.3} {:>8.3} {:>8.3}",
                 s.added, s.fitted_median_mm, s.median_mm, s.mean_mm, s.max_mm
             );
+            s.dropped.iter().for_each(|name| out.push_str(&format!("    in place of {name}\n")));
         }
     }
 
@@ -98,11 +109,11 @@ impl Outcome {
         let mut out = vec![
             ("verdict.json".to_string(), json(&self.to_json())),
             ("verdict.txt".to_string(), self.to_text()),
-            ("arm.corrected.json".to_string(), json(&self.corrected_json())),
+            (CORRECTED_FILE.to_string(), json(&self.corrected_json())),
             ("residuals.csv".to_string(), self.residuals_csv()),
         ];
         let others = self.other_corrected.iter();
-        out.extend(others.map(|arm| (format!("{}.corrected.json", arm.name), json(&self.other_json(arm)))));
+        out.extend(others.map(|arm| (corrected_file(arm), json(&self.other_json(arm)))));
         out
     }
 

@@ -4,6 +4,7 @@ use super::kept_out::KeptOut;
 use super::lack_of_fit::LackOfFit;
 use super::noise::Noise;
 use super::positions::Stage;
+use super::report::{CORRECTED_FILE, corrected_file};
 use crate::arm::Arm;
 use crate::arm::effect::Channel;
 use serde_json::{Map, Value, json};
@@ -318,6 +319,9 @@ impl Outcome {
         let mut out = arm.to_json();
         out["provenance"] = self.provenance.clone();
         out["provenance"]["placement"] = self.provenance["other_placements"][&arm.name].clone();
+        let beside = self.other_corrected.iter().filter(|o| o.name != arm.name).map(corrected_file);
+        out["provenance"]["other_arms"] =
+            json!([vec![CORRECTED_FILE.to_string()], beside.collect()].concat());
         out
     }
 
@@ -325,6 +329,10 @@ impl Outcome {
     pub fn corrected_json(&self) -> Value {
         let mut arm = self.corrected.to_json();
         arm["provenance"] = self.provenance.clone();
+        if !self.other_corrected.is_empty() {
+            let beside: Vec<String> = self.other_corrected.iter().map(corrected_file).collect();
+            arm["provenance"]["other_arms"] = json!(beside);
+        }
         arm
     }
 }

@@ -7,7 +7,9 @@
 
 use super::space::{DesignSpace, SpaceJoint, SpacePiece};
 use crate::arm::effect::Subject;
-use crate::arm::{Curve, JointAngle, JointLaw, JointPiece, Link, LinkPiece, Piece, Structure, link_piece};
+use crate::arm::{
+    Curve, FrameCompliance, JointAngle, JointLaw, JointPiece, Link, LinkPiece, Piece, Structure, link_piece,
+};
 use crate::mechanics::across;
 use nalgebra::{Rotation3, Vector3};
 
@@ -22,22 +24,32 @@ pub(super) enum Layer<'s> {
     Mass(f64),
 }
 
-/// One of the two springs of a bearing that tilts, or of the base.
+/// About what a spring turns.
+#[derive(Debug, Clone, Copy)]
+enum About<'s> {
+    /// One of the two axes across a joint's.
+    Across(&'s SpaceJoint, usize),
+    /// An axis of the frame that the spring stands in.
+    Fixed(Vector3<f64>),
+    /// An axis of the world.
+    World(Vector3<f64>),
+}
+
+/// One of the springs of a bearing that tilts, of a frame that yields, or of the base.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tilt<'s> {
-    /// The joint whose bearing it is; `None` is the base.
-    joint: Option<&'s SpaceJoint>,
-    which: usize,
+    about: About<'s>,
     /// Tilt per moment \[rad/(N m)\].
     pub rad_per_nm: f64,
 }
 
 impl Tilt<'_> {
-    /// The spring's axis where the joint's inboard side is turned by `rotation`.
+    /// The spring's axis where the frame it stands in is turned by `rotation`.
     pub fn axis(&self, rotation: &Rotation3<f64>) -> Vector3<f64> {
-        match self.joint {
-            Some(joint) => across(&(rotation * joint.axis))[self.which],
-            None => [Vector3::x(), Vector3::y()][self.which],
+        match self.about {
+            About::Across(joint, which) => across(&(rotation * joint.axis))[which],
+            About::Fixed(axis) => rotation * axis,
+            About::World(axis) => axis,
         }
     }
 
@@ -55,19 +67,41 @@ impl DesignSpace {
     pub(super) fn layers(&self) -> Vec<(usize, Layer<'_>)> {
         let mut out = Vec::with_capacity(self.pieces.len());
         for (index, piece) in self.pieces.iter().enumerate().rev() {
-            let SpacePiece::Joint(joint) = piece else {
-                out.push((index, Layer::Piece(piece)));
-                continue;
+            let joint = match piece {
+                SpacePiece::Joint(joint) => joint,
+                SpacePiece::Link(link) => {
+                    out.push((index, Layer::Piece(piece)));
+                    out.extend(self.root_springs(link).map(|tilt| (index, tilt)));
+                    continue;
+                }
+                SpacePiece::Choice(choice) => {
+                    out.push((index, Layer::Piece(piece)));
+                    out.extend(self.root_springs(&choice.first_link()).map(|tilt| (index, tilt)));
+                    continue;
+                }
             };
             let affected = self.joint_piece(joint, Curve::Rigid);
-            out.extend(tilts(Some(joint), affected.tilt_rad_per_nm).map(|tilt| (index, tilt)));
+            let across = [About::Across(joint, 0), About::Across(joint, 1)];
+            out.extend(tilts(across, affected.tilt_rad_per_nm).map(|tilt| (index, tilt)));
             out.push((index, Layer::Piece(piece)));
             if affected.mass_kg != 0.0 {
                 out.push((index, Layer::Mass(affected.mass_kg)));
             }
         }
-        out.extend(tilts(None, self.surroundings().base_tilt_rad_per_nm).map(|tilt| (0, tilt)));
+        let base = self.surroundings();
+        let fixed = base.base_frame.springs().into_iter();
+        out.extend(
+            fixed.map(|(axis, c)| (0, Layer::Tilt(Tilt { about: About::World(axis), rad_per_nm: c }))),
+        );
+        let level = [About::World(Vector3::x()), About::World(Vector3::y())];
+        out.extend(tilts(level, base.base_tilt_rad_per_nm).map(|tilt| (0, tilt)));
         out
+    }
+
+    /// The springs of the frame at a link's root.
+    fn root_springs(&self, link: &Link) -> impl Iterator<Item = Layer<'_>> + use<'_> {
+        let springs = self.link_piece(link).root_frame.springs().into_iter();
+        springs.map(|(axis, c)| Layer::Tilt(Tilt { about: About::Fixed(axis), rad_per_nm: c }))
     }
 
     /// A joint with this torsion curve under the study's joint model and with the effects at it; the mass
@@ -122,7 +156,13 @@ impl DesignSpace {
     }
 
     fn bare(&self, pieces: Vec<Piece>) -> Structure {
-        Structure { gravity_m_s2: self.gravity_m_s2, base_tilt_rad_per_nm: 0.0, water: None, pieces }
+        Structure {
+            gravity_m_s2: self.gravity_m_s2,
+            base_tilt_rad_per_nm: 0.0,
+            base_frame: FrameCompliance::default(),
+            water: None,
+            pieces,
+        }
     }
 
     fn affected(&self, piece: Piece) -> Option<Piece> {
@@ -148,7 +188,7 @@ fn nominal_joint(joint: &SpaceJoint, curve: Curve) -> JointPiece {
 }
 
 /// The two springs of a bearing or base that tilts; none if it does not.
-fn tilts(joint: Option<&SpaceJoint>, rad_per_nm: f64) -> impl Iterator<Item = Layer<'_>> {
-    let count = if rad_per_nm > 0.0 { 2 } else { 0 };
-    (0..count).map(move |which| Layer::Tilt(Tilt { joint, which, rad_per_nm }))
+fn tilts(axes: [About<'_>; 2], rad_per_nm: f64) -> impl Iterator<Item = Layer<'_>> {
+    let present = axes.into_iter().filter(move |_| rad_per_nm > 0.0);
+    present.map(move |about| Layer::Tilt(Tilt { about, rad_per_nm }))
 }

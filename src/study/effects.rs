@@ -10,7 +10,6 @@
 use super::Study;
 use crate::arm::{Arm, Curve, Effect, LinkModel};
 use crate::fault::Object;
-use crate::reconcile::model::scaled;
 use crate::report::number::significant;
 use crate::search::DesignSpace;
 use crate::search::space::{DriveChoice, SpaceJoint, SpacePiece};
@@ -152,7 +151,7 @@ impl CorrectedStudy {
             Some((index, SpaceJoint { drive: DriveChoice::Given { curve, mass_kg, .. }, .. })) => {
                 let entry = &mut self.file["chain"][index];
                 match quantity {
-                    "stiffness" => write_curve(entry, &scaled(*curve, factor)),
+                    "stiffness" => write_curve(entry, &curve.stiffened(factor)),
                     _ => entry["mass_kg"] = json!(mass_kg * factor),
                 }
                 self.say(what, true, "the study gives this joint's drive: its value is calibrated");

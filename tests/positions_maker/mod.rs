@@ -1,7 +1,7 @@
 //! Made campaigns of absolute positions, by small rotations of rigid bodies, independent of the library:
 //! a true arm with offset zeros stands askew, sags about its joints, and is read with noise.
 
-use nalgebra::{Rotation3, Unit, Vector3};
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use serde_json::{Value, json};
 
 /// A true arm of three joints.
@@ -35,8 +35,19 @@ struct Truths {
     sag: bool,
     lean_rad: f64,
     wobble_rad: f64,
+    pulled_m: f64,
     moved_m: f64,
+    /// Rotation of the base per moment about its axes \[rad/(N m)\].
+    base_rad_per_nm: Matrix3<f64>,
 }
+
+/// A base that is stiffer one way than the other and turns about the vertical when it is tilted: xx, yy, zz;
+/// xy, xz, yz \[rad/(N m)\].
+pub const LOPSIDED_RAD_PER_NM: [[f64; 3]; 2] = [[8e-6, 3e-6, 4e-6], [1e-6, 3e-6, -2e-6]];
+/// The third joint's error twice a turn \[rad\].
+pub const UNEVEN_RAD: f64 = 2e-3;
+/// A base that tilts alike about x and y \[rad/(N m)\].
+const EVEN_RAD_PER_NM: f64 = 6e-6;
 
 impl Made {
     /// Nothing yields.
@@ -56,7 +67,33 @@ impl Made {
 
     /// Joints yield, and the third turns unevenly, twice a turn.
     pub fn wobbling(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
-        self.truth(pose_rad, Truths { sag: true, wobble_rad: 2e-3, ..Truths::default() })
+        self.truth(pose_rad, Truths { sag: true, wobble_rad: UNEVEN_RAD, ..Truths::default() })
+    }
+
+    /// Joints yield, and something pulls the point sideways as the third turns, twice a turn.
+    pub fn pulled(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
+        self.truth(pose_rad, Truths { sag: true, pulled_m: 1.5e-3, ..Truths::default() })
+    }
+
+    /// Joints yield, and the base does, differently about each axis.
+    pub fn lopsided(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
+        let [[xx, yy, zz], [xy, xz, yz]] = LOPSIDED_RAD_PER_NM;
+        let base_rad_per_nm = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        self.truth(pose_rad, Truths { sag: true, base_rad_per_nm, ..Truths::default() })
+    }
+
+    /// The base tilts alike about x and y.
+    pub fn tilting(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
+        let base_rad_per_nm = Matrix3::from_diagonal(&Vector3::new(EVEN_RAD_PER_NM, EVEN_RAD_PER_NM, 0.0));
+        self.truth(pose_rad, Truths { base_rad_per_nm, ..Truths::default() })
+    }
+
+    /// Joints yield, and the point sat elsewhere in the first seven rows.
+    pub fn put_back_soon(&self, pose_rad: &[f64; 3], row: usize) -> Truth {
+        self.truth(
+            pose_rad,
+            Truths { sag: true, moved_m: if row < 7 { 3.2e-3 } else { 0.0 }, ..Truths::default() },
+        )
     }
 
     /// Joints yield, and the point sat 3 mm away before row 41.
@@ -87,7 +124,8 @@ impl Made {
             at += link;
         }
         let tool = Vector3::from(TOOL_M) + Vector3::y() * truths.moved_m;
-        let point = at + rotation * tool;
+        let pulled = Vector3::y() * truths.pulled_m * (2.0 * pose_rad[2]).sin();
+        let point = at + rotation * tool + pulled;
         let down = Vector3::new(truths.lean_rad.sin(), 0.0, -truths.lean_rad.cos()) * GRAVITY_M_S2;
         let mut sag = Vector3::zeros();
         for (j, (axis, pivot)) in places.iter().enumerate().filter(|_| truths.sag) {
@@ -95,6 +133,8 @@ impl Made {
             let torque: f64 = outboard.map(|(m, cg)| axis.dot(&(cg - pivot).cross(&(down * *m)))).sum();
             sag += axis.cross(&(point - pivot)) * (torque / STIFFNESS_NM_PER_RAD[j]);
         }
+        let moment: Vector3<f64> = bodies.iter().map(|(m, cg)| cg.cross(&(down * *m))).sum();
+        sag += (truths.base_rad_per_nm * moment).cross(&point);
         let askew = Rotation3::from_euler_angles(0.3, -0.2, 2.1);
         Truth { position_m: askew * (point + sag) + Vector3::new(1.0, -2.0, 0.5) }
     }

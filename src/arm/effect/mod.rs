@@ -11,6 +11,7 @@ mod bearing_tilt;
 mod connection_compliance;
 mod drift;
 mod extra_mass;
+mod frame_compliance;
 mod harness_mass;
 mod hysteresis;
 mod immersion;
@@ -25,13 +26,15 @@ mod sensor_bias;
 mod sensor_gain;
 mod soft_windup;
 mod time_shift;
+mod transmission_error;
 mod validate;
 mod wrong_unit;
 
+pub use transmission_error::{transmission_rad, transmission_waves};
 pub use validate::{EffectFault, fits_nominal};
 pub use wrong_unit::SLIPS as UNIT_SLIPS;
 
-use super::{JointPiece, LinkPiece, Piece, Structure};
+use super::{JointAngle, JointPiece, LinkPiece, Piece, Structure};
 use nalgebra::Vector3;
 use serde_json::Value;
 
@@ -166,13 +169,14 @@ pub struct Kind {
 }
 
 /// Every effect, in the order of the documentation.
-pub static KINDS: [&Kind; 20] = [
+pub static KINDS: [&Kind; 22] = [
     &connection_compliance::KIND,
     &soft_windup::KIND,
     &lost_motion::KIND,
     &hysteresis::KIND,
     &bearing_tilt::KIND,
     &base_compliance::KIND,
+    &frame_compliance::KIND,
     &payload_mass_error::KIND,
     &payload_cg_error::KIND,
     &extra_mass::KIND,
@@ -181,6 +185,7 @@ pub static KINDS: [&Kind; 20] = [
     &immersion::KIND,
     &joint_compliance::KIND,
     &link_flexibility::KIND,
+    &transmission_error::KIND,
     &sensor_gain::KIND,
     &sensor_bias::KIND,
     &drift::KIND,
@@ -203,6 +208,8 @@ pub struct Subject {
     pub payload_delta_kg: f64,
     /// True less stated centre of gravity, last frame \[m\].
     pub payload_offset_m: Vector3<f64>,
+    /// How unevenly joints turn: joint, sine and cosine once and twice a turn \[rad\].
+    pub transmissions_rad: Vec<(String, [f64; 4])>,
     /// How each channel reads.
     pub channels: [Reading; 4],
 }
@@ -269,6 +276,7 @@ impl Subject {
             structure,
             payload_delta_kg: 0.0,
             payload_offset_m: Vector3::zeros(),
+            transmissions_rad: Vec::new(),
             channels: std::array::from_fn(|_| Reading::default()),
         }
     }
@@ -278,6 +286,18 @@ impl Subject {
         let Some(kind) = kind(&effect.effect) else { return };
         let place = self.structure.place(&effect.at, kind.places).unwrap_or(kind.places[0]);
         (kind.apply)(&effect.numbers((kind.parameters)(place)), &effect.at, self);
+    }
+
+    /// The angles to which driven joints turn when these are asked for.
+    pub fn turned_rad(&self, pose_rad: &[f64]) -> Vec<f64> {
+        let mut out = pose_rad.to_vec();
+        for (name, waves_rad) in &self.transmissions_rad {
+            let joint = self.structure.joints().find(|j| j.name == *name);
+            if let Some(JointAngle::Driven(i)) = joint.map(|j| &j.angle) {
+                out[*i] += transmission_rad(waves_rad, pose_rad[*i]);
+            }
+        }
+        out
     }
 
     /// How a channel reads.

@@ -1,6 +1,6 @@
 //! What can be wrong with an effect in a file, and the effects a calculation leaves out.
 
-use super::{Effect, KINDS, Kind, Parameter, Place, Subject, kind};
+use super::{Effect, KINDS, Kind, Parameter, Place, Subject, frame_compliance, kind};
 use crate::arm::{Arm, JointModel, Payload, Piece, Structure};
 use crate::fault::closest;
 
@@ -58,6 +58,14 @@ impl Effect {
             });
         }
         faults.extend(parameters.iter().filter_map(|p| self.parameter_fault(p)));
+        let is_frame = self.effect == frame_compliance::KIND.name;
+        if faults.is_empty() && is_frame && !frame_compliance::is_spring(&self.numbers(parameters)) {
+            faults.push(EffectFault {
+                field: "parameters".into(),
+                problem: "some moment would turn the frame against itself".into(),
+                hint: "each coupling squared is at most the product of its two diagonal numbers".into(),
+            });
+        }
         faults
     }
 

@@ -1,7 +1,7 @@
 //! Which coordinates an arm can have, and a subject as numbers on them.
 
 use crate::arm::effect::{Reading, Subject};
-use crate::arm::{JointLaw, LinkModel, LinkPiece, Piece, Structure, Water};
+use crate::arm::{FrameCompliance, JointLaw, LinkModel, LinkPiece, Piece, Structure, Water};
 use crate::mechanics::Chain;
 use crate::mechanics::beam::compliances;
 use nalgebra::Vector3;
@@ -27,7 +27,7 @@ pub struct LinkSlot {
 }
 
 /// The coordinates of every elastic thing an arm can have, base to tip: the base's tilts (0 and 1),
-/// each joint's two tilts and its twist, each link's strains.
+/// each joint's two tilts and its twist, each link's strains; where the arm has frames that yield, theirs.
 pub struct Layout {
     /// Number of coordinates.
     pub n: usize,
@@ -35,6 +35,8 @@ pub struct Layout {
     pub joints: Vec<JointSlot>,
     /// Links, base to tip.
     pub links: Vec<LinkSlot>,
+    /// Coordinates of frames that yield, which no fit changes, with their compliance.
+    frames: Vec<(usize, f64)>,
     /// The arm with every elastic thing present, so that mechanics lists all coordinates.
     pub template: Chain,
     /// The template with one mass added, for each of the masses.
@@ -73,6 +75,14 @@ impl Layout {
         let full = with_everything(structure);
         let mut n = 2;
         let (mut joints, mut links) = (Vec::new(), Vec::new());
+        let mut frames = Vec::new();
+        let mut add_frame = |frame: &FrameCompliance, n: &mut usize| {
+            for (_, compliance) in frame.springs() {
+                frames.push((*n, compliance));
+                *n += 1;
+            }
+        };
+        add_frame(&full.base_frame, &mut n);
         for piece in &full.pieces {
             match piece {
                 Piece::Joint(joint) => {
@@ -80,6 +90,7 @@ impl Layout {
                     n += 3;
                 }
                 Piece::Link(link) => {
+                    add_frame(&link.root_frame, &mut n);
                     let count = compliances(link, LinkModel::Full).len();
                     links.push(LinkSlot { name: link.name.clone(), first: n, count });
                     n += count;
@@ -90,6 +101,7 @@ impl Layout {
             n,
             joints,
             links,
+            frames,
             template: Chain::new(&full, LinkModel::Full),
             with_mass: unit_masses(&full).iter().map(|s| Chain::new(s, LinkModel::Full)).collect(),
             gravity_m_s2: structure.gravity_m_s2,
@@ -143,6 +155,7 @@ impl Coefficients {
         let structure = &subject.structure;
         let mut linear = vec![0.0; layout.n];
         linear[..2].fill(structure.base_tilt_rad_per_nm);
+        layout.frames.iter().for_each(|(at, compliance)| linear[*at] = *compliance);
         let mut masses = Vec::with_capacity(layout.with_mass.len());
         let mut laws = Vec::with_capacity(layout.joints.len());
         for ((slot, joint), before) in

@@ -1,6 +1,7 @@
 //! Where a point on the tool is, for any calibrated geometry, and how it moves with each number of it.
 
 use super::tree::Tree;
+use crate::arm::effect::{transmission_rad, transmission_waves};
 use crate::arm::{Arm, Element, JointAngle, Piece};
 use crate::reconcile::campaign::PositionsSpec;
 use nalgebra::{Rotation3, Unit, Vector3};
@@ -24,6 +25,11 @@ pub enum Number {
     Axis(usize, usize),
     /// Component of a link's vector \[m\]: piece, component.
     Vector(usize, usize),
+    /// Sine or cosine, once or twice a turn, of a driven joint's transmission error \[rad\]: index in the
+    /// pose, which.
+    Transmission(usize, usize),
+    /// Factor by which a passive joint follows another: piece, term.
+    Ratio(usize, usize),
     /// Component of the direction of gravity across the arm's vertical.
     Gravity(usize),
     /// Rotation of everything in another session, about the base's origin and an instrument axis \[rad\].
@@ -40,8 +46,8 @@ impl Number {
             Number::BasePosition(_) => 100.0,
             Number::Tool(..) | Number::MountVector(..) => 1.0,
             Number::Zero(_) => 0.03,
-            Number::Axis(..) => 0.01,
-            Number::Vector(..) => 0.01,
+            Number::Axis(..) | Number::Vector(..) | Number::Ratio(..) => 0.01,
+            Number::Transmission(..) => 0.002,
             Number::Gravity(_) | Number::StationPosition(..) => 0.05,
             Number::StationRotation(..) => 0.02,
         }
@@ -105,7 +111,12 @@ fn geometry_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
     let mut out = Vec::new();
     for (i, piece) in tree.pieces.iter().enumerate() {
         match piece {
-            Piece::Joint(_) => out.extend((0..2).map(|k| Number::Axis(i, k))),
+            Piece::Joint(joint) => {
+                out.extend((0..2).map(|k| Number::Axis(i, k)));
+                if let JointAngle::Coupled(terms) = &joint.angle {
+                    out.extend((0..terms.len()).map(|t| Number::Ratio(i, t)));
+                }
+            }
             Piece::Link(_) if between(i) && !is_mount(piece, spec) => {
                 out.extend((0..3).map(|c| Number::Vector(i, c)));
             }
@@ -131,6 +142,8 @@ pub struct Geometry {
     /// Direction of gravity in the level frame; -z unless it has moved since the frame was levelled.
     pub gravity: Vector3<f64>,
     zeros_rad: Vec<f64>,
+    /// Transmission error of each driven joint: sine and cosine, once and twice a turn \[rad\].
+    pub transmissions_rad: Vec<[f64; 4]>,
     axes: Vec<Unit<Vector3<f64>>>,
     vectors_m: Vec<Vector3<f64>>,
     mounts: Vec<Rotation3<f64>>,
@@ -191,6 +204,7 @@ impl Geometry {
             level: Rotation3::identity(),
             gravity: -Vector3::z(),
             zeros_rad: vec![0.0; tree.driven.len()],
+            transmissions_rad: vec![[0.0; 4]; tree.driven.len()],
             axes: tree.pieces.iter().map(axis).collect(),
             vectors_m: tree.pieces.iter().map(vector).collect(),
             mounts: vec![Rotation3::identity(); tree.pieces.len()],
@@ -217,6 +231,12 @@ impl Geometry {
                 Number::StationPosition(s, c) => self.stations[s].1[c] += by,
                 Number::Mount(i, c) => self.mounts[i] = about(c, by) * self.mounts[i],
                 Number::Zero(j) => self.zeros_rad[j] += by,
+                Number::Transmission(j, k) => self.transmissions_rad[j][k] += by,
+                Number::Ratio(i, t) => {
+                    if let Some(JointAngle::Coupled(terms)) = &mut self.angles[i] {
+                        terms[t].1 += by;
+                    }
+                }
                 Number::Axis(i, k) => {
                     let turn = Rotation3::from_axis_angle(&across(&self.axes[i])[k], by);
                     self.axes[i] = Unit::new_normalize(turn * self.axes[i].into_inner());
@@ -256,6 +276,11 @@ impl Geometry {
                         let zero = angle.of(&self.zeros_rad);
                         turned *= Rotation3::from_axis_angle(&self.axes[i], zero);
                     }
+                    if let (Some(JointAngle::Coupled(own)), Some(terms)) =
+                        (&self.angles[i], &mut joint.coupled)
+                    {
+                        terms.iter_mut().zip(own).for_each(|(term, (_, factor))| term.1 = *factor);
+                    }
                 }
                 Element::Link(link) => {
                     link.vector_m = turned * self.vectors_m[i];
@@ -268,7 +293,7 @@ impl Geometry {
 
     /// A point of an arm in a pose with its derivatives.
     pub fn place(&self, asked: Placing, numbers: &[Number]) -> Placed {
-        let pose: Vec<f64> = asked.pose_rad.iter().zip(&self.zeros_rad).map(|(q, z)| q + z).collect();
+        let pose = self.turned_rad(asked.pose_rad);
         let mut frames: Frames = vec![None; self.axes.len()];
         let mut last = Frame { rotation: self.base, at_m: self.origin_m };
         for &i in &self.arms[asked.arm] {
@@ -290,6 +315,12 @@ impl Geometry {
         Placed { at_m: self.origin_m + turn * (at_m - self.origin_m) + shift_m, slopes }
     }
 
+    /// The angles to which the driven joints turn when these are asked for.
+    fn turned_rad(&self, pose_rad: &[f64]) -> Vec<f64> {
+        let joints = pose_rad.iter().zip(&self.zeros_rad).zip(&self.transmissions_rad);
+        joints.map(|((q, zero), waves)| q + zero + transmission_rad(waves, *q)).collect()
+    }
+
     fn slope(
         &self,
         number: &Number,
@@ -309,12 +340,17 @@ impl Geometry {
             Number::StationRotation(..) | Number::StationPosition(..) => zero,
             Number::Tool(p, c) if p == asked.point => last.rotation * Vector3::ith(c, 1.0),
             Number::Tool(..) | Number::Gravity(_) => zero,
-            Number::Zero(j) => (0..self.axes.len())
-                .filter_map(|i| Some((i, frames[i]?.0, rate(self.angles[i].as_ref()?, j))))
-                .map(|(i, before, rate)| {
-                    rate * (before.rotation * self.axes[i].into_inner()).cross(&(at_m - before.at_m))
-                })
-                .sum(),
+            Number::Zero(j) => self.turning(j, frames, at_m),
+            Number::Transmission(j, k) => {
+                self.turning(j, frames, at_m) * transmission_waves(asked.pose_rad[j])[k]
+            }
+            Number::Ratio(i, t) => match (&frames[i], &self.angles[i]) {
+                (Some((before, _)), Some(JointAngle::Coupled(terms))) => {
+                    let driver = self.turned_rad(asked.pose_rad)[terms[t].0];
+                    self.lever(i, before, at_m) * driver
+                }
+                _ => zero,
+            },
             Number::Axis(i, k) => frames[i].map_or(zero, |(before, behind)| {
                 let tilt = across(&self.axes[i])[k].into_inner();
                 (before.rotation * tilt - behind.rotation * tilt).cross(&(at_m - before.at_m))
@@ -326,6 +362,21 @@ impl Geometry {
                 frames[i].map_or(zero, |(before, _)| before.rotation * Vector3::ith(c, 1.0))
             }
         }
+    }
+}
+
+impl Geometry {
+    /// Motion of a point with a driven joint's angle.
+    fn turning(&self, driven: usize, frames: &Frames, at_m: &Vector3<f64>) -> Vector3<f64> {
+        (0..self.axes.len())
+            .filter_map(|i| Some((i, frames[i]?.0, rate(self.angles[i].as_ref()?, driven))))
+            .map(|(i, before, rate)| rate * self.lever(i, &before, at_m))
+            .sum()
+    }
+
+    /// Motion of a point with the angle of the joint at a piece.
+    fn lever(&self, piece: usize, before: &Frame, at_m: &Vector3<f64>) -> Vector3<f64> {
+        (before.rotation * self.axes[piece].into_inner()).cross(&(at_m - before.at_m))
     }
 }
 
@@ -342,4 +393,52 @@ fn across(axis: &Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
     let least = Vector3::ith(axis.iamin(), 1.0);
     let first = Unit::new_normalize(axis.cross(&least));
     [first, Unit::new_normalize(axis.cross(&first))]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::read_arm_document;
+    use crate::catalog::Catalogs;
+    use crate::fault::Document;
+    use crate::reconcile::Campaign;
+    use crate::reconcile::campaign::read_statement;
+
+    const ARM: &str = r#"{"name": "a", "chain": [
+        {"type": "joint", "name": "j1", "axis": [0, 0, 1], "stiffness_nm_per_rad": null},
+        {"type": "link", "name": "l1", "vector_m": [0.1, 0, 0.4]},
+        {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": null},
+        {"type": "link", "name": "l2", "vector_m": [0.6, 0, 0]},
+        {"type": "joint", "name": "j3", "axis": [0, 1, 0], "stiffness_nm_per_rad": null,
+         "coupled": {"j2": -1, "j1": 0.2}},
+        {"type": "link", "name": "l3", "vector_m": [0.2, 0.1, 0]}]}"#;
+
+    #[test]
+    fn slopes_are_differences_of_places_passive_and_uneven_joints_included() {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let file = folder.path().join("campaign.json");
+        let free = r#"{"positions": {"joint_offsets": true, "geometry": true, "tool_offset": true}}"#;
+        std::fs::write(&file, free).expect("written");
+        let statement = read_statement(&file).expect("sound");
+        let arm =
+            read_arm_document(Document::parse("a", ARM).expect("JSON"), &Catalogs::default()).expect("sound");
+        let campaign = Campaign::of_positions(&statement, &[&arm], Vec::new()).expect("one trunk");
+        let tree = Tree::new(&campaign);
+        let geometry = Geometry::nominal(&tree, 1);
+        let groups = number_groups(&tree, &statement.positions, 1);
+        let mut numbers: Vec<Number> = groups.into_iter().flat_map(|(_, group)| group).collect();
+        assert!(numbers.contains(&Number::Ratio(4, 1)));
+        numbers.extend((0..4).map(|k| Number::Transmission(1, k)));
+        let asked = Placing { arm: 0, pose_rad: &[0.4, -0.7], point: 0, station: 0 };
+        let placed = geometry.place(asked, &numbers);
+        for (number, slope) in numbers.iter().zip(&placed.slopes) {
+            let at = |by: f64| {
+                let mut moved = geometry.clone();
+                moved.step(std::slice::from_ref(number), &[by]);
+                moved.place(asked, &[]).at_m
+            };
+            let difference = (at(1e-6) - at(-1e-6)) / 2e-6;
+            assert!((difference - slope).norm() < 1e-8, "{number:?}: {difference} {slope}");
+        }
+    }
 }

@@ -7,7 +7,7 @@
 
 use super::kinematics::Geometry;
 use super::tree::Tree;
-use crate::arm::{Arm, Curve, JointLaw, JointModel, LinkModel, Payload, Piece, Structure};
+use crate::arm::{Arm, Curve, FrameCompliance, JointLaw, JointModel, LinkModel, Payload, Piece, Structure};
 use crate::mechanics::chain::{Body, ElasticElement, Item, Posed};
 use crate::mechanics::{Chain, Twist, angular, displacement_at, linear};
 use crate::reconcile::campaign::Campaign;
@@ -15,6 +15,9 @@ use crate::reconcile::exact::{seen_from_tool, with_tool};
 use crate::reconcile::readings::PositionRow;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
+
+/// Entries of a frame's compliance in the order of its numbers.
+pub const FRAME_ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (0, 1), (0, 2), (1, 2), (2, 2)];
 
 /// What yields, as a candidate.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,14 +35,15 @@ pub struct Sag {
     pub known_m: Vector3<f64>,
     /// Its change with gravity's components across the vertical \[m\].
     pub known_slopes_m: [Vector3<f64>; 2],
-    /// Displacement at unit compliance of each candidate, per direction of gravity.
-    pub per_compliance: Vec<Matrix3<f64>>,
+    /// Displacement at unit of each compliance of each candidate, per direction of gravity.
+    pub per_compliance: Vec<Vec<Matrix3<f64>>>,
     /// Twist of each candidate's first axis at the point, and the torque about it under gravity along -z:
     /// where a joint's own errors would show.
     pub levers: Vec<(Vector3<f64>, f64)>,
 }
 
-/// The arm's candidates: every joint about and across its axis, and the base.
+/// The arm's candidates: every joint about and across its axis, the base, and the structures behind the
+/// joints.
 pub fn candidates(tree: &Tree) -> Vec<Yielding> {
     let mut out = Vec::new();
     for piece in &tree.pieces {
@@ -50,7 +54,27 @@ pub fn candidates(tree: &Tree) -> Vec<Yielding> {
         }
     }
     out.push(Yielding { effect: "base_compliance", at: "base".into() });
+    out.push(Yielding { effect: "frame_compliance", at: "base".into() });
+    let behind = tree.arms.iter().flat_map(|chain| chain.windows(2));
+    for (joint, link) in behind.map(|pair| (&tree.pieces[pair[0]], &tree.pieces[pair[1]])) {
+        if let (Piece::Joint(_), Piece::Link(link)) = (joint, link)
+            && !out.iter().any(|c| c.effect == "frame_compliance" && c.at == link.name)
+        {
+            out.push(Yielding { effect: "frame_compliance", at: link.name.clone() });
+        }
+    }
     out
+}
+
+impl Yielding {
+    /// How many compliances it has: of a frame xx, yy, xy, xz, yz, and zz where weights can turn it so.
+    pub fn count(&self) -> usize {
+        match (self.effect, self.at.as_str()) {
+            ("frame_compliance", "base") => 5,
+            ("frame_compliance", _) => 6,
+            _ => 1,
+        }
+    }
 }
 
 /// One arm in the level frame with its calibrated geometry, ready to be posed.
@@ -122,10 +146,14 @@ impl Ready {
 fn yielding_everywhere(structure: &Structure) -> Structure {
     let mut unit = structure.clone();
     unit.base_tilt_rad_per_nm = 1.0;
+    unit.base_frame = FrameCompliance(Matrix3::identity());
     for piece in &mut unit.pieces {
-        if let Piece::Joint(joint) = piece {
-            joint.law = JointLaw::from(Curve::Linear(1.0));
-            joint.tilt_rad_per_nm = 1.0;
+        match piece {
+            Piece::Joint(joint) => {
+                joint.law = JointLaw::from(Curve::Linear(1.0));
+                joint.tilt_rad_per_nm = 1.0;
+            }
+            Piece::Link(link) => link.root_frame = FrameCompliance(Matrix3::identity()),
         }
     }
     unit
@@ -204,7 +232,7 @@ fn own_body(element: &ElasticElement, structure: &Structure) -> Option<Body> {
 type Lever = (Vector3<f64>, f64);
 
 /// Every candidate's displacement at unit compliance per direction of gravity, and its lever and torque.
-fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Matrix3<f64>>, Vec<Lever>) {
+fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Vec<Matrix3<f64>>>, Vec<Lever>) {
     let answers = answers(unit, own);
     let of =
         |name: &str| answers.iter().find(|(n, _)| *n == name).map_or(Vec::new(), |(_, list)| list.clone());
@@ -218,12 +246,26 @@ fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Matrix
                     driver.1 += passive.1 * linkage.factor;
                 }
             }
-            let per_compliance: Matrix3<f64> =
-                list.iter().map(|(motion, pull)| motion * pull.transpose()).sum();
             let lever = list.first().map_or((Vector3::zeros(), 0.0), |(motion, pull)| (*motion, -pull.z));
-            (per_compliance, lever)
+            (per_compliance(candidate.count(), &list), lever)
         })
         .unzip()
+}
+
+/// Displacement per unit of each of so many compliances about the twists' axes.
+fn per_compliance(count: usize, list: &[Answer]) -> Vec<Matrix3<f64>> {
+    // what belongs to another arm has no twists here
+    let along = |(i, j): (usize, usize)| match (list.get(i), list.get(j)) {
+        (Some((motion, _)), Some((_, pull))) => motion * pull.transpose(),
+        _ => Matrix3::zeros(),
+    };
+    match count {
+        1 => vec![(0..list.len()).map(|i| along((i, i))).sum()],
+        _ => FRAME_ENTRIES[..count]
+            .iter()
+            .map(|&(i, j)| if i == j { along((i, i)) } else { along((i, j)) + along((j, i)) })
+            .collect(),
+    }
 }
 
 /// What a twist moves the point by, and the force of gravity on it per direction.
@@ -258,7 +300,7 @@ fn pull(twist: &Twist, weight_n: f64, moment_nm: &Vector3<f64>) -> Vector3<f64> 
 
 fn share_name(candidate: &Yielding) -> String {
     match candidate.effect {
-        "bearing_tilt" => format!("{}.bearing_tilt", candidate.at),
+        "bearing_tilt" | "frame_compliance" => format!("{}.{}", candidate.at, candidate.effect),
         _ => candidate.at.clone(),
     }
 }

@@ -3,25 +3,30 @@
 //!
 //! `tree` joins the arms that stand on one trunk; [`kinematics`] says where a point is and [`loads`] how
 //! gravity moves it; `align` places the arm from nothing, [`fit`](mod@fit) fits, `sessions` tells sessions
-//! apart; `structure` asks what is left and `outcome` concludes.
+//! apart; `search` finds what yields and `transmission` what turns unevenly; `structure` asks what is left and `outcome` concludes.
 
 mod align;
 pub mod fit;
 pub mod kinematics;
 pub mod loads;
+mod next_test;
 mod outcome;
+mod predict;
+mod search;
 mod sessions;
 mod structure;
+mod transmission;
 mod tree;
 
 pub use outcome::reconcile;
+pub use predict::predicted_mm;
 
 use super::campaign::Campaign;
 use super::stats::median;
-use fit::{Factor, Fitted, Sample, fit, normal};
+use fit::{Fitted, Sample, fit};
 use kinematics::{Geometry, Number, number_groups};
 use loads::{Yielding, candidates, sags};
-use nalgebra::{DVector, Vector3};
+use nalgebra::Vector3;
 use rayon::prelude::*;
 use tree::Tree;
 
@@ -29,25 +34,25 @@ use tree::Tree;
 const HANDS: usize = 5;
 /// Errors beyond this many scales are gross.
 const GROSS: f64 = 8.0;
-/// Candidates that are fitted in full at each stage.
-const FULL_FITS: usize = 4;
 /// Scale of the errors before anything is fitted \[m\].
 const ROUGH_M: f64 = 0.01;
-/// Models within this ln of the likelihood cannot be told apart.
-const TIE: f64 = 3.0;
-
 /// Step of gravity's direction for slopes \[rad\].
 const LEAN: f64 = 1e-3;
 
 /// The classes of effects in the order in which they are looked for.
-const CLASSES: [&[&str]; 2] =
-    [&["joint_compliance", "connection_compliance"], &["bearing_tilt", "base_compliance"]];
+const CLASSES: [&[&str]; 3] = [
+    &["joint_compliance", "connection_compliance"],
+    &["bearing_tilt", "base_compliance"],
+    &["frame_compliance"],
+];
 
 /// How well a model predicts positions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stage {
     /// What was added to the stage before.
     pub added: String,
+    /// What it made needless.
+    pub dropped: Vec<String>,
     /// Median error of the poses it was fitted to \[mm\].
     pub fitted_median_mm: f64,
     /// Median error of poses kept out of the fit \[mm\].
@@ -59,6 +64,7 @@ pub struct Stage {
 }
 
 /// Everything a positions campaign tells.
+#[derive(Clone)]
 pub struct Positions {
     /// The table of errors, effect by effect.
     pub stages: Vec<Stage>,
@@ -72,6 +78,8 @@ pub struct Positions {
     pub gross: Vec<(usize, f64)>,
     samples: Vec<Sample>,
     numbers: Vec<Number>,
+    /// Driven joints with a transmission error, by their place in a pose.
+    transmissions: Vec<usize>,
     tree: Tree,
     /// Points, those of separate sessions apart.
     points: Vec<String>,
@@ -88,16 +96,16 @@ pub fn analyze(campaign: &Campaign) -> Positions {
     let spec = &campaign.statement.positions;
     found.sessions = found.find_sessions(spec.tool_offset, spec.base_placement);
     if !found.sessions.is_empty() {
-        found.stage("sessions".into());
+        found.stage("sessions".into(), Vec::new());
     }
     found.rigid = found.fitted.clone();
-    for class in CLASSES {
-        while let Some((added, next)) = found.add(class) {
-            found.fitted = found.without_idle(next);
-            found.refresh(campaign);
-            found.refit();
-            let label = found.label(added);
-            found.stage(label);
+    // what turns unevenly hides what yields
+    loop {
+        for class in CLASSES {
+            while found.add(campaign, class) {}
+        }
+        if !found.add_transmission(campaign) {
+            break;
         }
     }
     let errors = found.samples.iter().map(|s| found.fitted.error(s).norm()).enumerate();
@@ -123,6 +131,7 @@ impl Positions {
             gross: Vec::new(),
             samples,
             numbers: Vec::new(),
+            transmissions: Vec::new(),
             tree,
             points,
             sessions: Vec::new(),
@@ -141,7 +150,7 @@ impl Positions {
                 self.refresh(campaign);
                 self.refit();
             }
-            self.stage(name.into());
+            self.stage(name.into(), Vec::new());
         }
     }
 
@@ -174,90 +183,14 @@ impl Positions {
         }
     }
 
-    fn label(&self, candidate: usize) -> String {
-        format!("{}@{}", self.candidates[candidate].effect, self.candidates[candidate].at)
-    }
-
-    /// The fit without effects that a later one has taken the place of.
-    fn without_idle(&self, fitted: Fitted) -> Fitted {
-        let pairs = fitted.effects.iter().zip(&fitted.compliances);
-        let kept: Vec<usize> = pairs.filter(|(_, c)| **c > 0.0).map(|(e, _)| *e).collect();
-        if kept.len() == fitted.effects.len() {
-            return fitted;
-        }
-        let all: Vec<&Sample> = self.samples.iter().collect();
-        fit(&all, &self.numbers, &kept, &fitted)
-    }
-
-    /// What an effect must bring in ln of the likelihood: for its number, and for having looked everywhere.
-    fn price(&self) -> f64 {
-        0.5 * (3.0 * self.samples.len() as f64).ln() + (self.candidates.len() as f64).ln() + 3.0
-    }
-
-    /// The effect of a class that raises the likelihood most, if one is worth its price.
-    fn add(&self, class: &[&str]) -> Option<(usize, Fitted)> {
-        let base = &self.fitted;
-        let tried = self.best_additions(base, |c| class.contains(&self.candidates[c].effect));
-        let worth = tried.into_iter().filter(|(_, f)| f.ln_likelihood > base.ln_likelihood + self.price());
-        worth.max_by(|a, b| a.1.ln_likelihood.total_cmp(&b.1.ln_likelihood))
-    }
-
-    /// Models with one more effect: all allowed ones screened by the model made linear, the most promising
-    /// fitted in full.
-    fn best_additions(&self, base: &Fitted, allowed: impl Fn(usize) -> bool) -> Vec<(usize, Fitted)> {
-        let all: Vec<&Sample> = self.samples.iter().collect();
-        let mut gains = self.gains(base);
-        gains.retain(|(c, gain)| allowed(*c) && !base.effects.contains(c) && *gain > 0.0);
-        gains.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        gains.truncate(FULL_FITS);
-        gains
-            .into_par_iter()
-            .map(|(c, _)| (c, fit(&all, &self.numbers, &[base.effects.as_slice(), &[c]].concat(), base)))
-            .collect()
-    }
-
-    /// By how much the model made linear says each candidate would raise the ln of the likelihood.
-    fn gains(&self, base: &Fitted) -> Vec<(usize, f64)> {
-        let all: Vec<&Sample> = self.samples.iter().collect();
-        let from_level = base.geometry.level_to_instrument();
-        let columns = |s: &Sample| -> Vec<Vector3<f64>> {
-            s.sag.per_compliance.iter().map(|p| from_level * p * base.geometry.gravity).collect()
-        };
-        let normal = normal(&all, &self.numbers, base, &columns);
-        let own: Vec<usize> = (0..normal.own).collect();
-        let Some(factor) = Factor::new(&normal.curvature, &own) else { return Vec::new() };
-        let answer = factor.solve(&normal.gradient.rows(0, normal.own).into_owned());
-        (0..self.candidates.len())
-            .map(|c| {
-                let p = normal.own + c;
-                let cross: DVector<f64> =
-                    normal.curvature.view((0, p), (normal.own, 1)).column(0).into_owned();
-                let left = normal.curvature[(p, p)] - cross.dot(&factor.solve(&cross));
-                let gradient = normal.gradient[p] - cross.dot(&answer);
-                let seen = left > 1e-9 * normal.curvature[(p, p)] && gradient > 0.0;
-                (c, if seen { 0.5 * gradient * gradient / left } else { 0.0 })
-            })
-            .collect()
-    }
-
-    /// Candidates that could stand in the place of one of the effects and fit as well.
-    fn rivals(&self, position: usize) -> Vec<(usize, Fitted)> {
-        let all: Vec<&Sample> = self.samples.iter().collect();
-        let own = self.fitted.effects[position];
-        let rest: Vec<usize> = self.fitted.effects.iter().copied().filter(|e| *e != own).collect();
-        let without = fit(&all, &self.numbers, &rest, &self.fitted);
-        let mut tried = self.best_additions(&without, |c| c != own);
-        tried.retain(|(_, f)| f.ln_likelihood > self.fitted.ln_likelihood - TIE);
-        tried
-    }
-
     /// Notes how well the model of the moment does.
-    fn stage(&mut self, added: String) {
+    fn stage(&mut self, added: String, dropped: Vec<String>) {
         self.kept_out = self.kept_out_errors_m(&self.fitted);
         let mm: Vec<f64> = self.kept_out.iter().map(|e| 1e3 * e.norm()).collect();
         let fitted = self.samples.iter().map(|s| 1e3 * self.fitted.error(s).norm());
         self.stages.push(Stage {
             added,
+            dropped,
             fitted_median_mm: median(fitted.collect()),
             mean_mm: mm.iter().sum::<f64>() / mm.len().max(1) as f64,
             max_mm: mm.iter().copied().fold(0.0, f64::max),

@@ -1,28 +1,24 @@
 //! What a campaign of absolute positions concludes.
 
-use super::fit::{Fitted, Sample};
+use super::fit::{Fitted, frame_matrix};
 use super::kinematics::Number;
+use super::loads::FRAME_ENTRIES;
 use super::structure::{MATERIAL_VARIANCE, MEDIAN_LENGTH};
-use super::{Positions, Stage, analyze, samples};
+use super::{Positions, Stage, analyze, transmission};
 use crate::arm::effect::{Channel, Effect};
 use crate::arm::{Arm, Piece};
 use crate::reconcile::campaign::Campaign;
 use crate::reconcile::correct;
 use crate::reconcile::kept_out::{KeptOut, rms};
 use crate::reconcile::lack_of_fit::LackOfFit;
-use crate::reconcile::next_test::{ENOUGH, spread_pose};
 use crate::reconcile::noise::Noise;
-use crate::reconcile::verdict::{
-    Estimate, Evidence, Finding, Located, NextTest, Outcome, ReadingResidual, Verdict,
-};
+use crate::reconcile::verdict::{Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict};
 use serde_json::{Value, json};
 
 /// Fewest positions that can speak.
 const FEWEST: usize = 20;
 /// Most alternatives an effect may have and still be named.
 const MOST_ALTERNATIVES: usize = 3;
-/// Poses among which the next test is chosen.
-const PROPOSED_POSES: usize = 60;
 /// Poses listed where the gap sits.
 const WORST_POSES: usize = 3;
 
@@ -32,11 +28,12 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     let lack_of_fit = found.lack_of_fit(campaign);
     let rivals: Vec<Vec<(usize, Fitted)>> =
         (0..found.fitted.effects.len()).map(|i| found.rivals(i)).collect();
-    let findings: Vec<Finding> =
-        (0..found.fitted.effects.len()).map(|i| found.finding(i, &rivals[i])).collect();
+    let yielding = (0..found.fitted.effects.len()).map(|i| found.finding(i, &rivals[i]));
+    let uneven = found.transmissions.iter().map(|&joint| found.transmission_finding(joint));
+    let findings: Vec<Finding> = yielding.chain(uneven).collect();
     let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings);
     reasons.extend(found.sessions.iter().cloned());
-    let next_tests = found.next_tests(campaign, verdict, &rivals);
+    let next_tests = found.next_tests(campaign, verdict, &lack_of_fit, &rivals);
     let (effects, suspects) = match verdict {
         Verdict::Explained => (findings, Vec::new()),
         Verdict::InsufficientData => (Vec::new(), findings),
@@ -77,7 +74,7 @@ impl Stage {
     /// As in `verdict.json`.
     pub fn json(&self) -> Value {
         json!({
-            "added": self.added, "fitted_median_mm": self.fitted_median_mm, "kept_out_median_mm": self.median_mm,
+            "added": self.added, "dropped": self.dropped, "fitted_median_mm": self.fitted_median_mm, "kept_out_median_mm": self.median_mm,
             "kept_out_mean_mm": self.mean_mm, "kept_out_largest_mm": self.max_mm,
         })
     }
@@ -154,16 +151,33 @@ impl Positions {
 
     fn finding(&self, i: usize, rivals: &[(usize, Fitted)]) -> Finding {
         let candidate = &self.candidates[self.fitted.effects[i]];
-        let (c, sd) = (self.fitted.compliances[i], self.fitted.deviations[i]);
-        let stiffness = |c: f64| (c > 0.0).then(|| 1.0 / c);
-        let value = stiffness(c).unwrap_or(1e15);
-        let estimate = Estimate { value, low: stiffness(c + 1.96 * sd), high: stiffness(c - 1.96 * sd) };
+        let (c, sd) = (&self.fitted.compliances[i], &self.fitted.deviations[i]);
+        let parameters = match candidate.effect {
+            "frame_compliance" => frame_parameters(c, sd),
+            _ => vec![("stiffness_nm_per_rad".into(), vec![stiffness(c[0], sd[0])])],
+        };
         let names = rivals.iter().map(|(r, _)| &self.candidates[*r]);
         Finding {
             effect: candidate.effect.into(),
             at: candidate.at.clone(),
-            parameters: vec![("stiffness_nm_per_rad".into(), vec![estimate])],
+            parameters,
             indistinguishable_from: names.map(|r| (r.effect.to_string(), r.at.clone())).collect(),
+        }
+    }
+
+    fn transmission_finding(&self, joint: usize) -> Finding {
+        let fitted = self.numbers.iter().zip(self.fitted.moved.iter().zip(&self.fitted.number_deviations));
+        let own = fitted.filter(|(n, _)| matches!(n, Number::Transmission(j, _) if *j == joint));
+        let named = |j: usize| (transmission::EFFECT.to_string(), self.tree.driven[j].clone());
+        let (effect, at) = named(joint);
+        Finding {
+            effect,
+            at,
+            parameters: vec![(
+                "sin_cos_sin2_cos2_rad".into(),
+                own.map(|(_, (value, sd))| within(*value, *sd)).collect(),
+            )],
+            indistinguishable_from: self.transmission_rivals(joint).into_iter().map(named).collect(),
         }
     }
 
@@ -203,7 +217,14 @@ impl Positions {
     fn calibrated(&self, shown: &Fitted) -> Vec<Value> {
         let numbers = self.numbers.iter().zip(&shown.moved);
         let inside = numbers.filter(|(n, _)| {
-            matches!(n, Number::Zero(_) | Number::Axis(..) | Number::Vector(..) | Number::Gravity(_))
+            matches!(
+                n,
+                Number::Zero(_)
+                    | Number::Axis(..)
+                    | Number::Vector(..)
+                    | Number::Ratio(..)
+                    | Number::Gravity(_)
+            )
         });
         inside
             .map(|(n, moved)| json!({"value": self.name(n), "moved": moved, "source": "calibrated geometry"}))
@@ -217,6 +238,8 @@ impl Positions {
         };
         match number {
             Number::Zero(j) => format!("{}.zero_rad", self.tree.driven[*j]),
+            Number::Transmission(j, k) => format!("{}.transmission_rad[{k}]", self.tree.driven[*j]),
+            Number::Ratio(i, t) => format!("{}.coupled[{t}]", piece(*i)),
             Number::Axis(i, k) => format!("{}.axis_rad[{k}]", piece(*i)),
             Number::Vector(i, c) | Number::MountVector(i, c) => format!("{}.vector_m[{c}]", piece(*i)),
             Number::Mount(i, c) => format!("{}.attitude_rad[{c}]", piece(*i)),
@@ -292,92 +315,35 @@ impl Positions {
         })
         .collect()
     }
+}
 
-    /// Poses where the model differs most from what it is to be told from.
-    fn next_tests(
-        &self,
-        campaign: &Campaign,
-        verdict: Verdict,
-        rivals: &[Vec<(usize, Fitted)>],
-    ) -> Vec<NextTest> {
-        if verdict == Verdict::Unexplained {
-            return self.repeat_worst(campaign).into_iter().collect();
-        }
-        let known = rivals.iter().flatten().next();
-        let (name, rival) = match known {
-            Some((candidate, fitted)) => (self.label(*candidate), fitted),
-            None => ("calibration only".into(), &self.rigid),
-        };
-        let proposed = self.proposals(campaign);
-        let own = samples(&proposed, &self.tree, &self.fitted.geometry, &self.candidates, &self.points);
-        let sigma_mm =
-            campaign.positions.iter().map(|r| r.sigma_mm).fold(1e3 * self.fitted.scale_m, f64::max);
-        let gap = |s: &Sample| 1e3 * (self.fitted.predicted_m(s) - rival.predicted_m(s)).norm() / sigma_mm;
-        let Some((best, sigmas)) = own.iter().map(gap).enumerate().max_by(|a, b| a.1.total_cmp(&b.1)) else {
-            return Vec::new();
-        };
-        let row = &proposed.positions[best];
-        let model: Vec<String> = self.fitted.effects.iter().map(|&e| self.label(e)).collect();
-        let model = if model.is_empty() { "calibration only".into() } else { model.join(" + ") };
-        vec![NextTest {
-            kind: "positions".into(),
-            description: format!("position of {}", row.point),
-            pose_deg: Some(row.pose_deg.clone()),
-            payload_kg: row.payload.mass_kg,
-            force_n: [0.0; 3],
-            joint: None,
-            separates: vec![model, name],
-            expected_sigmas: sigmas,
-            readings_needed: if sigmas > 1e-3 {
-                (ENOUGH / sigmas).powi(2).ceil().min(9999.0) as usize
-            } else {
-                9999
-            },
-        }]
-    }
+/// A value with its 95 % interval.
+fn within(value: f64, deviation: f64) -> Estimate {
+    let end = |by: f64| Some(value + by * deviation).filter(|e| e.is_finite());
+    Estimate { value, low: end(-1.96), high: end(1.96) }
+}
 
-    /// The campaign with proposed poses in place of its own, within the ranges of its own, each with the
-    /// largest payload it used.
-    fn proposals(&self, campaign: &Campaign) -> Campaign {
-        let mut out = campaign.clone();
-        let range = |j: usize| {
-            let angles = || campaign.positions.iter().map(move |r| r.pose_deg[j]);
-            (angles().fold(f64::INFINITY, f64::min), angles().fold(f64::NEG_INFINITY, f64::max))
-        };
-        let ranges: Vec<(f64, f64)> = (0..self.tree.driven.len()).map(range).collect();
-        let heaviest =
-            campaign.positions.iter().map(|r| r.payload).max_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
-        out.positions.clear();
-        for name in &self.points {
-            let Some(like) = campaign.positions.iter().find(|r| r.point == *name) else { continue };
-            for index in 1..=PROPOSED_POSES {
-                let mut row = like.clone();
-                row.pose_deg = spread_pose(&ranges, index);
-                row.payload = heaviest.unwrap_or_default();
-                out.positions.push(row);
-            }
-        }
-        out
+/// A stiffness by its compliance.
+fn stiffness(compliance: f64, deviation: f64) -> Estimate {
+    let end = |c: f64| (c > 0.0).then(|| 1.0 / c);
+    Estimate {
+        value: end(compliance).unwrap_or(1e15),
+        low: end(compliance + 1.96 * deviation),
+        high: end(compliance - 1.96 * deviation),
     }
+}
 
-    fn repeat_worst(&self, campaign: &Campaign) -> Option<NextTest> {
-        let gross = |i: usize| self.gross.iter().any(|(row, _)| *row == i);
-        let errors = self.samples.iter().map(|s| self.fitted.error(s).norm()).enumerate();
-        let worst = errors.filter(|(i, _)| !gross(*i)).max_by(|a, b| a.1.total_cmp(&b.1))?.0;
-        let row = &campaign.positions[worst];
-        Some(NextTest {
-            kind: "positions".into(),
-            description:
-                "repeat this pose, which the best model misses most, from both sides, on another day".into(),
-            pose_deg: Some(row.pose_deg.clone()),
-            payload_kg: row.payload.mass_kg,
-            force_n: [0.0; 3],
-            joint: None,
-            separates: Vec::new(),
-            expected_sigmas: 0.0,
-            readings_needed: 1,
-        })
-    }
+/// The compliances of a frame as the effect's parameters; what no weight turns is open.
+fn frame_parameters(compliances: &[f64], deviations: &[f64]) -> Vec<(String, Vec<Estimate>)> {
+    let matrix = frame_matrix(compliances);
+    let entry = |at: (usize, usize)| {
+        let known = FRAME_ENTRIES[..compliances.len()].iter().position(|e| *e == at);
+        within(matrix[at], known.map_or(f64::INFINITY, |k| deviations[k]))
+    };
+    vec![
+        ("diagonal_rad_per_nm".into(), [(0, 0), (1, 1), (2, 2)].map(entry).to_vec()),
+        ("coupling_rad_per_nm".into(), [(0, 1), (0, 2), (1, 2)].map(entry).to_vec()),
+    ]
 }
 
 fn as_effect(campaign: &Campaign, finding: &Finding) -> Effect {

@@ -11,7 +11,7 @@ use super::kinematics::Number;
 use nalgebra::{DMatrix, Vector3};
 
 /// Fewest positions of a session.
-const FEWEST: usize = 10;
+const FEWEST: usize = 5;
 /// Rows tried at first as the first of a session; those about the best of them next.
 const TRIED: usize = 40;
 /// Most sessions beyond the first.

@@ -79,14 +79,14 @@ impl Positions {
     fn variance_ratio(&self, campaign: &Campaign) -> f64 {
         let rows = campaign.positions.iter().zip(&self.samples);
         let lengths = rows.map(|(row, s)| 1e3 * self.fitted.error(s).norm() / row.sigma_mm).collect();
-        let free = (self.numbers.len() + self.fitted.effects.len()) as f64;
+        let free = (self.numbers.len() + self.fitted.compliances.iter().map(Vec::len).sum::<usize>()) as f64;
         let count = (3 * self.samples.len()) as f64;
         (median(lengths) / MEDIAN_LENGTH).powi(2) * count / (count - free).max(1.0)
     }
 }
 
 /// `zᵀ S⁻¹ z` over the directions in which `S` is not singular, and how many they are.
-fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64) {
+pub fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64) {
     let eigen = SymmetricEigen::new((s + s.transpose()) * 0.5);
     let largest = eigen.eigenvalues.max();
     let (mut statistic, mut dof) = (0.0, 0.0);
@@ -113,7 +113,9 @@ struct Asker<'a> {
 
 impl<'a> Asker<'a> {
     fn new(found: &'a Positions, campaign: &Campaign) -> Self {
-        let joint = |c: &usize| !matches!(found.candidates[*c].effect, "bearing_tilt" | "base_compliance");
+        let joint = |c: &usize| {
+            !matches!(found.candidates[*c].effect, "bearing_tilt" | "base_compliance" | "frame_compliance")
+        };
         let torque = |c: usize| found.samples.iter().map(|s| s.sag.levers[c].1.abs()).fold(1e-9, f64::max);
         let joints: Vec<(usize, f64)> =
             (0..found.candidates.len()).filter(joint).map(|c| (c, torque(c))).collect();

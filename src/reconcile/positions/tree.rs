@@ -55,6 +55,13 @@ impl Tree {
         self.poses.push(own);
     }
 
+    /// The pose of all with that of one arm in it.
+    pub fn with_pose_of(&self, arm: usize, own: &[f64], pose: &[f64]) -> Vec<f64> {
+        let mut out = pose.to_vec();
+        self.poses[arm].iter().zip(own).for_each(|(&i, angle)| out[i] = *angle);
+        out
+    }
+
     /// The pose of one arm out of that of all.
     pub fn pose_of(&self, arm: usize, pose: &[f64]) -> Vec<f64> {
         self.poses[arm].iter().map(|&i| pose[i]).collect()

@@ -1,6 +1,7 @@
 //! A campaign's page: the verdict in a sentence, the gap before and after, where it sits, what speaks for
 //! each candidate, what is known of its parameters, whether it holds on readings kept out, what to measure.
 
+use super::positions::{Position, Step, angles_figure, axes_figure, sizes_figure, steps_figure};
 use super::{Extra, Figure, Gallery, Page};
 use crate::report::number::{fixed, significant};
 use crate::report::svg::rows::{Mark, Row, RowPlot};
@@ -114,6 +115,10 @@ pub struct CampaignPage {
     pub parts: Vec<Compared>,
     /// Every number that was measured.
     pub readings: Vec<Reading>,
+    /// Absolute positions: how the error falls as each thing is added.
+    pub steps: Vec<Step>,
+    /// The error of every absolute position.
+    pub positions: Vec<Position>,
     /// What was found or is suspected.
     pub found: Vec<Found>,
     /// Models weighed, best first.
@@ -172,8 +177,16 @@ impl CampaignPage {
             channels,
         );
         let channels = show(&mut gallery, channels);
-        let located: Vec<Value> = located.into_iter().flatten().map(|f| gallery.show(&f)).collect();
-        let residuals: Vec<Value> = self.residual_figures().iter().map(|f| gallery.show(f)).collect();
+        let angles = angles_figure(&self.joints, &self.positions);
+        let located: Vec<Value> =
+            located.into_iter().flatten().chain(angles).map(|f| gallery.show(&f)).collect();
+        let residuals = self.residual_figures().into_iter().chain(axes_figure(&self.positions));
+        let residuals: Vec<Value> = residuals.map(|f| gallery.show(&f)).collect();
+        let steps: Vec<Value> = [steps_figure(&self.steps), sizes_figure(&self.positions)]
+            .into_iter()
+            .flatten()
+            .map(|f| gallery.show(&f))
+            .collect();
         let (evidence, intervals, kept_out) = (self.evidence(), self.intervals(), self.kept_out_figure());
         let content = json!({
             "name": self.name,
@@ -182,6 +195,7 @@ impl CampaignPage {
             "explained": self.explained,
             "channels": channels,
             "located": located,
+            "steps": steps,
             "residuals": residuals,
             "found": self.found.iter().map(found).collect::<Vec<_>>(),
             "evidence": show(&mut gallery, evidence),

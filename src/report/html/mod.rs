@@ -12,6 +12,7 @@ pub mod document;
 pub mod front_data;
 pub mod front_views;
 pub mod pick;
+pub mod positions;
 pub mod study;
 
 use super::table::{Align, Table};

@@ -6,7 +6,7 @@
 //! weights and compliances as intervals both become intervals: no condition on the pose is needed.
 
 use super::parts::{INERTIAS, inertia};
-use crate::arm::{LinkModel, LinkPiece, Structure};
+use crate::arm::{FrameCompliance, LinkModel, LinkPiece, Structure};
 use crate::mechanics::beam::{PreparedBeam, section_frame};
 use crate::mechanics::{Twist, Wrench, angular, body_inertia, displacement_at, linear, rotation_twist};
 use crate::search::space::{Case, DesignSpace, SpacePiece};
@@ -234,6 +234,7 @@ fn posed_tube(
     let structure = Structure {
         gravity_m_s2: space.gravity_m_s2,
         base_tilt_rad_per_nm: 0.0,
+        base_frame: FrameCompliance::default(),
         water: None,
         pieces: Vec::new(),
     };

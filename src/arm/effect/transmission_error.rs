@@ -1,0 +1,51 @@
+//! A gear or its sensor that turns unevenly, once and twice a turn of the joint.
+
+use super::{Kind, Parameter, Place, Scope, Subject};
+
+const PARAMETERS: &[Parameter] = &[Parameter {
+    count: 4,
+    ..Parameter::vector("sin_cos_sin2_cos2_rad", -0.02, 0.02, 3e-4).expected(-0.003, 0.003)
+}];
+
+/// The effect.
+pub const KIND: Kind = Kind {
+    name: "transmission_error",
+    summary: "a joint turns unevenly, once and twice a turn; only absolute positions show it",
+    scope: Scope::Test,
+    places: &[Place::Joint],
+    parameters: |_| PARAMETERS,
+    apply,
+};
+
+fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
+    if let [a, b, c, d] = *numbers {
+        subject.transmissions_rad.push((at.into(), [a, b, c, d]));
+    }
+}
+
+/// Sine and cosine of a joint's angle, once and twice a turn.
+pub fn transmission_waves(angle_rad: f64) -> [f64; 4] {
+    let (sin, cos) = angle_rad.sin_cos();
+    let (sin2, cos2) = (2.0 * angle_rad).sin_cos();
+    [sin, cos, sin2, cos2]
+}
+
+/// By how much a joint turns too far at an angle \[rad\].
+pub fn transmission_rad(waves_rad: &[f64; 4], angle_rad: f64) -> f64 {
+    transmission_waves(angle_rad).iter().zip(waves_rad).map(|(wave, size)| wave * size).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_error_repeats_once_and_twice_a_turn() {
+        let mut subject = super::super::validate::testing::two_link_subject();
+        apply(&[1e-3, 0.0, 0.0, 2e-4], "j2", &mut subject);
+        let at = |q: f64| subject.turned_rad(&[0.3, q])[1] - q;
+        assert_eq!(subject.turned_rad(&[0.3, 0.7])[0], 0.3);
+        assert!((at(0.0) - 2e-4).abs() < 1e-15 && (at(std::f64::consts::FRAC_PI_2) - 8e-4).abs() < 1e-15);
+        assert!((at(1.0) - at(1.0 + std::f64::consts::TAU)).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,142 @@
+//! What to measure next: the pose in which the model differs most from what it is to be told from; where no
+//! pose tells them apart, or nothing in the library fits, another kind of test.
+
+use super::fit::Fitted;
+use super::{Positions, samples};
+use crate::reconcile::campaign::Campaign;
+use crate::reconcile::lack_of_fit::LackOfFit;
+use crate::reconcile::next_test::{ENOUGH, spread_pose};
+use crate::reconcile::verdict::{NextTest, Verdict};
+
+/// Poses among which the next test is chosen.
+const PROPOSED_POSES: usize = 60;
+/// Expected difference below which no number of readings is worth taking \[standard deviations\].
+const WORTHLESS_SIGMAS: f64 = 0.1;
+
+impl Positions {
+    /// One test for each model that fits as well, the most telling first.
+    pub(super) fn next_tests(
+        &self,
+        campaign: &Campaign,
+        verdict: Verdict,
+        left: &LackOfFit,
+        rivals: &[Vec<(usize, Fitted)>],
+    ) -> Vec<NextTest> {
+        if verdict == Verdict::Unexplained {
+            return self.after_unexplained(campaign, left).into_iter().collect();
+        }
+        let proposed = self.proposals(campaign);
+        let known = || rivals.iter().enumerate().flat_map(|(i, list)| list.iter().map(move |r| (i, r)));
+        let mut out: Vec<NextTest> = known()
+            .filter_map(|(i, (candidate, fitted))| {
+                let names = [self.label(self.fitted.effects[i]), self.label(*candidate)];
+                self.telling_pose(&proposed, fitted, names)
+            })
+            .collect();
+        if out.is_empty() && !self.stages.is_empty() {
+            let model: Vec<String> = self.fitted.effects.iter().map(|&e| self.label(e)).collect();
+            let model = if model.is_empty() { "calibration only".into() } else { model.join(" + ") };
+            out.extend(self.telling_pose(&proposed, &self.rigid, [model, "calibration only".into()]));
+        }
+        out.sort_by(|a, b| b.expected_sigmas.total_cmp(&a.expected_sigmas));
+        out
+    }
+
+    /// The pose among the proposed that best tells the model from a rival, or that none does.
+    fn telling_pose(&self, proposed: &Campaign, rival: &Fitted, names: [String; 2]) -> Option<NextTest> {
+        let own = samples(proposed, &self.tree, &self.fitted.geometry, &self.candidates, &self.points);
+        let sigma_mm =
+            proposed.positions.iter().map(|r| r.sigma_mm).fold(1e3 * self.fitted.scale_m, f64::max);
+        let gap =
+            own.iter().map(|s| 1e3 * (self.fitted.predicted_m(s) - rival.predicted_m(s)).norm() / sigma_mm);
+        let (best, sigmas) = gap.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let row = &proposed.positions[best];
+        let [a, b] = &names;
+        if sigmas < WORTHLESS_SIGMAS {
+            let separates = format!(
+                "no position separates {a} from {b}: load the tip sideways and measure the turn on both sides \
+                 of each place with dial gauges or an inclinometer"
+            );
+            return (a != b).then(|| self.other_kind(separates));
+        }
+        Some(NextTest {
+            kind: "positions".into(),
+            description: format!("position of {}", row.point),
+            pose_deg: Some(row.pose_deg.clone()),
+            payload_kg: row.payload.mass_kg,
+            force_n: [0.0; 3],
+            joint: None,
+            separates: names.to_vec(),
+            expected_sigmas: sigmas,
+            readings_needed: (ENOUGH / sigmas).powi(2).ceil().min(9999.0) as usize,
+        })
+    }
+
+    /// A test of another kind, whose worth these readings do not tell.
+    fn other_kind(&self, description: String) -> NextTest {
+        NextTest {
+            kind: "another kind".into(),
+            description,
+            pose_deg: None,
+            payload_kg: 0.0,
+            force_n: [0.0; 3],
+            joint: None,
+            separates: Vec::new(),
+            expected_sigmas: 0.0,
+            readings_needed: 0,
+        }
+    }
+
+    /// The campaign with proposed poses in place of its own, within the ranges of its own, each with the
+    /// largest payload it used.
+    fn proposals(&self, campaign: &Campaign) -> Campaign {
+        let mut out = campaign.clone();
+        let range = |j: usize| {
+            let angles = || campaign.positions.iter().map(move |r| r.pose_deg[j]);
+            (angles().fold(f64::INFINITY, f64::min), angles().fold(f64::NEG_INFINITY, f64::max))
+        };
+        let ranges: Vec<(f64, f64)> = (0..self.tree.driven.len()).map(range).collect();
+        let heaviest =
+            campaign.positions.iter().map(|r| r.payload).max_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
+        out.positions.clear();
+        for name in &self.points {
+            let Some(like) = campaign.positions.iter().find(|r| r.point == *name) else { continue };
+            for index in 1..=PROPOSED_POSES {
+                let mut row = like.clone();
+                row.pose_deg = spread_pose(&ranges, index);
+                row.payload = heaviest.unwrap_or_default();
+                out.positions.push(row);
+            }
+        }
+        out
+    }
+
+    /// Nothing that the library knows fits, so no pose separates anything; what the errors follow says
+    /// which other test is worth making, in the pose that the best model misses most.
+    fn after_unexplained(&self, campaign: &Campaign, left: &LackOfFit) -> Option<NextTest> {
+        let gross = |i: usize| self.gross.iter().any(|(row, _)| *row == i);
+        let errors = self.samples.iter().map(|s| self.fitted.error(s).norm()).enumerate();
+        let worst = errors.filter(|(i, _)| !gross(*i)).max_by(|a, b| a.1.total_cmp(&b.1))?.0;
+        let row = &campaign.positions[worst];
+        let follows = left.structures.iter().find(|s| self.is_material(s)).map(|s| s.follows.as_str());
+        let what = match follows.and_then(|f| f.rsplit_once(' ')) {
+            Some(("the angle of", joint)) => format!(
+                "from this pose turn {joint} alone through its range and back, a reading every few degrees: what \
+                 repeats is the gear or the axis, what differs between the directions is play"
+            ),
+            Some(("the torque on", joint)) => {
+                format!("repeat this pose with several payloads, rising and falling: the twist of {joint} against its torque")
+            }
+            Some(("the order of the", _)) => {
+                "repeat this pose after every ten others: what changes is the instrument, the reflector or the base".into()
+            }
+            _ => "repeat this pose, which the best model misses most, from both sides, on another day".into(),
+        };
+        let description = format!("no further pose of its own separates anything, for no model fits: {what}");
+        Some(NextTest {
+            pose_deg: Some(row.pose_deg.clone()),
+            payload_kg: row.payload.mass_kg,
+            ..self.other_kind(description)
+        })
+    }
+}

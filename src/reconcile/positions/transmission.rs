@@ -1,0 +1,77 @@
+//! Joints that turn unevenly: the error of a gear or its sensor, once and twice a turn.
+
+use super::Positions;
+use super::fit::{Fitted, Sample, fit};
+use super::kinematics::Number;
+use super::search::{FULL_FITS, TIE};
+use crate::arm::effect::transmission_waves;
+use crate::reconcile::campaign::Campaign;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+/// Name of the effect.
+pub const EFFECT: &str = "transmission_error";
+
+/// The numbers of a driven joint's error.
+pub fn numbers(joint: usize) -> impl Iterator<Item = Number> {
+    (0..transmission_waves(0.0).len()).map(move |k| Number::Transmission(joint, k))
+}
+
+impl Positions {
+    /// Lets the joint turn unevenly whose error raises the likelihood most, if it is worth its price and
+    /// poses kept out confirm it.
+    pub(super) fn add_transmission(&mut self, campaign: &Campaign) -> bool {
+        if !campaign.statement.considers(EFFECT) {
+            return false;
+        }
+        let tried = self.best_transmissions();
+        let price = self.price(numbers(0).count(), self.tree.driven.len());
+        let worth = tried.into_iter().filter(|(_, f)| f.ln_likelihood > self.fitted.ln_likelihood + price);
+        let best = worth.max_by(|a, b| a.1.ln_likelihood.total_cmp(&b.1.ln_likelihood));
+        let Some((joint, fitted)) = best else { return false };
+        let mut next = Self { fitted, ..self.clone() };
+        next.numbers.extend(numbers(joint));
+        next.transmissions.push(joint);
+        next.refresh(campaign);
+        next.refit();
+        next.stage(format!("{EFFECT}@{}", self.tree.driven[joint]), Vec::new());
+        self.take_if_confirmed(next)
+    }
+
+    /// Models in which one more joint turns unevenly, the most promising fitted in full.
+    fn best_transmissions(&self) -> Vec<(usize, Fitted)> {
+        let all: Vec<&Sample> = self.samples.iter().collect();
+        let open: Vec<usize> =
+            (0..self.tree.driven.len()).filter(|j| !self.transmissions.contains(j)).collect();
+        let further: Vec<Number> = open.iter().flat_map(|&j| numbers(j)).collect();
+        let columns =
+            |s: &Sample| -> Vec<Vector3<f64>> { self.fitted.geometry.place(s.placing(), &further).slopes };
+        let counts = vec![numbers(0).count(); open.len()];
+        let gains = self.linear_gains(&self.fitted, &columns, &counts);
+        let mut order: Vec<(usize, f64)> = open.into_iter().zip(gains).collect();
+        order.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        order.truncate(FULL_FITS);
+        let with = |(joint, _): (usize, f64)| {
+            let all_numbers: Vec<Number> = self.numbers.iter().cloned().chain(numbers(joint)).collect();
+            (joint, fit(&all, &all_numbers, &self.fitted.effects, &self.fitted))
+        };
+        order.into_par_iter().map(with).collect()
+    }
+
+    /// Joints whose uneven turning would fit as well as that of one.
+    pub(super) fn transmission_rivals(&self, joint: usize) -> Vec<usize> {
+        let mut without = self.clone();
+        let kept = |n: &Number| !matches!(n, Number::Transmission(j, _) if *j == joint);
+        without.fitted.moved =
+            self.numbers.iter().zip(&self.fitted.moved).filter(|(n, _)| kept(n)).map(|(_, m)| *m).collect();
+        without.fitted.geometry.transmissions_rad[joint] = [0.0; 4];
+        without.numbers.retain(kept);
+        without.transmissions.retain(|j| *j != joint);
+        without.refit();
+        let tried = without.best_transmissions().into_iter();
+        tried
+            .filter(|(j, f)| *j != joint && f.ln_likelihood > self.fitted.ln_likelihood - TIE)
+            .map(|(j, _)| j)
+            .collect()
+    }
+}
