@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Boxes that the way down from the box of everything may open.
-const DIVE_BOXES: usize = 500;
+const DIVE_BOXES: usize = 2_000;
 /// Boxes that a level left free may open.
 const LEVEL_BOXES: usize = 300;
 /// Times every level is let go free.

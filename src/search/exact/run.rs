@@ -26,8 +26,8 @@ const SLACKS: [f64; 15] =
     [1.0, 0.7, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.16, 0.12, 0.09, 0.06, 0.04, 0.02, 0.0];
 /// Designs above which a space is large.
 const LARGE: u128 = 1_000_000_000;
-/// Probes for every power of ten of designs.
-const PROBES_A_DECADE: f64 = 2.0;
+/// Probes by the square of the powers of ten of designs: a large space repays many, a small one none.
+const PROBES: f64 = 0.25;
 /// Designs are filtered whenever their number reaches a power of two above this.
 const BUFFER: usize = 4096;
 
@@ -117,7 +117,7 @@ impl<'p> Exact<'p> {
             let designs = whole.designs();
             let search = |slack: f64| Search { exact: self, problem: whole, shared: &shared, slack };
             if known.is_empty() {
-                probe(&search(0.0), (PROBES_A_DECADE * (designs as f64).log10()) as usize);
+                probe(&search(0.0), (PROBES * (designs as f64).log10().powi(2)) as usize);
             }
             let passes = if designs > LARGE && known.is_empty() { &SLACKS[..] } else { &[0.0] };
             for &slack in passes {
