@@ -193,6 +193,44 @@ fn the_exact_front_is_the_front_of_every_design() {
     assert!(points as u64 > 10 * feasible, "fronts are too small to say much: {points} designs");
 }
 
+/// An arm with many drives at three joints, most of which a lighter one makes pointless, in poses in which a
+/// heavier part pulls every joint the same way. Some break points lie where the torques are.
+fn study_of_many_drives(seed: u64) -> Value {
+    let dice = &mut Dice(seed);
+    let drives = |dice: &mut Dice, ratios: &[u32]| {
+        json!({"gear_series": ["CSG", "HFUC"], "ratios": ratios,
+            "motor_models": some(dice, &["ILM50x14", "ILM70x18", "ILM85x26"], 2)})
+    };
+    let upper_m = dice.within(0.5, 0.9);
+    let open = |name: &str, drives: Value| json!({"type": "joint", "name": name, "axis": [0, 1, 0], "drive": "all_fits", "drives": drives});
+    let chain = json!([
+        {"type": "joint", "name": "j1", "axis": [0, 0, 1], "gear": "CSG-40-100", "mass_kg": 8},
+        {"type": "link", "name": "shoulder", "vector_m": [0, 0, 0.3]},
+        open("j2", drives(dice, &[100])),
+        link(dice, "upper_arm", [upper_m, 0.0, 0.0]),
+        open("j3", drives(dice, &[100, 120])),
+        {"type": "link", "name": "forearm", "vector_m": [0.4, 0, 0], "mass_kg": 2},
+        open("j4", drives(dice, &[80, 100])),
+        {"type": "link", "name": "flange", "vector_m": [0.1, 0, 0]}]);
+    let bent = json!({"pose_deg": [0, -30, 60, dice.of(&[0, 60])]});
+    let poses = if dice.below(2) == 0 {
+        json!([{"pose_deg": [0, 0, 0, 0]}])
+    } else {
+        json!([{"pose_deg": [0, 0, 0, 0]}, bent])
+    };
+    json!({"name": format!("drives-{seed}"), "chain": chain, "poses": poses,
+        "payload": {"mass_kg": dice.within(1.0, 8.0), "cg_m": [0.03, 0, 0.02]},
+        "models": {"joints": dice.of(&["three_segment", "three_segment", "three_segment_k1"])},
+        "constraints": {"stress_safety_factor_min": 1.5}})
+}
+
+#[test]
+fn fronts_are_whole_where_most_drives_are_pointless() {
+    let points: usize = (0..12).map(|seed| agree(&study_of_many_drives(seed))).sum();
+    println!("{points} designs, the same in both");
+    assert!(points > 200, "{points}");
+}
+
 /// An arm whose heavier wrist drives press joint 2 into a stiffer segment of its gear.
 fn ballast_study() -> Value {
     let wrist = json!({"gear_series": ["CSG"], "ratios": [100], "motors": ["electric"]});

@@ -171,19 +171,23 @@ impl NearFront {
 
     /// The section of a page: how many there are, and the nearest.
     pub fn section(&self) -> Extra {
-        let shown = ["design_id", "near_to", "shortfall_percent", "interchangeable"];
-        let columns = shown.map(|name| self.table.column(name));
-        let mut nearest = Table::new(vec![
-            Column::left("design"),
-            Column::left("near to"),
-            Column::right("worse by at most %"),
-            Column::left("the one part that differs"),
-        ]);
-        let cell = |row: &[String], column: Option<usize>| column.map_or("", |c| &row[c]).to_string();
+        let words = [("design_id", "design"), ("near_to", "near to")];
+        let numbers = [
+            ("shortfall_percent", "worse by at most [%]"),
+            ("tip_deflection_mm", "tip [mm]"),
+            ("mass_kg", "mass [kg]"),
+            ("lowest_mode_hz", "mode [Hz]"),
+        ];
+        let headers = words.map(|(_, header)| Column::left(header)).into_iter();
+        let mut nearest = Table::new(headers.chain(numbers.map(|(_, h)| Column::right(h))).collect());
+        let cell = |row: &[String], name: &str| self.table.column(name).map_or("", |c| &row[c]).to_string();
         for row in self.table.rows.iter().take(NEAREST) {
-            let [id, to, worse, part] = columns.map(|c| cell(row, c));
-            let worse = worse.parse().map_or(worse, |x| significant(x, 3));
-            nearest.row([id, to, worse, part]);
+            let number = |(name, _): (&str, &str)| {
+                let cell = cell(row, name);
+                cell.parse().map_or(cell, |x| significant(x, 4))
+            };
+            let named = words.map(|(name, _)| cell(row, name)).into_iter();
+            nearest.row(named.chain(numbers.map(number)));
         }
         let some = !self.table.rows.is_empty();
         Extra {
