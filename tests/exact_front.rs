@@ -226,7 +226,7 @@ fn study_of_many_drives(seed: u64) -> Value {
 
 #[test]
 fn fronts_are_whole_where_most_drives_are_pointless() {
-    let points: usize = (0..12).map(|seed| agree(&study_of_many_drives(seed))).sum();
+    let points: usize = (0..8).map(|seed| agree(&study_of_many_drives(seed))).sum();
     println!("{points} designs, the same in both");
     assert!(points > 200, "{points}");
 }

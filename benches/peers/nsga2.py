@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A genetic algorithm beside the exact search, on the same study and the same evaluation.
 
-NSGA-II of pymoo, one whole number a level (the option's place in its list), crossover and mutation on whole numbers,
+NSGA-II of pymoo with a population as large as the true front, one whole number a level (the option's place in its list), crossover and mutation on whole numbers,
 duplicates left out; designs are judged by the library. It gets the wall time that `armwright run` took, and that
 many times it. Prints for each: designs judged, size of its front, share of the true front it found (to 1e-6 in all
 three objectives), and its hypervolume in logarithms of the objectives over that of the true front.
@@ -30,9 +30,8 @@ from pymoo.operators.repair.rounding import RoundingRepair
 from pymoo.operators.sampling.rnd import IntegerRandomSampling
 from pymoo.optimize import minimize
 
-RELEASE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../target/release")
-RELEASE = os.environ.get("ARMWRIGHT_RELEASE", RELEASE)
-POPULATION = 400
+BUILT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../target/release")
+RELEASE = os.environ.get("ARMWRIGHT_RELEASE", BUILT)
 SEED = 1
 
 
@@ -94,7 +93,8 @@ def main():
     for times in [float(word) for word in sys.argv[2:]] or [1.0, 100.0]:
         designs = Designs(study)
         algorithm = NSGA2(
-            pop_size=POPULATION,
+            # room for the whole front
+            pop_size=max(200, len(true)),
             sampling=IntegerRandomSampling(),
             crossover=SBX(prob=0.9, eta=15, vtype=float, repair=RoundingRepair()),
             mutation=PM(eta=20, vtype=float, repair=RoundingRepair()),
