@@ -42,6 +42,21 @@ impl Windup {
         }
     }
 
+    /// Whether the slope is at least that of another curve under every torque up to one \[N m\].
+    pub fn never_softer(&self, other: &Self, most_nm: f64) -> bool {
+        let starts = [0.0, self.t1_nm, self.t2_nm, other.t1_nm, other.t2_nm];
+        starts.into_iter().all(|t| t > most_nm || self.slope_beyond(t) >= other.slope_beyond(t))
+    }
+
+    /// The slope just beyond a torque.
+    fn slope_beyond(&self, torque_nm: f64) -> f64 {
+        match torque_nm {
+            t if t < self.t1_nm => self.k1_nm_per_rad,
+            t if t < self.t2_nm => self.k2_nm_per_rad,
+            _ => self.k3_nm_per_rad,
+        }
+    }
+
     /// The curve of a gear that is stiffer by a factor under every torque; its break points stay.
     #[must_use]
     pub fn stiffened(&self, factor: f64) -> Self {
@@ -95,6 +110,21 @@ impl Curve {
             Curve::Linear(stiffness) => Curve::Linear(stiffness * factor),
             Curve::Windup(windup) => Curve::Windup(windup.stiffened(factor)),
             Curve::WindupK1(windup) => Curve::WindupK1(windup.stiffened(factor)),
+        }
+    }
+
+    /// The curve as three segments, of one slope if it is a line; `None` if nothing twists.
+    pub fn segments(&self) -> Option<Windup> {
+        match *self {
+            Curve::Rigid => None,
+            Curve::Linear(k) => Some(Windup {
+                k1_nm_per_rad: k,
+                k2_nm_per_rad: k,
+                k3_nm_per_rad: k,
+                t1_nm: f64::INFINITY,
+                t2_nm: f64::INFINITY,
+            }),
+            Curve::Windup(windup) | Curve::WindupK1(windup) => Some(windup),
         }
     }
 

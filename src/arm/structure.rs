@@ -145,8 +145,15 @@ impl Arm {
                 Element::Link(link) => Piece::Link(link_piece(link)),
             })
             .collect();
-        Structure {
-            gravity_m_s2: self.gravity_m_s2,
+        Structure::bare(self.gravity_m_s2, pieces)
+    }
+}
+
+impl Structure {
+    /// Pieces on a rigid base in air.
+    pub(crate) fn bare(gravity_m_s2: f64, pieces: Vec<Piece>) -> Self {
+        Self {
+            gravity_m_s2,
             base_tilt_rad_per_nm: 0.0,
             base_frame: FrameCompliance::default(),
             water: None,

@@ -7,7 +7,7 @@ use crate::arm::Effect;
 use crate::catalog::Catalogs;
 use crate::fault::Document;
 use crate::report::budget::{PickBudget, budget_csv};
-use crate::report::certificate::certificate_section;
+use crate::report::certificate::{certificate_section, certificate_words};
 use crate::report::compare::text::wrap;
 use crate::report::front_svg::{FrontPicture, PlottedFront, mixed_designs};
 use crate::report::front_table::FrontTable;
@@ -276,23 +276,8 @@ fn search_exactly(
                 dir,
             };
             let mut written = finished.files(&args.beside, &stop)?;
-            written.terminal.push_str(&certificate(boxes, gap));
+            written.terminal.push_str(&certificate_words(boxes, gap));
             Ok(written)
-        }
-    }
-}
-
-/// What an exact search proves, in words.
-fn certificate([boxes, open]: [u64; 2], gap: Option<f64>) -> String {
-    match (open, gap) {
-        (0, _) => format!("certified: no design that is not listed is on the front ({boxes} boxes)\n"),
-        (_, Some(gap)) => format!(
-            "partial: no design beats every one listed by more than {:.3} % in all three\n\
-             objectives at once ({boxes} boxes bounded, {open} open)\n",
-            100.0 * gap
-        ),
-        (_, None) => {
-            format!("partial: nothing can be said about what is missing ({boxes} boxes, {open} open)\n")
         }
     }
 }

@@ -49,3 +49,18 @@ pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Ext
     let words = words.into_iter().chain([format!("{how} {}", facts.results)]).collect();
     Extra { title: "How sure is this front?".into(), words, tables: Vec::new(), figures: Vec::new() }
 }
+
+/// What an exact search proves, for the terminal; `boxes` as for the page.
+pub fn certificate_words([boxes, open]: [u64; 2], gap: Option<f64>) -> String {
+    match (open, gap) {
+        (0, _) => format!("certified: no design that is not listed is on the front ({boxes} boxes)\n"),
+        (_, Some(gap)) => format!(
+            "partial: no design beats every one listed by more than {:.3} % in all three\n\
+             objectives at once ({boxes} boxes bounded, {open} open)\n",
+            100.0 * gap
+        ),
+        (_, None) => {
+            format!("partial: nothing can be said about what is missing ({boxes} boxes, {open} open)\n")
+        }
+    }
+}

@@ -164,14 +164,11 @@ impl<'p, 'c> Weighed<'p, 'c> {
 
 /// Whether a curve is at least as stiff as another under every torque.
 fn never_softer(a: &Curve, b: &Curve) -> bool {
-    let breaks = |curve: &Curve| match curve {
-        Curve::Windup(w) | Curve::WindupK1(w) => vec![w.t1_nm, w.t2_nm],
-        _ => Vec::new(),
-    };
-    // at a break point the tangent is that of the segment below: one torque in every segment of either
-    let torques_nm = [breaks(a), breaks(b), vec![f64::INFINITY]].concat();
-    let softness = |curve: &Curve, torque_nm| curve.tangent_compliance_rad_per_nm(torque_nm);
-    torques_nm.into_iter().all(|t| softness(a, t) <= softness(b, t))
+    match (a.segments(), b.segments()) {
+        (None, _) => true,
+        (Some(_), None) => false,
+        (Some(a), Some(b)) => a.never_softer(&b, f64::INFINITY),
+    }
 }
 
 /// Stiffnesses of a tube per length: stretch, bending about both axes, torsion, shear.

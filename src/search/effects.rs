@@ -7,9 +7,7 @@
 
 use super::space::{DesignSpace, SpaceJoint, SpacePiece};
 use crate::arm::effect::Subject;
-use crate::arm::{
-    Curve, FrameCompliance, JointAngle, JointLaw, JointPiece, Link, LinkPiece, Piece, Structure, link_piece,
-};
+use crate::arm::{Curve, JointAngle, JointLaw, JointPiece, Link, LinkPiece, Piece, Structure, link_piece};
 use crate::mechanics::across;
 use nalgebra::{Rotation3, Vector3};
 
@@ -152,17 +150,7 @@ impl DesignSpace {
             SpacePiece::Link(link) => Piece::Link(link_piece(link)),
             SpacePiece::Choice(choice) => Piece::Link(link_piece(&choice.first_link())),
         };
-        self.bare(self.pieces.iter().map(piece).collect())
-    }
-
-    fn bare(&self, pieces: Vec<Piece>) -> Structure {
-        Structure {
-            gravity_m_s2: self.gravity_m_s2,
-            base_tilt_rad_per_nm: 0.0,
-            base_frame: FrameCompliance::default(),
-            water: None,
-            pieces,
-        }
+        Structure::bare(self.gravity_m_s2, self.pieces.iter().map(piece).collect())
     }
 
     fn affected(&self, piece: Piece) -> Option<Piece> {
@@ -170,7 +158,7 @@ impl DesignSpace {
     }
 
     fn with_effects(&self, pieces: Vec<Piece>) -> Structure {
-        let mut subject = Subject::new(self.bare(pieces));
+        let mut subject = Subject::new(Structure::bare(self.gravity_m_s2, pieces));
         self.effects.iter().filter(|effect| !effect.is_of_test()).for_each(|effect| subject.apply(effect));
         subject.structure
     }

@@ -131,17 +131,7 @@ pub(super) struct CurveBox {
 impl CurveBox {
     /// The box of one curve; a rigid joint has none.
     pub fn of(curve: &Curve) -> Option<Self> {
-        let windup = match *curve {
-            Curve::Rigid => return None,
-            Curve::Linear(k) => Windup {
-                k1_nm_per_rad: k,
-                k2_nm_per_rad: k,
-                k3_nm_per_rad: k,
-                t1_nm: f64::INFINITY,
-                t2_nm: f64::INFINITY,
-            },
-            Curve::Windup(windup) | Curve::WindupK1(windup) => windup,
-        };
+        let windup = curve.segments()?;
         Some(Self { stiff: windup, soft: windup, k1_in_modes: !matches!(curve, Curve::Windup(_)) })
     }
 
@@ -210,17 +200,6 @@ fn slopes(w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> 
     // a break point belongs to the segment below it
     let touched = move |&(_, from, to): &(f64, f64, f64)| least_nm <= to && (most_nm > from || from == 0.0);
     segments.into_iter().filter(touched).map(|(slope, ..)| slope)
-}
-
-/// Whether a curve's slope is at least that of another under every torque up to one \[N m\].
-pub(super) fn never_softer(a: &Windup, b: &Windup, most_nm: f64) -> bool {
-    let slope_beyond = |w: &Windup, t_nm: f64| match t_nm {
-        t if t < w.t1_nm => w.k1_nm_per_rad,
-        t if t < w.t2_nm => w.k2_nm_per_rad,
-        _ => w.k3_nm_per_rad,
-    };
-    let starts = [0.0, a.t1_nm, a.t2_nm, b.t1_nm, b.t2_nm];
-    starts.into_iter().all(|t| t > most_nm || slope_beyond(a, t) >= slope_beyond(b, t))
 }
 
 /// The break points of a set of curves, on a grid of about 5 %.

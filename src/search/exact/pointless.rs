@@ -9,7 +9,7 @@
 //! drives once and for all, only within a box: there the torques inboard are intervals.
 
 use super::bound::Work;
-use super::parts::{CurveBox, DriveBox, SAME_TORQUE, never_softer};
+use super::parts::{CurveBox, DriveBox, SAME_TORQUE};
 use super::pose::{Pose, PosedPiece, Row};
 use super::problem::{Part, Problem};
 use super::tree::Tree;
@@ -40,7 +40,7 @@ impl Wanted<'_> {
             && match (&drives.curve, &self.curve) {
                 (None, _) => true,
                 (Some(_), None) => false,
-                (Some(a), Some(b)) => never_softer(&a.stiff, &b.stiff, self.most_torque_nm),
+                (Some(a), Some(b)) => a.stiff.never_softer(&b.stiff, self.most_torque_nm),
             }
     }
 

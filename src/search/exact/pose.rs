@@ -6,7 +6,7 @@
 //! weights and compliances as intervals both become intervals: no condition on the pose is needed.
 
 use super::parts::{INERTIAS, inertia};
-use crate::arm::{FrameCompliance, LinkModel, LinkPiece, Structure};
+use crate::arm::{LinkModel, LinkPiece, Structure};
 use crate::mechanics::beam::{PreparedBeam, section_frame};
 use crate::mechanics::{Twist, Wrench, angular, body_inertia, displacement_at, linear, rotation_twist};
 use crate::search::space::{Case, DesignSpace, SpacePiece};
@@ -231,13 +231,7 @@ fn posed_tube(
     root_m: &Vector3<f64>,
     rotation: &Matrix3<f64>,
 ) -> PosedPiece {
-    let structure = Structure {
-        gravity_m_s2: space.gravity_m_s2,
-        base_tilt_rad_per_nm: 0.0,
-        base_frame: FrameCompliance::default(),
-        water: None,
-        pieces: Vec::new(),
-    };
+    let structure = Structure::bare(space.gravity_m_s2, Vec::new());
     let frame = rotation * section_frame(&link.vector_m);
     // shapes depend on the length alone
     let Some(beam) = PreparedBeam::new(&link, &structure, LinkModel::Full) else {
