@@ -215,7 +215,8 @@ pub fn bounded_step(model: &Model, u: &[f64], normal: &Normal, damping: f64) -> 
             .zip(step.iter())
             .filter(|(p, s)| {
                 let (low, high) = model.bounds(**p);
-                (u[**p] <= low && **s < 0.0) || (u[**p] >= high && **s > 0.0)
+                let lowest = u[**p] <= low || model.rests(**p, u);
+                (lowest && **s < 0.0) || (u[**p] >= high && **s > 0.0)
             })
             .map(|(p, _)| *p)
             .collect();
@@ -225,6 +226,7 @@ pub fn bounded_step(model: &Model, u: &[f64], normal: &Normal, damping: f64) -> 
                 let (low, high) = model.bounds(*p);
                 out[*p] = (u[*p] + s).clamp(low, high);
             }
+            model.put_in_order(&mut out);
             return out;
         }
         free.retain(|p| !blocked.contains(p));
@@ -268,7 +270,7 @@ pub fn fit<'a>(
     weights: &Weights,
     effort: Effort,
 ) -> Fit<'a> {
-    let start: Vec<f64> = start
+    let mut start: Vec<f64> = start
         .iter()
         .enumerate()
         .map(|(p, u)| {
@@ -276,6 +278,7 @@ pub fn fit<'a>(
             u.clamp(low, high)
         })
         .collect();
+    model.put_in_order(&mut start);
     let mut here = evaluate(forward, model, &start, weights);
     let mut slopes = jacobian(forward, model, &here);
     let mut damping = 1e-4;
@@ -321,9 +324,12 @@ pub fn finish<'a>(
     forward: &Forward,
     model: &Model<'a>,
     point: Point,
-    jacobian: DMatrix<f64>,
+    mut jacobian: DMatrix<f64>,
     weights: &Weights,
 ) -> Fit<'a> {
+    // a number that rests on another could be anywhere below it
+    let resting = (0..model.len()).filter(|p| model.rests(*p, &point.u));
+    resting.for_each(|p| jacobian.fill_column(p, 0.0));
     let normal = normal(forward, model.calibrated(), &point.u, &point.predicted, &jacobian, weights);
     let mut curvature = normal.curvature;
     let mut evidence = -0.5 * point.objective;

@@ -352,6 +352,40 @@ impl<'a> Model<'a> {
         knobs.filter(|(_, k)| k.name == "t1_nm" || k.name == "t2_nm").map(|(i, _)| first + i).collect()
     }
 
+    /// The parameter that a parameter is not below, if there is one.
+    fn floor(&self, index: usize) -> Option<usize> {
+        let mut first = self.calibrated();
+        for effect in &self.effects {
+            if let Some(knob) = index.checked_sub(first).and_then(|i| effect.knobs.get(i)) {
+                return Some(first + effect.knobs.iter().position(|k| Some(k.name) == knob.not_below)?);
+            }
+            first += effect.knobs.len();
+        }
+        None
+    }
+
+    /// Whether a parameter is no higher than the one that it is not below: as far down as it acts.
+    pub fn rests(&self, index: usize, u: &[f64]) -> bool {
+        self.floor(index).is_some_and(|least| u[index] <= u[least])
+    }
+
+    /// Brings parameters into the order they keep. Out of it a number acts on nothing, and a descent that has let
+    /// it go there never finds it again.
+    pub fn put_in_order(&self, u: &mut [f64]) {
+        for index in self.calibrated()..u.len() {
+            let Some(least) = self.floor(index).filter(|least| u[index] < u[*least]) else { continue };
+            match self.is_held(index) {
+                false => u[index] = u[least],
+                true if !self.is_held(least) => u[least] = u[index],
+                true => {}
+            }
+        }
+    }
+
+    fn is_held(&self, index: usize) -> bool {
+        self.held.iter().any(|(held, _)| *held == index)
+    }
+
     /// Number of parameters.
     pub fn len(&self) -> usize {
         self.calibrated() + self.knobs().count()

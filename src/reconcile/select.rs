@@ -420,6 +420,9 @@ impl<'a> Search<'a> {
         let candidate = &self.candidates[index];
         let mut model = base.with(candidate);
         model.smoothing = 0.1;
+        // a straight line knows nothing of the frequencies' steps at them
+        model.held =
+            model.break_points().into_iter().filter(|p| *p < base.len()).map(|p| (p, here.u[p])).collect();
         candidate
             .starts
             .iter()
