@@ -83,6 +83,21 @@ fn a_curve_is_fitted_to_the_end_before_a_further_effect_is_named() {
     assert_eq!(right_of(&score), (1, 1), "{}", score.table());
 }
 
+/// A descent that lets the two break points meet must find them apart again: no further effect, and no law without
+/// a name, may be named to make that good.
+#[test]
+fn a_curve_whose_break_points_meet_on_the_way_is_opened_again() {
+    let score = score("hard", "one", 822, [1].into_iter());
+    assert_eq!(right_of(&score), (1, 1), "{}", score.table());
+}
+
+/// A further effect that moves the torques must not carry the break points of a curve into another valley.
+#[test]
+fn a_further_effect_is_found_beside_a_curve() {
+    let score = score("hard", "two", 263, [23].into_iter());
+    assert_eq!(right_of(&score), (1, 1), "{}", score.table());
+}
+
 #[test]
 fn an_honest_arm_has_no_gap() {
     for set in ["plain", "hard"] {

@@ -132,6 +132,9 @@ fn settle(
             break;
         }
         noise = Noise { scale: [1.0; 3], outliers: judged.outliers.clone() };
+        if selection.given_up {
+            break; // what a law without a name has settled no slips decide
+        }
         (selection, judged, _, hopeful) = run(forward, &noise, Before::Best(&selection.best));
     }
     for _ in 0..2 {

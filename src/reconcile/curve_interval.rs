@@ -8,7 +8,7 @@
 //! nodes about the best fit, close together near it; from nodes that are not ruled out their neighbours
 //! are looked at.
 
-use super::fit::{Effort, Fit, Weights, fit};
+use super::fit::{Effort, Fit, Weights, fit_below};
 use super::forward::Forward;
 use super::interval::{Interval, data_curvature};
 use super::stats::normal_below;
@@ -152,7 +152,8 @@ impl Cell {
     ) -> Self {
         let mut model = best.model.clone();
         model.held = [0, 1].map(|k| (axes[k].parameter, axes[k].nodes[nodes[k]])).to_vec();
-        let fitted = fit(forward, &model, start, weights, HELD);
+        let limit = best.point.objective + RULED_OUT;
+        let fitted = fit_below(forward, &model, start, weights, HELD, limit);
         let held = axes.each_ref().map(|a| a.parameter);
         let of_rest = without(&fitted.curvature, held);
         let ln_density =

@@ -270,6 +270,44 @@ pub fn fit<'a>(
     weights: &Weights,
     effort: Effort,
 ) -> Fit<'a> {
+    fit_below(forward, model, start, weights, effort, f64::INFINITY)
+}
+
+/// The same, given up where the objective will not come below a limit.
+pub fn fit_below<'a>(
+    forward: &Forward,
+    model: &Model<'a>,
+    start: &[f64],
+    weights: &Weights,
+    effort: Effort,
+    limit: f64,
+) -> Fit<'a> {
+    let (point, slopes) = descended(forward, model, start, weights, effort, limit);
+    let slopes = slopes.unwrap_or_else(|| jacobian(forward, model, &point));
+    finish(forward, model, point, slopes, weights)
+}
+
+/// Where a fit that is given up like that ends: all that is needed to go on from there.
+pub fn descent(
+    forward: &Forward,
+    model: &Model,
+    start: &[f64],
+    weights: &Weights,
+    effort: Effort,
+    limit: f64,
+) -> Point {
+    descended(forward, model, start, weights, effort, limit).0
+}
+
+/// Where a descent ends, and the slopes there if they are known.
+fn descended(
+    forward: &Forward,
+    model: &Model,
+    start: &[f64],
+    weights: &Weights,
+    effort: Effort,
+    limit: f64,
+) -> (Point, Option<DMatrix<f64>>) {
     let mut start: Vec<f64> = start
         .iter()
         .enumerate()
@@ -280,19 +318,22 @@ pub fn fit<'a>(
         .collect();
     model.put_in_order(&mut start);
     let mut here = evaluate(forward, model, &start, weights);
-    let mut slopes = jacobian(forward, model, &here);
     let mut damping = 1e-4;
     for _ in 0..effort.steps {
+        let slopes = jacobian(forward, model, &here);
         let normal = normal(forward, model.calibrated(), &here.u, &here.predicted, &slopes, weights);
-        let Some(next) = descend(forward, model, &here, &normal, weights, &mut damping) else { break };
+        let Some(next) = descend(forward, model, &here, &normal, weights, &mut damping) else {
+            return (here, Some(slopes));
+        };
         let fall = here.objective - next.objective;
         here = next;
-        slopes = jacobian(forward, model, &here);
-        if fall < effort.tolerance {
+        // falls grow smaller: one more as large as this would not do
+        let hopeless = here.objective - fall > limit;
+        if fall < effort.tolerance || hopeless {
             break;
         }
     }
-    finish(forward, model, here, slopes, weights)
+    (here, None)
 }
 
 /// The first damped step that lowers the objective.

@@ -5,7 +5,7 @@
 //! objective has risen by 3.84.
 
 use super::curve_interval::curve_intervals;
-use super::fit::{Effort, Fit, Weights, fit};
+use super::fit::{Effort, Fit, Weights, descent};
 use super::forward::Forward;
 use super::model::{Calibration, Model};
 use nalgebra::DMatrix;
@@ -112,14 +112,15 @@ fn torque_doubt(best: &Fit) -> f64 {
 /// step, and steps stop a descent: unless that is low `enough`, it is tried again from a smoothed curve.
 fn refit(forward: &Forward, mut model: Model, u: &[f64], weights: &Weights, enough: f64) -> f64 {
     let effort = Effort { steps: 5, tolerance: 0.02 };
-    let straight = fit(forward, &model, u, weights, effort).point.objective;
+    let end = |model: &Model, u: &[f64], effort| descent(forward, model, u, weights, effort, f64::INFINITY);
+    let straight = end(&model, u, effort).objective;
     if straight < enough || model.break_points().is_empty() || forward.modal.is_empty() {
         return straight;
     }
     model.smoothing = 0.03;
-    let start = fit(forward, &model, u, weights, Effort { steps: 4, tolerance: 0.1 }).point.u;
+    let start = end(&model, u, Effort { steps: 4, tolerance: 0.1 }).u;
     model.smoothing = 0.0;
-    straight.min(fit(forward, &model, &start, weights, effort).point.objective)
+    straight.min(end(&model, &start, effort).objective)
 }
 
 /// Where the profile has risen enough on one side; `None` if it does not within the prior.

@@ -5,7 +5,7 @@
 //! of one pose are never split: they share a history and a reference reading. Bench rows belong to no
 //! pose and stay in every fit.
 
-use super::fit::{Effort, Weights, fit};
+use super::fit::{Effort, Weights, descent};
 use super::forward::Forward;
 use super::model::Model;
 use rayon::prelude::*;
@@ -41,12 +41,13 @@ pub fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &Weights)
             let out = |i: usize| forward.data[i].group != usize::MAX && forward.data[i].group % HANDS == hand;
             let mut kept = weights.clone();
             (0..forward.data.len()).filter(|&i| out(i)).for_each(|i| kept.inverse[i] = 0.0);
-            let fitted = fit(forward, model, u, &kept, Effort { steps: 6, tolerance: 0.05 });
+            let effort = Effort { steps: 6, tolerance: 0.05 };
+            let end = descent(forward, model, u, &kept, effort, f64::INFINITY);
             (0..forward.data.len())
                 .filter(|&i| out(i) && weights.inverse[i] > 0.0)
                 .map(|i| {
                     let datum = &forward.data[i];
-                    (i, (datum.value - fitted.point.predicted[i]) / datum.sigma)
+                    (i, (datum.value - end.predicted[i]) / datum.sigma)
                 })
                 .collect()
         })

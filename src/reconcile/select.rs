@@ -7,7 +7,8 @@
 
 use super::campaign::Campaign;
 use super::fit::{
-    Effort, Fit, Normal, Weights, bounded_step, change, evaluate, fit, jacobian, normal, objective,
+    Effort, Fit, Normal, Point, Weights, bounded_step, change, descent, evaluate, fit, jacobian, normal,
+    objective,
 };
 use super::forward::Forward;
 use super::model::{Candidate, Model, Nuisance};
@@ -101,11 +102,15 @@ impl<'a> Search<'a> {
             for smoothing in [WIDE, 0.03, NARROW] {
                 model.smoothing = smoothing;
                 let steps = Effort { steps: 8, tolerance: 0.05 };
-                start = fit(self.forward, &model, &start, self.weights, steps).point.u;
+                start = self.descent(&model, &start, steps).u;
             }
             model.smoothing = 0.0;
         }
         fit(self.forward, &model, &start, self.weights, effort)
+    }
+
+    fn descent(&self, model: &Model, u: &[f64], effort: Effort) -> Point {
+        descent(self.forward, model, u, self.weights, effort, f64::INFINITY)
     }
 
     /// A few steps, enough to see whether a model is near; where its last effect is a gear's curve, after a few
@@ -117,7 +122,7 @@ impl<'a> Search<'a> {
         if model.effects.last().is_some_and(|e| e.kind.name == "soft_windup") {
             let smoothed = Effort { steps: 6, tolerance: 0.05 };
             model.smoothing = WIDE;
-            start = fit(self.forward, &model, &start, self.weights, smoothed).point.u;
+            start = self.descent(&model, &start, smoothed).u;
             model.smoothing = NARROW;
         }
         fit(self.forward, &model, &start, self.weights, few)
@@ -126,21 +131,25 @@ impl<'a> Search<'a> {
     /// Fits a model to the end: the break points of a gear's curve are moved in steps, because the
     /// frequencies' steps at them hide lower ground from a descent.
     pub fn polish(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
-        let mut best = fit(self.forward, &self.model(effects), u, self.weights, Effort::default());
-        let breaks = best.model.break_points();
+        let model = self.model(effects);
+        let breaks = model.break_points();
+        if breaks.is_empty() {
+            return fit(self.forward, &model, u, self.weights, Effort::default());
+        }
+        let mut best = self.descent(&model, u, Effort::default());
         for reach in [0.3, 0.12, 0.04] {
             for &p in &breaks {
-                let moves = [-1.0, -0.5, 0.5, 1.0].map(|m| best.point.u[p] + m * reach);
-                let tried: Vec<Fit<'a>> =
-                    moves.into_par_iter().map(|value| self.held_then_free(&best, p, value)).collect();
-                for fit in tried {
-                    if fit.point.objective < best.point.objective - 1e-6 {
-                        best = fit;
+                let moves = [-1.0, -0.5, 0.5, 1.0].map(|m| best.u[p] + m * reach);
+                let tried: Vec<Point> =
+                    moves.into_par_iter().filter_map(|v| self.held_then_free(&model, &best, p, v)).collect();
+                for point in tried {
+                    if point.objective < best.objective - 1e-6 {
+                        best = point;
                     }
                 }
             }
         }
-        if breaks.is_empty() { best } else { self.centre_breaks(best) }
+        self.centre_breaks(model, best)
     }
 
     /// A model that may be the explanation, fitted to the end if it has break points: else a further effect is
@@ -155,41 +164,36 @@ impl<'a> Search<'a> {
 
     /// Moves break points from the brink of a frequency's step into the middle of where the objective is
     /// flat, so that a small change of the torques does not carry a test across.
-    fn centre_breaks(&self, best: Fit<'a>) -> Fit<'a> {
+    fn centre_breaks(&self, model: Model<'a>, best: Point) -> Fit<'a> {
         const STEP: f64 = 0.002;
-        let mut u = best.point.u.clone();
-        for p in best.model.break_points() {
+        let mut u = best.u.clone();
+        for p in model.break_points() {
             let flat = |side: f64| {
                 let rises = (1..=10).map(|i| {
                     let mut moved = u.clone();
                     moved[p] += side * STEP * i as f64;
-                    evaluate(self.forward, &best.model, &moved, self.weights).objective
+                    evaluate(self.forward, &model, &moved, self.weights).objective
                 });
-                rises.take_while(|o| *o < best.point.objective + 1.0).count() as f64
+                rises.take_while(|o| *o < best.objective + 1.0).count() as f64
             };
             let middle = 0.5 * STEP * (flat(1.0) - flat(-1.0));
             u[p] += middle;
         }
-        let mut model = best.model.clone();
-        model.held = model.break_points().into_iter().map(|p| (p, u[p])).collect();
-        let effort = Effort { steps: 4, tolerance: 0.02 };
-        let settled = fit(self.forward, &model, &u, self.weights, effort);
-        if settled.point.objective > best.point.objective + 4.0 {
-            return best;
-        }
-        fit(self.forward, &best.model, &settled.point.u, self.weights, Effort { steps: 0, tolerance: 0.0 })
+        let mut held = model.clone();
+        held.held = model.break_points().into_iter().map(|p| (p, u[p])).collect();
+        let centred = self.descent(&held, &u, Effort { steps: 4, tolerance: 0.02 });
+        let end = if centred.objective > best.objective + 4.0 { best } else { centred };
+        fit(self.forward, &model, &end.u, self.weights, Effort { steps: 0, tolerance: 0.0 })
     }
 
-    /// Fits with a parameter held at a value, then lets it go, unless the readings rule the value out.
-    fn held_then_free(&self, from: &Fit<'a>, parameter: usize, value: f64) -> Fit<'a> {
+    /// Descends with a parameter held at a value, then lets it go, unless the readings rule the value out.
+    fn held_then_free(&self, model: &Model, from: &Point, parameter: usize, value: f64) -> Option<Point> {
         let effort = Effort { steps: 5, tolerance: 0.02 };
-        let mut model = from.model.clone();
-        model.held = vec![(parameter, value)];
-        let held = fit(self.forward, &model, &from.point.u, self.weights, effort);
-        if held.point.objective > from.point.objective + RULED_OUT {
-            return held;
-        }
-        fit(self.forward, &from.model, &held.point.u, self.weights, effort)
+        let mut held = model.clone();
+        held.held = vec![(parameter, value)];
+        let limit = from.objective + RULED_OUT;
+        let end = descent(self.forward, &held, &from.u, self.weights, effort, limit);
+        (end.objective <= limit).then(|| self.descent(model, &end.u, effort))
     }
 
     /// The score of a fit.
@@ -351,10 +355,10 @@ impl<'a> Search<'a> {
         fits
     }
 
-    /// Break points of the promising gear curves found over a grid, with the frequencies left out at first; in
-    /// threes only those of a curve that is new, for the others have been found in pairs.
+    /// Break points of the promising gear curves found over a grid, with the frequencies left out at first: where the
+    /// model may be the explanation, for as long as more is missing they are not to be found that closely; in threes only those of a curve that is new, for the others have been found in pairs.
     fn regrid(&self, fits: &mut [Scored], least: f64) {
-        for scored in fits.iter_mut().filter(|s| s.score > least) {
+        for scored in fits.iter_mut().filter(|s| s.score > least && self.may_explain(s)) {
             let curve = scored.effects.iter().rposition(|&e| self.candidates[e].kind.name == "soft_windup");
             let Some(position) = curve else { continue };
             if position + 1 < scored.effects.len() && scored.effects.len() > 2 {
@@ -380,8 +384,8 @@ impl<'a> Search<'a> {
             .map(|start| {
                 let mut u = from.u.clone();
                 u[first..first + start.len()].copy_from_slice(start);
-                let fit = fit(self.forward, &model, &u, &smooth, effort);
-                (fit.point.objective, fit.point.u)
+                let end = descent(self.forward, &model, &u, &smooth, effort, f64::INFINITY);
+                (end.objective, end.u)
             })
             .collect();
         tried.sort_by(|a, b| a.0.total_cmp(&b.0));
