@@ -355,8 +355,9 @@ impl<'a> Search<'a> {
         fits
     }
 
-    /// Break points of the promising gear curves found over a grid, with the frequencies left out at first: where the
-    /// model may be the explanation, for as long as more is missing they are not to be found that closely; in threes only those of a curve that is new, for the others have been found in pairs.
+    /// Break points of the promising gear curves found over a grid, with the frequencies left out at first: where
+    /// the model may be the explanation, for as long as more is missing they are not to be found that closely; in
+    /// threes only those of a curve that is new, for the others have been found in pairs.
     fn regrid(&self, fits: &mut [Scored], least: f64) {
         for scored in fits.iter_mut().filter(|s| s.score > least && self.may_explain(s)) {
             let curve = scored.effects.iter().rposition(|&e| self.candidates[e].kind.name == "soft_windup");
