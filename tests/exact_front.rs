@@ -175,7 +175,7 @@ fn the_exact_front_is_the_front_of_every_design() {
     let studies: u64 =
         std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(40);
     let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
-    let (mut points, mut feasible) = (0, 0);
+    let (mut points, mut feasible, mut boxes) = (0, 0, [0; 2]);
     for seed in 0..studies {
         let text = random_study(seed);
         let study = read(&text, &catalogs);
@@ -183,12 +183,19 @@ fn the_exact_front_is_the_front_of_every_design() {
         let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
         let exact = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
         assert_eq!((exact.boxes_open, exact.gap), (0, Some(0.0)));
+        let traded = Exact::new(&study.space, &catalogs, &stop, None).trading_from(2.0).run(&[]);
+        boxes[0] += exact.boxes;
+        boxes[1] += traded.boxes;
         let what = format!("seed {seed}, {} designs: {text}", sweep.designs_total);
         let listed = agrees(&problem, &exact.front, &sweep.front, &what);
+        agrees(&problem, &traded.front, &sweep.front, &what);
         points += listed;
         feasible += u64::from(listed > 0);
     }
-    println!("{studies} studies, {feasible} feasible, {points} front designs, the same in both");
+    println!(
+        "{studies} studies, {feasible} feasible, {points} front designs, the same in both; boxes {boxes:?}"
+    );
+    assert!(boxes[1] < boxes[0], "asking what boxes cannot have at once cuts none: {boxes:?}");
     assert!(feasible * 2 > studies, "only {feasible} of {studies} studies are feasible");
     assert!(points as u64 > 10 * feasible, "fronts are too small to say much: {points} designs");
 }
@@ -288,6 +295,8 @@ fn agree(text: &Value) -> usize {
     let problem = ArmProblem::new(&study.space, &catalogs);
     let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
     let exact = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
+    let traded = Exact::new(&study.space, &catalogs, &stop, None).trading_from(2.0).run(&[]);
+    agrees(&problem, &traded.front, &sweep.front, &text.to_string());
     agrees(&problem, &exact.front, &sweep.front, &text.to_string())
 }
 

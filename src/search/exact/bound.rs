@@ -76,6 +76,8 @@ pub(super) struct Work {
     pub(super) stiff_in: Vec<Vec<[f64; STIFFNESSES]>>,
     pub(super) joint_soft: Vec<Vec<f64>>,
     pub(super) masses: Vec<[f64; 2]>,
+    /// The least that is asked of each drive that is a choice.
+    pub(super) least: Vec<Option<Asked>>,
     /// The most that is asked of each drive that is a choice.
     pub(super) demands: Vec<Option<JointDemand>>,
     /// Break points of the curves of each joint.
@@ -84,6 +86,8 @@ pub(super) struct Work {
     pub(super) torques: Vec<Vec<[f64; 2]>>,
     /// The case whose tip moves most at least, and in which direction.
     pub(super) sagging: Option<(usize, Vector3<f64>)>,
+    /// Direction of the tip's least deflection in each judged case.
+    pub(super) tip_ways: Vec<Vector3<f64>>,
     /// No less than the tip moves in each judged case in which parts may move it against each other \[m\].
     pub(super) most_tip_m: Vec<f64>,
     /// By what part the deflection would grow if a piece were middling.
@@ -140,10 +144,12 @@ impl<'c> Problem<'c> {
         self.least_tip_m(work);
         let mut shapes = Vec::new();
         for case in self.judged_cases() {
+            let first = shapes.len();
             for [x, y, z] in STARTS {
                 let direction = Vector3::new(x, y, z);
                 let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
-                shapes.push(Shape::start(&self.poses[case], &ideal, direction, 6));
+                let shape = Shape::start(&self.poses[case], &ideal, direction, &shapes[first..], 6);
+                shapes.push(shape);
             }
         }
         Some(shapes)
@@ -219,9 +225,10 @@ impl<'c> Problem<'c> {
             let before = ceiling.hz;
             for (judged, case) in self.judged_cases().enumerate() {
                 for start in 0..STARTS.len() {
-                    let shape = &mut shapes[judged * STARTS.len() + start];
+                    let (others, rest) = shapes[judged * STARTS.len()..].split_at_mut(start);
+                    let shape = &mut rest[0];
                     let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
-                    shape.improve(&self.poses[case], &ideal, &mut work.shape);
+                    shape.improve(&self.poses[case], &ideal, others, &mut work.shape);
                     let hz = hertz(shape.quotient(&ideal));
                     if hz < ceiling.hz {
                         ceiling.hz = hz;
@@ -256,6 +263,7 @@ impl<'c> Problem<'c> {
                     let drives = holding(tree, *node, &least, DEPTH)?;
                     work.joint(self, piece, drives.mass_kg, drives.curve);
                     work.breaks[piece] = drives.breaks;
+                    work.least[piece] = Some(least);
                     work.demands[piece] = Some(sized.table.motion().demand(static_nm[1], inertia_kgm2[1]));
                 }
                 Part::FirstFit { sized, ladder } => {
@@ -337,6 +345,7 @@ impl<'c> Problem<'c> {
         let mut worst = 0.0f64;
         work.sagging = None;
         work.most_tip_m.clear();
+        work.tip_ways.clear();
         for (case, pose) in self.poses.iter().enumerate().filter(|(_, p)| p.judged) {
             work.stiff_in[case].clone_from(&work.stiff);
             let mut tip_m = [[0.0f64; 2]; 3];
@@ -366,6 +375,7 @@ impl<'c> Problem<'c> {
                 work.most_tip_m.push(most_m);
             }
             let nearest = Vector3::from(tip_m.map(|[low, high]| if low > 0.0 { low } else { high.min(0.0) }));
+            work.tip_ways.push(nearest.try_normalize(0.0).unwrap_or_default());
             if nearest.norm() > worst {
                 worst = nearest.norm();
                 work.sagging = nearest.try_normalize(0.0).map(|d| (case, d));
@@ -488,6 +498,8 @@ impl Work {
         zero(&mut self.curves, pieces, None);
         zero(&mut self.masses, pieces, [0.0; 2]);
         zero(&mut self.demands, pieces, None);
+        self.least.clear();
+        self.least.resize_with(pieces, || None);
         zero(&mut self.breaks, pieces, Breaks::default());
         self.weights.resize_with(cases, Vec::new);
         self.stiff_in.resize_with(cases, Vec::new);

@@ -26,17 +26,20 @@ impl Problem<'_> {
         let strain = products(&shape.strain, &work.stiff_in[case]);
         let kinetic = shape.kinetic_fixed + products(&shape.kinetic, &work.light);
         let mass_kg: f64 = work.masses.iter().map(|m| m[0]).sum();
+        let softened = self.softened_by_torque(case, shape, strain, work);
         let mut best: Option<(f64, usize)> = None;
         for (level, &piece) in self.level_pieces.iter().enumerate() {
             if self.halves(cell, level).is_none() {
                 continue;
             }
-            let joint = work.curves[piece].is_some();
-            let (mut softer, mut heavier) = (0.0, 0.0);
+            let (mut softer, mut heavier) = (softened[piece], 0.0);
             for k in 0..STIFFNESSES {
-                let (soft, stiff) = match joint && k == 0 {
-                    true => (work.joint_soft[case][piece], work.stiff_in[case][piece][0]),
-                    false => (work.soft[piece][k], work.stiff[piece][k]),
+                let (soft, stiff) = match &work.curves[piece] {
+                    Some(curve) if k == 0 => {
+                        let most_nm = work.torques[case][piece][1];
+                        (curve.softest(most_nm, most_nm), curve.stiffest(most_nm, most_nm))
+                    }
+                    _ => (work.soft[piece][k], work.stiff[piece][k]),
                 };
                 softer += shape.strain[piece][k] * stiff / strain * middling(soft, stiff);
             }
@@ -54,6 +57,26 @@ impl Problem<'_> {
             }
         }
         best.map(|(_, level)| level)
+    }
+
+    /// By what part a shape's quotient would fall if the torques that a piece makes uncertain were middling: a
+    /// heavier part may press a gear inboard into a stiffer segment.
+    fn softened_by_torque(&self, case: usize, shape: &Shape, strain: f64, work: &Work) -> Vec<f64> {
+        let mut softened = vec![0.0; self.parts.len()];
+        let pose = &self.poses[case];
+        for row in &pose.rows {
+            let Some(curve) = &work.curves[row.piece] else { continue };
+            let [least_nm, most_nm] = work.torques[case][row.piece];
+            let (soft, stiff) = (curve.stiffest(least_nm, least_nm), curve.stiffest(least_nm, most_nm));
+            if stiff <= soft {
+                continue;
+            }
+            let part = shape.strain[row.piece][0] * stiff / strain * middling(soft, stiff);
+            for (piece, (per_n, weight)) in row.per_n.iter().zip(&work.weights[case]).enumerate() {
+                softened[piece] += part * (per_n * (weight[1] - weight[0])).abs() / (most_nm - least_nm);
+            }
+        }
+        softened
     }
 
     /// By what part the least deflection would grow if a piece were middling, for every piece.
@@ -95,6 +118,7 @@ impl Problem<'_> {
     }
 }
 
-fn products<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
+/// The sum of all products.
+pub(super) fn products<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>()).sum()
 }

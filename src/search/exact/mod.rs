@@ -11,14 +11,18 @@ mod archive;
 mod bound;
 mod branch;
 mod check;
+mod corners;
+mod game;
 mod gap;
 mod parts;
 mod pointless;
 mod pose;
+mod price;
 mod probe;
 mod problem;
 mod run;
 mod shape;
+mod tradeoff;
 mod tree;
 
 pub use run::{Exact, ExactOutcome, conditions};

@@ -155,6 +155,11 @@ impl CurveBox {
         self.slopes(&self.soft, least_nm, most_nm).fold(f64::INFINITY, f64::min)
     }
 
+    /// The greatest slope of the twist at torques of these sizes \[N m\], whatever modes see.
+    pub fn steepest(&self, least_nm: f64, most_nm: f64) -> f64 {
+        slopes(&self.stiff, least_nm, most_nm).fold(0.0, f64::max)
+    }
+
     /// The slopes that modes may see.
     fn slopes(&self, w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
         let (least_nm, most_nm) = if self.k1_in_modes { (0.0, 0.0) } else { (least_nm, most_nm) };

@@ -2,10 +2,12 @@
 
 use super::archive::{Found, is_better};
 use super::bound::{Ceiling, Cell, Verdict, Work};
+use super::corners::Corner;
 use super::gap::gap;
 use super::probe::probe;
 use super::problem::Problem;
 use super::shape::Shape;
+use super::tradeoff::Trade;
 use crate::catalog::Catalogs;
 use crate::search::Objectives;
 use crate::search::design::number;
@@ -28,6 +30,8 @@ const SLACKS: [f64; 15] =
 const LARGE: u128 = 1_000_000_000;
 /// Probes by the square of the powers of ten of designs: a large space repays many, a small one none.
 const PROBES: f64 = 0.25;
+/// Boxes of fewer designs are sooner halved than asked what they cannot have at once.
+const TRADE_FROM: f64 = 1e7;
 /// Designs are filtered whenever their number reaches a power of two above this.
 const BUFFER: usize = 4096;
 
@@ -38,6 +42,7 @@ pub struct Exact<'p> {
     stop: &'p AtomicBool,
     deadline: Option<Instant>,
     boxes: AtomicU64,
+    trade_from: f64,
 }
 
 /// What the search found.
@@ -84,6 +89,7 @@ struct Shared {
 struct Opened {
     cell: Cell,
     shapes: Arc<Vec<Shape>>,
+    trade: Arc<Trade>,
     ceiling: Ceiling,
 }
 
@@ -95,7 +101,14 @@ impl<'p> Exact<'p> {
         stop: &'p AtomicBool,
         deadline: Option<Instant>,
     ) -> Self {
-        Self { space, catalogs, stop, deadline, boxes: AtomicU64::new(0) }
+        Self { space, catalogs, stop, deadline, boxes: AtomicU64::new(0), trade_from: TRADE_FROM }
+    }
+
+    /// Asks of boxes of at least so many designs, instead of ten million, what lightness and stiffness they cannot
+    /// have at once. It changes how long the search takes, not what it finds.
+    #[must_use]
+    pub fn trading_from(self, designs: f64) -> Self {
+        Self { trade_from: designs, ..self }
     }
 
     /// Boxes bounded so far.
@@ -183,7 +196,9 @@ impl Search<'_, '_> {
     fn run(&self) {
         let mut work = Work::default();
         let Some(shapes) = self.problem.first_shapes(&mut work) else { return };
-        let root = Opened { cell: self.problem.root(), shapes: Arc::new(shapes), ceiling: Ceiling::OPEN };
+        let trade = Arc::new(self.problem.first_trade(&shapes));
+        let root =
+            Opened { cell: self.problem.root(), shapes: Arc::new(shapes), trade, ceiling: Ceiling::OPEN };
         let mut queue = VecDeque::from([root]);
         while queue.len() < TASKS && !self.stopped() {
             let Some(next) = queue.pop_front() else { break };
@@ -221,6 +236,14 @@ impl Search<'_, '_> {
             Some(true) => return children.push(here),
             Some(false) => {}
         }
+        if self.problem.members(&here.cell) >= self.exact.trade_from {
+            let (trade, corners) = (Arc::make_mut(&mut here.trade), found.corners(self.limits()));
+            // limits by themselves prove nothing within a slack
+            let slack = if corners.of_designs { self.slack } else { 0.0 };
+            if self.problem.traded_away(&here.cell, &ceiling, trade, work, &corners, slack) {
+                return;
+            }
+        }
         let Some(level) = self.problem.widest_level(&here.cell, &here.shapes, work) else {
             self.judge(&here.cell, &ceiling, work);
             return;
@@ -230,7 +253,22 @@ impl Search<'_, '_> {
         for half in [halves[1], halves[0]] {
             let mut cell = here.cell.clone();
             cell[level] = half;
-            children.push(Opened { cell, shapes: Arc::clone(&here.shapes), ceiling });
+            children.push(Opened {
+                cell,
+                shapes: Arc::clone(&here.shapes),
+                trade: Arc::clone(&here.trade),
+                ceiling,
+            });
+        }
+    }
+
+    /// What every design on the front keeps.
+    fn limits(&self) -> Corner {
+        let limits = &self.problem.space.constraints;
+        Corner {
+            mass_kg: limits.mass_max_kg.unwrap_or(f64::INFINITY),
+            tip_m: limits.tip_deflection_max_m.unwrap_or(f64::INFINITY),
+            hz: limits.required_mode_hz(),
         }
     }
 

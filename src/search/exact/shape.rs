@@ -33,7 +33,7 @@ pub(super) struct Ideal<'a> {
 
 impl Shape {
     /// The lowest shapes of an ideal arm: started by a vertical and by two lateral accelerations.
-    pub fn start(pose: &Pose, ideal: &Ideal, direction: Vector3<f64>, steps: usize) -> Self {
+    pub fn start(pose: &Pose, ideal: &Ideal, direction: Vector3<f64>, others: &[Self], steps: usize) -> Self {
         let mut shape = Self {
             x: vec![0.0; pose.pieces.len() * COORDINATES],
             strain: vec![[0.0; STIFFNESSES]; pose.pieces.len()],
@@ -43,15 +43,18 @@ impl Shape {
         let mut work = Work::default();
         shape.iterate(pose, ideal, &stack(&direction, &Vector3::zeros()), &mut work);
         for _ in 1..steps {
+            shape.clear_of(pose, ideal, others);
             shape.iterate(pose, ideal, &Twist::zeros(), &mut work);
         }
+        shape.clear_of(pose, ideal, others);
         shape.energies(pose);
         shape
     }
 
     /// One step of inverse iteration towards the ideal arm's lowest mode.
-    pub fn improve(&mut self, pose: &Pose, ideal: &Ideal, work: &mut Work) {
+    pub fn improve(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self], work: &mut Work) {
         self.iterate(pose, ideal, &Twist::zeros(), work);
+        self.clear_of(pose, ideal, others);
         self.energies(pose);
     }
 
@@ -59,18 +62,25 @@ impl Shape {
     #[inline]
     pub fn quotient(&self, ideal: &Ideal) -> f64 {
         let mut strain = 0.0;
-        let mut kinetic = self.kinetic_fixed;
+        let kinetic = self.kinetic_energy(ideal.inertia);
         for (s, k) in self.strain.iter().zip(ideal.stiffness) {
             for i in 0..STIFFNESSES {
                 strain += s[i] * k[i];
             }
         }
-        for (t, m) in self.kinetic.iter().zip(ideal.inertia) {
+        if kinetic > 0.0 { strain / kinetic } else { f64::INFINITY }
+    }
+
+    /// `xᵀMx`.
+    #[inline]
+    pub fn kinetic_energy(&self, inertia: &[[f64; INERTIAS]]) -> f64 {
+        let mut kinetic = self.kinetic_fixed;
+        for (t, m) in self.kinetic.iter().zip(inertia) {
             for i in 0..INERTIAS {
                 kinetic += t[i] * m[i];
             }
         }
-        if kinetic > 0.0 { strain / kinetic } else { f64::INFINITY }
+        kinetic
     }
 
     /// `x ← C M x`, with the base moving by `base` in the right-hand side.
@@ -89,6 +99,25 @@ impl Shape {
         }
         if largest > 0.0 {
             self.x.iter_mut().for_each(|x| *x /= largest);
+        }
+    }
+
+    /// Takes out what it has in common with other shapes, so that it goes towards a mode of its own: modes strain
+    /// an arm in ways that do no work on each other.
+    fn clear_of(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self]) {
+        for other in others {
+            let (mut common, mut own) = (0.0, 0.0);
+            for (piece, posed) in pose.pieces.iter().enumerate() {
+                for c in 0..posed.coordinates() {
+                    let at = piece * COORDINATES + c;
+                    let work = other.x[at] * posed.coordinate_stiffness(c, &ideal.stiffness[piece]);
+                    common += work * self.x[at];
+                    own += work * other.x[at];
+                }
+            }
+            if own > 0.0 {
+                self.x.iter_mut().zip(&other.x).for_each(|(x, o)| *x -= common / own * o);
+            }
         }
     }
 

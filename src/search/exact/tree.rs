@@ -17,6 +17,8 @@ pub(super) struct Tree<B> {
 /// One node of a [`Tree`].
 pub(super) struct Node<B> {
     pub bounds: B,
+    /// Options below it.
+    pub members: u32,
     /// The second child of a box of several, or the option of a box of one.
     pub kind: NodeKind,
 }
@@ -93,11 +95,12 @@ struct Item<B> {
 
 fn grow<B: Bounds>(items: &mut [Item<B>], nodes: &mut Vec<Node<B>>) -> B {
     if let [only] = items {
-        nodes.push(Node { bounds: only.bounds.clone(), kind: NodeKind::Option(only.option) });
+        nodes.push(Node { bounds: only.bounds.clone(), members: 1, kind: NodeKind::Option(only.option) });
         return only.bounds.clone();
     }
     let here = nodes.len();
-    nodes.push(Node { bounds: items[0].bounds.clone(), kind: NodeKind::Split { second: 0 } });
+    let members = items.len() as u32;
+    nodes.push(Node { bounds: items[0].bounds.clone(), members, kind: NodeKind::Split { second: 0 } });
     let axis = widest(items);
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| {
@@ -107,7 +110,7 @@ fn grow<B: Bounds>(items: &mut [Item<B>], nodes: &mut Vec<Node<B>>) -> B {
     let first = grow(low, nodes);
     let second = nodes.len() as u32;
     let bounds = first.join(&grow(high, nodes));
-    nodes[here] = Node { bounds: bounds.clone(), kind: NodeKind::Split { second } };
+    nodes[here] = Node { bounds: bounds.clone(), members, kind: NodeKind::Split { second } };
     bounds
 }
 

@@ -1,0 +1,118 @@
+//! Weights under which the least of several rows is as large as can be: a matrix game.
+
+/// Pivots at the most.
+const MOST_PIVOTS: usize = 200;
+/// Numbers smaller than this are rounding.
+const NOTHING: f64 = 1e-11;
+
+/// The solution of a game.
+pub(super) struct Game {
+    /// Weights of the columns: not negative, one in sum.
+    pub weights: Vec<f64>,
+    /// Shares of the rows in the mixture that keeps every column lowest.
+    pub mix: Vec<f64>,
+    /// The least weighted row.
+    pub value: f64,
+}
+
+/// The weights of columns that make the least weighted row as large as can be. Rows have `width` numbers each.
+///
+/// By the simplex method on the other player's program, `max Σ z : Σ_j (a_ji + c) z_j <= 1`, `z >= 0`, whose
+/// dual values are the weights.
+pub(super) fn solve(rows: &[f64], width: usize) -> Game {
+    let count = rows.len() / width;
+    let least = rows.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = rows.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // all entries at least one times the spread: the value of the game is then positive
+    let spread = (most - least).max(f64::MIN_POSITIVE);
+    let entry = |a: f64| (a - least) / spread + 1.0;
+    // a line a column of the game (its slack is basic), then that of the objective; z, slacks, right side
+    let line = count + width + 1;
+    let mut table = vec![0.0; (width + 1) * line];
+    let mut basic: Vec<usize> = (count..count + width).collect();
+    for i in 0..width {
+        for j in 0..count {
+            table[i * line + j] = entry(rows[j * width + i]);
+        }
+        table[i * line + count + i] = 1.0;
+        table[i * line + line - 1] = 1.0;
+    }
+    table[width * line..width * line + count].fill(-1.0);
+    for _ in 0..MOST_PIVOTS {
+        let objective = &table[width * line..width * line + line - 1];
+        let Some((enter, &cost)) = objective.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else {
+            break;
+        };
+        if cost > -NOTHING {
+            break;
+        }
+        let ratio = |i: usize| {
+            let a = table[i * line + enter];
+            if a > NOTHING { table[i * line + line - 1] / a } else { f64::INFINITY }
+        };
+        let Some(leave) = (0..width).min_by(|&a, &b| ratio(a).total_cmp(&ratio(b))) else { break };
+        if ratio(leave).is_infinite() {
+            break;
+        }
+        basic[leave] = enter;
+        pivot(&mut table, line, leave, enter);
+    }
+    let mut weights: Vec<f64> = (0..width).map(|i| table[width * line + count + i].max(0.0)).collect();
+    let mut mix = vec![0.0; count];
+    for (i, &variable) in basic.iter().enumerate().filter(|(_, variable)| **variable < count) {
+        mix[variable] = table[i * line + line - 1].max(0.0);
+    }
+    for shares in [&mut weights, &mut mix] {
+        let sum: f64 = shares.iter().sum();
+        shares.iter_mut().for_each(|x| *x /= sum);
+    }
+    let weighted = |row: &[f64]| row.iter().zip(&weights).map(|(a, w)| a * w).sum::<f64>();
+    let value = rows.chunks(width).map(weighted).fold(f64::INFINITY, f64::min);
+    Game { weights, mix, value }
+}
+
+fn pivot(work: &mut [f64], line: usize, leave: usize, enter: usize) {
+    let by = 1.0 / work[leave * line + enter];
+    for x in &mut work[leave * line..(leave + 1) * line] {
+        *x *= by;
+    }
+    let (before, rest) = work.split_at_mut(leave * line);
+    let (pivotal, after) = rest.split_at_mut(line);
+    for other in before.chunks_mut(line).chain(after.chunks_mut(line)) {
+        let factor = other[enter];
+        if factor != 0.0 {
+            other.iter_mut().zip(&*pivotal).for_each(|(x, p)| *x -= factor * p);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The value lies between what the weights guarantee and what some mixture of rows keeps every column
+        /// below; fictitious play finds such mixtures.
+        #[test]
+        fn no_other_weights_are_better(rows in prop::collection::vec(-1.0f64..1.0, 4 * 6)) {
+            let Game { weights, mix, value } = solve(&rows, 4);
+            let mixed = |i: usize| rows.chunks(4).zip(&mix).map(|(row, z)| row[i] * z).sum::<f64>();
+            prop_assert!((0..4).all(|i| mixed(i) <= value + 1e-9));
+            prop_assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+            let mut sums = [0.0f64; 4];
+            let mut counts = [0.0f64; 6];
+            for step in 1..=4000 {
+                let best = (0..4).max_by(|&a, &b| sums[a].total_cmp(&sums[b])).unwrap();
+                counts.iter_mut().zip(rows.chunks(4)).for_each(|(c, row)| *c += row[best]);
+                let worst = (0..6).min_by(|&a, &b| counts[a].total_cmp(&counts[b])).unwrap();
+                sums.iter_mut().zip(&rows[worst * 4..]).for_each(|(s, a)| *s += a);
+                if step == 4000 {
+                    let ceiling = sums.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s / 4000.0));
+                    prop_assert!(value <= ceiling + 1e-9, "{value} {ceiling}");
+                    prop_assert!(value >= ceiling - 0.1, "{value} {ceiling}");
+                }
+            }
+        }
+    }
+}

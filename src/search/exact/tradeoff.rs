@@ -1,0 +1,555 @@
+//! What no arm of a box can have at once: lightness and stiffness, traded part by part.
+//!
+//! The ceiling of a box takes every part at its lightest *and* at its stiffest; a part has one or the other.
+//! Here mass, tip deflection and lowest mode of every member are bounded together, by sums over the parts:
+//!
+//! | row | sum over the parts | left out |
+//! |---|---|---|
+//! | mass | exact | |
+//! | way of the tip in a case | twists of the gears, each at a torque of its own; `F₀ c + c₀ (F - F₀)` for force `F` and compliance `c` of a tube, `F₀` and `c₀` the least of the box (McCormick) | product of the widths of `F` and `c` |
+//! | torque of a gear | its own, less what the weights outboard make of it: zero | |
+//! | mode | `λ xᵀMx - xᵀKx`, not positive for a member whose modes are above `λ`, whatever the shape `x` | the square of the shape's error |
+//!
+//! A member below a [`Corner`] of the region that no design found beats has each row below what the corner
+//! allows. So has every weighted sum of rows with weights that are not negative; and the least such sum of any
+//! member is found part by part. If it is more than the corner allows, no member is below the corner. Weights
+//! are the best for the members found so far (a matrix game), shapes those of an arm in between them.
+
+use super::bound::{Ceiling, STARTS, Work, interval};
+use super::branch::products;
+use super::corners::{Corner, Corners};
+use super::game::{Game, solve};
+use super::parts::{CurveBox, DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::pose::{PosedPiece, RESISTED, degree_factor};
+use super::price::{Gear, JointPrice, Price, cheapest};
+use super::problem::{Part, Problem};
+use super::shape::{Ideal, Shape};
+
+/// By how much a member must be beaten in every objective, at least: more than what counts as equal.
+const BEATEN: f64 = 2e-7;
+/// Rounding of sums whose terms are about one.
+const ROUNDING: f64 = 1e-9;
+/// Weightings and new sets of shapes at the most for one box.
+const MOST_PLANES: usize = 10;
+const MOST_SHAPES: usize = 2;
+/// A box this far from being refuted, in parts of a row, is tried again after one halving; every doubling of the
+/// distance is a halving more, up to a number.
+const REST: f64 = 0.002;
+const MOST_REST: f64 = 6.0;
+/// Steps towards the mode of an arm in between.
+const STEPS: usize = 3;
+
+/// Where the search for weights starts: what served the box above.
+#[derive(Clone, Default)]
+pub(super) struct Trade {
+    /// Of mass, ways of the tip and modes; torques have their own in every box.
+    weights: Vec<f64>,
+    shapes: Vec<Shape>,
+    /// Halvings of which nothing is to be hoped.
+    rest: u32,
+}
+
+/// The rows of a box.
+struct Rows<'a> {
+    problem: &'a Problem<'a>,
+    work: &'a Work,
+    /// What each row is divided by, so that it is about one, and what no part changes.
+    scale: Vec<f64>,
+    fixed: Vec<f64>,
+    tips: Vec<Tip>,
+    gears: Vec<Gear<'a>>,
+    /// Square of the frequency at which the modes are taken \[1/s²\].
+    lambda: f64,
+    modes: Vec<Mode>,
+    first_mode: usize,
+}
+
+/// The way of the tip in a judged case, along its least deflection.
+struct Tip {
+    case: usize,
+    /// Per newton of each piece's weight \[m/N\], by its effect on all that does not have torques of its own.
+    per_n: Vec<f64>,
+    /// Per twist of each joint \[m/rad\], and the torque it is taken at unless it is free \[N m\].
+    joints: Vec<f64>,
+    torques_nm: Vec<Option<f64>>,
+    /// Per compliance of each tube.
+    tubes: Vec<[f64; STIFFNESSES]>,
+}
+
+/// A shape whose quotient bounds the modes of a judged case.
+struct Mode {
+    judged: usize,
+    start: usize,
+    shape: Shape,
+    /// `xᵀMx` of the lightest and of the heaviest parts.
+    kinetic: [f64; 2],
+}
+
+/// A member of the box, or what stands for it in the sums: its gears need not agree with its weights.
+struct Member {
+    /// Every row of it.
+    values: Vec<f64>,
+    /// Inertia of each piece, and its stiffness in each judged case.
+    inertia: Vec<[f64; INERTIAS]>,
+    stiffness: Vec<Vec<[f64; STIFFNESSES]>>,
+}
+
+/// Stiffness and inertia of each piece.
+type Arm = (Vec<[f64; STIFFNESSES]>, Vec<[f64; INERTIAS]>);
+
+/// A weighting, and the least weighted sum of any member.
+struct Plane {
+    weights: Vec<f64>,
+    least: f64,
+}
+
+impl Problem<'_> {
+    /// Where to start with the box of everything.
+    pub fn first_trade(&self, shapes: &[Shape]) -> Trade {
+        Trade { weights: Vec::new(), shapes: shapes.to_vec(), rest: 0 }
+    }
+
+    /// Whether every member of a box whose numbers are in `work` is beaten by a design found, within a slack.
+    pub fn traded_away(
+        &self,
+        cell: &[u32],
+        ceiling: &Ceiling,
+        trade: &mut Trade,
+        work: &Work,
+        corners: &Corners,
+        slack: f64,
+    ) -> bool {
+        if trade.rest > 0 {
+            trade.rest -= 1;
+            return false;
+        }
+        let tightened = |corner: &Corner| corner.tightened(slack - BEATEN);
+        let Some(first) = corners.find(|c| tightened(c).is_in_reach_of(ceiling)) else { return true };
+        let mut rows = Rows::new(self, ceiling, &tightened(&first), &trade.shapes, work);
+        let (mut planes, mut members) = (Vec::<Plane>::new(), Vec::<Member>::new());
+        let mut weights = rows.inherited(&trade.weights);
+        let (mut new_shapes, mut short) = (0, f64::INFINITY);
+        let refuted = loop {
+            let is_open = |c: &Corner| {
+                let corner = tightened(c);
+                corner.is_in_reach_of(ceiling) && !planes.iter().any(|plane| rows.refute(plane, &corner))
+            };
+            let Some(corner) = corners.find(is_open) else { break true };
+            if planes.len() >= MOST_PLANES {
+                break false;
+            }
+            let corner = tightened(&corner);
+            if !members.is_empty() {
+                let game = rows.game(&members, &corner);
+                weights = game.weights;
+                if game.value <= ROUNDING {
+                    new_shapes += 1;
+                    if new_shapes > MOST_SHAPES || !rows.separate(&mut members, &game.mix, &corner) {
+                        break false;
+                    }
+                    continue;
+                }
+            }
+            let (least, member) = rows.least(cell, &weights);
+            let allowed = rows.weighted(&weights, &corner);
+            short = f64::min(short, allowed - least);
+            planes.push(Plane { weights: weights.clone(), least });
+            members.push(member);
+        };
+        rows.bequeath(&weights, trade);
+        trade.rest = (short / REST).log2().clamp(0.0, MOST_REST) as u32;
+        refuted
+    }
+
+    /// Designs in a box.
+    pub fn members(&self, cell: &[u32]) -> f64 {
+        let of = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
+            Part::Drives { tree, .. } => f64::from(tree.node(node).members),
+            Part::Links { tree, .. } => f64::from(tree.node(node).members),
+            _ => 1.0,
+        };
+        self.level_pieces.iter().zip(cell).map(of).product()
+    }
+
+    /// Mass per line mass of a piece: a tube's length, one for anything else.
+    fn length_m(&self, piece: usize) -> f64 {
+        match &self.parts[piece] {
+            Part::Links { length_m, .. } | Part::Tube { length_m, .. } => *length_m,
+            _ => 1.0,
+        }
+    }
+}
+
+impl<'a> Rows<'a> {
+    fn new(
+        problem: &'a Problem,
+        ceiling: &Ceiling,
+        corner: &Corner,
+        shapes: &[Shape],
+        work: &'a Work,
+    ) -> Self {
+        let hz = corner.hz.max(0.5 * ceiling.hz.min(1e6));
+        let mut rows = Self {
+            problem,
+            work,
+            scale: vec![ceiling.mass_kg.max(f64::MIN_POSITIVE)],
+            fixed: vec![0.0],
+            tips: Vec::new(),
+            gears: Vec::new(),
+            lambda: (hz * std::f64::consts::TAU).powi(2),
+            modes: Vec::new(),
+            first_mode: 0,
+        };
+        for (judged, case) in problem.judged_cases().enumerate() {
+            let (tip, fixed_m) = Tip::new(problem, judged, case, work);
+            let scale = corner.tip_m.min(1e3 * ceiling.tip_m).max(f64::MIN_POSITIVE);
+            rows.tips.push(tip);
+            rows.push(scale, fixed_m);
+        }
+        for (judged, case) in problem.judged_cases().enumerate() {
+            for row in &problem.poses[case].rows {
+                if work.curves[row.piece].is_none() {
+                    continue;
+                }
+                let gear = match rows.tips[judged].torques_nm[row.piece] {
+                    Some(torque_nm) => Gear::at(row, judged, torque_nm),
+                    None => {
+                        let gear = Gear::free(row, judged, &work.weights[case], rows.scale.len());
+                        rows.push(gear.scale_nm(), -row.fixed);
+                        rows.push(gear.scale_nm(), row.fixed);
+                        gear
+                    }
+                };
+                rows.gears.push(gear);
+            }
+        }
+        rows.first_mode = rows.scale.len();
+        for (place, shape) in shapes.iter().enumerate() {
+            rows.push_mode(place / STARTS.len(), place % STARTS.len(), shape.clone());
+        }
+        rows
+    }
+
+    fn push(&mut self, scale: f64, fixed: f64) {
+        self.scale.push(scale);
+        self.fixed.push(fixed / scale);
+    }
+
+    fn push_mode(&mut self, judged: usize, start: usize, shape: Shape) {
+        let kinetic = [&self.work.light, &self.work.heavy].map(|inertia| shape.kinetic_energy(inertia));
+        // a shape that moves nothing says nothing
+        let moves = if kinetic[0] > 0.0 { kinetic[0] } else { 1.0 };
+        self.push(self.lambda * moves, self.lambda * shape.kinetic_fixed);
+        self.modes.push(Mode { judged, start, shape, kinetic });
+    }
+
+    /// The weights of the box above, for the rows of this one; even ones if there are none.
+    fn inherited(&self, above: &[f64]) -> Vec<f64> {
+        let mut weights = vec![0.0; self.scale.len()];
+        let others: Vec<usize> = (0..=self.tips.len()).chain(self.first_mode..self.scale.len()).collect();
+        let even = 1.0 / others.len() as f64;
+        for (k, row) in others.into_iter().enumerate() {
+            weights[row] = above.get(k).copied().unwrap_or(even);
+        }
+        weights
+    }
+
+    /// Leaves the weights and the last shapes to the halves of the box.
+    fn bequeath(&mut self, weights: &[f64], trade: &mut Trade) {
+        let (tips, kept) = (self.tips.len(), trade.shapes.len());
+        trade.weights.clear();
+        trade.weights.extend(&weights[..=tips]);
+        trade.weights.resize(1 + tips + kept, 0.0);
+        for (m, mode) in self.modes.drain(..).enumerate() {
+            let place = mode.judged * STARTS.len() + mode.start;
+            trade.weights[1 + tips + place] += weights.get(self.first_mode + m).unwrap_or(&0.0);
+            trade.shapes[place] = mode.shape;
+        }
+    }
+
+    /// What each row of a member below a corner is at most.
+    fn allowed<'b>(&'b self, corner: &'b Corner) -> impl Iterator<Item = f64> + 'b {
+        let below = self.lambda - (corner.hz * std::f64::consts::TAU).powi(2);
+        let objectives = std::iter::once(corner.mass_kg).chain(self.tips.iter().map(|_| corner.tip_m));
+        let torques = (1 + self.tips.len()..self.first_mode).map(|_| 0.0);
+        let modes = self.modes.iter().map(move |mode| below * mode.kinetic[usize::from(below > 0.0)]);
+        objectives.chain(torques).chain(modes).zip(&self.scale).map(|(row, scale)| row / scale)
+    }
+
+    /// Whether no member is below a corner.
+    fn refute(&self, plane: &Plane, corner: &Corner) -> bool {
+        plane.least > self.weighted(&plane.weights, corner) + ROUNDING
+    }
+
+    /// The weighted sum that a corner allows.
+    fn weighted(&self, weights: &[f64], corner: &Corner) -> f64 {
+        let pairs = weights.iter().zip(self.allowed(corner));
+        pairs.filter(|(w, _)| **w > 0.0).map(|(w, a)| w * a).sum()
+    }
+
+    /// The weights that raise the worst of some members furthest above a corner.
+    fn game(&self, members: &[Member], corner: &Corner) -> Game {
+        /// A row this far below what is allowed has no say.
+        const NO_SAY: f64 = -10.0;
+        let allowed: Vec<f64> = self.allowed(corner).collect();
+        let above = |member: &Member| -> Vec<f64> {
+            member.values.iter().zip(&allowed).map(|(v, a)| (v - a).max(NO_SAY)).collect()
+        };
+        solve(&members.iter().flat_map(above).collect::<Vec<f64>>(), allowed.len())
+    }
+
+    /// Adds the modes of the arm in between some members, where they lie below a corner's; whether any does.
+    fn separate(&mut self, members: &mut [Member], mix: &[f64], corner: &Corner) -> bool {
+        let lambda = (corner.hz * std::f64::consts::TAU).powi(2);
+        let before = self.modes.len();
+        for (judged, case) in self.problem.judged_cases().enumerate() {
+            let (stiffness, inertia) = self.in_between(members, mix, judged);
+            let ideal = Ideal { stiffness: &stiffness, inertia: &inertia };
+            let mut room = super::shape::Work::default();
+            let mut shapes: Vec<Shape> = Vec::new();
+            for start in 0..STARTS.len() {
+                let last = self.modes.iter().rfind(|m| m.judged == judged && m.start == start);
+                let Some(mut shape) = last.map(|mode| mode.shape.clone()) else { continue };
+                for _ in 0..STEPS {
+                    shape.improve(&self.problem.poses[case], &ideal, &shapes, &mut room);
+                }
+                shapes.push(shape);
+            }
+            for (start, shape) in shapes.into_iter().enumerate() {
+                if shape.quotient(&ideal) < lambda * (1.0 - 1e-6) {
+                    self.push_mode(judged, start, shape);
+                }
+            }
+        }
+        for member in members {
+            for mode in &self.modes[before..] {
+                let row = member.values.len();
+                let value = self.mode_value(mode, member) / self.scale[row] + self.fixed[row];
+                member.values.push(value);
+            }
+        }
+        self.modes.len() > before
+    }
+
+    /// Stiffness and inertia of the arm in between some members in a case.
+    fn in_between(&self, members: &[Member], mix: &[f64], judged: usize) -> Arm {
+        let pieces = self.problem.parts.len();
+        let mut arm = (vec![[0.0; STIFFNESSES]; pieces], vec![[0.0; INERTIAS]; pieces]);
+        for (member, share) in members.iter().zip(mix).filter(|(_, share)| **share > 0.0) {
+            let pairs = arm.0.iter_mut().zip(&member.stiffness[judged]);
+            let pairs = pairs.chain(arm.1.iter_mut().zip(&member.inertia));
+            pairs.for_each(|(sum, x)| sum.iter_mut().zip(x).for_each(|(sum, x)| *sum += share * x));
+        }
+        arm
+    }
+
+    /// The least weighted sum of any member, and the member that has it.
+    fn least(&self, cell: &[u32], weights: &[f64]) -> (f64, Member) {
+        let pieces = self.problem.parts.len();
+        let mut total: f64 = weights.iter().zip(&self.fixed).map(|(w, f)| w * f).sum();
+        let mut member = Member {
+            values: vec![0.0; self.scale.len()],
+            inertia: vec![[0.0; INERTIAS]; pieces],
+            stiffness: vec![vec![[0.0; STIFFNESSES]; pieces]; self.tips.len()],
+        };
+        let mut level = 0;
+        for (piece, part) in self.problem.parts.iter().enumerate() {
+            let price = || self.price(piece, weights);
+            total += match part {
+                Part::Drives { tree, .. } => {
+                    let price = price();
+                    let holds = |d: &DriveBox| self.work.least[piece].as_ref().is_none_or(|a| d.may_hold(a));
+                    let of = |d: &DriveBox| match holds(d) {
+                        true => price.of_joint(d.mass_kg, d.curve.as_ref()),
+                        false => f64::INFINITY,
+                    };
+                    let (least, at) = cheapest(tree, cell[level], of);
+                    level += 1;
+                    let drives = &tree.node(at).bounds;
+                    self.add_joint(piece, drives.mass_kg[0], drives.curve.as_ref(), &price, &mut member);
+                    least
+                }
+                Part::Links { tree, length_m } => {
+                    let price = price();
+                    let (least, at) = cheapest(tree, cell[level], |links| price.of_link(links));
+                    level += 1;
+                    self.add_tube(piece, *length_m, &tree.node(at).bounds, &mut member);
+                    least
+                }
+                Part::Tube { tube, length_m } => {
+                    self.add_tube(piece, *length_m, tube, &mut member);
+                    price().of_link(tube)
+                }
+                Part::Given { .. } | Part::FirstFit { .. } => {
+                    let (price, mass_kg) = (price(), self.work.masses[piece]);
+                    let curve = self.work.curves[piece].as_ref();
+                    self.add_joint(piece, mass_kg[0], curve, &price, &mut member);
+                    price.of_joint(mass_kg, curve)
+                }
+                Part::Offset { mass_kg } => {
+                    member.values[0] += mass_kg;
+                    weights[0] / self.scale[0] * mass_kg
+                }
+            };
+        }
+        for (m, mode) in self.modes.iter().enumerate() {
+            member.values[self.first_mode + m] = self.mode_value(mode, &member);
+        }
+        for ((value, scale), fixed) in member.values.iter_mut().zip(&self.scale).zip(&self.fixed) {
+            *value = *value / scale + fixed;
+        }
+        (total, member)
+    }
+
+    /// Puts a drive in its place in the state that its price makes best.
+    fn add_joint(
+        &self,
+        piece: usize,
+        mass_kg: f64,
+        curve: Option<&CurveBox>,
+        price: &Price,
+        member: &mut Member,
+    ) {
+        member.values[0] += mass_kg;
+        member.inertia[piece][inertia::MASS] = mass_kg;
+        let weight_n = mass_kg * self.problem.space.gravity_m_s2;
+        (0..self.tips.len()).for_each(|judged| self.add_weight(piece, judged, weight_n, member));
+        let gears = self.gears.iter().filter(|gear| gear.piece == piece);
+        for (gear, price) in gears.zip(&price.joint) {
+            let state = price.best(curve).1;
+            member.values[1 + gear.judged] += state.twist_rad * self.tips[gear.judged].joints[piece];
+            member.stiffness[gear.judged][piece][0] = state.slope;
+            if let Some(row) = gear.row {
+                member.values[row] += state.torque_nm;
+                member.values[row + 1] -= state.torque_nm;
+            }
+        }
+    }
+
+    /// Puts a tube in its place: of a box the lightest and stiffest.
+    fn add_tube(&self, piece: usize, length_m: f64, links: &LinkBox, member: &mut Member) {
+        let (line, stiffnesses) = (&links.low.inertias, &links.high.stiffnesses);
+        let mass_kg = line[inertia::MASS] * length_m;
+        member.values[0] += mass_kg;
+        member.inertia[piece] = *line;
+        for (judged, tip) in self.tips.iter().enumerate() {
+            let water_kg = self.problem.poses[tip.case].water_kg_m3 * line[inertia::OUTER_AREA] * length_m;
+            self.add_weight(piece, judged, (mass_kg - water_kg) * self.problem.space.gravity_m_s2, member);
+            let yields = tip.tubes[piece].iter().zip(stiffnesses).map(|(c, s)| c / s);
+            member.values[1 + judged] += yields.sum::<f64>();
+            // what does not yield stores nothing
+            member.stiffness[judged][piece] = stiffnesses.map(|s| if s.is_finite() { s } else { 0.0 });
+        }
+    }
+
+    /// Adds what the weight of a piece does to the tip and to the torques of the gears inboard.
+    fn add_weight(&self, piece: usize, judged: usize, weight_n: f64, member: &mut Member) {
+        member.values[1 + judged] += weight_n * self.tips[judged].per_n[piece];
+        for gear in self.gears.iter().filter(|gear| gear.judged == judged) {
+            let (Some(row), Some(per_n)) = (gear.row, gear.per_n.get(piece)) else { continue };
+            member.values[row] -= weight_n * per_n;
+            member.values[row + 1] += weight_n * per_n;
+        }
+    }
+
+    /// What a piece adds to the sum with these weights, by its numbers.
+    fn price(&self, piece: usize, weights: &[f64]) -> Price {
+        let weight = |row: usize| weights[row] / self.scale[row];
+        let (length_m, is_joint) = (self.problem.length_m(piece), self.work.curves[piece].is_some());
+        let mut price = Price::default();
+        price.inertia[inertia::MASS] = weight(0) * length_m;
+        let g = self.problem.space.gravity_m_s2 * length_m;
+        for (judged, tip) in self.tips.iter().enumerate() {
+            let mut per_n = weight(1 + judged) * tip.per_n[piece];
+            for gear in self.gears.iter().filter(|gear| gear.judged == judged) {
+                let Some(row) = gear.row else { continue };
+                per_n -= gear.per_n.get(piece).map_or(0.0, |c| c * (weight(row) - weight(row + 1)));
+            }
+            price.inertia[inertia::MASS] += g * per_n;
+            price.inertia[inertia::OUTER_AREA] -= g * per_n * self.problem.poses[tip.case].water_kg_m3;
+            for (c, tube) in price.compliance.iter_mut().zip(&tip.tubes[piece]) {
+                *c += weight(1 + judged) * tube;
+            }
+        }
+        if is_joint {
+            price.inertia[inertia::OUTER_AREA] = 0.0;
+        }
+        for gear in self.gears.iter().filter(|gear| gear.piece == piece) {
+            let modes = self.modes.iter().enumerate().filter(|(_, mode)| mode.judged == gear.judged);
+            price.joint.push(JointPrice {
+                twist: weight(1 + gear.judged) * self.tips[gear.judged].joints[piece],
+                slope: modes.map(|(m, mode)| weight(self.first_mode + m) * mode.shape.strain[piece][0]).sum(),
+                torque: gear.row.map_or(0.0, |row| weight(row) - weight(row + 1)),
+                torques_nm: gear.torques_nm,
+            });
+        }
+        for (m, mode) in self.modes.iter().enumerate() {
+            let w = weight(self.first_mode + m);
+            if w == 0.0 {
+                continue;
+            }
+            for (p, kinetic) in price.inertia.iter_mut().zip(&mode.shape.kinetic[piece]) {
+                *p += w * self.lambda * kinetic;
+            }
+            if !is_joint {
+                for (p, strain) in price.stiffness.iter_mut().zip(&mode.shape.strain[piece]) {
+                    *p += w * strain;
+                }
+            }
+        }
+        price
+    }
+
+    /// `λ xᵀMx - xᵀKx` of a member but for what is fixed.
+    fn mode_value(&self, mode: &Mode, member: &Member) -> f64 {
+        let moves = products(&mode.shape.kinetic, &member.inertia);
+        self.lambda * moves - products(&mode.shape.strain, &member.stiffness[mode.judged])
+    }
+}
+
+impl Tip {
+    /// The way of the tip in a case along its least deflection, and what no part changes \[m\].
+    fn new(problem: &Problem, judged: usize, case: usize, work: &Work) -> (Self, f64) {
+        let pose = &problem.poses[case];
+        let pieces = problem.parts.len();
+        let mut tip = Self {
+            case,
+            per_n: vec![0.0; pieces],
+            joints: vec![0.0; pieces],
+            torques_nm: vec![None; pieces],
+            tubes: vec![[0.0; STIFFNESSES]; pieces],
+        };
+        let mut fixed_m = 0.0;
+        for row in &pose.rows {
+            let way = work.tip_ways[judged].dot(&row.tip_m);
+            let force = interval(row.fixed, &row.per_n, &work.weights[case]);
+            let at = if way > 0.0 { force[0] } else { force[1] };
+            let least = if let PosedPiece::Tube(tube) = &pose.pieces[row.piece] {
+                let resisted = RESISTED[row.coordinate].0;
+                let stiffness = work.stiff[row.piece][resisted];
+                if stiffness == 0.0 {
+                    continue;
+                }
+                let factor = degree_factor(row.coordinate) / tube.length_m;
+                tip.tubes[row.piece][resisted] += way * at * factor;
+                way * factor / stiffness
+            } else {
+                tip.joints[row.piece] = way;
+                let [least_nm, most_nm] = work.torques[case][row.piece];
+                let Some(curve) = &work.curves[row.piece] else { continue };
+                let breaks = work.breaks[row.piece];
+                let known = matches!(problem.parts[row.piece], Part::Drives { .. } | Part::Given { .. });
+                if !known || !curve.keeps_its_segment(least_nm, most_nm, breaks) {
+                    continue;
+                }
+                tip.torques_nm[row.piece] = Some(at);
+                way / curve.steepest(least_nm, most_nm)
+            };
+            fixed_m += least * (row.fixed - at);
+            for (total, c) in tip.per_n.iter_mut().zip(&row.per_n) {
+                *total += least * c;
+            }
+        }
+        (tip, fixed_m)
+    }
+}
