@@ -31,7 +31,7 @@ const LARGE: u128 = 1_000_000_000;
 /// Probes by the square of the powers of ten of designs: a large space repays many, a small one none.
 const PROBES: f64 = 0.25;
 /// Boxes of fewer designs are sooner halved than asked what they cannot have at once.
-const TRADE_FROM: f64 = 1e7;
+const TRADE_FROM: f64 = 1e9;
 /// Designs are filtered whenever their number reaches a power of two above this.
 const BUFFER: usize = 4096;
 
@@ -104,7 +104,7 @@ impl<'p> Exact<'p> {
         Self { space, catalogs, stop, deadline, boxes: AtomicU64::new(0), trade_from: TRADE_FROM }
     }
 
-    /// Asks of boxes of at least so many designs, instead of ten million, what lightness and stiffness they cannot
+    /// Asks of boxes of at least so many designs, instead of a billion, what lightness and stiffness they cannot
     /// have at once. It changes how long the search takes, not what it finds.
     #[must_use]
     pub fn trading_from(self, designs: f64) -> Self {
