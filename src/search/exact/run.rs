@@ -196,7 +196,7 @@ impl Search<'_, '_> {
     fn run(&self) {
         let mut work = Work::default();
         let Some(shapes) = self.problem.first_shapes(&mut work) else { return };
-        let trade = Arc::new(self.problem.first_trade(&shapes));
+        let trade = Arc::new(Trade::new(&shapes));
         let root =
             Opened { cell: self.problem.root(), shapes: Arc::new(shapes), trade, ceiling: Ceiling::OPEN };
         let mut queue = VecDeque::from([root]);

@@ -49,6 +49,13 @@ pub(super) struct Trade {
     rest: u32,
 }
 
+impl Trade {
+    /// For the box of everything: even weights, its own shapes.
+    pub fn new(shapes: &[Shape]) -> Self {
+        Self { weights: Vec::new(), shapes: shapes.to_vec(), rest: 0 }
+    }
+}
+
 /// The rows of a box.
 struct Rows<'a> {
     problem: &'a Problem<'a>,
@@ -67,9 +74,9 @@ struct Rows<'a> {
 /// The way of the tip in a judged case, along its least deflection.
 struct Tip {
     case: usize,
-    /// Per newton of each piece's weight \[m/N\], by its effect on all that does not have torques of its own.
+    /// Per newton of each piece's weight \[m/N\]: by tubes, and by gears that stay in their segment.
     per_n: Vec<f64>,
-    /// Per twist of each joint \[m/rad\], and the torque it is taken at unless it is free \[N m\].
+    /// Per twist of each joint \[m/rad\]; and at which torque it twists, if its gear stays in its segment \[N m\].
     joints: Vec<f64>,
     torques_nm: Vec<Option<f64>>,
     /// Per compliance of each tube.
@@ -104,11 +111,6 @@ struct Plane {
 }
 
 impl Problem<'_> {
-    /// Where to start with the box of everything.
-    pub fn first_trade(&self, shapes: &[Shape]) -> Trade {
-        Trade { weights: Vec::new(), shapes: shapes.to_vec(), rest: 0 }
-    }
-
     /// Whether every member of a box whose numbers are in `work` is beaten by a design found, within a slack.
     pub fn traded_away(
         &self,
