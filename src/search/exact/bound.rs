@@ -71,10 +71,8 @@ pub(super) struct Work {
     /// Weight interval of each piece of the case at hand \[N\].
     pub(super) weights: Vec<Vec<[f64; 2]>>,
     pub(super) curves: Vec<Option<CurveBox>>,
-    /// Greatest stiffness of each piece, and least of each joint, by case: a gear's slope depends on its
-    /// torque.
+    /// Greatest stiffness of each piece by case: a gear's slope depends on its torque.
     pub(super) stiff_in: Vec<Vec<[f64; STIFFNESSES]>>,
-    pub(super) joint_soft: Vec<Vec<f64>>,
     pub(super) masses: Vec<[f64; 2]>,
     /// The least that is asked of each drive that is a choice.
     pub(super) least: Vec<Option<Asked>>,
@@ -358,7 +356,6 @@ impl<'c> Problem<'c> {
                         let least = force[0].max(-force[1]).max(0.0);
                         let range = (least * (1.0 - ROUNDING), size * (1.0 + ROUNDING));
                         work.stiff_in[case][row.piece][0] = curve.stiffest(range.0, range.1);
-                        work.joint_soft[case][row.piece] = curve.softest(range.0, range.1);
                         work.torques[case][row.piece] = range.into();
                         twist(curve, force)
                     }
@@ -503,11 +500,9 @@ impl Work {
         zero(&mut self.breaks, pieces, Breaks::default());
         self.weights.resize_with(cases, Vec::new);
         self.stiff_in.resize_with(cases, Vec::new);
-        self.joint_soft.resize_with(cases, Vec::new);
         self.torques.resize_with(cases, Vec::new);
         for case in 0..cases {
             zero(&mut self.weights[case], pieces, [0.0; 2]);
-            zero(&mut self.joint_soft[case], pieces, 0.0);
             zero(&mut self.torques[case], pieces, [0.0; 2]);
         }
     }

@@ -9,7 +9,7 @@ use super::bound::{STARTS, Work, interval, stretch, twist};
 use super::parts::{INERTIAS, STIFFNESSES};
 use super::pose::RESISTED;
 use super::problem::{Part, Problem};
-use super::shape::Shape;
+use super::shape::{Shape, products};
 
 /// A middling number over the least or the greatest of a range, less one.
 fn middling(low: f64, high: f64) -> f64 {
@@ -24,7 +24,7 @@ impl Problem<'_> {
         let shape = &shapes[judged * STARTS.len() + start];
         let case = self.judged_cases().nth(judged)?;
         let strain = products(&shape.strain, &work.stiff_in[case]);
-        let kinetic = shape.kinetic_fixed + products(&shape.kinetic, &work.light);
+        let kinetic = shape.kinetic_energy(&work.light);
         let mass_kg: f64 = work.masses.iter().map(|m| m[0]).sum();
         let softened = self.softened_by_torque(case, shape, strain, work);
         let mut best: Option<(f64, usize)> = None;
@@ -116,9 +116,4 @@ impl Problem<'_> {
             _ => None,
         }
     }
-}
-
-/// The sum of all products.
-pub(super) fn products<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>()).sum()
 }

@@ -38,6 +38,11 @@ impl Corner {
         Self { mass_kg: self.mass_kg / factor, tip_m: self.tip_m / factor, hz: self.hz * factor }
     }
 
+    /// Square of its frequency \[1/s²\].
+    pub fn lambda(&self) -> f64 {
+        (self.hz * std::f64::consts::TAU).powi(2)
+    }
+
     fn numbers(&self) -> [f64; 3] {
         [self.mass_kg, self.tip_m, self.hz]
     }

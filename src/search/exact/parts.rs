@@ -195,16 +195,20 @@ fn rising_below(w: &Windup) -> Windup {
     Windup { k1_nm_per_rad: k2.min(w.k1_nm_per_rad), k2_nm_per_rad: k2, ..*w }
 }
 
-/// The slopes of the segments that torques of these sizes lie in.
-fn slopes(w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
-    let segments = [
+/// Slope and ends of each segment of a curve.
+pub(super) fn segments(w: &Windup) -> [(f64, f64, f64); 3] {
+    [
         (w.k1_nm_per_rad, 0.0, w.t1_nm),
         (w.k2_nm_per_rad, w.t1_nm, w.t2_nm),
         (w.k3_nm_per_rad, w.t2_nm, f64::INFINITY),
-    ];
+    ]
+}
+
+/// The slopes of the segments that torques of these sizes lie in.
+fn slopes(w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
     // a break point belongs to the segment below it
     let touched = move |&(_, from, to): &(f64, f64, f64)| least_nm <= to && (most_nm > from || from == 0.0);
-    segments.into_iter().filter(touched).map(|(slope, ..)| slope)
+    segments(w).into_iter().filter(touched).map(|(slope, ..)| slope)
 }
 
 /// The break points of a set of curves, on a grid of about 5 %.

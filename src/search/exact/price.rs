@@ -1,10 +1,9 @@
 //! What a part costs when every number of it has a price, and the cheapest part below a node of a tree.
 
 use super::bound::interval;
-use super::parts::{CurveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::parts::{CurveBox, INERTIAS, LinkBox, STIFFNESSES, inertia, segments};
 use super::pose::Row;
 use super::tree::{Bounds, Tree};
-use crate::arm::Windup;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -137,14 +136,6 @@ impl JointPrice {
             false => (low.min(high), JointState::default()),
         }
     }
-}
-
-fn segments(w: &Windup) -> [(f64, f64, f64); 3] {
-    [
-        (w.k1_nm_per_rad, 0.0, w.t1_nm),
-        (w.k2_nm_per_rad, w.t1_nm, w.t2_nm),
-        (w.k3_nm_per_rad, w.t2_nm, f64::INFINITY),
-    ]
 }
 
 impl Price {

@@ -16,14 +16,13 @@
 //! are the best for the members found so far (a matrix game), shapes those of an arm in between them.
 
 use super::bound::{Ceiling, STARTS, Work, interval};
-use super::branch::products;
 use super::corners::{Corner, Corners};
 use super::game::{Game, solve};
 use super::parts::{CurveBox, DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
 use super::pose::{PosedPiece, RESISTED, degree_factor};
 use super::price::{Gear, JointPrice, Price, cheapest};
 use super::problem::{Part, Problem};
-use super::shape::{Ideal, Shape};
+use super::shape::{Ideal, Shape, products};
 
 /// By how much a member must be beaten in every objective, at least: more than what counts as equal.
 const BEATEN: f64 = 2e-7;
@@ -271,7 +270,7 @@ impl<'a> Rows<'a> {
 
     /// What each row of a member below a corner is at most.
     fn allowed<'b>(&'b self, corner: &'b Corner) -> impl Iterator<Item = f64> + 'b {
-        let below = self.lambda - (corner.hz * std::f64::consts::TAU).powi(2);
+        let below = self.lambda - corner.lambda();
         let objectives = std::iter::once(corner.mass_kg).chain(self.tips.iter().map(|_| corner.tip_m));
         let torques = (1 + self.tips.len()..self.first_mode).map(|_| 0.0);
         let modes = self.modes.iter().map(move |mode| below * mode.kinetic[usize::from(below > 0.0)]);
@@ -302,7 +301,7 @@ impl<'a> Rows<'a> {
 
     /// Adds the modes of the arm in between some members, where they lie below a corner's; whether any does.
     fn separate(&mut self, members: &mut [Member], mix: &[f64], corner: &Corner) -> bool {
-        let lambda = (corner.hz * std::f64::consts::TAU).powi(2);
+        let lambda = corner.lambda();
         let before = self.modes.len();
         for (judged, case) in self.problem.judged_cases().enumerate() {
             let (stiffness, inertia) = self.in_between(members, mix, judged);
