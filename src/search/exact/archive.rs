@@ -4,12 +4,10 @@
 //! row and a list a column of cells hold the designs that share one of them.
 
 use super::bound::Ceiling;
-use super::corners::{Corner, Corners};
 use crate::search::Objectives;
 use crate::search::archive::Archive;
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError, RwLock};
+use std::sync::{Mutex, PoisonError, RwLock};
 
 /// What two objectives may differ by and still count as equal.
 const EQUAL: f64 = 1e-9;
@@ -25,12 +23,7 @@ pub(super) struct Found {
     table: Archive,
     rows: Vec<RwLock<HashMap<i32, Vec<Objectives>>>>,
     columns: Vec<RwLock<HashMap<i32, Vec<Objectives>>>>,
-    /// All designs that no other one beat when corners were last made, and those found since.
     all: Mutex<Vec<Objectives>>,
-    corners: RwLock<Arc<Corners>>,
-    /// Designs found since corners were made, and how many there may be before they are made again.
-    since: AtomicUsize,
-    patience: AtomicUsize,
 }
 
 const SHARDS: usize = 64;
@@ -38,15 +31,7 @@ const SHARDS: usize = 64;
 impl Default for Found {
     fn default() -> Self {
         let lists = || (0..SHARDS).map(|_| RwLock::new(HashMap::new())).collect();
-        Self {
-            table: Archive::new(6),
-            rows: lists(),
-            columns: lists(),
-            all: Mutex::default(),
-            corners: RwLock::default(),
-            since: AtomicUsize::new(0),
-            patience: AtomicUsize::new(0),
-        }
+        Self { table: Archive::new(6), rows: lists(), columns: lists(), all: Mutex::default() }
     }
 }
 
@@ -55,7 +40,6 @@ impl Found {
     pub fn enter(&self, found: &Objectives) {
         self.table.enter(found);
         self.all.lock().unwrap_or_else(PoisonError::into_inner).push(*found);
-        self.since.fetch_add(1, Ordering::Relaxed);
         for (lists, key) in [(&self.rows, step(found.mass_kg)), (&self.columns, step(found.tip_deflection_m))]
         {
             let mut shard = write(&lists[shard(key)]);
@@ -100,17 +84,9 @@ impl Found {
 }
 
 impl Found {
-    /// What the designs found leave open within limits; those of the last moments may be missing.
-    pub fn corners(&self, limits: Corner) -> Arc<Corners> {
-        if self.since.load(Ordering::Relaxed) >= self.patience.load(Ordering::Relaxed)
-            && let Ok(mut all) = self.all.try_lock()
-        {
-            self.since.store(0, Ordering::Relaxed);
-            let corners = Corners::new(&mut all, limits);
-            self.patience.store(16 + all.len() / 16, Ordering::Relaxed);
-            *write(&self.corners) = Arc::new(corners);
-        }
-        Arc::clone(&self.corners.read().unwrap_or_else(PoisonError::into_inner))
+    /// Designs found.
+    pub fn all(&self) -> Vec<Objectives> {
+        self.all.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }
 

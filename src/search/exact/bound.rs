@@ -106,15 +106,11 @@ impl<'c> Problem<'c> {
         let mut work = Work::default();
         if self.fill(&mut self.root(), &mut work).is_some() {
             self.least_tip_m(&mut work);
-            self.inertias = self
-                .judged_cases()
-                .map(|case| {
-                    Inertia::new(
-                        &self.poses[case],
-                        &Ideal { stiffness: &work.stiff_in[case], inertia: &work.light },
-                    )
-                })
-                .collect();
+            let of = |case: usize| {
+                let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
+                Inertia::new(&self.poses[case], &ideal)
+            };
+            self.inertias = Arc::new(self.judged_cases().map(of).collect());
         }
         self
     }
@@ -122,13 +118,14 @@ impl<'c> Problem<'c> {
     /// The objectives of a box of one whose ceiling is known: the ceiling, with its mode made sure of.
     pub fn objectives(&self, ceiling: &Ceiling, work: &Work) -> Objectives {
         let quotient = (ceiling.hz * std::f64::consts::TAU).powi(2);
-        let lowest = self.judged_cases().zip(&self.inertias).fold(quotient, |lowest, (case, inertia)| {
-            inertia.lowest(
-                &self.poses[case],
-                &Ideal { stiffness: &work.stiff_in[case], inertia: &work.light },
-                lowest,
-            )
-        });
+        let lowest =
+            self.judged_cases().zip(self.inertias.iter()).fold(quotient, |lowest, (case, inertia)| {
+                inertia.lowest(
+                    &self.poses[case],
+                    &Ideal { stiffness: &work.stiff_in[case], inertia: &work.light },
+                    lowest,
+                )
+            });
         Objectives {
             tip_deflection_m: ceiling.tip_m,
             mass_kg: ceiling.mass_kg,
@@ -281,9 +278,16 @@ impl<'c> Problem<'c> {
                     let node = &mut cell[level];
                     level += 1;
                     work.tube(self, piece, *length_m, &tree.node(*node).bounds);
-                    if let Some(safety) = self.space.constraints.stress_safety_factor_min {
+                    while let Some(safety) = self.space.constraints.stress_safety_factor_min {
                         let loads = self.least_loads(piece, safety, work);
-                        *node = tree.narrowed(*node, |links| loads.iter().all(|l| stress_holds(links, l)))?;
+                        let narrowed =
+                            tree.narrowed(*node, |links| loads.iter().all(|l| stress_holds(links, l)))?;
+                        if narrowed == *node {
+                            break;
+                        }
+                        // what is left weighs more, and has to carry itself
+                        *node = narrowed;
+                        work.tube(self, piece, *length_m, &tree.node(narrowed).bounds);
                     }
                     let links = &tree.node(*node).bounds;
                     cost_eur += links.cost_eur_per_m * length_m;
@@ -291,7 +295,6 @@ impl<'c> Problem<'c> {
                     if max.is_some_and(|max| cost_eur * (1.0 - ROUNDING) > max) {
                         return None;
                     }
-                    work.tube(self, piece, *length_m, links);
                 }
                 Part::Tube { length_m, tube } => work.tube(self, piece, *length_m, tube),
                 Part::Offset { mass_kg } => {
@@ -527,7 +530,7 @@ impl Work {
         let (light, heavy) = (&links.low.inertias, &links.high.inertias);
         self.masses[piece] = [light[inertia::MASS] * length_m, heavy[inertia::MASS] * length_m];
         let g = problem.space.gravity_m_s2 * length_m;
-        for (weights, pose) in self.weights.iter_mut().zip(&problem.poses) {
+        for (weights, pose) in self.weights.iter_mut().zip(problem.poses.iter()) {
             weights[piece] = [
                 g * (light[inertia::MASS] - pose.water_kg_m3 * heavy[inertia::OUTER_AREA]),
                 g * (heavy[inertia::MASS] - pose.water_kg_m3 * light[inertia::OUTER_AREA]),

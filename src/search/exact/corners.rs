@@ -32,12 +32,6 @@ impl Corner {
         ceiling.mass_kg <= self.mass_kg && ceiling.tip_m <= self.tip_m && ceiling.hz >= self.hz
     }
 
-    /// The corner of a region in which designs count as better by a part than they are.
-    pub fn tightened(&self, slack: f64) -> Self {
-        let factor = 1.0 + slack;
-        Self { mass_kg: self.mass_kg / factor, tip_m: self.tip_m / factor, hz: self.hz * factor }
-    }
-
     /// Square of its frequency \[1/s²\].
     pub fn lambda(&self) -> f64 {
         (self.hz * std::f64::consts::TAU).powi(2)
@@ -49,11 +43,8 @@ impl Corner {
 }
 
 /// All corners, in a tree whose nodes know the corner that bounds those below.
-#[derive(Default)]
 pub(super) struct Corners {
     nodes: Vec<Node>,
-    /// Whether any corner is one of designs, not of limits alone.
-    pub of_designs: bool,
 }
 
 /// A node in preorder.
@@ -80,21 +71,14 @@ impl Corners {
         if !corners.is_empty() {
             grow(&mut corners, &mut nodes);
         }
-        Self { nodes, of_designs: !designs.is_empty() }
+        Self { nodes }
     }
 
-    /// Some corner for which a condition holds, if it holds for every corner that bounds one for which it does.
-    pub fn find(&self, may: impl Fn(&Corner) -> bool) -> Option<Corner> {
-        let mut at = 0;
-        while let Some(node) = self.nodes.get(at) {
-            let leaf = node.end == at + 1;
-            at = match may(&node.bound) {
-                true if leaf => return Some(node.bound),
-                true => at + 1,
-                false => node.end,
-            };
-        }
-        None
+    /// A node, the first of all being 0: the corner that bounds those below it, and its two halves.
+    pub fn node(&self, at: usize) -> Option<(Corner, Option<[usize; 2]>)> {
+        let node = self.nodes.get(at)?;
+        let halves = (node.end > at + 1).then(|| [at + 1, self.nodes[at + 1].end]);
+        Some((node.bound, halves))
     }
 }
 
@@ -171,6 +155,15 @@ mod tests {
         prop::collection::vec(design, 0..40)
     }
 
+    /// Whether a design is below some corner under a node, asked node by node.
+    fn is_below(corners: &Corners, at: usize, design: [f64; 3]) -> bool {
+        let [mass_kg, tip_m, hz] = design;
+        corners.node(at).is_some_and(|(c, halves)| {
+            let here = mass_kg < c.mass_kg && tip_m < c.tip_m && hz > c.hz;
+            here && halves.is_none_or(|halves| halves.into_iter().any(|half| is_below(corners, half, design)))
+        })
+    }
+
     proptest! {
         #[test]
         fn a_design_is_below_a_corner_exactly_if_none_beats_it(designs in designs()) {
@@ -181,7 +174,7 @@ mod tests {
                 let beaten = |o: &Objectives| {
                     o.mass_kg < mass_kg && o.tip_deflection_m < tip_m && o.lowest_mode_hz > hz
                 };
-                let below = corners.find(|c| mass_kg < c.mass_kg && tip_m < c.tip_m && hz > c.hz).is_some();
+                let below = is_below(&corners, 0, [mass_kg, tip_m, hz]);
                 prop_assert_eq!(below, !designs.iter().any(beaten));
                 prop_assert_eq!(below, !kept.iter().any(beaten));
             }

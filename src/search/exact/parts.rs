@@ -1,6 +1,6 @@
 //! What the bound sees of a part, and of a box of parts: every number as an interval.
 
-use super::tree::Bounds;
+use super::tree::{Bounds, Key};
 use crate::arm::{Beam, Curve, LinkMaterial, LinkModel, Section, Windup};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
 use crate::search::figures::StressCheck;
@@ -111,9 +111,9 @@ impl Bounds for LinkBox {
 
     /// Mass counts twice: it is an objective, and it loads everything inboard. Shear and stretch hardly
     /// move any objective.
-    fn key(&self) -> Vec<f64> {
+    fn key(&self) -> Key {
         let s = self.low.stiffnesses.map(|s| if s.is_finite() { s.ln() } else { 0.0 });
-        vec![2.0 * self.low.inertias[inertia::MASS].ln(), s[0], 0.7 * s[1], 0.1 * s[2], 0.3 * s[3]]
+        [2.0 * self.low.inertias[inertia::MASS].ln(), s[0], 0.7 * s[1], 0.1 * s[2], 0.3 * s[3]]
     }
 }
 
@@ -334,11 +334,11 @@ impl Bounds for DriveBox {
     }
 
     /// First by curve: drives with one gear share it. Then by mass.
-    fn key(&self) -> Vec<f64> {
+    fn key(&self) -> Key {
         let k = self.curve.map_or([0.0; 3], |c| {
             [c.stiff.k1_nm_per_rad.ln(), c.stiff.k3_nm_per_rad.ln(), 0.2 * c.stiff.t1_nm.min(1e9).ln()]
         });
-        vec![
+        [
             4.0 * k[0],
             2.0 * k[1],
             k[2],

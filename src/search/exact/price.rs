@@ -75,56 +75,82 @@ pub(super) struct JointState {
     pub slope: f64,
 }
 
-impl JointPrice {
-    /// The cheapest state of a gear whose torque is free, and its price; of a box of gears no more than that of
-    /// any. Twist is linear in the torque within a segment, so the ends of the segments are enough.
+/// The states of a gear that are worth a price: twist is linear in the torque within a segment, so the ends of the
+/// segments are enough. Of a box of gears no member has a lower price in any.
+pub(super) struct States {
+    ends: [End; 12],
+    count: usize,
+}
+
+/// One end of a segment: torque, least and greatest twist, slope that modes see.
+#[derive(Clone, Copy, Default)]
+struct End {
+    torque_nm: f64,
+    twist_rad: [f64; 2],
+    slope: f64,
+}
+
+impl States {
+    /// The states of a gear between two torques \[N m\].
     #[inline]
-    pub fn best(&self, curve: Option<&CurveBox>) -> (f64, JointState) {
-        let Some(curve) = curve else {
-            return self.rigid();
-        };
-        let mut best = (f64::INFINITY, JointState::default());
-        for sign in [1.0, -1.0] {
-            let [low, high] =
-                if sign > 0.0 { self.torques_nm } else { [-self.torques_nm[1], -self.torques_nm[0]] };
-            if high < 0.0 || (high == 0.0 && sign < 0.0) {
-                continue;
-            }
-            self.best_of_sign(curve, sign, low.max(0.0), high, &mut best);
+    pub fn of(curve: &CurveBox, [low_nm, high_nm]: [f64; 2]) -> Self {
+        let mut states = Self { ends: [End::default(); 12], count: 0 };
+        if high_nm >= 0.0 {
+            states.add_sign(curve, 1.0, low_nm.max(0.0), high_nm);
         }
-        best
+        if low_nm < 0.0 {
+            states.add_sign(curve, -1.0, (-high_nm).max(0.0), -low_nm);
+        }
+        states
     }
 
-    /// The same among torques of one sign and of sizes between two.
+    /// Those among torques of one sign and of sizes between two.
     #[inline]
-    fn best_of_sign(&self, curve: &CurveBox, sign: f64, low: f64, high: f64, best: &mut (f64, JointState)) {
+    fn add_sign(&mut self, curve: &CurveBox, sign: f64, low: f64, high: f64) {
         let w = &curve.stiff;
-        let twist = self.twist * sign;
-        let mut angle = 0.0;
+        let mut first = 0.0;
         for (slope, start, end) in segments(w) {
             let (from, to) = (low.max(start), high.min(end));
-            let first = angle;
             // a break point belongs to the segment below it
             if from <= to && (to > start || start == 0.0) {
                 let seen = if curve.k1_in_modes { w.k1_nm_per_rad } else { slope };
-                for torque in if from < to { [from, to] } else { [from, f64::NAN] } {
-                    let angle = match twist >= 0.0 {
-                        true => first + (torque - start) / slope,
-                        false => curve.soft.angle_rad(to),
-                    };
-                    let price = twist * angle + self.torque * sign * torque - self.slope * seen;
-                    if price < best.0 {
-                        let state =
-                            JointState { torque_nm: sign * torque, twist_rad: sign * angle, slope: seen };
-                        *best = (price, state);
-                    }
+                let most = sign * curve.soft.angle_rad(to);
+                for torque in [from, to].into_iter().take(if from < to { 2 } else { 1 }) {
+                    let least = sign * (first + (torque - start) / slope);
+                    self.ends[self.count] =
+                        End { torque_nm: sign * torque, twist_rad: [least, most], slope: seen };
+                    self.count += 1;
                 }
             }
             if high <= end {
                 return;
             }
-            angle += (end - start) / slope;
+            first += (end - start) / slope;
         }
+    }
+}
+
+impl JointPrice {
+    /// The cheapest state of a joint, and its price; of a box of joints no more than that of any.
+    #[inline]
+    pub fn best(&self, states: Option<&States>) -> (f64, JointState) {
+        let Some(states) = states else { return self.rigid() };
+        let mut best = (f64::INFINITY, JointState::default());
+        for end in &states.ends[..states.count] {
+            let [least, most] = end.twist_rad.map(|twist| self.twist * twist);
+            let price = least.min(most) + self.torque * end.torque_nm - self.slope * end.slope;
+            if price < best.0 {
+                let twist_rad = end.twist_rad[usize::from(most < least)];
+                best = (price, JointState { torque_nm: end.torque_nm, twist_rad, slope: end.slope });
+            }
+        }
+        best
+    }
+
+    /// The same of a joint with this curve.
+    #[inline]
+    pub fn best_of(&self, curve: Option<&CurveBox>) -> (f64, JointState) {
+        self.best(curve.map(|curve| States::of(curve, self.torques_nm)).as_ref())
     }
 
     /// Of a rigid joint, or of a box that has one: nothing is known of the others.
@@ -138,25 +164,49 @@ impl JointPrice {
     }
 }
 
+/// What prices see of a tube, or of a box of tubes.
+pub(super) struct TubeNumbers {
+    inertia: [[f64; INERTIAS]; 2],
+    compliance: [[f64; STIFFNESSES]; 2],
+    stiffness: [f64; STIFFNESSES],
+}
+
+impl TubeNumbers {
+    #[inline]
+    pub fn of(links: &LinkBox) -> Self {
+        Self {
+            inertia: [links.low.inertias, links.high.inertias],
+            compliance: [&links.high, &links.low].map(|line| line.stiffnesses.map(f64::recip)),
+            stiffness: links.high.stiffnesses,
+        }
+    }
+}
+
 impl Price {
     /// Of a joint's drive; of a box of drives, no more than that of any.
     pub fn of_joint(&self, mass_kg: [f64; 2], curve: Option<&CurveBox>) -> f64 {
+        self.of_mass(mass_kg) + self.joint.iter().map(|price| price.best_of(curve).0).sum::<f64>()
+    }
+
+    /// Of what a drive weighs.
+    #[inline]
+    pub fn of_mass(&self, mass_kg: [f64; 2]) -> f64 {
         let per_kg = self.inertia[inertia::MASS];
-        let mass = per_kg * if per_kg >= 0.0 { mass_kg[0] } else { mass_kg[1] };
-        mass + self.joint.iter().map(|price| price.best(curve).0).sum::<f64>()
+        per_kg * if per_kg >= 0.0 { mass_kg[0] } else { mass_kg[1] }
     }
 
     /// Of a tube; of a box of tubes, no more than that of any.
-    pub fn of_link(&self, links: &LinkBox) -> f64 {
+    #[inline]
+    pub fn of_tube(&self, tube: &TubeNumbers) -> f64 {
+        let least = |price: f64, [a, b]: [f64; 2]| price * if price >= 0.0 { a } else { b };
         let mut sum = 0.0;
-        for (i, price) in self.inertia.iter().enumerate() {
-            sum += price * if *price >= 0.0 { links.low.inertias[i] } else { links.high.inertias[i] };
+        for (i, &price) in self.inertia.iter().enumerate() {
+            sum += least(price, [tube.inertia[0][i], tube.inertia[1][i]]);
         }
         for k in 0..STIFFNESSES {
-            let (soft, stiff) = (links.low.stiffnesses[k], links.high.stiffnesses[k]);
-            sum += self.compliance[k] / if self.compliance[k] >= 0.0 { stiff } else { soft };
+            sum += least(self.compliance[k], [tube.compliance[0][k], tube.compliance[1][k]]);
             if self.stiffness[k] > 0.0 {
-                sum -= self.stiffness[k] * stiff;
+                sum -= self.stiffness[k] * tube.stiffness[k];
             }
         }
         sum

@@ -11,8 +11,10 @@ use crate::search::slot::{SizedJoint, Slot, joint_slot};
 use crate::search::space::{DesignSpace, LinkOption, SpacePiece};
 use crate::search::station::reaches_m;
 use crate::sizing::JointMotion;
+use std::sync::Arc;
 
 /// A design space as branch and bound sees it. Pieces count from the tip.
+#[derive(Clone)]
 pub(super) struct Problem<'c> {
     pub space: &'c DesignSpace,
     pub parts: Vec<Part<'c>>,
@@ -20,9 +22,9 @@ pub(super) struct Problem<'c> {
     pub level_pieces: Vec<usize>,
     /// Options of each level.
     pub level_sizes: Vec<u32>,
-    pub poses: Vec<Pose>,
+    pub poses: Arc<Vec<Pose>>,
     /// Inertia matrices of the judged cases.
-    pub inertias: Vec<Inertia>,
+    pub inertias: Arc<Vec<Inertia>>,
     /// Peak over static stress in sizing cases.
     pub peak_factor: f64,
     /// Whether a lighter arm that is no softer is no worse.
@@ -30,15 +32,16 @@ pub(super) struct Problem<'c> {
 }
 
 /// What may stand at a place of the chain.
+#[derive(Clone)]
 pub(super) enum Part<'c> {
     /// A given joint.
     Given { mass_kg: f64, curve: Option<CurveBox> },
     /// A joint whose drive is a choice.
-    Drives { sized: SizedJoint<'c>, tree: Tree<DriveBox>, rays: Rays },
+    Drives { sized: Arc<SizedJoint<'c>>, tree: Arc<Tree<DriveBox>>, rays: Arc<Rays> },
     /// A joint that takes the lightest drive that holds.
-    FirstFit { sized: SizedJoint<'c>, ladder: Ladder },
+    FirstFit { sized: Arc<SizedJoint<'c>>, ladder: Arc<Ladder> },
     /// A link to choose.
-    Links { length_m: f64, tree: Tree<LinkBox> },
+    Links { length_m: f64, tree: Arc<Tree<LinkBox>> },
     /// A given tube.
     Tube { length_m: f64, tube: Box<LinkBox> },
     /// A rigid offset.
@@ -95,8 +98,8 @@ impl<'c> Problem<'c> {
             parts: Vec::new(),
             level_pieces: Vec::new(),
             level_sizes: Vec::new(),
-            poses: (0..space.cases.len()).map(|i| Pose::new(space, i)).collect(),
-            inertias: Vec::new(),
+            poses: Arc::new((0..space.cases.len()).map(|i| Pose::new(space, i)).collect()),
+            inertias: Arc::default(),
             peak_factor: 1.0
                 + space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE),
             lighter_is_better: false,
@@ -118,7 +121,7 @@ impl<'c> Problem<'c> {
                     let options = self.level(sized.table.len());
                     let rays = self.rays(self.parts.len(), sized.table.motion());
                     let tree = Tree::build(options.map(|i| (i, drive_box(&sized, i, &rays))))?;
-                    Part::Drives { sized, tree, rays }
+                    Part::Drives { sized: Arc::new(sized), tree: Arc::new(tree), rays: Arc::new(rays) }
                 }
                 Slot::Sized(sized) => {
                     let rays = self.rays(self.parts.len(), sized.table.motion());
@@ -128,7 +131,10 @@ impl<'c> Problem<'c> {
                         .iter()
                         .map(|&i| drive_box(&sized, i, &rays))
                         .collect();
-                    (!steps.is_empty()).then(|| Part::FirstFit { ladder: Ladder::new(steps), sized })?
+                    (!steps.is_empty()).then(|| Part::FirstFit {
+                        ladder: Arc::new(Ladder::new(steps)),
+                        sized: Arc::new(sized),
+                    })?
                 }
                 Slot::Link { .. } | Slot::Offset { .. } => return None,
             },
@@ -140,7 +146,7 @@ impl<'c> Problem<'c> {
                 let boxes = options
                     .filter(|&i| !slender(&choice.options[i as usize]))
                     .map(|i| (i, LinkBox::of(&choice.options[i as usize], space.links)));
-                Part::Links { length_m: choice.vector_m.norm(), tree: Tree::build(boxes)? }
+                Part::Links { length_m: choice.vector_m.norm(), tree: Arc::new(Tree::build(boxes)?) }
             }
             SpacePiece::Link(link) => match &link.body {
                 LinkBody::Offset { mass_kg } => Part::Offset { mass_kg: *mass_kg },
@@ -173,6 +179,29 @@ impl<'c> Problem<'c> {
             inertia_kgm2 = inertia_kgm2.max(row.fixed);
         }
         Rays::new(motion, static_nm, inertia_kgm2)
+    }
+
+    /// The problem with some of the options only: those below nodes of each level's whole tree.
+    pub fn narrowed_to(&self, kept: &[Vec<u32>]) -> Option<Self> {
+        let mut narrower = self.clone();
+        for (&piece, nodes) in self.level_pieces.iter().zip(kept) {
+            match &mut narrower.parts[piece] {
+                Part::Drives { tree, .. } => *tree = Tree::over(tree, nodes)?,
+                Part::Links { tree, .. } => *tree = Tree::over(tree, nodes)?,
+                _ => {}
+            }
+        }
+        Some(narrower)
+    }
+
+    /// Designs below nodes of each level's whole tree.
+    pub fn designs_below(&self, kept: &[Vec<u32>]) -> f64 {
+        let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
+            Part::Drives { tree, .. } => tree.members_of(nodes),
+            Part::Links { tree, .. } => tree.members_of(nodes),
+            _ => 1.0,
+        };
+        self.level_pieces.iter().zip(kept).map(of).product()
     }
 
     /// Designs in the space.

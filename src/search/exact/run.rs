@@ -7,7 +7,6 @@ use super::gap::gap;
 use super::probe::probe;
 use super::problem::Problem;
 use super::shape::Shape;
-use super::tradeoff::Trade;
 use crate::catalog::Catalogs;
 use crate::search::Objectives;
 use crate::search::design::number;
@@ -27,11 +26,13 @@ const TASKS: usize = 2048;
 const SLACKS: [f64; 15] =
     [1.0, 0.7, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.16, 0.12, 0.09, 0.06, 0.04, 0.02, 0.0];
 /// Designs above which a space is large.
-const LARGE: u128 = 1_000_000_000;
+const LARGE: f64 = 1e9;
+/// Designs above which a space is searched region by region.
+const VAST: f64 = 1e14;
+/// Designs that are sooner searched box by box than narrowed to regions.
+const FEW: f64 = 1e6;
 /// Probes by the square of the powers of ten of designs: a large space repays many, a small one none.
-const PROBES: f64 = 0.25;
-/// Boxes of fewer designs are sooner halved than asked what they cannot have at once.
-const TRADE_FROM: f64 = 1e9;
+const PROBES: f64 = 0.12;
 /// Designs are filtered whenever their number reaches a power of two above this.
 const BUFFER: usize = 4096;
 
@@ -42,7 +43,9 @@ pub struct Exact<'p> {
     stop: &'p AtomicBool,
     deadline: Option<Instant>,
     boxes: AtomicU64,
-    trade_from: f64,
+    /// Designs above which a space is searched region by region, and down to how many.
+    regions_from: f64,
+    regions_to: f64,
 }
 
 /// What the search found.
@@ -76,21 +79,22 @@ pub fn conditions(space: &DesignSpace) -> Result<(), String> {
 
 /// What all searches of a run share.
 #[derive(Default)]
-struct Shared {
-    found: Found,
+pub(super) struct Shared {
+    pub found: Found,
+    /// Designs found in the pass at hand.
+    pub fresh: Mutex<Vec<Objectives>>,
     kept: Mutex<Vec<Candidate>>,
     /// Designs whose ceiling is not their objectives: a demand lies on a threshold. The full model judges them.
     unsure: Mutex<Vec<Candidate>>,
     evaluated: AtomicU64,
-    open: Mutex<Vec<Ceiling>>,
+    pub open: Mutex<Vec<Ceiling>>,
 }
 
 /// A box on its way, with what its parent knew.
-struct Opened {
-    cell: Cell,
-    shapes: Arc<Vec<Shape>>,
-    trade: Arc<Trade>,
-    ceiling: Ceiling,
+pub(super) struct Opened {
+    pub cell: Cell,
+    pub shapes: Arc<Vec<Shape>>,
+    pub ceiling: Ceiling,
 }
 
 impl<'p> Exact<'p> {
@@ -101,14 +105,15 @@ impl<'p> Exact<'p> {
         stop: &'p AtomicBool,
         deadline: Option<Instant>,
     ) -> Self {
-        Self { space, catalogs, stop, deadline, boxes: AtomicU64::new(0), trade_from: TRADE_FROM }
+        let boxes = AtomicU64::new(0);
+        Self { space, catalogs, stop, deadline, boxes, regions_from: VAST, regions_to: FEW }
     }
 
-    /// Asks of boxes of at least so many designs, instead of a billion, what lightness and stiffness they cannot
-    /// have at once. It changes how long the search takes, not what it finds.
+    /// Searches a space of more designs than this, instead of 1e14, region by region down to so few. It changes how
+    /// long the search takes, not what it finds.
     #[must_use]
-    pub fn trading_from(self, designs: f64) -> Self {
-        Self { trade_from: designs, ..self }
+    pub fn by_regions_from(self, designs: f64) -> Self {
+        Self { regions_from: designs, regions_to: designs.min(FEW), ..self }
     }
 
     /// Boxes bounded so far.
@@ -127,15 +132,22 @@ impl<'p> Exact<'p> {
         let whole = Problem::new(self.space, self.catalogs).map(Problem::with_inertias);
         let (mut proven, mut last_slack) = (None, 0.0);
         if let Some(whole) = &whole {
-            let designs = whole.designs();
-            let search = |slack: f64| Search { exact: self, problem: whole, shared: &shared, slack };
+            let designs = whole.designs() as f64;
+            let by_regions = designs > self.regions_from;
+            let is_large = by_regions || designs > LARGE;
+            let search =
+                |slack: f64| Search { exact: self, problem: whole, shared: &shared, slack, below: None };
             if known.is_empty() {
-                probe(&search(0.0), (PROBES * (designs as f64).log10().powi(2)) as usize);
+                probe(&search(0.0), (PROBES * designs.log10().powi(2)) as usize);
             }
-            let passes = if designs > LARGE && known.is_empty() { &SLACKS[..] } else { &[0.0] };
+            let passes = if is_large && known.is_empty() { &SLACKS[..] } else { &[0.0] };
             for &slack in passes {
                 lock(&shared.open).clear();
-                search(slack).run();
+                if is_large {
+                    search(slack).run_by_regions()
+                } else {
+                    search(slack).run()
+                }
                 if !lock(&shared.open).is_empty() {
                     last_slack = slack;
                     break;
@@ -171,7 +183,7 @@ fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::min)
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -179,12 +191,14 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 pub(super) struct Search<'s, 'p> {
     exact: &'s Exact<'p>,
     pub problem: &'s Problem<'p>,
-    shared: &'s Shared,
+    pub shared: &'s Shared,
     /// How close a design found must come to a box's ceiling to cut it.
-    slack: f64,
+    pub slack: f64,
+    /// The corner below which designs are looked for.
+    pub below: Option<Corner>,
 }
 
-impl Search<'_, '_> {
+impl<'p> Search<'_, 'p> {
     pub fn stopped(&self) -> bool {
         self.exact.stopped()
     }
@@ -193,12 +207,20 @@ impl Search<'_, '_> {
         self.exact.boxes.fetch_add(1, Ordering::Relaxed);
     }
 
+    /// The same search of a part of the problem, below a corner.
+    pub fn of_part<'t>(&'t self, problem: &'t Problem<'p>, below: Option<Corner>) -> Search<'t, 'p> {
+        Search { problem, below, ..*self }
+    }
+
+    /// Designs that are few enough to be searched box by box.
+    pub fn down_to(&self) -> f64 {
+        self.exact.regions_to
+    }
+
     fn run(&self) {
         let mut work = Work::default();
         let Some(shapes) = self.problem.first_shapes(&mut work) else { return };
-        let trade = Arc::new(Trade::new(&shapes));
-        let root =
-            Opened { cell: self.problem.root(), shapes: Arc::new(shapes), trade, ceiling: Ceiling::OPEN };
+        let root = Opened { cell: self.problem.root(), shapes: Arc::new(shapes), ceiling: Ceiling::OPEN };
         let mut queue = VecDeque::from([root]);
         while queue.len() < TASKS && !self.stopped() {
             let Some(next) = queue.pop_front() else { break };
@@ -220,29 +242,24 @@ impl Search<'_, '_> {
     }
 
     /// Bounds a box and halves it, or judges it if it is one design.
-    fn open(&self, mut here: Opened, work: &mut Work, children: &mut Vec<Opened>) {
+    pub fn open(&self, mut here: Opened, work: &mut Work, children: &mut Vec<Opened>) {
         self.count_box();
         let found = &self.shared.found;
         let verdict = self.problem.bound(
             &mut here.cell,
             &mut here.shapes,
             work,
-            |ceiling| found.beats(&ceiling.slackened(self.slack)),
-            |ceiling| found.nearly_beats(&ceiling.slackened(self.slack)),
+            |ceiling| {
+                self.below.is_some_and(|corner| !corner.is_in_reach_of(ceiling))
+                    || found.beats(&ceiling.slackened(self.slack))
+            },
+            |ceiling| self.below.is_some() || found.nearly_beats(&ceiling.slackened(self.slack)),
         );
         let Verdict::Open(ceiling) = verdict else { return };
         match self.problem.without_pointless(&mut here.cell, ceiling.tip_m, work) {
             None => return,
             Some(true) => return children.push(here),
             Some(false) => {}
-        }
-        if self.problem.members(&here.cell) >= self.exact.trade_from {
-            let (trade, corners) = (Arc::make_mut(&mut here.trade), found.corners(self.limits()));
-            // limits by themselves prove nothing within a slack
-            let slack = if corners.of_designs { self.slack } else { 0.0 };
-            if self.problem.traded_away(&here.cell, &ceiling, trade, work, &corners, slack) {
-                return;
-            }
         }
         let Some(level) = self.problem.widest_level(&here.cell, &here.shapes, work) else {
             self.judge(&here.cell, &ceiling, work);
@@ -253,17 +270,12 @@ impl Search<'_, '_> {
         for half in [halves[1], halves[0]] {
             let mut cell = here.cell.clone();
             cell[level] = half;
-            children.push(Opened {
-                cell,
-                shapes: Arc::clone(&here.shapes),
-                trade: Arc::clone(&here.trade),
-                ceiling,
-            });
+            children.push(Opened { cell, shapes: Arc::clone(&here.shapes), ceiling });
         }
     }
 
     /// What every design on the front keeps.
-    fn limits(&self) -> Corner {
+    pub fn limits(&self) -> Corner {
         let limits = &self.problem.space.constraints;
         Corner {
             mass_kg: limits.mass_max_kg.unwrap_or(f64::INFINITY),
@@ -286,6 +298,7 @@ impl Search<'_, '_> {
             return;
         }
         self.shared.found.enter(&objectives);
+        lock(&self.shared.fresh).push(objectives);
         let mut kept = lock(&self.shared.kept);
         kept.push(Candidate { number: number(&self.problem.level_sizes, &options), objectives });
         if kept.len().is_power_of_two() && kept.len() > BUFFER {

@@ -149,9 +149,14 @@ impl Shape {
     }
 }
 
+/// The sum of the products.
+pub(super) fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
 /// The sum of all products.
 pub(super) fn products<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>()).sum()
+    a.iter().zip(b).map(|(a, b)| dot(a, b)).sum()
 }
 
 /// `M x` into `work.forces`: the inertia forces on every coordinate when the arm moves by `x` and its base

@@ -15,26 +15,25 @@
 //! member is found part by part. If it is more than the corner allows, no member is below the corner. Weights
 //! are the best for the members found so far (a matrix game), shapes those of an arm in between them.
 
-use super::bound::{Ceiling, STARTS, Work, interval};
-use super::corners::{Corner, Corners};
+use super::bound::{Ceiling, Cell, STARTS, Work, interval};
+use super::corners::Corner;
 use super::game::{Game, solve};
+use super::parting::Parting;
 use super::parts::{CurveBox, DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
 use super::pose::{PosedPiece, RESISTED, degree_factor};
-use super::price::{Gear, JointPrice, Price, cheapest};
+use super::price::{Gear, JointPrice, Price, TubeNumbers, cheapest};
 use super::problem::{Part, Problem};
-use super::shape::{Ideal, Shape, products};
+use super::shape::{Ideal, Shape, dot, products};
 
 /// By how much a member must be beaten in every objective, at least: more than what counts as equal.
-const BEATEN: f64 = 2e-7;
+pub(super) const BEATEN: f64 = 2e-7;
 /// Rounding of sums whose terms are about one.
-const ROUNDING: f64 = 1e-9;
-/// Weightings and new sets of shapes at the most for one box.
-const MOST_PLANES: usize = 10;
+pub(super) const ROUNDING: f64 = 1e-9;
+/// Weightings of several rows, and new sets of shapes, at the most for one box.
+const MOST_PLANES: usize = 11;
 const MOST_SHAPES: usize = 2;
-/// A box this far from being refuted, in parts of a row, is tried again after one halving; every doubling of the
-/// distance is a halving more, up to a number.
-const REST: f64 = 0.002;
-const MOST_REST: f64 = 6.0;
+/// Shares of a mixture below this are rounding.
+const SHARE: f64 = 1e-9;
 /// Steps towards the mode of an arm in between.
 const STEPS: usize = 3;
 
@@ -44,25 +43,23 @@ pub(super) struct Trade {
     /// Of mass, ways of the tip and modes; torques have their own in every box.
     weights: Vec<f64>,
     shapes: Vec<Shape>,
-    /// Halvings of which nothing is to be hoped.
-    rest: u32,
 }
 
 impl Trade {
     /// For the box of everything: even weights, its own shapes.
     pub fn new(shapes: &[Shape]) -> Self {
-        Self { weights: Vec::new(), shapes: shapes.to_vec(), rest: 0 }
+        Self { weights: Vec::new(), shapes: shapes.to_vec() }
     }
 }
 
 /// The rows of a box.
-struct Rows<'a> {
-    problem: &'a Problem<'a>,
-    work: &'a Work,
+pub(super) struct Rows<'a> {
+    pub problem: &'a Problem<'a>,
+    pub work: &'a Work,
     /// What each row is divided by, so that it is about one, and what no part changes.
-    scale: Vec<f64>,
+    pub scale: Vec<f64>,
     fixed: Vec<f64>,
-    tips: Vec<Tip>,
+    pub tips: Vec<Tip>,
     gears: Vec<Gear<'a>>,
     /// Square of the frequency at which the modes are taken \[1/s²\].
     lambda: f64,
@@ -71,8 +68,8 @@ struct Rows<'a> {
 }
 
 /// The way of the tip in a judged case, along its least deflection.
-struct Tip {
-    case: usize,
+pub(super) struct Tip {
+    pub case: usize,
     /// Per newton of each piece's weight \[m/N\]: by tubes, and by gears that stay in their segment.
     per_n: Vec<f64>,
     /// Per twist of each joint \[m/rad\]; and at which torque it twists, if its gear stays in its segment \[N m\].
@@ -92,74 +89,88 @@ struct Mode {
 }
 
 /// A member of the box, or what stands for it in the sums: its gears need not agree with its weights.
-struct Member {
-    /// Every row of it.
+pub(super) struct Member {
+    /// Its node of each level.
+    pub cell: Cell,
+    /// Every row of it, and what each piece adds to those before the modes.
     values: Vec<f64>,
-    /// Inertia of each piece, and its stiffness in each judged case.
+    adds: Vec<Vec<f64>>,
+    /// Inertia of each piece; its weight \[N\] and its stiffness in each judged case.
     inertia: Vec<[f64; INERTIAS]>,
-    stiffness: Vec<Vec<[f64; STIFFNESSES]>>,
+    pub weights_n: Vec<Vec<f64>>,
+    pub stiffness: Vec<Vec<[f64; STIFFNESSES]>>,
 }
 
 /// Stiffness and inertia of each piece.
 type Arm = (Vec<[f64; STIFFNESSES]>, Vec<[f64; INERTIAS]>);
 
-/// A weighting, and the least weighted sum of any member.
-struct Plane {
-    weights: Vec<f64>,
-    least: f64,
+/// A weighting, the least weighted sum of any member, and what each level adds to it.
+pub(super) struct Plane {
+    pub weights: Vec<f64>,
+    pub least: f64,
+    pub levels: Vec<f64>,
+}
+
+/// What is left of a box below a corner.
+pub(super) struct Left {
+    /// The nodes of each level's whole tree that hold every option a member below the corner may have.
+    pub kept: Vec<Vec<u32>>,
+    /// Where to part them, the most promising first.
+    pub partings: Vec<Parting>,
+    /// Designs that may be below the corner.
+    pub likely: Vec<Cell>,
 }
 
 impl Problem<'_> {
-    /// Whether every member of a box whose numbers are in `work` is beaten by a design found, within a slack.
-    pub fn traded_away(
+    /// What is left of a box, whose numbers are in `work`, below a corner; `None` if no member is.
+    pub fn left_below(
         &self,
         cell: &[u32],
         ceiling: &Ceiling,
         trade: &mut Trade,
         work: &Work,
-        corners: &Corners,
-        slack: f64,
-    ) -> bool {
-        if trade.rest > 0 {
-            trade.rest -= 1;
-            return false;
-        }
-        let tightened = |corner: &Corner| corner.tightened(slack - BEATEN);
-        let Some(first) = corners.find(|c| tightened(c).is_in_reach_of(ceiling)) else { return true };
-        let mut rows = Rows::new(self, ceiling, &tightened(&first), &trade.shapes, work);
+        corner: &Corner,
+    ) -> Option<Left> {
+        let mut rows = Rows::new(self, ceiling, corner, &trade.shapes, work);
         let (mut planes, mut members) = (Vec::<Plane>::new(), Vec::<Member>::new());
-        let mut weights = rows.inherited(&trade.weights);
-        let (mut new_shapes, mut short) = (0, f64::INFINITY);
-        let refuted = loop {
-            let is_open = |c: &Corner| {
-                let corner = tightened(c);
-                corner.is_in_reach_of(ceiling) && !planes.iter().any(|plane| rows.refute(plane, &corner))
-            };
-            let Some(corner) = corners.find(is_open) else { break true };
-            if planes.len() >= MOST_PLANES {
-                break false;
-            }
-            let corner = tightened(&corner);
-            if !members.is_empty() {
-                let game = rows.game(&members, &corner);
-                weights = game.weights;
-                if game.value <= ROUNDING {
-                    new_shapes += 1;
-                    if new_shapes > MOST_SHAPES || !rows.separate(&mut members, &game.mix, &corner) {
-                        break false;
+        let mut starts = rows.singles(corner);
+        let most = starts.len() + MOST_PLANES;
+        starts.push(rows.inherited(&trade.weights));
+        let mut new_shapes = 0;
+        let game = loop {
+            let weights = match starts.pop() {
+                Some(weights) => weights,
+                None => {
+                    let game = rows.game(&members, corner);
+                    if game.value <= ROUNDING {
+                        new_shapes += 1;
+                        if new_shapes > MOST_SHAPES || !rows.separate(&mut members, &game.mix, corner) {
+                            break game;
+                        }
+                        continue;
                     }
-                    continue;
+                    if planes.len() >= most {
+                        break game;
+                    }
+                    game.weights
                 }
+            };
+            let (plane, member) = rows.least(cell, weights);
+            if plane.least > rows.weighted(&plane.weights, corner) + ROUNDING {
+                return None;
             }
-            let (least, member) = rows.least(cell, &weights);
-            let allowed = rows.weighted(&weights, &corner);
-            short = f64::min(short, allowed - least);
-            planes.push(Plane { weights: weights.clone(), least });
+            planes.push(plane);
             members.push(member);
         };
-        rows.bequeath(&weights, trade);
-        trade.rest = (short / REST).log2().clamp(0.0, MOST_REST) as u32;
-        refuted
+        let mixed: Vec<(&Member, f64)> =
+            members.iter().zip(game.mix.iter().copied()).filter(|(_, share)| *share > SHARE).collect();
+        let left = Left {
+            kept: rows.kept(cell, &planes, corner)?,
+            partings: rows.partings(&mixed, &game.weights),
+            likely: mixed.iter().map(|(member, _)| member.cell.clone()).collect(),
+        };
+        rows.bequeath(&game.weights, trade);
+        Some(left)
     }
 
     /// Designs in a box.
@@ -203,7 +214,8 @@ impl<'a> Rows<'a> {
         };
         for (judged, case) in problem.judged_cases().enumerate() {
             let (tip, fixed_m) = Tip::new(problem, judged, case, work);
-            let scale = corner.tip_m.min(1e3 * ceiling.tip_m).max(f64::MIN_POSITIVE);
+            let most = if ceiling.tip_m > 0.0 { 1e3 * ceiling.tip_m } else { 1.0 };
+            let scale = corner.tip_m.min(most).max(f64::MIN_POSITIVE);
             rows.tips.push(tip);
             rows.push(scale, fixed_m);
         }
@@ -277,13 +289,20 @@ impl<'a> Rows<'a> {
         objectives.chain(torques).chain(modes).zip(&self.scale).map(|(row, scale)| row / scale)
     }
 
-    /// Whether no member is below a corner.
-    fn refute(&self, plane: &Plane, corner: &Corner) -> bool {
-        plane.least > self.weighted(&plane.weights, corner) + ROUNDING
+    /// Every row by itself of which a corner allows no more than a number.
+    fn singles(&self, corner: &Corner) -> Vec<Vec<f64>> {
+        let is_torque = |row: usize| (1 + self.tips.len()..self.first_mode).contains(&row);
+        let rows = self.allowed(corner).enumerate().filter(|(row, a)| a.is_finite() && !is_torque(*row));
+        let single = |(row, _)| {
+            let mut weights = vec![0.0; self.scale.len()];
+            weights[row] = 1.0;
+            weights
+        };
+        rows.map(single).collect()
     }
 
     /// The weighted sum that a corner allows.
-    fn weighted(&self, weights: &[f64], corner: &Corner) -> f64 {
+    pub(super) fn weighted(&self, weights: &[f64], corner: &Corner) -> f64 {
         let pairs = weights.iter().zip(self.allowed(corner));
         pairs.filter(|(w, _)| **w > 0.0).map(|(w, a)| w * a).sum()
     }
@@ -345,17 +364,22 @@ impl<'a> Rows<'a> {
     }
 
     /// The least weighted sum of any member, and the member that has it.
-    fn least(&self, cell: &[u32], weights: &[f64]) -> (f64, Member) {
+    fn least(&self, cell: &[u32], weights: Vec<f64>) -> (Plane, Member) {
         let pieces = self.problem.parts.len();
         let mut total: f64 = weights.iter().zip(&self.fixed).map(|(w, f)| w * f).sum();
+        let mut levels = Vec::with_capacity(cell.len());
         let mut member = Member {
+            cell: cell.to_vec(),
+            adds: Vec::with_capacity(pieces),
+            weights_n: vec![vec![0.0; pieces]; self.tips.len()],
             values: vec![0.0; self.scale.len()],
             inertia: vec![[0.0; INERTIAS]; pieces],
             stiffness: vec![vec![[0.0; STIFFNESSES]; pieces]; self.tips.len()],
         };
-        let mut level = 0;
         for (piece, part) in self.problem.parts.iter().enumerate() {
-            let price = || self.price(piece, weights);
+            let level = levels.len();
+            let price = || self.price(piece, &weights);
+            let before = member.values[..self.first_mode].to_vec();
             total += match part {
                 Part::Drives { tree, .. } => {
                     let price = price();
@@ -365,21 +389,24 @@ impl<'a> Rows<'a> {
                         false => f64::INFINITY,
                     };
                     let (least, at) = cheapest(tree, cell[level], of);
-                    level += 1;
+                    member.cell[level] = at;
+                    levels.push(least);
                     let drives = &tree.node(at).bounds;
                     self.add_joint(piece, drives.mass_kg[0], drives.curve.as_ref(), &price, &mut member);
                     least
                 }
                 Part::Links { tree, length_m } => {
                     let price = price();
-                    let (least, at) = cheapest(tree, cell[level], |links| price.of_link(links));
-                    level += 1;
+                    let (least, at) =
+                        cheapest(tree, cell[level], |links| price.of_tube(&TubeNumbers::of(links)));
+                    member.cell[level] = at;
+                    levels.push(least);
                     self.add_tube(piece, *length_m, &tree.node(at).bounds, &mut member);
                     least
                 }
                 Part::Tube { tube, length_m } => {
                     self.add_tube(piece, *length_m, tube, &mut member);
-                    price().of_link(tube)
+                    price().of_tube(&TubeNumbers::of(tube))
                 }
                 Part::Given { .. } | Part::FirstFit { .. } => {
                     let (price, mass_kg) = (price(), self.work.masses[piece]);
@@ -392,6 +419,7 @@ impl<'a> Rows<'a> {
                     weights[0] / self.scale[0] * mass_kg
                 }
             };
+            member.adds.push(member.values.iter().zip(&before).map(|(a, b)| a - b).collect());
         }
         for (m, mode) in self.modes.iter().enumerate() {
             member.values[self.first_mode + m] = self.mode_value(mode, &member);
@@ -399,7 +427,7 @@ impl<'a> Rows<'a> {
         for ((value, scale), fixed) in member.values.iter_mut().zip(&self.scale).zip(&self.fixed) {
             *value = *value / scale + fixed;
         }
-        (total, member)
+        (Plane { weights, least: total, levels }, member)
     }
 
     /// Puts a drive in its place in the state that its price makes best.
@@ -417,7 +445,7 @@ impl<'a> Rows<'a> {
         (0..self.tips.len()).for_each(|judged| self.add_weight(piece, judged, weight_n, member));
         let gears = self.gears.iter().filter(|gear| gear.piece == piece);
         for (gear, price) in gears.zip(&price.joint) {
-            let state = price.best(curve).1;
+            let state = price.best_of(curve).1;
             member.values[1 + gear.judged] += state.twist_rad * self.tips[gear.judged].joints[piece];
             member.stiffness[gear.judged][piece][0] = state.slope;
             if let Some(row) = gear.row {
@@ -446,6 +474,7 @@ impl<'a> Rows<'a> {
     /// Adds what the weight of a piece does to the tip and to the torques of the gears inboard.
     fn add_weight(&self, piece: usize, judged: usize, weight_n: f64, member: &mut Member) {
         member.values[1 + judged] += weight_n * self.tips[judged].per_n[piece];
+        member.weights_n[judged][piece] = weight_n;
         for gear in self.gears.iter().filter(|gear| gear.judged == judged) {
             let (Some(row), Some(per_n)) = (gear.row, gear.per_n.get(piece)) else { continue };
             member.values[row] -= weight_n * per_n;
@@ -454,7 +483,7 @@ impl<'a> Rows<'a> {
     }
 
     /// What a piece adds to the sum with these weights, by its numbers.
-    fn price(&self, piece: usize, weights: &[f64]) -> Price {
+    pub(super) fn price(&self, piece: usize, weights: &[f64]) -> Price {
         let weight = |row: usize| weights[row] / self.scale[row];
         let (length_m, is_joint) = (self.problem.length_m(piece), self.work.curves[piece].is_some());
         let mut price = Price::default();
@@ -499,6 +528,19 @@ impl<'a> Rows<'a> {
             }
         }
         price
+    }
+
+    /// What a piece of a member adds to a row.
+    pub(super) fn added(&self, member: &Member, piece: usize, row: usize) -> f64 {
+        let adds = match row.checked_sub(self.first_mode) {
+            None => member.adds[piece][row],
+            Some(m) => {
+                let Mode { shape, judged, .. } = &self.modes[m];
+                let moves = dot(&shape.kinetic[piece], &member.inertia[piece]);
+                self.lambda * moves - dot(&shape.strain[piece], &member.stiffness[*judged][piece])
+            }
+        };
+        adds / self.scale[row]
     }
 
     /// `λ xᵀMx - xᵀKx` of a member but for what is fixed.

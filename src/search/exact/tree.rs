@@ -1,33 +1,48 @@
 //! A binary tree over the options of one level, each node a box that holds its members.
 
+use std::collections::BinaryHeap;
+use std::sync::Arc;
+
 /// What a node knows of all its members.
 pub(super) trait Bounds: Clone {
     /// The box around two boxes.
     fn join(&self, other: &Self) -> Self;
 
     /// Coordinates by which options are told apart, scaled so that a larger spread matters more.
-    fn key(&self) -> Vec<f64>;
+    fn key(&self) -> Key;
 }
 
-/// Nodes in preorder: the first child of a node follows it.
+/// Coordinates of an option.
+pub(super) type Key = [f64; 5];
+
+/// The whole tree of a level, or one over some of its nodes.
 pub(super) struct Tree<B> {
     nodes: Vec<Node<B>>,
+    /// The tree whose nodes it stands on; they count from [`WHOLE`].
+    whole: Option<Arc<Tree<B>>>,
+    /// The nodes that it stands on.
+    stands_on: Vec<u32>,
 }
+
+/// The number of the first node of the tree that another stands on.
+const WHOLE: u32 = 1 << 31;
 
 /// One node of a [`Tree`].
 pub(super) struct Node<B> {
     pub bounds: B,
+    /// Where it is among others.
+    pub key: Key,
     /// Options below it.
     pub members: u32,
-    /// The second child of a box of several, or the option of a box of one.
+    /// The two halves of a box of several, or the option of a box of one.
     pub kind: NodeKind,
 }
 
 /// What is below a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NodeKind {
-    /// Two boxes: the next node, and this one.
-    Split { second: u32 },
+    /// Two boxes.
+    Split([u32; 2]),
     /// One option.
     Option(u32),
 }
@@ -37,19 +52,102 @@ impl<B: Bounds> Tree<B> {
     /// `None` without options.
     pub fn build(options: impl Iterator<Item = (u32, B)>) -> Option<Self> {
         let mut items: Vec<Item<B>> =
-            options.map(|(option, bounds)| Item { option, key: bounds.key(), bounds }).collect();
+            options.map(|(option, bounds)| Item { option, members: 1, key: bounds.key(), bounds }).collect();
         if items.is_empty() {
             return None;
         }
         let mut nodes = Vec::with_capacity(2 * items.len() - 1);
-        grow(&mut items, &mut nodes);
-        Some(Self { nodes })
+        grow(&mut items, &mut nodes, &|item| Some(NodeKind::Option(item.option)));
+        Some(Self { nodes, whole: None, stands_on: vec![0] })
+    }
+
+    /// A tree over some nodes of a tree, none of which is below another.
+    pub fn over(tree: &Arc<Self>, kept: &[u32]) -> Option<Arc<Self>> {
+        if tree.whole.is_some() && tree.stands_on == kept {
+            return Some(Arc::clone(tree));
+        }
+        let whole = tree.whole.as_ref().unwrap_or(tree);
+        let mut items: Vec<Item<B>> = kept
+            .iter()
+            .map(|&at| {
+                let node = whole.node(at);
+                Item { option: WHOLE + at, members: node.members, key: node.key, bounds: node.bounds.clone() }
+            })
+            .collect();
+        if items.is_empty() {
+            return None;
+        }
+        let mut nodes = Vec::with_capacity(2 * items.len() - 1);
+        if let [only] = &items[..] {
+            let at = whole.node(only.option - WHOLE);
+            let kind = match at.kind {
+                NodeKind::Split(halves) => NodeKind::Split(halves.map(|h| h + WHOLE)),
+                option => option,
+            };
+            nodes.push(Node { bounds: at.bounds.clone(), key: at.key, members: at.members, kind });
+        } else {
+            grow(&mut items, &mut nodes, &|_| None);
+        }
+        Some(Arc::new(Self { nodes, whole: Some(Arc::clone(whole)), stands_on: kept.to_vec() }))
+    }
+
+    /// Nodes of the whole tree that may do below a node, in about so many boxes: the largest are opened first.
+    pub fn kept(&self, node: u32, most: usize, may: impl Fn(&B) -> bool) -> Vec<u32> {
+        let mut heap = BinaryHeap::new();
+        let mut enter = |at: u32| {
+            let node = self.node(at);
+            if may(&node.bounds) {
+                heap.push((node.members, at));
+            }
+        };
+        match &self.whole {
+            Some(_) if node == 0 => self.stands_on.iter().for_each(|&at| enter(at + WHOLE)),
+            Some(_) => {
+                let mut open = vec![node];
+                while let Some(at) = open.pop() {
+                    match self.children(at) {
+                        Some(halves) if at < WHOLE => open.extend(halves),
+                        _ => enter(at),
+                    }
+                }
+            }
+            None => enter(node),
+        }
+        while heap.len() < most {
+            let Some(&(members, at)) = heap.peek() else { break };
+            if members == 1 {
+                break;
+            }
+            heap.pop();
+            for half in self.children(at).into_iter().flatten() {
+                if may(&self.node(half).bounds) {
+                    heap.push((self.node(half).members, half));
+                }
+            }
+        }
+        let mut kept: Vec<u32> = heap.into_iter().map(|(_, at)| at & !WHOLE).collect();
+        kept.sort_unstable();
+        kept
+    }
+
+    /// Options below some nodes of the whole tree.
+    pub fn members_of(&self, kept: &[u32]) -> f64 {
+        let whole = self.whole.as_deref().unwrap_or(self);
+        kept.iter().map(|&at| f64::from(whole.node(at).members)).sum()
+    }
+
+    /// A node of the whole tree.
+    pub fn whole_node(&self, index: u32) -> &Node<B> {
+        &self.whole.as_deref().unwrap_or(self).nodes[index as usize]
     }
 
     /// A node; the root is node 0.
     #[inline]
     pub fn node(&self, index: u32) -> &Node<B> {
-        &self.nodes[index as usize]
+        match &self.whole {
+            Some(whole) if index >= WHOLE => &whole.nodes[(index - WHOLE) as usize],
+            _ => &self.nodes[index as usize],
+        }
     }
 
     /// The smallest box with all the options below a node that may hold; `None` if there are none.
@@ -72,7 +170,8 @@ impl<B: Bounds> Tree<B> {
     #[inline]
     pub fn children(&self, index: u32) -> Option<[u32; 2]> {
         match self.node(index).kind {
-            NodeKind::Split { second } => Some([index + 1, second]),
+            NodeKind::Split(halves) if index >= WHOLE => Some(halves.map(|half| half + WHOLE)),
+            NodeKind::Split(halves) => Some(halves),
             NodeKind::Option(_) => None,
         }
     }
@@ -81,37 +180,52 @@ impl<B: Bounds> Tree<B> {
     #[inline]
     pub fn option(&self, index: u32) -> Option<u32> {
         match self.node(index).kind {
-            NodeKind::Split { .. } => None,
+            NodeKind::Split(_) => None,
             NodeKind::Option(option) => Some(option),
         }
     }
 }
 
 struct Item<B> {
+    /// The option, or the node that it stands for.
     option: u32,
-    key: Vec<f64>,
+    members: u32,
+    key: Key,
     bounds: B,
 }
 
-fn grow<B: Bounds>(items: &mut [Item<B>], nodes: &mut Vec<Node<B>>) -> B {
+/// Grows the tree over some items and returns its root; `leaf` says what a node of one item is, unless it has a node
+/// already.
+fn grow<B: Bounds>(
+    items: &mut [Item<B>],
+    nodes: &mut Vec<Node<B>>,
+    leaf: &impl Fn(&Item<B>) -> Option<NodeKind>,
+) -> (u32, B) {
     if let [only] = items {
-        nodes.push(Node { bounds: only.bounds.clone(), members: 1, kind: NodeKind::Option(only.option) });
-        return only.bounds.clone();
+        let Some(kind) = leaf(only) else { return (only.option, only.bounds.clone()) };
+        nodes.push(Node { bounds: only.bounds.clone(), key: only.key, members: 1, kind });
+        return (nodes.len() as u32 - 1, only.bounds.clone());
     }
     let here = nodes.len();
-    let members = items.len() as u32;
-    nodes.push(Node { bounds: items[0].bounds.clone(), members, kind: NodeKind::Split { second: 0 } });
+    let members = items.iter().map(|item| item.members).sum();
+    nodes.push(Node {
+        bounds: items[0].bounds.clone(),
+        key: items[0].key,
+        members,
+        kind: NodeKind::Option(0),
+    });
     let axis = widest(items);
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| {
         a.key[axis].total_cmp(&b.key[axis]).then(a.option.cmp(&b.option))
     });
     let (low, high) = items.split_at_mut(middle);
-    let first = grow(low, nodes);
-    let second = nodes.len() as u32;
-    let bounds = first.join(&grow(high, nodes));
-    nodes[here] = Node { bounds: bounds.clone(), members, kind: NodeKind::Split { second } };
-    bounds
+    let (first, a) = grow(low, nodes, leaf);
+    let (second, b) = grow(high, nodes, leaf);
+    let bounds = a.join(&b);
+    let key = bounds.key();
+    nodes[here] = Node { bounds: bounds.clone(), key, members, kind: NodeKind::Split([first, second]) };
+    (here as u32, bounds)
 }
 
 /// The coordinate with the largest spread.
@@ -122,7 +236,7 @@ fn widest<B>(items: &[Item<B>]) -> usize {
         });
         high - low
     };
-    let spreads: Vec<f64> = (0..items[0].key.len()).map(spread).collect();
+    let spreads = [0, 1, 2, 3, 4].map(spread);
     (0..spreads.len()).max_by(|&a, &b| spreads[a].total_cmp(&spreads[b]).then(b.cmp(&a))).unwrap_or(0)
 }
 
@@ -139,7 +253,7 @@ mod tests {
             Span([self.0[0].min(other.0[0]), self.0[1].max(other.0[1])])
         }
         fn key(&self) -> Vec<f64> {
-            vec![self.0[0]]
+            [self.0[0], 0.0, 0.0, 0.0, 0.0]
         }
     }
 

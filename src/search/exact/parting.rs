@@ -1,0 +1,162 @@
+//! Where to part the options of a level when a box may still have a member below a corner.
+//!
+//! What stands for that member in the sums is a mixture of members, and its products of force and compliance are
+//! bounded from below. Parting helps where the mixed members differ, and where the products leave out most.
+
+use super::parts::{STIFFNESSES, inertia};
+use super::pose::{PosedPiece, RESISTED, Row, degree_factor};
+use super::problem::{Part, Problem};
+use super::tradeoff::{Member, Rows};
+use super::tree::Key;
+
+/// Places of mass and stiffness among the coordinates of drives, and of tubes; what their logarithms are taken times.
+const DRIVE: [(usize, f64); 2] = [(3, 1.0), (0, 4.0)];
+const TUBE: [(usize, f64); 2] = [(0, 2.0), (1, 1.0)];
+/// Gains smaller than this are rounding.
+const NOTHING: f64 = 1e-9;
+
+/// A level's options parted along a coordinate.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Parting {
+    /// What it should gain, in parts of a row.
+    gain: f64,
+    level: usize,
+    axis: usize,
+    at: f64,
+}
+
+/// Members that together may be below a corner, and their shares.
+type Mixed<'a> = [(&'a Member, f64)];
+
+fn mean(mixed: &Mixed, of: impl Fn(&Member) -> f64) -> f64 {
+    mixed.iter().map(|(member, share)| share * of(member)).sum()
+}
+
+/// How far members are from their mean.
+fn spread(mixed: &Mixed, of: impl Fn(&Member) -> f64) -> f64 {
+    let middle = mean(mixed, &of);
+    mean(mixed, |member| (of(member) - middle).abs())
+}
+
+impl Rows<'_> {
+    /// Where to part levels, the most promising first.
+    pub fn partings(&self, mixed: &Mixed, weights: &[f64]) -> Vec<Parting> {
+        let mut partings = Vec::new();
+        let left_out = self.left_out(mixed, weights);
+        for (level, &piece) in self.problem.level_pieces.iter().enumerate() {
+            let key = |member: &Member| self.problem.key(level, member.cell[level]);
+            let rows = weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0);
+            let gain = rows.map(|(row, w)| w * spread(mixed, |member| self.added(member, piece, row))).sum();
+            let spreads = [0, 1, 2, 3, 4].map(|axis| spread(mixed, |member| key(member)[axis]));
+            let axis = (0..spreads.len()).max_by(|&a, &b| spreads[a].total_cmp(&spreads[b])).unwrap_or(0);
+            if spreads[axis] > NOTHING {
+                partings.push(Parting { gain, level, axis, at: mean(mixed, |member| key(member)[axis]) });
+            }
+            for ((axis, best), gain) in self.best_of(piece).into_iter().zip(left_out[piece]) {
+                let at = 0.5 * (best + mean(mixed, |member| key(member)[axis]));
+                partings.push(Parting { gain, level, axis, at });
+            }
+        }
+        partings.retain(|parting| parting.gain > NOTHING);
+        partings.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        partings
+    }
+
+    /// The coordinates of mass and stiffness of a piece, and the box's best number of each.
+    fn best_of(&self, piece: usize) -> [(usize, f64); 2] {
+        let (light, stiff) = (self.work.light[piece][inertia::MASS], self.work.stiff[piece][0]);
+        let (places, stiff) = match &self.work.curves[piece] {
+            Some(curve) => (DRIVE, curve.stiff.k1_nm_per_rad),
+            None => (TUBE, stiff),
+        };
+        let number = |(axis, times): (usize, f64), x: f64| (axis, times * x.max(f64::MIN_POSITIVE).ln());
+        [number(places[0], light), number(places[1], stiff)]
+    }
+
+    /// What the products of force and compliance leave out, by the weight and by the compliance of each piece.
+    fn left_out(&self, mixed: &Mixed, weights: &[f64]) -> Vec<[f64; 2]> {
+        let mut left_out = vec![[0.0; 2]; self.problem.parts.len()];
+        for (judged, tip) in self.tips.iter().enumerate() {
+            let weight = weights[1 + judged] / self.scale[1 + judged];
+            for row in &self.problem.poses[tip.case].rows {
+                let way = self.work.tip_ways[judged].dot(&row.tip_m);
+                let heavier = self.heavier(mixed, judged, row, way);
+                let more: f64 = heavier.iter().sum();
+                let left = weight * (way * more * self.softer(mixed, judged, row)).abs();
+                if left > 0.0 {
+                    left_out[row.piece][1] += left;
+                    let pieces = left_out.iter_mut().zip(&heavier);
+                    pieces.for_each(|(piece, heavier)| piece[0] += left * (heavier / more).abs());
+                }
+            }
+        }
+        left_out
+    }
+
+    /// By how much the weight of each piece makes a force greater than the least.
+    fn heavier(&self, mixed: &Mixed, judged: usize, row: &Row, way: f64) -> Vec<f64> {
+        let weights = row.per_n.iter().zip(&self.work.weights[self.tips[judged].case]).enumerate();
+        weights
+            .map(|(piece, (per_n, [light, heavy]))| {
+                let least = if way * per_n > 0.0 { light } else { heavy };
+                per_n * (mean(mixed, |member| member.weights_n[judged][piece]) - least)
+            })
+            .collect()
+    }
+
+    /// By how much a coordinate yields more than the least.
+    fn softer(&self, mixed: &Mixed, judged: usize, row: &Row) -> f64 {
+        let case = self.tips[judged].case;
+        let (resisted, factor, stiffest) =
+            match (&self.problem.poses[case].pieces[row.piece], &self.work.curves[row.piece]) {
+                (PosedPiece::Tube(tube), _) => {
+                    let resisted = RESISTED[row.coordinate].0;
+                    (
+                        resisted,
+                        degree_factor(row.coordinate) / tube.length_m,
+                        self.work.stiff[row.piece][resisted],
+                    )
+                }
+                (_, Some(curve)) => {
+                    let [least_nm, most_nm] = self.work.torques[case][row.piece];
+                    (0, 1.0, curve.steepest(least_nm, most_nm))
+                }
+                _ => return 0.0,
+            };
+        debug_assert!(resisted < STIFFNESSES);
+        let yields = |stiffness: f64| if stiffness > 0.0 { factor / stiffness } else { 0.0 };
+        mean(mixed, |member| yields(member.stiffness[judged][row.piece][resisted])) - yields(stiffest)
+    }
+}
+
+impl Problem<'_> {
+    /// Where a node of a level is among others.
+    fn key(&self, level: usize, node: u32) -> Key {
+        match &self.parts[self.level_pieces[level]] {
+            Part::Drives { tree, .. } => tree.node(node).key,
+            Part::Links { tree, .. } => tree.node(node).key,
+            _ => Key::default(),
+        }
+    }
+
+    /// Two lists of nodes of the whole trees, one on each side of a parting; `None` if all are on one side.
+    pub fn parted(&self, kept: &[Vec<u32>], parting: &Parting) -> Option<[Vec<Vec<u32>>; 2]> {
+        let part = &self.parts[self.level_pieces[parting.level]];
+        let is_low = |node: &&u32| {
+            let key = match part {
+                Part::Drives { tree, .. } => tree.whole_node(**node).key,
+                Part::Links { tree, .. } => tree.whole_node(**node).key,
+                _ => Key::default(),
+            };
+            key[parting.axis] <= parting.at
+        };
+        let (low, high): (Vec<u32>, Vec<u32>) = kept[parting.level].iter().partition(is_low);
+        (!low.is_empty() && !high.is_empty()).then(|| {
+            [low, high].map(|nodes| {
+                let mut kept = kept.to_vec();
+                kept[parting.level] = nodes;
+                kept
+            })
+        })
+    }
+}

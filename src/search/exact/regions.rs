@@ -1,0 +1,180 @@
+//! Region by region: what the designs found leave open is taken apart, and for each part of it the options are
+//! narrowed to those that a design there may have at all.
+//!
+//! A region is all that is below a [`Corner`]. Far fewer options reach into it than there are: a weighting of what a
+//! corner allows excludes every option that costs more than the corner can afford ([`narrow`](super::narrow)), and
+//! with fewer options the bounds are sharper, so more can be excluded. Whole groups of corners are refuted so, under the
+//! corner that bounds them; those that are not are taken apart, then their options parted
+//! ([`parting`](super::parting)) until few designs are left, which are searched box by box.
+
+use super::bound::{Ceiling, Cell, Verdict, Work};
+use super::corners::{Corner, Corners};
+use super::problem::Problem;
+use super::run::{Opened, Search, lock};
+use super::shape::Shape;
+use super::tradeoff::{BEATEN, Left, Trade};
+use crate::search::Objectives;
+use std::sync::Arc;
+
+/// Part of the designs that must be excluded for the options to be narrowed once more.
+const WORTH_IT: f64 = 0.1;
+
+/// Options that may reach into a region, with what the region around it knew.
+#[derive(Clone)]
+struct Zone<'p> {
+    problem: Arc<Problem<'p>>,
+    cell: Cell,
+    shapes: Arc<Vec<Shape>>,
+    trade: Arc<Trade>,
+    /// Designs found in this pass that the region knows of.
+    known: usize,
+}
+
+impl<'p> Search<'_, 'p> {
+    /// One pass over everything that the designs found leave open.
+    pub fn run_by_regions(&self) {
+        let mut work = Work::default();
+        let Some(shapes) = self.problem.first_shapes(&mut work) else { return };
+        let mut found: Vec<Objectives> = self.shared.found.all().iter().map(|o| self.tightened(o)).collect();
+        lock(&self.shared.fresh).clear();
+        let corners = Corners::new(&mut found, self.limits());
+        let zone = Zone {
+            problem: Arc::new(self.problem.clone()),
+            cell: self.problem.root(),
+            trade: Arc::new(Trade::new(&shapes)),
+            shapes: Arc::new(shapes),
+            known: 0,
+        };
+        self.search_region(&corners, 0, zone);
+    }
+
+    /// Searches what is below a node of a tree of corners.
+    fn search_region(&self, corners: &Corners, at: usize, mut zone: Zone<'p>) {
+        let Some((corner, halves)) = corners.node(at) else { return };
+        if halves.is_none()
+            && let Some(clipped) = self.clipped(&corner, &mut zone.known)
+        {
+            return self.search_region(&clipped, 0, zone);
+        }
+        let mut work = Work::default();
+        let Some(left) = self.narrow(&mut zone, &corner, &mut work) else { return };
+        let designs = zone.problem.designs_below(&left.kept);
+        if designs <= self.down_to() {
+            return self.search_boxes(zone, corner, work);
+        }
+        let zones = match halves {
+            Some(_) => Some([zone.clone(), zone.clone()]),
+            None => zone.parted(&left, &mut work),
+        };
+        let Some([a, b]) = zones else { return self.search_boxes(zone, corner, work) };
+        let [first, second] = halves.unwrap_or([at; 2]);
+        rayon::join(|| self.search_region(corners, first, a), || self.search_region(corners, second, b));
+    }
+
+    /// Narrows the options as long as that is worth it; `None` if no design is below the corner, or if the search was
+    /// stopped.
+    fn narrow(&self, zone: &mut Zone<'p>, corner: &Corner, work: &mut Work) -> Option<Left> {
+        loop {
+            if self.stopped() {
+                lock(&self.shared.open).push(Ceiling::OPEN);
+                return None;
+            }
+            let before = zone.problem.members(&zone.cell);
+            self.count_box();
+            let slackened = |ceiling: &Ceiling| ceiling.slackened(self.slack);
+            let verdict = zone.problem.bound(
+                &mut zone.cell,
+                &mut zone.shapes,
+                work,
+                |ceiling| !corner.is_in_reach_of(ceiling) || self.shared.found.beats(&slackened(ceiling)),
+                |_| true,
+            );
+            let Verdict::Open(ceiling) = verdict else { return None };
+            let trade = Arc::make_mut(&mut zone.trade);
+            let left = zone.problem.left_below(&zone.cell, &ceiling, trade, work, corner)?;
+            if zone.problem.designs_below(&left.kept) > (1.0 - WORTH_IT) * before {
+                left.likely.iter().for_each(|cell| self.try_design(zone, cell.clone()));
+                return Some(left);
+            }
+            zone.problem = Arc::new(zone.problem.narrowed_to(&left.kept)?);
+            zone.cell = zone.problem.root();
+        }
+    }
+
+    /// Judges what may be a good design.
+    fn try_design(&self, zone: &Zone<'p>, mut cell: Cell) {
+        if zone.problem.options(&cell).is_none() {
+            return;
+        }
+        let (mut shapes, mut work) = (Arc::clone(&zone.shapes), Work::default());
+        self.count_box();
+        let beaten = |ceiling: &Ceiling| self.shared.found.beats(ceiling);
+        if let Verdict::Open(ceiling) =
+            zone.problem.bound(&mut cell, &mut shapes, &mut work, beaten, |_| true)
+        {
+            self.of_part(&zone.problem, None).judge(&cell, &ceiling, &work);
+        }
+    }
+
+    /// Searches the designs left in a region box by box.
+    fn search_boxes(&self, zone: Zone<'p>, corner: Corner, mut work: Work) {
+        let search = self.of_part(&zone.problem, Some(corner));
+        let (cell, shapes) = (zone.cell.clone(), Arc::clone(&zone.shapes));
+        let mut stack = vec![Opened { cell, shapes, ceiling: Ceiling::OPEN }];
+        while let Some(next) = stack.pop() {
+            if self.stopped() {
+                return lock(&self.shared.open).push(Ceiling::OPEN);
+            }
+            search.open(next, &mut work, &mut stack);
+        }
+    }
+
+    /// A design taken for better than it is by the slack, so that what is left is missed by more.
+    fn tightened(&self, found: &Objectives) -> Objectives {
+        let by = 1.0 + self.slack - BEATEN;
+        Objectives {
+            mass_kg: found.mass_kg / by,
+            tip_deflection_m: found.tip_deflection_m / by,
+            lowest_mode_hz: found.lowest_mode_hz * by,
+        }
+    }
+
+    /// The corners that designs found since leave of a region; `None` if none of them is in it.
+    fn clipped(&self, corner: &Corner, known: &mut usize) -> Option<Corners> {
+        let fresh = lock(&self.shared.fresh);
+        let tightened = fresh[*known..].iter().map(|found| self.tightened(found));
+        let mut inside: Vec<Objectives> = tightened
+            .filter(|o| {
+                o.mass_kg < corner.mass_kg
+                    && o.tip_deflection_m < corner.tip_m
+                    && o.lowest_mode_hz > corner.hz
+            })
+            .collect();
+        *known = fresh.len();
+        drop(fresh);
+        (!inside.is_empty()).then(|| Corners::new(&mut inside, *corner))
+    }
+}
+
+impl Zone<'_> {
+    /// Two zones with half the options of a level each, the level that should gain most; `None` if a single design is
+    /// left.
+    fn parted(&self, left: &Left, work: &mut Work) -> Option<[Self; 2]> {
+        let parted = left.partings.iter().find_map(|parting| self.problem.parted(&left.kept, parting));
+        if let Some([low, high]) = parted {
+            return Some([self.narrowed_to(&low)?, self.narrowed_to(&high)?]);
+        }
+        let level = self.problem.widest_level(&self.cell, &self.shapes, work)?;
+        let halves = self.problem.halves(&self.cell, level)?;
+        Some(halves.map(|half| {
+            let mut zone = self.clone();
+            zone.cell[level] = half;
+            zone
+        }))
+    }
+
+    fn narrowed_to(&self, kept: &[Vec<u32>]) -> Option<Self> {
+        let problem = Arc::new(self.problem.narrowed_to(kept)?);
+        Some(Self { cell: problem.root(), problem, ..self.clone() })
+    }
+}
