@@ -243,7 +243,7 @@ impl Analysis<'_> {
     fn verdict(&self, kept_out: &Option<KeptOut>) -> (Verdict, Vec<String>) {
         let mut reasons = too_little(self.campaign, self.forward);
         if !reasons.is_empty() {
-            if let Some(explaining) = &self.explaining {
+            if let Some(explaining) = self.explaining.as_ref().filter(|_| !self.forward.data.is_empty()) {
                 reasons.extend(few_rows::sentences(self.search, self.campaign, &self.bare, explaining));
             }
             reasons.extend(self.unidentified());
@@ -568,7 +568,7 @@ fn dead_instruments(forward: &Forward) -> Vec<String> {
             ));
         }
     }
-    if forward.data.iter().all(|d| d.value.abs() < 2.0 * d.sigma) {
+    if !forward.data.is_empty() && forward.data.iter().all(|d| d.value.abs() < 2.0 * d.sigma) {
         out.push("no reading is twice its standard deviation: there is nothing to compare".into());
     }
     out

@@ -143,7 +143,7 @@ fn sigma(table: &Table, row: usize, column: usize) -> Option<f64> {
         return Some(value);
     }
     let hint = "no instrument has this standard deviation; state the one it has";
-    table.row_fault(row, &table.columns[column], format!("= {value}"), hint);
+    table.row_fault(row, &table.columns[column], format!("= {}", table.text(row, column)), hint);
     None
 }
 

@@ -168,7 +168,7 @@ impl Table {
         if condition(value) {
             return Some(value);
         }
-        self.row_fault(row, &self.columns[column], format!("= {value}"), hint);
+        self.row_fault(row, &self.columns[column], format!("= {}", self.text(row, column)), hint);
         None
     }
 
