@@ -102,6 +102,7 @@ impl Document {
     /// # Errors
     /// [`Faults`] with the line of the first syntax error.
     pub fn parse(file: &str, text: &str) -> Result<Self, Faults> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let value = serde_json::from_str(text).map_err(|e| {
             Faults(vec![Fault {
                 file: file.to_string(),

@@ -4,14 +4,23 @@ use armwright::catalog::Catalogs;
 use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};
 use std::path::{Path, PathBuf};
 
-fn source() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e")
+fn data(campaign: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns").join(campaign)
 }
 
-/// The campaign with one of its files edited line by line; `None` drops a line.
+/// A campaign with one effect whose file is edited line by line; `None` drops a line.
 fn edited(file: &str, edit: impl Fn(usize, &str) -> Option<String>) -> tempfile::TempDir {
+    edited_of("plain-0251e", file, edit)
+}
+
+/// A campaign of an honest arm, edited.
+fn edited_honest(file: &str, edit: impl Fn(usize, &str) -> Option<String>) -> tempfile::TempDir {
+    edited_of("plain-05e68", file, edit)
+}
+
+fn edited_of(campaign: &str, file: &str, edit: impl Fn(usize, &str) -> Option<String>) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("temporary folder");
-    for entry in std::fs::read_dir(source()).expect("campaign") {
+    for entry in std::fs::read_dir(data(campaign)).expect("campaign") {
         let path = entry.expect("entry").path();
         let name = path.file_name().expect("name");
         let text = std::fs::read_to_string(&path).expect("text");
@@ -207,4 +216,115 @@ fn a_mode_that_was_missed_is_noticed() {
         outcome.reasons
     );
     assert_eq!(outcome.effects[0].label(), "lost_motion@j3");
+}
+
+/// The row with its readings times a factor that depends on its cells.
+fn scaled(
+    line: usize,
+    text: &str,
+    columns: std::ops::Range<usize>,
+    factor: impl Fn(&[&str]) -> f64,
+) -> String {
+    if line == 1 {
+        return text.into();
+    }
+    let row: Vec<&str> = text.split(',').collect();
+    let factor = factor(&row);
+    let cell = |(i, cell): (usize, &&str)| match columns.contains(&i) {
+        true => format!("{:.4}", factor * cell.parse::<f64>().expect("number")),
+        false => cell.to_string(),
+    };
+    row.iter().enumerate().map(cell).collect::<Vec<_>>().join(",")
+}
+
+#[test]
+fn a_force_gauge_that_reads_wrong_is_no_water_and_no_sensor() {
+    let folder = edited_honest("static.csv", |line, text| {
+        Some(scaled(line, text, 15..18, |row| if row[7] == "0" { 1.08 } else { 1.0 }))
+    });
+    let outcome = outcome(folder.path());
+    assert_eq!(outcome.verdict, Verdict::Unexplained, "{}", outcome.to_text());
+}
+
+#[test]
+fn modes_that_are_numbered_out_of_order_are_put_in_order() {
+    let folder = edited_honest("modal.csv", |_, text| {
+        let mut cells: Vec<&str> = text.split(',').collect();
+        let swapped = match (cells[0], cells[11]) {
+            ("3" | "8", "2") => "3",
+            ("3" | "8", "3") => "2",
+            (_, mode) => mode,
+        };
+        cells[11] = swapped;
+        Some(cells.join(","))
+    });
+    let outcome = outcome(folder.path());
+    assert_eq!(outcome.verdict, Verdict::NoGap, "{}", outcome.to_text());
+    assert!(outcome.reasons.iter().any(|r| r.contains("list 8 of the frequencies")), "{:?}", outcome.reasons);
+}
+
+#[test]
+fn a_dead_bench_is_no_unit_and_readings_below_their_noise_say_nothing() {
+    let folder = edited_honest("windup.csv", |line, text| Some(scaled(line, text, 4..5, |_| 0.0)));
+    let dead = outcome(folder.path());
+    assert_eq!(dead.verdict, Verdict::InsufficientData, "{}", dead.to_text());
+    let folder = only_static(|_, _| true);
+    let path = folder.path().join("static.csv");
+    let text = std::fs::read_to_string(&path).expect("text");
+    std::fs::write(&path, text.replace(",0.006", ",60.0")).expect("written");
+    let noise = outcome(folder.path());
+    assert_eq!(noise.verdict, Verdict::InsufficientData, "{}", noise.to_text());
+}
+
+#[test]
+fn an_arm_in_which_nothing_yields_has_no_modes_to_compare() {
+    let folder = edited_honest("arm.json", |_, text| {
+        let is_stiffness = text.contains("stiffness_nm_per_rad");
+        Some(if is_stiffness { "\"stiffness_nm_per_rad\": null,".into() } else { text.into() })
+    });
+    let path = folder.path().join("campaign.json");
+    let text = std::fs::read_to_string(&path).expect("text");
+    std::fs::write(&path, text.replacen('{', "{\"links\": \"rigid\",", 1)).expect("written");
+    let outcome = outcome(folder.path());
+    assert_ne!(outcome.verdict, Verdict::NoGap, "{}", outcome.to_text());
+}
+
+#[test]
+fn numbers_that_overflow_are_refused() {
+    let folder = edited("static.csv", |line, text| {
+        Some(match line {
+            5 => cells(text, 12, "1e300"),
+            7 => cells(text, 15, "-1e300"),
+            9 => cells(text, 18, "1e-300"),
+            _ => text.to_string(),
+        })
+    });
+    let text = faults(folder.path());
+    for line in ["static.csv:5: force_y_n", "static.csv:7: dx_mm", "static.csv:9: sigma_mm"] {
+        assert!(text.contains(line), "{line}\n{text}");
+    }
+    let folder = edited("modal.csv", |line, text| {
+        Some(if line == 3 { cells(text, 12, "1e300") } else { text.into() })
+    });
+    assert!(faults(folder.path()).contains("modal.csv:3: frequency_hz"));
+}
+
+#[test]
+fn tables_of_other_programs_are_refused_in_one_line() {
+    let folder = edited("static.csv", |_, text| Some(text.replace(',', ";").replace('.', ",")));
+    let text = faults(folder.path());
+    assert!(text.contains("its columns are separated by semicolons"), "{text}");
+    assert!(!text.contains("the column is missing"), "{text}");
+    let folder = edited("static.csv", |line, text| {
+        Some(if line == 1 { format!("{text},dx_mm") } else { format!("{text},0") })
+    });
+    assert!(faults(folder.path()).contains("dx_mm: the column is there twice"));
+    let folder = edited("windup.csv", |line, text| {
+        Some(if line == 3 { cells(text, 2, "\"-3,5\"") } else { text.into() })
+    });
+    assert!(faults(folder.path()).contains("has a decimal comma"));
+    let folder = edited("campaign.json", |line, text| {
+        Some(if line == 1 { format!("\u{feff}{text}") } else { text.into() })
+    });
+    assert!(Campaign::read(folder.path(), &Catalogs::default()).is_ok(), "a byte order mark is no fault");
 }

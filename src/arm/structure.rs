@@ -108,6 +108,16 @@ pub struct LinkPiece {
     pub root_frame: FrameCompliance,
 }
 
+impl LinkPiece {
+    /// Mass of tube, cables and point mass \[kg\].
+    pub fn mass_kg(&self) -> f64 {
+        let tube_kg_per_m = self.beam.map_or(0.0, |beam| {
+            beam.material.density_kg_m3 * beam.section.properties(beam.material.poisson).area_m2
+        });
+        self.point_mass_kg + self.vector_m.norm() * (tube_kg_per_m + self.harness_kg_per_m)
+    }
+}
+
 /// A straight tube of constant section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beam {

@@ -221,6 +221,12 @@ pub fn compliances(link: &LinkPiece, model: LinkModel) -> Vec<f64> {
     coordinates.into_iter().map(|(_, _, compliance)| compliance).collect()
 }
 
+/// What each strain coordinate of a link strains, and the degree of its polynomial, in the same order.
+pub fn strains(link: &LinkPiece, model: LinkModel) -> Vec<(Strain, usize)> {
+    let coordinates = link.beam.map_or_else(Vec::new, |beam| coordinates(&beam, 1.0, model));
+    coordinates.into_iter().map(|(strain, degree, _)| (strain, degree)).collect()
+}
+
 /// Inertia per length of each displacement and rotation component of a link, as
 /// [`PreparedBeam::line_densities`].
 pub fn line_densities(link: &LinkPiece, structure: &Structure, model: LinkModel) -> [f64; 6] {

@@ -2,7 +2,7 @@
 
 use super::campaign::Campaign;
 use super::fit::{Effort, Fit, Weights, fit};
-use super::forward::Forward;
+use super::forward::{Datum, Forward};
 use super::interval::{Interval, deviations, intervals};
 use super::kept_out::{self, KeptOut, rms};
 use super::lack_of_fit::{LackOfFit, lack_of_fit};
@@ -12,6 +12,7 @@ use super::select::{Scored, Search, Selection};
 use super::unnamed::{self, Better};
 use super::verdict::{Calibrated, Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict};
 use super::{correct, few_rows, locate, next_test};
+use crate::arm::effect::Channel;
 
 /// Most alternatives an effect may have and still be named.
 const MOST_ALTERNATIVES: usize = 3;
@@ -68,7 +69,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         search: &search,
         selection: &found.selection,
         noise: &found.noise,
-        missed: &found.missed,
+        remarks: &found.remarks,
         weights: &weights,
         best,
         bare,
@@ -85,8 +86,8 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
 struct Settled {
     selection: Selection,
     noise: Noise,
-    /// Modes missing from lists, in words.
-    missed: Vec<String>,
+    /// Modes missing from lists or numbered out of order, in words.
+    remarks: Vec<String>,
 }
 
 impl Settled {
@@ -95,7 +96,7 @@ impl Settled {
         let noise = Noise::default();
         let weights = noise.weights(forward);
         let search = Search { campaign, forward, nuisance, candidates, weights: &weights };
-        Self { selection: few_rows::weigh(&search), noise, missed: Vec::new() }
+        Self { selection: few_rows::weigh(&search), noise, remarks: Vec::new() }
     }
 }
 
@@ -121,12 +122,19 @@ fn settle(
         let hopeful = search.may_explain(&selection.best) && !selection.given_up;
         (selection, judged, best.point.coefficients, hopeful)
     };
+    let mut remarks = forward.put_modes_in_order();
     let mut noise = first_look(forward, nuisance);
-    let (mut selection, mut judged, coefficients, mut hopeful) = run(forward, &noise, Before::Nothing);
+    let (mut selection, mut judged, mut coefficients, mut hopeful) = run(forward, &noise, Before::Nothing);
     let missed = forward.find_missed_modes(&coefficients);
     if !missed.is_empty() {
-        (selection, judged, _, hopeful) = run(forward, &noise, Before::Nothing);
+        (selection, judged, coefficients, hopeful) = run(forward, &noise, Before::Nothing);
     }
+    if hopeful && !selection.best.effects.is_empty() {
+        // far from the nominal arm its trial shapes are not exact, and a further effect would make that good
+        forward.refresh(&coefficients);
+        (selection, judged, _, hopeful) = run(forward, &noise, Before::Weights(&selection));
+    }
+    remarks.extend(missed);
     for again in 0..2 {
         if judged.same_rows(&noise) || (again > 0 && !hopeful) {
             break;
@@ -147,7 +155,7 @@ fn settle(
         let before = if same_rows { Before::Weights(&selection) } else { Before::Best(&selection.best) };
         (selection, judged, _, hopeful) = run(forward, &noise, before);
     }
-    Settled { selection, noise, missed }
+    Settled { selection, noise, remarks }
 }
 
 /// What a search can start from.
@@ -173,7 +181,7 @@ struct Analysis<'a> {
     search: &'a Search<'a>,
     selection: &'a Selection,
     noise: &'a Noise,
-    missed: &'a [String],
+    remarks: &'a [String],
     weights: &'a Weights,
     best: Fit<'a>,
     bare: Fit<'a>,
@@ -191,7 +199,7 @@ impl Analysis<'_> {
     fn conclude(self) -> Outcome {
         let kept_out = self.kept_out();
         let (verdict, mut reasons) = self.verdict(&kept_out);
-        reasons.extend(self.missed.iter().cloned());
+        reasons.extend(self.remarks.iter().cloned());
         let findings = match verdict {
             Verdict::Explained | Verdict::InsufficientData => self.findings(),
             Verdict::NoGap | Verdict::Unexplained => Vec::new(),
@@ -233,9 +241,9 @@ impl Analysis<'_> {
     }
 
     fn verdict(&self, kept_out: &Option<KeptOut>) -> (Verdict, Vec<String>) {
-        let mut reasons = too_little(self.campaign);
+        let mut reasons = too_little(self.campaign, self.forward);
         if !reasons.is_empty() {
-            if let Some(explaining) = &self.explaining {
+            if let Some(explaining) = self.explaining.as_ref().filter(|_| !self.forward.data.is_empty()) {
                 reasons.extend(few_rows::sentences(self.search, self.campaign, &self.bare, explaining));
             }
             reasons.extend(self.unidentified());
@@ -510,7 +518,7 @@ fn rows(campaign: &Campaign) -> usize {
 }
 
 /// Why the readings cannot speak at all.
-fn too_little(campaign: &Campaign) -> Vec<String> {
+fn too_little(campaign: &Campaign, forward: &Forward) -> Vec<String> {
     let mut reasons = Vec::new();
     let rows = rows(campaign);
     if rows < few_rows::FEWEST_ROWS {
@@ -534,10 +542,7 @@ fn too_little(campaign: &Campaign) -> Vec<String> {
     let same_load = |r: &super::readings::StaticRow| {
         first.is_some_and(|f| f.payload.mass_kg == r.payload.mass_kg && f.force_n == r.force_n)
     };
-    let same_reading = |r: &super::readings::StaticRow| first.is_some_and(|f| f.d_mm == r.d_mm);
-    if first.is_some() && campaign.statics.iter().all(same_reading) {
-        reasons.push("every static reading is the same: the instrument did not follow the arm".into());
-    }
+    reasons.extend(dead_instruments(forward));
     if first.is_some() && campaign.statics.iter().all(same_load) {
         reasons.push(
             "every static reading has the same load: what grows with it cannot be told from what does not"
@@ -545,6 +550,28 @@ fn too_little(campaign: &Campaign) -> Vec<String> {
         );
     }
     reasons
+}
+
+/// Fewest rows of a channel that being all the same says something of.
+const FEWEST_ALIKE: usize = 4;
+
+/// Channels whose readings are all the same, and whether no reading of any is more than noise.
+fn dead_instruments(forward: &Forward) -> Vec<String> {
+    let mut out = Vec::new();
+    for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
+        let data = &forward.data[forward.range(channel)];
+        let is_first = |d: &Datum| data[d.component].value == d.value;
+        if data.last().is_some_and(|d| d.row + 1 >= FEWEST_ALIKE) && data.iter().all(is_first) {
+            out.push(format!(
+                "every {} reading is the same: the instrument did not follow the arm",
+                channel.word()
+            ));
+        }
+    }
+    if !forward.data.is_empty() && forward.data.iter().all(|d| d.value.abs() < 2.0 * d.sigma) {
+        out.push("no reading is twice its standard deviation: there is nothing to compare".into());
+    }
+    out
 }
 
 /// A fitted effect's parameters with their intervals.

@@ -232,12 +232,7 @@ fn outboard_kg(subject: &Subject, joint: &str) -> f64 {
     outboard
         .map(|piece| match piece {
             Piece::Joint(joint) => joint.mass_kg,
-            Piece::Link(link) => {
-                let tube = link.beam.map_or(0.0, |beam| {
-                    beam.material.density_kg_m3 * beam.section.properties(beam.material.poisson).area_m2
-                });
-                link.point_mass_kg + link.vector_m.norm() * (tube + link.harness_kg_per_m)
-            }
+            Piece::Link(link) => link.mass_kg(),
         })
         .sum()
 }

@@ -2,9 +2,9 @@
 //! missing, how sure that is, and what it changes.
 //!
 //! [`campaign`] reads the readings; [`forward`] predicts them fast, [`exact`] by mechanics directly;
-//! [`model`] says what is free; [`fit`] fits; [`select`] finds the effects; [`noise`] finds gross errors
+//! [`model`] says what is free and [`expected`] how large it may be; [`fit`] fits; [`select`] finds the effects; [`noise`] finds gross errors
 //! and wrongly declared deviations; [`lack_of_fit`] asks whether structure is left and [`unnamed`] whether
-//! a law that no effect has does better; [`few_rows`] says
+//! one of the [`laws`] that no effect has does better; [`few_rows`] says
 //! what a handful of readings can; [`kept_out`] confirms on poses kept out; [`interval`] gives the
 //! intervals; [`analysis`] draws the conclusion and [`verdict`] is its form, [`page`] its page
 //! for a browser; [`correct`] writes the arm and [`next_test`] says what to measure; [`positions`] does all of it for absolute ones.
@@ -14,12 +14,14 @@ pub mod campaign;
 pub mod correct;
 pub mod curve_interval;
 pub mod exact;
+pub mod expected;
 pub mod few_rows;
 pub mod fit;
 pub mod forward;
 pub mod interval;
 pub mod kept_out;
 pub mod lack_of_fit;
+pub mod laws;
 pub mod locate;
 pub mod model;
 pub mod next_test;

@@ -1,6 +1,7 @@
 //! A model to fit: the calibration that tolerance allows, always free, and a list of effects.
 
 use super::campaign::Tolerance;
+use super::expected::Sizes;
 use super::forward::{Coefficients, Forward};
 use super::interval::Interval;
 use super::verdict::Estimate;
@@ -451,6 +452,7 @@ impl<'a> Model<'a> {
 /// Every effect at every place of this arm that the campaign's channels could show.
 pub fn candidates(forward: &Forward) -> Vec<Candidate> {
     let structure = &forward.nominal.structure;
+    let sizes = Sizes::of(forward);
     let mut out = Vec::new();
     for kind in KINDS.iter().filter(|k| {
         !matches!(k.name, "outlier" | "time_shift" | "wrong_unit" | "frame_compliance" | "transmission_error")
@@ -458,7 +460,7 @@ pub fn candidates(forward: &Forward) -> Vec<Candidate> {
         for place in kind.places {
             for at in structure.places(*place) {
                 if fits_nominal(kind, *place, &at, structure) && channel_is_read(forward, *place) {
-                    out.push(candidate(forward, kind, *place, at));
+                    out.push(candidate(forward, &sizes, kind, *place, at));
                 }
             }
         }
@@ -488,13 +490,16 @@ fn channel_is_read(forward: &Forward, place: Place) -> bool {
     }
 }
 
-fn candidate(forward: &Forward, kind: &'static Kind, place: Place, at: String) -> Candidate {
+fn candidate(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place, at: String) -> Candidate {
     let reference = reference_stiffness(forward, &at);
     let mut knobs = Vec::new();
     let mut fixed = Vec::new();
     for parameter in (kind.parameters)(place) {
         match parameter.default {
-            None => knobs.extend((0..parameter.count).map(|c| Knob::new(parameter, c, reference))),
+            None => {
+                let parameter = &of_size(kind, parameter, sizes);
+                knobs.extend((0..parameter.count).map(|c| Knob::new(parameter, c, reference)));
+            }
             Some(default) if parameter.name == "payload_density_kg_m3" && default > 0.0 => {
                 fixed.push(forward.payload_density_kg_m3)
             }
@@ -514,6 +519,14 @@ fn candidate(forward: &Forward, kind: &'static Kind, place: Place, at: String) -
     }
     let starts = starts(kind, torque, &knobs);
     Candidate { kind, at, knobs, fixed, starts, twins: Vec::new() }
+}
+
+/// The parameter, expected over a wider range where the arm or its readings are large.
+fn of_size(kind: &Kind, parameter: &Parameter, sizes: &Sizes) -> Parameter {
+    let Some(size) = sizes.expected(kind.name, parameter.name) else { return *parameter };
+    let (low, high) = parameter.prior;
+    let wider = (size / high).max(1.0);
+    Parameter { prior: ((low * wider).max(parameter.low), (high * wider).min(parameter.high)), ..*parameter }
 }
 
 /// Stiffness that compliances are measured by: the joint's own, else the first joint's.

@@ -134,8 +134,22 @@ impl StateColumns {
 
 const SIGMA: &str = "a standard deviation is greater than 0";
 
+/// Numbers beyond this, or standard deviations below its reciprocal, are no measurement in any unit.
+const ABSURD: f64 = 1e9;
+
 fn sigma(table: &Table, row: usize, column: usize) -> Option<f64> {
-    table.number_that(row, column, |s| s > 0.0, SIGMA)
+    let value = table.number_that(row, column, |s| s > 0.0, SIGMA)?;
+    if (1.0 / ABSURD..ABSURD).contains(&value) {
+        return Some(value);
+    }
+    let hint = "no instrument has this standard deviation; state the one it has";
+    table.row_fault(row, &table.columns[column], format!("= {}", table.text(row, column)), hint);
+    None
+}
+
+/// A cell as a number that something can have been measured or applied at.
+fn measured(table: &Table, row: usize, column: usize) -> Option<f64> {
+    table.number_that(row, column, |x| x.abs() < ABSURD, "too large for any unit: is it a slip?")
 }
 
 /// Reads static rows.
@@ -150,7 +164,7 @@ pub fn static_rows(table: &Table, arm: &Arm) -> Vec<StaticRow> {
         return Vec::new();
     };
     let rows = each_row(table, |row| {
-        let number = |c| table.number(row, c);
+        let number = |c| measured(table, row, c);
         let (pose_deg, payload) = (state.pose(table, row), state.payload(table, row));
         let (force, d) = ([fx, fy, fz].map(number), [dx, dy, dz].map(number));
         let sigma_mm = sigma(table, row, sigma_mm);
@@ -183,7 +197,12 @@ pub fn modal_rows(table: &Table, arm: &Arm) -> Vec<ModalRow> {
             |m| m >= 1.0 && m.fract() == 0.0 && m < 1000.0,
             "modes are numbered 1, 2, 3 ... by rising frequency",
         );
-        let frequency_hz = table.number_that(row, frequency, |f| f > 0.0, "a frequency is greater than 0");
+        let frequency_hz = table.number_that(
+            row,
+            frequency,
+            |f| f > 0.0 && f < ABSURD,
+            "a frequency is greater than 0 and below 1 GHz",
+        );
         let sigma_hz = sigma(table, row, sigma_hz);
         Some(ModalRow {
             row,
@@ -212,8 +231,8 @@ pub fn windup_rows(table: &Table, arm: &Arm) -> Vec<WindupRow> {
             let hint = format!("the arm's joints: {}", names.join(", "));
             table.row_fault(row, "joint", format!("\"{name}\" is no joint of the arm"), &hint);
         }
-        let torque_nm = table.number(row, torque);
-        let windup_arcmin = table.number(row, windup);
+        let torque_nm = measured(table, row, torque);
+        let windup_arcmin = measured(table, row, windup);
         let sigma_arcmin = sigma(table, row, sigma_arcmin);
         Some(WindupRow {
             row,
@@ -240,7 +259,7 @@ pub fn position_rows(table: &Table, arms: &[&str], driven: &[String]) -> Vec<Pos
     };
     let rows = each_row(table, |row| {
         let (pose_deg, payload) = (state.pose(table, row), state.payload(table, row));
-        let position = [x, y, z].map(|c| table.number(row, c));
+        let position = [x, y, z].map(|c| measured(table, row, c));
         let arm = match arm {
             Some(column) => arm_named(table, row, column, arms),
             None => Some(0),

@@ -51,10 +51,31 @@ impl Table {
                 Err(e) => table.fault(None, "", format!("not valid CSV: {e}"), "save the table as plain CSV"),
             }
         }
+        table.check_header();
         if table.columns.is_empty() {
             table.fault(None, "", "is empty".into(), "the first row names the columns");
         }
         table
+    }
+
+    /// Columns that are separated by something else than commas, or named twice.
+    fn check_header(&self) {
+        for (separator, word) in [(';', "semicolons"), ('\t', "tabs")] {
+            if self.columns.first().is_some_and(|c| c.matches(separator).count() > 1) {
+                let hint = "separate columns with commas and write decimals with a point";
+                self.fault(Some(1), "", format!("its columns are separated by {word}"), hint);
+            }
+        }
+        for (i, name) in self.columns.iter().enumerate() {
+            if !name.is_empty() && self.columns[..i].contains(name) {
+                self.fault(Some(1), name, "the column is there twice".into(), "keep the one that holds");
+            }
+        }
+    }
+
+    /// Whether the first row names columns at all: of one that does not, nothing more need be said.
+    fn has_header(&self) -> bool {
+        self.columns.len() > 1
     }
 
     fn push(&mut self, record: &csv::StringRecord) {
@@ -96,6 +117,9 @@ impl Table {
     /// Index of a column that must be there.
     pub fn required(&self, name: &str) -> Option<usize> {
         self.optional(name).or_else(|| {
+            if !self.has_header() && !self.faults.borrow().is_empty() {
+                return None;
+            }
             let known: Vec<&str> = self.columns.iter().map(String::as_str).collect();
             let hint = match closest(name, &known) {
                 Some(near) => format!("is it \"{near}\"? columns found: {}", known.join(", ")),
@@ -123,6 +147,11 @@ impl Table {
             Ok(x) if x.is_finite() => Some(x),
             Ok(_) => self.number_fault(row, column, &format!("{text} is not a finite number")),
             Err(_) if text.is_empty() => self.number_fault(row, column, "the cell is empty"),
+            Err(_) if text.replace(',', ".").parse::<f64>().is_ok() => {
+                let problem = format!("\"{text}\" has a decimal comma");
+                self.row_fault(row, &self.columns[column], problem, "write decimals with a point");
+                None
+            }
             Err(_) => self.number_fault(row, column, &format!("\"{text}\" is not a number")),
         }
     }
@@ -139,7 +168,7 @@ impl Table {
         if condition(value) {
             return Some(value);
         }
-        self.row_fault(row, &self.columns[column], format!("= {value}"), hint);
+        self.row_fault(row, &self.columns[column], format!("= {}", self.text(row, column)), hint);
         None
     }
 

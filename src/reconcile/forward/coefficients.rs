@@ -3,7 +3,7 @@
 use crate::arm::effect::{Reading, Subject};
 use crate::arm::{FrameCompliance, JointLaw, LinkModel, LinkPiece, Piece, Structure, Water};
 use crate::mechanics::Chain;
-use crate::mechanics::beam::compliances;
+use crate::mechanics::beam::{Strain, compliances, strains};
 use nalgebra::Vector3;
 
 /// A joint's coordinates.
@@ -24,6 +24,8 @@ pub struct LinkSlot {
     pub first: usize,
     /// How many.
     pub count: usize,
+    /// What each strains, and the degree of its polynomial.
+    pub strains: Vec<(Strain, usize)>,
 }
 
 /// The coordinates of every elastic thing an arm can have, base to tip: the base's tilts (0 and 1),
@@ -91,8 +93,9 @@ impl Layout {
                 }
                 Piece::Link(link) => {
                     add_frame(&link.root_frame, &mut n);
-                    let count = compliances(link, LinkModel::Full).len();
-                    links.push(LinkSlot { name: link.name.clone(), first: n, count });
+                    let strains = strains(link, LinkModel::Full);
+                    let count = strains.len();
+                    links.push(LinkSlot { name: link.name.clone(), first: n, count, strains });
                     n += count;
                 }
             }

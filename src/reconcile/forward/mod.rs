@@ -64,6 +64,8 @@ pub struct Forward {
     pub groups: Vec<String>,
     /// Density of the payloads \[kg/m³\].
     pub payload_density_kg_m3: f64,
+    /// The largest payload that was stated \[kg\].
+    pub largest_payload_kg: f64,
 }
 
 impl Forward {
@@ -82,6 +84,8 @@ impl Forward {
         let windup_start = data.len();
         let bench = prepare_bench(campaign, &layout, &mut data);
         let starts = [0, modal_start, windup_start, data.len()];
+        let payloads_kg = campaign.statics.iter().map(|r| r.payload.mass_kg);
+        let payloads_kg = payloads_kg.chain(campaign.modal.iter().map(|r| r.payload.mass_kg));
         Self {
             layout,
             nominal,
@@ -92,7 +96,23 @@ impl Forward {
             starts,
             groups: groups.into_iter().map(|(_, name)| name).collect(),
             payload_density_kg_m3: campaign.statement.payload_density_kg_m3,
+            largest_payload_kg: payloads_kg.fold(0.0, f64::max),
         }
+    }
+
+    /// Numbers lists of frequencies anew that do not rise with the number of the mode, though frequencies are
+    /// numbered as they rise; says which.
+    pub fn put_modes_in_order(&mut self) -> Vec<String> {
+        let data = &self.data;
+        let lists = self.modal.iter_mut().enumerate();
+        lists
+            .filter_map(|(i, test)| test.put_in_order(data).then_some(i + 1))
+            .map(|list| {
+                format!(
+                    "the modes of list {list} of the frequencies are not numbered as they rise: put in order"
+                )
+            })
+            .collect()
     }
 
     /// Counts lists of frequencies from which a mode is missing one higher; says which.

@@ -24,6 +24,9 @@ const SPARE_SHAPES: usize = 12;
 /// Most that one frequency can cost when lists are compared \[squared standard deviations\].
 const MISS: f64 = 400.0;
 
+/// Fall from a mode to a higher one that noise does not make \[standard deviations of the difference\].
+const UNMISTAKABLE: f64 = 5.0;
+
 /// One pose and payload whose modes were listed.
 pub struct ModalTest {
     geometry: PoseGeometry,
@@ -134,7 +137,10 @@ impl ModalTest {
             .take(self.mode_count() + SPARE_SHAPES)
             .map(|&i| &mass * eigen.eigenvectors.column(i).component_mul(&roots) / eigen.eigenvalues[i])
             .collect();
-        self.forces = DMatrix::from_columns(&columns);
+        self.forces = match columns.is_empty() {
+            true => DMatrix::zeros(layout.n, 0), // nothing yields, so nothing swings
+            false => DMatrix::from_columns(&columns),
+        };
     }
 
     /// The mass matrix times shapes: the parts that parameters change are of low rank, so that the matrix itself
@@ -194,6 +200,9 @@ impl ModalTest {
 
     /// The lowest modes.
     pub fn solve(&self, layout: &Layout, coefficients: &Coefficients, count: usize) -> Vec<Solved> {
+        if self.forces.ncols() == 0 {
+            return Vec::new();
+        }
         let compliances = self.compliances(layout, coefficients);
         let mut shapes = self.forces.clone();
         for mut column in shapes.column_iter_mut() {
@@ -218,6 +227,28 @@ impl ModalTest {
                 Some(Solved { mu: eigen.eigenvalues[i].max(1e-300), x: &shapes * &z, y: &momenta * &z })
             })
             .collect()
+    }
+
+    /// Whether a frequency is lower than that of a lower mode by more than noise.
+    fn falls(&self, data: &[Datum]) -> bool {
+        self.modes.iter().any(|(a, low)| {
+            self.modes.iter().any(|(b, high)| {
+                let (a, b) = (&data[*a], &data[*b]);
+                low < high && a.value - b.value > UNMISTAKABLE * a.sigma.hypot(b.sigma)
+            })
+        })
+    }
+
+    /// Numbers the modes anew if the list falls by more than noise; whether it did.
+    pub fn put_in_order(&mut self, data: &[Datum]) -> bool {
+        if !self.falls(data) {
+            return false;
+        }
+        let mut numbers: Vec<usize> = self.modes.iter().map(|(_, mode)| *mode).collect();
+        numbers.sort_unstable();
+        self.modes.sort_by(|(a, _), (b, _)| data[*a].value.total_cmp(&data[*b].value));
+        self.modes.iter_mut().zip(numbers).for_each(|((_, mode), number)| *mode = number);
+        true
     }
 
     /// Whether one mode is missing from the measured list: if counting those above it one higher fits

@@ -210,6 +210,28 @@ impl StaticPose {
         }
     }
 
+    /// Adds what further compliances of coordinates (number and compliance) move the tip by \[mm\].
+    pub fn add_yielding(
+        &self,
+        layout: &Layout,
+        coefficients: &Coefficients,
+        further: &[(usize, f64)],
+        out: &mut [f64],
+    ) {
+        let geometry = &self.geometry;
+        let compliance = |index: usize| further.iter().find(|(i, _)| *i == index).map(|(_, c)| *c);
+        let yielding: Matrix3x6<f64> = geometry
+            .linear
+            .iter()
+            .filter_map(|m| Some(m.tip * (compliance(m.index)? * m.twist.transpose())))
+            .sum();
+        for load in &self.loads {
+            let wrench = geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients);
+            let moved = 1e3 * yielding * wrench;
+            (0..3).for_each(|component| out[load.first_datum + component] += moved[component]);
+        }
+    }
+
     /// Torque on each joint in every load, and of the dead weight alone \[N m\].
     pub fn torques_nm(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<Vec<f64>> {
         let dead = self.geometry.dead_torques_nm(coefficients);
