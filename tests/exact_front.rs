@@ -183,12 +183,15 @@ fn the_exact_front_is_the_front_of_every_design() {
         let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
         let exact = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
         assert_eq!((exact.boxes_open, exact.gap), (0, Some(0.0)));
-        let by_regions = Exact::new(&study.space, &catalogs, &stop, None).by_regions_from(100.0).run(&[]);
-        boxes[0] += exact.boxes;
-        boxes[1] += by_regions.boxes;
         let what = format!("seed {seed}, {} designs: {text}", sweep.designs_total);
         let listed = agrees(&problem, &exact.front, &sweep.front, &what);
-        agrees(&problem, &by_regions.front, &sweep.front, &what);
+        // regions are for spaces far larger: they take long on small ones
+        if seed % 8 == 0 {
+            let by_regions = Exact::new(&study.space, &catalogs, &stop, None).by_regions_from(100.0).run(&[]);
+            agrees(&problem, &by_regions.front, &sweep.front, &what);
+            boxes[0] += exact.boxes;
+            boxes[1] += by_regions.boxes;
+        }
         points += listed;
         feasible += u64::from(listed > 0);
     }

@@ -3,7 +3,8 @@
 //! Every level of the design space is a binary tree over its options; a box is a node of each tree. A
 //! `bound.rs` says how good the best member of a box could be, by the same mechanics with every number an
 //! interval. A box is cut when no member can hold, or when a design already found is better than any member
-//! could be; otherwise it is halved. What is left at the end is judged by the full model. Nothing is
+//! could be; otherwise it is halved. Of a very large space the options are narrowed first, for one part at a time of what
+//! the designs found leave open (`regions.rs`). What is left at the end is judged by the full model. Nothing is
 //! assumed about the poses, the order of the parts or the shape of torsion curves: see `docs/exact.md` for
 //! the proof and its conditions.
 

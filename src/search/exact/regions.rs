@@ -14,6 +14,7 @@ use super::run::{Opened, Search, lock};
 use super::shape::Shape;
 use super::tradeoff::{BEATEN, Left, Trade};
 use crate::search::Objectives;
+use crate::search::design::number;
 use std::sync::Arc;
 
 /// Part of the designs that must be excluded for the options to be narrowed once more.
@@ -101,9 +102,10 @@ impl<'p> Search<'_, 'p> {
         }
     }
 
-    /// Judges what may be a good design.
+    /// Judges what may be a good design, once.
     fn try_design(&self, zone: &Zone<'p>, mut cell: Cell) {
-        if zone.problem.options(&cell).is_none() {
+        let Some(options) = zone.problem.options(&cell) else { return };
+        if !lock(&self.shared.tried).insert(number(&zone.problem.level_sizes, &options)) {
             return;
         }
         let (mut shapes, mut work) = (Arc::clone(&zone.shapes), Work::default());

@@ -14,7 +14,7 @@ use crate::search::front::not_clearly_beaten;
 use crate::search::space::DesignSpace;
 use crate::search::sweep::{Candidate, SLACK};
 use rayon::prelude::*;
-use std::collections::VecDeque;
+use std::collections::{HashSet, VecDeque};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
@@ -83,6 +83,8 @@ pub(super) struct Shared {
     pub found: Found,
     /// Designs found in the pass at hand.
     pub fresh: Mutex<Vec<Objectives>>,
+    /// Numbers of designs that were judged on the way.
+    pub tried: Mutex<HashSet<u128>>,
     kept: Mutex<Vec<Candidate>>,
     /// Designs whose ceiling is not their objectives: a demand lies on a threshold. The full model judges them.
     unsure: Mutex<Vec<Candidate>>,
@@ -143,10 +145,9 @@ impl<'p> Exact<'p> {
             let passes = if is_large && known.is_empty() { &SLACKS[..] } else { &[0.0] };
             for &slack in passes {
                 lock(&shared.open).clear();
-                if is_large {
-                    search(slack).run_by_regions()
-                } else {
-                    search(slack).run()
+                match by_regions {
+                    true => search(slack).run_by_regions(),
+                    false => search(slack).run(),
                 }
                 if !lock(&shared.open).is_empty() {
                     last_slack = slack;

@@ -252,7 +252,7 @@ mod tests {
         fn join(&self, other: &Self) -> Self {
             Span([self.0[0].min(other.0[0]), self.0[1].max(other.0[1])])
         }
-        fn key(&self) -> Vec<f64> {
+        fn key(&self) -> Key {
             [self.0[0], 0.0, 0.0, 0.0, 0.0]
         }
     }
@@ -280,6 +280,35 @@ mod tests {
                 }
             }
             prop_assert!(seen.iter().all(|&n| n == 1));
+        }
+
+        #[test]
+        fn what_is_kept_of_a_tree_is_what_may_do_and_stands_on_its_own(
+            values in prop::collection::vec(0.0f64..100.0, 1..60), limits in prop::collection::vec(0.0f64..100.0, 3),
+            most in 1usize..20
+        ) {
+            let options = values.iter().enumerate().map(|(i, &v)| (i as u32, Span([v, v])));
+            let mut tree = Arc::new(Tree::build(options).unwrap());
+            let mut least: f64 = 0.0;
+            for limit in limits {
+                least = least.max(limit);
+                let kept = tree.kept(0, most, |span| span.0[1] >= least);
+                let Some(narrower) = Tree::over(&tree, &kept) else {
+                    prop_assert!(values.iter().all(|v| *v < least));
+                    return Ok(());
+                };
+                prop_assert_eq!(narrower.members_of(&kept), f64::from(narrower.node(0).members));
+                let (mut below, mut open) = (Vec::new(), vec![0]);
+                while let Some(node) = open.pop() {
+                    open.extend(narrower.children(node).into_iter().flatten());
+                    below.extend(narrower.option(node));
+                }
+                for (option, value) in values.iter().enumerate().filter(|(_, v)| **v >= least) {
+                    let times = below.iter().filter(|o| **o == option as u32).count();
+                    prop_assert_eq!(times, 1, "option {} of value {}", option, value);
+                }
+                tree = narrower;
+            }
         }
     }
 }
