@@ -109,12 +109,16 @@ pub struct LinkPiece {
 }
 
 impl LinkPiece {
+    /// Mass of the tube per length \[kg/m\]; zero without one.
+    pub fn tube_kg_per_m(&self) -> f64 {
+        self.beam.map_or(0.0, |beam| {
+            beam.material.density_kg_m3 * beam.section.properties(beam.material.poisson).area_m2
+        })
+    }
+
     /// Mass of tube, cables and point mass \[kg\].
     pub fn mass_kg(&self) -> f64 {
-        let tube_kg_per_m = self.beam.map_or(0.0, |beam| {
-            beam.material.density_kg_m3 * beam.section.properties(beam.material.poisson).area_m2
-        });
-        self.point_mass_kg + self.vector_m.norm() * (tube_kg_per_m + self.harness_kg_per_m)
+        self.point_mass_kg + self.vector_m.norm() * (self.tube_kg_per_m() + self.harness_kg_per_m)
     }
 }
 

@@ -304,12 +304,10 @@ pub fn tube_inertia(beam: &Beam, model: LinkModel) -> LineInertia {
 }
 
 fn weight_n_per_m(link: &LinkPiece, structure: &Structure) -> f64 {
-    let (mass, displaced) = link.beam.map_or((0.0, 0.0), |beam| {
-        let section = beam.section.properties(beam.material.poisson);
-        let water = structure.water.map_or(0.0, |w| w.density_kg_m3);
-        (beam.material.density_kg_m3 * section.area_m2, water * section.outer_area_m2)
-    });
-    structure.gravity_m_s2 * (mass + link.harness_kg_per_m - displaced)
+    let water = structure.water.map_or(0.0, |w| w.density_kg_m3);
+    let displaced =
+        link.beam.map_or(0.0, |beam| water * beam.section.properties(beam.material.poisson).outer_area_m2);
+    structure.gravity_m_s2 * (link.tube_kg_per_m() + link.harness_kg_per_m - displaced)
 }
 
 #[cfg(test)]

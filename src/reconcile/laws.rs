@@ -359,31 +359,8 @@ mod tests {
     use crate::catalog::Catalogs;
     use std::path::Path;
 
-    #[test]
-    fn a_link_that_yields_more_in_every_way_has_a_lower_modulus() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e");
-        let campaign = Campaign::read(&folder, &Catalogs::default()).expect("sound");
-        let forward = Forward::new(&campaign);
-        let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
-        let bare = Model::bare(&nuisance);
-        let weights = Noise::default().weights(&forward);
-        let effort = Effort { steps: 0, tolerance: 0.0 };
-        let fit = fit(&forward, &bare, &vec![0.0; bare.len()], &weights, effort);
-        let builder = Builder { campaign: &campaign, forward: &forward, fit: &fit, torques_nm: Vec::new() };
-        let linear = &fit.point.coefficients.linear;
-        let of_links = forward.layout.links.iter().flat_map(|l| l.first..l.first + l.count);
-        let column = builder.yielding_column(&of_links.map(|i| (i, linear[i])).collect::<Vec<_>>());
-        let is_modulus = |c: &Calibration| matches!(c, Calibration::Modulus(..));
-        let p = nuisance.numbers.iter().position(|(c, _)| is_modulus(c)).expect("calibrated");
-        let largest = fit.jacobian.column(p).amax() / nuisance.numbers[p].1;
-        for (i, own) in column.iter().enumerate() {
-            let softer = -fit.jacobian[(i, p)] / nuisance.numbers[p].1;
-            assert!((own - softer).abs() <= 1e-3 * largest, "datum {i}: {own} and {softer}");
-        }
-    }
-
-    #[test]
-    fn a_further_twist_in_proportion_to_the_torque_is_a_softer_joint() {
+    /// Checks laws about the model as it is, against what the calibration's numbers do.
+    fn about_the_bare_model(check: impl FnOnce(&Builder, &Nuisance)) {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e");
         let campaign = Campaign::read(&folder, &Catalogs::default()).expect("sound");
         let forward = Forward::new(&campaign);
@@ -393,25 +370,53 @@ mod tests {
         let effort = Effort { steps: 0, tolerance: 0.0 };
         let fit = fit(&forward, &bare, &vec![0.0; bare.len()], &weights, effort);
         let torques_nm = forward.torques_nm(&fit.point.coefficients);
-        let builder = Builder { campaign: &campaign, forward: &forward, fit: &fit, torques_nm };
-        let mut moving = 0;
-        for (joint, slot) in forward.layout.joints.iter().enumerate() {
-            let law = &fit.point.coefficients.laws[joint];
-            let compliance = law.tangent_compliance_rad_per_nm(0.0);
-            let column = builder.joint_column(joint, compliance, &|s| (s.torque_nm, 1.0));
-            let is_own = |c: &Calibration| *c == Calibration::Stiffness(slot.name.clone());
-            let p = nuisance.numbers.iter().position(|(c, _)| is_own(c)).expect("calibrated");
-            let largest = fit.jacobian.column(p).amax();
-            if largest < 1e-9 {
-                continue; // its axis goes through the tip and the payload
-            }
-            moving += 1;
+        check(&Builder { campaign: &campaign, forward: &forward, fit: &fit, torques_nm }, &nuisance);
+    }
+
+    #[test]
+    fn a_link_that_yields_more_in_every_way_has_a_lower_modulus() {
+        about_the_bare_model(|builder, nuisance| {
+            let (forward, fit) = (builder.forward, builder.fit);
+            let linear = &fit.point.coefficients.linear;
+            let of_links = forward.layout.links.iter().flat_map(|l| l.first..l.first + l.strains.len());
+            let column = builder.yielding_column(&of_links.map(|i| (i, linear[i])).collect::<Vec<_>>());
+            let is_modulus = |c: &Calibration| matches!(c, Calibration::Modulus(..));
+            let p = nuisance.numbers.iter().position(|(c, _)| is_modulus(c)).expect("calibrated");
+            let largest = fit.jacobian.column(p).amax() / nuisance.numbers[p].1;
             for (i, own) in column.iter().enumerate() {
                 let softer = -fit.jacobian[(i, p)] / nuisance.numbers[p].1;
-                let scale = largest / nuisance.numbers[p].1;
-                assert!((own - softer).abs() <= 1e-3 * scale, "{} datum {i}: {own} and {softer}", slot.name);
+                assert!((own - softer).abs() <= 1e-3 * largest, "datum {i}: {own} and {softer}");
             }
-        }
-        assert!(moving >= 5, "only {moving} joints move a reading");
+        });
+    }
+
+    #[test]
+    fn a_further_twist_in_proportion_to_the_torque_is_a_softer_joint() {
+        about_the_bare_model(|builder, nuisance| {
+            let (forward, fit) = (builder.forward, builder.fit);
+            let mut moving = 0;
+            for (joint, slot) in forward.layout.joints.iter().enumerate() {
+                let law = &fit.point.coefficients.laws[joint];
+                let compliance = law.tangent_compliance_rad_per_nm(0.0);
+                let column = builder.joint_column(joint, compliance, &|s| (s.torque_nm, 1.0));
+                let is_own = |c: &Calibration| *c == Calibration::Stiffness(slot.name.clone());
+                let p = nuisance.numbers.iter().position(|(c, _)| is_own(c)).expect("calibrated");
+                let largest = fit.jacobian.column(p).amax();
+                if largest < 1e-9 {
+                    continue; // its axis goes through the tip and the payload
+                }
+                moving += 1;
+                for (i, own) in column.iter().enumerate() {
+                    let softer = -fit.jacobian[(i, p)] / nuisance.numbers[p].1;
+                    let scale = largest / nuisance.numbers[p].1;
+                    assert!(
+                        (own - softer).abs() <= 1e-3 * scale,
+                        "{} datum {i}: {own} and {softer}",
+                        slot.name
+                    );
+                }
+            }
+            assert!(moving >= 5, "only {moving} joints move a reading");
+        });
     }
 }

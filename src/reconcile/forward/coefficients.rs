@@ -22,9 +22,7 @@ pub struct LinkSlot {
     pub name: String,
     /// Its first coordinate.
     pub first: usize,
-    /// How many.
-    pub count: usize,
-    /// What each strains, and the degree of its polynomial.
+    /// What each of its coordinates strains, and the degree of its polynomial.
     pub strains: Vec<(Strain, usize)>,
 }
 
@@ -95,7 +93,7 @@ impl Layout {
                     add_frame(&link.root_frame, &mut n);
                     let strains = strains(link, LinkModel::Full);
                     let count = strains.len();
-                    links.push(LinkSlot { name: link.name.clone(), first: n, count, strains });
+                    links.push(LinkSlot { name: link.name.clone(), first: n, strains });
                     n += count;
                 }
             }
@@ -171,7 +169,7 @@ impl Coefficients {
         for ((slot, link), before) in
             layout.links.iter().zip(structure.links()).zip(nominal.structure.links())
         {
-            linear[slot.first..slot.first + slot.count].copy_from_slice(&link_compliances(link));
+            linear[slot.first..slot.first + slot.strains.len()].copy_from_slice(&link_compliances(link));
             masses.push(link.harness_kg_per_m - before.harness_kg_per_m);
         }
         let mut weights = masses.clone();

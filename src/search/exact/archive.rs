@@ -84,9 +84,9 @@ impl Found {
 }
 
 impl Found {
-    /// Designs found.
-    pub fn all(&self) -> Vec<Objectives> {
-        self.all.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    /// Looks at all designs found, in the order in which they were.
+    pub fn look_at_all<T>(&self, look: impl FnOnce(&[Objectives]) -> T) -> T {
+        look(&self.all.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 

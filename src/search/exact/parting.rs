@@ -4,7 +4,7 @@
 //! bounded from below. Parting helps where the mixed members differ, and where the products leave out most.
 
 use super::parts::{STIFFNESSES, inertia};
-use super::pose::{PosedPiece, RESISTED, Row, degree_factor};
+use super::pose::Row;
 use super::problem::{Part, Problem};
 use super::tradeoff::{Member, Rows};
 use super::tree::Key;
@@ -107,25 +107,17 @@ impl Rows<'_> {
     /// By how much a coordinate yields more than the least.
     fn softer(&self, mixed: &Mixed, judged: usize, row: &Row) -> f64 {
         let case = self.tips[judged].case;
-        let (resisted, factor, stiffest) =
-            match (&self.problem.poses[case].pieces[row.piece], &self.work.curves[row.piece]) {
-                (PosedPiece::Tube(tube), _) => {
-                    let resisted = RESISTED[row.coordinate].0;
-                    (
-                        resisted,
-                        degree_factor(row.coordinate) / tube.length_m,
-                        self.work.stiff[row.piece][resisted],
-                    )
-                }
-                (_, Some(curve)) => {
-                    let [least_nm, most_nm] = self.work.torques[case][row.piece];
-                    (0, 1.0, curve.steepest(least_nm, most_nm))
-                }
-                _ => return 0.0,
-            };
-        debug_assert!(resisted < STIFFNESSES);
-        let yields = |stiffness: f64| if stiffness > 0.0 { factor / stiffness } else { 0.0 };
-        mean(mixed, |member| yields(member.stiffness[judged][row.piece][resisted])) - yields(stiffest)
+        let posed = &self.problem.poses[case].pieces[row.piece];
+        let yields = |stiffness: &[f64; STIFFNESSES]| {
+            let stiffness = posed.coordinate_stiffness(row.coordinate, stiffness);
+            if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
+        };
+        let mut stiffest = self.work.stiff[row.piece];
+        if let Some(curve) = &self.work.curves[row.piece] {
+            let [least_nm, most_nm] = self.work.torques[case][row.piece];
+            stiffest[0] = curve.steepest(least_nm, most_nm);
+        }
+        mean(mixed, |member| yields(&member.stiffness[judged][row.piece])) - yields(&stiffest)
     }
 }
 

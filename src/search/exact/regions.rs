@@ -27,7 +27,7 @@ struct Zone<'p> {
     cell: Cell,
     shapes: Arc<Vec<Shape>>,
     trade: Arc<Trade>,
-    /// Designs found in this pass that the region knows of.
+    /// How many of the designs found the region knows of.
     known: usize,
 }
 
@@ -36,15 +36,16 @@ impl<'p> Search<'_, 'p> {
     pub fn run_by_regions(&self) {
         let mut work = Work::default();
         let Some(shapes) = self.problem.first_shapes(&mut work) else { return };
-        let mut found: Vec<Objectives> = self.shared.found.all().iter().map(|o| self.tightened(o)).collect();
-        lock(&self.shared.fresh).clear();
+        let tightened = |all: &[Objectives]| all.iter().map(|o| self.tightened(o)).collect();
+        let mut found: Vec<Objectives> = self.shared.found.look_at_all(tightened);
+        let known = found.len();
         let corners = Corners::new(&mut found, self.limits());
         let zone = Zone {
             problem: Arc::new(self.problem.clone()),
             cell: self.problem.root(),
             trade: Arc::new(Trade::new(&shapes)),
             shapes: Arc::new(shapes),
-            known: 0,
+            known,
         };
         self.search_region(&corners, 0, zone);
     }
@@ -143,17 +144,14 @@ impl<'p> Search<'_, 'p> {
 
     /// The corners that designs found since leave of a region; `None` if none of them is in it.
     fn clipped(&self, corner: &Corner, known: &mut usize) -> Option<Corners> {
-        let fresh = lock(&self.shared.fresh);
-        let tightened = fresh[*known..].iter().map(|found| self.tightened(found));
-        let mut inside: Vec<Objectives> = tightened
-            .filter(|o| {
-                o.mass_kg < corner.mass_kg
-                    && o.tip_deflection_m < corner.tip_m
-                    && o.lowest_mode_hz > corner.hz
-            })
-            .collect();
-        *known = fresh.len();
-        drop(fresh);
+        let is_inside = |o: &Objectives| {
+            o.mass_kg < corner.mass_kg && o.tip_deflection_m < corner.tip_m && o.lowest_mode_hz > corner.hz
+        };
+        let mut inside: Vec<Objectives> = self.shared.found.look_at_all(|all| {
+            let since = &all[*known..];
+            *known = all.len();
+            since.iter().map(|o| self.tightened(o)).filter(is_inside).collect()
+        });
         (!inside.is_empty()).then(|| Corners::new(&mut inside, *corner))
     }
 }

@@ -81,8 +81,6 @@ pub fn conditions(space: &DesignSpace) -> Result<(), String> {
 #[derive(Default)]
 pub(super) struct Shared {
     pub found: Found,
-    /// Designs found in the pass at hand.
-    pub fresh: Mutex<Vec<Objectives>>,
     /// Numbers of designs that were judged on the way.
     pub tried: Mutex<HashSet<u128>>,
     kept: Mutex<Vec<Candidate>>,
@@ -299,7 +297,6 @@ impl<'p> Search<'_, 'p> {
             return;
         }
         self.shared.found.enter(&objectives);
-        lock(&self.shared.fresh).push(objectives);
         let mut kept = lock(&self.shared.kept);
         kept.push(Candidate { number: number(&self.problem.level_sizes, &options), objectives });
         if kept.len().is_power_of_two() && kept.len() > BUFFER {
