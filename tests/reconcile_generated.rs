@@ -10,6 +10,7 @@ use std::path::Path;
 mod detectability;
 mod reconcile_generator;
 mod reconcile_scoring;
+mod reconcile_together;
 mod witness;
 
 /// Smallest departure that a hidden effect must cause to be a fair question \[standard deviations\].

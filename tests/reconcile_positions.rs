@@ -308,16 +308,6 @@ fn a_reflector_that_was_put_back_elsewhere_is_a_session_of_its_own() {
 }
 
 #[test]
-fn displacements_beside_positions_are_refused_and_told_what_to_do() {
-    let folder = standard().write(&Made::rigid);
-    let modal = "test,q_q1_deg,q_q2_deg,q_q3_deg,payload_kg,payload_cg_x_m,payload_cg_y_m,payload_cg_z_m,mode,\
-                 frequency_hz,sigma_hz\n1,0,0,0,0,0,0,0,1,12,0.1\n";
-    std::fs::write(folder.path().join("modal.csv"), modal).expect("written");
-    let faults = Campaign::read(folder.path(), &Catalogs::default()).expect_err("refused").to_string();
-    assert!(faults.contains("absolute positions stand beside") && faults.contains("two folders"), "{faults}");
-}
-
-#[test]
 fn arms_that_share_no_trunk_and_mounts_that_are_no_links_are_faults() {
     let folder = standard().write(&Made::rigid);
     let arm = std::fs::read_to_string(folder.path().join("arm.json")).expect("text");

@@ -19,11 +19,8 @@ const MOST_ALTERNATIVES: usize = 3;
 /// Fewest poses that can speak.
 const FEWEST_POSES: usize = 3;
 
-/// Reconciles a campaign with its arm.
+/// Reconciles the displacements, frequencies and bench readings of a campaign with its arm.
 pub fn reconcile(campaign: &Campaign) -> Outcome {
-    if !campaign.positions.is_empty() {
-        return super::positions::reconcile(campaign);
-    }
     let mut forward = Forward::new(campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
     let mut candidates = candidates(&forward);
@@ -513,7 +510,8 @@ impl Analysis<'_> {
     }
 }
 
-fn rows(campaign: &Campaign) -> usize {
+/// Rows other than absolute positions.
+pub fn rows(campaign: &Campaign) -> usize {
     campaign.statics.len() + campaign.modal.len() + campaign.windup.len()
 }
 

@@ -85,10 +85,6 @@ pub struct Campaign {
 const DEFAULT_FILES: [&str; 4] = ["static.csv", "modal.csv", "windup.csv", "positions.csv"];
 const DEFAULT_PAYLOAD_DENSITY_KG_M3: f64 = 7850.0;
 
-const BESIDE_POSITIONS: &str = "absolute positions stand beside displacements, frequencies or bench readings: \
-     positions calibrate the geometry that the others take as given, so they are reconciled on their own, and \
-     the arm.corrected.json of one campaign can be the arm of the next";
-
 /// Reads `campaign.json`.
 ///
 /// # Errors
@@ -249,9 +245,6 @@ impl Campaign {
                 faults.extend(table.into_faults());
             }
         }
-        if !campaign.positions.is_empty() && campaign.has_displacements() {
-            faults.push(campaign.fault("positions", BESIDE_POSITIONS.into(), "put them into two folders"));
-        }
         campaign.hash = campaign.hash_files();
         if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults).into()) }
     }
@@ -345,6 +338,13 @@ impl Campaign {
         out
     }
 
+    /// The readings other than absolute positions, and those, as campaigns of their own.
+    pub fn parted(&self) -> (Self, Self) {
+        let loaded = Self { positions: Vec::new(), other_arms: Vec::new(), ..self.clone() };
+        let placed = Self { statics: Vec::new(), modal: Vec::new(), windup: Vec::new(), ..self.clone() };
+        (loaded, placed)
+    }
+
     /// Whether there are readings other than absolute positions.
     pub fn has_displacements(&self) -> bool {
         !self.statics.is_empty() || !self.modal.is_empty() || !self.windup.is_empty()
@@ -394,9 +394,6 @@ impl Campaign {
             self.modal.extend(other.modal);
             self.windup.extend(other.windup);
             self.positions.extend(other.positions);
-            if !self.positions.is_empty() && self.has_displacements() {
-                return Err(BESIDE_POSITIONS.into());
-            }
             self.statement.name = format!("{}+{}", self.statement.name, other.statement.name);
             self.hash = blake3::hash(format!("{}{}", self.hash, other.hash).as_bytes()).to_hex().to_string();
         }

@@ -7,7 +7,8 @@
 //! one of the [`laws`] that no effect has does better; [`few_rows`] says
 //! what a handful of readings can; [`kept_out`] confirms on poses kept out; [`interval`] gives the
 //! intervals; [`analysis`] draws the conclusion and [`verdict`] is its form, [`page`] its page
-//! for a browser; [`correct`] writes the arm and [`next_test`] says what to measure; [`positions`] does all of it for absolute ones.
+//! for a browser; [`correct`] writes the arm and [`next_test`] says what to measure; [`positions`] does all of it for absolute
+//! ones and [`together`] for both.
 
 pub mod analysis;
 pub mod campaign;
@@ -34,9 +35,10 @@ pub mod report;
 pub mod select;
 pub mod stats;
 pub mod table;
+pub mod together;
 pub mod unnamed;
 pub mod verdict;
 
-pub use analysis::reconcile;
 pub use campaign::Campaign;
+pub use together::reconcile;
 pub use verdict::{Outcome, Verdict};

@@ -32,6 +32,8 @@ const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
 /// Separation that settles a question \[standard deviations\].
 pub const ENOUGH: f64 = 4.0;
+/// Expected difference below which no number of readings is worth taking \[standard deviations\].
+pub const WORTHLESS_SIGMAS: f64 = 0.1;
 /// Deviations that are assumed where a channel was not measured.
 const DEFAULT_SIGMA_MM: f64 = 0.01;
 const DEFAULT_SIGMA_PART: f64 = 0.003;
@@ -55,17 +57,27 @@ pub fn propose(question: &Question) -> Vec<NextTest> {
     }
     let best = Exact::new(&question.best.1);
     let tests = tests(question.campaign, &best);
-    let mut out: Vec<NextTest> = tests
+    let gaps: Vec<Vec<f64>> = tests
         .par_iter()
         .map(|test| {
             let own = predict(&best, test);
-            let gaps: Vec<(f64, &String)> = question
-                .rivals
-                .iter()
-                .map(|(name, rival)| (separation(test, &own, &predict(&Exact::new(rival), test)), name))
-                .collect();
-            let worst = gaps.iter().map(|g| g.0).fold(f64::INFINITY, f64::min);
-            describe(question, test, if worst.is_finite() { worst } else { 0.0 }, gaps)
+            let rivals = question.rivals.iter();
+            rivals.map(|(_, rival)| separation(test, &own, &predict(&Exact::new(rival), test))).collect()
+        })
+        .collect();
+    let most = |rival: usize| gaps.iter().map(|list| list[rival]).fold(0.0, f64::max);
+    let (open, alike): (Vec<usize>, Vec<usize>) =
+        (0..question.rivals.len()).partition(|&rival| most(rival) >= WORTHLESS_SIGMAS);
+    if open.is_empty() {
+        let names: Vec<&str> = alike.iter().map(|&rival| question.rivals[rival].0.as_str()).collect();
+        return vec![nothing_tells(&question.best.0, &names)];
+    }
+    let mut out: Vec<NextTest> = tests
+        .iter()
+        .zip(&gaps)
+        .map(|(test, list)| {
+            let worst = open.iter().map(|&rival| list[rival]).fold(f64::INFINITY, f64::min);
+            describe(question, test, worst, &open)
         })
         .collect();
     out.sort_by(|a, b| b.expected_sigmas.total_cmp(&a.expected_sigmas));
@@ -83,6 +95,14 @@ pub fn propose(question: &Question) -> Vec<NextTest> {
     });
     out.truncate(PROPOSALS);
     out
+}
+
+/// That no reading of the arm tells models apart.
+fn nothing_tells(best: &str, rivals: &[&str]) -> NextTest {
+    NextTest::of_another_kind(format!(
+        "no displacement, frequency or bench reading separates {best} from {}: weigh or take apart what is in question",
+        rivals.join(" or ")
+    ))
 }
 
 fn repeat(campaign: &Campaign, pose: &[f64]) -> NextTest {
@@ -239,7 +259,7 @@ fn separation(test: &Test, a: &[f64], b: &[f64]) -> f64 {
     squares.filter(|s| s.is_finite()).sum::<f64>().sqrt()
 }
 
-fn describe(question: &Question, test: &Test, sigmas: f64, gaps: Vec<(f64, &String)>) -> NextTest {
+fn describe(question: &Question, test: &Test, sigmas: f64, open: &[usize]) -> NextTest {
     let (kind, description, pose_deg, payload_kg, force_n, joint) = match test {
         Test::Static(rows) if rows.len() > 1 => {
             let row = &rows[1];
@@ -285,7 +305,7 @@ fn describe(question: &Question, test: &Test, sigmas: f64, gaps: Vec<(f64, &Stri
         force_n: force_n.into(),
         joint,
         separates: std::iter::once(question.best.0.clone())
-            .chain(gaps.into_iter().map(|(_, name)| name.clone()))
+            .chain(open.iter().map(|&rival| question.rivals[rival].0.clone()))
             .filter(|name| !name.is_empty())
             .collect(),
         expected_sigmas: sigmas,

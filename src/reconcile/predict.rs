@@ -73,7 +73,7 @@ pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<S
 }
 
 /// The arm under test with all effects its file has.
-fn subject(arm: &Arm, statement: &Statement) -> Subject {
+pub(super) fn subject(arm: &Arm, statement: &Statement) -> Subject {
     let mut nominal = Arm { effects: Vec::new(), ..arm.clone() }.subject(JointModel::ThreeSegment);
     if statement.rigid_links {
         make_links_rigid(&mut nominal);

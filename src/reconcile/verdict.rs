@@ -217,6 +217,21 @@ impl Finding {
 }
 
 impl NextTest {
+    /// A test of another kind, whose worth these readings do not tell.
+    pub fn of_another_kind(description: String) -> Self {
+        Self {
+            kind: "another kind".into(),
+            description,
+            pose_deg: None,
+            payload_kg: 0.0,
+            force_n: [0.0; 3],
+            joint: None,
+            separates: Vec::new(),
+            expected_sigmas: 0.0,
+            readings_needed: 0,
+        }
+    }
+
     fn json(&self) -> Value {
         json!({
             "kind": self.kind, "description": self.description, "pose_deg": self.pose_deg,

@@ -4,6 +4,7 @@
 //! Friction play, which the witness lacks, is added here from its torques and from kinematics written
 //! for this file.
 
+mod positions;
 pub mod unknown;
 
 use super::witness::{self, Effects, LoadCase, Options, Payload, ThreeSegment};
@@ -64,19 +65,40 @@ pub struct Plan {
     pub gross: f64,
     /// Factor on the typical size of an effect.
     pub size: f64,
+    /// Poses whose absolute position is measured.
+    pub positions: usize,
+    /// Standard deviation of each component of each link's vector \[m\].
+    pub lengths_m: f64,
 }
 
 impl Plan {
     /// Much clean data.
     pub fn plain() -> Self {
-        Self { static_poses: 40, modal_poses: 12, bench: true, noise: 1.0, gross: 0.0, size: 1.0 }
+        Self {
+            static_poses: 40,
+            modal_poses: 12,
+            bench: true,
+            noise: 1.0,
+            gross: 0.0,
+            size: 1.0,
+            positions: 0,
+            lengths_m: 0.0,
+        }
     }
 
     /// Little data, small effects, gross errors, too small declared deviations.
     pub fn hard(dice: &mut Dice) -> Self {
         let modal_poses = if dice.uniform() < 0.7 { 6 } else { 0 };
         let bench = dice.uniform() < 0.6;
-        Self { static_poses: 14, modal_poses, bench, noise: 1.15, gross: 1.0 / 60.0, size: 0.35 }
+        Self {
+            static_poses: 14,
+            modal_poses,
+            bench,
+            noise: 1.15,
+            gross: 1.0 / 60.0,
+            size: 0.35,
+            ..Self::plain()
+        }
     }
 }
 
@@ -266,18 +288,23 @@ pub fn write(dice: &mut Dice, folder: &Path, key: &Path, arm: &Value, hidden: &[
     std::fs::create_dir_all(folder).expect("folder");
     let name = folder.file_name().expect("name").to_string_lossy().to_string();
     let (effects, beyond) = split(hidden);
-    let built = Built { arm: scattered(dice, arm), effects: Effects::from_json(&effects), beyond };
+    let mut built = Built { arm: scattered(dice, arm), effects: Effects::from_json(&effects), beyond };
+    if plan.lengths_m > 0.0 {
+        positions::with_lengths_off(dice, &mut built.arm, plan.lengths_m);
+    }
     let mut campaign = json!({
         "name": name, "arm": "arm.json",
         "tolerance": {"joint_stiffness": 0.05, "modulus": 0.02, "joint_mass": 0.01},
         "conventions": {"payload_density_kg_m3": 7850.0},
-        "static": {"file": "static.csv"},
     });
     let save = |file: &str, text: String| std::fs::write(folder.join(file), text).expect("written");
-    for file in ["modal.csv", "windup.csv"] {
+    for file in ["static.csv", "modal.csv", "windup.csv", "positions.csv"] {
         let _ = std::fs::remove_file(folder.join(file));
     }
-    save("static.csv", built.statics(dice, plan));
+    if plan.static_poses > 0 {
+        campaign["static"] = json!({"file": "static.csv"});
+        save("static.csv", built.statics(dice, plan));
+    }
     if plan.modal_poses > 0 {
         campaign["modal"] = json!({"file": "modal.csv"});
         save("modal.csv", built.modal(dice, plan));
@@ -285,6 +312,10 @@ pub fn write(dice: &mut Dice, folder: &Path, key: &Path, arm: &Value, hidden: &[
     if plan.bench {
         campaign["windup"] = json!({"file": "windup.csv"});
         save("windup.csv", built.bench(dice, plan));
+    }
+    if plan.positions > 0 {
+        campaign["positions"] = positions::free();
+        save("positions.csv", built.positions(dice, plan));
     }
     save("campaign.json", campaign.to_string());
     save("arm.json", arm.to_string());

@@ -18,16 +18,18 @@ mod structure;
 mod transmission;
 mod tree;
 
-pub use outcome::reconcile;
+pub use outcome::{FEWEST, located, reconcile};
 pub use predict::predicted_mm;
 
 use super::campaign::Campaign;
 use super::stats::median;
+use crate::arm::Arm;
 use fit::{Fitted, Sample, fit};
 use kinematics::{Geometry, Number, number_groups};
 use loads::{Yielding, candidates, sags};
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use serde_json::Value;
 use tree::Tree;
 
 /// Hands the poses are dealt into; one is kept out at a time.
@@ -89,16 +91,31 @@ pub struct Positions {
     kept_out: Vec<Vector3<f64>>,
 }
 
+/// An arm whose geometry alone is calibrated.
+pub struct Calibrated {
+    /// The arms with their geometry, effects and all else as they were.
+    pub arms: Vec<Arm>,
+    /// How the error falls.
+    pub stages: Vec<Stage>,
+    /// Predicted positions \[mm\], by row.
+    pub predicted_mm: Vec<[f64; 3]>,
+}
+
+/// Calibrates the geometry and finds nothing that yields.
+pub fn calibrated(campaign: &Campaign) -> Calibrated {
+    let found = Positions::on_its_geometry(campaign);
+    let mut provenance = Value::Null;
+    let arm = |i| found.corrected(campaign, i, &found.rigid, &[], &mut provenance);
+    Calibrated {
+        arms: (0..campaign.arms().len()).map(arm).collect(),
+        predicted_mm: found.samples.iter().map(|s| (1e3 * found.rigid.predicted_m(s)).into()).collect(),
+        stages: found.stages,
+    }
+}
+
 /// Calibrates and finds what yields.
 pub fn analyze(campaign: &Campaign) -> Positions {
-    let mut found = Positions::new(campaign);
-    found.calibrate(campaign);
-    let spec = &campaign.statement.positions;
-    found.sessions = found.find_sessions(spec.tool_offset, spec.base_placement);
-    if !found.sessions.is_empty() {
-        found.stage("sessions".into(), Vec::new());
-    }
-    found.rigid = found.fitted.clone();
+    let mut found = Positions::on_its_geometry(campaign);
     // what turns unevenly hides what yields
     loop {
         for class in CLASSES {
@@ -137,6 +154,19 @@ impl Positions {
             sessions: Vec::new(),
             kept_out: Vec::new(),
         }
+    }
+
+    /// What is free in the geometry, fitted; sessions told apart.
+    fn on_its_geometry(campaign: &Campaign) -> Self {
+        let mut found = Self::new(campaign);
+        found.calibrate(campaign);
+        let spec = &campaign.statement.positions;
+        found.sessions = found.find_sessions(spec.tool_offset, spec.base_placement);
+        if !found.sessions.is_empty() {
+            found.stage("sessions".into(), Vec::new());
+        }
+        found.rigid = found.fitted.clone();
+        found
     }
 
     /// Places the arm and lets one group of numbers free after the other.

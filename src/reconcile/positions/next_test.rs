@@ -5,13 +5,11 @@ use super::fit::Fitted;
 use super::{Positions, samples};
 use crate::reconcile::campaign::Campaign;
 use crate::reconcile::lack_of_fit::LackOfFit;
-use crate::reconcile::next_test::{ENOUGH, spread_pose};
+use crate::reconcile::next_test::{ENOUGH, WORTHLESS_SIGMAS, spread_pose};
 use crate::reconcile::verdict::{NextTest, Verdict};
 
 /// Poses among which the next test is chosen.
 const PROPOSED_POSES: usize = 60;
-/// Expected difference below which no number of readings is worth taking \[standard deviations\].
-const WORTHLESS_SIGMAS: f64 = 0.1;
 
 impl Positions {
     /// One test for each model that fits as well, the most telling first.
@@ -57,7 +55,7 @@ impl Positions {
                 "no position separates {a} from {b}: load the tip sideways and measure the turn on both sides \
                  of each place with dial gauges or an inclinometer"
             );
-            return (a != b).then(|| self.other_kind(separates));
+            return (a != b).then(|| NextTest::of_another_kind(separates));
         }
         Some(NextTest {
             kind: "positions".into(),
@@ -70,21 +68,6 @@ impl Positions {
             expected_sigmas: sigmas,
             readings_needed: (ENOUGH / sigmas).powi(2).ceil().min(9999.0) as usize,
         })
-    }
-
-    /// A test of another kind, whose worth these readings do not tell.
-    fn other_kind(&self, description: String) -> NextTest {
-        NextTest {
-            kind: "another kind".into(),
-            description,
-            pose_deg: None,
-            payload_kg: 0.0,
-            force_n: [0.0; 3],
-            joint: None,
-            separates: Vec::new(),
-            expected_sigmas: 0.0,
-            readings_needed: 0,
-        }
     }
 
     /// The campaign with proposed poses in place of its own, within the ranges of its own, each with the
@@ -136,7 +119,7 @@ impl Positions {
         Some(NextTest {
             pose_deg: Some(row.pose_deg.clone()),
             payload_kg: row.payload.mass_kg,
-            ..self.other_kind(description)
+            ..NextTest::of_another_kind(description)
         })
     }
 }

@@ -16,7 +16,7 @@ use crate::reconcile::verdict::{Estimate, Evidence, Finding, Located, Outcome, R
 use serde_json::{Value, json};
 
 /// Fewest positions that can speak.
-const FEWEST: usize = 20;
+pub const FEWEST: usize = 20;
 /// Most alternatives an effect may have and still be named.
 const MOST_ALTERNATIVES: usize = 3;
 /// Poses listed where the gap sits.
@@ -45,6 +45,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         .map(|i| found.corrected(campaign, i, shown, &effects, &mut provenance))
         .collect();
     let scale_mm = 1e3 * found.fitted.scale_m;
+    let residuals = found.residuals(campaign);
     Outcome {
         campaign: campaign.statement.name.clone(),
         hash: campaign.hash.clone(),
@@ -52,7 +53,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         reasons,
         suspects,
         kept_out: Some(found.confirmation(campaign)),
-        located: found.located(campaign),
+        located: located(campaign, &residuals),
         next_tests,
         noise: Noise {
             scale: [1.0; 3],
@@ -61,7 +62,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         lack_of_fit: Some(lack_of_fit),
         calibrated: Vec::new(),
         evidence: found.evidence(),
-        residuals: found.residuals(campaign),
+        residuals,
         provenance,
         corrected: corrected[0].clone(),
         other_corrected: corrected[1..].to_vec(),
@@ -182,7 +183,7 @@ impl Positions {
     }
 
     /// One arm with its calibrated geometry and its effects; notes in the provenance where it stands.
-    fn corrected(
+    pub(super) fn corrected(
         &self,
         campaign: &Campaign,
         arm: usize,
@@ -260,41 +261,6 @@ impl Positions {
             .collect()
     }
 
-    /// Root mean squares of every part of the positions in declared standard deviations, gross errors left
-    /// out.
-    fn located(&self, campaign: &Campaign) -> Vec<Located> {
-        let gross = |i: usize| self.gross.iter().any(|(row, _)| *row == i);
-        let mut parts: Vec<(String, Vec<usize>)> = Vec::new();
-        for (i, row) in campaign.positions.iter().enumerate().filter(|(i, _)| !gross(*i)) {
-            let pose: Vec<String> = row.pose_deg.iter().map(|a| format!("{a}")).collect();
-            let names = [
-                "positions".to_string(),
-                format!("positions, point {}", row.point),
-                format!("positions, payload {} kg", row.payload.mass_kg),
-                format!("pose {} deg", pose.join(",")),
-            ];
-            for name in names {
-                match parts.iter_mut().find(|(n, _)| *n == name) {
-                    Some((_, list)) => list.push(i),
-                    None => parts.push((name, vec![i])),
-                }
-            }
-        }
-        let sigmas = |fitted: &Fitted, i: usize| {
-            1e3 * fitted.error(&self.samples[i]).norm() / campaign.positions[i].sigma_mm / 3f64.sqrt()
-        };
-        let all = parts.into_iter().map(|(part, list)| Located {
-            count: 3 * list.len(),
-            rms_before: rms(list.iter().map(|&i| sigmas(&self.rigid, i))),
-            rms_after: rms(list.iter().map(|&i| sigmas(&self.fitted, i))),
-            part,
-        });
-        let (mut poses, mut rest): (Vec<_>, Vec<_>) = all.partition(|l| l.part.starts_with("pose"));
-        poses.sort_by(|a, b| b.rms_before.total_cmp(&a.rms_before));
-        rest.extend(poses.into_iter().take(WORST_POSES));
-        rest
-    }
-
     fn residuals(&self, campaign: &Campaign) -> Vec<ReadingResidual> {
         let rows = campaign.positions.iter().zip(&self.samples).enumerate();
         rows.flat_map(|(i, (row, sample))| {
@@ -315,6 +281,37 @@ impl Positions {
         })
         .collect()
     }
+}
+
+/// Root mean squares of every part of the positions in declared standard deviations, gross errors left
+/// out; `residuals`: those of the positions, row by row.
+pub fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec<Located> {
+    let mut parts: Vec<(String, Vec<&ReadingResidual>)> = Vec::new();
+    for (row, own) in campaign.positions.iter().zip(residuals.chunks_exact(3)).filter(|(_, r)| !r[0].gross) {
+        let pose: Vec<String> = row.pose_deg.iter().map(|a| format!("{a}")).collect();
+        let names = [
+            "positions".to_string(),
+            format!("positions, point {}", row.point),
+            format!("positions, payload {} kg", row.payload.mass_kg),
+            format!("pose {} deg", pose.join(",")),
+        ];
+        for name in names {
+            match parts.iter_mut().find(|(n, _)| *n == name) {
+                Some((_, list)) => list.extend(own),
+                None => parts.push((name, own.iter().collect())),
+            }
+        }
+    }
+    let all = parts.into_iter().map(|(part, list)| Located {
+        count: list.len(),
+        rms_before: rms(list.iter().map(|r| (r.measured - r.before) / r.sigma)),
+        rms_after: rms(list.iter().map(|r| (r.measured - r.after) / r.sigma)),
+        part,
+    });
+    let (mut poses, mut rest): (Vec<_>, Vec<_>) = all.partition(|l| l.part.starts_with("pose"));
+    poses.sort_by(|a, b| b.rms_before.total_cmp(&a.rms_before));
+    rest.extend(poses.into_iter().take(WORST_POSES));
+    rest
 }
 
 /// A value with its 95 % interval.

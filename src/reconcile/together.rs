@@ -1,0 +1,225 @@
+//! Every kind of reading together. Absolute positions know the geometry, which displacements, frequencies
+//! and bench readings take as given; those know what yields under loads of their own, which positions see
+//! under gravity alone. So each is reconciled with what the other has found.
+
+use super::analysis;
+use super::campaign::Campaign;
+use super::few_rows::FEWEST_ROWS;
+use super::kept_out::KeptOut;
+use super::lack_of_fit::LackOfFit;
+use super::noise::Noise;
+use super::positions::{self, Calibrated, FEWEST, Stage};
+use super::predict::subject;
+use super::verdict::{Finding, Outcome, Verdict};
+use crate::arm::{Arm, Element};
+use serde_json::json;
+
+/// Reconciles a campaign with its arm.
+pub fn reconcile(campaign: &Campaign) -> Outcome {
+    let (loaded, placed) = campaign.parted();
+    let (rows, count) = (analysis::rows(&loaded), placed.positions.len());
+    if count == 0 {
+        return analysis::reconcile(campaign);
+    }
+    if rows == 0 {
+        return positions::reconcile(campaign);
+    }
+    let left_out = |mut outcome: Outcome, what: String| {
+        outcome.reasons.push(format!("{what}: they are left out"));
+        outcome
+    };
+    if count < FEWEST {
+        let what = format!("{count} positions are too few to calibrate an arm, give at least {FEWEST}");
+        return left_out(analysis::reconcile(&loaded), what);
+    }
+    if rows < FEWEST_ROWS {
+        let what = format!("{rows} rows beside the positions are too few, give at least {FEWEST_ROWS}");
+        return left_out(positions::reconcile(&placed), what);
+    }
+    of_both(campaign, loaded, placed)
+}
+
+/// What yields is asked of the loaded arm on calibrated geometry, then the positions are asked what is
+/// still missing. Where the loaded arm does not settle it, what the positions find is tried on it.
+fn of_both(campaign: &Campaign, mut loaded: Campaign, placed: Campaign) -> Outcome {
+    let calibrated = positions::calibrated(&placed);
+    loaded.arm = calibrated.arms[0].clone();
+    let first = analysis::reconcile(&loaded);
+    if settled(first.verdict) {
+        let second = positions::reconcile(&with_what_yields(&placed, &first));
+        let corrected = second.corrected.clone();
+        return Both { campaign, calibrated, loaded: first, placed: second, told: true, corrected }.outcome();
+    }
+    let second = positions::reconcile(&placed);
+    loaded.arm = second.corrected.clone();
+    let again = if second.effects.is_empty() { first } else { analysis::reconcile(&loaded) };
+    let corrected = again.corrected.clone();
+    Both { campaign, calibrated, loaded: again, placed: second, told: false, corrected }.outcome()
+}
+
+/// Effects as words.
+fn labels(findings: &[Finding]) -> String {
+    findings.iter().map(Finding::label).collect::<Vec<_>>().join(" and ")
+}
+
+fn settled(verdict: Verdict) -> bool {
+    matches!(verdict, Verdict::Explained | Verdict::NoGap)
+}
+
+/// The positions of arms that have the stiffnesses, masses and effects that the loaded arm showed, their
+/// geometry as it was; payloads as heavy as that arm felt them.
+fn with_what_yields(placed: &Campaign, found: &Outcome) -> Campaign {
+    let mut out = placed.clone();
+    let known = out.arm.effects.len();
+    for arm in std::iter::once(&mut out.arm).chain(&mut out.other_arms) {
+        for element in &mut arm.chain {
+            let own = found.corrected.chain.iter().find(|e| e.name() == element.name());
+            match (element, own) {
+                (Element::Joint(joint), Some(Element::Joint(corrected))) => {
+                    let (axis, coupled) = (joint.axis, joint.coupled.clone());
+                    *joint = corrected.clone();
+                    (joint.axis, joint.coupled) = (axis, coupled);
+                }
+                (Element::Link(link), Some(Element::Link(corrected))) => {
+                    let vector_m = link.vector_m;
+                    *link = corrected.clone();
+                    link.vector_m = vector_m;
+                }
+                _ => {}
+            }
+        }
+        let names: Vec<&str> = arm.chain.iter().map(Element::name).collect();
+        let new = found.corrected.effects[known..].iter();
+        let elsewhere = |at: &str| found.corrected.chain.iter().any(|e| e.name() == at) && !names.contains(&at);
+        let own: Vec<_> = new.filter(|e| !elsewhere(&e.at)).cloned().collect();
+        arm.effects.extend(own);
+    }
+    let felt = subject(&out.arm, &out.statement);
+    out.positions.iter_mut().for_each(|row| row.payload = felt.payload(&row.payload));
+    out
+}
+
+/// What both kinds of readings say.
+struct Both<'a> {
+    campaign: &'a Campaign,
+    calibrated: Calibrated,
+    loaded: Outcome,
+    placed: Outcome,
+    /// Whether the positions were told what the loaded arm showed, or asked first.
+    told: bool,
+    /// The arm with what both have found.
+    corrected: Arm,
+}
+
+impl Both<'_> {
+    fn outcome(self) -> Outcome {
+        let verdict = self.verdict();
+        let (stages, kept_out, reasons) = (self.stages(), self.kept_out(), self.reasons(verdict));
+        let Self { campaign, calibrated, loaded, mut placed, corrected, .. } = self;
+        let mut next_tests = [loaded.next_tests, placed.next_tests].concat();
+        next_tests.sort_by(|a, b| b.expected_sigmas.total_cmp(&a.expected_sigmas));
+        for (residual, before) in placed.residuals.iter_mut().zip(calibrated.predicted_mm.iter().flatten()) {
+            residual.before = *before;
+        }
+        let effects = [loaded.effects, placed.effects].concat();
+        let suspects = [loaded.suspects, placed.suspects].concat();
+        let (effects, suspects) = match verdict {
+            Verdict::Explained => (effects, Vec::new()),
+            Verdict::InsufficientData => (Vec::new(), [effects, suspects].concat()),
+            Verdict::NoGap | Verdict::Unexplained => (Vec::new(), Vec::new()),
+        };
+        let (corrected, other_corrected) = match settled(verdict) {
+            true => (corrected, placed.other_corrected),
+            false => (calibrated.arms[0].clone(), calibrated.arms[1..].to_vec()),
+        };
+        let mut provenance = placed.provenance;
+        provenance["verdict"] = json!(verdict.word());
+        if let (Some(all), Some(own)) =
+            (provenance["calibrated"].as_array_mut(), loaded.provenance["calibrated"].as_array())
+        {
+            all.extend(own.iter().cloned());
+        }
+        let fits = [loaded.lack_of_fit, placed.lack_of_fit].into_iter().flatten();
+        let worse = |a: &LackOfFit, b: &LackOfFit| {
+            a.fails.cmp(&b.fails).then(a.chi2_per_dof.total_cmp(&b.chi2_per_dof))
+        };
+        Outcome {
+            verdict,
+            reasons,
+            effects,
+            suspects,
+            kept_out,
+            located: [loaded.located, positions::located(campaign, &placed.residuals)].concat(),
+            next_tests,
+            noise: Noise {
+                outliers: [loaded.noise.outliers, placed.noise.outliers].concat(),
+                ..loaded.noise
+            },
+            lack_of_fit: fits.max_by(worse),
+            residuals: [loaded.residuals, placed.residuals].concat(),
+            corrected,
+            other_corrected,
+            provenance,
+            stages,
+            campaign: loaded.campaign,
+            hash: loaded.hash,
+            calibrated: loaded.calibrated,
+            evidence: loaded.evidence,
+        }
+    }
+
+    /// What one kind of readings leaves open or unexplained, the arm as a whole does.
+    fn verdict(&self) -> Verdict {
+        let order = [Verdict::Unexplained, Verdict::InsufficientData, Verdict::Explained];
+        let said = [self.loaded.verdict, self.placed.verdict];
+        order.into_iter().find(|v| said.contains(v)).unwrap_or(Verdict::NoGap)
+    }
+
+    fn reasons(&self, verdict: Verdict) -> Vec<String> {
+        let of = |outcome: &Outcome, what: &str| {
+            let mut out: Vec<String> = outcome.reasons.iter().map(|r| format!("{what}: {r}")).collect();
+            if verdict == Verdict::Unexplained && outcome.verdict == Verdict::Explained {
+                out.insert(0, format!("{what} alone would be explained by {}", labels(&outcome.effects)));
+            }
+            out
+        };
+        [of(&self.loaded, "the readings beside the positions"), of(&self.placed, "the positions")].concat()
+    }
+
+    /// The positions' last stage before an effect was looked for.
+    fn last_calibration(&self) -> Option<usize> {
+        self.placed.stages.iter().rposition(|s| !s.added.contains('@'))
+    }
+
+    /// The positions' table of errors: calibration alone, what they were told, what they found.
+    fn stages(&self) -> Vec<Stage> {
+        let Some(last) = self.last_calibration() else { return Vec::new() };
+        let mut out = self.calibrated.stages.clone();
+        if self.told {
+            let added = "what the other readings show".into();
+            out.push(Stage { added, ..self.placed.stages[last].clone() });
+        }
+        out.extend(self.placed.stages[last + 1..].iter().cloned());
+        out
+    }
+
+    /// Both kinds of readings kept out; before: by calibration alone.
+    fn kept_out(&self) -> Option<KeptOut> {
+        let (Some(loaded), Some(placed)) = (self.loaded.kept_out, self.placed.kept_out) else {
+            return self.loaded.kept_out.or(self.placed.kept_out);
+        };
+        let median_mm = |s: Option<&Stage>| s.map_or(1.0, |s| s.median_mm);
+        let told = median_mm(self.last_calibration().map(|i| &self.placed.stages[i]));
+        let rigid = median_mm(self.calibrated.stages.last());
+        let count = loaded.count + placed.count;
+        let mean = |a: f64, b: f64| {
+            ((loaded.count as f64 * a.powi(2) + placed.count as f64 * b.powi(2)) / count as f64).sqrt()
+        };
+        Some(KeptOut {
+            rms_before: mean(loaded.rms_before, placed.rms_before * rigid / told),
+            rms_after: mean(loaded.rms_after, placed.rms_after),
+            rms_declared_after: mean(loaded.rms_declared_after, placed.rms_declared_after),
+            count,
+        })
+    }
+}
