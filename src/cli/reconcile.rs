@@ -86,11 +86,27 @@ fn add(files: &mut Vec<(String, Vec<u8>)>, outcome: &Outcome, rerun: Rerun) {
     files.extend(rerun.csv.map(|csv| ("study_changes.csv".to_string(), csv.into_bytes())));
 }
 
-/// Lines of at most 80 columns, those broken indented like what they belong to.
+/// Lines of at most 80 columns, those broken indented like what they belong to; tables keep their columns.
 fn narrow(text: &str) -> String {
     let line = |line: &str| {
+        if line.chars().count() <= 80 {
+            return format!("{line}\n");
+        }
         let lead: String = line.chars().take_while(|c| *c == ' ').collect();
         wrap(line, 80, &lead)
     };
     text.lines().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::narrow;
+
+    #[test]
+    fn tables_keep_their_columns_and_long_lines_are_broken() {
+        let row = "  geometry                                     0.031    0.037    0.036    0.060\n";
+        assert_eq!(narrow(row), row);
+        let long = format!("  {}", "word ".repeat(20));
+        assert!(narrow(&long).lines().all(|l| l.len() <= 80 && l.starts_with("  word")));
+    }
 }

@@ -287,14 +287,7 @@ impl Analysis<'_> {
 
     /// What structure is left, naming no effect.
     fn left_over(&self) -> Vec<String> {
-        let mut out: Vec<String> = self
-            .lack_of_fit
-            .structures
-            .iter()
-            .filter(|s| s.ln_p < (1e-4f64).ln())
-            .take(3)
-            .map(|s| s.sentence())
-            .collect();
+        let mut out = self.lack_of_fit.sentences();
         out.push(format!(
             "the best model leaves {:.2} times the declared variance; no effect of the library accounts for it",
             self.lack_of_fit.chi2_per_dof

@@ -49,6 +49,21 @@ const SUSPICIOUS: f64 = 1.6;
 const CHANCE: f64 = 1e-3;
 /// Probability below which a structure is suspected.
 const SUSPECTED: f64 = 0.1;
+/// Structures that are put into words.
+const TOLD: usize = 3;
+
+impl LackOfFit {
+    /// The most telling structures that are no chance, in words, each said once.
+    pub fn sentences(&self) -> Vec<String> {
+        let mut told: Vec<&Structure> = Vec::new();
+        for structure in self.structures.iter().filter(|s| s.ln_p < CHANCE.ln()) {
+            if !told.iter().any(|t| t.channel == structure.channel && t.follows == structure.follows) {
+                told.push(structure);
+            }
+        }
+        told.into_iter().take(TOLD).map(Structure::sentence).collect()
+    }
+}
 
 /// Asks all questions.
 pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> LackOfFit {

@@ -90,7 +90,8 @@ fn with_what_yields(placed: &Campaign, found: &Outcome) -> Campaign {
         }
         let names: Vec<&str> = arm.chain.iter().map(Element::name).collect();
         let new = found.corrected.effects[known..].iter();
-        let elsewhere = |at: &str| found.corrected.chain.iter().any(|e| e.name() == at) && !names.contains(&at);
+        let elsewhere =
+            |at: &str| found.corrected.chain.iter().any(|e| e.name() == at) && !names.contains(&at);
         let own: Vec<_> = new.filter(|e| !elsewhere(&e.at)).cloned().collect();
         arm.effects.extend(own);
     }

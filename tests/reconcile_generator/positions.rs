@@ -31,7 +31,8 @@ impl Built {
             let case = LoadCase::unloaded(&pose).with_payload(Payload::point(kg, [0.05, 0.0, 0.0]));
             let sag = witness::analyze(&self.arm, &case, &self.options(0)).tip_displacement_m;
             let at = askew * (self.levers(&pose).0 + sag) + Vector3::new(2.0, -1.0, 0.4);
-            let read = [0, 1, 2].map(|c| format!("{:.4}", 1e3 * at[c] + sigma_mm * plan.noise * dice.normal()));
+            let read =
+                [0, 1, 2].map(|c| format!("{:.4}", 1e3 * at[c] + sigma_mm * plan.noise * dice.normal()));
             out.push_str(&format!("{test},{},{kg},0.05,0,0,{},{sigma_mm}\n", list(&pose), read.join(",")));
         }
         out
