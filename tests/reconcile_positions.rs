@@ -10,8 +10,9 @@ mod positions_maker;
 use armwright::arm::{JointModel, read_arm_document};
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
-use armwright::reconcile::exact::{Exact, Placement};
+use armwright::reconcile::exact::Exact;
 use armwright::reconcile::page::campaign_page;
+use armwright::reconcile::placement::Placement;
 use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};
 use nalgebra::Vector3;
 use positions_maker::{LOPSIDED_RAD_PER_NM, Made, UNEVEN_RAD, standard};
@@ -40,8 +41,8 @@ fn mean_mm(outcome: &Outcome, word: &str) -> f64 {
     outcome.stages.iter().rfind(|s| s.added.contains(word)).expect("a stage").mean_mm
 }
 
-/// Median error of the corrected arm's predictions \[mm\].
-fn predicted_median_mm(campaign: &Campaign, outcome: &Outcome) -> f64 {
+/// Errors of the corrected arm's predictions \[mm\], smallest first.
+fn predicted_errors_mm(campaign: &Campaign, outcome: &Outcome) -> Vec<f64> {
     let json = outcome.corrected_json();
     let document = Document::parse("arm", &json.to_string()).expect("JSON");
     let arm = read_arm_document(document, &Catalogs::default()).expect("sound");
@@ -51,6 +52,12 @@ fn predicted_median_mm(campaign: &Campaign, outcome: &Outcome) -> f64 {
     let mut errors: Vec<f64> =
         rows.map(|(p, row)| (Vector3::from(*p) - Vector3::from(row.position_mm)).norm()).collect();
     errors.sort_by(f64::total_cmp);
+    errors
+}
+
+/// Their median \[mm\].
+fn predicted_median_mm(campaign: &Campaign, outcome: &Outcome) -> f64 {
+    let errors = predicted_errors_mm(campaign, outcome);
     errors[errors.len() / 2]
 }
 
@@ -298,13 +305,35 @@ fn the_lean_of_an_arm_whose_stiffness_is_known_is_found_too() {
 
 #[test]
 fn a_reflector_that_was_put_back_elsewhere_is_a_session_of_its_own() {
-    let outcome = reconcile(&read(standard().write(&Made::put_back).path()));
+    let made = standard();
+    let mut campaign = read(made.write(&Made::put_back).path());
+    let outcome = reconcile(&campaign);
     assert_eq!(outcome.verdict, Verdict::Explained, "{}", outcome.to_text());
     assert!(
         outcome.reasons.iter().any(|r| r.contains("tip sat 3") && r.contains("before row 41")),
         "{:?}",
         outcome.reasons
     );
+    // the corrected arm knows the sessions by the numbers of the tests
+    let by_number = predicted_errors_mm(&campaign, &outcome);
+    assert!(by_number[by_number.len() - 1] < 6.0 * made.sigma_mm, "{by_number:?}");
+    // numbered otherwise, the place that suits both best: a third of the rows was 3.2 mm away
+    campaign.positions.iter_mut().for_each(|row| row.test = format!("{} again", row.test));
+    let otherwise = predicted_errors_mm(&campaign, &outcome);
+    assert!(otherwise[otherwise.len() / 3] < 1.2 && otherwise[otherwise.len() - 1] < 3.5, "{otherwise:?}");
+}
+
+#[test]
+fn what_predicts_better_is_written_though_something_else_is_missing() {
+    let made = standard();
+    let campaign = read(made.write(&Made::pulled).path());
+    let outcome = reconcile(&campaign);
+    assert_eq!(outcome.verdict, Verdict::Unexplained, "{}", outcome.to_text());
+    assert!(outcome.effects.is_empty());
+    assert!(outcome.reasons.iter().any(|r| r.contains("arm.corrected.json has what predicts best")));
+    let last = outcome.stages.last().expect("stages").fitted_median_mm;
+    let errors = predicted_errors_mm(&campaign, &outcome);
+    assert!((errors[errors.len() / 2] / last - 1.0).abs() < 0.05, "{last} {}", errors[errors.len() / 2]);
 }
 
 #[test]

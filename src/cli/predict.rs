@@ -4,7 +4,7 @@ use super::Failure;
 use crate::arm::read_arm;
 use crate::catalog::Catalogs;
 use crate::reconcile::campaign::{Statement, read_statement};
-use crate::reconcile::exact::Placement;
+use crate::reconcile::placement::Placement;
 use crate::reconcile::predict::{Placed, predict};
 use crate::reconcile::table::Table;
 use clap::Args;

@@ -2,48 +2,13 @@
 //! on the prepared model that fits use.
 
 use super::forward::{ARCMIN_PER_RAD, bench_twists_rad};
+use super::placement::Placement;
 use super::readings::{ModalRow, PositionRow, StaticRow, WindupRow};
 use crate::arm::effect::{Channel, Subject};
 use crate::arm::{FrameCompliance, JointLaw, LinkModel, LinkPiece, Payload, Piece, Structure};
 use crate::mechanics::chain::{Posed, Yielding};
 use crate::mechanics::{Chain, Twist, displacement_at};
-use nalgebra::{Matrix3, Vector3};
-use serde_json::Value;
-
-/// Where the arm stands in the instrument's frame, and where the measured points sit on its last frame.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Placement {
-    /// The arm's base frame in the instrument's.
-    pub rotation: Matrix3<f64>,
-    /// Its origin \[m\].
-    pub origin_m: Vector3<f64>,
-    /// Points by name, last frame \[m\].
-    pub points_m: Vec<(String, Vector3<f64>)>,
-}
-
-impl Default for Placement {
-    fn default() -> Self {
-        Self { rotation: Matrix3::identity(), origin_m: Vector3::zeros(), points_m: Vec::new() }
-    }
-}
-
-impl Placement {
-    /// Reads the `placement` of a corrected arm's provenance; the identity if there is none.
-    pub fn from_json(arm_file: &Value) -> Self {
-        let placement = &arm_file["provenance"]["placement"];
-        let vector = |v: &Value| Vector3::from_fn(|i, _| v[i].as_f64().unwrap_or_default());
-        let Some(points) = placement["points_m"].as_object() else { return Self::default() };
-        Self {
-            rotation: Matrix3::from_fn(|i, j| placement["rotation"][i][j].as_f64().unwrap_or_default()),
-            origin_m: vector(&placement["origin_m"]),
-            points_m: points.iter().map(|(name, v)| (name.clone(), vector(v))).collect(),
-        }
-    }
-
-    fn point_m(&self, name: &str) -> Vector3<f64> {
-        self.points_m.iter().find(|(n, _)| n == name).map_or(Vector3::zeros(), |(_, at)| *at)
-    }
-}
+use nalgebra::Vector3;
 
 /// A subject ready to be asked.
 pub struct Exact<'a> {
@@ -115,22 +80,22 @@ impl<'a> Exact<'a> {
     /// \[mm\].
     pub fn positions_mm(&self, rows: &[PositionRow], placement: &Placement) -> Vec<[f64; 3]> {
         let reading = &self.subject.channels[Channel::Positions as usize];
-        let mut chains: Vec<(&str, Vector3<f64>, Chain)> = Vec::new();
+        let mut chains: Vec<(Vector3<f64>, Chain)> = Vec::new();
         let mut out = Vec::with_capacity(rows.len());
-        for row in rows {
-            if !chains.iter().any(|(name, ..)| *name == row.point) {
-                let tool_m = placement.point_m(&row.point);
+        for (row, stand) in rows.iter().zip(placement.stands(rows)) {
+            let tool_m = stand.point_m(&row.point);
+            if !chains.iter().any(|(at_m, _)| *at_m == tool_m) {
                 let structure = with_tool(&self.subject.structure, tool_m);
-                chains.push((&row.point, tool_m, Chain::new(&structure, LinkModel::Full)));
+                chains.push((tool_m, Chain::new(&structure, LinkModel::Full)));
             }
-            let known = chains.iter().find(|(name, ..)| *name == row.point);
-            let (_, tool_m, chain) = known.expect("just made");
+            let known = chains.iter().find(|(at_m, _)| *at_m == tool_m);
+            let (_, chain) = known.expect("just made");
             let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
             let pose_rad = self.subject.turned_rad(&pose_rad);
-            let payload = seen_from_tool(&self.subject.payload(&row.payload), tool_m);
+            let payload = seen_from_tool(&self.subject.payload(&row.payload), &tool_m);
             let posed = chain.pose_rad(&pose_rad, &payload, Vector3::zeros());
             let own = posed.tip_m + posed.statics().tip_displacement_m;
-            let at = placement.rotation * own + placement.origin_m;
+            let at = stand.rotation * own + stand.origin_m;
             out.push(std::array::from_fn(|c| reading.of(1e3 * at[c], c, row.row)));
         }
         out

@@ -28,6 +28,7 @@ pub mod model;
 pub mod next_test;
 pub mod noise;
 pub mod page;
+pub mod placement;
 pub mod positions;
 pub mod predict;
 pub mod readings;

@@ -1,8 +1,9 @@
 //! `predict`: the model's value beside every reading of a file.
 
 use super::campaign::{Campaign, Statement, driven_joint_names};
-use super::exact::{Exact, Placement};
+use super::exact::Exact;
 use super::forward::make_links_rigid;
+use super::placement::Placement;
 use super::positions;
 use super::readings::{modal_rows, position_rows, static_rows, windup_rows};
 use super::table::Table;

@@ -63,6 +63,8 @@ pub struct WindupRow {
 pub struct PositionRow {
     /// Row of the file, from 0.
     pub row: usize,
+    /// Name or number of the test; empty if it has none.
+    pub test: String,
     /// Joint angles \[deg\].
     pub pose_deg: Vec<f64>,
     /// Stated payload.
@@ -253,6 +255,7 @@ pub fn position_rows(table: &Table, arms: &[&str], driven: &[String]) -> Vec<Pos
     let state = StateColumns::find(table, &joints, false);
     let columns = ["x_mm", "y_mm", "z_mm", "sigma_mm"].map(|n| table.required(n));
     let point = table.optional("point");
+    let test = table.optional("test");
     let arm = table.optional("arm");
     let (Some(state), [Some(x), Some(y), Some(z), Some(sigma_mm)]) = (state, columns) else {
         return Vec::new();
@@ -267,6 +270,7 @@ pub fn position_rows(table: &Table, arms: &[&str], driven: &[String]) -> Vec<Pos
         let sigma_mm = sigma(table, row, sigma_mm);
         Some(PositionRow {
             row,
+            test: test.map_or(String::new(), |c| table.text(row, c).to_string()),
             pose_deg: pose_deg?,
             payload: payload?,
             arm: arm?,

@@ -5,7 +5,7 @@ use super::reconcile_generator::{self, Dice, Plan};
 use armwright::arm::read_arm_document;
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
-use armwright::reconcile::exact::Placement;
+use armwright::reconcile::placement::Placement;
 use armwright::reconcile::predict::{Placed, predict};
 use armwright::reconcile::table::Table;
 use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};

@@ -91,7 +91,8 @@ impl Fitted {
         sample.measured_m - self.predicted_m(sample)
     }
 
-    fn displacement(&self, sample: &Sample) -> Vector3<f64> {
+    /// By how much a sample's point is moved by all that yields, level frame \[m\].
+    pub fn displacement(&self, sample: &Sample) -> Vector3<f64> {
         let effects = self.effects.iter().zip(&self.compliances);
         let gravity = &self.geometry.gravity;
         let pulled = effects.map(|(&e, c)| pull(sample, e, c) * gravity);

@@ -3,7 +3,7 @@
 //!
 //! `tree` joins the arms that stand on one trunk; [`kinematics`] says where a point is and [`loads`] how
 //! gravity moves it; `align` places the arm from nothing, [`fit`](mod@fit) fits, `sessions` tells sessions
-//! apart; `search` finds what yields and `transmission` what turns unevenly; `structure` asks what is left and `outcome` concludes.
+//! apart and `standing` where the arm stands in each; `search` finds what yields and `transmission` what turns unevenly; `structure` asks what is left and `outcome` concludes.
 
 mod align;
 pub mod fit;
@@ -14,6 +14,7 @@ mod outcome;
 mod predict;
 mod search;
 mod sessions;
+mod standing;
 mod structure;
 mod transmission;
 mod tree;

@@ -12,6 +12,7 @@ use crate::reconcile::correct;
 use crate::reconcile::kept_out::{KeptOut, rms};
 use crate::reconcile::lack_of_fit::LackOfFit;
 use crate::reconcile::noise::Noise;
+use crate::reconcile::report::CORRECTED_FILE;
 use crate::reconcile::verdict::{Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict};
 use serde_json::{Value, json};
 
@@ -19,6 +20,8 @@ use serde_json::{Value, json};
 pub const FEWEST: usize = 20;
 /// Most alternatives an effect may have and still be named.
 const MOST_ALTERNATIVES: usize = 3;
+/// Part of the error of kept-out poses down to which effects must take it to be written without explaining all.
+const HELPFUL: f64 = 0.8;
 /// Poses listed where the gap sits.
 const WORST_POSES: usize = 3;
 
@@ -34,16 +37,29 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings);
     reasons.extend(found.sessions.iter().cloned());
     let next_tests = found.next_tests(campaign, verdict, &lack_of_fit, &rivals);
+    // what predicts kept-out poses far better serves a user, even if something else is missing too
+    let [before, after] = found.before_and_after();
+    let helps = verdict == Verdict::Unexplained && after.median_mm < HELPFUL * before.median_mm;
+    if helps {
+        reasons.push(format!(
+            "{CORRECTED_FILE} has what predicts best, not all that is missing: on poses kept out of the fit the \
+             median error falls from {:.3} to {:.3} mm",
+            before.median_mm, after.median_mm
+        ));
+    }
+    let (shown, in_arm) = match verdict == Verdict::Explained || helps {
+        true => (&found.fitted, findings.as_slice()),
+        false => (&found.rigid, [].as_slice()),
+    };
+    let mut provenance = correct::provenance(campaign, verdict, found.calibrated(shown));
+    let corrected: Vec<Arm> = (0..campaign.arms().len())
+        .map(|i| found.corrected(campaign, i, shown, in_arm, &mut provenance))
+        .collect();
     let (effects, suspects) = match verdict {
         Verdict::Explained => (findings, Vec::new()),
         Verdict::InsufficientData => (Vec::new(), findings),
         Verdict::NoGap | Verdict::Unexplained => (Vec::new(), Vec::new()),
     };
-    let shown = if verdict == Verdict::Explained { &found.fitted } else { &found.rigid };
-    let mut provenance = correct::provenance(campaign, verdict, found.calibrated(shown));
-    let corrected: Vec<Arm> = (0..campaign.arms().len())
-        .map(|i| found.corrected(campaign, i, shown, &effects, &mut provenance))
-        .collect();
     let scale_mm = 1e3 * found.fitted.scale_m;
     let residuals = found.residuals(campaign);
     Outcome {
@@ -198,15 +214,7 @@ impl Positions {
         let names: Vec<String> = out.chain.iter().map(|e| e.name().to_string()).collect();
         let own = effects.iter().filter(|f| f.at == "base" || names.contains(&f.at));
         out.effects.extend(own.map(|f| as_effect(campaign, f)));
-        let rotation = geometry.level_to_instrument().into_inner();
-        let rows: Vec<Vec<f64>> = (0..3).map(|i| rotation.row(i).iter().copied().collect()).collect();
-        let on_arm = |p: usize| self.samples.iter().any(|s| s.arm == arm && s.point == p);
-        let points: serde_json::Map<String, Value> = (0..self.points.len())
-            .filter(|&p| on_arm(p))
-            .map(|p| (self.points[p].clone(), json!((turned * geometry.tools_m[p]).as_slice())))
-            .collect();
-        let placement =
-            json!({"rotation": rows, "origin_m": geometry.origin_m.as_slice(), "points_m": points});
+        let placement = self.placement(campaign, arm, shown, turned).to_json();
         match arm {
             0 => provenance["placement"] = placement,
             _ => provenance["other_placements"][&out.name] = placement,

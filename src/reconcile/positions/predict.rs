@@ -5,6 +5,7 @@ use super::loads::sags;
 use super::tree::Tree;
 use crate::arm::effect::{Channel, Subject};
 use crate::reconcile::campaign::Campaign;
+use crate::reconcile::placement::Stand;
 use crate::reconcile::predict::Placed;
 use nalgebra::Rotation3;
 
@@ -14,31 +15,32 @@ pub fn predicted_mm(mut campaign: Campaign, arms: &[Placed], subjects: &[Subject
         row.payload = subjects[row.arm].payload(&row.payload);
     }
     let tree = Tree::new(&campaign);
-    let names: Vec<(usize, &str)> = arms
-        .iter()
-        .enumerate()
-        .flat_map(|(i, a)| a.placement.points_m.iter().map(move |(name, _)| (i, name.as_str())))
-        .collect();
-    let mut geometry = Geometry::nominal(&tree, names.len() + 1);
-    let offsets = arms.iter().flat_map(|a| a.placement.points_m.iter().map(|(_, at_m)| *at_m));
-    geometry.tools_m.iter_mut().zip(offsets).for_each(|(tool, at_m)| *tool = at_m);
-    // the last point is the tip, for points that no placement has
-    let point_of = |arm: usize, name: &str| names.iter().position(|known| *known == (arm, name));
-    let points: Vec<usize> =
-        campaign.positions.iter().map(|r| point_of(r.arm, &r.point).unwrap_or(names.len())).collect();
+    let stands = |i: usize| arms[i].placement.stands(&campaign.positions);
+    let stands: Vec<Vec<&Stand>> = (0..arms.len()).map(stands).collect();
+    let mut geometry = Geometry::nominal(&tree, 0);
+    let mut points = Vec::with_capacity(campaign.positions.len());
+    for (i, row) in campaign.positions.iter().enumerate() {
+        let tool_m = stands[row.arm][i].point_m(&row.point);
+        let known = geometry.tools_m.iter().position(|at_m| *at_m == tool_m);
+        points.push(known.unwrap_or(geometry.tools_m.len()));
+        if known.is_none() {
+            geometry.tools_m.push(tool_m);
+        }
+    }
     let sags = sags(&campaign, &tree, &geometry, &[], &points);
     let rows = campaign.positions.iter().zip(&points).zip(sags);
-    rows.map(|((row, &point), sag)| {
-        let placement = &arms[row.arm].placement;
-        let asked_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
-        let own_rad = subjects[row.arm].turned_rad(&tree.pose_of(row.arm, &asked_rad));
-        let pose_rad = tree.with_pose_of(row.arm, &own_rad, &asked_rad);
-        geometry.base = Rotation3::from_matrix_unchecked(placement.rotation);
-        geometry.origin_m = placement.origin_m;
-        let placing = Placing { arm: row.arm, pose_rad: &pose_rad, point, station: 0 };
-        let at_m = geometry.place(placing, &[]).at_m + placement.rotation * sag.known_m;
-        let reading = &subjects[row.arm].channels[Channel::Positions as usize];
-        std::array::from_fn(|c| reading.of(1e3 * at_m[c], c, row.row))
-    })
-    .collect()
+    rows.enumerate()
+        .map(|(i, ((row, &point), sag))| {
+            let stand = stands[row.arm][i];
+            let asked_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
+            let own_rad = subjects[row.arm].turned_rad(&tree.pose_of(row.arm, &asked_rad));
+            let pose_rad = tree.with_pose_of(row.arm, &own_rad, &asked_rad);
+            geometry.base = Rotation3::from_matrix_unchecked(stand.rotation);
+            geometry.origin_m = stand.origin_m;
+            let placing = Placing { arm: row.arm, pose_rad: &pose_rad, point, station: 0 };
+            let at_m = geometry.place(placing, &[]).at_m + stand.rotation * sag.known_m;
+            let reading = &subjects[row.arm].channels[Channel::Positions as usize];
+            std::array::from_fn(|c| reading.of(1e3 * at_m[c], c, row.row))
+        })
+        .collect()
 }

@@ -1,0 +1,130 @@
+//! Where the calibrated arms stand: session by session, and the place that suits all sessions best.
+
+use super::fit::{Fitted, Sample, fit};
+use super::kinematics::{Geometry, Number};
+use super::{Positions, points};
+use crate::reconcile::campaign::Campaign;
+use crate::reconcile::placement::{Placement, Session, Stand, pose_mark, test_numbers};
+use nalgebra::Rotation3;
+
+impl Positions {
+    /// The places of one of the arms, whose last frame is turned so.
+    pub(super) fn placement(
+        &self,
+        campaign: &Campaign,
+        arm: usize,
+        shown: &Fitted,
+        turned: Rotation3<f64>,
+    ) -> Placement {
+        let own: Vec<usize> = (0..self.samples.len()).filter(|&i| self.samples[i].arm == arm).collect();
+        let names: Vec<String> =
+            points(campaign).into_iter().filter(|name| on(campaign, &own, name)).collect();
+        let mut geometry = shown.geometry.clone();
+        geometry.relevel();
+        let runs = self.runs(campaign, &own);
+        if runs.len() < 2 {
+            let usual = self.stand(&geometry, campaign, &names, &own, turned);
+            return Placement { usual, ..Placement::default() };
+        }
+        let merged = self.merged(campaign, shown);
+        let at_rest = |name: &String| {
+            let point = points(campaign).iter().position(|n| n == name).unwrap_or_default();
+            (name.clone(), turned * merged.tools_m[point])
+        };
+        let usual = Stand {
+            rotation: merged.level_to_instrument().into_inner(),
+            origin_m: merged.origin_m,
+            points_m: names.iter().map(at_rest).collect(),
+        };
+        let rows: Vec<_> = own.iter().map(|&i| campaign.positions[i].clone()).collect();
+        let Some(numbers) = test_numbers(&rows).filter(|n| n.is_sorted()) else {
+            return Placement { usual, ..Placement::default() };
+        };
+        let number_of = |i: usize| own.iter().position(|&o| o == i).map_or(f64::INFINITY, |k| numbers[k]);
+        let ends = runs.iter().skip(1).map(|next| Some(next[0])).chain([None]);
+        let sessions = runs.iter().zip(ends).map(|(run, next)| Session {
+            // a test in between may be of either
+            before_test: next.map_or(f64::INFINITY, |next| {
+                0.5 * (number_of(next) + number_of(*run.last().unwrap_or(&next)))
+            }),
+            stand: self.stand(&geometry, campaign, &names, run, turned),
+        });
+        Placement {
+            usual,
+            sessions: sessions.collect(),
+            tests: rows.iter().map(|r| (r.test.clone(), pose_mark(&r.pose_deg))).collect(),
+        }
+    }
+
+    /// An arm's samples in runs within which nothing is put elsewhere.
+    fn runs(&self, campaign: &Campaign, own: &[usize]) -> Vec<Vec<usize>> {
+        let mut out: Vec<Vec<usize>> = Vec::new();
+        for &i in own {
+            let same = |&j: &usize| {
+                let (a, b) = (&self.samples[i], &self.samples[j]);
+                let one_name = campaign.positions[i].point == campaign.positions[j].point;
+                a.station == b.station && (a.point == b.point || !one_name)
+            };
+            match out.last_mut() {
+                Some(run) if run.iter().all(same) => run.push(i),
+                _ => out.push(vec![i]),
+            }
+        }
+        out
+    }
+
+    /// The place of the arm and of its points in a run.
+    fn stand(
+        &self,
+        geometry: &Geometry,
+        campaign: &Campaign,
+        names: &[String],
+        run: &[usize],
+        turned: Rotation3<f64>,
+    ) -> Stand {
+        let (turn, shift_m) = geometry.stations[run.first().map_or(0, |&i| self.samples[i].station)];
+        let point_m = |name: &String| {
+            let seen = run.iter().find(|&&i| campaign.positions[i].point == *name);
+            let usual = || self.points.iter().position(|n| n == name).unwrap_or_default();
+            let point = seen.map_or_else(usual, |&i| self.samples[i].point);
+            (name.clone(), turned * geometry.tools_m[point])
+        };
+        Stand {
+            rotation: (turn * geometry.level_to_instrument()).into_inner(),
+            origin_m: geometry.origin_m + shift_m,
+            points_m: names.iter().map(point_m).collect(),
+        }
+    }
+
+    /// The geometry with base and points placed to suit all sessions, all else held.
+    fn merged(&self, campaign: &Campaign, shown: &Fitted) -> Geometry {
+        let names = points(campaign);
+        let together: Vec<Sample> = self
+            .samples
+            .iter()
+            .zip(&campaign.positions)
+            .map(|(sample, row)| {
+                let mut out = sample.clone();
+                out.sag.known_m = shown.displacement(sample);
+                out.point = names.iter().position(|n| *n == row.point).unwrap_or_default();
+                out.station = 0;
+                out
+            })
+            .collect();
+        let places = |n: &&Number| match n {
+            Number::BaseRotation(_) | Number::BasePosition(_) => true,
+            Number::Tool(point, _) => *point < names.len(),
+            _ => false,
+        };
+        let numbers: Vec<Number> = self.numbers.iter().filter(places).cloned().collect();
+        let mut start = Fitted::rigid(shown.geometry.clone(), shown.scale_m);
+        start.geometry.relevel();
+        let all: Vec<&Sample> = together.iter().collect();
+        fit(&all, &numbers, &[], &start).geometry
+    }
+}
+
+/// Whether a point of this name is among the rows.
+fn on(campaign: &Campaign, rows: &[usize], name: &str) -> bool {
+    rows.iter().any(|&i| campaign.positions[i].point == name)
+}
