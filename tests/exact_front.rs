@@ -374,3 +374,49 @@ fn a_front_with_a_design_dropped_is_found_out_by_searching_from_it() {
     let lacking: Vec<u128> = front.iter().copied().filter(|&n| n != dropped).collect();
     assert!(found_beside(&known(&lacking)).contains(&dropped));
 }
+
+/// A random study whose arm has one to four effects.
+fn study_with_effects(seed: u64) -> Value {
+    let mut study = random_study(seed);
+    let dice = &mut Dice(seed + 1_000);
+    let stiffness = |dice: &mut Dice| 10f64.powf(dice.within(4.3, 5.8));
+    let spring = |dice: &mut Dice, effect: &str, at: &str| json!({"effect": effect, "at": at, "parameters": {"stiffness_nm_per_rad": stiffness(dice)}});
+    let all = [
+        spring(dice, "bearing_tilt", "j2"),
+        spring(dice, "bearing_tilt", "j4"),
+        spring(dice, "base_compliance", "base"),
+        spring(dice, "connection_compliance", "j2"),
+        spring(dice, "connection_compliance", "j3"),
+        json!({"effect": "extra_mass", "at": "j3", "parameters": {"delta_kg": dice.within(0.5, 4.0)}}),
+        json!({"effect": "harness_mass", "at": "forearm", "parameters": {"kg_per_m": dice.within(0.5, 6.0)}}),
+        json!({"effect": "harness_mass", "at": "shoulder", "parameters": {"kg_per_m": dice.within(0.5, 6.0)}}),
+        json!({"effect": "harness_mass", "at": "flange", "parameters": {"kg_per_m": dice.within(0.5, 6.0)}}),
+        json!({"effect": "modulus_error", "at": "upper_arm", "parameters": {"factor": dice.within(0.5, 1.2)}}),
+        json!({"effect": "frame_compliance", "at": "upper_arm", "parameters": {
+            "diagonal_rad_per_nm": [3e-6, 5e-6, 2e-6], "coupling_rad_per_nm": [1e-6, 0.0, -1e-6]}}),
+        json!({"effect": "immersion", "at": "arm",
+            "parameters": {"water_density_kg_m3": 1000, "added_mass_coefficient": 1.1}}),
+        json!({"effect": "soft_windup", "at": "j2", "parameters": {"k1_nm_per_rad": 1.5e5, "k2_nm_per_rad": 2.6e5,
+            "k3_nm_per_rad": 3.4e5, "t1_nm": dice.within(40.0, 120.0), "t2_nm": dice.within(130.0, 260.0)}}),
+    ];
+    let picked = some(dice, &(0..all.len()).collect::<Vec<_>>(), 1);
+    study["effects"] = picked.into_iter().take(4).map(|i| all[i].clone()).collect();
+    study
+}
+
+#[test]
+fn effects_of_the_study_are_bounded_too() {
+    let points: usize = (0..16).map(|seed| agree(&study_with_effects(seed))).sum();
+    println!("{points} designs, the same in all searches");
+    assert!(points > 300, "{points}");
+}
+
+#[test]
+fn play_is_what_the_bounds_do_not_know() {
+    let mut study = random_study(3);
+    let play = json!({"half_width_rad": 1e-4, "torque_nm": 20});
+    study["effects"] = json!([{"effect": "lost_motion", "at": "j3", "parameters": play}]);
+    let read = read(&study, &Catalogs::builtin());
+    let refused = armwright::search::exact::conditions(&read.space).expect_err("refused");
+    assert!(refused.contains("play of joint j3"), "{refused}");
+}

@@ -195,6 +195,29 @@ impl JointLaw {
         self.curve.tangent_compliance_rad_per_nm(torque_nm) + self.connection_rad_per_nm + play
     }
 
+    /// Gear and connection as one curve; play is no part of it.
+    pub fn without_play(&self) -> Curve {
+        let softened = |k: f64| 1.0 / (1.0 / k + self.connection_rad_per_nm);
+        let series = |w: Windup| Windup {
+            k1_nm_per_rad: softened(w.k1_nm_per_rad),
+            k2_nm_per_rad: softened(w.k2_nm_per_rad),
+            k3_nm_per_rad: softened(w.k3_nm_per_rad),
+            ..w
+        };
+        match self.curve {
+            curve if self.connection_rad_per_nm == 0.0 => curve,
+            Curve::Rigid => Curve::Linear(1.0 / self.connection_rad_per_nm),
+            Curve::Linear(k) => Curve::Linear(softened(k)),
+            Curve::Windup(w) => Curve::Windup(series(w)),
+            Curve::WindupK1(w) => Curve::WindupK1(series(w)),
+        }
+    }
+
+    /// Whether there is play beside the curve.
+    pub fn has_play(&self) -> bool {
+        self.lost_motion.is_some() || self.hysteresis_rad > 0.0
+    }
+
     /// Twist when the torque has risen from rest to `torque_nm` \[rad\]: the friction play, at 0 at rest,
     /// holds back up to its half width.
     pub fn rising_angle_rad(&self, torque_nm: f64) -> f64 {

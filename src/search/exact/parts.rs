@@ -1,7 +1,7 @@
 //! What the bound sees of a part, and of a box of parts: every number as an interval.
 
 use super::tree::{Bounds, Key};
-use crate::arm::{Beam, Curve, LinkMaterial, LinkModel, Section, Windup};
+use crate::arm::{Beam, Curve, JointLaw, LinkModel, LinkPiece, Windup};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
 use crate::search::figures::StressCheck;
 use crate::search::space::LinkOption;
@@ -30,16 +30,15 @@ pub(super) mod inertia {
 }
 
 impl Line {
-    /// The tube of a section in a material under a link model.
-    pub fn new(material: &LinkMaterial, section: &Section, model: LinkModel) -> Self {
-        let beam = Beam { material: *material, section: *section, flexibility: 1.0 };
-        let tube = tube_inertia(&beam, model);
+    /// A tube, and what hangs along it, under a link model.
+    pub fn new(beam: &Beam, harness_kg_per_m: f64, model: LinkModel) -> Self {
+        let tube = tube_inertia(beam, model);
         let yields = |place: usize| match model {
             LinkModel::Rigid => false,
             LinkModel::Bending => place < 2,
             LinkModel::Full => true,
         };
-        let mut stiffnesses = line_stiffnesses(&beam);
+        let mut stiffnesses = line_stiffnesses(beam);
         for (place, stiffness) in stiffnesses.iter_mut().enumerate() {
             if !yields(place) {
                 *stiffness = f64::INFINITY;
@@ -47,8 +46,8 @@ impl Line {
         }
         Self {
             inertias: [
-                tube.along_kg_per_m,
-                section.properties(material.poisson).outer_area_m2,
+                tube.along_kg_per_m + harness_kg_per_m,
+                beam.section.properties(beam.material.poisson).outer_area_m2,
                 tube.polar_kg_m,
                 tube.rotary_y_kg_m,
                 tube.rotary_z_kg_m,
@@ -73,9 +72,10 @@ pub(super) struct LinkBox {
 }
 
 impl LinkBox {
-    /// The box of one option.
-    pub fn of(option: &LinkOption, model: LinkModel) -> Self {
-        let line = Line::new(&option.material, &option.section, model);
+    /// The box of one option, which the study's effects make this link.
+    pub fn of(option: &LinkOption, link: &LinkPiece, model: LinkModel) -> Self {
+        let nominal = Beam { material: option.material, section: option.section, flexibility: 1.0 };
+        let line = Line::new(link.beam.as_ref().unwrap_or(&nominal), link.harness_kg_per_m, model);
         let check = StressCheck::new(option);
         let stress = check.as_ref().map_or([0.0; 4], |s| {
             [s.per_axial_n, s.per_moment_y, s.per_moment_z, s.per_torsion].map(|x| x / s.strength_pa)
@@ -85,7 +85,7 @@ impl LinkBox {
             high: line,
             stress,
             round: check.is_none_or(|s| s.round),
-            cost_eur_per_m: option.cost_eur_per_kg.unwrap_or(0.0) * line.inertias[inertia::MASS],
+            cost_eur_per_m: option.cost_eur_per_kg.unwrap_or(0.0) * option.mass_kg_per_m(),
         }
     }
 }
@@ -129,8 +129,9 @@ pub(super) struct CurveBox {
 }
 
 impl CurveBox {
-    /// The box of one curve; a rigid joint has none.
-    pub fn of(curve: &Curve) -> Option<Self> {
+    /// The box of one joint's law without play; a rigid joint has none.
+    pub fn of(law: &JointLaw) -> Option<Self> {
+        let curve = law.without_play();
         let windup = curve.segments()?;
         Some(Self { stiff: windup, soft: windup, k1_in_modes: !matches!(curve, Curve::Windup(_)) })
     }

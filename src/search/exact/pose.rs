@@ -6,12 +6,14 @@
 //! weights and compliances as intervals both become intervals: no condition on the pose is needed.
 
 use super::parts::{INERTIAS, inertia};
-use crate::arm::{LinkModel, LinkPiece, Structure};
+use super::problem::harness_kg;
+use crate::arm::{LinkModel, LinkPiece, Structure, Water};
 use crate::mechanics::beam::{PreparedBeam, section_frame};
 use crate::mechanics::{Twist, Wrench, angular, body_inertia, displacement_at, linear, rotation_twist};
-use crate::search::space::{Case, DesignSpace, SpacePiece};
+use crate::search::effects::Layer;
+use crate::search::space::{DesignSpace, SpacePiece};
 use crate::search::station::{Walk, payload_in, weight_wrench};
-use nalgebra::{DMatrix, Matrix3, Matrix6, SMatrix, Vector3};
+use nalgebra::{DMatrix, Matrix3, Matrix6, Rotation3, SMatrix, Vector3};
 
 /// Coordinates of a tube: curvatures along z and y (4 each), shears (3 each), twist, stretch (3 each).
 pub(super) const COORDINATES: usize = 20;
@@ -86,6 +88,8 @@ pub(super) struct PosedTube {
     pub forms: TubeForms,
     /// Added mass across the tube per outer area \[kg/m³\].
     pub added_kg_m3: f64,
+    /// Whether its section is a choice.
+    pub chosen: bool,
 }
 
 /// Inertia forms over `(root translation, root rotation, curvatures, shears)` of each plane, and over
@@ -130,38 +134,24 @@ impl Pose {
     /// Compiles a case.
     pub fn new(space: &DesignSpace, index: usize) -> Self {
         let case = &space.cases[index];
+        let water = case.water.or(space.surroundings().water);
         let walk = Walk::new(space, case);
-        let (payload_wrench, payload_inertia) = payload_in(space, case, case.water, &walk);
-        let pieces: Vec<PosedPiece> = space
-            .pieces
-            .iter()
-            .zip(&walk.places)
-            .rev()
-            .map(|(piece, (at_m, rotation))| match piece {
-                SpacePiece::Joint(joint) => {
-                    PosedPiece::Joint { twist: rotation_twist(&(rotation * joint.axis), at_m), at_m: *at_m }
-                }
-                SpacePiece::Link(link) => {
-                    let link = crate::arm::link_piece(link);
-                    match (link.beam.is_some(), link.vector_m.norm() > 0.0) {
-                        (true, true) => posed_tube(space, case, link, at_m, rotation.matrix()),
-                        _ => {
-                            let centre = at_m + rotation * link.vector_m / 2.0;
-                            PosedPiece::Body(body_inertia(link.point_mass_kg, &centre, &Matrix3::zeros()))
-                        }
-                    }
-                }
-                SpacePiece::Choice(choice) => {
-                    let link = crate::arm::link_piece(&choice.link(&choice.options[0]));
-                    posed_tube(space, case, link, at_m, rotation.matrix())
-                }
-            })
-            .collect();
+        let (payload_wrench, payload_inertia) = payload_in(space, case, water, &walk);
+        let mut pieces = Vec::new();
+        for (place, layer) in space.layers() {
+            let at = &walk.places[place];
+            pieces.push(posed(space, water, layer, at));
+            if let Layer::Piece(piece) = layer
+                && harness_kg(space, piece).is_some()
+            {
+                pieces.push(PosedPiece::Body(Matrix6::zeros()));
+            }
+        }
         let mut pose = Self {
             judged: space.judged_cases.contains(&index),
             sizing: space.sizing_cases.contains(&index),
             parts_sag_together: false,
-            water_kg_m3: case.water.map_or(0.0, |w| w.density_kg_m3),
+            water_kg_m3: water.map_or(0.0, |w| w.density_kg_m3),
             pieces,
             payload_inertia,
             rows: Vec::new(),
@@ -198,10 +188,8 @@ impl Pose {
                 }
                 PosedPiece::Tube(tube) => {
                     self.inertia_about.push(None);
-                    let chosen =
-                        matches!(space.pieces[space.pieces.len() - 1 - piece], SpacePiece::Choice(_));
                     let end_m = tube.root_m + tube.frame * Vector3::x() * tube.length_m;
-                    if chosen {
+                    if tube.chosen {
                         self.stress.push(outboard.stress(piece, tube, &end_m));
                     }
                     let areas = areas_per_n(tube);
@@ -211,7 +199,7 @@ impl Pose {
                     }
                     let middle_m = tube.root_m + tube.frame * Vector3::x() * (tube.length_m / 2.0);
                     outboard.push(weight_wrench(1.0, &middle_m), tube.rigid_forms());
-                    if chosen {
+                    if tube.chosen {
                         self.stress.push(outboard.stress(piece, tube, &tube.root_m));
                     }
                 }
@@ -224,17 +212,50 @@ impl Pose {
     }
 }
 
+/// A layer at a place of the chain.
+fn posed(
+    space: &DesignSpace,
+    water: Option<Water>,
+    layer: Layer,
+    (at_m, rotation): &(Vector3<f64>, Rotation3<f64>),
+) -> PosedPiece {
+    let hinge = |axis: &Vector3<f64>| PosedPiece::Joint { twist: rotation_twist(axis, at_m), at_m: *at_m };
+    let body = |mass_kg: f64, centre_m: &Vector3<f64>, inertia_kgm2: Matrix3<f64>| {
+        PosedPiece::Body(body_inertia(mass_kg, centre_m, &inertia_kgm2))
+    };
+    match layer {
+        Layer::Tilt(tilt) => hinge(&tilt.axis(rotation)),
+        Layer::Mass(mass_kg) => body(mass_kg, at_m, Matrix3::zeros()),
+        Layer::Piece(SpacePiece::Joint(joint)) => hinge(&(rotation * joint.axis)),
+        Layer::Piece(SpacePiece::Choice(choice)) => {
+            posed_tube(space, water, &space.link_piece(&choice.first_link()), at_m, rotation.matrix(), true)
+        }
+        Layer::Piece(SpacePiece::Link(link)) => {
+            let link = space.link_piece(link);
+            if link.beam.is_some() && link.vector_m.norm() > 0.0 {
+                return posed_tube(space, water, &link, at_m, rotation.matrix(), false);
+            }
+            // what hangs along a rigid offset is a slender rod
+            let vector_m = rotation * link.vector_m;
+            let along_kg = link.harness_kg_per_m * vector_m.norm();
+            let rod = Matrix3::identity() * vector_m.norm_squared() - vector_m * vector_m.transpose();
+            body(link.point_mass_kg + along_kg, &(at_m + vector_m / 2.0), rod * (along_kg / 12.0))
+        }
+    }
+}
+
 fn posed_tube(
     space: &DesignSpace,
-    case: &Case,
-    link: LinkPiece,
+    water: Option<Water>,
+    link: &LinkPiece,
     root_m: &Vector3<f64>,
     rotation: &Matrix3<f64>,
+    chosen: bool,
 ) -> PosedPiece {
     let structure = Structure::bare(space.gravity_m_s2, Vec::new());
     let frame = rotation * section_frame(&link.vector_m);
     // shapes depend on the length alone
-    let Some(beam) = PreparedBeam::new(&link, &structure, LinkModel::Full) else {
+    let Some(beam) = PreparedBeam::new(link, &structure, LinkModel::Full) else {
         return PosedPiece::Body(Matrix6::zeros());
     };
     let end_m = root_m + frame * Vector3::x() * beam.length_m;
@@ -249,7 +270,8 @@ fn posed_tube(
         frame,
         ends,
         forms: TubeForms::new(&beam),
-        added_kg_m3: case.water.map_or(0.0, |w| w.added_mass_coefficient * w.density_kg_m3),
+        added_kg_m3: water.map_or(0.0, |w| w.added_mass_coefficient * w.density_kg_m3),
+        chosen,
     }))
 }
 

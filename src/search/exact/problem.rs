@@ -7,6 +7,7 @@ use super::pose::Pose;
 use super::tree::{Bounds, Tree};
 use crate::arm::LinkBody;
 use crate::catalog::Catalogs;
+use crate::search::effects::Layer;
 use crate::search::slot::{SizedJoint, Slot, joint_slot};
 use crate::search::space::{DesignSpace, LinkOption, SpacePiece};
 use crate::search::station::reaches_m;
@@ -85,14 +86,11 @@ impl<'c> Problem<'c> {
     pub fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Option<Self> {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let mut reaches = reaches_m(space, sizing).into_iter();
-        let mut pieces: Vec<(&SpacePiece, f64)> = Vec::new();
-        for piece in &space.pieces {
-            let reach_m = match piece {
-                SpacePiece::Joint(_) => reaches.next().unwrap_or_default(),
-                _ => 0.0,
-            };
-            pieces.push((piece, reach_m));
-        }
+        let of = |piece: &SpacePiece| match piece {
+            SpacePiece::Joint(_) => reaches.next().unwrap_or_default(),
+            _ => 0.0,
+        };
+        let reaches_m: Vec<f64> = space.pieces.iter().map(of).collect();
         let mut problem = Self {
             space,
             parts: Vec::new(),
@@ -104,9 +102,20 @@ impl<'c> Problem<'c> {
                 + space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE),
             lighter_is_better: false,
         };
-        for (piece, reach_m) in pieces.into_iter().rev() {
-            let part = problem.part(piece, reach_m, catalogs)?;
+        for (place, layer) in space.layers() {
+            let part = match layer {
+                Layer::Piece(piece) => problem.part(piece, reaches_m[place], catalogs)?,
+                Layer::Tilt(tilt) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&tilt.law()) },
+                // beyond what a design weighs
+                Layer::Mass(_) => Part::Offset { mass_kg: 0.0 },
+            };
             problem.parts.push(part);
+            // a harness is no part of what a design weighs, but of what its link does
+            if let Layer::Piece(piece) = layer
+                && let Some(harness_kg) = harness_kg(space, piece)
+            {
+                problem.parts.push(Part::Offset { mass_kg: -harness_kg });
+            }
         }
         problem.lighter_is_better = problem.grows_with_weight();
         Some(problem)
@@ -116,7 +125,7 @@ impl<'c> Problem<'c> {
         let space = self.space;
         Some(match piece {
             SpacePiece::Joint(joint) => match joint_slot(space, joint, reach_m, catalogs) {
-                Slot::Given { law, mass_kg } => Part::Given { mass_kg, curve: CurveBox::of(&law.curve) },
+                Slot::Given { law, mass_kg } => Part::Given { mass_kg, curve: CurveBox::of(&law) },
                 Slot::Sized(sized) if sized.all_fits => {
                     let options = self.level(sized.table.len());
                     let rays = self.rays(self.parts.len(), sized.table.motion());
@@ -145,7 +154,8 @@ impl<'c> Problem<'c> {
                 let options = self.level(choice.options.len());
                 let boxes = options
                     .filter(|&i| !slender(&choice.options[i as usize]))
-                    .map(|i| (i, LinkBox::of(&choice.options[i as usize], space.links)));
+                    .map(|i| (i, &choice.options[i as usize]))
+                    .map(|(i, o)| (i, LinkBox::of(o, &space.link_piece(&choice.link(o)), space.links)));
                 Part::Links { length_m: choice.vector_m.norm(), tree: Arc::new(Tree::build(boxes)?) }
             }
             SpacePiece::Link(link) => match &link.body {
@@ -156,7 +166,7 @@ impl<'c> Problem<'c> {
                     if slender.is_some_and(|max| option.wall_slenderness() > max) {
                         return None;
                     }
-                    let tube = Box::new(LinkBox::of(&option, space.links));
+                    let tube = Box::new(LinkBox::of(&option, &space.link_piece(link), space.links));
                     Part::Tube { length_m: link.vector_m.norm(), tube }
                 }
             },
@@ -210,10 +220,21 @@ impl<'c> Problem<'c> {
     }
 }
 
+/// Mass of what hangs along a tube, if anything does \[kg\].
+pub(super) fn harness_kg(space: &DesignSpace, piece: &SpacePiece) -> Option<f64> {
+    let link = match piece {
+        SpacePiece::Joint(_) => return None,
+        SpacePiece::Link(link) => space.link_piece(link),
+        SpacePiece::Choice(choice) => space.link_piece(&choice.first_link()),
+    };
+    let mass_kg = link.harness_kg_per_m * link.vector_m.norm();
+    (link.beam.is_some() && mass_kg > 0.0).then_some(mass_kg)
+}
+
 fn drive_box(sized: &SizedJoint, index: u32, rays: &Rays) -> DriveBox {
     let index = index as usize;
     let mass_kg = sized.table.mass_kg(index);
-    let curve = CurveBox::of(&sized.laws[index].curve);
+    let curve = CurveBox::of(&sized.laws[index]);
     DriveBox {
         mass_kg: [mass_kg; 2],
         limits: *sized.table.limits(index),

@@ -7,11 +7,12 @@ use super::gap::gap;
 use super::probe::probe;
 use super::problem::Problem;
 use super::shape::Shape;
+use crate::arm::Curve;
 use crate::catalog::Catalogs;
 use crate::search::Objectives;
 use crate::search::design::number;
 use crate::search::front::not_clearly_beaten;
-use crate::search::space::DesignSpace;
+use crate::search::space::{DesignSpace, SpacePiece};
 use crate::search::sweep::{Candidate, SLACK};
 use rayon::prelude::*;
 use std::collections::{HashSet, VecDeque};
@@ -71,8 +72,12 @@ pub struct ExactOutcome {
 /// # Errors
 /// What it does not see, in words.
 pub fn conditions(space: &DesignSpace) -> Result<(), String> {
-    match space.effects.iter().find(|effect| !effect.is_of_test()) {
-        Some(effect) => Err(format!("its bounds do not know the effect {} at {}", effect.effect, effect.at)),
+    let joints = space.pieces.iter().filter_map(|piece| match piece {
+        SpacePiece::Joint(joint) => Some(joint),
+        _ => None,
+    });
+    match joints.into_iter().find(|joint| space.joint_piece(joint, Curve::Linear(1.0)).law.has_play()) {
+        Some(joint) => Err(format!("its bounds do not know the play of joint {}", joint.name)),
         None => Ok(()),
     }
 }
