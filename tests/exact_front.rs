@@ -399,8 +399,10 @@ fn study_with_effects(seed: u64) -> Value {
         json!({"effect": "soft_windup", "at": "j2", "parameters": {"k1_nm_per_rad": 1.5e5, "k2_nm_per_rad": 2.6e5,
             "k3_nm_per_rad": 3.4e5, "t1_nm": dice.within(40.0, 120.0), "t2_nm": dice.within(130.0, 260.0)}}),
     ];
-    let picked = some(dice, &(0..all.len()).collect::<Vec<_>>(), 1);
-    study["effects"] = picked.into_iter().take(4).map(|i| all[i].clone()).collect();
+    let mut places: Vec<usize> = (0..=dice.below(4)).map(|_| dice.below(all.len() as u64) as usize).collect();
+    places.sort_unstable();
+    places.dedup();
+    study["effects"] = places.into_iter().map(|i| all[i].clone()).collect();
     study
 }
 
