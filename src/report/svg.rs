@@ -565,6 +565,7 @@ mod tests {
         let outlines: std::collections::BTreeSet<String> = (0..8).map(|i| outline(i, 4.0)).collect();
         assert_eq!(outlines.len(), 8);
         assert_ne!(outline(0, 4.0), outline(8, 4.0), "the same colour comes again with another shape");
+        assert_ne!(outline(1, 4.0), outline(8, 4.0), "the same shape comes again with a hole");
     }
 
     #[test]

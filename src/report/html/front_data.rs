@@ -445,11 +445,12 @@ mod tests {
     #[test]
     fn the_front_of_all_designs_is_whole_before_groups_have_more_than_a_fifth() {
         let table = table(60_000);
-        let groups = || vec![Group { name: "steel".into(), style: 0 }];
-        let rows = |front: usize| {
-            (0..60_000).map(move |row| Row { table: &table, row, group: 0, on_front: row % 60_000 < front })
+        let drawn = |front: usize| {
+            let group = Group { name: "steel".into(), style: 0 };
+            let row = |row: usize| Row { table: &table, row, group: 0, on_front: row < front };
+            let rows: Vec<Row> = (0..60_000).map(row).collect();
+            FrontData::new(vec![group], rows, &[], MOST_BYTES).rows_drawn()
         };
-        let drawn = |front| FrontData::new(groups(), rows(front).collect(), &[], MOST_BYTES).rows_drawn();
         assert_eq!(drawn(10_000), [10_000, 10_000]);
         assert_eq!(drawn(50_000), [16_000, 4_000]);
     }

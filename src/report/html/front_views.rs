@@ -37,6 +37,7 @@ impl FrontViews<'_> {
             "sampled": self.left_out(),
             "coloured_by": self.coloured_by,
             "has_both": self.has_both,
+            "all_in": self.all_in,
             "constants": data.constants,
             "groups": data.groups.iter().map(|g| g.name.clone()).collect::<Vec<_>>(),
         })
@@ -60,7 +61,7 @@ impl FrontViews<'_> {
         (front + own < all_front + all_own).then(|| {
             format!(
                 "To keep the page light it draws {}: of what is thinned out the picks and the best at each mass stay, and \
-                 of the rest an even part by mass. {} has all.",
+                 of the rest an even part by mass. All are in {}.",
                 parts.join(" and "),
                 self.all_in
             )

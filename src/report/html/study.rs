@@ -146,7 +146,7 @@ impl StudyPage<'_> {
             },
             coloured_by: "material",
             has_both,
-            all_in: "front.csv, with the file of each material,",
+            all_in: if has_both { "front.csv and front.<material>.csv" } else { "front.csv" },
         }
     }
 }
