@@ -54,13 +54,16 @@ function views(f) {
   $("views").hidden = false;
   const ids = f.ids.split(" "), count = ids.length, axes = f.axes;
   /* columns of few values are packed: a letter or two a row, each an index into their list */
-  const rank = new Map([...f.letters].map((letter, i) => [letter, i]));
+  const rank = new Uint8Array(128), base = f.letters.length;
+  for (let i = 0; i < base; i++) rank[f.letters.charCodeAt(i)] = i;
   function unpack({ text, width, list }) {
-    return Array.from({ length: count }, (_, row) => {
+    const values = new Array(count);
+    for (let row = 0, at = 0; row < count; row++) {
       let i = 0;
-      for (let k = 0; k < width; k++) i = i * rank.size + rank.get(text[row * width + k]);
-      return list ? list[i] : i;
-    });
+      for (let k = 0; k < width; k++) i = i * base + rank[text.charCodeAt(at++)];
+      values[row] = list ? list[i] : i;
+    }
+    return values;
   }
   f.group = unpack(f.group); f.front = unpack(f.front);
   axes.forEach((a) => { if (!Array.isArray(a.values)) a.values = unpack(a.values); });
@@ -74,7 +77,8 @@ function views(f) {
     a.place = a.range
       ? (a.range[2] ? (v) => Math.log(v / a.range[0]) / Math.log(a.range[1] / a.range[0]) : (v) => (v - a.range[0]) / (a.range[1] - a.range[0]))
       : (v) => (v + 0.5) / a.words.length;
-    a.places = Float32Array.from(a.values, (v) => (v === null ? NaN : a.place(v)));
+    a.places = new Float32Array(count);
+    for (let i = 0; i < count; i++) { const v = a.values[i]; a.places[i] = v === null ? NaN : a.place(v); }
     a.title = a.unit ? `${a.label} [${a.unit}]` : a.label;
   });
   const state = {
@@ -168,13 +172,20 @@ function views(f) {
     g.textAlign = "center"; g.fillText(s.x.title, (q.l + q.r) / 2, s.h - 10);
     g.textAlign = "left"; g.font = "600 " + FONT; g.fillText(s.y.title, 10, 18);
     g.font = FONT; g.fillStyle = soft; g.textAlign = "right"; g.fillText(s.down ? "down and left is better" : "up and left is better", s.w - 14, 18);
+    const across = s.x.places, up = s.y.places, wide = q.r - q.l, high = q.b - q.t;
     g.fillStyle = dark() ? "#5b656f" : "#c3c9cf"; g.globalAlpha = 0.55;
-    for (let i = 0; i < count; i++) if (!on[i] && visible(i)) g.fillRect(sx(s, s.x.places[i]) - 1, sy(s, s.y.places[i]) - 1, 2, 2);
+    for (let i = 0; i < count; i++) if (!on[i] && visible(i)) g.fillRect(q.l + across[i] * wide - 1, q.b - up[i] * high - 1, 2, 2);
     const size = count > 3000 ? 2.3 : count > 600 ? 2.8 : 3.6;
     for (const grp of order) {
       g.globalAlpha = faded(grp) ? 0.08 : count > 3000 ? 0.75 : 0.9;
-      const stamp = marker(grp, size), half = 1.6 * size;
-      for (let i = 0; i < count; i++) if (on[i] && f.group[i] === grp) g.drawImage(stamp, sx(s, s.x.places[i]) - half, sy(s, s.y.places[i]) - half, 2 * half, 2 * half);
+      const stamp = marker(grp, size), half = 1.6 * size, columns = Math.ceil(s.w) + 1;
+      /* designs of a group on the same pixel are stamped once */
+      const stamped = new Uint8Array(columns * (Math.ceil(s.h) + 1));
+      for (let i = 0; i < count; i++) {
+        if (!on[i] || f.group[i] !== grp) continue;
+        const x = q.l + across[i] * wide, y = q.b - up[i] * high, pixel = Math.round(y) * columns + Math.round(x);
+        if (!stamped[pixel]) { stamped[pixel] = 1; g.drawImage(stamp, x - half, y - half, 2 * half, 2 * half); }
+      }
     }
     g.globalAlpha = 1;
     names(s);
