@@ -9,13 +9,14 @@ use crate::fault::Document;
 use crate::report::budget::{PickBudget, budget_csv};
 use crate::report::certificate::{certificate_section, certificate_words};
 use crate::report::compare::text::wrap;
-use crate::report::front_svg::{FrontPicture, PlottedFront, mixed_designs};
+use crate::report::front_svg::{FrontPicture, PlottedFront, designs_of, mixed_designs};
 use crate::report::front_table::FrontTable;
 use crate::report::html::{Extra, Figure, PLOTS, Page, document::DocumentPage, study::StudyPage};
 use crate::report::number::significant;
 use crate::report::picks;
 use crate::report::summary::{
-    MaterialFront, SummaryFacts, SummaryInput, constraint_words, summary_md, terminal_summary,
+    MaterialFront, SummaryFacts, SummaryInput, constraint_words, single_materials, summary_md,
+    terminal_summary,
 };
 use crate::report::table::Table;
 use crate::search::hypervolume::front_hypervolume;
@@ -541,15 +542,19 @@ fn facts_of(run: &Value) -> Vec<(String, String)> {
         .collect()
 }
 
-/// The picture of the front: designs of mixed materials in grey, each material's own front in colour.
+/// The picture of the front: designs of mixed materials in grey, each material in colour, by its own front
+/// where the search found one.
 fn picture(summary: &SummaryInput) -> String {
     let mixed = mixed_designs(&summary.overall);
+    let pure: Vec<(String, FrontTable)> = single_materials(summary)
+        .into_iter()
+        .map(|name| {
+            let own = summary.materials.iter().find(|m| m.name == name).map(|m| m.front.clone());
+            (name.to_string(), own.unwrap_or_else(|| designs_of(&summary.overall, name)))
+        })
+        .collect();
     let mut fronts = vec![PlottedFront { name: "mixed".into(), front: &mixed, muted: true }];
-    fronts.extend(summary.materials.iter().map(|m| PlottedFront {
-        name: m.name.clone(),
-        front: &m.front,
-        muted: false,
-    }));
+    fronts.extend(pure.iter().map(|(name, front)| PlottedFront { name: name.clone(), front, muted: false }));
     let picks = picks::picks(&picks::designs(&summary.overall));
     FrontPicture { title: summary.facts.study.clone(), fronts, picks }.to_svg()
 }

@@ -1,8 +1,9 @@
 //! How sure a front is: what was visited, what was cut and why, what may be missing.
 
+use super::compare::text::wrap;
 use super::html::Extra;
 use super::number::significant;
-use super::summary::{SummaryFacts, large};
+use super::summary::{SummaryFacts, TERMINAL, large};
 
 /// The section of a page; `boxes` are those bounded and left open by an exact search.
 pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Extra {
@@ -36,11 +37,9 @@ pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Ext
                 large(open.into()),
             ),
             match facts.gap {
-                Some(gap) => format!(
-                    "No design that was missed is better than every listed one by more than {} % in tip deflection, \
-                     mass and lowest mode at once. A longer --time-limit narrows this.",
-                    significant(100.0 * gap, 2)
-                ),
+                Some(gap) => {
+                    format!("Of what they hold {}. A longer --time-limit narrows this.", gap_words(gap))
+                }
                 None => "Nothing can be said of what they hold. A longer --time-limit helps.".into(),
             },
         ],
@@ -50,17 +49,24 @@ pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Ext
     Extra { title: "How sure is this front?".into(), words, tables: Vec::new(), figures: Vec::new() }
 }
 
+/// How much a stopped exact search may have missed: the words that page, terminal and summary share.
+pub fn gap_words(gap: f64) -> String {
+    format!(
+        "no design beats every listed one by more than {} % in tip deflection, mass and lowest mode at once",
+        significant(100.0 * gap, 2)
+    )
+}
+
 /// What an exact search proves, for the terminal; `boxes` as for the page.
 pub fn certificate_words([boxes, open]: [u64; 2], gap: Option<f64>) -> String {
     match (open, gap) {
         (0, _) => format!("certified: no design that is not listed is on the front ({boxes} boxes)\n"),
-        (_, Some(gap)) => format!(
-            "partial: no design beats every one listed by more than {:.3} % in all three\n\
-             objectives at once ({boxes} boxes bounded, {open} open)\n",
-            100.0 * gap
-        ),
+        (_, Some(gap)) => {
+            let words = format!("partial: {} ({boxes} boxes bounded, {open} open)", gap_words(gap));
+            wrap(&words, TERMINAL, "")
+        }
         (_, None) => {
-            format!("partial: nothing can be said about what is missing ({boxes} boxes, {open} open)\n")
+            format!("partial: nothing can be said of what is missing ({boxes} boxes, {open} open)\n")
         }
     }
 }

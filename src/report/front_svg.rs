@@ -7,11 +7,13 @@
 use super::front_table::FrontTable;
 use super::number::significant;
 use super::picks::{Design, Objective, Pick, designs, materials};
-use super::svg::{Axis, MUTED, Note, PALETTE, Plot, Scale, Series, Sheet, Side};
+use super::svg::{Axis, MUTED, Note, PALETTE, Plot, Scale, Series, Sheet, Side, Stroke};
 use std::collections::HashSet;
 
 const WIDTH_PX: f64 = 900.0;
 const HEIGHT_PX: f64 = 460.0;
+/// Ends of an axis so many times apart count in ratios: light arms crowd at the left of a linear one.
+pub const WIDE: f64 = 5.0;
 /// Points of one series nearer than this share of an axis are drawn once.
 const GRAIN: f64 = 1.0 / 200.0;
 /// Markers on an edge keep so many grains from one another.
@@ -41,7 +43,16 @@ pub struct FrontPicture<'a> {
 
 /// The designs of a front whose links are of more than one material.
 pub fn mixed_designs(front: &FrontTable) -> FrontTable {
-    let rows = (0..front.rows.len()).filter(|r| materials(front, *r).len() > 1);
+    designs_where(front, |materials| materials.len() > 1)
+}
+
+/// The designs of a front whose links are all of one material.
+pub fn designs_of(front: &FrontTable, material: &str) -> FrontTable {
+    designs_where(front, |materials| materials == [material])
+}
+
+fn designs_where(front: &FrontTable, wanted: impl Fn(&[&str]) -> bool) -> FrontTable {
+    let rows = (0..front.rows.len()).filter(|r| wanted(&materials(front, *r)));
     FrontTable { columns: front.columns.clone(), rows: rows.map(|r| front.rows[r].clone()).collect() }
 }
 
@@ -130,11 +141,11 @@ impl FrontPicture<'_> {
     }
 }
 
-/// An axis for an objective: in ratios where the data span more than a decade.
+/// An axis for an objective: in ratios where the data are wide.
 fn axis(objective: Objective, shown: &[&Design]) -> Axis {
     let values = || shown.iter().map(|d| objective.of(d));
     let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
-    let scale = if low > 0.0 && high > 10.0 * low { Scale::Log } else { Scale::Linear };
+    let scale = if low > 0.0 && high > WIDE * low { Scale::Log } else { Scale::Linear };
     let label = match objective {
         Objective::Deflection => "tip deflection [mm]",
         Objective::Mass => "mass of links and drives [kg]",
@@ -196,7 +207,8 @@ impl Grain {
         // beyond the palette the colours repeat: hollow markers tell them apart
         let open = !front.muted && (index / PALETTE.len()) % 2 == 1;
         let marker_px = if front.muted { 2.5 } else { 4.0 };
-        Series { open, marker_px, ..Series::line(front.name, front.style(index), points) }
+        let stroke = Stroke::Patterned;
+        Series { open, marker_px, stroke, ..Series::line(front.name, front.style(index), points) }
     }
 
     fn point(&self, design: &Design) -> (f64, f64) {
@@ -244,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_are_logarithmic_beyond_a_decade() {
+    fn axes_are_logarithmic_where_the_data_are_wide() {
         let front = table(&[("s", "s", 1.0, 30.0, 10.0), ("s", "s", 11.0, 20.0, 5.0)]);
         let designs = designs(&front);
         let shown: Vec<&Design> = designs.iter().collect();
@@ -256,6 +268,8 @@ mod tests {
     fn mixed_designs_have_links_of_two_materials() {
         let front = table(&[("s", "t", 1.0, 2.0, 3.0), ("s", "s", 1.0, 2.0, 3.0)]);
         assert_eq!(mixed_designs(&front).rows.len(), 1);
+        assert_eq!(designs_of(&front, "s").rows.len(), 1);
+        assert_eq!(designs_of(&front, "t").rows.len(), 0);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What a finished study found: the question, the answer in two sentences, picks, materials, counts.
 
 use super::budget::{PickBudget, budget_markdown, budget_text};
+use super::certificate::gap_words;
 use super::compare::cost_words;
 use super::compare::text::{short_labels, wrap};
 use super::front_table::FrontTable;
@@ -12,7 +13,7 @@ use crate::search::constraint::Constraints;
 /// Height of a small plot \[characters\].
 const PLOT_ROWS: usize = 8;
 /// Width of a terminal \[characters\].
-const TERMINAL: usize = 80;
+pub(super) const TERMINAL: usize = 80;
 
 /// What a run knows besides its fronts.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -233,11 +234,9 @@ fn answer(input: &SummaryInput, found: &Found) -> String {
         };
     };
     let caution = match (facts.status.as_str(), facts.gap) {
-        ("partial", Some(gap)) => format!(
-            "The search was stopped: better designs may exist, but none that beats every listed one by more than {} % \
-             in all three objectives at once. ",
-            significant(100.0 * gap, 2)
-        ),
+        ("partial", Some(gap)) => {
+            format!("The search was stopped, so better designs may exist, but {}. ", gap_words(gap))
+        }
         ("interrupted" | "partial", _) => {
             "The search did not visit every design, so better ones may exist. ".to_string()
         }
@@ -300,7 +299,7 @@ fn owners(input: &SummaryInput) -> Vec<(String, usize)> {
 
 /// The materials a design may be of alone: those with a front of their own, or, where the search made no such
 /// fronts, those of the designs found.
-pub(super) fn single_materials(input: &SummaryInput) -> Vec<&str> {
+pub fn single_materials(input: &SummaryInput) -> Vec<&str> {
     if !input.materials.is_empty() {
         return input.materials.iter().map(|m| m.name.as_str()).collect();
     }

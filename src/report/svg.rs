@@ -86,6 +86,8 @@ pub enum Stroke {
     Solid,
     /// A dashed line.
     Dashed,
+    /// The style's own pattern of dashes, so that lines differ without colour.
+    Patterned,
 }
 
 /// Points that belong together.
@@ -341,7 +343,7 @@ impl Canvas {
                 out,
                 "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.8\"{}/>",
                 points.iter().map(|(x, y)| format!("{},{}", px(*x), px(*y))).collect::<Vec<_>>().join(" "),
-                dashes(series.stroke)
+                dashes(series)
             );
         }
         markers(out, series, &points);
@@ -395,7 +397,7 @@ impl Canvas {
                     px(x),
                     px(y),
                     colour(entry.style),
-                    dashes(entry.stroke)
+                    dashes(entry)
                 );
             }
             let sample = Series { marker_px: entry.marker_px.max(4.0), ..entry.clone() };
@@ -436,8 +438,14 @@ pub(super) fn colour(style: usize) -> &'static str {
     if style == MUTED { "#A0A0A0" } else { PALETTE[style % PALETTE.len()] }
 }
 
-fn dashes(stroke: Stroke) -> &'static str {
-    if stroke == Stroke::Dashed { " stroke-dasharray=\"6 4\"" } else { "" }
+fn dashes(series: &Series) -> String {
+    const PATTERNS: [&str; 8] = ["", "7 3", "2 2.5", "9 3 2 3", "13 4", "4 2", "9 2.5 2 2.5 2 2.5", "1.5 4"];
+    let pattern = match series.stroke {
+        Stroke::Dashed => "6 4",
+        Stroke::Patterned if series.style != MUTED => PATTERNS[series.style % PATTERNS.len()],
+        _ => "",
+    };
+    if pattern.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{pattern}\"") }
 }
 
 /// All markers of a series: one outline, and a path without stroke that has it at every corner.
@@ -557,6 +565,7 @@ mod tests {
         let outlines: std::collections::BTreeSet<String> = (0..8).map(|i| outline(i, 4.0)).collect();
         assert_eq!(outlines.len(), 8);
         assert_ne!(outline(0, 4.0), outline(8, 4.0), "the same colour comes again with another shape");
+        assert_ne!(outline(1, 4.0), outline(8, 4.0), "the same shape comes again with a hole");
     }
 
     #[test]

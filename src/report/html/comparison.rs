@@ -1,6 +1,6 @@
 //! A comparison's page: results side by side, their fronts overlaid, what moved between them.
 
-use super::front_data::{FrontData, Group, Row};
+use super::front_data::{FrontData, Group, MOST_BYTES, Row};
 use super::front_views::FrontViews;
 use super::{Figure, Gallery, Page, table};
 use crate::report::compare::{Comparison, Contender, Question};
@@ -55,7 +55,7 @@ fn views(contenders: &[Contender], picture: String) -> FrontViews<'_> {
             .collect::<Vec<_>>()
     });
     FrontViews {
-        data: FrontData::new(groups.collect(), rows.collect(), &[]),
+        data: FrontData::new(groups.collect(), rows.collect(), &[], MOST_BYTES),
         picks: &[],
         scatter: Figure {
             name: "fronts".into(),

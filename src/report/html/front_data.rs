@@ -1,9 +1,12 @@
 //! The designs of fronts as columns: what the linked views draw, filter and name.
 //!
 //! Numbers are rounded to the digits that are shown ([`SHOWN_DIGITS`]), so that what is read on the page
-//! is `front.csv`'s number rounded once. A front with more rows than fit is sampled: the picks and the
-//! designs at the edge of each view stay, the rest is thinned evenly along the mass.
+//! is `front.csv`'s number rounded once. The front of all designs comes first: designs that are only on the
+//! front of their group are sampled before it is. Of what is sampled the picks and the designs at the edge of
+//! each view stay, and the rest is thinned evenly along the mass.
 
+use super::packed::{self, packed};
+use crate::report::front_svg::WIDE;
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
 use crate::report::picks::Objective;
@@ -15,11 +18,11 @@ use std::collections::HashSet;
 /// Significant digits of the numbers on the page.
 pub const SHOWN_DIGITS: usize = 5;
 /// Designs drawn at most.
-pub const MOST_ROWS: usize = 10_000;
+pub const MOST_ROWS: usize = 20_000;
 /// Size of the data on the page at most \[bytes\].
-const MOST_BYTES: usize = 1_100_000;
+pub const MOST_BYTES: usize = 1_200_000;
 /// Axes with fewer values than this are labelled value by value.
-const FEW: usize = 14;
+const FEW: usize = 18;
 
 /// Designs that are drawn alike.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,8 +72,8 @@ pub struct FrontData<'a> {
     pub groups: Vec<Group>,
     /// The rows that are drawn, lightest first.
     pub rows: Vec<Row<'a>>,
-    /// Rows before sampling.
-    pub rows_total: usize,
+    /// Rows before sampling: of the front of all designs, and of the fronts of their groups alone.
+    pub rows_total: [usize; 2],
     /// Choices that differ among the rows, base to tip, then mass, tip deflection and lowest mode.
     pub axes: Vec<Axis>,
     /// Choices that are equal in all rows, in words.
@@ -78,22 +81,26 @@ pub struct FrontData<'a> {
 }
 
 impl<'a> FrontData<'a> {
-    /// The data of these designs; `kept` are drawn even if the front has to be sampled.
-    pub fn new(groups: Vec<Group>, rows: Vec<Row<'a>>, kept: &[String]) -> Self {
-        let rows_total = rows.len();
+    /// The data of these designs in at most so many bytes; `kept` are drawn even if the front has to be sampled.
+    pub fn new(groups: Vec<Group>, rows: Vec<Row<'a>>, kept: &[String], most_bytes: usize) -> Self {
+        let rows_total = counts(&rows);
         let mut room = MOST_ROWS;
         loop {
-            let rows = sampled(&rows, room, kept);
-            let data = Self::of(groups.clone(), rows, rows_total);
+            let data = Self::of(groups.clone(), sampled(&rows, room, kept), rows_total);
             let bytes = data.to_json(&[]).to_string().len();
-            if bytes <= MOST_BYTES || room < 100 {
+            if bytes <= most_bytes || room < 100 {
                 return data;
             }
-            room = (data.rows.len() * MOST_BYTES / bytes).saturating_sub(1);
+            room = (data.rows.len() * most_bytes / bytes).saturating_sub(1);
         }
     }
 
-    fn of(groups: Vec<Group>, rows: Vec<Row<'a>>, rows_total: usize) -> Self {
+    /// Rows that are drawn, counted as [`Self::rows_total`].
+    pub fn rows_drawn(&self) -> [usize; 2] {
+        counts(&self.rows)
+    }
+
+    fn of(groups: Vec<Group>, rows: Vec<Row<'a>>, rows_total: [usize; 2]) -> Self {
         let mut constants = Vec::new();
         let mut axes = Vec::new();
         for column in choice_columns(&rows) {
@@ -135,10 +142,11 @@ impl<'a> FrontData<'a> {
         json!({
             "ids": ids.join(" "),
             "groups": groups,
-            "group": self.rows.iter().map(|r| r.group).collect::<Vec<_>>(),
-            "front": self.rows.iter().map(|r| u8::from(r.on_front)).collect::<Vec<_>>(),
+            "group": packed(self.rows.iter().map(|r| r.group), self.groups.len()),
+            "front": packed(self.rows.iter().map(|r| usize::from(r.on_front)), 2),
             "axes": self.axes.iter().map(Axis::to_json).collect::<Vec<_>>(),
             "digits": SHOWN_DIGITS,
+            "letters": *packed::ALPHABET,
             "picks": picks,
         })
     }
@@ -160,26 +168,19 @@ impl Axis {
     }
 
     fn to_json(&self) -> Value {
-        let value = |v: &Option<f64>| match v {
-            None => Value::Null,
-            Some(v) if self.range.is_some() => json!(v),
-            Some(v) => json!(*v as u64),
-        };
         let range = self.range.map(|(low, high, scale)| json!([low, high, u8::from(scale == Scale::Log)]));
         json!({
             "key": self.column, "label": self.label, "unit": self.unit, "range": range,
             "ticks": self.ticks, "words": self.words,
-            "values": self.values.iter().map(value).map(whole).collect::<Vec<_>>(),
+            "values": packed::column(&self.values),
         })
     }
 }
 
-/// A number without a fraction as an integer: `80` is shorter than `80.0`.
-fn whole(value: Value) -> Value {
-    match value.as_f64() {
-        Some(v) if v.fract() == 0.0 && v.abs() < 1e15 => json!(v as i64),
-        _ => value,
-    }
+/// Rows on the front of all designs, and the others.
+fn counts(rows: &[Row]) -> [usize; 2] {
+    let front = rows.iter().filter(|r| r.on_front).count();
+    [front, rows.len() - front]
 }
 
 /// A cell of a row; blank if its table lacks the column.
@@ -270,7 +271,7 @@ fn number_axis(empty: Axis, numbers: &[Option<f64>]) -> Axis {
     distinct.sort_by(f64::total_cmp);
     distinct.dedup();
     let (low, high) = (distinct.first().copied().unwrap_or(1.0), distinct.last().copied().unwrap_or(10.0));
-    let scale = if low > 0.0 && high > 10.0 * low { Scale::Log } else { Scale::Linear };
+    let scale = if low > 0.0 && high > WIDE * low { Scale::Log } else { Scale::Linear };
     let ruling = rule(scale, low, high, 6);
     let mut axis = Axis { range: Some((ruling.low, ruling.high, scale)), values, ..empty };
     if distinct.len() <= FEW && distinct.len() > 1 {
@@ -301,23 +302,38 @@ fn natural(a: &str, b: &str) -> Ordering {
     pieces(a).cmp(&pieces(b)).then_with(|| a.cmp(b))
 }
 
-/// At most `room` rows, lightest first: those kept, those at the edge of a view, and every so-manieth.
+/// At most `room` rows, lightest first: the front of all designs whole if it fits into four fifths of the room.
 fn sampled<'a>(rows: &[Row<'a>], room: usize, kept: &[String]) -> Vec<Row<'a>> {
-    let mass = |r: &Row| cell(r, "mass_kg").parse().unwrap_or(f64::INFINITY);
-    let mut order: Vec<(f64, usize)> = rows.iter().enumerate().map(|(i, r)| (mass(r), i)).collect();
-    order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let (front, own): (Vec<Row>, Vec<Row>) = rows.iter().partition(|r| r.on_front);
+    let room_of_front = room.saturating_sub(own.len().min(room / 5));
+    let front = thinned(front, room_of_front, kept);
+    let own = thinned(own, room - front.len(), kept);
+    by_mass(front.into_iter().chain(own).collect())
+}
+
+/// Of too many rows those kept, those at the edge of a view, and of the rest an even part by mass.
+fn thinned<'a>(rows: Vec<Row<'a>>, room: usize, kept: &[String]) -> Vec<Row<'a>> {
     if rows.len() <= room {
-        return order.into_iter().map(|(_, i)| rows[i]).collect();
+        return rows;
     }
+    let rows = by_mass(rows);
     let named = |i: &usize| kept.iter().any(|k| k == cell(&rows[*i], "design_id"));
     let mut chosen: HashSet<usize> = (0..rows.len()).filter(named).collect();
-    let mut edge: Vec<usize> = edges(rows);
+    let mut edge = edges(&rows);
     thin(&mut edge, room / 2);
     chosen.extend(edge);
-    let mut rest: Vec<usize> = order.iter().map(|o| o.1).filter(|i| !chosen.contains(i)).collect();
+    let mut rest: Vec<usize> = (0..rows.len()).filter(|i| !chosen.contains(i)).collect();
     thin(&mut rest, room.saturating_sub(chosen.len()));
     chosen.extend(rest);
-    order.into_iter().filter(|(_, i)| chosen.contains(i)).map(|(_, i)| rows[i]).collect()
+    rows.into_iter().enumerate().filter(|(i, _)| chosen.contains(i)).map(|(_, row)| row).collect()
+}
+
+/// The lightest first; rows of equal mass as they came.
+fn by_mass(rows: Vec<Row>) -> Vec<Row> {
+    let mass = |r: &Row| cell(r, "mass_kg").parse().unwrap_or(f64::INFINITY);
+    let mut weighed: Vec<(f64, Row)> = rows.into_iter().map(|r| (mass(&r), r)).collect();
+    weighed.sort_by(|a, b| a.0.total_cmp(&b.0));
+    weighed.into_iter().map(|(_, row)| row).collect()
 }
 
 /// Keeps `room` of a list, evenly.
@@ -392,7 +408,7 @@ mod tests {
         let groups = ["steel", "alu"].iter().enumerate();
         let groups = groups.map(|(style, name)| Group { name: (*name).into(), style }).collect();
         let rows = (0..table.rows.len()).map(|row| Row { table, row, group: row % 2, on_front: true });
-        FrontData::new(groups, rows.collect(), &["d7".into()])
+        FrontData::new(groups, rows.collect(), &["d7".into()], MOST_BYTES)
     }
 
     #[test]
@@ -423,6 +439,19 @@ mod tests {
         assert!(data.rows.len() <= MOST_ROWS && data.rows.len() > MOST_ROWS / 2);
         assert!(data.rows.iter().any(|r| cell(r, "design_id") == "d7"));
         assert!(data.to_json(&[]).to_string().len() <= MOST_BYTES);
-        assert_eq!(data.rows_total, 30_000);
+        assert_eq!(data.rows_total, [30_000, 0]);
+    }
+
+    #[test]
+    fn the_front_of_all_designs_is_whole_before_groups_have_more_than_a_fifth() {
+        let table = table(60_000);
+        let drawn = |front: usize| {
+            let group = Group { name: "steel".into(), style: 0 };
+            let row = |row: usize| Row { table: &table, row, group: 0, on_front: row < front };
+            let rows: Vec<Row> = (0..60_000).map(row).collect();
+            FrontData::new(vec![group], rows, &[], MOST_BYTES).rows_drawn()
+        };
+        assert_eq!(drawn(10_000), [10_000, 10_000]);
+        assert_eq!(drawn(50_000), [16_000, 4_000]);
     }
 }

@@ -4,6 +4,7 @@ use super::front_data::{Axis, FrontData, Row};
 use super::{Figure, Gallery};
 use crate::report::number::significant;
 use crate::report::picks::{Design, Pick};
+use crate::report::summary::large;
 use crate::report::svg::parallel::{Parallel, ParallelAxis, ParallelLine};
 use serde_json::{Value, json};
 
@@ -30,22 +31,40 @@ impl FrontViews<'_> {
     /// The section's values for its template.
     pub(super) fn context(&self, gallery: &mut Gallery) -> Value {
         let data = &self.data;
-        let shown = data.rows.len();
-        let sampled = (shown < data.rows_total).then(|| {
-            format!(
-                "{} of {} designs are drawn: the picks, the best at each mass, and every so-manieth of the rest. {} has all.",
-                shown, data.rows_total, self.all_in
-            )
-        });
         json!({
             "scatter": gallery.show(&self.scatter),
             "parallel": gallery.show(&self.parallel()),
-            "sampled": sampled,
-            "shown": shown,
+            "sampled": self.left_out(),
             "coloured_by": self.coloured_by,
             "has_both": self.has_both,
+            "all_in": self.all_in,
             "constants": data.constants,
             "groups": data.groups.iter().map(|g| g.name.clone()).collect::<Vec<_>>(),
+        })
+    }
+
+    /// What is not drawn for want of room, in a sentence.
+    fn left_out(&self) -> Option<String> {
+        let ([front, own], [all_front, all_own]) = (self.data.rows_drawn(), self.data.rows_total);
+        let part = |drawn: usize, all: usize, of: &str| {
+            let (drawn, all) = (large(drawn as u128), large(all as u128));
+            if drawn == all { format!("all {all} {of}") } else { format!("{drawn} of {all} {of}") }
+        };
+        let mut parts = vec![part(front, all_front, "designs of the front")];
+        if all_own > 0 {
+            parts.push(part(
+                own,
+                all_own,
+                &format!("that are only on their own {}\u{2019}s", self.coloured_by),
+            ));
+        }
+        (front + own < all_front + all_own).then(|| {
+            format!(
+                "To keep the page light it draws {}: of what is thinned out the picks and the best at each mass stay, and \
+                 of the rest an even part by mass. All are in {}.",
+                parts.join(" and "),
+                self.all_in
+            )
         })
     }
 
@@ -79,7 +98,8 @@ impl FrontViews<'_> {
         let caption = format!(
             "Every choice that differs among the designs, and what comes of it: one line a design ({drawn} of {} drawn here), \
              coloured by {}; the picks are drawn on top.",
-            data.rows_total, self.coloured_by
+            large((data.rows_total[0] + data.rows_total[1]) as u128),
+            self.coloured_by
         );
         let axes = data.axes.iter().map(|a| ParallelAxis { label: named_axis(a), ticks: a.ticks.clone() });
         let picture = Parallel {

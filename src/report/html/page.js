@@ -53,6 +53,20 @@ function views(f) {
   document.documentElement.classList.add("live");
   $("views").hidden = false;
   const ids = f.ids.split(" "), count = ids.length, axes = f.axes;
+  /* columns of few values are packed: a letter or two a row, each an index into their list */
+  const rank = new Uint8Array(128), base = f.letters.length;
+  for (let i = 0; i < base; i++) rank[f.letters.charCodeAt(i)] = i;
+  function unpack({ text, width, list }) {
+    const values = new Array(count);
+    for (let row = 0, at = 0; row < count; row++) {
+      let i = 0;
+      for (let k = 0; k < width; k++) i = i * base + rank[text.charCodeAt(at++)];
+      values[row] = list ? list[i] : i;
+    }
+    return values;
+  }
+  f.group = unpack(f.group); f.front = unpack(f.front);
+  axes.forEach((a) => { if (!Array.isArray(a.values)) a.values = unpack(a.values); });
   const at = (key) => axes.findIndex((a) => a.key === key);
   const MASS = at("mass_kg"), TIP = at("tip_deflection_mm"), MODE = at("lowest_mode_hz");
   const shapes = f.groups.map((g) => new Path2D(g.path));
@@ -63,13 +77,14 @@ function views(f) {
     a.place = a.range
       ? (a.range[2] ? (v) => Math.log(v / a.range[0]) / Math.log(a.range[1] / a.range[0]) : (v) => (v - a.range[0]) / (a.range[1] - a.range[0]))
       : (v) => (v + 0.5) / a.words.length;
-    a.places = Float32Array.from(a.values, (v) => (v === null ? NaN : a.place(v)));
+    a.places = new Float32Array(count);
+    for (let i = 0; i < count; i++) { const v = a.values[i]; a.places[i] = v === null ? NaN : a.place(v); }
     a.title = a.unit ? `${a.label} [${a.unit}]` : a.label;
   });
   const state = {
     groups: f.groups.map(() => true), which: $("which") ? "front" : "all",
     limits: axes.map(() => null), words: axes.map((a) => (a.range ? null : new Set())),
-    hover: -1, kept: -1, sort: [MASS, 1],
+    hover: -1, kept: -1, lit: -1, sort: [MASS, 1],
   };
   const on = new Uint8Array(count);
   let chosen = 0;
@@ -129,6 +144,10 @@ function views(f) {
   const paint = (g) => (dark() && LIGHTER[f.groups[g].colour]) || f.groups[g].colour;
   const dark = () => matchMedia("(prefers-color-scheme: dark)").matches;
 
+  /* while an entry of the legend is pointed at, the others stand back: told apart without colour */
+  const faded = (grp) => state.lit >= 0 && state.lit !== grp && state.groups[state.lit];
+  function light(grp) { if (state.lit !== grp) { state.lit = grp; later(redraw); } }
+
   /* a group's marker, drawn once and stamped at every design: ten thousand outlines would take their time */
   function marker(grp, size) {
     const ratio = devicePixelRatio || 1, stamp = document.createElement("canvas"), g = stamp.getContext("2d");
@@ -153,13 +172,20 @@ function views(f) {
     g.textAlign = "center"; g.fillText(s.x.title, (q.l + q.r) / 2, s.h - 10);
     g.textAlign = "left"; g.font = "600 " + FONT; g.fillText(s.y.title, 10, 18);
     g.font = FONT; g.fillStyle = soft; g.textAlign = "right"; g.fillText(s.down ? "down and left is better" : "up and left is better", s.w - 14, 18);
+    const across = s.x.places, up = s.y.places, wide = q.r - q.l, high = q.b - q.t;
     g.fillStyle = dark() ? "#5b656f" : "#c3c9cf"; g.globalAlpha = 0.55;
-    for (let i = 0; i < count; i++) if (!on[i] && visible(i)) g.fillRect(sx(s, s.x.places[i]) - 1, sy(s, s.y.places[i]) - 1, 2, 2);
-    g.globalAlpha = count > 3000 ? 0.75 : 0.9;
+    for (let i = 0; i < count; i++) if (!on[i] && visible(i)) g.fillRect(q.l + across[i] * wide - 1, q.b - up[i] * high - 1, 2, 2);
     const size = count > 3000 ? 2.3 : count > 600 ? 2.8 : 3.6;
     for (const grp of order) {
-      const stamp = marker(grp, size), half = 1.6 * size;
-      for (let i = 0; i < count; i++) if (on[i] && f.group[i] === grp) g.drawImage(stamp, sx(s, s.x.places[i]) - half, sy(s, s.y.places[i]) - half, 2 * half, 2 * half);
+      g.globalAlpha = faded(grp) ? 0.08 : count > 3000 ? 0.75 : 0.9;
+      const stamp = marker(grp, size), half = 1.6 * size, columns = Math.ceil(s.w) + 1;
+      /* designs of a group on the same pixel are stamped once */
+      const stamped = new Uint8Array(columns * (Math.ceil(s.h) + 1));
+      for (let i = 0; i < count; i++) {
+        if (!on[i] || f.group[i] !== grp) continue;
+        const x = q.l + across[i] * wide, y = q.b - up[i] * high, pixel = Math.round(y) * columns + Math.round(x);
+        if (!stamped[pixel]) { stamped[pixel] = 1; g.drawImage(stamp, x - half, y - half, 2 * half, 2 * half); }
+      }
     }
     g.globalAlpha = 1;
     names(s);
@@ -207,6 +233,7 @@ function views(f) {
     /* never more lines than can be seen: the rest would only cost time */
     const every = Math.max(1, Math.ceil(chosen / 1500));
     for (const grp of order) {
+      if (faded(grp)) continue;
       g.strokeStyle = paint(grp); g.globalAlpha = chosen > 800 ? 0.16 : chosen > 120 ? 0.35 : 0.75;
       let n = 0, seen = 0;
       g.beginPath();
@@ -297,8 +324,11 @@ function views(f) {
     node.dataset.design = ids[i];
   }
 
-  let waiting = false;
-  function later(work) { if (!waiting) { waiting = true; requestAnimationFrame(() => { waiting = false; work(); }); } }
+  const waiting = new Set();
+  function later(work) {
+    if (!waiting.size) requestAnimationFrame(() => { const all = [...waiting]; waiting.clear(); all.forEach((w) => w()); });
+    waiting.add(work);
+  }
   function redraw() { scatters.forEach(scatter); coordinates(); overlay(); }
 
   /* ---- pointing, brushing, keys ---- */
@@ -393,6 +423,8 @@ function views(f) {
     $("legend").replaceChildren(...f.groups.map((group, g) => {
       const button = make("button", { type: "button" }, svg(g), group.name);
       button.setAttribute("aria-pressed", String(state.groups[g]));
+      for (const kind of ["pointerenter", "focus"]) button.addEventListener(kind, () => light(g));
+      for (const kind of ["pointerleave", "blur"]) button.addEventListener(kind, () => light(-1));
       button.addEventListener("click", () => { state.groups[g] = !state.groups[g]; button.setAttribute("aria-pressed", String(state.groups[g])); select(); });
       return button;
     }));

@@ -113,7 +113,7 @@ impl PickedArm {
         let factor = shortest(sketch.factor);
         sketch.title = format!("{} in its worst pose: {}", self.title(), solved.case.name);
         sketch.caption = format!(
-            "links to scale, joints as symbols; bent shape (blue) exaggerated {factor} times: {} mm at the tip",
+            "links to scale, joints as symbols; bent shape (outlined) exaggerated {factor} times: {} mm at the tip",
             significant(solved.tip_mm, 4)
         );
         sketch.description = format!(
@@ -123,7 +123,7 @@ impl PickedArm {
         );
         sketch.width_px = 620.0;
         let caption = format!(
-            "{} Pose {}, payload {} kg (orange).",
+            "{} Pose {}, payload {} kg (square).",
             view.words,
             degrees(&solved.case.pose_deg),
             shortest(solved.case.payload.mass_kg)

@@ -58,7 +58,7 @@ pub fn steps_figure(steps: &[Step]) -> Option<Figure> {
             .enumerate()
             .map(|(kind, value)| Mark { value, interval: None, kind })
             .collect(),
-        remark: format!("{}   {}   {}", fixed(s.median, 3), fixed(s.mean, 3), fixed(s.max, 2)),
+        remark: format!("{} / {} / {}", fixed(s.median, 3), fixed(s.mean, 3), fixed(s.max, 2)),
     };
     let caption = "Distance between measured and predicted position, each pose predicted by the model fitted without \
                    it: median, mean and largest. Every line adds one thing to the model above it.";
@@ -104,8 +104,8 @@ pub fn sizes_figure(positions: &[Position]) -> Option<Figure> {
             ..Series::line(NAMES[k], style, points)
         }
     };
-    let caption = "How many positions of a hundred are off by at most so much: calibration only, with what was found, and \
-                   with what was found but predicted without their own pose. Where the last two part, the model knows its own poses better than others.";
+    let caption = "How many positions of a hundred are off by at most so much: calibration only (circles), with what was found \
+                   (solid), and with what was found but predicted without their own pose (dashed). Where the last two part, the model knows its own poses better than others.";
     let plot = Plot {
         title: "How large the errors are".into(),
         description: caption.into(),

@@ -1,7 +1,7 @@
 //! A study's page: the question and its answer, the front in linked views, the picks with all that is
 //! behind them, the materials, the run, and where every number comes from.
 
-use super::front_data::{FrontData, Group, Row};
+use super::front_data::{FrontData, Group, MOST_BYTES, Row};
 use super::front_views::FrontViews;
 use super::pick::{PickedArm, deflection_bars};
 use super::{Extra, Figure, Gallery, Page, table};
@@ -10,6 +10,9 @@ use crate::report::summary::{SummaryInput, answer_words, large, materials_side_b
 use crate::report::svg::MUTED;
 use serde_json::{Value, json};
 use std::collections::HashSet;
+
+/// Size of a page at most \[bytes\].
+const MOST_PAGE_BYTES: usize = 2_000_000;
 
 /// A catalog row that a number on the page comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,13 +52,21 @@ pub struct StudyPage<'a> {
 }
 
 impl StudyPage<'_> {
-    /// The page and its pictures.
+    /// The page and its pictures. If the rest of it needs the room, the front has less.
     pub fn page(&self) -> Page {
+        let page = self.page_with(MOST_BYTES);
+        match page.html.len().saturating_sub(MOST_PAGE_BYTES) {
+            0 => page,
+            excess => self.page_with(MOST_BYTES.saturating_sub(excess)),
+        }
+    }
+
+    fn page_with(&self, front_bytes: usize) -> Page {
         let mut gallery = Gallery::default();
         let facts = &self.summary.facts;
         let designs = picks::designs(&self.summary.overall);
         let chosen = picks::picks(&designs);
-        let views = self.views(&chosen);
+        let views = self.views(&chosen, front_bytes);
         let data = views.json();
         let extras: Vec<Value> = self.extras.iter().map(|e| gallery.extra(e)).collect();
         let content = json!({
@@ -85,14 +96,14 @@ impl StudyPage<'_> {
         let listed = |words: &[String]| if words.is_empty() { "none".into() } else { words.join("; ") };
         vec![
             ("designs searched", large(facts.designs_total)),
-            ("on the front", grouped(front as u128)),
+            ("on the front", large(front as u128)),
             ("limits", listed(&facts.constraints)),
             ("poses, the worst of which counts", listed(&facts.cases)),
         ]
     }
 
     /// The fronts as linked views: the front of all, and what only a material's own front has.
-    fn views<'v>(&'v self, chosen: &'v [picks::Pick]) -> FrontViews<'v> {
+    fn views<'v>(&'v self, chosen: &'v [picks::Pick], front_bytes: usize) -> FrontViews<'v> {
         let summary = self.summary;
         let names = single_materials(summary);
         let mut groups: Vec<Group> =
@@ -123,7 +134,7 @@ impl StudyPage<'_> {
         let kept: Vec<String> = chosen.iter().map(|p| p.design.design_id.clone()).collect();
         let has_both = rows.iter().any(|r| !r.on_front);
         FrontViews {
-            data: FrontData::new(groups, rows, &kept),
+            data: FrontData::new(groups, rows, &kept, front_bytes),
             picks: chosen,
             scatter: Figure {
                 name: "front".into(),
@@ -135,7 +146,7 @@ impl StudyPage<'_> {
             },
             coloured_by: "material",
             has_both,
-            all_in: "front.csv",
+            all_in: if has_both { "front.csv and front.<material>.csv" } else { "front.csv" },
         }
     }
 }
@@ -157,11 +168,4 @@ fn part(row: &CatalogRow) -> Value {
 pub(super) fn anchor(name: &str) -> String {
     let letters = name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' });
     format!("part-{}", letters.collect::<String>())
-}
-
-/// A whole number in groups of three.
-fn grouped(n: u128) -> String {
-    let digits = n.to_string();
-    let groups: Vec<&[u8]> = digits.as_bytes().rchunks(3).rev().collect();
-    groups.iter().map(|g| String::from_utf8_lossy(g).into_owned()).collect::<Vec<_>>().join("\u{202f}")
 }

@@ -111,8 +111,13 @@ impl StackedBars {
             let full = format!("{} {share}", self.parts[part].name);
             let fitting = [full, share].into_iter().find(|w| text_px(w, 12.0) < right - left - 6.0);
             if let Some(words) = fitting {
-                let ink = if self.shade(part) < 0.45 { "#FFFFFE" } else { "#111111" };
-                let style = format!(" font-size=\"12\" fill=\"{ink}\"");
+                // hatching is darker than words on it may be: a rim of the part's own colour keeps them apart
+                let hatched = self.parts[part].hatched;
+                let ink = if !hatched && self.shade(part) < 0.45 { "#FFFFFE" } else { "#111111" };
+                let rim = if hatched { self.fill(part) } else { "none".into() };
+                let style = format!(
+                    " font-size=\"12\" fill=\"{ink}\" paint-order=\"stroke\" stroke=\"{rim}\" stroke-width=\"4\""
+                );
                 text(out, ((left + right) / 2.0, y + BAR_PX / 2.0 + 4.5), "middle", &style, &words);
             }
         }
@@ -173,7 +178,7 @@ impl StackedBars {
     fn fill(&self, part: usize) -> String {
         let (dark, light) = match self.parts[part].hatched {
             false => ([8.0, 69.0, 119.0], [176.0, 212.0, 238.0]),
-            true => ([166.0, 74.0, 0.0], [253.0, 216.0, 165.0]),
+            true => ([214.0, 122.0, 40.0], [253.0, 222.0, 176.0]),
         };
         let t = self.shade(part);
         let mix = |i: usize| (dark[i] + t * (light[i] - dark[i])).round() as u8;

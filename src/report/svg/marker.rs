@@ -34,10 +34,16 @@ pub fn outline(style: usize, r: f64) -> String {
         (-1.33, -0.43),
         (-0.33, -0.45),
     ];
-    // beyond the palette the colours come again with other shapes
+    // beyond the palette the colours come again with other shapes, which have a hole
+    let hole = style != MUTED && (style / PALETTE.len()) % 2 == 1;
+    let polygon = |corners: &[(f64, f64)], r: f64, turn_rad: f64| {
+        let inner = if hole { polygon(corners.iter().rev(), 0.45 * r, turn_rad) } else { String::new() };
+        polygon(corners.iter(), r, turn_rad) + &inner
+    };
     match (style + style / PALETTE.len()) % PALETTE.len() {
-        _ if style == MUTED => circle(r),
-        0 => circle(r),
+        _ if style == MUTED => circle(r, 0),
+        0 if hole => circle(r, 0) + &circle(0.45 * r, 1),
+        0 => circle(r, 0),
         1 => polygon(SQUARE, r, 0.0),
         2 => polygon(UP, r, 0.0),
         3 => polygon(DIAMOND, r, 0.0),
@@ -48,15 +54,15 @@ pub fn outline(style: usize, r: f64) -> String {
     }
 }
 
-fn circle(r: f64) -> String {
+/// A circle drawn one way round (`sweep` 0) or the other.
+fn circle(r: f64, sweep: u8) -> String {
     let (r, d) = (px(r), px(2.0 * r));
-    format!("M-{r} 0a{r} {r} 0 1 0 {d} 0a{r} {r} 0 1 0 -{d} 0z")
+    format!("M-{r} 0a{r} {r} 0 1 {sweep} {d} 0a{r} {r} 0 1 {sweep} -{d} 0z")
 }
 
-fn polygon(corners: &[(f64, f64)], r: f64, turn_rad: f64) -> String {
+fn polygon<'a>(corners: impl Iterator<Item = &'a (f64, f64)>, r: f64, turn_rad: f64) -> String {
     let (sin, cos) = turn_rad.sin_cos();
     let corners: Vec<String> = corners
-        .iter()
         .map(|(x, y)| format!("{} {}", px(r * (cos * x - sin * y)), px(r * (sin * x + cos * y))))
         .collect();
     format!("M{}z", corners.join("L"))

@@ -70,14 +70,16 @@ fn logarithmic(low: f64, high: f64, count: usize) -> Ruling {
     let (low, high) = if high / low < 1.02 { (low / 1.5, high * 1.5) } else { (low, high) };
     let (low, high) = (stop_below(low), stop_above(high));
     let decades = (high / low).log10();
-    let labelled: &[f64] = if decades <= 1.05 {
+    let labelled: &[f64] = if 3.0 * decades > (2 * count + 1) as f64 {
+        &[1.0]
+    } else if decades <= 1.05 {
         &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]
     } else if decades <= 3.0 {
         &[1.0, 2.0, 5.0]
     } else {
         &[1.0]
     };
-    let every = ((decades / count.max(1) as f64).ceil() as i32).max(1);
+    let every = ((decades / (2 * count.max(1)) as f64).ceil() as i32).max(1);
     let ticks = (low.log10().floor() as i32..=high.log10().ceil() as i32)
         .flat_map(|power| (1..10).map(move |m| (m, power)))
         .map(|(m, power)| (f64::from(m), power, times_power(f64::from(m), power)))
