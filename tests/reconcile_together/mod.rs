@@ -95,7 +95,7 @@ fn the_corrected_arm_predicts_both_kinds_of_readings() {
     let corrected = placed("arm.corrected.json");
     for (file, from, sigma) in [("static.csv", "dx_mm", "sigma_mm"), ("positions.csv", "x_mm", "sigma_mm")] {
         let table = Table::read(&folder.path().join("made").join(file)).expect("table");
-        let text = predict(&[corrected.clone()], &campaign.statement, table).expect("predicted");
+        let text = predict(std::slice::from_ref(&corrected), &campaign.statement, table).expect("predicted");
         let column = |name: &str| -> Vec<f64> {
             let at = text.lines().next().and_then(|h| h.split(',').position(|c| c == name)).expect("column");
             let cell = |l: &str| l.split(',').nth(at).and_then(|c| c.parse().ok()).expect("number");
