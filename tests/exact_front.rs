@@ -392,6 +392,7 @@ fn study_with_effects(seed: u64) -> Value {
         json!({"effect": "harness_mass", "at": "shoulder", "parameters": {"kg_per_m": dice.within(0.5, 6.0)}}),
         json!({"effect": "harness_mass", "at": "flange", "parameters": {"kg_per_m": dice.within(0.5, 6.0)}}),
         json!({"effect": "modulus_error", "at": "upper_arm", "parameters": {"factor": dice.within(0.5, 1.2)}}),
+        json!({"effect": "link_flexibility", "at": "forearm", "parameters": {"factor": dice.within(0.3, 2.0)}}),
         json!({"effect": "frame_compliance", "at": "upper_arm", "parameters": {
             "diagonal_rad_per_nm": [3e-6, 5e-6, 2e-6], "coupling_rad_per_nm": [1e-6, 0.0, -1e-6]}}),
         json!({"effect": "immersion", "at": "arm",
@@ -417,6 +418,11 @@ fn effects_of_the_study_are_bounded_too() {
     // seeds that do not take long
     let points: usize =
         [1, 5, 6, 8, 9, 12, 13, 14].map(|seed| agree(&study_with_effects(seed))).into_iter().sum();
+    // a link far stiffer than its section says
+    let mut stiffer = random_study(1);
+    stiffer["effects"] =
+        json!([{"effect": "link_flexibility", "at": "forearm", "parameters": {"factor": 0.2}}]);
+    let points = points + agree(&stiffer);
     println!("{points} designs, the same in all searches");
     assert!(points > 300, "{points}");
 }

@@ -38,7 +38,7 @@ impl Line {
             LinkModel::Bending => place < 2,
             LinkModel::Full => true,
         };
-        let mut stiffnesses = line_stiffnesses(beam);
+        let mut stiffnesses = line_stiffnesses(beam).map(|s| s / beam.flexibility);
         for (place, stiffness) in stiffnesses.iter_mut().enumerate() {
             if !yields(place) {
                 *stiffness = f64::INFINITY;
