@@ -328,6 +328,7 @@ fn large(front: usize) -> SummaryInput {
     };
     let table = |rows: Vec<Vec<String>>| FrontTable { columns: columns.clone(), rows };
     let per_material = |m: usize| MaterialFront {
+        status: "complete".into(),
         name: materials[m].into(),
         cost_eur_per_kg: None,
         front: table((0..front).filter(|i| i % 4 == m).map(|i| row(i, m)).collect()),

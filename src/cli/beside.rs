@@ -8,7 +8,7 @@ use crate::report::html::Extra;
 use crate::report::picks;
 use crate::report::tolerance::Scattered;
 use crate::search::ArmProblem;
-use crate::search::near::Slack;
+use crate::search::near::{NearDesigns, Slack};
 use crate::study::{
     NearFront, Sampling, StudyOutcome, Tolerance, ballast_flags, near_front, part, scatter_front,
 };
@@ -32,8 +32,8 @@ pub(super) struct BesideArgs {
     #[arg(long, value_name = "N", default_value_t = 1, requires = "tolerance")]
     seed: u64,
     /// Also list the designs that come within this part of a design of the front in mass, in deflection and in
-    /// lowest mode, such as 2%, in near.csv; every design is visited a second time. Not with the exact
-    /// search, which does not visit them
+    /// lowest mode, such as 2%, in near.csv. The designs are searched a second time; after an exact search that
+    /// was stopped, whose front may not be the front, there is no such list
     #[arg(long, value_name = "PERCENT", value_parser = part)]
     within: Option<f64>,
     /// How many designs --within lists at most, the nearest first
@@ -62,6 +62,9 @@ pub(super) struct Found<'a> {
     pub problem: &'a ArmProblem<'a>,
     pub catalogs: &'a Catalogs,
     pub outcome: &'a StudyOutcome,
+    /// The designs near the front that an exact search found.
+    pub near: Option<&'a NearDesigns>,
+    pub is_exact: bool,
     pub stop: &'a AtomicBool,
 }
 
@@ -89,6 +92,9 @@ impl BesideArgs {
         }
         let near = self.near(found).map_err(|()| stopped())?;
         beside.run.insert("within".into(), near.as_ref().map_or(Value::Null, near_json));
+        if near.is_none() && self.within.is_some() {
+            beside.terminal.push_str(&format!("\n{}", wrap(NO_NEAR, 80, "")));
+        }
         if let Some(near) = near {
             beside.files.push(("near.csv".into(), near.table.to_csv()));
             beside.markdown.push_str(&near.to_markdown());
@@ -99,21 +105,19 @@ impl BesideArgs {
         Ok(beside)
     }
 
-    /// Refuses what a search that does not visit every design cannot give.
-    pub(super) fn refuse_exact(&self) -> Result<(), Failure> {
-        match self.within {
-            None => Ok(()),
-            Some(_) => Err(Failure::Usage(
-                "--within needs --search exhaustive: the exact search cuts near designs unvisited".into(),
-            )),
-        }
+    /// Which designs near the front are asked for, if any are.
+    pub(super) fn slack(&self) -> Option<Slack> {
+        self.within.map(|part| Slack { part, most: self.within_most as usize })
     }
 
-    /// The designs near the front, if they were asked for.
+    /// The designs near the front, if they were asked for and found.
     fn near(&self, found: &Found) -> Result<Option<NearFront>, ()> {
-        let Some(part) = self.within else { return Ok(None) };
-        let slack = Slack { part, most: self.within_most as usize };
-        near_front(found.problem, found.catalogs, found.outcome, slack, found.stop).map(Some).ok_or(())
+        let Some(slack) = self.slack() else { return Ok(None) };
+        let Found { problem, catalogs, outcome, near, is_exact, stop } = *found;
+        match is_exact {
+            true => Ok(near.map(|near| NearFront::of(problem, catalogs, &outcome.front, near, slack))),
+            false => near_front(problem, catalogs, outcome, slack, stop).map(Some).ok_or(()),
+        }
     }
 
     /// The front under scatter, if that was asked for.
@@ -127,6 +131,10 @@ impl BesideArgs {
             .ok_or(())
     }
 }
+
+/// Why there is no list of designs near a front although it was asked for.
+const NO_NEAR: &str = "No near.csv: the search was stopped before the designs near the front were found; a longer \
+                       --time-limit helps.";
 
 fn near_json(near: &NearFront) -> Value {
     json!({

@@ -20,6 +20,7 @@ use crate::report::summary::{
 };
 use crate::report::table::Table;
 use crate::search::hypervolume::front_hypervolume;
+use crate::search::near::NearDesigns;
 use crate::search::{ArmProblem, Status, exact};
 use crate::study::{
     Carried, ExactStudy, Study, StudyOutcome, budgets, empty_pieces, front_table, left_out, named,
@@ -176,7 +177,9 @@ fn search_with(
                 text,
                 carried,
                 problem: &problem,
+                whole: &problem,
                 outcome: &outcome,
+                near: None,
                 exact: None,
                 elapsed_s,
                 overlay,
@@ -204,9 +207,6 @@ fn search_kind(args: &RunArgs, study: &Study, catalogs: &Catalogs) -> Result<Sea
     })?;
     let large = designs > MOST_VISITED;
     let kind = args.search.unwrap_or(if large { SearchKind::Exact } else { SearchKind::Exhaustive });
-    if kind == SearchKind::Exact {
-        args.beside.refuse_exact()?;
-    }
     if let (SearchKind::Exact, Err(why)) = (kind, exact::conditions(&study.space)) {
         return Err(Failure::Usage(format!(
             "the exact search cannot certify the study \"{}\": {why}; use --search exhaustive{}",
@@ -241,8 +241,8 @@ fn search_exactly(
     let stop = stopped_by_signal();
     let started = Instant::now();
     let deadline = args.time_limit.map(|s| started + Duration::from_secs_f64(s));
-    let ExactStudy { study: part, outcome, boxes, gap } =
-        run_exact(study, catalogs, &stop, deadline, watch_boxes);
+    let ExactStudy { study: part, outcome, boxes, gap, near } =
+        run_exact(study, catalogs, &stop, deadline, args.beside.slack(), watch_boxes);
     let nothing = |problem: String| {
         let _ = std::fs::remove_dir(dir);
         problem
@@ -264,12 +264,15 @@ fn search_exactly(
         )))),
         _ => {
             let problem = ArmProblem::new(&part.space, catalogs);
+            let whole = ArmProblem::new(&study.space, catalogs);
             let finished = Finished {
                 study: &part,
                 text,
                 carried,
                 problem: &problem,
+                whole: &whole,
                 outcome: &outcome,
+                near: near.as_ref(),
                 exact: Some((boxes, gap)),
                 elapsed_s: started.elapsed().as_secs_f64(),
                 overlay,
@@ -382,7 +385,11 @@ struct Finished<'a> {
     text: &'a str,
     carried: &'a [Carried],
     problem: &'a ArmProblem<'a>,
+    /// With all options of the study.
+    whole: &'a ArmProblem<'a>,
     outcome: &'a StudyOutcome,
+    /// The designs near the front that an exact search found.
+    near: Option<&'a NearDesigns>,
     /// Boxes bounded and left open, and the gap, of an exact search.
     exact: Option<([u64; 2], Option<f64>)>,
     elapsed_s: f64,
@@ -394,8 +401,10 @@ struct Finished<'a> {
 impl Finished<'_> {
     fn files(&self, asked: &BesideArgs, stop: &AtomicBool) -> Result<Written, Failure> {
         let summary = self.summary();
-        let Self { problem, catalogs, outcome, .. } = *self;
-        let beside = asked.work(&Found { problem, catalogs, outcome, stop }, &summary.overall);
+        let Self { problem, catalogs, outcome, near, .. } = *self;
+        let is_exact = self.exact.is_some();
+        let beside =
+            asked.work(&Found { problem, catalogs, outcome, near, is_exact, stop }, &summary.overall);
         // succeeds only on an empty folder: earlier results stay
         let beside = beside.inspect_err(|_| drop(std::fs::remove_dir(self.dir)))?;
         let mut files = vec![("front.csv".to_string(), summary.overall.to_csv())];
@@ -420,10 +429,9 @@ impl Finished<'_> {
     fn summary(&self) -> SummaryInput {
         let (study, sweep) = (self.study, &self.outcome.sweep);
         let cost = |name: &str| self.catalogs.materials.iter().find(|m| m.name == name)?.cost_eur_per_kg;
-        let materials = study.space.material_names();
         let overall = front_table(self.problem, self.catalogs, &self.outcome.front);
         SummaryInput {
-            budgets: budgets(self.problem, &self.outcome.front, &overall),
+            budgets: budgets(self.whole, &overall),
             facts: SummaryFacts {
                 study: study.name.clone(),
                 question: study.question.clone(),
@@ -441,13 +449,15 @@ impl Finished<'_> {
                 results: self.dir.display().to_string(),
             },
             overall,
-            materials: materials
-                .into_iter()
-                .zip(&self.outcome.by_material)
-                .map(|(name, front)| MaterialFront {
-                    cost_eur_per_kg: cost(&name),
-                    name,
-                    front: front_table(self.problem, self.catalogs, front),
+            materials: self
+                .outcome
+                .by_material
+                .iter()
+                .map(|of| MaterialFront {
+                    cost_eur_per_kg: cost(&of.name),
+                    name: of.name.clone(),
+                    status: of.status.word().into(),
+                    front: front_table(self.problem, self.catalogs, &of.front),
                 })
                 .collect(),
         }
@@ -483,8 +493,8 @@ impl Finished<'_> {
             .iter()
             .map(|m| {
                 json!({
-                    "name": m.name, "slug": slug(&m.name), "front_size": m.front.rows.len(),
-                    "cost_eur_per_kg": m.cost_eur_per_kg,
+                    "name": m.name, "slug": slug(&m.name), "status": m.status,
+                    "front_size": m.front.rows.len(), "cost_eur_per_kg": m.cost_eur_per_kg,
                 })
             })
             .collect();

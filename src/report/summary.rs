@@ -63,6 +63,8 @@ pub struct MaterialFront {
     pub name: String,
     /// Cost of the raw material \[EUR/kg\]; `None` = unknown.
     pub cost_eur_per_kg: Option<f64>,
+    /// How its search ended: complete, certified, partial or infeasible.
+    pub status: String,
     /// The front of the designs whose links are all of it.
     pub front: FrontTable,
 }
@@ -366,6 +368,10 @@ fn materials_table(input: &SummaryInput, names: &[String], headers: [&str; 7]) -
     let owners = owners(input);
     for ((material, name), (_, count)) in input.materials.iter().zip(names).zip(&owners) {
         let cost = known(material.cost_eur_per_kg);
+        let name = match material.status.as_str() {
+            "partial" => &format!("{name} (stopped)"),
+            _ => name,
+        };
         table.row(material_cells(name, &designs(&material.front), percent(*count, total), cost));
     }
     let mixed = designs(&super::front_svg::mixed_designs(&input.overall));

@@ -23,7 +23,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// The fast model and the full one differ by less than this part: no near design is lost to rounding.
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// A front that designs are compared with.
 pub struct Shortfall {
@@ -44,6 +44,16 @@ impl Shortfall {
         let first = self.front.partition_point(|f| design.mass_kg > f.mass_kg * (1.0 + most));
         let worst = |rival: &Objectives| worse_by(design, rival).into_iter().fold(0.0, f64::max);
         self.front[first..].iter().map(worst).reduce(f64::min).filter(|shortfall| *shortfall <= most)
+    }
+
+    /// Whether the shortfall of a design is at most `most`.
+    pub fn is_within(&self, most: f64, design: &Objectives) -> bool {
+        let worse = 1.0 + most;
+        let first = self.front.partition_point(|f| design.mass_kg > f.mass_kg * worse);
+        self.front[first..].iter().any(|f| {
+            design.tip_deflection_m <= f.tip_deflection_m * worse
+                && f.lowest_mode_hz <= design.lowest_mode_hz * worse
+        })
     }
 }
 
@@ -72,8 +82,8 @@ pub struct NearDesign {
 pub struct NearDesigns {
     /// Nearest first; of equals the one with the smaller number.
     pub nearest: Vec<NearDesign>,
-    /// How many there are.
-    pub total: u64,
+    /// How many there are; `None` if the search stopped counting because there are more than are kept.
+    pub total: Option<u64>,
 }
 
 /// Which designs are looked for.
@@ -120,7 +130,7 @@ pub fn near_designs<P: OutwardIn>(
     });
     let mut nearest = seeker.nearest.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     keep_nearest(&mut nearest, slack.most);
-    (!stop.load(Ordering::Relaxed)).then_some(NearDesigns { nearest, total })
+    (!stop.load(Ordering::Relaxed)).then_some(NearDesigns { nearest, total: Some(total) })
 }
 
 /// What all tasks share.
@@ -134,7 +144,7 @@ struct Seeker<'s> {
 }
 
 /// Designs that a task keeps for itself before it hands them over.
-const BUFFER: usize = 1 << 12;
+pub(super) const BUFFER: usize = 1 << 12;
 
 struct Worker<'s> {
     seeker: &'s Seeker<'s>,
@@ -178,7 +188,7 @@ impl Worker<'_> {
     }
 }
 
-fn keep_nearest(designs: &mut Vec<NearDesign>, most: usize) {
+pub(super) fn keep_nearest(designs: &mut Vec<NearDesign>, most: usize) {
     designs.sort_unstable_by(|a, b| {
         a.shortfall.total_cmp(&b.shortfall).then(a.candidate.number.cmp(&b.candidate.number))
     });

@@ -6,17 +6,16 @@
 //! *Next part*: of the heavier catalog parts that may stand there, the one with the best change of deflection per
 //! kilogram; a difference between two parts one can buy. Drives further inboard are not sized again.
 
-use super::Front;
 use crate::arm::{Arm, Curve, Element, Joint, LoadCase, Piece, Structure, windup_of};
 use crate::mechanics::Chain;
 use crate::report::budget::{BudgetRow, Gain, NextPart, PickBound, PickBudget};
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
 use crate::report::picks::{Pick, designs, picks};
-use crate::search::design::{full_objectives, number_of, objectives_with};
+use crate::search::design::{evaluate, full_objectives, number, number_of, objectives_with};
 use crate::search::relax::Relaxation;
 use crate::search::space::{LinkOption, SpacePiece};
-use crate::search::{ArmProblem, Objectives};
+use crate::search::{ArmProblem, Objectives, OutwardIn};
 use crate::sizing::Drive;
 use rayon::prelude::*;
 
@@ -26,22 +25,16 @@ const STEP: f64 = 1e-3;
 const MOST_OF_ARM: f64 = 0.25;
 
 /// Budgets of the picks of a front. A bound is given only if the problem has all options of the study.
-pub fn budgets(problem: &ArmProblem, front: &Front, table: &FrontTable) -> Vec<PickBudget> {
+pub fn budgets(problem: &ArmProblem, table: &FrontTable) -> Vec<PickBudget> {
     let relaxation = (!is_excerpt(problem)).then(|| Relaxation::new(problem));
     let picks = picks(&designs(table)).into_par_iter();
-    picks.filter_map(|pick| pick_budget(problem, relaxation.as_ref(), front, pick)).collect()
+    picks.filter_map(|pick| pick_budget(problem, relaxation.as_ref(), pick)).collect()
 }
 
-fn pick_budget(
-    problem: &ArmProblem,
-    relaxation: Option<&Relaxation>,
-    front: &Front,
-    pick: Pick,
-) -> Option<PickBudget> {
-    let number = number_of(&pick.design.design_id)?;
-    let design = &front.iter().find(|d| problem.whole_number(d.design.number) == number)?.design;
-    let options = problem.options_of_whole(number)?;
-    let bound = relaxation.and_then(|r| r.mass_lower_bound(&options, &design.objectives));
+fn pick_budget(problem: &ArmProblem, relaxation: Option<&Relaxation>, pick: Pick) -> Option<PickBudget> {
+    let options = problem.options_of_whole(number_of(&pick.design.design_id)?)?;
+    let objectives = &evaluate(problem, number(problem.level_sizes(), &options))?.objectives;
+    let bound = relaxation.and_then(|r| r.mass_lower_bound(&options, objectives));
     let bound = bound.map(|b| PickBound {
         mass_kg: b.mass_lower_bound_kg,
         mixture_kg: b.mixture_kg,
@@ -49,10 +42,10 @@ fn pick_budget(
     });
     Some(PickBudget {
         bound,
-        rows: budget(problem, &options, &design.objectives)?,
+        rows: budget(problem, &options, objectives)?,
         names: pick.names,
         design_id: pick.design.design_id,
-        mass_kg: design.objectives.mass_kg,
+        mass_kg: objectives.mass_kg,
     })
 }
 

@@ -20,7 +20,7 @@ pub use check::{FrontCheck, check_front};
 pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{Carried, CorrectedStudy, carry_over, left_out};
 pub use near::{NearFront, near_front};
-pub use outcome::{ExactStudy, Front, Judged, StudyOutcome, run_exact, run_study};
+pub use outcome::{ExactStudy, Front, Judged, OfMaterial, StudyOutcome, run_exact, run_study};
 pub use page::study_page;
 pub use read::{Study, read_study};
 pub(crate) use table::sizing_rows;

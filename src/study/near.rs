@@ -10,7 +10,7 @@ use crate::report::picks::choices;
 use crate::report::table::{Column, Table};
 use crate::search::design::id_of;
 use crate::search::front::rounded;
-use crate::search::near::{Shortfall, Slack, near_designs, worse_by};
+use crate::search::near::{NearDesigns, Shortfall, Slack, near_designs, worse_by};
 use crate::search::{ArmProblem, Evaluated, Objectives};
 use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
@@ -23,8 +23,8 @@ pub struct NearFront {
     /// The nearest of them with every choice, objective and margin, how near each is, and which parts may be
     /// exchanged; nearest first.
     pub table: FrontTable,
-    /// How many there are, those left out by the cap included.
-    pub total: u64,
+    /// How many there are, those left out by the cap included; `None` if they were not counted.
+    pub total: Option<u64>,
     /// Whether the cap left some out.
     pub capped: bool,
 }
@@ -42,19 +42,32 @@ pub fn near_front(
     let on_front: Vec<_> =
         outcome.sweep.front.iter().filter(|c| numbers.contains(&c.number)).copied().collect();
     let found = near_designs(problem, &problem.space().constraints, &on_front, slack, stop)?;
-    let judged = by_full_model(problem, found.nearest.iter().map(|n| n.candidate.number).collect());
-    let shortfall = Shortfall::of(outcome.front.iter().map(|j| j.design.objectives));
-    let near: Vec<(f64, Evaluated)> = judged
-        .into_values()
-        .filter_map(|d| Some((shortfall.within(slack.part, &d.objectives)?, d)))
-        .collect();
-    let left_out = found.nearest.len() - near.len();
-    Some(NearFront {
-        slack: slack.part,
-        capped: found.total > found.nearest.len() as u64,
-        total: found.total - left_out as u64,
-        table: table(problem, catalogs, &outcome.front, near),
-    })
+    Some(NearFront::of(problem, catalogs, &outcome.front, &found, slack))
+}
+
+impl NearFront {
+    /// Judges the designs that were found near a front by the full model.
+    pub fn of(
+        problem: &ArmProblem,
+        catalogs: &Catalogs,
+        front: &Front,
+        found: &NearDesigns,
+        slack: Slack,
+    ) -> Self {
+        let judged = by_full_model(problem, found.nearest.iter().map(|n| n.candidate.number).collect());
+        let shortfall = Shortfall::of(front.iter().map(|j| j.design.objectives));
+        let near: Vec<(f64, Evaluated)> = judged
+            .into_values()
+            .filter_map(|d| Some((shortfall.within(slack.part, &d.objectives)?, d)))
+            .collect();
+        let left_out = (found.nearest.len() - near.len()) as u64;
+        Self {
+            slack: slack.part,
+            capped: found.total.is_none_or(|total| total > found.nearest.len() as u64),
+            total: found.total.map(|total| total - left_out),
+            table: table(problem, catalogs, front, near),
+        }
+    }
 }
 
 /// Three objectives to twelve digits, as words that can be compared.
@@ -143,10 +156,13 @@ impl NearFront {
         let percent = shortest((100.0 * self.slack * 1e9).round() / 1e9);
         let groups = self.tied_groups();
         let mut out = vec![match self.total {
-            0 => format!("No design off the front is within {percent} % of it."),
-            n => format!(
+            Some(0) => format!("No design off the front is within {percent} % of it."),
+            Some(n) => format!(
                 "Within {percent} % of the front: {n} designs that are not on it, nearest first in near.csv."
             ),
+            None => {
+                format!("Within {percent} % of the front there are more designs off it than near.csv lists.")
+            }
         }];
         if self.capped {
             out.push(format!(

@@ -3,12 +3,14 @@
 use super::Study;
 use crate::catalog::Catalogs;
 use crate::search::design::number;
-use crate::search::exact::Exact;
+use crate::search::exact::{Exact, ExactOutcome};
 use crate::search::front::nondominated;
+use crate::search::near::{NearDesign, NearDesigns, Slack};
+use crate::search::space::DesignSpace;
 use crate::search::sweep::{Candidate, Sweep, SweepOutcome};
 use crate::search::{ArmProblem, Evaluated, OutwardIn, Status, evaluate};
 use rayon::prelude::*;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -31,8 +33,19 @@ pub struct StudyOutcome {
     pub sweep: SweepOutcome,
     /// Front of all designs.
     pub front: Front,
-    /// Front of each material's designs, in the order of the study's materials.
-    pub by_material: Vec<Front>,
+    /// The designs of one material, in the order of the study's materials.
+    pub by_material: Vec<OfMaterial>,
+}
+
+/// What was found of the designs whose chosen links are all of one material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OfMaterial {
+    /// Name of the material.
+    pub name: String,
+    /// How their search ended.
+    pub status: Status,
+    /// Their front.
+    pub front: Front,
 }
 
 /// Sweeps the study's designs. `watch` runs beside it with a function that tells how many designs are
@@ -55,9 +68,15 @@ pub fn run_study(
     // a design may be a candidate of two fronts
     let all = outcome.groups.iter().flatten().chain(&outcome.front).map(|c| c.number);
     let judged = by_full_model(&problem, all.collect());
+    let of_material = |(name, candidates): (String, &Vec<Candidate>)| {
+        let front = front_of(&judged, candidates);
+        let status = if front.is_empty() { Status::Infeasible } else { outcome.status };
+        OfMaterial { name, status, front }
+    };
+    let names = study.space.material_names();
     StudyOutcome {
         front: front_of(&judged, &outcome.front),
-        by_material: outcome.groups.iter().map(|g| front_of(&judged, g)).collect(),
+        by_material: names.into_iter().zip(&outcome.groups).map(of_material).collect(),
         sweep: outcome,
     }
 }
@@ -65,66 +84,129 @@ pub fn run_study(
 /// What an exact search found.
 #[derive(Debug, Clone)]
 pub struct ExactStudy {
-    /// The study with those link options alone that its front is made of.
+    /// The study with those link options alone that the designs found are made of.
     pub study: Study,
-    /// Its front; the designs of one material have none of their own.
+    /// Its fronts; those of the materials only if the front of all designs is certified.
     pub outcome: StudyOutcome,
-    /// Boxes bounded, and how many were left open.
+    /// Boxes bounded for the front of all designs, and how many were left open.
     pub boxes: [u64; 2],
     /// By how much the front may be bettered; 0 if it is certified.
     pub gap: Option<f64>,
+    /// The designs near the front; `None` if they were not asked for, or time ran out before all were found.
+    pub near: Option<NearDesigns>,
 }
 
-/// Finds the front of a space too large to visit, until `stop` is set or the deadline has passed. `watch`
-/// runs beside it with a function that tells how many boxes are done, and must return when its second
-/// argument says so.
+/// What the searches of a space found, by numbers of the whole space.
+struct Searched {
+    whole: ExactOutcome,
+    by_material: Vec<(String, ExactOutcome)>,
+    near: Option<NearDesigns>,
+}
+
+impl Searched {
+    /// Searches for the front of all designs, then, if that one is certified, for those of the materials and for the
+    /// designs near the front.
+    fn new(search: &Exact, space: &DesignSpace, near: Option<Slack>) -> Self {
+        let whole = search.run(&[]);
+        if whole.boxes_open > 0 || whole.front.is_empty() {
+            return Self { whole, by_material: Vec::new(), near: None };
+        }
+        let names = space.material_names();
+        let of_material = |index: usize| match names.len() {
+            1 => whole.clone(),
+            _ => search.run_of_material(index),
+        };
+        let by_material: Vec<ExactOutcome> = (0..names.len()).map(of_material).collect();
+        Self {
+            near: near.and_then(|slack| {
+                let most = slack.most + whole.front.len();
+                search.near(&whole.front, Slack { most, ..slack })
+            }),
+            by_material: names.into_iter().zip(by_material).collect(),
+            whole,
+        }
+    }
+
+    /// The numbers of all designs found.
+    fn numbers(&self) -> Vec<u128> {
+        let fronts = std::iter::once(&self.whole).chain(self.by_material.iter().map(|(_, of)| of));
+        let near = self.near.iter().flat_map(|near| near.nearest.iter().map(|n| n.candidate.number));
+        fronts.flat_map(|of| of.front.iter().map(|c| c.number)).chain(near).collect()
+    }
+}
+
+fn status(stop: &AtomicBool, found: &ExactOutcome) -> Status {
+    match (stop.load(Ordering::Relaxed), found.boxes_open, found.front.is_empty()) {
+        (true, _, _) => Status::Interrupted,
+        (false, 0, true) => Status::Infeasible,
+        (false, 0, false) => Status::Certified,
+        (false, _, _) => Status::Partial,
+    }
+}
+
+/// Finds the fronts of a space too large to visit, and the designs near the front of all if they are asked for,
+/// until `stop` is set or the deadline has passed. `watch` runs beside it with a function that tells how many
+/// boxes are done, and must return when its second argument says so.
 pub fn run_exact(
     study: &Study,
     catalogs: &Catalogs,
     stop: &AtomicBool,
     deadline: Option<Instant>,
+    near: Option<Slack>,
     watch: impl FnOnce(&(dyn Fn() -> u64 + Sync), &AtomicBool) + Send,
 ) -> ExactStudy {
     let search = Exact::new(&study.space, catalogs, stop, deadline);
+    let most = near.map(|slack| slack.most);
     let finished = AtomicBool::new(false);
-    let found = std::thread::scope(|scope| {
+    let searched = std::thread::scope(|scope| {
         scope.spawn(|| watch(&|| search.boxes(), &finished));
-        let found = search.run(&[]);
+        let found = Searched::new(&search, &study.space, near);
         finished.store(true, Ordering::Relaxed);
         found
     });
-    let status = match (stop.load(Ordering::Relaxed), found.boxes_open, found.front.is_empty()) {
-        (true, _, _) => Status::Interrupted,
-        (false, 0, true) => Status::Infeasible,
-        (false, 0, false) => Status::Certified,
-        (false, _, _) => Status::Partial,
-    };
-    let numbers: Vec<u128> = found.front.iter().map(|c| c.number).collect();
-    let space = study.space.excerpt(catalogs, &numbers).unwrap_or_else(|| study.space.clone());
+    let space = study.space.excerpt(catalogs, &searched.numbers()).unwrap_or_else(|| study.space.clone());
     let study = Study { space, ..study.clone() };
     let problem = ArmProblem::new(&study.space, catalogs);
-    let candidates: Vec<Candidate> = found
-        .front
-        .iter()
-        .filter_map(|c| {
-            let options = problem.options_of_whole(c.number)?;
-            Some(Candidate { number: number(problem.level_sizes(), &options), objectives: c.objectives })
-        })
-        .collect();
-    let front = judge(&problem, &candidates);
-    let evaluated = u128::from(found.designs_evaluated);
-    let sweep = SweepOutcome {
-        status,
-        designs_total: found.designs_total,
-        designs_evaluated: found.designs_evaluated,
-        designs_excluded: found.designs_total.saturating_sub(evaluated),
-        front: candidates,
-        groups: Vec::new(),
-        near_misses: [None; 3],
+    let here = |candidate: &Candidate| {
+        let options = problem.options_of_whole(candidate.number)?;
+        Some(Candidate { number: number(problem.level_sizes(), &options), ..*candidate })
+    };
+    let all_here = |found: &ExactOutcome| found.front.iter().filter_map(here).collect::<Vec<_>>();
+    let Searched { whole, by_material, near } = &searched;
+    let front = all_here(whole);
+    let groups: Vec<Vec<Candidate>> = by_material.iter().map(|(_, found)| all_here(found)).collect();
+    // a design may be a candidate of two fronts
+    let judged = by_full_model(&problem, groups.iter().flatten().chain(&front).map(|c| c.number).collect());
+    let of_material = |((name, found), candidates): (&(String, ExactOutcome), &Vec<Candidate>)| OfMaterial {
+        name: name.clone(),
+        status: status(stop, found),
+        front: front_of(&judged, candidates),
+    };
+    let whole_front = front_of(&judged, &front);
+    let on_front: HashSet<u128> = whole_front.iter().map(|j| j.design.number).collect();
+    let near = near.as_ref().zip(most).map(|(near, most)| {
+        let moved = |n: &NearDesign| Some(NearDesign { candidate: here(&n.candidate)?, ..*n });
+        let off_front = |n: &NearDesign| !on_front.contains(&n.candidate.number);
+        let mut nearest: Vec<NearDesign> = near.nearest.iter().filter_map(moved).filter(off_front).collect();
+        let listed_of_front = (near.nearest.len() - nearest.len()) as u64;
+        nearest.truncate(most);
+        NearDesigns { nearest, total: near.total.map(|total| total - listed_of_front) }
+    });
+    let outcome = StudyOutcome {
+        front: whole_front,
+        by_material: by_material.iter().zip(&groups).map(of_material).collect(),
+        sweep: SweepOutcome {
+            status: status(stop, whole),
+            designs_total: whole.designs_total,
+            designs_evaluated: whole.designs_evaluated,
+            designs_excluded: whole.designs_total.saturating_sub(u128::from(whole.designs_evaluated)),
+            front,
+            groups,
+            near_misses: [None; 3],
+        },
     };
     drop(problem);
-    let outcome = StudyOutcome { sweep, front, by_material: Vec::new() };
-    ExactStudy { study, outcome, boxes: [found.boxes, found.boxes_open], gap: found.gap }
+    ExactStudy { study, outcome, boxes: [whole.boxes, whole.boxes_open], gap: whole.gap, near }
 }
 
 /// Judges candidates by the full model and keeps what nothing dominates.

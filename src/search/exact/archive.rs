@@ -58,11 +58,7 @@ impl Found {
 
     /// Whether some design found beats every member of a box.
     pub fn beats(&self, ceiling: &Ceiling) -> bool {
-        let best = Objectives {
-            mass_kg: ceiling.mass_kg,
-            tip_deflection_m: ceiling.tip_m,
-            lowest_mode_hz: ceiling.hz,
-        };
+        let best = Objectives::from(*ceiling);
         if self.table.rejects(&best) {
             return true;
         }

@@ -52,6 +52,12 @@ impl Ceiling {
     }
 }
 
+impl From<Ceiling> for Objectives {
+    fn from(ceiling: Ceiling) -> Self {
+        Self { tip_deflection_m: ceiling.tip_m, mass_kg: ceiling.mass_kg, lowest_mode_hz: ceiling.hz }
+    }
+}
+
 /// What is known of a box.
 pub(super) enum Verdict {
     /// No member meets the constraints, or a design found is better than any.

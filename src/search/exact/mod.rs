@@ -16,6 +16,7 @@ mod corners;
 mod game;
 mod gap;
 mod narrow;
+mod near;
 mod parting;
 mod parts;
 mod pointless;

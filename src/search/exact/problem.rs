@@ -82,8 +82,12 @@ impl Ladder {
 }
 
 impl<'c> Problem<'c> {
-    /// Compiles a space; `None` if some level has no option.
-    pub fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Option<Self> {
+    /// Compiles a space with some of its link options only; `None` if some level has none.
+    pub fn new(
+        space: &'c DesignSpace,
+        catalogs: &'c Catalogs,
+        takes: &dyn Fn(&LinkOption) -> bool,
+    ) -> Option<Self> {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let mut reaches = reaches_m(space, sizing).into_iter();
         let of = |piece: &SpacePiece| match piece {
@@ -104,7 +108,7 @@ impl<'c> Problem<'c> {
         };
         for (place, layer) in space.layers() {
             let part = match layer {
-                Layer::Piece(piece) => problem.part(piece, reaches_m[place], catalogs)?,
+                Layer::Piece(piece) => problem.part(piece, reaches_m[place], catalogs, takes)?,
                 Layer::Tilt(tilt) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&tilt.law()) },
                 // beyond what a design weighs
                 Layer::Mass(_) => Part::Offset { mass_kg: 0.0 },
@@ -121,7 +125,13 @@ impl<'c> Problem<'c> {
         Some(problem)
     }
 
-    fn part(&mut self, piece: &'c SpacePiece, reach_m: f64, catalogs: &'c Catalogs) -> Option<Part<'c>> {
+    fn part(
+        &mut self,
+        piece: &'c SpacePiece,
+        reach_m: f64,
+        catalogs: &'c Catalogs,
+        takes: &dyn Fn(&LinkOption) -> bool,
+    ) -> Option<Part<'c>> {
         let space = self.space;
         Some(match piece {
             SpacePiece::Joint(joint) => match joint_slot(space, joint, reach_m, catalogs) {
@@ -153,8 +163,8 @@ impl<'c> Problem<'c> {
                 };
                 let options = self.level(choice.options.len());
                 let boxes = options
-                    .filter(|&i| !slender(&choice.options[i as usize]))
                     .map(|i| (i, &choice.options[i as usize]))
+                    .filter(|(_, option)| takes(option) && !slender(option))
                     .map(|(i, o)| (i, LinkBox::of(o, &space.link_piece(&choice.link(o)), space.links)));
                 Part::Links { length_m: choice.vector_m.norm(), tree: Arc::new(Tree::build(boxes)?) }
             }

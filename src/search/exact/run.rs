@@ -12,7 +12,7 @@ use crate::catalog::Catalogs;
 use crate::search::Objectives;
 use crate::search::design::number;
 use crate::search::front::not_clearly_beaten;
-use crate::search::space::{DesignSpace, SpacePiece};
+use crate::search::space::{DesignSpace, LinkOption, SpacePiece};
 use crate::search::sweep::{Candidate, SLACK};
 use rayon::prelude::*;
 use std::collections::{HashSet, VecDeque};
@@ -43,7 +43,7 @@ pub struct Exact<'p> {
     catalogs: &'p Catalogs,
     stop: &'p AtomicBool,
     deadline: Option<Instant>,
-    boxes: AtomicU64,
+    pub(super) boxes: AtomicU64,
     /// Designs above which a space is searched region by region, and down to how many.
     regions_from: f64,
     regions_to: f64,
@@ -132,9 +132,50 @@ impl<'p> Exact<'p> {
 
     /// Finds the front, starting from designs that are known already.
     pub fn run(&self, known: &[Objectives]) -> ExactOutcome {
+        self.run_of(self.problem(&|_| true), known)
+    }
+
+    /// Finds the front of the designs whose chosen links are all of one material, by its index in the study.
+    pub fn run_of_material(&self, material_index: usize) -> ExactOutcome {
+        self.run_of(self.problem(&|option| option.material_index == material_index), &[])
+    }
+
+    /// The space with some of its link options; `None` if a level has none.
+    pub(super) fn problem(&self, takes: &dyn Fn(&LinkOption) -> bool) -> Option<Problem<'p>> {
+        Problem::new(self.space, self.catalogs, takes).map(Problem::with_inertias)
+    }
+
+    /// Opens the box of everything and all that comes of it, in parallel; what is left when the search is stopped
+    /// is handed to `leave`.
+    pub(super) fn every_box(
+        &self,
+        problem: &Problem,
+        open: impl Fn(Opened, &mut Work, &mut Vec<Opened>) + Sync,
+        leave: impl Fn(&[Opened]) + Sync,
+    ) {
+        let mut work = Work::default();
+        let Some(shapes) = problem.first_shapes(&mut work) else { return };
+        let root = Opened { cell: problem.root(), shapes: Arc::new(shapes), ceiling: Ceiling::OPEN };
+        let mut queue = VecDeque::from([root]);
+        while queue.len() < TASKS && !self.stopped() {
+            let Some(next) = queue.pop_front() else { break };
+            let mut children = Vec::new();
+            open(next, &mut work, &mut children);
+            queue.extend(children);
+        }
+        queue.into_par_iter().for_each_init(Work::default, |work, start| {
+            let mut stack = vec![start];
+            while !self.stopped() {
+                let Some(next) = stack.pop() else { return };
+                open(next, work, &mut stack);
+            }
+            leave(&stack);
+        });
+    }
+
+    fn run_of(&self, whole: Option<Problem<'p>>, known: &[Objectives]) -> ExactOutcome {
         let shared = Shared::default();
         known.iter().for_each(|objectives| shared.found.enter(objectives));
-        let whole = Problem::new(self.space, self.catalogs).map(Problem::with_inertias);
         let (mut proven, mut last_slack) = (None, 0.0);
         if let Some(whole) = &whole {
             let designs = whole.designs() as f64;
@@ -222,27 +263,11 @@ impl<'p> Search<'_, 'p> {
     }
 
     fn run(&self) {
-        let mut work = Work::default();
-        let Some(shapes) = self.problem.first_shapes(&mut work) else { return };
-        let root = Opened { cell: self.problem.root(), shapes: Arc::new(shapes), ceiling: Ceiling::OPEN };
-        let mut queue = VecDeque::from([root]);
-        while queue.len() < TASKS && !self.stopped() {
-            let Some(next) = queue.pop_front() else { break };
-            let mut children = Vec::new();
-            self.open(next, &mut work, &mut children);
-            queue.extend(children);
-        }
-        queue.into_par_iter().for_each_init(Work::default, |work, start| {
-            let mut stack = vec![start];
-            while let Some(next) = stack.pop() {
-                if self.stopped() {
-                    let left = stack.iter().chain([&next]).map(|opened| opened.ceiling);
-                    lock(&self.shared.open).extend(left);
-                    return;
-                }
-                self.open(next, work, &mut stack);
-            }
-        });
+        self.exact.every_box(
+            self.problem,
+            |here, work, children| self.open(here, work, children),
+            |left| lock(&self.shared.open).extend(left.iter().map(|opened| opened.ceiling)),
+        );
     }
 
     /// Bounds a box and halves it, or judges it if it is one design.
