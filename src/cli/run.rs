@@ -73,6 +73,9 @@ enum SearchKind {
 /// Above this many designs the exact search is the default.
 const MOST_VISITED: u128 = 1_000_000_000;
 
+/// Above this many options of links an exact search works out nothing for each of them.
+const MOST_TABULATED: usize = 10_000;
+
 /// Above this many designs nobody lives to see the end of an exhaustive search.
 const MOST_CONCEIVABLE: u128 = 1_000_000_000_000_000;
 
@@ -264,13 +267,14 @@ fn search_exactly(
         )))),
         _ => {
             let problem = ArmProblem::new(&part.space, catalogs);
-            let whole = ArmProblem::new(&study.space, catalogs);
+            let is_small = study.space.link_options() <= MOST_TABULATED;
+            let whole = is_small.then(|| ArmProblem::new(&study.space, catalogs));
             let finished = Finished {
                 study: &part,
                 text,
                 carried,
                 problem: &problem,
-                whole: &whole,
+                whole: whole.as_ref().unwrap_or(&problem),
                 outcome: &outcome,
                 near: near.as_ref(),
                 exact: Some((boxes, gap)),
@@ -385,7 +389,7 @@ struct Finished<'a> {
     text: &'a str,
     carried: &'a [Carried],
     problem: &'a ArmProblem<'a>,
-    /// With all options of the study.
+    /// With all options of the study, unless they are too many for an exact search.
     whole: &'a ArmProblem<'a>,
     outcome: &'a StudyOutcome,
     /// The designs near the front that an exact search found.

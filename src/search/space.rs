@@ -170,6 +170,15 @@ impl LinkOption {
 }
 
 impl DesignSpace {
+    /// Options of all links, together.
+    pub fn link_options(&self) -> usize {
+        let options = |piece: &SpacePiece| match piece {
+            SpacePiece::Choice(choice) => choice.options.len(),
+            _ => 0,
+        };
+        self.pieces.iter().map(options).sum()
+    }
+
     /// Names of the materials that links can be made of, in the study's order.
     pub fn material_names(&self) -> Vec<String> {
         let mut names: Vec<(usize, &str)> = self

@@ -5,8 +5,10 @@
 //! nothing and is not lost: a search that knows good designs cuts early.
 
 use super::bound::{Ceiling, Cell, Verdict, Work};
+use super::evolve::Member;
 use super::run::Search;
 use super::shape::Shape;
+use crate::search::Objectives;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -43,18 +45,19 @@ impl Merit {
 struct Best {
     merit: f64,
     cell: Cell,
+    objectives: Objectives,
     shapes: Arc<Vec<Shape>>,
 }
 
 /// Probes the space in so many proportions of the objectives.
-pub(super) fn probe(search: &Search, probes: usize) {
-    let Some(shapes) = search.problem.first_shapes(&mut Work::default()) else { return };
+pub(super) fn probe(search: &Search, probes: usize) -> Vec<Member> {
+    let Some(shapes) = search.problem.first_shapes(&mut Work::default()) else { return Vec::new() };
     let shapes = Arc::new(shapes);
-    (0..probes).into_par_iter().for_each_init(Work::default, |work, n| {
+    let found = (0..probes).into_par_iter().map_init(Work::default, |work, n| {
         let merit = Merit::nth(n);
         let mut best = None;
         descend(search, merit, search.problem.root(), &shapes, DIVE_BOXES, &mut best, work);
-        let Some(mut best) = best else { return };
+        let mut best = best?;
         for _ in 0..ROUNDS {
             let before = best.merit;
             for level in 0..best.cell.len() {
@@ -63,14 +66,15 @@ pub(super) fn probe(search: &Search, probes: usize) {
                 let shapes = Arc::clone(&best.shapes);
                 let mut found = Some(best);
                 descend(search, merit, cell, &shapes, LEVEL_BOXES, &mut found, work);
-                let Some(better) = found else { return };
-                best = better;
+                best = found?;
             }
             if best.merit >= before || search.stopped() {
-                return;
+                break;
             }
         }
+        Some(Member { cell: best.cell, objectives: best.objectives, shapes: best.shapes })
     });
+    found.flatten().collect()
 }
 
 /// Looks for the design of most merit in a box, the better half first.
@@ -135,8 +139,8 @@ fn look(
     match search.problem.widest_level(&cell, &shapes, work) {
         Some(level) => Some(Promising { merit, cell, shapes, level }),
         None => {
-            search.judge(&cell, &ceiling, work);
-            *best = Some(Best { merit, cell, shapes });
+            let objectives = search.judge(&cell, &ceiling, work)?;
+            *best = Some(Best { merit, cell, objectives, shapes });
             None
         }
     }

@@ -9,6 +9,7 @@
 
 use super::bound::{Ceiling, Cell, Verdict, Work};
 use super::corners::{Corner, Corners};
+use super::grid::thinned;
 use super::problem::Problem;
 use super::run::{Opened, Search, lock};
 use super::shape::Shape;
@@ -19,6 +20,8 @@ use std::sync::Arc;
 
 /// Part of the designs that must be excluded for the options to be narrowed once more.
 const WORTH_IT: f64 = 0.1;
+/// Part of the slack by which corners may be apart.
+const THINNED: f64 = 0.45;
 
 /// Options that may reach into a region, with what the region around it knew.
 #[derive(Clone)]
@@ -37,8 +40,10 @@ impl<'p> Search<'_, 'p> {
         let mut work = Work::default();
         let Some(shapes) = self.problem.first_shapes(&mut work) else { return };
         let tightened = |all: &[Objectives]| all.iter().map(|o| self.tightened(o)).collect();
-        let mut found: Vec<Objectives> = self.shared.found.look_at_all(tightened);
+        let found: Vec<Objectives> = self.shared.found.look_at_all(tightened);
         let known = found.len();
+        // fewer designs leave more open, by less than the slack
+        let mut found = thinned(found, THINNED * self.slack, |o| o);
         let corners = Corners::new(&mut found, self.limits());
         let zone = Zone {
             problem: Arc::new(self.problem.clone()),

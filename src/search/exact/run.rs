@@ -3,6 +3,7 @@
 use super::archive::{Found, is_better};
 use super::bound::{Ceiling, Cell, Verdict, Work};
 use super::corners::Corner;
+use super::evolve::evolve;
 use super::gap::gap;
 use super::probe::probe;
 use super::problem::Problem;
@@ -184,7 +185,12 @@ impl<'p> Exact<'p> {
             let search =
                 |slack: f64| Search { exact: self, problem: whole, shared: &shared, slack, below: None };
             if known.is_empty() {
-                probe(&search(0.0), (PROBES * designs.log10().powi(2)) as usize);
+                let search = search(0.0);
+                let probed = probe(&search, (PROBES * designs.log10().powi(2)) as usize);
+                if by_regions {
+                    let better = evolve(&search, probed, self.deadline);
+                    better.iter().for_each(|member| search.keep(&member.cell, member.objectives));
+                }
             }
             let passes = if is_large && known.is_empty() { &SLACKS[..] } else { &[0.0] };
             for &slack in passes {
@@ -252,6 +258,10 @@ impl<'p> Search<'_, 'p> {
         self.exact.boxes.fetch_add(1, Ordering::Relaxed);
     }
 
+    pub fn count_design(&self) {
+        self.shared.evaluated.fetch_add(1, Ordering::Relaxed);
+    }
+
     /// The same search of a part of the problem, below a corner.
     pub fn of_part<'t>(&'t self, problem: &'t Problem<'p>, below: Option<Corner>) -> Search<'t, 'p> {
         Search { problem, below, ..*self }
@@ -313,19 +323,27 @@ impl<'p> Search<'_, 'p> {
         }
     }
 
-    /// One design: its ceiling is its objectives once its mode is made sure of.
-    pub fn judge(&self, cell: &[u32], ceiling: &Ceiling, work: &Work) {
-        let Some(options) = self.problem.options(cell) else { return };
-        self.shared.evaluated.fetch_add(1, Ordering::Relaxed);
+    /// One design: its ceiling is its objectives once its mode is made sure of; `None` if it is not known that it meets
+    /// the constraints.
+    pub fn judge(&self, cell: &[u32], ceiling: &Ceiling, work: &Work) -> Option<Objectives> {
+        let options = self.problem.options(cell)?;
+        self.count_design();
         let objectives = self.problem.objectives(ceiling, work);
         if !work.is_point() {
             lock(&self.shared.unsure)
                 .push(Candidate { number: number(&self.problem.level_sizes, &options), objectives });
-            return;
+            return None;
         }
         if self.problem.space.constraints.broken(&objectives).contains(&true) {
-            return;
+            return None;
         }
+        self.keep(cell, objectives);
+        Some(objectives)
+    }
+
+    /// Keeps a design that meets every constraint.
+    fn keep(&self, cell: &[u32], objectives: Objectives) {
+        let Some(options) = self.problem.options(cell) else { return };
         self.shared.found.enter(&objectives);
         let mut kept = lock(&self.shared.kept);
         kept.push(Candidate { number: number(&self.problem.level_sizes, &options), objectives });
