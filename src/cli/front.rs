@@ -23,6 +23,9 @@ pub struct FrontArgs {
 #[derive(Debug, Subcommand)]
 enum FrontVerb {
     /// Try to find fault with a front: every row, rows against each other, designs that are missing
+    ///
+    /// Missing designs are looked for by bounds that share no code with the exact search's (docs/exact.md). The
+    /// last line says so, or why the exact search's own had to do.
     Check(CheckArgs),
 }
 

@@ -173,6 +173,7 @@ impl Witness {
                 let (which, integral_m) = shape.stiffness(self.tubes[tube].length_m);
                 members.tubes[tube].most.stiffnesses[which] * integral_m
             }
+            Coordinate::Spring(spring) => self.spring_stiffnesses[spring],
         };
         let mut inertia = pose.inertia.clone();
         let masses = members.drives.iter().map(|drive| drive.least_kg);
@@ -213,7 +214,8 @@ fn direction(pose: &Pose, members: &Members) -> Option<Vector3<f64>> {
     let tubes = members.tubes.iter().zip(&pose.works).flat_map(|(tube, works)| {
         works.iter().zip(compliances(tube)).map(|(work, compliance)| work.middle(loads) * compliance.least)
     });
-    joints.chain(tubes).sum::<Vector3<f64>>().try_normalize(0.0)
+    let tilts = pose.tilts_m.iter().map(|tilt_m| tilt_m.middle(loads));
+    joints.chain(tubes).chain(tilts).sum::<Vector3<f64>>().try_normalize(0.0)
 }
 
 /// The least that the tip moves in a direction.
@@ -232,5 +234,6 @@ fn tip_along(pose: &Pose, members: &Members, direction: &Vector3<f64>) -> f64 {
             .zip(compliances(tube))
             .map(|(work, compliance)| work.along(direction, loads).least_product(compliance))
     });
-    joints.chain(tubes).sum()
+    let tilts = pose.tilts_m.iter().map(|tilt_m| tilt_m.along(direction, loads).least);
+    joints.chain(tubes).chain(tilts).sum()
 }

@@ -147,7 +147,7 @@ impl DriveRange {
             t1_nm: f64::INFINITY,
             t2_nm: f64::INFINITY,
         };
-        let (windup, modal_nm_per_rad) = match law.curve {
+        let (windup, modal_nm_per_rad) = match law.without_play() {
             Curve::Rigid => (one_slope(f64::INFINITY), f64::INFINITY),
             Curve::Linear(k) => (one_slope(k), k),
             Curve::Windup(windup) => (windup, f64::INFINITY),

@@ -1,25 +1,35 @@
 //! Where joints, tubes and masses are in a pose, and how every coordinate moves a point.
 //!
-//! The coordinates are a joint's twist and, for each tube, curvature constant and linear along it in both
+//! The coordinates are a joint's twist, the tilt of an effect's spring and, for each tube, curvature constant and linear along it in both
 //! planes, and constant shear, twist and stretch. The full model has these among its own and more; a body
 //! that can move in fewer ways is stiffer, so its lowest mode is at least that of the full model.
 
-use super::tubes::Tubes;
 use crate::arm::{Link, LinkBody, LinkModel};
 use crate::mechanics::beam::section_frame;
+use crate::search::effects::Layer;
 use crate::search::space::{Case, DesignSpace, SpacePiece};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
+/// Place of a piece's springs in the order from base to tip.
+fn spring_rank(piece: usize) -> usize {
+    2 * piece
+}
+
+/// Place of a piece itself in that order: its springs come before it.
+fn piece_rank(piece: usize) -> usize {
+    2 * piece + 1
+}
+
 /// A joint in a pose.
 pub(super) struct PlacedJoint {
-    pub piece: usize,
+    pub rank: usize,
     pub at_m: Vector3<f64>,
     pub axis: Vector3<f64>,
 }
 
 /// A tube in a pose; the frame's columns are its axis and the section's y and z.
 pub(super) struct PlacedTube {
-    pub piece: usize,
+    pub rank: usize,
     pub root_m: Vector3<f64>,
     pub frame: Matrix3<f64>,
     pub length_m: f64,
@@ -27,9 +37,17 @@ pub(super) struct PlacedTube {
 
 /// A mass that no choice changes.
 pub(super) struct PlacedMass {
-    pub piece: usize,
+    pub rank: usize,
     pub at_m: Vector3<f64>,
     pub mass_kg: f64,
+}
+
+/// A spring of an effect: it tilts everything outboard about an axis.
+pub(super) struct PlacedSpring {
+    pub rank: usize,
+    pub at_m: Vector3<f64>,
+    pub axis: Vector3<f64>,
+    pub rad_per_nm: f64,
 }
 
 /// An arm in a pose, base to tip.
@@ -37,6 +55,7 @@ pub(super) struct Layout {
     pub joints: Vec<PlacedJoint>,
     pub tubes: Vec<PlacedTube>,
     pub masses: Vec<PlacedMass>,
+    pub springs: Vec<PlacedSpring>,
     pub tip_m: Vector3<f64>,
     pub tip_rotation: Matrix3<f64>,
 }
@@ -45,33 +64,76 @@ impl Layout {
     /// Puts a space's arm into the pose of a case.
     pub fn new(space: &DesignSpace, case: &Case) -> Self {
         let mut angles = case.pose_deg.iter();
-        let (mut at_m, mut rotation) = (Vector3::zeros(), Rotation3::identity());
-        let (mut joints, mut tubes, mut masses) = (Vec::new(), Vec::new(), Vec::new());
+        let mut rotation = Rotation3::identity();
+        let mut layout = Self {
+            joints: Vec::new(),
+            tubes: Vec::new(),
+            masses: Vec::new(),
+            springs: Vec::new(),
+            tip_m: Vector3::zeros(),
+            tip_rotation: Matrix3::identity(),
+        };
         for (piece, what) in space.pieces.iter().enumerate() {
-            let (vector_m, mass_kg) = match what {
+            layout.add_effects(space, piece, &rotation);
+            match what {
                 SpacePiece::Joint(joint) => {
-                    joints.push(PlacedJoint { piece, at_m, axis: rotation * joint.axis.into_inner() });
+                    let axis = rotation * joint.axis.into_inner();
+                    layout.joints.push(PlacedJoint { rank: piece_rank(piece), at_m: layout.tip_m, axis });
                     let angle = angles.next().copied().unwrap_or_default().to_radians();
                     rotation *= Rotation3::from_axis_angle(&joint.axis, angle);
-                    continue;
                 }
-                SpacePiece::Link(link) => (link.vector_m, offset_mass_kg(link)),
-                SpacePiece::Choice(choice) => (choice.vector_m, None),
-            };
-            let turned = rotation * vector_m;
-            match mass_kg {
-                Some(mass_kg) => masses.push(PlacedMass { piece, at_m: at_m + 0.5 * turned, mass_kg }),
-                None => tubes.push(PlacedTube {
-                    piece,
-                    root_m: at_m,
-                    frame: rotation.matrix() * section_frame(&vector_m),
-                    length_m: vector_m.norm(),
-                }),
+                SpacePiece::Link(link) => layout.add_link(space, piece, link, &rotation),
+                SpacePiece::Choice(choice) => layout.add_tube(piece, &choice.vector_m, &rotation),
             }
-            at_m += turned;
         }
-        Self { joints, tubes, masses, tip_m: at_m, tip_rotation: *rotation.matrix() }
+        layout.tip_rotation = *rotation.matrix();
+        layout
     }
+
+    /// What effects put before a piece where the arm has come to: springs and masses.
+    fn add_effects(&mut self, space: &DesignSpace, piece: usize, rotation: &Rotation3<f64>) {
+        for (_, layer) in space.layers().into_iter().filter(|(at, _)| *at == piece) {
+            match layer {
+                Layer::Tilt(tilt) => self.springs.push(PlacedSpring {
+                    rank: spring_rank(piece),
+                    at_m: self.tip_m,
+                    axis: tilt.axis(rotation),
+                    rad_per_nm: tilt.rad_per_nm,
+                }),
+                Layer::Mass(mass_kg) => {
+                    self.masses.push(PlacedMass { rank: piece_rank(piece), at_m: self.tip_m, mass_kg });
+                }
+                Layer::Piece(_) => {}
+            }
+        }
+    }
+
+    fn add_link(&mut self, space: &DesignSpace, piece: usize, link: &Link, rotation: &Rotation3<f64>) {
+        if let Some(mass_kg) = offset_mass_kg(link) {
+            let at_m = self.tip_m + rotation * link.vector_m / 2.0;
+            self.masses.push(PlacedMass { rank: piece_rank(piece), at_m, mass_kg });
+        }
+        match has_line(space, link) {
+            true => self.add_tube(piece, &link.vector_m, rotation),
+            false => self.tip_m += rotation * link.vector_m,
+        }
+    }
+
+    fn add_tube(&mut self, piece: usize, vector_m: &Vector3<f64>, rotation: &Rotation3<f64>) {
+        self.tubes.push(PlacedTube {
+            rank: piece_rank(piece),
+            root_m: self.tip_m,
+            frame: rotation.matrix() * section_frame(vector_m),
+            length_m: vector_m.norm(),
+        });
+        self.tip_m += rotation * vector_m;
+    }
+}
+
+/// Whether something weighs along a link: it is a tube, or cables run along it.
+pub(super) fn has_line(space: &DesignSpace, link: &Link) -> bool {
+    let cables = space.link_piece(link).harness_kg_per_m != 0.0 && link.vector_m.norm() > 0.0;
+    offset_mass_kg(link).is_none() || cables
 }
 
 /// Mass of a rigid offset; a tube is none.
@@ -82,11 +144,11 @@ pub(super) fn offset_mass_kg(link: &Link) -> Option<f64> {
     }
 }
 
-/// A point of the arm: beyond all pieces before one, and maybe inside that piece's tube.
+/// A point of the arm: beyond everything of a lower rank, and maybe inside the tube of this rank.
 #[derive(Clone, Copy)]
 pub(super) struct Point {
     pub at_m: Vector3<f64>,
-    pub piece: usize,
+    pub rank: usize,
     /// Distance from the root of the tube that the point is in \[m\].
     pub inside_m: Option<f64>,
 }
@@ -158,47 +220,55 @@ pub(super) enum Coordinate {
     Joint(usize),
     /// A shape of a tube.
     Tube(usize, Shape),
+    /// Tilt of an effect's spring.
+    Spring(usize),
 }
 
-/// All coordinates of an arm.
-pub(super) fn coordinates(joints: usize, tubes: &[Tubes], model: LinkModel) -> Vec<Coordinate> {
+/// All coordinates of an arm, those of joints first.
+pub(super) fn coordinates(layout: &Layout, model: LinkModel) -> Vec<Coordinate> {
     let shapes: &[&[Shape]] = match model {
         LinkModel::Rigid => &[],
         LinkModel::Bending => &[&BENDING],
         LinkModel::Full => &[&BENDING, &REST],
     };
     let shapes = shapes.concat();
-    let tubes = (0..tubes.len()).flat_map(|tube| shapes.iter().map(move |&s| Coordinate::Tube(tube, s)));
-    (0..joints).map(Coordinate::Joint).chain(tubes).collect()
+    let joints = (0..layout.joints.len()).map(Coordinate::Joint);
+    let tubes = 0..layout.tubes.len();
+    let tubes = tubes.flat_map(|tube| shapes.iter().map(move |&shape| Coordinate::Tube(tube, shape)));
+    joints.chain(tubes).chain((0..layout.springs.len()).map(Coordinate::Spring)).collect()
 }
 
 impl Layout {
     /// Displacement and rotation of a point per unit of a coordinate, world.
     pub fn motion(&self, coordinate: Coordinate, point: &Point) -> (Vector3<f64>, Vector3<f64>) {
+        let still = (Vector3::zeros(), Vector3::zeros());
+        let turned = |axis: &Vector3<f64>, at_m| (axis.cross(&(point.at_m - at_m)), *axis);
         match coordinate {
             Coordinate::Joint(joint) => {
                 let joint = &self.joints[joint];
-                match joint.piece < point.piece {
-                    true => (joint.axis.cross(&(point.at_m - joint.at_m)), joint.axis),
-                    false => (Vector3::zeros(), Vector3::zeros()),
-                }
+                if joint.rank < point.rank { turned(&joint.axis, joint.at_m) } else { still }
             }
-            Coordinate::Tube(tube, shape) => {
-                let tube = &self.tubes[tube];
-                let world = |x: f64| {
-                    let (moved, turned) = shape.field(x, tube.length_m);
-                    (tube.frame * moved, tube.frame * turned)
-                };
-                if tube.piece < point.piece {
-                    let (moved, turned) = world(tube.length_m);
-                    let end_m = tube.root_m + tube.frame.column(0) * tube.length_m;
-                    (moved + turned.cross(&(point.at_m - end_m)), turned)
-                } else if let (true, Some(x)) = (tube.piece == point.piece, point.inside_m) {
-                    world(x)
-                } else {
-                    (Vector3::zeros(), Vector3::zeros())
-                }
+            Coordinate::Spring(spring) => {
+                let spring = &self.springs[spring];
+                if spring.rank < point.rank { turned(&spring.axis, spring.at_m) } else { still }
             }
+            Coordinate::Tube(tube, shape) => self.tubes[tube].motion(shape, point).unwrap_or(still),
         }
+    }
+}
+
+impl PlacedTube {
+    /// Displacement and rotation of a point in or beyond the tube per unit of a shape, world.
+    fn motion(&self, shape: Shape, point: &Point) -> Option<(Vector3<f64>, Vector3<f64>)> {
+        let world = |x: f64| {
+            let (moved, turned) = shape.field(x, self.length_m);
+            (self.frame * moved, self.frame * turned)
+        };
+        if self.rank == point.rank {
+            return point.inside_m.map(world);
+        }
+        let (moved, turned) = world(self.length_m);
+        let end_m = self.root_m + self.frame.column(0) * self.length_m;
+        (self.rank < point.rank).then(|| (moved + turned.cross(&(point.at_m - end_m)), turned))
     }
 }

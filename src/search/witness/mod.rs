@@ -35,12 +35,12 @@ use super::constraint::Constraints;
 use super::space::{DesignSpace, SpacePiece};
 use super::station::reaches_m;
 use super::{ArmProblem, Objectives, OutwardIn, evaluate};
-use crate::arm::Water;
+use crate::arm::{Curve, Water};
 use crate::catalog::Catalogs;
 use crate::search::design::number;
 use drives::Drives;
-use layout::{Coordinate, coordinates, offset_mass_kg};
-use pose::Pose;
+use layout::{Coordinate, Layout, coordinates, has_line, offset_mass_kg};
+use pose::{Pose, water_of};
 use rayon::prelude::*;
 use search::{Found, Search};
 use staircase::Staircase;
@@ -62,6 +62,8 @@ pub struct Witness {
     /// Number of different surroundings.
     waters: usize,
     coordinates: Vec<Coordinate>,
+    /// Stiffnesses of the effects' springs \[N m/rad\].
+    spring_stiffnesses: Vec<f64>,
     constraints: Constraints,
     /// What each level chooses, tip first.
     levels: Vec<Place>,
@@ -95,8 +97,14 @@ pub struct Looked {
 /// # Errors
 /// What they do not see, in words.
 pub fn conditions(space: &DesignSpace) -> Result<(), String> {
-    if let Some(effect) = space.effects.iter().find(|effect| !effect.is_of_test()) {
-        return Err(format!("its bounds do not know the effect {}", effect.effect));
+    let plays = |piece: &SpacePiece| match piece {
+        SpacePiece::Joint(joint) if space.joint_piece(joint, Curve::Linear(1.0)).law.has_play() => {
+            Some(joint.name.clone())
+        }
+        _ => None,
+    };
+    if let Some(joint) = space.pieces.iter().find_map(plays) {
+        return Err(format!("its bounds do not know the play of joint {joint}"));
     }
     let weights = space.motion.duty_cycle.mean_torque_weights();
     if weights.difference > weights.sum {
@@ -148,51 +156,61 @@ impl Witness {
     /// Prepares a space that meets the [`conditions`].
     pub fn new(space: &DesignSpace, catalogs: &Catalogs) -> Self {
         let mut waters: Vec<Option<Water>> = Vec::new();
-        for case in &space.cases {
-            if !waters.contains(&case.water) {
-                waters.push(case.water);
+        for water in space.cases.iter().map(|case| water_of(space, case)) {
+            if !waters.contains(&water) {
+                waters.push(water);
             }
         }
+        let mut witness = Self {
+            joints: Vec::new(),
+            tubes: Vec::new(),
+            offsets_kg: 0.0,
+            poses: Vec::new(),
+            waters: waters.len(),
+            coordinates: Vec::new(),
+            spring_stiffnesses: Vec::new(),
+            constraints: space.constraints,
+            levels: Vec::new(),
+            level_sizes: space.level_sizes(catalogs),
+        };
+        witness.read_pieces(space, catalogs, &waters);
+        if let Some(case) = space.cases.first() {
+            let layout = Layout::new(space, case);
+            witness.coordinates = coordinates(&layout, space.links);
+            witness.spring_stiffnesses = layout.springs.iter().map(|s| 1.0 / s.rad_per_nm).collect();
+        }
+        let pose = |case: usize| Pose::new(space, case, &waters, &witness.coordinates);
+        witness.poses = (0..space.cases.len()).map(pose).collect();
+        witness
+    }
+
+    /// Joints, tubes and offsets, base to tip; their levels go from the tip inward.
+    fn read_pieces(&mut self, space: &DesignSpace, catalogs: &Catalogs, waters: &[Option<Water>]) {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let mut reaches = reaches_m(space, sizing).into_iter();
-        let open = space.pieces.iter().filter(|piece| is_level(piece)).count();
-        let mut levels = Vec::new();
-        let (mut joints, mut tubes, mut offsets_kg) = (Vec::new(), Vec::new(), 0.0);
         for piece in &space.pieces {
-            // levels go from the tip inward
-            let level = open.saturating_sub(levels.len() + 1);
+            let level = self.level_sizes.len().saturating_sub(self.levels.len() + 1);
             match piece {
                 SpacePiece::Joint(joint) => {
                     let reach_m = reaches.next().unwrap_or_default();
-                    joints.push(Drives::new(space, joint, reach_m, level, catalogs));
-                    if is_level(piece) {
-                        levels.push(Place::Joint(joints.len() - 1));
+                    self.joints.push(Drives::new(space, joint, reach_m, level, catalogs));
+                    if joint.drive.is_open() {
+                        self.levels.push(Place::Joint(self.joints.len() - 1));
                     }
                 }
                 SpacePiece::Choice(choice) => {
-                    tubes.push(Tubes::of_choice(space, choice, level, &waters));
-                    levels.push(Place::Tube(tubes.len() - 1));
+                    self.tubes.push(Tubes::of_choice(space, choice, level, waters));
+                    self.levels.push(Place::Tube(self.tubes.len() - 1));
                 }
-                SpacePiece::Link(link) => match offset_mass_kg(link) {
-                    Some(mass_kg) => offsets_kg += mass_kg,
-                    None => tubes.push(Tubes::of_link(space, link, &waters)),
-                },
+                SpacePiece::Link(link) => {
+                    self.offsets_kg += offset_mass_kg(link).unwrap_or_default();
+                    if has_line(space, link) {
+                        self.tubes.push(Tubes::of_link(space, link, waters));
+                    }
+                }
             }
         }
-        levels.reverse();
-        let coordinates = coordinates(joints.len(), &tubes, space.links);
-        let pose = |case: usize| Pose::new(space, case, &waters, &coordinates);
-        Self {
-            poses: (0..space.cases.len()).map(pose).collect(),
-            joints,
-            tubes,
-            offsets_kg,
-            waters: waters.len(),
-            coordinates,
-            constraints: space.constraints,
-            levels,
-            level_sizes: space.level_sizes(catalogs),
-        }
+        self.levels.reverse();
     }
 
     /// All designs; `None` if there is none.
@@ -233,13 +251,5 @@ impl Witness {
             Place::Joint(joint) => &self.joints[joint].tree,
             Place::Tube(tube) => &self.tubes[tube].tree,
         }
-    }
-}
-
-fn is_level(piece: &SpacePiece) -> bool {
-    match piece {
-        SpacePiece::Joint(joint) => joint.drive.is_open(),
-        SpacePiece::Choice(_) => true,
-        SpacePiece::Link(_) => false,
     }
 }

@@ -38,6 +38,8 @@ pub(super) struct Pose {
     pub torques: Vec<Linear>,
     /// Displacement of the tip per twist of each joint \[m/rad\].
     pub ways_m: Vec<Vector3<f64>>,
+    /// Displacement of the tip by each spring of an effect.
+    pub tilts_m: Vec<LinearVector>,
     /// Displacement of the tip times each stiffness of each tube.
     pub works: Vec<[LinearVector; STIFFNESSES]>,
     /// Force and moment at root and end of each tube, in its frame.
@@ -79,19 +81,23 @@ impl Pose {
         coordinates: &[Coordinate],
     ) -> Self {
         let case = &space.cases[index];
+        let water = water_of(space, case);
         let layout = Layout::new(space, case);
-        let tip_loads =
-            [(payload_weight(space, case), payload_at(&layout, case)), (case.tip_force_n, layout.tip_m)];
+        let tip_loads = [
+            (payload_weight(space, case, water), payload_at(&layout, case)),
+            (case.tip_force_n, layout.tip_m),
+        ];
         let builder = Builder { layout: &layout, gravity_m_s2: space.gravity_m_s2, tip_loads, coordinates };
         let sizing = space.sizing_cases.contains(&index);
         let acceleration = space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE);
         Self {
             judged: space.judged_cases.contains(&index),
             sizing,
-            water: waters.iter().position(|water| *water == case.water).unwrap_or_default(),
+            water: waters.iter().position(|other| *other == water).unwrap_or_default(),
             stress_factor: if sizing { 1.0 + acceleration } else { 1.0 },
             torques: (0..layout.joints.len()).map(|joint| builder.torque(joint)).collect(),
             ways_m: layout.joints.iter().map(|j| j.axis.cross(&(layout.tip_m - j.at_m))).collect(),
+            tilts_m: (0..layout.springs.len()).map(|spring| builder.tilt(spring)).collect(),
             works: (0..layout.tubes.len()).map(|tube| builder.works(tube)).collect(),
             ends: (0..layout.tubes.len()).map(|tube| builder.ends(tube)).collect(),
             inertia: builder.fixed_inertia(case),
@@ -100,8 +106,13 @@ impl Pose {
     }
 }
 
-fn payload_weight(space: &DesignSpace, case: &Case) -> Vector3<f64> {
-    let lifted = case.water.map_or(0.0, |water| water.density_kg_m3 / water.payload_density_kg_m3);
+/// The water of a case, or that of an effect.
+pub(super) fn water_of(space: &DesignSpace, case: &Case) -> Option<Water> {
+    case.water.or(space.surroundings().water)
+}
+
+fn payload_weight(space: &DesignSpace, case: &Case, water: Option<Water>) -> Vector3<f64> {
+    let lifted = water.map_or(0.0, |water| water.density_kg_m3 / water.payload_density_kg_m3);
     Vector3::new(0.0, 0.0, -case.payload.mass_kg * space.gravity_m_s2 * (1.0 - lifted))
 }
 
@@ -132,14 +143,14 @@ impl Builder<'_> {
         let about_m = &point.at_m;
         let none = Wrench::default();
         let tip = self.tip_loads.iter().map(|(force, at_m)| Wrench::of(*force, at_m, about_m));
-        let masses = self.layout.masses.iter().filter(|mass| mass.piece > point.piece);
+        let masses = self.layout.masses.iter().filter(|mass| mass.rank > point.rank);
         let masses = masses.map(|m| Wrench::of(down(m.mass_kg * self.gravity_m_s2), &m.at_m, about_m));
-        let drives = self.layout.joints.iter().map(|joint| match joint.piece > point.piece {
+        let drives = self.layout.joints.iter().map(|joint| match joint.rank > point.rank {
             true => Wrench::of(down(self.gravity_m_s2), &joint.at_m, about_m),
             false => none,
         });
         let tubes = self.layout.tubes.iter().map(|tube| {
-            let from_m = match (tube.piece.cmp(&point.piece), point.inside_m) {
+            let from_m = match (tube.rank.cmp(&point.rank), point.inside_m) {
                 (std::cmp::Ordering::Greater, _) => 0.0,
                 (std::cmp::Ordering::Equal, Some(x)) => x,
                 _ => return none,
@@ -152,17 +163,28 @@ impl Builder<'_> {
 
     fn torque(&self, joint: usize) -> Linear {
         let joint = &self.layout.joints[joint];
-        let carried = self.carried(&Point { at_m: joint.at_m, piece: joint.piece, inside_m: None });
+        let carried = self.carried(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });
         Linear {
             fixed: joint.axis.dot(&carried.fixed.moment),
             per_load: carried.per_load.iter().map(|wrench| joint.axis.dot(&wrench.moment)).collect(),
         }
     }
 
+    /// Displacement of the tip by a spring: its tilt under the moment about its axis times the way of the tip.
+    fn tilt(&self, spring: usize) -> LinearVector {
+        let spring = &self.layout.springs[spring];
+        let carried = self.carried(&Point { at_m: spring.at_m, rank: spring.rank, inside_m: None });
+        let way_m = spring.axis.cross(&(self.layout.tip_m - spring.at_m)) * spring.rad_per_nm;
+        LinearVector {
+            fixed: way_m * spring.axis.dot(&carried.fixed.moment),
+            per_load: carried.per_load.iter().map(|w| way_m * spring.axis.dot(&w.moment)).collect(),
+        }
+    }
+
     /// A point of a tube's axis.
     fn inside(&self, tube: usize, x: f64) -> Point {
         let tube = &self.layout.tubes[tube];
-        Point { at_m: tube.root_m + tube.frame.column(0) * x, piece: tube.piece, inside_m: Some(x) }
+        Point { at_m: tube.root_m + tube.frame.column(0) * x, rank: tube.rank, inside_m: Some(x) }
     }
 
     fn ends(&self, tube: usize) -> [[Linear; 6]; 2] {
@@ -209,7 +231,7 @@ impl Builder<'_> {
     fn fixed_inertia(&self, case: &Case) -> Vec<f64> {
         let mut out = self.no_inertia();
         let rotation = &self.layout.tip_rotation;
-        let payload = Point { at_m: payload_at(self.layout, case), piece: usize::MAX, inside_m: None };
+        let payload = Point { at_m: payload_at(self.layout, case), rank: usize::MAX, inside_m: None };
         let spin = Matrix3::from_diagonal(&case.payload.inertia_about_cg_kgm2.map(|i| i.max(0.0).sqrt()));
         let (moved, turned) = self.motions(&payload);
         for axis in 0..3 {
@@ -217,7 +239,7 @@ impl Builder<'_> {
             add_square(&mut out, &along(&turned, &(rotation * spin.column(axis))), 1.0);
         }
         for mass in &self.layout.masses {
-            let (moved, _) = self.motions(&Point { at_m: mass.at_m, piece: mass.piece, inside_m: None });
+            let (moved, _) = self.motions(&Point { at_m: mass.at_m, rank: mass.rank, inside_m: None });
             for axis in 0..3 {
                 add_square(&mut out, &along(&moved, &Vector3::ith(axis, 1.0)), mass.mass_kg);
             }
@@ -228,7 +250,7 @@ impl Builder<'_> {
     fn inertia_per(&self) -> Vec<Vec<f64>> {
         let drives = self.layout.joints.iter().map(|joint| {
             let mut out = self.no_inertia();
-            let (moved, _) = self.motions(&Point { at_m: joint.at_m, piece: joint.piece, inside_m: None });
+            let (moved, _) = self.motions(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });
             for axis in 0..3 {
                 add_square(&mut out, &along(&moved, &Vector3::ith(axis, 1.0)), 1.0);
             }

@@ -233,6 +233,7 @@ impl Weigh<'_> {
         let tubes = self.members.tubes.iter().zip(&pose.works).flat_map(|(tube, works)| {
             works.iter().zip(compliances(tube)).map(|(w, c)| w.per_load[load].dot(direction) * c.least)
         });
-        joints.chain(tubes).sum()
+        let tilts = pose.tilts_m.iter().map(|tilt_m| tilt_m.per_load[load].dot(direction));
+        joints.chain(tubes).chain(tilts).sum()
     }
 }

@@ -1,10 +1,9 @@
 //! What a link's tubes are in numbers, and the least and the most of each over a set of tubes.
 
 use super::tree::Tree;
-use crate::arm::link_piece;
-use crate::arm::{Link, LinkModel, Structure, Water};
+use crate::arm::{Link, LinkModel, LinkPiece, Structure, Water};
 use crate::mechanics::beam::{line_densities, line_stiffnesses};
-use crate::search::figures::OptionFigures;
+use crate::search::figures::{OptionFigures, StressCheck};
 use crate::search::slot::{Slot, choice_slot, link_slot};
 use crate::search::space::{DesignSpace, LinkChoice};
 
@@ -64,34 +63,39 @@ impl Tubes {
         level: usize,
         waters: &[Option<Water>],
     ) -> Self {
-        let links: Vec<Link> = choice.options.iter().map(|option| choice.link(option)).collect();
-        Self::new(space, &links, choice_slot(space, choice), Some(level), waters)
+        let figures = figures(choice_slot(space, choice));
+        let numbers = choice.options.iter().zip(&figures).map(|(option, figures)| {
+            let piece = space.link_piece(&choice.link(option));
+            numbers(space, &piece, figures.mass_kg, figures.stress.as_ref(), waters)
+        });
+        let sound = (0..figures.len() as u32).filter(|&i| !figures[i as usize].slender).collect();
+        Self::new(choice.vector_m.norm(), Some(level), &numbers.collect::<Vec<_>>(), sound)
     }
 
-    /// The tube of a link without one.
+    /// The tube of a link without one; cables along a rigid offset count as a tube that does not yield.
     pub fn of_link(space: &DesignSpace, link: &Link, waters: &[Option<Water>]) -> Self {
-        Self::new(space, std::slice::from_ref(link), link_slot(space, link), None, waters)
+        let figures = figures(link_slot(space, link));
+        let tube = figures.first();
+        let mass_kg = tube.map_or(0.0, |tube| tube.mass_kg);
+        let stress = tube.and_then(|tube| tube.stress.as_ref());
+        let numbers = numbers(space, &space.link_piece(link), mass_kg, stress, waters);
+        let sound = if tube.is_some_and(|tube| tube.slender) { Vec::new() } else { vec![0] };
+        Self::new(link.vector_m.norm(), None, &[numbers], sound)
     }
 
-    fn new(
-        space: &DesignSpace,
-        links: &[Link],
-        slot: Slot,
-        level: Option<usize>,
-        waters: &[Option<Water>],
-    ) -> Self {
-        let figures = match slot {
-            Slot::Link { options, .. } => options,
-            _ => Vec::new(),
-        };
-        let numbers: Vec<TubeNumbers> =
-            links.iter().zip(&figures).map(|(link, figures)| numbers(space, link, figures, waters)).collect();
-        let sound = (0..numbers.len() as u32).filter(|&i| !figures[i as usize].slender).collect();
+    fn new(length_m: f64, level: Option<usize>, numbers: &[TubeNumbers], sound: Vec<u32>) -> Self {
         let tree = Tree::new(sound, &numbers.iter().map(keys).collect::<Vec<_>>());
         let nodes = (0..tree.len() as u32)
             .map(|node| TubeRange::over(tree.options(node).iter().map(|&i| &numbers[i as usize])))
             .collect();
-        Self { length_m: links.first().map_or(0.0, |link| link.vector_m.norm()), level, tree, nodes }
+        Self { length_m, level, tree, nodes }
+    }
+}
+
+fn figures(slot: Slot) -> Vec<OptionFigures> {
+    match slot {
+        Slot::Link { options, .. } => options,
+        _ => Vec::new(),
     }
 }
 
@@ -103,37 +107,42 @@ fn keys(tube: &TubeNumbers) -> Vec<f64> {
 
 fn numbers(
     space: &DesignSpace,
-    link: &Link,
-    figures: &OptionFigures,
+    piece: &LinkPiece,
+    mass_kg: f64,
+    stress: Option<&StressCheck>,
     waters: &[Option<Water>],
 ) -> TubeNumbers {
-    let piece = link_piece(link);
-    let stiffnesses = piece.beam.map_or([f64::INFINITY; STIFFNESSES], |beam| line_stiffnesses(&beam));
-    let known = match space.links {
-        LinkModel::Rigid => 0,
-        LinkModel::Bending => 2,
-        LinkModel::Full => STIFFNESSES,
-    };
-    let around = |water: &Option<Water>| {
-        let structure = Structure { water: *water, ..Structure::bare(space.gravity_m_s2, Vec::new()) };
-        let [along, across, _, polar, about_y, about_z] = line_densities(&piece, &structure, space.links);
-        let outer_m2 =
-            piece.beam.map_or(0.0, |beam| beam.section.properties(beam.material.poisson).outer_area_m2);
-        let displaced = water.map_or(0.0, |water| water.density_kg_m3 * outer_m2);
-        TubeAround {
-            weight_n_per_m: space.gravity_m_s2 * (piece.tube_kg_per_m() - displaced),
-            densities: [along, across, polar, about_y, about_z],
-        }
-    };
-    let stress = figures.stress.as_ref();
     TubeNumbers {
-        mass_kg: figures.mass_kg,
-        stiffnesses: std::array::from_fn(|i| if i < known { stiffnesses[i] } else { f64::INFINITY }),
+        mass_kg,
+        stiffnesses: stiffnesses(piece, space.links),
         stresses: stress.map_or([0.0; STRESSES], |s| {
             [s.per_axial_n, s.per_moment_y, s.per_moment_z, s.per_torsion].map(|per| per / s.strength_pa)
         }),
         round: f64::from(u8::from(stress.is_some_and(|s| s.round))),
-        around: waters.iter().map(around).collect(),
+        around: waters.iter().map(|water| around(space, piece, *water)).collect(),
+    }
+}
+
+/// Stiffnesses that the model knows; the others are infinite.
+fn stiffnesses(piece: &LinkPiece, model: LinkModel) -> [f64; STIFFNESSES] {
+    let Some(beam) = piece.beam else { return [f64::INFINITY; STIFFNESSES] };
+    let known = match model {
+        LinkModel::Rigid => 0,
+        LinkModel::Bending => 2,
+        LinkModel::Full => STIFFNESSES,
+    };
+    let bare = line_stiffnesses(&beam);
+    std::array::from_fn(|i| if i < known { bare[i] / beam.flexibility } else { f64::INFINITY })
+}
+
+fn around(space: &DesignSpace, piece: &LinkPiece, water: Option<Water>) -> TubeAround {
+    let structure = Structure { water, ..Structure::bare(space.gravity_m_s2, Vec::new()) };
+    let [along, across, _, polar, about_y, about_z] = line_densities(piece, &structure, space.links);
+    let outer_m2 = piece.beam.map_or(0.0, |b| b.section.properties(b.material.poisson).outer_area_m2);
+    let displaced = water.map_or(0.0, |water| water.density_kg_m3 * outer_m2);
+    TubeAround {
+        weight_n_per_m: space.gravity_m_s2 * (piece.tube_kg_per_m() + piece.harness_kg_per_m - displaced),
+        densities: [along, across, polar, about_y, about_z],
     }
 }
 
