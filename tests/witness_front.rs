@@ -291,7 +291,7 @@ fn nearly_covers(a: &Evaluated, b: &Evaluated) -> bool {
 fn nothing_is_missing_beside_a_true_front_and_what_is_dropped_is_found() {
     let catalogs = Catalogs::builtin();
     let (mut fronts, mut dropped, mut boxes) = (0, 0, 0);
-    for seed in 0..2 * studies() {
+    for seed in 0..studies() {
         let study = read(&random_study(seed), &catalogs);
         if study.space.designs(&catalogs).is_none_or(|designs| designs > MOST_DESIGNS) {
             continue;
@@ -317,7 +317,7 @@ fn nothing_is_missing_beside_a_true_front_and_what_is_dropped_is_found() {
         }
     }
     println!("{fronts} fronts, {boxes} boxes, {dropped} designs dropped and found");
-    assert!(fronts * 2 > studies() && dropped > 2 * fronts, "{fronts} fronts, {dropped} dropped");
+    assert!(fronts * 3 > studies() && dropped > fronts, "{fronts} fronts, {dropped} dropped");
 }
 
 #[test]
