@@ -10,6 +10,7 @@ mod dice;
 
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
+use armwright::search::constraint::Constraints;
 use armwright::search::design::{Evaluated, number};
 use armwright::search::front::nondominated;
 use armwright::search::witness::{Looked, PartsBox, Witness, conditions, missing};
@@ -151,7 +152,7 @@ fn effects(dice: &mut Dice) -> Value {
 fn constraints(dice: &mut Dice) -> Value {
     let mut constraints = json!({});
     let limits = [
-        ("stress_safety_factor_min", dice.within(1.5, 5.0)),
+        ("stress_safety_factor_min", 10f64.powf(dice.within(0.2, 1.3))),
         ("tip_deflection_max_mm", dice.within(1.0, 6.0)),
         ("lowest_mode_min_hz", dice.within(3.0, 9.0)),
         ("mass_max_kg", dice.within(25.0, 70.0)),
@@ -177,6 +178,17 @@ fn random_box(witness: &Witness, dice: &mut Dice) -> Option<PartsBox> {
     let levels = witness.options(&parts).len() as u64;
     for _ in 0..dice.below(5 * levels.max(1)) {
         if let Some(halves) = witness.halves(&parts, dice.below(levels.max(1)) as usize) {
+            parts = dice.of(&halves);
+        }
+    }
+    Some(parts)
+}
+
+/// A box of one design.
+fn random_design(witness: &Witness, dice: &mut Dice) -> Option<PartsBox> {
+    let mut parts = witness.root()?;
+    for level in 0..witness.options(&parts).len() {
+        while let Some(halves) = witness.halves(&parts, level) {
             parts = dice.of(&halves);
         }
     }
@@ -241,12 +253,7 @@ fn the_ceiling_of_a_single_design_is_close_to_it() {
         let witness = Witness::new(&study.space, &catalogs);
         let dice = &mut Dice(seed);
         for _ in 0..15 {
-            let Some(mut parts) = witness.root() else { break };
-            for level in 0..witness.options(&parts).len() {
-                while let Some(halves) = witness.halves(&parts, level) {
-                    parts = dice.of(&halves);
-                }
-            }
+            let Some(parts) = random_design(&witness, dice) else { break };
             let number = random_member(&witness, &parts, problem.level_sizes(), dice);
             let Some(found) = judged(&study, &problem, number) else { continue };
             let [mass_kg, tip_m] = witness.least_mass_and_deflection(&parts).expect("it holds");
@@ -259,6 +266,33 @@ fn the_ceiling_of_a_single_design_is_close_to_it() {
         }
     }
     assert!(singles > 2 * studies(), "{singles}");
+}
+
+#[test]
+fn a_design_is_cut_exactly_if_it_is_too_weak() {
+    let catalogs = Catalogs::builtin();
+    let mut designs = 0;
+    for seed in 0..studies() {
+        let mut study = read(&random_study(seed), &catalogs);
+        study.space.constraints = Constraints::default();
+        let dice = &mut Dice(seed);
+        let drawn = random_design(&Witness::new(&study.space, &catalogs), dice);
+        let problem = ArmProblem::new(&study.space, &catalogs);
+        let safety = drawn.and_then(|parts| {
+            let witness = Witness::new(&study.space, &catalogs);
+            let options: Vec<u32> = witness.options(&parts).into_iter().map(|options| options[0]).collect();
+            let safety = problem.stress_safety_factor(&problem.walk(&options, |_, _| {}).ok()?)?;
+            Some((parts, safety))
+        });
+        let Some((parts, safety)) = safety else { continue };
+        for (asked, holds) in [(safety * (1.0 - 1e-8), true), (safety * 1.001, false)] {
+            study.space.constraints.stress_safety_factor_min = Some(asked);
+            let found = Witness::new(&study.space, &catalogs).least_mass_and_deflection(&parts);
+            assert_eq!(found.is_some(), holds, "seed {seed}: asked for {asked} of {safety}");
+        }
+        designs += 1;
+    }
+    assert!(4 * designs > studies(), "{designs}");
 }
 
 /// Largest space that is visited.

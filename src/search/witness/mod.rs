@@ -1,24 +1,25 @@
 //! A second proof that a front lacks no design.
 //!
-//! This module shares no code with the exact search ([`super::exact`]), so that a mistake in one shows in
-//! the other. It knows two things only: the catalogs and pieces of a space, and the full model, which judges
-//! single designs.
+//! This module shares no code with the exact search (`search::exact`), so that a mistake in one shows in the
+//! other. What it knows are the pieces of a space, the tables of drives and sections, and the full model,
+//! which judges single designs.
 //!
-//! A box is, for each level, a node of a binary tree over the level's options ([`tree`]). The members of a
+//! A box is, for each level, a node of a binary tree over the level's options (`tree.rs`). The members of a
 //! box are bounded by
 //!
 //! - *mass*: the sum of the least masses;
-//! - *demand on joints*: torques by lever arms, every weight an interval ([`span`], [`pose`]); a box none of
-//!   whose drives holds the least demand is cut, and the drive that fits first lies between the fit of the least
-//!   demand and the fit of the greatest;
+//! - *demand on joints*: torques by lever arms, every weight an interval that enters once (`span.rs`,
+//!   `pose.rs`). A box none of whose drives holds the least demand is cut; the drive that fits first is one
+//!   that holds the least demand and none that comes after the fit of the greatest (`drives.rs`);
 //! - *deflection*: the method of the unit load along a fixed direction; a displacement is at least as long
-//!   as its component along any direction;
-//! - *lowest mode*: the stiffest and lightest arm that could be put together from the box's numbers
-//!   ([`pencil`]), with fewer ways to move than the full model ([`layout`]).
+//!   as its component along any direction (`bound.rs`);
+//! - *lowest mode*: that of an arm as stiff as the stiffest and as light as the lightest number of the box
+//!   allows, which has fewer ways to move than the full model (`pencil.rs`, `layout.rs`).
 //!
-//! A box is cut if no member holds or if a row of the front is no worse in all three and better in one
-//! ([`staircase`]). Otherwise one of its levels is halved ([`search`]). What is left are single designs, which
-//! the full model judges: those that no row beats belong on the front.
+//! A box is cut if no member holds or if a row of the front is no worse in all three objectives and better
+//! in one (`staircase.rs`). Otherwise one of its levels is halved (`search.rs`). What is left are single
+//! designs, which the full model judges: those that hold and that no row beats belong on the front. So every
+//! design of the space is either in a box that was cut, and then beaten by a row, or among those judged.
 
 mod bound;
 mod drives;
@@ -131,7 +132,7 @@ pub fn missing(
     let mut designs = found.designs;
     designs.sort_unstable();
     for batch in designs.chunks(BATCH) {
-        match search.stopped() {
+        match search.out_of_time() {
             true => looked.open += batch.len() as u64,
             false => looked.candidates.extend(unbeaten(space, catalogs, batch, &staircase)),
         }

@@ -8,12 +8,13 @@ use super::pose::Pose;
 use super::staircase::Staircase;
 use super::tubes::{DENSITIES, TubeRange};
 use super::{PartsBox, Place, Witness};
+use crate::arm::Windup;
 use crate::search::design::number;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// Single designs beyond which the search stops: the front is no front.
-const MOST_DESIGNS: usize = 1_000_000;
+/// Single designs beyond which the search stops: what it looks beside is far from a front.
+const MOST_DESIGNS: usize = 200_000;
 
 /// What a search found.
 #[derive(Default)]
@@ -43,10 +44,13 @@ pub(super) struct Search<'s> {
 
 impl Search<'_> {
     /// Whether the search is to end early.
-    pub fn stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
-            || self.designs.load(Ordering::Relaxed) > MOST_DESIGNS
-            || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+    fn stopped(&self) -> bool {
+        self.designs.load(Ordering::Relaxed) > MOST_DESIGNS || self.out_of_time()
+    }
+
+    /// Whether whoever asked wants an end.
+    pub fn out_of_time(&self) -> bool {
+        self.stop.load(Ordering::Relaxed) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
 
     /// Looks into a box and, if it is not cut, into its halves.
@@ -165,16 +169,15 @@ impl Weigh<'_> {
         let (range, whole) = (&self.members.drives[joint], self.witness.joints[joint].range(node));
         let mass_kg = 0.5 * (whole.most_kg.min(range.most_kg) - range.least_kg);
         let pose = &self.witness.poses[self.ceiling.worst];
-        let loads = &self.members.loads[pose.water];
-        let torque_nm = pose.torques[joint].over(loads).least_size();
+        let torque_nm = pose.torques[joint].over(&self.members.loads[pose.water]).least_size();
         let softer = 0.5 * (angle_rad(&range.soft, torque_nm) - angle_rad(&range.stiff, torque_nm));
         let tip_m = softer * pose.ways_m[joint].dot(&self.ceiling.direction).abs();
-        let slope = |curve: &crate::arm::Windup| curve.tangent_nm_per_rad(torque_nm);
+        let slope = |curve: &Windup| curve.tangent_nm_per_rad(torque_nm);
         let weaker = 0.5 * (slope(&range.stiff) - slope(&range.soft));
-        let (x, load) = (&self.slow.mode, joint);
-        let strain = weaker * x[joint] * x[joint];
-        let inertia = mass_kg * square(&self.slow.pose.inertia_per[load], x);
-        [mass_kg, tip_m + self.sag_per(load) * mass_kg, strain + self.slow.eigenvalue * inertia]
+        let x = &self.slow.mode;
+        let inertia = mass_kg * square(&self.slow.pose.inertia_per[joint], x);
+        let eigenvalue = weaker * x[joint] * x[joint] + self.slow.eigenvalue * inertia;
+        [mass_kg, tip_m + self.sag_per(joint) * mass_kg, eigenvalue]
     }
 
     /// The same of a set of tubes.
