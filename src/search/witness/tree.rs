@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn options_are_parted_where_they_differ_most() {
-        let keys: Vec<Vec<f64>> = [0.0, 9.0, 1.0, 8.0].map(|wide| vec![0.5 * wide.sqrt(), wide]).to_vec();
+        let keys: Vec<Vec<f64>> = [0.0f64, 9.0, 1.0, 8.0].map(|wide| vec![0.5 * wide.sqrt(), wide]).to_vec();
         let tree = Tree::new((0..4).collect(), &keys);
         let [light, heavy] = tree.halves(0).expect("four options");
         assert_eq!([tree.options(light), tree.options(heavy)], [[0, 2], [3, 1]]);
