@@ -6,7 +6,7 @@ use super::run::stopped_by_signal;
 use crate::catalog::Catalogs;
 use crate::fault::Document;
 use crate::report::front_table::FrontTable;
-use crate::study::{check_front, read_study};
+use crate::study::{Completeness, check_front, read_study};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
@@ -23,6 +23,9 @@ pub struct FrontArgs {
 #[derive(Debug, Subcommand)]
 enum FrontVerb {
     /// Try to find fault with a front: every row, rows against each other, designs that are missing
+    ///
+    /// Missing designs are looked for by bounds that share no code with the exact search's (docs/exact.md). The
+    /// last line says so, or why the exact search's own had to do.
     Check(CheckArgs),
 }
 
@@ -67,7 +70,14 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
     }
     faults.extend(check.faults);
     let completeness = match &check.completeness {
-        Ok(boxes) => format!("no design is missing ({boxes} boxes)"),
+        Ok(Completeness { boxes, by_exact_search: None }) => {
+            format!("no design is missing ({boxes} boxes, by bounds that the exact search does not use)")
+        }
+        Ok(Completeness { boxes, by_exact_search: Some(why) }) => {
+            format!(
+                "no design is missing ({boxes} boxes, by the exact search's own bounds; of others: {why})"
+            )
+        }
         Err(why) => format!("whether a design is missing was not settled: {why}"),
     };
     if faults.is_empty() {

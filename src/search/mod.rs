@@ -31,6 +31,7 @@ mod staircase;
 pub mod station;
 pub mod sweep;
 mod visit;
+pub mod witness;
 
 pub use design::{Evaluated, evaluate};
 pub use outward::ArmProblem;

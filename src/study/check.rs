@@ -6,10 +6,10 @@ use super::table::front_table;
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
 use crate::search::design::{Evaluated, id_of, number, number_of, options};
-use crate::search::exact::{Exact, conditions};
+use crate::search::exact::{self, Exact};
 use crate::search::front::nondominated;
 use crate::search::sweep::Candidate;
-use crate::search::{ArmProblem, Objectives, OutwardIn, evaluate};
+use crate::search::{ArmProblem, Objectives, OutwardIn, evaluate, witness};
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -26,8 +26,17 @@ pub struct FrontCheck {
     pub faults: Vec<String>,
     /// Rows checked.
     pub rows: usize,
-    /// Boxes bounded in looking for designs that are missing; `None` if that was not done, and why.
-    pub completeness: Result<u64, String>,
+    /// How it was settled that no design is missing but those among the faults; if it was not, why.
+    pub completeness: Result<Completeness, String>,
+}
+
+/// A look at all designs that came to its end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Completeness {
+    /// Boxes bounded.
+    pub boxes: u64,
+    /// Why the exact search's own bounds were used; `None` if it was by bounds that share no code with them.
+    pub by_exact_search: Option<String>,
 }
 
 /// Checks a front against its study: every row by the full model, rows against each other, and, unless
@@ -58,21 +67,47 @@ pub fn check_front(
     let front = judge(&problem, &candidates);
     compare_rows(&front_table(&problem, catalogs, &front), table, &front, &problem, &mut faults);
     broken_limits(study, &front, &problem, &mut faults);
-    let completeness = match (claims_all, conditions(&study.space)) {
-        (false, _) => Err("the run was stopped early and claims no more than its rows".into()),
-        (true, Err(why)) => Err(format!("the exact search does not see this study as it is: {why}")),
-        (true, Ok(())) => Ok(()),
+    let completeness = match claims_all {
+        true => look_for_missing(study, catalogs, &front, stop, deadline).map(|(found, completeness)| {
+            list(&mut faults, missing(study, catalogs, &front, &problem, &found), "designs are missing");
+            completeness
+        }),
+        false => Err("the run was stopped early and claims no more than its rows".into()),
     };
-    let completeness = completeness.and_then(|()| {
-        let objectives: Vec<Objectives> = front.iter().map(|d| d.design.objectives).collect();
-        let found = Exact::new(&study.space, catalogs, stop, deadline).run(&objectives);
-        list(&mut faults, missing(study, catalogs, &front, &problem, &found.front), "designs are missing");
-        match found.boxes_open {
-            0 => Ok(found.boxes),
-            open => Err(format!("stopped with {open} boxes unopened")),
-        }
-    });
+    let completeness = completeness.and_then(|looked| looked);
     FrontCheck { faults, rows: table.rows.len(), completeness }
+}
+
+/// Numbers of designs that may be missing, and whether the look at all designs came to its end.
+type Look = (Vec<u128>, Result<Completeness, String>);
+
+/// Looks at all designs beside a front, by bounds that share no code with the exact search's where they can.
+fn look_for_missing(
+    study: &Study,
+    catalogs: &Catalogs,
+    front: &Front,
+    stop: &AtomicBool,
+    deadline: Option<Instant>,
+) -> Result<Look, String> {
+    let objectives: Vec<Objectives> = front.iter().map(|d| d.design.objectives).collect();
+    let unseen = witness::conditions(&study.space).err();
+    let (numbers, boxes, open) = match unseen {
+        None => {
+            let looked = witness::missing(&study.space, catalogs, &objectives, stop, deadline);
+            (looked.candidates, looked.boxes, looked.open)
+        }
+        Some(_) => {
+            exact::conditions(&study.space)
+                .map_err(|why| format!("the exact search does not see this study as it is: {why}"))?;
+            let found = Exact::new(&study.space, catalogs, stop, deadline).run(&objectives);
+            (found.front.iter().map(|c| c.number).collect(), found.boxes, found.boxes_open)
+        }
+    };
+    let completeness = match open {
+        0 => Ok(Completeness { boxes, by_exact_search: unseen }),
+        open => Err(format!("stopped with {open} boxes unopened")),
+    };
+    Ok((numbers, completeness))
 }
 
 fn candidate(problem: &ArmProblem, whole: u128) -> Option<Candidate> {
@@ -127,16 +162,16 @@ fn broken_limits(study: &Study, front: &Front, problem: &ArmProblem, faults: &mu
     );
 }
 
-/// Designs found by the search that belong on the front and are not in it.
+/// Designs found by a search that belong on the front and are not in it.
 fn missing(
     study: &Study,
     catalogs: &Catalogs,
     front: &Front,
     problem: &ArmProblem,
-    found: &[Candidate],
+    found: &[u128],
 ) -> Vec<String> {
     let listed: BTreeSet<u128> = front.iter().map(|d| problem.whole_number(d.design.number)).collect();
-    let others: Vec<u128> = found.iter().map(|c| c.number).filter(|n| !listed.contains(n)).collect();
+    let others: Vec<u128> = found.iter().copied().filter(|n| !listed.contains(n)).collect();
     let Some(space) = study.space.excerpt(catalogs, &others) else { return Vec::new() };
     let beyond = ArmProblem::new(&space, catalogs);
     let judged: Vec<(u128, Evaluated)> = others

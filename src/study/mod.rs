@@ -16,7 +16,7 @@ mod tolerance;
 
 pub use ballast::{BallastFlags, ballast_flags};
 pub use budget::budgets;
-pub use check::{FrontCheck, check_front};
+pub use check::{Completeness, FrontCheck, check_front};
 pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{Carried, CorrectedStudy, carry_over, left_out};
 pub use near::{NearFront, near_front};

@@ -24,7 +24,11 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     let added = matrix(numbers);
     match subject.structure.link_mut(at) {
         Some(link) => link.root_frame = FrameCompliance(link.root_frame.0 + added),
-        None => subject.structure.base_frame = FrameCompliance(subject.structure.base_frame.0 + added),
+        None if at == "base" => {
+            subject.structure.base_frame = FrameCompliance(subject.structure.base_frame.0 + added);
+        }
+        // a part of an arm may lack the link
+        None => {}
     }
 }
 
@@ -73,6 +77,16 @@ mod tests {
         let rotation = turn * (matrix(&numbers) * (turn.inverse() * (tip / 2.0).cross(&force_n)));
         let link = by_frame(&numbers, "forearm", &[q, 0.0], force_n);
         assert!((link - rotation.cross(&(tip / 2.0))).norm() < 1e-15, "{link}");
+    }
+
+    #[test]
+    fn a_part_of_an_arm_without_the_link_keeps_its_base() {
+        let mut subject = two_link_subject();
+        subject.structure.pieces.clear();
+        apply(&[3e-6, 5e-6, 4e-6], "forearm", &mut subject);
+        assert_eq!(subject.structure.base_frame, FrameCompliance::default());
+        apply(&[3e-6, 5e-6, 4e-6], "base", &mut subject);
+        assert_ne!(subject.structure.base_frame, FrameCompliance::default());
     }
 
     #[test]

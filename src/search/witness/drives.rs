@@ -1,0 +1,211 @@
+//! What a joint's drives are in numbers, and the least and the most of each over a set of drives.
+//!
+//! A set of drives is bounded by two torsion curves. Of each member's curve the slopes are first made to
+//! rise: lifted (each at least the one before) or lowered (each at most the one after). The largest lifted
+//! slopes with the least break points make a curve that at every torque is at least as steep as any
+//! member's, for a member that is in a later segment there has a slope that the later segment of the bound
+//! exceeds too. The least lowered slopes with the largest break points make one that is nowhere steeper.
+
+use super::tree::Tree;
+use crate::arm::{Curve, JointLaw, Windup};
+use crate::catalog::Catalogs;
+use crate::search::slot::{Slot, joint_slot};
+use crate::search::space::{DesignSpace, SpaceJoint};
+use crate::sizing::{DriveLimits, JointDemand, JointMotion};
+
+/// Sets of drives no larger than this are looked through one by one.
+const FEW: usize = 64;
+
+/// Least, largest and middling numbers of a set of drives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct DriveRange {
+    pub least_kg: f64,
+    pub most_kg: f64,
+    /// Nowhere softer than any of the drives.
+    pub stiff: Windup,
+    /// Nowhere stiffer than any of the drives.
+    pub soft: Windup,
+    /// Largest slope in modes of any drive that has one slope there, whatever the torque \[N m/rad\];
+    /// infinite if a drive has not.
+    pub modal_nm_per_rad: f64,
+}
+
+/// The drives that a joint may have.
+pub(super) struct Drives {
+    /// Place among the levels of the space, if there is a choice.
+    pub level: Option<usize>,
+    /// What the joint does, if a drive must hold it.
+    pub motion: Option<JointMotion>,
+    pub tree: Tree,
+    /// Range and largest limits of each node.
+    nodes: Vec<(DriveRange, DriveLimits)>,
+    options: Vec<(DriveRange, DriveLimits)>,
+}
+
+impl Drives {
+    /// The drives of a joint; `level` counts if the drive is a choice.
+    pub fn new(
+        space: &DesignSpace,
+        joint: &SpaceJoint,
+        reach_m: f64,
+        level: usize,
+        catalogs: &Catalogs,
+    ) -> Self {
+        let (options, motion, is_level) = match joint_slot(space, joint, reach_m, catalogs) {
+            Slot::Given { law, mass_kg } => {
+                (vec![(DriveRange::of(&law, mass_kg), without_limit())], None, false)
+            }
+            Slot::Sized(sized) => {
+                let one = |i: usize| {
+                    (DriveRange::of(&sized.laws[i], sized.table.mass_kg(i)), *sized.table.limits(i))
+                };
+                let wanted: Vec<usize> = match sized.all_fits {
+                    true => (0..sized.table.len()).collect(),
+                    false => sized.table.first_fit_candidates().iter().map(|&i| i as usize).collect(),
+                };
+                let options = wanted.into_iter().map(one).collect();
+                (options, Some(*sized.table.motion()), sized.all_fits)
+            }
+            Slot::Link { .. } | Slot::Offset { .. } => (Vec::new(), None, false),
+        };
+        let all: Vec<u32> = (0..options.len() as u32).collect();
+        let tree = Tree::new(all, &options.iter().map(keys).collect::<Vec<_>>());
+        let nodes = (0..tree.len() as u32)
+            .filter_map(|node| {
+                let members = tree.options(node).iter().map(|&i| options[i as usize]);
+                members.reduce(|(a, limits), (b, other)| (a.with(&b), limits.max(&other)))
+            })
+            .collect();
+        Self { level: is_level.then_some(level), motion, tree, nodes, options }
+    }
+
+    /// The drives of a node that may hold what is asked at least; `None` if there is none.
+    pub fn holding(&self, node: u32, asked: &JointDemand) -> Option<DriveRange> {
+        let options = self.tree.options(node);
+        if options.len() > FEW {
+            let (range, limits) = &self.nodes[node as usize];
+            return limits.hold(asked).then_some(*range);
+        }
+        let members = options.iter().map(|&i| &self.options[i as usize]);
+        let holding = members.filter(|(_, limits)| limits.hold(asked));
+        holding.map(|(range, _)| *range).reduce(|a, b| a.with(&b))
+    }
+
+    /// The drives that may be the lightest that holds a demand between two: all that hold the least, up to the
+    /// first that holds the most. `None` if none holds the least.
+    pub fn first_fits(&self, least: &JointDemand, most: &JointDemand) -> Option<DriveRange> {
+        let mut range: Option<DriveRange> = None;
+        for (drive, limits) in self.options.iter().filter(|(_, limits)| limits.hold(least)) {
+            range = Some(range.map_or(*drive, |range| range.with(drive)));
+            if limits.hold(most) {
+                break;
+            }
+        }
+        range
+    }
+
+    /// Range of all drives of a node.
+    pub fn range(&self, node: u32) -> &DriveRange {
+        &self.nodes[node as usize].0
+    }
+
+    /// Whether there is no drive at all.
+    pub fn is_empty(&self) -> bool {
+        self.options.is_empty()
+    }
+}
+
+/// What drives are told apart by.
+fn keys((drive, limits): &(DriveRange, DriveLimits)) -> Vec<f64> {
+    let stiff = &drive.stiff;
+    vec![
+        drive.least_kg.ln(),
+        0.5 * stiff.k1_nm_per_rad.ln(),
+        0.5 * stiff.k3_nm_per_rad.ln(),
+        0.2 * stiff.t1_nm.ln(),
+        0.2 * limits.peak_torque_nm.ln(),
+        0.2 * limits.static_torque_nm.ln(),
+    ]
+}
+
+fn without_limit() -> DriveLimits {
+    DriveLimits {
+        static_torque_nm: f64::INFINITY,
+        peak_torque_nm: f64::INFINITY,
+        stop_torque_nm: f64::INFINITY,
+        mean_torque_cubed_nm3: f64::INFINITY,
+        tilting_moment_nm: f64::INFINITY,
+    }
+}
+
+impl DriveRange {
+    fn of(law: &JointLaw, mass_kg: f64) -> Self {
+        let one_slope = |k: f64| Windup {
+            k1_nm_per_rad: k,
+            k2_nm_per_rad: k,
+            k3_nm_per_rad: k,
+            t1_nm: f64::INFINITY,
+            t2_nm: f64::INFINITY,
+        };
+        let (windup, modal_nm_per_rad) = match law.without_play() {
+            Curve::Rigid => (one_slope(f64::INFINITY), f64::INFINITY),
+            Curve::Linear(k) => (one_slope(k), k),
+            Curve::Windup(windup) => (windup, f64::INFINITY),
+            Curve::WindupK1(windup) => (windup, windup.k1_nm_per_rad),
+        };
+        let [k1, k2, k3] = [windup.k1_nm_per_rad, windup.k2_nm_per_rad, windup.k3_nm_per_rad];
+        let slopes = |[k1, k2, k3]: [f64; 3]| Windup {
+            k1_nm_per_rad: k1,
+            k2_nm_per_rad: k2,
+            k3_nm_per_rad: k3,
+            ..windup
+        };
+        Self {
+            least_kg: mass_kg,
+            most_kg: mass_kg,
+            stiff: slopes([k1, k1.max(k2), k1.max(k2).max(k3)]),
+            soft: slopes([k1.min(k2).min(k3), k2.min(k3), k3]),
+            modal_nm_per_rad,
+        }
+    }
+
+    fn with(&self, other: &Self) -> Self {
+        Self {
+            least_kg: self.least_kg.min(other.least_kg),
+            most_kg: self.most_kg.max(other.most_kg),
+            stiff: curve(&self.stiff, &other.stiff, f64::max, f64::min),
+            soft: curve(&self.soft, &other.soft, f64::min, f64::max),
+            modal_nm_per_rad: self.modal_nm_per_rad.max(other.modal_nm_per_rad),
+        }
+    }
+
+    /// Least twist under a torque that is at least `torque_nm`, with its sign \[rad\].
+    pub fn least_angle_rad(&self, torque_nm: f64) -> f64 {
+        if torque_nm >= 0.0 { angle_rad(&self.stiff, torque_nm) } else { -angle_rad(&self.soft, -torque_nm) }
+    }
+
+    /// Largest slope for a small further torque at any torque up to this size \[N m/rad\].
+    pub fn largest_slope(&self, torque_nm: f64) -> f64 {
+        // beyond a break point by less than rounding counts as beyond
+        let reach_nm = torque_nm * (1.0 + 1e-9) + 1e-9;
+        self.stiff.tangent_nm_per_rad(reach_nm).min(self.modal_nm_per_rad)
+    }
+}
+
+fn curve(a: &Windup, b: &Windup, slope: fn(f64, f64) -> f64, break_point: fn(f64, f64) -> f64) -> Windup {
+    Windup {
+        k1_nm_per_rad: slope(a.k1_nm_per_rad, b.k1_nm_per_rad),
+        k2_nm_per_rad: slope(a.k2_nm_per_rad, b.k2_nm_per_rad),
+        k3_nm_per_rad: slope(a.k3_nm_per_rad, b.k3_nm_per_rad),
+        t1_nm: break_point(a.t1_nm, b.t1_nm),
+        t2_nm: break_point(a.t2_nm, b.t2_nm),
+    }
+}
+
+/// Twist under a torque that is not negative; break points may be infinite.
+pub(super) fn angle_rad(curve: &Windup, torque_nm: f64) -> f64 {
+    let first = torque_nm.min(curve.t1_nm);
+    let second = torque_nm.min(curve.t2_nm) - first;
+    let third = torque_nm - first - second.max(0.0);
+    first / curve.k1_nm_per_rad + second.max(0.0) / curve.k2_nm_per_rad + third / curve.k3_nm_per_rad
+}

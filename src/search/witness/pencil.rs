@@ -1,0 +1,146 @@
+//! Stiffness and inertia of an arm as dense matrices, and whether its lowest mode is below a number.
+//!
+//! `K - λ M` is positive definite exactly if `λ` is below every `λ_i` of `K x = λ_i M x`, so one Cholesky
+//! factorization decides. With every stiffness of a box at its largest and every inertia at its least, `K`
+//! is at least and `M` at most that of any member (in the order of positive semidefinite differences), and
+//! then so is each Rayleigh quotient, and by Courant and Fischer `λ_1`.
+
+/// Stiffness and inertia of an arm's coordinates in a pose.
+pub(super) struct Pencil {
+    stiffness: Vec<f64>,
+    /// Lower triangle by rows.
+    inertia: Vec<f64>,
+}
+
+/// The Cholesky factor of `K - λ M`.
+pub(super) struct Factor {
+    size: usize,
+    lower: Vec<f64>,
+}
+
+/// Entries of a lower triangle before a row.
+fn row(i: usize) -> usize {
+    i * (i + 1) / 2
+}
+
+impl Pencil {
+    /// The pencil of coordinates with a diagonal stiffness; those that are infinitely stiff stand still.
+    pub fn new(mut stiffness: Vec<f64>, mut inertia: Vec<f64>) -> Self {
+        let size = stiffness.len();
+        for i in 0..size {
+            if stiffness[i] == f64::INFINITY {
+                stiffness[i] = 1.0;
+                inertia[row(i)..row(i + 1)].fill(0.0);
+                (i..size).for_each(|j| inertia[row(j) + i] = 0.0);
+            }
+        }
+        Self { stiffness, inertia }
+    }
+
+    /// The factor of `K - λ M`; `None` if an eigenvalue is `λ` or less.
+    pub fn factor(&self, eigenvalue: f64) -> Option<Factor> {
+        let size = self.stiffness.len();
+        let mut lower = vec![0.0; self.inertia.len()];
+        for i in 0..size {
+            let (above, here) = lower.split_at_mut(row(i));
+            for j in 0..i {
+                let other = &above[row(j)..row(j + 1)];
+                let known: f64 = here[..j].iter().zip(other).map(|(a, b)| a * b).sum();
+                here[j] = (-eigenvalue * self.inertia[row(i) + j] - known) / other[j];
+            }
+            let known: f64 = here[..i].iter().map(|a| a * a).sum();
+            let pivot = self.stiffness[i] - eigenvalue * self.inertia[row(i) + i] - known;
+            if pivot <= 0.0 {
+                return None;
+            }
+            here[i] = pivot.sqrt();
+        }
+        Some(Factor { size, lower })
+    }
+
+    /// About the lowest mode: a few steps of inverse iteration, scaled to `xᵀ M x = 1`.
+    pub fn lowest_mode(&self, factor: &Factor) -> Vec<f64> {
+        let mut x = vec![1.0; self.stiffness.len()];
+        for _ in 0..3 {
+            x = factor.solve(self.momentum(&x));
+            let scale = 1.0 / self.kinetic(&x).sqrt();
+            if !scale.is_finite() {
+                break;
+            }
+            x.iter_mut().for_each(|x| *x *= scale);
+        }
+        x
+    }
+
+    fn momentum(&self, x: &[f64]) -> Vec<f64> {
+        let entry = |i: usize, j: usize| self.inertia[row(i.max(j)) + i.min(j)];
+        (0..x.len()).map(|i| x.iter().enumerate().map(|(j, x)| entry(i, j) * x).sum()).collect()
+    }
+
+    fn kinetic(&self, x: &[f64]) -> f64 {
+        square(&self.inertia, x)
+    }
+
+    /// `xᵀ K x`.
+    pub fn strain(&self, x: &[f64]) -> f64 {
+        self.stiffness.iter().zip(x).map(|(k, x)| k * x * x).sum()
+    }
+}
+
+/// `xᵀ A x` of a symmetric matrix given by its lower triangle.
+pub(super) fn square(triangle: &[f64], x: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for (i, a) in x.iter().enumerate() {
+        let entries = &triangle[row(i)..row(i + 1)];
+        let left: f64 = entries[..i].iter().zip(x).map(|(m, b)| m * b).sum();
+        sum += a * (2.0 * left + entries[i] * a);
+    }
+    sum
+}
+
+impl Factor {
+    fn solve(&self, mut x: Vec<f64>) -> Vec<f64> {
+        let lower = |i: usize, j: usize| self.lower[row(i) + j];
+        for i in 0..self.size {
+            let known: f64 = (0..i).map(|j| lower(i, j) * x[j]).sum();
+            x[i] = (x[i] - known) / lower(i, i);
+        }
+        for i in (0..self.size).rev() {
+            let known: f64 = (i + 1..self.size).map(|j| lower(j, i) * x[j]).sum();
+            x[i] = (x[i] - known) / lower(i, i);
+        }
+        x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two masses on two springs in a row: λ of [2 -1; -1 1] in absolute coordinates.
+    fn pencil() -> Pencil {
+        Pencil::new(vec![1.0, 1.0], vec![2.0, 1.0, 1.0])
+    }
+
+    #[test]
+    fn the_factor_exists_exactly_below_the_lowest_eigenvalue() {
+        let lowest = (3.0 - 5.0f64.sqrt()) / 2.0;
+        assert!(pencil().factor(lowest * (1.0 - 1e-12)).is_some());
+        assert!(pencil().factor(lowest * (1.0 + 1e-12)).is_none());
+    }
+
+    #[test]
+    fn the_mode_has_the_lowest_quotient() {
+        let factor = pencil().factor(0.3).expect("below the lowest");
+        let mode = pencil().lowest_mode(&factor);
+        let lowest = (3.0 - 5.0f64.sqrt()) / 2.0;
+        assert!((pencil().strain(&mode) / lowest - 1.0).abs() < 1e-6);
+        assert!((square(&[2.0, 1.0, 1.0], &mode) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_rigid_coordinate_stands_still() {
+        let one = Pencil::new(vec![f64::INFINITY, 3.0], vec![5.0, 2.0, 1.0]);
+        assert!(one.factor(3.0 * (1.0 - 1e-12)).is_some() && one.factor(3.0 * (1.0 + 1e-12)).is_none());
+    }
+}

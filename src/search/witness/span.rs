@@ -1,0 +1,104 @@
+//! Intervals, and sums that are linear in the weights of parts.
+
+use nalgebra::Vector3;
+
+/// All numbers from the least to the most.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Span {
+    pub least: f64,
+    pub most: f64,
+}
+
+impl Span {
+    /// A number times every number of the span.
+    pub fn times(self, factor: f64) -> Self {
+        let (a, b) = (self.least * factor, self.most * factor);
+        Self { least: a.min(b), most: a.max(b) }
+    }
+
+    /// Sums of a number of this span and one of another.
+    pub fn plus(self, other: Self) -> Self {
+        Self { least: self.least + other.least, most: self.most + other.most }
+    }
+
+    /// The least product of a number of this span and a compliance of another, none negative.
+    pub fn least_product(self, compliance: Self) -> f64 {
+        let factor = if self.least >= 0.0 { compliance.least } else { compliance.most };
+        if self.least == 0.0 { 0.0 } else { self.least * factor }
+    }
+
+    /// Least size of a number of the span.
+    pub fn least_size(self) -> f64 {
+        self.least.max(-self.most).max(0.0)
+    }
+
+    /// Largest size of a number of the span.
+    pub fn largest_size(self) -> f64 {
+        self.most.max(-self.least)
+    }
+
+    pub fn middle(self) -> f64 {
+        0.5 * (self.least + self.most)
+    }
+}
+
+/// A number that is fixed but for what each load adds in proportion.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Linear {
+    pub fixed: f64,
+    pub per_load: Vec<f64>,
+}
+
+impl Linear {
+    /// All its values: every load enters once, so these are the least and the most it can be.
+    pub fn over(&self, loads: &[Span]) -> Span {
+        let start = Span { least: self.fixed, most: self.fixed };
+        self.per_load.iter().zip(loads).fold(start, |sum, (factor, load)| sum.plus(load.times(*factor)))
+    }
+}
+
+/// Three such numbers, the components of a vector.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct LinearVector {
+    pub fixed: Vector3<f64>,
+    pub per_load: Vec<Vector3<f64>>,
+}
+
+impl LinearVector {
+    /// All values of its component along a direction.
+    pub fn along(&self, direction: &Vector3<f64>, loads: &[Span]) -> Span {
+        let fixed = self.fixed.dot(direction);
+        let start = Span { least: fixed, most: fixed };
+        self.per_load
+            .iter()
+            .zip(loads)
+            .fold(start, |sum, (factor, load)| sum.plus(load.times(factor.dot(direction))))
+    }
+
+    /// Its value where every load is in the middle of its span.
+    pub fn middle(&self, loads: &[Span]) -> Vector3<f64> {
+        let sum = |sum, (factor, load): (&Vector3<f64>, &Span)| sum + factor * load.middle();
+        self.per_load.iter().zip(loads).fold(self.fixed, sum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_linear_sum_is_largest_and_least_at_the_corners() {
+        let linear = Linear { fixed: 1.0, per_load: vec![2.0, -3.0] };
+        let loads = [Span { least: 1.0, most: 2.0 }, Span { least: -1.0, most: 4.0 }];
+        assert_eq!(linear.over(&loads), Span { least: 1.0 + 2.0 - 12.0, most: 1.0 + 4.0 + 3.0 });
+    }
+
+    #[test]
+    fn a_product_with_a_compliance_is_least_at_the_right_end() {
+        let compliance = Span { least: 2.0, most: 5.0 };
+        assert_eq!(Span { least: 3.0, most: 4.0 }.least_product(compliance), 6.0);
+        assert_eq!(Span { least: -3.0, most: 4.0 }.least_product(compliance), -15.0);
+        let rigid = Span { least: 0.0, most: f64::INFINITY };
+        assert_eq!(Span { least: 0.0, most: 4.0 }.least_product(rigid), 0.0);
+    }
+}
