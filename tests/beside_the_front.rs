@@ -13,8 +13,8 @@ use armwright::search::near::{Slack, near_designs};
 use armwright::search::scatter::{ChosenParts, Factors, Figure};
 use armwright::search::{ArmProblem, Objectives, OutwardIn, evaluate};
 use armwright::study::{
-    Sampling, Study, StudyOutcome, ballast_flags, front_table, near_front, read_study, run_study,
-    scatter_front,
+    Judged, NearFront, Sampling, Study, StudyOutcome, ballast_flags, front_table, near_front, read_study,
+    run_exact, run_study, scatter_front,
 };
 use assert_cmd::Command;
 use dice::Dice;
@@ -283,6 +283,43 @@ fn the_designs_near_a_front_are_those_of_the_definition_and_a_cap_keeps_the_near
     assert!(listed > 200, "only {listed} designs are near");
 }
 
+#[test]
+fn an_exact_search_lists_the_same_materials_and_the_same_near_designs() {
+    let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
+    let (mut of_materials, mut listed) = (0, 0);
+    for seed in 0..6 {
+        let study = read(&random_study(seed), &catalogs);
+        let slack = Slack { part: 0.03, most: if seed % 2 == 0 { 100_000 } else { 40 } };
+        let problem = ArmProblem::new(&study.space, &catalogs);
+        let visited = outcome(&study, &catalogs);
+        let exact = run_exact(&study, &catalogs, &stop, None, Some(slack), |_, _| ());
+        let excerpt = ArmProblem::new(&exact.study.space, &catalogs);
+        let ids = |problem: &ArmProblem, front: &[Judged]| -> BTreeSet<String> {
+            front.iter().map(|j| id_of(problem.whole_number(j.design.number))).collect()
+        };
+        assert_eq!(ids(&excerpt, &exact.outcome.front), ids(&problem, &visited.front), "seed {seed}");
+        assert_eq!(exact.outcome.by_material.len(), visited.by_material.len(), "seed {seed}");
+        for (a, b) in exact.outcome.by_material.iter().zip(&visited.by_material) {
+            assert_eq!((&a.name, ids(&excerpt, &a.front)), (&b.name, ids(&problem, &b.front)), "seed {seed}");
+            of_materials += a.front.len();
+        }
+        let found = exact.near.expect("the search came to its end");
+        let near = NearFront::of(&excerpt, &catalogs, &exact.outcome.front, &found, slack);
+        let expected = near_front(&problem, &catalogs, &visited, slack, &stop).expect("done");
+        let cells = |near: &NearFront, column: &str| -> Vec<String> {
+            let column = near.table.column(column).expect("the column");
+            near.table.rows.iter().map(|row| row[column].clone()).collect()
+        };
+        for column in ["design_id", "shortfall_percent", "near_to", "interchangeable"] {
+            assert_eq!(cells(&near, column), cells(&expected, column), "seed {seed}");
+        }
+        assert_eq!((near.total, near.capped), (expected.total, expected.capped), "seed {seed}");
+        listed += near.table.rows.len();
+    }
+    println!("{of_materials} designs on fronts of materials, {listed} near");
+    assert!(of_materials > 100 && listed > 100);
+}
+
 /// An arm whose heavier wrist drives press joint 2 into a stiffer segment of its gear.
 fn ballast_study(joint: &Value) -> Value {
     let wrist = json!({"gear_series": ["CSG"], "ratios": [100], "motors": ["electric"]});
@@ -418,7 +455,6 @@ fn a_run_writes_what_was_asked_for_beside_its_front() {
 fn what_cannot_be_answered_is_refused() {
     let dir = tempfile::tempdir().expect("a folder");
     for (words, said) in [
-        (&["--within", "2%", "--search", "exact"][..], "--within needs --search exhaustive"),
         (&["--within", "200%"][..], "not a percentage"),
         (&["--tolerance", "stiffness=20%"][..], "choose from gear_stiffness, modulus, mass"),
         (&["--seed", "3"][..], "--tolerance"),

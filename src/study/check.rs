@@ -10,7 +10,7 @@ use crate::search::exact::{self, Exact};
 use crate::search::front::nondominated;
 use crate::search::sweep::Candidate;
 use crate::search::{ArmProblem, Objectives, OutwardIn, evaluate, witness};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -126,10 +126,13 @@ fn compare_rows(
     faults: &mut Vec<String>,
 ) {
     let mut found = Vec::new();
+    let on_front: HashSet<u128> = front.iter().map(|d| problem.whole_number(d.design.number)).collect();
+    let expected_rows: HashMap<&str, &Vec<String>> =
+        expected.rows.iter().map(|row| (row[0].as_str(), row)).collect();
     for row in &table.rows {
-        let whole = number_of(&row[0]);
-        let place = front.iter().position(|d| Some(problem.whole_number(d.design.number)) == whole);
-        let Some(right) = place.and_then(|_| expected.rows.iter().find(|r| r[0] == row[0])) else {
+        let is_on_front = number_of(&row[0]).is_some_and(|number| on_front.contains(&number));
+        let right = expected_rows.get(row[0].as_str()).filter(|_| is_on_front);
+        let Some(right) = right else {
             found.push(format!("design {}: does not hold, or another row beats it", row[0]));
             continue;
         };
