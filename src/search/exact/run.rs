@@ -35,6 +35,8 @@ const VAST: f64 = 1e14;
 const FEW: f64 = 1e6;
 /// Probes by the square of the powers of ten of designs: a large space repays many, a small one none.
 const PROBES: f64 = 0.12;
+/// The same where others evolve from what they find.
+const PROBES_TO_EVOLVE: f64 = 0.04;
 /// Designs are filtered whenever their number reaches a power of two above this.
 const BUFFER: usize = 4096;
 
@@ -186,7 +188,8 @@ impl<'p> Exact<'p> {
                 |slack: f64| Search { exact: self, problem: whole, shared: &shared, slack, below: None };
             if known.is_empty() {
                 let search = search(0.0);
-                let probed = probe(&search, (PROBES * designs.log10().powi(2)) as usize);
+                let probes = if by_regions { PROBES_TO_EVOLVE } else { PROBES };
+                let probed = probe(&search, (probes * designs.log10().powi(2)) as usize);
                 if by_regions {
                     let better = evolve(&search, probed, self.deadline);
                     better.iter().for_each(|member| search.keep(&member.cell, member.objectives));
