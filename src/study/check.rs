@@ -67,14 +67,13 @@ pub fn check_front(
     let front = judge(&problem, &candidates);
     compare_rows(&front_table(&problem, catalogs, &front), table, &front, &problem, &mut faults);
     broken_limits(study, &front, &problem, &mut faults);
-    let completeness = match claims_all {
-        true => look_for_missing(study, catalogs, &front, stop, deadline).map(|(found, completeness)| {
-            list(&mut faults, missing(study, catalogs, &front, &problem, &found), "designs are missing");
-            completeness
-        }),
-        false => Err("the run was stopped early and claims no more than its rows".into()),
+    let completeness = if claims_all {
+        let (found, completeness) = look_for_missing(study, catalogs, &front, stop, deadline);
+        list(&mut faults, missing(study, catalogs, &front, &problem, &found), "designs are missing");
+        completeness
+    } else {
+        Err("the run was stopped early and claims no more than its rows".into())
     };
-    let completeness = completeness.and_then(|looked| looked);
     FrontCheck { faults, rows: table.rows.len(), completeness }
 }
 
@@ -88,7 +87,7 @@ fn look_for_missing(
     front: &Front,
     stop: &AtomicBool,
     deadline: Option<Instant>,
-) -> Result<Look, String> {
+) -> Look {
     let objectives: Vec<Objectives> = front.iter().map(|d| d.design.objectives).collect();
     let unseen = witness::conditions(&study.space).err();
     let (numbers, boxes, open) = match unseen {
@@ -97,8 +96,10 @@ fn look_for_missing(
             (looked.candidates, looked.boxes, looked.open)
         }
         Some(_) => {
-            exact::conditions(&study.space)
-                .map_err(|why| format!("the exact search does not see this study as it is: {why}"))?;
+            if let Err(why) = exact::conditions(&study.space) {
+                let why = format!("the exact search does not see this study as it is: {why}");
+                return (Vec::new(), Err(why));
+            }
             let found = Exact::new(&study.space, catalogs, stop, deadline).run(&objectives);
             (found.front.iter().map(|c| c.number).collect(), found.boxes, found.boxes_open)
         }
@@ -107,7 +108,7 @@ fn look_for_missing(
         0 => Ok(Completeness { boxes, by_exact_search: unseen }),
         open => Err(format!("stopped with {open} boxes unopened")),
     };
-    Ok((numbers, completeness))
+    (numbers, completeness)
 }
 
 fn candidate(problem: &ArmProblem, whole: u128) -> Option<Candidate> {

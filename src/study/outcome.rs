@@ -133,6 +133,58 @@ impl Searched {
         let near = self.near.iter().flat_map(|near| near.nearest.iter().map(|n| n.candidate.number));
         fronts.flat_map(|of| of.front.iter().map(|c| c.number)).chain(near).collect()
     }
+
+    /// Their designs as those of an excerpt of the space, judged by the full model: the fronts, and at most so many
+    /// designs near that of all.
+    fn judged(
+        &self,
+        problem: &ArmProblem,
+        stop: &AtomicBool,
+        most: Option<usize>,
+    ) -> (StudyOutcome, Option<NearDesigns>) {
+        let here = |candidate: &Candidate| {
+            let options = problem.options_of_whole(candidate.number)?;
+            Some(Candidate { number: number(problem.level_sizes(), &options), ..*candidate })
+        };
+        let all_here = |found: &ExactOutcome| found.front.iter().filter_map(here).collect::<Vec<_>>();
+        let Self { whole, by_material, near } = self;
+        let front = all_here(whole);
+        let groups: Vec<Vec<Candidate>> = by_material.iter().map(|(_, found)| all_here(found)).collect();
+        // a design may be a candidate of two fronts
+        let judged =
+            by_full_model(problem, groups.iter().flatten().chain(&front).map(|c| c.number).collect());
+        let of_material =
+            |((name, found), candidates): (&(String, ExactOutcome), &Vec<Candidate>)| OfMaterial {
+                name: name.clone(),
+                status: status(stop, found),
+                front: front_of(&judged, candidates),
+            };
+        let whole_front = front_of(&judged, &front);
+        let on_front: HashSet<u128> = whole_front.iter().map(|j| j.design.number).collect();
+        let near = near.as_ref().zip(most).map(|(near, most)| {
+            let moved = |n: &NearDesign| Some(NearDesign { candidate: here(&n.candidate)?, ..*n });
+            let off_front = |n: &NearDesign| !on_front.contains(&n.candidate.number);
+            let mut nearest: Vec<NearDesign> =
+                near.nearest.iter().filter_map(moved).filter(off_front).collect();
+            let listed_of_front = (near.nearest.len() - nearest.len()) as u64;
+            nearest.truncate(most);
+            NearDesigns { nearest, total: near.total.map(|total| total - listed_of_front) }
+        });
+        let outcome = StudyOutcome {
+            front: whole_front,
+            by_material: by_material.iter().zip(&groups).map(of_material).collect(),
+            sweep: SweepOutcome {
+                status: status(stop, whole),
+                designs_total: whole.designs_total,
+                designs_evaluated: whole.designs_evaluated,
+                designs_excluded: whole.designs_total.saturating_sub(u128::from(whole.designs_evaluated)),
+                front,
+                groups,
+                near_misses: [None; 3],
+            },
+        };
+        (outcome, near)
+    }
 }
 
 fn status(stop: &AtomicBool, found: &ExactOutcome) -> Status {
@@ -166,47 +218,10 @@ pub fn run_exact(
     });
     let space = study.space.excerpt(catalogs, &searched.numbers()).unwrap_or_else(|| study.space.clone());
     let study = Study { space, ..study.clone() };
-    let problem = ArmProblem::new(&study.space, catalogs);
-    let here = |candidate: &Candidate| {
-        let options = problem.options_of_whole(candidate.number)?;
-        Some(Candidate { number: number(problem.level_sizes(), &options), ..*candidate })
-    };
-    let all_here = |found: &ExactOutcome| found.front.iter().filter_map(here).collect::<Vec<_>>();
-    let Searched { whole, by_material, near } = &searched;
-    let front = all_here(whole);
-    let groups: Vec<Vec<Candidate>> = by_material.iter().map(|(_, found)| all_here(found)).collect();
-    // a design may be a candidate of two fronts
-    let judged = by_full_model(&problem, groups.iter().flatten().chain(&front).map(|c| c.number).collect());
-    let of_material = |((name, found), candidates): (&(String, ExactOutcome), &Vec<Candidate>)| OfMaterial {
-        name: name.clone(),
-        status: status(stop, found),
-        front: front_of(&judged, candidates),
-    };
-    let whole_front = front_of(&judged, &front);
-    let on_front: HashSet<u128> = whole_front.iter().map(|j| j.design.number).collect();
-    let near = near.as_ref().zip(most).map(|(near, most)| {
-        let moved = |n: &NearDesign| Some(NearDesign { candidate: here(&n.candidate)?, ..*n });
-        let off_front = |n: &NearDesign| !on_front.contains(&n.candidate.number);
-        let mut nearest: Vec<NearDesign> = near.nearest.iter().filter_map(moved).filter(off_front).collect();
-        let listed_of_front = (near.nearest.len() - nearest.len()) as u64;
-        nearest.truncate(most);
-        NearDesigns { nearest, total: near.total.map(|total| total - listed_of_front) }
-    });
-    let outcome = StudyOutcome {
-        front: whole_front,
-        by_material: by_material.iter().zip(&groups).map(of_material).collect(),
-        sweep: SweepOutcome {
-            status: status(stop, whole),
-            designs_total: whole.designs_total,
-            designs_evaluated: whole.designs_evaluated,
-            designs_excluded: whole.designs_total.saturating_sub(u128::from(whole.designs_evaluated)),
-            front,
-            groups,
-            near_misses: [None; 3],
-        },
-    };
-    drop(problem);
-    ExactStudy { study, outcome, boxes: [whole.boxes, whole.boxes_open], gap: whole.gap, near }
+    let whole = &searched.whole;
+    let (boxes, gap) = ([whole.boxes, whole.boxes_open], whole.gap);
+    let (outcome, near) = searched.judged(&ArmProblem::new(&study.space, catalogs), stop, most);
+    ExactStudy { study, outcome, boxes, gap, near }
 }
 
 /// Judges candidates by the full model and keeps what nothing dominates.

@@ -2,9 +2,8 @@
 //!
 //! The proof of a front is only as good as its designs: what they leave open has to be taken apart. Probes find some
 //! hundreds one by one. From these come others, as in a genetic algorithm: a child takes some parts of a design close by
-//! in mass, or parts close to its own, and stays if nothing seen before beats it. In a large space nearly everything
-//! that is tried is on no other design's bad side, so one design a cell of a grid is kept
-//! ([`thinned`](super::grid::thinned)). What is found proves nothing; it is judged and listed like every other design.
+//! in mass, or parts close to its own, and stays if nothing seen before beats it. So that the many that differ by
+//! little do not crowd out the others, one design a cell of a grid is kept ([`thinned`](super::grid::thinned)). What is found proves nothing; it is judged and listed like every other design.
 
 use super::archive::Found;
 use super::bound::{Cell, Verdict, Work};

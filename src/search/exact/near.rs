@@ -52,7 +52,7 @@ impl Exact<'_> {
         work: &mut Work,
         children: &mut Vec<Opened>,
     ) {
-        self.boxes.fetch_add(1, Ordering::Relaxed);
+        self.count_box();
         let lower = |ceiling: &Ceiling| Ceiling { hz: ceiling.hz * NEAR, ..*ceiling };
         let verdict = problem.bound(
             &mut here.cell,

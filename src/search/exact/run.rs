@@ -46,7 +46,7 @@ pub struct Exact<'p> {
     catalogs: &'p Catalogs,
     stop: &'p AtomicBool,
     deadline: Option<Instant>,
-    pub(super) boxes: AtomicU64,
+    boxes: AtomicU64,
     /// Designs above which a space is searched region by region, and down to how many.
     regions_from: f64,
     regions_to: f64,
@@ -127,6 +127,10 @@ impl<'p> Exact<'p> {
     /// Boxes bounded so far.
     pub fn boxes(&self) -> u64 {
         self.boxes.load(Ordering::Relaxed)
+    }
+
+    pub(super) fn count_box(&self) {
+        self.boxes.fetch_add(1, Ordering::Relaxed);
     }
 
     fn stopped(&self) -> bool {
@@ -258,7 +262,7 @@ impl<'p> Search<'_, 'p> {
     }
 
     pub fn count_box(&self) {
-        self.exact.boxes.fetch_add(1, Ordering::Relaxed);
+        self.exact.count_box();
     }
 
     pub fn count_design(&self) {
