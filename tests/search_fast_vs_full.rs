@@ -8,10 +8,11 @@ mod dice;
 
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
-use armwright::search::{ArmProblem, Finished, OutwardIn, Status, Sweep, design, evaluate};
+use armwright::search::{ArmProblem, Finished, Keep, OutwardIn, Status, Sweep, design, evaluate};
 use armwright::study::{Study, named, read_study};
 use dice::Dice;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
 /// Largest relative difference of an objective.
@@ -148,6 +149,17 @@ fn random_study(dice: &mut Dice) -> Value {
     })
 }
 
+/// The designs of a row that hold.
+struct Seen(BTreeMap<u128, Finished>);
+
+impl Keep for Seen {
+    fn complete(&mut self, number: u128, finished: Finished) {
+        self.0.insert(number, finished);
+    }
+
+    fn exclude(&mut self, _: u128) {}
+}
+
 /// Largest difference of each design that holds among some of some rows.
 fn compare(problem: &ArmProblem, dice: &mut Dice, rows: usize, stride: usize) -> Vec<f64> {
     let sizes = problem.level_sizes().to_vec();
@@ -166,9 +178,10 @@ fn compare(problem: &ArmProblem, dice: &mut Dice, rows: usize, stride: usize) ->
             continue;
         }
         let start = dice.below(u64::from(last)) as u32;
-        let mut row: Vec<(u32, Option<Finished>)> = Vec::new();
-        problem.finish(&from, start..last.min(start + 60), &mut scratch, |o, f| row.push((o, f)));
-        for (option, fast) in row.into_iter().step_by(stride) {
+        let mut row = Seen(BTreeMap::new());
+        problem.finish(&[(0, from)], &mut scratch, &mut row);
+        for option in (start..last.min(start + 60)).step_by(stride) {
+            let fast = row.0.get(&u128::from(option)).copied();
             let number = design::number(&sizes, &[options.as_slice(), &[option]].concat());
             let full = evaluate(problem, number);
             assert_eq!(fast.is_some(), full.is_some(), "design {number}");

@@ -22,6 +22,11 @@ pub trait Lanes:
     fn load(from: &Eight) -> Self;
     /// To memory.
     fn store(self) -> Eight;
+    /// Numbers at eight places of a list.
+    ///
+    /// # Panics
+    /// If the list does not reach to a place.
+    fn gather(from: &[f64], at: &[usize; LANES]) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
     /// The smaller; the second if either is NaN.
@@ -119,6 +124,11 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
+    fn gather(from: &[f64], at: &[usize; LANES]) -> Self {
+        Self(at.map(|i| from[i]))
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> Self {
         Self(self.0.map(f64::sqrt))
     }
@@ -149,7 +159,7 @@ mod x86 {
     //! Registers of x86-64. Every intrinsic here belongs to a set that [`super::in_lanes`] has found on
     //! the machine before it lets a kernel be compiled for these types run.
 
-    use super::{Add, Div, Eight, LaneWork, Lanes, Mul, Sub};
+    use super::{Add, Div, Eight, LANES, LaneWork, Lanes, Mul, Sub};
     use std::arch::x86_64::*;
 
     #[target_feature(enable = "avx512f,avx512dq")]
@@ -217,6 +227,16 @@ mod x86 {
         }
 
         #[inline(always)]
+        fn gather(from: &[f64], at: &[usize; LANES]) -> Self {
+            assert_within(from, at);
+            // SAFETY: every place is within the list; `usize` is 64 bits wide here
+            unsafe {
+                let places = _mm512_loadu_si512(at.as_ptr().cast());
+                Self(_mm512_i64gather_pd::<8>(places, from.as_ptr()))
+            }
+        }
+
+        #[inline(always)]
         fn sqrt(self) -> Self {
             Self(unsafe { _mm512_sqrt_pd(self.0) })
         }
@@ -242,6 +262,15 @@ mod x86 {
         }
     }
 
+    #[inline(always)]
+    fn assert_within(list: &[f64], at: &[usize; LANES]) {
+        let mut highest = 0;
+        for &place in at {
+            highest = place.max(highest);
+        }
+        assert!(highest < list.len(), "place {highest} of {}", list.len());
+    }
+
     impl Lanes for Halves {
         #[inline(always)]
         fn splat(x: f64) -> Self {
@@ -264,6 +293,18 @@ mod x86 {
                 _mm256_storeu_pd(start.add(4), self.1);
             }
             out
+        }
+
+        #[inline(always)]
+        fn gather(from: &[f64], at: &[usize; LANES]) -> Self {
+            assert_within(from, at);
+            // SAFETY: every place is within the list; `usize` is 64 bits wide here
+            unsafe {
+                let low = _mm256_loadu_si256(at.as_ptr().cast());
+                let high = _mm256_loadu_si256(at.as_ptr().add(4).cast());
+                let start = from.as_ptr();
+                Self(_mm256_i64gather_pd::<8>(start, low), _mm256_i64gather_pd::<8>(start, high))
+            }
         }
 
         #[inline(always)]
@@ -325,6 +366,7 @@ mod tests {
                 a.min(b),
                 a.max(b),
                 V::choose(bits, a, V::splat(7.0)),
+                V::gather(&self.1, &[7, 0, 3, 3, 1, 6, 2, 5]),
             ];
             (results.iter().map(|v| v.store()).collect(), bits)
         }

@@ -25,19 +25,10 @@ enum Shared<const N: usize> {
     Link(Box<BlockLink<N>>),
 }
 
-/// One piece of eight chains that they do not share.
-#[derive(Debug, Clone, Copy)]
-pub enum LaneStep<'a, V, const N: usize> {
-    /// A mass times the inertia of one kilogram.
-    Mass(V, &'a SMatrix<f64, N, N>),
-    /// A body that all have.
-    Body(&'a SMatrix<f64, N, N>),
-    /// A joint: its twist and compliance.
-    Joint(&'a SVector<f64, N>, V),
-    /// A link that yields.
-    Link(&'a LaneLink<N>),
-    /// A link that does not.
-    Rigid(&'a LaneMatrix<N>),
+/// The pieces of eight chains that they do not share, from the tip inward.
+pub trait Inner<V: Lanes, const N: usize> {
+    /// Walks over them. The last must be one that yields if any does.
+    fn carry(&self, walk: &mut Walk<V, N>);
 }
 
 /// A matrix for each of eight chains.
@@ -66,8 +57,6 @@ pub struct LanePass<V> {
 pub struct Roots<V> {
     /// Lowest eigenvalue in each wanted lane.
     pub eigenvalue: V,
-    /// Slope of the curve at the root, a good start for a neighbour.
-    pub slope: V,
     /// Bits of the wanted lanes in which no root was found.
     pub unsure: u8,
 }
@@ -110,11 +99,6 @@ impl<const N: usize> LaneLink<N> {
             end: side_by_side(|lane| &links[lane].end),
         }
     }
-
-    /// The links' inertia if they do not yield.
-    pub fn rigid(&self) -> &LaneMatrix<N> {
-        &self.root[0]
-    }
 }
 
 /// A matrix of each of eight things side by side.
@@ -130,12 +114,11 @@ fn entry<V: Copy, const N: usize>(of: &Inertia<V, N>, i: usize, j: usize) -> V {
     if i >= j { of[i][j] } else { of[j][i] }
 }
 
-/// Carries the apparent inertia from tip to base at one `λ` per lane. `inner` must end with something that
-/// yields if anything in it does.
+/// Carries the apparent inertia from tip to base at one `λ` per lane.
 #[inline(always)]
 pub fn pass<V: Lanes, const N: usize>(
     outboard: &Outboard<N>,
-    inner: &[LaneStep<'_, V, N>],
+    inner: &impl Inner<V, N>,
     lambda: V,
 ) -> LanePass<V> {
     let mut state = Walk::new(&outboard.start, lambda);
@@ -143,18 +126,10 @@ pub fn pass<V: Lanes, const N: usize>(
         match step {
             Shared::Body(inertia) => state.body(inertia),
             Shared::Joint(twist, compliance) => state.joint(twist, V::splat(*compliance)),
-            Shared::Link(link) => state.link(&**link),
+            Shared::Link(link) => state.yielding_link(&**link),
         }
     }
-    for step in inner {
-        match step {
-            LaneStep::Mass(mass, inertia) => state.mass(*mass, inertia),
-            LaneStep::Body(inertia) => state.body(inertia),
-            LaneStep::Joint(twist, compliance) => state.joint(twist, *compliance),
-            LaneStep::Link(link) => state.link(*link),
-            LaneStep::Rigid(inertia) => state.rigid(inertia),
-        }
-    }
+    inner.carry(&mut state);
     LanePass { sound: state.sound, last: state.last }
 }
 
@@ -230,7 +205,7 @@ macro_rules! at_lambda {
 }
 
 /// The walk from tip to base.
-struct Walk<V, const N: usize> {
+pub struct Walk<V, const N: usize> {
     lambda: V,
     apparent: Inertia<V, N>,
     sound: u8,
@@ -251,19 +226,22 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         self.last = pivot;
     }
 
+    /// A body that all eight have.
     #[inline(always)]
-    fn body(&mut self, inertia: &SMatrix<f64, N, N>) {
+    pub fn body(&mut self, inertia: &SMatrix<f64, N, N>) {
         add_lower!(self.apparent, |i, j| V::splat(inertia[(i, j)]));
     }
 
+    /// A mass times the inertia of one kilogram.
     #[inline(always)]
-    fn mass(&mut self, mass: V, inertia: &SMatrix<f64, N, N>) {
+    pub fn mass(&mut self, mass: V, inertia: &SMatrix<f64, N, N>) {
         add_lower!(self.apparent, |i, j| mass * V::splat(inertia[(i, j)]));
     }
 
+    /// A link that does not yield.
     #[inline(always)]
-    fn rigid(&mut self, inertia: &LaneMatrix<N>) {
-        add_lower!(self.apparent, |i, j| V::load(&inertia[i][j]));
+    pub fn rigid(&mut self, link: &LaneLink<N>) {
+        add_lower!(self.apparent, |i, j| V::load(&link.root[0][i][j]));
     }
 
     /// A pivot and the row it belongs to: everything inboard sees `λ row rowᵀ / pivot` more.
@@ -278,8 +256,9 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         self.pivot(pivot);
     }
 
+    /// A joint: its twist and compliance.
     #[inline(always)]
-    fn joint(&mut self, twist: &SVector<f64, N>, compliance: V) {
+    pub fn joint(&mut self, twist: &SVector<f64, N>, compliance: V) {
         let mut momentum = [V::zero(); N];
         let mut own = V::zero();
         for i in 0..N {
@@ -293,8 +272,14 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         self.yield_by(pivot, &momentum, yielding / pivot);
     }
 
+    /// A link that yields.
     #[inline(always)]
-    fn link<L: LinkNumbers<N>>(&mut self, link: &L) {
+    pub fn link(&mut self, link: &LaneLink<N>) {
+        self.yielding_link(link);
+    }
+
+    #[inline(always)]
+    fn yielding_link<L: LinkNumbers<N>>(&mut self, link: &L) {
         let lambda = self.lambda;
         let mut moved = [[V::zero(); N]; N];
         for g in 0..N {
@@ -342,15 +327,14 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
 #[inline(always)]
 pub fn roots<V: Lanes, const N: usize>(
     outboard: &Outboard<N>,
-    inner: &[LaneStep<'_, V, N>],
+    inner: &impl Inner<V, N>,
     guess: V,
-    slope: V,
     wanted: u8,
 ) -> Roots<V> {
     let one = V::splat(1.0);
     let mut open = wanted;
     let mut x = one / guess;
-    let (mut result, mut slope) = (x, slope);
+    let (mut result, mut slope) = (x, one);
     let (mut x_before, mut y_before) = (V::zero(), V::zero());
     let unknown = V::splat(UNKNOWN_STEP) * x;
     let (mut step_before, mut step_two_before) = (unknown, unknown);
@@ -380,5 +364,5 @@ pub fn roots<V: Lanes, const N: usize>(
         (x_before, y_before) = (x, y);
         x = V::choose(open, V::choose(in_reach, next, drawn_back), x);
     }
-    Roots { eigenvalue: one / result, slope, unsure: open }
+    Roots { eigenvalue: one / result, unsure: open }
 }

@@ -37,13 +37,19 @@ impl Archive {
     /// Whether some design entered before is surely better.
     #[inline]
     pub fn rejects(&self, o: &Objectives) -> bool {
+        self.bar_hz(o.mass_kg, o.tip_deflection_m) > o.lowest_mode_hz
+    }
+
+    /// The lowest mode \[Hz\] below which a design of this mass and deflection is surely beaten by one entered before.
+    #[inline]
+    pub fn bar_hz(&self, mass_kg: f64, tip_deflection_m: f64) -> f64 {
         let (row, column) = (
-            self.corner(o.mass_kg, MASS_OCTAVES, Corner::Below),
-            self.corner(o.tip_deflection_m, DEFLECTION_OCTAVES, Corner::Below),
+            self.corner(mass_kg, MASS_OCTAVES, Corner::Below),
+            self.corner(tip_deflection_m, DEFLECTION_OCTAVES, Corner::Below),
         );
-        let (Some(row), Some(column)) = (row, column) else { return false };
+        let (Some(row), Some(column)) = (row, column) else { return 0.0 };
         let best = f32::from_bits(self.best_hz[row * self.columns + column].load(Ordering::Relaxed));
-        f64::from(best) > o.lowest_mode_hz * (1.0 + MARGIN)
+        f64::from(best) / (1.0 + MARGIN)
     }
 
     /// Enters a design. Two threads that write one cell at once may lose the better of the two; the table

@@ -3,7 +3,6 @@
 use super::space::{DesignSpace, LinkOption};
 use super::station::Place;
 use crate::arm::Section;
-use crate::mechanics::{angular, linear};
 use nalgebra::{Vector3, Vector6};
 
 /// What the search needs of a link option besides its mechanics.
@@ -47,12 +46,11 @@ impl StressCheck {
 
     /// Von Mises stress of bending, axial force and torsion at an end, over the strength.
     pub fn ratio(&self, wrench: &Vector6<f64>, at_m: &Vector3<f64>, place: &Place) -> f64 {
-        let force = place.frame.tr_mul(&linear(wrench));
-        let moment = place.frame.tr_mul(&(angular(wrench) - at_m.cross(&linear(wrench))));
-        let (y, z) = (moment.y.abs() * self.per_moment_y, moment.z.abs() * self.per_moment_z);
+        let [axial_n, torsion_nm, moment_y_nm, moment_z_nm] = place.local(wrench, at_m);
+        let (y, z) = (moment_y_nm.abs() * self.per_moment_y, moment_z_nm.abs() * self.per_moment_z);
         let bending = if self.round { y.hypot(z) } else { y + z };
-        let normal = force.x.abs() * self.per_axial_n + bending;
-        let shear = moment.x.abs() * self.per_torsion;
+        let normal = axial_n.abs() * self.per_axial_n + bending;
+        let shear = torsion_nm.abs() * self.per_torsion;
         von_mises(normal, shear) / self.strength_pa
     }
 }

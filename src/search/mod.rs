@@ -23,6 +23,7 @@ mod ranking;
 pub mod relax;
 mod row;
 mod row_lanes;
+mod row_modes;
 pub mod scatter;
 mod sieve;
 mod slot;
@@ -37,8 +38,6 @@ pub use design::{Evaluated, evaluate};
 pub use outward::ArmProblem;
 pub use space::DesignSpace;
 pub use sweep::{Status, Sweep, SweepOutcome};
-
-use std::ops::Range;
 
 /// What a design is judged by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,6 +66,25 @@ pub struct Finished {
     pub group: Option<usize>,
 }
 
+/// What becomes of the designs that a walk comes to.
+pub trait Keep {
+    /// A design that holds.
+    fn complete(&mut self, number: u128, finished: Finished);
+
+    /// So many designs cannot hold.
+    fn exclude(&mut self, designs: u128);
+
+    /// The lowest mode \[Hz\] below which a design of a group, with this mass and tip deflection, need not be
+    /// finished; 0 if every design is of interest.
+    fn bar_hz(&self, group: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
+        let _ = (group, mass_kg, tip_deflection_m);
+        0.0
+    }
+
+    /// A design holds, and its lowest mode is below the bar.
+    fn below_bar(&mut self) {}
+}
+
 /// A tree of designs whose levels go from the tip of the arm inward.
 pub trait OutwardIn: Sync {
     /// A partial arm: everything outboard of the next level.
@@ -84,23 +102,37 @@ pub trait OutwardIn: Sync {
     /// `false` if no design with this beginning meets the constraints.
     fn extend(&self, level: usize, option: u32, from: &Self::Partial, to: &mut Self::Partial) -> bool;
 
-    /// Finishes `from`, which lacks only the innermost level, by each of a range of that level's options,
-    /// and shows the outcomes in order; `None` if the design does not hold.
-    fn finish(
-        &self,
-        from: &Self::Partial,
-        options: Range<u32>,
-        scratch: &mut Self::Scratch,
-        mut see: impl FnMut(u32, Option<Finished>),
-    ) {
-        let level = self.level_sizes().len().saturating_sub(1);
-        let mut complete = from.clone();
-        for option in options {
-            let holds = self.extend(level, option, from, &mut complete);
-            let objectives = if holds { self.objectives(&complete) } else { None };
-            see(option, objectives.map(|objectives| Finished { objectives, group: self.group(&complete) }));
+    /// Finishes rows of designs: each an arm that lacks only the innermost level, with the number of its first
+    /// design, by every option of that level.
+    fn finish(&self, rows: &[(u128, Self::Partial)], scratch: &mut Self::Scratch, keep: &mut dyn Keep) {
+        let Some((&options, outer)) = self.level_sizes().split_last() else { return };
+        for (first, from) in rows {
+            let mut complete = from.clone();
+            for option in 0..options {
+                self.finish_one(outer.len(), option, from, *first, &mut complete, keep);
+            }
         }
         let _ = scratch;
+    }
+
+    /// Finishes one design by itself, in `complete`.
+    fn finish_one(
+        &self,
+        level: usize,
+        option: u32,
+        from: &Self::Partial,
+        first: u128,
+        complete: &mut Self::Partial,
+        keep: &mut dyn Keep,
+    ) {
+        let holds = self.extend(level, option, from, complete);
+        match if holds { self.objectives(complete) } else { None } {
+            Some(objectives) => {
+                let group = self.group(complete);
+                keep.complete(first + u128::from(option), Finished { objectives, group });
+            }
+            None => keep.exclude(1),
+        }
     }
 
     /// Room for a worker's rows.

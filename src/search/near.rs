@@ -15,8 +15,8 @@
 use super::archive::Archive;
 use super::constraint::Constraints;
 use super::sweep::Candidate;
-use super::visit::{Keep, Visit};
-use super::{Finished, Objectives, OutwardIn};
+use super::visit::Visit;
+use super::{Finished, Keep, Objectives, OutwardIn};
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::sync::Mutex;
@@ -170,6 +170,10 @@ impl Keep for Worker<'_> {
     }
 
     fn exclude(&mut self, _: u128) {}
+
+    fn bar_hz(&self, _: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
+        self.seeker.archive.bar_hz(mass_kg, tip_deflection_m)
+    }
 }
 
 impl Worker<'_> {

@@ -4,13 +4,13 @@
 use super::effects::Layer;
 use super::figures::OptionFigures;
 use super::row::{Row, RowScratch};
-use super::row_lanes::{MOST_CASES, RowWork};
+use super::row_lanes::{RowChunk, RowWork};
 pub use super::slot::SizedJoint;
 pub(super) use super::slot::Slot;
 use super::slot::{choice_slot, joint_slot, link_slot};
 use super::space::{DesignSpace, SpacePiece};
 use super::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot, reaches_m};
-use super::{Finished, Objectives, OutwardIn};
+use super::{Finished, Keep, Objectives, OutwardIn};
 use crate::arm::JointLaw;
 use crate::catalog::Catalogs;
 use crate::mechanics::Wrench;
@@ -18,7 +18,6 @@ use crate::mechanics::lanes::{LANES, in_lanes};
 use crate::mechanics::lowest::{Step, frequency_hz, lowest_eigenvalue};
 use crate::sizing::{JointDemand, JointMotion};
 use nalgebra::{Matrix6, Vector3};
-use std::ops::Range;
 
 /// The search's view of a design space: drives tabulated, poses compiled.
 pub struct ArmProblem<'c> {
@@ -99,7 +98,7 @@ impl<'c> ArmProblem<'c> {
             space,
             level_slots,
             level_sizes,
-            stations: space.cases.iter().map(|case| Station::new(space, case)).collect(),
+            stations: Station::all(space),
             materials: space.material_names().len(),
             peak_factor: 1.0 + a_over_g,
             slots,
@@ -213,19 +212,12 @@ impl<'c> ArmProblem<'c> {
     }
 
     /// The group of an arm that only lacks an option of the innermost level, with that option.
-    fn group_with(&self, from: &Partial, level_slot: usize, option: u32) -> Option<usize> {
+    pub(super) fn group_with(&self, from: &Partial, level_slot: usize, option: u32) -> Option<usize> {
         let group = match &self.slots[level_slot] {
             Slot::Link { options, .. } => from.group.with(options[option as usize].material),
             _ => from.group,
         };
         group.material()
-    }
-
-    /// Finishes one design by itself.
-    fn finish_one(&self, from: &Partial, option: u32, spare: &mut Partial) -> Option<Finished> {
-        let level = self.level_sizes.len().saturating_sub(1);
-        let objectives = if self.extend(level, option, from, spare) { self.objectives(spare) } else { None }?;
-        Some(Finished { objectives, group: self.group(spare) })
     }
 
     pub(super) fn empty(&self) -> Partial {
@@ -484,45 +476,39 @@ impl OutwardIn for ArmProblem<'_> {
         RowScratch::new(self)
     }
 
-    fn finish(
-        &self,
-        from: &Partial,
-        options: Range<u32>,
-        scratch: &mut RowScratch,
-        mut see: impl FnMut(u32, Option<Finished>),
-    ) {
+    fn finish(&self, rows: &[(u128, Partial)], scratch: &mut RowScratch, keep: &mut dyn Keep) {
+        let Some((&options, outer)) = self.level_sizes.split_last() else { return };
         let Some(row) = &self.row else {
-            for option in options {
-                let finished = self.finish_one(from, option, &mut scratch.spare);
-                see(option, finished);
+            for (first, from) in rows {
+                for option in 0..options {
+                    self.finish_one(outer.len(), option, from, *first, &mut scratch.spare, keep);
+                }
             }
             return;
         };
-        scratch.start_row(self, row, from);
-        let mut option = options.start;
-        while option < options.end {
-            let chunk = option as usize / LANES;
-            let last = options.end.min((chunk as u32 + 1) * LANES as u32);
-            let lanes = option as usize % LANES..(last as usize - 1) % LANES + 1;
-            let valid = lanes.clone().fold(0, |bits, lane| bits | 1 << lane);
-            let done = match self.stations.len() {
-                1 => in_lanes(RowWork::<1> { problem: self, row, from, scratch, chunk, valid }),
-                2 => in_lanes(RowWork::<2> { problem: self, row, from, scratch, chunk, valid }),
-                _ => in_lanes(RowWork::<MOST_CASES> { problem: self, row, from, scratch, chunk, valid }),
-            };
-            for (lane, option) in lanes.zip(option..last) {
-                let bit = 1 << lane;
-                let finished = if done.held & bit == 0 {
-                    None
-                } else if done.unsure & bit != 0 {
-                    self.finish_one(from, option, &mut scratch.spare)
-                } else {
-                    let group = self.group_with(from, row.first, option);
-                    Some(Finished { objectives: done.objectives(lane), group })
-                };
-                see(option, finished);
+        scratch.begin(self, row, rows.iter().map(|(_, from)| from));
+        for chunk in 0..(options as usize).div_ceil(LANES) {
+            let start = chunk * LANES;
+            let lanes = LANES.min(options as usize - start);
+            let valid = u8::MAX >> (LANES - lanes);
+            for ((first, from), begun) in rows.iter().zip(&mut scratch.rows) {
+                let at = RowChunk { problem: self, row, from, chunk };
+                let done = in_lanes(RowWork { at, begun, arms: &mut scratch.arms, valid, keep: &*keep });
+                for lane in 0..lanes {
+                    let (bit, option) = (1 << lane, (start + lane) as u32);
+                    if done.held & bit == 0 {
+                        keep.exclude(1);
+                    } else if done.below_bar & bit != 0 {
+                        keep.below_bar();
+                    } else if done.unsure & bit != 0 {
+                        self.finish_one(outer.len(), option, from, *first, &mut scratch.spare, keep);
+                    } else {
+                        let group = self.group_with(from, row.first, option);
+                        let objectives = done.objectives(lane);
+                        keep.complete(first + u128::from(option), Finished { objectives, group });
+                    }
+                }
             }
-            option = last;
         }
     }
 }

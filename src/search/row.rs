@@ -2,18 +2,21 @@
 //!
 //! All options of the innermost level share everything outboard of it, so a sweep finishes them as a
 //! row. What a row needs of each option stands here side by side in groups of eight ([`Chunk`]); what
-//! follows from the outboard arm is worked out once a row ([`RowScratch`]); the kernel that joins the
-//! two is [`row_lanes`](super::row_lanes).
+//! follows from the outboard arm is worked out once a row ([`Begun`]); the kernel that joins the
+//! two is [`row_lanes`](super::row_lanes). A chunk is some tens of kilobytes: rows come in batches, so that it is
+//! read once from the nearest cache for all of them.
 
 use super::figures::OptionFigures;
 use super::outward::{ArmProblem, Partial, Slot, block_steps};
-use super::row_lanes::MOST_CASES;
+use super::row_lanes::EightArms;
 use super::station::{Block, BlockSlot, Modal, Station, StationLink, StationSlot};
 use crate::arm::{Curve, JointLaw};
 use crate::mechanics::lanes::{Eight, LANES};
 use crate::mechanics::lowest_lanes::{LaneLink, Outboard};
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 
+/// Most cases that a row handles.
+pub(super) const MOST_CASES: usize = 8;
 /// Most pieces from the innermost level to the base that a row handles; beyond, designs are finished
 /// one by one.
 pub(super) const MOST_SLOTS: usize = 12;
@@ -25,8 +28,10 @@ pub(super) struct Row {
     /// Eight options each; none if the level is a joint's drive.
     pub chunks: Vec<Chunk>,
     pub cases: Vec<RowCase>,
-    /// Drives by inner slot, then by index; empty for links.
-    pub drives: Vec<Vec<DriveFigures>>,
+    /// Drives by inner slot; empty for links.
+    pub drives: Vec<DriveFigures>,
+    /// Inner slots that are joints.
+    pub joints: Vec<usize>,
     /// Whether a joint's drives twist by their three segments alone, by inner slot.
     pub segmented: Vec<bool>,
 }
@@ -36,8 +41,9 @@ pub(super) struct RowCase {
     /// Inertia about each inner joint's axis of a piece (of a kilogram of it, if it is a drive):
     /// `carried[piece][joint]`, by inner slot.
     pub carried: [[f64; MOST_SLOTS]; MOST_SLOTS],
-    /// Weight wrench of a link per newton.
+    /// Weight wrench of a link per newton, and what it makes at the link's root.
     pub link_weight: Vector6<f64>,
+    pub link_weight_at_root: [f64; 4],
     /// Block, row and column of the outboard inertia that link ends carry.
     pub spread_entries: Vec<(usize, usize, usize)>,
     /// Inner pieces up to the last that yields in each block.
@@ -47,16 +53,16 @@ pub(super) struct RowCase {
     pub sizing: bool,
 }
 
-/// A torsion curve with the connection in series as one of three segments, and the drive's mass.
-#[derive(Debug, Clone, Copy)]
+/// The drives of a joint by index, each with its mass and its torsion curve of three segments, the connection in series.
+#[derive(Debug, Clone, Default)]
 pub(super) struct DriveFigures {
-    pub mass_kg: f64,
-    /// Stiffnesses \[N m/rad\].
-    pub stiffness: [f64; 3],
-    /// What the segments count as in modes \[N m/rad\].
-    pub mode_stiffness: [f64; 3],
+    pub mass_kg: Vec<f64>,
+    /// Twist per torque \[rad/(N m)\] in each segment.
+    pub compliance: [Vec<f64>; 3],
+    /// Whether modes see the first segment alone, whatever the torque.
+    pub first_in_modes: bool,
     /// Ends of the first two segments \[N m\].
-    pub ends_nm: [f64; 2],
+    pub ends_nm: [Vec<f64>; 2],
 }
 
 /// Eight link options. The last chunk is filled up with its last option.
@@ -100,23 +106,29 @@ pub(super) enum ChunkModal {
     Spatial(Box<LaneLink<6>>),
 }
 
-/// What follows from the arm outboard of a row, and what is remembered from row to row.
+/// Room in which rows are finished.
 pub struct RowScratch {
-    pub(super) cases: Vec<CaseScratch>,
-    /// Lowest eigenvalue of each option in the last row; 0 at first.
-    pub(super) eigenvalues: Vec<Eight>,
-    /// By how much eigenvalues differ from those of the last row.
-    pub(super) drift: f64,
+    pub(super) rows: Vec<Begun>,
+    pub(super) arms: EightArms,
     /// An arm for designs finished one by one.
     pub(super) spare: Partial,
 }
 
-pub(super) struct CaseScratch {
+/// What follows from the arm outboard of a row.
+pub(super) struct Begun {
+    pub cases: Vec<CaseBegun>,
+    /// Step of each inner joint's ladder of drives at which the last design's was looked for.
+    pub steps: [usize; MOST_SLOTS],
+}
+
+pub(super) struct CaseBegun {
     pub outboard: CaseOutboard,
     /// Inertia outboard of the row about each inner joint.
     pub inertia_at: [f64; MOST_SLOTS],
     pub spread: Vec<f64>,
-    pub slopes: [Eight; 2],
+    /// Axial force, torsion and both bending moments of what is outboard at the link's end and root.
+    pub at_end: [f64; 4],
+    pub at_root: [f64; 4],
 }
 
 pub(super) enum CaseOutboard {
@@ -125,7 +137,7 @@ pub(super) enum CaseOutboard {
 }
 
 impl DriveFigures {
-    pub fn new(mass_kg: f64, law: &JointLaw) -> Self {
+    fn push(&mut self, mass_kg: f64, law: &JointLaw) {
         let (stiffness, ends_nm) = match &law.curve {
             Curve::Rigid => ([f64::INFINITY; 3], [f64::INFINITY; 2]),
             Curve::Linear(k) => ([*k; 3], [f64::INFINITY; 2]),
@@ -133,19 +145,13 @@ impl DriveFigures {
                 ([w.k1_nm_per_rad, w.k2_nm_per_rad, w.k3_nm_per_rad], [w.t1_nm, w.t2_nm])
             }
         };
-        let mode_stiffness = match &law.curve {
-            Curve::WindupK1(w) => [w.k1_nm_per_rad; 3],
-            _ => stiffness,
-        };
-        let series = |k: f64| match law.connection_rad_per_nm {
-            0.0 => k,
-            compliance => 1.0 / (1.0 / k + compliance),
-        };
-        Self {
-            mass_kg,
-            stiffness: stiffness.map(series),
-            mode_stiffness: mode_stiffness.map(series),
-            ends_nm,
+        self.first_in_modes = matches!(law.curve, Curve::WindupK1(_));
+        self.mass_kg.push(mass_kg);
+        for segment in 0..3 {
+            self.compliance[segment].push(1.0 / stiffness[segment] + law.connection_rad_per_nm);
+        }
+        for end in 0..2 {
+            self.ends_nm[end].push(ends_nm[end]);
         }
     }
 }
@@ -184,22 +190,22 @@ impl Row {
             chunks,
             cases,
             drives: slots.iter().map(drive_figures).collect(),
+            joints: (0..slots.len()).filter(|&k| slots[k].law(0).is_some()).collect(),
             segmented: slots.iter().map(is_segmented).collect(),
         })
     }
 }
 
-fn drive_figures(slot: &Slot) -> Vec<DriveFigures> {
+fn drive_figures(slot: &Slot) -> DriveFigures {
+    let mut figures = DriveFigures::default();
     match slot {
-        Slot::Given { law, mass_kg } => vec![DriveFigures::new(*mass_kg, law)],
-        Slot::Sized(sized) => sized
-            .laws
-            .iter()
-            .enumerate()
-            .map(|(i, law)| DriveFigures::new(sized.table.mass_kg(i), law))
-            .collect(),
-        _ => Vec::new(),
+        Slot::Given { law, mass_kg } => figures.push(*mass_kg, law),
+        Slot::Sized(sized) => {
+            sized.laws.iter().enumerate().for_each(|(i, law)| figures.push(sized.table.mass_kg(i), law));
+        }
+        _ => {}
     }
+    figures
 }
 
 /// Neither play nor friction, which no three segments describe.
@@ -237,12 +243,16 @@ impl RowCase {
         let link_weight =
             links.iter().find(|l| l.weight[2] != 0.0).map_or(Vector6::zeros(), |l| -l.weight / l.weight[2]);
         let links_yield = links.iter().any(|l| l.end.amax() > 0.0);
+        let link_weight_at_root = match &slots[0] {
+            StationSlot::Link { place, .. } => place.local(&link_weight, &place.root_m),
+            _ => [0.0; 4],
+        };
         let ends = match &station.modal {
             Modal::Planar(blocks) => [0, 1].map(|b| last_yielding(&blocks[b], first, links_yield)),
             Modal::Spatial(block) => [last_yielding(block, first, links_yield), 0],
         };
         let spread_entries = if links_yield { spread_entries(&station.modal) } else { Vec::new() };
-        Self { carried, link_weight, spread_entries, ends, links_yield, judged, sizing }
+        Self { carried, link_weight, link_weight_at_root, spread_entries, ends, links_yield, judged, sizing }
     }
 }
 
@@ -364,42 +374,59 @@ fn lane_link<const N: usize>(block: &Block<N>, first: usize, at: &dyn Fn(usize) 
 impl RowScratch {
     /// Room for the rows of a problem.
     pub(super) fn new(problem: &ArmProblem) -> Self {
-        let chunks = problem.level_sizes_slice().last().map_or(0, |&n| (n as usize).div_ceil(LANES));
-        let cases = problem.stations().iter().map(|station| CaseScratch {
+        Self { rows: Vec::new(), arms: EightArms::new(problem.stations().len()), spare: problem.empty() }
+    }
+
+    /// Works out what each row shares.
+    pub(super) fn begin<'p>(
+        &mut self,
+        problem: &ArmProblem,
+        row: &Row,
+        from: impl ExactSizeIterator<Item = &'p Partial>,
+    ) {
+        self.rows.resize_with(from.len().max(self.rows.len()), || Begun::new(problem));
+        for (begun, from) in self.rows.iter_mut().zip(from) {
+            begun.refill(problem, row, from);
+        }
+    }
+}
+
+impl Begun {
+    fn new(problem: &ArmProblem) -> Self {
+        let cases = problem.stations().iter().map(|station| CaseBegun {
             outboard: match &station.modal {
                 Modal::Planar(_) => CaseOutboard::Planar(Box::default()),
                 Modal::Spatial(_) => CaseOutboard::Spatial(Box::default()),
             },
             inertia_at: [0.0; MOST_SLOTS],
             spread: Vec::new(),
-            slopes: [[1.0; LANES]; 2],
+            at_end: [0.0; 4],
+            at_root: [0.0; 4],
         });
-        Self {
-            cases: cases.collect(),
-            eigenvalues: vec![[0.0; LANES]; chunks],
-            drift: 1.0,
-            spare: problem.empty(),
-        }
+        Self { cases: cases.collect(), steps: [0; MOST_SLOTS] }
     }
 
-    /// Works out what a row shares.
-    pub(super) fn start_row(&mut self, problem: &ArmProblem, row: &Row, from: &Partial) {
-        for (k, scratch) in self.cases.iter_mut().enumerate() {
+    fn refill(&mut self, problem: &ArmProblem, row: &Row, from: &Partial) {
+        for (k, begun) in self.cases.iter_mut().enumerate() {
             let (station, state, case) = (&problem.stations()[k], &from.stations[k], &row.cases[k]);
             for (j, slot) in station.slots[row.first..].iter().enumerate() {
                 if let StationSlot::Joint(joint) = slot {
-                    scratch.inertia_at[j] = joint.twist.dot(&(state.inertia * joint.twist));
+                    begun.inertia_at[j] = joint.twist.dot(&(state.inertia * joint.twist));
                 }
             }
-            scratch.spread.clear();
-            scratch.spread.extend(case.spread_entries.iter().map(|&(_, i, j)| {
+            if let StationSlot::Link { place, .. } = &station.slots[row.first] {
+                begun.at_end = place.local(&state.wrench, &place.end_m);
+                begun.at_root = place.local(&state.wrench, &place.root_m);
+            }
+            begun.spread.clear();
+            begun.spread.extend(case.spread_entries.iter().map(|&(_, i, j)| {
                 let both = if i == j { 1.0 } else { 2.0 };
                 both * state.inertia[(i, j)]
             }));
             if !case.judged {
                 continue;
             }
-            match (&mut scratch.outboard, &station.modal) {
+            match (&mut begun.outboard, &station.modal) {
                 (CaseOutboard::Planar(mine), Modal::Planar(blocks)) => {
                     for (mine, block) in mine.iter_mut().zip(blocks.iter()) {
                         mine.refill(block_steps(block, from, state, row.first));

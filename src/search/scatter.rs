@@ -94,7 +94,7 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         let bends = factors.keys().any(|figure| matches!(figure, Figure::Modulus(_)));
         let stations = bends.then(|| {
             let space = with_moduli(self.problem.space(), factors);
-            space.cases.iter().map(|case| Station::new(&space, case)).collect()
+            Station::all(&space)
         });
         let joint = |slot: usize, option: u32| Some((option, self.built_joint(slot, option, factors)?));
         let joints = self

@@ -5,13 +5,16 @@
 //! lowest mode is found in two blocks of three motions instead of one of six.
 
 use super::effects::Layer;
-use super::space::{Case, DesignSpace, LinkChoice, SpacePiece};
-use crate::arm::{Link, Structure, Water};
+use super::space::{Case, DesignSpace, SpacePiece};
+use crate::arm::{Link, LinkModel, LinkPiece, Structure, Water};
 use crate::mechanics::beam::{PreparedBeam, section_frame};
 use crate::mechanics::condensed::{CondensedLink, PlacedLink};
 use crate::mechanics::lowest::BlockLink;
-use crate::mechanics::{Twist, Wrench, body_inertia, displacement_at, force_wrench, rotation_twist};
+use crate::mechanics::{
+    Twist, Wrench, angular, body_inertia, displacement_at, force_wrench, linear, rotation_twist,
+};
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Rotation3, SMatrix, SVector, Vector3, Vector6};
+use rayon::prelude::*;
 
 /// A pose with its load, compiled for a list of slots from tip to base.
 pub(super) struct Station {
@@ -52,6 +55,15 @@ pub(super) struct Place {
     pub root_m: Vector3<f64>,
     pub end_m: Vector3<f64>,
     pub frame: Matrix3<f64>,
+}
+
+impl Place {
+    /// Axial force, torsion and both bending moments of a wrench at a point of the link.
+    pub fn local(&self, wrench: &Wrench, at_m: &Vector3<f64>) -> [f64; 4] {
+        let force = self.frame.tr_mul(&linear(wrench));
+        let moment = self.frame.tr_mul(&(angular(wrench) - at_m.cross(&linear(wrench))));
+        [force.x, moment.x, moment.y, moment.z]
+    }
 }
 
 /// One option of a link in a pose.
@@ -95,18 +107,69 @@ pub(super) enum BlockSlot<const N: usize> {
 const PLANES: [[usize; 3]; 2] = [[0, 2, 4], [1, 3, 5]];
 const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
 
+/// A tube or a harness, whatever the pose.
+struct Tube {
+    condensed: CondensedLink,
+    length_m: f64,
+    weight_n_per_m: f64,
+}
+
+/// The tubes of each layer; cases in the same water share them.
+struct Tubes {
+    structure: Structure,
+    layers: Vec<Vec<Tube>>,
+}
+
+impl Tube {
+    /// `None` for a massless rigid offset or one without length.
+    fn new(link: &LinkPiece, structure: &Structure, model: LinkModel) -> Option<Self> {
+        let beam = PreparedBeam::new(link, structure, model)?;
+        let condensed = CondensedLink::new(&beam);
+        Some(Self { condensed, length_m: beam.length_m, weight_n_per_m: beam.weight_n_per_m })
+    }
+}
+
+impl Tubes {
+    fn new(space: &DesignSpace, structure: Structure) -> Self {
+        let tube = |link: &Link| Tube::new(&space.link_piece(link), &structure, space.links);
+        let of = |layer| match layer {
+            Layer::Piece(SpacePiece::Link(link)) => tube(link).into_iter().collect(),
+            Layer::Piece(SpacePiece::Choice(choice)) => {
+                choice.options.par_iter().filter_map(|option| tube(&choice.link(option))).collect()
+            }
+            _ => Vec::new(),
+        };
+        let layers = space.layers().into_iter().map(|(_, layer)| of(layer)).collect();
+        Self { structure, layers }
+    }
+}
+
 impl Station {
-    /// Compiles a case.
-    pub fn new(space: &DesignSpace, case: &Case) -> Self {
+    /// Compiles every case of a space.
+    pub fn all(space: &DesignSpace) -> Vec<Self> {
         let around = space.surroundings();
-        let structure = Structure { water: case.water.or(around.water), ..around };
+        let mut known: Vec<Tubes> = Vec::new();
+        let mut stations = Vec::with_capacity(space.cases.len());
+        for case in &space.cases {
+            let structure = Structure { water: case.water.or(around.water), ..around.clone() };
+            let tubes = known.iter().position(|tubes| tubes.structure == structure).unwrap_or_else(|| {
+                known.push(Tubes::new(space, structure));
+                known.len() - 1
+            });
+            stations.push(Self::new(space, case, &known[tubes]));
+        }
+        stations
+    }
+
+    fn new(space: &DesignSpace, case: &Case, Tubes { structure, layers: tubes }: &Tubes) -> Self {
         let walk = Walk::new(space, case);
         let (start_wrench, start_inertia) = payload_in(space, case, structure.water, &walk);
         let built: Vec<Built> = space
             .layers()
             .into_iter()
-            .map(|(piece, layer)| {
-                Builder { space, structure: &structure, place: &walk.places[piece], tip_m: &walk.tip_m }
+            .zip(tubes)
+            .map(|((piece, layer), tubes)| {
+                Builder { space, structure, tubes, place: &walk.places[piece], tip_m: &walk.tip_m }
                     .build(layer)
             })
             .collect();
@@ -201,6 +264,7 @@ enum Built {
 struct Builder<'a> {
     space: &'a DesignSpace,
     structure: &'a Structure,
+    tubes: &'a [Tube],
     place: &'a (Vector3<f64>, Rotation3<f64>),
     tip_m: &'a Vector3<f64>,
 }
@@ -213,7 +277,7 @@ impl Builder<'_> {
             Layer::Mass(mass_kg) => self.body(mass_kg, at_m),
             Layer::Piece(SpacePiece::Joint(joint)) => self.hinge(&(rotation * joint.axis)),
             Layer::Piece(SpacePiece::Link(link)) => self.link(link),
-            Layer::Piece(SpacePiece::Choice(choice)) => self.choice(choice),
+            Layer::Piece(SpacePiece::Choice(choice)) => self.tube(&choice.vector_m),
         }
     }
 
@@ -240,15 +304,13 @@ impl Builder<'_> {
     fn link(&self, link: &Link) -> Built {
         let (at_m, rotation) = self.place;
         let piece = self.space.link_piece(link);
-        let beam = PreparedBeam::new(&piece, self.structure, self.space.links);
-        if piece.beam.is_some()
-            && let Some(beam) = beam
-        {
-            return self.tube(&[beam], &link.vector_m);
-        }
         let point = self.body(piece.point_mass_kg, &(at_m + rotation * link.vector_m / 2.0));
-        match (point, beam.map(|beam| self.tube(&[beam], &link.vector_m))) {
-            (Built::Body { inertia, weight }, Some(Built::Link { options, .. })) => {
+        if self.tubes.is_empty() {
+            return point;
+        }
+        match (point, self.tube(&link.vector_m)) {
+            (_, tube) if piece.beam.is_some() => tube,
+            (Built::Body { inertia, weight }, Built::Link { options, .. }) => {
                 let along = &options[0].1;
                 Built::Body { inertia: inertia + along.inertia, weight: weight + along.weight }
             }
@@ -256,47 +318,31 @@ impl Builder<'_> {
         }
     }
 
-    fn choice(&self, choice: &LinkChoice) -> Built {
-        let pieces = choice.options.iter().map(|option| self.space.link_piece(&choice.link(option)));
-        let beams: Vec<PreparedBeam> =
-            pieces.filter_map(|p| PreparedBeam::new(&p, self.structure, self.space.links)).collect();
-        self.tube(&beams, &choice.vector_m)
+    fn tube(&self, vector_m: &Vector3<f64>) -> Built {
+        let (root_m, rotation) = *self.place;
+        let vector = rotation * vector_m;
+        let frame = rotation.matrix() * section_frame(vector_m);
+        let place = Place { root_m, end_m: root_m + vector, frame };
+        let options =
+            self.tubes.par_iter().map(|tube| place_option(tube, &place, &vector, self.tip_m)).collect();
+        Built::Link { options, place }
     }
-
-    fn tube(&self, beams: &[PreparedBeam], vector_m: &Vector3<f64>) -> Built {
-        let (at_m, rotation) = self.place;
-        built_link(beams, vector_m, at_m, rotation, self.tip_m)
-    }
-}
-
-fn built_link(
-    beams: &[PreparedBeam],
-    vector_m: &Vector3<f64>,
-    root_m: &Vector3<f64>,
-    rotation: &Rotation3<f64>,
-    tip_m: &Vector3<f64>,
-) -> Built {
-    let vector = rotation * vector_m;
-    let place =
-        Place { root_m: *root_m, end_m: root_m + vector, frame: rotation.matrix() * section_frame(vector_m) };
-    let options = beams.iter().map(|beam| place_option(beam, &place, &vector, tip_m)).collect();
-    Built::Link { options, place }
 }
 
 fn place_option(
-    beam: &PreparedBeam,
+    tube: &Tube,
     place: &Place,
     vector: &Vector3<f64>,
     tip_m: &Vector3<f64>,
 ) -> (PlacedLink, StationLink) {
-    let placed = CondensedLink::new(beam).place(&place.root_m, &place.end_m, &place.frame);
+    let placed = tube.condensed.place(&place.root_m, &place.end_m, &place.frame);
     let tips: Vec<Vector3<f64>> =
         (0..6).map(|g| displacement_at(&placed.end.column(g).into(), tip_m)).collect();
     let option = StationLink {
         inertia: placed.inertia[0].fixed_view::<6, 6>(0, 0).into_owned(),
-        weight: weight_wrench(beam.weight_n_per_m * beam.length_m, &(place.root_m + vector / 2.0)),
+        weight: weight_wrench(tube.weight_n_per_m * tube.length_m, &(place.root_m + vector / 2.0)),
         end: placed.end,
-        sag: placed.sag_per_weight * beam.weight_n_per_m,
+        sag: placed.sag_per_weight * tube.weight_n_per_m,
         tip: Matrix3x6::from_columns(&tips),
         end_inertia: placed.inertia[0].diagonal().fixed_rows::<6>(6).into_owned(),
         block: ends_by_block(&placed).unwrap_or_default(),
@@ -379,7 +425,7 @@ fn block<const N: usize>(built: &[Built], payload: &Matrix6<f64>, motions: [usiz
             },
             Built::Body { inertia, .. } => BlockSlot::Body(select(inertia)),
             Built::Link { options, .. } => {
-                BlockSlot::Links(options.iter().map(|(placed, _)| block_link(placed, motions)).collect())
+                BlockSlot::Links(options.par_iter().map(|(placed, _)| block_link(placed, motions)).collect())
             }
         })
         .collect();

@@ -7,8 +7,8 @@
 use super::archive::Archive;
 use super::constraint::Constraints;
 use super::front::not_clearly_beaten;
-use super::visit::{Keep, Visit};
-use super::{Finished, Objectives, OutwardIn};
+use super::visit::Visit;
+use super::{Finished, Keep, Objectives, OutwardIn};
 use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -62,7 +62,8 @@ pub struct SweepOutcome {
     pub status: Status,
     /// Designs in the space.
     pub designs_total: u128,
-    /// Designs whose three objectives were computed.
+    /// Designs that hold and were judged: by their three objectives, or by mass, deflection and a lowest mode
+    /// that is below that of a design no worse in both.
     pub designs_evaluated: u64,
     /// Designs left out because their outboard part, or a drive, stress, mass or cost limit, cannot hold.
     pub designs_excluded: u128,
@@ -249,6 +250,17 @@ impl Keep for Worker<'_> {
 
     fn exclude(&mut self, designs: u128) {
         self.tally.excluded += designs;
+    }
+
+    // what one of its own group beats, one of all designs beats; those entered keep the constraints, so that near
+    // misses no longer matter once there is a bar
+    fn bar_hz(&self, group: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
+        let rivals = group.map_or(self.overall, |group| &self.groups[group]);
+        rivals.archive.bar_hz(mass_kg, tip_deflection_m)
+    }
+
+    fn below_bar(&mut self) {
+        self.tally.evaluated += 1;
     }
 }
 

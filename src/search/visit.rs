@@ -1,24 +1,22 @@
 //! Walking through every design of a tree, in parallel.
 //!
-//! The tree's first levels are cut into tasks; each task walks its part depth first with one partial arm a
-//! level, and keeps what it finds for itself.
+//! A *row* is all designs that differ in the innermost level alone. Tasks take ranges of rows; each builds the arms
+//! outboard of its rows one level after the other, keeps those it shares with the row before, and finishes rows in
+//! batches. It keeps what it finds for itself.
 
-use super::design::number;
-use super::{Finished, OutwardIn};
+use super::design::options;
+use super::{Finished, Keep, OutwardIn};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Tasks to aim for: enough for balance and for a progress report.
 const TASKS: u128 = 512;
-
-/// What a task does with the designs of its part.
-pub(super) trait Keep: Send {
-    /// A design that holds.
-    fn complete(&mut self, number: u128, finished: Finished);
-
-    /// So many designs cannot hold.
-    fn exclude(&mut self, designs: u128);
-}
+/// Tasks that there should be before rows are finished in batches.
+const LEAST_TASKS: u128 = 64;
+/// Rows finished together, and designs in them.
+const BATCH: usize = 16;
+const BATCH_DESIGNS: usize = 1 << 18;
 
 /// A walk that others can watch and stop.
 pub(super) struct Visit<'p, P: OutwardIn> {
@@ -30,49 +28,21 @@ pub(super) struct Visit<'p, P: OutwardIn> {
 
 impl<P: OutwardIn> Visit<'_, P> {
     /// Visits every design beyond the empty arm; what the tasks kept comes in the order of the tasks.
-    pub fn every_design<'v, K: Keep + 'v>(
+    pub fn every_design<'v, K: Keep + Send + 'v>(
         &'v self,
         root: &'v P::Partial,
         keeper: impl Fn() -> K + Send + Sync + 'v,
     ) -> impl ParallelIterator<Item = K> + 'v {
-        self.tasks().into_par_iter().map(move |beginning| self.task(&beginning, root, keeper()))
-    }
-
-    /// Beginnings of designs, tip first, each a task.
-    fn tasks(&self) -> Vec<Vec<u32>> {
         let sizes = self.problem.level_sizes();
-        let mut tasks: Vec<Vec<u32>> = vec![Vec::new()];
-        for &size in sizes.iter().take(sizes.len().saturating_sub(1)) {
-            if tasks.len() as u128 >= TASKS {
-                break;
-            }
-            tasks = tasks
-                .into_iter()
-                .flat_map(|t| (0..size).map(move |option| [t.as_slice(), &[option]].concat()))
-                .collect();
-        }
-        tasks
-    }
-
-    fn task<K: Keep>(&self, beginning: &[u32], root: &P::Partial, keeper: K) -> K {
-        let mut walker = Walker { visit: self, keeper, options: beginning.to_vec(), scratch: None };
-        if self.stop.load(Ordering::Relaxed) {
-            return walker.keeper;
-        }
-        let mut partial = root.clone();
-        for (level, &option) in beginning.iter().enumerate() {
-            let mut next = root.clone();
-            if !self.problem.extend(level, option, &partial, &mut next) {
-                // other tasks with this beginning count their own designs
-                walker.exclude(beginning.len());
-                return walker.keeper;
-            }
-            partial = next;
-        }
-        let levels_left = self.problem.level_sizes().len() - beginning.len();
-        let mut stack = vec![partial; levels_left.max(1)];
-        walker.descend(beginning.len(), &mut stack);
-        walker.keeper
+        let rows: u128 = sizes.iter().rev().skip(1).map(|&size| u128::from(size)).product();
+        let each = (rows / TASKS).max((BATCH as u128).min(rows / LEAST_TASKS)).max(1);
+        let tasks = rows.div_ceil(each) as usize;
+        (0..tasks).into_par_iter().map(move |task| {
+            let first = task as u128 * each;
+            let mut walker = Walker::new(self, root, keeper());
+            walker.walk(first..(first + each).min(rows));
+            walker.keeper
+        })
     }
 }
 
@@ -80,59 +50,85 @@ impl<P: OutwardIn> Visit<'_, P> {
 struct Walker<'v, 'p, P: OutwardIn, K> {
     visit: &'v Visit<'p, P>,
     keeper: K,
+    /// The arms that the last row began with: the empty one, with one level, ...
+    begun: Vec<P::Partial>,
     options: Vec<u32>,
-    scratch: Option<P::Scratch>,
+    /// Rows to be finished together, with the number of each one's first design.
+    batch: Vec<(u128, P::Partial)>,
+    scratch: P::Scratch,
 }
 
-impl<P: OutwardIn, K: Keep> Walker<'_, '_, P, K> {
-    fn descend(&mut self, level: usize, stack: &mut [P::Partial]) {
-        let problem = self.visit.problem;
-        let sizes = problem.level_sizes();
-        if level + 1 >= sizes.len() {
-            self.finish_row(&stack[0]);
-            return;
-        }
-        for option in 0..sizes[level] {
-            if self.visit.stop.load(Ordering::Relaxed) {
-                return;
-            }
-            let (here, beyond) = stack.split_at_mut(1);
-            if !problem.extend(level, option, &here[0], &mut beyond[0]) {
-                self.exclude(level + 1);
-                continue;
-            }
-            self.options.push(option);
-            self.descend(level + 1, beyond);
-            self.options.pop();
+impl<'v, 'p, P: OutwardIn, K: Keep> Walker<'v, 'p, P, K> {
+    fn new(visit: &'v Visit<'p, P>, root: &P::Partial, keeper: K) -> Self {
+        let levels = visit.problem.level_sizes().len();
+        Self {
+            visit,
+            keeper,
+            begun: vec![root.clone(); levels.max(1)],
+            options: Vec::new(),
+            batch: Vec::new(),
+            scratch: visit.problem.scratch(),
         }
     }
 
-    /// Every option of the innermost level. A space without levels is one design.
-    fn finish_row(&mut self, from: &P::Partial) {
+    /// Every design of some rows. A space without levels is one design.
+    fn walk(&mut self, rows: Range<u128>) {
         let problem = self.visit.problem;
-        let Some(&size) = problem.level_sizes().last() else {
-            if let Some(objectives) = problem.objectives(from) {
-                self.keeper.complete(0, Finished { objectives, group: problem.group(from) });
+        let Some((&last, outer)) = problem.level_sizes().split_last() else {
+            if let Some(objectives) = problem.objectives(&self.begun[0]) {
+                let group = problem.group(&self.begun[0]);
+                self.keeper.complete(0, Finished { objectives, group });
             }
             return;
         };
-        let first = number(problem.level_sizes(), &self.options) * u128::from(size);
-        let mut scratch = self.scratch.take().unwrap_or_else(|| problem.scratch());
-        problem.finish(from, 0..size, &mut scratch, |option, finished| match finished {
-            Some(finished) => self.keeper.complete(first + u128::from(option), finished),
-            None => self.keeper.exclude(1),
-        });
-        self.scratch = Some(scratch);
-        self.visit.visited.fetch_add(u64::from(size), Ordering::Relaxed);
+        let batch = (BATCH_DESIGNS / last.max(1) as usize).clamp(1, BATCH);
+        let mut row = rows.start;
+        while row < rows.end && !self.visit.stop.load(Ordering::Relaxed) {
+            let next = match self.begin(outer, row) {
+                Ok(()) => {
+                    self.batch.push((row * u128::from(last), self.begun[outer.len()].clone()));
+                    row + 1
+                }
+                Err(level) => {
+                    // every row with the same options up to this level
+                    let alike: u128 = outer[level + 1..].iter().map(|&size| u128::from(size)).product();
+                    let next = ((row / alike + 1) * alike).min(rows.end);
+                    let designs = (next - row) * u128::from(last);
+                    self.keeper.exclude(designs);
+                    self.count(designs);
+                    next
+                }
+            };
+            row = next;
+            if self.batch.len() == batch {
+                self.finish(last);
+            }
+        }
+        self.finish(last);
     }
 
-    /// Counts every design with the present beginning of `levels` levels as excluded.
-    fn exclude(&mut self, levels: usize) {
-        let sizes = self.visit.problem.level_sizes();
-        let below: u128 = sizes[levels..].iter().map(|&s| u128::from(s)).product();
-        self.keeper.exclude(below);
-        if levels < sizes.len() {
-            self.visit.visited.fetch_add(u64::try_from(below).unwrap_or(u64::MAX), Ordering::Relaxed);
+    /// Builds the arm outboard of a row; the level at which it fails if no design beyond it can hold.
+    fn begin(&mut self, outer: &[u32], row: u128) -> Result<(), usize> {
+        let wanted = options(outer, row).unwrap_or_default();
+        let shared = self.options.iter().zip(&wanted).take_while(|(a, b)| a == b).count();
+        self.options.truncate(shared);
+        for (level, &option) in wanted.iter().enumerate().skip(shared) {
+            let (outboard, inboard) = self.begun.split_at_mut(level + 1);
+            if !self.visit.problem.extend(level, option, &outboard[level], &mut inboard[0]) {
+                return Err(level);
+            }
+            self.options.push(option);
         }
+        Ok(())
+    }
+
+    fn finish(&mut self, row_length: u32) {
+        self.visit.problem.finish(&self.batch, &mut self.scratch, &mut self.keeper);
+        self.count(self.batch.len() as u128 * u128::from(row_length));
+        self.batch.clear();
+    }
+
+    fn count(&self, designs: u128) {
+        self.visit.visited.fetch_add(u64::try_from(designs).unwrap_or(u64::MAX), Ordering::Relaxed);
     }
 }

@@ -29,6 +29,7 @@
 mod check;
 mod demand;
 mod drive;
+mod eight;
 mod explain;
 mod limits;
 mod requirement;
@@ -42,6 +43,7 @@ pub use demand::{JointDemand, JointMotion, cubic_mean_cubed_nm3, linear_torque_n
 pub use drive::{
     Drive, MissingFigure, motor_torque_nm, reference_life_h, rotary_torque_motor_nm, rotary_torque_output_nm,
 };
+pub(crate) use eight::EightDemands;
 pub use explain::{RejectedPart, Rejection, Relaxation, RelaxationKind, Shortfall};
 pub use limits::{DriveLimits, Obstacle};
 pub use requirement::{

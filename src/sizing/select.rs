@@ -2,6 +2,7 @@
 
 use super::{Drive, DriveLimits, JointDemand, JointMotion};
 use crate::catalog::{Gear, GearMass, Motor, MotorKind};
+use std::ops::Range;
 
 /// Which parts of the catalogs a joint may use; `None` allows all.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,6 +77,30 @@ pub struct DriveTable<'c> {
     ladder_limits: Vec<DriveLimits>,
     /// Largest limits up to each step: nothing before the first of these that holds can be a fit.
     ladder_reach: Vec<DriveLimits>,
+    /// Largest limits of each flight of [`FLIGHT`] steps.
+    ladder_flights: Vec<DriveLimits>,
+}
+
+/// Steps of the ladder that are passed by at once where none of them can hold.
+const FLIGHT: usize = 8;
+
+/// The drives that can be a first fit, lightest first, as a search climbs them.
+#[derive(Clone, Copy)]
+pub(super) struct Ladder<'t> {
+    pub indices: &'t [u32],
+    pub limits: &'t [DriveLimits],
+    pub reach: &'t [DriveLimits],
+    flights: &'t [DriveLimits],
+}
+
+impl<'t> Ladder<'t> {
+    /// Steps from one on, a flight at a time, with the largest limits of each.
+    #[inline(always)]
+    pub fn flights_from(self, start: usize) -> impl Iterator<Item = (&'t DriveLimits, Range<usize>)> {
+        let flights = self.flights.iter().enumerate().skip(start / FLIGHT);
+        flights
+            .map(move |(k, most)| (most, (k * FLIGHT).max(start)..((k + 1) * FLIGHT).min(self.limits.len())))
+    }
 }
 
 impl<'c> DriveTable<'c> {
@@ -99,6 +124,7 @@ impl<'c> DriveTable<'c> {
             ladder: Vec::new(),
             ladder_limits: Vec::new(),
             ladder_reach: Vec::new(),
+            ladder_flights: Vec::new(),
         };
         table.fill();
         table.raise_ladder();
@@ -128,6 +154,9 @@ impl<'c> DriveTable<'c> {
                 self.ladder_reach.push(self.ladder_reach.last().map_or(*limits, |reach| reach.max(limits)));
             }
         }
+        let most =
+            |flight: &[DriveLimits]| flight[1..].iter().fold(flight[0], |most, limits| most.max(limits));
+        self.ladder_flights = self.ladder_limits.chunks(FLIGHT).map(most).collect();
     }
 
     fn all_pairs(&self) -> impl Iterator<Item = (Drive<'c>, Pair)> + '_ {
@@ -214,6 +243,16 @@ impl<'c> DriveTable<'c> {
         let start = self.first_step_within_reach(demand);
         let step = start + self.ladder_limits[start..].iter().position(|limits| limits.hold(demand))?;
         Some(self.ladder[step] as usize)
+    }
+
+    /// The drives that can be a first fit.
+    pub(super) fn ladder(&self) -> Ladder<'_> {
+        Ladder {
+            indices: &self.ladder,
+            limits: &self.ladder_limits,
+            reach: &self.ladder_reach,
+            flights: &self.ladder_flights,
+        }
     }
 
     /// Doubling strides, then bisection: a light demand is answered at the first steps.

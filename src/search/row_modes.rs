@@ -1,0 +1,209 @@
+//! The lowest modes of eight designs at once.
+//!
+//! Few eigenproblems are solved to the end. A design whose mass and deflection are known need not be looked at further
+//! if its lowest mode is below a bar, that of a design no worse in both: one pass a block tells. Of the others the
+//! block whose Dunkerley sum is largest is solved first; any other block whose lower bound lies below that root
+//! gets one pass at it, and only if a pivot is negative there, a root of its own.
+
+use super::Keep;
+use super::row::{Begun, CaseOutboard, ChunkModal, MOST_CASES, RowCase};
+use super::row_lanes::{EightArms, RowChunk};
+use super::station::{Block, BlockSlot, Modal};
+use crate::mechanics::lanes::{Eight, LANES, Lanes};
+use crate::mechanics::lowest_lanes::{Inner, LaneLink, Outboard, Walk, pass, roots};
+use std::f64::consts::TAU;
+
+/// Cases and their blocks.
+type Blocks = [Option<(usize, usize)>; 2 * MOST_CASES];
+
+/// Eight complete arms, asked for their lowest modes.
+#[derive(Clone, Copy)]
+pub(super) struct Question<'a, 'c> {
+    at: RowChunk<'a, 'c>,
+    begun: &'a Begun,
+    arms: &'a EightArms,
+}
+
+/// What is asked of a block.
+#[derive(Clone, Copy)]
+struct Ask<V> {
+    /// In which lanes.
+    open: u8,
+    /// Which of their lowest eigenvalues are below these?
+    below: V,
+    /// And what are they? Where to look for them first.
+    guess: Option<V>,
+}
+
+impl RowChunk<'_, '_> {
+    /// The eigenvalues that designs must reach to be of interest.
+    pub fn bars(&self, keep: &dyn Keep, arms: &EightArms, tip_deflection_m: &Eight) -> Eight {
+        let mut bars = [0.0; LANES];
+        for lane in (0..LANES).filter(|lane| arms.held >> lane & 1 == 1) {
+            let option = (LANES * self.chunk + lane) as u32;
+            let group = self.problem.group_with(self.from, self.row.first, option);
+            let omega = TAU * keep.bar_hz(group, arms.mass_kg[lane], tip_deflection_m[lane]);
+            bars[lane] = omega * omega;
+        }
+        bars
+    }
+}
+
+impl<'a, 'c> Question<'a, 'c> {
+    pub fn new(at: RowChunk<'a, 'c>, begun: &'a Begun, arms: &'a EightArms) -> Self {
+        Self { at, begun, arms }
+    }
+
+    /// Lanes whose lowest eigenvalue is below a bar.
+    #[inline(always)]
+    pub fn below<V: Lanes>(&self, bars: &Eight, held: u8) -> u8 {
+        let below = V::load(bars);
+        let asked = held & V::zero().less(below);
+        let mut above = asked;
+        for &block in self.blocks(asked).iter().flatten() {
+            let open = above & self.least::<V>(block).less(below);
+            if open != 0 {
+                above &= !self.answer(block, Ask { open, below, guess: None }).1;
+            }
+        }
+        asked & !above
+    }
+
+    /// Lowest eigenvalue over all judged cases, and the lanes in which it was not found.
+    #[inline(always)]
+    pub fn lowest<V: Lanes>(&self, held: u8) -> (V, u8) {
+        let (mut lowest, mut unsure) = (V::splat(f64::INFINITY), 0);
+        for &block in self.blocks(held).iter().flatten() {
+            let least = self.least::<V>(block);
+            let open = held & least.less(lowest);
+            if open != 0 {
+                let guess = V::choose(lowest.less(V::splat(f64::INFINITY)), V::splat(0.97) * lowest, least);
+                let ask = Ask { open, below: lowest, guess: Some(guess.max(least)) };
+                let (root, lost) = self.answer(block, ask);
+                lowest = lowest.min(root);
+                unsure |= lost;
+            }
+        }
+        (lowest, unsure)
+    }
+
+    /// Dunkerley's lower bound of a block's lowest eigenvalue.
+    #[inline(always)]
+    fn least<V: Lanes>(&self, (case, block): (usize, usize)) -> V {
+        V::splat(1.0) / V::load(&self.arms.cases[case].trace_s2[block])
+    }
+
+    /// Blocks of the judged cases, that of the largest Dunkerley sum first.
+    fn blocks(&self, of: u8) -> Blocks {
+        let mut blocks = [None; 2 * MOST_CASES];
+        let (mut largest, mut count) = (0.0, 0);
+        for (c, _) in self.at.row.cases.iter().enumerate().filter(|(_, case)| case.judged) {
+            for block in 0..2 {
+                let traces = &self.arms.cases[c].trace_s2[block];
+                let sum: f64 = (0..LANES).filter(|lane| of >> lane & 1 == 1).map(|lane| traces[lane]).sum();
+                if sum > 0.0 {
+                    blocks[count] = Some((c, block));
+                    if sum > largest {
+                        blocks.swap(0, count);
+                        largest = sum;
+                    }
+                    count += 1;
+                }
+            }
+        }
+        blocks
+    }
+
+    /// The eigenvalues, and the lanes in which none was found; without a guess the lanes in which they are below.
+    #[inline(always)]
+    fn answer<V: Lanes>(&self, (case, block): (usize, usize), ask: Ask<V>) -> (V, u8) {
+        let chunk = self.at.row.chunks.get(self.at.chunk).map(|chunk| &chunk.cases[case].modal);
+        match (&self.at.problem.stations()[case].modal, &self.begun.cases[case].outboard) {
+            (Modal::Planar(blocks), CaseOutboard::Planar(outboard)) => {
+                let link = match chunk {
+                    Some(ChunkModal::Planar(links)) => Some(&links[block]),
+                    _ => None,
+                };
+                self.solve(&self.pieces(case, block, &blocks[block], link), &outboard[block], ask)
+            }
+            (Modal::Spatial(pieces), CaseOutboard::Spatial(outboard)) => {
+                let link = match chunk {
+                    Some(ChunkModal::Spatial(link)) => Some(&**link),
+                    _ => None,
+                };
+                self.solve(&self.pieces(case, block, pieces, link), outboard, ask)
+            }
+            _ => (ask.below, ask.open),
+        }
+    }
+
+    #[inline(always)]
+    fn pieces<'s, const N: usize>(
+        &'s self,
+        case: usize,
+        block: usize,
+        pieces: &'s Block<N>,
+        link: Option<&'s LaneLink<N>>,
+    ) -> Pieces<'s, N> {
+        Pieces {
+            slots: &pieces.slots[self.at.row.first..],
+            end: self.at.row.cases[case].ends[block],
+            link,
+            case: &self.at.row.cases[case],
+            masses_kg: &self.arms.masses_kg,
+            compliance: &self.arms.cases[case].compliance,
+        }
+    }
+
+    #[inline(always)]
+    fn solve<V: Lanes, const N: usize>(
+        &self,
+        inner: &Pieces<'_, N>,
+        outboard: &Outboard<N>,
+        ask: Ask<V>,
+    ) -> (V, u8) {
+        let Ask { mut open, below, guess } = ask;
+        let known = open & below.less(V::splat(f64::INFINITY));
+        if known != 0 {
+            let here = pass(outboard, inner, V::choose(known, below, guess.unwrap_or(below)));
+            open &= !(known & here.sound & V::zero().less(here.last));
+        }
+        let Some(guess) = guess.filter(|_| open != 0) else { return (below, open) };
+        let found = roots(outboard, inner, guess, open);
+        (V::choose(open, found.eigenvalue, below), found.unsure)
+    }
+}
+
+/// The inner pieces of eight arms in a block, up to the last that yields.
+struct Pieces<'a, const N: usize> {
+    slots: &'a [BlockSlot<N>],
+    end: usize,
+    link: Option<&'a LaneLink<N>>,
+    case: &'a RowCase,
+    masses_kg: &'a [Eight],
+    compliance: &'a [Eight],
+}
+
+impl<V: Lanes, const N: usize> Inner<V, N> for Pieces<'_, N> {
+    #[inline(always)]
+    fn carry(&self, walk: &mut Walk<V, N>) {
+        for (k, slot) in self.slots[..self.end].iter().enumerate() {
+            match slot {
+                BlockSlot::Joint { twist, inertia_per_kg } => {
+                    if twist.amax() > 0.0 {
+                        walk.joint(twist, V::load(&self.compliance[k]));
+                    }
+                    if k + 1 < self.end {
+                        walk.mass(V::load(&self.masses_kg[k]), inertia_per_kg);
+                    }
+                }
+                BlockSlot::Body(inertia) => walk.body(inertia),
+                BlockSlot::Links(_) => match self.link {
+                    Some(link) if self.case.links_yield => walk.link(link),
+                    Some(link) => walk.rigid(link),
+                    None => {}
+                },
+            }
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! What a joint of eight arms at once is asked for, and the lightest drives that hold it.
+//!
+//! The same operations in the same order as [`JointMotion::demand`] and [`DriveTable::first_fit`], so that an arm
+//! gets the same drive by itself and among eight.
+
+use super::limits::DriveLimits;
+use super::{DriveTable, JointMotion, LinearReading};
+use crate::mechanics::lanes::{LANES, Lanes};
+
+/// The torques on one joint of eight arms, output side, none negative; no moment across the axis.
+#[derive(Clone, Copy)]
+pub(crate) struct EightDemands<V> {
+    static_torque_nm: V,
+    peak_torque_nm: V,
+    stop_torque_nm: V,
+    mean_torque_cubed_nm3: V,
+}
+
+impl<V: Lanes> EightDemands<V> {
+    /// The demands on a joint with this motion: static torques \[N m\], inertia outboard \[kg m²\].
+    #[inline(always)]
+    pub fn new(motion: &JointMotion, static_torque_nm: V, outboard_inertia_kgm2: V) -> Self {
+        let statically = static_torque_nm.abs();
+        let linear = match motion.linear_reading {
+            LinearReading::Exact => outboard_inertia_kgm2 * V::splat(motion.acceleration_rad_s2),
+            LinearReading::Paper => V::splat(motion.acceleration_over_gravity) * statically,
+        };
+        let linear = linear.abs();
+        let (up, down) = (statically + linear, (statically - linear).abs());
+        let weights = &motion.mean_torque;
+        Self {
+            static_torque_nm: statically,
+            peak_torque_nm: up,
+            stop_torque_nm: statically + V::splat(motion.stop_factor) * linear,
+            mean_torque_cubed_nm3: V::splat(weights.sum) * (up * up * up)
+                + V::splat(weights.steady) * (statically * statically * statically)
+                + V::splat(weights.difference) * (down * down * down),
+        }
+    }
+
+    /// Those of some lanes whose demand a drive holds.
+    #[inline(always)]
+    fn held_by(&self, limits: &DriveLimits, of: u8) -> u8 {
+        of & !(V::splat(limits.static_torque_nm).less(self.static_torque_nm)
+            | V::splat(limits.peak_torque_nm).less(self.peak_torque_nm)
+            | V::splat(limits.stop_torque_nm).less(self.stop_torque_nm)
+            | V::splat(limits.mean_torque_cubed_nm3).less(self.mean_torque_cubed_nm3))
+    }
+}
+
+impl DriveTable<'_> {
+    /// The lightest drive that holds in each wanted lane, and the lanes that have one. The search for the first step of
+    /// the ladder within reach begins at `step`, that of demands like these, and leaves its own there.
+    #[inline(always)]
+    pub(crate) fn first_fits<V: Lanes>(
+        &self,
+        demands: &EightDemands<V>,
+        wanted: u8,
+        step: &mut usize,
+    ) -> ([usize; LANES], u8) {
+        let ladder = self.ladder();
+        let reach = ladder.reach;
+        let mut start = (*step).min(reach.len());
+        while start > 0 && demands.held_by(&reach[start - 1], wanted) != 0 {
+            start -= 1;
+        }
+        while start < reach.len() && demands.held_by(&reach[start], wanted) == 0 {
+            start += 1;
+        }
+        *step = start;
+        let (mut fits, mut open) = ([0; LANES], wanted);
+        for (most, steps) in ladder.flights_from(start) {
+            if demands.held_by(most, open) == 0 {
+                continue;
+            }
+            for step in steps {
+                let held = demands.held_by(&ladder.limits[step], open);
+                for lane in 0..LANES {
+                    if held >> lane & 1 == 1 {
+                        fits[lane] = ladder.indices[step] as usize;
+                    }
+                }
+                open &= !held;
+            }
+            if open == 0 {
+                break;
+            }
+        }
+        (fits, wanted & !open)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{any_gear, any_motion, any_motor};
+    use super::super::{DriveFilter, DriveTable};
+    use super::*;
+    use crate::catalog::{Gear, GearMass, Motor};
+    use crate::mechanics::lanes::{Eight, LaneWork, in_lanes};
+    use proptest::prelude::*;
+
+    struct Fits<'a>(&'a DriveTable<'a>, Eight, Eight, u8, usize);
+
+    impl LaneWork for Fits<'_> {
+        type Output = ([usize; LANES], u8);
+
+        fn run<V: Lanes>(mut self) -> Self::Output {
+            let demands = EightDemands::new(self.0.motion(), V::load(&self.1), V::load(&self.2));
+            self.0.first_fits(&demands, self.3, &mut self.4)
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(300))]
+
+        #[test]
+        fn eight_at_once_get_the_drives_they_get_alone(
+            gears in prop::collection::vec(any_gear(), 1..8),
+            motors in prop::collection::vec(any_motor(), 1..8),
+            motion in any_motion(),
+            torques in prop::array::uniform8(-900.0..900.0f64),
+            inertias in prop::array::uniform8(0.0..60.0f64),
+            wanted: u8,
+            step in 0..70usize,
+        ) {
+            let gears: Vec<_> = gears.into_iter().enumerate().map(|(i, g)| Gear { id: format!("G{i}"), ..g }).collect();
+            let motors: Vec<_> = motors.into_iter().enumerate().map(|(i, m)| Motor { id: format!("M{i}"), ..m }).collect();
+            let filter = DriveFilter::everything(GearMass::ComponentSet);
+            let table = DriveTable::build("j", motion, &filter, &gears, &motors);
+            let (fits, fitted) = in_lanes(Fits(&table, torques, inertias, wanted, step));
+            for lane in 0..LANES {
+                let alone = table.first_fit(&table.motion().demand(torques[lane], inertias[lane]));
+                let among = (fitted >> lane & 1 == 1).then_some(fits[lane]);
+                prop_assert_eq!(among, alone.filter(|_| wanted >> lane & 1 == 1));
+            }
+        }
+    }
+}
