@@ -43,7 +43,7 @@ fn search(space: &DesignSpace, catalogs: &Catalogs, limit: Duration) {
         outcome.front.len(),
         outcome.boxes as f64,
         started.elapsed().as_secs_f64(),
-        outcome.gap.map_or("-".into(), |gap| format!("{:.0} %", 100.0 * gap)),
+        outcome.gap.map_or("-".into(), |gap| format!("{:.1} %", 100.0 * gap)),
     );
 }
 

@@ -9,8 +9,8 @@ use super::summary::{SummaryFacts, TERMINAL, large};
 pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Extra {
     let words = match (boxes, facts.is_stopped()) {
         (None, false) => vec![format!(
-            "Every design was visited: of {} the objectives of {} were worked out, and {} were excluded because a drive, \
-             a link or a limit does not hold. None is missing.",
+            "Every design was visited: of {} {} hold and were judged, and {} were excluded because a drive, a link \
+             or a limit does not hold. None is missing.",
             large(facts.designs_total),
             large(facts.designs_evaluated),
             large(facts.designs_excluded),

@@ -190,7 +190,9 @@ impl Row {
             chunks,
             cases,
             drives: slots.iter().map(drive_figures).collect(),
-            joints: (0..slots.len()).filter(|&k| slots[k].law(0).is_some()).collect(),
+            joints: (0..slots.len())
+                .filter(|&k| matches!(slots[k], Slot::Given { .. } | Slot::Sized(_)))
+                .collect(),
             segmented: slots.iter().map(is_segmented).collect(),
         })
     }

@@ -29,6 +29,7 @@ mod problem;
 mod regions;
 mod run;
 mod shape;
+mod tip;
 mod tradeoff;
 mod tree;
 

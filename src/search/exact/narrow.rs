@@ -8,7 +8,7 @@ use super::problem::Part;
 use super::tradeoff::{Plane, ROUNDING, Rows};
 
 /// Boxes of options a level is looked at in, about.
-const BOXES: usize = 128;
+const BOXES: usize = 256;
 /// Weightings that count: the strictest.
 const STRICTEST: usize = 32;
 

@@ -23,20 +23,29 @@ pub(super) struct Gear<'a> {
     /// says that it is not less. None where its slope is the same under all the torques: it is then taken at the
     /// torque `torques_nm[0]`, and twists from there by the weights.
     pub row: Option<usize>,
+    /// Twist per torque that no gear of the box falls short of \[rad/(N m)\].
+    pub least_compliance: f64,
 }
 
 impl<'a> Gear<'a> {
     /// The gear of a joint whose torque may press it into another segment; its rows are the next.
-    pub fn free(row: &'a Row, judged: usize, weights: &[[f64; 2]], next: usize) -> Self {
+    pub fn free(
+        row: &'a Row,
+        judged: usize,
+        weights: &[[f64; 2]],
+        next: usize,
+        least_compliance: f64,
+    ) -> Self {
         let [low, high] = interval(row.fixed, &row.per_n, weights);
         let room = ROUNDING * low.abs().max(high.abs());
         let torques_nm = [low - room, high + room];
-        Self { piece: row.piece, judged, torques_nm, per_n: &row.per_n, row: Some(next) }
+        Self { piece: row.piece, judged, torques_nm, per_n: &row.per_n, row: Some(next), least_compliance }
     }
 
     /// The gear of a joint that is in one segment.
     pub fn at(row: &'a Row, judged: usize, torque_nm: f64) -> Self {
-        Self { piece: row.piece, judged, torques_nm: [torque_nm; 2], per_n: &row.per_n, row: None }
+        let torques_nm = [torque_nm; 2];
+        Self { piece: row.piece, judged, torques_nm, per_n: &row.per_n, row: None, least_compliance: 0.0 }
     }
 
     /// What its rows are measured in \[N m\]: not so small that rounding counts.

@@ -25,8 +25,10 @@ use std::time::Instant;
 const TASKS: usize = 2048;
 /// Slacks of the passes over a large space: with slack a box is also cut if a design found comes that close
 /// to its ceiling, so a pass that comes to its end proves that nothing is missing by more.
-const SLACKS: [f64; 15] =
-    [1.0, 0.7, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.16, 0.12, 0.09, 0.06, 0.04, 0.02, 0.0];
+const SLACKS: [f64; 18] =
+    [1.0, 0.7, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.16, 0.12, 0.09, 0.075, 0.06, 0.05, 0.04, 0.03, 0.02, 0.0];
+/// A slack is passed over where the last pass took less than this part of the time that is left.
+const QUICK: f64 = 0.1;
 /// Designs above which a space is large.
 const LARGE: f64 = 1e9;
 /// Designs above which a space is searched region by region.
@@ -137,6 +139,12 @@ impl<'p> Exact<'p> {
         self.stop.load(Ordering::Relaxed) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
 
+    /// Whether a pass that began then and has just ended took little of the time that is left.
+    fn was_quick(&self, started: Instant) -> bool {
+        let left = self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
+        left.is_none_or(|left| started.elapsed().as_secs_f64() < QUICK * left.as_secs_f64())
+    }
+
     /// Finds the front, starting from designs that are known already.
     pub fn run(&self, known: &[Objectives]) -> ExactOutcome {
         self.run_of(self.problem(&|_| true), known)
@@ -200,7 +208,9 @@ impl<'p> Exact<'p> {
                 }
             }
             let passes = if is_large && known.is_empty() { &SLACKS[..] } else { &[0.0] };
-            for &slack in passes {
+            let mut next = 0;
+            while let Some(&slack) = passes.get(next) {
+                let started = Instant::now();
                 lock(&shared.open).clear();
                 match by_regions {
                     true => search(slack).run_by_regions(),
@@ -211,6 +221,8 @@ impl<'p> Exact<'p> {
                     break;
                 }
                 proven = Some(slack);
+                let over = usize::from(next + 2 < passes.len() && self.was_quick(started));
+                next += 1 + over;
             }
         }
         let mut front = shared.kept.into_inner().unwrap_or_else(PoisonError::into_inner);

@@ -15,23 +15,23 @@
 //! member is found part by part. If it is more than the corner allows, no member is below the corner. Weights
 //! are the best for the members found so far (a matrix game), shapes those of an arm in between them.
 
-use super::bound::{Ceiling, Cell, STARTS, Work, interval};
+use super::bound::{Ceiling, Cell, STARTS, Work};
 use super::corners::Corner;
 use super::game::{Game, solve};
 use super::parting::Parting;
 use super::parts::{CurveBox, DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
-use super::pose::{PosedPiece, RESISTED, degree_factor};
 use super::price::{Gear, JointPrice, Price, TubeNumbers, cheapest};
 use super::problem::{Part, Problem};
 use super::shape::{Ideal, Shape, dot, products};
+use super::tip::Tip;
 
 /// By how much a member must be beaten in every objective, at least: more than what counts as equal.
 pub(super) const BEATEN: f64 = 2e-7;
 /// Rounding of sums whose terms are about one.
 pub(super) const ROUNDING: f64 = 1e-9;
 /// Weightings of several rows, and new sets of shapes, at the most for one box.
-const MOST_PLANES: usize = 11;
-const MOST_SHAPES: usize = 2;
+const MOST_PLANES: usize = 24;
+const MOST_SHAPES: usize = 3;
 /// Shares of a mixture below this are rounding.
 const SHARE: f64 = 1e-9;
 /// Steps towards the mode of an arm in between.
@@ -65,18 +65,6 @@ pub(super) struct Rows<'a> {
     lambda: f64,
     modes: Vec<Mode>,
     first_mode: usize,
-}
-
-/// The way of the tip in a judged case, along its least deflection.
-pub(super) struct Tip {
-    pub case: usize,
-    /// Per newton of each piece's weight \[m/N\]: by tubes, and by gears that stay in their segment.
-    per_n: Vec<f64>,
-    /// Per twist of each joint \[m/rad\]; and at which torque it twists, if its gear stays in its segment \[N m\].
-    joints: Vec<f64>,
-    torques_nm: Vec<Option<f64>>,
-    /// Per compliance of each tube.
-    tubes: Vec<[f64; STIFFNESSES]>,
 }
 
 /// A shape whose quotient bounds the modes of a judged case.
@@ -221,13 +209,14 @@ impl<'a> Rows<'a> {
         }
         for (judged, case) in problem.judged_cases().enumerate() {
             for row in &problem.poses[case].rows {
-                if work.curves[row.piece].is_none() {
-                    continue;
-                }
+                let Some(curve) = &work.curves[row.piece] else { continue };
                 let gear = match rows.tips[judged].torques_nm[row.piece] {
                     Some(torque_nm) => Gear::at(row, judged, torque_nm),
                     None => {
-                        let gear = Gear::free(row, judged, &work.weights[case], rows.scale.len());
+                        let [least_nm, most_nm] = work.torques[case][row.piece];
+                        let compliance = 1.0 / curve.steepest(least_nm, most_nm);
+                        let next = rows.scale.len();
+                        let gear = Gear::free(row, judged, &work.weights[case], next, compliance);
                         rows.push(gear.scale_nm(), -row.fixed);
                         rows.push(gear.scale_nm(), row.fixed);
                         gear
@@ -264,6 +253,19 @@ impl<'a> Rows<'a> {
         for (k, row) in others.into_iter().enumerate() {
             weights[row] = above.get(k).copied().unwrap_or(even);
         }
+        self.with_torques(weights)
+    }
+
+    /// Weights by which the twist of a gear grows with the torque that the weights make on it, as fast as any gear of
+    /// the box does at least (McCormick); without them it would be free to choose a torque.
+    fn with_torques(&self, mut weights: Vec<f64>) -> Vec<f64> {
+        for gear in &self.gears {
+            let Some(row) = gear.row else { continue };
+            let tip = 1 + gear.judged;
+            let per_twist = weights[tip] / self.scale[tip] * self.tips[gear.judged].joints[gear.piece];
+            let at = if per_twist > 0.0 { row + 1 } else { row };
+            weights[at] += per_twist.abs() * gear.least_compliance * self.scale[at];
+        }
         weights
     }
 
@@ -296,7 +298,7 @@ impl<'a> Rows<'a> {
         let single = |(row, _)| {
             let mut weights = vec![0.0; self.scale.len()];
             weights[row] = 1.0;
-            weights
+            self.with_torques(weights)
         };
         rows.map(single).collect()
     }
@@ -547,52 +549,5 @@ impl<'a> Rows<'a> {
     fn mode_value(&self, mode: &Mode, member: &Member) -> f64 {
         let moves = products(&mode.shape.kinetic, &member.inertia);
         self.lambda * moves - products(&mode.shape.strain, &member.stiffness[mode.judged])
-    }
-}
-
-impl Tip {
-    /// The way of the tip in a case along its least deflection, and what no part changes \[m\].
-    fn new(problem: &Problem, judged: usize, case: usize, work: &Work) -> (Self, f64) {
-        let pose = &problem.poses[case];
-        let pieces = problem.parts.len();
-        let mut tip = Self {
-            case,
-            per_n: vec![0.0; pieces],
-            joints: vec![0.0; pieces],
-            torques_nm: vec![None; pieces],
-            tubes: vec![[0.0; STIFFNESSES]; pieces],
-        };
-        let mut fixed_m = 0.0;
-        for row in &pose.rows {
-            let way = work.tip_ways[judged].dot(&row.tip_m);
-            let force = interval(row.fixed, &row.per_n, &work.weights[case]);
-            let at = if way > 0.0 { force[0] } else { force[1] };
-            let least = if let PosedPiece::Tube(tube) = &pose.pieces[row.piece] {
-                let resisted = RESISTED[row.coordinate].0;
-                let stiffness = work.stiff[row.piece][resisted];
-                if stiffness == 0.0 {
-                    continue;
-                }
-                let factor = degree_factor(row.coordinate) / tube.length_m;
-                tip.tubes[row.piece][resisted] += way * at * factor;
-                way * factor / stiffness
-            } else {
-                tip.joints[row.piece] = way;
-                let [least_nm, most_nm] = work.torques[case][row.piece];
-                let Some(curve) = &work.curves[row.piece] else { continue };
-                let breaks = work.breaks[row.piece];
-                let known = matches!(problem.parts[row.piece], Part::Drives { .. } | Part::Given { .. });
-                if !known || !curve.keeps_its_segment(least_nm, most_nm, breaks) {
-                    continue;
-                }
-                tip.torques_nm[row.piece] = Some(at);
-                way / curve.steepest(least_nm, most_nm)
-            };
-            fixed_m += least * (row.fixed - at);
-            for (total, c) in tip.per_n.iter_mut().zip(&row.per_n) {
-                *total += least * c;
-            }
-        }
-        (tip, fixed_m)
     }
 }

@@ -1,0 +1,65 @@
+//! The way of the tip of a box's members, as a sum over their parts.
+
+use super::bound::{Work, interval};
+use super::parts::STIFFNESSES;
+use super::pose::{PosedPiece, RESISTED, degree_factor};
+use super::problem::{Part, Problem};
+
+/// The way of the tip in a judged case, along its least deflection.
+pub(super) struct Tip {
+    pub case: usize,
+    /// Per newton of each piece's weight \[m/N\]: by tubes, and by gears that stay in their segment.
+    pub per_n: Vec<f64>,
+    /// Per twist of each joint \[m/rad\]; and at which torque it twists, if its gear stays in its segment \[N m\].
+    pub joints: Vec<f64>,
+    pub torques_nm: Vec<Option<f64>>,
+    /// Per compliance of each tube.
+    pub tubes: Vec<[f64; STIFFNESSES]>,
+}
+
+impl Tip {
+    /// The way of the tip in a case along its least deflection, and what no part changes \[m\].
+    pub fn new(problem: &Problem, judged: usize, case: usize, work: &Work) -> (Self, f64) {
+        let pose = &problem.poses[case];
+        let pieces = problem.parts.len();
+        let mut tip = Self {
+            case,
+            per_n: vec![0.0; pieces],
+            joints: vec![0.0; pieces],
+            torques_nm: vec![None; pieces],
+            tubes: vec![[0.0; STIFFNESSES]; pieces],
+        };
+        let mut fixed_m = 0.0;
+        for row in &pose.rows {
+            let way = work.tip_ways[judged].dot(&row.tip_m);
+            let force = interval(row.fixed, &row.per_n, &work.weights[case]);
+            let at = if way > 0.0 { force[0] } else { force[1] };
+            let least = if let PosedPiece::Tube(tube) = &pose.pieces[row.piece] {
+                let resisted = RESISTED[row.coordinate].0;
+                let stiffness = work.stiff[row.piece][resisted];
+                if stiffness == 0.0 {
+                    continue;
+                }
+                let factor = degree_factor(row.coordinate) / tube.length_m;
+                tip.tubes[row.piece][resisted] += way * at * factor;
+                way * factor / stiffness
+            } else {
+                tip.joints[row.piece] = way;
+                let [least_nm, most_nm] = work.torques[case][row.piece];
+                let Some(curve) = &work.curves[row.piece] else { continue };
+                let breaks = work.breaks[row.piece];
+                let known = matches!(problem.parts[row.piece], Part::Drives { .. } | Part::Given { .. });
+                if !known || !curve.keeps_its_segment(least_nm, most_nm, breaks) {
+                    continue;
+                }
+                tip.torques_nm[row.piece] = Some(at);
+                way / curve.steepest(least_nm, most_nm)
+            };
+            fixed_m += least * (row.fixed - at);
+            for (total, c) in tip.per_n.iter_mut().zip(&row.per_n) {
+                *total += least * c;
+            }
+        }
+        (tip, fixed_m)
+    }
+}
