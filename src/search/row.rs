@@ -147,11 +147,11 @@ impl DriveFigures {
         };
         self.first_in_modes = matches!(law.curve, Curve::WindupK1(_));
         self.mass_kg.push(mass_kg);
-        for segment in 0..3 {
-            self.compliance[segment].push(1.0 / stiffness[segment] + law.connection_rad_per_nm);
+        for (all, stiffness) in self.compliance.iter_mut().zip(stiffness) {
+            all.push(1.0 / stiffness + law.connection_rad_per_nm);
         }
-        for end in 0..2 {
-            self.ends_nm[end].push(ends_nm[end]);
+        for (all, end_nm) in self.ends_nm.iter_mut().zip(ends_nm) {
+            all.push(end_nm);
         }
     }
 }

@@ -75,9 +75,9 @@ impl DriveTable<'_> {
             }
             for step in steps {
                 let held = demands.held_by(&ladder.limits[step], open);
-                for lane in 0..LANES {
+                for (lane, fit) in fits.iter_mut().enumerate() {
                     if held >> lane & 1 == 1 {
-                        fits[lane] = ladder.indices[step] as usize;
+                        *fit = ladder.indices[step] as usize;
                     }
                 }
                 open &= !held;
