@@ -118,6 +118,7 @@ mod tests {
             gears in prop::collection::vec(any_gear(), 1..8),
             motors in prop::collection::vec(any_motor(), 1..8),
             motion in any_motion(),
+            paper: bool,
             torques in prop::array::uniform8(-900.0..900.0f64),
             inertias in prop::array::uniform8(0.0..60.0f64),
             wanted: u8,
@@ -125,6 +126,8 @@ mod tests {
         ) {
             let gears: Vec<_> = gears.into_iter().enumerate().map(|(i, g)| Gear { id: format!("G{i}"), ..g }).collect();
             let motors: Vec<_> = motors.into_iter().enumerate().map(|(i, m)| Motor { id: format!("M{i}"), ..m }).collect();
+            let reading = if paper { LinearReading::Paper } else { LinearReading::Exact };
+            let motion = motion.with_linear_reading(reading);
             let filter = DriveFilter::everything(GearMass::ComponentSet);
             let table = DriveTable::build("j", motion, &filter, &gears, &motors);
             let (fits, fitted) = in_lanes(Fits(&table, torques, inertias, wanted, step));
