@@ -76,6 +76,8 @@ pub(super) struct Work {
     pub(super) heavy: Vec<[f64; INERTIAS]>,
     /// Weight interval of each piece of the case at hand \[N\].
     pub(super) weights: Vec<Vec<[f64; 2]>>,
+    /// The force of each row of a judged case.
+    pub(super) forces: Vec<Vec<[f64; 2]>>,
     pub(super) curves: Vec<Option<CurveBox>>,
     /// Greatest stiffness of each piece by case: a gear's slope depends on its torque.
     pub(super) stiff_in: Vec<Vec<[f64; STIFFNESSES]>>,
@@ -111,7 +113,7 @@ impl<'c> Problem<'c> {
     pub fn with_inertias(mut self) -> Self {
         let mut work = Work::default();
         if self.fill(&mut self.root(), &mut work).is_some() {
-            self.least_tip_m(&mut work);
+            let _ = self.least_tip_m(&mut work);
             let of = |case: usize| {
                 let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
                 Inertia::new(&self.poses[case], &ideal)
@@ -142,7 +144,7 @@ impl<'c> Problem<'c> {
     /// First shapes: the box of everything, started vertically and sideways in each judged case.
     pub fn first_shapes(&self, work: &mut Work) -> Option<Vec<Shape>> {
         self.fill(&mut self.root(), work)?;
-        self.least_tip_m(work);
+        self.least_tip_m(work)?;
         let mut shapes = Vec::new();
         for case in self.judged_cases() {
             let first = shapes.len();
@@ -189,7 +191,7 @@ impl<'c> Problem<'c> {
         if limits.mass_max_kg.is_some_and(|max| mass_kg > max) {
             return None;
         }
-        let tip_m = self.least_tip_m(work) * (1.0 - ROUNDING);
+        let tip_m = self.least_tip_m(work)? * (1.0 - ROUNDING);
         if limits.tip_deflection_max_m.is_some_and(|max| tip_m > max) {
             return None;
         }
@@ -347,8 +349,8 @@ impl<'c> Problem<'c> {
             .collect()
     }
 
-    /// Least deflection of the tip in the worst judged case \[m\].
-    fn least_tip_m(&self, work: &mut Work) -> f64 {
+    /// Least deflection of the tip in the worst judged case \[m\]; `None` if no member has the forces that are held.
+    fn least_tip_m(&self, work: &mut Work) -> Option<f64> {
         let mut worst = 0.0f64;
         work.sagging = None;
         work.most_tip_m.clear();
@@ -357,8 +359,10 @@ impl<'c> Problem<'c> {
             work.stiff_in[case].clone_from(&work.stiff);
             let mut tip_m = [[0.0f64; 2]; 3];
             let mut most_m = 0.0;
-            for row in &pose.rows {
-                let force = interval(row.fixed, &row.per_n, &work.weights[case]);
+            let Work { forces, weights, .. } = work;
+            self.forces(case, weights, &mut forces[case])?;
+            for (at, row) in pose.rows.iter().enumerate() {
+                let force = work.forces[case][at];
                 let moved = match &work.curves[row.piece] {
                     Some(curve) => {
                         let size = force[0].abs().max(force[1].abs());
@@ -387,7 +391,7 @@ impl<'c> Problem<'c> {
                 work.sagging = nearest.try_normalize(0.0).map(|d| (case, d));
             }
         }
-        worst
+        Some(worst)
     }
 
     pub(super) fn judged_cases(&self) -> impl Iterator<Item = usize> + '_ {
@@ -510,6 +514,7 @@ impl Work {
         self.weights.resize_with(cases, Vec::new);
         self.stiff_in.resize_with(cases, Vec::new);
         self.torques.resize_with(cases, Vec::new);
+        self.forces.resize_with(cases, Vec::new);
         for case in 0..cases {
             zero(&mut self.weights[case], pieces, [0.0; 2]);
             zero(&mut self.torques[case], pieces, [0.0; 2]);

@@ -5,7 +5,7 @@
 //! of stiffest and softest. The halves themselves are a worse guide: a box has to be halved several times
 //! before the ceiling moves at all.
 
-use super::bound::{STARTS, Work, interval, stretch, twist};
+use super::bound::{STARTS, Work, stretch, twist};
 use super::parts::{INERTIAS, STIFFNESSES};
 use super::pose::RESISTED;
 use super::problem::{Part, Problem};
@@ -86,8 +86,7 @@ impl Problem<'_> {
         let Some((case, direction)) = work.sagging else { return };
         let pose = &self.poses[case];
         let mut total = 0.0;
-        for row in &pose.rows {
-            let force = interval(row.fixed, &row.per_n, &work.weights[case]);
+        for (row, &force) in pose.rows.iter().zip(&work.forces[case]) {
             let (moved, softer) = match &work.curves[row.piece] {
                 Some(curve) => {
                     (twist(curve, force), middling(curve.soft.k2_nm_per_rad, curve.stiff.k2_nm_per_rad))

@@ -1,9 +1,14 @@
 //! Weights under which the least of several rows is as large as can be: a matrix game.
 
+use std::ops::Range;
+
 /// Pivots at the most.
 const MOST_PIVOTS: usize = 200;
 /// Numbers smaller than this are rounding.
 const NOTHING: f64 = 1e-11;
+
+/// By how much sums that are balanced may be off.
+const BALANCED: f64 = 1e-6;
 
 /// The solution of a game.
 pub(super) struct Game {
@@ -19,23 +24,28 @@ pub(super) struct Game {
 ///
 /// By the simplex method on the other player's program, `max Σ z : Σ_j (a_ji + c) z_j <= 1`, `z >= 0`, whose
 /// dual values are the weights.
-pub(super) fn solve(rows: &[f64], width: usize) -> Game {
+///
+/// Balanced columns are no stakes of the game but conditions on the mixture: `Σ_j a_ji z_j <= 0`. A pair of opposite ones
+/// would otherwise be a way to play for nothing.
+pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game {
     let count = rows.len() / width;
     let least = rows.iter().copied().fold(f64::INFINITY, f64::min);
     let most = rows.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     // all entries at least one times the spread: the value of the game is then positive
     let spread = (most - least).max(f64::MIN_POSITIVE);
-    let entry = |a: f64| (a - least) / spread + 1.0;
+    let entry =
+        |i: usize, a: f64| if balanced.contains(&i) { a / spread } else { (a - least) / spread + 1.0 };
     // a line a column of the game (its slack is basic), then that of the objective; z, slacks, right side
     let line = count + width + 1;
     let mut table = vec![0.0; (width + 1) * line];
     let mut basic: Vec<usize> = (count..count + width).collect();
     for i in 0..width {
         for j in 0..count {
-            table[i * line + j] = entry(rows[j * width + i]);
+            table[i * line + j] = entry(i, rows[j * width + i]);
         }
         table[i * line + count + i] = 1.0;
-        table[i * line + line - 1] = 1.0;
+        table[i * line + line - 1] =
+            if balanced.contains(&i) { BALANCED * (1.0 + i as f64 / width as f64) } else { 1.0 };
     }
     table[width * line..width * line + count].fill(-1.0);
     for _ in 0..MOST_PIVOTS {
@@ -92,11 +102,27 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        /// The mixture keeps to the balanced pair, and what it keeps the others below is what the weights guarantee: no
+        /// weights are better then, and none are played for nothing.
+        #[test]
+        fn a_balanced_pair_is_a_condition_and_no_stake(rows in prop::collection::vec(-1.0f64..1.0, 3 * 6)) {
+            let rows: Vec<f64> = rows.chunks(3).flat_map(|r| [r[0], r[1], r[2], -r[2]]).collect();
+            let of_both_signs = [-0.1, 0.1].map(|sign| rows.chunks(4).any(|row| row[2] * sign > 0.01));
+            prop_assume!(of_both_signs == [true; 2]);
+            let Game { weights, mix, value } = solve(&rows, 4, 2..4);
+            let mixed = |i: usize| rows.chunks(4).zip(&mix).map(|(row, z)| row[i] * z).sum::<f64>();
+            prop_assert!(weights.iter().chain(&mix).all(|x| *x >= 0.0));
+            prop_assert!(weights[0] + weights[1] > 1e-3);
+            prop_assert!(mixed(2).abs() < 1e-4, "{}", mixed(2));
+            let stakes = value / (weights[0] + weights[1]);
+            prop_assert!((mixed(0).max(mixed(1)) - stakes).abs() < 1e-3, "{} {stakes}", mixed(0).max(mixed(1)));
+        }
+
         /// The value lies between what the weights guarantee and what some mixture of rows keeps every column
         /// below; fictitious play finds such mixtures.
         #[test]
         fn no_other_weights_are_better(rows in prop::collection::vec(-1.0f64..1.0, 4 * 6)) {
-            let Game { weights, mix, value } = solve(&rows, 4);
+            let Game { weights, mix, value } = solve(&rows, 4, 0..0);
             let mixed = |i: usize| rows.chunks(4).zip(&mix).map(|(row, z)| row[i] * z).sum::<f64>();
             prop_assert!((0..4).all(|i| mixed(i) <= value + 1e-9));
             prop_assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-9);

@@ -17,6 +17,7 @@ mod evolve;
 mod game;
 mod gap;
 mod grid;
+mod held;
 mod narrow;
 mod near;
 mod parting;

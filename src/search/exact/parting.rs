@@ -1,7 +1,9 @@
-//! Where to part the options of a level when a box may still have a member below a corner.
+//! Where to part the options of a level, or a force, when a box may still have a member below a corner.
 //!
 //! What stands for that member in the sums is a mixture of members, and its products of force and compliance are
-//! bounded from below. Parting helps where the mixed members differ, and where the products leave out most.
+//! bounded from below. Parting helps where the mixed members differ, and where the products leave out most. A product is
+//! left out because a force is not known, and that is due to all weights outboard: so torques are parted as well as
+//! options. And a gear that stands for several states of itself, one soft and one stiff, is told apart by its torque.
 
 use super::parts::{STIFFNESSES, inertia};
 use super::pose::Row;
@@ -14,15 +16,27 @@ const DRIVE: [(usize, f64); 2] = [(3, 1.0), (0, 4.0)];
 const TUBE: [(usize, f64); 2] = [(0, 2.0), (1, 1.0)];
 /// Gains smaller than this are rounding.
 const NOTHING: f64 = 1e-9;
+/// A force is known well enough if its bounds differ by no more than this part of it.
+const KNOWN: f64 = 0.1;
+/// Parts of an interval that are the same.
+const SAME: f64 = 1e-3;
 
-/// A level's options parted along a coordinate.
+/// What is parted, and where.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Parting {
     /// What it should gain, in parts of a row.
     gain: f64,
-    level: usize,
-    axis: usize,
+    by: By,
     at: f64,
+}
+
+/// What two halves differ in.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum By {
+    /// A level's options, along a coordinate.
+    Options { level: usize, axis: usize },
+    /// A force: that of a row of a case.
+    Force { case: usize, row: usize },
 }
 
 /// Members that together may be below a corner, and their shares.
@@ -50,13 +64,15 @@ impl Rows<'_> {
             let spreads = [0, 1, 2, 3, 4].map(|axis| spread(mixed, |member| key(member)[axis]));
             let axis = (0..spreads.len()).max_by(|&a, &b| spreads[a].total_cmp(&spreads[b])).unwrap_or(0);
             if spreads[axis] > NOTHING {
-                partings.push(Parting { gain, level, axis, at: mean(mixed, |member| key(member)[axis]) });
+                let at = mean(mixed, |member| key(member)[axis]);
+                partings.push(Parting { gain, by: By::Options { level, axis }, at });
             }
             for ((axis, best), gain) in self.best_of(piece).into_iter().zip(left_out[piece]) {
                 let at = 0.5 * (best + mean(mixed, |member| key(member)[axis]));
-                partings.push(Parting { gain, level, axis, at });
+                partings.push(Parting { gain, by: By::Options { level, axis }, at });
             }
         }
+        partings.extend(self.by_torque(mixed, weights));
         partings.retain(|parting| parting.gain > NOTHING);
         partings.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         partings
@@ -91,6 +107,43 @@ impl Rows<'_> {
             }
         }
         left_out
+    }
+
+    /// Partings by the torque on a joint, where it is far from known: for what the products of its own twist leave out,
+    /// and those of the tubes between it and the next joint outboard; and where its gear is mixed of states apart.
+    fn by_torque(&self, mixed: &Mixed, weights: &[f64]) -> Vec<Parting> {
+        let mut partings = Vec::new();
+        for (judged, tip) in self.tips.iter().enumerate() {
+            let (case, weight) = (tip.case, weights[1 + judged] / self.scale[1 + judged]);
+            let mut left_out = 0.0;
+            for (at, row) in self.problem.poses[case].rows.iter().enumerate() {
+                let way = self.work.tip_ways[judged].dot(&row.tip_m);
+                let [low, high] = self.work.forces[case][at];
+                let least = if way > 0.0 { low } else { high };
+                let made = |member: &Member| -> f64 {
+                    row.per_n.iter().zip(&member.weights_n[judged]).map(|(c, w)| c * w).sum()
+                };
+                let acting = row.fixed + mean(mixed, made);
+                left_out += (weight * way * (acting - least) * self.softer(mixed, judged, row)).abs();
+                if self.work.curves[row.piece].is_none() {
+                    continue;
+                }
+                let apart = self.free_gear(judged, row.piece).map_or(0.0, |next| {
+                    (weights[next] + weights[next + 1]) * spread(mixed, |member| member.values[next])
+                });
+                let gain = left_out + apart;
+                let at_nm = if apart > left_out { acting } else { 0.5 * (least + acting) };
+                let margin = SAME * (high - low);
+                if high - low > KNOWN * low.abs().max(high.abs())
+                    && low + margin < at_nm
+                    && at_nm < high - margin
+                {
+                    partings.push(Parting { gain, by: By::Force { case, row: at }, at: at_nm });
+                }
+                left_out = 0.0;
+            }
+        }
+        partings
     }
 
     /// By how much the weight of each piece makes a force greater than the least.
@@ -131,22 +184,43 @@ impl Problem<'_> {
         }
     }
 
-    /// Two lists of nodes of the whole trees, one on each side of a parting; `None` if all are on one side.
-    pub fn parted(&self, kept: &[Vec<u32>], parting: &Parting) -> Option<[Vec<Vec<u32>>; 2]> {
-        let part = &self.parts[self.level_pieces[parting.level]];
+    /// The two halves of what is kept; `None` if all is on one side.
+    pub fn parted(&self, kept: &[Vec<u32>], parting: &Parting) -> Option<[Self; 2]> {
+        match parting.by {
+            By::Options { level, axis } => {
+                let [low, high] = self.parted_options(kept, level, axis, parting.at)?;
+                Some([self.narrowed_to(&low)?, self.narrowed_to(&high)?])
+            }
+            By::Force { case, row } => {
+                let narrower = self.narrowed_to(kept)?;
+                let halves = [[f64::NEG_INFINITY, parting.at], [parting.at, f64::INFINITY]];
+                Some(halves.map(|half| narrower.holding(case, row, half)))
+            }
+        }
+    }
+
+    /// Two lists of nodes of the whole trees, one on each side of a coordinate of a level's options.
+    fn parted_options(
+        &self,
+        kept: &[Vec<u32>],
+        level: usize,
+        axis: usize,
+        at: f64,
+    ) -> Option<[Vec<Vec<u32>>; 2]> {
+        let part = &self.parts[self.level_pieces[level]];
         let is_low = |node: &&u32| {
             let key = match part {
                 Part::Drives { tree, .. } => tree.whole_node(**node).key,
                 Part::Links { tree, .. } => tree.whole_node(**node).key,
                 _ => Key::default(),
             };
-            key[parting.axis] <= parting.at
+            key[axis] <= at
         };
-        let (low, high): (Vec<u32>, Vec<u32>) = kept[parting.level].iter().partition(is_low);
+        let (low, high): (Vec<u32>, Vec<u32>) = kept[level].iter().partition(is_low);
         (!low.is_empty() && !high.is_empty()).then(|| {
             [low, high].map(|nodes| {
                 let mut kept = kept.to_vec();
-                kept[parting.level] = nodes;
+                kept[level] = nodes;
                 kept
             })
         })

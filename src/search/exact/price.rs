@@ -1,24 +1,22 @@
 //! What a part costs when every number of it has a price, and the cheapest part below a node of a tree.
 
-use super::bound::interval;
 use super::parts::{CurveBox, INERTIAS, LinkBox, STIFFNESSES, inertia, segments};
-use super::pose::Row;
 use super::tree::{Bounds, Tree};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Boxes of parts to look into for the cheapest.
-const MOST_LOOKS: usize = 24;
+/// Boxes of parts to look into for the cheapest: with too few its price is that of a box, and the last corners are
+/// never refuted.
+const MOST_LOOKS: usize = 200;
 /// Rounding of a torque.
 const ROUNDING: f64 = 1e-12;
 
 /// A gear in a judged case.
-pub(super) struct Gear<'a> {
+pub(super) struct Gear {
     pub piece: usize,
     pub judged: usize,
-    /// Torques between which it is \[N m\], and what each weight adds \[m\].
+    /// Torques between which it is \[N m\].
     pub torques_nm: [f64; 2],
-    pub per_n: &'a [f64],
     /// The row that says that its torque is not more than what the weights make of it, followed by one that
     /// says that it is not less. None where its slope is the same under all the torques: it is then taken at the
     /// torque `torques_nm[0]`, and twists from there by the weights.
@@ -27,31 +25,24 @@ pub(super) struct Gear<'a> {
     pub least_compliance: f64,
 }
 
-impl<'a> Gear<'a> {
+impl Gear {
     /// The gear of a joint whose torque may press it into another segment; its rows are the next.
     pub fn free(
-        row: &'a Row,
+        piece: usize,
         judged: usize,
-        weights: &[[f64; 2]],
+        [low, high]: [f64; 2],
         next: usize,
         least_compliance: f64,
     ) -> Self {
-        let [low, high] = interval(row.fixed, &row.per_n, weights);
         let room = ROUNDING * low.abs().max(high.abs());
         let torques_nm = [low - room, high + room];
-        Self { piece: row.piece, judged, torques_nm, per_n: &row.per_n, row: Some(next), least_compliance }
+        Self { piece, judged, torques_nm, row: Some(next), least_compliance }
     }
 
     /// The gear of a joint that is in one segment.
-    pub fn at(row: &'a Row, judged: usize, torque_nm: f64) -> Self {
+    pub fn at(piece: usize, judged: usize, torque_nm: f64) -> Self {
         let torques_nm = [torque_nm; 2];
-        Self { piece: row.piece, judged, torques_nm, per_n: &row.per_n, row: None, least_compliance: 0.0 }
-    }
-
-    /// What its rows are measured in \[N m\]: not so small that rounding counts.
-    pub fn scale_nm(&self) -> f64 {
-        let [low, high] = self.torques_nm;
-        (high - low).max(1e-3 * low.abs().max(high.abs()))
+        Self { piece, judged, torques_nm, row: None, least_compliance: 0.0 }
     }
 }
 

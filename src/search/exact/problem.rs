@@ -2,6 +2,7 @@
 //! case.
 
 use super::check::Inertia;
+use super::held::Held;
 use super::parts::{Breaks, CurveBox, DriveBox, LinkBox, Rays};
 use super::pose::Pose;
 use super::tree::{Bounds, Tree};
@@ -30,6 +31,8 @@ pub(super) struct Problem<'c> {
     pub peak_factor: f64,
     /// Whether a lighter arm that is no softer is no worse.
     pub lighter_is_better: bool,
+    /// Forces between bounds that a member must keep.
+    pub held: Arc<[Held]>,
 }
 
 /// What may stand at a place of the chain.
@@ -105,6 +108,7 @@ impl<'c> Problem<'c> {
             peak_factor: 1.0
                 + space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE),
             lighter_is_better: false,
+            held: Arc::default(),
         };
         for (place, layer) in space.layers() {
             let part = match layer {

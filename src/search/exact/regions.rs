@@ -4,7 +4,7 @@
 //! A region is all that is below a [`Corner`]. Far fewer options reach into it than there are: a weighting of what a
 //! corner allows excludes every option that costs more than the corner can afford ([`narrow`](super::narrow)), and
 //! with fewer options the bounds are sharper, so more can be excluded. Whole groups of corners are refuted so, under the
-//! corner that bounds them; those that are not are taken apart, then their options parted
+//! corner that bounds them; those that are not are taken apart, then their options or a torque parted
 //! ([`parting`](super::parting)) until few designs are left, which are searched box by box.
 
 use super::bound::{Ceiling, Cell, Verdict, Work};
@@ -124,9 +124,10 @@ impl<'p> Search<'_, 'p> {
         }
     }
 
-    /// Searches the designs left in a region box by box.
+    /// Searches the designs left in a region box by box, whatever the forces: that is quick where designs are few.
     fn search_boxes(&self, zone: Zone<'p>, corner: Corner, mut work: Work) {
-        let search = self.of_part(&zone.problem, Some(corner));
+        let problem = zone.problem.holding_nothing();
+        let search = self.of_part(&problem, Some(corner));
         let (cell, shapes) = (zone.cell.clone(), Arc::clone(&zone.shapes));
         let mut stack = vec![Opened { cell, shapes, ceiling: Ceiling::OPEN }];
         while let Some(next) = stack.pop() {
@@ -166,8 +167,12 @@ impl Zone<'_> {
     /// left.
     fn parted(&self, left: &Left, work: &mut Work) -> Option<[Self; 2]> {
         let parted = left.partings.iter().find_map(|parting| self.problem.parted(&left.kept, parting));
-        if let Some([low, high]) = parted {
-            return Some([self.narrowed_to(&low)?, self.narrowed_to(&high)?]);
+        if let Some(halves) = parted {
+            return Some(halves.map(|half| Self {
+                cell: half.root(),
+                problem: Arc::new(half),
+                ..self.clone()
+            }));
         }
         let level = self.problem.widest_level(&self.cell, &self.shapes, work)?;
         let halves = self.problem.halves(&self.cell, level)?;
@@ -176,10 +181,5 @@ impl Zone<'_> {
             zone.cell[level] = half;
             zone
         }))
-    }
-
-    fn narrowed_to(&self, kept: &[Vec<u32>]) -> Option<Self> {
-        let problem = Arc::new(self.problem.narrowed_to(kept)?);
-        Some(Self { cell: problem.root(), problem, ..self.clone() })
     }
 }

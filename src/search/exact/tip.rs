@@ -1,6 +1,6 @@
 //! The way of the tip of a box's members, as a sum over their parts.
 
-use super::bound::{Work, interval};
+use super::bound::Work;
 use super::parts::STIFFNESSES;
 use super::pose::{PosedPiece, RESISTED, degree_factor};
 use super::problem::{Part, Problem};
@@ -30,9 +30,8 @@ impl Tip {
             tubes: vec![[0.0; STIFFNESSES]; pieces],
         };
         let mut fixed_m = 0.0;
-        for row in &pose.rows {
+        for (row, &force) in pose.rows.iter().zip(&work.forces[case]) {
             let way = work.tip_ways[judged].dot(&row.tip_m);
-            let force = interval(row.fixed, &row.per_n, &work.weights[case]);
             let at = if way > 0.0 { force[0] } else { force[1] };
             let least = if let PosedPiece::Tube(tube) = &pose.pieces[row.piece] {
                 let resisted = RESISTED[row.coordinate].0;

@@ -20,6 +20,7 @@ use super::corners::Corner;
 use super::game::{Game, solve};
 use super::parting::Parting;
 use super::parts::{CurveBox, DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::pose::Row;
 use super::price::{Gear, JointPrice, Price, TubeNumbers, cheapest};
 use super::problem::{Part, Problem};
 use super::shape::{Ideal, Shape, dot, products};
@@ -32,6 +33,10 @@ pub(super) const ROUNDING: f64 = 1e-9;
 /// Weightings of several rows, and new sets of shapes, at the most for one box.
 const MOST_PLANES: usize = 24;
 const MOST_SHAPES: usize = 3;
+/// Weightings once no more than the options may be narrowed.
+const TO_NARROW: usize = 8;
+/// The best weighting found is as good as any if the game promises no more than this beyond it.
+const SETTLED: f64 = 1e-4;
 /// Shares of a mixture below this are rounding.
 const SHARE: f64 = 1e-9;
 /// Steps towards the mode of an arm in between.
@@ -60,11 +65,19 @@ pub(super) struct Rows<'a> {
     pub scale: Vec<f64>,
     fixed: Vec<f64>,
     pub tips: Vec<Tip>,
-    gears: Vec<Gear<'a>>,
+    gears: Vec<Gear>,
+    forces: Vec<Force<'a>>,
     /// Square of the frequency at which the modes are taken \[1/s²\].
     lambda: f64,
     modes: Vec<Mode>,
     first_mode: usize,
+}
+
+/// A force that weights make in a judged case: less of it in a row, more of it in the next.
+struct Force<'a> {
+    judged: usize,
+    per_n: &'a [f64],
+    row: usize,
 }
 
 /// A shape whose quotient bounds the modes of a judged case.
@@ -81,7 +94,7 @@ pub(super) struct Member {
     /// Its node of each level.
     pub cell: Cell,
     /// Every row of it, and what each piece adds to those before the modes.
-    values: Vec<f64>,
+    pub values: Vec<f64>,
     adds: Vec<Vec<f64>>,
     /// Inertia of each piece; its weight \[N\] and its stiffness in each judged case.
     inertia: Vec<[f64; INERTIAS]>,
@@ -124,29 +137,31 @@ impl Problem<'_> {
         let mut starts = rows.singles(corner);
         let most = starts.len() + MOST_PLANES;
         starts.push(rows.inherited(&trade.weights));
-        let mut new_shapes = 0;
+        let (mut new_shapes, mut to_narrow, mut nearest) = (0, 0, f64::NEG_INFINITY);
         let game = loop {
             let weights = match starts.pop() {
                 Some(weights) => weights,
                 None => {
                     let game = rows.game(&members, corner);
-                    if game.value <= ROUNDING {
+                    if game.value <= ROUNDING && new_shapes < MOST_SHAPES {
                         new_shapes += 1;
-                        if new_shapes > MOST_SHAPES || !rows.separate(&mut members, &game.mix, corner) {
-                            break game;
+                        if rows.separate(&mut members, &game.mix, corner) {
+                            continue;
                         }
-                        continue;
                     }
-                    if planes.len() >= most {
+                    to_narrow += usize::from(game.value <= ROUNDING);
+                    if planes.len() >= most || to_narrow > TO_NARROW || game.value <= nearest + SETTLED {
                         break game;
                     }
                     game.weights
                 }
             };
             let (plane, member) = rows.least(cell, weights);
-            if plane.least > rows.weighted(&plane.weights, corner) + ROUNDING {
+            let above = plane.least - rows.weighted(&plane.weights, corner);
+            if above > ROUNDING {
                 return None;
             }
+            nearest = nearest.max(above);
             planes.push(plane);
             members.push(member);
         };
@@ -196,6 +211,7 @@ impl<'a> Rows<'a> {
             fixed: vec![0.0],
             tips: Vec::new(),
             gears: Vec::new(),
+            forces: Vec::new(),
             lambda: (hz * std::f64::consts::TAU).powi(2),
             modes: Vec::new(),
             first_mode: 0,
@@ -208,21 +224,27 @@ impl<'a> Rows<'a> {
             rows.push(scale, fixed_m);
         }
         for (judged, case) in problem.judged_cases().enumerate() {
-            for row in &problem.poses[case].rows {
+            for (at, row) in problem.poses[case].rows.iter().enumerate() {
                 let Some(curve) = &work.curves[row.piece] else { continue };
                 let gear = match rows.tips[judged].torques_nm[row.piece] {
-                    Some(torque_nm) => Gear::at(row, judged, torque_nm),
+                    Some(torque_nm) => Gear::at(row.piece, judged, torque_nm),
                     None => {
                         let [least_nm, most_nm] = work.torques[case][row.piece];
                         let compliance = 1.0 / curve.steepest(least_nm, most_nm);
-                        let next = rows.scale.len();
-                        let gear = Gear::free(row, judged, &work.weights[case], next, compliance);
-                        rows.push(gear.scale_nm(), -row.fixed);
-                        rows.push(gear.scale_nm(), row.fixed);
-                        gear
+                        let torques_nm = work.forces[case][at];
+                        let next = rows.push_force(judged, row, torques_nm, [0.0; 2]);
+                        Gear::free(row.piece, judged, torques_nm, next, compliance)
                     }
                 };
                 rows.gears.push(gear);
+            }
+            for held in problem.held.iter().filter(|held| held.case == case) {
+                let row = &problem.poses[case].rows[held.row];
+                let is_free = |gear: &Gear| gear.piece == row.piece && gear.row.is_some();
+                if !rows.gears.iter().any(is_free) {
+                    let between = work.forces[case][held.row];
+                    rows.push_force(judged, row, between, between);
+                }
             }
         }
         rows.first_mode = rows.scale.len();
@@ -232,9 +254,25 @@ impl<'a> Rows<'a> {
         rows
     }
 
+    /// The first of the rows of a gear that may leave its segment.
+    pub fn free_gear(&self, judged: usize, piece: usize) -> Option<usize> {
+        self.gears.iter().find(|gear| gear.judged == judged && gear.piece == piece)?.row
+    }
+
     fn push(&mut self, scale: f64, fixed: f64) {
         self.scale.push(scale);
         self.fixed.push(fixed / scale);
+    }
+
+    /// Adds the rows of a force: the least it may be less what the weights make, and that less the most.
+    fn push_force(&mut self, judged: usize, row: &'a Row, [low, high]: [f64; 2], between: [f64; 2]) -> usize {
+        let next = self.scale.len();
+        // in proportion to the other rows, however close the bounds are
+        let scale = (high - low).max(0.1 * low.abs().max(high.abs())).max(f64::MIN_POSITIVE);
+        self.push(scale, between[0] - row.fixed);
+        self.push(scale, row.fixed - between[1]);
+        self.forces.push(Force { judged, per_n: &row.per_n, row: next });
+        next
     }
 
     fn push_mode(&mut self, judged: usize, start: usize, shape: Shape) {
@@ -317,7 +355,9 @@ impl<'a> Rows<'a> {
         let above = |member: &Member| -> Vec<f64> {
             member.values.iter().zip(&allowed).map(|(v, a)| (v - a).max(NO_SAY)).collect()
         };
-        solve(&members.iter().flat_map(above).collect::<Vec<f64>>(), allowed.len())
+        // what a force is does not count among what is to be kept low
+        let balanced = 1 + self.tips.len()..self.first_mode;
+        solve(&members.iter().flat_map(above).collect::<Vec<f64>>(), allowed.len(), balanced)
     }
 
     /// Adds the modes of the arm in between some members, where they lie below a corner's; whether any does.
@@ -477,10 +517,10 @@ impl<'a> Rows<'a> {
     fn add_weight(&self, piece: usize, judged: usize, weight_n: f64, member: &mut Member) {
         member.values[1 + judged] += weight_n * self.tips[judged].per_n[piece];
         member.weights_n[judged][piece] = weight_n;
-        for gear in self.gears.iter().filter(|gear| gear.judged == judged) {
-            let (Some(row), Some(per_n)) = (gear.row, gear.per_n.get(piece)) else { continue };
-            member.values[row] -= weight_n * per_n;
-            member.values[row + 1] += weight_n * per_n;
+        for force in self.forces.iter().filter(|force| force.judged == judged) {
+            let Some(per_n) = force.per_n.get(piece) else { continue };
+            member.values[force.row] -= weight_n * per_n;
+            member.values[force.row + 1] += weight_n * per_n;
         }
     }
 
@@ -493,9 +533,8 @@ impl<'a> Rows<'a> {
         let g = self.problem.space.gravity_m_s2 * length_m;
         for (judged, tip) in self.tips.iter().enumerate() {
             let mut per_n = weight(1 + judged) * tip.per_n[piece];
-            for gear in self.gears.iter().filter(|gear| gear.judged == judged) {
-                let Some(row) = gear.row else { continue };
-                per_n -= gear.per_n.get(piece).map_or(0.0, |c| c * (weight(row) - weight(row + 1)));
+            for Force { row, per_n: by, .. } in self.forces.iter().filter(|force| force.judged == judged) {
+                per_n -= by.get(piece).map_or(0.0, |c| c * (weight(*row) - weight(row + 1)));
             }
             price.inertia[inertia::MASS] += g * per_n;
             price.inertia[inertia::OUTER_AREA] -= g * per_n * self.problem.poses[tip.case].water_kg_m3;
