@@ -25,10 +25,15 @@ use std::time::Instant;
 const TASKS: usize = 2048;
 /// Slacks of the passes over a large space: with slack a box is also cut if a design found comes that close
 /// to its ceiling, so a pass that comes to its end proves that nothing is missing by more.
-const SLACKS: [f64; 18] =
-    [1.0, 0.7, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.16, 0.12, 0.09, 0.075, 0.06, 0.05, 0.04, 0.03, 0.02, 0.0];
-/// A slack is passed over where the last pass took less than this part of the time that is left.
-const QUICK: f64 = 0.1;
+const SLACKS: [f64; 20] = [
+    1.0, 0.7, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.16, 0.12, 0.09, 0.075, 0.06, 0.05, 0.04, 0.035, 0.03, 0.025,
+    0.02, 0.0,
+];
+/// Slacks are passed over, at most so many at once, where a pass should take less than this part of the time left.
+const MOST_PASSED_OVER: usize = 4;
+const QUICK: f64 = 0.65;
+/// The time of a pass goes as this power of one over the slack, about.
+const GROWTH: f64 = 2.5;
 /// Designs above which a space is large.
 const LARGE: f64 = 1e9;
 /// Designs above which a space is searched region by region.
@@ -139,10 +144,18 @@ impl<'p> Exact<'p> {
         self.stop.load(Ordering::Relaxed) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
 
-    /// Whether a pass that began then and has just ended took little of the time that is left.
-    fn was_quick(&self, started: Instant) -> bool {
+    /// The pass after one that began then and has just ended: the one with the least slack that there should be time
+    /// for.
+    fn next_pass(&self, passes: &[f64], last: usize, started: Instant) -> usize {
         let left = self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
-        left.is_none_or(|left| started.elapsed().as_secs_f64() < QUICK * left.as_secs_f64())
+        let took_s = started.elapsed().as_secs_f64();
+        let is_quick = |pass: &usize| {
+            let should_take_s = took_s * (passes[last] / passes[*pass]).powf(GROWTH);
+            left.is_none_or(|left| should_take_s < QUICK * left.as_secs_f64())
+        };
+        // the last, without any, comes after all
+        let ahead = last + 2..(last + 2 + MOST_PASSED_OVER).min(passes.len().saturating_sub(1));
+        ahead.take_while(is_quick).last().unwrap_or(last + 1)
     }
 
     /// Finds the front, starting from designs that are known already.
@@ -221,8 +234,7 @@ impl<'p> Exact<'p> {
                     break;
                 }
                 proven = Some(slack);
-                let over = usize::from(next + 2 < passes.len() && self.was_quick(started));
-                next += 1 + over;
+                next = self.next_pass(passes, next, started);
             }
         }
         let mut front = shared.kept.into_inner().unwrap_or_else(PoisonError::into_inner);
