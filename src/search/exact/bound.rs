@@ -112,8 +112,8 @@ impl<'c> Problem<'c> {
     /// The inertia matrices of every judged case.
     pub fn with_inertias(mut self) -> Self {
         let mut work = Work::default();
-        if self.fill(&mut self.root(), &mut work).is_some() {
-            let _ = self.least_tip_m(&mut work);
+        let filled = self.fill(&mut self.root(), &mut work);
+        if filled.and_then(|()| self.least_tip_m(&mut work)).is_some() {
             let of = |case: usize| {
                 let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
                 Inertia::new(&self.poses[case], &ideal)

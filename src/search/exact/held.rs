@@ -28,7 +28,6 @@ impl Held {
     /// For any `a` the force is `a` times the held one, plus what is left of it: a sum over the weights. The bound is
     /// piecewise linear in `a` and best where a weight drops out of what is left.
     fn tighten(&self, of: &Row, by: &Row, weights: &[[f64; 2]], force: &mut [f64; 2]) {
-        let size = force[0].abs().max(force[1].abs());
         for (held, per_n) in by.per_n.iter().enumerate().filter(|(_, c)| **c != 0.0) {
             let a = of.per_n.get(held).copied().unwrap_or(0.0) / per_n;
             if a == 0.0 {
@@ -36,17 +35,20 @@ impl Held {
             }
             let [x, y] = self.between.map(|f| a * (f - by.fixed));
             let (mut low, mut high) = (of.fixed + x.min(y), of.fixed + x.max(y));
+            // where a coefficient is hardly more than rounding `a` is large, and what is left next to nothing beside it
+            let (mut low_size, mut high_size) =
+                (of.fixed.abs() + x.min(y).abs(), of.fixed.abs() + x.max(y).abs());
             for (k, w) in weights.iter().enumerate() {
                 let at = |per_n: &[f64]| per_n.get(k).copied().unwrap_or(0.0);
                 let left = at(&of.per_n) - a * at(&by.per_n);
                 let (x, y) = (left * w[0], left * w[1]);
                 low += x.min(y);
                 high += x.max(y);
+                low_size += x.min(y).abs();
+                high_size += x.max(y).abs();
             }
-            // a bound that is infinite says nothing
-            let room = |bound: f64| ROUNDING * bound.abs().max(size);
-            force[0] = force[0].max(low - room(low));
-            force[1] = force[1].min(high + room(high));
+            force[0] = force[0].max(low - ROUNDING * low_size);
+            force[1] = force[1].min(high + ROUNDING * high_size);
         }
     }
 }
@@ -141,6 +143,17 @@ mod tests {
             }
             // a step of the grid moves either force by no more than 3 coefficients of 3 at 3/40 each
             prop_assert!(least - bounds[0] < 1.5 && bounds[1] - most < 1.5, "{least} {most} {bounds:?}");
+        }
+
+        /// A weight whose lever arm is rounding does not make rounding a bound.
+        #[test]
+        fn a_coefficient_of_next_to_nothing_does_no_harm(at in 1.0f64..9.0, nearly in 1e-18f64..1e-16) {
+            let (of, by) = (row(&[0.0, 1.0, 1.0, 1.0]), row(&[0.0, 1.0, nearly, 1.0]));
+            let weights = [[at, at], [0.0, 1.0], [0.0, 0.0]];
+            let whole = interval(of.fixed, &of.per_n, &weights);
+            let mut bounds = whole;
+            Held { case: 0, row: 0, between: [0.9 * at, at] }.tighten(&of, &by, &weights, &mut bounds);
+            prop_assert!((bounds[0] - whole[0]).abs() < 1e-9 && (bounds[1] - whole[1]).abs() < 1e-9, "{bounds:?}");
         }
 
         #[test]
