@@ -100,9 +100,9 @@ impl BallastFlags {
 
     /// How many there are, and what that means, in a sentence.
     pub fn sentence(&self) -> String {
-        let designs = if self.len() == 1 { "design is" } else { "designs are" };
+        let are = if self.len() == 1 { "is" } else { "are" };
         format!(
-            "{} of the front's {} {designs} there only because ballast presses a gear into a stiffer segment: ballast.csv.",
+            "{} of the front's {} designs {are} there only because ballast presses a gear into a stiffer segment: ballast.csv.",
             self.len(),
             self.front
         )

@@ -18,6 +18,7 @@ mod game;
 mod gap;
 mod grid;
 mod held;
+mod left;
 mod narrow;
 mod near;
 mod parting;

@@ -218,6 +218,16 @@ impl<'c> Problem<'c> {
         Some(narrower)
     }
 
+    /// Designs in a box.
+    pub fn members(&self, cell: &[u32]) -> f64 {
+        let of = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
+            Part::Drives { tree, .. } => f64::from(tree.node(node).members),
+            Part::Links { tree, .. } => f64::from(tree.node(node).members),
+            _ => 1.0,
+        };
+        self.level_pieces.iter().zip(cell).map(of).product()
+    }
+
     /// Designs below nodes of each level's whole tree.
     pub fn designs_below(&self, kept: &[Vec<u32>]) -> f64 {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {

@@ -10,10 +10,11 @@
 use super::bound::{Ceiling, Cell, Verdict, Work};
 use super::corners::{Corner, Corners};
 use super::grid::thinned;
+use super::left::Left;
 use super::problem::Problem;
 use super::run::{Opened, Search, lock};
 use super::shape::Shape;
-use super::tradeoff::{BEATEN, Left, Trade};
+use super::tradeoff::{BEATEN, Trade};
 use crate::search::Objectives;
 use crate::search::design::number;
 use std::sync::Arc;

@@ -18,7 +18,6 @@
 use super::bound::{Ceiling, Cell, STARTS, Work};
 use super::corners::Corner;
 use super::game::{Game, solve};
-use super::parting::Parting;
 use super::parts::{CurveBox, DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
 use super::pose::Row;
 use super::price::{Gear, JointPrice, Price, TubeNumbers, cheapest};
@@ -30,15 +29,6 @@ use super::tip::Tip;
 pub(super) const BEATEN: f64 = 2e-7;
 /// Rounding of sums whose terms are about one.
 pub(super) const ROUNDING: f64 = 1e-9;
-/// Weightings of several rows, and new sets of shapes, at the most for one box.
-const MOST_PLANES: usize = 24;
-const MOST_SHAPES: usize = 3;
-/// Weightings once no more than the options may be narrowed.
-const TO_NARROW: usize = 8;
-/// The best weighting found is as good as any if the game promises no more than this beyond it.
-const SETTLED: f64 = 1e-4;
-/// Shares of a mixture below this are rounding.
-const SHARE: f64 = 1e-9;
 /// Steps towards the mode of an arm in between.
 const STEPS: usize = 3;
 
@@ -46,8 +36,8 @@ const STEPS: usize = 3;
 #[derive(Clone, Default)]
 pub(super) struct Trade {
     /// Of mass, ways of the tip and modes; torques have their own in every box.
-    weights: Vec<f64>,
-    shapes: Vec<Shape>,
+    pub weights: Vec<f64>,
+    pub shapes: Vec<Shape>,
 }
 
 impl Trade {
@@ -112,80 +102,7 @@ pub(super) struct Plane {
     pub levels: Vec<f64>,
 }
 
-/// What is left of a box below a corner.
-pub(super) struct Left {
-    /// The nodes of each level's whole tree that hold every option a member below the corner may have.
-    pub kept: Vec<Vec<u32>>,
-    /// Where to part them, the most promising first.
-    pub partings: Vec<Parting>,
-    /// Designs that may be below the corner.
-    pub likely: Vec<Cell>,
-}
-
 impl Problem<'_> {
-    /// What is left of a box, whose numbers are in `work`, below a corner; `None` if no member is.
-    pub fn left_below(
-        &self,
-        cell: &[u32],
-        ceiling: &Ceiling,
-        trade: &mut Trade,
-        work: &Work,
-        corner: &Corner,
-    ) -> Option<Left> {
-        let mut rows = Rows::new(self, ceiling, corner, &trade.shapes, work);
-        let (mut planes, mut members) = (Vec::<Plane>::new(), Vec::<Member>::new());
-        let mut starts = rows.singles(corner);
-        let most = starts.len() + MOST_PLANES;
-        starts.push(rows.inherited(&trade.weights));
-        let (mut new_shapes, mut to_narrow, mut nearest) = (0, 0, f64::NEG_INFINITY);
-        let game = loop {
-            let weights = match starts.pop() {
-                Some(weights) => weights,
-                None => {
-                    let game = rows.game(&members, corner);
-                    if game.value <= ROUNDING && new_shapes < MOST_SHAPES {
-                        new_shapes += 1;
-                        if rows.separate(&mut members, &game.mix, corner) {
-                            continue;
-                        }
-                    }
-                    to_narrow += usize::from(game.value <= ROUNDING);
-                    if planes.len() >= most || to_narrow > TO_NARROW || game.value <= nearest + SETTLED {
-                        break game;
-                    }
-                    game.weights
-                }
-            };
-            let (plane, member) = rows.least(cell, weights);
-            let above = plane.least - rows.weighted(&plane.weights, corner);
-            if above > ROUNDING {
-                return None;
-            }
-            nearest = nearest.max(above);
-            planes.push(plane);
-            members.push(member);
-        };
-        let mixed: Vec<(&Member, f64)> =
-            members.iter().zip(game.mix.iter().copied()).filter(|(_, share)| *share > SHARE).collect();
-        let left = Left {
-            kept: rows.kept(cell, &planes, corner)?,
-            partings: rows.partings(&mixed, &game.weights),
-            likely: mixed.iter().map(|(member, _)| member.cell.clone()).collect(),
-        };
-        rows.bequeath(&game.weights, trade);
-        Some(left)
-    }
-
-    /// Designs in a box.
-    pub fn members(&self, cell: &[u32]) -> f64 {
-        let of = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
-            Part::Drives { tree, .. } => f64::from(tree.node(node).members),
-            Part::Links { tree, .. } => f64::from(tree.node(node).members),
-            _ => 1.0,
-        };
-        self.level_pieces.iter().zip(cell).map(of).product()
-    }
-
     /// Mass per line mass of a piece: a tube's length, one for anything else.
     fn length_m(&self, piece: usize) -> f64 {
         match &self.parts[piece] {
@@ -196,7 +113,7 @@ impl Problem<'_> {
 }
 
 impl<'a> Rows<'a> {
-    fn new(
+    pub(super) fn new(
         problem: &'a Problem,
         ceiling: &Ceiling,
         corner: &Corner,
@@ -284,7 +201,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The weights of the box above, for the rows of this one; even ones if there are none.
-    fn inherited(&self, above: &[f64]) -> Vec<f64> {
+    pub(super) fn inherited(&self, above: &[f64]) -> Vec<f64> {
         let mut weights = vec![0.0; self.scale.len()];
         let others: Vec<usize> = (0..=self.tips.len()).chain(self.first_mode..self.scale.len()).collect();
         let even = 1.0 / others.len() as f64;
@@ -308,7 +225,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Leaves the weights and the last shapes to the halves of the box.
-    fn bequeath(&mut self, weights: &[f64], trade: &mut Trade) {
+    pub(super) fn bequeath(&mut self, weights: &[f64], trade: &mut Trade) {
         let (tips, kept) = (self.tips.len(), trade.shapes.len());
         trade.weights.clear();
         trade.weights.extend(&weights[..=tips]);
@@ -330,7 +247,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Every row by itself of which a corner allows no more than a number.
-    fn singles(&self, corner: &Corner) -> Vec<Vec<f64>> {
+    pub(super) fn singles(&self, corner: &Corner) -> Vec<Vec<f64>> {
         let is_torque = |row: usize| (1 + self.tips.len()..self.first_mode).contains(&row);
         let rows = self.allowed(corner).enumerate().filter(|(row, a)| a.is_finite() && !is_torque(*row));
         let single = |(row, _)| {
@@ -348,7 +265,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The weights that raise the worst of some members furthest above a corner.
-    fn game(&self, members: &[Member], corner: &Corner) -> Game {
+    pub(super) fn game(&self, members: &[Member], corner: &Corner) -> Game {
         /// A row this far below what is allowed has no say.
         const NO_SAY: f64 = -10.0;
         let allowed: Vec<f64> = self.allowed(corner).collect();
@@ -361,7 +278,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Adds the modes of the arm in between some members, where they lie below a corner's; whether any does.
-    fn separate(&mut self, members: &mut [Member], mix: &[f64], corner: &Corner) -> bool {
+    pub(super) fn separate(&mut self, members: &mut [Member], mix: &[f64], corner: &Corner) -> bool {
         let lambda = corner.lambda();
         let before = self.modes.len();
         for (judged, case) in self.problem.judged_cases().enumerate() {
@@ -406,7 +323,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The least weighted sum of any member, and the member that has it.
-    fn least(&self, cell: &[u32], weights: Vec<f64>) -> (Plane, Member) {
+    pub(super) fn least(&self, cell: &[u32], weights: Vec<f64>) -> (Plane, Member) {
         let pieces = self.problem.parts.len();
         let mut total: f64 = weights.iter().zip(&self.fixed).map(|(w, f)| w * f).sum();
         let mut levels = Vec::with_capacity(cell.len());
