@@ -159,17 +159,19 @@ pub fn print(text: &str) {
     }
 }
 
+/// Stack of a worker \[bytes\]: regions of an exact search nest, and a worker that waits takes up others' meanwhile.
+const STACK: usize = 64 << 20;
+
 /// Carries out a command line.
 ///
 /// # Errors
 /// See [`Failure`].
 pub fn run(cli: Cli) -> Result<String, Failure> {
-    if let Some(threads) = cli.threads {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.into())
-            .build_global()
-            .map_err(|e| Failure::Internal(e.to_string()))?;
-    }
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(cli.threads.map_or(0, Into::into))
+        .stack_size(STACK)
+        .build_global()
+        .map_err(|e| Failure::Internal(e.to_string()))?;
     let overlay = cli.catalogs.as_deref();
     let catalogs = Catalogs::load(overlay).map_err(Failure::catalog);
     match cli.verb {
