@@ -111,7 +111,7 @@ impl PickBudget {
                 });
                 let place = if best.is_joint { "the drive of" } else { "the link" };
                 format!(
-                    "{lead}; effort goes into {place} {} first, where one more kilogram {}{other}.{}",
+                    "{lead}; effort goes into {place} {} first, where added mass {}{other}.{}",
                     best.piece,
                     effect(&best.in_place),
                     self.mode_advice(best)
@@ -128,7 +128,7 @@ impl PickBudget {
             String::new(),
             |best| {
                 let hz = significant(best.in_place.hz_per_kg, 2);
-                format!(" The mode rises most at {}, by {hz} Hz.", best.piece)
+                format!(" The mode rises most at {}, by {hz} Hz/kg.", best.piece)
             },
         )
     }
@@ -153,7 +153,8 @@ fn kind(row: &BudgetRow) -> &'static str {
 /// Changes smaller than this in a kilogram are rounding errors \[mm or Hz\].
 const NOTHING: f64 = 1e-6;
 
-/// `lowers the sag by 0.021 mm and raises the mode by 0.40 Hz`, its signs in words.
+/// `lowers the sag by 0.021 mm/kg and raises the mode by 0.40 Hz/kg`, its signs in words: rates, for a kilogram may be
+/// more than the piece weighs.
 fn effect(gain: &Gain) -> String {
     let part = |change: f64, what: &str, unit: &str| {
         if change.abs() < NOTHING {
@@ -162,7 +163,7 @@ fn effect(gain: &Gain) -> String {
         let verb = if change < 0.0 { "lowers" } else { "raises" };
         format!("{verb} the {what} by {} {unit}", significant(change.abs(), 2))
     };
-    format!("{} and {}", part(gain.mm_per_kg, "sag", "mm"), part(gain.hz_per_kg, "mode", "Hz"))
+    format!("{} and {}", part(gain.mm_per_kg, "sag", "mm/kg"), part(gain.hz_per_kg, "mode", "Hz/kg"))
 }
 
 /// The pick that stands for all: the knee, where there is one.
