@@ -98,7 +98,7 @@ impl Rows<'_> {
                 let way = self.work.tip_ways[judged].dot(&row.tip_m);
                 let heavier = self.heavier(mixed, judged, row, way);
                 let more: f64 = heavier.iter().sum();
-                let left = weight * (way * more * self.softer(mixed, judged, row)).abs();
+                let left = weight * self.product(mixed, judged, row, more);
                 if left > 0.0 {
                     left_out[row.piece][1] += left;
                     let pieces = left_out.iter_mut().zip(&heavier);
@@ -124,7 +124,7 @@ impl Rows<'_> {
                     row.per_n.iter().zip(&member.weights_n[judged]).map(|(c, w)| c * w).sum()
                 };
                 let acting = row.fixed + mean(mixed, made);
-                left_out += (weight * way * (acting - least) * self.softer(mixed, judged, row)).abs();
+                left_out += weight * self.product(mixed, judged, row, acting - least);
                 if self.work.curves[row.piece].is_none() {
                     continue;
                 }
@@ -144,6 +144,12 @@ impl Rows<'_> {
             }
         }
         partings
+    }
+
+    /// Way of the tip by what a force is above its least times what its coordinate yields above its least \[m\].
+    fn product(&self, mixed: &Mixed, judged: usize, row: &Row, more: f64) -> f64 {
+        let way = self.work.tip_ways[judged].dot(&row.tip_m);
+        (way * more * self.softer(mixed, judged, row)).abs()
     }
 
     /// By how much the weight of each piece makes a force greater than the least.
