@@ -17,7 +17,7 @@ fn read(study: &Value, catalogs: &Catalogs) -> Study {
 fn budgets_of(study: &Study, catalogs: &Catalogs) -> Vec<PickBudget> {
     let problem = ArmProblem::new(&study.space, catalogs);
     let front = run_study(study, catalogs, &AtomicBool::new(false), |_, _, _| ()).front;
-    budgets(&problem, &front_table(&problem, catalogs, &front))
+    budgets(&problem, &study.space, catalogs, &front_table(&problem, catalogs, &front))
 }
 
 #[test]

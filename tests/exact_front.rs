@@ -11,11 +11,12 @@ mod dice;
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
 use armwright::search::design::options;
-use armwright::search::exact::Exact;
+use armwright::search::exact::{Exact, Reach};
 use armwright::search::front::nondominated;
+use armwright::search::relax::Relaxation;
 use armwright::search::sweep::Candidate;
 use armwright::search::{ArmProblem, Objectives, OutwardIn, Sweep, evaluate};
-use armwright::study::{Study, read_study};
+use armwright::study::{Study, named, read_study};
 use dice::Dice;
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
@@ -373,6 +374,73 @@ fn a_front_with_a_design_dropped_is_found_out_by_searching_from_it() {
     let dropped = front[front.len() / 2];
     let lacking: Vec<u128> = front.iter().copied().filter(|&n| n != dropped).collect();
     assert!(found_beside(&known(&lacking)).contains(&dropped));
+}
+
+/// Whether a design is no worse than what is asked, in all three objectives.
+fn is_as_good(design: &Objectives, asked: &Objectives) -> bool {
+    design.mass_kg <= asked.mass_kg
+        && design.tip_deflection_m <= asked.tip_deflection_m
+        && design.lowest_mode_hz >= asked.lowest_mode_hz
+}
+
+#[test]
+fn every_design_as_good_as_a_known_one_is_made_of_the_parts_in_reach() {
+    let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
+    let mut dice = Dice(11);
+    let (mut as_good, mut parts, mut in_reach) = (0, 0, 0);
+    for seed in 0..24 {
+        let text = random_study(seed);
+        let study = read(&text, &catalogs);
+        let problem = ArmProblem::new(&study.space, &catalogs);
+        let sizes = problem.level_sizes();
+        let front = Sweep::new(&problem, study.space.constraints, &stop).run().front;
+        let Some(reach) = Reach::new(&study.space, &catalogs) else { continue };
+        for known in front.iter().step_by(1 + front.len() / 8) {
+            // loosened, so that several designs do
+            let loosened = dice.within(1.0, 1.1);
+            let asked = Objectives {
+                mass_kg: known.objectives.mass_kg * loosened,
+                tip_deflection_m: known.objectives.tip_deflection_m * loosened,
+                lowest_mode_hz: known.objectives.lowest_mode_hz / loosened,
+            };
+            let lists = reach.options_as_good(&asked).expect("the known design is as good");
+            let good: Vec<&Candidate> = front.iter().filter(|c| is_as_good(&c.objectives, &asked)).collect();
+            for design in &good {
+                let options = options(sizes, design.number).expect("a design");
+                let is_in = options.iter().zip(&lists).all(|(option, list)| list.contains(option));
+                assert!(is_in, "seed {seed}: {options:?} is not in {lists:?}: {text}");
+            }
+            as_good += good.len();
+            parts += sizes.iter().map(|&n| n as usize).sum::<usize>();
+            in_reach += lists.iter().map(Vec::len).sum::<usize>();
+            // so a bound from these parts alone is one of all
+            let space = study.space.of_options(&lists).expect("a list a level");
+            let few = ArmProblem::new(&space, &catalogs);
+            let options = few.options_of_whole(known.number).expect("it is in reach");
+            let bound = Relaxation::new(&few).mass_lower_bound(&options, &asked).expect("it holds");
+            let lightest_kg = good.iter().map(|c| c.objectives.mass_kg).fold(f64::INFINITY, f64::min);
+            assert!(
+                bound.mass_lower_bound_kg <= lightest_kg * (1.0 + 1e-9),
+                "seed {seed}: {bound:?} {lightest_kg}"
+            );
+        }
+    }
+    println!("{as_good} designs as good as asked; {in_reach} of {parts} parts in reach");
+    assert!(as_good > 400 && 3 * in_reach < 2 * parts, "{as_good} designs, {in_reach} of {parts} parts");
+}
+
+#[test]
+fn few_of_the_parts_of_the_whole_catalog_reach_as_far_as_a_good_design() {
+    let catalogs = Catalogs::builtin();
+    let text = named("full-catalog").expect("it is built in");
+    let study = read_study(Document::parse("full-catalog", text).expect("JSON"), &catalogs).expect("whole");
+    // a knee that `armwright run full-catalog` finds, loosened by a percent
+    let asked = Objectives { mass_kg: 16.56, tip_deflection_m: 1.702e-3, lowest_mode_hz: 13.84 };
+    let reach = Reach::new(&study.space, &catalogs).expect("no level is empty");
+    let lists = reach.options_as_good(&asked).expect("it was found");
+    let left = study.space.of_options(&lists).expect("a list a level").link_options();
+    println!("{left} of {} tubes", study.space.link_options());
+    assert!(left > 0 && left < 10_000 && study.space.link_options() > 400_000);
 }
 
 /// A random study whose arm has one to four effects.

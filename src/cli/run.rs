@@ -21,7 +21,7 @@ use crate::report::summary::{
 use crate::report::table::Table;
 use crate::search::hypervolume::front_hypervolume;
 use crate::search::near::NearDesigns;
-use crate::search::{ArmProblem, Status, exact};
+use crate::search::{ArmProblem, DesignSpace, Status, exact};
 use crate::study::{
     Carried, ExactStudy, Study, StudyOutcome, budgets, empty_pieces, front_table, left_out, named,
     paper_question, read_study, run_exact, run_study, slug, study_page, why_infeasible,
@@ -72,9 +72,6 @@ enum SearchKind {
 
 /// Above this many designs the exact search is the default.
 const MOST_VISITED: u128 = 1_000_000_000;
-
-/// Above this many options of links an exact search works out nothing for each of them.
-const MOST_TABULATED: usize = 10_000;
 
 /// Above this many designs nobody lives to see the end of an exhaustive search.
 const MOST_CONCEIVABLE: u128 = 1_000_000_000_000_000;
@@ -180,7 +177,7 @@ fn search_with(
                 text,
                 carried,
                 problem: &problem,
-                whole: &problem,
+                whole: &study.space,
                 outcome: &outcome,
                 near: None,
                 exact: None,
@@ -267,14 +264,12 @@ fn search_exactly(
         )))),
         _ => {
             let problem = ArmProblem::new(&part.space, catalogs);
-            let is_small = study.space.link_options() <= MOST_TABULATED;
-            let whole = is_small.then(|| ArmProblem::new(&study.space, catalogs));
             let finished = Finished {
                 study: &part,
                 text,
                 carried,
                 problem: &problem,
-                whole: whole.as_ref().unwrap_or(&problem),
+                whole: &study.space,
                 outcome: &outcome,
                 near: near.as_ref(),
                 exact: Some((boxes, gap)),
@@ -389,8 +384,8 @@ struct Finished<'a> {
     text: &'a str,
     carried: &'a [Carried],
     problem: &'a ArmProblem<'a>,
-    /// With all options of the study, unless they are too many for an exact search.
-    whole: &'a ArmProblem<'a>,
+    /// The space with all options of the study.
+    whole: &'a DesignSpace,
     outcome: &'a StudyOutcome,
     /// The designs near the front that an exact search found.
     near: Option<&'a NearDesigns>,
@@ -435,7 +430,7 @@ impl Finished<'_> {
         let cost = |name: &str| self.catalogs.materials.iter().find(|m| m.name == name)?.cost_eur_per_kg;
         let overall = front_table(self.problem, self.catalogs, &self.outcome.front);
         SummaryInput {
-            budgets: budgets(self.whole, &overall),
+            budgets: budgets(self.problem, self.whole, self.catalogs, &overall),
             facts: SummaryFacts {
                 study: study.name.clone(),
                 question: study.question.clone(),

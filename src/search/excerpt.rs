@@ -48,11 +48,18 @@ impl DesignSpace {
                 used.insert(option);
             }
         }
+        let lists: Vec<Vec<u32>> = used.into_iter().map(|used| used.into_iter().collect()).collect();
+        self.of_options(&lists)
+    }
+
+    /// The space with only those link options whose numbers a level has, ascending, tip first; `None` if a level has no
+    /// list.
+    pub fn of_options(&self, lists: &[Vec<u32>]) -> Option<DesignSpace> {
         let mut out = self.clone();
-        let mut levels = used.iter();
+        let mut levels = lists.iter();
         for piece in out.pieces.iter_mut().rev() {
             match piece {
-                SpacePiece::Choice(choice) => choice.keep(levels.next()?.iter().copied().collect()),
+                SpacePiece::Choice(choice) => choice.keep(levels.next()?.clone()),
                 SpacePiece::Joint(joint) if joint.drive.is_open() => {
                     levels.next()?;
                 }

@@ -6,17 +6,19 @@
 //! *Next part*: of the heavier catalog parts that may stand there, the one with the best change of deflection per
 //! kilogram; a difference between two parts one can buy. Drives further inboard are not sized again.
 
-use crate::arm::{Arm, Curve, Element, Joint, LoadCase, Piece, Structure, windup_of};
+use super::alternatives::alternatives;
+use super::bounds::MassBounds;
+use crate::arm::{Arm, Element, LoadCase, Piece, Structure};
+use crate::catalog::Catalogs;
 use crate::mechanics::Chain;
 use crate::report::budget::{BudgetRow, Gain, NextPart, PickBound, PickBudget};
 use crate::report::front_table::FrontTable;
-use crate::report::number::significant;
 use crate::report::picks::{Pick, designs, picks};
 use crate::search::design::{evaluate, full_objectives, number, number_of, objectives_with};
+use crate::search::exact::Reach;
 use crate::search::relax::Relaxation;
-use crate::search::space::{LinkOption, SpacePiece};
-use crate::search::{ArmProblem, Objectives, OutwardIn};
-use crate::sizing::Drive;
+use crate::search::space::SpacePiece;
+use crate::search::{ArmProblem, DesignSpace, Objectives, OutwardIn};
 use rayon::prelude::*;
 
 /// Relative step of the derivative in place.
@@ -24,25 +26,40 @@ const STEP: f64 = 1e-3;
 /// Parts heavier than the one in place by more than this part of the arm are not looked at.
 const MOST_OF_ARM: f64 = 0.25;
 
-/// Budgets of the picks of a front. A bound is given only if the problem has all options of the study.
-pub fn budgets(problem: &ArmProblem, table: &FrontTable) -> Vec<PickBudget> {
-    let relaxation = (!is_excerpt(problem)).then(|| Relaxation::new(problem));
+/// Budgets of the picks of a front. `problem` has all options of the whole space, or those of an excerpt of it.
+pub fn budgets(
+    problem: &ArmProblem,
+    whole: &DesignSpace,
+    catalogs: &Catalogs,
+    table: &FrontTable,
+) -> Vec<PickBudget> {
+    let is_excerpt = is_excerpt(problem);
+    let tabulated = (is_excerpt && MassBounds::can_tabulate(whole)).then(|| ArmProblem::new(whole, catalogs));
+    let bounds = match tabulated.as_ref().or((!is_excerpt).then_some(problem)) {
+        Some(all) => MassBounds::Tabulated(all, Relaxation::new(all)),
+        None => MassBounds::InReach { space: whole, catalogs, reach: Reach::new(whole, catalogs) },
+    };
     let picks = picks(&designs(table)).into_par_iter();
-    picks.filter_map(|pick| pick_budget(problem, relaxation.as_ref(), pick)).collect()
+    picks.filter_map(|pick| pick_budget(problem, whole, &bounds, pick)).collect()
 }
 
-fn pick_budget(problem: &ArmProblem, relaxation: Option<&Relaxation>, pick: Pick) -> Option<PickBudget> {
-    let options = problem.options_of_whole(number_of(&pick.design.design_id)?)?;
+fn pick_budget(
+    problem: &ArmProblem,
+    whole: &DesignSpace,
+    bounds: &MassBounds,
+    pick: Pick,
+) -> Option<PickBudget> {
+    let known = number_of(&pick.design.design_id)?;
+    let options = problem.options_of_whole(known)?;
     let objectives = &evaluate(problem, number(problem.level_sizes(), &options))?.objectives;
-    let bound = relaxation.and_then(|r| r.mass_lower_bound(&options, objectives));
-    let bound = bound.map(|b| PickBound {
+    let bound = bounds.below(known, objectives).map(|b| PickBound {
         mass_kg: b.mass_lower_bound_kg,
         mixture_kg: b.mixture_kg,
         loads_oppose: b.loads_oppose,
     });
     Some(PickBudget {
         bound,
-        rows: budget(problem, &options, objectives)?,
+        rows: budget(problem, whole, &options, objectives)?,
         names: pick.names,
         design_id: pick.design.design_id,
         mass_kg: objectives.mass_kg,
@@ -54,10 +71,15 @@ fn is_excerpt(problem: &ArmProblem) -> bool {
     problem.space().pieces.iter().any(kept)
 }
 
-fn budget(problem: &ArmProblem, options: &[u32], objectives: &Objectives) -> Option<Vec<BudgetRow>> {
+fn budget(
+    problem: &ArmProblem,
+    whole: &DesignSpace,
+    options: &[u32],
+    objectives: &Objectives,
+) -> Option<Vec<BudgetRow>> {
     let arm = problem.arm(options)?;
     let cases = problem.load_cases();
-    let others = alternatives(problem, options, &arm)?;
+    let others = alternatives(problem, whole, options, &arm)?;
     let shares = shares(&arm, &cases);
     let heaviest_kg = objectives.mass_kg * MOST_OF_ARM;
     let pieces: Vec<(usize, &Element)> =
@@ -85,72 +107,6 @@ fn budget(problem: &ArmProblem, options: &[u32], objectives: &Objectives) -> Opt
         }
     };
     Some(pieces.par_iter().map(row).collect())
-}
-
-/// What else may stand in each place, by name.
-fn alternatives(problem: &ArmProblem, options: &[u32], arm: &Arm) -> Option<Vec<Vec<(String, Element)>>> {
-    let mut others: Vec<Vec<(String, Element)>> = vec![Vec::new(); arm.chain.len()];
-    let complete = problem.walk(options, |slot, outboard| {
-        let piece = problem.piece_of_slot(slot);
-        if let (Some(sized), Element::Joint(joint)) = (problem.sized_joint(piece), &arm.chain[piece]) {
-            let demand = problem.demand_at(outboard, slot);
-            let holding =
-                sized.table.all_fits(&demand).map(|i| (sized.table.drive(i), sized.table.mass_kg(i)));
-            others[piece] = drives(joint, holding);
-        }
-    });
-    complete.ok()?;
-    for (piece, what) in problem.space().pieces.iter().enumerate() {
-        if let SpacePiece::Choice(choice) = what {
-            let links = stiffest_by_mass(&choice.options);
-            others[piece] =
-                links.map(|option| (section_words(option), Element::Link(choice.link(option)))).collect();
-        }
-    }
-    Some(others)
-}
-
-/// The drives that hold at a joint, lightest first, each with a gear that no lighter one matches in stiffness.
-fn drives<'c>(joint: &Joint, drives: impl Iterator<Item = (Drive<'c>, f64)>) -> Vec<(String, Element)> {
-    let mut out: Vec<(String, Element)> = Vec::new();
-    let mut kept: Vec<[f64; 3]> = Vec::new();
-    for (drive, mass_kg) in drives {
-        let Some(windup) = windup_of(drive.gear) else { continue };
-        let stiffness = [windup.k1_nm_per_rad, windup.k2_nm_per_rad, windup.k3_nm_per_rad];
-        if kept.iter().any(|other| (0..3).all(|i| other[i] >= stiffness[i])) {
-            continue;
-        }
-        kept.push(stiffness);
-        let curve = Curve::Windup(windup);
-        out.push((drive.gear.id.clone(), Element::Joint(Joint { curve, mass_kg, ..joint.clone() })));
-    }
-    out
-}
-
-/// Options that no lighter one matches in bending stiffness.
-fn stiffest_by_mass(options: &[LinkOption]) -> impl Iterator<Item = &LinkOption> {
-    let stiffness = |o: &LinkOption| {
-        let section = o.section.properties(o.material.poisson);
-        o.material.youngs_modulus_pa * section.second_moment_y_m4.min(section.second_moment_z_m4)
-    };
-    let mut by_mass: Vec<&LinkOption> = options.iter().collect();
-    by_mass.sort_by(|a, b| {
-        a.mass_kg_per_m().total_cmp(&b.mass_kg_per_m()).then(stiffness(b).total_cmp(&stiffness(a)))
-    });
-    let mut best = 0.0;
-    by_mass.into_iter().filter(move |o| {
-        let better = stiffness(o) > best;
-        best = stiffness(o).max(best);
-        better
-    })
-}
-
-fn section_words(option: &LinkOption) -> String {
-    let (width, height) = option.section.outer_m();
-    let sizes = [width, height, option.section.wall_m()].map(|m| significant(m * 1e3, 4));
-    let sizes =
-        sizes.map(|s| if s.contains('.') { s.trim_end_matches('0').trim_end_matches('.').into() } else { s });
-    format!("{} mm {}", sizes.join(" x "), option.material_name)
 }
 
 /// Change from one design to another per kilogram.

@@ -1,6 +1,8 @@
 //! Named questions: read, resolve, run.
 
+mod alternatives;
 mod ballast;
+mod bounds;
 mod budget;
 mod check;
 mod diagnose;

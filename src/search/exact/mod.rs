@@ -28,6 +28,7 @@ mod pose;
 mod price;
 mod probe;
 mod problem;
+mod reach;
 mod regions;
 mod run;
 mod shape;
@@ -35,4 +36,5 @@ mod tip;
 mod tradeoff;
 mod tree;
 
+pub use reach::Reach;
 pub use run::{Exact, ExactOutcome, conditions};

@@ -228,6 +228,16 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(cell).map(of).product()
     }
 
+    /// Numbers of each level's options below nodes of its whole tree.
+    pub fn options_below(&self, kept: &[Vec<u32>]) -> Vec<Vec<u32>> {
+        let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
+            Part::Drives { tree, .. } => tree.options_of(nodes),
+            Part::Links { tree, .. } => tree.options_of(nodes),
+            _ => vec![0],
+        };
+        self.level_pieces.iter().zip(kept).map(of).collect()
+    }
+
     /// Designs below nodes of each level's whole tree.
     pub fn designs_below(&self, kept: &[Vec<u32>]) -> f64 {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {

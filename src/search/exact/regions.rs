@@ -26,7 +26,7 @@ const THINNED: f64 = 0.45;
 
 /// Options that may reach into a region, with what the region around it knew.
 #[derive(Clone)]
-struct Zone<'p> {
+pub(super) struct Zone<'p> {
     problem: Arc<Problem<'p>>,
     cell: Cell,
     shapes: Arc<Vec<Shape>>,
@@ -39,20 +39,13 @@ impl<'p> Search<'_, 'p> {
     /// One pass over everything that the designs found leave open.
     pub fn run_by_regions(&self) {
         let mut work = Work::default();
-        let Some(shapes) = self.problem.first_shapes(&mut work) else { return };
         let tightened = |all: &[Objectives]| all.iter().map(|o| self.tightened(o)).collect();
         let found: Vec<Objectives> = self.shared.found.look_at_all(tightened);
         let known = found.len();
         // fewer designs leave more open, by less than the slack
         let mut found = thinned(found, THINNED * self.slack, |o| o);
         let corners = Corners::new(&mut found, self.limits());
-        let zone = Zone {
-            problem: Arc::new(self.problem.clone()),
-            cell: self.problem.root(),
-            trade: Arc::new(Trade::new(&shapes)),
-            shapes: Arc::new(shapes),
-            known,
-        };
+        let Some(zone) = Zone::whole(self.problem, known, &mut work) else { return };
         self.search_region(&corners, 0, zone);
     }
 
@@ -66,8 +59,7 @@ impl<'p> Search<'_, 'p> {
         }
         let mut work = Work::default();
         let Some(left) = self.narrow(&mut zone, &corner, &mut work) else { return };
-        let designs = zone.problem.designs_below(&left.kept);
-        if designs <= self.down_to() {
+        if zone.designs_of(&left) <= self.down_to() {
             return self.search_boxes(zone, corner, work);
         }
         let zones = match halves {
@@ -87,25 +79,13 @@ impl<'p> Search<'_, 'p> {
                 lock(&self.shared.open).push(Ceiling::OPEN);
                 return None;
             }
-            let before = zone.problem.members(&zone.cell);
             self.count_box();
-            let slackened = |ceiling: &Ceiling| ceiling.slackened(self.slack);
-            let verdict = zone.problem.bound(
-                &mut zone.cell,
-                &mut zone.shapes,
-                work,
-                |ceiling| !corner.is_in_reach_of(ceiling) || self.shared.found.beats(&slackened(ceiling)),
-                |_| true,
-            );
-            let Verdict::Open(ceiling) = verdict else { return None };
-            let trade = Arc::make_mut(&mut zone.trade);
-            let left = zone.problem.left_below(&zone.cell, &ceiling, trade, work, corner)?;
-            if zone.problem.designs_below(&left.kept) > (1.0 - WORTH_IT) * before {
+            let beaten = |ceiling: &Ceiling| self.shared.found.beats(&ceiling.slackened(self.slack));
+            let (left, narrowed) = zone.narrow(corner, work, beaten)?;
+            if !narrowed {
                 left.likely.iter().for_each(|cell| self.try_design(zone, cell.clone()));
                 return Some(left);
             }
-            zone.problem = Arc::new(zone.problem.narrowed_to(&left.kept)?);
-            zone.cell = zone.problem.root();
         }
     }
 
@@ -163,10 +143,54 @@ impl<'p> Search<'_, 'p> {
     }
 }
 
-impl Zone<'_> {
+impl<'p> Zone<'p> {
+    /// Everything, to begin with.
+    pub fn whole(problem: &Problem<'p>, known: usize, work: &mut Work) -> Option<Self> {
+        let shapes = problem.first_shapes(work)?;
+        Some(Self {
+            problem: Arc::new(problem.clone()),
+            cell: problem.root(),
+            trade: Arc::new(Trade::new(&shapes)),
+            shapes: Arc::new(shapes),
+            known,
+        })
+    }
+
+    /// What is left of the zone below a corner, and whether its options were narrowed to it: if enough designs went.
+    /// `None` if none is left.
+    pub fn narrow(
+        &mut self,
+        corner: &Corner,
+        work: &mut Work,
+        is_beaten: impl Fn(&Ceiling) -> bool,
+    ) -> Option<(Left, bool)> {
+        let before = self.problem.members(&self.cell);
+        let verdict = self.problem.bound(
+            &mut self.cell,
+            &mut self.shapes,
+            work,
+            |ceiling| !corner.is_in_reach_of(ceiling) || is_beaten(ceiling),
+            |_| true,
+        );
+        let Verdict::Open(ceiling) = verdict else { return None };
+        let trade = Arc::make_mut(&mut self.trade);
+        let left = self.problem.left_below(&self.cell, &ceiling, trade, work, corner)?;
+        let narrowed = self.designs_of(&left) <= (1.0 - WORTH_IT) * before;
+        if narrowed {
+            self.problem = Arc::new(self.problem.narrowed_to(&left.kept)?);
+            self.cell = self.problem.root();
+        }
+        Some((left, narrowed))
+    }
+
+    /// Designs of what is left.
+    pub fn designs_of(&self, left: &Left) -> f64 {
+        self.problem.designs_below(&left.kept)
+    }
+
     /// Two zones with half the options of a level each, the level that should gain most; `None` if a single design is
     /// left.
-    fn parted(&self, left: &Left, work: &mut Work) -> Option<[Self; 2]> {
+    pub fn parted(&self, left: &Left, work: &mut Work) -> Option<[Self; 2]> {
         let parted = left.partings.iter().find_map(|parting| self.problem.parted(&left.kept, parting));
         if let Some(halves) = parted {
             return Some(halves.map(|half| Self {

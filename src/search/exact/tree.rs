@@ -136,6 +136,20 @@ impl<B: Bounds> Tree<B> {
         kept.iter().map(|&at| f64::from(whole.node(at).members)).sum()
     }
 
+    /// Numbers of the options below some nodes of the whole tree, ascending.
+    pub fn options_of(&self, kept: &[u32]) -> Vec<u32> {
+        let whole = self.whole.as_deref().unwrap_or(self);
+        let (mut options, mut open) = (Vec::new(), kept.to_vec());
+        while let Some(at) = open.pop() {
+            match whole.node(at).kind {
+                NodeKind::Split(halves) => open.extend(halves),
+                NodeKind::Option(option) => options.push(option),
+            }
+        }
+        options.sort_unstable();
+        options
+    }
+
     /// A node of the whole tree.
     pub fn whole_node(&self, index: u32) -> &Node<B> {
         &self.whole.as_deref().unwrap_or(self).nodes[index as usize]
@@ -303,6 +317,8 @@ mod tests {
                     open.extend(narrower.children(node).into_iter().flatten());
                     below.extend(narrower.option(node));
                 }
+                below.sort_unstable();
+                prop_assert_eq!(&tree.options_of(&kept), &below);
                 for (option, value) in values.iter().enumerate().filter(|(_, v)| **v >= least) {
                     let times = below.iter().filter(|o| **o == option as u32).count();
                     prop_assert_eq!(times, 1, "option {} of value {}", option, value);

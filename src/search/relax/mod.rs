@@ -82,7 +82,8 @@ impl<'a> Relaxation<'a> {
         // nothing else is left: the known design is the lightest
         let alone = search.parts.alive.iter().all(|options| options.len() == 1);
         Some(MassBound {
-            mass_lower_bound_kg: if alone { asked.mass_kg } else { search.best_kg.min(asked.mass_kg) },
+            mass_lower_bound_kg: if alone { self.problem.mass_kg(&arm) } else { search.best_kg }
+                .min(asked.mass_kg),
             mixture_kg: search.first_kg.min(asked.mass_kg),
             options_left: search.parts.alive.iter().rev().map(Vec::len).collect(),
             loads_oppose: self.cases.iter().any(|case| case.opposes(self.problem, &search.parts)),

@@ -1,0 +1,99 @@
+//! What else may stand in the place of each part of a design: drives that hold there, and tubes.
+
+use crate::arm::{Arm, Curve, Element, Joint, Link, LinkBody, LinkMaterial, Section, windup_of};
+use crate::report::number::significant;
+use crate::search::constraint::Constraints;
+use crate::search::space::{LinkChoice, LinkOption, SpacePiece};
+use crate::search::{ArmProblem, DesignSpace};
+use crate::sizing::Drive;
+
+/// What else of the whole space may stand in each place, by name.
+pub(super) fn alternatives(
+    problem: &ArmProblem,
+    whole: &DesignSpace,
+    options: &[u32],
+    arm: &Arm,
+) -> Option<Vec<Vec<(String, Element)>>> {
+    let mut others: Vec<Vec<(String, Element)>> = vec![Vec::new(); arm.chain.len()];
+    let complete = problem.walk(options, |slot, outboard| {
+        let piece = problem.piece_of_slot(slot);
+        if let (Some(sized), Element::Joint(joint)) = (problem.sized_joint(piece), &arm.chain[piece]) {
+            let demand = problem.demand_at(outboard, slot);
+            let holding =
+                sized.table.all_fits(&demand).map(|i| (sized.table.drive(i), sized.table.mass_kg(i)));
+            others[piece] = drives(joint, holding);
+        }
+    });
+    complete.ok()?;
+    for (piece, what) in whole.pieces.iter().enumerate() {
+        if let SpacePiece::Choice(choice) = what {
+            others[piece] = tubes(choice, &whole.constraints, &arm.chain[piece]);
+        }
+    }
+    Some(others)
+}
+
+/// The drives that hold at a joint, lightest first, each with a gear that no lighter one matches in stiffness.
+fn drives<'c>(joint: &Joint, drives: impl Iterator<Item = (Drive<'c>, f64)>) -> Vec<(String, Element)> {
+    let mut out: Vec<(String, Element)> = Vec::new();
+    let mut kept: Vec<[f64; 3]> = Vec::new();
+    for (drive, mass_kg) in drives {
+        let Some(windup) = windup_of(drive.gear) else { continue };
+        let stiffness = [windup.k1_nm_per_rad, windup.k2_nm_per_rad, windup.k3_nm_per_rad];
+        if kept.iter().any(|other| (0..3).all(|i| other[i] >= stiffness[i])) {
+            continue;
+        }
+        kept.push(stiffness);
+        let curve = Curve::Windup(windup);
+        out.push((drive.gear.id.clone(), Element::Joint(Joint { curve, mass_kg, ..joint.clone() })));
+    }
+    out
+}
+
+/// The tubes that may stand in place of one, are no softer along either axis of the section, and that no lighter one
+/// matches: along either axis, or along both together.
+fn tubes(choice: &LinkChoice, limits: &Constraints, now: &Element) -> Vec<(String, Element)> {
+    let Element::Link(Link { body: LinkBody::Tube { material, section, .. }, .. }) = now else {
+        return Vec::new();
+    };
+    let length_m = choice.vector_m.norm();
+    let [now_z, now_y, _] = end_compliances(section, material, length_m);
+    let slender_most = limits.wall_slenderness_max.unwrap_or(f64::INFINITY);
+    let mut by_mass: Vec<(f64, [f64; 3], &LinkOption)> = choice
+        .options
+        .iter()
+        .filter(|option| option.wall_slenderness() <= slender_most)
+        .map(|o| (o.mass_kg_per_m(), end_compliances(&o.section, &o.material, length_m), o))
+        .filter(|(_, [along_z, along_y, _], _)| *along_z <= now_z && *along_y <= now_y)
+        .collect();
+    by_mass.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut best = [f64::INFINITY; 3];
+    by_mass.retain(|(_, compliances, _)| {
+        let is_stiffer = compliances.iter().zip(&best).any(|(own, best)| own < best);
+        best.iter_mut().zip(compliances).for_each(|(best, own)| *best = best.min(*own));
+        is_stiffer
+    });
+    let named = |(_, _, option): (f64, [f64; 3], &LinkOption)| {
+        (section_words(option), Element::Link(choice.link(option)))
+    };
+    by_mass.into_iter().map(named).collect()
+}
+
+/// Deflection per load of a cantilever by bending and shear, along either axis of its section and along both \[m/N\].
+fn end_compliances(section: &Section, material: &LinkMaterial, length_m: f64) -> [f64; 3] {
+    let section = section.properties(material.poisson);
+    let shear = length_m / (material.shear_modulus_pa * section.area_m2 * section.shear_factor);
+    let bending =
+        |second_moment_m4: f64| length_m.powi(3) / (3.0 * material.youngs_modulus_pa * second_moment_m4);
+    let [along_z, along_y] =
+        [section.second_moment_y_m4, section.second_moment_z_m4].map(|i| bending(i) + shear);
+    [along_z, along_y, along_z + along_y]
+}
+
+fn section_words(option: &LinkOption) -> String {
+    let (width, height) = option.section.outer_m();
+    let sizes = [width, height, option.section.wall_m()].map(|m| significant(m * 1e3, 4));
+    let sizes =
+        sizes.map(|s| if s.contains('.') { s.trim_end_matches('0').trim_end_matches('.').into() } else { s });
+    format!("{} mm {}", sizes.join(" x "), option.material_name)
+}

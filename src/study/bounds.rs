@@ -1,0 +1,51 @@
+//! How light a design could be that is as good as a pick.
+
+use crate::catalog::Catalogs;
+use crate::search::exact::Reach;
+use crate::search::relax::{MassBound, Relaxation};
+use crate::search::{ArmProblem, DesignSpace, Objectives};
+
+/// Above this many options of links not each of them is tabulated: a pick's bound is that of the options that reach
+/// as far as it does.
+const MOST_TABULATED: usize = 10_000;
+
+/// Where bounds on the mass come from.
+pub(super) enum MassBounds<'a> {
+    /// From the options of the whole space.
+    Tabulated(&'a ArmProblem<'a>, Relaxation<'a>),
+    /// From those that a design may have that is as good as the pick.
+    InReach { space: &'a DesignSpace, catalogs: &'a Catalogs, reach: Option<Reach<'a>> },
+}
+
+impl MassBounds<'_> {
+    /// Whether every option of a space can be tabulated.
+    pub fn can_tabulate(space: &DesignSpace) -> bool {
+        space.link_options() <= MOST_TABULATED
+    }
+
+    /// Bounds the mass of every design as good as a known one, by its number in the whole space; `None` if it cannot be
+    /// worked out.
+    pub fn below(&self, known: u128, objectives: &Objectives) -> Option<MassBound> {
+        match self {
+            Self::Tabulated(problem, relaxation) => bound(problem, relaxation, known, objectives),
+            Self::InReach { space, catalogs, reach } => {
+                let options = reach.as_ref()?.options_as_good(objectives)?;
+                let space = space.of_options(&options)?;
+                if !Self::can_tabulate(&space) {
+                    return None;
+                }
+                let problem = ArmProblem::new(&space, catalogs);
+                bound(&problem, &Relaxation::new(&problem), known, objectives)
+            }
+        }
+    }
+}
+
+fn bound(
+    problem: &ArmProblem,
+    relaxation: &Relaxation,
+    known: u128,
+    objectives: &Objectives,
+) -> Option<MassBound> {
+    relaxation.mass_lower_bound(&problem.options_of_whole(known)?, objectives)
+}
