@@ -39,6 +39,8 @@ pub use outward::ArmProblem;
 pub use space::DesignSpace;
 pub use sweep::{Status, Sweep, SweepOutcome};
 
+use crate::mechanics::lanes::{Eight, LANES};
+
 /// What a design is judged by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Objectives {
@@ -74,15 +76,17 @@ pub trait Keep {
     /// So many designs cannot hold.
     fn exclude(&mut self, designs: u128);
 
-    /// The lowest mode \[Hz\] below which a design of a group, with this mass and tip deflection, need not be
-    /// finished; 0 if every design is of interest.
-    fn bar_hz(&self, group: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
-        let _ = (group, mass_kg, tip_deflection_m);
-        0.0
+    /// The lowest modes \[Hz\] below which eight designs of some groups, with these masses and tip deflections, need not
+    /// be finished; 0 if every design is of interest.
+    fn bars_hz(&self, groups: &[Option<usize>; LANES], mass_kg: &Eight, tip_deflection_m: &Eight) -> Eight {
+        let _ = (groups, mass_kg, tip_deflection_m);
+        [0.0; LANES]
     }
 
-    /// A design holds, and its lowest mode is below the bar.
-    fn below_bar(&mut self) {}
+    /// So many designs hold, and their lowest modes are below the bar.
+    fn below_bar(&mut self, designs: u64) {
+        let _ = designs;
+    }
 }
 
 /// A tree of designs whose levels go from the tip of the arm inward.

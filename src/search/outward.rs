@@ -211,15 +211,6 @@ impl<'c> ArmProblem<'c> {
         self.peak_factor
     }
 
-    /// The group of an arm that only lacks an option of the innermost level, with that option.
-    pub(super) fn group_with(&self, from: &Partial, level_slot: usize, option: u32) -> Option<usize> {
-        let group = match &self.slots[level_slot] {
-            Slot::Link { options, .. } => from.group.with(options[option as usize].material),
-            _ => from.group,
-        };
-        group.material()
-    }
-
     pub(super) fn empty(&self) -> Partial {
         Partial {
             options: vec![0; self.slots.len()],
@@ -494,16 +485,17 @@ impl OutwardIn for ArmProblem<'_> {
             for ((first, from), begun) in rows.iter().zip(&mut scratch.rows) {
                 let at = RowChunk { problem: self, row, from, chunk };
                 let done = in_lanes(RowWork { at, begun, arms: &mut scratch.arms, valid, keep: &*keep });
-                for lane in 0..lanes {
+                keep.exclude(u128::from((valid & !done.held).count_ones()));
+                keep.below_bar(u64::from(done.below_bar.count_ones()));
+                let mut open = done.held & !done.below_bar;
+                while open != 0 {
+                    let lane = open.trailing_zeros() as usize;
                     let (bit, option) = (1 << lane, (start + lane) as u32);
-                    if done.held & bit == 0 {
-                        keep.exclude(1);
-                    } else if done.below_bar & bit != 0 {
-                        keep.below_bar();
-                    } else if done.unsure & bit != 0 {
+                    open &= !bit;
+                    if done.unsure & bit != 0 {
                         self.finish_one(outer.len(), option, from, *first, &mut scratch.spare, keep);
                     } else {
-                        let group = self.group_with(from, row.first, option);
+                        let group = at.groups()[lane];
                         let objectives = done.objectives(lane);
                         keep.complete(first + u128::from(option), Finished { objectives, group });
                     }
@@ -514,14 +506,14 @@ impl OutwardIn for ArmProblem<'_> {
 }
 
 impl Group {
-    fn material(self) -> Option<usize> {
+    pub(super) fn material(self) -> Option<usize> {
         match self {
             Group::One(material) => Some(material),
             _ => None,
         }
     }
 
-    fn with(self, material: Option<usize>) -> Self {
+    pub(super) fn with(self, material: Option<usize>) -> Self {
         match (self, material) {
             (group, None) => group,
             (Group::None, Some(m)) => Group::One(m),

@@ -14,6 +14,7 @@ use crate::arm::{Curve, JointLaw};
 use crate::mechanics::lanes::{Eight, LANES};
 use crate::mechanics::lowest_lanes::{LaneLink, Outboard};
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
+use std::ops::Range;
 
 /// Most cases that a row handles.
 pub(super) const MOST_CASES: usize = 8;
@@ -44,8 +45,9 @@ pub(super) struct RowCase {
     /// Weight wrench of a link per newton, and what it makes at the link's root.
     pub link_weight: Vector6<f64>,
     pub link_weight_at_root: [f64; 4],
-    /// Block, row and column of the outboard inertia that link ends carry.
+    /// Block, row and column of the outboard inertia that link ends carry, and which of them belong to each block.
     pub spread_entries: Vec<(usize, usize, usize)>,
+    pub spread_of: [Range<usize>; 2],
     /// Inner pieces up to the last that yields in each block.
     pub ends: [usize; 2],
     pub links_yield: bool,
@@ -69,6 +71,7 @@ pub(super) struct DriveFigures {
 pub(super) struct Chunk {
     pub mass_kg: Eight,
     pub cost_eur: Eight,
+    pub materials: [Option<usize>; LANES],
     /// Bits of the options whose walls are too slender.
     pub slender: u8,
     pub stress: StressEight,
@@ -254,7 +257,18 @@ impl RowCase {
             Modal::Spatial(block) => [last_yielding(block, first, links_yield), 0],
         };
         let spread_entries = if links_yield { spread_entries(&station.modal) } else { Vec::new() };
-        Self { carried, link_weight, link_weight_at_root, spread_entries, ends, links_yield, judged, sizing }
+        let of_first = spread_entries.partition_point(|(block, ..)| *block == 0);
+        Self {
+            carried,
+            link_weight,
+            link_weight_at_root,
+            spread_of: [0..of_first, of_first..spread_entries.len()],
+            spread_entries,
+            ends,
+            links_yield,
+            judged,
+            sizing,
+        }
     }
 }
 
@@ -299,6 +313,7 @@ impl Chunk {
         Self {
             mass_kg: lanes(&|o| o.mass_kg),
             cost_eur: lanes(&|o| o.cost_eur.unwrap_or(0.0)),
+            materials: std::array::from_fn(|lane| options[at(lane)].material),
             slender: bits(&|o| o.slender),
             stress: StressEight {
                 per_axial_n: stress(&|s| s.per_axial_n),

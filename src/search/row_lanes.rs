@@ -65,6 +65,8 @@ pub(super) struct CaseArms {
     pub compliance: [Eight; MOST_SLOTS],
     /// Dunkerley's sum of each block.
     pub trace_s2: [Eight; 2],
+    /// The largest of what single joints add to it: no lowest eigenvalue is above one over that.
+    pub largest_s2: [Eight; 2],
 }
 
 impl EightArms {
@@ -77,6 +79,7 @@ impl EightArms {
             inertia_at: [zeros; MOST_SLOTS],
             compliance: [zeros; MOST_SLOTS],
             trace_s2: [zeros; 2],
+            largest_s2: [zeros; 2],
         };
         Self { held: 0, mass_kg: zeros, masses_kg: [zeros; MOST_SLOTS], cases: vec![nothing; cases] }
     }
@@ -172,6 +175,7 @@ impl RowChunk<'_, '_> {
                 lanes.inertia_at[j] = [begun.inertia_at[j]; LANES];
             }
             lanes.trace_s2 = state.trace_s2.map(|sum| [sum; LANES]);
+            lanes.largest_s2 = [[0.0; LANES]; 2];
         }
     }
 
@@ -205,12 +209,13 @@ impl RowChunk<'_, '_> {
                 }
                 lanes.tip_m[i] = tip.store();
             }
-            for b in 0..2 {
-                add(&mut lanes.trace_s2[b], V::load(&own.trace_s2[b]));
-            }
             let factors = &begun.cases[k].spread;
-            for ((&(block, ..), factor), spread) in case.spread_entries.iter().zip(factors).zip(&own.spread) {
-                add(&mut lanes.trace_s2[block], V::splat(*factor) * V::load(spread));
+            for b in 0..2 {
+                let mut sum = V::load(&lanes.trace_s2[b]) + V::load(&own.trace_s2[b]);
+                for e in case.spread_of[b].clone() {
+                    sum = sum + V::splat(factors[e]) * V::load(&own.spread[e]);
+                }
+                lanes.trace_s2[b] = sum.store();
             }
         }
         if let Some(least) = constraints.stress_safety_factor_min {
@@ -294,8 +299,10 @@ impl RowChunk<'_, '_> {
     #[inline(always)]
     fn add_joint<V: Lanes>(&self, k: usize, indices: [usize; LANES], arms: &mut EightArms) {
         let drives = &self.row.drives[k];
-        let mass = V::gather(&drives.mass_kg, &indices);
-        let curves = Curves::<V>::gather(drives, &indices);
+        // eight arms much alike often have the same drive
+        let alike = indices.iter().all(|index| *index == indices[0]);
+        let mass: V = at_places(&drives.mass_kg, &indices, alike);
+        let curves = Curves::<V>::gather(drives, &indices, alike);
         add(&mut arms.mass_kg, mass);
         arms.masses_kg[k] = mass.store();
         for (c, case) in self.row.cases.iter().enumerate() {
@@ -312,7 +319,10 @@ impl RowChunk<'_, '_> {
                     add(&mut lanes.tip_m[i], V::splat(joint.tip_m_per_rad[i]) * angle);
                 }
                 let inertia = V::load(&lanes.inertia_at[k]);
-                add(&mut lanes.trace_s2[joint.block], compliance * inertia);
+                let own = compliance * inertia;
+                add(&mut lanes.trace_s2[joint.block], own);
+                let largest = &mut lanes.largest_s2[joint.block];
+                *largest = V::load(largest).max(own).store();
             }
             for i in (0..6).filter(|&i| joint.weight_per_kg[i] != 0.0) {
                 add(&mut lanes.wrench[i], V::splat(joint.weight_per_kg[i]) * mass);
@@ -367,6 +377,12 @@ fn load_all<V: Lanes, const K: usize>(from: &[Eight; K]) -> [V; K] {
     out
 }
 
+/// Numbers of a list at eight places, or at one that all share.
+#[inline(always)]
+fn at_places<V: Lanes>(list: &[f64], at: &[usize; LANES], alike: bool) -> V {
+    if alike { V::splat(list[at[0]]) } else { V::gather(list, at) }
+}
+
 /// Square of the von Mises stress of bending, axial force and torsion, over the strength.
 #[inline(always)]
 fn stress_squared<V: Lanes>(per: &StressEight, [axial, torsion, y, z]: [V; 4]) -> V {
@@ -402,15 +418,15 @@ struct Curves<V> {
 
 impl<V: Lanes> Curves<V> {
     #[inline(always)]
-    fn gather(of: &DriveFigures, at: &[usize; LANES]) -> Self {
+    fn gather(of: &DriveFigures, at: &[usize; LANES], alike: bool) -> Self {
         let zero = V::zero();
         let mut curves =
             Self { compliance: [zero; 3], ends_nm: [zero; 2], first_in_modes: of.first_in_modes };
         for segment in 0..3 {
-            curves.compliance[segment] = V::gather(&of.compliance[segment], at);
+            curves.compliance[segment] = at_places(&of.compliance[segment], at, alike);
         }
         for end in 0..2 {
-            curves.ends_nm[end] = V::gather(&of.ends_nm[end], at);
+            curves.ends_nm[end] = at_places(&of.ends_nm[end], at, alike);
         }
         curves
     }

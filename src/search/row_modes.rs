@@ -36,16 +36,20 @@ struct Ask<V> {
 }
 
 impl RowChunk<'_, '_> {
+    /// The groups of the eight designs.
+    #[inline]
+    pub fn groups(&self) -> [Option<usize>; LANES] {
+        let from = self.from.group;
+        match self.row.chunks.get(self.chunk) {
+            None => [from.material(); LANES],
+            Some(chunk) => chunk.materials.map(|material| from.with(material).material()),
+        }
+    }
+
     /// The eigenvalues that designs must reach to be of interest.
     pub fn bars(&self, keep: &dyn Keep, arms: &EightArms, tip_deflection_m: &Eight) -> Eight {
-        let mut bars = [0.0; LANES];
-        for lane in (0..LANES).filter(|lane| arms.held >> lane & 1 == 1) {
-            let option = (LANES * self.chunk + lane) as u32;
-            let group = self.problem.group_with(self.from, self.row.first, option);
-            let omega = TAU * keep.bar_hz(group, arms.mass_kg[lane], tip_deflection_m[lane]);
-            bars[lane] = omega * omega;
-        }
-        bars
+        let bars_hz = keep.bars_hz(&self.groups(), &arms.mass_kg, tip_deflection_m);
+        bars_hz.map(|hz| (TAU * hz) * (TAU * hz))
     }
 }
 
@@ -59,8 +63,11 @@ impl<'a, 'c> Question<'a, 'c> {
     pub fn below<V: Lanes>(&self, bars: &Eight, held: u8) -> u8 {
         let below = V::load(bars);
         let asked = held & V::zero().less(below);
-        let mut above = asked;
-        for &block in self.blocks(asked).iter().flatten() {
+        let mut above = asked & !self.sluggish(below);
+        if above == 0 {
+            return asked;
+        }
+        for &block in self.blocks(above).iter().flatten() {
             let open = above & self.least::<V>(block).less(below);
             if open != 0 {
                 above &= !self.answer(block, Ask { open, below, guess: None }).1;
@@ -85,6 +92,19 @@ impl<'a, 'c> Question<'a, 'c> {
             }
         }
         (lowest, unsure)
+    }
+
+    /// Lanes in which a single joint yields so much that the lowest eigenvalue is below a bar: no eigenvalue of a
+    /// symmetric matrix is larger than all, so none of its diagonal is.
+    #[inline(always)]
+    fn sluggish<V: Lanes>(&self, below: V) -> u8 {
+        let mut slow = 0;
+        for (c, _) in self.at.row.cases.iter().enumerate().filter(|(_, case)| case.judged) {
+            for block in 0..2 {
+                slow |= V::splat(1.0).less(V::load(&self.arms.cases[c].largest_s2[block]) * below);
+            }
+        }
+        slow
     }
 
     /// Dunkerley's lower bound of a block's lowest eigenvalue.

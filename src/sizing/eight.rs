@@ -74,13 +74,12 @@ impl DriveTable<'_> {
                 continue;
             }
             for step in steps {
-                let held = demands.held_by(&ladder.limits[step], open);
-                for (lane, fit) in fits.iter_mut().enumerate() {
-                    if held >> lane & 1 == 1 {
-                        *fit = ladder.indices[step] as usize;
-                    }
-                }
+                let mut held = demands.held_by(&ladder.limits[step], open);
                 open &= !held;
+                while held != 0 {
+                    fits[held.trailing_zeros() as usize] = ladder.indices[step] as usize;
+                    held &= held - 1;
+                }
             }
             if open == 0 {
                 break;

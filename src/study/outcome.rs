@@ -58,13 +58,7 @@ pub fn run_study(
 ) -> StudyOutcome {
     let problem = ArmProblem::new(&study.space, catalogs);
     let sweep = Sweep::new(&problem, study.space.constraints, stop);
-    let finished = AtomicBool::new(false);
-    let outcome = std::thread::scope(|scope| {
-        scope.spawn(|| watch(sweep.total(), &|| sweep.visited(), &finished));
-        let outcome = sweep.run();
-        finished.store(true, Ordering::Relaxed);
-        outcome
-    });
+    let outcome = watched(|finished| watch(sweep.total(), &|| sweep.visited(), finished), || sweep.run());
     // a design may be a candidate of two fronts
     let all = outcome.groups.iter().flatten().chain(&outcome.front).map(|c| c.number);
     let judged = by_full_model(&problem, all.collect());
@@ -79,6 +73,22 @@ pub fn run_study(
         by_material: names.into_iter().zip(&outcome.groups).map(of_material).collect(),
         sweep: outcome,
     }
+}
+
+/// Works while a thread beside it watches, which is told when the work has ended, be it by a panic.
+fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) -> T {
+    struct EndOnDrop<'f>(&'f AtomicBool);
+    impl Drop for EndOnDrop<'_> {
+        fn drop(&mut self) {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+    let finished = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| watch(&finished));
+        let _end = EndOnDrop(&finished);
+        work()
+    })
 }
 
 /// What an exact search found.
@@ -209,13 +219,10 @@ pub fn run_exact(
 ) -> ExactStudy {
     let search = Exact::new(&study.space, catalogs, stop, deadline);
     let most = near.map(|slack| slack.most);
-    let finished = AtomicBool::new(false);
-    let searched = std::thread::scope(|scope| {
-        scope.spawn(|| watch(&|| search.boxes(), &finished));
-        let found = Searched::new(&search, &study.space, near);
-        finished.store(true, Ordering::Relaxed);
-        found
-    });
+    let searched = watched(
+        |finished| watch(&|| search.boxes(), finished),
+        || Searched::new(&search, &study.space, near),
+    );
     let space = study.space.excerpt(catalogs, &searched.numbers()).unwrap_or_else(|| study.space.clone());
     let study = Study { space, ..study.clone() };
     let whole = &searched.whole;
@@ -247,4 +254,21 @@ fn front_of(judged: &HashMap<u128, Evaluated>, candidates: &[Candidate]) -> Fron
         .flat_map(|(group, members)| members.into_iter().map(move |i| (group + 1, i)))
         .map(|(tie_group, i)| Judged { design: judged[i].clone(), tie_group })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_watcher_is_told_of_the_end_even_if_it_is_a_panic() {
+        let wait = |finished: &AtomicBool| {
+            while !finished.load(Ordering::Relaxed) {
+                std::thread::yield_now();
+            }
+        };
+        assert_eq!(watched(wait, || 7), 7);
+        let broken = || watched(wait, || -> u8 { panic!("broken on purpose") });
+        assert!(std::panic::catch_unwind(broken).is_err());
+    }
 }
