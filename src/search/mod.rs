@@ -39,8 +39,6 @@ pub use outward::ArmProblem;
 pub use space::DesignSpace;
 pub use sweep::{Status, Sweep, SweepOutcome};
 
-use crate::mechanics::lanes::{Eight, LANES};
-
 /// What a design is judged by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Objectives {
@@ -76,11 +74,11 @@ pub trait Keep {
     /// So many designs cannot hold.
     fn exclude(&mut self, designs: u128);
 
-    /// The lowest modes \[Hz\] below which eight designs of some groups, with these masses and tip deflections, need not
-    /// be finished; 0 if every design is of interest.
-    fn bars_hz(&self, groups: &[Option<usize>; LANES], mass_kg: &Eight, tip_deflection_m: &Eight) -> Eight {
-        let _ = (groups, mass_kg, tip_deflection_m);
-        [0.0; LANES]
+    /// The lowest mode \[Hz\] below which a design of a group, with this mass and tip deflection, need not be
+    /// finished; 0 if every design is of interest. It serves for heavier and softer ones too.
+    fn bar_hz(&self, group: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
+        let _ = (group, mass_kg, tip_deflection_m);
+        0.0
     }
 
     /// So many designs hold, and their lowest modes are below the bar.

@@ -17,7 +17,6 @@ use super::constraint::Constraints;
 use super::sweep::Candidate;
 use super::visit::Visit;
 use super::{Finished, Keep, Objectives, OutwardIn};
-use crate::mechanics::lanes::{Eight, LANES};
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::sync::Mutex;
@@ -172,8 +171,8 @@ impl Keep for Worker<'_> {
 
     fn exclude(&mut self, _: u128) {}
 
-    fn bars_hz(&self, _: &[Option<usize>; LANES], mass_kg: &Eight, tip_deflection_m: &Eight) -> Eight {
-        std::array::from_fn(|lane| self.seeker.archive.bar_hz(mass_kg[lane], tip_deflection_m[lane]))
+    fn bar_hz(&self, _: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
+        self.seeker.archive.bar_hz(mass_kg, tip_deflection_m)
     }
 }
 

@@ -106,7 +106,7 @@ impl LaneWork for RowWork<'_, '_> {
         let tip_deflection_m = tip_m.store();
         let held = arms.held;
         let question = Question::new(at, begun, arms);
-        let below_bar = question.below::<V>(&at.bars(keep, arms, &tip_deflection_m), held);
+        let below_bar = question.below_bar::<V>(keep, &tip_deflection_m, held);
         let (eigenvalue, unsure) = question.lowest::<V>(held & !below_bar);
         FinishedEight {
             held,
@@ -169,13 +169,19 @@ impl RowChunk<'_, '_> {
         arms.held = valid;
         arms.mass_kg = [self.from.mass_kg; LANES];
         for ((lanes, state), begun) in arms.cases.iter_mut().zip(&self.from.stations).zip(&begun.cases) {
-            lanes.wrench = std::array::from_fn(|i| [state.wrench[i]; LANES]);
-            lanes.tip_m = std::array::from_fn(|i| [state.tip_m[i]; LANES]);
+            for i in 0..6 {
+                lanes.wrench[i] = [state.wrench[i]; LANES];
+            }
+            for i in 0..3 {
+                lanes.tip_m[i] = [state.tip_m[i]; LANES];
+            }
             for &j in &self.row.joints {
                 lanes.inertia_at[j] = [begun.inertia_at[j]; LANES];
             }
-            lanes.trace_s2 = state.trace_s2.map(|sum| [sum; LANES]);
-            lanes.largest_s2 = [[0.0; LANES]; 2];
+            for b in 0..2 {
+                lanes.trace_s2[b] = [state.trace_s2[b]; LANES];
+                lanes.largest_s2[b] = [0.0; LANES];
+            }
         }
     }
 

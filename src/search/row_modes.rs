@@ -36,20 +36,20 @@ struct Ask<V> {
 }
 
 impl RowChunk<'_, '_> {
-    /// The groups of the eight designs.
+    /// The group of each design.
     #[inline]
     pub fn groups(&self) -> [Option<usize>; LANES] {
         let from = self.from.group;
         match self.row.chunks.get(self.chunk) {
             None => [from.material(); LANES],
-            Some(chunk) => chunk.materials.map(|material| from.with(material).material()),
+            Some(chunk) => {
+                let mut groups = [None; LANES];
+                for (group, material) in groups.iter_mut().zip(chunk.materials) {
+                    *group = from.with(material).material();
+                }
+                groups
+            }
         }
-    }
-
-    /// The eigenvalues that designs must reach to be of interest.
-    pub fn bars(&self, keep: &dyn Keep, arms: &EightArms, tip_deflection_m: &Eight) -> Eight {
-        let bars_hz = keep.bars_hz(&self.groups(), &arms.mass_kg, tip_deflection_m);
-        bars_hz.map(|hz| (TAU * hz) * (TAU * hz))
     }
 }
 
@@ -58,9 +58,27 @@ impl<'a, 'c> Question<'a, 'c> {
         Self { at, begun, arms }
     }
 
+    /// Designs whose lowest mode is below the bar of what is of interest.
+    #[inline(always)]
+    pub fn below_bar<V: Lanes>(&self, keep: &dyn Keep, tip_deflection_m: &Eight, held: u8) -> u8 {
+        let (groups, mass_kg) = (self.at.groups(), &self.arms.mass_kg);
+        let mut asked = held;
+        // a bar of all eight may tell already
+        if groups.iter().all(|group| *group == groups[0]) {
+            let least = |numbers: &Eight| numbers.iter().copied().fold(f64::INFINITY, f64::min);
+            let bar_hz = keep.bar_hz(groups[0], least(mass_kg), least(tip_deflection_m));
+            asked &= !self.sluggish(V::splat(eigenvalue(bar_hz)));
+        }
+        let mut bars = [0.0; LANES];
+        for lane in (0..LANES).filter(|lane| asked >> lane & 1 == 1) {
+            bars[lane] = eigenvalue(keep.bar_hz(groups[lane], mass_kg[lane], tip_deflection_m[lane]));
+        }
+        held & !asked | self.below::<V>(&bars, asked)
+    }
+
     /// Lanes whose lowest eigenvalue is below a bar.
     #[inline(always)]
-    pub fn below<V: Lanes>(&self, bars: &Eight, held: u8) -> u8 {
+    fn below<V: Lanes>(&self, bars: &Eight, held: u8) -> u8 {
         let below = V::load(bars);
         let asked = held & V::zero().less(below);
         let mut above = asked & !self.sluggish(below);
@@ -80,6 +98,9 @@ impl<'a, 'c> Question<'a, 'c> {
     #[inline(always)]
     pub fn lowest<V: Lanes>(&self, held: u8) -> (V, u8) {
         let (mut lowest, mut unsure) = (V::splat(f64::INFINITY), 0);
+        if held == 0 {
+            return (lowest, unsure);
+        }
         for &block in self.blocks(held).iter().flatten() {
             let least = self.least::<V>(block);
             let open = held & least.less(lowest);
@@ -192,6 +213,12 @@ impl<'a, 'c> Question<'a, 'c> {
         let found = roots(outboard, inner, guess, open);
         (V::choose(open, found.eigenvalue, below), found.unsure)
     }
+}
+
+/// `(2πf)²`.
+#[inline(always)]
+fn eigenvalue(hz: f64) -> f64 {
+    (TAU * hz) * (TAU * hz)
 }
 
 /// The inner pieces of eight arms in a block, up to the last that yields.

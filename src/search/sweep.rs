@@ -9,7 +9,6 @@ use super::constraint::Constraints;
 use super::front::not_clearly_beaten;
 use super::visit::Visit;
 use super::{Finished, Keep, Objectives, OutwardIn};
-use crate::mechanics::lanes::{Eight, LANES};
 use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -255,13 +254,9 @@ impl Keep for Worker<'_> {
 
     // what one of its own group beats, one of all designs beats; those entered keep the constraints, so that near
     // misses no longer matter once there is a bar
-    fn bars_hz(&self, groups: &[Option<usize>; LANES], mass_kg: &Eight, tip_deflection_m: &Eight) -> Eight {
-        let mut bars_hz = [0.0; LANES];
-        for (lane, bar_hz) in bars_hz.iter_mut().enumerate() {
-            let rivals = groups[lane].map_or(self.overall, |group| &self.groups[group]);
-            *bar_hz = rivals.archive.bar_hz(mass_kg[lane], tip_deflection_m[lane]);
-        }
-        bars_hz
+    fn bar_hz(&self, group: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
+        let rivals = group.map_or(self.overall, |group| &self.groups[group]);
+        rivals.archive.bar_hz(mass_kg, tip_deflection_m)
     }
 
     fn below_bar(&mut self, designs: u64) {
