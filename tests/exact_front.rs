@@ -376,6 +376,36 @@ fn a_front_with_a_design_dropped_is_found_out_by_searching_from_it() {
     assert!(found_beside(&known(&lacking)).contains(&dropped));
 }
 
+#[test]
+fn what_is_further_than_a_slack_from_known_designs_is_found() {
+    const SLACK: f64 = 0.03;
+    let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
+    let is_near = |row: &Objectives, design: &Objectives| {
+        row.mass_kg <= design.mass_kg * (1.0 + SLACK)
+            && row.tip_deflection_m <= design.tip_deflection_m * (1.0 + SLACK)
+            && row.lowest_mode_hz * (1.0 + SLACK) >= design.lowest_mode_hz
+    };
+    let mut far = 0;
+    for seed in 0..16 {
+        let study = read(&random_study(seed), &catalogs);
+        let search = || Exact::new(&study.space, &catalogs, &stop, None);
+        let front: Vec<Objectives> = search().run(&[]).front.iter().map(|c| c.objectives).collect();
+        let known: Vec<Objectives> = front.iter().step_by(5).copied().collect();
+        let is_far = |design: &Objectives| !known.iter().any(|row| is_near(row, design));
+        far += front.iter().filter(|design| is_far(design)).count();
+        for search in [search(), search().by_regions_from(100.0)] {
+            let found = search.beyond(SLACK).run(&known);
+            let rows: Vec<Objectives> =
+                found.front.iter().map(|c| c.objectives).chain(known.iter().copied()).collect();
+            let missed = front.iter().find(|design| !rows.iter().any(|row| is_near(row, design)));
+            assert!(missed.is_none(), "seed {seed}: {missed:?}");
+            assert!(found.boxes_open == 0 && (known.is_empty() || found.gap == Some(SLACK)));
+        }
+    }
+    println!("{far} designs were further than the slack from what was known");
+    assert!(far > 50, "{far} designs say too little");
+}
+
 /// Whether a design is no worse than what is asked, in all three objectives.
 fn is_as_good(design: &Objectives, asked: &Objectives) -> bool {
     design.mass_kg <= asked.mass_kg

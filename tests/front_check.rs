@@ -91,6 +91,47 @@ fn a_dropped_design_is_found_to_be_missing() {
 }
 
 #[test]
+fn the_gap_that_a_stopped_run_claims_is_checked() {
+    let dir = result("exact");
+    let mut lines = front(&dir);
+    let columns: Vec<&str> = lines[0].split(',').collect();
+    let places = ["mass_kg", "tip_deflection_mm", "lowest_mode_hz"]
+        .map(|name| columns.iter().position(|c| *c == name).expect("an objective"));
+    let numbers = |line: &str| -> [f64; 3] {
+        let cells: Vec<&str> = line.split(',').collect();
+        places.map(|place| cells[place].parse().expect("a number"))
+    };
+    // how much better than a row the dropped one is, in the objective in which it is least so
+    let dropped = lines.remove(lines.len() / 2);
+    let [kg, mm, hz] = numbers(&dropped);
+    let beyond = |line: &String| {
+        let row = numbers(line);
+        (row[0] / kg).max(row[1] / mm).max(hz / row[2]) - 1.0
+    };
+    let gap = lines[1..].iter().map(beyond).fold(f64::INFINITY, f64::min);
+    assert!(gap > 1e-4, "rows are too close to each other: {gap}");
+    replace(&dir, &lines);
+    let id = dropped.split(',').next().expect("an id");
+    for (claimed, code) in [(1.01 * gap, 0), (0.99 * gap, 9)] {
+        let file = dir.path().join("run.json");
+        let mut run: Value =
+            serde_json::from_str(&std::fs::read_to_string(&file).expect("a run")).expect("JSON");
+        run["status"] = "partial".into();
+        run["gap"] = claimed.into();
+        std::fs::write(&file, run.to_string()).expect("written");
+        let (told, text) = check(&dir);
+        assert_eq!(told, code, "{text}");
+        match code {
+            0 => assert!(text.contains("no design beats every listed one by more than"), "{text}"),
+            _ => assert!(
+                text.contains(&format!("design {id} is not there, and no row comes within")),
+                "{text}"
+            ),
+        }
+    }
+}
+
+#[test]
 fn a_changed_cell_and_a_row_that_others_beat_are_found() {
     let dir = result("exact");
     let sound = front(&dir);

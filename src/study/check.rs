@@ -5,6 +5,7 @@ use super::outcome::{Front, judge};
 use super::table::front_table;
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
+use crate::report::number::significant;
 use crate::search::design::{Evaluated, id_of, number, number_of, options};
 use crate::search::exact::{self, Exact};
 use crate::search::front::nondominated;
@@ -14,6 +15,8 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
+/// What rounding may do to a gap.
+const ROUNDING: f64 = 1e-6;
 /// Largest relative difference of a number in a row from what the full model gives.
 const AGREE: f64 = 1e-9;
 /// Faults of one kind that are listed one by one.
@@ -35,17 +38,20 @@ pub struct FrontCheck {
 pub struct Completeness {
     /// Boxes bounded.
     pub boxes: u64,
+    /// No design beats every row by more than this part in all three objectives at once; 0 if none is missing.
+    pub gap: f64,
     /// Why the exact search's own bounds were used; `None` if it was by bounds that share no code with them.
     pub by_exact_search: Option<String>,
 }
 
-/// Checks a front against its study: every row by the full model, rows against each other, and, unless
-/// `claims_all` is false, all other designs by a search that starts from the rows.
+/// Checks a front against its study: every row by the full model, rows against each other, and all other designs by a
+/// search that starts from the rows. `gap` is what the front claims: that no design beats every row by more, 0 if it
+/// is whole; `None` if it claims no more than its rows.
 pub fn check_front(
     study: &Study,
     catalogs: &Catalogs,
     table: &FrontTable,
-    claims_all: bool,
+    gap: Option<f64>,
     stop: &AtomicBool,
     deadline: Option<Instant>,
 ) -> FrontCheck {
@@ -67,14 +73,35 @@ pub fn check_front(
     let front = judge(&problem, &candidates);
     compare_rows(&front_table(&problem, catalogs, &front), table, &front, &problem, &mut faults);
     broken_limits(study, &front, &problem, &mut faults);
-    let completeness = if claims_all {
-        let (found, completeness) = look_for_missing(study, catalogs, &front, stop, deadline);
-        list(&mut faults, missing(study, catalogs, &front, &problem, &found), "designs are missing");
-        completeness
-    } else {
-        Err("the run was stopped early and claims no more than its rows".into())
+    let completeness = match gap {
+        Some(gap) => {
+            let front = Claimed { front: &front, gap };
+            let (found, completeness) = look_for_missing(study, catalogs, &front, stop, deadline);
+            list(&mut faults, missing(study, catalogs, &front, &problem, &found), "designs are missing");
+            completeness
+        }
+        None => Err("the run was stopped early and claims no more than its rows".into()),
     };
     FrontCheck { faults, rows: table.rows.len(), completeness }
+}
+
+/// A front, and by how much it says that it may be bettered.
+struct Claimed<'f> {
+    front: &'f Front,
+    gap: f64,
+}
+
+impl Claimed<'_> {
+    /// The rows, each better than it is by the gap: what they do not beat is missing.
+    fn objectives(&self) -> Vec<Objectives> {
+        let by = if self.gap > 0.0 { 1.0 + self.gap + ROUNDING } else { 1.0 };
+        let better = |o: &Objectives| Objectives {
+            mass_kg: o.mass_kg / by,
+            tip_deflection_m: o.tip_deflection_m / by,
+            lowest_mode_hz: o.lowest_mode_hz * by,
+        };
+        self.front.iter().map(|d| better(&d.design.objectives)).collect()
+    }
 }
 
 /// Numbers of designs that may be missing, and whether the look at all designs came to its end.
@@ -84,15 +111,16 @@ type Look = (Vec<u128>, Result<Completeness, String>);
 fn look_for_missing(
     study: &Study,
     catalogs: &Catalogs,
-    front: &Front,
+    front: &Claimed,
     stop: &AtomicBool,
     deadline: Option<Instant>,
 ) -> Look {
-    let objectives: Vec<Objectives> = front.iter().map(|d| d.design.objectives).collect();
-    let unseen = witness::conditions(&study.space).err();
+    let designs = study.space.designs(catalogs).map_or(f64::INFINITY, |n| n as f64);
+    let vast = || format!("they do not go region by region, as {designs:.1e} designs ask for");
+    let unseen = witness::conditions(&study.space).err().or_else(|| (designs > exact::VAST).then(vast));
     let (numbers, boxes, open) = match unseen {
         None => {
-            let looked = witness::missing(&study.space, catalogs, &objectives, stop, deadline);
+            let looked = witness::missing(&study.space, catalogs, &front.objectives(), stop, deadline);
             (looked.candidates, looked.boxes, looked.open)
         }
         Some(_) => {
@@ -100,13 +128,15 @@ fn look_for_missing(
                 let why = format!("the exact search does not see this study as it is: {why}");
                 return (Vec::new(), Err(why));
             }
-            let found = Exact::new(&study.space, catalogs, stop, deadline).run(&objectives);
+            let rows: Vec<Objectives> = front.front.iter().map(|d| d.design.objectives).collect();
+            let search = Exact::new(&study.space, catalogs, stop, deadline).beyond(front.gap);
+            let found = search.run(&rows);
             (found.front.iter().map(|c| c.number).collect(), found.boxes, found.boxes_open)
         }
     };
     let completeness = match open {
-        0 => Ok(Completeness { boxes, by_exact_search: unseen }),
-        open => Err(format!("stopped with {open} boxes unopened")),
+        0 => Ok(Completeness { boxes, gap: front.gap, by_exact_search: unseen }),
+        open => Err(format!("stopped with {open} boxes or regions unopened")),
     };
     (numbers, completeness)
 }
@@ -166,14 +196,15 @@ fn broken_limits(study: &Study, front: &Front, problem: &ArmProblem, faults: &mu
     );
 }
 
-/// Designs found by a search that belong on the front and are not in it.
+/// Designs found by a search that belong on the front and are not in it, nor near enough to what is.
 fn missing(
     study: &Study,
     catalogs: &Catalogs,
-    front: &Front,
+    claimed: &Claimed,
     problem: &ArmProblem,
     found: &[u128],
 ) -> Vec<String> {
+    let Claimed { front, gap } = claimed;
     let listed: BTreeSet<u128> = front.iter().map(|d| problem.whole_number(d.design.number)).collect();
     let others: Vec<u128> = found.iter().copied().filter(|n| !listed.contains(n)).collect();
     let Some(space) = study.space.excerpt(catalogs, &others) else { return Vec::new() };
@@ -182,7 +213,7 @@ fn missing(
         .iter()
         .filter_map(|&whole| Some((whole, evaluate(&beyond, candidate(&beyond, whole)?.number)?)))
         .collect();
-    let own = front.iter().map(|d| d.design.objectives.minimized());
+    let own = claimed.objectives().into_iter().map(|o| o.minimized());
     let points: Vec<[f64; 3]> = own.chain(judged.iter().map(|(_, d)| d.objectives.minimized())).collect();
     let mut ids: Vec<u128> = nondominated(&points)
         .expect("objectives are numbers")
@@ -192,7 +223,11 @@ fn missing(
         .map(|i| judged[i].0)
         .collect();
     ids.sort_unstable();
-    ids.into_iter().map(|n| format!("design {} belongs on the front and is not there", id_of(n))).collect()
+    let what = match *gap > 0.0 {
+        true => format!("is not there, and no row comes within {} % of it", significant(1e2 * gap, 3)),
+        false => "belongs on the front and is not there".into(),
+    };
+    ids.into_iter().map(|n| format!("design {} {what}", id_of(n))).collect()
 }
 
 /// The first few of many faults, and how many there are.

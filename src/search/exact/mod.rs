@@ -37,4 +37,4 @@ mod tradeoff;
 mod tree;
 
 pub use reach::Reach;
-pub use run::{Exact, ExactOutcome, conditions};
+pub use run::{Exact, ExactOutcome, VAST, conditions};

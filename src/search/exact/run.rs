@@ -37,7 +37,7 @@ const GROWTH: f64 = 2.5;
 /// Designs above which a space is large.
 const LARGE: f64 = 1e9;
 /// Designs above which a space is searched region by region.
-const VAST: f64 = 1e14;
+pub const VAST: f64 = 1e14;
 /// Designs that are sooner searched box by box than narrowed to regions.
 const FEW: f64 = 1e6;
 /// Probes by the square of the powers of ten of designs: a large space repays many, a small one none.
@@ -54,6 +54,8 @@ pub struct Exact<'p> {
     stop: &'p AtomicBool,
     deadline: Option<Instant>,
     boxes: AtomicU64,
+    /// The slack of a search from known designs.
+    within: f64,
     /// Designs above which a space is searched region by region, and down to how many.
     regions_from: f64,
     regions_to: f64,
@@ -121,7 +123,7 @@ impl<'p> Exact<'p> {
         deadline: Option<Instant>,
     ) -> Self {
         let boxes = AtomicU64::new(0);
-        Self { space, catalogs, stop, deadline, boxes, regions_from: VAST, regions_to: FEW }
+        Self { space, catalogs, stop, deadline, boxes, within: 0.0, regions_from: VAST, regions_to: FEW }
     }
 
     /// Searches a space of more designs than this, instead of 1e14, region by region down to so few. It changes how
@@ -129,6 +131,12 @@ impl<'p> Exact<'p> {
     #[must_use]
     pub fn by_regions_from(self, designs: f64) -> Self {
         Self { regions_from: designs, regions_to: designs.min(FEW), ..self }
+    }
+
+    /// Looks only for designs that beat every known one by more than a slack in all three objectives at once.
+    #[must_use]
+    pub fn beyond(self, slack: f64) -> Self {
+        Self { within: slack, ..self }
     }
 
     /// Boxes bounded so far.
@@ -220,7 +228,7 @@ impl<'p> Exact<'p> {
                     better.iter().for_each(|member| search.keep(&member.cell, member.objectives));
                 }
             }
-            let passes = if is_large && known.is_empty() { &SLACKS[..] } else { &[0.0] };
+            let passes = if is_large && known.is_empty() { &SLACKS[..] } else { &[self.within] };
             let mut next = 0;
             while let Some(&slack) = passes.get(next) {
                 let started = Instant::now();
@@ -252,7 +260,7 @@ impl<'p> Exact<'p> {
             boxes: self.boxes(),
             boxes_open: open.len() as u64,
             gap: match open.is_empty() {
-                true => Some(0.0),
+                true => proven.or(Some(0.0)),
                 false => least(proven, gap(&open, &front).map(|gap| gap.max(last_slack))),
             },
             front,
