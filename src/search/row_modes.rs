@@ -1,8 +1,8 @@
 //! The lowest modes of eight designs at once.
 //!
 //! Few eigenproblems are solved to the end. A design whose mass and deflection are known need not be looked at further
-//! if its lowest mode is below a bar, that of a design no worse in both: one pass a block tells. Of the others the
-//! block whose Dunkerley sum is largest is solved first; any other block whose lower bound lies below that root
+//! if its lowest mode is below a bar, that of a design no worse in both. Most often what one joint yields tells by
+//! itself, and one bar serves all eight; else one pass a block tells. Of the others the block whose Dunkerley sum is largest is solved first; any other block whose lower bound lies below that root
 //! gets one pass at it, and only if a pivot is negative there, a root of its own.
 
 use super::Keep;
@@ -115,8 +115,8 @@ impl<'a, 'c> Question<'a, 'c> {
         (lowest, unsure)
     }
 
-    /// Lanes in which a single joint yields so much that the lowest eigenvalue is below a bar: no eigenvalue of a
-    /// symmetric matrix is larger than all, so none of its diagonal is.
+    /// Lanes in which a single joint yields so much that the lowest eigenvalue is below a bar. One over it is the largest
+    /// eigenvalue of flexibility times mass, and nothing on the diagonal of a symmetric matrix is larger than that.
     #[inline(always)]
     fn sluggish<V: Lanes>(&self, below: V) -> u8 {
         let mut slow = 0;
