@@ -168,8 +168,7 @@ pub fn objectives_with(arm: &Arm, cases: &[LoadCase], change: impl Fn(&mut Struc
         let posed = chain.pose(case);
         let statics = posed.statics();
         out.tip_deflection_m = out.tip_deflection_m.max(statics.tip_displacement_m.norm());
-        let lowest = posed.modes(&statics, 1).first().map_or(f64::INFINITY, |m| m.frequency_hz);
-        out.lowest_mode_hz = out.lowest_mode_hz.min(lowest);
+        out.lowest_mode_hz = out.lowest_mode_hz.min(posed.lowest_frequency_hz(&statics));
     }
     out
 }
