@@ -3,7 +3,7 @@
 use armwright::arm::{LoadCase, read_arm_document};
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
-use armwright::report::budget::{BudgetRow, PickBudget, budget_csv, budget_markdown, budget_text};
+use armwright::report::budget::{BudgetRow, Gain, PickBudget, budget_csv, budget_markdown, budget_text};
 use armwright::search::design::{full_objectives, number_of, options};
 use armwright::search::{ArmProblem, Objectives, OutwardIn};
 use armwright::study::{Study, budgets, front_table, read_study, run_study};
@@ -142,6 +142,8 @@ fn the_budget_is_what_arm_files_changed_as_text_say() {
                 let limit = (4.0 * narrow[i] - wide[i]) / 3.0;
                 assert!((found[i] - limit).abs() < 1e-5 * (limit.abs() + scale[i]), "{row:?}: {limit}");
             }
+            let helps = |gain: Gain| gain.mm_per_kg < 0.0 || gain.hz_per_kg > 0.0;
+            assert!(row.next_part.as_ref().is_none_or(|next| helps(next.gain)), "{row:?}");
             if row.is_joint
                 && let Some(next) = &row.next_part
             {

@@ -15,6 +15,13 @@ pub struct Gain {
     pub hz_per_kg: f64,
 }
 
+impl Gain {
+    /// Whether it lowers the deflection or raises the mode.
+    pub fn helps(&self) -> bool {
+        self.mm_per_kg < -NOTHING || self.hz_per_kg > NOTHING
+    }
+}
+
 /// A heavier part that may stand in a piece's place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NextPart {
@@ -39,7 +46,7 @@ pub struct BudgetRow {
     pub share: f64,
     /// What a kilogram buys if mass and stiffness of the piece grow in proportion.
     pub in_place: Gain,
-    /// The heavier part with the best change of deflection per kilogram.
+    /// Of the heavier parts that help, the one with the best change of deflection per kilogram.
     pub next_part: Option<NextPart>,
 }
 
@@ -245,8 +252,8 @@ const BOUND_WORDS: &str = "None below: no arm of the study that sags no more and
                            the convex relaxation gives at first, in which every piece may be a mixture of its catalog options.";
 const OPPOSED_WORDS: &str = "* loads may oppose each other, which weakens the bound.";
 const IN_PLACE_WORDS: &str = "Per kilogram added to a piece, its stiffness growing in proportion; minus lowers the tip's \
-                              deflection. Next part: of the heavier parts that may stand there the best per kilogram, all \
-                              others kept.";
+                              deflection. Next part: of the heavier parts that may stand there and lower the deflection or \
+                              raise the mode, the best per kilogram, all others kept.";
 
 fn opposed(budgets: &[PickBudget]) -> bool {
     budgets.iter().any(|b| b.bound.is_some_and(|b| b.loads_oppose))

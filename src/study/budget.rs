@@ -3,8 +3,8 @@
 //!
 //! Two answers a piece, both by the full model with all other parts kept. *In place*: the piece's mass and
 //! stiffness grow in proportion (a thicker wall, a gear scaled up), a central difference over 0.1 % of its mass.
-//! *Next part*: of the heavier catalog parts that may stand there, the one with the best change of deflection per
-//! kilogram; a difference between two parts one can buy. Drives further inboard are not sized again.
+//! *Next part*: of the heavier catalog parts that may stand there and better anything, the one with the best change
+//! of deflection per kilogram; a difference between two parts one can buy. Drives further inboard are not sized again.
 
 use super::alternatives::alternatives;
 use super::bounds::MassBounds;
@@ -96,6 +96,7 @@ fn budget(
             .iter()
             .filter(|(_, other)| heavier(other.mass_kg()))
             .map(|(name, other)| NextPart { name: name.clone(), mass_kg: other.mass_kg(), gain: with(other) })
+            .filter(|next| next.gain.helps())
             .min_by(|a, b| a.gain.mm_per_kg.total_cmp(&b.gain.mm_per_kg));
         BudgetRow {
             piece: element.name().to_string(),

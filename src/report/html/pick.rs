@@ -246,7 +246,8 @@ pub fn deflection_bars(picks: &[PickedArm]) -> Figure {
     };
     let caption = "Joints solid, links hatched; each part is the element's deformation carried to the tip (Eqs 13 to 15), \
                    along the direction of the whole deflection, in the design's worst pose.";
-    Figure { name: "deflection".into(), caption: caption.into(), svg: bars.to_svg(), csv: bars.to_csv() }
+    let csv = bars.to_csv();
+    Figure { name: "deflection".into(), caption: caption.into(), svg: bars.readable().to_svg(), csv }
 }
 
 fn solve<'a>(arm: &Arm, case: &'a LoadCase) -> Solved<'a> {

@@ -21,7 +21,7 @@ pub struct Part {
 }
 
 /// One bar.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Bar {
     /// Words at its left.
     pub label: String,
@@ -46,7 +46,29 @@ pub struct StackedBars {
     pub bars: Vec<Bar>,
 }
 
+/// A bar this much longer than the shortest leaves nothing of it to be seen.
+const FAR_APART: f64 = 8.0;
+
 impl StackedBars {
+    /// The same with every bar as long as the others if some would be too short to be seen: parts of its own whole.
+    #[must_use]
+    pub fn readable(mut self) -> Self {
+        let whole = |bar: &Bar| bar.values.iter().sum::<f64>();
+        let (least, most) = self
+            .bars
+            .iter()
+            .map(whole)
+            .fold((f64::INFINITY, 0.0f64), |(least, most), x| (least.min(x), most.max(x)));
+        if least > 0.0 && most > FAR_APART * least {
+            self.title.push_str(", each bar a whole");
+            for bar in &mut self.bars {
+                let whole = whole(bar);
+                bar.values.iter_mut().for_each(|value| *value /= whole);
+            }
+        }
+        self
+    }
+
     /// The bars as a self-contained SVG document.
     pub fn to_svg(&self) -> String {
         let legend = self.legend_rows();
@@ -199,6 +221,17 @@ impl StackedBars {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bars_far_apart_are_drawn_as_long_as_each_other() {
+        let of = |values: [f64; 2]| Bar { values: values.to_vec(), ..Bar::default() };
+        let near = StackedBars { bars: vec![of([1.0, 2.0]), of([5.0, 4.0])], ..bars() };
+        assert_eq!(near.clone().readable(), near);
+        let far = StackedBars { bars: vec![of([0.1, 0.3]), of([50.0, 40.0])], ..bars() }.readable();
+        assert!(far.title.ends_with("each bar a whole"));
+        assert!(far.bars.iter().all(|bar| (bar.values.iter().sum::<f64>() - 1.0).abs() < 1e-12));
+        assert!((far.bars[0].values[0] - 0.25).abs() < 1e-12);
+    }
 
     fn bars() -> StackedBars {
         StackedBars {
