@@ -62,6 +62,31 @@ fn at_a_single_spring_a_kilogram_more_buys_the_deflection_over_the_mass() {
     assert!(words.contains(&sag), "{words}");
 }
 
+#[test]
+fn the_next_tube_is_no_softer_either_way_and_not_too_slender() {
+    let catalogs = Catalogs::builtin();
+    let square = |side_mm: f64, wall_mm: f64| json!({"shape": "rectangular_tube", "width_mm": [side_mm], "height_mm": "=width", "wall_mm": [wall_mm]});
+    let mut study = json!({
+        "name": "tubes", "question": "which tube next?",
+        "chain": [
+            {"type": "joint", "name": "j1", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e6, "mass_kg": 10},
+            {"type": "link", "name": "arm", "vector_m": [1, 0, 0], "choose": {"materials": ["Aluminium 6061-T6"],
+                "sections": [square(60.0, 3.0), square(80.0, 3.0), square(110.0, 2.0),
+                    {"shape": "rectangular_tube", "width_mm": [40], "height_mm": [100], "wall_mm": [3]}]}},
+        ],
+        "payload": {"mass_kg": 5}, "poses": [{"name": "out", "pose_deg": [0]}],
+    });
+    let next_of_lightest = |study: &Value| {
+        let all = budgets_of(&read(study, &catalogs), &catalogs);
+        let lightest = all.iter().find(|pick| pick.names.contains(&"lightest")).expect("a pick");
+        lightest.rows[1].next_part.clone().expect("a heavier tube").name
+    };
+    // per kilogram the tall one is better than the square of 80 mm, but softer sideways
+    assert_eq!(next_of_lightest(&study), "110 x 110 x 2 mm Aluminium 6061-T6");
+    study["constraints"] = json!({"wall_slenderness_max": 40});
+    assert_eq!(next_of_lightest(&study), "80 x 80 x 3 mm Aluminium 6061-T6");
+}
+
 /// The bench arm of the examples with few drives, and effects at its elbow and forearm.
 fn bench() -> Value {
     let mut study: Value = serde_json::from_str(include_str!("../examples/bench-arm.json")).expect("JSON");

@@ -8,11 +8,12 @@
 use super::design::{number, options};
 use super::outward::{ArmProblem, Partial};
 use super::slot::Slot;
-use super::space::{LinkOption, SpacePiece};
+use super::space::SpacePiece;
 use super::station::{Station, StationSlot};
 use super::{Objectives, OutwardIn};
 use crate::arm::{Curve, JointLaw};
 use crate::mechanics::Wrench;
+use crate::mechanics::beam::line_stiffnesses;
 
 /// Objectives that differ by less than this part are equal.
 const ROUNDING: f64 = 1e-9;
@@ -88,8 +89,8 @@ impl<'p, 'c> Weighed<'p, 'c> {
             }
             (_, Some(SpacePiece::Choice(choice))) => {
                 let [option, now] = [option, now].map(|o| &choice.options[o as usize]);
-                option.mass_kg_per_m() < now.mass_kg_per_m()
-                    && stiffnesses(option).iter().zip(stiffnesses(now)).all(|(a, b)| *a >= b)
+                let [own, present] = [option, now].map(|o| line_stiffnesses(&o.beam()));
+                option.mass_kg_per_m() < now.mass_kg_per_m() && own.iter().zip(present).all(|(a, b)| *a >= b)
             }
             _ => false,
         }
@@ -169,20 +170,6 @@ fn never_softer(a: &Curve, b: &Curve) -> bool {
         (Some(_), None) => false,
         (Some(a), Some(b)) => a.never_softer(&b, f64::INFINITY),
     }
-}
-
-/// Stiffnesses of a tube per length: stretch, bending about both axes, torsion, shear.
-fn stiffnesses(option: &LinkOption) -> [f64; 5] {
-    let material = &option.material;
-    let section = option.section.properties(material.poisson);
-    let (e, g) = (material.youngs_modulus_pa, material.shear_modulus_pa);
-    [
-        e * section.area_m2,
-        e * section.second_moment_y_m4,
-        e * section.second_moment_z_m4,
-        g * section.torsion_constant_m4,
-        g * section.area_m2 * section.shear_factor,
-    ]
 }
 
 #[cfg(test)]

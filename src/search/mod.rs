@@ -51,6 +51,15 @@ pub struct Objectives {
 }
 
 impl Objectives {
+    /// Better by a factor in each.
+    pub(crate) fn better_by(&self, factor: f64) -> Self {
+        Self {
+            tip_deflection_m: self.tip_deflection_m / factor,
+            mass_kg: self.mass_kg / factor,
+            lowest_mode_hz: self.lowest_mode_hz * factor,
+        }
+    }
+
     /// As three numbers to be made small.
     pub fn minimized(&self) -> [f64; 3] {
         [self.mass_kg, self.tip_deflection_m, -self.lowest_mode_hz]

@@ -495,7 +495,7 @@ impl OutwardIn for ArmProblem<'_> {
                     if done.unsure & bit != 0 {
                         self.finish_one(outer.len(), option, from, *first, &mut scratch.spare, keep);
                     } else {
-                        let group = at.groups()[lane];
+                        let group = at.group(lane);
                         let objectives = done.objectives(lane);
                         keep.complete(first + u128::from(option), Finished { objectives, group });
                     }

@@ -36,20 +36,21 @@ struct Ask<V> {
 }
 
 impl RowChunk<'_, '_> {
+    /// The group of a design.
+    #[inline(always)]
+    pub fn group(&self, lane: usize) -> Option<usize> {
+        let material = self.row.chunks.get(self.chunk).and_then(|chunk| chunk.materials[lane]);
+        self.from.group.with(material).material()
+    }
+
     /// The group of each design.
-    #[inline]
-    pub fn groups(&self) -> [Option<usize>; LANES] {
-        let from = self.from.group;
-        match self.row.chunks.get(self.chunk) {
-            None => [from.material(); LANES],
-            Some(chunk) => {
-                let mut groups = [None; LANES];
-                for (group, material) in groups.iter_mut().zip(chunk.materials) {
-                    *group = from.with(material).material();
-                }
-                groups
-            }
+    #[inline(always)]
+    fn groups(&self) -> [Option<usize>; LANES] {
+        let mut groups = [None; LANES];
+        for (lane, group) in groups.iter_mut().enumerate() {
+            *group = self.group(lane);
         }
+        groups
     }
 }
 

@@ -1,7 +1,7 @@
 //! What there is to choose: the arm with its open links and drives, and what it is asked to do.
 
 use super::constraint::Constraints;
-use crate::arm::{Curve, Effect, JointModel, Link, LinkMaterial, LinkModel, Payload, Section, Water};
+use crate::arm::{Beam, Curve, Effect, JointModel, Link, LinkMaterial, LinkModel, Payload, Section, Water};
 use crate::sizing::{DriveFilter, MotionRequirement};
 use nalgebra::{Unit, Vector3};
 
@@ -140,6 +140,11 @@ impl DriveChoice {
 }
 
 impl LinkOption {
+    /// The tube as mechanics sees it, as it is built.
+    pub fn beam(&self) -> Beam {
+        Beam { material: self.material, section: self.section, flexibility: 1.0 }
+    }
+
     /// A tube that is given: no choice, no strength, no cost.
     pub(super) fn given(material: LinkMaterial, section: Section) -> Self {
         Self {

@@ -1,6 +1,7 @@
 //! What else may stand in the place of each part of a design: drives that hold there, and tubes.
 
-use crate::arm::{Arm, Curve, Element, Joint, Link, LinkBody, LinkMaterial, Section, windup_of};
+use crate::arm::{Arm, Beam, Curve, Element, Joint, Link, LinkBody, windup_of};
+use crate::mechanics::beam::line_stiffnesses;
 use crate::report::number::significant;
 use crate::search::constraint::Constraints;
 use crate::search::space::{LinkChoice, LinkOption, SpacePiece};
@@ -57,13 +58,14 @@ fn tubes(choice: &LinkChoice, limits: &Constraints, now: &Element) -> Vec<(Strin
         return Vec::new();
     };
     let length_m = choice.vector_m.norm();
-    let [now_z, now_y, _] = end_compliances(section, material, length_m);
+    let now = Beam { material: *material, section: *section, flexibility: 1.0 };
+    let [now_z, now_y, _] = end_compliances(&now, length_m);
     let slender_most = limits.wall_slenderness_max.unwrap_or(f64::INFINITY);
     let mut by_mass: Vec<(f64, [f64; 3], &LinkOption)> = choice
         .options
         .iter()
         .filter(|option| option.wall_slenderness() <= slender_most)
-        .map(|o| (o.mass_kg_per_m(), end_compliances(&o.section, &o.material, length_m), o))
+        .map(|o| (o.mass_kg_per_m(), end_compliances(&o.beam(), length_m), o))
         .filter(|(_, [along_z, along_y, _], _)| *along_z <= now_z && *along_y <= now_y)
         .collect();
     by_mass.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -80,13 +82,10 @@ fn tubes(choice: &LinkChoice, limits: &Constraints, now: &Element) -> Vec<(Strin
 }
 
 /// Deflection per load of a cantilever by bending and shear, along either axis of its section and along both \[m/N\].
-fn end_compliances(section: &Section, material: &LinkMaterial, length_m: f64) -> [f64; 3] {
-    let section = section.properties(material.poisson);
-    let shear = length_m / (material.shear_modulus_pa * section.area_m2 * section.shear_factor);
-    let bending =
-        |second_moment_m4: f64| length_m.powi(3) / (3.0 * material.youngs_modulus_pa * second_moment_m4);
+fn end_compliances(beam: &Beam, length_m: f64) -> [f64; 3] {
+    let [bending_y, bending_z, shear, ..] = line_stiffnesses(beam);
     let [along_z, along_y] =
-        [section.second_moment_y_m4, section.second_moment_z_m4].map(|i| bending(i) + shear);
+        [bending_y, bending_z].map(|bending| length_m.powi(3) / (3.0 * bending) + length_m / shear);
     [along_z, along_y, along_z + along_y]
 }
 

@@ -95,12 +95,7 @@ impl Claimed<'_> {
     /// The rows, each better than it is by the gap: what they do not beat is missing.
     fn objectives(&self) -> Vec<Objectives> {
         let by = if self.gap > 0.0 { 1.0 + self.gap + ROUNDING } else { 1.0 };
-        let better = |o: &Objectives| Objectives {
-            mass_kg: o.mass_kg / by,
-            tip_deflection_m: o.tip_deflection_m / by,
-            lowest_mode_hz: o.lowest_mode_hz * by,
-        };
-        self.front.iter().map(|d| better(&d.design.objectives)).collect()
+        self.front.iter().map(|d| d.design.objectives.better_by(by)).collect()
     }
 }
 

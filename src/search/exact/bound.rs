@@ -110,7 +110,7 @@ impl<'c> Problem<'c> {
     }
 
     /// The inertia matrices of every judged case.
-    pub fn with_inertias(mut self) -> Self {
+    pub(super) fn with_inertias(mut self) -> Self {
         let mut work = Work::default();
         let filled = self.fill(&mut self.root(), &mut work);
         if filled.and_then(|()| self.least_tip_m(&mut work)).is_some() {

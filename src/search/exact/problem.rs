@@ -126,7 +126,7 @@ impl<'c> Problem<'c> {
             }
         }
         problem.lighter_is_better = problem.grows_with_weight();
-        Some(problem)
+        Some(problem.with_inertias())
     }
 
     fn part(

@@ -24,8 +24,7 @@ pub struct Reach<'p> {
 impl<'p> Reach<'p> {
     /// Compiles a space; `None` if some level has no option.
     pub fn new(space: &'p DesignSpace, catalogs: &'p Catalogs) -> Option<Self> {
-        let problem = Problem::new(space, catalogs, &|_| true)?.with_inertias();
-        Some(Self { problem })
+        Some(Self { problem: Problem::new(space, catalogs, &|_| true)? })
     }
 
     /// The options of each level, tip first and ascending, that a design may have that is no worse than a known one in all

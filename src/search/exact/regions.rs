@@ -121,12 +121,7 @@ impl<'p> Search<'_, 'p> {
 
     /// A design taken for better than it is by the slack, so that what is left is missed by more.
     fn tightened(&self, found: &Objectives) -> Objectives {
-        let by = 1.0 + self.slack - BEATEN;
-        Objectives {
-            mass_kg: found.mass_kg / by,
-            tip_deflection_m: found.tip_deflection_m / by,
-            lowest_mode_hz: found.lowest_mode_hz * by,
-        }
+        found.better_by(1.0 + self.slack - BEATEN)
     }
 
     /// The corners that designs found since leave of a region; `None` if none of them is in it.

@@ -55,7 +55,7 @@ pub struct Exact<'p> {
     deadline: Option<Instant>,
     boxes: AtomicU64,
     /// The slack of a search from known designs.
-    within: f64,
+    beyond: f64,
     /// Designs above which a space is searched region by region, and down to how many.
     regions_from: f64,
     regions_to: f64,
@@ -73,7 +73,8 @@ pub struct ExactOutcome {
     /// Boxes left unopened because the search was stopped; none if the front is certified.
     pub boxes_open: u64,
     /// By what factor, at most, a design in an open box may be better than a design of the front in every
-    /// objective at once; 0 if no box is open, `None` if nothing can be said.
+    /// objective at once; if no box is open the slack of the search, 0 for the whole front; `None` if nothing can be
+    /// said.
     pub gap: Option<f64>,
     /// Designs that no other one found beats.
     pub front: Vec<Candidate>,
@@ -123,7 +124,7 @@ impl<'p> Exact<'p> {
         deadline: Option<Instant>,
     ) -> Self {
         let boxes = AtomicU64::new(0);
-        Self { space, catalogs, stop, deadline, boxes, within: 0.0, regions_from: VAST, regions_to: FEW }
+        Self { space, catalogs, stop, deadline, boxes, beyond: 0.0, regions_from: VAST, regions_to: FEW }
     }
 
     /// Searches a space of more designs than this, instead of 1e14, region by region down to so few. It changes how
@@ -136,7 +137,7 @@ impl<'p> Exact<'p> {
     /// Looks only for designs that beat every known one by more than a slack in all three objectives at once.
     #[must_use]
     pub fn beyond(self, slack: f64) -> Self {
-        Self { within: slack, ..self }
+        Self { beyond: slack, ..self }
     }
 
     /// Boxes bounded so far.
@@ -178,7 +179,7 @@ impl<'p> Exact<'p> {
 
     /// The space with some of its link options; `None` if a level has none.
     pub(super) fn problem(&self, takes: &dyn Fn(&LinkOption) -> bool) -> Option<Problem<'p>> {
-        Problem::new(self.space, self.catalogs, takes).map(Problem::with_inertias)
+        Problem::new(self.space, self.catalogs, takes)
     }
 
     /// Opens the box of everything and all that comes of it, in parallel; what is left when the search is stopped
@@ -228,7 +229,7 @@ impl<'p> Exact<'p> {
                     better.iter().for_each(|member| search.keep(&member.cell, member.objectives));
                 }
             }
-            let passes = if is_large && known.is_empty() { &SLACKS[..] } else { &[self.within] };
+            let passes = if is_large && known.is_empty() { &SLACKS[..] } else { &[self.beyond] };
             let mut next = 0;
             while let Some(&slack) = passes.get(next) {
                 let started = Instant::now();
