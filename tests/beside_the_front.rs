@@ -395,10 +395,21 @@ fn designs_are_flagged_whose_heavier_part_only_presses_a_gear_into_a_stiffer_seg
     assert_eq!(flagged, expected);
     assert!(!flagged.is_empty() && flagged.len() < outcome.front.len());
     // a joint of one stiffness has no segment to be pressed into
-    let straight = read(&ballast_study(&json!({"stiffness_nm_per_rad": 3.6e5})), &catalogs);
-    let (problem, outcome) =
-        (ArmProblem::new(&straight.space, &catalogs), self::outcome(&straight, &catalogs));
-    assert!(ballast_flags(&problem, &outcome.front).is_empty());
+    let flags = |study: &Value| {
+        let straight = read(study, &catalogs);
+        let outcome = self::outcome(&straight, &catalogs);
+        ballast_flags(&ArmProblem::new(&straight.space, &catalogs), &outcome.front)
+    };
+    let mut straight = ballast_study(&json!({"stiffness_nm_per_rad": 3.6e5}));
+    assert!(flags(&straight).is_empty());
+    // its play closes under weight
+    let play = json!({"half_width_rad": 2e-3, "torque_nm": 25});
+    straight["effects"] = json!([{"effect": "lost_motion", "at": "j2", "parameters": play}]);
+    let words = flags(&straight).to_markdown();
+    assert!(
+        words.contains("because the play of j2 opens.") && words.contains("where it is stiffer"),
+        "{words}"
+    );
 }
 
 fn run(dir: &Path, out: &str, words: &[&str]) -> (Option<i32>, String, String) {

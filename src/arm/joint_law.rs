@@ -161,6 +161,18 @@ pub struct LostMotion {
     pub torque_nm: f64,
 }
 
+impl LostMotion {
+    /// Twist under the total torque \[rad\].
+    pub fn angle_rad(&self, torque_nm: f64) -> f64 {
+        self.half_width_rad * (torque_nm / self.torque_nm).tanh()
+    }
+
+    /// Twist per further torque \[rad/(N m)\]; it falls as the torque grows.
+    pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
+        self.half_width_rad / self.torque_nm / (torque_nm / self.torque_nm).cosh().powi(2)
+    }
+}
+
 /// All that twists about a joint's axis, in series.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointLaw {
@@ -183,15 +195,13 @@ impl From<Curve> for JointLaw {
 impl JointLaw {
     /// Twist under the total torque \[rad\] without the friction play.
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
-        let play = self.lost_motion.map_or(0.0, |l| l.half_width_rad * (torque_nm / l.torque_nm).tanh());
+        let play = self.lost_motion.map_or(0.0, |lost| lost.angle_rad(torque_nm));
         self.curve.angle_rad(torque_nm) + self.connection_rad_per_nm * torque_nm + play
     }
 
     /// Twist per further torque \[rad/(N m)\]; the friction play does not move in small oscillations.
     pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
-        let play = self
-            .lost_motion
-            .map_or(0.0, |l| l.half_width_rad / l.torque_nm / (torque_nm / l.torque_nm).cosh().powi(2));
+        let play = self.lost_motion.map_or(0.0, |lost| lost.tangent_compliance_rad_per_nm(torque_nm));
         self.curve.tangent_compliance_rad_per_nm(torque_nm) + self.connection_rad_per_nm + play
     }
 

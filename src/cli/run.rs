@@ -21,7 +21,7 @@ use crate::report::summary::{
 use crate::report::table::Table;
 use crate::search::hypervolume::front_hypervolume;
 use crate::search::near::NearDesigns;
-use crate::search::{ArmProblem, DesignSpace, Status, exact};
+use crate::search::{ArmProblem, DesignSpace, Status};
 use crate::study::{
     Carried, ExactStudy, Study, StudyOutcome, budgets, empty_pieces, front_table, left_out, named,
     paper_question, read_study, run_exact, run_study, slug, study_page, why_infeasible,
@@ -205,15 +205,8 @@ fn search_kind(args: &RunArgs, study: &Study, catalogs: &Catalogs) -> Result<Sea
     let designs = study.space.designs(catalogs).ok_or_else(|| {
         Failure::Usage(format!("the study \"{}\" has more than 1e38 designs; thin a grid", study.name))
     })?;
-    let large = designs > MOST_VISITED;
-    let kind = args.search.unwrap_or(if large { SearchKind::Exact } else { SearchKind::Exhaustive });
-    if let (SearchKind::Exact, Err(why)) = (kind, exact::conditions(&study.space)) {
-        return Err(Failure::Usage(format!(
-            "the exact search cannot certify the study \"{}\": {why}; use --search exhaustive{}",
-            study.name,
-            if large { ", with fewer options" } else { "" }
-        )));
-    }
+    let suits = if designs > MOST_VISITED { SearchKind::Exact } else { SearchKind::Exhaustive };
+    let kind = args.search.unwrap_or(suits);
     if kind == SearchKind::Exhaustive && designs > MOST_CONCEIVABLE {
         return Err(Failure::Usage(format!(
             "visiting the {:.1e} designs of the study \"{}\" would take years; use --search exact",

@@ -3,7 +3,7 @@
 //! A gear's torsion curve grows steeper with torque: something heavy outboard presses it past a break point, its
 //! tangent stiffness rises a segment, and with it the lowest mode. A design can be on a front for that alone: with
 //! a lighter part that is at least as stiff in everything it would weigh less and sag no more, and only its lowest
-//! mode would fall, because an inboard gear falls to a softer segment.
+//! mode would fall, because an inboard gear falls to a softer segment or the play of a joint opens.
 
 use super::design::{number, options};
 use super::outward::{ArmProblem, Partial};
@@ -25,10 +25,19 @@ pub struct Ballast {
     pub piece: usize,
     /// Number of the design with a lighter part instead.
     pub lighter: u128,
-    /// The joint whose gear falls to a softer segment then: a piece of the chain.
+    /// The joint that is softer then: a piece of the chain.
     pub pressed: usize,
+    /// Whether its gear falls to a softer segment; if not, its play opens.
+    pub by_segment: bool,
     /// The case in which it does.
     pub case: usize,
+}
+
+/// A joint that is softer under less torque.
+struct Relieved {
+    slot: usize,
+    case: usize,
+    by_segment: bool,
 }
 
 /// A design at work.
@@ -96,10 +105,10 @@ impl<'p, 'c> Weighed<'p, 'c> {
         }
     }
 
-    /// The design with a lighter part, if only its lowest mode is worse and a gear that falls to a softer segment
-    /// is why.
+    /// The design with a lighter part, if only its lowest mode is worse and a joint inboard that is softer is
+    /// why.
     fn without_weight(&self, level: usize, slot: usize, option: u32) -> Option<(f64, Ballast)> {
-        let (pressed, case) = self.relieved(slot, option)?;
+        let relieved = self.relieved(slot, option)?;
         let mut options = self.options.clone();
         options[level] = option;
         let lighter = self.problem.walk(&options, |_, _| {}).ok()?;
@@ -109,27 +118,32 @@ impl<'p, 'c> Weighed<'p, 'c> {
         let mode_alone_is_worse = o.mass_kg < self.objectives.mass_kg
             && o.tip_deflection_m <= self.objectives.tip_deflection_m * (1.0 + ROUNDING)
             && o.lowest_mode_hz < self.objectives.lowest_mode_hz * (1.0 - ROUNDING);
-        let shows = others_stay && mode_alone_is_worse && self.gears_are_why(&lighter, slot);
+        let shows = others_stay && mode_alone_is_worse && self.joints_are_why(&lighter, slot);
         let piece = self.problem.piece_of_slot(slot);
         shows.then(|| {
             let lighter = number(self.problem.level_sizes(), &options);
-            (o.mass_kg, Ballast { piece, lighter, pressed: self.problem.piece_of_slot(pressed), case })
+            let Relieved { slot, case, by_segment } = relieved;
+            let pressed = self.problem.piece_of_slot(slot);
+            (o.mass_kg, Ballast { piece, lighter, pressed, by_segment, case })
         })
     }
 
-    /// The joint inboard, and the case, in which a gear falls to a softer segment when a part's weight changes.
-    fn relieved(&self, slot: usize, option: u32) -> Option<(usize, usize)> {
+    /// The first joint inboard, and the case, that is softer when a part's weight changes.
+    fn relieved(&self, slot: usize, option: u32) -> Option<Relieved> {
         let cases = &self.problem.space().judged_cases;
         let inboard = slot + 1..self.problem.slots().len();
-        inboard.flat_map(|joint| cases.iter().map(move |&case| (joint, case))).find(|&(joint, case)| {
+        inboard.flat_map(|joint| cases.iter().map(move |&case| (joint, case))).find_map(|(joint, case)| {
             let station = &self.problem.stations()[case];
             let (StationSlot::Joint(place), Some(law)) = (&station.slots[joint], self.law(joint)) else {
-                return false;
+                return None;
             };
             let torque_nm = self.torques_nm[joint][case];
             let change_nm = place.twist.dot(&self.change_of_weight(station, slot, option));
-            let softness = |torque_nm| law.curve.tangent_compliance_rad_per_nm(torque_nm);
-            softness(torque_nm + change_nm) > softness(torque_nm)
+            let [now, then] = [torque_nm, torque_nm + change_nm];
+            let softer = |of: &dyn Fn(f64) -> f64| of(then) > of(now);
+            let by_segment = softer(&|t| law.curve.tangent_compliance_rad_per_nm(t));
+            let is_softer = by_segment || softer(&|t| law.tangent_compliance_rad_per_nm(t));
+            is_softer.then_some(Relieved { slot: joint, case, by_segment })
         })
     }
 
@@ -150,8 +164,8 @@ impl<'p, 'c> Weighed<'p, 'c> {
         }
     }
 
-    /// Whether the lighter design's lowest mode would be no worse if the gears inboard kept their segments.
-    fn gears_are_why(&self, lighter: &Partial, slot: usize) -> bool {
+    /// Whether the lighter design's lowest mode would be no worse if no joint inboard were softer.
+    fn joints_are_why(&self, lighter: &Partial, slot: usize) -> bool {
         let mut held = lighter.clone();
         for (state, before) in held.stations.iter_mut().zip(&self.arm.stations) {
             for inboard in slot + 1..before.compliances.len() {

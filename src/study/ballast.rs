@@ -16,6 +16,7 @@ use rayon::prelude::*;
 struct Flagged {
     row: Vec<String>,
     words: String,
+    by_segment: bool,
 }
 
 /// The designs of a front that have a part for its weight.
@@ -66,8 +67,12 @@ fn flagged(problem: &ArmProblem, judged: &Judged, ballast: &Ballast) -> Option<F
     let id = id_of(problem.whole_number(judged.design.number));
     let (at, pressed) = (name(ballast.piece), name(ballast.pressed));
     let (kept, lighter) = (part(judged.design.number)?, part(ballast.lighter)?);
+    let why = match ballast.by_segment {
+        true => format!("{pressed} falls to a softer segment of its gear"),
+        false => format!("the play of {pressed} opens"),
+    };
     let words = format!(
-        "{id}: with {lighter} instead of {kept} at {at} it weighs {} kg less, sags no more, and its lowest mode falls from {} to {} Hz, because {pressed} falls to a softer segment of its gear.",
+        "{id}: with {lighter} instead of {kept} at {at} it weighs {} kg less, sags no more, and its lowest mode falls from {} to {} Hz, because {why}.",
         significant(heavy.mass_kg - light.mass_kg, 3),
         significant(heavy.lowest_mode_hz, 4),
         significant(light.lowest_mode_hz, 4),
@@ -78,7 +83,7 @@ fn flagged(problem: &ArmProblem, judged: &Judged, ballast: &Ballast) -> Option<F
     row.extend(each(|o| o.mass_kg));
     row.extend(each(|o| o.tip_deflection_m * 1e3));
     row.extend(each(|o| o.lowest_mode_hz));
-    Some(Flagged { row, words })
+    Some(Flagged { row, words, by_segment: ballast.by_segment })
 }
 
 impl BallastFlags {
@@ -101,8 +106,12 @@ impl BallastFlags {
     /// How many there are, and what that means, in a sentence.
     pub fn sentence(&self) -> String {
         let are = if self.len() == 1 { "is" } else { "are" };
+        let presses = match self.flagged.iter().all(|f| f.by_segment) {
+            true => "a gear into a stiffer segment",
+            false => "a joint to where it is stiffer",
+        };
         format!(
-            "{} of the front's {} designs {are} there only because ballast presses a gear into a stiffer segment: ballast.csv.",
+            "{} of the front's {} designs {are} there only because ballast presses {presses}: ballast.csv.",
             self.len(),
             self.front
         )

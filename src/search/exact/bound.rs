@@ -4,7 +4,7 @@
 //! |---|---|
 //! | mass | every part at its least |
 //! | tip deflection | torques, forces and compliances as intervals; the point of the tip's box nearest to rest |
-//! | lowest mode | Rayleigh's quotient ([`shape`](super::shape)) of every stiffness at its greatest over every inertia at its least; a gear's slope at the largest torque it may carry |
+//! | lowest mode | Rayleigh's quotient ([`shape`](super::shape)) of every stiffness at its greatest over every inertia at its least; a gear's slope, and its play's, at the largest torque it may carry |
 //!
 //! A joint or link that cannot hold even the least demand makes the whole box infeasible.
 
@@ -14,7 +14,6 @@ use super::pose::{Pose, RESISTED, degree_factor};
 use super::problem::{Part, Problem};
 use super::shape::{Ideal, Shape, Work as ShapeWork};
 use super::tree::{Bounds, Tree};
-use crate::arm::Windup;
 use crate::search::Objectives;
 use crate::search::figures::von_mises;
 use crate::sizing::JointDemand;
@@ -368,9 +367,12 @@ impl<'c> Problem<'c> {
                         let size = force[0].abs().max(force[1].abs());
                         let least = force[0].max(-force[1]).max(0.0);
                         let range = (least * (1.0 - ROUNDING), size * (1.0 + ROUNDING));
-                        work.stiff_in[case][row.piece][0] = curve.stiffest(range.0, range.1);
+                        let play = self.plays[row.piece].as_ref();
+                        let stiffest = curve.stiffest(range.0, range.1);
+                        work.stiff_in[case][row.piece][0] =
+                            play.map_or(stiffest, |play| play.in_series(stiffest, range.1));
                         work.torques[case][row.piece] = range.into();
-                        twist(curve, force)
+                        curve.twist(play, force)
                     }
                     None => stretch(row.coordinate, pose, row.piece, force, work),
                 };
@@ -440,15 +442,6 @@ fn stress_holds(links: &LinkBox, load: &[f64; 4]) -> bool {
     let [axial, y, z, torsion]: [f64; 4] = std::array::from_fn(|k| load[k] * links.stress[k]);
     let bending = if links.round { y.hypot(z) } else { y + z };
     von_mises(axial + bending, torsion) <= 1.0
-}
-
-/// Twist of a joint between two torques \[rad\].
-pub(super) fn twist(curve: &CurveBox, [low, high]: [f64; 2]) -> [f64; 2] {
-    let outer = |windup: &Windup, t: f64| windup.angle_rad(t);
-    [
-        outer(if low >= 0.0 { &curve.stiff } else { &curve.soft }, low),
-        outer(if high >= 0.0 { &curve.soft } else { &curve.stiff }, high),
-    ]
 }
 
 /// A tube's coordinate between two forces.

@@ -5,7 +5,7 @@
 //! of stiffest and softest. The halves themselves are a worse guide: a box has to be halved several times
 //! before the ceiling moves at all.
 
-use super::bound::{STARTS, Work, stretch, twist};
+use super::bound::{STARTS, Work, stretch};
 use super::parts::{INERTIAS, STIFFNESSES};
 use super::pose::RESISTED;
 use super::problem::{Part, Problem};
@@ -89,7 +89,8 @@ impl Problem<'_> {
         for (row, &force) in pose.rows.iter().zip(&work.forces[case]) {
             let (moved, softer) = match &work.curves[row.piece] {
                 Some(curve) => {
-                    (twist(curve, force), middling(curve.soft.k2_nm_per_rad, curve.stiff.k2_nm_per_rad))
+                    let play = self.plays[row.piece].as_ref();
+                    (curve.twist(play, force), middling(curve.soft.k2_nm_per_rad, curve.stiff.k2_nm_per_rad))
                 }
                 None => {
                     let (resisted, _) = RESISTED[row.coordinate];

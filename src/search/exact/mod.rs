@@ -23,6 +23,7 @@ mod narrow;
 mod near;
 mod parting;
 mod parts;
+mod play;
 mod pointless;
 mod pose;
 mod price;
@@ -37,4 +38,4 @@ mod tradeoff;
 mod tree;
 
 pub use reach::Reach;
-pub use run::{Exact, ExactOutcome, VAST, conditions};
+pub use run::{Exact, ExactOutcome, VAST};

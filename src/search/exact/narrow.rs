@@ -3,7 +3,7 @@
 
 use super::corners::Corner;
 use super::parts::DriveBox;
-use super::price::{Price, States, TubeNumbers};
+use super::price::{Price, TubeNumbers};
 use super::problem::Part;
 use super::tradeoff::{Plane, ROUNDING, Rows};
 
@@ -69,7 +69,7 @@ impl DriveBox {
         }
         let gears = afforded.first().map_or(&[][..], |(price, _)| &price.joint);
         for (g, gear) in gears.iter().enumerate() {
-            let states = self.curve.as_ref().map(|curve| States::of(curve, gear.torques_nm));
+            let states = self.curve.as_ref().map(|curve| gear.states(curve));
             for (left, (price, _)) in left.iter_mut().zip(afforded) {
                 *left -= price.joint[g].best(states.as_ref()).0;
             }

@@ -1,5 +1,6 @@
 //! What the bound sees of a part, and of a box of parts: every number as an interval.
 
+use super::play::Play;
 use super::tree::{Bounds, Key};
 use crate::arm::{Beam, Curve, JointLaw, LinkModel, LinkPiece, Windup};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
@@ -117,6 +118,9 @@ impl Bounds for LinkBox {
     }
 }
 
+/// Stiffness of a rigid gear beside lost motion: to any that yields it adds a part in 1e9 at the most \[N m/rad\].
+const RIGID_NM_PER_RAD: f64 = 1e18;
+
 /// A torsion curve between two: stiffest and softest slope at every torque.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct CurveBox {
@@ -129,21 +133,30 @@ pub(super) struct CurveBox {
 }
 
 impl CurveBox {
-    /// The box of one joint's law without play; a rigid joint has none.
+    /// The box of one joint's law without its play; a joint that does not twist has none.
     pub fn of(law: &JointLaw) -> Option<Self> {
-        let curve = law.without_play();
+        let curve = match law.without_play() {
+            Curve::Rigid if law.lost_motion.is_some() => Curve::Linear(RIGID_NM_PER_RAD),
+            curve => curve,
+        };
         let windup = curve.segments()?;
         Some(Self { stiff: windup, soft: windup, k1_in_modes: !matches!(curve, Curve::Windup(_)) })
     }
 
-    /// Whether modes see one slope under all torques of these sizes, whichever gear it is.
-    pub fn keeps_its_segment(&self, least_nm: f64, most_nm: f64, breaks: Breaks) -> bool {
+    /// Whether modes see one slope under all torques of these sizes, whichever gear it is, and its play does not change.
+    pub fn keeps_its_slope(
+        &self,
+        play: Option<&Play>,
+        [least_nm, most_nm]: [f64; 2],
+        breaks: Breaks,
+    ) -> bool {
         let between = |t_nm: f64| least_nm <= t_nm && t_nm <= most_nm;
-        self.k1_in_modes
+        let keeps_its_segment = self.k1_in_modes
             || match self.stiff == self.soft {
                 true => !between(self.stiff.t1_nm) && !between(self.stiff.t2_nm),
                 false => !breaks.any_between(least_nm, most_nm),
-            }
+            };
+        keeps_its_segment && play.is_none_or(|play| play.stays(most_nm))
     }
 
     /// The greatest slope at torques of these sizes \[N m\].
@@ -161,13 +174,27 @@ impl CurveBox {
         slopes(&self.stiff, least_nm, most_nm).fold(0.0, f64::max)
     }
 
+    /// Least and most twist between two torques, with the play beside it \[rad\].
+    pub fn twist(&self, play: Option<&Play>, [low, high]: [f64; 2]) -> [f64; 2] {
+        let least = if low >= 0.0 { &self.stiff } else { &self.soft }.angle_rad(low);
+        let most = if high >= 0.0 { &self.soft } else { &self.stiff }.angle_rad(high);
+        let [less, more] = self.twist_of(play, [low, high]);
+        [least + less, most + more]
+    }
+
+    /// What play adds to it.
+    pub fn twist_of(&self, play: Option<&Play>, between_nm: [f64; 2]) -> [f64; 2] {
+        let middle = [&self.stiff, &self.soft].map(|curve| 1.0 / curve.k2_nm_per_rad);
+        play.map_or([0.0; 2], |play| play.twist(middle, between_nm))
+    }
+
     /// The slopes that modes may see.
     fn slopes(&self, w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
         let (least_nm, most_nm) = if self.k1_in_modes { (0.0, 0.0) } else { (least_nm, most_nm) };
         slopes(w, least_nm, most_nm)
     }
 
-    fn join(&self, other: &Self) -> Self {
+    pub fn join(&self, other: &Self) -> Self {
         let extreme = |a: &Windup, b: &Windup, k: fn(f64, f64) -> f64, t: fn(f64, f64) -> f64| Windup {
             k1_nm_per_rad: k(a.k1_nm_per_rad, b.k1_nm_per_rad),
             k2_nm_per_rad: k(a.k2_nm_per_rad, b.k2_nm_per_rad),

@@ -10,6 +10,7 @@
 
 use super::bound::Work;
 use super::parts::{CurveBox, DriveBox, SAME_TORQUE};
+use super::play::Play;
 use super::pose::{Pose, PosedPiece, Row};
 use super::problem::{Part, Problem};
 use super::tree::Tree;
@@ -60,10 +61,11 @@ impl Wanted<'_> {
 
 impl Problem<'_> {
     /// Whether everything that is asked of an arm, and everything it yields by, grows with every weight: then
-    /// a lighter arm that is no softer is no worse.
+    /// a lighter arm that is no softer is no worse. What friction holds back grows with the weights too.
     pub fn grows_with_weight(&self) -> bool {
         let fits_first = self.parts.iter().any(|part| matches!(part, Part::FirstFit { .. }));
-        !fits_first && self.poses.iter().all(Pose::grows_with_weight)
+        let friction = self.plays.iter().flatten().any(Play::has_friction);
+        !fits_first && !friction && self.poses.iter().all(Pose::grows_with_weight)
     }
 
     /// Takes pointless drives out of a box whose numbers are in `work`. `None` if no design is left,
@@ -105,7 +107,7 @@ impl Problem<'_> {
         })
     }
 
-    /// Whether every gear inboard stays in its segment if a piece loses so much weight \[N\].
+    /// Whether every gear inboard stays in its segment, and its play as it is, if a piece loses so much weight \[N\].
     fn segments_stay(&self, piece: usize, lost_n: f64, work: &Work) -> bool {
         self.judged_cases().all(|case| {
             self.poses[case].rows.iter().filter(|row| row.piece > piece && row.coordinate == 0).all(|row| {
@@ -113,7 +115,8 @@ impl Problem<'_> {
                 let [least_nm, most_nm] = work.torques[case][row.piece];
                 let drop_nm = row.per_n.get(piece).map_or(0.0, |c| c.abs() * lost_n);
                 let from_nm = (least_nm * (1.0 - SAME_TORQUE) - drop_nm).max(0.0);
-                curve.keeps_its_segment(from_nm, most_nm * (1.0 + SAME_TORQUE), work.breaks[row.piece])
+                let between_nm = [from_nm, most_nm * (1.0 + SAME_TORQUE)];
+                curve.keeps_its_slope(self.plays[row.piece].as_ref(), between_nm, work.breaks[row.piece])
             })
         })
     }

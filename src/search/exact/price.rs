@@ -1,6 +1,7 @@
 //! What a part costs when every number of it has a price, and the cheapest part below a node of a tree.
 
 use super::parts::{CurveBox, INERTIAS, LinkBox, STIFFNESSES, inertia, segments};
+use super::play::Play;
 use super::tree::{Bounds, Tree};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -65,6 +66,7 @@ pub(super) struct JointPrice {
     pub torque: f64,
     pub slope: f64,
     pub torques_nm: [f64; 2],
+    pub play: Option<Play>,
 }
 
 /// A gear's state.
@@ -76,7 +78,7 @@ pub(super) struct JointState {
 }
 
 /// The states of a gear that are worth a price: twist is linear in the torque within a segment, so the ends of the
-/// segments are enough. Of a box of gears no member has a lower price in any.
+/// segments are enough. Of a box of gears no member has a lower price in any. Twists are without the play, slopes with it.
 pub(super) struct States {
     ends: [End; 12],
     count: usize,
@@ -93,20 +95,20 @@ struct End {
 impl States {
     /// The states of a gear between two torques \[N m\].
     #[inline]
-    pub fn of(curve: &CurveBox, [low_nm, high_nm]: [f64; 2]) -> Self {
+    pub fn of(curve: &CurveBox, play: Option<&Play>, [low_nm, high_nm]: [f64; 2]) -> Self {
         let mut states = Self { ends: [End::default(); 12], count: 0 };
         if high_nm >= 0.0 {
-            states.add_sign(curve, 1.0, low_nm.max(0.0), high_nm);
+            states.add_sign(curve, play, 1.0, low_nm.max(0.0), high_nm);
         }
         if low_nm < 0.0 {
-            states.add_sign(curve, -1.0, (-high_nm).max(0.0), -low_nm);
+            states.add_sign(curve, play, -1.0, (-high_nm).max(0.0), -low_nm);
         }
         states
     }
 
     /// Those among torques of one sign and of sizes between two.
     #[inline]
-    fn add_sign(&mut self, curve: &CurveBox, sign: f64, low: f64, high: f64) {
+    fn add_sign(&mut self, curve: &CurveBox, play: Option<&Play>, sign: f64, low: f64, high: f64) {
         let w = &curve.stiff;
         let mut first = 0.0;
         for (slope, start, end) in segments(w) {
@@ -114,6 +116,7 @@ impl States {
             // a break point belongs to the segment below it
             if from <= to && (to > start || start == 0.0) {
                 let seen = if curve.k1_in_modes { w.k1_nm_per_rad } else { slope };
+                let seen = play.map_or(seen, |play| play.in_series(seen, to));
                 let most = sign * curve.soft.angle_rad(to);
                 for torque in [from, to].into_iter().take(if from < to { 2 } else { 1 }) {
                     let least = sign * (first + (torque - start) / slope);
@@ -150,7 +153,13 @@ impl JointPrice {
     /// The same of a joint with this curve.
     #[inline]
     pub fn best_of(&self, curve: Option<&CurveBox>) -> (f64, JointState) {
-        self.best(curve.map(|curve| States::of(curve, self.torques_nm)).as_ref())
+        self.best(curve.map(|curve| self.states(curve)).as_ref())
+    }
+
+    /// The states of a joint with this curve.
+    #[inline]
+    pub fn states(&self, curve: &CurveBox) -> States {
+        States::of(curve, self.play.as_ref(), self.torques_nm)
     }
 
     /// Of a rigid joint, or of a box that has one: nothing is known of the others.

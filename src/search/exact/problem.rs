@@ -4,9 +4,10 @@
 use super::check::Inertia;
 use super::held::Held;
 use super::parts::{Breaks, CurveBox, DriveBox, LinkBox, Rays};
+use super::play::Play;
 use super::pose::Pose;
 use super::tree::{Bounds, Tree};
-use crate::arm::LinkBody;
+use crate::arm::{Curve, LinkBody};
 use crate::catalog::Catalogs;
 use crate::search::effects::Layer;
 use crate::search::slot::{SizedJoint, Slot, joint_slot};
@@ -31,6 +32,8 @@ pub(super) struct Problem<'c> {
     pub peak_factor: f64,
     /// Whether a lighter arm that is no softer is no worse.
     pub lighter_is_better: bool,
+    /// Play of each piece.
+    pub plays: Vec<Option<Play>>,
     /// Forces between bounds that a member must keep.
     pub held: Arc<[Held]>,
 }
@@ -108,6 +111,7 @@ impl<'c> Problem<'c> {
             peak_factor: 1.0
                 + space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE),
             lighter_is_better: false,
+            plays: Vec::new(),
             held: Arc::default(),
         };
         for (place, layer) in space.layers() {
@@ -125,6 +129,7 @@ impl<'c> Problem<'c> {
                 problem.parts.push(Part::Offset { mass_kg: -harness_kg });
             }
         }
+        problem.plays.resize(problem.parts.len(), None);
         problem.lighter_is_better = problem.grows_with_weight();
         Some(problem.with_inertias())
     }
@@ -137,6 +142,11 @@ impl<'c> Problem<'c> {
         takes: &dyn Fn(&LinkOption) -> bool,
     ) -> Option<Part<'c>> {
         let space = self.space;
+        if let SpacePiece::Joint(joint) = piece {
+            // of a joint, whichever drive it has
+            self.plays.resize(self.parts.len(), None);
+            self.plays.push(Play::of(&space.joint_piece(joint, Curve::Linear(1.0)).law));
+        }
         Some(match piece {
             SpacePiece::Joint(joint) => match joint_slot(space, joint, reach_m, catalogs) {
                 Slot::Given { law, mass_kg } => Part::Given { mass_kg, curve: CurveBox::of(&law) },

@@ -8,12 +8,11 @@ use super::gap::gap;
 use super::probe::probe;
 use super::problem::Problem;
 use super::shape::Shape;
-use crate::arm::Curve;
 use crate::catalog::Catalogs;
 use crate::search::Objectives;
 use crate::search::design::number;
 use crate::search::front::not_clearly_beaten;
-use crate::search::space::{DesignSpace, LinkOption, SpacePiece};
+use crate::search::space::{DesignSpace, LinkOption};
 use crate::search::sweep::{Candidate, SLACK};
 use rayon::prelude::*;
 use std::collections::{HashSet, VecDeque};
@@ -78,21 +77,6 @@ pub struct ExactOutcome {
     pub gap: Option<f64>,
     /// Designs that no other one found beats.
     pub front: Vec<Candidate>,
-}
-
-/// Why the search does not see a space as it is.
-///
-/// # Errors
-/// What it does not see, in words.
-pub fn conditions(space: &DesignSpace) -> Result<(), String> {
-    let joints = space.pieces.iter().filter_map(|piece| match piece {
-        SpacePiece::Joint(joint) => Some(joint),
-        _ => None,
-    });
-    match joints.into_iter().find(|joint| space.joint_piece(joint, Curve::Linear(1.0)).law.has_play()) {
-        Some(joint) => Err(format!("its bounds do not know the play of joint {}", joint.name)),
-        None => Ok(()),
-    }
 }
 
 /// What all searches of a run share.

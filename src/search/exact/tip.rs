@@ -46,9 +46,11 @@ impl Tip {
                 tip.joints[row.piece] = way;
                 let [least_nm, most_nm] = work.torques[case][row.piece];
                 let Some(curve) = &work.curves[row.piece] else { continue };
-                let breaks = work.breaks[row.piece];
+                let (breaks, play) = (work.breaks[row.piece], problem.plays[row.piece].as_ref());
+                let [less, more] = curve.twist_of(play, force);
+                fixed_m += way * if way > 0.0 { less } else { more };
                 let known = matches!(problem.parts[row.piece], Part::Drives { .. } | Part::Given { .. });
-                if !known || !curve.keeps_its_segment(least_nm, most_nm, breaks) {
+                if !known || !curve.keeps_its_slope(play, [least_nm, most_nm], breaks) {
                     continue;
                 }
                 tip.torques_nm[row.piece] = Some(at);

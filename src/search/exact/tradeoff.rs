@@ -469,6 +469,7 @@ impl<'a> Rows<'a> {
                 slope: modes.map(|(m, mode)| weight(self.first_mode + m) * mode.shape.strain[piece][0]).sum(),
                 torque: gear.row.map_or(0.0, |row| weight(row) - weight(row + 1)),
                 torques_nm: gear.torques_nm,
+                play: self.problem.plays[piece],
             });
         }
         for (m, mode) in self.modes.iter().enumerate() {

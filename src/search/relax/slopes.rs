@@ -1,6 +1,6 @@
 //! How steep a joint's law can be between two torques.
 
-use crate::arm::{Curve, JointLaw, LostMotion};
+use crate::arm::{Curve, JointLaw};
 
 /// Rounding may put a torque on either side of a break point.
 const NEAR: f64 = 1e-12;
@@ -10,7 +10,10 @@ const NEAR: f64 = 1e-12;
 pub(super) fn tangent_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     let size = size_range(torque_nm);
     let curve = curve_range(&law.curve, size);
-    let play = law.lost_motion.map_or([0.0; 2], |lost| play_range(&lost, size));
+    // its slope falls as the torque grows
+    let play = law
+        .lost_motion
+        .map_or([0.0; 2], |lost| [size[1], size[0]].map(|t| lost.tangent_compliance_rad_per_nm(t)));
     [0, 1].map(|end| curve[end] + law.connection_rad_per_nm + play[end])
 }
 
@@ -48,16 +51,10 @@ fn curve_range(curve: &Curve, [near, far]: [f64; 2]) -> [f64; 2] {
     }
 }
 
-/// The slope of `h tanh(T/T_c)` falls as the torque grows.
-fn play_range(lost: &LostMotion, [near, far]: [f64; 2]) -> [f64; 2] {
-    let slope = |t: f64| lost.half_width_rad / lost.torque_nm / (t / lost.torque_nm).cosh().powi(2);
-    [slope(far), slope(near)]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arm::Windup;
+    use crate::arm::{LostMotion, Windup};
     use proptest::prelude::*;
 
     fn law() -> impl Strategy<Value = JointLaw> {

@@ -208,8 +208,7 @@ fn direction(pose: &Pose, members: &Members) -> Option<Vector3<f64>> {
     let joints =
         members.drives.iter().zip(&pose.torques).zip(&pose.ways_m).map(|((drive, torque), way_m)| {
             let torque_nm = torque.over(loads).middle();
-            let angle_rad = super::drives::angle_rad(&drive.stiff, torque_nm.abs());
-            way_m * angle_rad.copysign(torque_nm)
+            way_m * drive.least_angle_rad(Span { least: torque_nm, most: torque_nm })
         });
     let tubes = members.tubes.iter().zip(&pose.works).flat_map(|(tube, works)| {
         works.iter().zip(compliances(tube)).map(|(work, compliance)| work.middle(loads) * compliance.least)
@@ -226,7 +225,7 @@ fn tip_along(pose: &Pose, members: &Members, direction: &Vector3<f64>) -> f64 {
             let way_m = way_m.dot(direction);
             // a twist that moves the tip back counts with its sign turned
             let torque = torque.over(loads).times(1.0f64.copysign(way_m));
-            if way_m == 0.0 { 0.0 } else { drive.least_angle_rad(torque.least) * way_m.abs() }
+            if way_m == 0.0 { 0.0 } else { drive.least_angle_rad(torque) * way_m.abs() }
         });
     let tubes = members.tubes.iter().zip(&pose.works).flat_map(|(tube, works)| {
         works

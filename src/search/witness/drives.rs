@@ -6,8 +6,9 @@
 //! member's, for a member that is in a later segment there has a slope that the later segment of the bound
 //! exceeds too. The least lowered slopes with the largest break points make one that is nowhere steeper.
 
+use super::span::Span;
 use super::tree::Tree;
-use crate::arm::{Curve, JointLaw, Windup};
+use crate::arm::{Curve, JointLaw, LostMotion, Windup};
 use crate::catalog::Catalogs;
 use crate::search::slot::{Slot, joint_slot};
 use crate::search::space::{DesignSpace, SpaceJoint};
@@ -28,6 +29,10 @@ pub(super) struct DriveRange {
     /// Largest slope in modes of any drive that has one slope there, whatever the torque \[N m/rad\];
     /// infinite if a drive has not.
     pub modal_nm_per_rad: f64,
+    /// Of the joint, the same for all its drives: what closes with the torque.
+    pub lost_motion: Option<LostMotion>,
+    /// Of the joint: half width of what friction holds back of the middle slope's twist \[rad\].
+    pub friction_rad: f64,
 }
 
 /// The drives that a joint may have.
@@ -166,6 +171,8 @@ impl DriveRange {
             stiff: slopes([k1, k1.max(k2), k1.max(k2).max(k3)]),
             soft: slopes([k1.min(k2).min(k3), k2.min(k3), k3]),
             modal_nm_per_rad,
+            lost_motion: law.lost_motion,
+            friction_rad: law.hysteresis_rad,
         }
     }
 
@@ -176,19 +183,34 @@ impl DriveRange {
             stiff: curve(&self.stiff, &other.stiff, f64::max, f64::min),
             soft: curve(&self.soft, &other.soft, f64::min, f64::max),
             modal_nm_per_rad: self.modal_nm_per_rad.max(other.modal_nm_per_rad),
+            ..*self
         }
     }
 
-    /// Least twist under a torque that is at least `torque_nm`, with its sign \[rad\].
-    pub fn least_angle_rad(&self, torque_nm: f64) -> f64 {
-        if torque_nm >= 0.0 { angle_rad(&self.stiff, torque_nm) } else { -angle_rad(&self.soft, -torque_nm) }
+    /// Least twist under any of some torques, with its sign \[rad\]: the gear and what closes with the torque twist least
+    /// under the least torque, and friction holds back most under the most.
+    pub fn least_angle_rad(&self, torque_nm: Span) -> f64 {
+        let Span { least, most } = torque_nm;
+        let gear = if least >= 0.0 { angle_rad(&self.stiff, least) } else { -angle_rad(&self.soft, -least) };
+        let closed = self.lost_motion.map_or(0.0, |lost| lost.angle_rad(least));
+        gear + closed - self.most_held_rad(most)
+    }
+
+    /// The most that friction may hold back of a twist under torques of no more than this, with its sign \[rad\].
+    fn most_held_rad(&self, torque_nm: f64) -> f64 {
+        match torque_nm >= 0.0 {
+            true => (torque_nm / self.soft.k2_nm_per_rad).min(self.friction_rad),
+            false => (torque_nm / self.stiff.k2_nm_per_rad).max(-self.friction_rad),
+        }
     }
 
     /// Largest slope for a small further torque at any torque up to this size \[N m/rad\].
     pub fn largest_slope(&self, torque_nm: f64) -> f64 {
         // beyond a break point by less than rounding counts as beyond
         let reach_nm = torque_nm * (1.0 + 1e-9) + 1e-9;
-        self.stiff.tangent_nm_per_rad(reach_nm).min(self.modal_nm_per_rad)
+        let gear = self.stiff.tangent_nm_per_rad(reach_nm).min(self.modal_nm_per_rad);
+        let open = self.lost_motion.map_or(0.0, |lost| lost.tangent_compliance_rad_per_nm(reach_nm));
+        1.0 / (1.0 / gear + open)
     }
 }
 

@@ -36,7 +36,7 @@ use super::constraint::Constraints;
 use super::space::{DesignSpace, SpacePiece};
 use super::station::reaches_m;
 use super::{ArmProblem, Objectives, OutwardIn, evaluate};
-use crate::arm::{Curve, Water};
+use crate::arm::Water;
 use crate::catalog::Catalogs;
 use crate::search::design::number;
 use drives::Drives;
@@ -98,15 +98,6 @@ pub struct Looked {
 /// # Errors
 /// What they do not see, in words.
 pub fn conditions(space: &DesignSpace) -> Result<(), String> {
-    let plays = |piece: &SpacePiece| match piece {
-        SpacePiece::Joint(joint) if space.joint_piece(joint, Curve::Linear(1.0)).law.has_play() => {
-            Some(joint.name.clone())
-        }
-        _ => None,
-    };
-    if let Some(joint) = space.pieces.iter().find_map(plays) {
-        return Err(format!("its bounds do not know the play of joint {joint}"));
-    }
     let weights = space.motion.duty_cycle.mean_torque_weights();
     if weights.difference > weights.sum {
         return Err("its bounds do not know a duty cycle that decelerates longer than it accelerates".into());
