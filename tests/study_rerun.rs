@@ -156,3 +156,50 @@ fn a_study_is_not_run_again_where_nothing_is_explained() {
     assert!(said.contains("not re-run"), "{said}");
     assert!(!dir.path().join("study").exists());
 }
+
+#[test]
+fn the_study_is_searched_as_asked_and_one_of_very_many_designs_not_design_by_design() {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    let study = format!("{}/study.json", example());
+    let changes = |words: &[&str]| {
+        let out = dir.path().join(format!("run{}", words.len()));
+        let command = ["reconcile", &example(), "--study", &study, "--out", word(&out)];
+        armwright_ok(&[&command, words].concat());
+        std::fs::read(out.join("study_changes.csv")).expect("written")
+    };
+    assert_eq!(changes(&[]), changes(&["--search", "exact"]), "both searches find the whole front");
+
+    // far more designs than can be visited, of an arm whose joint 3 has play
+    let builtin = concat!(env!("CARGO_MANIFEST_DIR"), "/studies/compare-materials.json");
+    let mut large = read_json(Path::new(builtin));
+    for piece in large["chain"].as_array_mut().expect("pieces") {
+        if ["j2", "j3"].iter().any(|name| piece["name"] == *name) {
+            piece["drive"] = "all_fits".into();
+        }
+    }
+    let file = dir.path().join("large.json");
+    std::fs::write(&file, large.to_string()).expect("written");
+    let campaign = format!("{}/tests/data/campaigns/plain-0251e", env!("CARGO_MANIFEST_DIR"));
+    let out = dir.path().join("large");
+    let said = armwright_ok(&[
+        "reconcile",
+        &campaign,
+        "--study",
+        word(&file),
+        "--time-limit",
+        "2",
+        "--out",
+        word(&out),
+    ]);
+    let rerun = read_json(&out.join("verdict.json"))["study"].clone();
+    assert_eq!(rerun["status"], "partial", "{said}");
+    for side in ["nominal", "corrected"] {
+        let run = read_json(&out.join("study").join(side).join("run.json"));
+        assert!(run["designs_total"].as_f64().expect("a number") > 1e9);
+        assert_eq!((&run["search"], &run["gap"]), (&"exact".into(), &rerun[side]["gap"]));
+        let effects = run["effects"].as_array().expect("effects");
+        assert_eq!(effects.iter().any(|e| e["effect"] == "lost_motion"), side == "corrected", "{effects:?}");
+    }
+    assert_eq!(rerun["picks"].as_array().expect("picks").len(), 4);
+    assert!(said.contains("The searches were stopped"), "{said}");
+}

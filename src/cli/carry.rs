@@ -1,7 +1,7 @@
 //! A measured arm's corrections in a study: read from an arm file, and said in words.
 
 use super::Failure;
-use super::run::Asked;
+use super::search::Asked;
 use crate::arm::{Arm, read_arm_document};
 use crate::catalog::Catalogs;
 use crate::fault::Document;

@@ -1,6 +1,6 @@
 //! `armwright design`: a design of a result as an arm file and its cases.
 
-use super::run::catalogs_hash;
+use super::finished::{catalogs_hash, pretty};
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
 use crate::fault::Document;
@@ -64,10 +64,6 @@ pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Fail
         dir.join("arm.json").display(),
         dir.join("cases.json").display()
     ))
-}
-
-fn pretty(value: &Value) -> Vec<u8> {
-    serde_json::to_vec_pretty(value).expect("a value of numbers and strings serializes")
 }
 
 /// The facts of a result's run. Refuses catalogs other than those the result was made with: an id would

@@ -2,10 +2,11 @@
 
 use super::Failure;
 use super::design::check_catalogs;
-use super::run::stopped_by_signal;
+use super::search::stopped_by_signal;
 use crate::catalog::Catalogs;
 use crate::fault::Document;
 use crate::report::certificate::gap_words;
+use crate::report::compare::text::wrap;
 use crate::report::front_table::FrontTable;
 use crate::study::{Completeness, check_front, read_study};
 use clap::{Args, Subcommand};
@@ -87,9 +88,8 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
     };
     if faults.is_empty() {
         let rows = check.rows;
-        return Ok(format!(
-            "{rows} designs are as the model gives them, none beats another; {completeness}\n"
-        ));
+        let words = format!("{rows} designs are as the model gives them, none beats another; {completeness}");
+        return Ok(wrap(&words, 80, ""));
     }
     Err(Failure::Check(format!("{}:\n  {}", args.results.display(), faults.join("\n  "))))
 }

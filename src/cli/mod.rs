@@ -7,12 +7,14 @@ mod carry;
 pub mod catalog;
 pub mod compare;
 mod design;
+mod finished;
 mod front;
 pub mod predict;
 mod progress;
 pub mod reconcile;
 mod rerun;
 mod run;
+mod search;
 mod size;
 
 use crate::arm::Words;

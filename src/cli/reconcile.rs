@@ -1,6 +1,7 @@
 //! `armwright reconcile`: where model and measurement disagree, what is missing, and what that changes.
 
 use super::rerun::{Rerun, rerun};
+use super::search::SearchArgs;
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
 use crate::reconcile::page::campaign_page;
@@ -13,7 +14,8 @@ use std::path::{Path, PathBuf};
 /// Arguments of `reconcile`.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  armwright reconcile campaigns/may --out results/may\n  \
-    armwright reconcile campaigns/may --study compare-materials --out results/may\n\n\
+    armwright reconcile campaigns/may --study compare-materials --out results/may\n  \
+    armwright reconcile campaigns/may --study full-catalog --time-limit 60\n\n\
     Writes verdict.json, verdict.txt, arm.corrected.json, residuals.csv, and report.html with its pictures in \
     plots/. The verdict is one of no_gap, explained, unexplained, insufficient_data; all four are answers, \
     exit code 0.\n\n\
@@ -29,6 +31,9 @@ pub struct ReconcileArgs {
     /// joints and links of the same name.
     #[arg(long, value_name = "STUDY")]
     pub study: Option<String>,
+    /// For each of the study's two runs.
+    #[command(flatten)]
+    pub how: SearchArgs,
     /// Folder to write into, made with its parents; default: `results/<campaign>`.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -43,9 +48,13 @@ pub fn run(
     catalogs: &Catalogs,
     overlay: Option<&Path>,
 ) -> Result<(Outcome, String), Failure> {
-    if let Some(study) = &args.study {
-        // a study that does not read fails now, not after the fits
-        super::run::load_study(study, catalogs)?;
+    match &args.study {
+        // a study that does not read, or a search that does not suit it, fails now and not after the fits
+        Some(study) => drop(args.how.kind(&super::run::load_study(study, catalogs)?.0, catalogs)?),
+        None if !args.how.is_default() => {
+            return Err(Failure::Usage("--search and --time-limit are for the runs of --study".into()));
+        }
+        None => {}
     }
     let mut read = Vec::new();
     for folder in &args.campaigns {
@@ -62,7 +71,7 @@ pub fn run(
     write_all(&out, &files)?;
     let mut text = format!("{}{}", narrow(&outcome.to_text()), page.terminal());
     if let Some(study) = &args.study {
-        let rerun = rerun(&outcome, study, catalogs, overlay, &out)?;
+        let rerun = rerun(&outcome, (study, &args.how), catalogs, overlay, &out)?;
         text.push_str(&rerun.text);
         add(&mut files, &outcome, rerun);
         write_all(&out, &files)?;

@@ -1,12 +1,18 @@
 //! A study run twice, as it stands and with what a reconciled arm taught, and what that changes.
 
-use super::run::{Asked, Written, load_study, search};
+use super::beside::BesideArgs;
+use super::finished::Written;
+use super::run::load_study;
+use super::search::{Asked, SearchArgs, With, search};
 use super::{Failure, carry, write_all};
 use crate::catalog::Catalogs;
 use crate::reconcile::{Outcome, Verdict};
 use crate::report::compare::changes::{Changes, Model, Values};
-use crate::search::design::number_of;
-use crate::search::{ArmProblem, evaluate};
+use crate::report::compare::text::wrap;
+use crate::report::number::significant;
+use crate::report::picks::designs;
+use crate::search::design::{number, number_of};
+use crate::search::{ArmProblem, OutwardIn, Status, evaluate};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -31,13 +37,13 @@ impl Rerun {
     }
 }
 
-/// Runs the study without and with the outcome's corrections; both results go into `dir`.
+/// Runs the study without and with the outcome's corrections, each as `how` says; both results go into `dir`.
 ///
 /// # Errors
 /// The study does not read, its results cannot be written, or the user stops it.
 pub(super) fn rerun(
     outcome: &Outcome,
-    study: &str,
+    (study, how): (&str, &SearchArgs),
     catalogs: &Catalogs,
     overlay: Option<&Path>,
     dir: &Path,
@@ -64,7 +70,8 @@ pub(super) fn rerun(
     let mut found = Vec::new();
     for (asked, folder) in [(&nominal, "nominal"), (&corrected, "corrected")] {
         let results = dir.join("study").join(folder);
-        match search(asked, catalogs, overlay, &results) {
+        let beside = BesideArgs::default();
+        match search(asked, &With { catalogs, overlay, dir: &results, how, beside: &beside }) {
             Ok(written) => {
                 write_all(&results, &written.files)?;
                 found.push(written);
@@ -81,9 +88,16 @@ pub(super) fn rerun(
 }
 
 fn changes(asked: [&Asked; 2], found: &[Written], catalogs: &Catalogs) -> Changes {
-    let problems = asked.map(|a| ArmProblem::new(&a.study.space, catalogs));
+    // of the spaces, what the designs of both fronts are made of
+    let rows = found.iter().flat_map(|written| designs(&written.front));
+    let numbers: Vec<u128> = rows.filter_map(|design| number_of(&design.design_id)).collect();
+    let spaces = asked.map(|a| &a.study.space);
+    let spaces = spaces.map(|s| s.excerpt(catalogs, &numbers).unwrap_or_else(|| s.clone()));
+    let problems = spaces.each_ref().map(|space| ArmProblem::new(space, catalogs));
     let judge = |model: Model, id: &str| {
-        let objectives = evaluate(&problems[model as usize], number_of(id)?)?.objectives;
+        let problem = &problems[model as usize];
+        let here = number(problem.level_sizes(), &problem.options_of_whole(number_of(id)?)?);
+        let objectives = evaluate(problem, here)?.objectives;
         Some(Values {
             tip_deflection_mm: objectives.tip_deflection_m * 1e3,
             mass_kg: objectives.mass_kg,
@@ -96,20 +110,36 @@ fn changes(asked: [&Asked; 2], found: &[Written], catalogs: &Catalogs) -> Change
 fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> Rerun {
     let [stay, leave, enter] = changes.counts();
     let sizes: Vec<usize> = found.iter().map(|w| w.front.rows.len()).collect();
+    let partial = found.iter().any(|w| w.status == Status::Partial);
     let json = json!({
         "study": name,
-        "status": "complete",
+        "status": if partial { Status::Partial } else { Status::Complete }.word(),
         "carried_over": carry::to_json(&corrected.carried),
         "effects_mass_kg": corrected.study.space.effects_mass_kg(),
-        "nominal": {"results": "study/nominal", "front_size": sizes[0]},
-        "corrected": {"results": "study/corrected", "front_size": sizes[1]},
+        "nominal": {"results": "study/nominal", "front_size": sizes[0], "gap": found[0].gap},
+        "corrected": {"results": "study/corrected", "front_size": sizes[1], "gap": found[1].gap},
         "front": {"stay": stay, "leave": leave, "enter": enter},
         "picks": changes.picks(),
     });
     let text = format!(
-        "\nstudy {name}, re-run with the corrected arm\n{}\n{}",
+        "\nstudy {name}, re-run with the corrected arm\n{}\n{}{}",
         carry::to_text(&corrected.carried).trim_start(),
-        changes.to_text()
+        changes.to_text(),
+        if partial { stopped_words(found) } else { String::new() }
     );
     Rerun { text, json, csv: Some(changes.to_csv()) }
+}
+
+/// What to make of fronts whose searches were stopped.
+fn stopped_words(found: &[Written]) -> String {
+    let gap = |w: &Written| {
+        w.gap.map_or("of unknown gap".to_string(), |gap| format!("{} %", significant(100.0 * gap, 2)))
+    };
+    let words = format!(
+        "The searches were stopped: a design may also leave or enter because one search found it and the other did not. \
+         No design beats every listed one by more than the gap in all three objectives: nominal {}, corrected {}.",
+        gap(&found[0]),
+        gap(&found[1])
+    );
+    wrap(&words, 80, "")
 }

@@ -1,0 +1,246 @@
+//! What a finished search has to say: its files, its page and its words.
+
+use super::beside::{Beside, BesideArgs, Found};
+use super::{Failure, carry};
+use crate::arm::Effect;
+use crate::catalog::Catalogs;
+use crate::report::budget::{PickBudget, budget_csv};
+use crate::report::certificate::certificate_section;
+use crate::report::front_svg::{FrontPicture, PlottedFront, designs_of, mixed_designs};
+use crate::report::front_table::FrontTable;
+use crate::report::html::{Extra, Page, study::StudyPage};
+use crate::report::number::significant;
+use crate::report::picks;
+use crate::report::summary::{
+    MaterialFront, SummaryFacts, SummaryInput, constraint_words, single_materials, summary_md,
+    terminal_summary,
+};
+use crate::search::hypervolume::front_hypervolume;
+use crate::search::near::NearDesigns;
+use crate::search::{ArmProblem, DesignSpace, Status};
+use crate::study::{Carried, Study, StudyOutcome, budgets, front_table, slug, study_page};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// What a finished search has to say.
+pub(super) struct Written {
+    /// Files by name.
+    pub files: Vec<(String, Vec<u8>)>,
+    /// Text for the terminal.
+    pub terminal: String,
+    /// The front of all designs.
+    pub front: FrontTable,
+    /// How the search ended, and by how much its front may be bettered if it was stopped.
+    pub status: Status,
+    pub gap: Option<f64>,
+}
+
+/// A finished search and what it was made with.
+pub(super) struct Finished<'a> {
+    pub study: &'a Study,
+    pub text: &'a str,
+    pub carried: &'a [Carried],
+    pub problem: &'a ArmProblem<'a>,
+    /// The space with all options of the study.
+    pub whole: &'a DesignSpace,
+    pub outcome: &'a StudyOutcome,
+    /// The designs near the front that an exact search found.
+    pub near: Option<&'a NearDesigns>,
+    /// Boxes bounded and left open, and the gap, of an exact search.
+    pub exact: Option<([u64; 2], Option<f64>)>,
+    pub elapsed_s: f64,
+    pub overlay: Option<&'a Path>,
+    pub catalogs: &'a Catalogs,
+    pub dir: &'a Path,
+}
+
+impl Finished<'_> {
+    /// All that is written and said of it, with what was asked for beside the front.
+    ///
+    /// # Errors
+    /// What is asked for beside the front cannot be had.
+    pub fn files(&self, asked: &BesideArgs, stop: &AtomicBool) -> Result<Written, Failure> {
+        let summary = self.summary();
+        let Self { problem, catalogs, outcome, near, .. } = *self;
+        let is_exact = self.exact.is_some();
+        let beside =
+            asked.work(&Found { problem, catalogs, outcome, near, is_exact, stop }, &summary.overall);
+        // succeeds only on an empty folder: earlier results stay
+        let beside = beside.inspect_err(|_| drop(std::fs::remove_dir(self.dir)))?;
+        let mut files = vec![("front.csv".to_string(), summary.overall.to_csv())];
+        for material in &summary.materials {
+            files.push((format!("front.{}.csv", slug(&material.name)), material.front.to_csv()));
+        }
+        let picture = picture(&summary);
+        files.push(("front.svg".into(), picture.clone().into_bytes()));
+        files.push(("budget.csv".into(), budget_csv(&summary.budgets).into_bytes()));
+        let Beside { files: more, markdown, terminal, sections, run: mut facts } = beside;
+        files.extend(more);
+        files.push(("summary.md".into(), (summary_md(&summary) + &markdown).into_bytes()));
+        let mut run = self.run_json(&summary);
+        run.as_object_mut().into_iter().for_each(|run| run.append(&mut facts));
+        files.push(("run.json".into(), pretty(&run)));
+        files.extend(self.page(&summary, picture, sections, &run).into_files());
+        files.push(("study.json".into(), self.text.as_bytes().to_vec()));
+        let terminal = terminal_summary(&summary) + &terminal;
+        let (status, gap) = (self.outcome.sweep.status, summary.facts.gap);
+        Ok(Written { files, terminal, front: summary.overall, status, gap })
+    }
+
+    fn summary(&self) -> SummaryInput {
+        let (study, sweep) = (self.study, &self.outcome.sweep);
+        let cost = |name: &str| self.catalogs.materials.iter().find(|m| m.name == name)?.cost_eur_per_kg;
+        let overall = front_table(self.problem, self.catalogs, &self.outcome.front);
+        SummaryInput {
+            budgets: budgets(self.problem, self.whole, self.catalogs, &overall),
+            facts: SummaryFacts {
+                study: study.name.clone(),
+                question: study.question.clone(),
+                status: sweep.status.word().into(),
+                designs_total: sweep.designs_total,
+                designs_evaluated: sweep.designs_evaluated.into(),
+                designs_excluded: sweep.designs_excluded,
+                gap: self.exact.and_then(|(_, gap)| gap),
+                elapsed_s: self.elapsed_s,
+                threads: rayon::current_num_threads(),
+                tool_version: env!("CARGO_PKG_VERSION").into(),
+                constraints: constraint_words(&study.space.constraints),
+                cases: self.judged_cases(),
+                not_checked: study.not_checked.clone(),
+                results: self.dir.display().to_string(),
+            },
+            overall,
+            materials: self
+                .outcome
+                .by_material
+                .iter()
+                .map(|of| MaterialFront {
+                    cost_eur_per_kg: cost(&of.name),
+                    name: of.name.clone(),
+                    status: of.status.word().into(),
+                    front: front_table(self.problem, self.catalogs, &of.front),
+                })
+                .collect(),
+        }
+    }
+
+    /// The study's effects, each with whether it counts: those that describe a test do not.
+    fn effects(&self) -> Vec<Value> {
+        let counted = |effect: &Effect| {
+            let mut value = effect.to_json();
+            value["counts"] = json!(!effect.is_of_test());
+            value
+        };
+        self.study.space.effects.iter().map(counted).collect()
+    }
+
+    /// The page for a browser.
+    fn page(&self, summary: &SummaryInput, picture: String, sections: Vec<Extra>, run: &Value) -> Page {
+        let mut page = study_page(self.study, self.problem, self.catalogs, summary);
+        page.extras.extend(sections);
+        page.extras.push(certificate_section(&summary.facts, self.exact.map(|(boxes, _)| boxes)));
+        StudyPage { scatter_svg: picture, run: facts_of(run), ..page }.page()
+    }
+
+    fn judged_cases(&self) -> Vec<String> {
+        let space = &self.study.space;
+        space.judged_cases.iter().map(|&i| space.cases[i].name.clone()).collect()
+    }
+
+    fn run_json(&self, summary: &SummaryInput) -> Value {
+        let (study, sweep) = (self.study, &self.outcome.sweep);
+        let materials: Vec<Value> = summary
+            .materials
+            .iter()
+            .map(|m| {
+                json!({
+                    "name": m.name, "slug": slug(&m.name), "status": m.status,
+                    "front_size": m.front.rows.len(), "cost_eur_per_kg": m.cost_eur_per_kg,
+                })
+            })
+            .collect();
+        json!({
+            "schema_version": 1,
+            "study": study.name,
+            "question": study.question,
+            "status": sweep.status.word(),
+            "designs_total": count(sweep.designs_total),
+            "designs_evaluated": sweep.designs_evaluated,
+            "designs_excluded": count(sweep.designs_excluded),
+            "front_size": self.outcome.front.len(),
+            "hypervolume": front_hypervolume(self.outcome.front.iter().map(|d| d.design.objectives)),
+            "picks": summary.budgets.iter().map(PickBudget::to_json).collect::<Vec<Value>>(),
+            "elapsed_s": self.elapsed_s,
+            "designs_per_s": sweep.designs_evaluated as f64 / self.elapsed_s,
+            "threads": rayon::current_num_threads(),
+            "tool_version": env!("CARGO_PKG_VERSION"),
+            "platform": format!("{}-{}", std::env::consts::OS, std::env::consts::ARCH),
+            "models": {"links": study.space.links.word(), "joints": study.space.joints.word()},
+            "constraints": summary.facts.constraints,
+            "cases": summary.facts.cases,
+            "materials": materials,
+            "not_checked": study.not_checked,
+            "effects": self.effects(),
+            "effects_mass_kg": study.space.effects_mass_kg(),
+            "carried_over": carry::to_json(self.carried),
+            "catalogs": self.overlay.map(|p| p.display().to_string()),
+            "study_hash": blake3::hash(self.text.as_bytes()).to_hex().to_string(),
+            "catalogs_hash": catalogs_hash(self.catalogs),
+            "search": if self.exact.is_some() { "exact" } else { "exhaustive" },
+            "boxes": self.exact.map(|([boxes, _], _)| boxes),
+            "boxes_open": self.exact.map(|([_, open], _)| open),
+            "gap": self.exact.and_then(|(_, gap)| gap),
+        })
+    }
+}
+
+/// The facts of `run.json` that are a word or a number, for people.
+pub(super) fn facts_of(run: &Value) -> Vec<(String, String)> {
+    let plain = |value: &Value| match value {
+        Value::String(text) => Some(text.clone()),
+        Value::Number(number) if number.is_f64() => Some(significant(number.as_f64()?, 4)),
+        Value::Number(number) => Some(number.to_string()),
+        Value::Object(map) => {
+            let parts = map.iter().filter_map(|(k, v)| Some(format!("{k} {}", v.as_str()?)));
+            Some(parts.collect::<Vec<_>>().join(", ")).filter(|words| !words.is_empty())
+        }
+        _ => None,
+    };
+    let facts = run.as_object().into_iter().flatten();
+    facts
+        .filter(|(key, _)| !["schema_version", "study", "question"].contains(&key.as_str()))
+        .filter_map(|(key, value)| Some((key.replace('_', " "), plain(value)?)))
+        .collect()
+}
+
+/// The picture of the front: designs of mixed materials in grey, each material in colour, by its own front
+/// where the search found one.
+fn picture(summary: &SummaryInput) -> String {
+    let mixed = mixed_designs(&summary.overall);
+    let pure: Vec<(String, FrontTable)> = single_materials(summary)
+        .into_iter()
+        .map(|name| {
+            let own = summary.materials.iter().find(|m| m.name == name).map(|m| m.front.clone());
+            (name.to_string(), own.unwrap_or_else(|| designs_of(&summary.overall, name)))
+        })
+        .collect();
+    let mut fronts = vec![PlottedFront { name: "mixed".into(), front: &mixed, muted: true }];
+    fronts.extend(pure.iter().map(|(name, front)| PlottedFront { name: name.clone(), front, muted: false }));
+    let picks = picks::picks(&picks::designs(&summary.overall));
+    FrontPicture { title: summary.facts.study.clone(), fronts, picks }.to_svg()
+}
+
+pub(super) fn pretty(value: &Value) -> Vec<u8> {
+    serde_json::to_vec_pretty(value).expect("a value of numbers and strings serializes")
+}
+
+/// A count as a JSON number; above 2^53 it is rounded.
+fn count(n: u128) -> Value {
+    u64::try_from(n).map_or_else(|_| json!(n as f64), |n| json!(n))
+}
+
+/// A hash of every figure of every part: results taken from other catalogs are told apart.
+pub(super) fn catalogs_hash(catalogs: &Catalogs) -> String {
+    blake3::hash(format!("{catalogs:?}").as_bytes()).to_hex().to_string()
+}

@@ -1,0 +1,222 @@
+//! A study's search: which one, and until when.
+
+use super::beside::BesideArgs;
+use super::finished::{Finished, Written};
+use super::progress::{watch, watch_boxes};
+use super::{Failure, write_all};
+use crate::catalog::Catalogs;
+use crate::report::certificate::certificate_words;
+use crate::search::{ArmProblem, Status};
+use crate::study::{Carried, ExactStudy, Study, empty_pieces, run_exact, run_study, why_infeasible};
+use clap::{Args, ValueEnum};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// How a front is looked for, and for how long.
+#[derive(Debug, Clone, Copy, Default, Args)]
+pub struct SearchArgs {
+    /// How the front is looked for; default exhaustive up to 1e9 designs, exact beyond
+    #[arg(long, value_enum)]
+    search: Option<SearchKind>,
+    /// Stop the exact search after so long and write what it found, with how much it may lack
+    #[arg(long, value_name = "SECONDS")]
+    time_limit: Option<f64>,
+}
+
+/// The two ways in which a front is looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum SearchKind {
+    /// Every design is visited
+    Exhaustive,
+    /// Boxes of designs that cannot be on the front are cut unvisited: for spaces of any size
+    Exact,
+}
+
+/// Above this many designs the exact search is the default.
+const MOST_VISITED: u128 = 1_000_000_000;
+
+/// Above this many designs nobody lives to see the end of an exhaustive search.
+const MOST_CONCEIVABLE: u128 = 1_000_000_000_000_000;
+
+impl SearchArgs {
+    /// The search that was asked for, or the one that suits the number of designs.
+    ///
+    /// # Errors
+    /// It does not suit the study, or would take years.
+    pub(super) fn kind(&self, study: &Study, catalogs: &Catalogs) -> Result<SearchKind, Failure> {
+        let designs = study.space.designs(catalogs).ok_or_else(|| {
+            Failure::Usage(format!("the study \"{}\" has more than 1e38 designs; thin a grid", study.name))
+        })?;
+        let suits = if designs > MOST_VISITED { SearchKind::Exact } else { SearchKind::Exhaustive };
+        let kind = self.search.unwrap_or(suits);
+        if kind == SearchKind::Exhaustive && designs > MOST_CONCEIVABLE {
+            return Err(Failure::Usage(format!(
+                "visiting the {:.1e} designs of the study \"{}\" would take years; use --search exact",
+                designs as f64, study.name
+            )));
+        }
+        if kind == SearchKind::Exhaustive && self.time_limit.is_some() {
+            return Err(Failure::Usage("--time-limit goes with --search exact".into()));
+        }
+        if self.time_limit.is_some_and(|s| s.is_nan() || s <= 0.0) {
+            return Err(Failure::Usage("--time-limit is a number of seconds above zero".into()));
+        }
+        Ok(kind)
+    }
+
+    /// Whether anything is asked for.
+    pub fn is_default(&self) -> bool {
+        self.search.is_none() && self.time_limit.is_none()
+    }
+}
+
+/// A study to be searched.
+pub(super) struct Asked {
+    /// The study.
+    pub study: Study,
+    /// Its file's text.
+    pub text: String,
+    /// What of a measured arm carries over to it, and what does not.
+    pub carried: Vec<Carried>,
+}
+
+/// What a study is searched with, and how.
+pub(super) struct With<'a> {
+    pub catalogs: &'a Catalogs,
+    /// Folder of the catalogs that are laid over the built-in ones.
+    pub overlay: Option<&'a Path>,
+    /// Where the results go.
+    pub dir: &'a Path,
+    pub how: &'a SearchArgs,
+    /// What is asked for beside the front.
+    pub beside: &'a BesideArgs,
+}
+
+/// Searches a study; nothing is written yet.
+///
+/// # Errors
+/// The search that is asked for does not suit the study, finds nothing, or is interrupted.
+pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
+    match with.how.kind(&asked.study, with.catalogs)? {
+        SearchKind::Exhaustive => visit_all(asked, with),
+        SearchKind::Exact => search_exactly(asked, with),
+    }
+}
+
+/// Visits every design of a study.
+fn visit_all(Asked { study, text, carried }: &Asked, with: &With) -> Result<Written, Failure> {
+    let With { catalogs, overlay, dir, beside, .. } = *with;
+    let problem = ArmProblem::new(&study.space, catalogs);
+    refuse_empty(study, &problem)?;
+    // a folder that cannot be written fails now, not after the search
+    write_all(dir, &[])?;
+    let stop = stopped_by_signal();
+    let started = Instant::now();
+    let outcome = run_study(study, catalogs, &stop, watch);
+    let elapsed_s = started.elapsed().as_secs_f64();
+    match outcome.sweep.status {
+        Status::Interrupted => {
+            let _ = std::fs::remove_dir(dir);
+            let done = u128::from(outcome.sweep.designs_evaluated) + outcome.sweep.designs_excluded;
+            Err(Failure::Interrupted(format!(
+                "stopped after {done} of {} designs; nothing was written, run again to start over",
+                outcome.sweep.designs_total
+            )))
+        }
+        Status::Infeasible => {
+            // succeeds only on an empty folder: earlier results stay
+            let _ = std::fs::remove_dir(dir);
+            Err(Failure::Infeasible(why_infeasible(study, catalogs, &outcome)))
+        }
+        _ => {
+            let finished = Finished {
+                study,
+                text,
+                carried,
+                problem: &problem,
+                whole: &study.space,
+                outcome: &outcome,
+                near: None,
+                exact: None,
+                elapsed_s,
+                overlay,
+                catalogs,
+                dir,
+            };
+            finished.files(beside, &stop)
+        }
+    }
+}
+
+/// A flag that is set when the user wants to stop.
+pub(super) fn stopped_by_signal() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let on_signal = Arc::clone(&stop);
+    // a second handler cannot be set; the first one serves
+    let _ = ctrlc::set_handler(move || on_signal.store(true, Ordering::Relaxed));
+    stop
+}
+
+/// Finds the front of a study without visiting every design.
+fn search_exactly(Asked { study, text, carried }: &Asked, with: &With) -> Result<Written, Failure> {
+    let With { catalogs, overlay, dir, how, beside } = *with;
+    write_all(dir, &[])?;
+    let stop = stopped_by_signal();
+    let started = Instant::now();
+    let deadline = how.time_limit.map(|s| started + Duration::from_secs_f64(s));
+    let ExactStudy { study: part, outcome, boxes, gap, near } =
+        run_exact(study, catalogs, &stop, deadline, beside.slack(), watch_boxes);
+    let nothing = |problem: String| {
+        let _ = std::fs::remove_dir(dir);
+        problem
+    };
+    let designs = outcome.sweep.designs_total as f64;
+    match outcome.sweep.status {
+        Status::Interrupted => Err(Failure::Interrupted(nothing(format!(
+            "stopped after {} boxes; nothing was written, run again to start over, or give --time-limit",
+            boxes[0]
+        )))),
+        Status::Infeasible => Err(Failure::Infeasible(nothing(format!(
+            "none of the {designs:.3e} designs of the study \"{}\" meets its constraints (proved by {} boxes); \
+             loosen one, or run a coarser grid with --search exhaustive to see which of them it is",
+            study.name, boxes[0]
+        )))),
+        Status::Partial if outcome.front.is_empty() => Err(Failure::Interrupted(nothing(format!(
+            "no design was found in the time limit ({} boxes); nothing was written, allow more time",
+            boxes[0]
+        )))),
+        _ => {
+            let problem = ArmProblem::new(&part.space, catalogs);
+            let finished = Finished {
+                study: &part,
+                text,
+                carried,
+                problem: &problem,
+                whole: &study.space,
+                outcome: &outcome,
+                near: near.as_ref(),
+                exact: Some((boxes, gap)),
+                elapsed_s: started.elapsed().as_secs_f64(),
+                overlay,
+                catalogs,
+                dir,
+            };
+            let mut written = finished.files(beside, &stop)?;
+            written.terminal.push_str(&certificate_words(boxes, gap));
+            Ok(written)
+        }
+    }
+}
+
+fn refuse_empty(study: &Study, problem: &ArmProblem) -> Result<(), Failure> {
+    match empty_pieces(problem).as_slice() {
+        [] => Ok(()),
+        pieces => Err(Failure::EmptySpace(format!(
+            "the study \"{}\" has nothing to choose from\n  {}",
+            study.name,
+            pieces.join("\n  ")
+        ))),
+    }
+}
