@@ -228,3 +228,36 @@ fn numbers_on_the_command_line_may_begin_with_a_minus_sign() {
     let (code, message) = refused(here.path(), &["analyze", "arm.json", "--payload-inertia-kgm2", "-1,0,0"]);
     assert!(code == 2 && message.contains("not negative"), "{message}");
 }
+
+/// A study of far more designs than can be visited, which names no limit of time.
+#[cfg(unix)]
+fn endless_study(folder: &Path) {
+    let text = std::fs::read_to_string(project().join("studies/compare-materials.json")).expect("readable");
+    let mut study: Value = serde_json::from_str(&text).expect("JSON");
+    for piece in study["chain"].as_array_mut().expect("pieces") {
+        if piece["drive"] == "first_fit" {
+            piece["drive"] = json!("all_fits");
+        }
+    }
+    std::fs::write(folder.join("endless.json"), study.to_string()).expect("written");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_an_exact_search_and_what_was_found_is_written() {
+    let folder = folder();
+    endless_study(folder.path());
+    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("armwright"));
+    let command = command.current_dir(folder.path()).args(["run", "endless.json", "--out", "found"]);
+    let search = command.stdout(std::process::Stdio::piped()).spawn().expect("it runs");
+    std::thread::sleep(std::time::Duration::from_secs(4));
+    let interrupt = std::process::Command::new("kill").args(["-INT", &search.id().to_string()]).status();
+    assert!(interrupt.expect("kill runs").success());
+    let output = search.wait_with_output().expect("it ends");
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && text.contains("search partial"), "{text}");
+    let run = std::fs::read_to_string(folder.path().join("found/run.json")).expect("written");
+    let run: Value = serde_json::from_str(&run).expect("JSON");
+    assert_eq!((run["status"].as_str(), run["search"].as_str()), (Some("partial"), Some("exact")));
+    assert!(run["front_size"].as_u64() > Some(0) && run["boxes_open"].as_u64() > Some(0), "{run}");
+}

@@ -70,7 +70,7 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
     };
     let stop = stopped_by_signal();
     let deadline = args.time_limit.map(|s| Instant::now() + Duration::from_secs_f64(s));
-    let check = check_front(&study, catalogs, &table, gap, &stop, deadline);
+    let check = check_front(&study, catalogs, &table, gap, stop, deadline);
     if stop.load(Ordering::Relaxed) {
         return Err(Failure::Interrupted("stopped before the check was done".into()));
     }

@@ -10,7 +10,7 @@ use crate::search::{ArmProblem, Status};
 use crate::study::{Carried, ExactStudy, Study, empty_pieces, run_exact, run_study, why_infeasible};
 use clap::{Args, ValueEnum};
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -20,7 +20,7 @@ pub struct SearchArgs {
     /// How the front is looked for; default exhaustive up to 1e9 designs, exact beyond
     #[arg(long, value_enum)]
     search: Option<SearchKind>,
-    /// Stop the exact search after so long and write what it found, with how much it may lack
+    /// Stop the exact search after so long, as Ctrl-C does, and write what it found, with how much it may lack
     #[arg(long, value_name = "SECONDS")]
     time_limit: Option<f64>,
 }
@@ -114,7 +114,7 @@ fn visit_all(Asked { study, text, carried }: &Asked, with: &With) -> Result<Writ
     write_all(dir, &[])?;
     let stop = stopped_by_signal();
     let started = Instant::now();
-    let outcome = run_study(study, catalogs, &stop, watch);
+    let outcome = run_study(study, catalogs, stop, watch);
     let elapsed_s = started.elapsed().as_secs_f64();
     match outcome.sweep.status {
         Status::Interrupted => {
@@ -145,18 +145,25 @@ fn visit_all(Asked { study, text, carried }: &Asked, with: &With) -> Result<Writ
                 catalogs,
                 dir,
             };
-            finished.files(beside, &stop)
+            finished.files(beside, stop)
         }
     }
 }
 
-/// A flag that is set when the user wants to stop.
-pub(super) fn stopped_by_signal() -> Arc<AtomicBool> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let on_signal = Arc::clone(&stop);
-    // a second handler cannot be set; the first one serves
-    let _ = ctrlc::set_handler(move || on_signal.store(true, Ordering::Relaxed));
-    stop
+/// A flag that is set when the user wants to stop. Whoever has heeded it and goes on clears it; a signal before that
+/// ends the program.
+pub(super) fn stopped_by_signal() -> &'static AtomicBool {
+    static STOP: AtomicBool = AtomicBool::new(false);
+    static HANDLER: Once = Once::new();
+    HANDLER.call_once(|| {
+        // where signals cannot be handled they end the program
+        let _ = ctrlc::set_handler(|| {
+            if STOP.swap(true, Ordering::Relaxed) {
+                std::process::exit(Failure::Interrupted(String::new()).exit_code().into());
+            }
+        });
+    });
+    &STOP
 }
 
 /// Finds the front of a study without visiting every design.
@@ -167,24 +174,22 @@ fn search_exactly(Asked { study, text, carried }: &Asked, with: &With) -> Result
     let started = Instant::now();
     let deadline = how.time_limit.map(|s| started + Duration::from_secs_f64(s));
     let ExactStudy { study: part, outcome, boxes, gap, near } =
-        run_exact(study, catalogs, &stop, deadline, beside.slack(), watch_boxes);
+        run_exact(study, catalogs, stop, deadline, beside.slack(), watch_boxes);
+    // what was found is written; a further signal stops that too
+    stop.store(false, Ordering::Relaxed);
     let nothing = |problem: String| {
         let _ = std::fs::remove_dir(dir);
         problem
     };
     let designs = outcome.sweep.designs_total as f64;
     match outcome.sweep.status {
-        Status::Interrupted => Err(Failure::Interrupted(nothing(format!(
-            "stopped after {} boxes; nothing was written, run again to start over, or give --time-limit",
-            boxes[0]
-        )))),
         Status::Infeasible => Err(Failure::Infeasible(nothing(format!(
             "none of the {designs:.3e} designs of the study \"{}\" meets its constraints (proved by {} boxes); \
              loosen one, or run a coarser grid with --search exhaustive to see which of them it is",
             study.name, boxes[0]
         )))),
         Status::Partial if outcome.front.is_empty() => Err(Failure::Interrupted(nothing(format!(
-            "no design was found in the time limit ({} boxes); nothing was written, allow more time",
+            "no design was found before the search was stopped ({} boxes); nothing was written, allow more time",
             boxes[0]
         )))),
         _ => {
@@ -203,7 +208,7 @@ fn search_exactly(Asked { study, text, carried }: &Asked, with: &With) -> Result
                 catalogs,
                 dir,
             };
-            let mut written = finished.files(beside, &stop)?;
+            let mut written = finished.files(beside, stop)?;
             written.terminal.push_str(&certificate_words(boxes, gap));
             Ok(written)
         }

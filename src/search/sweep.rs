@@ -25,7 +25,7 @@ pub enum Status {
     Certified,
     /// Every design was visited.
     Complete,
-    /// Stopped at a time limit: what was found, and how much it may lack.
+    /// Stopped early: what was found, and how much it may lack.
     Partial,
     /// Every design was visited and none meets the constraints.
     Infeasible,

@@ -146,12 +146,7 @@ impl Searched {
 
     /// Their designs as those of an excerpt of the space, judged by the full model: the fronts, and at most so many
     /// designs near that of all.
-    fn judged(
-        &self,
-        problem: &ArmProblem,
-        stop: &AtomicBool,
-        most: Option<usize>,
-    ) -> (StudyOutcome, Option<NearDesigns>) {
+    fn judged(&self, problem: &ArmProblem, most: Option<usize>) -> (StudyOutcome, Option<NearDesigns>) {
         let here = |candidate: &Candidate| {
             let options = problem.options_of_whole(candidate.number)?;
             Some(Candidate { number: number(problem.level_sizes(), &options), ..*candidate })
@@ -163,12 +158,9 @@ impl Searched {
         // a design may be a candidate of two fronts
         let judged =
             by_full_model(problem, groups.iter().flatten().chain(&front).map(|c| c.number).collect());
-        let of_material =
-            |((name, found), candidates): (&(String, ExactOutcome), &Vec<Candidate>)| OfMaterial {
-                name: name.clone(),
-                status: status(stop, found),
-                front: front_of(&judged, candidates),
-            };
+        let of_material = |((name, found), candidates): (&(String, ExactOutcome), &Vec<Candidate>)| {
+            OfMaterial { name: name.clone(), status: status(found), front: front_of(&judged, candidates) }
+        };
         let whole_front = front_of(&judged, &front);
         let on_front: HashSet<u128> = whole_front.iter().map(|j| j.design.number).collect();
         let near = near.as_ref().zip(most).map(|(near, most)| {
@@ -184,7 +176,7 @@ impl Searched {
             front: whole_front,
             by_material: by_material.iter().zip(&groups).map(of_material).collect(),
             sweep: SweepOutcome {
-                status: status(stop, whole),
+                status: status(whole),
                 designs_total: whole.designs_total,
                 designs_evaluated: whole.designs_evaluated,
                 designs_excluded: whole.designs_total.saturating_sub(u128::from(whole.designs_evaluated)),
@@ -197,12 +189,11 @@ impl Searched {
     }
 }
 
-fn status(stop: &AtomicBool, found: &ExactOutcome) -> Status {
-    match (stop.load(Ordering::Relaxed), found.boxes_open, found.front.is_empty()) {
-        (true, _, _) => Status::Interrupted,
-        (false, 0, true) => Status::Infeasible,
-        (false, 0, false) => Status::Certified,
-        (false, _, _) => Status::Partial,
+fn status(found: &ExactOutcome) -> Status {
+    match (found.boxes_open, found.front.is_empty()) {
+        (0, true) => Status::Infeasible,
+        (0, false) => Status::Certified,
+        _ => Status::Partial,
     }
 }
 
@@ -227,7 +218,7 @@ pub fn run_exact(
     let study = Study { space, ..study.clone() };
     let whole = &searched.whole;
     let (boxes, gap) = ([whole.boxes, whole.boxes_open], whole.gap);
-    let (outcome, near) = searched.judged(&ArmProblem::new(&study.space, catalogs), stop, most);
+    let (outcome, near) = searched.judged(&ArmProblem::new(&study.space, catalogs), most);
     ExactStudy { study, outcome, boxes, gap, near }
 }
 
