@@ -33,8 +33,21 @@ pub(super) struct Row {
     pub drives: Vec<DriveFigures>,
     /// Inner slots that are joints.
     pub joints: Vec<usize>,
-    /// Whether a joint's drives twist by their three segments alone, by inner slot.
-    pub segmented: Vec<bool>,
+    /// How a joint's drives twist, by inner slot.
+    pub twisting: Vec<Twisting>,
+}
+
+/// How a joint's drives twist in the judged cases.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Twisting {
+    /// No load turns them: their first slopes are all there is to know.
+    AtRest,
+    /// By one slope each.
+    Line,
+    /// By three segments.
+    Segments,
+    /// With play or friction.
+    Play,
 }
 
 /// What depends on the pose but not on the option.
@@ -42,6 +55,14 @@ pub(super) struct RowCase {
     /// Inertia about each inner joint's axis of a piece (of a kilogram of it, if it is a drive):
     /// `carried[piece][joint]`, by inner slot.
     pub carried: [[f64; MOST_SLOTS]; MOST_SLOTS],
+    /// Components of a wrench that no load or weight has are zero in every arm.
+    pub loaded: [bool; 6],
+    /// Each inner joint's axis in the components that loads have.
+    pub twists: [[f64; 6]; MOST_SLOTS],
+    /// Whether some joint inboard of each inner piece is turned by loads.
+    pub weighs: [bool; MOST_SLOTS],
+    /// Directions in which the links of the row move the tip.
+    pub bends: [bool; 3],
     /// Weight wrench of a link per newton, and what it makes at the link's root.
     pub link_weight: Vector6<f64>,
     pub link_weight_at_root: [f64; 4],
@@ -72,6 +93,8 @@ pub(super) struct Chunk {
     pub mass_kg: Eight,
     pub cost_eur: Eight,
     pub materials: [Option<usize>; LANES],
+    /// Whether these are all the same.
+    pub of_one_material: bool,
     /// Bits of the options whose walls are too slender.
     pub slender: u8,
     pub stress: StressEight,
@@ -188,15 +211,15 @@ impl Row {
                 .collect(),
             _ => Vec::new(),
         };
+        let drives: Vec<DriveFigures> = slots.iter().map(drive_figures).collect();
+        let is_joint = |k: &usize| matches!(slots[*k], Slot::Given { .. } | Slot::Sized(_));
         Some(Self {
             first,
             chunks,
+            joints: (0..slots.len()).filter(is_joint).collect(),
+            twisting: (0..slots.len()).map(|k| twisting(&slots[k], &drives[k], k, &cases)).collect(),
             cases,
-            drives: slots.iter().map(drive_figures).collect(),
-            joints: (0..slots.len())
-                .filter(|&k| matches!(slots[k], Slot::Given { .. } | Slot::Sized(_)))
-                .collect(),
-            segmented: slots.iter().map(is_segmented).collect(),
+            drives,
         })
     }
 }
@@ -213,13 +236,19 @@ fn drive_figures(slot: &Slot) -> DriveFigures {
     figures
 }
 
-/// Neither play nor friction, which no three segments describe.
-fn is_segmented(slot: &Slot) -> bool {
-    let plain = |law: &JointLaw| law.lost_motion.is_none() && law.hysteresis_rad == 0.0;
-    match slot {
-        Slot::Given { law, .. } => plain(law),
-        Slot::Sized(sized) => sized.laws.iter().all(plain),
-        _ => true,
+fn twisting(slot: &Slot, drives: &DriveFigures, k: usize, cases: &[RowCase]) -> Twisting {
+    let has_play = match slot {
+        Slot::Given { law, .. } => law.has_play(),
+        Slot::Sized(sized) => sized.laws.iter().any(JointLaw::has_play),
+        _ => false,
+    };
+    let turned = cases.iter().filter(|case| case.judged).any(|case| case.twists[k] != [0.0; 6]);
+    let [first, second, third] = &drives.compliance;
+    match (has_play, turned) {
+        (true, _) => Twisting::Play,
+        (false, false) => Twisting::AtRest,
+        (false, true) if first == second && second == third => Twisting::Line,
+        (false, true) => Twisting::Segments,
     }
 }
 
@@ -245,6 +274,19 @@ impl RowCase {
             StationSlot::Link { options, .. } => options,
             _ => &[],
         };
+        let loaded = loaded(station);
+        let mut twists = [[0.0; 6]; MOST_SLOTS];
+        for (own, slot) in twists.iter_mut().zip(slots) {
+            if let StationSlot::Joint(joint) = slot {
+                *own = std::array::from_fn(|i| if loaded[i] { joint.twist[i] } else { 0.0 });
+            }
+        }
+        let moves = |i: usize| {
+            let bends = |l: &StationLink| {
+                (l.tip * l.end.transpose()).row(i).amax() > 0.0 || (l.tip * l.sag)[i] != 0.0
+            };
+            links.iter().any(bends)
+        };
         let link_weight =
             links.iter().find(|l| l.weight[2] != 0.0).map_or(Vector6::zeros(), |l| -l.weight / l.weight[2]);
         let links_yield = links.iter().any(|l| l.end.amax() > 0.0);
@@ -260,6 +302,10 @@ impl RowCase {
         let of_first = spread_entries.partition_point(|(block, ..)| *block == 0);
         Self {
             carried,
+            loaded,
+            twists,
+            weighs: std::array::from_fn(|k| twists[k + 1..].iter().any(|twist| *twist != [0.0; 6])),
+            bends: [0, 1, 2].map(moves),
             link_weight,
             link_weight_at_root,
             spread_of: [0..of_first, of_first..spread_entries.len()],
@@ -270,6 +316,20 @@ impl RowCase {
             sizing,
         }
     }
+}
+
+/// Components of a wrench that some load or weight of a case has.
+fn loaded(station: &Station) -> [bool; 6] {
+    let weights = station.slots.iter().flat_map(|slot| match slot {
+        StationSlot::Joint(joint) => vec![&joint.weight_per_kg],
+        StationSlot::Body { weight, .. } => vec![weight],
+        StationSlot::Link { options, .. } => options.iter().map(|option| &option.weight).collect(),
+    });
+    let mut loaded = [false; 6];
+    for wrench in weights.chain([&station.start_wrench]) {
+        loaded.iter_mut().zip(wrench.iter()).for_each(|(loaded, x)| *loaded |= *x != 0.0);
+    }
+    loaded
 }
 
 /// Inner pieces up to the last that can yield.
@@ -310,10 +370,12 @@ impl Chunk {
         let stress = |of: &dyn Fn(&super::figures::StressCheck) -> f64| {
             lanes(&|o| o.stress.as_ref().map_or(0.0, |s| of(s) / s.strength_pa))
         };
+        let materials: [Option<usize>; LANES] = std::array::from_fn(|lane| options[at(lane)].material);
         Self {
             mass_kg: lanes(&|o| o.mass_kg),
             cost_eur: lanes(&|o| o.cost_eur.unwrap_or(0.0)),
-            materials: std::array::from_fn(|lane| options[at(lane)].material),
+            materials,
+            of_one_material: materials.iter().all(|m| *m == materials[0]),
             slender: bits(&|o| o.slender),
             stress: StressEight {
                 per_axial_n: stress(&|s| s.per_axial_n),

@@ -5,7 +5,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::outward::{ArmProblem, Partial, SizedJoint, Slot};
-use super::row::{Begun, Chunk, DriveFigures, MOST_SLOTS, Row, StressEight};
+use super::row::{Begun, Chunk, DriveFigures, MOST_SLOTS, Row, StressEight, Twisting};
 use super::row_modes::Question;
 use super::station::{Station, StationJoint, StationSlot};
 use super::{Keep, Objectives};
@@ -91,19 +91,20 @@ impl LaneWork for RowWork<'_, '_> {
     #[inline(always)]
     fn run<V: Lanes>(self) -> FinishedEight {
         let RowWork { at, begun, arms, valid, keep } = self;
-        at.start(begun, valid, arms);
+        arms.held = valid;
         at.grow::<V>(begun, arms);
-        let max_kg = at.problem.space().constraints.mass_max_kg.unwrap_or(f64::INFINITY);
-        arms.held &= !V::splat(max_kg).less(V::load(&arms.mass_kg));
+        if let Some(max_kg) = at.problem.space().constraints.mass_max_kg {
+            arms.held &= !V::splat(max_kg).less(V::load(&arms.mass_kg));
+        }
         if arms.held == 0 {
             return FinishedEight::none();
         }
-        let mut tip_m = V::zero();
+        let mut tip_m2 = V::zero();
         for (_, lanes) in at.row.cases.iter().zip(&arms.cases).filter(|(case, _)| case.judged) {
             let [x, y, z]: [V; 3] = load_all(&lanes.tip_m);
-            tip_m = tip_m.max((x * x + y * y + z * z).sqrt());
+            tip_m2 = tip_m2.max(x * x + y * y + z * z);
         }
-        let tip_deflection_m = tip_m.store();
+        let tip_deflection_m = tip_m2.sqrt().store();
         let held = arms.held;
         let question = Question::new(at, begun, arms);
         let below_bar = question.below_bar::<V>(keep, &tip_deflection_m, held);
@@ -146,10 +147,15 @@ impl RowChunk<'_, '_> {
     /// Adds piece after piece.
     #[inline(always)]
     fn grow<V: Lanes>(&self, begun: &mut Begun, arms: &mut EightArms) {
-        let first = self.row.first;
-        for (k, slot) in self.problem.slots()[first..].iter().enumerate() {
+        let slots = &self.problem.slots()[self.row.first..];
+        // a link comes first or not at all
+        match self.row.chunks.get(self.chunk) {
+            Some(chunk) => self.start_with_link::<V>(chunk, begun, arms),
+            None => self.start(begun, arms),
+        }
+        for (k, slot) in slots.iter().enumerate() {
             match slot {
-                Slot::Link { .. } => self.add_link::<V>(&self.row.chunks[self.chunk], begun, arms),
+                Slot::Link { .. } => {}
                 Slot::Offset { mass_kg } => self.add_offset::<V>(k, *mass_kg, arms),
                 Slot::Given { .. } => self.add_joint::<V>(k, [0; LANES], arms),
                 Slot::Sized(sized) => {
@@ -165,11 +171,11 @@ impl RowChunk<'_, '_> {
 
     /// The arm outboard of the row, eight times.
     #[inline(always)]
-    fn start(&self, begun: &Begun, valid: u8, arms: &mut EightArms) {
-        arms.held = valid;
+    fn start(&self, begun: &Begun, arms: &mut EightArms) {
         arms.mass_kg = [self.from.mass_kg; LANES];
-        for ((lanes, state), begun) in arms.cases.iter_mut().zip(&self.from.stations).zip(&begun.cases) {
-            for i in 0..6 {
+        for (c, (lanes, state)) in arms.cases.iter_mut().zip(&self.from.stations).enumerate() {
+            let (case, begun) = (&self.row.cases[c], &begun.cases[c]);
+            for i in (0..6).filter(|&i| case.loaded[i]) {
                 lanes.wrench[i] = [state.wrench[i]; LANES];
             }
             for i in 0..3 {
@@ -185,43 +191,53 @@ impl RowChunk<'_, '_> {
         }
     }
 
+    /// The same with a link on it.
     #[inline(always)]
-    fn add_link<V: Lanes>(&self, chunk: &Chunk, begun: &Begun, arms: &mut EightArms) {
+    fn start_with_link<V: Lanes>(&self, chunk: &Chunk, begun: &Begun, arms: &mut EightArms) {
         let constraints = &self.problem.space().constraints;
         arms.held &= !chunk.slender;
-        add(&mut arms.mass_kg, V::load(&chunk.mass_kg));
+        arms.mass_kg = (V::splat(self.from.mass_kg) + V::load(&chunk.mass_kg)).store();
         if let Some(max) = constraints.material_cost_max_eur {
             let cost = V::splat(self.from.cost_eur) + V::load(&chunk.cost_eur);
             arms.held &= !V::splat(max).less(cost);
         }
         for (k, case) in self.row.cases.iter().enumerate() {
-            let own = &chunk.cases[k];
+            let (state, begun, own) = (&self.from.stations[k], &begun.cases[k], &chunk.cases[k]);
             let lanes = &mut arms.cases[k];
             let weight = V::load(&own.weight_n);
-            for i in (0..6).filter(|&i| case.link_weight[i] != 0.0) {
-                add(&mut lanes.wrench[i], weight * V::splat(case.link_weight[i]));
+            for i in (0..6).filter(|&i| case.loaded[i]) {
+                let mut component = V::splat(state.wrench[i]);
+                if case.link_weight[i] != 0.0 {
+                    component = component + weight * V::splat(case.link_weight[i]);
+                }
+                lanes.wrench[i] = component.store();
             }
             for &j in &self.row.joints {
-                add(&mut lanes.inertia_at[j], V::load(&own.inertia_at[j]));
+                lanes.inertia_at[j] = (V::splat(begun.inertia_at[j]) + V::load(&own.inertia_at[j])).store();
             }
             if !case.judged {
                 continue;
             }
-            let wrench = &self.from.stations[k].wrench;
             for i in 0..3 {
-                let mut tip = V::load(&lanes.tip_m[i]) + V::load(&own.sag_m[i]);
-                for j in (0..6).filter(|&j| wrench[j] != 0.0) {
-                    tip = tip + V::load(&own.flexibility[i][j]) * V::splat(wrench[j]);
+                let mut tip = V::splat(state.tip_m[i]);
+                if case.bends[i] {
+                    tip = tip + V::load(&own.sag_m[i]);
+                    for j in (0..6).filter(|&j| state.wrench[j] != 0.0) {
+                        tip = tip + V::load(&own.flexibility[i][j]) * V::splat(state.wrench[j]);
+                    }
                 }
                 lanes.tip_m[i] = tip.store();
             }
-            let factors = &begun.cases[k].spread;
             for b in 0..2 {
-                let mut sum = V::load(&lanes.trace_s2[b]) + V::load(&own.trace_s2[b]);
-                for e in case.spread_of[b].clone() {
-                    sum = sum + V::splat(factors[e]) * V::load(&own.spread[e]);
+                let mut sum = V::splat(state.trace_s2[b]);
+                if case.links_yield {
+                    sum = sum + V::load(&own.trace_s2[b]);
+                    for e in case.spread_of[b].clone() {
+                        sum = sum + V::splat(begun.spread[e]) * V::load(&own.spread[e]);
+                    }
                 }
                 lanes.trace_s2[b] = sum.store();
+                lanes.largest_s2[b] = [0.0; LANES];
             }
         }
         if let Some(least) = constraints.stress_safety_factor_min {
@@ -260,10 +276,10 @@ impl RowChunk<'_, '_> {
                 continue;
             };
             let lanes = &mut arms.cases[c];
-            for i in 0..6 {
+            for i in (0..6).filter(|&i| case.weighs[k] && weight[i] != 0.0) {
                 add(&mut lanes.wrench[i], V::splat(weight[i]));
             }
-            for &j in self.row.joints.iter().filter(|&&j| j > k) {
+            for &j in self.row.joints.iter().filter(|&&j| case.carried[k][j] != 0.0) {
                 add(&mut lanes.inertia_at[j], V::splat(case.carried[k][j]));
             }
         }
@@ -279,9 +295,8 @@ impl RowChunk<'_, '_> {
         arms: &mut EightArms,
     ) -> [usize; LANES] {
         let (mut static_nm, mut inertia_kgm2) = (V::zero(), V::zero());
-        for (c, _) in self.row.cases.iter().enumerate().filter(|(_, case)| case.sizing) {
-            let Some(joint) = self.joint(c, k) else { continue };
-            static_nm = static_nm.max(torque::<V>(joint, &arms.cases[c]).abs());
+        for (c, case) in self.row.cases.iter().enumerate().filter(|(_, case)| case.sizing) {
+            static_nm = static_nm.max(torque::<V>(&case.twists[k], &arms.cases[c]).abs());
             inertia_kgm2 = inertia_kgm2.max(V::load(&arms.cases[c].inertia_at[k]));
         }
         if !sized.all_fits {
@@ -308,32 +323,42 @@ impl RowChunk<'_, '_> {
         // eight arms much alike often have the same drive
         let alike = indices.iter().all(|index| *index == indices[0]);
         let mass: V = at_places(&drives.mass_kg, &indices, alike);
-        let curves = Curves::<V>::gather(drives, &indices, alike);
+        let first: V = at_places(&drives.compliance[0], &indices, alike);
+        let twisting = self.row.twisting[k];
+        let curves = match twisting {
+            Twisting::Segments => Curves::<V>::gather(drives, &indices, alike),
+            _ => Curves::line(first),
+        };
         add(&mut arms.mass_kg, mass);
         arms.masses_kg[k] = mass.store();
         for (c, case) in self.row.cases.iter().enumerate() {
             let Some(joint) = self.joint(c, k) else { continue };
             let lanes = &mut arms.cases[c];
             if case.judged {
-                let torque_nm: V = torque(joint, lanes);
-                let (angle, compliance) = match self.row.segmented[k] {
-                    true => curves.windup(torque_nm),
-                    false => self.each_by_itself(k, indices, torque_nm),
-                };
-                lanes.compliance[k] = compliance.store();
-                for i in (0..3).filter(|&i| joint.tip_m_per_rad[i] != 0.0) {
-                    add(&mut lanes.tip_m[i], V::splat(joint.tip_m_per_rad[i]) * angle);
+                let mut compliance = first;
+                if twisting != Twisting::AtRest {
+                    let torque_nm: V = torque(&case.twists[k], lanes);
+                    let (angle, tangent) = match twisting {
+                        Twisting::AtRest | Twisting::Line => (torque_nm * first, first),
+                        Twisting::Segments => curves.windup(torque_nm),
+                        Twisting::Play => self.each_by_itself(k, indices, torque_nm),
+                    };
+                    compliance = tangent;
+                    for i in (0..3).filter(|&i| joint.tip_m_per_rad[i] != 0.0) {
+                        add(&mut lanes.tip_m[i], V::splat(joint.tip_m_per_rad[i]) * angle);
+                    }
                 }
+                lanes.compliance[k] = compliance.store();
                 let inertia = V::load(&lanes.inertia_at[k]);
                 let own = compliance * inertia;
                 add(&mut lanes.trace_s2[joint.block], own);
                 let largest = &mut lanes.largest_s2[joint.block];
                 *largest = V::load(largest).max(own).store();
             }
-            for i in (0..6).filter(|&i| joint.weight_per_kg[i] != 0.0) {
+            for i in (0..6).filter(|&i| case.weighs[k] && joint.weight_per_kg[i] != 0.0) {
                 add(&mut lanes.wrench[i], V::splat(joint.weight_per_kg[i]) * mass);
             }
-            for &j in self.row.joints.iter().filter(|&&j| j > k) {
+            for &j in self.row.joints.iter().filter(|&&j| case.carried[k][j] != 0.0) {
                 add(&mut lanes.inertia_at[j], V::splat(case.carried[k][j]) * mass);
             }
         }
@@ -405,11 +430,11 @@ fn stress_squared<V: Lanes>(per: &StressEight, [axial, torsion, y, z]: [V; 4]) -
 
 /// Torque about a joint's axis.
 #[inline(always)]
-fn torque<V: Lanes>(joint: &StationJoint, lanes: &CaseArms) -> V {
+fn torque<V: Lanes>(twist: &[f64; 6], lanes: &CaseArms) -> V {
     let mut sum = V::zero();
     for i in 0..6 {
-        if joint.twist[i] != 0.0 {
-            sum = sum + V::splat(joint.twist[i]) * V::load(&lanes.wrench[i]);
+        if twist[i] != 0.0 {
+            sum = sum + V::splat(twist[i]) * V::load(&lanes.wrench[i]);
         }
     }
     sum
@@ -423,6 +448,12 @@ struct Curves<V> {
 }
 
 impl<V: Lanes> Curves<V> {
+    /// Those of one slope.
+    #[inline(always)]
+    fn line(compliance: V) -> Self {
+        Self { compliance: [compliance; 3], ends_nm: [V::zero(); 2], first_in_modes: true }
+    }
+
     #[inline(always)]
     fn gather(of: &DriveFigures, at: &[usize; LANES], alike: bool) -> Self {
         let zero = V::zero();

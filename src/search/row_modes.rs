@@ -43,14 +43,10 @@ impl RowChunk<'_, '_> {
         self.from.group.with(material).material()
     }
 
-    /// The group of each design.
+    /// Whether the eight are all of one group.
     #[inline(always)]
-    fn groups(&self) -> [Option<usize>; LANES] {
-        let mut groups = [None; LANES];
-        for (lane, group) in groups.iter_mut().enumerate() {
-            *group = self.group(lane);
-        }
-        groups
+    fn of_one_group(&self) -> bool {
+        self.row.chunks.get(self.chunk).is_none_or(|chunk| chunk.of_one_material)
     }
 }
 
@@ -62,17 +58,19 @@ impl<'a, 'c> Question<'a, 'c> {
     /// Designs whose lowest mode is below the bar of what is of interest.
     #[inline(always)]
     pub fn below_bar<V: Lanes>(&self, keep: &dyn Keep, tip_deflection_m: &Eight, held: u8) -> u8 {
-        let (groups, mass_kg) = (self.at.groups(), &self.arms.mass_kg);
+        let mass_kg = &self.arms.mass_kg;
         let mut asked = held;
         // a bar of all eight may tell already
-        if groups.iter().all(|group| *group == groups[0]) {
-            let least = |numbers: &Eight| numbers.iter().copied().fold(f64::INFINITY, f64::min);
-            let bar_hz = keep.bar_hz(groups[0], least(mass_kg), least(tip_deflection_m));
+        if self.at.of_one_group() {
+            let bar_hz = keep.bar_hz(self.at.group(0), least(mass_kg), least(tip_deflection_m));
             asked &= !self.sluggish(V::splat(eigenvalue(bar_hz)));
+        }
+        if asked == 0 {
+            return held;
         }
         let mut bars = [0.0; LANES];
         for lane in (0..LANES).filter(|lane| asked >> lane & 1 == 1) {
-            bars[lane] = eigenvalue(keep.bar_hz(groups[lane], mass_kg[lane], tip_deflection_m[lane]));
+            bars[lane] = eigenvalue(keep.bar_hz(self.at.group(lane), mass_kg[lane], tip_deflection_m[lane]));
         }
         held & !asked | self.below::<V>(&bars, asked)
     }
@@ -214,6 +212,14 @@ impl<'a, 'c> Question<'a, 'c> {
         let found = roots(outboard, inner, guess, open);
         (V::choose(open, found.eigenvalue, below), found.unsure)
     }
+}
+
+/// The least of eight.
+#[inline(always)]
+fn least(numbers: &Eight) -> f64 {
+    let less = |a: f64, b: f64| if a < b { a } else { b };
+    let [a, b, c, d, e, f, g, h] = *numbers;
+    less(less(less(a, e), less(c, g)), less(less(b, f), less(d, h)))
 }
 
 /// `(2πf)²`.
