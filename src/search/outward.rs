@@ -478,6 +478,7 @@ impl OutwardIn for ArmProblem<'_> {
             return;
         };
         scratch.begin(self, row, rows.iter().map(|(_, from)| from));
+        let (mut excluded, mut below_bar) = (0, 0);
         for chunk in 0..(options as usize).div_ceil(LANES) {
             let start = chunk * LANES;
             let lanes = LANES.min(options as usize - start);
@@ -485,8 +486,8 @@ impl OutwardIn for ArmProblem<'_> {
             for ((first, from), begun) in rows.iter().zip(&mut scratch.rows) {
                 let at = RowChunk { problem: self, row, from, chunk };
                 let done = in_lanes(RowWork { at, begun, arms: &mut scratch.arms, valid, keep: &*keep });
-                keep.exclude(u128::from((valid & !done.held).count_ones()));
-                keep.below_bar(u64::from(done.below_bar.count_ones()));
+                excluded += u128::from((valid & !done.held).count_ones());
+                below_bar += u64::from(done.below_bar.count_ones());
                 let mut open = done.held & !done.below_bar;
                 while open != 0 {
                     let lane = open.trailing_zeros() as usize;
@@ -496,12 +497,14 @@ impl OutwardIn for ArmProblem<'_> {
                         self.finish_one(outer.len(), option, from, *first, &mut scratch.spare, keep);
                     } else {
                         let group = at.group(lane);
-                        let objectives = done.objectives(lane);
+                        let objectives = scratch.arms.objectives(lane);
                         keep.complete(first + u128::from(option), Finished { objectives, group });
                     }
                 }
             }
         }
+        keep.exclude(excluded);
+        keep.below_bar(below_bar);
     }
 }
 

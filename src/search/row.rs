@@ -33,6 +33,8 @@ pub(super) struct Row {
     pub drives: Vec<DriveFigures>,
     /// Inner slots that are joints.
     pub joints: Vec<usize>,
+    /// Inner slots that weigh nothing and move nothing.
+    pub idle: Vec<bool>,
     /// How a joint's drives twist, by inner slot.
     pub twisting: Vec<Twisting>,
 }
@@ -217,6 +219,7 @@ impl Row {
             first,
             chunks,
             joints: (0..slots.len()).filter(is_joint).collect(),
+            idle: (0..slots.len()).map(|k| is_idle(problem, &cases, first, k)).collect(),
             twisting: (0..slots.len()).map(|k| twisting(&slots[k], &drives[k], k, &cases)).collect(),
             cases,
             drives,
@@ -234,6 +237,17 @@ fn drive_figures(slot: &Slot) -> DriveFigures {
         _ => {}
     }
     figures
+}
+
+/// Whether a piece is a rigid offset without mass, in every case.
+fn is_idle(problem: &ArmProblem, cases: &[RowCase], first: usize, k: usize) -> bool {
+    let weightless = |station: &Station| match &station.slots[first + k] {
+        StationSlot::Body { weight, .. } => weight.amax() == 0.0,
+        _ => false,
+    };
+    matches!(problem.slots()[first + k], Slot::Offset { mass_kg: 0.0 })
+        && problem.stations().iter().all(weightless)
+        && cases.iter().all(|case| case.carried[k] == [0.0; MOST_SLOTS])
 }
 
 fn twisting(slot: &Slot, drives: &DriveFigures, k: usize, cases: &[RowCase]) -> Twisting {

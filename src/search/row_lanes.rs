@@ -33,7 +33,8 @@ pub(super) struct RowWork<'a, 'c> {
     pub keep: &'a dyn Keep,
 }
 
-/// Eight designs finished.
+/// What became of eight designs; what they come to is in their [`EightArms`].
+#[derive(Default)]
 pub(super) struct FinishedEight {
     /// Bits of the designs that hold.
     pub held: u8,
@@ -41,9 +42,6 @@ pub(super) struct FinishedEight {
     pub below_bar: u8,
     /// Bits of those whose lowest mode was not found.
     pub unsure: u8,
-    pub tip_deflection_m: Eight,
-    pub mass_kg: Eight,
-    pub lowest_mode_hz: Eight,
 }
 
 /// Eight arms as they grow inward.
@@ -53,7 +51,12 @@ pub(super) struct EightArms {
     pub mass_kg: Eight,
     /// Mass of the drive in each inner slot.
     pub masses_kg: [Eight; MOST_SLOTS],
+    /// The largest of what single joints add to Dunkerley's sums: no lowest eigenvalue is above one over that.
+    pub largest_s2: Eight,
     pub cases: Vec<CaseArms>,
+    /// What they come to, once finished.
+    pub tip_deflection_m: Eight,
+    lowest_mode_hz: Eight,
 }
 
 /// Eight arms in one case.
@@ -65,8 +68,6 @@ pub(super) struct CaseArms {
     pub compliance: [Eight; MOST_SLOTS],
     /// Dunkerley's sum of each block.
     pub trace_s2: [Eight; 2],
-    /// The largest of what single joints add to it: no lowest eigenvalue is above one over that.
-    pub largest_s2: [Eight; 2],
 }
 
 impl EightArms {
@@ -79,9 +80,25 @@ impl EightArms {
             inertia_at: [zeros; MOST_SLOTS],
             compliance: [zeros; MOST_SLOTS],
             trace_s2: [zeros; 2],
-            largest_s2: [zeros; 2],
         };
-        Self { held: 0, mass_kg: zeros, masses_kg: [zeros; MOST_SLOTS], cases: vec![nothing; cases] }
+        Self {
+            held: 0,
+            mass_kg: zeros,
+            masses_kg: [zeros; MOST_SLOTS],
+            largest_s2: zeros,
+            cases: vec![nothing; cases],
+            tip_deflection_m: zeros,
+            lowest_mode_hz: zeros,
+        }
+    }
+
+    /// Objectives of one of the eight.
+    pub fn objectives(&self, lane: usize) -> Objectives {
+        Objectives {
+            tip_deflection_m: self.tip_deflection_m[lane],
+            mass_kg: self.mass_kg[lane],
+            lowest_mode_hz: self.lowest_mode_hz[lane],
+        }
     }
 }
 
@@ -97,49 +114,27 @@ impl LaneWork for RowWork<'_, '_> {
             arms.held &= !V::splat(max_kg).less(V::load(&arms.mass_kg));
         }
         if arms.held == 0 {
-            return FinishedEight::none();
+            return FinishedEight::default();
         }
         let mut tip_m2 = V::zero();
         for (_, lanes) in at.row.cases.iter().zip(&arms.cases).filter(|(case, _)| case.judged) {
             let [x, y, z]: [V; 3] = load_all(&lanes.tip_m);
             tip_m2 = tip_m2.max(x * x + y * y + z * z);
         }
-        let tip_deflection_m = tip_m2.sqrt().store();
         let held = arms.held;
+        let mut below_bar = Question::new(at, begun, arms).below_one_bar::<V>(keep, &tip_m2.store(), held);
+        if below_bar == held {
+            return FinishedEight { held, below_bar, unsure: 0 };
+        }
+        arms.tip_deflection_m = tip_m2.sqrt().store();
         let question = Question::new(at, begun, arms);
-        let below_bar = question.below_bar::<V>(keep, &tip_deflection_m, held);
+        below_bar |= question.below_bar::<V>(keep, held & !below_bar);
+        if below_bar == held {
+            return FinishedEight { held, below_bar, unsure: 0 };
+        }
         let (eigenvalue, unsure) = question.lowest::<V>(held & !below_bar);
-        FinishedEight {
-            held,
-            below_bar,
-            unsure,
-            tip_deflection_m,
-            mass_kg: arms.mass_kg,
-            lowest_mode_hz: (eigenvalue.sqrt() / V::splat(TAU)).store(),
-        }
-    }
-}
-
-impl FinishedEight {
-    /// Objectives of one of the eight.
-    pub fn objectives(&self, lane: usize) -> Objectives {
-        Objectives {
-            tip_deflection_m: self.tip_deflection_m[lane],
-            mass_kg: self.mass_kg[lane],
-            lowest_mode_hz: self.lowest_mode_hz[lane],
-        }
-    }
-
-    fn none() -> Self {
-        let zeros = [0.0; LANES];
-        Self {
-            held: 0,
-            below_bar: 0,
-            unsure: 0,
-            tip_deflection_m: zeros,
-            mass_kg: zeros,
-            lowest_mode_hz: zeros,
-        }
+        arms.lowest_mode_hz = (eigenvalue.sqrt() / V::splat(TAU)).store();
+        FinishedEight { held, below_bar, unsure }
     }
 }
 
@@ -148,6 +143,7 @@ impl RowChunk<'_, '_> {
     #[inline(always)]
     fn grow<V: Lanes>(&self, begun: &mut Begun, arms: &mut EightArms) {
         let slots = &self.problem.slots()[self.row.first..];
+        arms.largest_s2 = [0.0; LANES];
         // a link comes first or not at all
         match self.row.chunks.get(self.chunk) {
             Some(chunk) => self.start_with_link::<V>(chunk, begun, arms),
@@ -156,6 +152,7 @@ impl RowChunk<'_, '_> {
         for (k, slot) in slots.iter().enumerate() {
             match slot {
                 Slot::Link { .. } => {}
+                Slot::Offset { .. } if self.row.idle[k] => {}
                 Slot::Offset { mass_kg } => self.add_offset::<V>(k, *mass_kg, arms),
                 Slot::Given { .. } => self.add_joint::<V>(k, [0; LANES], arms),
                 Slot::Sized(sized) => {
@@ -186,7 +183,6 @@ impl RowChunk<'_, '_> {
             }
             for b in 0..2 {
                 lanes.trace_s2[b] = [state.trace_s2[b]; LANES];
-                lanes.largest_s2[b] = [0.0; LANES];
             }
         }
     }
@@ -237,7 +233,6 @@ impl RowChunk<'_, '_> {
                     }
                 }
                 lanes.trace_s2[b] = sum.store();
-                lanes.largest_s2[b] = [0.0; LANES];
             }
         }
         if let Some(least) = constraints.stress_safety_factor_min {
@@ -331,6 +326,7 @@ impl RowChunk<'_, '_> {
         };
         add(&mut arms.mass_kg, mass);
         arms.masses_kg[k] = mass.store();
+        let mut largest = V::load(&arms.largest_s2);
         for (c, case) in self.row.cases.iter().enumerate() {
             let Some(joint) = self.joint(c, k) else { continue };
             let lanes = &mut arms.cases[c];
@@ -352,8 +348,7 @@ impl RowChunk<'_, '_> {
                 let inertia = V::load(&lanes.inertia_at[k]);
                 let own = compliance * inertia;
                 add(&mut lanes.trace_s2[joint.block], own);
-                let largest = &mut lanes.largest_s2[joint.block];
-                *largest = V::load(largest).max(own).store();
+                largest = largest.max(own);
             }
             for i in (0..6).filter(|&i| case.weighs[k] && joint.weight_per_kg[i] != 0.0) {
                 add(&mut lanes.wrench[i], V::splat(joint.weight_per_kg[i]) * mass);
@@ -362,6 +357,7 @@ impl RowChunk<'_, '_> {
                 add(&mut lanes.inertia_at[j], V::splat(case.carried[k][j]) * mass);
             }
         }
+        arms.largest_s2 = largest.store();
     }
 
     /// Twist under a torque and twist per further torque of joints with play or friction.

@@ -55,24 +55,26 @@ impl<'a, 'c> Question<'a, 'c> {
         Self { at, begun, arms }
     }
 
+    /// Designs that one bar for all eight shows to be of no interest, that of the least mass and the least deflection
+    /// among them; `tip_m2` are the squares of their deflections.
+    #[inline(always)]
+    pub fn below_one_bar<V: Lanes>(&self, keep: &dyn Keep, tip_m2: &Eight, held: u8) -> u8 {
+        if !self.at.of_one_group() {
+            return 0;
+        }
+        let bar_hz = keep.bar_hz(self.at.group(0), least(&self.arms.mass_kg), least(tip_m2).sqrt());
+        held & self.sluggish(V::splat(eigenvalue(bar_hz)))
+    }
+
     /// Designs whose lowest mode is below the bar of what is of interest.
     #[inline(always)]
-    pub fn below_bar<V: Lanes>(&self, keep: &dyn Keep, tip_deflection_m: &Eight, held: u8) -> u8 {
-        let mass_kg = &self.arms.mass_kg;
-        let mut asked = held;
-        // a bar of all eight may tell already
-        if self.at.of_one_group() {
-            let bar_hz = keep.bar_hz(self.at.group(0), least(mass_kg), least(tip_deflection_m));
-            asked &= !self.sluggish(V::splat(eigenvalue(bar_hz)));
-        }
-        if asked == 0 {
-            return held;
-        }
+    pub fn below_bar<V: Lanes>(&self, keep: &dyn Keep, held: u8) -> u8 {
+        let (mass_kg, tip_deflection_m) = (&self.arms.mass_kg, &self.arms.tip_deflection_m);
         let mut bars = [0.0; LANES];
-        for lane in (0..LANES).filter(|lane| asked >> lane & 1 == 1) {
+        for lane in (0..LANES).filter(|lane| held >> lane & 1 == 1) {
             bars[lane] = eigenvalue(keep.bar_hz(self.at.group(lane), mass_kg[lane], tip_deflection_m[lane]));
         }
-        held & !asked | self.below::<V>(&bars, asked)
+        self.below::<V>(&bars, held)
     }
 
     /// Lanes whose lowest eigenvalue is below a bar.
@@ -97,9 +99,6 @@ impl<'a, 'c> Question<'a, 'c> {
     #[inline(always)]
     pub fn lowest<V: Lanes>(&self, held: u8) -> (V, u8) {
         let (mut lowest, mut unsure) = (V::splat(f64::INFINITY), 0);
-        if held == 0 {
-            return (lowest, unsure);
-        }
         for &block in self.blocks(held).iter().flatten() {
             let least = self.least::<V>(block);
             let open = held & least.less(lowest);
@@ -118,13 +117,7 @@ impl<'a, 'c> Question<'a, 'c> {
     /// eigenvalue of flexibility times mass, and nothing on the diagonal of a symmetric matrix is larger than that.
     #[inline(always)]
     fn sluggish<V: Lanes>(&self, below: V) -> u8 {
-        let mut slow = 0;
-        for (c, _) in self.at.row.cases.iter().enumerate().filter(|(_, case)| case.judged) {
-            for block in 0..2 {
-                slow |= V::splat(1.0).less(V::load(&self.arms.cases[c].largest_s2[block]) * below);
-            }
-        }
-        slow
+        V::splat(1.0).less(V::load(&self.arms.largest_s2) * below)
     }
 
     /// Dunkerley's lower bound of a block's lowest eigenvalue.
