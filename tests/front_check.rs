@@ -37,8 +37,10 @@ fn path(path: &Path) -> &str {
     path.to_str().expect("a name")
 }
 
+/// Exit code and what was said, wherever lines end.
 fn check(dir: &TempDir) -> (i32, String) {
-    armwright(&["front", "check", path(dir.path())])
+    let (code, text) = armwright(&["front", "check", path(dir.path())]);
+    (code, text.split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
 fn front(dir: &TempDir) -> Vec<String> {

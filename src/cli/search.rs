@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 /// How a front is looked for, and for how long.
 #[derive(Debug, Clone, Copy, Default, Args)]
 pub struct SearchArgs {
-    /// How the front is looked for; default exhaustive up to 1e9 designs, exact beyond
+    /// How the front of the study is looked for; default exhaustive up to 1e9 designs, exact beyond
     #[arg(long, value_enum)]
     search: Option<SearchKind>,
     /// Stop the exact search after so long, as Ctrl-C does, and write what it found, with how much it may lack
