@@ -525,7 +525,7 @@ fn effects_of_the_study_are_bounded_too() {
     assert!(points > 300, "{points}");
 }
 
-/// A random study one to three of whose joints have play: lost motion, friction or both.
+/// A random study whose joints may have play: lost motion, friction or both.
 fn study_with_play(seed: u64) -> Value {
     let mut study = random_study(seed);
     let dice = &mut Dice(seed + 2_000);

@@ -7,9 +7,9 @@ use super::search::{Asked, SearchArgs, With, search};
 use super::{Failure, carry, write_all};
 use crate::catalog::Catalogs;
 use crate::reconcile::{Outcome, Verdict};
+use crate::report::certificate::gap_words;
 use crate::report::compare::changes::{Changes, Model, Values};
 use crate::report::compare::text::wrap;
-use crate::report::number::significant;
 use crate::report::picks::designs;
 use crate::search::design::{number, number_of};
 use crate::search::{ArmProblem, OutwardIn, Status, evaluate};
@@ -132,14 +132,16 @@ fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> 
 
 /// What to make of fronts whose searches were stopped.
 fn stopped_words(found: &[Written]) -> String {
-    let gap = |w: &Written| {
-        w.gap.map_or("of unknown gap".to_string(), |gap| format!("{} %", significant(100.0 * gap, 2)))
+    let lacks = |written: &Written| match (written.status, written.gap) {
+        (Status::Partial, Some(gap)) => gap_words(gap),
+        (Status::Partial, None) => "how much it may lack is not known".into(),
+        _ => "no design is missing".into(),
     };
     let words = format!(
-        "The searches were stopped: a design may also leave or enter because one search found it and the other did not. \
-         No design beats every listed one by more than the gap in all three objectives: nominal {}, corrected {}.",
-        gap(&found[0]),
-        gap(&found[1])
+        "A search was stopped: a design may also leave or enter because one search found it and the other did not. \
+         Nominal: {}. Corrected: {}.",
+        lacks(&found[0]),
+        lacks(&found[1])
     );
     wrap(&words, 80, "")
 }

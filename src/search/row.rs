@@ -295,12 +295,6 @@ impl RowCase {
                 *own = std::array::from_fn(|i| if loaded[i] { joint.twist[i] } else { 0.0 });
             }
         }
-        let moves = |i: usize| {
-            let bends = |l: &StationLink| {
-                (l.tip * l.end.transpose()).row(i).amax() > 0.0 || (l.tip * l.sag)[i] != 0.0
-            };
-            links.iter().any(bends)
-        };
         let link_weight =
             links.iter().find(|l| l.weight[2] != 0.0).map_or(Vector6::zeros(), |l| -l.weight / l.weight[2]);
         let links_yield = links.iter().any(|l| l.end.amax() > 0.0);
@@ -319,7 +313,7 @@ impl RowCase {
             loaded,
             twists,
             weighs: std::array::from_fn(|k| twists[k + 1..].iter().any(|twist| *twist != [0.0; 6])),
-            bends: [0, 1, 2].map(moves),
+            bends: bends(links),
             link_weight,
             link_weight_at_root,
             spread_of: [0..of_first, of_first..spread_entries.len()],
@@ -330,6 +324,14 @@ impl RowCase {
             sizing,
         }
     }
+}
+
+/// Directions in which some link moves the tip.
+fn bends(links: &[StationLink]) -> [bool; 3] {
+    links.iter().fold([false; 3], |bends, link| {
+        let (flexibility, sag_m) = (link.flexibility(), link.sag_m());
+        std::array::from_fn(|i| bends[i] || sag_m[i] != 0.0 || flexibility.row(i).amax() > 0.0)
+    })
 }
 
 /// Components of a wrench that some load or weight of a case has.
@@ -413,8 +415,7 @@ impl CaseChunk {
         let StationSlot::Link { options, .. } = &station.slots[first] else { return None };
         let links: [&StationLink; LANES] = std::array::from_fn(|lane| &options[at(lane)]);
         let lanes = |of: &dyn Fn(&StationLink) -> f64| links.map(of);
-        let flexibility = links.map(|l| l.tip * l.end.transpose());
-        let sag = links.map(|l| l.tip * l.sag);
+        let (flexibility, sag) = (links.map(StationLink::flexibility), links.map(StationLink::sag_m));
         let joints: Vec<_> = station.slots[first..]
             .iter()
             .map(|slot| match slot {

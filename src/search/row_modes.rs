@@ -2,8 +2,9 @@
 //!
 //! Few eigenproblems are solved to the end. A design whose mass and deflection are known need not be looked at further
 //! if its lowest mode is below a bar, that of a design no worse in both. Most often what one joint yields tells by
-//! itself, and one bar serves all eight; else one pass a block tells. Of the others the block whose Dunkerley sum is largest is solved first; any other block whose lower bound lies below that root
-//! gets one pass at it, and only if a pivot is negative there, a root of its own.
+//! itself, and one bar serves all eight; else one pass a block tells. Of the others the block whose Dunkerley sum is
+//! largest is solved first; any other block whose lower bound lies below that root gets one pass at it, and only if a
+//! pivot is negative there, a root of its own.
 
 use super::Keep;
 use super::row::{Begun, CaseOutboard, ChunkModal, MOST_CASES, RowCase};

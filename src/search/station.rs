@@ -84,6 +84,18 @@ pub(super) struct StationLink {
     pub inner_trace_s2: f64,
 }
 
+impl StationLink {
+    /// Displacement of the tip by the wrench on the link's end.
+    pub fn flexibility(&self) -> Matrix3x6<f64> {
+        self.tip * self.end.transpose()
+    }
+
+    /// Displacement of the tip by the link's own weight \[m\].
+    pub fn sag_m(&self) -> Vector3<f64> {
+        self.tip * self.sag
+    }
+}
+
 /// The pieces as the pass for the lowest mode sees them.
 pub(super) enum Modal {
     Planar(Box<[Block<3>; 2]>),

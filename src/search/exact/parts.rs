@@ -178,12 +178,12 @@ impl CurveBox {
     pub fn twist(&self, play: Option<&Play>, [low, high]: [f64; 2]) -> [f64; 2] {
         let least = if low >= 0.0 { &self.stiff } else { &self.soft }.angle_rad(low);
         let most = if high >= 0.0 { &self.soft } else { &self.stiff }.angle_rad(high);
-        let [less, more] = self.twist_of(play, [low, high]);
+        let [less, more] = self.twist_of_play(play, [low, high]);
         [least + less, most + more]
     }
 
     /// What play adds to it.
-    pub fn twist_of(&self, play: Option<&Play>, between_nm: [f64; 2]) -> [f64; 2] {
+    pub fn twist_of_play(&self, play: Option<&Play>, between_nm: [f64; 2]) -> [f64; 2] {
         let middle = [&self.stiff, &self.soft].map(|curve| 1.0 / curve.k2_nm_per_rad);
         play.map_or([0.0; 2], |play| play.twist(middle, between_nm))
     }

@@ -122,14 +122,21 @@ impl<'c> Problem<'c> {
                 Layer::Mass(_) => Part::Offset { mass_kg: 0.0 },
             };
             problem.parts.push(part);
+            // of a joint, whichever drive it has
+            problem.plays.push(match layer {
+                Layer::Piece(SpacePiece::Joint(joint)) => {
+                    Play::of(&space.joint_piece(joint, Curve::Linear(1.0)).law)
+                }
+                _ => None,
+            });
             // a harness is no part of what a design weighs, but of what its link does
             if let Layer::Piece(piece) = layer
                 && let Some(harness_kg) = harness_kg(space, piece)
             {
                 problem.parts.push(Part::Offset { mass_kg: -harness_kg });
+                problem.plays.push(None);
             }
         }
-        problem.plays.resize(problem.parts.len(), None);
         problem.lighter_is_better = problem.grows_with_weight();
         Some(problem.with_inertias())
     }
@@ -142,11 +149,6 @@ impl<'c> Problem<'c> {
         takes: &dyn Fn(&LinkOption) -> bool,
     ) -> Option<Part<'c>> {
         let space = self.space;
-        if let SpacePiece::Joint(joint) = piece {
-            // of a joint, whichever drive it has
-            self.plays.resize(self.parts.len(), None);
-            self.plays.push(Play::of(&space.joint_piece(joint, Curve::Linear(1.0)).law));
-        }
         Some(match piece {
             SpacePiece::Joint(joint) => match joint_slot(space, joint, reach_m, catalogs) {
                 Slot::Given { law, mass_kg } => Part::Given { mass_kg, curve: CurveBox::of(&law) },

@@ -47,7 +47,7 @@ impl Tip {
                 let [least_nm, most_nm] = work.torques[case][row.piece];
                 let Some(curve) = &work.curves[row.piece] else { continue };
                 let (breaks, play) = (work.breaks[row.piece], problem.plays[row.piece].as_ref());
-                let [less, more] = curve.twist_of(play, force);
+                let [less, more] = curve.twist_of_play(play, force);
                 fixed_m += way * if way > 0.0 { less } else { more };
                 let known = matches!(problem.parts[row.piece], Part::Drives { .. } | Part::Given { .. });
                 if !known || !curve.keeps_its_slope(play, [least_nm, most_nm], breaks) {
