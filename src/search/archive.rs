@@ -49,7 +49,7 @@ impl Archive {
         );
         let (Some(row), Some(column)) = (row, column) else { return 0.0 };
         let best = f32::from_bits(self.best_hz[row * self.columns + column].load(Ordering::Relaxed));
-        f64::from(best) / (1.0 + MARGIN)
+        f64::from(best) * (1.0 - MARGIN)
     }
 
     /// Enters a design. Two threads that write one cell at once may lose the better of the two; the table

@@ -115,7 +115,7 @@ pub trait OutwardIn: Sync {
 
     /// Finishes rows of designs: each an arm that lacks only the innermost level, with the number of its first
     /// design, by every option of that level.
-    fn finish(&self, rows: &[(u128, Self::Partial)], scratch: &mut Self::Scratch, keep: &mut dyn Keep) {
+    fn finish<K: Keep>(&self, rows: &[(u128, Self::Partial)], scratch: &mut Self::Scratch, keep: &mut K) {
         let Some((&options, outer)) = self.level_sizes().split_last() else { return };
         for (first, from) in rows {
             let mut complete = from.clone();

@@ -4,17 +4,17 @@
 use super::effects::Layer;
 use super::figures::OptionFigures;
 use super::row::{Row, RowScratch};
-use super::row_lanes::{RowChunk, RowWork};
+use super::row_lanes::RowsWork;
 pub use super::slot::SizedJoint;
 pub(super) use super::slot::Slot;
 use super::slot::{choice_slot, joint_slot, link_slot};
 use super::space::{DesignSpace, SpacePiece};
 use super::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot, reaches_m};
-use super::{Finished, Keep, Objectives, OutwardIn};
+use super::{Keep, Objectives, OutwardIn};
 use crate::arm::JointLaw;
 use crate::catalog::Catalogs;
 use crate::mechanics::Wrench;
-use crate::mechanics::lanes::{LANES, in_lanes};
+use crate::mechanics::lanes::in_lanes;
 use crate::mechanics::lowest::{Step, frequency_hz, lowest_eigenvalue};
 use crate::sizing::{JointDemand, JointMotion};
 use nalgebra::{Matrix6, Vector3};
@@ -467,7 +467,7 @@ impl OutwardIn for ArmProblem<'_> {
         RowScratch::new(self)
     }
 
-    fn finish(&self, rows: &[(u128, Partial)], scratch: &mut RowScratch, keep: &mut dyn Keep) {
+    fn finish<K: Keep>(&self, rows: &[(u128, Partial)], scratch: &mut RowScratch, keep: &mut K) {
         let Some((&options, outer)) = self.level_sizes.split_last() else { return };
         let Some(row) = &self.row else {
             for (first, from) in rows {
@@ -478,33 +478,7 @@ impl OutwardIn for ArmProblem<'_> {
             return;
         };
         scratch.begin(self, row, rows.iter().map(|(_, from)| from));
-        let (mut excluded, mut below_bar) = (0, 0);
-        for chunk in 0..(options as usize).div_ceil(LANES) {
-            let start = chunk * LANES;
-            let lanes = LANES.min(options as usize - start);
-            let valid = u8::MAX >> (LANES - lanes);
-            for ((first, from), begun) in rows.iter().zip(&mut scratch.rows) {
-                let at = RowChunk { problem: self, row, from, chunk };
-                let done = in_lanes(RowWork { at, begun, arms: &mut scratch.arms, valid, keep: &*keep });
-                excluded += u128::from((valid & !done.held).count_ones());
-                below_bar += u64::from(done.below_bar.count_ones());
-                let mut open = done.held & !done.below_bar;
-                while open != 0 {
-                    let lane = open.trailing_zeros() as usize;
-                    let (bit, option) = (1 << lane, (start + lane) as u32);
-                    open &= !bit;
-                    if done.unsure & bit != 0 {
-                        self.finish_one(outer.len(), option, from, *first, &mut scratch.spare, keep);
-                    } else {
-                        let group = at.group(lane);
-                        let objectives = scratch.arms.objectives(lane);
-                        keep.complete(first + u128::from(option), Finished { objectives, group });
-                    }
-                }
-            }
-        }
-        keep.exclude(excluded);
-        keep.below_bar(below_bar);
+        in_lanes(RowsWork { problem: self, row, rows, options, scratch, keep });
     }
 }
 

@@ -9,8 +9,9 @@
 use super::figures::OptionFigures;
 use super::outward::{ArmProblem, Partial, Slot, block_steps};
 use super::row_lanes::EightArms;
-use super::station::{Block, BlockSlot, Modal, Station, StationLink, StationSlot};
+use super::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot};
 use crate::arm::{Curve, JointLaw};
+use crate::mechanics::Wrench;
 use crate::mechanics::lanes::{Eight, LANES};
 use crate::mechanics::lowest_lanes::{LaneLink, Outboard};
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
@@ -33,8 +34,8 @@ pub(super) struct Row {
     pub drives: Vec<DriveFigures>,
     /// Inner slots that are joints.
     pub joints: Vec<usize>,
-    /// Inner slots that weigh nothing and move nothing.
-    pub idle: Vec<bool>,
+    /// Mass of all that is not chosen.
+    pub fixed_kg: f64,
     /// How a joint's drives twist, by inner slot.
     pub twisting: Vec<Twisting>,
 }
@@ -52,22 +53,29 @@ pub(super) enum Twisting {
     Play,
 }
 
+/// What something outboard of a joint does at its axis.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct AtJoint {
+    pub torque_nm: f64,
+    pub inertia_kgm2: f64,
+}
+
+/// The same at each inner joint, by inner slot.
+type AtJoints = [AtJoint; MOST_SLOTS];
+
 /// What depends on the pose but not on the option.
 pub(super) struct RowCase {
-    /// Inertia about each inner joint's axis of a piece (of a kilogram of it, if it is a drive):
-    /// `carried[piece][joint]`, by inner slot.
-    pub carried: [[f64; MOST_SLOTS]; MOST_SLOTS],
-    /// Components of a wrench that no load or weight has are zero in every arm.
-    pub loaded: [bool; 6],
-    /// Each inner joint's axis in the components that loads have.
-    pub twists: [[f64; 6]; MOST_SLOTS],
-    /// Whether some joint inboard of each inner piece is turned by loads.
-    pub weighs: [bool; MOST_SLOTS],
+    /// Inner joints that some load or weight turns; in every arm the torque on the others is zero.
+    pub turned: [bool; MOST_SLOTS],
+    /// What a kilogram of each inner drive does.
+    pub per_kg: [AtJoints; MOST_SLOTS],
+    /// What all inner pieces do that are not chosen.
+    pub fixed: AtJoints,
+    /// Torque on each inner joint per newton of a link's weight, and what it makes at the link's root.
+    pub link_torque: [f64; MOST_SLOTS],
+    pub link_weight_at_root: [f64; 4],
     /// Directions in which the links of the row move the tip.
     pub bends: [bool; 3],
-    /// Weight wrench of a link per newton, and what it makes at the link's root.
-    pub link_weight: Vector6<f64>,
-    pub link_weight_at_root: [f64; 4],
     /// Block, row and column of the outboard inertia that link ends carry, and which of them belong to each block.
     pub spread_entries: Vec<(usize, usize, usize)>,
     pub spread_of: [Range<usize>; 2],
@@ -151,8 +159,8 @@ pub(super) struct Begun {
 
 pub(super) struct CaseBegun {
     pub outboard: CaseOutboard,
-    /// Inertia outboard of the row about each inner joint.
-    pub inertia_at: [f64; MOST_SLOTS],
+    /// What is outboard of the row, and what is inboard and not chosen, does at each inner joint.
+    pub at: AtJoints,
     pub spread: Vec<f64>,
     /// Axial force, torsion and both bending moments of what is outboard at the link's end and root.
     pub at_end: [f64; 4],
@@ -204,7 +212,7 @@ impl Row {
             .map(|(case, station)| {
                 let (judged, sizing) =
                     (space.judged_cases.contains(&case), space.sizing_cases.contains(&case));
-                RowCase::new(station, first, judged, sizing)
+                RowCase::new(station, slots, first, judged, sizing)
             })
             .collect();
         let chunks = match &slots[0] {
@@ -219,7 +227,7 @@ impl Row {
             first,
             chunks,
             joints: (0..slots.len()).filter(is_joint).collect(),
-            idle: (0..slots.len()).map(|k| is_idle(problem, &cases, first, k)).collect(),
+            fixed_kg: slots.iter().filter_map(Slot::fixed_kg).sum(),
             twisting: (0..slots.len()).map(|k| twisting(&slots[k], &drives[k], k, &cases)).collect(),
             cases,
             drives,
@@ -239,24 +247,13 @@ fn drive_figures(slot: &Slot) -> DriveFigures {
     figures
 }
 
-/// Whether a piece is a rigid offset without mass, in every case.
-fn is_idle(problem: &ArmProblem, cases: &[RowCase], first: usize, k: usize) -> bool {
-    let weightless = |station: &Station| match &station.slots[first + k] {
-        StationSlot::Body { weight, .. } => weight.amax() == 0.0,
-        _ => false,
-    };
-    matches!(problem.slots()[first + k], Slot::Offset { mass_kg: 0.0 })
-        && problem.stations().iter().all(weightless)
-        && cases.iter().all(|case| case.carried[k] == [0.0; MOST_SLOTS])
-}
-
 fn twisting(slot: &Slot, drives: &DriveFigures, k: usize, cases: &[RowCase]) -> Twisting {
     let has_play = match slot {
         Slot::Given { law, .. } => law.has_play(),
         Slot::Sized(sized) => sized.laws.iter().any(JointLaw::has_play),
         _ => false,
     };
-    let turned = cases.iter().filter(|case| case.judged).any(|case| case.twists[k] != [0.0; 6]);
+    let turned = cases.iter().filter(|case| case.judged).any(|case| case.turned[k]);
     let [first, second, third] = &drives.compliance;
     match (has_play, turned) {
         (true, _) => Twisting::Play,
@@ -267,34 +264,29 @@ fn twisting(slot: &Slot, drives: &DriveFigures, k: usize, cases: &[RowCase]) -> 
 }
 
 impl RowCase {
-    fn new(station: &Station, first: usize, judged: bool, sizing: bool) -> Self {
+    fn new(station: &Station, pieces: &[Slot], first: usize, judged: bool, sizing: bool) -> Self {
         let slots = &station.slots[first..];
-        let about = |joint: &StationSlot, inertia: &Matrix6<f64>| match joint {
-            StationSlot::Joint(joint) => joint.twist.dot(&(inertia * joint.twist)),
-            _ => 0.0,
-        };
-        let mut carried = [[0.0; MOST_SLOTS]; MOST_SLOTS];
-        for (b, body) in slots.iter().enumerate() {
-            let inertia = match body {
-                StationSlot::Joint(joint) => &joint.inertia_per_kg,
-                StationSlot::Body { inertia, .. } => inertia,
+        let mut per_kg = [AtJoints::default(); MOST_SLOTS];
+        let mut fixed = AtJoints::default();
+        for (k, (slot, piece)) in slots.iter().zip(pieces).enumerate() {
+            let (inertia, weight, fixed_times) = match slot {
+                StationSlot::Joint(joint) => (&joint.inertia_per_kg, &joint.weight_per_kg, piece.fixed_kg()),
+                StationSlot::Body { inertia, weight } => (inertia, weight, Some(1.0)),
                 StationSlot::Link { .. } => continue,
             };
-            for (j, joint) in slots.iter().enumerate().skip(b + 1) {
-                carried[b][j] = about(joint, inertia);
+            for (j, joint) in slots.iter().enumerate().skip(k + 1) {
+                let StationSlot::Joint(joint) = joint else { continue };
+                let own = AtJoint::new(joint, inertia, weight);
+                match fixed_times {
+                    Some(times) => fixed[j].add(own, times),
+                    None => per_kg[k][j] = own,
+                }
             }
         }
         let links: &[StationLink] = match &slots[0] {
             StationSlot::Link { options, .. } => options,
             _ => &[],
         };
-        let loaded = loaded(station);
-        let mut twists = [[0.0; 6]; MOST_SLOTS];
-        for (own, slot) in twists.iter_mut().zip(slots) {
-            if let StationSlot::Joint(joint) = slot {
-                *own = std::array::from_fn(|i| if loaded[i] { joint.twist[i] } else { 0.0 });
-            }
-        }
         let link_weight =
             links.iter().find(|l| l.weight[2] != 0.0).map_or(Vector6::zeros(), |l| -l.weight / l.weight[2]);
         let links_yield = links.iter().any(|l| l.end.amax() > 0.0);
@@ -308,14 +300,14 @@ impl RowCase {
         };
         let spread_entries = if links_yield { spread_entries(&station.modal) } else { Vec::new() };
         let of_first = spread_entries.partition_point(|(block, ..)| *block == 0);
+        let (turned, link_torque) = turning(station, slots, &link_weight);
         Self {
-            carried,
-            loaded,
-            twists,
-            weighs: std::array::from_fn(|k| twists[k + 1..].iter().any(|twist| *twist != [0.0; 6])),
-            bends: bends(links),
-            link_weight,
+            turned,
+            per_kg,
+            fixed,
+            link_torque,
             link_weight_at_root,
+            bends: bends(links),
             spread_of: [0..of_first, of_first..spread_entries.len()],
             spread_entries,
             ends,
@@ -324,6 +316,35 @@ impl RowCase {
             sizing,
         }
     }
+}
+
+impl AtJoint {
+    fn new(joint: &StationJoint, inertia: &Matrix6<f64>, wrench: &Wrench) -> Self {
+        let twist = &joint.twist;
+        Self { torque_nm: twist.dot(wrench), inertia_kgm2: twist.dot(&(inertia * twist)) }
+    }
+
+    fn add(&mut self, other: Self, times: f64) {
+        self.torque_nm += times * other.torque_nm;
+        self.inertia_kgm2 += times * other.inertia_kgm2;
+    }
+}
+
+/// Whether loads turn each inner joint, and its torque per newton of a link's weight.
+fn turning(
+    station: &Station,
+    slots: &[StationSlot],
+    link_weight: &Wrench,
+) -> ([bool; MOST_SLOTS], [f64; MOST_SLOTS]) {
+    let loaded = loaded(station);
+    let (mut turned, mut link_torque) = ([false; MOST_SLOTS], [0.0; MOST_SLOTS]);
+    for (j, slot) in slots.iter().enumerate() {
+        if let StationSlot::Joint(joint) = slot {
+            turned[j] = (0..6).any(|i| loaded[i] && joint.twist[i] != 0.0);
+            link_torque[j] = joint.twist.dot(link_weight);
+        }
+    }
+    (turned, link_torque)
 }
 
 /// Directions in which some link moves the tip.
@@ -468,7 +489,7 @@ fn lane_link<const N: usize>(block: &Block<N>, first: usize, at: &dyn Fn(usize) 
 impl RowScratch {
     /// Room for the rows of a problem.
     pub(super) fn new(problem: &ArmProblem) -> Self {
-        Self { rows: Vec::new(), arms: EightArms::new(problem.stations().len()), spare: problem.empty() }
+        Self { rows: Vec::new(), arms: EightArms::new(problem), spare: problem.empty() }
     }
 
     /// Works out what each row shares.
@@ -492,7 +513,7 @@ impl Begun {
                 Modal::Planar(_) => CaseOutboard::Planar(Box::default()),
                 Modal::Spatial(_) => CaseOutboard::Spatial(Box::default()),
             },
-            inertia_at: [0.0; MOST_SLOTS],
+            at: AtJoints::default(),
             spread: Vec::new(),
             at_end: [0.0; 4],
             at_root: [0.0; 4],
@@ -505,7 +526,8 @@ impl Begun {
             let (station, state, case) = (&problem.stations()[k], &from.stations[k], &row.cases[k]);
             for (j, slot) in station.slots[row.first..].iter().enumerate() {
                 if let StationSlot::Joint(joint) = slot {
-                    begun.inertia_at[j] = joint.twist.dot(&(state.inertia * joint.twist));
+                    begun.at[j] = AtJoint::new(joint, &state.inertia, &state.wrench);
+                    begun.at[j].add(case.fixed[j], 1.0);
                 }
             }
             if let StationSlot::Link { place, .. } = &station.slots[row.first] {

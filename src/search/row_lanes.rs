@@ -5,10 +5,10 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::outward::{ArmProblem, Partial, SizedJoint, Slot};
-use super::row::{Begun, Chunk, DriveFigures, MOST_SLOTS, Row, StressEight, Twisting};
+use super::row::{AtJoint, Begun, Chunk, DriveFigures, MOST_SLOTS, Row, RowScratch, StressEight, Twisting};
 use super::row_modes::Question;
 use super::station::{Station, StationJoint, StationSlot};
-use super::{Keep, Objectives};
+use super::{Finished, Keep, Objectives, OutwardIn};
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, splat_all};
 use crate::sizing::EightDemands;
 use std::f64::consts::TAU;
@@ -22,34 +22,35 @@ pub(super) struct RowChunk<'a, 'c> {
     pub chunk: usize,
 }
 
-/// Eight options of a row to be finished.
-pub(super) struct RowWork<'a, 'c> {
-    pub at: RowChunk<'a, 'c>,
-    pub begun: &'a mut Begun,
-    pub arms: &'a mut EightArms,
-    /// Bits of the options that exist.
-    pub valid: u8,
-    /// Which designs are of interest.
-    pub keep: &'a dyn Keep,
+/// Rows to be finished, each with the number of its first design.
+pub(super) struct RowsWork<'a, 'c, K> {
+    pub problem: &'a ArmProblem<'c>,
+    pub row: &'a Row,
+    pub rows: &'a [(u128, Partial)],
+    /// Designs in each.
+    pub options: u32,
+    pub scratch: &'a mut RowScratch,
+    pub keep: &'a mut K,
 }
 
 /// What became of eight designs; what they come to is in their [`EightArms`].
-#[derive(Default)]
-pub(super) struct FinishedEight {
+#[derive(Clone, Copy, Default)]
+struct FinishedEight {
     /// Bits of the designs that hold.
-    pub held: u8,
+    held: u8,
     /// Bits of those whose lowest mode is below the bar, wherever it is.
-    pub below_bar: u8,
+    below_bar: u8,
     /// Bits of those whose lowest mode was not found.
-    pub unsure: u8,
+    unsure: u8,
 }
 
-/// Eight arms as they grow inward.
+/// Eight arms as they grow inward. What is loaded as eight numbers must be stored as eight: a processor waits where it
+/// finds parts of them on the way to memory.
 pub(super) struct EightArms {
     /// Bits of those that hold so far.
-    pub held: u8,
+    held: u8,
     pub mass_kg: Eight,
-    /// Mass of the drive in each inner slot.
+    /// Mass of the drive in each inner slot; those of given drives stand from the beginning.
     pub masses_kg: [Eight; MOST_SLOTS],
     /// The largest of what single joints add to Dunkerley's sums: no lowest eigenvalue is above one over that.
     pub largest_s2: Eight,
@@ -62,8 +63,9 @@ pub(super) struct EightArms {
 /// Eight arms in one case.
 #[derive(Clone)]
 pub(super) struct CaseArms {
-    wrench: [Eight; 6],
     tip_m: [Eight; 3],
+    /// Torque on each inner joint that is turned, and inertia about it.
+    torque_at: [Eight; MOST_SLOTS],
     inertia_at: [Eight; MOST_SLOTS],
     pub compliance: [Eight; MOST_SLOTS],
     /// Dunkerley's sum of each block.
@@ -71,22 +73,27 @@ pub(super) struct CaseArms {
 }
 
 impl EightArms {
-    /// Room for eight arms in so many cases.
-    pub fn new(cases: usize) -> Self {
+    /// Room for eight arms.
+    pub fn new(problem: &ArmProblem) -> Self {
         let zeros = [0.0; LANES];
         let nothing = CaseArms {
-            wrench: [zeros; 6],
             tip_m: [zeros; 3],
+            torque_at: [zeros; MOST_SLOTS],
             inertia_at: [zeros; MOST_SLOTS],
             compliance: [zeros; MOST_SLOTS],
             trace_s2: [zeros; 2],
         };
+        let inner = &problem.slots()[problem.level_slots().last().copied().unwrap_or(0)..];
+        let mut masses_kg = [zeros; MOST_SLOTS];
+        for (mass_kg, slot) in masses_kg.iter_mut().zip(inner) {
+            *mass_kg = [slot.fixed_kg().unwrap_or(0.0); LANES];
+        }
         Self {
             held: 0,
             mass_kg: zeros,
-            masses_kg: [zeros; MOST_SLOTS],
+            masses_kg,
             largest_s2: zeros,
-            cases: vec![nothing; cases],
+            cases: vec![nothing; problem.stations().len()],
             tip_deflection_m: zeros,
             lowest_mode_hz: zeros,
         }
@@ -102,32 +109,61 @@ impl EightArms {
     }
 }
 
-impl LaneWork for RowWork<'_, '_> {
-    type Output = FinishedEight;
+impl<K: Keep> LaneWork for RowsWork<'_, '_, K> {
+    type Output = ();
 
     #[inline(always)]
-    fn run<V: Lanes>(self) -> FinishedEight {
-        let RowWork { at, begun, arms, valid, keep } = self;
+    fn run<V: Lanes>(self) {
+        let RowsWork { problem, row, rows, options, scratch, keep } = self;
+        let (mut excluded, mut below_bar) = (0, 0);
+        for chunk in 0..(options as usize).div_ceil(LANES) {
+            let lanes = LANES.min(options as usize - chunk * LANES);
+            let valid = u8::MAX >> (LANES - lanes);
+            for ((first, from), begun) in rows.iter().zip(&mut scratch.rows) {
+                let at = RowChunk { problem, row, from, chunk };
+                let done = at.finish::<V>(begun, &mut scratch.arms, valid, keep);
+                excluded += u128::from((valid & !done.held).count_ones());
+                below_bar += u64::from(done.below_bar.count_ones());
+                if done.below_bar != done.held {
+                    at.hand_over(done, *first, &scratch.arms, &mut scratch.spare, keep);
+                }
+            }
+        }
+        keep.exclude(excluded);
+        keep.below_bar(below_bar);
+    }
+}
+
+impl RowChunk<'_, '_> {
+    #[inline(always)]
+    fn finish<V: Lanes>(
+        &self,
+        begun: &mut Begun,
+        arms: &mut EightArms,
+        valid: u8,
+        keep: &impl Keep,
+    ) -> FinishedEight {
         arms.held = valid;
-        at.grow::<V>(begun, arms);
-        if let Some(max_kg) = at.problem.space().constraints.mass_max_kg {
+        self.grow::<V>(begun, arms);
+        if let Some(max_kg) = self.problem.space().constraints.mass_max_kg {
             arms.held &= !V::splat(max_kg).less(V::load(&arms.mass_kg));
         }
         if arms.held == 0 {
             return FinishedEight::default();
         }
         let mut tip_m2 = V::zero();
-        for (_, lanes) in at.row.cases.iter().zip(&arms.cases).filter(|(case, _)| case.judged) {
+        for (_, lanes) in self.row.cases.iter().zip(&arms.cases).filter(|(case, _)| case.judged) {
             let [x, y, z]: [V; 3] = load_all(&lanes.tip_m);
             tip_m2 = tip_m2.max(x * x + y * y + z * z);
         }
         let held = arms.held;
-        let mut below_bar = Question::new(at, begun, arms).below_one_bar::<V>(keep, &tip_m2.store(), held);
+        let mut below_bar = Question::new(*self, begun, arms).below_one_bar::<V>(keep, &tip_m2.store(), held);
         if below_bar == held {
             return FinishedEight { held, below_bar, unsure: 0 };
         }
         arms.tip_deflection_m = tip_m2.sqrt().store();
-        let question = Question::new(at, begun, arms);
+        self.sum_traces::<V>(begun, arms);
+        let question = Question::new(*self, begun, arms);
         below_bar |= question.below_bar::<V>(keep, held & !below_bar);
         if below_bar == held {
             return FinishedEight { held, below_bar, unsure: 0 };
@@ -136,53 +172,65 @@ impl LaneWork for RowWork<'_, '_> {
         arms.lowest_mode_hz = (eigenvalue.sqrt() / V::splat(TAU)).store();
         FinishedEight { held, below_bar, unsure }
     }
-}
 
-impl RowChunk<'_, '_> {
-    /// Adds piece after piece.
-    #[inline(always)]
-    fn grow<V: Lanes>(&self, begun: &mut Begun, arms: &mut EightArms) {
-        let slots = &self.problem.slots()[self.row.first..];
-        arms.largest_s2 = [0.0; LANES];
-        // a link comes first or not at all
-        match self.row.chunks.get(self.chunk) {
-            Some(chunk) => self.start_with_link::<V>(chunk, begun, arms),
-            None => self.start(begun, arms),
-        }
-        for (k, slot) in slots.iter().enumerate() {
-            match slot {
-                Slot::Link { .. } => {}
-                Slot::Offset { .. } if self.row.idle[k] => {}
-                Slot::Offset { mass_kg } => self.add_offset::<V>(k, *mass_kg, arms),
-                Slot::Given { .. } => self.add_joint::<V>(k, [0; LANES], arms),
-                Slot::Sized(sized) => {
-                    let indices = self.pick::<V>(k, sized, &mut begun.steps[k], arms);
-                    if arms.held == 0 {
-                        return;
-                    }
-                    self.add_joint::<V>(k, indices, arms);
-                }
+    /// Shows those that are of interest.
+    #[inline(never)]
+    fn hand_over(
+        &self,
+        done: FinishedEight,
+        first: u128,
+        arms: &EightArms,
+        spare: &mut Partial,
+        keep: &mut impl Keep,
+    ) {
+        for lane in (0..LANES).filter(|lane| (done.held & !done.below_bar) >> lane & 1 == 1) {
+            let option = (self.chunk * LANES + lane) as u32;
+            if done.unsure >> lane & 1 == 1 {
+                let level = self.problem.level_sizes_slice().len() - 1;
+                self.problem.finish_one(level, option, self.from, first, spare, keep);
+            } else {
+                let finished = Finished { objectives: arms.objectives(lane), group: self.group(lane) };
+                keep.complete(first + u128::from(option), finished);
             }
         }
     }
 
+    /// Adds piece after piece.
+    #[inline(always)]
+    fn grow<V: Lanes>(&self, begun: &mut Begun, arms: &mut EightArms) {
+        let slots = &self.problem.slots()[self.row.first..];
+        let mut largest_s2 = V::zero();
+        // a link comes first or not at all
+        match self.row.chunks.get(self.chunk) {
+            Some(chunk) => self.start_with_link::<V>(chunk, begun, arms),
+            None => self.start::<V>(begun, arms),
+        }
+        for &k in &self.row.joints {
+            let Slot::Sized(sized) = &slots[k] else {
+                largest_s2 = largest_s2.max(self.add_joint(k, [0; LANES], arms));
+                continue;
+            };
+            let indices = self.pick::<V>(k, sized, &mut begun.steps[k], arms);
+            if arms.held == 0 {
+                return;
+            }
+            self.add_drive::<V>(k, &indices, arms);
+            largest_s2 = largest_s2.max(self.add_joint(k, indices, arms));
+        }
+        arms.largest_s2 = largest_s2.store();
+    }
+
     /// The arm outboard of the row, eight times.
     #[inline(always)]
-    fn start(&self, begun: &Begun, arms: &mut EightArms) {
-        arms.mass_kg = [self.from.mass_kg; LANES];
+    fn start<V: Lanes>(&self, begun: &Begun, arms: &mut EightArms) {
+        arms.mass_kg = V::splat(self.from.mass_kg + self.row.fixed_kg).store();
         for (c, (lanes, state)) in arms.cases.iter_mut().zip(&self.from.stations).enumerate() {
-            let (case, begun) = (&self.row.cases[c], &begun.cases[c]);
-            for i in (0..6).filter(|&i| case.loaded[i]) {
-                lanes.wrench[i] = [state.wrench[i]; LANES];
-            }
             for i in 0..3 {
-                lanes.tip_m[i] = [state.tip_m[i]; LANES];
+                lanes.tip_m[i] = V::splat(state.tip_m[i]).store();
             }
             for &j in &self.row.joints {
-                lanes.inertia_at[j] = [begun.inertia_at[j]; LANES];
-            }
-            for b in 0..2 {
-                lanes.trace_s2[b] = [state.trace_s2[b]; LANES];
+                lanes.torque_at[j] = V::splat(begun.cases[c].at[j].torque_nm).store();
+                lanes.inertia_at[j] = V::splat(begun.cases[c].at[j].inertia_kgm2).store();
             }
         }
     }
@@ -192,7 +240,7 @@ impl RowChunk<'_, '_> {
     fn start_with_link<V: Lanes>(&self, chunk: &Chunk, begun: &Begun, arms: &mut EightArms) {
         let constraints = &self.problem.space().constraints;
         arms.held &= !chunk.slender;
-        arms.mass_kg = (V::splat(self.from.mass_kg) + V::load(&chunk.mass_kg)).store();
+        arms.mass_kg = (V::splat(self.from.mass_kg + self.row.fixed_kg) + V::load(&chunk.mass_kg)).store();
         if let Some(max) = constraints.material_cost_max_eur {
             let cost = V::splat(self.from.cost_eur) + V::load(&chunk.cost_eur);
             arms.held &= !V::splat(max).less(cost);
@@ -201,15 +249,13 @@ impl RowChunk<'_, '_> {
             let (state, begun, own) = (&self.from.stations[k], &begun.cases[k], &chunk.cases[k]);
             let lanes = &mut arms.cases[k];
             let weight = V::load(&own.weight_n);
-            for i in (0..6).filter(|&i| case.loaded[i]) {
-                let mut component = V::splat(state.wrench[i]);
-                if case.link_weight[i] != 0.0 {
-                    component = component + weight * V::splat(case.link_weight[i]);
-                }
-                lanes.wrench[i] = component.store();
-            }
             for &j in &self.row.joints {
-                lanes.inertia_at[j] = (V::splat(begun.inertia_at[j]) + V::load(&own.inertia_at[j])).store();
+                let AtJoint { torque_nm, inertia_kgm2 } = begun.at[j];
+                if case.turned[j] {
+                    let own = weight * V::splat(case.link_torque[j]);
+                    lanes.torque_at[j] = (V::splat(torque_nm) + own).store();
+                }
+                lanes.inertia_at[j] = (V::splat(inertia_kgm2) + V::load(&own.inertia_at[j])).store();
             }
             if !case.judged {
                 continue;
@@ -223,16 +269,6 @@ impl RowChunk<'_, '_> {
                     }
                 }
                 lanes.tip_m[i] = tip.store();
-            }
-            for b in 0..2 {
-                let mut sum = V::splat(state.trace_s2[b]);
-                if case.links_yield {
-                    sum = sum + V::load(&own.trace_s2[b]);
-                    for e in case.spread_of[b].clone() {
-                        sum = sum + V::splat(begun.spread[e]) * V::load(&own.spread[e]);
-                    }
-                }
-                lanes.trace_s2[b] = sum.store();
             }
         }
         if let Some(least) = constraints.stress_safety_factor_min {
@@ -263,23 +299,6 @@ impl RowChunk<'_, '_> {
         own.max(V::splat(self.from.stress_ratio))
     }
 
-    #[inline(always)]
-    fn add_offset<V: Lanes>(&self, k: usize, mass_kg: f64, arms: &mut EightArms) {
-        add(&mut arms.mass_kg, V::splat(mass_kg));
-        for (c, case) in self.row.cases.iter().enumerate() {
-            let StationSlot::Body { weight, .. } = &self.station(c).slots[self.row.first + k] else {
-                continue;
-            };
-            let lanes = &mut arms.cases[c];
-            for i in (0..6).filter(|&i| case.weighs[k] && weight[i] != 0.0) {
-                add(&mut lanes.wrench[i], V::splat(weight[i]));
-            }
-            for &j in self.row.joints.iter().filter(|&&j| case.carried[k][j] != 0.0) {
-                add(&mut lanes.inertia_at[j], V::splat(case.carried[k][j]));
-            }
-        }
-    }
-
     /// The drive of each arm; an arm without one is no longer held.
     #[inline(always)]
     fn pick<V: Lanes>(
@@ -291,7 +310,9 @@ impl RowChunk<'_, '_> {
     ) -> [usize; LANES] {
         let (mut static_nm, mut inertia_kgm2) = (V::zero(), V::zero());
         for (c, case) in self.row.cases.iter().enumerate().filter(|(_, case)| case.sizing) {
-            static_nm = static_nm.max(torque::<V>(&case.twists[k], &arms.cases[c]).abs());
+            if case.turned[k] {
+                static_nm = static_nm.max(V::load(&arms.cases[c].torque_at[k]).abs());
+            }
             inertia_kgm2 = inertia_kgm2.max(V::load(&arms.cases[c].inertia_at[k]));
         }
         if !sized.all_fits {
@@ -312,52 +333,80 @@ impl RowChunk<'_, '_> {
         indices
     }
 
+    /// Mass of each arm's drive, and what it does at the joints inboard.
     #[inline(always)]
-    fn add_joint<V: Lanes>(&self, k: usize, indices: [usize; LANES], arms: &mut EightArms) {
+    fn add_drive<V: Lanes>(&self, k: usize, indices: &[usize; LANES], arms: &mut EightArms) {
+        let mass: V = at_places(&self.row.drives[k].mass_kg, indices, all_alike(indices));
+        add(&mut arms.mass_kg, mass);
+        arms.masses_kg[k] = mass.store();
+        for (case, lanes) in self.row.cases.iter().zip(&mut arms.cases) {
+            for &j in self.row.joints.iter().filter(|&&j| j > k) {
+                let AtJoint { torque_nm, inertia_kgm2 } = case.per_kg[k][j];
+                if torque_nm != 0.0 {
+                    add(&mut lanes.torque_at[j], V::splat(torque_nm) * mass);
+                }
+                if inertia_kgm2 != 0.0 {
+                    add(&mut lanes.inertia_at[j], V::splat(inertia_kgm2) * mass);
+                }
+            }
+        }
+    }
+
+    /// How each arm's drive yields; the largest of what the joint adds to Dunkerley's sums.
+    #[inline(always)]
+    fn add_joint<V: Lanes>(&self, k: usize, indices: [usize; LANES], arms: &mut EightArms) -> V {
         let drives = &self.row.drives[k];
-        // eight arms much alike often have the same drive
-        let alike = indices.iter().all(|index| *index == indices[0]);
-        let mass: V = at_places(&drives.mass_kg, &indices, alike);
+        let alike = all_alike(&indices);
         let first: V = at_places(&drives.compliance[0], &indices, alike);
         let twisting = self.row.twisting[k];
         let curves = match twisting {
             Twisting::Segments => Curves::<V>::gather(drives, &indices, alike),
             _ => Curves::line(first),
         };
-        add(&mut arms.mass_kg, mass);
-        arms.masses_kg[k] = mass.store();
-        let mut largest = V::load(&arms.largest_s2);
-        for (c, case) in self.row.cases.iter().enumerate() {
+        let mut largest = V::zero();
+        for (c, _) in self.row.cases.iter().enumerate().filter(|(_, case)| case.judged) {
             let Some(joint) = self.joint(c, k) else { continue };
             let lanes = &mut arms.cases[c];
-            if case.judged {
-                let mut compliance = first;
-                if twisting != Twisting::AtRest {
-                    let torque_nm: V = torque(&case.twists[k], lanes);
-                    let (angle, tangent) = match twisting {
-                        Twisting::AtRest | Twisting::Line => (torque_nm * first, first),
-                        Twisting::Segments => curves.windup(torque_nm),
-                        Twisting::Play => self.each_by_itself(k, indices, torque_nm),
-                    };
-                    compliance = tangent;
-                    for i in (0..3).filter(|&i| joint.tip_m_per_rad[i] != 0.0) {
-                        add(&mut lanes.tip_m[i], V::splat(joint.tip_m_per_rad[i]) * angle);
+            let torque_nm = V::load(&lanes.torque_at[k]);
+            let (angle, compliance) = match twisting {
+                Twisting::AtRest => (V::zero(), first),
+                Twisting::Line => (torque_nm * first, first),
+                Twisting::Segments => curves.windup(torque_nm),
+                Twisting::Play => self.each_by_itself(k, indices, torque_nm),
+            };
+            if twisting != Twisting::AtRest {
+                for i in (0..3).filter(|&i| joint.tip_m_per_rad[i] != 0.0) {
+                    add(&mut lanes.tip_m[i], V::splat(joint.tip_m_per_rad[i]) * angle);
+                }
+            }
+            lanes.compliance[k] = compliance.store();
+            largest = largest.max(compliance * V::load(&lanes.inertia_at[k]));
+        }
+        largest
+    }
+
+    /// Dunkerley's sums.
+    #[inline(always)]
+    fn sum_traces<V: Lanes>(&self, begun: &Begun, arms: &mut EightArms) {
+        for (c, case) in self.row.cases.iter().enumerate().filter(|(_, case)| case.judged) {
+            let lanes = &mut arms.cases[c];
+            for b in 0..2 {
+                let mut sum = V::splat(self.from.stations[c].trace_s2[b]);
+                if let Some(chunk) = self.row.chunks.get(self.chunk).filter(|_| case.links_yield) {
+                    let own = &chunk.cases[c];
+                    sum = sum + V::load(&own.trace_s2[b]);
+                    for e in case.spread_of[b].clone() {
+                        sum = sum + V::splat(begun.cases[c].spread[e]) * V::load(&own.spread[e]);
                     }
                 }
-                lanes.compliance[k] = compliance.store();
-                let inertia = V::load(&lanes.inertia_at[k]);
-                let own = compliance * inertia;
-                add(&mut lanes.trace_s2[joint.block], own);
-                largest = largest.max(own);
-            }
-            for i in (0..6).filter(|&i| case.weighs[k] && joint.weight_per_kg[i] != 0.0) {
-                add(&mut lanes.wrench[i], V::splat(joint.weight_per_kg[i]) * mass);
-            }
-            for &j in self.row.joints.iter().filter(|&&j| case.carried[k][j] != 0.0) {
-                add(&mut lanes.inertia_at[j], V::splat(case.carried[k][j]) * mass);
+                for &k in &self.row.joints {
+                    if self.joint(c, k).is_some_and(|joint| joint.block == b) {
+                        sum = sum + V::load(&lanes.compliance[k]) * V::load(&lanes.inertia_at[k]);
+                    }
+                }
+                lanes.trace_s2[b] = sum.store();
             }
         }
-        arms.largest_s2 = largest.store();
     }
 
     /// Twist under a torque and twist per further torque of joints with play or friction.
@@ -404,6 +453,12 @@ fn load_all<V: Lanes, const K: usize>(from: &[Eight; K]) -> [V; K] {
     out
 }
 
+/// Eight arms much alike often have the same drive.
+#[inline(always)]
+fn all_alike(indices: &[usize; LANES]) -> bool {
+    indices.iter().all(|index| *index == indices[0])
+}
+
 /// Numbers of a list at eight places, or at one that all share.
 #[inline(always)]
 fn at_places<V: Lanes>(list: &[f64], at: &[usize; LANES], alike: bool) -> V {
@@ -422,18 +477,6 @@ fn stress_squared<V: Lanes>(per: &StressEight, [axial, torsion, y, z]: [V; 4]) -
     let normal = axial.abs() * V::load(&per.per_axial_n) + bending;
     let shear = torsion.abs() * V::load(&per.per_torsion);
     normal * normal + V::splat(3.0) * shear * shear
-}
-
-/// Torque about a joint's axis.
-#[inline(always)]
-fn torque<V: Lanes>(twist: &[f64; 6], lanes: &CaseArms) -> V {
-    let mut sum = V::zero();
-    for i in 0..6 {
-        if twist[i] != 0.0 {
-            sum = sum + V::splat(twist[i]) * V::load(&lanes.wrench[i]);
-        }
-    }
-    sum
 }
 
 /// The three-segment curves of eight gears.

@@ -59,7 +59,7 @@ impl<'a, 'c> Question<'a, 'c> {
     /// Designs that one bar for all eight shows to be of no interest, that of the least mass and the least deflection
     /// among them; `tip_m2` are the squares of their deflections.
     #[inline(always)]
-    pub fn below_one_bar<V: Lanes>(&self, keep: &dyn Keep, tip_m2: &Eight, held: u8) -> u8 {
+    pub fn below_one_bar<V: Lanes>(&self, keep: &impl Keep, tip_m2: &Eight, held: u8) -> u8 {
         if !self.at.of_one_group() {
             return 0;
         }
@@ -69,7 +69,7 @@ impl<'a, 'c> Question<'a, 'c> {
 
     /// Designs whose lowest mode is below the bar of what is of interest.
     #[inline(always)]
-    pub fn below_bar<V: Lanes>(&self, keep: &dyn Keep, held: u8) -> u8 {
+    pub fn below_bar<V: Lanes>(&self, keep: &impl Keep, held: u8) -> u8 {
         let (mass_kg, tip_deflection_m) = (&self.arms.mass_kg, &self.arms.tip_deflection_m);
         let mut bars = [0.0; LANES];
         for lane in (0..LANES).filter(|lane| held >> lane & 1 == 1) {

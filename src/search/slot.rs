@@ -42,6 +42,14 @@ impl Slot<'_> {
         }
     }
 
+    /// Mass of a piece that is not chosen \[kg\].
+    pub fn fixed_kg(&self) -> Option<f64> {
+        match self {
+            Slot::Given { mass_kg, .. } | Slot::Offset { mass_kg } => Some(*mass_kg),
+            _ => None,
+        }
+    }
+
     /// How the joint twists with one of its drives.
     pub fn law(&self, option: usize) -> Option<&JointLaw> {
         match self {
