@@ -9,10 +9,11 @@
 //! A joint or link that cannot hold even the least demand makes the whole box infeasible.
 
 use super::check::Inertia;
-use super::parts::{Asked, Breaks, CurveBox, DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::parts::{Asked, DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
 use super::pose::{Pose, RESISTED, degree_factor};
 use super::problem::{Part, Problem};
 use super::shape::{Ideal, Shape, Work as ShapeWork};
+use super::torsion::{Breaks, CurveBox};
 use super::tree::{Bounds, Tree};
 use crate::search::Objectives;
 use crate::search::figures::von_mises;

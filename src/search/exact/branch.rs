@@ -10,6 +10,7 @@ use super::parts::{INERTIAS, STIFFNESSES};
 use super::pose::RESISTED;
 use super::problem::{Part, Problem};
 use super::shape::{Shape, products};
+use super::torsion::Torsion;
 
 /// A middling number over the least or the greatest of a range, less one.
 fn middling(low: f64, high: f64) -> f64 {
@@ -90,7 +91,8 @@ impl Problem<'_> {
             let (moved, softer) = match &work.curves[row.piece] {
                 Some(curve) => {
                     let play = self.plays[row.piece].as_ref();
-                    (curve.twist(play, force), middling(curve.soft.k2_nm_per_rad, curve.stiff.k2_nm_per_rad))
+                    let middle = |torsion: &Torsion| torsion.windup.k2_nm_per_rad;
+                    (curve.twist(play, force), middling(middle(&curve.soft), middle(&curve.stiff)))
                 }
                 None => {
                     let (resisted, _) = RESISTED[row.coordinate];

@@ -34,6 +34,7 @@ mod regions;
 mod run;
 mod shape;
 mod tip;
+mod torsion;
 mod tradeoff;
 mod tree;
 

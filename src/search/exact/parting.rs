@@ -82,7 +82,7 @@ impl Rows<'_> {
     fn best_of(&self, piece: usize) -> [(usize, f64); 2] {
         let (light, stiff) = (self.work.light[piece][inertia::MASS], self.work.stiff[piece][0]);
         let (places, stiff) = match &self.work.curves[piece] {
-            Some(curve) => (DRIVE, curve.stiff.k1_nm_per_rad),
+            Some(curve) => (DRIVE, curve.stiff.windup.k1_nm_per_rad),
             None => (TUBE, stiff),
         };
         let number = |(axis, times): (usize, f64), x: f64| (axis, times * x.max(f64::MIN_POSITIVE).ln());

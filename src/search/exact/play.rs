@@ -59,7 +59,7 @@ impl Play {
 mod tests {
     use super::*;
     use crate::arm::{Curve, Windup};
-    use crate::search::exact::parts::CurveBox;
+    use crate::search::exact::torsion::CurveBox;
     use proptest::prelude::*;
 
     fn curve() -> impl Strategy<Value = Curve> {

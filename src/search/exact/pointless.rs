@@ -9,10 +9,11 @@
 //! drives once and for all, only within a box: there the torques inboard are intervals.
 
 use super::bound::Work;
-use super::parts::{CurveBox, DriveBox, SAME_TORQUE};
+use super::parts::{DriveBox, SAME_TORQUE};
 use super::play::Play;
 use super::pose::{Pose, PosedPiece, Row};
 use super::problem::{Part, Problem};
+use super::torsion::CurveBox;
 use super::tree::Tree;
 use crate::sizing::JointDemand;
 use nalgebra::Vector3;
@@ -41,7 +42,7 @@ impl Wanted<'_> {
             && match (&drives.curve, &self.curve) {
                 (None, _) => true,
                 (Some(_), None) => false,
-                (Some(a), Some(b)) => a.stiff.never_softer(&b.stiff, self.most_torque_nm),
+                (Some(a), Some(b)) => a.stiff.windup.never_softer(&b.stiff.windup, self.most_torque_nm),
             }
     }
 

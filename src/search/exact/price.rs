@@ -1,7 +1,8 @@
 //! What a part costs when every number of it has a price, and the cheapest part below a node of a tree.
 
-use super::parts::{CurveBox, INERTIAS, LinkBox, STIFFNESSES, inertia, segments};
+use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia};
 use super::play::Play;
+use super::torsion::{CurveBox, segments};
 use super::tree::{Bounds, Tree};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -77,89 +78,109 @@ pub(super) struct JointState {
     pub slope: f64,
 }
 
-/// The states of a gear that are worth a price: twist is linear in the torque within a segment, so the ends of the
-/// segments are enough. Of a box of gears no member has a lower price in any. Twists are without the play, slopes with it.
-pub(super) struct States {
-    ends: [End; 12],
+/// A state of a gear that is worth a price: twist is linear in the torque within a segment, so the ends of the segments
+/// are enough. Of a box of gears the least and the greatest twist, without the play, and the greatest slope, with it.
+#[derive(Clone, Copy, Default)]
+pub(super) struct End {
+    pub torque_nm: f64,
+    pub twist_rad: [f64; 2],
+    pub slope: f64,
+}
+
+/// The ends of a gear: two of each of three segments under torques of either sign, at the most.
+#[derive(Default)]
+pub(super) struct Ends {
+    all: [End; 12],
     count: usize,
 }
 
-/// One end of a segment: torque, least and greatest twist, slope that modes see.
-#[derive(Clone, Copy, Default)]
-struct End {
-    torque_nm: f64,
-    twist_rad: [f64; 2],
-    slope: f64,
+impl Ends {
+    #[inline]
+    pub fn as_slice(&self) -> &[End] {
+        &self.all[..self.count]
+    }
 }
 
-impl States {
-    /// The states of a gear between two torques \[N m\].
-    #[inline]
-    pub fn of(curve: &CurveBox, play: Option<&Play>, [low_nm, high_nm]: [f64; 2]) -> Self {
-        let mut states = Self { ends: [End::default(); 12], count: 0 };
-        if high_nm >= 0.0 {
-            states.add_sign(curve, play, 1.0, low_nm.max(0.0), high_nm);
-        }
-        if low_nm < 0.0 {
-            states.add_sign(curve, play, -1.0, (-high_nm).max(0.0), -low_nm);
-        }
-        states
+/// Shows the ends of a curve between two torques \[N m\].
+#[inline(always)]
+fn each_end(curve: &CurveBox, play: Option<&Play>, [low_nm, high_nm]: [f64; 2], see: &mut impl FnMut(End)) {
+    if high_nm >= 0.0 {
+        each_end_of_sign(curve, play, 1.0, [low_nm.max(0.0), high_nm], see);
     }
+    if low_nm < 0.0 {
+        each_end_of_sign(curve, play, -1.0, [(-high_nm).max(0.0), -low_nm], see);
+    }
+}
 
-    /// Those among torques of one sign and of sizes between two.
-    #[inline]
-    fn add_sign(&mut self, curve: &CurveBox, play: Option<&Play>, sign: f64, low: f64, high: f64) {
-        let w = &curve.stiff;
-        let mut first = 0.0;
-        for (slope, start, end) in segments(w) {
-            let (from, to) = (low.max(start), high.min(end));
-            // a break point belongs to the segment below it
-            if from <= to && (to > start || start == 0.0) {
-                let seen = if curve.k1_in_modes { w.k1_nm_per_rad } else { slope };
-                let seen = play.map_or(seen, |play| play.in_series(seen, to));
-                let most = sign * curve.soft.angle_rad(to);
-                for torque in [from, to].into_iter().take(if from < to { 2 } else { 1 }) {
-                    let least = sign * (first + (torque - start) / slope);
-                    self.ends[self.count] =
-                        End { torque_nm: sign * torque, twist_rad: [least, most], slope: seen };
-                    self.count += 1;
-                }
+/// The same of torques of one sign, by their sizes.
+#[inline(always)]
+fn each_end_of_sign(
+    curve: &CurveBox,
+    play: Option<&Play>,
+    sign: f64,
+    [low, high]: [f64; 2],
+    see: &mut impl FnMut(End),
+) {
+    let w = &curve.stiff.windup;
+    for (segment, (slope, start, end)) in segments(w).into_iter().enumerate() {
+        let (from, to) = (low.max(start), high.min(end));
+        // a break point belongs to the segment below it
+        if from <= to && (to > start || start == 0.0) {
+            let seen = if curve.k1_in_modes { w.k1_nm_per_rad } else { slope };
+            let slope = play.map_or(seen, |play| play.in_series(seen, to));
+            let most = sign * curve.soft.angle_rad(to);
+            for torque in [from, to].into_iter().take(if from < to { 2 } else { 1 }) {
+                let least = sign * curve.stiff.angle_in(segment, torque);
+                see(End { torque_nm: sign * torque, twist_rad: [least, most], slope });
             }
-            if high <= end {
-                return;
-            }
-            first += (end - start) / slope;
+        }
+        if high <= end {
+            return;
         }
     }
 }
 
 impl JointPrice {
-    /// The cheapest state of a joint, and its price; of a box of joints no more than that of any.
-    #[inline]
-    pub fn best(&self, states: Option<&States>) -> (f64, JointState) {
-        let Some(states) = states else { return self.rigid() };
+    /// The cheapest state of a joint with this curve, and its price; of a box of joints no more than that of any.
+    pub fn best_of(&self, curve: Option<&CurveBox>) -> (f64, JointState) {
+        let Some(curve) = curve else { return self.rigid() };
         let mut best = (f64::INFINITY, JointState::default());
-        for end in &states.ends[..states.count] {
-            let [least, most] = end.twist_rad.map(|twist| self.twist * twist);
-            let price = least.min(most) + self.torque * end.torque_nm - self.slope * end.slope;
+        each_end(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
+            let price = self.of_end(&end);
             if price < best.0 {
-                let twist_rad = end.twist_rad[usize::from(most < least)];
+                let [least, most] = end.twist_rad;
+                let twist_rad = if self.twist * most < self.twist * least { most } else { least };
                 best = (price, JointState { torque_nm: end.torque_nm, twist_rad, slope: end.slope });
             }
-        }
+        });
         best
     }
 
-    /// The same of a joint with this curve.
+    /// Its price alone.
     #[inline]
-    pub fn best_of(&self, curve: Option<&CurveBox>) -> (f64, JointState) {
-        self.best(curve.map(|curve| self.states(curve)).as_ref())
+    pub fn least_of(&self, curve: Option<&CurveBox>) -> f64 {
+        let Some(curve) = curve else { return self.rigid().0 };
+        let mut least = f64::INFINITY;
+        each_end(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
+            least = least.min(self.of_end(&end));
+        });
+        least
     }
 
-    /// The states of a joint with this curve.
     #[inline]
-    pub fn states(&self, curve: &CurveBox) -> States {
-        States::of(curve, self.play.as_ref(), self.torques_nm)
+    fn of_end(&self, end: &End) -> f64 {
+        let [least, most] = end.twist_rad.map(|twist| self.twist * twist);
+        least.min(most) + self.torque * end.torque_nm - self.slope * end.slope
+    }
+
+    /// The states of a joint with this curve that are worth a price.
+    #[inline]
+    pub fn ends(&self, curve: &CurveBox, ends: &mut Ends) {
+        ends.count = 0;
+        each_end(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
+            ends.all[ends.count] = end;
+            ends.count += 1;
+        });
     }
 
     /// Of a rigid joint, or of a box that has one: nothing is known of the others.
@@ -173,28 +194,10 @@ impl JointPrice {
     }
 }
 
-/// What prices see of a tube, or of a box of tubes.
-pub(super) struct TubeNumbers {
-    inertia: [[f64; INERTIAS]; 2],
-    compliance: [[f64; STIFFNESSES]; 2],
-    stiffness: [f64; STIFFNESSES],
-}
-
-impl TubeNumbers {
-    #[inline]
-    pub fn of(links: &LinkBox) -> Self {
-        Self {
-            inertia: [links.low.inertias, links.high.inertias],
-            compliance: [&links.high, &links.low].map(|line| line.stiffnesses.map(f64::recip)),
-            stiffness: links.high.stiffnesses,
-        }
-    }
-}
-
 impl Price {
     /// Of a joint's drive; of a box of drives, no more than that of any.
     pub fn of_joint(&self, mass_kg: [f64; 2], curve: Option<&CurveBox>) -> f64 {
-        self.of_mass(mass_kg) + self.joint.iter().map(|price| price.best_of(curve).0).sum::<f64>()
+        self.of_mass(mass_kg) + self.joint.iter().map(|price| price.least_of(curve)).sum::<f64>()
     }
 
     /// Of what a drive weighs.
@@ -206,16 +209,16 @@ impl Price {
 
     /// Of a tube; of a box of tubes, no more than that of any.
     #[inline]
-    pub fn of_tube(&self, tube: &TubeNumbers) -> f64 {
+    pub fn of_tube(&self, tube: &LinkBox) -> f64 {
         let least = |price: f64, [a, b]: [f64; 2]| price * if price >= 0.0 { a } else { b };
         let mut sum = 0.0;
         for (i, &price) in self.inertia.iter().enumerate() {
-            sum += least(price, [tube.inertia[0][i], tube.inertia[1][i]]);
+            sum += least(price, [tube.low.inertias[i], tube.high.inertias[i]]);
         }
         for k in 0..STIFFNESSES {
-            sum += least(self.compliance[k], [tube.compliance[0][k], tube.compliance[1][k]]);
+            sum += least(self.compliance[k], [tube.compliances[0][k], tube.compliances[1][k]]);
             if self.stiffness[k] > 0.0 {
-                sum -= self.stiffness[k] * tube.stiffness[k];
+                sum -= self.stiffness[k] * tube.high.stiffnesses[k];
             }
         }
         sum
@@ -224,21 +227,29 @@ impl Price {
 
 /// The option of the least price below a node, and that price; a box of a few and less if it takes too long.
 pub(super) fn cheapest<B: Bounds>(tree: &Tree<B>, node: u32, price: impl Fn(&B) -> f64) -> (f64, u32) {
-    let mut open = BinaryHeap::from([Offer { price: price(&tree.node(node).bounds), node }]);
-    let mut looks = 0;
-    while let Some(Offer { price: least, node }) = open.pop() {
-        match tree.children(node) {
-            Some(halves) if looks < MOST_LOOKS => {
-                looks += 2;
-                open.extend(halves.map(|half| Offer { price: price(&tree.node(half).bounds), node: half }));
-            }
-            _ => return (least, node),
-        }
+    let offer = |node: u32| Offer { price: price(&tree.node(node).bounds), node };
+    let mut open = BinaryHeap::with_capacity(2 + MOST_LOOKS / 2);
+    let (mut cheapest, mut looks) = (offer(node), 0);
+    while let Some(halves) = tree.children(cheapest.node).filter(|_| looks < MOST_LOOKS) {
+        looks += 2;
+        let [cheaper, dearer] = order(halves.map(offer));
+        open.push(dearer);
+        // most often the cheapest of all is in the box that was opened
+        cheapest = match open.peek_mut() {
+            Some(mut first) if *first > cheaper => std::mem::replace(&mut *first, cheaper),
+            _ => cheaper,
+        };
     }
-    (f64::INFINITY, node)
+    (cheapest.price, cheapest.node)
+}
+
+/// The cheaper of two first.
+fn order([a, b]: [Offer; 2]) -> [Offer; 2] {
+    if a > b { [a, b] } else { [b, a] }
 }
 
 /// A box of parts, and that none of them is cheaper.
+#[derive(Clone, Copy)]
 struct Offer {
     price: f64,
     node: u32,

@@ -3,9 +3,10 @@
 
 use super::check::Inertia;
 use super::held::Held;
-use super::parts::{Breaks, CurveBox, DriveBox, LinkBox, Rays};
+use super::parts::{DriveBox, LinkBox, Rays};
 use super::play::Play;
 use super::pose::Pose;
+use super::torsion::{Breaks, CurveBox};
 use super::tree::{Bounds, Tree};
 use crate::arm::{Curve, LinkBody};
 use crate::catalog::Catalogs;
@@ -287,6 +288,6 @@ fn drive_box(sized: &SizedJoint, index: u32, rays: &Rays) -> DriveBox {
         least_limits: *sized.table.limits(index),
         multiples: rays.held(sized.table.limits(index)),
         curve,
-        breaks: curve.map_or_else(Breaks::default, |c| Breaks::of(&c.stiff)),
+        breaks: curve.map_or_else(Breaks::default, |c| Breaks::of(&c.stiff.windup)),
     }
 }

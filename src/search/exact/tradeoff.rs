@@ -18,12 +18,13 @@
 use super::bound::{Ceiling, Cell, STARTS, Work};
 use super::corners::Corner;
 use super::game::{Game, solve};
-use super::parts::{CurveBox, DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::parts::{DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
 use super::pose::Row;
-use super::price::{Gear, JointPrice, Price, TubeNumbers, cheapest};
+use super::price::{Gear, JointPrice, Price, cheapest};
 use super::problem::{Part, Problem};
 use super::shape::{Ideal, Shape, dot, products};
 use super::tip::Tip;
+use super::torsion::CurveBox;
 
 /// By how much a member must be beaten in every objective, at least: more than what counts as equal.
 pub(super) const BEATEN: f64 = 2e-7;
@@ -356,8 +357,7 @@ impl<'a> Rows<'a> {
                 }
                 Part::Links { tree, length_m } => {
                     let price = price();
-                    let (least, at) =
-                        cheapest(tree, cell[level], |links| price.of_tube(&TubeNumbers::of(links)));
+                    let (least, at) = cheapest(tree, cell[level], |links| price.of_tube(links));
                     member.cell[level] = at;
                     levels.push(least);
                     self.add_tube(piece, *length_m, &tree.node(at).bounds, &mut member);
@@ -365,7 +365,7 @@ impl<'a> Rows<'a> {
                 }
                 Part::Tube { tube, length_m } => {
                     self.add_tube(piece, *length_m, tube, &mut member);
-                    price().of_tube(&TubeNumbers::of(tube))
+                    price().of_tube(tube)
                 }
                 Part::Given { .. } | Part::FirstFit { .. } => {
                     let (price, mass_kg) = (price(), self.work.masses[piece]);

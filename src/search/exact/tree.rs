@@ -51,13 +51,19 @@ impl<B: Bounds> Tree<B> {
     /// Halves the options at the median of the coordinate with the largest spread, down to single ones.
     /// `None` without options.
     pub fn build(options: impl Iterator<Item = (u32, B)>) -> Option<Self> {
-        let mut items: Vec<Item<B>> =
-            options.map(|(option, bounds)| Item { option, members: 1, key: bounds.key(), bounds }).collect();
+        let options: Vec<(u32, B)> = options.collect();
+        let item =
+            |(at, (_, bounds)): (usize, &(u32, B))| Item { at: at as u32, members: 1, key: bounds.key() };
+        let mut items: Vec<Item> = options.iter().enumerate().map(item).collect();
         if items.is_empty() {
             return None;
         }
         let mut nodes = Vec::with_capacity(2 * items.len() - 1);
-        grow(&mut items, &mut nodes, &|item| Some(NodeKind::Option(item.option)));
+        let leaf = |item: &Item| {
+            let (option, bounds) = &options[item.at as usize];
+            (Some(NodeKind::Option(*option)), bounds)
+        };
+        grow(&mut items, &mut nodes, &leaf);
         Some(Self { nodes, whole: None, stands_on: vec![0] })
     }
 
@@ -67,26 +73,25 @@ impl<B: Bounds> Tree<B> {
             return Some(Arc::clone(tree));
         }
         let whole = tree.whole.as_ref().unwrap_or(tree);
-        let mut items: Vec<Item<B>> = kept
-            .iter()
-            .map(|&at| {
-                let node = whole.node(at);
-                Item { option: WHOLE + at, members: node.members, key: node.key, bounds: node.bounds.clone() }
-            })
-            .collect();
-        if items.is_empty() {
-            return None;
-        }
-        let mut nodes = Vec::with_capacity(2 * items.len() - 1);
-        if let [only] = &items[..] {
-            let at = whole.node(only.option - WHOLE);
-            let kind = match at.kind {
-                NodeKind::Split(halves) => NodeKind::Split(halves.map(|h| h + WHOLE)),
-                option => option,
-            };
-            nodes.push(Node { bounds: at.bounds.clone(), key: at.key, members: at.members, kind });
-        } else {
-            grow(&mut items, &mut nodes, &|_| None);
+        let item = |&at: &u32| {
+            let Node { members, key, .. } = *whole.node(at);
+            Item { at: WHOLE + at, members, key }
+        };
+        let mut items: Vec<Item> = kept.iter().map(item).collect();
+        let mut nodes = Vec::with_capacity((2 * items.len()).max(1) - 1);
+        match &items[..] {
+            [] => return None,
+            [only] => {
+                let Node { bounds, key, members, kind } = whole.node(only.at - WHOLE);
+                let kind = match kind {
+                    NodeKind::Split(halves) => NodeKind::Split(halves.map(|h| h + WHOLE)),
+                    option => *option,
+                };
+                nodes.push(Node { bounds: bounds.clone(), key: *key, members: *members, kind });
+            }
+            _ => {
+                grow(&mut items, &mut nodes, &|item| (None, &whole.node(item.at - WHOLE).bounds));
+            }
         }
         Some(Arc::new(Self { nodes, whole: Some(Arc::clone(whole)), stands_on: kept.to_vec() }))
     }
@@ -200,50 +205,47 @@ impl<B: Bounds> Tree<B> {
     }
 }
 
-struct Item<B> {
-    /// The option, or the node that it stands for.
-    option: u32,
+/// What a tree grows over; its box is elsewhere, so that items are quick to sort.
+struct Item {
+    /// Place among the options, or the node that it stands for.
+    at: u32,
     members: u32,
     key: Key,
-    bounds: B,
 }
 
 /// Grows the tree over some items and returns its root; `leaf` says what a node of one item is, unless it has a node
-/// already.
-fn grow<B: Bounds>(
-    items: &mut [Item<B>],
+/// already, and its box.
+fn grow<'b, B: Bounds + 'b>(
+    items: &mut [Item],
     nodes: &mut Vec<Node<B>>,
-    leaf: &impl Fn(&Item<B>) -> Option<NodeKind>,
-) -> (u32, B) {
-    if let [only] = items {
-        let Some(kind) = leaf(only) else { return (only.option, only.bounds.clone()) };
-        nodes.push(Node { bounds: only.bounds.clone(), key: only.key, members: 1, kind });
-        return (nodes.len() as u32 - 1, only.bounds.clone());
-    }
+    leaf: &impl Fn(&Item) -> (Option<NodeKind>, &'b B),
+) -> u32 {
     let here = nodes.len();
-    let members = items.iter().map(|item| item.members).sum();
-    nodes.push(Node {
-        bounds: items[0].bounds.clone(),
-        key: items[0].key,
-        members,
-        kind: NodeKind::Option(0),
-    });
+    let (kind, bounds) = leaf(&items[0]);
+    if let [Item { at, members, key }] = *items {
+        let Some(kind) = kind else { return at };
+        nodes.push(Node { bounds: bounds.clone(), key, members, kind });
+        return here as u32;
+    }
+    // its place; the root is the first
+    nodes.push(Node { bounds: bounds.clone(), key: items[0].key, members: 0, kind: NodeKind::Option(0) });
     let axis = widest(items);
     let middle = items.len() / 2;
-    items.select_nth_unstable_by(middle, |a, b| {
-        a.key[axis].total_cmp(&b.key[axis]).then(a.option.cmp(&b.option))
-    });
+    items.select_nth_unstable_by(middle, |a, b| a.key[axis].total_cmp(&b.key[axis]).then(a.at.cmp(&b.at)));
     let (low, high) = items.split_at_mut(middle);
-    let (first, a) = grow(low, nodes, leaf);
-    let (second, b) = grow(high, nodes, leaf);
-    let bounds = a.join(&b);
+    let halves = [grow(low, nodes, leaf), grow(high, nodes, leaf)];
+    // a half that has a node elsewhere is a single item
+    let of =
+        |half: &[Item], at: u32| nodes.get(at as usize).map_or_else(|| leaf(&half[0]).1, |node| &node.bounds);
+    let bounds = of(low, halves[0]).join(of(high, halves[1]));
     let key = bounds.key();
-    nodes[here] = Node { bounds: bounds.clone(), key, members, kind: NodeKind::Split([first, second]) };
-    (here as u32, bounds)
+    let members = items.iter().map(|item| item.members).sum();
+    nodes[here] = Node { bounds, key, members, kind: NodeKind::Split(halves) };
+    here as u32
 }
 
 /// The coordinate with the largest spread.
-fn widest<B>(items: &[Item<B>]) -> usize {
+fn widest(items: &[Item]) -> usize {
     let spread = |axis: usize| {
         let (low, high) = items.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), item| {
             (low.min(item.key[axis]), high.max(item.key[axis]))
