@@ -313,6 +313,49 @@ fn refuses_an_unknown_material_in_an_arm_and_suggests_one() {
     assert_says(&Bench::with_study(&arm).refuses_arm(FAULTY_INPUT), &["\"stel\"", "steel"]);
 }
 
+#[test]
+fn refuses_a_study_in_which_no_pose_sizes_the_drives() {
+    let mut study = small_study();
+    study["poses"][0]["sizing"] = json!(false);
+    let said = Bench::with_study(&study).refuses_run(FAULTY_INPUT);
+    assert_says(&said, &["poses", "no pose in which drives are sized", "\"sizing\""]);
+}
+
+#[test]
+fn refuses_an_empty_list_of_surroundings_by_its_name() {
+    let mut study = small_study();
+    study["environments"] = json!([]);
+    let said = Bench::with_study(&study).refuses_run(FAULTY_INPUT);
+    assert_says(&said, &["environments", "is empty"]);
+    assert!(!said.contains("judged"), "{said}");
+}
+
+#[test]
+fn refuses_a_tube_that_lacks_its_section() {
+    let mut arm = small_arm();
+    arm["chain"][1].as_object_mut().expect("a link").remove("section");
+    let said = Bench::with_study(&arm).refuses_arm(FAULTY_INPUT);
+    assert_says(&said, &["chain[1].material", "stands without a section"]);
+}
+
+#[test]
+fn a_faulty_material_is_one_fault_and_not_a_missing_one_too() {
+    let mut arm = small_arm();
+    arm["materials"]["steel"]["density_kg_m3"] = json!(-1);
+    let said = Bench::with_study(&arm).refuses_arm(FAULTY_INPUT);
+    assert_says(&said, &["materials.steel.density_kg_m3", "-1"]);
+    assert!(!said.contains("not known"), "{said}");
+}
+
+#[test]
+fn refuses_a_file_without_cases() {
+    let bench = Bench::with_study(&small_arm());
+    let cases = bench.dir.path().join("cases.json");
+    std::fs::write(&cases, "[]").expect("written");
+    let said = failed(&armwright(&["analyze", word(&bench.input()), "--cases", word(&cases)]), FAULTY_INPUT);
+    assert_says(&said, &["has no case"]);
+}
+
 fn number_after(text: &str, words: &str) -> f64 {
     let rest = text.split(words).nth(1).unwrap_or_else(|| panic!("no {words} in {text}"));
     let number: String = rest.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();

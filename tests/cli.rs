@@ -181,6 +181,95 @@ fn the_readmes_first_command_works_on_a_reduced_study() {
     assert_eq!(lowest_hz, cell(&front, "lowest_mode_hz"), "analyze reproduces the front");
 }
 
+#[test]
+fn a_run_into_the_folder_of_another_leaves_nothing_of_it_but_what_is_the_users() {
+    let here = folder();
+    let mut study = small_study();
+    std::fs::write(here.path().join("both.json"), study.to_string()).expect("written");
+    for piece in study["chain"].as_array_mut().expect("a chain") {
+        if let Some(materials) = piece.get_mut("choose").map(|choose| &mut choose["materials"]) {
+            *materials = json!([materials[0]]);
+        }
+    }
+    std::fs::write(here.path().join("one.json"), study.to_string()).expect("written");
+    said(here.path(), &["run", "both.json", "--out", "out", "--within", "5%", "--tolerance", "mass"]);
+    let files = || -> Vec<String> {
+        let entries = std::fs::read_dir(here.path().join("out")).expect("a folder");
+        entries.map(|entry| entry.expect("an entry").file_name().into_string().expect("text")).collect()
+    };
+    let of_materials = |files: &[String]| files.iter().filter(|name| name.starts_with("front.")).count();
+    let before = files();
+    assert!(before.contains(&"near.csv".into()) && before.contains(&"tolerance.csv".into()), "{before:?}");
+    std::fs::write(here.path().join("out/notes.txt"), "mine").expect("written");
+    said(here.path(), &["run", "one.json", "--out", "out"]);
+    let after = files();
+    assert!(of_materials(&after) < of_materials(&before), "{before:?}, {after:?}");
+    assert!(!after.contains(&"near.csv".into()) && !after.contains(&"tolerance.csv".into()), "{after:?}");
+    assert!(after.contains(&"notes.txt".into()), "{after:?}");
+    said(here.path(), &["run", "one.json", "--out", "new"]);
+    let count = |dir: &str| std::fs::read_dir(here.path().join(dir)).expect("a folder").count();
+    assert_eq!(count("out/plots"), count("new/plots"));
+    assert_eq!(count("out"), count("new") + 1);
+}
+
+#[test]
+fn a_size_that_is_listed_twice_is_one_size() {
+    let here = folder();
+    let mut study = study_file("examples/bench-arm.json");
+    let total = |study: &Value| -> Value {
+        std::fs::write(here.path().join("study.json"), study.to_string()).expect("written");
+        said(here.path(), &["run", "study.json", "--out", "out"]);
+        let run = std::fs::read_to_string(here.path().join("out/run.json")).expect("run.json");
+        serde_json::from_str::<Value>(&run).expect("JSON")["designs_total"].clone()
+    };
+    let once = total(&study);
+    for piece in study["chain"].as_array_mut().expect("a chain") {
+        if let Some(sections) = piece.get_mut("choose").and_then(|c| c["sections"].as_array_mut()) {
+            sections.extend(sections.clone());
+        }
+    }
+    assert_eq!(total(&study), once);
+}
+
+#[test]
+fn the_drive_of_a_design_that_is_too_weak_is_named_with_what_it_lacks() {
+    let (code, said) = refused(
+        &project(),
+        &["size", "examples/bench-arm.json", "--design", "100", "--catalogs", "catalogs"],
+    );
+    assert_eq!(code, 6, "{said}");
+    for words in ["the drive of this design, does not hold", "needed", "allowed", "--all-fits"] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+}
+
+#[test]
+fn an_analysis_says_what_effects_add_and_which_are_left_out() {
+    let here = folder();
+    let arm = json!({
+        "name": "small",
+        "materials": {"steel": {"youngs_modulus_pa": 2.1e11, "shear_modulus_pa": 8.1e10, "density_kg_m3": 7850}},
+        "chain": [
+            {"type": "joint", "name": "j1", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e5, "mass_kg": 5},
+            {"type": "link", "name": "boom", "vector_m": [0.8, 0, 0], "material": "steel",
+                "section": {"shape": "round_tube", "diameter_m": 0.1, "wall_m": 0.01}}],
+        "effects": [
+            {"effect": "extra_mass", "at": "j1", "parameters": {"delta_kg": 3}},
+            {"effect": "link_flexibility", "at": "boom", "parameters": {"factor": 2}}]
+    });
+    std::fs::write(here.path().join("arm.json"), arm.to_string()).expect("written");
+    let bends = said(here.path(), &["analyze", "arm.json"]);
+    assert!(bends.contains("effects add              3.000 kg") && !bends.contains("left out"), "{bends}");
+    let rigid = said(here.path(), &["analyze", "arm.json", "--links", "rigid"]);
+    assert!(rigid.contains("links are held rigid: link_flexibility at boom"), "{rigid}");
+    let mut soft = arm;
+    soft["materials"]["steel"]["youngs_modulus_pa"] = json!(210);
+    std::fs::write(here.path().join("arm.json"), soft.to_string()).expect("written");
+    let far = said(here.path(), &["analyze", "arm.json"]);
+    assert!(far.contains("small displacements") && far.contains("unit"), "{far}");
+    assert!(!bends.contains("small displacements"), "{bends}");
+}
+
 fn tip_mm(case: &Value) -> f64 {
     let tip = case["tip_displacement_m"].as_array().expect("a vector");
     let [x, y, z] = [0, 1, 2].map(|i| tip[i].as_f64().expect("a number"));

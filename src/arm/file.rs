@@ -41,13 +41,11 @@ pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
     Some(arm)
 }
 
-pub(crate) type NamedMaterial = (String, LinkMaterial);
+/// A material of the file; none if it is faulty, which is recorded then.
+pub(crate) type NamedMaterial = (String, Option<LinkMaterial>);
 
 fn read_materials(node: &Node) -> Option<Vec<NamedMaterial>> {
-    let read: Vec<_> =
-        node.entries()?.iter().map(|(name, n)| read_material(n).map(|m| (name.to_string(), m))).collect();
-    // a faulty material stays out of the list; its fault is already recorded
-    Some(read.into_iter().flatten().collect())
+    Some(node.entries()?.iter().map(|(name, n)| (name.to_string(), read_material(n))).collect())
 }
 
 fn read_material(node: &Node) -> Option<LinkMaterial> {
@@ -241,7 +239,15 @@ pub(crate) fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: 
     let vector_m = object.required("vector_m").and_then(|n| vector(&n));
     let body = match object.optional("section") {
         Some(section) => read_tube(object, &section, vector_m, materials, catalogs),
-        None => object.or("mass_kg", 0.0, Node::non_negative).map(|mass_kg| LinkBody::Offset { mass_kg }),
+        None => {
+            if let Some(material) = object.optional("material") {
+                material.fault::<()>(
+                    "stands without a section",
+                    "give the tube's section, or leave the material away for a rigid link",
+                );
+            }
+            object.or("mass_kg", 0.0, Node::non_negative).map(|mass_kg| LinkBody::Offset { mass_kg })
+        }
     };
     Some(Link { name: name?, vector_m: vector_m?, body: body? })
 }
@@ -278,7 +284,7 @@ fn find_material(
     catalogs: &Catalogs,
 ) -> Option<LinkMaterial> {
     if let Some((_, material)) = materials.iter().find(|(n, _)| n == name) {
-        return Some(*material);
+        return *material;
     }
     let known: Vec<&str> = materials.iter().map(|(n, _)| n.as_str()).collect();
     let Some(row) = catalogs.materials.iter().find(|m| m.name == name) else {

@@ -124,7 +124,11 @@ pub(crate) fn word<T: Words>(node: &Node) -> Option<T> {
 /// # Errors
 /// All faults of the document at once.
 pub fn read_load_cases(document: Document, driven_joints: &[&str]) -> Result<Vec<LoadCase>, Faults> {
-    let cases = document.root().array().and_then(|items| {
+    let root = document.root();
+    let cases = root.array().and_then(|items| {
+        if items.is_empty() {
+            return root.fault("has no case", "give at least one, with its \"pose_deg\"");
+        }
         let read: Vec<_> = items.iter().map(|item| read_case(item, driven_joints)).collect();
         read.into_iter().collect::<Option<Vec<_>>>()
     });

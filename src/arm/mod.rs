@@ -210,6 +210,15 @@ impl Arm {
     pub fn mass_kg(&self) -> f64 {
         self.chain.iter().map(Element::mass_kg).sum()
     }
+
+    /// Length of all links \[m\].
+    pub fn length_m(&self) -> f64 {
+        let length = |element: &Element| match element {
+            Element::Link(link) => link.vector_m.norm(),
+            Element::Joint(_) => 0.0,
+        };
+        self.chain.iter().map(length).sum()
+    }
 }
 
 impl Element {

@@ -164,6 +164,15 @@ impl Arm {
 }
 
 impl Structure {
+    /// Mass of all pieces, with what effects add \[kg\].
+    pub fn mass_kg(&self) -> f64 {
+        let mass_kg = |piece: &Piece| match piece {
+            Piece::Joint(joint) => joint.mass_kg,
+            Piece::Link(link) => link.mass_kg(),
+        };
+        self.pieces.iter().map(mass_kg).sum()
+    }
+
     /// Pieces on a rigid base in air.
     pub(crate) fn bare(gravity_m_s2: f64, pieces: Vec<Piece>) -> Self {
         Self {

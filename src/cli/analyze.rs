@@ -1,7 +1,7 @@
 //! `armwright analyze`: statics, modes and response of an arm file.
 
 use super::{Failure, choice, number_list, numbers};
-use crate::arm::{Arm, JointModel, LinkModel, LoadCase, Payload, read_arm, read_load_cases};
+use crate::arm::{Arm, Effect, JointModel, LinkModel, LoadCase, Payload, read_arm, read_load_cases};
 use crate::catalog::Catalogs;
 use crate::fault::Document;
 use crate::mechanics::{Chain, Mode, Response, Statics, frequency_response};
@@ -53,10 +53,10 @@ pub struct AnalyzeArgs {
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = numbers::<3>)]
     response_n: Option<[f64; 3]>,
     /// Damping ratio of every mode
-    #[arg(long, default_value_t = 0.02, allow_hyphen_values = true, value_parser = non_negative)]
+    #[arg(long, requires = "response_n", default_value_t = 0.02, allow_hyphen_values = true, value_parser = non_negative)]
     damping: f64,
     /// Frequencies of the response: from, to [Hz] and number of points
-    #[arg(long, value_name = "FROM,TO,POINTS", default_value = "1,100,100", allow_hyphen_values = true, value_parser = frequencies)]
+    #[arg(long, requires = "response_n", value_name = "FROM,TO,POINTS", default_value = "1,100,100", allow_hyphen_values = true, value_parser = frequencies)]
     response_hz: Frequencies,
     /// Print JSON, every number to the last digit
     #[arg(long)]
@@ -102,12 +102,17 @@ fn non_negative(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Part of an arm's length beyond which a displacement is not small.
+const LARGE_PART: f64 = 0.1;
+
 /// One case, solved.
 struct Solved {
     case: LoadCase,
     statics: Statics,
     modes: Vec<Mode>,
     response: Option<Vec<Response>>,
+    /// Effects on how links bend, where links are held rigid.
+    unbent: Vec<String>,
 }
 
 /// Carries out the verb.
@@ -117,8 +122,7 @@ pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Fai
         Some(path) => read_load_cases(Document::read(path)?, &arm.driven_joint_names())?,
         None => vec![case_of_flags(args, &arm)?],
     };
-    let ignored: Vec<String> =
-        arm.ignored_effects().iter().map(|e| format!("{} at {}", e.effect, e.at)).collect();
+    let ignored: Vec<String> = arm.ignored_effects().into_iter().map(label).collect();
     let solved: Vec<Solved> = cases.into_iter().map(|case| solve(args, &arm, case)).collect();
     Ok(match (args.json, &args.cases) {
         (true, None) => pretty(&solved[0].to_json(&ignored)),
@@ -127,6 +131,10 @@ pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Fai
             solved.iter().map(|s| s.to_text(&arm)).collect::<Vec<_>>().join("\n") + &ignored_text(&ignored)
         }
     })
+}
+
+fn label(effect: &Effect) -> String {
+    format!("{} at {}", effect.effect, effect.at)
 }
 
 /// Effects of a test rather than of the arm stay out of an analysis; it says so.
@@ -178,7 +186,9 @@ fn solve(args: &AnalyzeArgs, arm: &Arm, case: LoadCase) -> Solved {
     let response = args.response_n.map(|force| {
         frequency_response(&posed, &statics, &Vector3::from(force), args.damping, &args.response_hz.0)
     });
-    Solved { case, statics, modes, response }
+    let rigid = case.links == LinkModel::Rigid;
+    let unbent = arm.effects.iter().filter(|e| rigid && e.is_of_bending()).map(label).collect();
+    Solved { case, statics, modes, response, unbent }
 }
 
 impl Solved {
@@ -198,6 +208,7 @@ impl Solved {
             "shares": shares,
             "modes": self.modes.iter().map(mode_json).collect::<Vec<_>>(),
         });
+        let ignored: Vec<&String> = ignored.iter().chain(&self.unbent).collect();
         if !ignored.is_empty() {
             out["ignored_effects"] = json!(ignored);
         }
@@ -220,6 +231,10 @@ impl Solved {
         let mut out =
             format!("{}, case \"{}\": pose {:?} deg\n", arm.name, self.case.name, self.case.pose_deg);
         let _ = writeln!(out, "  arm mass            {:10.3} kg", arm.mass_kg());
+        let added_kg = arm.structure_in(&self.case).mass_kg() - arm.mass_kg();
+        if added_kg.abs() > 1e-9 {
+            let _ = writeln!(out, "  effects add         {added_kg:10.3} kg");
+        }
         let tip = self.statics.tip_displacement_m * 1e3;
         let _ = writeln!(
             out,
@@ -229,6 +244,16 @@ impl Solved {
             tip.y,
             tip.z
         );
+        if tip.norm() > 1e3 * LARGE_PART * arm.length_m() {
+            let _ = writeln!(
+                out,
+                "  The tip moves by more than a tenth of the arm's length: the model holds for small displacements.\n  \
+                 Is every number of the file in its unit (Pa, kg/m3, m, kg, N m/rad)?"
+            );
+        }
+        if !self.unbent.is_empty() {
+            let _ = writeln!(out, "  left out, because links are held rigid: {}", self.unbent.join(", "));
+        }
         self.shares_text(&mut out);
         self.modes_text(&mut out);
         self.response_text(&mut out);

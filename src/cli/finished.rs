@@ -1,14 +1,14 @@
 //! What a finished search has to say: its files, its page and its words.
 
 use super::beside::{Beside, BesideArgs, Found};
-use super::{Failure, carry};
+use super::{Failure, carry, write_all};
 use crate::arm::Effect;
 use crate::catalog::Catalogs;
 use crate::report::budget::{PickBudget, budget_csv};
 use crate::report::certificate::certificate_section;
 use crate::report::front_svg::{FrontPicture, PlottedFront, designs_of, mixed_designs};
 use crate::report::front_table::FrontTable;
-use crate::report::html::{Extra, Page, study::StudyPage};
+use crate::report::html::{Extra, PLOTS, Page, study::StudyPage};
 use crate::report::number::significant;
 use crate::report::picks;
 use crate::report::summary::{
@@ -34,6 +34,42 @@ pub(super) struct Written {
     /// How the search ended, and by how much its front may be bettered if it was stopped.
     pub status: Status,
     pub gap: Option<f64>,
+}
+
+impl Written {
+    /// Writes the files. Those of an earlier run that this one does not have go: beside its front they would be
+    /// another's.
+    ///
+    /// # Errors
+    /// A file cannot be written or removed.
+    pub fn write(&self, dir: &Path) -> Result<(), Failure> {
+        let earlier = match dir.join("run.json").exists() {
+            true => of_some_runs(dir),
+            false => Vec::new(),
+        };
+        write_all(dir, &self.files)?;
+        for name in earlier.iter().filter(|name| self.files.iter().all(|(own, _)| own != *name)) {
+            let path = dir.join(name);
+            fs_err::remove_file(&path).map_err(|e| Failure::file(&path, "remove", &e))?;
+        }
+        Ok(())
+    }
+}
+
+/// Names of the files in a folder of results that not every run writes.
+fn of_some_runs(dir: &Path) -> Vec<String> {
+    let names = |dir: &Path| -> Vec<String> {
+        let entries = std::fs::read_dir(dir).into_iter().flatten().flatten();
+        entries.filter_map(|entry| entry.file_name().into_string().ok()).collect()
+    };
+    let is_front = |name: &str| name.starts_with("front.") && name.ends_with(".csv") && name != "front.csv";
+    let is_beside = |name: &str| ["near.csv", "tolerance.csv"].contains(&name);
+    let is_plot = |name: &str| name.ends_with(".svg") || name.ends_with(".csv");
+    let mut out: Vec<String> =
+        names(dir).into_iter().filter(|name| is_front(name) || is_beside(name)).collect();
+    let plots = names(&dir.join(PLOTS)).into_iter().filter(|name| is_plot(name));
+    out.extend(plots.map(|name| format!("{PLOTS}/{name}")));
+    out
 }
 
 /// A finished search and what it was made with.

@@ -4,7 +4,7 @@ use super::beside::BesideArgs;
 use super::finished::Written;
 use super::run::load_study;
 use super::search::{Asked, SearchArgs, With, search};
-use super::{Failure, carry, write_all};
+use super::{Failure, carry};
 use crate::catalog::Catalogs;
 use crate::reconcile::{Outcome, Verdict};
 use crate::report::certificate::gap_words;
@@ -73,7 +73,7 @@ pub(super) fn rerun(
         let beside = BesideArgs::default();
         match search(asked, &With { catalogs, overlay, dir: &results, how, beside: &beside }) {
             Ok(written) => {
-                write_all(&results, &written.files)?;
+                written.write(&results)?;
                 found.push(written);
             }
             Err(Failure::Infeasible(why)) => {

@@ -78,7 +78,7 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(name));
     let written =
         search(&asked, &With { catalogs, overlay, dir: &dir, how: &args.search, beside: &args.beside })?;
-    write_all(&dir, &written.files)?;
+    written.write(&dir)?;
     let carried = carry::to_text(&asked.carried);
     Ok(format!("{}{carried}\n{}", written.terminal, told(&dir, &written.files)))
 }

@@ -4,9 +4,9 @@ use super::run::load_study;
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
 use crate::search::design::number_of;
-use crate::search::outward::{ArmProblem, Partial};
+use crate::search::outward::{ArmProblem, Partial, SizedJoint};
 use crate::search::space::SpacePiece;
-use crate::sizing::render_rows;
+use crate::sizing::{DriveTable, JointDemand, checks, render_rows};
 use crate::study::{Study, sizing_rows};
 use clap::Args;
 use std::fmt::Write;
@@ -201,11 +201,7 @@ fn all_fits(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String,
     Ok(out)
 }
 
-fn demand_line(
-    joint: &str,
-    demand: &crate::sizing::JointDemand,
-    table: &crate::sizing::DriveTable,
-) -> String {
+fn demand_line(joint: &str, demand: &JointDemand, table: &DriveTable) -> String {
     format!(
         "joint {joint}: static {:.1} N m, peak {:.1} N m, stop {:.1} N m, mean {:.1} N m, {:.2} rad/s; {} drives are \
          fast enough, {} hold",
@@ -226,15 +222,41 @@ fn fails(problem: &ArmProblem, chosen: &[u32], slot: usize) -> Failure {
     match problem.sized_joint(piece) {
         Some(sized) => {
             let demand = problem.demand_at(&last, slot);
-            let shortfall = sized.table.smallest_shortfall(&demand);
-            Failure::Infeasible(shortfall.map_or_else(
-                || format!("joint {}: no drive of the catalogs can be checked in full", sized.table.joint()),
-                |s| s.to_string(),
-            ))
+            let shortfall = sized.table.smallest_shortfall(&demand).map(|shortfall| shortfall.to_string());
+            let too_weak = || too_weak(problem, chosen, piece, sized, &demand);
+            Failure::Infeasible(shortfall.or_else(too_weak).unwrap_or_else(|| {
+                format!("joint {}: no drive of the catalogs can be checked in full", sized.table.joint())
+            }))
         }
         None => Failure::Infeasible(
             "a link breaks a limit on stress, wall slenderness, cost or mass: choose another with --design"
                 .into(),
         ),
     }
+}
+
+/// Why the drive that a design has at a joint does not hold, where others would.
+fn too_weak(
+    problem: &ArmProblem,
+    chosen: &[u32],
+    piece: usize,
+    sized: &SizedJoint,
+    demand: &JointDemand,
+) -> Option<String> {
+    let table = &sized.table;
+    table.first_fit(demand).filter(|_| sized.is_level())?;
+    let is_level = |p: usize| match &problem.space().pieces[p] {
+        SpacePiece::Choice(_) => true,
+        _ => problem.sized_joint(p).is_some_and(SizedJoint::is_level),
+    };
+    let outboard = (piece + 1..problem.space().pieces.len()).filter(|&p| is_level(p)).count();
+    let drive = table.drive(*chosen.get(outboard)? as usize);
+    let failing = checks(&drive, table.motion(), demand).into_iter().find(|check| !check.holds())?;
+    Some(format!(
+        "joint {joint}: {} with {}, the drive of this design, does not hold: {failing}; `--all-fits {joint}` lists \
+         those that do",
+        drive.gear.id,
+        drive.motor.id,
+        joint = table.joint(),
+    ))
 }

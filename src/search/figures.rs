@@ -30,15 +30,16 @@ impl StressCheck {
         let (width, height) = option.section.outer_m();
         let wall = option.section.wall_m();
         let round = matches!(option.section, Section::RoundTube { .. });
-        let enclosed = match round {
-            true => std::f64::consts::PI / 4.0 * (width - wall).powi(2),
-            false => (width - wall) * (height - wall),
+        // a round tube exactly, on its outside; any other by Bredt, with what the middle line of its wall encloses
+        let per_torsion = match round {
+            true => width / 2.0 / p.torsion_constant_m4,
+            false => 1.0 / (2.0 * (width - wall) * (height - wall) * wall),
         };
         Some(Self {
             per_axial_n: 1.0 / p.area_m2,
             per_moment_y: height / 2.0 / p.second_moment_y_m4,
             per_moment_z: width / 2.0 / p.second_moment_z_m4,
-            per_torsion: 1.0 / (2.0 * enclosed * wall),
+            per_torsion,
             round,
             strength_pa: option.strength_pa?,
         })
@@ -69,5 +70,28 @@ pub(super) fn figures(space: &DesignSpace, option: &LinkOption, length_m: f64) -
         material: Some(option.material_index),
         cost_eur: option.cost_eur_per_kg.map(|cost| cost * mass_kg),
         stress: StressCheck::new(option),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::LinkMaterial;
+
+    /// `τ = T r / J` on the outside of a round tube with a thick wall; Bredt's formula gives a sixth less here.
+    #[test]
+    fn a_round_tube_is_twisted_most_on_its_outside() {
+        let material = LinkMaterial {
+            youngs_modulus_pa: 2.1e11,
+            shear_modulus_pa: 8.1e10,
+            density_kg_m3: 7850.0,
+            poisson: 0.3,
+        };
+        let section = Section::RoundTube { diameter_m: 0.06, wall_m: 0.012 };
+        let option = LinkOption { strength_pa: Some(355e6), ..LinkOption::given(material, section) };
+        let check = StressCheck::new(&option).unwrap();
+        let polar_m4 = std::f64::consts::PI / 32.0 * (0.06f64.powi(4) - 0.036f64.powi(4));
+        let shear_pa = 0.03 / polar_m4;
+        assert!((check.per_torsion / shear_pa - 1.0).abs() < 1e-12);
     }
 }

@@ -37,7 +37,7 @@ pub struct JointSizingRow {
     pub motor: String,
     /// The check with the smallest torque margin.
     pub binds: Option<&'static str>,
-    /// Its allowed over needed; `None` also if nothing is needed of it.
+    /// Its allowed over needed, of the life the cube root; `None` also if nothing is needed of it.
     pub margin: Option<f64>,
     /// L10 of the wave-generator bearing \[h\].
     pub life_h: Option<f64>,
@@ -84,7 +84,7 @@ impl JointSizingRow {
             gear: drive.gear.id.clone(),
             motor: drive.motor.id.clone(),
             binds: bound.map(|c| c.kind.label()),
-            margin: bound.and_then(Check::margin).filter(finite),
+            margin: bound.and_then(Check::torque_margin).filter(finite),
             life_h: life_h(&checks).filter(finite),
             mass_kg: drive.mass_kg().ok(),
             mass_passed_inward_kg,
@@ -215,6 +215,19 @@ mod tests {
         assert_eq!(row.mass_kg, Some(12.2));
         assert_eq!(row.binds, Some("gear mean"));
         assert!(row.fails.is_empty() && row.not_checked.is_empty());
+    }
+
+    #[test]
+    fn the_margin_is_that_of_the_check_that_binds_as_a_factor_on_torque() {
+        let long = MotionRequirement { life_h: 1e6, ..Default::default() };
+        let motion = long.joint_motion(1.35, None);
+        let (gear, motor) = (hfuc_58_100(), f11_10());
+        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::ComponentSet };
+        let row = JointSizingRow::new("j2", &drive, &motion, &motion.demand(400.0, 1.0), 80.0);
+        let life = row.checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();
+        let part = life.allowed.unwrap() / life.needed.unwrap();
+        assert_eq!(row.binds, Some("gear life"));
+        assert!(part < 0.9 && (row.margin.unwrap() - part.cbrt()).abs() < 1e-12, "{part} {:?}", row.margin);
     }
 
     #[test]

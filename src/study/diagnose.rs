@@ -299,7 +299,8 @@ pub fn empty_pieces(problem: &ArmProblem) -> Vec<String> {
         .enumerate()
         .filter_map(|(i, piece)| match piece {
             SpacePiece::Choice(choice) if choice.options.is_empty() => Some(format!(
-                "link {}: no section has a wall under half its outer size, or no profile is sold in these materials; \
+                "link {}: no section has a wall under half its outer size (all sizes are in mm), or no profile is sold in these \
+                 materials; \
                  change its \"sections\" or \"materials\"",
                 choice.name
             )),

@@ -68,7 +68,7 @@ fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String
             "give the joint its drive in the study (gear and motor, or windup), or remove the effect".into(),
         )),
         ("extra_mass", Some(DriveChoice::Given { mass_kg, .. }))
-            if mass_kg + added_kg(space, effect) < 0.0 =>
+            if mass_kg + added_kg(space, &effect.at) < 0.0 =>
         {
             Some((
                 "parameters.delta_kg".into(),
@@ -76,7 +76,7 @@ fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String
                 "give the joint its mass_kg, or a smaller loss".into(),
             ))
         }
-        ("modulus_error" | "link_flexibility", _) if space.links == LinkModel::Rigid => Some((
+        _ if effect.is_of_bending() && space.links == LinkModel::Rigid => Some((
             "effect".into(),
             format!("{} changes how a link bends, and the study holds its links rigid", effect.effect),
             "set \"links\" of \"models\" to \"full\", or remove the effect".into(),
@@ -85,9 +85,11 @@ fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String
     }
 }
 
-/// Mass that an effect adds by itself \[kg\].
-fn added_kg(space: &DesignSpace, effect: &Effect) -> f64 {
-    DesignSpace { effects: vec![effect.clone()], ..space.clone() }.effects_mass_kg()
+/// What the extra masses of a place add together \[kg\].
+fn added_kg(space: &DesignSpace, at: &str) -> f64 {
+    let of_place = |effect: &&Effect| effect.effect == "extra_mass" && effect.at == at;
+    let effects = space.effects.iter().filter(of_place).cloned().collect();
+    DesignSpace { effects, ..space.clone() }.effects_mass_kg()
 }
 
 /// The study's own effects that describe a test, which change nothing.

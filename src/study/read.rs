@@ -406,6 +406,12 @@ fn read_cases(root: &Object, joints: &[String]) -> Option<Cases> {
             .required("poses")?
             .fault("has no judged pose", "leave \"judged\" away, or set it true, in one of them");
     }
+    if out.sizing.is_empty() {
+        return root.required("poses")?.fault(
+            "has no pose in which drives are sized and stresses checked",
+            "leave \"sizing\" away, or set it true, in one of them",
+        );
+    }
     Some(out)
 }
 
@@ -416,8 +422,11 @@ struct Environment {
 }
 
 fn read_environments(node: &Node) -> Option<Vec<Environment>> {
-    let read: Vec<_> = node
-        .array()?
+    let items = node.array()?;
+    if items.is_empty() {
+        return node.fault("is empty", "name what the arm is in, or leave it away for air");
+    }
+    let read: Vec<_> = items
         .iter()
         .map(|n| {
             let object = n.object(&["name", "water"])?;

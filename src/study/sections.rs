@@ -5,6 +5,7 @@ use crate::catalog::{Catalogs, Material, Profile, ProfileShape};
 use crate::fault::{Node, closest};
 use crate::search::constraint::Constraints;
 use crate::search::space::LinkOption;
+use std::collections::HashSet;
 
 const DEFAULT_POISSON: f64 = 0.3;
 /// No grid has more points than this; a larger one is a slip in the step.
@@ -16,7 +17,7 @@ pub(super) struct Sections {
 }
 
 /// A profile and the family of materials it is sold in.
-#[derive(Clone)]
+#[derive(Clone, PartialEq, Eq, Hash)]
 struct ProfileName {
     designation: String,
     family: String,
@@ -60,8 +61,18 @@ pub(super) fn read_materials<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<
 /// Reads a list of section families.
 pub(super) fn read_sections(node: &Node, catalogs: &Catalogs) -> Option<Sections> {
     let read: Vec<_> = node.array()?.iter().map(|n| read_family(n, catalogs)).collect();
-    let sections = read.into_iter().collect::<Option<Vec<_>>>()?.concat();
+    let mut sections = read.into_iter().collect::<Option<Vec<_>>>()?.concat();
+    // a tube that several grids hold is one tube
+    let mut seen = HashSet::new();
+    sections.retain(|section| seen.insert(identity(section)));
     Some(Sections { sections })
+}
+
+/// What tells a section from every other.
+fn identity((section, profile): &Named) -> (bool, [u64; 3], Option<ProfileName>) {
+    let is_round = matches!(section, Section::RoundTube { .. });
+    let (width_m, height_m) = section.outer_m();
+    (is_round, [width_m, height_m, section.wall_m()].map(f64::to_bits), profile.clone())
 }
 
 type Named = (Section, Option<ProfileName>);

@@ -319,6 +319,11 @@ impl Effect {
         }
     }
 
+    /// Whether it changes how a link bends: nothing where links are held rigid.
+    pub fn is_of_bending(&self) -> bool {
+        matches!(self.effect.as_str(), "modulus_error" | "link_flexibility")
+    }
+
     /// Whether the effect describes the test and not the product.
     pub fn is_of_test(&self) -> bool {
         kind(&self.effect).is_some_and(|k| k.scope == Scope::Test)

@@ -401,7 +401,7 @@ fn drive(row: &JointSizingRow) -> Value {
 
 fn check(check: &Check, binds: Option<&str>) -> Value {
     let number = |v: Option<f64>| v.filter(|v| v.is_finite()).map(|v| significant(v, 4));
-    let margin = check.margin().filter(|m| m.is_finite());
+    let margin = check.torque_margin().filter(|m| m.is_finite());
     json!({
         "name": check.kind.label(),
         "unit": check.kind.unit(),
