@@ -4,6 +4,7 @@ use super::compare::text::wrap;
 use super::html::Extra;
 use super::number::significant;
 use super::summary::{SummaryFacts, TERMINAL, large};
+use crate::search::exact::VAST;
 
 /// The section of a page; `boxes` are those bounded and left open by an exact search.
 pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Extra {
@@ -44,8 +45,13 @@ pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Ext
             },
         ],
     };
-    let how = "Check it again with another search from this front: armwright front check";
-    let words = words.into_iter().chain([format!("{how} {}", facts.results)]).collect();
+    // the check's own bounds do not go region by region
+    let how = match facts.designs_total as f64 > VAST {
+        true => "Check its designs, and from them what may be missing by the same bounds",
+        false => "Check it again with another search from this front",
+    };
+    let words =
+        words.into_iter().chain([format!("{how}: armwright front check {}", facts.results)]).collect();
     Extra { title: "How sure is this front?".into(), words, tables: Vec::new(), figures: Vec::new() }
 }
 

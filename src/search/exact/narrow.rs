@@ -155,8 +155,9 @@ impl LaneWork for LinksCost<'_> {
             for k in 0..INERTIAS {
                 cost = cost + least::<V>(&eight.inertia[k], [low.inertias[k], high.inertias[k]]);
             }
+            let [stiff, soft] = compliances;
             for k in 0..STIFFNESSES {
-                cost = cost + least::<V>(&eight.compliance[k], [compliances[0][k], compliances[1][k]]);
+                cost = cost + least::<V>(&eight.compliance[k], [stiff[k], soft[k]]);
                 // what does not yield earns nothing
                 let price = V::load(&eight.stiffness[k]);
                 let earned = price * V::splat(high.stiffnesses[k]);
