@@ -122,7 +122,7 @@ pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Fai
         Some(path) => read_load_cases(Document::read(path)?, &arm.driven_joint_names())?,
         None => vec![case_of_flags(args, &arm)?],
     };
-    let ignored: Vec<String> = arm.ignored_effects().into_iter().map(label).collect();
+    let ignored: Vec<String> = arm.ignored_effects().into_iter().map(Effect::label).collect();
     let solved: Vec<Solved> = cases.into_iter().map(|case| solve(args, &arm, case)).collect();
     Ok(match (args.json, &args.cases) {
         (true, None) => pretty(&solved[0].to_json(&ignored)),
@@ -131,10 +131,6 @@ pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Fai
             solved.iter().map(|s| s.to_text(&arm)).collect::<Vec<_>>().join("\n") + &ignored_text(&ignored)
         }
     })
-}
-
-fn label(effect: &Effect) -> String {
-    format!("{} at {}", effect.effect, effect.at)
 }
 
 /// Effects of a test rather than of the arm stay out of an analysis; it says so.
@@ -187,7 +183,7 @@ fn solve(args: &AnalyzeArgs, arm: &Arm, case: LoadCase) -> Solved {
         frequency_response(&posed, &statics, &Vector3::from(force), args.damping, &args.response_hz.0)
     });
     let rigid = case.links == LinkModel::Rigid;
-    let unbent = arm.effects.iter().filter(|e| rigid && e.is_of_bending()).map(label).collect();
+    let unbent = arm.effects.iter().filter(|e| rigid && e.is_of_bending()).map(Effect::label).collect();
     Solved { case, statics, modes, response, unbent }
 }
 

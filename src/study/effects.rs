@@ -95,14 +95,10 @@ fn added_kg(space: &DesignSpace, at: &str) -> f64 {
 /// The study's own effects that describe a test, which change nothing.
 pub fn left_out(study: &Study) -> Vec<Carried> {
     let of_test = study.space.effects.iter().filter(|effect| effect.is_of_test());
-    of_test.map(|effect| Carried { what: label(effect), carried: false, words: OF_TEST.into() }).collect()
+    of_test.map(|effect| Carried { what: effect.label(), carried: false, words: OF_TEST.into() }).collect()
 }
 
 const OF_TEST: &str = "it describes how the arm was tested, not the arm";
-
-fn label(effect: &Effect) -> String {
-    format!("{} at {}", effect.effect, effect.at)
-}
 
 /// Puts what a measured arm's corrections mean for a study into the study's file: the effects of `arm`,
 /// and the factors within tolerance, `("j2.stiffness", 1.02)`, that it was calibrated with.
@@ -119,7 +115,7 @@ impl CorrectedStudy {
     }
 
     fn effect(&mut self, space: &DesignSpace, effect: &Effect) {
-        let what = label(effect);
+        let what = effect.label();
         if effect.is_of_test() {
             return self.say(what, false, OF_TEST);
         }

@@ -319,6 +319,11 @@ impl Effect {
         }
     }
 
+    /// Its name and place, for people.
+    pub fn label(&self) -> String {
+        format!("{} at {}", self.effect, self.at)
+    }
+
     /// Whether it changes how a link bends: nothing where links are held rigid.
     pub fn is_of_bending(&self) -> bool {
         matches!(self.effect.as_str(), "modulus_error" | "link_flexibility")
