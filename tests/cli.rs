@@ -201,11 +201,12 @@ fn a_run_into_the_folder_of_another_leaves_nothing_of_it_but_what_is_the_users()
     let before = files();
     assert!(before.contains(&"near.csv".into()) && before.contains(&"tolerance.csv".into()), "{before:?}");
     std::fs::write(here.path().join("out/notes.txt"), "mine").expect("written");
+    std::fs::write(here.path().join("out/ballast.csv"), "of the run before").expect("written");
     said(here.path(), &["run", "one.json", "--out", "out"]);
     let after = files();
     assert!(of_materials(&after) < of_materials(&before), "{before:?}, {after:?}");
     assert!(!after.contains(&"near.csv".into()) && !after.contains(&"tolerance.csv".into()), "{after:?}");
-    assert!(after.contains(&"notes.txt".into()), "{after:?}");
+    assert!(after.contains(&"notes.txt".into()) && !after.contains(&"ballast.csv".into()), "{after:?}");
     said(here.path(), &["run", "one.json", "--out", "new"]);
     let count = |dir: &str| std::fs::read_dir(here.path().join(dir)).expect("a folder").count();
     assert_eq!(count("out/plots"), count("new/plots"));
@@ -260,6 +261,10 @@ fn an_analysis_says_what_effects_add_and_which_are_left_out() {
     std::fs::write(here.path().join("arm.json"), arm.to_string()).expect("written");
     let bends = said(here.path(), &["analyze", "arm.json"]);
     assert!(bends.contains("effects add              3.000 kg") && !bends.contains("left out"), "{bends}");
+    for of_response in [["--damping", "0.1"], ["--response-hz", "1,10,10"]] {
+        let (code, why) = refused(here.path(), &[&["analyze", "arm.json"], &of_response[..]].concat());
+        assert!(code == 2 && why.contains("--response-n"), "{code}: {why}");
+    }
     let rigid = said(here.path(), &["analyze", "arm.json", "--links", "rigid"]);
     assert!(rigid.contains("links are held rigid: link_flexibility at boom"), "{rigid}");
     let mut soft = arm;

@@ -114,6 +114,24 @@ fn an_effect_that_does_not_fit_a_study_is_a_fault_of_its_file() {
 }
 
 #[test]
+fn masses_taken_off_one_joint_count_together() {
+    let here = folder();
+    let extra =
+        |delta_kg: f64| json!({"effect": "extra_mass", "at": "elbow", "parameters": {"delta_kg": delta_kg}});
+    let run = |effects: Value| {
+        let mut with = study();
+        with["effects"] = effects;
+        write(here.path(), "study.json", &with);
+        armwright(here.path(), &["run", "study.json", "--out", "out"])
+    };
+    let (code, said) = run(json!([extra(-1.5), extra(-1.0), extra(0.2)]));
+    assert_eq!(code, 3, "{said}");
+    let faulty = ["effects[0]", "effects[1]", "effects[2]"].map(|effect| said.contains(effect));
+    assert_eq!(faulty, [true, true, false], "only losses are to blame: {said}");
+    assert_eq!(run(json!([extra(-1.5), extra(-1.0), extra(1.0)])).0, 0);
+}
+
+#[test]
 fn what_of_an_arm_file_carries_over_to_a_study_is_said_one_by_one() {
     let here = folder();
     write(here.path(), "study.json", &study());

@@ -16,6 +16,12 @@ use clap::Args;
 use serde_json::{Map, Value, json};
 use std::sync::atomic::AtomicBool;
 
+/// Files beside the front that not every run has.
+pub(super) const FILES: [&str; 3] = [BALLAST, TOLERANCE, NEAR];
+const BALLAST: &str = "ballast.csv";
+const TOLERANCE: &str = "tolerance.csv";
+const NEAR: &str = "near.csv";
+
 /// What may be asked for beside a front.
 #[derive(Debug, Clone, Default, Args)]
 pub(super) struct BesideArgs {
@@ -75,7 +81,7 @@ impl BesideArgs {
         let flags = ballast_flags(found.problem, &found.outcome.front);
         beside.run.insert("ballast_designs".into(), json!(flags.len()));
         if !flags.is_empty() {
-            beside.files.push(("ballast.csv".into(), flags.to_csv()));
+            beside.files.push((BALLAST.into(), flags.to_csv()));
             beside.markdown.push_str(&flags.to_markdown());
             beside.sections.push(flags.section());
             beside.terminal.push_str(&format!("\n{}", wrap(&flags.sentence(), 80, "")));
@@ -84,7 +90,7 @@ impl BesideArgs {
         let scattered = self.scattered(found, front).map_err(|()| stopped())?;
         beside.run.insert("tolerance".into(), scattered.as_ref().map_or(Value::Null, Scattered::to_json));
         if let Some(scattered) = scattered {
-            beside.files.push(("tolerance.csv".into(), scattered.to_csv().into_bytes()));
+            beside.files.push((TOLERANCE.into(), scattered.to_csv().into_bytes()));
             beside.markdown.push_str(&scattered.to_markdown());
             beside.sections.push(scattered.section());
             let sentences: String = scattered.sentences().iter().map(|s| wrap(s, 80, "")).collect();
@@ -96,7 +102,7 @@ impl BesideArgs {
             beside.terminal.push_str(&format!("\n{}", wrap(NO_NEAR, 80, "")));
         }
         if let Some(near) = near {
-            beside.files.push(("near.csv".into(), near.table.to_csv()));
+            beside.files.push((NEAR.into(), near.table.to_csv()));
             beside.markdown.push_str(&near.to_markdown());
             beside.sections.push(near.section());
             let sentences: String = near.sentences().iter().map(|s| wrap(s, 80, "")).collect();

@@ -1,6 +1,6 @@
 //! What a finished search has to say: its files, its page and its words.
 
-use super::beside::{Beside, BesideArgs, Found};
+use super::beside::{Beside, BesideArgs, FILES, Found};
 use super::{Failure, carry, write_all};
 use crate::arm::Effect;
 use crate::catalog::Catalogs;
@@ -62,14 +62,17 @@ fn of_some_runs(dir: &Path) -> Vec<String> {
         let entries = std::fs::read_dir(dir).into_iter().flatten().flatten();
         entries.filter_map(|entry| entry.file_name().into_string().ok()).collect()
     };
-    let is_front = |name: &str| name.starts_with("front.") && name.ends_with(".csv") && name != "front.csv";
-    let is_beside = |name: &str| ["near.csv", "tolerance.csv"].contains(&name);
     let is_plot = |name: &str| name.ends_with(".svg") || name.ends_with(".csv");
-    let mut out: Vec<String> =
-        names(dir).into_iter().filter(|name| is_front(name) || is_beside(name)).collect();
+    let is_of_some = |name: &String| is_front_of_material(name) || FILES.contains(&name.as_str());
+    let mut out: Vec<String> = names(dir).into_iter().filter(is_of_some).collect();
     let plots = names(&dir.join(PLOTS)).into_iter().filter(|name| is_plot(name));
     out.extend(plots.map(|name| format!("{PLOTS}/{name}")));
     out
+}
+
+/// Whether a file has the front of a material.
+pub(super) fn is_front_of_material(name: &str) -> bool {
+    name.starts_with("front.") && name.ends_with(".csv") && name != "front.csv"
 }
 
 /// A finished search and what it was made with.

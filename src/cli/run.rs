@@ -1,7 +1,7 @@
 //! `armwright run`: find a study's front and write it.
 
 use super::beside::BesideArgs;
-use super::finished::{catalogs_hash, facts_of, pretty};
+use super::finished::{catalogs_hash, facts_of, is_front_of_material, pretty};
 use super::search::{Asked, SearchArgs, With, search};
 use super::{Failure, carry, write_all};
 use crate::catalog::Catalogs;
@@ -139,7 +139,7 @@ fn told(dir: &Path, files: &[(String, Vec<u8>)]) -> String {
 fn names(files: &[(String, Vec<u8>)]) -> String {
     let kind = |name: &str| match name {
         n if n.starts_with(PLOTS) => 2,
-        n if n.starts_with("front.") && n != "front.csv" && n != "front.svg" => 1,
+        n if is_front_of_material(n) => 1,
         _ => 0,
     };
     let count = |which: usize| files.iter().filter(|(n, _)| kind(n) == which).count();

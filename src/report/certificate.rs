@@ -4,7 +4,6 @@ use super::compare::text::wrap;
 use super::html::Extra;
 use super::number::significant;
 use super::summary::{SummaryFacts, TERMINAL, large};
-use crate::search::exact::VAST;
 
 /// The section of a page; `boxes` are those bounded and left open by an exact search.
 pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Extra {
@@ -45,13 +44,8 @@ pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Ext
             },
         ],
     };
-    // the check's own bounds do not go region by region
-    let how = match facts.designs_total as f64 > VAST {
-        true => "Check its designs, and from them what may be missing by the same bounds",
-        false => "Check it again with another search from this front",
-    };
-    let words =
-        words.into_iter().chain([format!("{how}: armwright front check {}", facts.results)]).collect();
+    let how = "Check it again from this front (the check says by whose bounds): armwright front check";
+    let words = words.into_iter().chain([format!("{how} {}", facts.results)]).collect();
     Extra { title: "How sure is this front?".into(), words, tables: Vec::new(), figures: Vec::new() }
 }
 

@@ -68,7 +68,7 @@ fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String
             "give the joint its drive in the study (gear and motor, or windup), or remove the effect".into(),
         )),
         ("extra_mass", Some(DriveChoice::Given { mass_kg, .. }))
-            if mass_kg + added_kg(space, &effect.at) < 0.0 =>
+            if takes_too_much(space, effect, *mass_kg) =>
         {
             Some((
                 "parameters.delta_kg".into(),
@@ -85,11 +85,12 @@ fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String
     }
 }
 
-/// What the extra masses of a place add together \[kg\].
-fn added_kg(space: &DesignSpace, at: &str) -> f64 {
-    let of_place = |effect: &&Effect| effect.effect == "extra_mass" && effect.at == at;
-    let effects = space.effects.iter().filter(of_place).cloned().collect();
-    DesignSpace { effects, ..space.clone() }.effects_mass_kg()
+/// Whether an extra mass is a loss, and all those of its place together lose more than is there.
+fn takes_too_much(space: &DesignSpace, effect: &Effect, mass_kg: f64) -> bool {
+    let added_kg = |effects: Vec<Effect>| DesignSpace { effects, ..space.clone() }.effects_mass_kg();
+    let of_place = |other: &&Effect| other.effect == effect.effect && other.at == effect.at;
+    added_kg(vec![effect.clone()]) < 0.0
+        && mass_kg + added_kg(space.effects.iter().filter(of_place).cloned().collect()) < 0.0
 }
 
 /// The study's own effects that describe a test, which change nothing.

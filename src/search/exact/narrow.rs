@@ -187,10 +187,14 @@ mod tests {
     use crate::sizing::DriveLimits;
     use proptest::prelude::*;
 
-    /// What can be afforded lies between the dearest and the cheapest that is asked, so that both happen.
-    fn afforded(prices: Vec<Price>, cost: impl Fn(&Price) -> f64, room: f64) -> Vec<Afforded> {
-        let most = |price: &Price| cost(price) + room * (1.0 + cost(price).abs());
-        prices.into_iter().map(|price| (most(&price), price)).map(|(most, price)| (price, most)).collect()
+    /// Prices with what can be afforded at each: more than it costs, but at one of them, or none, less.
+    fn afforded(prices: Vec<Price>, cost: impl Fn(&Price) -> f64, dear: usize) -> Vec<Afforded> {
+        let room = |at: usize| if at == dear { -0.1 } else { 0.1 };
+        let afford = |(at, price): (usize, Price)| {
+            let cost = cost(&price);
+            (price, cost + room(at) * (1.0 + cost.abs()))
+        };
+        prices.into_iter().enumerate().map(afford).collect()
     }
 
     fn excluded_one_by_one(afforded: &[Afforded], cost: impl Fn(&Price) -> f64) -> bool {
@@ -222,7 +226,7 @@ mod tests {
         fn tubes_cost_the_same_side_by_side(
             prices in prop::collection::vec(prop::collection::vec(-1.0f64..1.0, 15), 1..20),
             low in prop::array::uniform10(0.1f64..2.0), width in prop::array::uniform10(0.0f64..1.0),
-            rigid in any::<bool>(), room in -0.1f64..0.2,
+            rigid in any::<bool>(), dear in 0usize..30,
         ) {
             let line = |times: f64| Line {
                 inertias: std::array::from_fn(|k| low[k] + times * width[k]),
@@ -237,7 +241,7 @@ mod tests {
                 LinkBox { low, high, compliances, stress: [0.0; 4], round: false, cost_eur_per_m: 0.0 };
             let prices = prices.iter().map(|numbers| price(numbers)).collect();
             let cost = |price: &Price| price.of_tube(&links);
-            let afforded = afforded(prices, cost, room);
+            let afforded = afforded(prices, cost, dear);
             let eights: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
             let excluded = in_lanes(LinksCost { links: &links, prices: &eights });
             prop_assert_eq!(excluded, excluded_one_by_one(&afforded, cost));
@@ -249,7 +253,7 @@ mod tests {
             prices in prop::collection::vec(prop::array::uniform8(-1.0f64..1.0), 1..20),
             slopes in prop::array::uniform6(0.1f64..3.0), ends in prop::array::uniform2(0.1f64..3.0),
             torques in prop::array::uniform2((-5.0f64..5.0, 0.0f64..5.0)),
-            mass_kg in 0.1f64..3.0, more_kg in 0.0f64..1.0, room in -0.1f64..0.2,
+            mass_kg in 0.1f64..3.0, more_kg in 0.0f64..1.0, dear in 0usize..30,
         ) {
             let curve = |k: &[f64]| {
                 let windup = crate::arm::Windup {
@@ -273,7 +277,7 @@ mod tests {
                 ..price(&n[..1])
             });
             let cost = |price: &Price| price.of_joint(drives.mass_kg, drives.curve.as_ref());
-            let afforded = afforded(prices.collect(), cost, room);
+            let afforded = afforded(prices.collect(), cost, dear);
             let eights: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
             let gears = &afforded[0].0.joint;
             let excluded = in_lanes(DrivesCost { drives: &drives, gears, prices: &eights });
