@@ -1,7 +1,9 @@
 //! Makes campaigns with hidden effects from the independent witness.
 //!
-//! `cargo run --release --example reconcile_generate -- OUT SEED COUNT plain|hard one|two|none|unknown [SIGMA]`
+//! `cargo run --release --example reconcile_generate -- OUT SEED COUNT plain|hard|varied|geared one|two|none|unknown [SIGMA]`
 //!
+//! `plain` and `hard` are six-axis arms, `varied` is arms of four to seven joints of any size, on floor, wall or ceiling;
+//! all joints of those of `geared` have torsion curves.
 //! With `SIGMA` an effect that departs by less from what calibration within tolerance can imitate is made
 //! larger until it does not: one that nobody could see is no question. Or one campaign in the folder OUT of
 //! a six-axis arm file, j1 to j6, with the effects of a JSON list:
@@ -20,7 +22,7 @@ mod reconcile_generator;
 #[path = "../tests/witness/mod.rs"]
 mod witness;
 
-use reconcile_generator::{Dice, Plan, write};
+use reconcile_generator::{Dice, Plan, Specimen, write};
 
 /// Most steps by which an effect is made larger.
 const MOST_STEPS: i32 = 8;
@@ -34,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Ok(());
     }
     let [out, seed, count, set, class, sigma @ ..] = arguments.as_slice() else {
-        return Err("give OUT SEED COUNT plain|hard one|two|none|unknown [SIGMA]".into());
+        return Err("give OUT SEED COUNT plain|hard|varied|geared one|two|none|unknown [SIGMA]".into());
     };
     let out = Path::new(out);
     let (seed, count) = (seed.parse::<u64>()?, count.parse::<usize>()?);
@@ -62,5 +64,5 @@ fn measured(out: &Path, seed: &str, arm: &str, effects: &str) {
     let plan = Plan { static_poses: 24, modal_poses: 8, ..Plan::plain() };
     let dice = &mut Dice(seed.parse().expect("seed"));
     let key = out.with_extension("key.json");
-    write(dice, out, &key, &arm, hidden.as_array().expect("a list"), &plan);
+    write(dice, out, &key, &Specimen::six_axis_of(arm), hidden.as_array().expect("a list"), &plan);
 }

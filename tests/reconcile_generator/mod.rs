@@ -4,7 +4,10 @@
 //! Friction play, which the witness lacks, is added here from its torques and from kinematics written
 //! for this file.
 
+mod dice;
+mod hidden;
 mod positions;
+mod specimen;
 pub mod unknown;
 
 use super::witness::{self, Effects, LoadCase, Options, Payload, ThreeSegment};
@@ -14,41 +17,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use unknown::Unknown;
 
+pub use dice::Dice;
+pub use specimen::Specimen;
+use specimen::{Rig, stiffness_nm_per_rad};
+
 const ARCMIN_PER_RAD: f64 = 10800.0 / std::f64::consts::PI;
-
-/// A small generator of random numbers (splitmix64).
-pub struct Dice(pub u64);
-
-impl Dice {
-    /// Uniform in 0..1.
-    pub fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Uniform between two numbers.
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.uniform()
-    }
-
-    /// Standard normal.
-    pub fn normal(&mut self) -> f64 {
-        (-2.0 * self.uniform().max(1e-300).ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
-    }
-
-    /// One of a list.
-    pub fn pick<'a, T>(&mut self, list: &'a [T]) -> &'a T {
-        &list[((self.uniform() * list.len() as f64) as usize).min(list.len() - 1)]
-    }
-
-    fn rounded(&mut self, low: f64, high: f64, digits: i32) -> f64 {
-        let f = 10f64.powi(digits);
-        (self.between(low, high) * f).round() / f
-    }
-}
 
 /// How large and how clean a campaign is.
 #[derive(Clone, Copy)]
@@ -100,102 +73,23 @@ impl Plan {
             ..Self::plain()
         }
     }
-}
 
-/// A random six-axis arm.
-pub fn arm(dice: &mut Dice) -> Value {
-    let (e, g, density, name) = *dice.pick(&[
-        (2.1e11, 8.1e10, 7850.0, "steel"),
-        (6.9e10, 2.6e10, 2700.0, "aluminium"),
-        (5.5e10, 2.1e10, 1600.0, "carbon"),
-    ]);
-    let k = dice.rounded(2.5e5, 7e5, -3);
-    let tube =
-        |w: f64, t: f64| json!({"shape": "rectangular_tube", "width_m": w, "height_m": w, "wall_m": t});
-    let joint = |name: &str, axis: [f64; 3], k: f64, m: f64| json!({"type": "joint", "name": name, "axis": axis, "stiffness_nm_per_rad": k, "mass_kg": m});
-    let link = |n: &str, v: [f64; 3], section: Value| json!({"type": "link", "name": n, "vector_m": v, "section": section, "material": name});
-    let (z, y, x) = ([0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]);
-    json!({
-        "name": format!("{name}-arm"), "gravity_m_s2": 9.81,
-        "materials": {name: {"youngs_modulus_pa": e, "shear_modulus_pa": g, "density_kg_m3": density}},
-        "chain": [
-            joint("j1", z, k, 12.0),
-            link("column", [0.0, 0.0, dice.rounded(0.25, 0.4, 3)], tube(0.18, 0.01)),
-            joint("j2", y, k, 12.0),
-            link("upper_arm", [dice.rounded(0.6, 0.9, 3), 0.0, 0.0], tube(0.14, 0.007)),
-            joint("j3", y, (0.65 * k).round(), 8.5),
-            link("forearm", [dice.rounded(0.4, 0.6, 3), 0.0, 0.0], tube(0.1, 0.006)),
-            joint("j4", x, (0.18 * k).round(), 3.0),
-            joint("j5", y, (0.18 * k).round(), 3.0),
-            link("hand", [dice.rounded(0.08, 0.16, 3), 0.0, 0.0], tube(0.08, 0.008)),
-            joint("j6", x, (0.03 * k).round(), 3.0),
-        ],
-    })
-}
-
-/// Every effect at every place, to draw from.
-pub fn everything() -> Vec<(&'static str, &'static str)> {
-    let mut out = Vec::new();
-    for at in ["j2", "j3", "j5"] {
-        out.extend([
-            ("connection_compliance", at),
-            ("soft_windup", at),
-            ("lost_motion", at),
-            ("hysteresis", at),
-        ]);
+    /// As much as comes.
+    pub fn varied(dice: &mut Dice) -> Self {
+        Self {
+            static_poses: 8 + (dice.uniform() * 30.0) as usize,
+            modal_poses: (dice.uniform() * 12.0) as usize,
+            bench: dice.uniform() < 0.6,
+            noise: *dice.pick(&[1.0, 1.0, 1.15]),
+            gross: *dice.pick(&[0.0, 0.0, 1.0 / 60.0]),
+            size: dice.between(0.35, 1.2),
+            ..Self::plain()
+        }
     }
-    out.extend(["j2", "j3", "j4"].map(|at| ("bearing_tilt", at)));
-    out.extend(["j3", "j5", "j6"].map(|at| ("extra_mass", at)));
-    out.extend(["upper_arm", "forearm"].map(|at| ("harness_mass", at)));
-    out.extend(["upper_arm", "forearm"].map(|at| ("modulus_error", at)));
-    out.extend([
-        ("base_compliance", "base"),
-        ("payload_mass_error", "payload"),
-        ("payload_cg_error", "payload"),
-        ("immersion", "arm"),
-        ("sensor_gain", "static"),
-        ("sensor_gain", "modal"),
-        ("sensor_bias", "static"),
-        ("drift", "static"),
-    ]);
-    out
 }
 
-/// An effect of a random size.
-pub fn effect(dice: &mut Dice, arm: &Value, name: &str, at: &str, size: f64) -> Value {
-    let parts = arm["chain"].as_array().expect("chain");
-    let stiffness = parts.iter().find(|p| p["name"] == at).and_then(|p| p["stiffness_nm_per_rad"].as_f64());
-    let k = stiffness.unwrap_or(5e5);
-    let sign = if dice.uniform() < 0.5 { -1.0 } else { 1.0 };
-    let s = size * dice.between(0.7, 1.4);
-    let parameters = match name {
-        "connection_compliance" => json!({"stiffness_nm_per_rad": k / (0.35 * s)}),
-        "bearing_tilt" | "base_compliance" => json!({"stiffness_nm_per_rad": k / (0.5 * s)}),
-        "soft_windup" => {
-            let t1 = k * dice.between(2.0e-4, 4.0e-4);
-            json!({"k1_nm_per_rad": k / (1.0 + 0.8 * s), "k2_nm_per_rad": k, "k3_nm_per_rad": k * (1.0 + 0.2 * s),
-                   "t1_nm": t1, "t2_nm": t1 * dice.between(2.2, 3.2)})
-        }
-        "lost_motion" => json!({"half_width_rad": 1.5e-4 * s, "torque_nm": k * dice.between(2e-5, 6e-5)}),
-        "hysteresis" => json!({"half_width_rad": 1.2e-4 * s}),
-        "extra_mass" => json!({"delta_kg": 2.0 * s}),
-        "harness_mass" => json!({"kg_per_m": 3.0 * s}),
-        "modulus_error" => json!({"factor": 1.0 / (1.0 + 0.25 * s)}),
-        "payload_mass_error" => json!({"delta_kg": sign * 0.4 * s}),
-        "payload_cg_error" => json!({"offset_m": [0.03 * s * sign, 0.02 * s, -0.015 * s]}),
-        "immersion" => {
-            json!({"water_density_kg_m3": 1000.0, "added_mass_coefficient": dice.between(0.8, 1.3)})
-        }
-        "sensor_gain" if at == "modal" => json!({"gain": 1.0 + sign * 0.015 * s}),
-        "sensor_gain" => json!({"gain": 1.0 + sign * 0.05 * s}),
-        "sensor_bias" => json!({"bias_mm": [0.01 * s * sign, 0.006 * s, -0.012 * s]}),
-        "drift" => json!({"rate_mm_per_row": [1.5e-4 * s, -1.0e-4 * s * sign, 2.0e-4 * s]}),
-        other => panic!("no size for {other}"),
-    };
-    json!({"effect": name, "at": at, "parameters": parameters})
-}
-
-/// Makes one campaign below `out`: `set` is `plain` or `hard`, `class` is `one`, `two`, `none` or
+/// Makes one campaign below `out`: `set` is `plain` or `hard`, of six-axis arms, `varied`, of all kinds, or `geared`,
+/// of all kinds with torsion curves; `class` is `one`, `two`, `none` or
 /// `unknown`; numbers go through all effects in turn. `eased` makes an effect that nobody could see
 /// larger, by 40 % a step, and from the third step on leaves no file out. Returns the campaign's name
 /// and what is hidden in it.
@@ -208,19 +102,29 @@ pub fn make(
     eased: i32,
 ) -> (String, Vec<Value>) {
     let mut dice = Dice(seed.wrapping_mul(1000).wrapping_add(number as u64));
-    let arm = arm(&mut dice);
+    let specimen = match set {
+        "varied" if class == "unknown" => Specimen::varied(&mut dice, 0.0),
+        "varied" => Specimen::varied(&mut dice, 0.3),
+        "geared" => Specimen::varied(&mut dice, 1.0),
+        _ => Specimen::six_axis(&mut dice),
+    };
     let mut plan = match set {
         "hard" => Plan::hard(&mut dice),
+        "varied" | "geared" => Plan::varied(&mut dice),
         _ => Plan::plain(),
     };
     plan.size *= 1.4f64.powi(eased);
     if eased >= 3 {
         (plan.modal_poses, plan.bench) = (plan.modal_poses.max(6), true);
     }
-    let (known, strange) = (everything(), unknown::everything());
+    let (known, strange) = (hidden::everything(), unknown::everything());
     let mut draw = |k: usize| {
-        let (name, at) = known[(number + k * (7 + number % 11)) % known.len()];
-        effect(&mut dice, &arm, name, at, plan.size)
+        let number = number + k * (7 + number % 11);
+        let (name, at) = match set {
+            "varied" | "geared" => hidden::anywhere(&mut dice, &specimen, number),
+            _ => (known[number % known.len()].0, known[number % known.len()].1.to_string()),
+        };
+        hidden::effect(&mut dice, &specimen, name, &at, plan.size)
     };
     let hidden = match class {
         "none" => Vec::new(),
@@ -235,7 +139,7 @@ pub fn make(
     let name = format!("{set}-{class}-{seed}-{number:03}");
     std::fs::create_dir_all(out.join("keys")).expect("folder");
     let key = out.join("keys").join(format!("{name}.json"));
-    write(&mut dice, &out.join("campaigns").join(&name), &key, &arm, &hidden, &plan);
+    write(&mut dice, &out.join("campaigns").join(&name), &key, &specimen, &hidden, &plan);
     (name, hidden)
 }
 
@@ -284,17 +188,23 @@ fn split(hidden: &[Value]) -> (Value, Beyond) {
 }
 
 /// Writes a campaign folder and its key.
-pub fn write(dice: &mut Dice, folder: &Path, key: &Path, arm: &Value, hidden: &[Value], plan: &Plan) {
+pub fn write(dice: &mut Dice, folder: &Path, key: &Path, specimen: &Specimen, hidden: &[Value], plan: &Plan) {
     std::fs::create_dir_all(folder).expect("folder");
     let name = folder.file_name().expect("name").to_string_lossy().to_string();
     let (effects, beyond) = split(hidden);
-    let mut built = Built { arm: scattered(dice, arm), effects: Effects::from_json(&effects), beyond };
+    let rig = specimen.rig.clone();
+    let mut built =
+        Built { arm: scattered(dice, specimen), effects: Effects::from_json(&effects), beyond, rig };
     if plan.lengths_m > 0.0 {
         positions::with_lengths_off(dice, &mut built.arm, plan.lengths_m);
     }
     let mut campaign = json!({
         "name": name, "arm": "arm.json",
-        "tolerance": {"joint_stiffness": 0.05, "modulus": 0.02, "joint_mass": 0.01},
+        "tolerance": {
+            "joint_stiffness": built.rig.stiffness_tolerance,
+            "modulus": built.rig.modulus_tolerance,
+            "joint_mass": built.rig.mass_tolerance,
+        },
         "conventions": {"payload_density_kg_m3": 7850.0},
     });
     let save = |file: &str, text: String| std::fs::write(folder.join(file), text).expect("written");
@@ -309,7 +219,7 @@ pub fn write(dice: &mut Dice, folder: &Path, key: &Path, arm: &Value, hidden: &[
         campaign["modal"] = json!({"file": "modal.csv"});
         save("modal.csv", built.modal(dice, plan));
     }
-    if plan.bench {
+    if plan.bench && !built.rig.bench.is_empty() {
         campaign["windup"] = json!({"file": "windup.csv"});
         save("windup.csv", built.bench(dice, plan));
     }
@@ -318,12 +228,12 @@ pub fn write(dice: &mut Dice, folder: &Path, key: &Path, arm: &Value, hidden: &[
         save("positions.csv", built.positions(dice, plan));
     }
     save("campaign.json", campaign.to_string());
-    save("arm.json", arm.to_string());
+    save("arm.json", specimen.arm.to_string());
     std::fs::write(key, json!({"campaign": name, "hidden": hidden}).to_string()).expect("written");
 }
 
 /// Stiffness and mass of each joint and the modulus scattered within tolerance.
-fn scattered(dice: &mut Dice, arm: &Value) -> Value {
+fn scattered(dice: &mut Dice, Specimen { arm, rig }: &Specimen) -> Value {
     let mut arm = arm.clone();
     let mut times = |value: &mut Value, tolerance: f64| {
         let factor = (dice.normal() * tolerance / 2.0).exp();
@@ -333,18 +243,18 @@ fn scattered(dice: &mut Dice, arm: &Value) -> Value {
     for part in arm["chain"].as_array_mut().expect("chain") {
         if part["type"] == "joint" {
             if part["windup"].is_object() {
-                let factor = times(&mut part["windup"]["k2_nm_per_rad"], 0.05);
+                let factor = times(&mut part["windup"]["k2_nm_per_rad"], rig.stiffness_tolerance);
                 for key in ["k1_nm_per_rad", "k3_nm_per_rad"] {
                     part["windup"][key] = json!(part["windup"][key].as_f64().expect("number") * factor);
                 }
             } else {
-                times(&mut part["stiffness_nm_per_rad"], 0.05);
+                times(&mut part["stiffness_nm_per_rad"], rig.stiffness_tolerance);
             }
-            times(&mut part["mass_kg"], 0.01);
+            times(&mut part["mass_kg"], rig.mass_tolerance);
         }
     }
     for (_, material) in arm["materials"].as_object_mut().expect("materials") {
-        let factor = times(&mut material["youngs_modulus_pa"], 0.02);
+        let factor = times(&mut material["youngs_modulus_pa"], rig.modulus_tolerance);
         let shear = material["shear_modulus_pa"].as_f64().expect("G");
         material["shear_modulus_pa"] = json!(shear * factor);
     }
@@ -355,6 +265,7 @@ struct Built {
     arm: Value,
     effects: Effects,
     beyond: Beyond,
+    rig: Rig,
 }
 
 impl Built {
@@ -369,10 +280,18 @@ impl Built {
         parts
             .map(|p| {
                 let name = p["name"].as_str().expect("name").to_string();
-                let k = p["stiffness_nm_per_rad"].as_f64().or(p["windup"]["k2_nm_per_rad"].as_f64());
-                (name, Vector3::from(three(&p["axis"])), k.expect("k"))
+                (name, Vector3::from(three(&p["axis"])), stiffness_nm_per_rad(p).expect("k"))
             })
             .collect()
+    }
+
+    fn angles(&self) -> String {
+        let names = self.joints().into_iter().map(|(name, ..)| format!("q_{name}_deg"));
+        names.collect::<Vec<_>>().join(",")
+    }
+
+    fn pose(&self, dice: &mut Dice) -> Vec<f64> {
+        self.rig.ranges_deg.iter().map(|r| dice.rounded(-r, *r, 1)).collect()
     }
 
     /// The arm in a pose when `part` of the tests are done.
@@ -385,7 +304,7 @@ impl Built {
         let mut arm = self.arm.clone();
         let parts = arm["chain"].as_array_mut().expect("chain").iter_mut();
         for (j, part) in parts.filter(|p| p["type"] == "joint").enumerate() {
-            let k = part["stiffness_nm_per_rad"].as_f64().expect("k");
+            let Some(k) = part["stiffness_nm_per_rad"].as_f64() else { continue };
             part["stiffness_nm_per_rad"] = json!(of(j, part["name"].as_str().expect("name"), k));
         }
         arm
@@ -419,24 +338,36 @@ impl Built {
     }
 
     fn statics(&self, dice: &mut Dice, plan: &Plan) -> String {
-        let sigma = 0.006;
-        let mut out = String::from(
-            "test,q_j1_deg,q_j2_deg,q_j3_deg,q_j4_deg,q_j5_deg,q_j6_deg,payload_kg,payload_cg_x_m,payload_cg_y_m,payload_cg_z_m,force_x_n,force_y_n,force_z_n,branch,dx_mm,dy_mm,dz_mm,sigma_mm\n",
+        let sigma = self.rig.sigma_mm;
+        let mut out = format!(
+            "test,{},payload_kg,payload_cg_x_m,payload_cg_y_m,payload_cg_z_m,force_x_n,force_y_n,force_z_n,branch,dx_mm,dy_mm,dz_mm,sigma_mm\n",
+            self.angles(),
         );
         let mut row = 0;
         for number in 0..plan.static_poses {
             let part = number as f64 / plan.static_poses as f64;
-            let pose = pose(dice);
-            let cg = dice.rounded(0.03, 0.1, 3);
-            let force: [f64; 3] = std::array::from_fn(|_| dice.rounded(-100.0, 100.0, 1));
-            let loads =
-                [(2.5, "loading"), (5.0, "loading"), (10.0, "loading"), (5.0, "unloading"), (0.0, "loading")];
+            let pose = self.pose(dice);
+            let cg = self.rig.cg_along.map({
+                let [least, most] = self.rig.cg_m;
+                let cg = dice.rounded(least, most, 3);
+                move |along| along * cg
+            });
+            let most_n = self.rig.force_n;
+            let force: [f64; 3] = std::array::from_fn(|_| dice.rounded(-most_n, most_n, 1));
+            let [light, middle, heavy] = self.rig.payloads_kg;
+            let loads = [
+                (light, "loading"),
+                (middle, "loading"),
+                (heavy, "loading"),
+                (middle, "unloading"),
+                (0.0, "loading"),
+            ];
             let cases: Vec<LoadCase> = loads
                 .iter()
                 .map(|(kg, _)| {
                     let case = LoadCase::unloaded(&pose);
                     if *kg > 0.0 {
-                        case.with_payload(Payload::point(*kg, [cg, 0.0, 0.0]))
+                        case.with_payload(Payload::point(*kg, cg))
                     } else {
                         case.with_tip_force(force)
                     }
@@ -445,7 +376,8 @@ impl Built {
             for (i, d) in self.displacements_mm(&pose, &cases, part).into_iter().enumerate() {
                 let (kg, branch) = loads[i];
                 let f = if kg > 0.0 { [0.0; 3] } else { force };
-                let gross = if dice.uniform() < plan.gross { 0.15 * dice.normal().signum() } else { 0.0 };
+                let gross =
+                    if dice.uniform() < plan.gross { 25.0 * sigma * dice.normal().signum() } else { 0.0 };
                 let read: [f64; 3] = std::array::from_fn(|c| {
                     let b = &self.beyond;
                     let noise = sigma * plan.noise * dice.normal() + if c == i % 3 { gross } else { 0.0 };
@@ -453,8 +385,9 @@ impl Built {
                 });
                 row += 1;
                 out.push_str(&format!(
-                    "{row},{},{kg},{cg},0.0,0.0,{},{},{},{branch},{:.4},{:.4},{:.4},{sigma}\n",
+                    "{row},{},{kg},{},{},{},{},{branch},{:.4},{:.4},{:.4},{sigma}\n",
                     list(&pose),
+                    list(&cg),
                     f[0],
                     f[1],
                     f[2],
@@ -478,7 +411,9 @@ impl Built {
         for (j, (name, _, k)) in self.joints().iter().enumerate() {
             if let Some(h) = self.beyond.play.get(name) {
                 let t0 = torque(&reference, name);
-                play.push((j, *k, *h, t0 - t0.signum() * k * h));
+                // what rounding leaves of a vertical joint's torque has no sense
+                let sense = if t0.abs() < 1e-6 { 0.0 } else { t0.signum() };
+                play.push((j, *k, *h, t0 - sense * k * h));
             }
         }
         let names: Vec<String> = self.joints().into_iter().map(|j| j.0).collect();
@@ -509,25 +444,29 @@ impl Built {
     }
 
     fn modal(&self, dice: &mut Dice, plan: &Plan) -> String {
-        let mut out = String::from(
-            "test,q_j1_deg,q_j2_deg,q_j3_deg,q_j4_deg,q_j5_deg,q_j6_deg,payload_kg,payload_cg_x_m,payload_cg_y_m,payload_cg_z_m,mode,frequency_hz,sigma_hz\n",
+        let mut out = format!(
+            "test,{},payload_kg,payload_cg_x_m,payload_cg_y_m,payload_cg_z_m,mode,frequency_hz,sigma_hz\n",
+            self.angles(),
         );
+        let (payload_kg, cg_m) = self.rig.modal_payload;
+        let cg = self.rig.cg_along.map(|along| along * cg_m);
         let mut test = 0;
         for number in 0..plan.modal_poses {
             let part = number as f64 / plan.modal_poses as f64;
-            let pose = pose(dice);
-            for kg in [0.0, 5.0] {
+            let pose = self.pose(dice);
+            for kg in [0.0, payload_kg] {
                 test += 1;
-                let case = LoadCase::unloaded(&pose).with_payload(Payload::point(kg, [0.08, 0.0, 0.0]));
+                let case = LoadCase::unloaded(&pose).with_payload(Payload::point(kg, cg));
                 let arm = self.arm_about(&pose, &case, part);
-                let answer = witness::analyze(&arm, &case, &self.options(4));
+                let answer = witness::analyze(&arm, &case, &self.options(self.rig.modes));
                 for (m, mode) in answer.modes.iter().enumerate() {
                     let f = mode.frequency_hz * self.beyond.modal_gain;
-                    let sigma = 0.003 * f;
+                    let sigma = self.rig.modal_sigma * f;
                     let read = f + sigma * plan.noise * dice.normal();
                     out.push_str(&format!(
-                        "{test},{},{kg},0.08,0.0,0.0,{},{read:.4},{sigma:.4}\n",
+                        "{test},{},{kg},{},{},{read:.4},{sigma:.4}\n",
                         list(&pose),
+                        list(&cg),
                         m + 1
                     ));
                 }
@@ -539,7 +478,8 @@ impl Built {
     fn bench(&self, dice: &mut Dice, plan: &Plan) -> String {
         let mut out = String::from("test,joint,torque_nm,branch,windup_arcmin,sigma_arcmin\n");
         let mut test = 0;
-        for (name, _, k) in self.joints().into_iter().filter(|j| ["j2", "j3", "j5"].contains(&j.0.as_str())) {
+        let sigma = self.rig.sigma_arcmin;
+        for (name, _, k) in self.joints().into_iter().filter(|j| self.rig.bench.contains(&j.0)) {
             let largest = match (k * 9e-4 / 50.0).round() * 50.0 {
                 0.0 => (k * 9e-4).ceil(),
                 coarse => coarse,
@@ -555,8 +495,8 @@ impl Built {
                         let angle = law(t) + (s - t) / k * f64::from(h > 0.0);
                         if recorded {
                             test += 1;
-                            let read = angle * ARCMIN_PER_RAD + 0.03 * plan.noise * dice.normal();
-                            out.push_str(&format!("{test},{name},{t},{branch},{read:.4},0.03\n"));
+                            let read = angle * ARCMIN_PER_RAD + sigma * plan.noise * dice.normal();
+                            out.push_str(&format!("{test},{name},{t},{branch},{read:.4},{sigma}\n"));
                         }
                     }
                 }
@@ -591,10 +531,6 @@ impl Built {
 
 fn torque(answer: &witness::Answer, joint: &str) -> f64 {
     answer.joint_torque_nm.iter().find(|(name, _)| *name == joint).map_or(0.0, |(_, t)| *t)
-}
-
-fn pose(dice: &mut Dice) -> Vec<f64> {
-    [180.0, 80.0, 120.0, 180.0, 110.0, 180.0].iter().map(|r| dice.rounded(-r, *r, 1)).collect()
 }
 
 fn list(numbers: &[f64]) -> String {

@@ -1,6 +1,6 @@
 //! Absolute positions of the tip of an arm that stands askew and whose lengths are off.
 
-use super::{Built, Dice, LoadCase, Payload, Plan, list, pose, three, witness};
+use super::{Built, Dice, LoadCase, Payload, Plan, list, three, witness};
 use nalgebra::{Rotation3, Vector3};
 use serde_json::{Value, json};
 
@@ -22,11 +22,12 @@ impl Built {
     pub fn positions(&self, dice: &mut Dice, plan: &Plan) -> String {
         let sigma_mm = 0.02;
         let askew = Rotation3::from_euler_angles(0.02, -0.01, 0.7);
-        let mut out = String::from(
-            "test,q_j1_deg,q_j2_deg,q_j3_deg,q_j4_deg,q_j5_deg,q_j6_deg,payload_kg,payload_cg_x_m,payload_cg_y_m,payload_cg_z_m,x_mm,y_mm,z_mm,sigma_mm\n",
+        let mut out = format!(
+            "test,{},payload_kg,payload_cg_x_m,payload_cg_y_m,payload_cg_z_m,x_mm,y_mm,z_mm,sigma_mm\n",
+            self.angles(),
         );
         for test in 1..=plan.positions {
-            let pose = pose(dice);
+            let pose = self.pose(dice);
             let kg = [0.0, 5.0][test % 2];
             let case = LoadCase::unloaded(&pose).with_payload(Payload::point(kg, [0.05, 0.0, 0.0]));
             let sag = witness::analyze(&self.arm, &case, &self.options(0)).tip_displacement_m;
