@@ -1,7 +1,7 @@
 //! The workflow: is there a gap, what is missing, how sure is that, does it hold on kept-out poses.
 
 use super::campaign::Campaign;
-use super::fit::{Effort, Fit, Weights, fit};
+use super::fit::{Effort, Fit, Weights};
 use super::forward::{Datum, Forward};
 use super::interval::{Interval, deviations, intervals};
 use super::kept_out::{self, KeptOut, rms};
@@ -9,6 +9,7 @@ use super::lack_of_fit::{LackOfFit, lack_of_fit};
 use super::model::{Calibration, Candidate, Model, Nuisance, candidates};
 use super::noise::Noise;
 use super::select::{Scored, Search, Selection};
+use super::settle::Settled;
 use super::unnamed::{self, Better};
 use super::verdict::{Calibrated, Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict};
 use super::{correct, few_rows, locate, next_test};
@@ -27,11 +28,11 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     candidates.retain(|c| campaign.statement.considers(c.kind.name));
     let few = rows(campaign) < few_rows::FEWEST_ROWS;
     if few {
-        candidates = candidates.iter().map(|c| c.widened(&forward.nominal.structure)).collect();
+        candidates = candidates.into_iter().map(Candidate::from_corners).collect();
     }
     let found = match few {
         true => Settled::of_few(campaign, &forward, &nuisance, &candidates),
-        false => settle(campaign, &mut forward, &nuisance, &candidates),
+        false => Settled::of_many(campaign, &mut forward, &nuisance, &candidates),
     };
     let weights = found.noise.weights(&forward);
     let chosen = &found.selection.best;
@@ -77,99 +78,6 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         left_out,
     };
     analysis.conclude()
-}
-
-/// The effects and the quality of the readings, which depend on each other.
-struct Settled {
-    selection: Selection,
-    noise: Noise,
-    /// Modes missing from lists or numbered out of order, in words.
-    remarks: Vec<String>,
-}
-
-impl Settled {
-    /// A handful of readings: taken as declared, every small set of effects weighed.
-    fn of_few(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, candidates: &[Candidate]) -> Self {
-        let noise = Noise::default();
-        let weights = noise.weights(forward);
-        let search = Search { campaign, forward, nuisance, candidates, weights: &weights };
-        Self { selection: few_rows::weigh(&search), noise, remarks: Vec::new() }
-    }
-}
-
-/// Takes out the gross errors that show at once, searches with the deviations as declared, takes out
-/// further gross errors and counts missed modes, searches again, and lets the best model say whether the
-/// declaration was right; if it was not, weighs the models again with what it says.
-fn settle(
-    campaign: &Campaign,
-    forward: &mut Forward,
-    nuisance: &Nuisance,
-    candidates: &[Candidate],
-) -> Settled {
-    let run = |forward: &Forward, noise: &Noise, before: Before| {
-        let weights = noise.weights(forward);
-        let search = Search { campaign, forward, nuisance, candidates, weights: &weights };
-        let selection = match before {
-            Before::Nothing => search.run(None),
-            Before::Best(scored) => search.run(Some(scored)),
-            Before::Weights(selection) => search.weigh_again(selection),
-        };
-        let best = search.fit(&selection.best.effects, &selection.best.u, Effort::default());
-        let judged = Noise::from_fit(forward, &best, &weights);
-        let hopeful = search.may_explain(&selection.best) && !selection.given_up;
-        (selection, judged, best.point.coefficients, hopeful)
-    };
-    let mut remarks = forward.put_modes_in_order();
-    let mut noise = first_look(forward, nuisance);
-    let (mut selection, mut judged, mut coefficients, mut hopeful) = run(forward, &noise, Before::Nothing);
-    let missed = forward.find_missed_modes(&coefficients);
-    if !missed.is_empty() {
-        (selection, judged, coefficients, hopeful) = run(forward, &noise, Before::Nothing);
-    }
-    if hopeful && !selection.best.effects.is_empty() {
-        // far from the nominal arm its trial shapes are not exact, and a further effect would make that good
-        forward.refresh(&coefficients);
-        (selection, judged, _, hopeful) = run(forward, &noise, Before::Weights(&selection));
-    }
-    remarks.extend(missed);
-    for again in 0..2 {
-        if judged.same_rows(&noise) || (again > 0 && !hopeful) {
-            break;
-        }
-        noise = Noise { scale: [1.0; 3], outliers: judged.outliers.clone() };
-        if selection.given_up {
-            break; // what a law without a name has settled no slips decide
-        }
-        (selection, judged, _, hopeful) = run(forward, &noise, Before::Best(&selection.best));
-    }
-    for _ in 0..2 {
-        // no scale of the noise makes a hopeless model right
-        if judged.agrees(&noise) || !hopeful {
-            break;
-        }
-        let same_rows = judged.same_rows(&noise);
-        noise = judged;
-        let before = if same_rows { Before::Weights(&selection) } else { Before::Best(&selection.best) };
-        (selection, judged, _, hopeful) = run(forward, &noise, before);
-    }
-    Settled { selection, noise, remarks }
-}
-
-/// What a search can start from.
-enum Before<'a> {
-    Nothing,
-    /// The best model so far; other rows count now.
-    Best(&'a Scored),
-    /// A selection; only the scale of the deviations is another.
-    Weights(&'a Selection),
-}
-
-/// What calibration alone says of the readings.
-fn first_look(forward: &Forward, nuisance: &Nuisance) -> Noise {
-    let bare = Model::bare(nuisance);
-    let weights = Noise::default().weights(forward);
-    let fitted = fit(forward, &bare, &vec![0.0; bare.len()], &weights, Effort::default());
-    Noise::first_look(forward, &fitted, &weights)
 }
 
 struct Analysis<'a> {

@@ -132,21 +132,25 @@ pub fn jacobian(forward: &Forward, model: &Model, at: &Point) -> DMatrix<f64> {
 
 /// Change of the predictions from a point to other parameters, frequencies to first order.
 pub fn change(forward: &Forward, model: &Model, at: &Point, u: &[f64]) -> Vec<f64> {
-    let moved = model.coefficients(forward, u);
+    change_to(forward, at, &model.coefficients(forward, u))
+}
+
+/// Change of the predictions from a point to other coefficients, frequencies to first order.
+pub fn change_to(forward: &Forward, at: &Point, moved: &Coefficients) -> Vec<f64> {
     let mut truth = at.truth.clone();
-    if !same_smooth(&at.coefficients, &moved) {
-        forward.predict_smooth(&moved, &mut truth);
+    if !same_smooth(&at.coefficients, moved) {
+        forward.predict_smooth(moved, &mut truth);
     }
-    if !at.coefficients.same_modes(&moved) {
+    if !at.coefficients.same_modes(moved) {
         let mut delta = vec![0.0; truth.len()];
         for (test, solved) in forward.modal.iter().zip(&at.solved) {
-            test.change(&forward.layout, solved, &at.coefficients, &moved, &mut delta);
+            test.change(&forward.layout, solved, &at.coefficients, moved, &mut delta);
         }
         for i in forward.starts[1]..forward.starts[2] {
             truth[i] += delta[i];
         }
     }
-    forward.read(&moved, &mut truth);
+    forward.read(moved, &mut truth);
     truth.iter().zip(&at.predicted).map(|(a, b)| a - b).collect()
 }
 

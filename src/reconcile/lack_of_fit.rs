@@ -48,7 +48,7 @@ const SUSPICIOUS: f64 = 1.6;
 /// Probability, all questions together, below which a structure is no chance.
 const CHANCE: f64 = 1e-3;
 /// Probability below which a structure is suspected.
-const SUSPECTED: f64 = 0.1;
+const SUSPECTED: f64 = 0.02;
 /// Structures that are put into words.
 const TOLD: usize = 3;
 

@@ -1,11 +1,11 @@
 //! Laws that no effect of the library has: the twist of a joint as a smooth function of its torque, odd or
 //! even, of its angle or of the order of the tests; a base, a bearing or a link that yields in one direction
-//! only; a reading as a smooth function of the true value, of the direction, of the kind of load or of the
+//! only; a link with another mass or wall than drawn; a reading as a smooth function of the true value, of the direction, of the kind of load or of the
 //! time in a pose. A law is a few columns of changes of the readings, made linear about a fit.
 
 use super::campaign::Campaign;
-use super::fit::Fit;
-use super::forward::{ARCMIN_PER_RAD, Forward};
+use super::fit::{Fit, change_to};
+use super::forward::{ARCMIN_PER_RAD, Coefficients, Forward};
 use super::lack_of_fit::waves;
 use crate::arm::effect::Channel;
 use crate::mechanics::beam::Strain;
@@ -24,7 +24,11 @@ pub struct Law {
 pub fn laws(campaign: &Campaign, forward: &Forward, fit: &Fit) -> Vec<Law> {
     let builder = Builder { campaign, forward, fit, torques_nm: forward.torques_nm(&fit.point.coefficients) };
     let joints = (0..forward.layout.joints.len()).flat_map(|j| builder.joint_laws(j));
-    let mut out: Vec<Law> = joints.chain(builder.yielding_laws()).chain(builder.reading_laws()).collect();
+    let mut out: Vec<Law> = joints
+        .chain(builder.yielding_laws())
+        .chain(builder.link_laws())
+        .chain(builder.reading_laws())
+        .collect();
     out.retain(|law| law.columns.iter().all(|c| c.iter().any(|x| *x != 0.0)));
     out
 }
@@ -185,6 +189,42 @@ impl Builder<'_> {
             }
         }
         out
+    }
+
+    /// Links that are lighter or heavier than drawn, and tubes with another wall: mass and stiffness in proportion.
+    fn link_laws(&self) -> Vec<Law> {
+        let links = self.forward.nominal.structure.links().enumerate();
+        let laws = links.filter(|(_, link)| link.tube_kg_per_m() > 0.0).flat_map(|(l, link)| {
+            let lighter =
+                move |c: &mut Coefficients, part: f64| self.lighten(c, l, part * link.tube_kg_per_m());
+            let thinner = move |c: &mut Coefficients, part: f64| {
+                lighter(c, part);
+                let slot = &self.forward.layout.links[l];
+                let own = slot.first..slot.first + slot.strains.len();
+                c.linear[own].iter_mut().for_each(|compliance| *compliance *= 1.0 + part);
+            };
+            let law = |what: &str, changed: &dyn Fn(&mut Coefficients, f64)| Law {
+                what: format!("a {what} of {} other than drawn", link.name),
+                columns: vec![self.changed_column(changed)],
+            };
+            [law("mass", &lighter), law("wall", &thinner)]
+        });
+        laws.collect()
+    }
+
+    /// Takes mass from a link, along its axis \[kg/m\].
+    fn lighten(&self, coefficients: &mut Coefficients, link: usize, kg_per_m: f64) {
+        let index = self.forward.layout.joints.len() + link;
+        coefficients.masses[index] -= kg_per_m;
+        coefficients.weights[index] -= kg_per_m;
+    }
+
+    /// What a change of the coefficients, given by its size, does to every reading.
+    fn changed_column(&self, changed: &dyn Fn(&mut Coefficients, f64)) -> Vec<f64> {
+        const PART: f64 = 1e-4;
+        let mut moved = self.fit.point.coefficients.clone();
+        changed(&mut moved, PART);
+        change_to(self.forward, &self.fit.point, &moved).into_iter().map(|d| d / PART).collect()
     }
 
     /// What further compliances of coordinates do to every reading.

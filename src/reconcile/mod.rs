@@ -1,14 +1,14 @@
 //! From a gap to a better model: where an arm and its model disagree, which piece of physics is
 //! missing, how sure that is, and what it changes.
 //!
-//! [`campaign`] reads the readings; [`forward`] predicts them fast, [`exact`] by mechanics directly;
-//! [`model`] says what is free and [`expected`] how large it may be; [`fit`] fits; [`select`] finds the effects; [`noise`] finds gross errors
-//! and wrongly declared deviations; [`lack_of_fit`] asks whether structure is left and [`unnamed`] whether
-//! one of the [`laws`] that no effect has does better; [`few_rows`] says
-//! what a handful of readings can; [`kept_out`] confirms on poses kept out; [`interval`] gives the
-//! intervals; [`analysis`] draws the conclusion and [`verdict`] is its form, [`page`] its page
-//! for a browser; [`correct`] writes the arm and [`next_test`] says what to measure; [`positions`] does all of it for absolute
-//! ones and [`together`] for both.
+//! [`campaign`] reads the readings; [`forward`] predicts them fast, [`exact`] by mechanics directly; [`model`] says
+//! what is free and [`expected`] how large it may be; [`fit`] fits; [`select`] finds the effects; [`noise`] finds
+//! gross errors and wrongly declared deviations, and [`settle`] finds both, for they depend on each other;
+//! [`lack_of_fit`] asks whether structure is left and [`unnamed`] whether one of the [`laws`] that no effect has does
+//! better; [`few_rows`] says what a handful of readings can; [`kept_out`] confirms on poses kept out; [`interval`]
+//! gives the intervals; [`analysis`] draws the conclusion and [`verdict`] is its form, [`page`] its page for a
+//! browser; [`correct`] writes the arm and [`next_test`] says what to measure; [`positions`] does all of it for
+//! absolute ones and [`together`] for both.
 
 pub mod analysis;
 pub mod campaign;
@@ -34,6 +34,7 @@ pub mod predict;
 pub mod readings;
 pub mod report;
 pub mod select;
+pub mod settle;
 pub mod stats;
 pub mod table;
 pub mod together;

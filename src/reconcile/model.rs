@@ -6,7 +6,7 @@ use super::forward::{Coefficients, Forward};
 use super::interval::Interval;
 use super::verdict::Estimate;
 use crate::arm::effect::{Channel, Effect, KINDS, Kind, Parameter, Place, Scale, Subject, fits_nominal};
-use crate::arm::{Arm, Curve, Element, LinkBody, Piece, Structure};
+use crate::arm::{Arm, Curve, Element, LinkBody, Piece};
 
 /// One fitted number of an effect: `u` is what the fit moves, near 1 in size.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,50 +33,42 @@ pub struct Knob {
 /// Part of the prior's width below which sizes of an effect are equally likely.
 const SMALL: f64 = 0.01;
 
+/// Compliance of a connection, bearing or base up to which one is looked for, in that of the joint.
+const SOFTEST: f64 = 100.0;
+
 /// A stiffness no reading can tell from rigid \[N m/rad\].
 const RIGID_NM_PER_RAD: f64 = 1e15;
 
 impl Knob {
     fn new(parameter: &Parameter, component: usize, joint_stiffness: f64) -> Self {
-        let (low, high) = parameter.prior;
-        let (reference, low, high) = match parameter.scale {
+        let expected = parameter.prior;
+        let (low, high) = (parameter.low, parameter.high);
+        let absent_is_zero = !matches!(parameter.name, "k1_nm_per_rad" | "k2_nm_per_rad" | "k3_nm_per_rad");
+        let (reference, (low, high), expected, absent) = match parameter.scale {
             Scale::Linear => {
                 let size = parameter.typical.abs().max(1e-12);
-                (size, low / size, high / size)
+                let by_size = |(a, b): (f64, f64)| (a / size, b / size);
+                let absent = match parameter.name {
+                    "added_mass_coefficient" => None,
+                    "gain" => Some(1.0 / size),
+                    _ => Some(0.0),
+                };
+                (size, by_size((low, high)), by_size(expected), absent)
             }
-            Scale::Stiffness => (joint_stiffness, low, high),
-            Scale::Reciprocal => (1.0, low, high),
-            Scale::Log => (1.0, low.ln(), high.ln()),
+            Scale::Stiffness if absent_is_zero => {
+                (joint_stiffness, (expected.0, expected.1.max(SOFTEST)), expected, Some(0.0))
+            }
+            Scale::Stiffness => (joint_stiffness, expected, expected, None),
+            Scale::Reciprocal => (1.0, (1.0 / high, 1.0 / low), expected, Some(1.0)),
+            Scale::Log => (1.0, (low.ln(), high.ln()), (expected.0.ln(), expected.1.ln()), None),
         };
-        let not_below = parameter.not_below;
-        let absent = match (parameter.scale, parameter.name) {
-            (Scale::Log, _) | (_, "added_mass_coefficient") => None,
-            (Scale::Stiffness, "k1_nm_per_rad" | "k2_nm_per_rad" | "k3_nm_per_rad") => None,
-            (Scale::Reciprocal, _) => Some(1.0),
-            (Scale::Linear, "gain") => Some(1.0 / reference),
-            _ => Some(0.0),
-        };
-        Self {
-            name: parameter.name,
-            component,
-            scale: parameter.scale,
-            reference,
-            low,
-            high,
-            not_below,
-            absent,
-            expected: (low, high),
-        }
+        let (scale, not_below) = (parameter.scale, parameter.not_below);
+        Self { name: parameter.name, component, scale, reference, low, high, not_below, absent, expected }
     }
 
-    /// The same number within what a part can be instead of what is expected.
-    fn widened(&self, parameter: &Parameter) -> Self {
-        match parameter.scale {
-            Scale::Linear => {
-                Self { low: self.u(parameter.low), high: self.u(parameter.high), ..self.clone() }
-            }
-            _ => self.clone(),
-        }
+    /// The same number within these limits of `u`, all of which is expected.
+    fn within(self, low: f64, high: f64) -> Self {
+        Self { low, high, expected: (low, high), ..self }
     }
 
     /// How far a number is beyond what is expected, in the width of that.
@@ -126,10 +118,10 @@ impl Knob {
     }
 
     /// Width of the prior about a value: one over its density there. The size of an effect may be of any
-    /// order of magnitude, so small sizes are as likely as large ones, decade by decade; what only says
-    /// how it acts is equally likely anywhere within its limits.
+    /// order of magnitude, so small sizes are as likely as large ones, decade by decade up to what a part can be;
+    /// what only says how it acts is equally likely anywhere within what is expected.
     pub fn width(&self, u: f64) -> f64 {
-        let range = self.high - self.low;
+        let range = self.expected.1 - self.expected.0;
         let Some(absent) = self.absent else { return range };
         let small = SMALL * range;
         let decades = |end: f64| ((end - absent).abs() / small).ln_1p();
@@ -160,18 +152,10 @@ impl Candidate {
         format!("{}@{}", self.kind.name, self.at)
     }
 
-    /// The same effect with its numbers within what a part can be instead of what is expected: where few
-    /// readings are all there is, an expectation must not decide between effects.
-    pub fn widened(&self, structure: &Structure) -> Self {
-        let mut out = self.clone();
-        let Some(place) = structure.place(&self.at, self.kind.places) else { return out };
-        for knob in &mut out.knobs {
-            if let Some(parameter) = (self.kind.parameters)(place).iter().find(|p| p.name == knob.name) {
-                *knob = knob.widened(parameter);
-            }
-        }
-        out.starts.extend(corners(&out.knobs));
-        out
+    /// The same effect with starts in every corner of what a vector can be, for few readings.
+    pub fn from_corners(mut self) -> Self {
+        self.starts.extend(corners(&self.knobs));
+        self
     }
 
     /// Numbers of all parameters in the kind's order, those that keep an order in it.
@@ -515,18 +499,31 @@ fn candidate(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place
             _ => continue,
         };
         // a law that changes where no torque of the campaign reaches cannot be told from another
-        (knob.low, knob.high) = ((parts.0 * torque).ln(), (parts.1 * torque).ln());
+        *knob = knob.clone().within((parts.0 * torque).ln(), (parts.1 * torque).ln());
+    }
+    if let Some(least_kg) = lightest_kg(forward, kind, &at) {
+        // a share is left, for nothing swings without a mass
+        knobs[0].low = knobs[0].low.max(-0.999 * least_kg / knobs[0].value(1.0));
     }
     let starts = starts(kind, torque, &knobs);
     Candidate { kind, at, knobs, fixed, starts, twins: Vec::new() }
 }
 
-/// The parameter, expected over a wider range where the arm or its readings are large.
+/// The mass that an effect takes from, if it can take mass away: a joint's own, the lightest payload's \[kg\].
+fn lightest_kg(forward: &Forward, kind: &Kind, at: &str) -> Option<f64> {
+    match kind.name {
+        "extra_mass" => forward.nominal.structure.joints().find(|j| j.name == at).map(|j| j.mass_kg),
+        "payload_mass_error" => Some(forward.lightest_payload_kg),
+        _ => None,
+    }
+}
+
+/// The parameter over a wider range where the arm or its readings are large.
 fn of_size(kind: &Kind, parameter: &Parameter, sizes: &Sizes) -> Parameter {
     let Some(size) = sizes.expected(kind.name, parameter.name) else { return *parameter };
-    let (low, high) = parameter.prior;
-    let wider = (size / high).max(1.0);
-    Parameter { prior: ((low * wider).max(parameter.low), (high * wider).min(parameter.high)), ..*parameter }
+    let wider = (size / parameter.prior.1).max(1.0);
+    let prior = (parameter.prior.0 * wider, parameter.prior.1 * wider);
+    Parameter { prior, low: parameter.low * wider, high: parameter.high * wider, ..*parameter }
 }
 
 /// Stiffness that compliances are measured by: the joint's own, else the first joint's.

@@ -36,7 +36,7 @@ const PROMISING: f64 = 12.0;
 /// Most effects.
 pub const MOST_EFFECTS: usize = 3;
 /// Objective per datum above which a model cannot become the explanation, whatever the declared deviations.
-const BEYOND_HOPE: f64 = 2.0;
+const BEYOND_HOPE: f64 = 3.0;
 /// Rise of the evidence over the best effects by which a law without a name settles that they are not it.
 const SETTLES: f64 = 12.0;
 /// Candidates fitted in full at each stage.
@@ -277,8 +277,10 @@ impl<'a> Search<'a> {
         }
         let effort = Effort { steps: 12, tolerance: 0.02 };
         let again = |s: &&Scored| {
-            let fitted = fit(self.forward, &self.model(&s.effects), &s.u, self.weights, effort);
-            self.scored(&s.effects, &fitted)
+            // about the middle of where the objective is flat all are judged alike
+            let model = self.model(&s.effects);
+            let end = self.descent(&model, &s.u, effort);
+            self.scored(&s.effects, &self.centre_breaks(model, end))
         };
         let mut seen: Vec<Scored> = promising.par_iter().map(again).collect();
         let bare = seen.remove(0);

@@ -66,6 +66,8 @@ pub struct Forward {
     pub payload_density_kg_m3: f64,
     /// The largest payload that was stated \[kg\].
     pub largest_payload_kg: f64,
+    /// The lightest that was stated and is not nothing \[kg\].
+    pub lightest_payload_kg: f64,
 }
 
 impl Forward {
@@ -85,7 +87,8 @@ impl Forward {
         let bench = prepare_bench(campaign, &layout, &mut data);
         let starts = [0, modal_start, windup_start, data.len()];
         let payloads_kg = campaign.statics.iter().map(|r| r.payload.mass_kg);
-        let payloads_kg = payloads_kg.chain(campaign.modal.iter().map(|r| r.payload.mass_kg));
+        let payloads_kg: Vec<f64> =
+            payloads_kg.chain(campaign.modal.iter().map(|r| r.payload.mass_kg)).collect();
         Self {
             layout,
             nominal,
@@ -96,7 +99,12 @@ impl Forward {
             starts,
             groups: groups.into_iter().map(|(_, name)| name).collect(),
             payload_density_kg_m3: campaign.statement.payload_density_kg_m3,
-            largest_payload_kg: payloads_kg.fold(0.0, f64::max),
+            largest_payload_kg: payloads_kg.iter().copied().fold(0.0, f64::max),
+            lightest_payload_kg: payloads_kg
+                .iter()
+                .copied()
+                .filter(|kg| *kg > 0.0)
+                .fold(f64::INFINITY, f64::min),
         }
     }
 
