@@ -104,6 +104,9 @@ impl Analysis<'_> {
     fn conclude(self) -> Outcome {
         let kept_out = self.kept_out();
         let (verdict, mut reasons) = self.verdict(&kept_out);
+        if matches!(verdict, Verdict::Explained | Verdict::Unexplained) {
+            reasons.extend(self.at_a_limit());
+        }
         reasons.extend(self.remarks.iter().cloned());
         let findings = match verdict {
             Verdict::Explained | Verdict::InsufficientData => self.findings(),
@@ -191,6 +194,12 @@ impl Analysis<'_> {
             self.best.point.objective,
             self.forward.data.len()
         )]
+    }
+
+    /// That a size stands at the limit of what is looked for; no effect is named, for it may not be the right one.
+    fn at_a_limit(&self) -> Option<String> {
+        let text = "a size of the best effects is the largest that is looked for: is arm.json the arm that was measured?";
+        self.best.model.is_at_a_limit(&self.best.point.u).then(|| text.to_string())
     }
 
     /// What structure is left, naming no effect.

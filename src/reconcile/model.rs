@@ -117,6 +117,15 @@ impl Knob {
         self.scale == Scale::Stiffness && u <= 1e-6
     }
 
+    /// Whether the effect is as large as is looked for.
+    fn is_at_its_limit(&self, u: f64) -> bool {
+        let near = 1e-6 * (self.high - self.low);
+        let ends = [self.low, self.high]
+            .into_iter()
+            .filter(|end| self.absent.is_some_and(|a| (end - a).abs() > near));
+        ends.into_iter().any(|end| (u - end).abs() <= near)
+    }
+
     /// Width of the prior about a value: one over its density there. The size of an effect may be of any
     /// order of magnitude, so small sizes are as likely as large ones, decade by decade up to what a part can be;
     /// what only says how it acts is equally likely anywhere within what is expected.
@@ -394,6 +403,11 @@ impl<'a> Model<'a> {
     /// Where an effect's knobs begin in the parameter vector.
     pub fn first_knob(&self, effect: usize) -> usize {
         self.calibrated() + self.effects[..effect].iter().map(|e| e.knobs.len()).sum::<usize>()
+    }
+
+    /// Whether a size of an effect is as large as is looked for.
+    pub fn is_at_a_limit(&self, u: &[f64]) -> bool {
+        self.knobs().zip(&u[self.calibrated()..]).any(|(knob, u)| knob.is_at_its_limit(*u))
     }
 
     /// Smallest and largest value of a parameter.

@@ -1,0 +1,173 @@
+//! Effects of unusual size, links that are not as drawn, and wrong readings beside an effect.
+
+use armwright::catalog::Catalogs;
+use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};
+use reconcile_generator::{Dice, Plan, Specimen};
+use serde_json::{Value, json};
+
+#[allow(dead_code)]
+mod reconcile_generator;
+mod witness;
+
+/// A campaign of a six-axis arm with what is hidden in it; the drawing says what `redrawn` makes of the arm.
+fn campaign(seed: u64, hidden: &[Value], redrawn: impl Fn(&mut Value)) -> tempfile::TempDir {
+    let out = tempfile::tempdir().expect("temporary folder");
+    let mut dice = Dice(seed);
+    let specimen = Specimen::six_axis(&mut dice);
+    let key = out.path().join("key.json");
+    let plan = Plan { static_poses: 20, modal_poses: 8, ..Plan::plain() };
+    reconcile_generator::write(&mut dice, &out.path().join("c"), &key, &specimen, hidden, &plan);
+    let mut arm = specimen.arm.clone();
+    redrawn(&mut arm);
+    std::fs::write(out.path().join("c/arm.json"), arm.to_string()).expect("written");
+    out
+}
+
+fn outcome(folder: &tempfile::TempDir) -> Outcome {
+    reconcile(&Campaign::read(&folder.path().join("c"), &Catalogs::default()).expect("sound"))
+}
+
+fn effect(name: &str, at: &str, parameters: Value) -> Value {
+    json!({"effect": name, "at": at, "parameters": parameters})
+}
+
+/// Edits the rows of a file, cell by cell; a row that is nothing afterwards is left out.
+fn edit(folder: &tempfile::TempDir, file: &str, change: impl Fn(&mut Vec<String>) -> bool) {
+    let path = folder.path().join("c").join(file);
+    let text = std::fs::read_to_string(&path).expect("text");
+    let rows = text.lines().enumerate().filter_map(|(line, row)| {
+        let mut cells: Vec<String> = row.split(',').map(String::from).collect();
+        (line == 0 || change(&mut cells)).then(|| cells.join(","))
+    });
+    std::fs::write(&path, rows.collect::<Vec<_>>().join("\n")).expect("written");
+}
+
+#[test]
+fn an_effect_is_named_however_large_a_part_makes_it() {
+    for (hidden, size) in [
+        (effect("extra_mass", "j3", json!({"delta_kg": 40.0})), 40.0),
+        (effect("extra_mass", "j3", json!({"delta_kg": -8.0})), -8.0),
+        (effect("harness_mass", "forearm", json!({"kg_per_m": 55.0})), 55.0),
+        (effect("connection_compliance", "j5", json!({"stiffness_nm_per_rad": 5e3})), 5e3),
+        (effect("sensor_gain", "static", json!({"gain": 1.9})), 1.9),
+    ] {
+        let outcome = outcome(&campaign(5, std::slice::from_ref(&hidden), |_| ()));
+        assert_eq!(outcome.verdict, Verdict::Explained, "{hidden}: {}", outcome.to_text());
+        let label = format!("{}@{}", hidden["effect"].as_str().unwrap(), hidden["at"].as_str().unwrap());
+        assert_eq!(outcome.effects[0].label(), label, "{}", outcome.to_text());
+        let estimate = &outcome.effects[0].parameters[0].1[0];
+        assert!((estimate.value / size - 1.0).abs() < 0.06, "{hidden}: {}", outcome.to_text());
+    }
+}
+
+#[test]
+fn a_size_at_the_limit_of_what_is_looked_for_is_said() {
+    let folder = campaign(5, &[effect("extra_mass", "j3", json!({"delta_kg": 100.0}))], |_| ());
+    let outcome = outcome(&folder);
+    assert_ne!(outcome.verdict, Verdict::NoGap);
+    assert!(
+        outcome.reasons.iter().any(|r| r.contains("is the largest that is looked for")),
+        "{}",
+        outcome.to_text()
+    );
+}
+
+#[test]
+fn a_link_with_less_mass_or_a_thinner_wall_than_drawn_is_no_effect_of_the_library() {
+    for (what, wall) in [("wall", 1.25), ("mass", 1.0)] {
+        let redrawn = |arm: &mut Value| {
+            if what == "wall" {
+                for link in [3] {
+                    let drawn = arm["chain"][link]["section"]["wall_m"].as_f64().expect("wall") * wall;
+                    arm["chain"][link]["section"]["wall_m"] = json!(drawn);
+                }
+            } else {
+                let name = arm["chain"][3]["material"].as_str().expect("name").to_string();
+                let mut heavier = arm["materials"][&name].clone();
+                heavier["density_kg_m3"] = json!(1.5 * heavier["density_kg_m3"].as_f64().expect("density"));
+                arm["materials"]["heavier"] = heavier;
+                arm["chain"][3]["material"] = json!("heavier");
+            }
+        };
+        let outcome = outcome(&campaign(6, &[], redrawn));
+        println!("{}", outcome.to_text());
+        assert_eq!(outcome.verdict, Verdict::Unexplained, "{what}: {}", outcome.to_text());
+        let said =
+            outcome.reasons.iter().any(|r| r.contains(&format!("{what} of upper_arm other than drawn")));
+        assert!(said, "{what}: {}", outcome.to_text());
+    }
+}
+
+/// Leaves the second mode out of a list, and numbers those above it down.
+fn without_second_mode(cells: &mut [String], lists: &[&str]) -> bool {
+    if lists.contains(&cells[0].as_str()) {
+        match cells[11].as_str() {
+            "2" => return false,
+            "3" => cells[11] = "2".into(),
+            "4" => cells[11] = "3".into(),
+            _ => (),
+        }
+    }
+    true
+}
+
+#[test]
+fn modes_missing_from_two_lists_are_found_on_a_right_arm_and_beside_an_effect() {
+    let beside = effect("connection_compliance", "j3", json!({"stiffness_nm_per_rad": 4e5}));
+    for hidden in [vec![], vec![beside]] {
+        let folder = campaign(7, &hidden, |_| ());
+        edit(&folder, "modal.csv", |cells| without_second_mode(cells, &["3", "10"]));
+        let outcome = outcome(&folder);
+        println!("{}", outcome.to_text());
+        let labels: Vec<String> = outcome.effects.iter().map(|e| e.label()).collect();
+        match hidden.is_empty() {
+            true => assert_eq!(outcome.verdict, Verdict::NoGap, "{}", outcome.to_text()),
+            false => assert_eq!(labels, ["connection_compliance@j3"], "{}", outcome.to_text()),
+        }
+        for list in ["list 3", "list 10"] {
+            assert!(outcome.reasons.iter().any(|r| r.contains(list)), "{}", outcome.to_text());
+        }
+    }
+}
+
+/// Puts a slip of so many standard deviations on one frequency.
+fn slip(cells: &mut [String], list: &str, mode: &str, sigmas: f64) -> bool {
+    if cells[0] == list && cells[11] == mode {
+        let number = |cell: &str| cell.parse::<f64>().expect("number");
+        cells[12] = format!("{:.4}", number(&cells[12]) + sigmas * number(&cells[13]));
+    }
+    true
+}
+
+#[test]
+fn a_slip_among_the_frequencies_is_no_further_effect_and_no_unknown_physics() {
+    let gain = effect("sensor_gain", "modal", json!({"gain": 1.02}));
+    for hidden in [vec![], vec![gain]] {
+        for (mode, sigmas) in [("1", -9.0), ("4", 30.0), ("2", 15.0)] {
+            let folder = campaign(8, &hidden, |_| ());
+            edit(&folder, "modal.csv", |cells| cells[0].parse::<usize>().expect("list") < 5);
+            edit(&folder, "modal.csv", |cells| slip(cells, "2", mode, sigmas));
+            let outcome = outcome(&folder);
+            println!("{}", outcome.to_text());
+            let labels: Vec<String> = outcome.effects.iter().map(|e| e.label()).collect();
+            match hidden.is_empty() {
+                true => assert_eq!(outcome.verdict, Verdict::NoGap, "{}", outcome.to_text()),
+                false => assert_eq!(labels, ["sensor_gain@modal"], "{}", outcome.to_text()),
+            }
+            assert!(outcome.to_text().contains("gross error: modal row"), "{}", outcome.to_text());
+        }
+    }
+}
+
+#[test]
+fn deviations_declared_a_quarter_too_small_are_no_gap() {
+    let folder = campaign(9, &[], |_| ());
+    for (file, column) in [("static.csv", 18), ("modal.csv", 13), ("windup.csv", 5)] {
+        edit(&folder, file, |cells| {
+            cells[column] = format!("{:.6}", cells[column].parse::<f64>().expect("number") / 1.3);
+            true
+        });
+    }
+    let outcome = outcome(&folder);
+    assert_eq!(outcome.verdict, Verdict::NoGap, "{}", outcome.to_text());
+}
