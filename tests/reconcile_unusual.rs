@@ -171,3 +171,23 @@ fn deviations_declared_a_quarter_too_small_are_no_gap() {
     let outcome = outcome(&folder);
     assert_eq!(outcome.verdict, Verdict::NoGap, "{}", outcome.to_text());
 }
+
+#[test]
+fn weak_evidence_is_called_weak_and_strong_is_not() {
+    let mut said = [false; 2];
+    for gain in [1.02, 1.01, 1.008, 1.007, 1.006, 1.005, 1.004] {
+        let outcome =
+            outcome(&campaign(10, &[effect("sensor_gain", "static", json!({"gain": gain}))], |_| ()));
+        if outcome.verdict != Verdict::Explained {
+            continue;
+        }
+        let after =
+            |text: &str| text.split("the evidence rises by ").nth(1)?.split(' ').next()?.parse::<f64>().ok();
+        let rise = outcome.reasons.iter().find_map(|r| after(r)).expect("the rise is said");
+        let weak = outcome.reasons.iter().any(|r| r.contains("that is weak"));
+        println!("{gain} {rise} {weak}");
+        assert_eq!(weak, rise < 3.0, "{}", outcome.to_text());
+        said[usize::from(weak)] = true;
+    }
+    assert_eq!(said, [true, true]);
+}

@@ -17,6 +17,8 @@ use crate::arm::effect::Channel;
 
 /// Most alternatives an effect may have and still be named.
 const MOST_ALTERNATIVES: usize = 3;
+/// Rise of the evidence below which it is not yet strong (Kass and Raftery 1995, their table of Bayes factors).
+const WEAK: f64 = 3.0;
 /// Fewest poses that can speak.
 const FEWEST_POSES: usize = 3;
 
@@ -187,13 +189,20 @@ impl Analysis<'_> {
 
     fn gap_sentences(&self) -> Vec<String> {
         let gain = self.selection.best.score - self.selection.bare.score;
-        vec![format!(
+        let mut out = vec![format!(
             "with {} the evidence rises by {gain:.1} (chi-squared {:.0} to {:.0} on {} readings)",
             self.best.model.label(),
             self.bare.point.objective,
             self.best.point.objective,
             self.forward.data.len()
-        )]
+        )];
+        if gain < WEAK {
+            let odds = gain.exp();
+            out.push(format!(
+                "that is weak, odds of {odds:.0} to 1: take the next test before you rely on it"
+            ));
+        }
+        out
     }
 
     /// That a size stands at the limit of what is looked for; no effect is named, for it may not be the right one.
