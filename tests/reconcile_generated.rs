@@ -99,9 +99,23 @@ fn a_further_effect_is_found_beside_a_curve() {
     assert_eq!(right_of(&score), (1, 1), "{}", score.table());
 }
 
+/// Arms of four to seven joints of any size, on floor, wall or ceiling, with instruments of their own.
+#[test]
+fn what_an_arm_of_any_kind_hides_is_named() {
+    let score = score("varied", "one", 57, (1..80).step_by(13));
+    assert_eq!(right_of(&score), (7, 7), "{}", score.table());
+}
+
+/// Every gear has a torsion curve, so that the frequencies step wherever a torque crosses a break point.
+#[test]
+fn what_an_arm_of_curved_gears_hides_is_named() {
+    let score = score("geared", "one", 11, (0..16).step_by(5));
+    assert_eq!(right_of(&score), (4, 4), "{}", score.table());
+}
+
 #[test]
 fn an_honest_arm_has_no_gap() {
-    for set in ["plain", "hard"] {
+    for set in ["plain", "hard", "varied", "geared"] {
         let score = score(set, "none", 72, 0..4);
         assert!(score.each.iter().all(|(_, _, right)| *right), "{}", score.table());
     }
