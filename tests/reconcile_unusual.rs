@@ -74,21 +74,19 @@ fn a_size_at_the_limit_of_what_is_looked_for_is_said() {
 
 #[test]
 fn a_link_with_less_mass_or_a_thinner_wall_than_drawn_is_no_effect_of_the_library() {
-    for (what, wall) in [("wall", 1.25), ("mass", 1.0)] {
-        let redrawn = |arm: &mut Value| {
-            if what == "wall" {
-                for link in [3] {
-                    let drawn = arm["chain"][link]["section"]["wall_m"].as_f64().expect("wall") * wall;
-                    arm["chain"][link]["section"]["wall_m"] = json!(drawn);
-                }
-            } else {
-                let name = arm["chain"][3]["material"].as_str().expect("name").to_string();
-                let mut heavier = arm["materials"][&name].clone();
-                heavier["density_kg_m3"] = json!(1.5 * heavier["density_kg_m3"].as_f64().expect("density"));
-                arm["materials"]["heavier"] = heavier;
-                arm["chain"][3]["material"] = json!("heavier");
-            }
-        };
+    const UPPER_ARM: usize = 3;
+    let thicker = |arm: &mut Value| {
+        let wall = &mut arm["chain"][UPPER_ARM]["section"]["wall_m"];
+        *wall = json!(1.25 * wall.as_f64().expect("wall"));
+    };
+    let heavier = |arm: &mut Value| {
+        let name = arm["chain"][UPPER_ARM]["material"].as_str().expect("name").to_string();
+        let mut material = arm["materials"][&name].clone();
+        material["density_kg_m3"] = json!(1.5 * material["density_kg_m3"].as_f64().expect("density"));
+        arm["materials"]["heavier"] = material;
+        arm["chain"][UPPER_ARM]["material"] = json!("heavier");
+    };
+    for (what, redrawn) in [("wall", &thicker as &dyn Fn(&mut Value)), ("mass", &heavier)] {
         let outcome = outcome(&campaign(6, &[], redrawn));
         println!("{}", outcome.to_text());
         assert_eq!(outcome.verdict, Verdict::Unexplained, "{what}: {}", outcome.to_text());
