@@ -1,7 +1,7 @@
-//! Laws that no effect of the library has: the twist of a joint as a smooth function of its torque, odd or
-//! even, of its angle or of the order of the tests; a base, a bearing or a link that yields in one direction
-//! only; a link with another mass or wall than drawn; a reading as a smooth function of the true value, of the direction, of the kind of load or of the
-//! time in a pose. A law is a few columns of changes of the readings, made linear about a fit.
+//! Laws that no effect of the library has: the twist of a joint as a smooth function of its torque, odd or even, of
+//! its angle or of the order of the tests; a base, a bearing or a link that yields in one direction only; a link with
+//! another mass or wall than drawn; a reading as a smooth function of the true value, of the direction, of the kind of
+//! load or of the time in a pose. A law is a few columns of changes of the readings, made linear about a fit.
 
 use super::campaign::Campaign;
 use super::fit::{Fit, change_to};

@@ -4,6 +4,18 @@ use super::Dice;
 use super::specimen::{Specimen, stiffness_nm_per_rad};
 use serde_json::{Value, json};
 
+/// Effects that are at no joint and no link.
+const ELSEWHERE: [(&str, &str); 8] = [
+    ("base_compliance", "base"),
+    ("payload_mass_error", "payload"),
+    ("payload_cg_error", "payload"),
+    ("immersion", "arm"),
+    ("sensor_gain", "static"),
+    ("sensor_gain", "modal"),
+    ("sensor_bias", "static"),
+    ("drift", "static"),
+];
+
 /// Every effect at every place of a six-axis arm, to draw from.
 pub fn everything() -> Vec<(&'static str, &'static str)> {
     let mut out = Vec::new();
@@ -19,16 +31,7 @@ pub fn everything() -> Vec<(&'static str, &'static str)> {
     out.extend(["j3", "j5", "j6"].map(|at| ("extra_mass", at)));
     out.extend(["upper_arm", "forearm"].map(|at| ("harness_mass", at)));
     out.extend(["upper_arm", "forearm"].map(|at| ("modulus_error", at)));
-    out.extend([
-        ("base_compliance", "base"),
-        ("payload_mass_error", "payload"),
-        ("payload_cg_error", "payload"),
-        ("immersion", "arm"),
-        ("sensor_gain", "static"),
-        ("sensor_gain", "modal"),
-        ("sensor_bias", "static"),
-        ("drift", "static"),
-    ]);
+    out.extend(ELSEWHERE);
     out
 }
 
@@ -37,16 +40,6 @@ pub fn anywhere(dice: &mut Dice, specimen: &Specimen, number: usize) -> (&'stati
     const AT_JOINTS: [&str; 6] =
         ["connection_compliance", "soft_windup", "lost_motion", "hysteresis", "bearing_tilt", "extra_mass"];
     const AT_LINKS: [&str; 2] = ["harness_mass", "modulus_error"];
-    const ELSEWHERE: [(&str, &str); 8] = [
-        ("base_compliance", "base"),
-        ("payload_mass_error", "payload"),
-        ("payload_cg_error", "payload"),
-        ("immersion", "arm"),
-        ("sensor_gain", "static"),
-        ("sensor_gain", "modal"),
-        ("sensor_bias", "static"),
-        ("drift", "static"),
-    ];
     // those of joints and links twice as often
     let twice = 2 * (AT_JOINTS.len() + AT_LINKS.len());
     let number = number % (twice + ELSEWHERE.len());
