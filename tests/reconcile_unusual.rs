@@ -160,6 +160,23 @@ fn a_slip_among_the_frequencies_is_no_further_effect_and_no_unknown_physics() {
 }
 
 #[test]
+fn a_frequency_off_beyond_its_neighbour_is_a_gross_error_and_no_wrong_order() {
+    let folder = campaign(8, &[], |_| ());
+    edit(&folder, "modal.csv", |cells| slip(cells, "2", "2", 150.0));
+    let path = folder.path().join("c/modal.csv");
+    let text = std::fs::read_to_string(path).expect("text");
+    let hz = |mode: &str| -> f64 {
+        let row = text.lines().find(|l| l.starts_with("2,") && l.split(',').nth(11) == Some(mode));
+        row.expect("the row").split(',').nth(12).expect("cell").parse().expect("number")
+    };
+    assert!(hz("2") > 1.05 * hz("3"), "beyond its neighbour: {} {}", hz("2"), hz("3"));
+    let outcome = outcome(&folder);
+    assert_eq!(outcome.verdict, Verdict::NoGap, "{}", outcome.to_text());
+    assert!(outcome.reasons.iter().all(|r| !r.contains("put in order")), "{}", outcome.to_text());
+    assert!(outcome.to_text().contains("gross error: modal row 6"), "{}", outcome.to_text());
+}
+
+#[test]
 fn deviations_declared_a_quarter_too_small_are_no_gap() {
     let folder = campaign(9, &[], |_| ());
     for (file, column) in [("static.csv", 18), ("modal.csv", 13), ("windup.csv", 5)] {

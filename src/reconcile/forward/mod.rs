@@ -109,12 +109,13 @@ impl Forward {
     }
 
     /// Numbers lists of frequencies anew that do not rise with the number of the mode, though frequencies are
-    /// numbered as they rise; says which.
+    /// numbered as they rise, unless one wrong frequency is the simpler cause; says which.
     pub fn put_modes_in_order(&mut self) -> Vec<String> {
-        let data = &self.data;
+        let nominal = self.coefficients(&self.nominal);
+        let (layout, data) = (&self.layout, &self.data);
         let lists = self.modal.iter_mut().enumerate();
         lists
-            .filter_map(|(i, test)| test.put_in_order(data).then_some(i + 1))
+            .filter_map(|(i, test)| test.put_in_order(layout, &nominal, data).then_some(i + 1))
             .map(|list| {
                 format!(
                     "the modes of list {list} of the frequencies are not numbered as they rise: put in order"

@@ -24,6 +24,9 @@ const SPARE_SHAPES: usize = 12;
 /// Most that one frequency can cost when lists are compared \[squared standard deviations\].
 const MISS: f64 = 400.0;
 
+/// Most that one frequency can cost when its number is in question \[ln\]: what tolerance does to frequencies, and more.
+const OFF: f64 = 0.05;
+
 /// Fall from a mode to a higher one that noise does not make \[standard deviations of the difference\].
 const UNMISTAKABLE: f64 = 5.0;
 
@@ -239,16 +242,34 @@ impl ModalTest {
         })
     }
 
-    /// Numbers the modes anew if the list falls by more than noise; whether it did.
-    pub fn put_in_order(&mut self, data: &[Datum]) -> bool {
+    /// Numbers the modes anew if the list falls by more than noise, unless these coefficients have it that one wrong
+    /// frequency is the simpler cause; whether it did.
+    pub fn put_in_order(&mut self, layout: &Layout, coefficients: &Coefficients, data: &[Datum]) -> bool {
         if !self.falls(data) {
             return false;
         }
+        let spectrum = self.spectrum(layout, coefficients, self.mode_count());
+        let cost = |modes: &[(usize, usize)]| -> f64 {
+            let off = |&(datum, mode): &(usize, usize)| {
+                spectrum.get(mode).map_or(OFF, |hz| (data[datum].value / hz).ln().abs().min(OFF))
+            };
+            modes.iter().map(off).sum()
+        };
         let mut numbers: Vec<usize> = self.modes.iter().map(|(_, mode)| *mode).collect();
         numbers.sort_unstable();
-        self.modes.sort_by(|(a, _), (b, _)| data[*a].value.total_cmp(&data[*b].value));
-        self.modes.iter_mut().zip(numbers).for_each(|((_, mode), number)| *mode = number);
-        true
+        let mut rising = self.modes.clone();
+        rising.sort_by(|(a, _), (b, _)| data[*a].value.total_cmp(&data[*b].value));
+        rising.iter_mut().zip(numbers).for_each(|((_, mode), number)| *mode = number);
+        let is_simpler = cost(&rising) <= cost(&self.modes);
+        if is_simpler {
+            self.modes = rising;
+        }
+        is_simpler
+    }
+
+    /// The lowest frequencies, as many \[Hz\].
+    fn spectrum(&self, layout: &Layout, coefficients: &Coefficients, count: usize) -> Vec<f64> {
+        self.solve(layout, coefficients, count).iter().map(|s| 1.0 / (TAU * s.mu.sqrt())).collect()
     }
 
     /// Whether one mode is missing from the measured list: if counting those above it one higher fits
@@ -259,11 +280,7 @@ impl ModalTest {
         coefficients: &Coefficients,
         data: &[Datum],
     ) -> Option<usize> {
-        let spectrum: Vec<f64> = self
-            .solve(layout, coefficients, self.mode_count() + 1)
-            .iter()
-            .map(|s| 1.0 / (TAU * s.mu.sqrt()))
-            .collect();
+        let spectrum = self.spectrum(layout, coefficients, self.mode_count() + 1);
         let cost = |missed: usize| -> f64 {
             let miss = |&(datum, mode): &(usize, usize)| {
                 let counted = if mode >= missed { mode + 1 } else { mode };
