@@ -4,7 +4,7 @@ use super::figures::{OptionFigures, figures};
 use super::space::{DesignSpace, DriveChoice, LinkChoice, LinkOption, SpaceJoint};
 use crate::arm::{Curve, JointLaw, Link, LinkBody, windup_of};
 use crate::catalog::Catalogs;
-use crate::sizing::{DriveFilter, DriveTable, JointMotion};
+use crate::sizing::{DriveFilter, DriveTable, JointDemand, JointMotion};
 
 /// What the search adds in one step, tip first.
 pub(super) enum Slot<'c> {
@@ -26,6 +26,37 @@ impl SizedJoint<'_> {
     /// Whether its drive is a choice of the search.
     pub fn is_level(&self) -> bool {
         self.all_fits
+    }
+
+    /// Its drives by kinds: those of a kind weigh and twist alike, so that no objective tells them apart, but each holds
+    /// torques of its own. Kinds in the order of their first drives, drives ascending.
+    pub(super) fn kinds(&self) -> Vec<Vec<u32>> {
+        let mut kinds: Vec<Vec<u32>> = Vec::new();
+        // equal masses stand side by side: only the kinds of the last mass may have one more
+        let mut first_of_mass = 0;
+        for index in 0..self.table.len() {
+            let of_kind = |kind: &&mut Vec<u32>| self.laws[kind[0] as usize] == self.laws[index];
+            if index > 0 && self.table.mass_kg(index) != self.table.mass_kg(index - 1) {
+                first_of_mass = kinds.len();
+            }
+            match kinds[first_of_mass..].iter_mut().find(of_kind) {
+                Some(kind) => kind.push(index as u32),
+                None => kinds.push(vec![index as u32]),
+            }
+        }
+        kinds
+    }
+
+    /// The drives of a drive's kind that hold a demand.
+    pub(crate) fn alike<'t>(
+        &'t self,
+        index: usize,
+        demand: &'t JointDemand,
+    ) -> impl Iterator<Item = usize> + 't {
+        let is_alike = move |other: &usize| {
+            self.table.mass_kg(*other) == self.table.mass_kg(index) && self.laws[*other] == self.laws[index]
+        };
+        self.table.all_fits(demand).filter(is_alike)
     }
 }
 

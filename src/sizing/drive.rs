@@ -46,16 +46,19 @@ impl Drive<'_> {
         f64::from(self.gear.ratio)
     }
 
-    /// Mass of gear and motor \[kg\].
+    /// Mass of gear and motor \[kg\], to the microgram: sums of catalog figures that are equal are equal here.
     ///
     /// # Errors
     /// The mass that the catalog leaves blank.
     pub fn mass_kg(&self) -> Result<f64, MissingFigure> {
+        const PER_KG: f64 = 1e9;
         let name = match self.gear_mass {
             GearMass::ComponentSet => "gear mass_component_set_kg",
             GearMass::HousedUnit => "gear mass_housed_unit_kg",
         };
-        Ok(known(self.gear.mass_kg(self.gear_mass), name)? + known(self.motor.mass_kg, "motor mass_kg")?)
+        let sum_kg =
+            known(self.gear.mass_kg(self.gear_mass), name)? + known(self.motor.mass_kg, "motor mass_kg")?;
+        Ok((sum_kg * PER_KG).round() / PER_KG)
     }
 
     /// Eq 9: J_in = rotor + wave generator, motor side \[kg m²\].

@@ -250,14 +250,14 @@ impl<'c> Problem<'c> {
     }
 
     /// Fills in every interval from the tip inward; `None` if a part cannot hold.
-    fn fill(&self, cell: &mut [u32], work: &mut Work) -> Option<()> {
+    pub(super) fn fill(&self, cell: &mut [u32], work: &mut Work) -> Option<()> {
         work.clear(self.parts.len(), self.poses.len());
         let mut level = 0;
         let mut cost_eur = 0.0;
         for (piece, part) in self.parts.iter().enumerate() {
             match part {
                 Part::Given { mass_kg, curve } => work.joint(self, piece, [*mass_kg; 2], *curve),
-                Part::Drives { sized, tree, rays } => {
+                Part::Drives { sized, tree, rays, .. } => {
                     let (static_nm, inertia_kgm2) = self.loads(piece, work);
                     let least = Asked::new(sized.table.motion(), rays, static_nm[0], inertia_kgm2[0]);
                     let node = &mut cell[level];

@@ -18,6 +18,7 @@ mod game;
 mod gap;
 mod grid;
 mod held;
+mod kinds;
 mod left;
 mod narrow;
 mod near;

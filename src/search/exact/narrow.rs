@@ -266,7 +266,7 @@ mod tests {
             let drives = DriveBox {
                 mass_kg: [mass_kg, mass_kg + more_kg],
                 limits: ANY, least_limits: ANY, multiples: Default::default(),
-                curve: Some(curve), breaks: Default::default(),
+                curve: Some(curve), breaks: Default::default(), each: None,
             };
             let joint = |g: usize, n: &[f64]| JointPrice {
                 twist: n[0], torque: n[1], slope: n[2].max(0.0),

@@ -5,6 +5,7 @@
 //! pointless. Once as many designs as are asked for are held, only nearer ones are looked for.
 
 use super::bound::{Ceiling, Verdict, Work};
+use super::kinds::Alike;
 use super::problem::Problem;
 use super::run::{Exact, Opened, lock};
 use crate::search::Objectives;
@@ -29,7 +30,7 @@ impl Exact<'_> {
             nearest: Mutex::new(Vec::new()),
         };
         let is_cut_short = AtomicBool::new(false);
-        if let Some(problem) = self.problem(&|_| true) {
+        if let Some(problem) = self.problem(&|_| true, Alike::Apart) {
             self.every_box(
                 &problem,
                 |here, work, children| self.open_near(&problem, &seeker, here, work, children),

@@ -7,6 +7,7 @@ use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
 use crate::search::figures::StressCheck;
 use crate::search::space::LinkOption;
 use crate::sizing::{DriveLimits, JointDemand, JointMotion};
+use std::sync::Arc;
 
 /// Number of [`Line`]'s inertias and of its stiffnesses.
 pub(super) const INERTIAS: usize = 5;
@@ -189,14 +190,39 @@ pub(super) struct DriveBox {
     pub multiples: [f64; RAYS],
     pub curve: Option<CurveBox>,
     pub breaks: Breaks,
+    /// Of a single kind of several drives, what each of them holds: the kind holds what any of them does.
+    pub each: Option<Arc<[DriveLimits]>>,
 }
 
 impl DriveBox {
+    /// A kind: drives of one mass and curve.
+    pub fn of_kind(drives: impl Iterator<Item = Self>) -> Option<Self> {
+        let drives: Vec<Self> = drives.collect();
+        let kind =
+            drives.iter().cloned().reduce(|kind, drive| Self { curve: kind.curve, ..kind.join(&drive) })?;
+        let covered = |(at, drive): (usize, &Self)| {
+            let covers = |other: &Self| other.limits.cover(&drive.limits);
+            drives[..at].iter().any(covers)
+                || drives[at + 1..].iter().any(|o| covers(o) && !drive.limits.cover(&o.limits))
+        };
+        let each: Vec<DriveLimits> =
+            drives.iter().enumerate().filter(|d| !covered(*d)).map(|(_, d)| d.limits).collect();
+        // one that covers the others stands for all
+        Some(Self { each: (each.len() > 1).then(|| Arc::from(each)), ..kind })
+    }
+
     /// Whether a member may hold what is asked.
     #[inline]
     pub fn may_hold(&self, asked: &Asked) -> bool {
-        self.limits.hold(&asked.demand)
+        self.hold(&asked.demand)
             && self.multiples.iter().zip(&asked.multiples).all(|(held, asked)| held >= asked)
+    }
+
+    /// Whether a demand is within the limits; of a single kind whether a drive of it holds.
+    #[inline]
+    pub fn hold(&self, demand: &JointDemand) -> bool {
+        self.limits.hold(demand)
+            && self.each.as_ref().is_none_or(|each| each.iter().any(|limits| limits.hold(demand)))
     }
 }
 
@@ -210,6 +236,7 @@ impl Bounds for DriveBox {
             // a rigid member makes the stiff side rigid
             curve: self.curve.zip(other.curve).map(|(a, b)| a.join(&b)),
             breaks: self.breaks.join(&other.breaks),
+            each: None,
         }
     }
 

@@ -38,7 +38,7 @@ impl Wanted<'_> {
     /// Whether a box of drives may have a member that is wanted; of a box of one, whether it is.
     fn may_be_in(&self, drives: &DriveBox) -> bool {
         drives.mass_kg[0] < self.lighter_than_kg
-            && drives.limits.hold(self.demand)
+            && drives.hold(self.demand)
             && match (&drives.curve, &self.curve) {
                 (None, _) => true,
                 (Some(_), None) => false,

@@ -3,6 +3,7 @@
 
 use super::check::Inertia;
 use super::held::Held;
+use super::kinds::{Alike, Kinds};
 use super::parts::{DriveBox, LinkBox, Rays};
 use super::play::Play;
 use super::pose::Pose;
@@ -44,8 +45,8 @@ pub(super) struct Problem<'c> {
 pub(super) enum Part<'c> {
     /// A given joint.
     Given { mass_kg: f64, curve: Option<CurveBox> },
-    /// A joint whose drive is a choice.
-    Drives { sized: Arc<SizedJoint<'c>>, tree: Arc<Tree<DriveBox>>, rays: Arc<Rays> },
+    /// A joint whose drive is a choice; an option of the tree is the first drive of a kind.
+    Drives { sized: Arc<SizedJoint<'c>>, kinds: Arc<Kinds>, tree: Arc<Tree<DriveBox>>, rays: Arc<Rays> },
     /// A joint that takes the lightest drive that holds.
     FirstFit { sized: Arc<SizedJoint<'c>>, ladder: Arc<Ladder> },
     /// A link to choose.
@@ -89,11 +90,13 @@ impl Ladder {
 }
 
 impl<'c> Problem<'c> {
-    /// Compiles a space with some of its link options only; `None` if some level has none.
+    /// Compiles a space with some of its link options only, drives that are alike together or apart; `None` if some level
+    /// has none.
     pub fn new(
         space: &'c DesignSpace,
         catalogs: &'c Catalogs,
         takes: &dyn Fn(&LinkOption) -> bool,
+        alike: Alike,
     ) -> Option<Self> {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let mut reaches = reaches_m(space, sizing).into_iter();
@@ -117,7 +120,7 @@ impl<'c> Problem<'c> {
         };
         for (place, layer) in space.layers() {
             let part = match layer {
-                Layer::Piece(piece) => problem.part(piece, reaches_m[place], catalogs, takes)?,
+                Layer::Piece(piece) => problem.part(piece, reaches_m[place], catalogs, takes, alike)?,
                 Layer::Tilt(tilt) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&tilt.law()) },
                 // beyond what a design weighs
                 Layer::Mass(_) => Part::Offset { mass_kg: 0.0 },
@@ -148,16 +151,25 @@ impl<'c> Problem<'c> {
         reach_m: f64,
         catalogs: &'c Catalogs,
         takes: &dyn Fn(&LinkOption) -> bool,
+        alike: Alike,
     ) -> Option<Part<'c>> {
         let space = self.space;
         Some(match piece {
             SpacePiece::Joint(joint) => match joint_slot(space, joint, reach_m, catalogs) {
                 Slot::Given { law, mass_kg } => Part::Given { mass_kg, curve: CurveBox::of(&law) },
                 Slot::Sized(sized) if sized.all_fits => {
-                    let options = self.level(sized.table.len());
+                    self.level(sized.table.len());
                     let rays = self.rays(self.parts.len(), sized.table.motion());
-                    let tree = Tree::build(options.map(|i| (i, drive_box(&sized, i, &rays))))?;
-                    Part::Drives { sized: Arc::new(sized), tree: Arc::new(tree), rays: Arc::new(rays) }
+                    let kinds = Kinds::of(&sized, alike);
+                    let drives =
+                        |kind: &[u32]| DriveBox::of_kind(kind.iter().map(|&i| drive_box(&sized, i, &rays)));
+                    let tree = Tree::build(kinds.iter().filter_map(|kind| Some((kind[0], drives(kind)?))))?;
+                    Part::Drives {
+                        sized: Arc::new(sized),
+                        kinds: Arc::new(kinds),
+                        tree: Arc::new(tree),
+                        rays: Arc::new(rays),
+                    }
                 }
                 Slot::Sized(sized) => {
                     let rays = self.rays(self.parts.len(), sized.table.motion());
@@ -241,10 +253,10 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(cell).map(of).product()
     }
 
-    /// Numbers of each level's options below nodes of its whole tree.
+    /// Numbers of each level's options below nodes of its whole tree, all drives of a kind.
     pub fn options_below(&self, kept: &[Vec<u32>]) -> Vec<Vec<u32>> {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
-            Part::Drives { tree, .. } => tree.options_of(nodes),
+            Part::Drives { tree, kinds, .. } => kinds.drives_of(&tree.options_of(nodes)),
             Part::Links { tree, .. } => tree.options_of(nodes),
             _ => vec![0],
         };
@@ -289,5 +301,6 @@ fn drive_box(sized: &SizedJoint, index: u32, rays: &Rays) -> DriveBox {
         multiples: rays.held(sized.table.limits(index)),
         curve,
         breaks: curve.map_or_else(Breaks::default, |c| Breaks::of(&c.stiff.windup)),
+        each: None,
     }
 }

@@ -2,6 +2,7 @@
 
 use super::bound::Work;
 use super::corners::Corner;
+use super::kinds::Alike;
 use super::left::Left;
 use super::problem::Problem;
 use super::regions::Zone;
@@ -24,7 +25,7 @@ pub struct Reach<'p> {
 impl<'p> Reach<'p> {
     /// Compiles a space; `None` if some level has no option.
     pub fn new(space: &'p DesignSpace, catalogs: &'p Catalogs) -> Option<Self> {
-        Some(Self { problem: Problem::new(space, catalogs, &|_| true)? })
+        Some(Self { problem: Problem::new(space, catalogs, &|_| true, Alike::Together)? })
     }
 
     /// The options of each level, tip first and ascending, that a design may have that is no worse than a known one in all

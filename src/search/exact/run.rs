@@ -5,6 +5,7 @@ use super::bound::{Ceiling, Cell, Verdict, Work};
 use super::corners::Corner;
 use super::evolve::evolve;
 use super::gap::gap;
+use super::kinds::Alike;
 use super::probe::probe;
 use super::problem::Problem;
 use super::shape::Shape;
@@ -43,6 +44,8 @@ const FEW: f64 = 1e6;
 const PROBES: f64 = 0.12;
 /// The same where others evolve from what they find.
 const PROBES_TO_EVOLVE: f64 = 0.04;
+/// Designs that are listed with all their ties at the most, unless it is said otherwise.
+const MOST_WITH_TIES: usize = 20_000;
 /// Designs are filtered whenever their number reaches a power of two above this.
 const BUFFER: usize = 4096;
 
@@ -58,6 +61,8 @@ pub struct Exact<'p> {
     /// Designs above which a space is searched region by region, and down to how many.
     regions_from: f64,
     regions_to: f64,
+    /// Designs that are listed with all their ties at the most.
+    most_with_ties: usize,
 }
 
 /// What the search found.
@@ -77,6 +82,9 @@ pub struct ExactOutcome {
     pub gap: Option<f64>,
     /// Designs that no other one found beats.
     pub front: Vec<Candidate>,
+    /// Whether designs that differ only in drives of equal mass and curve are all in it; if they would be too many, one of
+    /// them is.
+    pub ties_listed: bool,
 }
 
 /// What all searches of a run share.
@@ -108,7 +116,17 @@ impl<'p> Exact<'p> {
         deadline: Option<Instant>,
     ) -> Self {
         let boxes = AtomicU64::new(0);
-        Self { space, catalogs, stop, deadline, boxes, beyond: 0.0, regions_from: VAST, regions_to: FEW }
+        Self {
+            space,
+            catalogs,
+            stop,
+            deadline,
+            boxes,
+            beyond: 0.0,
+            regions_from: VAST,
+            regions_to: FEW,
+            most_with_ties: MOST_WITH_TIES,
+        }
     }
 
     /// Searches a space of more designs than this, instead of 1e14, region by region down to so few. It changes how
@@ -116,6 +134,13 @@ impl<'p> Exact<'p> {
     #[must_use]
     pub fn by_regions_from(self, designs: f64) -> Self {
         Self { regions_from: designs, regions_to: designs.min(FEW), ..self }
+    }
+
+    /// Lists designs that differ in drives of equal mass and curve only up to so many, instead of 20,000; beyond that one
+    /// of them each.
+    #[must_use]
+    pub fn with_ties_up_to(self, designs: usize) -> Self {
+        Self { most_with_ties: designs, ..self }
     }
 
     /// Looks only for designs that beat every known one by more than a slack in all three objectives at once.
@@ -153,17 +178,18 @@ impl<'p> Exact<'p> {
 
     /// Finds the front, starting from designs that are known already.
     pub fn run(&self, known: &[Objectives]) -> ExactOutcome {
-        self.run_of(self.problem(&|_| true), known)
+        self.run_of(self.problem(&|_| true, Alike::Together), known)
     }
 
     /// Finds the front of the designs whose chosen links are all of one material, by its index in the study.
     pub fn run_of_material(&self, material_index: usize) -> ExactOutcome {
-        self.run_of(self.problem(&|option| option.material_index == material_index), &[])
+        let is_of_it = |option: &LinkOption| option.material_index == material_index;
+        self.run_of(self.problem(&is_of_it, Alike::Together), &[])
     }
 
     /// The space with some of its link options; `None` if a level has none.
-    pub(super) fn problem(&self, takes: &dyn Fn(&LinkOption) -> bool) -> Option<Problem<'p>> {
-        Problem::new(self.space, self.catalogs, takes)
+    pub(super) fn problem(&self, takes: &dyn Fn(&LinkOption) -> bool, alike: Alike) -> Option<Problem<'p>> {
+        Problem::new(self.space, self.catalogs, takes, alike)
     }
 
     /// Opens the box of everything and all that comes of it, in parallel; what is left when the search is stopped
@@ -238,6 +264,12 @@ impl<'p> Exact<'p> {
         let all = front.clone();
         front.retain(|c| !all.iter().any(|other| is_better(&other.objectives, &c.objectives)));
         front.append(&mut lock(&shared.unsure));
+        let (mut front, ties_listed) = match &whole {
+            Some(whole) => whole.of_kinds(&front, self.most_with_ties),
+            None => (front, true),
+        };
+        front.sort_unstable_by_key(|c| c.number);
+        front.dedup_by_key(|c| c.number);
         let open = shared.open.into_inner().unwrap_or_else(PoisonError::into_inner);
         ExactOutcome {
             designs_total: whole.as_ref().map_or(0, Problem::designs),
@@ -249,6 +281,7 @@ impl<'p> Exact<'p> {
                 false => least(proven, gap(&open, &front).map(|gap| gap.max(last_slack))),
             },
             front,
+            ties_listed,
         }
     }
 }

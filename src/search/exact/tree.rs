@@ -1,6 +1,6 @@
 //! A binary tree over the options of one level, each node a box that holds its members.
 
-use std::collections::BinaryHeap;
+use std::collections::{BTreeSet, BinaryHeap, HashMap};
 use std::sync::Arc;
 
 /// What a node knows of all its members.
@@ -153,6 +153,17 @@ impl<B: Bounds> Tree<B> {
         }
         options.sort_unstable();
         options
+    }
+
+    /// The leaves of some options.
+    pub fn leaves_of(&self, wanted: &BTreeSet<u32>) -> HashMap<u32, u32> {
+        let nodes = self.nodes.iter().zip(0..);
+        nodes
+            .filter_map(|(node, at)| match node.kind {
+                NodeKind::Option(option) if wanted.contains(&option) => Some((option, at)),
+                _ => None,
+            })
+            .collect()
     }
 
     /// A node of the whole tree.
