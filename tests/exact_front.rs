@@ -340,7 +340,7 @@ fn what_is_further_than_a_slack_from_known_designs_is_found() {
         let is_far = |design: &Objectives| !known.iter().any(|row| is_near(row, design));
         far += front.iter().filter(|design| is_far(design)).count();
         for search in [search(), search().by_regions_from(100.0)] {
-            let found = search.beyond(SLACK).run(&known);
+            let found = search.to_gap(SLACK).run(&known);
             let rows: Vec<Objectives> =
                 found.front.iter().map(|c| c.objectives).chain(known.iter().copied()).collect();
             let missed = front.iter().find(|design| !rows.iter().any(|row| is_near(row, design)));

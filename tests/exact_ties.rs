@@ -6,10 +6,12 @@ mod exact_support;
 use armwright::catalog::Catalogs;
 use armwright::search::exact::Exact;
 use armwright::search::{ArmProblem, Sweep};
+use assert_cmd::Command;
 use dice::Dice;
 use exact_support::{agree, read};
 use serde_json::{Value, json};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// Two joints that may have all ratios of both series. What holds is now the motor, which asks for a high ratio, now
@@ -67,8 +69,170 @@ fn ties_that_are_too_many_to_list_have_one_design_each_that_holds() {
     let (all, few) = (search().run(&[]), search().with_ties_up_to(0).run(&[]));
     assert!(all.ties_listed && !few.ties_listed);
     assert!(few.front.len() < all.front.len(), "{} of {}", few.front.len(), all.front.len());
-    let point = |o: &armwright::search::Objectives| o.minimized().map(f64::to_bits);
-    let points: BTreeSet<[u64; 3]> = all.front.iter().map(|c| point(&c.objectives)).collect();
+    let point =
+        |o: &armwright::search::Objectives| o.minimized().map(|x| (x.abs().ln() * 1e8).round() as i64);
+    let points: BTreeSet<[i64; 3]> = all.front.iter().map(|c| point(&c.objectives)).collect();
     assert_eq!(points, few.front.iter().map(|c| point(&c.objectives)).collect());
     assert!(few.front.iter().all(|c| all.front.iter().any(|other| other.number == c.number)));
+}
+
+#[test]
+fn a_search_to_a_gap_lists_fewer_designs_and_none_is_better_by_more() {
+    let catalogs = Catalogs::builtin();
+    let stop = AtomicBool::new(false);
+    let mut fewer = 0;
+    for seed in 0..10 {
+        let study = read(&study_of_ties(seed), &catalogs);
+        let problem = ArmProblem::new(&study.space, &catalogs);
+        let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
+        for regions_from in [100.0, 1e14] {
+            let search = Exact::new(&study.space, &catalogs, &stop, None).by_regions_from(regions_from);
+            let found = search.to_gap(0.05).run(&[]);
+            assert_eq!((found.boxes_open, found.gap), (0, Some(0.05)));
+            let listed: Vec<[f64; 3]> = found.front.iter().map(|c| c.objectives.minimized()).collect();
+            for there_is in &sweep.front {
+                let [kg, m, minus_hz] = there_is.objectives.minimized();
+                let is_close = |o: &[f64; 3]| {
+                    let by = 1.05 * (1.0 + 1e-9);
+                    o[0] <= by * kg && o[1] <= by * m && by * o[2] <= minus_hz
+                };
+                assert!(listed.iter().any(is_close), "seed {seed}: {there_is:?}");
+            }
+            fewer += usize::from(found.front.len() < sweep.front.len());
+        }
+    }
+    assert!(fewer > 10, "a gap of 5 % saves designs in {fewer} of 20 searches only");
+}
+
+fn armwright(words: &[&str]) -> (i32, String) {
+    let output = Command::cargo_bin("armwright").expect("the program").args(words).output().expect("runs");
+    let text = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+    (output.status.code().unwrap_or(-1), text.split_whitespace().collect::<Vec<_>>().join(" "))
+}
+
+/// A table as maps from column to cell.
+fn rows(path: &Path) -> Vec<HashMap<String, String>> {
+    let mut reader = csv::Reader::from_path(path).expect("a table");
+    reader.deserialize().map(|row| row.expect("a row")).collect()
+}
+
+/// A wrist of three coaxial joints: their drives tie in thousands of ways.
+fn study_of_a_wrist() -> Value {
+    let joint = |name: &str, axis: [u32; 3]| json!({"type": "joint", "name": name, "axis": axis, "drive": "all_fits"});
+    json!({"name": "wrist", "chain": [
+        joint("shoulder", [0, 1, 0]),
+        {"type": "link", "name": "arm", "vector_m": [0.4, 0, 0], "choose": {"materials": ["Aluminium 6061-T6"],
+            "sections": [{"shape": "round_tube", "diameter_mm": [50, 60, 70, 80, 90], "wall_mm": [1, 2, 4]}]}},
+        joint("roll", [1, 0, 0]), joint("pitch", [0, 1, 0]), joint("twist", [1, 0, 0]),
+        {"type": "link", "name": "flange", "vector_m": [0.05, 0, 0]}],
+        "payload": {"mass_kg": 2, "cg_m": [0, 0, 0.05]}, "poses": [{"pose_deg": [0, 0, 0, 0]}],
+        "drives": {"gear_series": ["CSG", "HFUC"], "ratios": [80, 100, 120, 160],
+            "motor_models": ["ILM50x14", "ILM70x18", "MF0060008 48V"]}})
+}
+
+#[test]
+fn ties_too_many_for_the_front_are_listed_beside_it_and_hold() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| dir.path().join(name);
+    std::fs::write(at("wrist.json"), study_of_a_wrist().to_string()).expect("written");
+    let [study, out] = [at("wrist.json"), at("out")].map(|p| p.to_string_lossy().into_owned());
+    let (code, text) = armwright(&["run", &study, "--search", "exact", "--out", &out]);
+    assert_eq!(code, 0, "{text}");
+    let front = rows(&at("out/front.csv"));
+    let count = format!("The {} rows of the front stand for ", front.len());
+    let stands_for = text.split(&count).nth(1).expect("says so").split(' ').next().expect("a number");
+    let stands_for: f64 = stands_for.replace(',', "").parse().expect("a number");
+    assert!(stands_for > 20_000.0, "{stands_for}");
+    // one row a point, its ties in the other file
+    let points: BTreeSet<[&str; 3]> = front
+        .iter()
+        .map(|row| ["mass_kg", "tip_deflection_mm", "lowest_mode_hz"].map(|name| row[name].as_str()))
+        .collect();
+    let ties = rows(&at("out/ties.csv"));
+    let mut all = 0.0;
+    for row in &front {
+        let of_row = ties.iter().filter(|tie| tie["design_id"] == row["design_id"]);
+        all += of_row.map(|tie| 1.0 + tie["instead"].split("; ").count() as f64).product::<f64>();
+    }
+    assert_eq!(all, stands_for);
+    assert!(points.len() * 10 > front.len() * 9, "{} points in {} rows", points.len(), front.len());
+    // the check finds the ties and does not call them missing
+    let (code, text) = armwright(&["front", "check", &out]);
+    assert_eq!(code, 0, "{text}");
+    assert!(
+        text.contains("no design is missing") && text.contains("that the exact search does not use"),
+        "{text}"
+    );
+
+    // a drive that ties.csv names, put in by a study that has no other at this joint, has the same objectives
+    let tie = ties.iter().find(|tie| tie["at"] == "pitch").expect("a joint with ties");
+    let row = front.iter().find(|row| row["design_id"] == tie["design_id"]).expect("its design");
+    let mut swapped = study_of_a_wrist();
+    let words = tie["instead"].split("; ").next().expect("a drive");
+    for joint in ["shoulder", "roll", "pitch", "twist"] {
+        let (gear, motor) = match joint {
+            "pitch" => words.split_once(" + ").expect("gear and motor"),
+            other => (row[&format!("{other}_gear")].as_str(), row[&format!("{other}_motor")].as_str()),
+        };
+        let pieces = swapped["chain"].as_array_mut().expect("a chain");
+        let piece = pieces.iter_mut().find(|piece| piece["name"] == joint).expect("the joint");
+        piece["drives"] = json!({"gears": [gear], "motor_models": [motor]});
+    }
+    std::fs::write(at("swapped.json"), swapped.to_string()).expect("written");
+    let [study, out] = [at("swapped.json"), at("swapped")].map(|p| p.to_string_lossy().into_owned());
+    let (code, text) = armwright(&["run", &study, "--out", &out]);
+    assert_eq!(code, 0, "{text}");
+    let objectives = |row: &HashMap<String, String>| -> [f64; 3] {
+        ["mass_kg", "tip_deflection_mm", "lowest_mode_hz"].map(|name| row[name].parse().expect("a number"))
+    };
+    let is_it = |other: &HashMap<String, String>| {
+        objectives(row).iter().zip(objectives(other)).all(|(a, b)| (a - b).abs() <= 1e-9 * b)
+    };
+    assert!(rows(&at("swapped/front.csv")).iter().any(is_it), "{row:?}");
+}
+
+#[test]
+fn a_gap_in_a_study_or_on_the_command_line_is_proved_and_checked() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| dir.path().join(name).to_string_lossy().into_owned();
+    let mut study = study_of_ties(3);
+    study["gap_percent"] = json!(4);
+    std::fs::write(at("study.json"), study.to_string()).expect("written");
+    let run = |more: &[&str]| -> (String, Value) {
+        let [study, out] = [at("study.json"), at("out")];
+        let words = [&["run", &study, "--search", "exact", "--out", &out], more].concat();
+        let (code, text) = armwright(&words);
+        assert_eq!(code, 0, "{text}");
+        let file = std::fs::read_to_string(at("out/run.json")).expect("run.json");
+        (text, serde_json::from_str(&file).expect("JSON"))
+    };
+    for (more, gap) in [(&[][..], 0.04), (&["--gap", "9%"], 0.09), (&["--gap", "0%"], 0.0)] {
+        let (text, run) = run(more);
+        assert_eq!((run["status"].as_str(), run["gap"].as_f64()), (Some("certified"), Some(gap)));
+        let (said, checked) = match gap > 0.0 {
+            true => {
+                let words = format!("no design beats every listed one by more than {:.1} %", 100.0 * gap);
+                (format!("certified: {words}"), words)
+            }
+            false => ("certified: no design that is not listed".into(), "no design is missing".into()),
+        };
+        assert!(text.contains(&said), "{text}");
+        let (code, text) = armwright(&["front", "check", &at("out")]);
+        assert_eq!(code, 0, "{text}");
+        assert!(text.contains(&checked), "{text}");
+    }
+    for (words, fault) in [
+        (&["--search", "exhaustive", "--gap", "2%"][..], "--gap goes with --search exact"),
+        (&["--search", "exact", "--gap=-2%"], "is not a percentage"),
+        (&["--search", "exact", "--gap", "200%"], "is not a percentage"),
+    ] {
+        let (code, text) = armwright(&[&["run", &at("study.json")], words].concat());
+        assert_eq!(code, 2, "{text}");
+        assert!(text.contains(fault), "{text}");
+    }
+    study["gap_percent"] = json!(140);
+    std::fs::write(at("study.json"), study.to_string()).expect("written");
+    let (code, text) = armwright(&["run", &at("study.json")]);
+    assert_eq!(code, 3, "{text}");
+    assert!(text.contains("gap_percent") && text.contains("140 is no gap"), "{text}");
 }

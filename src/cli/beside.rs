@@ -10,15 +10,16 @@ use crate::report::tolerance::Scattered;
 use crate::search::ArmProblem;
 use crate::search::near::{NearDesigns, Slack};
 use crate::study::{
-    NearFront, Sampling, StudyOutcome, Tolerance, ballast_flags, near_front, part, scatter_front,
+    NearFront, Sampling, StudyOutcome, Tolerance, ballast_flags, near_front, part, scatter_front, ties,
 };
 use clap::Args;
 use serde_json::{Map, Value, json};
 use std::sync::atomic::AtomicBool;
 
 /// Files beside the front that not every run has.
-pub(super) const FILES: [&str; 3] = [BALLAST, TOLERANCE, NEAR];
+pub(super) const FILES: [&str; 4] = [BALLAST, TIES, TOLERANCE, NEAR];
 const BALLAST: &str = "ballast.csv";
+const TIES: &str = "ties.csv";
 const TOLERANCE: &str = "tolerance.csv";
 const NEAR: &str = "near.csv";
 
@@ -71,6 +72,8 @@ pub(super) struct Found<'a> {
     /// The designs near the front that an exact search found.
     pub near: Option<&'a NearDesigns>,
     pub is_exact: bool,
+    /// Whether drives of equal mass and curve are rows of the front.
+    pub ties_listed: bool,
     pub stop: &'a AtomicBool,
 }
 
@@ -85,6 +88,13 @@ impl BesideArgs {
             beside.markdown.push_str(&flags.to_markdown());
             beside.sections.push(flags.section());
             beside.terminal.push_str(&format!("\n{}", wrap(&flags.sentence(), 80, "")));
+        }
+        if !found.ties_listed {
+            let ties = ties(found.problem, &found.outcome.front);
+            beside.files.push((TIES.into(), ties.to_csv()));
+            beside.markdown.push_str(&ties.to_markdown());
+            beside.sections.push(ties.section());
+            beside.terminal.push_str(&format!("\n{}", ties.to_text()));
         }
         let stopped = || Failure::Interrupted("stopped after the search; nothing was written".into());
         let scattered = self.scattered(found, front).map_err(|()| stopped())?;
@@ -119,7 +129,7 @@ impl BesideArgs {
     /// The designs near the front, if they were asked for and found.
     fn near(&self, found: &Found) -> Result<Option<NearFront>, ()> {
         let Some(slack) = self.slack() else { return Ok(None) };
-        let Found { problem, catalogs, outcome, near, is_exact, stop } = *found;
+        let Found { problem, catalogs, outcome, near, is_exact, stop, .. } = *found;
         match is_exact {
             true => Ok(near.map(|near| NearFront::of(problem, catalogs, &outcome.front, near, slack))),
             false => near_front(problem, catalogs, outcome, slack, stop).map(Some).ok_or(()),
@@ -139,8 +149,8 @@ impl BesideArgs {
 }
 
 /// Why there is no list of designs near a front although it was asked for.
-const NO_NEAR: &str = "No near.csv: the search was stopped before the designs near the front were found; a longer \
-                       --time-limit helps.";
+const NO_NEAR: &str = "No near.csv: only beside a whole front are the designs near it found; a longer --time-limit and \
+                       --gap 0% help, and narrower constraints.";
 
 fn near_json(near: &NearFront) -> Value {
     json!({

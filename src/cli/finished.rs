@@ -75,6 +75,16 @@ pub(super) fn is_front_of_material(name: &str) -> bool {
     name.starts_with("front.") && name.ends_with(".csv") && name != "front.csv"
 }
 
+/// What an exact search says of its front.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FoundExactly {
+    /// Boxes bounded and left open.
+    pub boxes: [u64; 2],
+    pub gap: Option<f64>,
+    /// Whether drives of equal mass and curve are rows of their own.
+    pub ties_listed: bool,
+}
+
 /// A finished search and what it was made with.
 pub(super) struct Finished<'a> {
     pub study: &'a Study,
@@ -86,8 +96,8 @@ pub(super) struct Finished<'a> {
     pub outcome: &'a StudyOutcome,
     /// The designs near the front that an exact search found.
     pub near: Option<&'a NearDesigns>,
-    /// Boxes bounded and left open, and the gap, of an exact search.
-    pub exact: Option<([u64; 2], Option<f64>)>,
+    /// What an exact search says of its front.
+    pub exact: Option<FoundExactly>,
     pub elapsed_s: f64,
     pub overlay: Option<&'a Path>,
     pub catalogs: &'a Catalogs,
@@ -102,9 +112,9 @@ impl Finished<'_> {
     pub fn files(&self, asked: &BesideArgs, stop: &AtomicBool) -> Result<Written, Failure> {
         let summary = self.summary();
         let Self { problem, catalogs, outcome, near, .. } = *self;
-        let is_exact = self.exact.is_some();
-        let beside =
-            asked.work(&Found { problem, catalogs, outcome, near, is_exact, stop }, &summary.overall);
+        let (is_exact, ties_listed) = (self.exact.is_some(), self.ties_listed());
+        let found = Found { problem, catalogs, outcome, near, is_exact, ties_listed, stop };
+        let beside = asked.work(&found, &summary.overall);
         // succeeds only on an empty folder: earlier results stay
         let beside = beside.inspect_err(|_| drop(std::fs::remove_dir(self.dir)))?;
         let mut files = vec![("front.csv".to_string(), summary.overall.to_csv())];
@@ -140,7 +150,7 @@ impl Finished<'_> {
                 designs_total: sweep.designs_total,
                 designs_evaluated: sweep.designs_evaluated.into(),
                 designs_excluded: sweep.designs_excluded,
-                gap: self.exact.and_then(|(_, gap)| gap),
+                gap: self.exact.and_then(|exact| exact.gap),
                 elapsed_s: self.elapsed_s,
                 threads: rayon::current_num_threads(),
                 tool_version: env!("CARGO_PKG_VERSION").into(),
@@ -178,8 +188,12 @@ impl Finished<'_> {
     fn page(&self, summary: &SummaryInput, picture: String, sections: Vec<Extra>, run: &Value) -> Page {
         let mut page = study_page(self.study, self.problem, self.catalogs, summary);
         page.extras.extend(sections);
-        page.extras.push(certificate_section(&summary.facts, self.exact.map(|(boxes, _)| boxes)));
+        page.extras.push(certificate_section(&summary.facts, self.exact.map(|exact| exact.boxes)));
         StudyPage { scatter_svg: picture, run: facts_of(run), ..page }.page()
+    }
+
+    fn ties_listed(&self) -> bool {
+        self.exact.is_none_or(|exact| exact.ties_listed)
     }
 
     fn judged_cases(&self) -> Vec<String> {
@@ -227,9 +241,10 @@ impl Finished<'_> {
             "study_hash": blake3::hash(self.text.as_bytes()).to_hex().to_string(),
             "catalogs_hash": catalogs_hash(self.catalogs),
             "search": if self.exact.is_some() { "exact" } else { "exhaustive" },
-            "boxes": self.exact.map(|([boxes, _], _)| boxes),
-            "boxes_open": self.exact.map(|([_, open], _)| open),
-            "gap": self.exact.and_then(|(_, gap)| gap),
+            "boxes": self.exact.map(|exact| exact.boxes[0]),
+            "boxes_open": self.exact.map(|exact| exact.boxes[1]),
+            "gap": self.exact.and_then(|exact| exact.gap),
+            "ties_listed": self.ties_listed(),
         })
     }
 }

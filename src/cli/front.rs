@@ -8,7 +8,7 @@ use crate::fault::Document;
 use crate::report::certificate::gap_words;
 use crate::report::compare::text::wrap;
 use crate::report::front_table::FrontTable;
-use crate::study::{Completeness, check_front, read_study};
+use crate::study::{Claim, Completeness, check_front, read_study};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
@@ -65,12 +65,13 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
         ));
     }
     let gap = match run["status"].as_str() {
-        Some("certified" | "complete") => Some(0.0),
+        Some("certified" | "complete") => Some(run["gap"].as_f64().unwrap_or(0.0)),
         _ => run["gap"].as_f64(),
     };
+    let ties_listed = run["ties_listed"].as_bool().unwrap_or(true);
     let stop = stopped_by_signal();
     let deadline = args.time_limit.map(|s| Instant::now() + Duration::from_secs_f64(s));
-    let check = check_front(&study, catalogs, &table, gap, stop, deadline);
+    let check = check_front(&study, catalogs, &Claim { table: &table, gap, ties_listed }, stop, deadline);
     if stop.load(Ordering::Relaxed) {
         return Err(Failure::Interrupted("stopped before the check was done".into()));
     }

@@ -111,6 +111,7 @@ fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> 
     let [stay, leave, enter] = changes.counts();
     let sizes: Vec<usize> = found.iter().map(|w| w.front.rows.len()).collect();
     let partial = found.iter().any(|w| w.status == Status::Partial);
+    let is_whole = |w: &Written| w.status != Status::Partial && w.gap.is_none_or(|gap| gap == 0.0);
     let json = json!({
         "study": name,
         "status": if partial { Status::Partial } else { Status::Complete }.word(),
@@ -125,20 +126,20 @@ fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> 
         "\nstudy {name}, re-run with the corrected arm\n{}\n{}{}",
         carry::to_text(&corrected.carried).trim_start(),
         changes.to_text(),
-        if partial { stopped_words(found) } else { String::new() }
+        if found.iter().all(is_whole) { String::new() } else { lacking_words(found) }
     );
     Rerun { text, json, csv: Some(changes.to_csv()) }
 }
 
-/// What to make of fronts whose searches were stopped.
-fn stopped_words(found: &[Written]) -> String {
+/// What to make of fronts that are not whole.
+fn lacking_words(found: &[Written]) -> String {
     let lacks = |written: &Written| match (written.status, written.gap) {
-        (Status::Partial, Some(gap)) => gap_words(gap),
-        (Status::Partial, None) => "how much it may lack is not known".into(),
+        (_, Some(gap)) if gap > 0.0 => gap_words(gap),
+        (Status::Partial, _) => "how much it may lack is not known".into(),
         _ => "no design is missing".into(),
     };
     let words = format!(
-        "A search was stopped: a design may also leave or enter because one search found it and the other did not. \
+        "Not all designs are listed: one may also leave or enter because one search found it and the other did not. \
          Nominal: {}. Corrected: {}.",
         lacks(&found[0]),
         lacks(&found[1])

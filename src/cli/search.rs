@@ -1,13 +1,15 @@
 //! A study's search: which one, and until when.
 
 use super::beside::BesideArgs;
-use super::finished::{Finished, Written};
+use super::finished::{Finished, FoundExactly, Written};
 use super::progress::{watch, watch_boxes};
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
 use crate::report::certificate::certificate_words;
 use crate::search::{ArmProblem, Status};
-use crate::study::{Carried, ExactStudy, Study, empty_pieces, run_exact, run_study, why_infeasible};
+use crate::study::{
+    Carried, ExactStudy, Extent, Study, empty_pieces, part, run_exact, run_study, why_infeasible,
+};
 use clap::{Args, ValueEnum};
 use std::path::Path;
 use std::sync::Once;
@@ -23,6 +25,10 @@ pub struct SearchArgs {
     /// Stop the exact search after so long, as Ctrl-C does, and write what it found, with how much it may lack
     #[arg(long, value_name = "SECONDS")]
     time_limit: Option<f64>,
+    /// End the exact search once it is proved that no design beats every listed one by more than this part in tip
+    /// deflection, mass and lowest mode at once, such as 2%; 0% for the whole front. Default: the study's gap_percent
+    #[arg(long, value_name = "PERCENT", value_parser = part_or_none)]
+    gap: Option<f64>,
 }
 
 /// The two ways in which a front is looked for.
@@ -60,6 +66,9 @@ impl SearchArgs {
         if kind == SearchKind::Exhaustive && self.time_limit.is_some() {
             return Err(Failure::Usage("--time-limit goes with --search exact".into()));
         }
+        if kind == SearchKind::Exhaustive && self.gap.is_some() {
+            return Err(Failure::Usage("--gap goes with --search exact".into()));
+        }
         if self.time_limit.is_some_and(|s| s.is_nan() || s <= 0.0) {
             return Err(Failure::Usage("--time-limit is a number of seconds above zero".into()));
         }
@@ -68,7 +77,15 @@ impl SearchArgs {
 
     /// Whether anything is asked for.
     pub fn is_default(&self) -> bool {
-        self.search.is_none() && self.time_limit.is_none()
+        self.search.is_none() && self.time_limit.is_none() && self.gap.is_none()
+    }
+}
+
+/// A percentage, which may be 0.
+fn part_or_none(text: &str) -> Result<f64, String> {
+    match text.trim_end_matches('%').trim_end().parse::<f64>() {
+        Ok(0.0) => Ok(0.0),
+        _ => part(text),
     }
 }
 
@@ -172,9 +189,13 @@ fn search_exactly(Asked { study, text, carried }: &Asked, with: &With) -> Result
     write_all(dir, &[])?;
     let stop = stopped_by_signal();
     let started = Instant::now();
-    let deadline = how.time_limit.map(|s| started + Duration::from_secs_f64(s));
-    let ExactStudy { study: part, outcome, boxes, gap, near } =
-        run_exact(study, catalogs, stop, deadline, beside.slack(), watch_boxes);
+    let extent = Extent {
+        deadline: how.time_limit.map(|s| started + Duration::from_secs_f64(s)),
+        gap: how.gap.unwrap_or(study.gap),
+        near: beside.slack(),
+    };
+    let ExactStudy { study: part, outcome, boxes, gap, near, ties_listed } =
+        run_exact(study, catalogs, stop, extent, watch_boxes);
     // what was found is written; a further signal stops that too
     stop.store(false, Ordering::Relaxed);
     let nothing = |problem: String| {
@@ -202,7 +223,7 @@ fn search_exactly(Asked { study, text, carried }: &Asked, with: &With) -> Result
                 whole: &study.space,
                 outcome: &outcome,
                 near: near.as_ref(),
-                exact: Some((boxes, gap)),
+                exact: Some(FoundExactly { boxes, gap, ties_listed }),
                 elapsed_s: started.elapsed().as_secs_f64(),
                 overlay,
                 catalogs,

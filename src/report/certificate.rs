@@ -20,6 +20,17 @@ pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Ext
             large(facts.designs_evaluated + facts.designs_excluded),
             large(facts.designs_total),
         )],
+        (Some([bounded, _]), false) if facts.gap.is_some_and(|gap| gap > 0.0) => vec![
+            format!(
+                "Proved without visiting all {} designs, by {} boxes and regions of parts that cover them: {}.",
+                large(facts.designs_total),
+                large(bounded.into()),
+                gap_words(facts.gap.unwrap_or_default()),
+            ),
+            "That is what was asked for. A smaller --gap lists more designs and takes longer; limits on mass, deflection \
+             or mode (constraints) leave a part of the front that can be had whole."
+                .into(),
+        ],
         (Some([bounded, _]), false) => vec![
             format!(
                 "The front is proved complete without visiting all {} designs: {} boxes of parts cover them. Each was cut \
@@ -49,7 +60,7 @@ pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Ext
     Extra { title: "How sure is this front?".into(), words, tables: Vec::new(), figures: Vec::new() }
 }
 
-/// How much a stopped exact search may have missed: the words that page, terminal and summary share.
+/// How much an exact search may have missed: the words that page, terminal and summary share.
 pub fn gap_words(gap: f64) -> String {
     format!(
         "no design beats every listed one by more than {} % in tip deflection, mass and lowest mode at once",
@@ -60,7 +71,10 @@ pub fn gap_words(gap: f64) -> String {
 /// What an exact search proves, for the terminal; `boxes` as for the page.
 pub fn certificate_words([boxes, open]: [u64; 2], gap: Option<f64>) -> String {
     match (open, gap) {
-        (0, _) => format!("certified: no design that is not listed is on the front ({boxes} boxes)\n"),
+        (0, None | Some(0.0)) => {
+            format!("certified: no design that is not listed is on the front ({boxes} boxes)\n")
+        }
+        (0, Some(gap)) => wrap(&format!("certified: {} ({boxes} boxes)", gap_words(gap)), TERMINAL, ""),
         (_, Some(gap)) => {
             let words = format!("partial: {} ({boxes} boxes bounded, {open} open)", gap_words(gap));
             wrap(&words, TERMINAL, "")

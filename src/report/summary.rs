@@ -236,6 +236,9 @@ fn answer(input: &SummaryInput, found: &Found) -> String {
         };
     };
     let caution = match (facts.status.as_str(), facts.gap) {
+        ("certified", Some(gap)) if gap > 0.0 => {
+            format!("Better designs may exist, but {}. ", gap_words(gap))
+        }
         ("partial", Some(gap)) => {
             format!("The search was stopped, so better designs may exist, but {}. ", gap_words(gap))
         }
@@ -431,7 +434,7 @@ fn counts(facts: &SummaryFacts) -> String {
 }
 
 /// A count in digits, or as a power of ten where nobody counts digits.
-pub(super) fn large(n: u128) -> String {
+pub fn large(n: u128) -> String {
     if n < 1_000_000_000_000 { grouped(n) } else { format!("{:.2e}", n as f64) }
 }
 

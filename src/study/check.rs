@@ -44,14 +44,24 @@ pub struct Completeness {
     pub by_exact_search: Option<String>,
 }
 
+/// What a finished front says of itself.
+#[derive(Debug, Clone, Copy)]
+pub struct Claim<'t> {
+    /// Its rows.
+    pub table: &'t FrontTable,
+    /// No design beats every row by more than this part in all three objectives at once, 0 if it is whole; `None` if it
+    /// claims no more than its rows.
+    pub gap: Option<f64>,
+    /// Whether designs with equal objectives are all rows of it.
+    pub ties_listed: bool,
+}
+
 /// Checks a front against its study: every row by the full model, rows against each other, and all other designs by a
-/// search that starts from the rows. `gap` is what the front claims: that no design beats every row by more, 0 if it
-/// is whole; `None` if it claims no more than its rows.
+/// search that starts from the rows.
 pub fn check_front(
     study: &Study,
     catalogs: &Catalogs,
-    table: &FrontTable,
-    gap: Option<f64>,
+    Claim { table, gap, ties_listed }: &Claim,
     stop: &AtomicBool,
     deadline: Option<Instant>,
 ) -> FrontCheck {
@@ -75,7 +85,7 @@ pub fn check_front(
     broken_limits(study, &front, &problem, &mut faults);
     let completeness = match gap {
         Some(gap) => {
-            let front = Claimed { front: &front, gap };
+            let front = Claimed { front: &front, gap: *gap, ties_listed: *ties_listed };
             let (found, completeness) = look_for_missing(study, catalogs, &front, stop, deadline);
             list(&mut faults, missing(study, catalogs, &front, &problem, &found), "designs are missing");
             completeness
@@ -89,6 +99,7 @@ pub fn check_front(
 struct Claimed<'f> {
     front: &'f Front,
     gap: f64,
+    ties_listed: bool,
 }
 
 impl Claimed<'_> {
@@ -120,7 +131,7 @@ fn look_for_missing(
         }
         Some(_) => {
             let rows: Vec<Objectives> = front.front.iter().map(|d| d.design.objectives).collect();
-            let search = Exact::new(&study.space, catalogs, stop, deadline).beyond(front.gap);
+            let search = Exact::new(&study.space, catalogs, stop, deadline).to_gap(front.gap);
             let found = search.run(&rows);
             (found.front.iter().map(|c| c.number).collect(), found.boxes, found.boxes_open)
         }
@@ -195,7 +206,7 @@ fn missing(
     problem: &ArmProblem,
     found: &[u128],
 ) -> Vec<String> {
-    let Claimed { front, gap } = claimed;
+    let Claimed { front, gap, ties_listed } = claimed;
     let listed: BTreeSet<u128> = front.iter().map(|d| problem.whole_number(d.design.number)).collect();
     let others: Vec<u128> = found.iter().copied().filter(|n| !listed.contains(n)).collect();
     let Some(space) = study.space.excerpt(catalogs, &others) else { return Vec::new() };
@@ -206,9 +217,11 @@ fn missing(
         .collect();
     let own = claimed.objectives().into_iter().map(|o| o.minimized());
     let points: Vec<[f64; 3]> = own.chain(judged.iter().map(|(_, d)| d.objectives.minimized())).collect();
+    let is_row = |i: &usize| *i < front.len();
     let mut ids: Vec<u128> = nondominated(&points)
         .expect("objectives are numbers")
         .into_iter()
+        .filter(|group| *ties_listed || !group.iter().any(is_row))
         .flatten()
         .filter_map(|i| i.checked_sub(front.len()))
         .map(|i| judged[i].0)

@@ -14,19 +14,21 @@ pub mod paper;
 mod read;
 mod sections;
 mod table;
+mod ties;
 mod tolerance;
 
 pub use ballast::{BallastFlags, ballast_flags};
 pub use budget::budgets;
-pub use check::{Completeness, FrontCheck, check_front};
+pub use check::{Claim, Completeness, FrontCheck, check_front};
 pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{Carried, CorrectedStudy, carry_over, left_out};
 pub use near::{NearFront, near_front};
-pub use outcome::{ExactStudy, Front, Judged, OfMaterial, StudyOutcome, run_exact, run_study};
+pub use outcome::{ExactStudy, Extent, Front, Judged, OfMaterial, StudyOutcome, run_exact, run_study};
 pub use page::study_page;
 pub use read::{Study, read_study};
 pub(crate) use table::sizing_rows;
 pub use table::{front_table, slug};
+pub use ties::{Ties, ties};
 pub use tolerance::{Sampling, Tolerance, part, scatter_front};
 
 /// The built-in studies: name and text.

@@ -104,6 +104,19 @@ pub struct ExactStudy {
     pub gap: Option<f64>,
     /// The designs near the front; `None` if they were not asked for, or time ran out before all were found.
     pub near: Option<NearDesigns>,
+    /// Whether the fronts have all designs that differ only in drives of equal mass and curve, or one of them each.
+    pub ties_listed: bool,
+}
+
+/// How far an exact search goes.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Extent {
+    /// Until when; `None` until it comes to its end.
+    pub deadline: Option<Instant>,
+    /// By what part in all three objectives at once a design may beat every one listed when it is content; 0: none.
+    pub gap: f64,
+    /// Which designs near the front are asked for.
+    pub near: Option<Slack>,
 }
 
 /// What the searches of a space found, by numbers of the whole space.
@@ -114,11 +127,11 @@ struct Searched {
 }
 
 impl Searched {
-    /// Searches for the front of all designs, then, if that one is certified, for those of the materials and for the
+    /// Searches for the front of all designs, then, if that one is whole, for those of the materials and for the
     /// designs near the front.
     fn new(search: &Exact, space: &DesignSpace, near: Option<Slack>) -> Self {
         let whole = search.run(&[]);
-        if whole.boxes_open > 0 || whole.front.is_empty() {
+        if whole.boxes_open > 0 || whole.gap != Some(0.0) || whole.front.is_empty() {
             return Self { whole, by_material: Vec::new(), near: None };
         }
         let names = space.material_names();
@@ -198,17 +211,16 @@ fn status(found: &ExactOutcome) -> Status {
 }
 
 /// Finds the fronts of a space too large to visit, and the designs near the front of all if they are asked for,
-/// until `stop` is set or the deadline has passed. `watch` runs beside it with a function that tells how many
+/// as far as is asked or until `stop` is set. `watch` runs beside it with a function that tells how many
 /// boxes are done, and must return when its second argument says so.
 pub fn run_exact(
     study: &Study,
     catalogs: &Catalogs,
     stop: &AtomicBool,
-    deadline: Option<Instant>,
-    near: Option<Slack>,
+    Extent { deadline, gap, near }: Extent,
     watch: impl FnOnce(&(dyn Fn() -> u64 + Sync), &AtomicBool) + Send,
 ) -> ExactStudy {
-    let search = Exact::new(&study.space, catalogs, stop, deadline);
+    let search = Exact::new(&study.space, catalogs, stop, deadline).to_gap(gap);
     let most = near.map(|slack| slack.most);
     let searched = watched(
         |finished| watch(&|| search.boxes(), finished),
@@ -218,8 +230,9 @@ pub fn run_exact(
     let study = Study { space, ..study.clone() };
     let whole = &searched.whole;
     let (boxes, gap) = ([whole.boxes, whole.boxes_open], whole.gap);
+    let ties_listed = whole.ties_listed && searched.by_material.iter().all(|(_, of)| of.ties_listed);
     let (outcome, near) = searched.judged(&ArmProblem::new(&study.space, catalogs), most);
-    ExactStudy { study, outcome, boxes, gap, near }
+    ExactStudy { study, outcome, boxes, gap, near, ties_listed }
 }
 
 /// Judges candidates by the full model and keeps what nothing dominates.

@@ -23,11 +23,13 @@ pub struct Study {
     pub question: String,
     /// What there is to choose and what it is asked to do.
     pub space: DesignSpace,
+    /// By what part in all three objectives at once a design may beat every one listed when an exact search is content.
+    pub gap: f64,
     /// Options left out because a figure that a check needs is unknown, in words.
     pub not_checked: Vec<String>,
 }
 
-const KEYS: [&str; 14] = [
+const KEYS: [&str; 15] = [
     "name",
     "question",
     "gravity_m_s2",
@@ -41,6 +43,7 @@ const KEYS: [&str; 14] = [
     "constraints",
     "models",
     "effects",
+    "gap_percent",
     "notes",
 ];
 
@@ -64,6 +67,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     });
     let (question, _notes) = (text("question"), text("notes"));
     let gravity = root.or("gravity_m_s2", 9.81, Node::positive);
+    let gap = root.or("gap_percent", 0.0, read_gap);
     let filter = root.or("drives", Drives::default(), |n| read_drives(n, catalogs));
     let constraints = root.or("constraints", Constraints::default(), read_constraints);
     let mut not_checked = Vec::new();
@@ -93,7 +97,17 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         effects: effects?,
     };
     check_effects(&space, &root)?;
-    Some(Study { name: name?, question: question?, space, not_checked })
+    Some(Study { name: name?, question: question?, space, gap: gap?, not_checked })
+}
+
+/// A part of one, written in percent.
+fn read_gap(node: &Node) -> Option<f64> {
+    match node.non_negative()? {
+        percent if percent < 100.0 => Some(percent / 100.0),
+        percent => {
+            node.fault(format!("{percent} is no gap"), "give a percentage below 100, 0 for the whole front")
+        }
+    }
 }
 
 /// Names of the joints as written, so that poses are checked even when the chain is faulty.

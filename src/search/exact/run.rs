@@ -25,9 +25,9 @@ use std::time::Instant;
 const TASKS: usize = 2048;
 /// Slacks of the passes over a large space: with slack a box is also cut if a design found comes that close
 /// to its ceiling, so a pass that comes to its end proves that nothing is missing by more.
-const SLACKS: [f64; 20] = [
+const SLACKS: [f64; 25] = [
     1.0, 0.7, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.16, 0.12, 0.09, 0.075, 0.06, 0.05, 0.04, 0.035, 0.03, 0.025,
-    0.02, 0.0,
+    0.02, 0.015, 0.01, 0.007, 0.005, 0.0035, 0.0025,
 ];
 /// Slacks are passed over, at most so many at once, where a pass should take less than this part of the time left.
 const MOST_PASSED_OVER: usize = 4;
@@ -56,8 +56,8 @@ pub struct Exact<'p> {
     stop: &'p AtomicBool,
     deadline: Option<Instant>,
     boxes: AtomicU64,
-    /// The slack of a search from known designs.
-    beyond: f64,
+    /// The slack of the last pass, or of a search from known designs.
+    gap: f64,
     /// Designs above which a space is searched region by region, and down to how many.
     regions_from: f64,
     regions_to: f64,
@@ -77,7 +77,7 @@ pub struct ExactOutcome {
     /// Boxes left unopened because the search was stopped; none if the front is certified.
     pub boxes_open: u64,
     /// By what factor, at most, a design in an open box may be better than a design of the front in every
-    /// objective at once; if no box is open the slack of the search, 0 for the whole front; `None` if nothing can be
+    /// objective at once; if no box is open what was asked for, 0 for the whole front; `None` if nothing can be
     /// said.
     pub gap: Option<f64>,
     /// Designs that no other one found beats.
@@ -122,7 +122,7 @@ impl<'p> Exact<'p> {
             stop,
             deadline,
             boxes,
-            beyond: 0.0,
+            gap: 0.0,
             regions_from: VAST,
             regions_to: FEW,
             most_with_ties: MOST_WITH_TIES,
@@ -143,10 +143,11 @@ impl<'p> Exact<'p> {
         Self { most_with_ties: designs, ..self }
     }
 
-    /// Looks only for designs that beat every known one by more than a slack in all three objectives at once.
+    /// Is content once no design beats every one that is known or found by more than this part in all three objectives
+    /// at once.
     #[must_use]
-    pub fn beyond(self, slack: f64) -> Self {
-        Self { beyond: slack, ..self }
+    pub fn to_gap(self, gap: f64) -> Self {
+        Self { gap, ..self }
     }
 
     /// Boxes bounded so far.
@@ -171,9 +172,9 @@ impl<'p> Exact<'p> {
             let should_take_s = took_s * (passes[last] / passes[*pass]).powf(GROWTH);
             left.is_none_or(|left| should_take_s < QUICK * left.as_secs_f64())
         };
-        // the last, without any, comes after all
-        let ahead = last + 2..(last + 2 + MOST_PASSED_OVER).min(passes.len().saturating_sub(1));
-        ahead.take_while(is_quick).last().unwrap_or(last + 1)
+        let ahead = last + 2..(last + 2 + MOST_PASSED_OVER).min(passes.len());
+        // one without any slack comes after all
+        ahead.take_while(|pass| passes[*pass] > 0.0 && is_quick(pass)).last().unwrap_or(last + 1)
     }
 
     /// Finds the front, starting from designs that are known already.
@@ -239,7 +240,9 @@ impl<'p> Exact<'p> {
                     better.iter().for_each(|member| search.keep(&member.cell, member.objectives));
                 }
             }
-            let passes = if is_large && known.is_empty() { &SLACKS[..] } else { &[self.beyond] };
+            let coarser =
+                SLACKS.into_iter().filter(|slack| is_large && known.is_empty() && *slack > self.gap);
+            let passes: Vec<f64> = coarser.chain([self.gap]).collect();
             let mut next = 0;
             while let Some(&slack) = passes.get(next) {
                 let started = Instant::now();
@@ -253,7 +256,7 @@ impl<'p> Exact<'p> {
                     break;
                 }
                 proven = Some(slack);
-                next = self.next_pass(passes, next, started);
+                next = self.next_pass(&passes, next, started);
             }
         }
         let mut front = shared.kept.into_inner().unwrap_or_else(PoisonError::into_inner);

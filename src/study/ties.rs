@@ -1,0 +1,106 @@
+//! Drives that may stand in for those of a design without a change of any objective, where the designs that have them are
+//! too many to be rows of the front.
+
+use super::{Front, Judged};
+use crate::report::compare::text::wrap;
+use crate::report::front_table::FrontTable;
+use crate::report::html::Extra;
+use crate::report::summary::large;
+use crate::search::design::{id_of, options};
+use crate::search::space::SpacePiece;
+use crate::search::{ArmProblem, OutwardIn};
+use crate::sizing::JointDemand;
+use rayon::prelude::*;
+
+/// The drives of equal mass and torsion curve of every design of a front.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ties {
+    rows: Vec<Vec<String>>,
+    /// Rows of the front, and designs that they stand for.
+    front: usize,
+    designs: f64,
+}
+
+const COLUMNS: [&str; 4] = ["design_id", "at", "part", "instead"];
+
+/// Between drives that may stand in one place.
+const OR: &str = "; ";
+
+/// Looks for the ties of a front: every joint may have any of its drives, whichever the others have.
+pub fn ties(problem: &ArmProblem, front: &Front) -> Ties {
+    let of_designs: Vec<(Vec<Vec<String>>, f64)> =
+        front.par_iter().filter_map(|judged| ties_of(problem, judged)).collect();
+    let designs = of_designs.iter().map(|(_, designs)| designs).sum();
+    let rows = of_designs.into_iter().flat_map(|(rows, _)| rows).collect();
+    Ties { rows, front: front.len(), designs }
+}
+
+/// The rows of one design, and how many designs it stands for.
+fn ties_of(problem: &ArmProblem, judged: &Judged) -> Option<(Vec<Vec<String>>, f64)> {
+    let mut demands: Vec<(usize, JointDemand)> = Vec::new();
+    let chosen = options(problem.level_sizes(), judged.design.number)?;
+    let complete = problem
+        .walk(&chosen, |slot, outboard| {
+            let piece = problem.piece_of_slot(slot);
+            if problem.sized_joint(piece).is_some_and(|sized| sized.is_level()) {
+                demands.push((piece, problem.demand_at(outboard, slot)));
+            }
+        })
+        .ok()?;
+    let of_pieces: Vec<u32> = problem.options(&complete).collect();
+    let id = id_of(problem.whole_number(judged.design.number));
+    let (mut rows, mut designs) = (Vec::new(), 1.0);
+    for (piece, demand) in demands.iter().rev() {
+        let (Some(sized), SpacePiece::Joint(joint)) =
+            (problem.sized_joint(*piece), &problem.space().pieces[*piece])
+        else {
+            continue;
+        };
+        let own = of_pieces[*piece] as usize;
+        let alike: Vec<usize> = sized.alike(own, demand).collect();
+        designs *= alike.len() as f64;
+        let name = |drive: usize| sized.table.drive(drive).name();
+        let others: Vec<String> = alike.iter().filter(|&&drive| drive != own).map(|&d| name(d)).collect();
+        if !others.is_empty() {
+            rows.push(vec![id.clone(), joint.name.clone(), name(own), others.join(OR)]);
+        }
+    }
+    Some((rows, designs))
+}
+
+impl Ties {
+    /// One row a joint of a design that may have other drives.
+    pub fn to_csv(&self) -> Vec<u8> {
+        FrontTable { columns: COLUMNS.map(String::from).into(), rows: self.rows.clone() }.to_csv()
+    }
+
+    /// How many designs the front stands for, in a sentence.
+    pub fn sentence(&self) -> String {
+        format!(
+            "The {} rows of the front stand for {} designs with the same objectives: at each joint some drives weigh and \
+             twist alike and hold. ties.csv lists them.",
+            large(self.front as u128),
+            large(self.designs as u128)
+        )
+    }
+
+    /// The sentence for a terminal.
+    pub fn to_text(&self) -> String {
+        wrap(&self.sentence(), 80, "")
+    }
+
+    /// The section of a page.
+    pub fn section(&self) -> Extra {
+        Extra {
+            title: "Drives that may be exchanged".into(),
+            words: vec![self.sentence()],
+            tables: Vec::new(),
+            figures: Vec::new(),
+        }
+    }
+
+    /// The section of a summary.
+    pub fn to_markdown(&self) -> String {
+        format!("\n## Drives that may be exchanged\n\n{}\n", self.sentence())
+    }
+}
