@@ -2,7 +2,8 @@
 //!
 //! `cargo run --release --example exact_growth -- 60` searches `full-catalog` with every n-th gear, motor and link
 //! option, from few to all, at most 60 s each: once with the slope that a gear has at its torque in the modes, once with
-//! its first slope K1.
+//! its first slope K1. Then it searches the whole of it for arms up to a few masses without any gap, and for all arms to
+//! the gap that the study asks for.
 
 use armwright::arm::JointModel;
 use armwright::catalog::Catalogs;
@@ -17,6 +18,9 @@ use std::time::{Duration, Instant};
 const THINNED: [(usize, usize); 8] =
     [(40, 4000), (25, 2000), (15, 1000), (10, 400), (6, 100), (4, 30), (2, 6), (1, 1)];
 
+/// Limits of mass up to which the front is found whole \[kg\].
+const UP_TO_KG: [f64; 4] = [5.75, 6.0, 6.25, 6.5];
+
 fn main() {
     let limit_s = std::env::args().nth(1).and_then(|word| word.parse().ok()).unwrap_or(60);
     let catalogs = Catalogs::builtin();
@@ -27,19 +31,33 @@ fn main() {
     for joints in [JointModel::ThreeSegment, JointModel::ThreeSegmentK1] {
         for (parts, options) in THINNED {
             let space = DesignSpace { joints, ..thinned(&study.space, &catalogs, parts, options) };
-            search(&space, &catalogs, Duration::from_secs(limit_s));
+            search(&space, &catalogs, 0.0, Some(Duration::from_secs(limit_s)));
         }
+    }
+    println!("\n{:<18}{:>10}{:>10}{:>12}{:>10}{:>9}", "modes", "up to", "front", "boxes", "s", "gap");
+    for mass_kg in UP_TO_KG {
+        let mut space = study.space.clone();
+        space.constraints.mass_max_kg = Some(mass_kg);
+        search(&space, &catalogs, 0.0, None);
+    }
+    for joints in [JointModel::ThreeSegment, JointModel::ThreeSegmentK1] {
+        search(&DesignSpace { joints, ..study.space.clone() }, &catalogs, study.gap, None);
     }
 }
 
-fn search(space: &DesignSpace, catalogs: &Catalogs, limit: Duration) {
+fn search(space: &DesignSpace, catalogs: &Catalogs, gap: f64, limit: Option<Duration>) {
     let stop = AtomicBool::new(false);
     let started = Instant::now();
-    let outcome = Exact::new(space, catalogs, &stop, Some(started + limit)).run(&[]);
+    let search = Exact::new(space, catalogs, &stop, limit.map(|limit| started + limit));
+    let outcome = search.with_ties_up_to(0).to_gap(gap).run(&[]);
     println!(
-        "{:<18}{:>10.1e}{:>10}{:>12.2e}{:>10.2}{:>9}",
+        "{:<18}{:>10}{:>10}{:>12.2e}{:>10.2}{:>9}",
         space.joints.word(),
-        outcome.designs_total as f64,
+        match (space.constraints.mass_max_kg, limit) {
+            (Some(mass_kg), _) => format!("{mass_kg} kg"),
+            (None, Some(_)) => format!("{:.1e}", outcome.designs_total as f64),
+            (None, None) => "any mass".into(),
+        },
         outcome.front.len(),
         outcome.boxes as f64,
         started.elapsed().as_secs_f64(),

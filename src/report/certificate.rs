@@ -20,7 +20,7 @@ pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Ext
             large(facts.designs_evaluated + facts.designs_excluded),
             large(facts.designs_total),
         )],
-        (Some([bounded, _]), false) if facts.gap.is_some_and(|gap| gap > 0.0) => vec![
+        (Some([bounded, _]), false) if !facts.is_whole() => vec![
             format!(
                 "Proved without visiting all {} designs, by {} boxes and regions of parts that cover them: {}.",
                 large(facts.designs_total),

@@ -54,6 +54,11 @@ impl SummaryFacts {
     pub fn is_stopped(&self) -> bool {
         ["partial", "interrupted"].contains(&self.status.as_str())
     }
+
+    /// Whether no design is missing.
+    pub fn is_whole(&self) -> bool {
+        !self.is_stopped() && self.gap.is_none_or(|gap| gap == 0.0)
+    }
 }
 
 /// The front of one material's designs.

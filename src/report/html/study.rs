@@ -73,7 +73,7 @@ impl StudyPage<'_> {
             "study": facts.study,
             "question": facts.question,
             "answer": answer_words(self.summary),
-            "stopped": facts.is_stopped(),
+            "whole": facts.is_whole(),
             "facts": self.facts(designs.len()),
             "front": views.context(&mut gallery),
             "bars": (!self.picks.is_empty()).then(|| gallery.show(&deflection_bars(&self.picks))),

@@ -37,7 +37,7 @@ impl Problem<'_> {
         work: &Work,
         corner: &Corner,
     ) -> Option<Left> {
-        let mut rows = Rows::new(self, ceiling, corner, &trade.shapes, work);
+        let mut rows = Rows::new(self, cell, ceiling, corner, &trade.shapes, work);
         let (mut planes, mut members) = (Vec::<Plane>::new(), Vec::<Member>::new());
         let mut starts = rows.singles(corner);
         let most = starts.len() + MOST_PLANES;

@@ -11,6 +11,7 @@
 mod archive;
 mod bound;
 mod branch;
+mod by_curve;
 mod check;
 mod corners;
 mod evolve;

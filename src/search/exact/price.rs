@@ -202,7 +202,7 @@ impl Price {
 
     /// Of what a drive weighs.
     #[inline]
-    fn of_mass(&self, mass_kg: [f64; 2]) -> f64 {
+    pub fn of_mass(&self, mass_kg: [f64; 2]) -> f64 {
         let per_kg = self.inertia[inertia::MASS];
         per_kg * if per_kg >= 0.0 { mass_kg[0] } else { mass_kg[1] }
     }

@@ -16,9 +16,10 @@
 //! are the best for the members found so far (a matrix game), shapes those of an arm in between them.
 
 use super::bound::{Ceiling, Cell, STARTS, Work};
+use super::by_curve::ByCurve;
 use super::corners::Corner;
 use super::game::{Game, solve};
-use super::parts::{DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia};
 use super::pose::Row;
 use super::price::{Gear, JointPrice, Price, cheapest};
 use super::problem::{Part, Problem};
@@ -62,6 +63,8 @@ pub(super) struct Rows<'a> {
     lambda: f64,
     modes: Vec<Mode>,
     first_mode: usize,
+    /// The drives of each level that hold; none of a level of links.
+    drives: Vec<ByCurve>,
 }
 
 /// A force that weights make in a judged case: less of it in a row, more of it in the next.
@@ -104,6 +107,15 @@ pub(super) struct Plane {
 }
 
 impl Problem<'_> {
+    /// The drives of each level of a box that hold, those of a level of links none.
+    fn drives_by_curve(&self, cell: &[u32], work: &Work) -> Vec<ByCurve> {
+        let of = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
+            Part::Drives { tree, .. } => ByCurve::new(tree, node, work.least[piece].as_ref()),
+            _ => ByCurve::default(),
+        };
+        self.level_pieces.iter().zip(cell).map(of).collect()
+    }
+
     /// Mass per line mass of a piece: a tube's length, one for anything else.
     fn length_m(&self, piece: usize) -> f64 {
         match &self.parts[piece] {
@@ -116,6 +128,7 @@ impl Problem<'_> {
 impl<'a> Rows<'a> {
     pub(super) fn new(
         problem: &'a Problem,
+        cell: &[u32],
         ceiling: &Ceiling,
         corner: &Corner,
         shapes: &[Shape],
@@ -133,6 +146,7 @@ impl<'a> Rows<'a> {
             lambda: (hz * std::f64::consts::TAU).powi(2),
             modes: Vec::new(),
             first_mode: 0,
+            drives: problem.drives_by_curve(cell, work),
         };
         for (judged, case) in problem.judged_cases().enumerate() {
             let (tip, fixed_m) = Tip::new(problem, judged, case, work);
@@ -343,12 +357,8 @@ impl<'a> Rows<'a> {
             total += match part {
                 Part::Drives { tree, .. } => {
                     let price = price();
-                    let holds = |d: &DriveBox| self.work.least[piece].as_ref().is_none_or(|a| d.may_hold(a));
-                    let of = |d: &DriveBox| match holds(d) {
-                        true => price.of_joint(d.mass_kg, d.curve.as_ref()),
-                        false => f64::INFINITY,
-                    };
-                    let (least, at) = cheapest(tree, cell[level], of);
+                    let cheapest = self.drives[level].cheapest(&price);
+                    let (least, at) = cheapest.unwrap_or((f64::INFINITY, cell[level]));
                     member.cell[level] = at;
                     levels.push(least);
                     let drives = &tree.node(at).bounds;
