@@ -43,7 +43,7 @@ fn study_of_ties(seed: u64) -> Value {
 fn every_tie_of_drives_that_weigh_and_twist_alike_is_listed() {
     let catalogs = Catalogs::builtin();
     let (mut designs, mut points) = (0, 0);
-    for seed in 0..10 {
+    for seed in 0..5 {
         let text = study_of_ties(seed);
         designs += agree(&text);
         let study = read(&text, &catalogs);
@@ -57,7 +57,7 @@ fn every_tie_of_drives_that_weigh_and_twist_alike_is_listed() {
         points += sweep.front.iter().map(|c| of(c.objectives.minimized())).collect::<BTreeSet<_>>().len();
     }
     println!("{designs} designs of {points} points, the same in both");
-    assert!(points > 300 && designs > 2 * points, "{designs} designs of {points} points");
+    assert!(points > 150 && designs > 2 * points, "{designs} designs of {points} points");
 }
 
 #[test]

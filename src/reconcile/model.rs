@@ -489,7 +489,10 @@ fn channel_is_read(forward: &Forward, place: Place) -> bool {
 }
 
 fn candidate(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place, at: String) -> Candidate {
-    let reference = reference_stiffness(forward, &at);
+    let reference = match kind.name {
+        "soft_windup" => middle_stiffness(forward, &at),
+        _ => reference_stiffness(forward, &at),
+    };
     let mut knobs = Vec::new();
     let mut fixed = Vec::new();
     for parameter in (kind.parameters)(place) {
@@ -519,7 +522,7 @@ fn candidate(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place
         // a share is left, for nothing swings without a mass
         knobs[0].low = knobs[0].low.max(-0.999 * least_kg / knobs[0].value(1.0));
     }
-    let starts = starts(kind, torque, &knobs);
+    let starts = starts(kind, torque, torque / reference, &knobs);
     Candidate { kind, at, knobs, fixed, starts, twins: Vec::new() }
 }
 
@@ -550,6 +553,15 @@ fn reference_stiffness(forward: &Forward, at: &str) -> f64 {
         .map_or(1e5, |j| 1.0 / j.law.tangent_compliance_rad_per_nm(0.0))
 }
 
+/// The middle slope of a joint's curve, which is what a gear is known by \[N m/rad\].
+fn middle_stiffness(forward: &Forward, at: &str) -> f64 {
+    let own = forward.nominal.structure.joints().find(|j| j.name == at);
+    match own.map(|joint| joint.law.curve) {
+        Some(Curve::Windup(windup)) => windup.k2_nm_per_rad,
+        _ => reference_stiffness(forward, at),
+    }
+}
+
 /// Break points of a gear's curve to start from, as parts of the largest torque.
 const BREAKS: [(f64, f64); 8] = [
     (0.08, 0.25),
@@ -562,7 +574,15 @@ const BREAKS: [(f64, f64); 8] = [
     (0.5, 0.85),
 ];
 
-fn starts(kind: &Kind, torque: f64, knobs: &[Knob]) -> Vec<Vec<f64>> {
+/// Half widths of friction play to start from, by the largest twist of the joint \[rad\]: where the play is as wide as the
+/// twist the joint does not move, and a descent sees no slope.
+fn friction_starts_rad(twist_rad: f64) -> impl Iterator<Item = f64> {
+    const WIDEST: f64 = 0.3;
+    let usual = [0.25e-4, 1e-4, 3e-4].into_iter().filter(move |h| *h < WIDEST * twist_rad);
+    [0.01, 0.06].into_iter().map(move |part| part * twist_rad).chain(usual)
+}
+
+fn starts(kind: &Kind, torque: f64, twist_rad: f64, knobs: &[Knob]) -> Vec<Vec<f64>> {
     match kind.name {
         "connection_compliance" | "bearing_tilt" | "base_compliance" => vec![vec![0.1], vec![0.5]],
         "joint_compliance" => vec![vec![0.5], vec![2.0]],
@@ -572,7 +592,7 @@ fn starts(kind: &Kind, torque: f64, knobs: &[Knob]) -> Vec<Vec<f64>> {
         }
         "lost_motion" => [0.03, 0.1, 0.3].iter().map(|part| vec![1.0, (part * torque).ln()]).collect(),
         "sensor_gain" => vec![vec![1.0 / knobs[0].value(1.0)]],
-        "hysteresis" => vec![vec![0.25], vec![1.0], vec![3.0]],
+        "hysteresis" => friction_starts_rad(twist_rad).map(|h| vec![knobs[0].u(h)]).collect(),
         "extra_mass" => vec![vec![0.5], vec![2.0]],
         "immersion" => vec![vec![1.0, 1.0]],
         "payload_cg_error" => vec![vec![0.0; 3]],

@@ -266,17 +266,19 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Fits the promising models of a selection again, with other weights, and chooses among them.
+    /// Fits the promising models of a selection again, with other weights, and chooses among them; those with some of the
+    /// best one's effects too, for what the other weights were to blame for may have been named.
     pub fn weigh_again(&self, before: &Selection) -> Selection {
-        let mut promising: Vec<&Scored> = vec![&before.bare];
-        let near = before.others.iter().filter(|s| s.score > before.best.score - PROMISING);
-        for scored in [&before.best].into_iter().chain(near) {
-            if promising.iter().all(|p| p.effects != scored.effects) {
+        let mut promising: Vec<Scored> = vec![before.bare.clone()];
+        let near = before.others.iter().filter(|s| s.score > before.best.score - PROMISING).cloned();
+        let parts = self.parts(&before.best);
+        for scored in [before.best.clone()].into_iter().chain(parts).chain(near) {
+            if promising.iter().all(|p| !same_set(&p.effects, &scored.effects)) {
                 promising.push(scored);
             }
         }
         let effort = Effort { steps: 12, tolerance: 0.02 };
-        let again = |s: &&Scored| {
+        let again = |s: &Scored| {
             // about the middle of where the objective is flat all are judged alike
             let model = self.model(&s.effects);
             let end = self.descent(&model, &s.u, effort);
@@ -318,6 +320,22 @@ impl<'a> Search<'a> {
             }
         }
         best
+    }
+
+    /// The models with some of a model's effects, started from it.
+    fn parts(&self, scored: &Scored) -> Vec<Scored> {
+        let mut parts: Vec<Scored> = Vec::new();
+        let mut open = vec![scored.clone()];
+        while let Some(whole) = open.pop().filter(|whole| whole.effects.len() > 1) {
+            for effect in 0..whole.effects.len() {
+                let (effects, u) = self.without(&whole, effect);
+                if parts.iter().all(|part| !same_set(&part.effects, &effects)) {
+                    parts.push(Scored { effects, u, ..whole });
+                    open.push(parts[parts.len() - 1].clone());
+                }
+            }
+        }
+        parts
     }
 
     /// A model without one of its effects, and where to start it from.

@@ -37,6 +37,8 @@ pub struct Layout {
     pub links: Vec<LinkSlot>,
     /// Coordinates of frames that yield, which no fit changes, with their compliance.
     frames: Vec<(usize, f64)>,
+    /// Compliance of the coordinates that a nominal arm may lack altogether: of links as they are drawn; 0 for others.
+    pub lacking: Vec<f64>,
     /// The arm with every elastic thing present, so that mechanics lists all coordinates.
     pub template: Chain,
     /// The template with one mass added, for each of the masses.
@@ -75,7 +77,7 @@ impl Layout {
         let full = with_everything(structure);
         let mut n = 2;
         let (mut joints, mut links) = (Vec::new(), Vec::new());
-        let mut frames = Vec::new();
+        let (mut frames, mut drawn) = (Vec::new(), Vec::new());
         let mut add_frame = |frame: &FrameCompliance, n: &mut usize| {
             for (_, compliance) in frame.springs() {
                 frames.push((*n, compliance));
@@ -93,16 +95,22 @@ impl Layout {
                     add_frame(&link.root_frame, &mut n);
                     let strains = strains(link, LinkModel::Full);
                     let count = strains.len();
+                    drawn.push((n, link_compliances(link)));
                     links.push(LinkSlot { name: link.name.clone(), first: n, strains });
                     n += count;
                 }
             }
+        }
+        let mut lacking = vec![0.0; n];
+        for (first, compliances) in drawn {
+            lacking[first..first + compliances.len()].copy_from_slice(&compliances);
         }
         Self {
             n,
             joints,
             links,
             frames,
+            lacking,
             template: Chain::new(&full, LinkModel::Full),
             with_mass: unit_masses(&full).iter().map(|s| Chain::new(s, LinkModel::Full)).collect(),
             gravity_m_s2: structure.gravity_m_s2,

@@ -120,9 +120,41 @@ impl ModalTest {
         self.modes.iter().map(|(_, mode)| mode + 1).max().unwrap_or(0)
     }
 
-    /// Takes the trial forces from the full solution for these coefficients.
+    /// Takes the trial forces from the full solution for these coefficients; where so little yields that there are not
+    /// enough, as in an arm whose links are taken for rigid, from the arm with links that yield as they are drawn and
+    /// joints without a stiffness that yield like the softest.
     pub fn refresh(&mut self, layout: &Layout, coefficients: &Coefficients) {
-        let compliances = self.compliances(layout, coefficients);
+        let mut compliances = self.compliances(layout, coefficients);
+        let forces = self.trial_forces(layout, coefficients, &compliances);
+        if forces.ncols() == self.wanted() {
+            self.forces = forces;
+            return;
+        }
+        let twists = || layout.joints.iter().map(|joint| joint.twist);
+        let softest = twists().map(|at| compliances[at]).fold(0.0, f64::max);
+        for (own, drawn) in compliances.iter_mut().zip(&layout.lacking) {
+            *own = if *own == 0.0 { *drawn } else { *own };
+        }
+        twists()
+            .filter(|&at| compliances[at] == 0.0)
+            .collect::<Vec<_>>()
+            .into_iter()
+            .for_each(|at| compliances[at] = softest);
+        self.forces = self.trial_forces(layout, coefficients, &compliances);
+    }
+
+    /// Trial shapes at the most.
+    fn wanted(&self) -> usize {
+        self.mode_count() + SPARE_SHAPES
+    }
+
+    /// The inertia forces of the lowest modes.
+    fn trial_forces(
+        &self,
+        layout: &Layout,
+        coefficients: &Coefficients,
+        compliances: &[f64],
+    ) -> DMatrix<f64> {
         let roots = DVector::from_iterator(layout.n, compliances.iter().map(|c| c.sqrt()));
         let mass = self.momenta(coefficients, &DMatrix::identity(layout.n, layout.n));
         let mut a = mass.clone();
@@ -137,13 +169,13 @@ impl ModalTest {
         let columns: Vec<DVector<f64>> = order
             .iter()
             .filter(|&&i| eigen.eigenvalues[i] > floor)
-            .take(self.mode_count() + SPARE_SHAPES)
+            .take(self.wanted())
             .map(|&i| &mass * eigen.eigenvectors.column(i).component_mul(&roots) / eigen.eigenvalues[i])
             .collect();
-        self.forces = match columns.is_empty() {
+        match columns.is_empty() {
             true => DMatrix::zeros(layout.n, 0), // nothing yields, so nothing swings
             false => DMatrix::from_columns(&columns),
-        };
+        }
     }
 
     /// The mass matrix times shapes: the parts that parameters change are of low rank, so that the matrix itself
@@ -215,10 +247,7 @@ impl ModalTest {
         // products with a transpose written out are the fast ones
         let reduced_mass = shapes.transpose() * &momenta;
         let strain = self.forces.transpose() * &shapes;
-        let Some(cholesky) = Cholesky::new(strain) else { return Vec::new() };
-        let l = cholesky.l();
-        let Some(half) = l.solve_lower_triangular(&reduced_mass) else { return Vec::new() };
-        let Some(a) = l.solve_lower_triangular(&half.transpose()) else { return Vec::new() };
+        let Some((amounts, a)) = unit_strains(strain, &reduced_mass) else { return Vec::new() };
         let eigen = SymmetricEigen::new((&a + a.transpose()) * 0.5);
         let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
         order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]).then(i.cmp(&j)));
@@ -226,7 +255,7 @@ impl ModalTest {
             .into_iter()
             .take(count)
             .filter_map(|i| {
-                let z = l.tr_solve_lower_triangular(&eigen.eigenvectors.column(i))?;
+                let z = amounts.of(&eigen.eigenvectors.column(i).into_owned())?;
                 Some(Solved { mu: eigen.eigenvalues[i].max(1e-300), x: &shapes * &z, y: &momenta * &z })
             })
             .collect()
@@ -354,6 +383,54 @@ impl ModalTest {
                 d_mu += m1 * (j1 * &s.x).norm_squared() - m0 * (j0 * &s.x).norm_squared();
             }
             out[datum] = -0.5 * d_mu / s.mu / (TAU * s.mu.sqrt());
+        }
+    }
+}
+
+/// How much of each trial shape makes combinations of unit strain energy that are free of each other.
+enum UnitStrains {
+    /// By the Cholesky factor of the strain energy.
+    Factor(DMatrix<f64>),
+    /// By columns, fewer than shapes: some shapes are others' combinations, where little yields.
+    Columns(DMatrix<f64>),
+}
+
+/// Part of the largest strain energy below which a combination is rounding.
+const RANK: f64 = 1e-10;
+
+/// Pivots of a strain energy's factor further apart than this are rounding.
+const SINGULAR: f64 = 1e-6;
+
+/// Those combinations, and the reduced mass matrix in them.
+fn unit_strains(strain: DMatrix<f64>, reduced_mass: &DMatrix<f64>) -> Option<(UnitStrains, DMatrix<f64>)> {
+    if let Some(cholesky) = Cholesky::new(strain.clone()) {
+        let l = cholesky.l();
+        if l.diagonal().min() > SINGULAR * l.diagonal().max() {
+            let half = l.solve_lower_triangular(reduced_mass)?;
+            let a = l.solve_lower_triangular(&half.transpose())?;
+            return Some((UnitStrains::Factor(l), a));
+        }
+    }
+    let eigen = SymmetricEigen::new(strain);
+    let floor = RANK * eigen.eigenvalues.max();
+    let columns: Vec<DVector<f64>> = (0..eigen.eigenvalues.len())
+        .filter(|&i| eigen.eigenvalues[i] > floor)
+        .map(|i| eigen.eigenvectors.column(i) / eigen.eigenvalues[i].sqrt())
+        .collect();
+    if columns.is_empty() {
+        return None;
+    }
+    let columns = DMatrix::from_columns(&columns);
+    let a = columns.transpose() * reduced_mass * &columns;
+    Some((UnitStrains::Columns(columns), a))
+}
+
+impl UnitStrains {
+    /// A combination of them in the shapes.
+    fn of(&self, combined: &DVector<f64>) -> Option<DVector<f64>> {
+        match self {
+            UnitStrains::Factor(l) => l.tr_solve_lower_triangular(combined),
+            UnitStrains::Columns(columns) => Some(columns * combined),
         }
     }
 }
