@@ -2,10 +2,11 @@
 
 use armwright::catalog::Catalogs;
 use armwright::reconcile::campaign::Campaign;
+use armwright::reconcile::candidates::candidates;
 use armwright::reconcile::exact::Exact;
 use armwright::reconcile::fit::{Weights, evaluate, jacobian};
 use armwright::reconcile::forward::Forward;
-use armwright::reconcile::model::{Model, Nuisance, candidates};
+use armwright::reconcile::model::{Model, Nuisance};
 use std::path::Path;
 
 fn campaign() -> Campaign {

@@ -1,18 +1,19 @@
 //! The workflow: is there a gap, what is missing, how sure is that, does it hold on kept-out poses.
 
 use super::campaign::Campaign;
+use super::candidates::candidates;
 use super::fit::{Effort, Fit, Weights};
 use super::forward::{Datum, Forward};
 use super::interval::{Interval, deviations, intervals};
 use super::kept_out::{self, KeptOut, rms};
 use super::lack_of_fit::{LackOfFit, lack_of_fit};
-use super::model::{Calibration, Candidate, Model, Nuisance, candidates};
+use super::model::{Calibration, Candidate, Model, Nuisance};
 use super::noise::Noise;
 use super::select::{Scored, Search, Selection};
 use super::settle::Settled;
 use super::unnamed::{self, Better};
 use super::verdict::{Calibrated, Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict};
-use super::{correct, few_rows, locate, next_test};
+use super::{correct, few_rows, locate, next_test, units};
 use crate::arm::effect::Channel;
 
 /// Most alternatives an effect may have and still be named.
@@ -32,10 +33,19 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     if few {
         candidates = candidates.into_iter().map(Candidate::from_corners).collect();
     }
-    let found = match few {
+    let mut found = match few {
         true => Settled::of_few(campaign, &forward, &nuisance, &candidates),
         false => Settled::of_many(campaign, &mut forward, &nuisance, &candidates),
     };
+    let best = &found.selection.best;
+    let coefficients = Model::of(&nuisance, &candidates, &best.effects).coefficients(&forward, &best.u);
+    let stretches = units::stretches(&forward, &coefficients);
+    if !few && !stretches.is_empty() {
+        forward = Forward::new(campaign);
+        units::stretch(&mut forward, &stretches);
+        found = Settled::of_many(campaign, &mut forward, &nuisance, &candidates);
+        found.remarks.extend(stretches.iter().map(units::Stretch::sentence));
+    }
     let weights = found.noise.weights(&forward);
     let chosen = &found.selection.best;
     let coefficients = Model::of(&nuisance, &candidates, &chosen.effects).coefficients(&forward, &chosen.u);

@@ -44,7 +44,7 @@ pub struct LackOfFit {
 /// Sum of squares over degrees of freedom that wrong declared deviations could hardly leave.
 const MATERIAL: f64 = 2.5;
 /// The same where a structure is suspected.
-const SUSPICIOUS: f64 = 1.6;
+const SUSPICIOUS: f64 = 1.8;
 /// Probability, all questions together, below which a structure is no chance.
 const CHANCE: f64 = 1e-3;
 /// Probability below which a structure is suspected.

@@ -12,6 +12,7 @@
 
 pub mod analysis;
 pub mod campaign;
+pub mod candidates;
 pub mod correct;
 pub mod curve_interval;
 pub mod exact;
@@ -38,7 +39,8 @@ pub mod settle;
 pub mod stats;
 pub mod table;
 pub mod together;
-pub mod unnamed;
+pub mod units;
+mod unnamed;
 pub mod verdict;
 
 pub use campaign::Campaign;

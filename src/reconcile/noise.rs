@@ -30,7 +30,7 @@ const MOST_SLIPS: usize = 2;
 /// Channels whose readings are judged.
 const CHANNELS: [Channel; 3] = [Channel::Static, Channel::Modal, Channel::Windup];
 /// Largest factor on declared deviations that is put down to the declaration.
-const LARGEST_SCALE: f64 = 1.3;
+const LARGEST_SCALE: f64 = 1.4;
 /// Excess of the residuals' spread, in declared standard deviations, up to which a model fits most readings.
 const CLOSE: f64 = 0.5;
 /// Three standard deviations of the spread of one honest reading, over the root of their number: that of a median of
@@ -91,6 +91,13 @@ impl Noise {
         let mut outliers = [self.outliers.clone(), slips].concat();
         outliers.sort_by_key(|(channel, row, _)| (*channel as usize, *row));
         Some(Self { outliers, ..self.clone() })
+    }
+
+    /// The same with all frequencies; `None` if none is left out.
+    pub fn with_frequencies(&self) -> Option<Self> {
+        let mut with = self.clone();
+        with.outliers.retain(|(channel, _, _)| *channel != Channel::Modal);
+        (with.outliers.len() < self.outliers.len()).then_some(with)
     }
 
     /// Gross errors that show before any effect is looked for: only where calibration alone comes close

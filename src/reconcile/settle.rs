@@ -13,6 +13,9 @@ use super::select::{Scored, Search, Selection};
 /// What a gross error costs, in ln of the evidence, where it stands for an effect: about one row in a thousand is one.
 const SLIP: f64 = 7.0;
 
+/// Error of a frequency by its trial shapes that is too much \[standard deviations\].
+const INEXACT: f64 = 0.5;
+
 /// How often the worst readings are left out to see whether calibration alone comes close to the others.
 const LOOKS: usize = 4;
 
@@ -89,6 +92,13 @@ struct Round {
     hopeful: bool,
 }
 
+impl Round {
+    /// The score of the best model, which pays for each row that it leaves out.
+    fn score(&self) -> f64 {
+        self.selection.best.score - SLIP * self.noise.outliers.len() as f64
+    }
+}
+
 impl Settling<'_> {
     fn search<'s>(&'s self, weights: &'s Weights) -> Search<'s> {
         let Self { campaign, forward, nuisance, candidates } = self;
@@ -132,10 +142,15 @@ impl Settling<'_> {
         (with_all, declared)
     }
 
-    /// A search without the gross errors that show before any effect is looked for.
+    /// A search without the gross errors that show before any effect is looked for. An effect may show in a single
+    /// frequency: one with such frequencies stands where it is the more probable.
     fn first(&self) -> Round {
         let (bare, weights) = self.bare();
-        self.run(Noise::first_look(self.forward, &bare, &weights), Before::Nothing)
+        let noise = Noise::first_look(self.forward, &bare, &weights);
+        let frequencies = noise.with_frequencies();
+        let without = self.run(noise, Before::Nothing);
+        let with = frequencies.map(|noise| self.run(noise, Before::Nothing));
+        with.filter(|with| with.hopeful && with.score() > without.score()).unwrap_or(without)
     }
 
     /// Counts lists from which a mode is missing one higher: as calibration alone has them where it comes close to
@@ -162,13 +177,28 @@ impl Settling<'_> {
     }
 
     /// Weighs again with the trial shapes of the model found: those of the nominal arm are not exact far from it,
-    /// and a further effect would make that good.
-    fn with_exact_modes(&mut self, round: Round) -> Round {
-        if !round.hopeful || round.selection.best.effects.is_empty() {
-            return round;
+    /// and a further effect, or a law without a name, would make that good. Where that can be seen in the readings all is
+    /// looked for again.
+    fn with_exact_modes(&mut self, mut round: Round) -> Round {
+        for _ in 0..LOOKS {
+            if round.selection.best.effects.is_empty() {
+                break;
+            }
+            let before = self.forward.predict(&round.coefficients);
+            self.forward.refresh(&round.coefficients);
+            let after = self.forward.predict(&round.coefficients);
+            let pairs = self.forward.data.iter().zip(before.iter().zip(&after));
+            let moved =
+                pairs.map(|(d, (before, after))| ((after - before) / d.sigma).abs()).fold(0.0, f64::max);
+            if moved < INEXACT {
+                if round.hopeful {
+                    round = self.run(round.noise, Before::Weights(&round.selection));
+                }
+                break;
+            }
+            round = self.run(round.noise, Before::Nothing);
         }
-        self.forward.refresh(&round.coefficients);
-        self.run(round.noise, Before::Weights(&round.selection))
+        round
     }
 
     /// A search without one or two rows that the best model, or the best of those without one of its effects, would
@@ -186,13 +216,12 @@ impl Settling<'_> {
         });
         let fewer = fewer.max_by(|a, b| a.evidence.total_cmp(&b.evidence));
         let same = search.fit(&best.effects, &best.u, Effort::default());
-        let score = |round: &Round| round.selection.best.score - SLIP * round.noise.outliers.len() as f64;
         let again = fewer.iter().chain([&same]).filter_map(|fit| round.noise.with_slips(self.forward, fit));
         let again = again.map(|noise| self.run(noise, Before::Nothing));
         let mut again: Vec<Round> =
             again.filter(|r| r.selection.best.effects.len() <= best.effects.len()).collect();
         again.push(round);
-        again.into_iter().max_by(|a, b| score(a).total_cmp(&score(b))).expect("the search before at least")
+        again.into_iter().max_by(|a, b| a.score().total_cmp(&b.score())).expect("the search before at least")
     }
 
     /// Searches again without the rows that the best model shows to be gross errors.

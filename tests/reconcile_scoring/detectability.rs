@@ -1,9 +1,10 @@
 //! How well a hidden effect could be seen at all, whoever looks.
 
 use armwright::reconcile::Campaign;
+use armwright::reconcile::candidates::candidates;
 use armwright::reconcile::fit::{Effort, fit};
 use armwright::reconcile::forward::Forward;
-use armwright::reconcile::model::{Candidate, Model, Nuisance, candidates};
+use armwright::reconcile::model::{Candidate, Model, Nuisance};
 use armwright::reconcile::noise::Noise;
 use serde_json::Value;
 

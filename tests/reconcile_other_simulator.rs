@@ -1,0 +1,73 @@
+//! Campaigns from a simulator that shares nothing with this library or its tests: a finite-element arm in relative
+//! coordinates, written from the documentation alone. Each of these once got another verdict than its key.
+
+use armwright::catalog::Catalogs;
+use armwright::reconcile::verdict::Verdict;
+use armwright::reconcile::{Campaign, reconcile};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Asserts that a campaign is explained by what is hidden in it, each effect named or listed as indistinguishable.
+fn is_explained(name: &str) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/other_simulator").join(name);
+    let outcome = reconcile(&Campaign::read(&folder, &Catalogs::builtin()).expect("sound"));
+    let key = std::fs::read_to_string(folder.join("key.json")).expect("a key");
+    let key: Value = serde_json::from_str(&key).expect("JSON");
+    let hidden: BTreeSet<String> = key["hidden"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|effect| {
+            format!("{}@{}", effect["effect"].as_str().unwrap_or(""), effect["at"].as_str().unwrap_or(""))
+        })
+        .collect();
+    assert_eq!(outcome.verdict, Verdict::Explained, "{name}: {}", outcome.to_text());
+    let named: BTreeSet<String> = outcome
+        .effects
+        .iter()
+        .map(|found| {
+            let own = format!("{}@{}", found.effect, found.at);
+            let others = found.indistinguishable_from.iter().map(|(effect, at)| format!("{effect}@{at}"));
+            others.chain([own.clone()]).find(|label| hidden.contains(label)).unwrap_or(own)
+        })
+        .collect();
+    assert_eq!(named, hidden, "{name}: {}", outcome.to_text());
+}
+
+#[test]
+fn a_payload_far_off_its_stated_centre_gets_no_second_effect() {
+    is_explained("payload-centre-far-off");
+    is_explained("payload-centre-wide-arm");
+}
+
+#[test]
+fn links_that_yield_are_found_in_frequencies_too_where_all_are_taken_for_rigid() {
+    is_explained("rigid-links-one-yields");
+    is_explained("rigid-links-both-yield");
+}
+
+#[test]
+fn friction_on_a_joint_so_stiff_that_usual_play_would_hold_it_fast_is_found() {
+    is_explained("friction-on-a-stiff-joint");
+}
+
+#[test]
+fn another_curve_than_the_stated_one_is_found() {
+    is_explained("another-curve-than-stated");
+}
+
+#[test]
+fn an_effect_that_shows_in_one_frequency_is_no_slip() {
+    is_explained("tilt-in-one-frequency");
+}
+
+#[test]
+fn a_column_in_another_unit_has_its_noise_in_it_too() {
+    is_explained("column-in-another-unit");
+}
+
+#[test]
+fn readings_a_third_noisier_than_declared_are_explained_all_the_same() {
+    is_explained("a-third-noisier");
+}
