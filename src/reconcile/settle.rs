@@ -16,6 +16,9 @@ const SLIP: f64 = 7.0;
 /// Error of a frequency by its trial shapes that is too much \[standard deviations\].
 const INEXACT: f64 = 0.5;
 
+/// How often trial shapes are taken from the best model at most.
+const SHAPES: usize = 2;
+
 /// How often the worst readings are left out to see whether calibration alone comes close to the others.
 const LOOKS: usize = 4;
 
@@ -180,7 +183,7 @@ impl Settling<'_> {
     /// and a further effect, or a law without a name, would make that good. Where that can be seen in the readings all is
     /// looked for again.
     fn with_exact_modes(&mut self, mut round: Round) -> Round {
-        for _ in 0..LOOKS {
+        for _ in 0..SHAPES {
             if round.selection.best.effects.is_empty() {
                 break;
             }

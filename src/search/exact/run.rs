@@ -29,6 +29,8 @@ const SLACKS: [f64; 25] = [
     1.0, 0.7, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.16, 0.12, 0.09, 0.075, 0.06, 0.05, 0.04, 0.035, 0.03, 0.025,
     0.02, 0.015, 0.01, 0.007, 0.005, 0.0035, 0.0025,
 ];
+/// Slacks below this are for regions alone: boxes find as much on the way.
+const FINE: f64 = 0.02;
 /// Slacks are passed over, at most so many at once, where a pass should take less than this part of the time left.
 const MOST_PASSED_OVER: usize = 4;
 const QUICK: f64 = 0.65;
@@ -240,8 +242,8 @@ impl<'p> Exact<'p> {
                     better.iter().for_each(|member| search.keep(&member.cell, member.objectives));
                 }
             }
-            let coarser =
-                SLACKS.into_iter().filter(|slack| is_large && known.is_empty() && *slack > self.gap);
+            let helps = |slack: &f64| is_large && known.is_empty() && (by_regions || *slack >= FINE);
+            let coarser = SLACKS.into_iter().filter(|slack| helps(slack) && *slack > self.gap);
             let passes: Vec<f64> = coarser.chain([self.gap]).collect();
             let mut next = 0;
             while let Some(&slack) = passes.get(next) {
