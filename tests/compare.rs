@@ -270,6 +270,7 @@ fn errors_name_the_folder_or_file_and_what_is_wrong() {
 
 fn input() -> SummaryInput {
     let material = |name: &str, cost, designs: &[Design]| MaterialFront {
+        ties_listed: true,
         status: "complete".into(),
         name: name.into(),
         cost_eur_per_kg: cost,

@@ -164,15 +164,44 @@ fn ties_too_many_for_the_front_are_listed_beside_it_and_hold() {
         "{text}"
     );
 
-    // a drive that ties.csv names, put in by a study that has no other at this joint, has the same objectives
-    let tie = ties.iter().find(|tie| tie["at"] == "pitch").expect("a joint with ties");
-    let row = front.iter().find(|row| row["design_id"] == tie["design_id"]).expect("its design");
+    // a front that says that its ties are rows of it, and one that lacks a row, are found out
+    let file = at("out/run.json");
+    let run: Value = serde_json::from_str(&std::fs::read_to_string(&file).expect("run.json")).expect("JSON");
+    assert_eq!(run["ties_listed"], json!(false));
+    let with = |key: &str, value: Value| {
+        let mut changed = run.clone();
+        changed[key] = value;
+        std::fs::write(&file, changed.to_string()).expect("written");
+    };
+    with("ties_listed", json!(true));
+    let (code, text) = armwright(&["front", "check", &out]);
+    assert_eq!(code, 9, "{text}");
+    assert!(text.contains("belongs on the front and is not there"), "{text}");
+    let whole = std::fs::read_to_string(at("out/front.csv")).expect("front.csv");
+    let mut lines: Vec<&str> = whole.lines().collect();
+    let dropped = lines.remove(lines.len() / 2);
+    std::fs::write(at("out/front.csv"), lines.join("\n") + "\n").expect("written");
+    with("front_size", json!(front.len() - 1));
+    let (code, text) = armwright(&["front", "check", &out]);
+    assert_eq!(code, 9, "{text}");
+    assert!(text.contains("belongs on the front and is not there"), "{dropped}: {text}");
+    std::fs::write(at("out/front.csv"), whole).expect("written");
+
+    // two drives that ties.csv names, put in by a study that has no other at these joints, leave the objectives
+    let of_design =
+        |id: &str, joint: &str| ties.iter().find(|tie| tie["design_id"] == id && tie["at"] == joint);
+    let has_both = |row: &&HashMap<String, String>| {
+        ["pitch", "roll"].iter().all(|joint| of_design(&row["design_id"], joint).is_some())
+    };
+    let row = front.iter().find(has_both).expect("a design with ties at two joints");
     let mut swapped = study_of_a_wrist();
-    let words = tie["instead"].split("; ").next().expect("a drive");
     for joint in ["shoulder", "roll", "pitch", "twist"] {
-        let (gear, motor) = match joint {
-            "pitch" => words.split_once(" + ").expect("gear and motor"),
-            other => (row[&format!("{other}_gear")].as_str(), row[&format!("{other}_motor")].as_str()),
+        let other = of_design(&row["design_id"], joint).filter(|_| ["roll", "pitch"].contains(&joint));
+        let (gear, motor) = match other {
+            Some(tie) => {
+                tie["instead"].split("; ").next().and_then(|drive| drive.split_once(" + ")).expect("a drive")
+            }
+            None => (row[&format!("{joint}_gear")].as_str(), row[&format!("{joint}_motor")].as_str()),
         };
         let pieces = swapped["chain"].as_array_mut().expect("a chain");
         let piece = pieces.iter_mut().find(|piece| piece["name"] == joint).expect("the joint");

@@ -328,6 +328,7 @@ fn large(front: usize) -> SummaryInput {
     };
     let table = |rows: Vec<Vec<String>>| FrontTable { columns: columns.clone(), rows };
     let per_material = |m: usize| MaterialFront {
+        ties_listed: true,
         status: "complete".into(),
         name: materials[m].into(),
         cost_eur_per_kg: None,

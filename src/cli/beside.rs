@@ -149,8 +149,8 @@ impl BesideArgs {
 }
 
 /// Why there is no list of designs near a front although it was asked for.
-const NO_NEAR: &str = "No near.csv: only beside a whole front are the designs near it found; a longer --time-limit and \
-                       --gap 0% help, and narrower constraints.";
+const NO_NEAR: &str = "No near.csv: designs near a front are looked for if it is whole and has its ties as rows; a longer \
+                       --time-limit, --gap 0% and narrower constraints help.";
 
 fn near_json(near: &NearFront) -> Value {
     json!({

@@ -167,6 +167,7 @@ impl Finished<'_> {
                 .map(|of| MaterialFront {
                     cost_eur_per_kg: cost(&of.name),
                     name: of.name.clone(),
+                    ties_listed: of.ties_listed,
                     status: of.status.word().into(),
                     front: front_table(self.problem, self.catalogs, &of.front),
                 })
@@ -210,6 +211,7 @@ impl Finished<'_> {
                 json!({
                     "name": m.name, "slug": slug(&m.name), "status": m.status,
                     "front_size": m.front.rows.len(), "cost_eur_per_kg": m.cost_eur_per_kg,
+                    "ties_listed": m.ties_listed,
                 })
             })
             .collect();

@@ -27,7 +27,7 @@ enum FrontVerb {
     /// Try to find fault with a front: every row, rows against each other, designs that are missing
     ///
     /// Missing designs are looked for by bounds that share no code with the exact search's (docs/exact.md). The
-    /// last line says so, or why the exact search's own had to do. Of a run that was stopped its gap is checked: that
+    /// last line says so, or why the exact search's own had to do. Of a front with a gap that is checked: that
     /// no design beats every row by more.
     Check(CheckArgs),
 }

@@ -110,11 +110,11 @@ fn changes(asked: [&Asked; 2], found: &[Written], catalogs: &Catalogs) -> Change
 fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> Rerun {
     let [stay, leave, enter] = changes.counts();
     let sizes: Vec<usize> = found.iter().map(|w| w.front.rows.len()).collect();
-    let partial = found.iter().any(|w| w.status == Status::Partial);
     let is_whole = |w: &Written| w.status != Status::Partial && w.gap.is_none_or(|gap| gap == 0.0);
+    let all_whole = found.iter().all(is_whole);
     let json = json!({
         "study": name,
-        "status": if partial { Status::Partial } else { Status::Complete }.word(),
+        "status": if all_whole { Status::Complete } else { Status::Partial }.word(),
         "carried_over": carry::to_json(&corrected.carried),
         "effects_mass_kg": corrected.study.space.effects_mass_kg(),
         "nominal": {"results": "study/nominal", "front_size": sizes[0], "gap": found[0].gap},
@@ -126,7 +126,7 @@ fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> 
         "\nstudy {name}, re-run with the corrected arm\n{}\n{}{}",
         carry::to_text(&corrected.carried).trim_start(),
         changes.to_text(),
-        if found.iter().all(is_whole) { String::new() } else { lacking_words(found) }
+        if all_whole { String::new() } else { lacking_words(found) }
     );
     Rerun { text, json, csv: Some(changes.to_csv()) }
 }

@@ -26,7 +26,8 @@ pub struct SearchArgs {
     #[arg(long, value_name = "SECONDS")]
     time_limit: Option<f64>,
     /// End the exact search once it is proved that no design beats every listed one by more than this part in tip
-    /// deflection, mass and lowest mode at once, such as 2%; 0% for the whole front. Default: the study's gap_percent
+    /// deflection, mass and lowest mode at once, such as 2%; 0% for the whole front, beside which alone there are
+    /// fronts by material and designs near it. Default: the study's gap_percent
     #[arg(long, value_name = "PERCENT", value_parser = part_or_none)]
     gap: Option<f64>,
 }

@@ -41,10 +41,15 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     let coefficients = Model::of(&nuisance, &candidates, &best.effects).coefficients(&forward, &best.u);
     let stretches = units::stretches(&forward, &coefficients);
     if !few && !stretches.is_empty() {
-        forward = Forward::new(campaign);
-        units::stretch(&mut forward, &stretches);
-        found = Settled::of_many(campaign, &mut forward, &nuisance, &candidates);
-        found.remarks.extend(stretches.iter().map(units::Stretch::sentence));
+        let mut stretched = Forward::new(campaign);
+        units::stretch(&mut stretched, &stretches);
+        let again = Settled::of_many(campaign, &mut stretched, &nuisance, &candidates);
+        let named: Vec<&Candidate> = again.selection.best.effects.iter().map(|&i| &candidates[i]).collect();
+        // larger deviations would hide other physics
+        if stretches.iter().all(|stretch| stretch.is_among(&named)) {
+            (forward, found) = (stretched, again);
+            found.remarks.extend(stretches.iter().map(units::Stretch::sentence));
+        }
     }
     let weights = found.noise.weights(&forward);
     let chosen = &found.selection.best;

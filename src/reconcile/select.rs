@@ -326,8 +326,9 @@ impl<'a> Search<'a> {
     fn parts(&self, scored: &Scored) -> Vec<Scored> {
         let mut parts: Vec<Scored> = Vec::new();
         let mut open = vec![scored.clone()];
-        while let Some(whole) = open.pop().filter(|whole| whole.effects.len() > 1) {
-            for effect in 0..whole.effects.len() {
+        while let Some(whole) = open.pop() {
+            let fewer = if whole.effects.len() > 1 { whole.effects.len() } else { 0 };
+            for effect in 0..fewer {
                 let (effects, u) = self.without(&whole, effect);
                 if parts.iter().all(|part| !same_set(&part.effects, &effects)) {
                     parts.push(Scored { effects, u, ..whole });

@@ -4,6 +4,7 @@
 //! the one with the right factor neither, so the slip shows only once they are taken to be as much too small.
 
 use super::forward::{Coefficients, Forward};
+use super::model::Candidate;
 use super::stats::median;
 use crate::arm::effect::{Channel, UNIT_SLIPS};
 
@@ -18,6 +19,11 @@ pub struct Stretch {
 }
 
 impl Stretch {
+    /// Whether the slip is among some effects.
+    pub fn is_among(&self, effects: &[&Candidate]) -> bool {
+        effects.iter().any(|effect| effect.kind.name == "wrong_unit" && effect.at == self.channel.word())
+    }
+
     /// What is taken for granted, in words.
     pub fn sentence(&self) -> String {
         let Self { channel, factor } = self;

@@ -64,6 +64,8 @@ impl SummaryFacts {
 /// The front of one material's designs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaterialFront {
+    /// Whether designs that differ only in drives of equal mass and curve are all in it.
+    pub ties_listed: bool,
     /// Name of the material.
     pub name: String,
     /// Cost of the raw material \[EUR/kg\]; `None` = unknown.

@@ -6,7 +6,7 @@
 
 use super::design::{number, options};
 use super::outward::ArmProblem;
-use super::slot::joint_slot;
+use super::slot::{Slot, joint_slot};
 use super::space::{DesignSpace, Excerpt, LinkChoice, LinkOption, SpacePiece};
 use super::station::reaches_m;
 use crate::catalog::Catalogs;
@@ -115,6 +115,15 @@ impl LinkChoice {
 }
 
 impl ArmProblem<'_> {
+    /// Whether two designs, by their options in the whole space, differ only in drives that weigh and twist alike.
+    pub fn are_alike(&self, a: &[u32], b: &[u32]) -> bool {
+        let pairs = self.level_slots().iter().zip(a.iter().zip(b));
+        pairs.into_iter().all(|(&slot, (a, b))| match &self.slots()[slot] {
+            Slot::Sized(sized) => sized.are_alike(*a as usize, *b as usize),
+            _ => a == b,
+        })
+    }
+
     /// Number in the whole space of a design of this one.
     pub fn whole_number(&self, design: u128) -> u128 {
         let here = options(self.level_sizes_slice(), design).unwrap_or_default();

@@ -35,7 +35,7 @@ impl SizedJoint<'_> {
         // equal masses stand side by side: only the kinds of the last mass may have one more
         let mut first_of_mass = 0;
         for index in 0..self.table.len() {
-            let of_kind = |kind: &&mut Vec<u32>| self.laws[kind[0] as usize] == self.laws[index];
+            let of_kind = |kind: &&mut Vec<u32>| self.are_alike(kind[0] as usize, index);
             if index > 0 && self.table.mass_kg(index) != self.table.mass_kg(index - 1) {
                 first_of_mass = kinds.len();
             }
@@ -53,10 +53,12 @@ impl SizedJoint<'_> {
         index: usize,
         demand: &'t JointDemand,
     ) -> impl Iterator<Item = usize> + 't {
-        let is_alike = move |other: &usize| {
-            self.table.mass_kg(*other) == self.table.mass_kg(index) && self.laws[*other] == self.laws[index]
-        };
-        self.table.all_fits(demand).filter(is_alike)
+        self.table.all_fits(demand).filter(move |other| self.are_alike(*other, index))
+    }
+
+    /// Whether two drives weigh and twist alike.
+    pub(super) fn are_alike(&self, a: usize, b: usize) -> bool {
+        self.table.mass_kg(a) == self.table.mass_kg(b) && self.laws[a] == self.laws[b]
     }
 }
 

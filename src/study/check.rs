@@ -52,7 +52,7 @@ pub struct Claim<'t> {
     /// No design beats every row by more than this part in all three objectives at once, 0 if it is whole; `None` if it
     /// claims no more than its rows.
     pub gap: Option<f64>,
-    /// Whether designs with equal objectives are all rows of it.
+    /// Whether designs that differ only in drives of equal mass and curve are all rows of it.
     pub ties_listed: bool,
 }
 
@@ -86,9 +86,16 @@ pub fn check_front(
     let completeness = match gap {
         Some(gap) => {
             let front = Claimed { front: &front, gap: *gap, ties_listed: *ties_listed };
-            let (found, completeness) = look_for_missing(study, catalogs, &front, stop, deadline);
-            list(&mut faults, missing(study, catalogs, &front, &problem, &found), "designs are missing");
-            completeness
+            let look = look_for_missing(study, catalogs, &front, stop, deadline);
+            list(
+                &mut faults,
+                missing(study, catalogs, &front, &problem, &look.numbers),
+                "designs are missing",
+            );
+            if *ties_listed && look.lacks_ties {
+                faults.push("it says that all ties are rows of it, and they are more than its rows".into());
+            }
+            look.completeness
         }
         None => Err("the run was stopped early and claims no more than its rows".into()),
     };
@@ -110,8 +117,15 @@ impl Claimed<'_> {
     }
 }
 
-/// Numbers of designs that may be missing, and whether the look at all designs came to its end.
-type Look = (Vec<u128>, Result<Completeness, String>);
+/// A look at all designs beside a front.
+struct Look {
+    /// Numbers of designs that may be missing.
+    numbers: Vec<u128>,
+    /// Whether it came to its end.
+    completeness: Result<Completeness, String>,
+    /// Whether ties were left out because they are too many.
+    lacks_ties: bool,
+}
 
 /// Looks at all designs beside a front, by bounds that share no code with the exact search's where they can.
 fn look_for_missing(
@@ -124,23 +138,24 @@ fn look_for_missing(
     let designs = study.space.designs(catalogs).map_or(f64::INFINITY, |n| n as f64);
     let vast = || format!("they do not go region by region, as {designs:.1e} designs ask for");
     let unseen = witness::conditions(&study.space).err().or_else(|| (designs > exact::VAST).then(vast));
-    let (numbers, boxes, open) = match unseen {
+    let (numbers, boxes, open, lacks_ties) = match unseen {
         None => {
             let looked = witness::missing(&study.space, catalogs, &front.objectives(), stop, deadline);
-            (looked.candidates, looked.boxes, looked.open)
+            (looked.candidates, looked.boxes, looked.open, false)
         }
         Some(_) => {
             let rows: Vec<Objectives> = front.front.iter().map(|d| d.design.objectives).collect();
             let search = Exact::new(&study.space, catalogs, stop, deadline).to_gap(front.gap);
             let found = search.run(&rows);
-            (found.front.iter().map(|c| c.number).collect(), found.boxes, found.boxes_open)
+            let numbers = found.front.iter().map(|c| c.number).collect();
+            (numbers, found.boxes, found.boxes_open, front.gap == 0.0 && !found.ties_listed)
         }
     };
     let completeness = match open {
         0 => Ok(Completeness { boxes, gap: front.gap, by_exact_search: unseen }),
         open => Err(format!("stopped with {open} boxes or regions unopened")),
     };
-    (numbers, completeness)
+    Look { numbers, completeness, lacks_ties }
 }
 
 fn candidate(problem: &ArmProblem, whole: u128) -> Option<Candidate> {
@@ -217,14 +232,20 @@ fn missing(
         .collect();
     let own = claimed.objectives().into_iter().map(|o| o.minimized());
     let points: Vec<[f64; 3]> = own.chain(judged.iter().map(|(_, d)| d.objectives.minimized())).collect();
-    let is_row = |i: &usize| *i < front.len();
+    let sizes = study.space.level_sizes(catalogs);
+    let rows: Vec<Vec<u32>> = listed.iter().filter_map(|&whole| options(&sizes, whole)).collect();
+    // a tie that is not listed stands behind a row
+    let stands_behind_a_row = |whole: u128| {
+        !ties_listed
+            && options(&sizes, whole).is_some_and(|own| rows.iter().any(|row| beyond.are_alike(&own, row)))
+    };
     let mut ids: Vec<u128> = nondominated(&points)
         .expect("objectives are numbers")
         .into_iter()
-        .filter(|group| *ties_listed || !group.iter().any(is_row))
         .flatten()
         .filter_map(|i| i.checked_sub(front.len()))
         .map(|i| judged[i].0)
+        .filter(|&whole| !stands_behind_a_row(whole))
         .collect();
     ids.sort_unstable();
     let what = match *gap > 0.0 {

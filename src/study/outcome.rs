@@ -46,6 +46,8 @@ pub struct OfMaterial {
     pub status: Status,
     /// Their front.
     pub front: Front,
+    /// Whether it has all designs that differ only in drives of equal mass and curve, or one of them each.
+    pub ties_listed: bool,
 }
 
 /// Sweeps the study's designs. `watch` runs beside it with a function that tells how many designs are
@@ -65,7 +67,7 @@ pub fn run_study(
     let of_material = |(name, candidates): (String, &Vec<Candidate>)| {
         let front = front_of(&judged, candidates);
         let status = if front.is_empty() { Status::Infeasible } else { outcome.status };
-        OfMaterial { name, status, front }
+        OfMaterial { name, status, front, ties_listed: true }
     };
     let names = study.space.material_names();
     StudyOutcome {
@@ -96,15 +98,15 @@ fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) 
 pub struct ExactStudy {
     /// The study with those link options alone that the designs found are made of.
     pub study: Study,
-    /// Its fronts; those of the materials only if the front of all designs is certified.
+    /// Its fronts; those of the materials only if the front of all designs is whole.
     pub outcome: StudyOutcome,
     /// Boxes bounded for the front of all designs, and how many were left open.
     pub boxes: [u64; 2],
-    /// By how much the front may be bettered; 0 if it is certified.
+    /// By how much the front may be bettered; 0 if it is whole.
     pub gap: Option<f64>,
     /// The designs near the front; `None` if they were not asked for, or time ran out before all were found.
     pub near: Option<NearDesigns>,
-    /// Whether the fronts have all designs that differ only in drives of equal mass and curve, or one of them each.
+    /// Whether the front has all designs that differ only in drives of equal mass and curve, or one of them each.
     pub ties_listed: bool,
 }
 
@@ -141,7 +143,8 @@ impl Searched {
         };
         let by_material: Vec<ExactOutcome> = (0..names.len()).map(of_material).collect();
         Self {
-            near: near.and_then(|slack| {
+            // among millions of ties of the front nothing else would be near it
+            near: near.filter(|_| whole.ties_listed).and_then(|slack| {
                 let most = slack.most + whole.front.len();
                 search.near(&whole.front, Slack { most, ..slack })
             }),
@@ -171,9 +174,13 @@ impl Searched {
         // a design may be a candidate of two fronts
         let judged =
             by_full_model(problem, groups.iter().flatten().chain(&front).map(|c| c.number).collect());
-        let of_material = |((name, found), candidates): (&(String, ExactOutcome), &Vec<Candidate>)| {
-            OfMaterial { name: name.clone(), status: status(found), front: front_of(&judged, candidates) }
-        };
+        let of_material =
+            |((name, found), candidates): (&(String, ExactOutcome), &Vec<Candidate>)| OfMaterial {
+                name: name.clone(),
+                status: status(found),
+                front: front_of(&judged, candidates),
+                ties_listed: found.ties_listed,
+            };
         let whole_front = front_of(&judged, &front);
         let on_front: HashSet<u128> = whole_front.iter().map(|j| j.design.number).collect();
         let near = near.as_ref().zip(most).map(|(near, most)| {
@@ -230,7 +237,7 @@ pub fn run_exact(
     let study = Study { space, ..study.clone() };
     let whole = &searched.whole;
     let (boxes, gap) = ([whole.boxes, whole.boxes_open], whole.gap);
-    let ties_listed = whole.ties_listed && searched.by_material.iter().all(|(_, of)| of.ties_listed);
+    let ties_listed = whole.ties_listed;
     let (outcome, near) = searched.judged(&ArmProblem::new(&study.space, catalogs), most);
     ExactStudy { study, outcome, boxes, gap, near, ties_listed }
 }

@@ -73,7 +73,8 @@ impl Problem<'_> {
         (designs, lists_all)
     }
 
-    /// What each level of a design of kinds may be, tip first and never empty: the drives of the kind that hold.
+    /// What each level of a design of kinds may be, tip first and never empty: the drives of the kind that hold, those
+    /// first that do by more than rounding.
     fn drives_that_hold<'f>(&self, found: &'f [Candidate]) -> Vec<(&'f Candidate, Vec<Vec<u32>>)> {
         let chosen: Vec<Option<Vec<u32>>> =
             found.iter().map(|candidate| options(&self.level_sizes, candidate.number)).collect();
@@ -91,7 +92,14 @@ impl Problem<'_> {
                 .map(|(&piece, &option)| match (&self.parts[piece], &work.least[piece]) {
                     (Part::Drives { sized, kinds, .. }, Some(asked)) => {
                         let holds = |drive: &&u32| sized.table.limits(**drive as usize).hold(&asked.demand);
-                        let drives: Vec<u32> = kinds.drives(option).iter().filter(holds).copied().collect();
+                        let mut drives: Vec<u32> =
+                            kinds.drives(option).iter().filter(holds).copied().collect();
+                        // those that hold whatever rounding does come first
+                        let surely = |drive: &u32| {
+                            let limits = sized.table.limits(*drive as usize);
+                            work.demands[piece].as_ref().is_some_and(|most| limits.hold(most))
+                        };
+                        drives.sort_by_key(|drive| !surely(drive));
                         (!drives.is_empty()).then_some(drives)
                     }
                     _ => Some(vec![option]),

@@ -243,7 +243,7 @@ impl<'c> Problem<'c> {
         Some(narrower)
     }
 
-    /// Designs in a box.
+    /// Designs in a box, drives of a kind as one.
     pub fn members(&self, cell: &[u32]) -> f64 {
         let of = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
             Part::Drives { tree, .. } => f64::from(tree.node(node).members),
@@ -263,7 +263,7 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(kept).map(of).collect()
     }
 
-    /// Designs below nodes of each level's whole tree.
+    /// Designs below nodes of each level's whole tree, drives of a kind as one.
     pub fn designs_below(&self, kept: &[Vec<u32>]) -> f64 {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, .. } => tree.members_of(nodes),

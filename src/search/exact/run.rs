@@ -58,7 +58,7 @@ pub struct Exact<'p> {
     stop: &'p AtomicBool,
     deadline: Option<Instant>,
     boxes: AtomicU64,
-    /// The slack of the last pass, or of a search from known designs.
+    /// The slack with which the search is content: that of the last pass, or of a search from known designs.
     gap: f64,
     /// Designs above which a space is searched region by region, and down to how many.
     regions_from: f64,
