@@ -34,6 +34,8 @@ pub(super) struct Written {
     /// How the search ended, and by how much its front may be bettered if it was stopped.
     pub status: Status,
     pub gap: Option<f64>,
+    /// Whether no design is missing in it.
+    pub is_whole: bool,
 }
 
 impl Written {
@@ -134,7 +136,8 @@ impl Finished<'_> {
         files.push(("study.json".into(), self.text.as_bytes().to_vec()));
         let terminal = terminal_summary(&summary) + &terminal;
         let (status, gap) = (self.outcome.sweep.status, summary.facts.gap);
-        Ok(Written { files, terminal, front: summary.overall, status, gap })
+        let is_whole = summary.facts.is_whole();
+        Ok(Written { files, terminal, front: summary.overall, status, gap, is_whole })
     }
 
     fn summary(&self) -> SummaryInput {

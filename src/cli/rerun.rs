@@ -110,8 +110,7 @@ fn changes(asked: [&Asked; 2], found: &[Written], catalogs: &Catalogs) -> Change
 fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> Rerun {
     let [stay, leave, enter] = changes.counts();
     let sizes: Vec<usize> = found.iter().map(|w| w.front.rows.len()).collect();
-    let is_whole = |w: &Written| w.status != Status::Partial && w.gap.is_none_or(|gap| gap == 0.0);
-    let all_whole = found.iter().all(is_whole);
+    let all_whole = found.iter().all(|written| written.is_whole);
     let json = json!({
         "study": name,
         "status": if all_whole { Status::Complete } else { Status::Partial }.word(),

@@ -2,9 +2,9 @@
 //! missing, how sure that is, and what it changes.
 //!
 //! [`campaign`] reads the readings; [`forward`] predicts them fast, [`exact`] by mechanics directly; [`model`] says
-//! what is free, [`candidates`] what is looked for and [`expected`] how large it may be; [`fit`] fits; [`select`] finds the effects; [`noise`] finds
-//! gross errors and wrongly declared deviations, [`units`] columns whose deviations are in another unit, and [`settle`]
-//! finds effects and all this, for they depend on each other;
+//! what is free, [`candidates`] what is looked for and [`expected`] how large it may be; [`fit`] fits; [`select`]
+//! finds the effects; [`noise`] finds gross errors and wrongly declared deviations, [`units`] columns whose deviations
+//! are in another unit, and [`settle`] finds effects and all this, for they depend on each other;
 //! [`lack_of_fit`] asks whether structure is left and [`unnamed`] whether one of the [`laws`] that no effect has does
 //! better; [`few_rows`] says what a handful of readings can; [`kept_out`] confirms on poses kept out; [`interval`]
 //! gives the intervals; [`analysis`] draws the conclusion and [`verdict`] is its form, [`page`] its page for a

@@ -327,10 +327,9 @@ impl<'a> Search<'a> {
         let mut parts: Vec<Scored> = Vec::new();
         let mut open = vec![scored.clone()];
         while let Some(whole) = open.pop() {
-            let fewer = if whole.effects.len() > 1 { whole.effects.len() } else { 0 };
-            for effect in 0..fewer {
+            for effect in 0..whole.effects.len() {
                 let (effects, u) = self.without(&whole, effect);
-                if parts.iter().all(|part| !same_set(&part.effects, &effects)) {
+                if !effects.is_empty() && parts.iter().all(|part| !same_set(&part.effects, &effects)) {
                     parts.push(Scored { effects, u, ..whole });
                     open.push(parts[parts.len() - 1].clone());
                 }

@@ -130,16 +130,14 @@ impl ModalTest {
             self.forces = forces;
             return;
         }
-        let twists = || layout.joints.iter().map(|joint| joint.twist);
-        let softest = twists().map(|at| compliances[at]).fold(0.0, f64::max);
+        let softest = layout.joints.iter().map(|joint| compliances[joint.twist]).fold(0.0, f64::max);
         for (own, drawn) in compliances.iter_mut().zip(&layout.lacking) {
             *own = if *own == 0.0 { *drawn } else { *own };
         }
-        twists()
-            .filter(|&at| compliances[at] == 0.0)
-            .collect::<Vec<_>>()
-            .into_iter()
-            .for_each(|at| compliances[at] = softest);
+        for joint in &layout.joints {
+            let own = &mut compliances[joint.twist];
+            *own = if *own == 0.0 { softest } else { *own };
+        }
         self.forces = self.trial_forces(layout, coefficients, &compliances);
     }
 
