@@ -39,8 +39,7 @@ pub struct Cli {
     /// built-in ones.
     #[arg(long, global = true, value_name = "DIR")]
     catalogs: Option<PathBuf>,
-    /// Worker threads; the default is one per core. Results do not depend on it, but which designs stand for others
-    /// in a front with a gap.
+    /// Worker threads; the default is one per core. Results do not depend on it.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     #[command(subcommand)]

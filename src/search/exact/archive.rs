@@ -7,7 +7,6 @@ use super::bound::Ceiling;
 use crate::search::Objectives;
 use crate::search::archive::Archive;
 use std::collections::HashMap;
-use std::sync::{Mutex, PoisonError, RwLock};
 
 /// What two objectives may differ by and still count as equal.
 const EQUAL: f64 = 1e-9;
@@ -18,32 +17,28 @@ const NEAR: f64 = 0.4;
 /// Steps an octave of the lists.
 const STEPS: f64 = 64.0;
 
-/// Shared by all workers.
+/// Designs that meet every constraint.
 pub(super) struct Found {
     table: Archive,
-    rows: Vec<RwLock<HashMap<i32, Vec<Objectives>>>>,
-    columns: Vec<RwLock<HashMap<i32, Vec<Objectives>>>>,
-    all: Mutex<Vec<Objectives>>,
+    rows: HashMap<i32, Vec<Objectives>>,
+    columns: HashMap<i32, Vec<Objectives>>,
+    all: Vec<Objectives>,
 }
-
-const SHARDS: usize = 64;
 
 impl Default for Found {
     fn default() -> Self {
-        let lists = || (0..SHARDS).map(|_| RwLock::new(HashMap::new())).collect();
-        Self { table: Archive::new(6), rows: lists(), columns: lists(), all: Mutex::default() }
+        Self { table: Archive::new(6), rows: HashMap::new(), columns: HashMap::new(), all: Vec::new() }
     }
 }
 
 impl Found {
     /// Enters a design that meets every constraint.
-    pub fn enter(&self, found: &Objectives) {
+    pub fn enter(&mut self, found: &Objectives) {
         self.table.enter(found);
-        self.all.lock().unwrap_or_else(PoisonError::into_inner).push(*found);
-        for (lists, key) in [(&self.rows, step(found.mass_kg)), (&self.columns, step(found.tip_deflection_m))]
-        {
-            let mut shard = write(&lists[shard(key)]);
-            let list = shard.entry(key).or_default();
+        self.all.push(*found);
+        let keys = [step(found.mass_kg), step(found.tip_deflection_m)];
+        for (lists, key) in [&mut self.rows, &mut self.columns].into_iter().zip(keys) {
+            let list = lists.entry(key).or_default();
             let is_beaten = |by: &Objectives, o: &Objectives| {
                 by.mass_kg <= o.mass_kg
                     && by.tip_deflection_m <= o.tip_deflection_m
@@ -56,42 +51,28 @@ impl Found {
         }
     }
 
+    /// All designs, in the order in which they were entered.
+    pub fn all(&self) -> &[Objectives] {
+        &self.all
+    }
+
     /// Whether some design found beats every member of a box.
     pub fn beats(&self, ceiling: &Ceiling) -> bool {
         let best = Objectives::from(*ceiling);
         if self.table.rejects(&best) {
             return true;
         }
-        let in_list = |lists: &[RwLock<HashMap<i32, Vec<Objectives>>>], key: i32| {
-            let lists = lists[shard(key)].read().unwrap_or_else(std::sync::PoisonError::into_inner);
-            lists.get(&key).is_some_and(|list| list.iter().any(|o| is_better(o, &best)))
+        let in_list = |list: Option<&Vec<Objectives>>| {
+            list.is_some_and(|list| list.iter().any(|o| is_better(o, &best)))
         };
-        let (row, column) = (step(best.mass_kg), step(best.tip_deflection_m));
-        in_list(&self.rows, row) || in_list(&self.columns, column)
+        in_list(self.rows.get(&step(best.mass_kg))) || in_list(self.columns.get(&step(best.tip_deflection_m)))
     }
-}
 
-impl Found {
     /// Whether some design found would beat the box if its ceiling were a little lower in frequency: then
     /// a better trial shape is worth its price.
     pub fn nearly_beats(&self, ceiling: &Ceiling) -> bool {
         self.beats(&Ceiling { hz: ceiling.hz * NEAR, ..*ceiling })
     }
-}
-
-impl Found {
-    /// Looks at all designs found, in the order in which they were.
-    pub fn look_at_all<T>(&self, look: impl FnOnce(&[Objectives]) -> T) -> T {
-        look(&self.all.lock().unwrap_or_else(PoisonError::into_inner))
-    }
-}
-
-fn write<T>(lock: &RwLock<T>) -> std::sync::RwLockWriteGuard<'_, T> {
-    lock.write().unwrap_or_else(std::sync::PoisonError::into_inner)
-}
-
-fn shard(key: i32) -> usize {
-    key.rem_euclid(SHARDS as i32) as usize
 }
 
 /// The step of a positive number on a logarithmic scale.

@@ -8,21 +8,22 @@
 use super::archive::Found;
 use super::bound::{Cell, Verdict, Work};
 use super::grid::thinned;
-use super::run::Search;
+use super::known::{Finds, Known};
+use super::problem::Problem;
+use super::run::Exact;
 use super::shape::Shape;
 use crate::search::Objectives;
+use crate::search::design::number;
+use crate::search::sweep::Candidate;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Generations at most: later ones hardly find better designs.
 const GENERATIONS: u64 = 20;
 /// Children of a generation at most; a space has no more than the root of its designs.
 const MOST_CHILDREN: f64 = 8192.0;
-/// Part of the time left that may be spent.
-const PART_OF_TIME: f64 = 0.2;
 /// Step of the grid, in logarithms of the objectives.
 const STEP: f64 = 0.02;
 /// Places in the order of mass within which the other parent is.
@@ -35,28 +36,34 @@ pub(super) struct Member {
     pub shapes: Arc<Vec<Shape>>,
 }
 
-/// The designs that come of some, for generations or until the time for it is over.
-pub(super) fn evolve(search: &Search, first: Vec<Member>, deadline: Option<Instant>) -> Vec<Member> {
-    let started = Instant::now();
-    let most = deadline.map(|deadline| deadline.saturating_duration_since(started).mul_f64(PART_OF_TIME));
-    let seen = Found::default();
+/// Finds designs that come of some, for generations.
+pub(super) fn evolve<'p>(exact: &Exact<'p>, problem: &Problem<'p>, first: Vec<Member>, known: &mut Known) {
+    let mut seen = Found::default();
     first.iter().for_each(|member| seen.enter(&member.objectives));
     let mut parents = by_mass(first);
-    let brood = (search.problem.designs() as f64).sqrt().min(MOST_CHILDREN) as u64;
+    let brood = (problem.designs() as f64).sqrt().min(MOST_CHILDREN) as u64;
+    let mut finds = Finds::default();
     for generation in 0..GENERATIONS {
-        if parents.is_empty() || search.stopped() || most.is_some_and(|most| started.elapsed() > most) {
+        if parents.is_empty() || exact.stopped() {
             break;
         }
         let children = (0..brood).into_par_iter().map_init(Work::default, |work, n| {
             let dice = Xoshiro256PlusPlus::seed_from_u64(generation * brood + n);
-            Mating { search, parents: &parents, seen: &seen, dice }.child(work)
+            Mating { exact, problem, parents: &parents, seen: &seen, dice }.child(work)
         });
-        let children: Vec<Member> = children.flatten().collect();
+        let judged: Vec<Option<Member>> = children.flatten().collect();
+        finds.evaluated += judged.len() as u64;
+        let children: Vec<Member> = judged.into_iter().flatten().collect();
         children.iter().for_each(|member| seen.enter(&member.objectives));
         parents.extend(children);
         parents = by_mass(parents);
     }
-    parents
+    let candidate = |member: &Member| {
+        let options = problem.options(&member.cell)?;
+        Some(Candidate { number: number(&problem.level_sizes, &options), objectives: member.objectives })
+    };
+    finds.kept.extend(parents.iter().filter_map(candidate));
+    known.learn(finds);
 }
 
 /// One design a cell, the lightest first.
@@ -68,15 +75,16 @@ fn by_mass(members: Vec<Member>) -> Vec<Member> {
 
 /// Where one child comes from.
 struct Mating<'a, 'p> {
-    search: &'a Search<'a, 'p>,
+    exact: &'a Exact<'p>,
+    problem: &'a Problem<'p>,
     parents: &'a [Member],
     seen: &'a Found,
     dice: Xoshiro256PlusPlus,
 }
 
 impl Mating<'_, '_> {
-    /// A child that nothing seen beats.
-    fn child(mut self, work: &mut Work) -> Option<Member> {
+    /// A child that nothing seen beats, if it meets the constraints; none at all if something beats it.
+    fn child(mut self, work: &mut Work) -> Option<Option<Member>> {
         let first = self.below(self.parents.len() as u64);
         let from = first.saturating_sub(CLOSE);
         let to = (first + CLOSE + 1).min(self.parents.len() as u64);
@@ -94,20 +102,14 @@ impl Mating<'_, '_> {
         if cell == parent.cell {
             return None;
         }
-        let objectives = self.judge(&mut cell, &parent.shapes, work)?;
-        Some(Member { cell, objectives, shapes: Arc::clone(&parent.shapes) })
-    }
-
-    /// The objectives of a design that meets the constraints and that nothing seen beats.
-    fn judge(&self, cell: &mut Cell, shapes: &Arc<Vec<Shape>>, work: &mut Work) -> Option<Objectives> {
-        self.search.count_box();
-        let (problem, mut shapes) = (self.search.problem, Arc::clone(shapes));
-        let verdict = problem.bound(cell, &mut shapes, work, |c| self.seen.beats(c), |_| true);
+        self.exact.count_box();
+        let mut shapes = Arc::clone(&parent.shapes);
+        let verdict = self.problem.bound(&mut cell, &mut shapes, work, |c| self.seen.beats(c), |_| true);
         let Verdict::Open(ceiling) = verdict else { return None };
-        self.search.count_design();
-        let objectives = problem.objectives(&ceiling, work);
-        let holds = work.is_point() && !problem.space.constraints.broken(&objectives).contains(&true);
-        holds.then_some(objectives)
+        let objectives = self.problem.objectives(&ceiling, work);
+        let holds = work.is_point() && !self.problem.space.constraints.broken(&objectives).contains(&true);
+        let shapes = Arc::clone(&parent.shapes);
+        Some(holds.then_some(Member { cell, objectives, shapes }))
     }
 
     /// Takes a third of another design's parts.
@@ -121,7 +123,7 @@ impl Mating<'_, '_> {
 
     /// Takes another option of a level: any below a box around the present one, more often a small box.
     fn change(&mut self, cell: &mut Cell, level: usize) {
-        let problem = self.search.problem;
+        let problem = self.problem;
         let option = std::mem::take(&mut cell[level]);
         let mut around = vec![cell[level]];
         while let Some([low, high]) = problem.halves(cell, level) {

@@ -7,13 +7,12 @@
 use super::bound::{Ceiling, Verdict, Work};
 use super::kinds::Alike;
 use super::problem::Problem;
-use super::run::{Exact, Opened, lock};
+use super::run::{Exact, Opened};
 use crate::search::Objectives;
 use crate::search::design::number;
 use crate::search::near::{BUFFER, NearDesign, NearDesigns, ROUNDING, Shortfall, Slack, keep_nearest};
 use crate::search::sweep::Candidate;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::Arc;
 
 /// How much a better trial shape may lower a ceiling's frequency.
 const NEAR: f64 = 0.4;
@@ -22,26 +21,28 @@ impl Exact<'_> {
     /// Finds the designs that keep the constraints and whose shortfall is at most the slack, those of the front among
     /// them; `None` if it was stopped. Of far more designs than are asked for the number is not known.
     pub fn near(&self, front: &[Candidate], slack: Slack) -> Option<NearDesigns> {
-        let seeker = Seeker {
+        let mut seeker = Seeker {
             shortfall: Shortfall::of(front.iter().map(|c| c.objectives)),
             most: slack.most,
-            reach: AtomicU64::new((slack.part + ROUNDING).to_bits()),
-            found: AtomicU64::new(0),
-            nearest: Mutex::new(Vec::new()),
+            reach: slack.part + ROUNDING,
+            found: 0,
+            nearest: Vec::new(),
         };
-        let is_cut_short = AtomicBool::new(false);
         if let Some(problem) = self.problem(&|_| true, Alike::Apart) {
-            self.every_box(
+            let left = self.every_box(
                 &problem,
-                |here, work, children| self.open_near(&problem, &seeker, here, work, children),
-                |_| is_cut_short.store(true, Ordering::Relaxed),
+                &mut seeker,
+                |seeker, next, work, near| self.open_near(&problem, seeker, next, work, near),
+                Seeker::learn,
             );
+            if !left.is_empty() {
+                return None;
+            }
         }
-        let mut nearest = seeker.nearest.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let Seeker { mut nearest, found, .. } = seeker;
         keep_nearest(&mut nearest, slack.most);
-        let found = seeker.found.into_inner();
         let total = (found <= held_at_most(slack.most) as u64).then_some(found);
-        (!is_cut_short.into_inner()).then_some(NearDesigns { nearest, total })
+        Some(NearDesigns { nearest, total })
     }
 
     /// Bounds a box and halves it, or keeps it if it is one design.
@@ -51,8 +52,8 @@ impl Exact<'_> {
         seeker: &Seeker,
         mut here: Opened,
         work: &mut Work,
-        children: &mut Vec<Opened>,
-    ) {
+        near: &mut Vec<NearDesign>,
+    ) -> Vec<Opened> {
         self.count_box();
         let lower = |ceiling: &Ceiling| Ceiling { hz: ceiling.hz * NEAR, ..*ceiling };
         let verdict = problem.bound(
@@ -62,21 +63,22 @@ impl Exact<'_> {
             |ceiling| !seeker.is_near(ceiling),
             |ceiling| !seeker.is_near(&lower(ceiling)),
         );
-        let Verdict::Open(ceiling) = verdict else { return };
+        let Verdict::Open(ceiling) = verdict else { return Vec::new() };
         let Some(level) = problem.widest_level(&here.cell, &here.shapes, work) else {
-            let Some(options) = problem.options(&here.cell) else { return };
+            let Some(options) = problem.options(&here.cell) else { return Vec::new() };
             let objectives = problem.objectives(&ceiling, work);
             if !problem.space.constraints.broken(&objectives).contains(&true) {
-                seeker.offer(Candidate { number: number(&problem.level_sizes, &options), objectives });
+                let candidate = Candidate { number: number(&problem.level_sizes, &options), objectives };
+                near.extend(seeker.if_near(candidate));
             }
-            return;
+            return Vec::new();
         };
-        let Some(halves) = problem.halves(&here.cell, level) else { return };
-        for half in halves {
+        let half = |node: u32| {
             let mut cell = here.cell.clone();
-            cell[level] = half;
-            children.push(Opened { cell, shapes: here.shapes.clone(), ceiling });
-        }
+            cell[level] = node;
+            Opened { cell, shapes: Arc::clone(&here.shapes), ceiling }
+        };
+        problem.halves(&here.cell, level).map_or_else(Vec::new, |halves| halves.map(half).into())
     }
 }
 
@@ -85,36 +87,35 @@ fn held_at_most(most: usize) -> usize {
     2 * most + BUFFER
 }
 
-/// What all workers share.
+/// What is known of the designs near a front.
 struct Seeker {
     shortfall: Shortfall,
     most: usize,
-    /// Bits of the largest shortfall that is looked for: they rise with it.
-    reach: AtomicU64,
-    found: AtomicU64,
-    nearest: Mutex<Vec<NearDesign>>,
+    /// The largest shortfall that is looked for.
+    reach: f64,
+    found: u64,
+    nearest: Vec<NearDesign>,
 }
 
 impl Seeker {
-    fn reach(&self) -> f64 {
-        f64::from_bits(self.reach.load(Ordering::Relaxed))
-    }
-
     /// Whether a box with this ceiling may have a member that is near.
     fn is_near(&self, ceiling: &Ceiling) -> bool {
-        self.shortfall.is_within(self.reach(), &Objectives::from(*ceiling))
+        self.shortfall.is_within(self.reach, &Objectives::from(*ceiling))
     }
 
-    /// Keeps a design that is near.
-    fn offer(&self, candidate: Candidate) {
-        let Some(shortfall) = self.shortfall.within(self.reach(), &candidate.objectives) else { return };
-        self.found.fetch_add(1, Ordering::Relaxed);
-        let mut nearest = lock(&self.nearest);
-        nearest.push(NearDesign { candidate, shortfall });
-        if nearest.len() > held_at_most(self.most) {
-            keep_nearest(&mut nearest, self.most);
-            let last = nearest.last().map_or(0.0, |near| near.shortfall);
-            self.reach.fetch_min((last + ROUNDING).to_bits(), Ordering::Relaxed);
+    fn if_near(&self, candidate: Candidate) -> Option<NearDesign> {
+        let shortfall = self.shortfall.within(self.reach, &candidate.objectives)?;
+        Some(NearDesign { candidate, shortfall })
+    }
+
+    /// Keeps designs that are near.
+    fn learn(&mut self, near: Vec<NearDesign>) {
+        self.found += near.len() as u64;
+        self.nearest.extend(near);
+        if self.nearest.len() > held_at_most(self.most) {
+            keep_nearest(&mut self.nearest, self.most);
+            let last = self.nearest.last().map_or(0.0, |near| near.shortfall);
+            self.reach = self.reach.min(last + ROUNDING);
         }
     }
 }

@@ -6,7 +6,9 @@
 
 use super::bound::{Ceiling, Cell, Verdict, Work};
 use super::evolve::Member;
-use super::run::Search;
+use super::known::{Finds, Known};
+use super::problem::Problem;
+use super::run::Exact;
 use super::shape::Shape;
 use crate::search::Objectives;
 use rayon::prelude::*;
@@ -50,65 +52,114 @@ struct Best {
 }
 
 /// Probes the space in so many proportions of the objectives.
-pub(super) fn probe(search: &Search, probes: usize) -> Vec<Member> {
-    let Some(shapes) = search.problem.first_shapes(&mut Work::default()) else { return Vec::new() };
+pub(super) fn probe<'p>(
+    exact: &Exact<'p>,
+    problem: &Problem<'p>,
+    probes: usize,
+    known: &mut Known,
+) -> Vec<Member> {
+    let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return Vec::new() };
     let shapes = Arc::new(shapes);
-    let found = (0..probes).into_par_iter().map_init(Work::default, |work, n| {
-        let merit = Merit::nth(n);
-        let mut best = None;
-        descend(search, merit, search.problem.root(), &shapes, DIVE_BOXES, &mut best, work);
-        let mut best = best?;
+    let probed: Vec<(Option<Member>, Finds)> = (0..probes)
+        .into_par_iter()
+        .map(|n| {
+            let probe = Probe { exact, problem, merit: Merit::nth(n) };
+            let mut finds = Finds::default();
+            (probe.best(&shapes, &mut finds), finds)
+        })
+        .collect();
+    let (best, finds): (Vec<_>, Vec<_>) = probed.into_iter().unzip();
+    finds.into_iter().for_each(|finds| known.learn(finds));
+    best.into_iter().flatten().collect()
+}
+
+/// One probe.
+struct Probe<'a, 'p> {
+    exact: &'a Exact<'p>,
+    problem: &'a Problem<'p>,
+    merit: Merit,
+}
+
+impl Probe<'_, '_> {
+    /// The best design that it finds: down from the box of everything, then each level by itself.
+    fn best(&self, shapes: &Arc<Vec<Shape>>, finds: &mut Finds) -> Option<Member> {
+        let mut work = Work::default();
+        let mut best = self.descend(self.problem.root(), shapes, DIVE_BOXES, None, &mut work, finds)?;
         for _ in 0..ROUNDS {
             let before = best.merit;
             for level in 0..best.cell.len() {
                 let mut cell = best.cell.clone();
                 cell[level] = 0;
                 let shapes = Arc::clone(&best.shapes);
-                let mut found = Some(best);
-                descend(search, merit, cell, &shapes, LEVEL_BOXES, &mut found, work);
-                best = found?;
+                best = self.descend(cell, &shapes, LEVEL_BOXES, Some(best), &mut work, finds)?;
             }
-            if best.merit >= before || search.stopped() {
+            if best.merit >= before || self.exact.stopped() {
                 break;
             }
         }
         Some(Member { cell: best.cell, objectives: best.objectives, shapes: best.shapes })
-    });
-    found.flatten().collect()
-}
+    }
 
-/// Looks for the design of most merit in a box, the better half first.
-fn descend(
-    search: &Search,
-    merit: Merit,
-    cell: Cell,
-    shapes: &Arc<Vec<Shape>>,
-    most_boxes: usize,
-    best: &mut Option<Best>,
-    work: &mut Work,
-) {
-    let mut stack: Vec<Promising> = look(search, merit, cell, shapes, best, work).into_iter().collect();
-    let mut boxes = 1;
-    while let Some(next) = stack.pop() {
-        if boxes >= most_boxes || search.stopped() {
-            return;
+    /// The design of most merit in a box, or the best known, the better half looked at first.
+    fn descend(
+        &self,
+        cell: Cell,
+        shapes: &Arc<Vec<Shape>>,
+        most_boxes: usize,
+        mut best: Option<Best>,
+        work: &mut Work,
+        finds: &mut Finds,
+    ) -> Option<Best> {
+        let mut stack: Vec<Promising> = self.look(cell, shapes, &mut best, work, finds).into_iter().collect();
+        let mut boxes = 1;
+        while let Some(next) = stack.pop() {
+            if boxes >= most_boxes || self.exact.stopped() {
+                break;
+            }
+            if best.as_ref().is_some_and(|b| next.merit >= b.merit) {
+                continue;
+            }
+            let Some(halves) = self.problem.halves(&next.cell, next.level) else { continue };
+            let half = |node: u32| {
+                let mut cell = next.cell.clone();
+                cell[next.level] = node;
+                cell
+            };
+            let mut open: Vec<Promising> = halves
+                .iter()
+                .filter_map(|&node| self.look(half(node), &next.shapes, &mut best, work, finds))
+                .collect();
+            boxes += 2;
+            open.sort_by(|a, b| b.merit.total_cmp(&a.merit));
+            stack.append(&mut open);
         }
-        if best.as_ref().is_some_and(|b| next.merit >= b.merit) {
-            continue;
+        best
+    }
+
+    /// Bounds a box; a box of one design is judged and remembered if it is the best.
+    fn look(
+        &self,
+        mut cell: Cell,
+        shapes: &Arc<Vec<Shape>>,
+        best: &mut Option<Best>,
+        work: &mut Work,
+        finds: &mut Finds,
+    ) -> Option<Promising> {
+        let mut shapes = Arc::clone(shapes);
+        let least = best.as_ref().map_or(f64::INFINITY, |b| b.merit);
+        self.exact.count_box();
+        let is_worse = |ceiling: &Ceiling| self.merit.of(ceiling) >= least;
+        let verdict = self.problem.bound(&mut cell, &mut shapes, work, is_worse, |_| true);
+        let Verdict::Open(ceiling) = verdict else { return None };
+        let merit = self.merit.of(&ceiling);
+        match self.problem.widest_level(&cell, &shapes, work) {
+            Some(level) => Some(Promising { merit, cell, shapes, level }),
+            None => {
+                let objectives = self.problem.judge(&cell, &ceiling, work, finds)?;
+                *best = Some(Best { merit, cell, objectives, shapes });
+                None
+            }
         }
-        let Some(halves) = search.problem.halves(&next.cell, next.level) else { continue };
-        let half = |node: u32| {
-            let mut cell = next.cell.clone();
-            cell[next.level] = node;
-            cell
-        };
-        let mut open: Vec<Promising> = halves
-            .iter()
-            .filter_map(|&node| look(search, merit, half(node), &next.shapes, best, work))
-            .collect();
-        boxes += 2;
-        open.sort_by(|a, b| b.merit.total_cmp(&a.merit));
-        stack.append(&mut open);
     }
 }
 
@@ -118,30 +169,4 @@ struct Promising {
     cell: Cell,
     shapes: Arc<Vec<Shape>>,
     level: usize,
-}
-
-/// Bounds a box; a box of one design is judged and remembered if it is the best.
-fn look(
-    search: &Search,
-    merit: Merit,
-    mut cell: Cell,
-    shapes: &Arc<Vec<Shape>>,
-    best: &mut Option<Best>,
-    work: &mut Work,
-) -> Option<Promising> {
-    let mut shapes = Arc::clone(shapes);
-    let least = best.as_ref().map_or(f64::INFINITY, |b| b.merit);
-    search.count_box();
-    let verdict =
-        search.problem.bound(&mut cell, &mut shapes, work, |ceiling| merit.of(ceiling) >= least, |_| true);
-    let Verdict::Open(ceiling) = verdict else { return None };
-    let merit = merit.of(&ceiling);
-    match search.problem.widest_level(&cell, &shapes, work) {
-        Some(level) => Some(Promising { merit, cell, shapes, level }),
-        None => {
-            let objectives = search.judge(&cell, &ceiling, work)?;
-            *best = Some(Best { merit, cell, objectives, shapes });
-            None
-        }
-    }
 }

@@ -10,9 +10,11 @@
 use super::bound::{Ceiling, Cell, Verdict, Work};
 use super::corners::{Corner, Corners};
 use super::grid::thinned;
+use super::known::{Finds, Known};
 use super::left::Left;
 use super::problem::Problem;
-use super::run::{Opened, Search, lock};
+use super::rounds::{Done, in_rounds};
+use super::run::{Exact, Opened, Search};
 use super::shape::Shape;
 use super::tradeoff::{BEATEN, Trade};
 use crate::search::Objectives;
@@ -35,93 +37,113 @@ pub(super) struct Zone<'p> {
     known: usize,
 }
 
-impl<'p> Search<'_, 'p> {
-    /// One pass over everything that the designs found leave open.
-    pub fn run_by_regions(&self) {
-        let mut work = Work::default();
-        let tightened = |all: &[Objectives]| all.iter().map(|o| self.tightened(o)).collect();
-        let found: Vec<Objectives> = self.shared.found.look_at_all(tightened);
-        let known = found.len();
-        // fewer designs leave more open, by less than the slack
-        let mut found = thinned(found, THINNED * self.slack, |o| o);
-        let corners = Corners::new(&mut found, self.limits());
-        let Some(zone) = Zone::whole(self.problem, known, &mut work) else { return };
-        self.search_region(&corners, 0, zone);
-    }
+/// What is to be searched.
+enum Task<'p> {
+    /// What is below a node of a tree of corners.
+    Region { corners: Arc<Corners>, at: usize, zone: Zone<'p> },
+    /// Few designs of a region, box by box.
+    Boxes { problem: Arc<Problem<'p>>, corner: Corner, first: Opened },
+}
 
-    /// Searches what is below a node of a tree of corners.
-    fn search_region(&self, corners: &Corners, at: usize, mut zone: Zone<'p>) {
-        let Some((corner, halves)) = corners.node(at) else { return };
+impl<'p> Exact<'p> {
+    /// One pass over everything that the designs known leave open; returns a ceiling for everything that was left.
+    pub(super) fn pass_by_regions(
+        &self,
+        problem: &Problem<'p>,
+        known: &mut Known,
+        slack: f64,
+    ) -> Vec<Ceiling> {
+        let mut found: Vec<Objectives> = known.found.all().iter().map(|o| tightened(o, slack)).collect();
+        // fewer designs leave more open, by less than the slack
+        found = thinned(found, THINNED * slack, |o| o);
+        let corners = Arc::new(Corners::new(&mut found, problem.limits()));
+        let zone = Zone::whole(problem, known.found.all().len(), &mut Work::default());
+        let first = zone.map(|zone| Task::Region { corners, at: 0, zone });
+        let task = |known: &Known, task: Task<'p>| match task {
+            Task::Region { corners, at, zone } => {
+                let mut finds = Finds::default();
+                let search = Search { exact: self, problem, known, slack, below: None };
+                let tasks = search.region(corners, at, zone, &mut finds);
+                Done { tasks, finds }
+            }
+            Task::Boxes { problem, corner, first } => {
+                let search = Search { exact: self, problem: &problem, known, slack, below: Some(corner) };
+                let Done { tasks, finds } =
+                    self.some_boxes(first, |next, work, finds| search.open(next, work, finds));
+                let boxes = |first: Opened| Task::Boxes { problem: Arc::clone(&problem), corner, first };
+                Done { tasks: tasks.into_iter().map(boxes).collect(), finds }
+            }
+        };
+        let left = in_rounds(known, first.into_iter().collect(), || self.stopped(), task, Known::learn);
+        left.iter().map(|_| Ceiling::OPEN).collect()
+    }
+}
+
+impl<'p> Search<'_, 'p> {
+    /// Searches what is below a node of a tree of corners; returns what is left to be searched.
+    fn region(
+        &self,
+        corners: Arc<Corners>,
+        at: usize,
+        mut zone: Zone<'p>,
+        finds: &mut Finds,
+    ) -> Vec<Task<'p>> {
+        let Some((corner, halves)) = corners.node(at) else { return Vec::new() };
         if halves.is_none()
             && let Some(clipped) = self.clipped(&corner, &mut zone.known)
         {
-            return self.search_region(&clipped, 0, zone);
+            return self.region(Arc::new(clipped), 0, zone, finds);
         }
         let mut work = Work::default();
-        let Some(left) = self.narrow(&mut zone, &corner, &mut work) else { return };
-        if zone.designs_of(&left) <= self.down_to() {
-            return self.search_boxes(zone, corner, work);
+        let Some(left) = self.narrow(&mut zone, &corner, &mut work, finds) else { return Vec::new() };
+        if zone.designs_of(&left) <= self.exact.regions_to {
+            return vec![zone.in_boxes(corner)];
         }
         let zones = match halves {
             Some(_) => Some([zone.clone(), zone.clone()]),
             None => zone.parted(&left, &mut work),
         };
-        let Some([a, b]) = zones else { return self.search_boxes(zone, corner, work) };
+        let Some([a, b]) = zones else { return vec![zone.in_boxes(corner)] };
         let [first, second] = halves.unwrap_or([at; 2]);
-        rayon::join(|| self.search_region(corners, first, a), || self.search_region(corners, second, b));
+        // the first is searched first
+        [(second, b), (first, a)]
+            .map(|(at, zone)| Task::Region { corners: Arc::clone(&corners), at, zone })
+            .into()
     }
 
-    /// Narrows the options as long as that is worth it; `None` if no design is below the corner, or if the search was
-    /// stopped.
-    fn narrow(&self, zone: &mut Zone<'p>, corner: &Corner, work: &mut Work) -> Option<Left> {
+    /// Narrows the options as long as that is worth it; `None` if no design is below the corner.
+    fn narrow(
+        &self,
+        zone: &mut Zone<'p>,
+        corner: &Corner,
+        work: &mut Work,
+        finds: &mut Finds,
+    ) -> Option<Left> {
         loop {
-            if self.stopped() {
-                lock(&self.shared.open).push(Ceiling::OPEN);
-                return None;
-            }
-            self.count_box();
-            let beaten = |ceiling: &Ceiling| self.shared.found.beats(&ceiling.slackened(self.slack));
-            let (left, narrowed) = zone.narrow(corner, work, beaten)?;
+            self.exact.count_box();
+            let (left, narrowed) = zone.narrow(corner, work, |ceiling| self.beats(ceiling, finds))?;
             if !narrowed {
-                left.likely.iter().for_each(|cell| self.try_design(zone, cell.clone()));
+                left.likely.iter().for_each(|cell| self.try_design(zone, cell.clone(), finds));
                 return Some(left);
             }
         }
     }
 
     /// Judges what may be a good design, once.
-    fn try_design(&self, zone: &Zone<'p>, mut cell: Cell) {
-        let Some(options) = zone.problem.options(&cell) else { return };
-        if !lock(&self.shared.tried).insert(number(&zone.problem.level_sizes, &options)) {
+    fn try_design(&self, zone: &Zone<'p>, mut cell: Cell, finds: &mut Finds) {
+        let problem = &zone.problem;
+        let Some(options) = problem.options(&cell) else { return };
+        let number = number(&problem.level_sizes, &options);
+        if self.known.tried.contains(&number) || finds.tried.contains(&number) {
             return;
         }
+        finds.tried.push(number);
         let (mut shapes, mut work) = (Arc::clone(&zone.shapes), Work::default());
-        self.count_box();
-        let beaten = |ceiling: &Ceiling| self.shared.found.beats(ceiling);
-        if let Verdict::Open(ceiling) =
-            zone.problem.bound(&mut cell, &mut shapes, &mut work, beaten, |_| true)
-        {
-            self.of_part(&zone.problem, None).judge(&cell, &ceiling, &work);
+        self.exact.count_box();
+        let beaten = |ceiling: &Ceiling| self.known.found.beats(ceiling) || finds.beats(ceiling);
+        if let Verdict::Open(ceiling) = problem.bound(&mut cell, &mut shapes, &mut work, beaten, |_| true) {
+            problem.judge(&cell, &ceiling, &work, finds);
         }
-    }
-
-    /// Searches the designs left in a region box by box, whatever the forces: that is quick where designs are few.
-    fn search_boxes(&self, zone: Zone<'p>, corner: Corner, mut work: Work) {
-        let problem = zone.problem.holding_nothing();
-        let search = self.of_part(&problem, Some(corner));
-        let (cell, shapes) = (zone.cell.clone(), Arc::clone(&zone.shapes));
-        let mut stack = vec![Opened { cell, shapes, ceiling: Ceiling::OPEN }];
-        while let Some(next) = stack.pop() {
-            if self.stopped() {
-                return lock(&self.shared.open).push(Ceiling::OPEN);
-            }
-            search.open(next, &mut work, &mut stack);
-        }
-    }
-
-    /// A design taken for better than it is by the slack, so that what is left is missed by more.
-    fn tightened(&self, found: &Objectives) -> Objectives {
-        found.better_by(1.0 + self.slack - BEATEN)
     }
 
     /// The corners that designs found since leave of a region; `None` if none of them is in it.
@@ -129,13 +151,17 @@ impl<'p> Search<'_, 'p> {
         let is_inside = |o: &Objectives| {
             o.mass_kg < corner.mass_kg && o.tip_deflection_m < corner.tip_m && o.lowest_mode_hz > corner.hz
         };
-        let mut inside: Vec<Objectives> = self.shared.found.look_at_all(|all| {
-            let since = &all[*known..];
-            *known = all.len();
-            since.iter().map(|o| self.tightened(o)).filter(is_inside).collect()
-        });
+        let all = self.known.found.all();
+        let since = all[*known..].iter().map(|o| tightened(o, self.slack));
+        let mut inside: Vec<Objectives> = since.filter(is_inside).collect();
+        *known = all.len();
         (!inside.is_empty()).then(|| Corners::new(&mut inside, *corner))
     }
+}
+
+/// A design taken for better than it is by the slack, so that what is left is missed by more.
+fn tightened(found: &Objectives, slack: f64) -> Objectives {
+    found.better_by(1.0 + slack - BEATEN)
 }
 
 impl<'p> Zone<'p> {
@@ -176,6 +202,16 @@ impl<'p> Zone<'p> {
             self.cell = self.problem.root();
         }
         Some((left, narrowed))
+    }
+
+    /// The zone box by box, whatever the forces: that is quick where designs are few.
+    fn in_boxes(self, corner: Corner) -> Task<'p> {
+        let problem = Arc::new(self.problem.holding_nothing());
+        Task::Boxes {
+            problem,
+            corner,
+            first: Opened { cell: self.cell, shapes: self.shapes, ceiling: Ceiling::OPEN },
+        }
     }
 
     /// Designs of what is left.

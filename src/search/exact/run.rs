@@ -1,28 +1,27 @@
-//! Branch and bound: cut, halve, judge. First with slack, so that little is left open if time runs out.
+//! Branch and bound: cut, halve, judge. First with slack, so that little is left open if time runs out; in rounds, so
+//! that it does not matter who is quicker.
 
-use super::archive::{Found, is_better};
 use super::bound::{Ceiling, Cell, Verdict, Work};
 use super::corners::Corner;
 use super::evolve::evolve;
 use super::gap::gap;
 use super::kinds::Alike;
+use super::known::{Finds, Known};
 use super::probe::probe;
 use super::problem::Problem;
+use super::rounds::{Done, in_rounds};
 use super::shape::Shape;
 use crate::catalog::Catalogs;
 use crate::search::Objectives;
 use crate::search::design::number;
-use crate::search::front::not_clearly_beaten;
 use crate::search::space::{DesignSpace, LinkOption};
-use crate::search::sweep::{Candidate, SLACK};
-use rayon::prelude::*;
-use std::collections::{HashSet, VecDeque};
+use crate::search::sweep::Candidate;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-/// Boxes to open before the workers start.
-const TASKS: usize = 2048;
+/// Boxes that a task opens.
+const BOXES: usize = 32;
 /// Slacks of the passes over a large space: with slack a box is also cut if a design found comes that close
 /// to its ceiling, so a pass that comes to its end proves that nothing is missing by more.
 const SLACKS: [f64; 25] = [
@@ -31,7 +30,8 @@ const SLACKS: [f64; 25] = [
 ];
 /// Slacks below this are for regions alone: boxes find as much on the way.
 const FINE: f64 = 0.02;
-/// Slacks are passed over, at most so many at once, where a pass should take less than this part of the time left.
+/// Slacks are passed over, at most so many at once, where a pass should take less than this part of the time left, or
+/// whatever it takes if a gap was asked for.
 const MOST_PASSED_OVER: usize = 4;
 const QUICK: f64 = 0.65;
 /// The time of a pass goes as this power of one over the slack, about.
@@ -48,8 +48,6 @@ const PROBES: f64 = 0.12;
 const PROBES_TO_EVOLVE: f64 = 0.04;
 /// Designs that are listed with all their ties at the most, unless it is said otherwise.
 const MOST_WITH_TIES: usize = 20_000;
-/// Designs are filtered whenever their number reaches a power of two above this.
-const BUFFER: usize = 4096;
 
 /// A search for the exact front that others can watch and stop.
 pub struct Exact<'p> {
@@ -62,7 +60,7 @@ pub struct Exact<'p> {
     gap: f64,
     /// Designs above which a space is searched region by region, and down to how many.
     regions_from: f64,
-    regions_to: f64,
+    pub(super) regions_to: f64,
     /// Designs that are listed with all their ties at the most.
     most_with_ties: usize,
 }
@@ -87,19 +85,6 @@ pub struct ExactOutcome {
     /// Whether designs that differ only in drives of equal mass and curve are all in it; if they would be too many, one of
     /// them is.
     pub ties_listed: bool,
-}
-
-/// What all searches of a run share.
-#[derive(Default)]
-pub(super) struct Shared {
-    pub found: Found,
-    /// Numbers of designs that were judged on the way.
-    pub tried: Mutex<HashSet<u128>>,
-    kept: Mutex<Vec<Candidate>>,
-    /// Designs whose ceiling is not their objectives: a demand lies on a threshold. The full model judges them.
-    unsure: Mutex<Vec<Candidate>>,
-    evaluated: AtomicU64,
-    pub open: Mutex<Vec<Ceiling>>,
 }
 
 /// A box on its way, with what its parent knew.
@@ -161,18 +146,18 @@ impl<'p> Exact<'p> {
         self.boxes.fetch_add(1, Ordering::Relaxed);
     }
 
-    fn stopped(&self) -> bool {
+    pub(super) fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
 
     /// The pass after one that began then and has just ended: the one with the least slack that there should be time
-    /// for.
+    /// for. A front with a gap depends on the passes before it, so these then do not ask for the time.
     fn next_pass(&self, passes: &[f64], last: usize, started: Instant) -> usize {
         let left = self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
         let took_s = started.elapsed().as_secs_f64();
         let is_quick = |pass: &usize| {
             let should_take_s = took_s * (passes[last] / passes[*pass]).powf(GROWTH);
-            left.is_none_or(|left| should_take_s < QUICK * left.as_secs_f64())
+            self.gap > 0.0 || left.is_none_or(|left| should_take_s < QUICK * left.as_secs_f64())
         };
         let ahead = last + 2..(last + 2 + MOST_PASSED_OVER).min(passes.len());
         // one without any slack comes after all
@@ -195,65 +180,66 @@ impl<'p> Exact<'p> {
         Problem::new(self.space, self.catalogs, takes, alike)
     }
 
-    /// Opens the box of everything and all that comes of it, in parallel; what is left when the search is stopped
-    /// is handed to `leave`.
-    pub(super) fn every_box(
+    /// Opens the box of everything and all that comes of it, and learns what is found; returns the boxes that are left
+    /// when the search is stopped.
+    pub(super) fn every_box<K: Sync, F: Send + Default>(
         &self,
         problem: &Problem,
-        open: impl Fn(Opened, &mut Work, &mut Vec<Opened>) + Sync,
-        leave: impl Fn(&[Opened]) + Sync,
-    ) {
-        let mut work = Work::default();
-        let Some(shapes) = problem.first_shapes(&mut work) else { return };
+        known: &mut K,
+        open: impl Fn(&K, Opened, &mut Work, &mut F) -> Vec<Opened> + Sync,
+        learn: impl Fn(&mut K, F),
+    ) -> Vec<Opened> {
+        let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return Vec::new() };
         let root = Opened { cell: problem.root(), shapes: Arc::new(shapes), ceiling: Ceiling::OPEN };
-        let mut queue = VecDeque::from([root]);
-        while queue.len() < TASKS && !self.stopped() {
-            let Some(next) = queue.pop_front() else { break };
-            let mut children = Vec::new();
-            open(next, &mut work, &mut children);
-            queue.extend(children);
-        }
-        queue.into_par_iter().for_each_init(Work::default, |work, start| {
-            let mut stack = vec![start];
-            while !self.stopped() {
-                let Some(next) = stack.pop() else { return };
-                open(next, work, &mut stack);
-            }
-            leave(&stack);
-        });
+        let task = |known: &K, root: Opened| {
+            self.some_boxes(root, |next, work, finds| open(known, next, work, finds))
+        };
+        in_rounds(known, vec![root], || self.stopped(), task, learn)
     }
 
-    fn run_of(&self, whole: Option<Problem<'p>>, known: &[Objectives]) -> ExactOutcome {
-        let shared = Shared::default();
-        known.iter().for_each(|objectives| shared.found.enter(objectives));
-        let (mut proven, mut last_slack) = (None, 0.0);
+    /// Opens a box and some of those that come of it.
+    pub(super) fn some_boxes<F: Default>(
+        &self,
+        first: Opened,
+        open: impl Fn(Opened, &mut Work, &mut F) -> Vec<Opened>,
+    ) -> Done<Opened, F> {
+        let (mut work, mut finds, mut stack) = (Work::default(), F::default(), vec![first]);
+        for _ in 0..BOXES {
+            if self.stopped() {
+                break;
+            }
+            let Some(next) = stack.pop() else { break };
+            stack.extend(open(next, &mut work, &mut finds));
+        }
+        Done { tasks: stack, finds }
+    }
+
+    fn run_of(&self, whole: Option<Problem<'p>>, given: &[Objectives]) -> ExactOutcome {
+        let mut known = Known::default();
+        given.iter().for_each(|objectives| known.enter(objectives));
+        let (mut proven, mut last_slack, mut open) = (None, 0.0, Vec::new());
         if let Some(whole) = &whole {
             let designs = whole.designs() as f64;
             let by_regions = designs > self.regions_from;
             let is_large = by_regions || designs > LARGE;
-            let search =
-                |slack: f64| Search { exact: self, problem: whole, shared: &shared, slack, below: None };
-            if known.is_empty() {
-                let search = search(0.0);
+            if given.is_empty() {
                 let probes = if by_regions { PROBES_TO_EVOLVE } else { PROBES };
-                let probed = probe(&search, (probes * designs.log10().powi(2)) as usize);
+                let probed = probe(self, whole, (probes * designs.log10().powi(2)) as usize, &mut known);
                 if by_regions {
-                    let better = evolve(&search, probed, self.deadline);
-                    better.iter().for_each(|member| search.keep(&member.cell, member.objectives));
+                    evolve(self, whole, probed, &mut known);
                 }
             }
-            let helps = |slack: &f64| is_large && known.is_empty() && (by_regions || *slack >= FINE);
+            let helps = |slack: &f64| is_large && given.is_empty() && (by_regions || *slack >= FINE);
             let coarser = SLACKS.into_iter().filter(|slack| helps(slack) && *slack > self.gap);
             let passes: Vec<f64> = coarser.chain([self.gap]).collect();
             let mut next = 0;
             while let Some(&slack) = passes.get(next) {
                 let started = Instant::now();
-                lock(&shared.open).clear();
-                match by_regions {
-                    true => search(slack).run_by_regions(),
-                    false => search(slack).run(),
-                }
-                if !lock(&shared.open).is_empty() {
+                open = match by_regions {
+                    true => self.pass_by_regions(whole, &mut known, slack),
+                    false => self.pass_by_boxes(whole, &mut known, slack),
+                };
+                if !open.is_empty() {
                     last_slack = slack;
                     break;
                 }
@@ -261,24 +247,17 @@ impl<'p> Exact<'p> {
                 next = self.next_pass(&passes, next, started);
             }
         }
-        let mut front = shared.kept.into_inner().unwrap_or_else(PoisonError::into_inner);
-        clear(&mut front);
-        front.sort_unstable_by_key(|c| c.number);
-        front.dedup_by_key(|c| c.number);
-        // what would have been cut had it come later goes, so that the order of discovery does not show
-        let all = front.clone();
-        front.retain(|c| !all.iter().any(|other| is_better(&other.objectives, &c.objectives)));
-        front.append(&mut lock(&shared.unsure));
+        let designs_evaluated = known.evaluated;
+        let front = known.into_front();
         let (mut front, ties_listed) = match &whole {
             Some(whole) => whole.of_kinds(&front, self.most_with_ties),
             None => (front, true),
         };
         front.sort_unstable_by_key(|c| c.number);
         front.dedup_by_key(|c| c.number);
-        let open = shared.open.into_inner().unwrap_or_else(PoisonError::into_inner);
         ExactOutcome {
             designs_total: whole.as_ref().map_or(0, Problem::designs),
-            designs_evaluated: shared.evaluated.into_inner(),
+            designs_evaluated,
             boxes: self.boxes(),
             boxes_open: open.len() as u64,
             gap: match open.is_empty() {
@@ -289,6 +268,19 @@ impl<'p> Exact<'p> {
             ties_listed,
         }
     }
+
+    /// One pass over all boxes; returns the ceilings of those that were left.
+    fn pass_by_boxes(&self, problem: &Problem<'p>, known: &mut Known, slack: f64) -> Vec<Ceiling> {
+        let left = self.every_box(
+            problem,
+            known,
+            |known, next, work, finds| {
+                Search { exact: self, problem, known, slack, below: None }.open(next, work, finds)
+            },
+            Known::learn,
+        );
+        left.iter().map(|opened| opened.ceiling).collect()
+    }
 }
 
 /// The smaller of two bounds that may be unknown.
@@ -296,88 +288,61 @@ fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::min)
 }
 
-pub(super) fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// One pass over a problem.
+/// A search of a problem, or of a part of it, as far as it goes with what is known.
 pub(super) struct Search<'s, 'p> {
-    exact: &'s Exact<'p>,
+    pub exact: &'s Exact<'p>,
     pub problem: &'s Problem<'p>,
-    pub shared: &'s Shared,
+    pub known: &'s Known,
     /// How close a design found must come to a box's ceiling to cut it.
     pub slack: f64,
     /// The corner below which designs are looked for.
     pub below: Option<Corner>,
 }
 
-impl<'p> Search<'_, 'p> {
-    pub fn stopped(&self) -> bool {
-        self.exact.stopped()
-    }
-
-    pub fn count_box(&self) {
-        self.exact.count_box();
-    }
-
-    pub fn count_design(&self) {
-        self.shared.evaluated.fetch_add(1, Ordering::Relaxed);
-    }
-
-    /// The same search of a part of the problem, below a corner.
-    pub fn of_part<'t>(&'t self, problem: &'t Problem<'p>, below: Option<Corner>) -> Search<'t, 'p> {
-        Search { problem, below, ..*self }
-    }
-
-    /// Designs that are few enough to be searched box by box.
-    pub fn down_to(&self) -> f64 {
-        self.exact.regions_to
-    }
-
-    fn run(&self) {
-        self.exact.every_box(
-            self.problem,
-            |here, work, children| self.open(here, work, children),
-            |left| lock(&self.shared.open).extend(left.iter().map(|opened| opened.ceiling)),
-        );
-    }
-
+impl Search<'_, '_> {
     /// Bounds a box and halves it, or judges it if it is one design.
-    pub fn open(&self, mut here: Opened, work: &mut Work, children: &mut Vec<Opened>) {
-        self.count_box();
-        let found = &self.shared.found;
+    pub fn open(&self, mut here: Opened, work: &mut Work, finds: &mut Finds) -> Vec<Opened> {
+        self.exact.count_box();
         let verdict = self.problem.bound(
             &mut here.cell,
             &mut here.shapes,
             work,
             |ceiling| {
-                self.below.is_some_and(|corner| !corner.is_in_reach_of(ceiling))
-                    || found.beats(&ceiling.slackened(self.slack))
+                self.below.is_some_and(|corner| !corner.is_in_reach_of(ceiling)) || self.beats(ceiling, finds)
             },
-            |ceiling| self.below.is_some() || found.nearly_beats(&ceiling.slackened(self.slack)),
+            |ceiling| self.below.is_some() || self.known.found.nearly_beats(&ceiling.slackened(self.slack)),
         );
-        let Verdict::Open(ceiling) = verdict else { return };
+        let Verdict::Open(ceiling) = verdict else { return Vec::new() };
         match self.problem.without_pointless(&mut here.cell, ceiling.tip_m, work) {
-            None => return,
-            Some(true) => return children.push(here),
+            None => return Vec::new(),
+            Some(true) => return vec![here],
             Some(false) => {}
         }
         let Some(level) = self.problem.widest_level(&here.cell, &here.shapes, work) else {
-            self.judge(&here.cell, &ceiling, work);
-            return;
+            self.problem.judge(&here.cell, &ceiling, work, finds);
+            return Vec::new();
         };
-        let Some(halves) = self.problem.halves(&here.cell, level) else { return };
+        let Some(halves) = self.problem.halves(&here.cell, level) else { return Vec::new() };
         // the first half is opened first
-        for half in [halves[1], halves[0]] {
+        let half = |node: u32| {
             let mut cell = here.cell.clone();
-            cell[level] = half;
-            children.push(Opened { cell, shapes: Arc::clone(&here.shapes), ceiling });
-        }
+            cell[level] = node;
+            Opened { cell, shapes: Arc::clone(&here.shapes), ceiling }
+        };
+        vec![half(halves[1]), half(halves[0])]
     }
 
+    /// Whether a design that is known or was found since comes within the slack of a ceiling.
+    pub fn beats(&self, ceiling: &Ceiling, finds: &Finds) -> bool {
+        let slackened = ceiling.slackened(self.slack);
+        self.known.found.beats(&slackened) || finds.beats(&slackened)
+    }
+}
+
+impl Problem<'_> {
     /// What every design on the front keeps.
     pub fn limits(&self) -> Corner {
-        let limits = &self.problem.space.constraints;
+        let limits = &self.space.constraints;
         Corner {
             mass_kg: limits.mass_max_kg.unwrap_or(f64::INFINITY),
             tip_m: limits.tip_deflection_max_m.unwrap_or(f64::INFINITY),
@@ -387,36 +352,25 @@ impl<'p> Search<'_, 'p> {
 
     /// One design: its ceiling is its objectives once its mode is made sure of; `None` if it is not known that it meets
     /// the constraints.
-    pub fn judge(&self, cell: &[u32], ceiling: &Ceiling, work: &Work) -> Option<Objectives> {
-        let options = self.problem.options(cell)?;
-        self.count_design();
-        let objectives = self.problem.objectives(ceiling, work);
+    pub fn judge(
+        &self,
+        cell: &[u32],
+        ceiling: &Ceiling,
+        work: &Work,
+        finds: &mut Finds,
+    ) -> Option<Objectives> {
+        let options = self.options(cell)?;
+        let number = number(&self.level_sizes, &options);
+        finds.evaluated += 1;
+        let objectives = self.objectives(ceiling, work);
         if !work.is_point() {
-            lock(&self.shared.unsure)
-                .push(Candidate { number: number(&self.problem.level_sizes, &options), objectives });
+            finds.unsure.push(Candidate { number, objectives });
             return None;
         }
-        if self.problem.space.constraints.broken(&objectives).contains(&true) {
+        if self.space.constraints.broken(&objectives).contains(&true) {
             return None;
         }
-        self.keep(cell, objectives);
+        finds.kept.push(Candidate { number, objectives });
         Some(objectives)
     }
-
-    /// Keeps a design that meets every constraint.
-    fn keep(&self, cell: &[u32], objectives: Objectives) {
-        let Some(options) = self.problem.options(cell) else { return };
-        self.shared.found.enter(&objectives);
-        let mut kept = lock(&self.shared.kept);
-        kept.push(Candidate { number: number(&self.problem.level_sizes, &options), objectives });
-        if kept.len().is_power_of_two() && kept.len() > BUFFER {
-            clear(&mut kept);
-        }
-    }
-}
-
-/// Drops what another candidate beats.
-fn clear(kept: &mut Vec<Candidate>) {
-    let points: Vec<[f64; 3]> = kept.iter().map(|c| c.objectives.minimized()).collect();
-    *kept = not_clearly_beaten(&points, SLACK).into_iter().map(|i| kept[i]).collect();
 }
