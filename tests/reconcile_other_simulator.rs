@@ -71,3 +71,12 @@ fn a_column_in_another_unit_has_its_noise_in_it_too() {
 fn readings_a_third_noisier_than_declared_are_explained_all_the_same() {
     is_explained("a-third-noisier");
 }
+
+#[test]
+fn a_payload_that_slips_between_tests_is_none_that_sits_elsewhere() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/other_simulator/payload-slips");
+    let outcome = reconcile(&Campaign::read(&folder, &Catalogs::builtin()).expect("sound"));
+    assert_eq!(outcome.verdict, Verdict::Unexplained, "{}", outcome.to_text());
+    let told = "a size of payload_cg_error@payload that changes with the order of the tests";
+    assert!(outcome.reasons.iter().any(|reason| reason.contains(told)), "{:?}", outcome.reasons);
+}

@@ -182,7 +182,42 @@ fn questions(
         _ => return windup_questions(campaign, forward),
     };
     out.extend(stiffness_questions(campaign, forward, fit, weights, channel));
+    out.extend(change_questions(forward, fit, weights, channel));
     out
+}
+
+/// Whether what an effect is, or a material's modulus, changes in the course of the tests: what a small change of it does
+/// to each reading, times functions of the order.
+fn change_questions(
+    forward: &Forward,
+    fit: &Fit,
+    weights: &Weights,
+    channel: Channel,
+) -> Vec<(String, Vec<Vec<f64>>)> {
+    let range = forward.range(channel);
+    let part = |i: usize| (i - range.start) as f64 / range.len() as f64;
+    let ordered = |p: usize, k: usize| -> Vec<f64> {
+        let mut column = vec![0.0; forward.data.len()];
+        for i in range.clone() {
+            column[i] = fit.jacobian[(i, p)] * weights.inverse[i] * order_functions(part(i))[k];
+        }
+        column
+    };
+    let question = |what: String, numbers: std::ops::Range<usize>| {
+        let columns = numbers.flat_map(|p| [0, 2].map(|k| (p, k))).map(|(p, k)| ordered(p, k)).collect();
+        (format!("{what} that changes with the order of the tests"), columns)
+    };
+    let moduli = fit.model.nuisance.numbers.iter().enumerate().filter_map(|(p, (calibration, _))| {
+        let Calibration::Modulus(material, _) = calibration else { return None };
+        Some(question(format!("a modulus of {material}"), p..p + 1))
+    });
+    // an effect may have no size to be fitted: a wrong unit
+    let sized = fit.model.effects.iter().enumerate().filter(|(_, of)| !of.knobs.is_empty());
+    let effects = sized.map(|(effect, of)| {
+        let first = fit.model.first_knob(effect);
+        question(format!("a size of {}", of.label()), first..first + of.knobs.len())
+    });
+    moduli.chain(effects).collect()
 }
 
 /// Whether a joint's stiffness changes with its angle, its torque or the order of the tests: what a
