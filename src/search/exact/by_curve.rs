@@ -76,12 +76,13 @@ impl ByCurve {
 mod tests {
     use super::*;
     use crate::arm::{Curve, JointLaw, Windup};
+    use crate::search::exact::parts::Rays;
     use crate::search::exact::price::JointPrice;
     use crate::search::exact::torsion::Breaks;
-    use crate::sizing::DriveLimits;
+    use crate::sizing::{DriveLimits, MotionRequirement};
     use proptest::prelude::*;
 
-    fn drive(mass_kg: f64, k1: f64) -> DriveBox {
+    fn drive(mass_kg: f64, k1: f64, torque_nm: f64, rays: &Rays) -> DriveBox {
         let windup = Windup {
             k1_nm_per_rad: k1,
             k2_nm_per_rad: 1.5 * k1,
@@ -90,17 +91,17 @@ mod tests {
             t2_nm: 2.0,
         };
         let limits = DriveLimits {
-            static_torque_nm: 1.0,
-            peak_torque_nm: 1.0,
-            stop_torque_nm: 1.0,
-            mean_torque_cubed_nm3: 1.0,
-            tilting_moment_nm: 1.0,
+            static_torque_nm: torque_nm,
+            peak_torque_nm: torque_nm,
+            stop_torque_nm: torque_nm,
+            mean_torque_cubed_nm3: torque_nm.powi(3),
+            tilting_moment_nm: 0.0,
         };
         DriveBox {
             mass_kg: [mass_kg; 2],
             limits,
             least_limits: limits,
-            multiples: Default::default(),
+            multiples: rays.held(&limits),
             curve: CurveBox::of(&JointLaw::from(Curve::Windup(windup))),
             breaks: Breaks::of(&windup),
             each: None,
@@ -109,22 +110,32 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_drive_is_cheaper_whatever_the_prices_are(
-            drives in prop::collection::vec((1u32..20, 1u32..5), 1..60), per_kg in -2.0f64..2.0,
+        fn no_drive_that_holds_is_cheaper_whatever_the_prices_are(
+            drives in prop::collection::vec((1u32..20, 1u32..5, 1u32..20), 1..60), asked_nm in 0.0f64..15.0, per_kg in -2.0f64..2.0,
             twist in -2.0f64..2.0, torque in -1.0f64..1.0, slope in 0.0f64..1.0, from_nm in -3.0f64..3.0, wide_nm in 0.0f64..3.0,
         ) {
-            let drives: Vec<DriveBox> =
-                drives.into_iter().map(|(kg, k)| drive(f64::from(kg), f64::from(k))).collect();
+            let motion = MotionRequirement::default().joint_motion(1.35, None);
+            let rays = Rays::new(&motion, 5.0, 1.0);
+            let asked = Asked::new(&motion, &rays, asked_nm, 0.1 * asked_nm);
+            let drives: Vec<DriveBox> = drives
+                .into_iter()
+                .map(|(kg, k, nm)| drive(f64::from(kg), f64::from(k), f64::from(nm), &rays))
+                .collect();
             let joint = JointPrice { twist, torque, slope, torques_nm: [from_nm, from_nm + wide_nm], play: None };
             let mut price = Price { joint: vec![joint], ..Price::default() };
             price.inertia[0] = per_kg;
             let options = drives.iter().cloned().enumerate().map(|(i, drive)| (i as u32, drive));
             let tree = Tree::build(options).unwrap();
             let cost = |drive: &DriveBox| price.of_joint(drive.mass_kg, drive.curve.as_ref());
-            let least = drives.iter().map(cost).fold(f64::INFINITY, f64::min);
-            let (found, node) = ByCurve::new(&tree, 0, None).cheapest(&price).unwrap();
-            prop_assert_eq!(found, least);
-            prop_assert_eq!(cost(&drives[tree.option(node).unwrap() as usize]), least);
+            let holding: Vec<&DriveBox> = drives.iter().filter(|drive| drive.hold(&asked.demand)).collect();
+            let least = holding.iter().map(|drive| cost(drive)).fold(f64::INFINITY, f64::min);
+            let found = ByCurve::new(&tree, 0, Some(&asked)).cheapest(&price);
+            prop_assert_eq!(found.is_none(), holding.is_empty());
+            if let Some((found, node)) = found {
+                let drive = &drives[tree.option(node).unwrap() as usize];
+                prop_assert!(drive.hold(&asked.demand));
+                prop_assert_eq!([found, cost(drive)], [least; 2]);
+            }
         }
     }
 }

@@ -255,3 +255,57 @@ impl Bounds for DriveBox {
         ]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sizing::MotionRequirement;
+    use proptest::prelude::*;
+
+    /// A drive whose limits are multiples of what a joint of 100 N m and 10 kg m² is asked for.
+    fn drive(of: [u32; 5], motion: &JointMotion, rays: &Rays) -> DriveBox {
+        let usual = motion.demand(100.0, 10.0);
+        let times = |k: usize| 0.2 * f64::from(of[k]);
+        let limits = DriveLimits {
+            static_torque_nm: times(0) * usual.static_torque_nm,
+            peak_torque_nm: times(1) * usual.peak_torque_nm(),
+            stop_torque_nm: times(2) * usual.stop_torque_nm,
+            mean_torque_cubed_nm3: times(3).powi(3) * usual.mean_torque_cubed_nm3,
+            tilting_moment_nm: times(4) * usual.static_torque_nm,
+        };
+        DriveBox {
+            mass_kg: [1.0; 2],
+            limits,
+            least_limits: limits,
+            multiples: rays.held(&limits),
+            curve: None,
+            breaks: Breaks::default(),
+            each: None,
+        }
+    }
+
+    proptest! {
+        /// Drives of a kind, and a box of kinds, hold what some drive does; a kind by itself no more than that.
+        #[test]
+        fn a_kind_holds_what_any_of_its_drives_holds(
+            kinds in prop::collection::vec(prop::collection::vec(prop::array::uniform5(1u32..12), 1..5), 1..4),
+            static_nm in 1.0f64..250.0, inertia_kgm2 in 0.1f64..25.0,
+        ) {
+            let motion = MotionRequirement::default().joint_motion(1.35, None);
+            let rays = Rays::new(&motion, 50.0, 5.0);
+            let asked = Asked::new(&motion, &rays, static_nm, inertia_kgm2);
+            let mut of_kinds = Vec::new();
+            for kind in &kinds {
+                let drives: Vec<DriveBox> = kind.iter().map(|of| drive(*of, &motion, &rays)).collect();
+                let some_holds = drives.iter().any(|drive| drive.limits.hold(&asked.demand));
+                let together = DriveBox::of_kind(drives.into_iter()).unwrap();
+                prop_assert_eq!(together.hold(&asked.demand), some_holds);
+                prop_assert_eq!(together.may_hold(&asked), some_holds);
+                of_kinds.push((together, some_holds));
+            }
+            let some_holds = of_kinds.iter().any(|(_, holds)| *holds);
+            let joined = of_kinds.into_iter().map(|(kind, _)| kind).reduce(|a, b| a.join(&b)).unwrap();
+            prop_assert!(joined.may_hold(&asked) || !some_holds);
+        }
+    }
+}
