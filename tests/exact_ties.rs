@@ -164,10 +164,26 @@ fn ties_too_many_for_the_front_are_listed_beside_it_and_hold() {
         "{text}"
     );
 
+    // a tie left out, a drive that is none put in, the file not there
+    let listed = std::fs::read_to_string(at("out/ties.csv")).expect("ties.csv");
+    let other = listed.replacen("; ", "; another drive; ", 1);
+    let fewer: String =
+        listed.lines().take(1).chain(listed.lines().skip(2)).map(|l| format!("{l}\n")).collect();
+    for (tampered, said) in [(other, "may not be"), (fewer, "may be"), (String::new(), "its columns are")] {
+        std::fs::write(at("out/ties.csv"), tampered).expect("written");
+        let (code, text) = armwright(&["front", "check", &out]);
+        assert!(code == 9 && text.contains("ties.csv") && text.contains(said), "{said}: {text}");
+    }
+    std::fs::write(at("out/ties.csv"), listed).expect("written");
+
     // a front that says that its ties are rows of it, and one that lacks a row, are found out
     let file = at("out/run.json");
     let run: Value = serde_json::from_str(&std::fs::read_to_string(&file).expect("run.json")).expect("JSON");
     assert_eq!(run["ties_listed"], json!(false));
+    for material in run["materials"].as_array().expect("materials") {
+        let ties = at(&format!("out/ties.{}.csv", material["slug"].as_str().expect("a slug")));
+        assert_eq!(ties.exists(), material["ties_listed"] == json!(false), "{material}");
+    }
     let with = |key: &str, value: Value| {
         let mut changed = run.clone();
         changed[key] = value;

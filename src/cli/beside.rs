@@ -19,7 +19,7 @@ use std::sync::atomic::AtomicBool;
 /// Files beside the front that not every run has.
 pub(super) const FILES: [&str; 4] = [BALLAST, TIES, TOLERANCE, NEAR];
 const BALLAST: &str = "ballast.csv";
-const TIES: &str = "ties.csv";
+pub(super) const TIES: &str = "ties.csv";
 const TOLERANCE: &str = "tolerance.csv";
 const NEAR: &str = "near.csv";
 

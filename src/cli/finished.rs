@@ -18,7 +18,7 @@ use crate::report::summary::{
 use crate::search::hypervolume::front_hypervolume;
 use crate::search::near::NearDesigns;
 use crate::search::{ArmProblem, DesignSpace, Status};
-use crate::study::{Carried, Study, StudyOutcome, budgets, front_table, slug, study_page};
+use crate::study::{Carried, Study, StudyOutcome, budgets, front_table, slug, study_page, ties};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -65,7 +65,9 @@ fn of_some_runs(dir: &Path) -> Vec<String> {
         entries.filter_map(|entry| entry.file_name().into_string().ok()).collect()
     };
     let is_plot = |name: &str| name.ends_with(".svg") || name.ends_with(".csv");
-    let is_of_some = |name: &String| is_front_of_material(name) || FILES.contains(&name.as_str());
+    let is_of_material =
+        |name: &str| is_front_of_material(name) || name.starts_with("ties.") && name.ends_with(".csv");
+    let is_of_some = |name: &String| is_of_material(name) || FILES.contains(&name.as_str());
     let mut out: Vec<String> = names(dir).into_iter().filter(is_of_some).collect();
     let plots = names(&dir.join(PLOTS)).into_iter().filter(|name| is_plot(name));
     out.extend(plots.map(|name| format!("{PLOTS}/{name}")));
@@ -120,8 +122,12 @@ impl Finished<'_> {
         // succeeds only on an empty folder: earlier results stay
         let beside = beside.inspect_err(|_| drop(std::fs::remove_dir(self.dir)))?;
         let mut files = vec![("front.csv".to_string(), summary.overall.to_csv())];
-        for material in &summary.materials {
-            files.push((format!("front.{}.csv", slug(&material.name)), material.front.to_csv()));
+        for (material, of) in summary.materials.iter().zip(&outcome.by_material) {
+            let slug = slug(&material.name);
+            files.push((format!("front.{slug}.csv"), material.front.to_csv()));
+            if !of.ties_listed {
+                files.push((format!("ties.{slug}.csv"), ties(problem, &of.front).to_csv()));
+            }
         }
         let picture = picture(&summary);
         files.push(("front.svg".into(), picture.clone().into_bytes()));

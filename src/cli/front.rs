@@ -1,6 +1,7 @@
 //! `armwright front check`: is a finished front right, and is it all of it?
 
 use super::Failure;
+use super::beside::TIES;
 use super::design::check_catalogs;
 use super::search::stopped_by_signal;
 use crate::catalog::Catalogs;
@@ -71,7 +72,10 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
     let ties_listed = run["ties_listed"].as_bool().unwrap_or(true);
     let stop = stopped_by_signal();
     let deadline = args.time_limit.map(|s| Instant::now() + Duration::from_secs_f64(s));
-    let check = check_front(&study, catalogs, &Claim { table: &table, gap, ties_listed }, stop, deadline);
+    // a file that is not there has none
+    let ties_csv = fs_err::read(args.results.join(TIES)).unwrap_or_default();
+    let claim = Claim { table: &table, gap, ties_listed, ties_csv: &ties_csv };
+    let check = check_front(&study, catalogs, &claim, stop, deadline);
     if stop.load(Ordering::Relaxed) {
         return Err(Failure::Interrupted("stopped before the check was done".into()));
     }

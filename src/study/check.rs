@@ -3,6 +3,7 @@
 use super::Study;
 use super::outcome::{Front, judge};
 use super::table::front_table;
+use super::ties::ties;
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
@@ -54,6 +55,8 @@ pub struct Claim<'t> {
     pub gap: Option<f64>,
     /// Whether designs that differ only in drives of equal mass and curve are all rows of it.
     pub ties_listed: bool,
+    /// If not, the file that has them.
+    pub ties_csv: &'t [u8],
 }
 
 /// Checks a front against its study: every row by the full model, rows against each other, and all other designs by a
@@ -61,7 +64,7 @@ pub struct Claim<'t> {
 pub fn check_front(
     study: &Study,
     catalogs: &Catalogs,
-    Claim { table, gap, ties_listed }: &Claim,
+    Claim { table, gap, ties_listed, ties_csv }: &Claim,
     stop: &AtomicBool,
     deadline: Option<Instant>,
 ) -> FrontCheck {
@@ -83,6 +86,9 @@ pub fn check_front(
     let front = judge(&problem, &candidates);
     compare_rows(&front_table(&problem, catalogs, &front), table, &front, &problem, &mut faults);
     broken_limits(study, &front, &problem, &mut faults);
+    if !ties_listed {
+        list(&mut faults, ties(&problem, &front).faults_of(ties_csv), "ties are wrong");
+    }
     let completeness = match gap {
         Some(gap) => {
             let front = Claimed { front: &front, gap: *gap, ties_listed: *ties_listed };

@@ -11,6 +11,7 @@ use crate::search::space::SpacePiece;
 use crate::search::{ArmProblem, OutwardIn};
 use crate::sizing::JointDemand;
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 
 /// The drives of equal mass and torsion curve of every design of a front.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,6 +73,29 @@ impl Ties {
     /// One row a joint of a design that may have other drives.
     pub fn to_csv(&self) -> Vec<u8> {
         FrontTable { columns: COLUMNS.map(String::from).into(), rows: self.rows.clone() }.to_csv()
+    }
+
+    /// What is wrong with a file that should have these ties, in words.
+    pub fn faults_of(&self, file: &[u8]) -> Vec<String> {
+        let mut reader = csv::Reader::from_reader(file);
+        let columns: Vec<String> =
+            reader.headers().map_or_else(|_| Vec::new(), |found| found.iter().map(String::from).collect());
+        if columns != COLUMNS {
+            return vec![format!(
+                "ties.csv: its columns are {}, not {}",
+                columns.join(","),
+                COLUMNS.join(",")
+            )];
+        }
+        let found: BTreeSet<Vec<String>> =
+            reader.records().flatten().map(|row| row.iter().map(String::from).collect()).collect();
+        let right: BTreeSet<Vec<String>> = self.rows.iter().cloned().collect();
+        let place = |row: &Vec<String>| format!("ties.csv, design {} at {}", row[0], row[1]);
+        let lacks = right.difference(&found);
+        let lacks = lacks.map(|row| format!("{}: {} may be {}", place(row), row[2], row[3]));
+        let adds = found.difference(&right);
+        let adds = adds.map(|row| format!("{}: {} may not be {}", place(row), row[2], row[3]));
+        lacks.chain(adds).collect()
     }
 
     /// How many designs the front stands for, in a sentence.
