@@ -6,6 +6,9 @@
 //! [`Document::finish`] turns them into an error.
 
 mod duplicates;
+mod lines;
+
+pub use lines::LineCounter;
 
 use serde_json::{Map, Value};
 use std::cell::RefCell;

@@ -38,6 +38,14 @@ pub struct PositionsSpec {
     pub mounts: Vec<String>,
 }
 
+impl PositionsSpec {
+    /// Whether gravity has a direction to be found: as stated, or because base and first axis are both free, so that
+    /// positions alone cannot say which of them is off the vertical.
+    pub fn frees_gravity(&self) -> bool {
+        self.gravity_direction || (self.geometry && self.base_placement)
+    }
+}
+
 /// What `campaign.json` states.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statement {

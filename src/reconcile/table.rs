@@ -1,8 +1,11 @@
 //! A CSV file as named columns, every fault kept with file, line, column, value and hint.
 
-use crate::fault::{Fault, InputError, closest};
+use crate::fault::{Fault, InputError, LineCounter, closest};
 use std::cell::RefCell;
 use std::path::Path;
+
+/// What a line that is a comment begins with.
+const COMMENT: u8 = b'#';
 
 /// A CSV file whose first row names the columns.
 #[derive(Debug)]
@@ -43,11 +46,12 @@ impl Table {
             .has_headers(false)
             .flexible(true)
             .trim(csv::Trim::All)
-            .comment(Some(b'#'))
+            .comment(Some(COMMENT))
             .from_reader(text.as_bytes());
+        let mut lines = LineCounter::with_comments(text.as_bytes(), COMMENT);
         for record in reader.records() {
             match record {
-                Ok(record) => table.push(&record),
+                Ok(record) => table.push(&record, lines.of(record.position())),
                 Err(e) => table.fault(None, "", format!("not valid CSV: {e}"), "save the table as plain CSV"),
             }
         }
@@ -78,13 +82,12 @@ impl Table {
         self.columns.len() > 1
     }
 
-    fn push(&mut self, record: &csv::StringRecord) {
-        let line = record.position().map_or(0, |p| p.line() as usize);
+    fn push(&mut self, record: &csv::StringRecord, line: usize) {
         let cells: Vec<String> = record.iter().map(String::from).collect();
         if self.columns.is_empty() {
             self.columns = cells;
             self.columns[0] = self.columns[0].trim_start_matches('\u{feff}').to_string();
-        } else if cells.len() == self.columns.len() {
+        } else if !self.has_header() || cells.len() == self.columns.len() {
             self.rows.push(cells);
             self.lines.push(line);
         } else {

@@ -2,7 +2,7 @@
 
 use super::row::Row;
 use crate::catalog::CatalogFile;
-use crate::fault::{Fault, closest};
+use crate::fault::{Fault, LineCounter, closest};
 use csv::{ByteRecord, ReaderBuilder, StringRecord, Trim};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -71,13 +71,13 @@ fn records(name: &str, bytes: &[u8], log: &Log) -> Vec<(usize, StringRecord)> {
     let mut reader =
         ReaderBuilder::new().has_headers(false).flexible(true).trim(Trim::All).from_reader(bytes);
     let mut out = Vec::new();
-    let mut lines = LineCounter { bytes, at: 0, line: 1 };
+    let mut lines = LineCounter::new(bytes);
     for record in reader.byte_records() {
-        match record.map_err(|e| e.to_string()).and_then(|r| Ok((lines.of(&r), utf8(r)?))) {
+        match record.map_err(|e| e.to_string()).and_then(|r| Ok((lines.of(r.position()), utf8(r)?))) {
             Ok(numbered) => out.push(numbered),
             Err(problem) => log.fault(
                 name,
-                Some(lines.line),
+                Some(lines.line()),
                 "",
                 format!("cannot be read: {problem}"),
                 "save the file as UTF-8 text".into(),
@@ -89,25 +89,6 @@ fn records(name: &str, bytes: &[u8], log: &Log) -> Vec<(usize, StringRecord)> {
 
 fn utf8(record: ByteRecord) -> Result<StringRecord, String> {
     StringRecord::from_byte_record(record).map_err(|e| e.utf8_error().to_string())
-}
-
-/// Counts lines up to a record's first byte. (The reader's own line is that of the end of the record
-/// before, which differs after blank lines and with CRLF.)
-struct LineCounter<'a> {
-    bytes: &'a [u8],
-    at: usize,
-    line: usize,
-}
-
-impl LineCounter<'_> {
-    fn of(&mut self, record: &ByteRecord) -> usize {
-        let begin = record.position().map_or(self.at, |p| p.byte() as usize).min(self.bytes.len());
-        let blank = self.bytes[begin..].iter().take_while(|b| matches!(b, b'\r' | b'\n')).count();
-        let end = (begin + blank).max(self.at);
-        self.line += self.bytes[self.at..end].iter().filter(|&&b| b == b'\n').count();
-        self.at = end;
-        self.line
-    }
 }
 
 fn required(file: CatalogFile) -> String {

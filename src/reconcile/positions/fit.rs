@@ -6,13 +6,18 @@
 //! displacement at unit compliance per direction of gravity ([`super::loads`]).
 
 use super::kinematics::{Geometry, Number, Placing};
-use super::loads::{FRAME_ENTRIES, Sag};
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix2, Matrix3, Vector2, Vector3};
-use std::ops::Range;
+use super::loads::Sag;
+use super::springs::{Best, best_springs};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3, Vector3};
 
 /// Degrees of freedom of the errors.
 const NU: f64 = 4.0;
 const MOST_STEPS: usize = 40;
+/// Times a step is halved at the most until it makes the fit no worse.
+const MOST_HALVINGS: i32 = 6;
+/// Standard deviation of a compliance before anything is measured, far beyond any part: what no weight turns is not
+/// known, but no number either that no part could have \[rad/(N m)\].
+const PRIOR_RAD_PER_NM: f64 = 0.1;
 /// Largest turn of a frame in one step \[rad\].
 const MOST_TURN_RAD: f64 = 0.3;
 
@@ -100,6 +105,26 @@ impl Fitted {
         sample.sag.known_m + leaning + pulled.sum::<Vector3<f64>>()
     }
 
+    /// The model a part of the way to where a step of the numbers leads, with the scale that its errors have.
+    fn towards(&self, goal: &Self, part: f64, numbers: &[Number], step: &[f64], samples: &[&Sample]) -> Self {
+        let mut out = goal.clone();
+        let step: Vec<f64> = step.iter().map(|s| part * s).collect();
+        out.geometry.step(numbers, &step);
+        out.moved.iter_mut().zip(&step).for_each(|(m, s)| *m += s);
+        let own = out.compliances.iter_mut().flatten();
+        own.zip(self.compliances.iter().flatten()).for_each(|(c, from)| *c = from + part * (*c - from));
+        let errors = errors(samples, &out);
+        out.scale_m = scale(&errors, self.scale_m);
+        out.ln_likelihood = ln_likelihood(&errors, out.scale_m);
+        out
+    }
+
+    /// ln of the likelihood and of the prior of the numbers.
+    fn merit(&self, numbers: &[Number]) -> f64 {
+        let prior = numbers.iter().zip(&self.moved).map(|(n, moved)| 0.5 * (moved / n.prior()).powi(2));
+        self.ln_likelihood - prior.sum::<f64>()
+    }
+
     /// Weight of a sample with this error \[1/m²\].
     pub fn weight(&self, error: &Vector3<f64>) -> f64 {
         weight(error, self.scale_m) / (self.scale_m * self.scale_m)
@@ -122,21 +147,50 @@ pub fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &F
             known.map_or_else(none, |i| start.compliances[i].clone())
         })
         .collect();
+    here.deviations = here.compliances.iter().map(|own| vec![f64::INFINITY; own.len()]).collect();
     here.effects = effects.to_vec();
     here.moved.resize(numbers.len(), 0.0);
+    here.ln_likelihood = ln_likelihood(&errors(samples, &here), scale(&errors(samples, &here), here.scale_m));
+    let mut merit = here.merit(numbers);
     for _ in 0..MOST_STEPS {
-        let before = here.scale_m;
+        let before = here.clone();
         let step = shortened(numbers, step(samples, numbers, &mut here));
-        here.geometry.step(numbers, &step);
-        here.moved.iter_mut().zip(&step).for_each(|(m, s)| *m += s);
-        here.scale_m = scale(&errors(samples, &here), here.scale_m);
+        let goal = here;
+        let parts = (0..MOST_HALVINGS).map(|n| 0.5f64.powi(n));
+        let mut tried = parts.map(|part| before.towards(&goal, part, numbers, &step, samples));
+        let Some(better) = tried.find(|t| t.merit(numbers) >= merit - 1e-9 * merit.abs()) else {
+            here =
+                Fitted { deviations: goal.deviations, number_deviations: goal.number_deviations, ..before };
+            break;
+        };
+        here = better;
+        merit = here.merit(numbers);
         let largest = step.iter().map(|s| s.abs()).fold(0.0, f64::max);
-        if (here.scale_m / before - 1.0).abs() < 1e-6 && largest < 1e-6 {
+        if (here.scale_m / before.scale_m - 1.0).abs() < 1e-6 && largest < 1e-6 {
             break;
         }
     }
-    here.ln_likelihood = ln_likelihood(&errors(samples, &here), here.scale_m);
+    let errors = errors(samples, &here);
+    let free = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
+    let doubt = doubt(&errors, here.scale_m, free);
+    here.deviations.iter_mut().flatten().chain(&mut here.number_deviations).for_each(|d| *d *= doubt);
     here
+}
+
+/// By how much deviations are larger than the weighted curvature says, which takes the weights for known: that of an
+/// M-estimator (Huber, Robust Statistics, ch. 7), mean square of the weighted errors over the square of their mean
+/// slope, with what so many free numbers take from the errors.
+fn doubt(errors: &[Vector3<f64>], scale_m: f64, free: usize) -> f64 {
+    let count = errors.len() as f64;
+    let (mut weights, mut squares, mut slopes) = (0.0, 0.0, 0.0);
+    for error in errors {
+        let (w, size) = (weight(error, scale_m), error.norm_squared() / (scale_m * scale_m));
+        weights += w / count;
+        squares += w * w * size / 3.0 / count;
+        slopes += (w - 2.0 / 3.0 * w * size / (NU + size)) / count;
+    }
+    let left = (3.0 * count - free as f64).max(1.0);
+    (weights * squares * 3.0 * count / left).sqrt() / slopes
 }
 
 /// A step that turns no frame too far for a straight line.
@@ -225,6 +279,12 @@ pub fn normal(
         curvature[(i, i)] += precision;
         gradient[i] -= precision * moved;
     }
+    let compliances = here.compliances.iter().flatten();
+    for (i, compliance) in (numbers.len()..).zip(compliances) {
+        let precision = PRIOR_RAD_PER_NM.powi(-2);
+        curvature[(i, i)] += precision;
+        gradient[i] -= precision * compliance;
+    }
     Normal { curvature, gradient, own }
 }
 
@@ -249,127 +309,22 @@ impl Factor {
     pub fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
         self.cholesky.solve(&right.component_mul(&self.diagonal)).component_mul(&self.diagonal)
     }
-
-    /// Standard deviations.
-    fn deviations(&self) -> DVector<f64> {
-        let inverse = self.cholesky.inverse();
-        DVector::from_fn(self.diagonal.len(), |i, _| inverse[(i, i)].sqrt() * self.diagonal[i])
-    }
 }
 
-/// One weighted Gauss-Newton step of the geometry; the compliances are set to their best that is a spring.
+/// One weighted Gauss-Newton step of the geometry; the compliances are set to their best that are springs.
 fn step(samples: &[&Sample], numbers: &[Number], here: &mut Fitted) -> Vec<f64> {
     let normal = normal(samples, numbers, here, &|_| Vec::new());
     let n = numbers.len();
-    let mut first = n;
-    let blocks: Vec<Range<usize>> = (here.compliances.iter())
-        .map(|own| {
-            let block = first..first + own.len();
-            first = block.end;
-            block
-        })
-        .collect();
-    let mut held = vec![false; blocks.len()];
-    here.deviations = blocks.iter().map(|b| vec![f64::INFINITY; b.len()]).collect();
-    loop {
-        let is_held = |p: &usize| blocks.iter().zip(&held).any(|(b, held)| *held && b.contains(p));
-        let free: Vec<usize> = (0..first).filter(|p| !is_held(p)).collect();
-        let Some(factor) = Factor::new(&normal.curvature, &free) else { return vec![0.0; n] };
-        let x = factor.solve(&DVector::from_fn(free.len(), |i, _| normal.gradient[free[i]]));
-        let mut step = vec![0.0; first];
-        let mut deviations = vec![f64::INFINITY; first];
-        let own_deviations = factor.deviations();
-        let answers = free.iter().zip(x.iter().zip(own_deviations.iter()));
-        answers.for_each(|(&p, (x, deviation))| (step[p], deviations[p]) = (*x, *deviation));
-        let moved = here.compliances.iter().zip(&blocks);
-        let wanted: Vec<Vec<f64>> =
-            moved.map(|(own, b)| own.iter().zip(&step[b.clone()]).map(|(c, s)| c + s).collect()).collect();
-        let springs: Vec<Vec<f64>> = wanted.iter().map(|c| nearest_spring(c)).collect();
-        let no_spring: Vec<usize> =
-            (0..blocks.len()).filter(|&k| !held[k] && springs[k] != wanted[k]).collect();
-        if no_spring.is_empty() {
-            here.compliances = wanted;
-            here.deviations = blocks.into_iter().map(|b| deviations[b].to_vec()).collect();
-            here.number_deviations = deviations[..n].to_vec();
-            step.truncate(n);
-            return step;
-        }
-        for k in no_spring {
-            here.compliances[k].clone_from(&springs[k]);
-            held[k] = true;
-        }
-    }
-}
-
-/// The compliances themselves if they are a spring, else the nearest that are: none is negative, and no
-/// moment turns a frame against itself.
-fn nearest_spring(compliances: &[f64]) -> Vec<f64> {
-    match compliances.len() {
-        1 => vec![compliances[0].max(0.0)],
-        5 => nearest_base(compliances),
-        _ => nearest_frame(compliances),
-    }
-}
-
-/// Of a base: zz is nowhere seen and as large as the couplings need, which there are none without tilts.
-fn nearest_base(compliances: &[f64]) -> Vec<f64> {
-    let level: Matrix2<f64> = frame_matrix(compliances).fixed_view::<2, 2>(0, 0).into_owned();
-    let mut eigen = level.symmetric_eigen();
-    if eigen.eigenvalues.min() > 0.0 {
-        return compliances.to_vec();
-    }
-    eigen.eigenvalues.apply(|e| *e = e.max(0.0));
-    let c = eigen.recompose();
-    vec![c[(0, 0)], c[(1, 1)], c[(0, 1)], 0.0, 0.0]
-}
-
-fn nearest_frame(compliances: &[f64]) -> Vec<f64> {
-    let mut eigen = frame_matrix(compliances).symmetric_eigen();
-    if eigen.eigenvalues.min() >= 0.0 {
-        return compliances.to_vec();
-    }
-    // above zero, so that rounding does not take it below
-    let least = 1e-9 * eigen.eigenvalues.max().max(0.0);
-    eigen.eigenvalues.apply(|e| *e = e.max(least));
-    let c = eigen.recompose();
-    FRAME_ENTRIES.iter().map(|&at| c[at]).collect()
-}
-
-/// The compliance matrix of a frame: zz, where it is not among the numbers, as large as the couplings need.
-pub fn frame_matrix(compliances: &[f64]) -> Matrix3<f64> {
-    let mut out = Matrix3::zeros();
-    for (&(i, j), c) in FRAME_ENTRIES.iter().zip(compliances) {
-        (out[(i, j)], out[(j, i)]) = (*c, *c);
-    }
-    if compliances.len() == 5 {
-        let coupling = Vector2::new(out[(0, 2)], out[(1, 2)]);
-        let level: Matrix2<f64> = out.fixed_view::<2, 2>(0, 0).into_owned();
-        out[(2, 2)] = level.try_inverse().map_or(0.0, |inverse| coupling.dot(&(inverse * coupling)));
-    }
-    out
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_a_spring_stays_and_what_is_none_becomes_the_nearest() {
-        let spring = [4e-6, 5e-6, 1e-6, 2e-6, -1e-6, 6e-6];
-        assert_eq!(nearest_spring(&spring), spring);
-        assert_eq!(nearest_spring(&[-1e-6]), [0.0]);
-        // eigenvalues 3 and -1 about the diagonals of xy, 2 about z
-        let made = nearest_spring(&[1.0, 1.0, 2.0, 0.0, 0.0, 2.0]);
-        let nearest = [1.5, 1.5, 1.5, 0.0, 0.0, 2.0];
-        assert!(made.iter().zip(nearest).all(|(a, b)| (a - b).abs() < 1e-6), "{made:?}");
-        assert_eq!(nearest_spring(&[1.0, -1.0, 0.0, 0.5, 0.5]), [1.0, 0.0, 0.0, 0.0, 0.0]);
-    }
-
-    #[test]
-    fn a_base_turns_about_the_vertical_no_more_than_its_couplings_need() {
-        let matrix = frame_matrix(&[4e-6, 5e-6, 1e-6, 2e-6, -1e-6]);
-        let eigenvalues = matrix.symmetric_eigenvalues();
-        assert!(eigenvalues.min().abs() < 1e-9 * eigenvalues.max(), "just a spring: {eigenvalues}");
-        assert_eq!((matrix[(0, 1)], matrix[(2, 0)]), (1e-6, 2e-6));
-    }
+    let Some(best) = best_springs(&normal, n, &here.compliances) else { return vec![0.0; n] };
+    let Best { mut step, deviations } = best;
+    let (mut at, mut own) = (n, here.compliances.iter_mut().zip(&mut here.deviations));
+    own.by_ref().for_each(|(compliances, own_deviations)| {
+        let block = at..at + compliances.len();
+        at = block.end;
+        compliances.iter_mut().zip(&step[block.clone()]).for_each(|(c, by)| *c += by);
+        *own_deviations = deviations[block].to_vec();
+    });
+    here.number_deviations = deviations[..n].to_vec();
+    step.truncate(n);
+    step
 }

@@ -78,7 +78,7 @@ pub fn number_groups(tree: &Tree, spec: &PositionsSpec, points: usize) -> Vec<(&
     if spec.geometry {
         out.push(("geometry", geometry_numbers(tree, spec)));
     }
-    if spec.gravity_direction {
+    if spec.frees_gravity() {
         out.push(("direction of gravity", (0..2).map(Number::Gravity).collect()));
     }
     out

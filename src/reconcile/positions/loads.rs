@@ -66,6 +66,20 @@ pub fn candidates(tree: &Tree) -> Vec<Yielding> {
     out
 }
 
+impl Tree {
+    /// Whether a frame can do what another candidate does: base and frame of the base, a joint about and across its axis and
+    /// the structure behind it.
+    pub fn contains(&self, frame: &Yielding, other: &Yielding) -> bool {
+        let is_behind = |pair: &[usize]| match (&self.pieces[pair[0]], &self.pieces[pair[1]]) {
+            (Piece::Joint(joint), Piece::Link(link)) => joint.name == other.at && link.name == frame.at,
+            _ => false,
+        };
+        frame.effect == "frame_compliance"
+            && other.effect != "frame_compliance"
+            && (frame.at == other.at || self.arms.iter().any(|chain| chain.windows(2).any(is_behind)))
+    }
+}
+
 impl Yielding {
     /// How many compliances it has: of a frame xx, yy, xy, xz, yz, and zz where weights can turn it so.
     pub fn count(&self) -> usize {

@@ -2,7 +2,7 @@
 //! calibrated, what yields is found effect by effect, each stage judged on poses kept out of the fit.
 //!
 //! `tree` joins the arms that stand on one trunk; [`kinematics`] says where a point is and [`loads`] how
-//! gravity moves it; `align` places the arm from nothing, [`fit`](mod@fit) fits, `sessions` tells sessions
+//! gravity moves it; `align` places the arm from nothing, [`fit`](mod@fit) fits, with compliances that are `springs`, `sessions` tells sessions
 //! apart and `standing` where the arm stands in each; `search` finds what yields and `transmission` what turns unevenly; `structure` asks what is left and `outcome` concludes.
 
 mod align;
@@ -14,6 +14,7 @@ mod outcome;
 mod predict;
 mod search;
 mod sessions;
+mod springs;
 mod standing;
 mod structure;
 mod transmission;
@@ -23,6 +24,7 @@ pub use outcome::{FEWEST, located, reconcile};
 pub use predict::predicted_mm;
 
 use super::campaign::Campaign;
+use super::readings::PositionRow;
 use super::stats::median;
 use crate::arm::Arm;
 use fit::{Fitted, Sample, fit};
@@ -71,8 +73,10 @@ pub struct Stage {
 pub struct Positions {
     /// The table of errors, effect by effect.
     pub stages: Vec<Stage>,
-    /// Candidates.
+    /// All that could yield.
     pub candidates: Vec<Yielding>,
+    /// Which of them come into question.
+    considered: Vec<bool>,
     /// The final fit.
     pub fitted: Fitted,
     /// The same geometry's numbers fitted without any effect.
@@ -85,7 +89,7 @@ pub struct Positions {
     transmissions: Vec<usize>,
     tree: Tree,
     /// Points, those of separate sessions apart.
-    points: Vec<String>,
+    points: Vec<Point>,
     /// Where sessions were told apart, in words.
     sessions: Vec<String>,
     /// Errors of the last stage's kept-out predictions \[m\], by row.
@@ -137,13 +141,14 @@ impl Positions {
         let tree = Tree::new(campaign);
         let points = points(campaign);
         let geometry = Geometry::nominal(&tree, points.len());
-        let mut candidates = candidates(&tree);
-        candidates.retain(|c| campaign.statement.considers(c.effect));
+        let candidates = candidates(&tree);
+        let considered = candidates.iter().map(|c| campaign.statement.considers(c.effect)).collect();
         let samples = samples(campaign, &tree, &geometry, &candidates, &points);
         let fitted = Fitted::rigid(geometry, ROUGH_M);
         Self {
             stages: Vec::new(),
             candidates,
+            considered,
             rigid: fitted.clone(),
             fitted,
             gross: Vec::new(),
@@ -196,7 +201,7 @@ impl Positions {
         let points: Vec<usize> = self.samples.iter().map(|s| s.point).collect();
         let sags = sags(campaign, &self.tree, &self.fitted.geometry, &self.candidates, &points);
         self.samples.iter_mut().zip(sags).for_each(|(sample, sag)| sample.sag = sag);
-        if campaign.statement.positions.gravity_direction {
+        if campaign.statement.positions.frees_gravity() {
             (0..2).for_each(|c| self.lean(campaign, &points, c));
         }
     }
@@ -247,11 +252,35 @@ impl Positions {
     }
 }
 
-fn points(campaign: &Campaign) -> Vec<String> {
-    let mut out: Vec<String> = Vec::new();
-    for row in &campaign.positions {
-        if !out.contains(&row.point) {
-            out.push(row.point.clone());
+/// A point on the tool of an arm.
+#[derive(Debug, Clone, PartialEq)]
+struct Point {
+    arm: usize,
+    name: String,
+    /// Where it sat before this row, from 1, if that was a session of its own.
+    before_row: Option<usize>,
+}
+
+impl Point {
+    /// The point of a row.
+    fn of(row: &PositionRow) -> Self {
+        Self { arm: row.arm, name: row.point.clone(), before_row: None }
+    }
+
+    /// Its name, with the session.
+    fn label(&self) -> String {
+        match self.before_row {
+            Some(row) => format!("{} before row {row}", self.name),
+            None => self.name.clone(),
+        }
+    }
+}
+
+fn points(campaign: &Campaign) -> Vec<Point> {
+    let mut out: Vec<Point> = Vec::new();
+    for point in campaign.positions.iter().map(Point::of) {
+        if !out.contains(&point) {
+            out.push(point);
         }
     }
     out
@@ -262,12 +291,12 @@ fn samples(
     tree: &Tree,
     geometry: &Geometry,
     candidates: &[Yielding],
-    points: &[String],
+    points: &[Point],
 ) -> Vec<Sample> {
     let points: Vec<usize> = campaign
         .positions
         .iter()
-        .map(|row| points.iter().position(|p| *p == row.point).unwrap_or_default())
+        .map(|row| points.iter().position(|p| *p == Point::of(row)).unwrap_or_default())
         .collect();
     let sags = sags(campaign, tree, geometry, candidates, &points);
     let mut poses: Vec<&Vec<f64>> = Vec::new();

@@ -2,7 +2,7 @@
 //! pose tells them apart, or nothing in the library fits, another kind of test.
 
 use super::fit::Fitted;
-use super::{Positions, samples};
+use super::{Point, Positions, samples};
 use crate::reconcile::campaign::Campaign;
 use crate::reconcile::lack_of_fit::LackOfFit;
 use crate::reconcile::next_test::{ENOUGH, WORTHLESS_SIGMAS, spread_pose};
@@ -82,8 +82,8 @@ impl Positions {
         let heaviest =
             campaign.positions.iter().map(|r| r.payload).max_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
         out.positions.clear();
-        for name in &self.points {
-            let Some(like) = campaign.positions.iter().find(|r| r.point == *name) else { continue };
+        for point in &self.points {
+            let Some(like) = campaign.positions.iter().find(|r| Point::of(r) == *point) else { continue };
             for index in 1..=PROPOSED_POSES {
                 let mut row = like.clone();
                 row.pose_deg = spread_pose(&ranges, index);

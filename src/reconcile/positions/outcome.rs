@@ -1,8 +1,9 @@
 //! What a campaign of absolute positions concludes.
 
-use super::fit::{Fitted, frame_matrix};
+use super::fit::Fitted;
 use super::kinematics::Number;
 use super::loads::FRAME_ENTRIES;
+use super::springs::frame_matrix;
 use super::structure::{MATERIAL_VARIANCE, MEDIAN_LENGTH};
 use super::{Positions, Stage, analyze, transmission};
 use crate::arm::effect::{Channel, Effect};
@@ -257,7 +258,7 @@ impl Positions {
             Number::StationPosition(s, c) => format!("session_{s}.position_m[{c}]"),
             Number::BaseRotation(c) => format!("base_rotation_rad[{c}]"),
             Number::BasePosition(c) => format!("base_position_m[{c}]"),
-            Number::Tool(p, c) => format!("{}.tool_m[{c}]", self.points[*p]),
+            Number::Tool(p, c) => format!("{}.tool_m[{c}]", self.points[*p].label()),
         }
     }
 

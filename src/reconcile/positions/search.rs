@@ -19,26 +19,22 @@ impl Positions {
     pub(super) fn add(&mut self, campaign: &Campaign, class: &[&str]) -> bool {
         let base = &self.fitted;
         let tried = self.best_additions(base, |c| class.contains(&self.candidates[c].effect));
-        let gain = |(c, f): &(usize, Fitted)| {
-            f.ln_likelihood
-                - base.ln_likelihood
-                - self.price(self.candidates[*c].count(), self.candidates.len())
+        let gain = |(_, f): &(usize, Fitted)| {
+            f.ln_likelihood - self.prices(&f.effects) - (base.ln_likelihood - self.prices(&base.effects))
         };
         let worth = tried.into_iter().filter(|t| gain(t) > 0.0);
         let Some((added, fitted)) = worth.max_by(|a, b| gain(a).total_cmp(&gain(b))) else { return false };
-        let mut next = Self { fitted, ..self.clone() };
-        next.drop_needless();
-        next.refresh(campaign);
-        next.refit();
+        let next = Self { fitted, ..self.clone() };
+        self.take_if_confirmed(campaign, next, self.label(added))
+    }
+
+    /// Becomes the next model, without what it makes needless, if that predicts poses kept out better.
+    pub(super) fn take_if_confirmed(&mut self, campaign: &Campaign, mut next: Self, added: String) -> bool {
+        next.settle(campaign);
         let dropped = |e: &&usize| !next.fitted.effects.contains(e);
         let dropped: Vec<String> =
             self.fitted.effects.iter().filter(dropped).map(|e| self.label(*e)).collect();
-        next.stage(self.label(added), dropped);
-        self.take_if_confirmed(next)
-    }
-
-    /// Becomes the next model if it predicts poses kept out better.
-    pub(super) fn take_if_confirmed(&mut self, next: Self) -> bool {
+        next.stage(added, dropped);
         let confirmed = next.kept_out_ln_likelihood() > self.kept_out_ln_likelihood();
         if confirmed {
             *self = next;
@@ -50,6 +46,19 @@ impl Positions {
         ln_likelihood(&self.kept_out, scale(&self.kept_out, self.fitted.scale_m))
     }
 
+    /// Fits anew, with what gravity does to the geometry as fitted, until nothing is needless.
+    fn settle(&mut self, campaign: &Campaign) {
+        loop {
+            self.refresh(campaign);
+            self.refit();
+            let before = self.fitted.effects.len();
+            self.drop_needless();
+            if self.fitted.effects.len() == before {
+                return;
+            }
+        }
+    }
+
     /// Drops effects, the most needless first, that are no longer worth their price.
     fn drop_needless(&mut self) {
         let all: Vec<&Sample> = self.samples.iter().collect();
@@ -58,8 +67,7 @@ impl Positions {
                 let mut rest = self.fitted.effects.clone();
                 let own = rest.remove(position);
                 let fitted = fit(&all, &self.numbers, &rest, &self.fitted);
-                let price = self.price(self.candidates[own].count(), self.candidates.len());
-                (fitted.ln_likelihood + price - self.fitted.ln_likelihood, fitted)
+                (fitted.ln_likelihood + self.price_of(own) - self.fitted.ln_likelihood, fitted)
             };
             let doubtful: Vec<usize> =
                 (0..self.fitted.effects.len()).filter(|&i| self.is_doubtful(i)).collect();
@@ -72,7 +80,7 @@ impl Positions {
 
     /// Whether an effect may not be worth its price: by its compliances over their deviations, generously.
     fn is_doubtful(&self, position: usize) -> bool {
-        let price = self.price(self.candidates[self.fitted.effects[position]].count(), self.candidates.len());
+        let price = self.price_of(self.fitted.effects[position]);
         let numbers = self.fitted.compliances[position].iter().zip(&self.fitted.deviations[position]);
         // an effect that can stand for another has large deviations
         let is_small = |(c, deviation): (&f64, &f64)| 0.5 * (c / deviation).powi(2) < 2.0 * price;
@@ -83,6 +91,17 @@ impl Positions {
 
     pub(super) fn label(&self, candidate: usize) -> String {
         format!("{}@{}", self.candidates[candidate].effect, self.candidates[candidate].at)
+    }
+
+    /// What effects must bring together.
+    fn prices(&self, effects: &[usize]) -> f64 {
+        effects.iter().map(|effect| self.price_of(*effect)).sum()
+    }
+
+    /// What a candidate must bring.
+    fn price_of(&self, candidate: usize) -> f64 {
+        let places = self.considered.iter().filter(|considered| **considered).count();
+        self.price(self.candidates[candidate].count(), places)
     }
 
     /// What so many numbers must bring in ln of the likelihood: for themselves, and for having looked at so
@@ -97,13 +116,23 @@ impl Positions {
     fn best_additions(&self, base: &Fitted, allowed: impl Fn(usize) -> bool) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let mut gains = self.gains(base);
-        gains.retain(|(c, gain)| allowed(*c) && !base.effects.contains(c) && *gain > 0.0);
+        let is_open = |c: usize| self.considered[c] && allowed(c) && !base.effects.contains(&c);
+        gains.retain(|(c, gain)| is_open(*c) && *gain > 0.0);
         gains.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         gains.truncate(FULL_FITS);
-        gains
-            .into_par_iter()
-            .map(|(c, _)| (c, fit(&all, &self.numbers, &[base.effects.as_slice(), &[c]].concat(), base)))
-            .collect()
+        let models = gains.into_iter().flat_map(|(c, _)| self.with(base, c).into_iter().map(move |m| (c, m)));
+        let models: Vec<(usize, Vec<usize>)> = models.collect();
+        models.into_par_iter().map(|(c, effects)| (c, fit(&all, &self.numbers, &effects, base))).collect()
+    }
+
+    /// The effects of a model and one more; and the same without those that it can do alone, beside which it has hardly a
+    /// size.
+    fn with(&self, base: &Fitted, added: usize) -> Vec<Vec<usize>> {
+        let contains =
+            |effect: &usize| self.tree.contains(&self.candidates[added], &self.candidates[*effect]);
+        let beside = [base.effects.as_slice(), &[added]].concat();
+        let instead: Vec<usize> = beside.iter().copied().filter(|effect| !contains(effect)).collect();
+        if instead.len() < beside.len() { vec![beside, instead] } else { vec![beside] }
     }
 
     /// By how much the model made linear says each candidate would raise the ln of the likelihood.

@@ -5,9 +5,9 @@
 //! row is tried as the first of a new session, by the gain of the model made linear; the earlier rows then
 //! have an offset or a placement of their own.
 
-use super::Positions;
 use super::fit::{Factor, Fitted, Sample, fit, normal};
 use super::kinematics::Number;
+use super::{Point, Positions};
 use nalgebra::{DMatrix, Vector3};
 
 /// Fewest positions of a session.
@@ -155,8 +155,8 @@ impl Positions {
         match split.moved {
             Moved::Point(p) => {
                 let offset_m = geometry.tools_m[p] - geometry.tools_m[geometry.tools_m.len() - 1];
-                self.points.push(format!("{} before row {row}", self.points[p]));
-                let (name, mm) = (&self.points[p], 1e3 * offset_m.norm());
+                self.points.push(Point { before_row: Some(row), ..self.points[p].clone() });
+                let (name, mm) = (self.points[p].label(), 1e3 * offset_m.norm());
                 format!("{name} sat {mm:.2} mm away on the tool before row {row}: a session of its own")
             }
             Moved::Station(s) => {

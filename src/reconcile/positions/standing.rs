@@ -2,7 +2,7 @@
 
 use super::fit::{Fitted, Sample, fit};
 use super::kinematics::{Geometry, Number};
-use super::{Positions, points};
+use super::{Point, Positions, points};
 use crate::reconcile::campaign::Campaign;
 use crate::reconcile::placement::{Placement, Session, Stand, pose_mark, test_numbers};
 use nalgebra::Rotation3;
@@ -17,24 +17,21 @@ impl Positions {
         turned: Rotation3<f64>,
     ) -> Placement {
         let own: Vec<usize> = (0..self.samples.len()).filter(|&i| self.samples[i].arm == arm).collect();
-        let names: Vec<String> =
-            points(campaign).into_iter().filter(|name| on(campaign, &own, name)).collect();
+        let own_points: Vec<(usize, Point)> =
+            points(campaign).into_iter().enumerate().filter(|(_, point)| point.arm == arm).collect();
         let mut geometry = shown.geometry.clone();
         geometry.relevel();
         let runs = self.runs(campaign, &own);
         if runs.len() < 2 {
-            let usual = self.stand(&geometry, campaign, &names, &own, turned);
+            let usual = self.stand(&geometry, campaign, &own_points, &own, turned);
             return Placement { usual, ..Placement::default() };
         }
         let merged = self.merged(campaign, shown);
-        let at_rest = |name: &String| {
-            let point = points(campaign).iter().position(|n| n == name).unwrap_or_default();
-            (name.clone(), turned * merged.tools_m[point])
-        };
+        let at_rest = |(at, point): &(usize, Point)| (point.name.clone(), turned * merged.tools_m[*at]);
         let usual = Stand {
             rotation: merged.level_to_instrument().into_inner(),
             origin_m: merged.origin_m,
-            points_m: names.iter().map(at_rest).collect(),
+            points_m: own_points.iter().map(at_rest).collect(),
         };
         let rows: Vec<_> = own.iter().map(|&i| campaign.positions[i].clone()).collect();
         let Some(numbers) = test_numbers(&rows).filter(|n| n.is_sorted()) else {
@@ -47,7 +44,7 @@ impl Positions {
             before_test: next.map_or(f64::INFINITY, |next| {
                 0.5 * (number_of(next) + number_of(*run.last().unwrap_or(&next)))
             }),
-            stand: self.stand(&geometry, campaign, &names, run, turned),
+            stand: self.stand(&geometry, campaign, &own_points, run, turned),
         });
         Placement {
             usual,
@@ -78,27 +75,26 @@ impl Positions {
         &self,
         geometry: &Geometry,
         campaign: &Campaign,
-        names: &[String],
+        own_points: &[(usize, Point)],
         run: &[usize],
         turned: Rotation3<f64>,
     ) -> Stand {
         let (turn, shift_m) = geometry.stations[run.first().map_or(0, |&i| self.samples[i].station)];
-        let point_m = |name: &String| {
-            let seen = run.iter().find(|&&i| campaign.positions[i].point == *name);
-            let usual = || self.points.iter().position(|n| n == name).unwrap_or_default();
-            let point = seen.map_or_else(usual, |&i| self.samples[i].point);
-            (name.clone(), turned * geometry.tools_m[point])
+        let point_m = |(usual, point): &(usize, Point)| {
+            let seen = run.iter().find(|&&i| Point::of(&campaign.positions[i]) == *point);
+            let at = seen.map_or(*usual, |&i| self.samples[i].point);
+            (point.name.clone(), turned * geometry.tools_m[at])
         };
         Stand {
             rotation: (turn * geometry.level_to_instrument()).into_inner(),
             origin_m: geometry.origin_m + shift_m,
-            points_m: names.iter().map(point_m).collect(),
+            points_m: own_points.iter().map(point_m).collect(),
         }
     }
 
     /// The geometry with base and points placed to suit all sessions, all else held.
     fn merged(&self, campaign: &Campaign, shown: &Fitted) -> Geometry {
-        let names = points(campaign);
+        let named = points(campaign);
         let together: Vec<Sample> = self
             .samples
             .iter()
@@ -106,14 +102,14 @@ impl Positions {
             .map(|(sample, row)| {
                 let mut out = sample.clone();
                 out.sag.known_m = shown.displacement(sample);
-                out.point = names.iter().position(|n| *n == row.point).unwrap_or_default();
+                out.point = named.iter().position(|p| *p == Point::of(row)).unwrap_or_default();
                 out.station = 0;
                 out
             })
             .collect();
         let places = |n: &&Number| match n {
             Number::BaseRotation(_) | Number::BasePosition(_) => true,
-            Number::Tool(point, _) => *point < names.len(),
+            Number::Tool(point, _) => *point < named.len(),
             _ => false,
         };
         let numbers: Vec<Number> = self.numbers.iter().filter(places).cloned().collect();
@@ -122,9 +118,4 @@ impl Positions {
         let all: Vec<&Sample> = together.iter().collect();
         fit(&all, &numbers, &[], &start).geometry
     }
-}
-
-/// Whether a point of this name is among the rows.
-fn on(campaign: &Campaign, rows: &[usize], name: &str) -> bool {
-    rows.iter().any(|&i| campaign.positions[i].point == name)
 }

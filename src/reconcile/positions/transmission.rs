@@ -32,10 +32,7 @@ impl Positions {
         let mut next = Self { fitted, ..self.clone() };
         next.numbers.extend(numbers(joint));
         next.transmissions.push(joint);
-        next.refresh(campaign);
-        next.refit();
-        next.stage(format!("{EFFECT}@{}", self.tree.driven[joint]), Vec::new());
-        self.take_if_confirmed(next)
+        self.take_if_confirmed(campaign, next, format!("{EFFECT}@{}", self.tree.driven[joint]))
     }
 
     /// Models in which one more joint turns unevenly, the most promising fitted in full.

@@ -1,0 +1,303 @@
+//! Compliances that are springs: none is negative, and no moment turns a frame against itself.
+//!
+//! The normal equations of a fit are a parabola; its best among springs is looked for. A compliance that would be none is held
+//! at zero. The matrix of a frame is written as `L Lᵀ`, which is a spring whatever `L` is, and
+//! the parabola made as small as it gets over the entries of `L` and all other numbers.
+
+use super::fit::{Factor, Normal};
+use super::loads::FRAME_ENTRIES;
+use nalgebra::{Cholesky, DMatrix, DVector, Matrix2, Matrix3, Vector2};
+use std::ops::Range;
+
+/// Steps over the entries of `L` at the most, and times one is halved.
+const MOST_STEPS: usize = 30;
+const MOST_HALVINGS: i32 = 8;
+/// A step that promises less than this in half the chi-squared is the last.
+const SETTLED: f64 = 1e-6;
+/// Part of a frame's largest compliance that `L` starts with in every direction.
+const ROOM: f64 = 1e-3;
+/// Entries of `L`: row and column. Without the last zz is what the couplings need.
+const LOWER: [(usize, usize); FRAME_ENTRIES.len()] = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)];
+
+/// Where the parabola is best.
+pub struct Best {
+    /// By how much each number moves, those of the geometry first.
+    pub step: Vec<f64>,
+    /// Standard deviations; infinite of what is held.
+    pub deviations: Vec<f64>,
+}
+
+/// What the compliances of an effect may do.
+#[derive(Clone)]
+enum Block {
+    Free,
+    /// They move by so much.
+    Held(Vec<f64>),
+    /// They are `L Lᵀ`.
+    Frame(Matrix3<f64>),
+}
+
+/// The best step among springs; the compliances, now `now`, come after `numbers` others. `None` if the equations have no
+/// answer.
+pub fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) -> Option<Best> {
+    let mut first = numbers;
+    let ranges: Vec<Range<usize>> = (now.iter())
+        .map(|own| {
+            let range = first..first + own.len();
+            first = range.end;
+            range
+        })
+        .collect();
+    let own = normal.own;
+    let curvature = normal.curvature.view((0, 0), (own, own)).into_owned();
+    let gradient = normal.gradient.rows(0, own).into_owned();
+    let blocks = vec![Block::Free; now.len()];
+    let mut parabola = Parabola { curvature, gradient, numbers, now, ranges, blocks };
+    loop {
+        let mut best = parabola.best()?;
+        // from the nearest springs it may end where it is worse than to begin with
+        if parabola.value(&best.step) > 0.0 {
+            parabola.frames_from_now();
+            best = parabola.best()?;
+        }
+        let mut is_settled = true;
+        for (k, own) in now.iter().enumerate() {
+            if !matches!(parabola.blocks[k], Block::Free) {
+                continue;
+            }
+            let step = &best.step[parabola.ranges[k].clone()];
+            let wanted: Vec<f64> = own.iter().zip(step).map(|(c, by)| c + by).collect();
+            let spring = nearest_spring(&wanted);
+            if spring != wanted {
+                is_settled = false;
+                parabola.blocks[k] = match own.len() {
+                    5.. => Block::Frame(factor_of(&spring)),
+                    _ => Block::Held(spring.iter().zip(own).map(|(c, now)| c - now).collect()),
+                };
+            }
+        }
+        if is_settled {
+            return Some(best);
+        }
+    }
+}
+
+/// `L` of a frame, with room in every direction.
+fn factor_of(compliances: &[f64]) -> Matrix3<f64> {
+    let matrix = frame_matrix(compliances);
+    let room = (ROOM * matrix.diagonal().max()).max(f64::MIN_POSITIVE);
+    Cholesky::new(matrix + Matrix3::identity() * room).map_or_else(Matrix3::zeros, |c| c.l())
+}
+
+/// The normal equations and what each effect may do.
+struct Parabola<'a> {
+    curvature: DMatrix<f64>,
+    gradient: DVector<f64>,
+    numbers: usize,
+    now: &'a [Vec<f64>],
+    /// Where the compliances of each effect are.
+    ranges: Vec<Range<usize>>,
+    blocks: Vec<Block>,
+}
+
+impl Parabola<'_> {
+    /// The best step: of what is linear at once, of the entries of `L` step by step.
+    fn best(&mut self) -> Option<Best> {
+        let mut linear = vec![0.0; self.gradient.len()];
+        let mut step = self.step(&linear);
+        for _ in 0..MOST_STEPS {
+            let slopes = self.slopes();
+            let factor = self.factor(&slopes)?;
+            let right = slopes.transpose() * self.gradient_at(&step);
+            let move_by = factor.solve(&right);
+            let (value, from, blocks) = (self.value(&step), linear.clone(), self.blocks.clone());
+            let is_better = (0..MOST_HALVINGS).any(|halving| {
+                (linear, self.blocks) = (from.clone(), blocks.clone());
+                self.advance(&mut linear, &(&move_by * 0.5f64.powi(halving)));
+                step = self.step(&linear);
+                self.value(&step) <= value
+            });
+            if !is_better {
+                (linear, self.blocks) = (from, blocks);
+                step = self.step(&linear);
+            }
+            let is_linear = !self.blocks.iter().any(|block| matches!(block, Block::Frame(_)));
+            if is_linear || !is_better || right.dot(&move_by) < SETTLED {
+                break;
+            }
+        }
+        let slopes = self.slopes();
+        let factor = self.factor(&slopes)?;
+        let variance = |row: usize| {
+            let row = slopes.row(row).transpose();
+            row.dot(&factor.solve(&row))
+        };
+        let is_open = |row: usize| slopes.row(row).iter().any(|s| *s != 0.0);
+        let deviation = |row: usize| if is_open(row) { variance(row).max(0.0).sqrt() } else { f64::INFINITY };
+        Some(Best { deviations: (0..step.len()).map(deviation).collect(), step })
+    }
+
+    /// Lets every frame start from what it is now.
+    fn frames_from_now(&mut self) {
+        for (block, now) in self.blocks.iter_mut().zip(self.now) {
+            if let Block::Frame(l) = block {
+                let size = (*l * l.transpose()).diagonal().max();
+                let room = Matrix3::identity() * (ROOM * size);
+                *l = Cholesky::new(frame_matrix(now) + room).map_or(room, |c| c.l());
+            }
+        }
+    }
+
+    /// The gradient after a step.
+    fn gradient_at(&self, step: &[f64]) -> DVector<f64> {
+        &self.gradient - &self.curvature * DVector::from_column_slice(step)
+    }
+
+    fn value(&self, step: &[f64]) -> f64 {
+        let step = DVector::from_column_slice(step);
+        0.5 * step.dot(&(&self.curvature * &step)) - step.dot(&self.gradient)
+    }
+
+    /// The curvature over what is free.
+    fn factor(&self, slopes: &DMatrix<f64>) -> Option<Factor> {
+        let all_free = self.blocks.iter().all(|block| matches!(block, Block::Free));
+        let curvature = match all_free {
+            true => self.curvature.clone(),
+            false => slopes.transpose() * &self.curvature * slopes,
+        };
+        Factor::new(&curvature, &(0..curvature.nrows()).collect::<Vec<_>>())
+    }
+
+    /// The step of every number: those that are linear move by so much.
+    fn step(&self, linear: &[f64]) -> Vec<f64> {
+        let mut step = linear.to_vec();
+        for ((block, range), now) in self.blocks.iter().zip(&self.ranges).zip(self.now) {
+            match block {
+                Block::Free => {}
+                Block::Held(by) => step[range.clone()].copy_from_slice(by),
+                Block::Frame(l) => {
+                    let matrix = l * l.transpose();
+                    let entries = FRAME_ENTRIES.iter().zip(now);
+                    step[range.clone()]
+                        .iter_mut()
+                        .zip(entries)
+                        .for_each(|(step, (at, now))| *step = matrix[*at] - now);
+                }
+            }
+        }
+        step
+    }
+
+    /// How each number moves with what is free: itself, or the entries of `L`.
+    fn slopes(&self) -> DMatrix<f64> {
+        let mut columns: Vec<DVector<f64>> = Vec::new();
+        let unit = |at: usize| {
+            let mut column = DVector::zeros(self.gradient.len());
+            column[at] = 1.0;
+            column
+        };
+        columns.extend((0..self.numbers).map(unit));
+        for (block, range) in self.blocks.iter().zip(&self.ranges) {
+            match block {
+                Block::Free => columns.extend(range.clone().map(unit)),
+                Block::Held(_) => {}
+                Block::Frame(l) => columns.extend(LOWER[..range.len()].iter().map(|&(row, column)| {
+                    let mut moved = Matrix3::zeros();
+                    moved[(row, column)] = 1.0;
+                    let slope = moved * l.transpose() + l * moved.transpose();
+                    let mut out = DVector::zeros(self.gradient.len());
+                    range.clone().zip(&FRAME_ENTRIES).for_each(|(at, entry)| out[at] = slope[*entry]);
+                    out
+                })),
+            }
+        }
+        DMatrix::from_columns(&columns)
+    }
+
+    /// Moves what is free.
+    fn advance(&mut self, linear: &mut [f64], by: &DVector<f64>) {
+        let mut by = by.iter();
+        let mut next = || by.next().copied().unwrap_or_default();
+        linear[..self.numbers].iter_mut().for_each(|x| *x += next());
+        for (block, range) in self.blocks.iter_mut().zip(&self.ranges) {
+            match block {
+                Block::Free => linear[range.clone()].iter_mut().for_each(|x| *x += next()),
+                Block::Held(_) => {}
+                Block::Frame(l) => LOWER[..range.len()].iter().for_each(|at| l[*at] += next()),
+            }
+        }
+    }
+}
+
+/// The compliances themselves if they are a spring, else the nearest that are: none is negative, and no
+/// moment turns a frame against itself.
+fn nearest_spring(compliances: &[f64]) -> Vec<f64> {
+    match compliances.len() {
+        1 => vec![compliances[0].max(0.0)],
+        5 => nearest_base(compliances),
+        _ => nearest_frame(compliances),
+    }
+}
+
+/// Of a base: zz is nowhere seen and as large as the couplings need, which there are none without tilts.
+fn nearest_base(compliances: &[f64]) -> Vec<f64> {
+    let level: Matrix2<f64> = frame_matrix(compliances).fixed_view::<2, 2>(0, 0).into_owned();
+    let mut eigen = level.symmetric_eigen();
+    if eigen.eigenvalues.min() > 0.0 {
+        return compliances.to_vec();
+    }
+    eigen.eigenvalues.apply(|e| *e = e.max(0.0));
+    let c = eigen.recompose();
+    vec![c[(0, 0)], c[(1, 1)], c[(0, 1)], 0.0, 0.0]
+}
+
+fn nearest_frame(compliances: &[f64]) -> Vec<f64> {
+    let mut eigen = frame_matrix(compliances).symmetric_eigen();
+    if eigen.eigenvalues.min() >= 0.0 {
+        return compliances.to_vec();
+    }
+    // above zero, so that rounding does not take it below
+    let least = 1e-9 * eigen.eigenvalues.max().max(0.0);
+    eigen.eigenvalues.apply(|e| *e = e.max(least));
+    let c = eigen.recompose();
+    FRAME_ENTRIES.iter().map(|&at| c[at]).collect()
+}
+
+/// The compliance matrix of a frame: zz, where it is not among the numbers, as large as the couplings need.
+pub fn frame_matrix(compliances: &[f64]) -> Matrix3<f64> {
+    let mut out = Matrix3::zeros();
+    for (&(i, j), c) in FRAME_ENTRIES.iter().zip(compliances) {
+        (out[(i, j)], out[(j, i)]) = (*c, *c);
+    }
+    if compliances.len() == 5 {
+        let coupling = Vector2::new(out[(0, 2)], out[(1, 2)]);
+        let level: Matrix2<f64> = out.fixed_view::<2, 2>(0, 0).into_owned();
+        out[(2, 2)] = level.try_inverse().map_or(0.0, |inverse| coupling.dot(&(inverse * coupling)));
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_a_spring_stays_and_what_is_none_becomes_the_nearest() {
+        let spring = [4e-6, 5e-6, 1e-6, 2e-6, -1e-6, 6e-6];
+        assert_eq!(nearest_spring(&spring), spring);
+        assert_eq!(nearest_spring(&[-1e-6]), [0.0]);
+        // eigenvalues 3 and -1 about the diagonals of xy, 2 about z
+        let made = nearest_spring(&[1.0, 1.0, 2.0, 0.0, 0.0, 2.0]);
+        let nearest = [1.5, 1.5, 1.5, 0.0, 0.0, 2.0];
+        assert!(made.iter().zip(nearest).all(|(a, b)| (a - b).abs() < 1e-6), "{made:?}");
+        assert_eq!(nearest_spring(&[1.0, -1.0, 0.0, 0.5, 0.5]), [1.0, 0.0, 0.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_base_turns_about_the_vertical_no_more_than_its_couplings_need() {
+        let matrix = frame_matrix(&[4e-6, 5e-6, 1e-6, 2e-6, -1e-6]);
+        let eigenvalues = matrix.symmetric_eigenvalues();
+        assert!(eigenvalues.min().abs() < 1e-9 * eigenvalues.max(), "just a spring: {eigenvalues}");
+        assert_eq!((matrix[(0, 1)], matrix[(2, 0)]), (1e-6, 2e-6));
+    }
+}
