@@ -13,7 +13,7 @@ use armwright::fault::Document;
 use armwright::search::constraint::Constraints;
 use armwright::search::design::{Evaluated, number};
 use armwright::search::front::nondominated;
-use armwright::search::witness::{Looked, PartsBox, Witness, conditions, missing};
+use armwright::search::witness::{By, Looked, PartsBox, Witness, conditions, missing};
 use armwright::search::{ArmProblem, Objectives, OutwardIn, Sweep, evaluate};
 use armwright::sizing::PhaseKind;
 use armwright::study::{Study, read_study};
@@ -211,7 +211,7 @@ fn random_design(witness: &Witness, dice: &mut Dice) -> Option<PartsBox> {
 }
 
 fn random_member(witness: &Witness, parts: &PartsBox, sizes: &[u32], dice: &mut Dice) -> u128 {
-    let options: Vec<u32> = witness.options(parts).into_iter().map(|options| dice.of(options)).collect();
+    let options: Vec<u32> = witness.options(parts).iter().map(|options| dice.of(options)).collect();
     number(sizes, &options)
 }
 
@@ -325,8 +325,17 @@ fn true_front(study: &Study, catalogs: &Catalogs) -> Vec<Evaluated> {
 
 fn look(study: &Study, catalogs: &Catalogs, front: &[&Evaluated]) -> Looked {
     let objectives: Vec<Objectives> = front.iter().map(|d| d.objectives).collect();
-    missing(&study.space, catalogs, &objectives, &AtomicBool::new(false), None)
+    missing(&study.space, catalogs, &objectives, By::default(), &AtomicBool::new(false), None)
 }
+
+fn look_by_regions(study: &Study, catalogs: &Catalogs, front: &[&Evaluated]) -> Looked {
+    let objectives: Vec<Objectives> = front.iter().map(|d| d.objectives).collect();
+    let by = By { regions_from: 1, boxes_to: 60.0, apart: 0.0 };
+    missing(&study.space, catalogs, &objectives, by, &AtomicBool::new(false), None)
+}
+
+/// Largest space that is searched region by region here: where nearly every design is on the front regions gain little.
+const MOST_BY_REGIONS: u128 = 2_500;
 
 /// Whether a design is as good as another in everything, or nearly so.
 fn nearly_covers(a: &Evaluated, b: &Evaluated) -> bool {
@@ -370,6 +379,38 @@ fn nothing_is_missing_beside_a_true_front_and_what_is_dropped_is_found() {
 }
 
 #[test]
+fn region_by_region_nothing_is_missing_and_what_is_dropped_is_found() {
+    let catalogs = Catalogs::builtin();
+    let (mut fronts, mut dropped, mut boxes) = (0, 0, 0);
+    for seed in 0..studies() {
+        let study = read(&random_study(seed), &catalogs);
+        if study.space.designs(&catalogs).is_none_or(|designs| designs > MOST_BY_REGIONS) {
+            continue;
+        }
+        let front = true_front(&study, &catalogs);
+        let all: Vec<&Evaluated> = front.iter().collect();
+        let looked = look_by_regions(&study, &catalogs, &all);
+        assert_eq!(looked.open, 0);
+        let added: Vec<_> =
+            looked.candidates.iter().filter(|n| !front.iter().any(|d| d.number == **n)).collect();
+        assert!(added.is_empty(), "seed {seed}: {added:?} beside {} rows", front.len());
+        (fronts, boxes) = (fronts + u64::from(!front.is_empty()), boxes + looked.boxes);
+        let step = front.len().div_ceil(6).max(1);
+        for lost in front.iter().skip(step / 2).step_by(step) {
+            let rest: Vec<&Evaluated> = all.iter().copied().filter(|d| d.number != lost.number).collect();
+            if rest.iter().any(|row| nearly_covers(row, lost)) {
+                continue;
+            }
+            let found = look_by_regions(&study, &catalogs, &rest).candidates;
+            assert!(found.contains(&lost.number), "seed {seed}: {lost:?} is not found");
+            dropped += 1;
+        }
+    }
+    println!("{fronts} fronts, {boxes} boxes, {dropped} designs dropped and found");
+    assert!(fronts * 8 > studies() && dropped > fronts, "{fronts} fronts, {dropped} dropped");
+}
+
+#[test]
 fn the_answer_is_the_same_with_one_thread_and_says_what_is_left_if_stopped() {
     let catalogs = Catalogs::builtin();
     let small = |seed: &u64| {
@@ -383,7 +424,8 @@ fn the_answer_is_the_same_with_one_thread_and_says_what_is_left_if_stopped() {
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
     let one = alone.install(|| look(&study, &catalogs, &some));
     assert_eq!(one, look(&study, &catalogs, &some));
-    let stopped = missing(&study.space, &catalogs, &[], &AtomicBool::new(false), Some(Instant::now()));
+    let stopped =
+        missing(&study.space, &catalogs, &[], By::default(), &AtomicBool::new(false), Some(Instant::now()));
     assert!(stopped.open > 0 && stopped.candidates.is_empty());
 }
 

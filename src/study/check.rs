@@ -8,7 +8,7 @@ use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
 use crate::search::design::{Evaluated, id_of, number, number_of, options};
-use crate::search::exact::{self, Exact};
+use crate::search::exact::Exact;
 use crate::search::front::nondominated;
 use crate::search::sweep::Candidate;
 use crate::search::{ArmProblem, Objectives, OutwardIn, evaluate, witness};
@@ -20,6 +20,8 @@ use std::time::Instant;
 const ROUNDING: f64 = 1e-6;
 /// Largest relative difference of a number in a row from what the full model gives.
 const AGREE: f64 = 1e-9;
+/// Part of the gap by which rows may differ that stand for each other.
+const APART: f64 = 0.45;
 /// Faults of one kind that are listed one by one.
 const LISTED: usize = 10;
 
@@ -141,13 +143,13 @@ fn look_for_missing(
     stop: &AtomicBool,
     deadline: Option<Instant>,
 ) -> Look {
-    let designs = study.space.designs(catalogs).map_or(f64::INFINITY, |n| n as f64);
-    let vast = || format!("they do not go region by region, as {designs:.1e} designs ask for");
-    let unseen = witness::conditions(&study.space).err().or_else(|| (designs > exact::VAST).then(vast));
+    let unseen = witness::conditions(&study.space).err();
     let (numbers, boxes, open, lacks_ties) = match unseen {
         None => {
-            let looked = witness::missing(&study.space, catalogs, &front.objectives(), stop, deadline);
-            (looked.candidates, looked.boxes, looked.open, false)
+            let by = witness::By { apart: APART * front.gap, ..Default::default() };
+            let looked = witness::missing(&study.space, catalogs, &front.objectives(), by, stop, deadline);
+            let lacks_ties = front.gap == 0.0 && !looked.ties_listed;
+            (looked.candidates, looked.boxes, looked.open, lacks_ties)
         }
         Some(_) => {
             let rows: Vec<Objectives> = front.front.iter().map(|d| d.design.objectives).collect();

@@ -1,13 +1,14 @@
 //! What no member of a box betters: mass and deflection, and whether one may be as fast as some frequency.
 
+use super::arm::Arm;
 use super::drives::{DriveRange, Drives};
 use super::layout::Coordinate;
 use super::pencil::Pencil;
 use super::pose::Pose;
 use super::span::Span;
 use super::tubes::{DENSITIES, STIFFNESSES, TubeRange};
-use super::{PartsBox, Place, Witness};
-use crate::sizing::JointMotion;
+use super::{PartsBox, Witness};
+use crate::sizing::{JointDemand, JointMotion};
 use nalgebra::Vector3;
 
 /// Room for rounding where a limit decides (relative).
@@ -44,26 +45,17 @@ impl Witness {
     pub(super) fn members(&self, nodes: &PartsBox) -> Option<Members<'_>> {
         let tubes: Vec<&TubeRange> =
             self.tubes.iter().map(|tube| &tube.nodes[self.node(tube.level, nodes)]).collect();
-        let loads = |water: usize| {
-            let drives = self.joints.iter().map(|_| Span::default());
-            drives.chain(tubes.iter().map(|tube| weight(tube, water))).collect()
-        };
-        let mut members = Members {
-            drives: self.joints.iter().map(|joint| *joint.range(0)).collect(),
-            loads: (0..self.waters).map(loads).collect(),
-            tubes,
-        };
+        let drives = self.joints.iter().map(|joint| *joint.range(0)).collect();
+        let mut members = Members::new(drives, tubes, self.arm.waters);
         for joint in (0..self.joints.len()).rev() {
             let drives = &self.joints[joint];
             let range = match &drives.motion {
                 Some(motion) => self.drives_that_hold(drives, joint, motion, nodes, &members)?,
                 None => *drives.range(0),
             };
-            members.drives[joint] = range;
-            let mass = Span { least: range.least_kg, most: range.most_kg };
-            members.loads.iter_mut().for_each(|loads| loads[joint] = mass);
+            members.set_drive(joint, range);
         }
-        self.strong_enough(&members).then_some(members)
+        self.arm.strong_enough(&members).then_some(members)
     }
 
     fn node(&self, level: Option<usize>, nodes: &PartsBox) -> usize {
@@ -78,14 +70,42 @@ impl Witness {
         nodes: &PartsBox,
         members: &Members,
     ) -> Option<DriveRange> {
+        let [least, most] = self.arm.demands(joint, motion, members);
+        match drives.level {
+            Some(level) => drives.holding(nodes.0[level], &least),
+            None => drives.first_fits(&least, &most),
+        }
+    }
+}
+
+impl<'w> Members<'w> {
+    /// Tubes, and drives of which nothing is known yet: their masses are zero.
+    pub fn new(drives: Vec<DriveRange>, tubes: Vec<&'w TubeRange>, waters: usize) -> Self {
+        let loads = |water: usize| {
+            let drives = drives.iter().map(|_| Span::default());
+            drives.chain(tubes.iter().map(|tube| weight(tube, water))).collect()
+        };
+        Self { loads: (0..waters).map(loads).collect(), drives, tubes }
+    }
+
+    /// Says what drives a joint may have.
+    pub fn set_drive(&mut self, joint: usize, range: DriveRange) {
+        self.drives[joint] = range;
+        let mass = Span { least: range.least_kg, most: range.most_kg };
+        self.loads.iter_mut().for_each(|loads| loads[joint] = mass);
+    }
+}
+
+impl Arm {
+    /// What a joint is asked for at least and at most, with room for rounding.
+    pub fn demands(&self, joint: usize, motion: &JointMotion, members: &Members) -> [JointDemand; 2] {
         let asked = self.asked(joint, members);
         let (statics, inertia) = (asked.static_nm, asked.inertia_kgm2);
         let (less, more) = (1.0 - ROUNDING, 1.0 + ROUNDING);
-        let least = motion.demand(statics.least * less, inertia.least * less);
-        match drives.level {
-            Some(level) => drives.holding(nodes.0[level], &least),
-            None => drives.first_fits(&least, &motion.demand(statics.most * more, inertia.most * more)),
-        }
+        [
+            motion.demand(statics.least * less, inertia.least * less),
+            motion.demand(statics.most * more, inertia.most * more),
+        ]
     }
 
     /// The worst static torque and inertia on a joint over the cases it is sized in; everything outboard of it
@@ -108,7 +128,7 @@ impl Witness {
     /// Inertia of all that is outboard about a joint's axis: the entry of the twist of that joint.
     fn inertia_about(&self, pose: &Pose, joint: usize, members: &Members) -> Span {
         let entry = joint * (joint + 3) / 2;
-        let of_drives = members.loads[pose.water][..self.joints.len()].iter().copied();
+        let of_drives = members.loads[pose.water][..members.drives.len()].iter().copied();
         let of_tubes = members.tubes.iter().flat_map(|tube| {
             let (least, most) = (&tube.least.around[pose.water], &tube.most.around[pose.water]);
             (0..DENSITIES).map(|i| Span { least: least.densities[i], most: most.densities[i] })
@@ -121,7 +141,7 @@ impl Witness {
     }
 
     /// Whether the least stress at both ends of every tube leaves the safety that is asked for.
-    fn strong_enough(&self, members: &Members) -> bool {
+    pub fn strong_enough(&self, members: &Members) -> bool {
         let Some(safety) = self.constraints.stress_safety_factor_min else { return true };
         self.poses.iter().all(|pose| {
             let loads = &members.loads[pose.water];
@@ -140,7 +160,7 @@ impl Witness {
     }
 
     /// Mass and deflection that no member betters; `None` if they break a limit.
-    pub(super) fn ceiling(&self, members: &Members) -> Option<Ceiling> {
+    pub fn ceiling(&self, members: &Members) -> Option<Ceiling> {
         let drives: f64 = members.drives.iter().map(|drive| drive.least_kg).sum();
         let tubes: f64 = members.tubes.iter().map(|tube| tube.least.mass_kg).sum();
         let mut ceiling = Ceiling {
@@ -162,31 +182,31 @@ impl Witness {
             .then_some(ceiling)
     }
 
-    /// The stiffest and lightest arm of a box in a pose.
-    pub(super) fn pencil(&self, pose: &Pose, members: &Members) -> Pencil {
+    /// The largest stiffness of each coordinate in a pose.
+    pub fn stiffnesses(&self, pose: &Pose, members: &Members) -> Vec<f64> {
         let loads = &members.loads[pose.water];
         let stiffness = |coordinate: &Coordinate| match *coordinate {
             Coordinate::Joint(joint) => {
                 members.drives[joint].largest_slope(pose.torques[joint].over(loads).largest_size())
             }
             Coordinate::Tube(tube, shape) => {
-                let (which, integral_m) = shape.stiffness(self.tubes[tube].length_m);
+                let (which, integral_m) = shape.stiffness(self.lengths_m[tube]);
                 members.tubes[tube].most.stiffnesses[which] * integral_m
             }
             Coordinate::Spring(spring) => self.spring_stiffnesses[spring],
         };
+        self.coordinates.iter().map(stiffness).collect()
+    }
+
+    /// The stiffest and lightest arm of a box in a pose.
+    pub fn pencil(&self, pose: &Pose, members: &Members) -> Pencil {
         let mut inertia = pose.inertia.clone();
         let masses = members.drives.iter().map(|drive| drive.least_kg);
         let tubes = members.tubes.iter().flat_map(|tube| tube.least.around[pose.water].densities);
         for (number, per) in masses.chain(tubes).zip(&pose.inertia_per) {
             inertia.iter_mut().zip(per).for_each(|(entry, per)| *entry += number * per);
         }
-        Pencil::new(self.coordinates.iter().map(stiffness).collect(), inertia)
-    }
-
-    /// The part at a level.
-    pub(super) fn place(&self, level: usize) -> Place {
-        self.levels[level]
+        Pencil::new(self.stiffnesses(pose, members), inertia)
     }
 }
 
@@ -203,7 +223,7 @@ pub(super) fn compliances(tube: &TubeRange) -> [Span; STIFFNESSES] {
 }
 
 /// Where about the tip of a box's stiffest arm goes; `None` if nowhere. Any direction gives a bound.
-fn direction(pose: &Pose, members: &Members) -> Option<Vector3<f64>> {
+pub(super) fn direction(pose: &Pose, members: &Members) -> Option<Vector3<f64>> {
     let loads = &members.loads[pose.water];
     let joints =
         members.drives.iter().zip(&pose.torques).zip(&pose.ways_m).map(|((drive, torque), way_m)| {

@@ -10,7 +10,7 @@ use super::span::Span;
 use super::tree::Tree;
 use crate::arm::{Curve, JointLaw, LostMotion, Windup};
 use crate::catalog::Catalogs;
-use crate::search::slot::{Slot, joint_slot};
+use crate::search::slot::{SizedJoint, Slot, joint_slot};
 use crate::search::space::{DesignSpace, SpaceJoint};
 use crate::sizing::{DriveLimits, JointDemand, JointMotion};
 
@@ -35,78 +35,154 @@ pub(super) struct DriveRange {
     pub friction_rad: f64,
 }
 
-/// The drives that a joint may have.
-pub(super) struct Drives {
+/// What a joint may have as its drive.
+pub(super) struct DriveOptions {
     /// Place among the levels of the space, if there is a choice.
     pub level: Option<usize>,
     /// What the joint does, if a drive must hold it.
     pub motion: Option<JointMotion>,
+    /// Lightest first.
+    pub options: Vec<DriveOption>,
+}
+
+/// A drive, or a kind of drives that weigh and twist alike.
+#[derive(Debug, Clone)]
+pub(super) struct DriveOption {
+    pub range: DriveRange,
+    /// Number of each drive, and what it holds.
+    pub drives: Vec<(u32, DriveLimits)>,
+}
+
+/// Whether drives that weigh and twist alike are one option.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Alike {
+    Apart,
+    Together,
+}
+
+/// Drives that a joint may have, halved again and again.
+pub(super) struct Drives {
+    pub level: Option<usize>,
+    pub motion: Option<JointMotion>,
     pub tree: Tree,
     /// Range and largest limits of each node.
     nodes: Vec<(DriveRange, DriveLimits)>,
-    options: Vec<(DriveRange, DriveLimits)>,
+    options: Vec<DriveOption>,
 }
 
-impl Drives {
-    /// The drives of a joint; `level` counts if the drive is a choice.
+/// Options of a level that no objective tells apart.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Choice {
+    /// Their numbers, those first that hold whatever rounding does.
+    pub options: Vec<u32>,
+    /// Whether the first is one.
+    pub one_holds: bool,
+}
+
+impl DriveOptions {
+    /// All drives of a joint; `level` counts if the drive is a choice.
     pub fn new(
         space: &DesignSpace,
         joint: &SpaceJoint,
         reach_m: f64,
         level: usize,
         catalogs: &Catalogs,
+        alike: Alike,
     ) -> Self {
-        let (options, motion, is_level) = match joint_slot(space, joint, reach_m, catalogs) {
+        match joint_slot(space, joint, reach_m, catalogs) {
             Slot::Given { law, mass_kg } => {
-                (vec![(DriveRange::of(&law, mass_kg), without_limit())], None, false)
+                let drives = vec![(0, without_limit())];
+                let given = DriveOption { range: DriveRange::of(&law, mass_kg), drives };
+                Self { level: None, motion: None, options: vec![given] }
             }
             Slot::Sized(sized) => {
-                let one = |i: usize| {
-                    (DriveRange::of(&sized.laws[i], sized.table.mass_kg(i)), *sized.table.limits(i))
+                let kinds = match (sized.all_fits, alike) {
+                    (true, Alike::Together) => sized.kinds(),
+                    (true, Alike::Apart) => (0..sized.table.len() as u32).map(|i| vec![i]).collect(),
+                    (false, _) => sized.table.first_fit_candidates().iter().map(|&i| vec![i]).collect(),
                 };
-                let wanted: Vec<usize> = match sized.all_fits {
-                    true => (0..sized.table.len()).collect(),
-                    false => sized.table.first_fit_candidates().iter().map(|&i| i as usize).collect(),
-                };
-                let options = wanted.into_iter().map(one).collect();
-                (options, Some(*sized.table.motion()), sized.all_fits)
+                let options = kinds.iter().map(|kind| DriveOption::of_kind(&sized, kind)).collect();
+                let level = sized.all_fits.then_some(level);
+                Self { level, motion: Some(*sized.table.motion()), options }
             }
-            Slot::Link { .. } | Slot::Offset { .. } => (Vec::new(), None, false),
-        };
+            Slot::Link { .. } | Slot::Offset { .. } => {
+                Self { level: None, motion: None, options: Vec::new() }
+            }
+        }
+    }
+
+    /// Some of the options, ascending.
+    pub fn only(&self, some: &[u32]) -> Self {
+        let options = some.iter().map(|&i| self.options[i as usize].clone()).collect();
+        Self { options, ..*self }
+    }
+}
+
+impl DriveOption {
+    fn of_kind(sized: &SizedJoint, kind: &[u32]) -> Self {
+        let first = kind[0] as usize;
+        Self {
+            range: DriveRange::of(&sized.laws[first], sized.table.mass_kg(first)),
+            drives: kind.iter().map(|&i| (i, *sized.table.limits(i as usize))).collect(),
+        }
+    }
+
+    /// Whether a drive of it holds a demand.
+    pub fn holds(&self, asked: &JointDemand) -> bool {
+        self.drives.iter().any(|(_, limits)| limits.hold(asked))
+    }
+
+    /// Its drives that may hold a demand between two, and whether the first of them surely does.
+    pub fn holding(&self, [least, most]: &[JointDemand; 2]) -> Choice {
+        let may = self.drives.iter().filter(|(_, limits)| limits.hold(least));
+        let (mut drives, unsure): (Vec<&(u32, DriveLimits)>, Vec<_>) =
+            may.partition(|(_, limits)| limits.hold(most));
+        let one_holds = !drives.is_empty();
+        drives.extend(unsure);
+        Choice { options: drives.into_iter().map(|&(number, _)| number).collect(), one_holds }
+    }
+
+    /// Largest of each limit of its drives.
+    fn limits(&self) -> DriveLimits {
+        let (first, rest) = self.drives.split_first().expect("an option has a drive");
+        rest.iter().fold(first.1, |limits, (_, other)| limits.max(other))
+    }
+}
+
+impl Drives {
+    /// Halves the options.
+    pub fn new(DriveOptions { level, motion, options }: DriveOptions) -> Self {
         let all: Vec<u32> = (0..options.len() as u32).collect();
         let tree = Tree::new(all, &options.iter().map(keys).collect::<Vec<_>>());
         let nodes = (0..tree.len() as u32)
             .filter_map(|node| {
-                let members = tree.options(node).iter().map(|&i| options[i as usize]);
+                let members = tree.options(node).iter().map(|&i| &options[i as usize]);
+                let members = members.map(|option| (option.range, option.limits()));
                 members.reduce(|(a, limits), (b, other)| (a.with(&b), limits.max(&other)))
             })
             .collect();
-        Self { level: is_level.then_some(level), motion, tree, nodes, options }
+        Self { level, motion, tree, nodes, options }
+    }
+
+    /// The options of a node.
+    pub fn options(&self, node: u32) -> impl Iterator<Item = &DriveOption> {
+        self.tree.options(node).iter().map(|&i| &self.options[i as usize])
     }
 
     /// The drives of a node that may hold what is asked at least; `None` if there is none.
     pub fn holding(&self, node: u32, asked: &JointDemand) -> Option<DriveRange> {
-        let options = self.tree.options(node);
-        if options.len() > FEW {
+        if self.tree.options(node).len() > FEW {
             let (range, limits) = &self.nodes[node as usize];
             return limits.hold(asked).then_some(*range);
         }
-        let members = options.iter().map(|&i| &self.options[i as usize]);
-        let holding = members.filter(|(_, limits)| limits.hold(asked));
-        holding.map(|(range, _)| *range).reduce(|a, b| a.with(&b))
+        let holding = self.options(node).filter(|option| option.holds(asked));
+        holding.map(|option| option.range).reduce(|a, b| a.with(&b))
     }
 
-    /// The drives that may be the lightest that holds a demand between two: all that hold the least, up to the
-    /// first that holds the most. `None` if none holds the least.
+    /// The drives that may be the lightest that holds a demand between two; `None` if none holds the least.
     pub fn first_fits(&self, least: &JointDemand, most: &JointDemand) -> Option<DriveRange> {
-        let mut range: Option<DriveRange> = None;
-        for (drive, limits) in self.options.iter().filter(|(_, limits)| limits.hold(least)) {
-            range = Some(range.map_or(*drive, |range| range.with(drive)));
-            if limits.hold(most) {
-                break;
-            }
-        }
-        range
+        let fits = first_fits(self.options.iter().map(|option| ((), option)), least, most);
+        fits.map(|(_, option)| option.range).reduce(|a, b| a.with(&b))
     }
 
     /// Range of all drives of a node.
@@ -120,8 +196,25 @@ impl Drives {
     }
 }
 
+/// The drives that may be the lightest that holds a demand between two: all that hold the least, up to the
+/// first that holds the most.
+pub(super) fn first_fits<'o, T>(
+    options: impl Iterator<Item = (T, &'o DriveOption)>,
+    least: &JointDemand,
+    most: &JointDemand,
+) -> impl Iterator<Item = (T, &'o DriveOption)> {
+    let (least, most) = (*least, *most);
+    let fit = move |fitted: &mut bool, (what, option): (T, &'o DriveOption)| {
+        let goes_on = !*fitted;
+        *fitted |= option.holds(&most);
+        goes_on.then_some((what, option))
+    };
+    options.scan(false, fit).filter(move |(_, option)| option.holds(&least))
+}
+
 /// What drives are told apart by.
-fn keys((drive, limits): &(DriveRange, DriveLimits)) -> Vec<f64> {
+fn keys(option: &DriveOption) -> Vec<f64> {
+    let (drive, limits) = (&option.range, option.limits());
     let stiff = &drive.stiff;
     vec![
         drive.least_kg.ln(),
@@ -176,7 +269,7 @@ impl DriveRange {
         }
     }
 
-    fn with(&self, other: &Self) -> Self {
+    pub fn with(&self, other: &Self) -> Self {
         Self {
             least_kg: self.least_kg.min(other.least_kg),
             most_kg: self.most_kg.max(other.most_kg),

@@ -21,54 +21,50 @@
 //! designs, which the full model judges: those that hold and that no row beats belong on the front. So every
 //! design of the space is either in a box that was cut, and then beaten by a row, or among those judged.
 
+mod arm;
 mod bound;
 mod drives;
 mod layout;
 mod pencil;
 mod pose;
+mod region;
 mod search;
 mod span;
 mod staircase;
 mod tree;
 mod tubes;
 
-use super::constraint::Constraints;
-use super::space::{DesignSpace, SpacePiece};
-use super::station::reaches_m;
+use super::space::DesignSpace;
 use super::{ArmProblem, Objectives, OutwardIn, evaluate};
-use crate::arm::Water;
 use crate::catalog::Catalogs;
 use crate::search::design::number;
-use drives::Drives;
-use layout::{Coordinate, Layout, coordinates, has_line, offset_mass_kg};
-use pose::{Pose, water_of};
+use arm::{Arm, Parts, read};
+use drives::{Alike, Choice, Drives};
 use rayon::prelude::*;
-use search::{Found, Search};
+use region::Corner;
+use search::{Design, Found, Halt, Search};
 use staircase::Staircase;
+use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 use tree::Tree;
 use tubes::Tubes;
 
 /// Single designs judged at a time.
 const BATCH: usize = 4096;
+/// Spaces of more designs than this are searched region by region.
+const VAST: u128 = 100_000_000_000_000;
+/// Zones of no more designs than this are searched box by box.
+const FEW: f64 = 1e5;
+/// Designs that are listed with all their ties; of more, one of each is.
+const MOST_TIES: f64 = 2e4;
 
 /// A design space prepared for its boxes.
 pub struct Witness {
+    arm: Arc<Arm>,
     joints: Vec<Drives>,
     tubes: Vec<Tubes>,
-    /// Mass of rigid offsets \[kg\].
-    offsets_kg: f64,
-    poses: Vec<Pose>,
-    /// Number of different surroundings.
-    waters: usize,
-    coordinates: Vec<Coordinate>,
-    /// Stiffnesses of the effects' springs \[N m/rad\].
-    spring_stiffnesses: Vec<f64>,
-    constraints: Constraints,
-    /// What each level chooses, tip first.
-    levels: Vec<Place>,
-    level_sizes: Vec<u32>,
 }
 
 /// The piece that a level chooses, base to tip.
@@ -91,6 +87,8 @@ pub struct Looked {
     pub boxes: u64,
     /// Boxes left unopened when it was stopped.
     pub open: u64,
+    /// Whether no candidate was left out because it ties with another.
+    pub ties_listed: bool,
 }
 
 /// Whether the bounds see all there is in a space.
@@ -105,6 +103,23 @@ pub fn conditions(space: &DesignSpace) -> Result<(), String> {
     Ok(())
 }
 
+/// How to look for missing designs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct By {
+    /// Spaces of more designs are searched region by region.
+    pub regions_from: u128,
+    /// What has no more designs left is searched box by box.
+    pub boxes_to: f64,
+    /// Rows closer to each other than this part may stand for each other.
+    pub apart: f64,
+}
+
+impl Default for By {
+    fn default() -> Self {
+        Self { regions_from: VAST, boxes_to: FEW, apart: 0.0 }
+    }
+}
+
 /// Looks for designs that belong beside the rows of a front.
 ///
 /// The answer does not depend on the number of threads unless it is stopped.
@@ -112,23 +127,51 @@ pub fn missing(
     space: &DesignSpace,
     catalogs: &Catalogs,
     front: &[Objectives],
+    by: By,
     stop: &AtomicBool,
     deadline: Option<Instant>,
 ) -> Looked {
-    let witness = Witness::new(space, catalogs);
     let staircase = Staircase::new(front);
-    let search = Search { witness: &witness, front: &staircase, stop, deadline, designs: Default::default() };
-    let found = witness.root().map_or_else(Found::default, |root| search.explore(&root));
-    let mut looked = Looked { candidates: Vec::new(), boxes: found.boxes, open: found.open };
-    let mut designs = found.designs;
-    designs.sort_unstable();
+    let halt = Halt { stop, deadline, designs: Default::default(), count: Default::default() };
+    let found = match space.designs(catalogs).is_none_or(|designs| designs > by.regions_from) {
+        false => {
+            let witness = Witness::new(space, catalogs);
+            let search = Search { witness: &witness, front: &staircase, corner: Corner::OPEN, halt: &halt };
+            witness.root().map_or_else(Found::default, |root| search.explore(&root))
+        }
+        true => region::explore(space, catalogs, (front, &staircase), by, &halt),
+    };
+    let designs = halt.designs.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    let (designs, ties_listed) = numbers(&space.level_sizes(catalogs), &designs);
+    let mut looked = Looked { candidates: Vec::new(), boxes: found.boxes, open: found.open, ties_listed };
     for batch in designs.chunks(BATCH) {
-        match search.out_of_time() {
+        match halt.out_of_time() {
             true => looked.open += batch.len() as u64,
             false => looked.candidates.extend(unbeaten(space, catalogs, batch, &staircase)),
         }
     }
     looked
+}
+
+/// Numbers of some designs, ascending, and whether they are those of all: if ties are too many they are those of one
+/// of each.
+fn numbers(level_sizes: &[u32], designs: &BTreeSet<Design>) -> (Vec<u128>, bool) {
+    let count = |design: &Design| design.iter().map(|choice| choice.options.len() as f64).product::<f64>();
+    let is_one = |design: &Design| count(design) == 1.0;
+    let ties_listed = designs.iter().map(count).sum::<f64>() <= MOST_TIES || designs.iter().all(is_one);
+    let mut numbers = Vec::new();
+    for design in designs {
+        let mut chosen: Vec<Vec<u32>> = vec![Vec::new()];
+        for Choice { options, one_holds } in design {
+            let options = if ties_listed || !one_holds { &options[..] } else { &options[..1] };
+            let longer = |start: Vec<u32>| options.iter().map(move |&o| [&start[..], &[o]].concat());
+            chosen = chosen.into_iter().flat_map(longer).collect();
+        }
+        numbers.extend(chosen.iter().map(|options| number(level_sizes, options)));
+    }
+    numbers.sort_unstable();
+    numbers.dedup();
+    (numbers, ties_listed)
 }
 
 /// Those of some designs that hold and that no row beats, by the full model.
@@ -147,69 +190,20 @@ fn unbeaten(space: &DesignSpace, catalogs: &Catalogs, designs: &[u128], front: &
 impl Witness {
     /// Prepares a space that meets the [`conditions`].
     pub fn new(space: &DesignSpace, catalogs: &Catalogs) -> Self {
-        let mut waters: Vec<Option<Water>> = Vec::new();
-        for water in space.cases.iter().map(|case| water_of(space, case)) {
-            if !waters.contains(&water) {
-                waters.push(water);
-            }
-        }
-        let mut witness = Self {
-            joints: Vec::new(),
-            tubes: Vec::new(),
-            offsets_kg: 0.0,
-            poses: Vec::new(),
-            waters: waters.len(),
-            coordinates: Vec::new(),
-            spring_stiffnesses: Vec::new(),
-            constraints: space.constraints,
-            levels: Vec::new(),
-            level_sizes: space.level_sizes(catalogs),
-        };
-        witness.read_pieces(space, catalogs, &waters);
-        if let Some(case) = space.cases.first() {
-            let layout = Layout::new(space, case);
-            witness.coordinates = coordinates(&layout, space.links);
-            witness.spring_stiffnesses = layout.springs.iter().map(|s| 1.0 / s.rad_per_nm).collect();
-        }
-        let pose = |case: usize| Pose::new(space, case, &waters, &witness.coordinates);
-        witness.poses = (0..space.cases.len()).map(pose).collect();
-        witness
+        let (arm, parts) = read(space, catalogs, Alike::Apart);
+        Self::of(Arc::new(arm), parts)
     }
 
-    /// Joints, tubes and offsets, base to tip; their levels go from the tip inward.
-    fn read_pieces(&mut self, space: &DesignSpace, catalogs: &Catalogs, waters: &[Option<Water>]) {
-        let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
-        let mut reaches = reaches_m(space, sizing).into_iter();
-        for piece in &space.pieces {
-            let level = self.level_sizes.len().saturating_sub(self.levels.len() + 1);
-            match piece {
-                SpacePiece::Joint(joint) => {
-                    let reach_m = reaches.next().unwrap_or_default();
-                    self.joints.push(Drives::new(space, joint, reach_m, level, catalogs));
-                    if joint.drive.is_open() {
-                        self.levels.push(Place::Joint(self.joints.len() - 1));
-                    }
-                }
-                SpacePiece::Choice(choice) => {
-                    self.tubes.push(Tubes::of_choice(space, choice, level, waters));
-                    self.levels.push(Place::Tube(self.tubes.len() - 1));
-                }
-                SpacePiece::Link(link) => {
-                    self.offsets_kg += offset_mass_kg(link).unwrap_or_default();
-                    if has_line(space, link) {
-                        self.tubes.push(Tubes::of_link(space, link, waters));
-                    }
-                }
-            }
-        }
-        self.levels.reverse();
+    fn of(arm: Arc<Arm>, parts: Parts) -> Self {
+        let joints = parts.joints.into_iter().map(Drives::new).collect();
+        Self { arm, joints, tubes: parts.tubes.iter().map(Tubes::new).collect() }
     }
 
     /// All designs; `None` if there is none.
     pub fn root(&self) -> Option<PartsBox> {
         let some = self.joints.iter().all(|joint| !joint.is_empty())
             && self.tubes.iter().all(|tube| tube.tree.len() > 0);
-        some.then(|| PartsBox(vec![0; self.levels.len()]))
+        some.then(|| PartsBox(vec![0; self.arm.levels.len()]))
     }
 
     /// A box with the options of one level halved; `None` if there is one option.
@@ -223,23 +217,34 @@ impl Witness {
     }
 
     /// The options that a box has at each level, tip first.
-    pub fn options(&self, parts: &PartsBox) -> Vec<&[u32]> {
-        (0..self.levels.len()).map(|level| self.tree(level).options(parts.0[level])).collect()
+    pub fn options(&self, parts: &PartsBox) -> Vec<Vec<u32>> {
+        let levels = self.arm.levels.iter().zip(&parts.0);
+        levels
+            .map(|(place, &node)| match *place {
+                Place::Joint(joint) => {
+                    self.joints[joint].options(node).flat_map(|o| o.drives.iter().map(|d| d.0)).collect()
+                }
+                Place::Tube(tube) => {
+                    let Tubes { tree, numbers, .. } = &self.tubes[tube];
+                    tree.options(node).iter().map(|&i| numbers[i as usize]).collect()
+                }
+            })
+            .collect()
     }
 
     /// A mass \[kg\] and a tip deflection \[m\] that no member of a box betters; `None` if no member holds.
     pub fn least_mass_and_deflection(&self, parts: &PartsBox) -> Option<[f64; 2]> {
-        let ceiling = self.ceiling(&self.members(parts)?)?;
+        let ceiling = self.arm.ceiling(&self.members(parts)?)?;
         Some([ceiling.mass_kg, ceiling.tip_m])
     }
 
     /// Whether it is proved that no member of a box that holds has a lowest mode above `hz`.
     pub fn proves_none_faster(&self, parts: &PartsBox, hz: f64) -> bool {
-        self.members(parts).is_none_or(|members| self.none_faster(&members, hz))
+        self.members(parts).is_none_or(|members| self.arm.none_faster(&members, hz))
     }
 
     fn tree(&self, level: usize) -> &Tree {
-        match self.levels[level] {
+        match self.arm.levels[level] {
             Place::Joint(joint) => &self.joints[joint].tree,
             Place::Tube(tube) => &self.tubes[tube].tree,
         }

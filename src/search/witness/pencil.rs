@@ -18,6 +18,9 @@ pub(super) struct Factor {
     lower: Vec<f64>,
 }
 
+/// Steps of inverse iteration towards a slower motion.
+const STEPS: usize = 5;
+
 /// Entries of a lower triangle before a row.
 fn row(i: usize) -> usize {
     i * (i + 1) / 2
@@ -39,6 +42,12 @@ impl Pencil {
 
     /// The factor of `K - λ M`; `None` if an eigenvalue is `λ` or less.
     pub fn factor(&self, eigenvalue: f64) -> Option<Factor> {
+        self.factor_or_slower(eigenvalue).ok()
+    }
+
+    /// The factor of `K - λ M`, or a motion `x` with `xᵀ K x <= λ xᵀ M x`: the first pivot `p` that is not positive is
+    /// `xᵀ (K - λ M) x` of an `x` that has one there, nothing beyond it, and balances the rest before it.
+    fn factor_or_slower(&self, eigenvalue: f64) -> Result<Factor, Vec<f64>> {
         let size = self.stiffness.len();
         let mut lower = vec![0.0; self.inertia.len()];
         for i in 0..size {
@@ -51,11 +60,15 @@ impl Pencil {
             let known: f64 = here[..i].iter().map(|a| a * a).sum();
             let pivot = self.stiffness[i] - eigenvalue * self.inertia[row(i) + i] - known;
             if pivot <= 0.0 {
-                return None;
+                let mut x: Vec<f64> = here[..i].iter().map(|entry| -entry).collect();
+                Factor { size: i, lower }.solve_upper(&mut x);
+                x.push(1.0);
+                x.resize(size, 0.0);
+                return Err(x);
             }
             here[i] = pivot.sqrt();
         }
-        Some(Factor { size, lower })
+        Ok(Factor { size, lower })
     }
 
     /// About the lowest mode: a few steps of inverse iteration, scaled to `xᵀ M x = 1`.
@@ -70,6 +83,19 @@ impl Pencil {
             x.iter_mut().for_each(|x| *x *= scale);
         }
         x
+    }
+
+    /// A motion whose quotient is a number or less, made slower by a few steps of inverse iteration; `None` if there is
+    /// none.
+    pub fn slower_motion(&self, eigenvalue: f64) -> Option<Vec<f64>> {
+        let mut x = self.factor_or_slower(eigenvalue).err()?;
+        for _ in 0..STEPS {
+            x = self.momentum(&x);
+            x.iter_mut().zip(&self.stiffness).for_each(|(x, k)| *x /= k);
+            let scale = 1.0 / self.kinetic(&x).sqrt();
+            x.iter_mut().for_each(|x| *x *= scale);
+        }
+        Some(x)
     }
 
     fn momentum(&self, x: &[f64]) -> Vec<f64> {
@@ -105,11 +131,17 @@ impl Factor {
             let known: f64 = (0..i).map(|j| lower(i, j) * x[j]).sum();
             x[i] = (x[i] - known) / lower(i, i);
         }
+        self.solve_upper(&mut x);
+        x
+    }
+
+    /// The second half of it.
+    fn solve_upper(&self, x: &mut [f64]) {
+        let lower = |i: usize, j: usize| self.lower[row(i) + j];
         for i in (0..self.size).rev() {
             let known: f64 = (i + 1..self.size).map(|j| lower(j, i) * x[j]).sum();
             x[i] = (x[i] - known) / lower(i, i);
         }
-        x
     }
 }
 
@@ -127,6 +159,17 @@ mod tests {
         let lowest = (3.0 - 5.0f64.sqrt()) / 2.0;
         assert!(pencil().factor(lowest * (1.0 - 1e-12)).is_some());
         assert!(pencil().factor(lowest * (1.0 + 1e-12)).is_none());
+    }
+
+    #[test]
+    fn a_slower_motion_is_found_exactly_if_there_is_one() {
+        let lowest = (3.0 - 5.0f64.sqrt()) / 2.0;
+        assert!(pencil().slower_motion(lowest * (1.0 - 1e-12)).is_none());
+        for eigenvalue in [lowest * (1.0 + 1e-9), 0.5, 1.0, 7.0] {
+            let motion = pencil().slower_motion(eigenvalue).expect("there is one");
+            assert!((square(&[2.0, 1.0, 1.0], &motion) - 1.0).abs() < 1e-12);
+            assert!(pencil().strain(&motion) <= eigenvalue);
+        }
     }
 
     #[test]

@@ -1,34 +1,37 @@
 //! Going through the boxes: cut, halved, or a single design.
 
+use super::arm::Arm;
 use super::bound::{Ceiling, Members, compliances};
-use super::drives::angle_rad;
+use super::drives::{Choice, angle_rad};
 use super::layout::Coordinate;
 use super::pencil::{Factor, Pencil, square};
 use super::pose::Pose;
+use super::region::Corner;
 use super::staircase::Staircase;
-use super::tubes::{DENSITIES, TubeRange};
+use super::tubes::{DENSITIES, TubeRange, Tubes};
 use super::{PartsBox, Place, Witness};
 use crate::arm::Windup;
-use crate::search::design::number;
+use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Single designs beyond which the search stops: what it looks beside is far from a front.
 const MOST_DESIGNS: usize = 200_000;
 
+/// A design, or those that no objective tells apart: what each level may be, tip first.
+pub(super) type Design = Vec<Choice>;
+
 /// What a search found.
 #[derive(Default)]
 pub(super) struct Found {
-    /// Numbers of single designs that no bound cut.
-    pub designs: Vec<u128>,
     pub boxes: u64,
     pub open: u64,
 }
 
 impl Found {
-    fn with(mut self, other: Self) -> Self {
-        self.designs.extend(other.designs);
-        Self { designs: self.designs, boxes: self.boxes + other.boxes, open: self.open + other.open }
+    pub fn with(self, other: Self) -> Self {
+        Self { boxes: self.boxes + other.boxes, open: self.open + other.open }
     }
 }
 
@@ -36,33 +39,50 @@ impl Found {
 pub(super) struct Search<'s> {
     pub witness: &'s Witness,
     pub front: &'s Staircase,
-    pub stop: &'s AtomicBool,
-    pub deadline: Option<Instant>,
-    /// Single designs so far.
-    pub designs: AtomicUsize,
+    /// What is not below it is left out.
+    pub corner: Corner,
+    pub halt: &'s Halt<'s>,
 }
 
-impl Search<'_> {
+/// What a search has come to, and what ends it early.
+pub(super) struct Halt<'s> {
+    pub stop: &'s AtomicBool,
+    pub deadline: Option<Instant>,
+    /// Single designs that no bound cut, and how many.
+    pub designs: Mutex<BTreeSet<Design>>,
+    pub count: AtomicUsize,
+}
+
+impl Halt<'_> {
     /// Whether the search is to end early.
-    fn stopped(&self) -> bool {
-        self.designs.load(Ordering::Relaxed) > MOST_DESIGNS || self.out_of_time()
+    pub fn stopped(&self) -> bool {
+        self.count.load(Ordering::Relaxed) > MOST_DESIGNS || self.out_of_time()
+    }
+
+    /// Notes a design; it may be known from another region.
+    fn note(&self, design: Option<Design>) {
+        let mut designs = self.designs.lock().unwrap_or_else(PoisonError::into_inner);
+        designs.extend(design);
+        self.count.store(designs.len(), Ordering::Relaxed);
     }
 
     /// Whether whoever asked wants an end.
     pub fn out_of_time(&self) -> bool {
         self.stop.load(Ordering::Relaxed) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
+}
 
+impl Search<'_> {
     /// Looks into a box and, if it is not cut, into its halves.
     pub fn explore(&self, parts: &PartsBox) -> Found {
-        if self.stopped() {
+        if self.halt.stopped() {
             return Found { open: 1, ..Found::default() };
         }
         let here = Found { boxes: 1, ..Found::default() };
         let Some(level) = self.level_to_halve(parts) else { return here };
         let Some([a, b]) = level.and_then(|level| self.witness.halves(parts, level)) else {
-            self.designs.fetch_add(1, Ordering::Relaxed);
-            return Found { designs: vec![self.witness.number_of(parts)], ..here };
+            self.halt.note(self.witness.design(parts));
+            return here;
         };
         let (a, b) = rayon::join(|| self.explore(&a), || self.explore(&b));
         here.with(a).with(b)
@@ -72,9 +92,13 @@ impl Search<'_> {
     fn level_to_halve(&self, parts: &PartsBox) -> Option<Option<usize>> {
         let witness = self.witness;
         let members = witness.members(parts)?;
-        let ceiling = witness.ceiling(&members)?;
+        let ceiling = witness.arm.ceiling(&members)?;
+        if !self.corner.is_in_reach_of(&ceiling) {
+            return None;
+        }
         let beaten_hz = self.front.beaten_up_to_hz(ceiling.mass_kg, ceiling.tip_m);
-        let slow = witness.slowest(&members, beaten_hz.max(witness.required_hz()))?;
+        let too_slow_hz = beaten_hz.max(witness.arm.required_hz()).max(self.corner.hz);
+        let slow = witness.arm.slowest(&members, too_slow_hz)?;
         let open = witness.open_levels(parts);
         if open.len() < 2 {
             return Some(open.first().copied());
@@ -88,15 +112,15 @@ impl Search<'_> {
 }
 
 /// The judged case in which the stiffest arm of a box is slowest.
-struct Slow<'w> {
+pub(super) struct Slow<'w> {
     pose: &'w Pose,
     mode: Vec<f64>,
     eigenvalue: f64,
 }
 
-impl Witness {
+impl Arm {
     /// The slowest case if the stiffest arm is faster than `hz` in every case; `None` if in one it is not.
-    fn slowest(&self, members: &Members, hz: f64) -> Option<Slow<'_>> {
+    pub fn slowest(&self, members: &Members, hz: f64) -> Option<Slow<'_>> {
         let eigenvalue = eigenvalue_of(hz);
         if !eigenvalue.is_finite() {
             return None;
@@ -116,29 +140,45 @@ impl Witness {
     }
 
     /// Whether in some judged case no member of a box is faster than `hz`.
-    pub(super) fn none_faster(&self, members: &Members, hz: f64) -> bool {
+    pub fn none_faster(&self, members: &Members, hz: f64) -> bool {
         self.slowest(members, hz).is_none()
     }
 
     /// The least frequency that the study asks for \[Hz\], less rounding.
-    fn required_hz(&self) -> f64 {
+    pub fn required_hz(&self) -> f64 {
         self.constraints.required_mode_hz() * (1.0 - super::bound::ROUNDING)
+    }
+}
+
+impl Witness {
+    /// A box of one option a level.
+    fn design(&self, parts: &PartsBox) -> Option<Design> {
+        let members = self.members(parts)?;
+        let choice = |(place, &node): (&Place, &u32)| match *place {
+            Place::Joint(joint) => {
+                let drives = &self.joints[joint];
+                let demands = self.arm.demands(joint, drives.motion.as_ref()?, &members);
+                Some(drives.options(node).next()?.holding(&demands))
+            }
+            Place::Tube(tube) => {
+                let Tubes { tree, numbers, .. } = &self.tubes[tube];
+                let options = tree.options(node).iter().map(|&i| numbers[i as usize]).collect();
+                Some(Choice { options, one_holds: true })
+            }
+        };
+        self.arm.levels.iter().zip(&parts.0).map(choice).collect()
     }
 
     /// Levels with more than one option left.
     fn open_levels(&self, parts: &PartsBox) -> Vec<usize> {
-        (0..self.levels.len()).filter(|&level| self.tree(level).halves(parts.0[level]).is_some()).collect()
-    }
-
-    /// Number of a single design.
-    fn number_of(&self, parts: &PartsBox) -> u128 {
-        let options = (0..self.levels.len()).map(|level| self.tree(level).options(parts.0[level])[0]);
-        number(&self.level_sizes, &options.collect::<Vec<_>>())
+        (0..self.arm.levels.len())
+            .filter(|&level| self.tree(level).halves(parts.0[level]).is_some())
+            .collect()
     }
 }
 
 /// `(2 π f)²`.
-fn eigenvalue_of(hz: f64) -> f64 {
+pub(super) fn eigenvalue_of(hz: f64) -> f64 {
     (std::f64::consts::TAU * hz).powi(2)
 }
 
@@ -155,7 +195,7 @@ struct Weigh<'a> {
 impl Weigh<'_> {
     fn harm(&self, level: usize) -> f64 {
         let node = self.parts.0[level];
-        let [mass_kg, tip_m, eigenvalue] = match self.witness.place(level) {
+        let [mass_kg, tip_m, eigenvalue] = match self.witness.arm.levels[level] {
             Place::Joint(joint) => self.of_joint(joint, node),
             Place::Tube(tube) => self.of_tube(tube),
         };
@@ -168,7 +208,7 @@ impl Weigh<'_> {
     fn of_joint(&self, joint: usize, node: u32) -> [f64; 3] {
         let (range, whole) = (&self.members.drives[joint], self.witness.joints[joint].range(node));
         let mass_kg = 0.5 * (whole.most_kg.min(range.most_kg) - range.least_kg);
-        let pose = &self.witness.poses[self.ceiling.worst];
+        let pose = &self.witness.arm.poses[self.ceiling.worst];
         let torque_nm = pose.torques[joint].over(&self.members.loads[pose.water]).least_size();
         let softer = 0.5 * (angle_rad(&range.soft, torque_nm) - angle_rad(&range.stiff, torque_nm));
         let tip_m = softer * pose.ways_m[joint].dot(&self.ceiling.direction).abs();
@@ -183,7 +223,7 @@ impl Weigh<'_> {
     /// The same of a set of tubes.
     fn of_tube(&self, tube: usize) -> [f64; 3] {
         let range: &TubeRange = self.members.tubes[tube];
-        let pose = &self.witness.poses[self.ceiling.worst];
+        let pose = &self.witness.arm.poses[self.ceiling.worst];
         let loads = &self.members.loads[pose.water];
         let works = pose.works[tube].iter().zip(compliances(range)).zip(range.middle.stiffnesses);
         let softer: f64 = works
@@ -203,12 +243,13 @@ impl Weigh<'_> {
         let (x, water) = (&self.slow.mode, self.slow.pose.water);
         let strain: f64 = self
             .witness
+            .arm
             .coordinates
             .iter()
             .zip(x)
             .filter_map(|(coordinate, x)| match *coordinate {
                 Coordinate::Tube(t, shape) if t == tube => {
-                    let (which, integral_m) = shape.stiffness(self.witness.tubes[tube].length_m);
+                    let (which, integral_m) = shape.stiffness(self.witness.arm.lengths_m[tube]);
                     let weaker = range.most.stiffnesses[which] - range.middle.stiffnesses[which];
                     Some(weaker * integral_m * x * x)
                 }
@@ -225,7 +266,7 @@ impl Weigh<'_> {
 
     /// What a unit of a load adds to the deflection of the stiffest arm.
     fn sag_per(&self, load: usize) -> f64 {
-        let pose = &self.witness.poses[self.ceiling.worst];
+        let pose = &self.witness.arm.poses[self.ceiling.worst];
         let loads = &self.members.loads[pose.water];
         let direction = &self.ceiling.direction;
         let joints = self.members.drives.iter().zip(&pose.torques).zip(&pose.ways_m);

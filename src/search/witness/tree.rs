@@ -34,8 +34,9 @@ impl Tree {
             let options = &mut self.order[first..end];
             let key = widest(options, keys);
             let value = |option: u32| keys[option as usize].get(key).copied().unwrap_or(0.0);
-            options.sort_unstable_by(|&a, &b| value(a).total_cmp(&value(b)).then(a.cmp(&b)));
-            let middle = first + (end - first) / 2;
+            let half = (end - first) / 2;
+            options.select_nth_unstable_by(half, |&a, &b| value(a).total_cmp(&value(b)).then(a.cmp(&b)));
+            let middle = first + half;
             let halves = [self.grow(first, middle, keys), self.grow(middle, end, keys)];
             self.nodes[place].halves = Some(halves);
         }

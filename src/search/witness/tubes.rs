@@ -39,12 +39,21 @@ pub(super) struct TubeAround {
 }
 
 /// The tubes that a link may be.
-pub(super) struct Tubes {
+pub(super) struct TubeOptions {
     pub length_m: f64,
     /// Place among the levels of the space, if there is a choice.
     pub level: Option<usize>,
+    /// Each with its number; none that is too slender.
+    pub tubes: Vec<(u32, TubeNumbers)>,
+}
+
+/// Tubes that a link may be, halved again and again.
+pub(super) struct Tubes {
+    pub level: Option<usize>,
     pub tree: Tree,
     pub nodes: Vec<TubeRange>,
+    /// Number of each option.
+    pub numbers: Vec<u32>,
 }
 
 /// Least, largest and middling numbers of a set of tubes.
@@ -55,7 +64,7 @@ pub(super) struct TubeRange {
     pub middle: TubeNumbers,
 }
 
-impl Tubes {
+impl TubeOptions {
     /// The tubes of a link with a choice.
     pub fn of_choice(
         space: &DesignSpace,
@@ -64,12 +73,12 @@ impl Tubes {
         waters: &[Option<Water>],
     ) -> Self {
         let figures = figures(choice_slot(space, choice));
-        let numbers = choice.options.iter().zip(&figures).map(|(option, figures)| {
+        let sound = (0u32..).zip(choice.options.iter().zip(&figures)).filter(|(_, (_, f))| !f.slender);
+        let tubes = sound.map(|(i, (option, figures))| {
             let piece = space.link_piece(&choice.link(option));
-            numbers(space, &piece, figures.mass_kg, figures.stress.as_ref(), waters)
+            (i, numbers(space, &piece, figures.mass_kg, figures.stress.as_ref(), waters))
         });
-        let sound = (0..figures.len() as u32).filter(|&i| !figures[i as usize].slender).collect();
-        Self::new(choice.vector_m.norm(), Some(level), &numbers.collect::<Vec<_>>(), sound)
+        Self { length_m: choice.vector_m.norm(), level: Some(level), tubes: tubes.collect() }
     }
 
     /// The tube of a link without one; cables along a rigid offset count as a tube that does not yield.
@@ -79,16 +88,31 @@ impl Tubes {
         let mass_kg = tube.map_or(0.0, |tube| tube.mass_kg);
         let stress = tube.and_then(|tube| tube.stress.as_ref());
         let numbers = numbers(space, &space.link_piece(link), mass_kg, stress, waters);
-        let sound = if tube.is_some_and(|tube| tube.slender) { Vec::new() } else { vec![0] };
-        Self::new(link.vector_m.norm(), None, &[numbers], sound)
+        let slender = tube.is_some_and(|tube| tube.slender);
+        let tubes = if slender { Vec::new() } else { vec![(0, numbers)] };
+        Self { length_m: link.vector_m.norm(), level: None, tubes }
     }
 
-    fn new(length_m: f64, level: Option<usize>, numbers: &[TubeNumbers], sound: Vec<u32>) -> Self {
-        let tree = Tree::new(sound, &numbers.iter().map(keys).collect::<Vec<_>>());
-        let nodes = (0..tree.len() as u32)
-            .map(|node| TubeRange::over(tree.options(node).iter().map(|&i| &numbers[i as usize])))
-            .collect();
-        Self { length_m, level, tree, nodes }
+    /// Some of the options, ascending.
+    pub fn only(&self, some: &[u32]) -> Self {
+        Self { tubes: some.iter().map(|&i| self.tubes[i as usize].clone()).collect(), ..*self }
+    }
+
+    /// The tree of all options.
+    pub fn tree(&self) -> Tree {
+        let all = (0..self.tubes.len() as u32).collect();
+        Tree::new(all, &self.tubes.iter().map(|(_, tube)| keys(tube)).collect::<Vec<_>>())
+    }
+}
+
+impl Tubes {
+    /// Halves the options.
+    pub fn new(options: &TubeOptions) -> Self {
+        let tree = options.tree();
+        let range = |node| TubeRange::over(tree.options(node).iter().map(|&i| &options.tubes[i as usize].1));
+        let nodes = (0..tree.len() as u32).map(range).collect();
+        let numbers = options.tubes.iter().map(|(number, _)| *number).collect();
+        Self { level: options.level, tree, nodes, numbers }
     }
 }
 

@@ -1,0 +1,126 @@
+//! The weights under which the least weighted row of a table is greatest, from its middle.
+//!
+//! `max t : A w >= t, Σ w = 1, w >= 0`, by an interior path: Newton's steps on
+//! `t + μ (Σ log(A w - t) + Σ log w)` while `μ` falls. The shares `μ / (A w - t)` of the rows are the other player's.
+//! Weights short of the optimum are as good as optimal ones for a bound, and those from the middle cut deeper.
+
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+/// Where the path begins, by how much each stage goes on, and where it ends, over the number of rows and columns.
+const FIRST: f64 = 0.3;
+const STAGE: f64 = 0.2;
+const LAST: f64 = 3e-4;
+/// Newton's steps a stage.
+const STEPS: usize = 4;
+/// Largest weight of a condition.
+const MOST: f64 = 3.0;
+/// Part of the way to the nearest wall that a step goes at most.
+const SHORT_OF: f64 = 0.95;
+
+/// Weights of the columns that are stakes, and shares of the rows, each one in sum.
+pub(super) struct Game {
+    pub weights: Vec<f64>,
+    pub shares: Vec<f64>,
+    /// No weights make the least weighted row greater than this.
+    pub most: f64,
+}
+
+/// Weights for the columns of a table.
+///
+/// Columns that are conditions are no stakes: their weights do not count in the sum, and the mixture is to keep them from
+/// being positive. Two opposite ones would otherwise be a way to play for nothing.
+pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Game {
+    let (count, width) = (rows.len(), rows[0].len());
+    let is_stake = |column: &usize| !conditions.contains(column);
+    let stakes = (0..width).filter(is_stake).count() as f64;
+    let mut w: Vec<f64> = vec![1.0 / stakes; width];
+    let counts: Vec<f64> = (0..width).map(|column| if is_stake(&column) { 1.0 } else { 0.0 }).collect();
+    let sums = |w: &[f64]| -> Vec<f64> { rows.iter().map(|row| dot(row, w)).collect() };
+    let least = |sums: &[f64]| sums.iter().copied().fold(f64::INFINITY, f64::min);
+    let last = LAST / (count + width) as f64;
+    let mut mu = FIRST;
+    let mut t = least(&sums(&w)) - FIRST;
+    let mut shares = vec![1.0 / count as f64; count];
+    while mu > last {
+        mu = (mu * STAGE).max(last);
+        for _ in 0..STEPS {
+            let slack: Vec<f64> = sums(&w).iter().map(|sum| sum - t).collect();
+            let Some(step) = newton(rows, &w, &counts, &slack, mu) else { break };
+            let (dw, dt) = (&step.as_slice()[..width], step[width]);
+            let falls = rows.iter().map(|row| dot(row, dw) - dt).zip(&slack);
+            let falls = falls.map(|(fall, left)| (fall, *left));
+            let down = dw.iter().copied().zip(w.iter().copied());
+            let conditions = conditions.clone().map(|k| (-dw[k], MOST - w[k]));
+            let walls = falls.chain(down).chain(conditions).filter(|(fall, _)| *fall < 0.0);
+            let room = walls.map(|(fall, left)| -left / fall).fold(f64::INFINITY, f64::min);
+            let length = (SHORT_OF * room).min(1.0);
+            w.iter_mut().zip(dw).for_each(|(w, d)| *w += length * d);
+            t += length * dt;
+            if length == 1.0 {
+                break;
+            }
+        }
+        let inverse: Vec<f64> = sums(&w).iter().map(|sum| 1.0 / (sum - t)).collect();
+        let total: f64 = inverse.iter().sum();
+        shares = inverse.iter().map(|x| x / total).collect();
+    }
+    let mixed = |column: usize| rows.iter().zip(&shares).map(|(row, share)| row[column] * share).sum::<f64>();
+    let stake = (0..width).filter(is_stake).map(mixed).fold(f64::NEG_INFINITY, f64::max);
+    let most = stake + conditions.clone().map(|column| MOST * mixed(column).max(0.0)).sum::<f64>();
+    Game { weights: w, shares, most }
+}
+
+/// Newton's step of weights and `t`.
+fn newton(rows: &[Vec<f64>], w: &[f64], counts: &[f64], slack: &[f64], mu: f64) -> Option<DVector<f64>> {
+    let width = w.len();
+    let mut curvature = DMatrix::<f64>::zeros(width + 1, width + 1);
+    let mut sides = DMatrix::<f64>::zeros(width + 1, 2);
+    for (k, w) in w.iter().enumerate() {
+        curvature[(k, k)] = 1.0 / (w * w);
+        (sides[(k, 0)], sides[(k, 1)]) = (1.0 / w, counts[k]);
+        if counts[k] == 0.0 {
+            let left = MOST - w;
+            curvature[(k, k)] += 1.0 / (left * left);
+            sides[(k, 0)] -= 1.0 / left;
+        }
+    }
+    sides[(width, 0)] = 1.0 / mu;
+    for (row, slack) in rows.iter().zip(slack) {
+        let inverse = 1.0 / slack;
+        let entry = |k: usize| if k < width { row[k] * inverse } else { -inverse };
+        for k in 0..=width {
+            sides[(k, 0)] += entry(k);
+            (0..=k).for_each(|i| curvature[(k, i)] += entry(k) * entry(i));
+        }
+    }
+    let steps = curvature.cholesky()?.solve(&sides);
+    let sum = |column: usize| {
+        steps.column(column).iter().zip(counts).map(|(step, count)| step * count).sum::<f64>()
+    };
+    Some(steps.column(0) - steps.column(1) * (sum(0) / sum(1)))
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn no_weights_are_better_by_more_than_the_end_of_the_path(
+            rows in prop::collection::vec(prop::collection::vec(-1.0f64..1.0, 4), 1..9),
+        ) {
+            let Game { weights, shares, most } = solve(&rows, 0..0);
+            prop_assert!(weights.iter().chain(&shares).all(|x| *x >= 0.0));
+            prop_assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+            prop_assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+            let least = rows.iter().map(|row| dot(row, &weights)).fold(f64::INFINITY, f64::min);
+            prop_assert!(least <= most + 1e-9 && most - least < 5e-3, "{least} {most}");
+        }
+    }
+}

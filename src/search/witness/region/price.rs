@@ -1,0 +1,107 @@
+//! The cheapest part when every number of it has a price, and the parts that a sum can afford.
+
+use super::stock::TubeStock;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Nodes that are looked at for the cheapest tube: with too few its price is that of a node.
+const MOST_LOOKS: usize = 400;
+
+/// What is paid for each of a tube's numbers: the least counts where it is paid, the most where it is earned.
+pub(super) struct Prices {
+    paid: Vec<f64>,
+    earned: Vec<f64>,
+}
+
+impl Prices {
+    pub fn new(prices: &[f64]) -> Self {
+        Self {
+            paid: prices.iter().map(|p| p.max(0.0)).collect(),
+            earned: prices.iter().map(|p| p.min(0.0)).collect(),
+        }
+    }
+
+    /// No member of a node is cheaper.
+    pub fn of(&self, [least, most]: [&[f64]; 2]) -> f64 {
+        dot(&self.paid, least) + dot(&self.earned, most)
+    }
+
+    /// The numbers that make that price.
+    pub fn numbers(&self, [least, most]: [&[f64]; 2]) -> Vec<f64> {
+        let cheapest = |i: usize| if self.earned[i] < 0.0 { most[i] } else { least[i] };
+        (0..least.len()).map(cheapest).collect()
+    }
+}
+
+/// A sum of products in four strands.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (fours, others) = (a.chunks_exact(4), b.chunks_exact(4));
+    let rest = fours.remainder().iter().zip(others.remainder());
+    for (a, b) in fours.zip(others) {
+        (0..4).for_each(|i| sums[i] += a[i] * b[i]);
+    }
+    rest.map(|(a, b)| a * b).sum::<f64>() + (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
+/// The node of the cheapest tube below some nodes, or one of no more than its price if that takes too long.
+pub(super) fn cheapest(stock: &TubeStock, nodes: &[u32], prices: &Prices) -> (f64, u32) {
+    let offer = |node: u32| Offer { price: prices.of(stock.bounds(node)), node };
+    let mut open: BinaryHeap<Offer> = nodes.iter().map(|&node| offer(node)).collect();
+    let mut looks = 0;
+    loop {
+        let best = open.pop().expect("a zone has tubes");
+        match stock.tree.halves(best.node).filter(|_| looks < MOST_LOOKS) {
+            Some(halves) => open.extend(halves.map(offer)),
+            None => return (best.price, best.node),
+        }
+        looks += 2;
+    }
+}
+
+/// The nodes below some that can be afforded, about so many: the largest are taken apart first.
+pub(super) fn affordable(
+    stock: &TubeStock,
+    nodes: &[u32],
+    limits: &[(Prices, f64)],
+    about: usize,
+) -> Vec<u32> {
+    let can = |node: &u32| limits.iter().all(|(prices, most)| prices.of(stock.bounds(*node)) <= *most);
+    let sized = |node: u32| (stock.tree.options(node).len(), node);
+    let mut open: BinaryHeap<(usize, u32)> = nodes.iter().copied().filter(can).map(sized).collect();
+    while open.len() < about {
+        let Some(halves) = open.peek().and_then(|&(_, node)| stock.tree.halves(node)) else { break };
+        open.pop();
+        open.extend(halves.into_iter().filter(can).map(sized));
+    }
+    let mut kept: Vec<u32> = open.into_iter().map(|(_, node)| node).collect();
+    kept.sort_unstable();
+    kept
+}
+
+/// A node, and that none of its members is cheaper.
+struct Offer {
+    price: f64,
+    node: u32,
+}
+
+impl Ord for Offer {
+    /// The cheapest is the greatest; of equals the first.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.price.total_cmp(&self.price).then(other.node.cmp(&self.node))
+    }
+}
+
+impl PartialOrd for Offer {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Offer {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Offer {}

@@ -1,0 +1,364 @@
+//! What every member of a zone below a corner keeps to, as sums over the parts.
+//!
+//! | row | at most |
+//! |---|---|
+//! | mass: the sum of the parts' masses | that of the corner |
+//! | in a judged case, way of the tip along a direction `e` | deflection of the corner |
+//! | in a judged case, for a shape `x`: `λ xᵀMx - xᵀKx`, `λ` of the corner | 0 |
+//! | a torque that is held, and its negative | its bound |
+//!
+//! *Way of the tip.* With force `F`, a sum over the loads, and compliance `c` of a tube, `(F - F₀)(c - c₀) >= 0` gives
+//! `F c >= F₀ c + c₀ (F - F₀)`. A gear twists under a torque `T`, in the sense that moves the tip along `e`, by at least
+//! `φ(T₀) + c₀ (T - T₀)`: `φ(T₀)` is the part's own, `c₀` the least twist per torque that a gear of the zone adds beyond `T₀`.
+//!
+//! *Modes.* `M` is linear in masses and inertias per length, `K` diagonal; the slope of a gear is the largest it has
+//! under the torques of the zone.
+//!
+//! Every row is divided by about what the corner allows, and that is taken from it: it is at most zero.
+
+use super::super::arm::Arm;
+use super::super::bound::{Members, compliances, direction};
+use super::super::drives::{DriveRange, angle_rad};
+use super::super::layout::Coordinate;
+use super::super::pencil::{Pencil, square};
+use super::super::pose::Pose;
+use super::super::span::{Linear, Span};
+use super::super::tubes::{DENSITIES, STIFFNESSES};
+use super::corners::Corner;
+use super::stock::{Numbers, Stock, place};
+use super::zone::{Held, Zone};
+use nalgebra::Vector3;
+
+/// A torque that is held is a row in its own right.
+const ROUNDING: f64 = 1e-9;
+
+/// A row: a sum over the numbers of all parts that is not positive.
+pub(super) struct Row {
+    pub per_number: Vec<f64>,
+    pub fixed: f64,
+}
+
+/// Where the numbers of each part stand among those of all: of joints a mass, twists and slopes by judged case; of tubes
+/// those of the stock.
+#[derive(Clone)]
+pub(super) struct Columns {
+    pub cases: usize,
+    pub joints: usize,
+    /// First number of each tube, and the end of all.
+    pub tubes: Vec<usize>,
+}
+
+/// The rows of a zone.
+pub(super) struct Rows<'a> {
+    pub arm: &'a Arm,
+    pub stock: &'a Stock,
+    pub columns: Columns,
+    pub corner: Corner,
+    pub rows: Vec<Row>,
+    /// Place of the first row of a torque that is held.
+    pub first_held: usize,
+    /// Place of the first row of a mode, and the case and shape of each.
+    pub first_mode: usize,
+    pub modes: Vec<(usize, Vec<f64>)>,
+    /// For every joint twists and slopes by judged case of each curve that the zone has; none of others.
+    pub curves: Vec<Numbers>,
+    /// Torques of each judged case, and the least twist per torque beyond the least \[rad/(N m)\].
+    pub torques: Vec<Vec<Span>>,
+    pub per_torque: Vec<Vec<f64>>,
+    /// Row, case and direction of each way of the tip.
+    pub tips: Vec<(usize, usize, Vector3<f64>)>,
+    /// Whether a coordinate of the zone may be rigid, by judged case.
+    rigid: Vec<Vec<bool>>,
+}
+
+impl Columns {
+    pub fn new(stock: &Stock, cases: usize) -> Self {
+        let joints = stock.joints.len();
+        let mut tubes = vec![joints * (1 + 2 * cases)];
+        for tube in &stock.tubes {
+            tubes.push(tubes[tubes.len() - 1] + tube.priced());
+        }
+        Self { cases, joints, tubes }
+    }
+
+    pub fn mass(&self, joint: usize) -> usize {
+        joint * (1 + 2 * self.cases)
+    }
+
+    pub fn twist(&self, joint: usize, case: usize) -> usize {
+        self.mass(joint) + 1 + case
+    }
+
+    pub fn slope(&self, joint: usize, case: usize) -> usize {
+        self.mass(joint) + 1 + self.cases + case
+    }
+
+    pub fn len(&self) -> usize {
+        self.tubes[self.tubes.len() - 1]
+    }
+
+    /// The numbers of a part, joints before tubes.
+    pub fn of_part(&self, part: usize) -> std::ops::Range<usize> {
+        match part.checked_sub(self.joints) {
+            None => self.mass(part)..self.mass(part + 1),
+            Some(tube) => self.tubes[tube]..self.tubes[tube + 1],
+        }
+    }
+
+    /// The number that is in proportion to a load: mass of a drive or weight of a tube.
+    pub fn load(&self, load: usize, water: usize) -> usize {
+        match load.checked_sub(self.joints) {
+            None => self.mass(load),
+            Some(tube) => self.tubes[tube] + place::weight(water),
+        }
+    }
+}
+
+impl Row {
+    fn new(columns: &Columns) -> Self {
+        Self { per_number: vec![0.0; columns.len()], fixed: 0.0 }
+    }
+
+    /// Adds a number that is linear in the loads.
+    fn add(&mut self, columns: &Columns, water: usize, fixed: f64, per_load: impl Iterator<Item = f64>) {
+        self.fixed += fixed;
+        per_load.enumerate().for_each(|(load, per)| self.per_number[columns.load(load, water)] += per);
+    }
+
+    /// Takes what is allowed from it, and divides it by a scale.
+    fn less(mut self, allowed: f64, scale: f64) -> Self {
+        self.fixed = (self.fixed - allowed) / scale;
+        self.per_number.iter_mut().for_each(|per| *per /= scale);
+        self
+    }
+
+    pub fn value(&self, numbers: &[f64]) -> f64 {
+        self.fixed + self.per_number.iter().zip(numbers).map(|(a, b)| a * b).sum::<f64>()
+    }
+}
+
+impl<'a> Rows<'a> {
+    /// The rows of a zone whose members are known, with the shapes that the zone came with.
+    pub fn new(arm: &'a Arm, stock: &'a Stock, zone: &Zone, members: &Members, corner: Corner) -> Self {
+        let judged: Vec<&Pose> = arm.poses.iter().filter(|pose| pose.judged).collect();
+        let columns = Columns::new(stock, judged.len());
+        let torques =
+            judged.iter().enumerate().map(|(case, pose)| zone.torques(case, pose, members)).collect();
+        let rigid = |pose: &&Pose| -> Vec<bool> {
+            arm.stiffnesses(pose, members).iter().map(|stiffness| stiffness.is_infinite()).collect()
+        };
+        let mut rows = Self {
+            arm,
+            stock,
+            corner,
+            rows: Vec::new(),
+            first_held: 0,
+            first_mode: 0,
+            modes: Vec::new(),
+            curves: stock.joints.iter().map(|joint| vec![None; joint.curves.len()]).collect(),
+            per_torque: vec![vec![0.0; stock.joints.len()]; judged.len()],
+            tips: Vec::new(),
+            torques,
+            rigid: judged.iter().map(rigid).collect(),
+            columns,
+        };
+        for (joint, kept) in zone.joints.iter().enumerate() {
+            for &drive in kept {
+                let curve = stock.joints[joint].curve[drive as usize] as usize;
+                if rows.curves[joint][curve].is_none() {
+                    rows.curves[joint][curve] = Some(vec![0.0; 2 * rows.columns.cases]);
+                }
+            }
+        }
+        rows.add_mass();
+        for (case, pose) in judged.iter().enumerate() {
+            rows.add_tip(case, pose, members);
+        }
+        rows.add_slopes();
+        rows.first_held = rows.rows.len();
+        for held in &zone.held {
+            rows.add_held(held, judged[held.case], members);
+        }
+        rows.first_mode = rows.rows.len();
+        for shape in &zone.shapes {
+            rows.add_mode(shape.case, shape.motion.clone());
+        }
+        rows
+    }
+
+    fn add_mass(&mut self) {
+        if self.corner.mass_kg.is_finite() {
+            let mut row = Row::new(&self.columns);
+            row.fixed = self.arm.offsets_kg;
+            (0..self.columns.joints).for_each(|joint| row.per_number[self.columns.mass(joint)] = 1.0);
+            let tubes = self.columns.tubes.len() - 1;
+            (0..tubes).for_each(|tube| row.per_number[self.columns.tubes[tube] + place::MASS] = 1.0);
+            self.rows.push(row.less(self.corner.mass_kg, self.corner.mass_kg));
+        }
+    }
+
+    /// The way of the tip along its least deflection.
+    fn add_tip(&mut self, case: usize, pose: &Pose, members: &Members) {
+        let Some(direction) = direction(pose, members) else { return };
+        let loads = &members.loads[pose.water];
+        let mut row = Row::new(&self.columns);
+        for joint in 0..self.columns.joints {
+            let way_m = pose.ways_m[joint].dot(&direction);
+            if way_m != 0.0 {
+                self.add_twist(&mut row, case, joint, &pose.torques[joint], pose.water, way_m);
+            }
+        }
+        for (tube, works) in pose.works.iter().enumerate() {
+            let compliances = compliances(members.tubes[tube]);
+            for (which, (work, compliance)) in works.iter().zip(compliances).enumerate() {
+                let (force, least) = (work.along(&direction, loads).least, compliance.least);
+                let number = self.columns.tubes[tube] + place::compliance(self.arm.waters, which);
+                row.per_number[number] += force;
+                let per_load = work.per_load.iter().map(|per| least * per.dot(&direction));
+                row.add(&self.columns, pose.water, least * (work.fixed.dot(&direction) - force), per_load);
+            }
+        }
+        for tilt_m in &pose.tilts_m {
+            let per_load = tilt_m.per_load.iter().map(|per| per.dot(&direction));
+            row.add(&self.columns, pose.water, tilt_m.fixed.dot(&direction), per_load);
+        }
+        if self.corner.tip_m.is_finite() {
+            self.tips.push((self.rows.len(), case, direction));
+            self.rows.push(row.less(self.corner.tip_m, self.corner.tip_m));
+        }
+    }
+
+    /// Adds a gear's part of the way, and notes what each curve twists at the least torque.
+    fn add_twist(
+        &mut self,
+        row: &mut Row,
+        case: usize,
+        joint: usize,
+        torque: &Linear,
+        water: usize,
+        way_m: f64,
+    ) {
+        let sense = 1.0f64.copysign(way_m);
+        let span = self.torques[case][joint].times(sense);
+        let mut per_torque = f64::INFINITY;
+        for (numbers, range) in self.curves[joint].iter_mut().zip(&self.stock.joints[joint].curves) {
+            if let Some(numbers) = numbers {
+                numbers[case] = range.least_angle_rad(span);
+                per_torque = per_torque.min(least_twist_per_nm(range, span));
+            }
+        }
+        row.per_number[self.columns.twist(joint, case)] += way_m.abs();
+        self.per_torque[case][joint] = per_torque;
+        let by = way_m.abs() * per_torque;
+        let per_load = torque.per_load.iter().map(|per| by * sense * per);
+        row.add(&self.columns, water, by * (sense * torque.fixed - span.least), per_load);
+    }
+
+    /// Notes the largest slope of each curve.
+    fn add_slopes(&mut self) {
+        let cases = self.columns.cases;
+        for (joint, curves) in self.curves.iter_mut().enumerate() {
+            for (numbers, range) in curves.iter_mut().zip(&self.stock.joints[joint].curves) {
+                let Some(numbers) = numbers else { continue };
+                for case in 0..cases {
+                    let slope = range.largest_slope(self.torques[case][joint].largest_size());
+                    numbers[cases + case] = if slope.is_finite() { slope } else { 0.0 };
+                }
+            }
+        }
+    }
+
+    fn add_held(&mut self, held: &Held, pose: &Pose, members: &Members) {
+        let torque = &pose.torques[held.joint];
+        let own = torque.over(&members.loads[pose.water]);
+        let scale = (own.most - own.least).max(0.01 * own.largest_size()).max(f64::MIN_POSITIVE);
+        for (sense, bound) in [(1.0, held.between.most), (-1.0, -held.between.least)] {
+            if bound.is_finite() {
+                let mut row = Row::new(&self.columns);
+                let per_load = torque.per_load.iter().map(|per| sense * per);
+                row.add(&self.columns, pose.water, sense * torque.fixed, per_load);
+                let room = ROUNDING * bound.abs();
+                self.rows.push(row.less(bound + room, scale));
+            }
+        }
+    }
+
+    /// Adds the row of a shape; what may be rigid stands still in it.
+    pub fn add_mode(&mut self, case: usize, mut shape: Vec<f64>) {
+        let eigenvalue = self.corner.eigenvalue();
+        if eigenvalue == 0.0 {
+            return;
+        }
+        let rigid = shape.iter_mut().zip(&self.rigid[case]).filter(|(_, rigid)| **rigid);
+        rigid.for_each(|(x, _)| *x = 0.0);
+        let pose = self.pose(case);
+        let mut row = Row::new(&self.columns);
+        row.fixed = eigenvalue * square(&pose.inertia, &shape);
+        for (number, per) in self.inertias(pose.water).zip(&pose.inertia_per) {
+            row.per_number[number] += eigenvalue * square(per, &shape);
+        }
+        for (coordinate, x) in self.arm.coordinates.iter().zip(&shape) {
+            match self.stiffness(case, coordinate) {
+                Ok((number, times)) => row.per_number[number] -= times * x * x,
+                Err(nm_per_rad) => row.fixed -= nm_per_rad * x * x,
+            }
+        }
+        self.rows.push(row.less(0.0, eigenvalue));
+        self.modes.push((case, shape));
+    }
+
+    /// A judged case.
+    pub fn pose(&self, case: usize) -> &'a Pose {
+        self.arm.poses.iter().filter(|pose| pose.judged).nth(case).expect("a judged case")
+    }
+
+    /// The numbers that inertia is in proportion to.
+    fn inertias(&self, water: usize) -> impl Iterator<Item = usize> {
+        let (joints, tubes) = (self.columns.joints, self.columns.tubes.len() - 1);
+        let masses = (0..joints).map(|joint| self.columns.mass(joint));
+        let densities = (0..tubes).flat_map(move |tube| {
+            (0..DENSITIES).map(move |which| self.columns.tubes[tube] + place::density(water, which))
+        });
+        masses.chain(densities)
+    }
+
+    /// The number that makes the stiffness of a coordinate, and its factor; or the stiffness if no part makes it.
+    fn stiffness(&self, case: usize, coordinate: &Coordinate) -> Result<(usize, f64), f64> {
+        match *coordinate {
+            Coordinate::Joint(joint) => Ok((self.columns.slope(joint, case), 1.0)),
+            Coordinate::Tube(tube, shape) => {
+                let (which, integral_m) = shape.stiffness(self.arm.lengths_m[tube]);
+                debug_assert!(which < STIFFNESSES);
+                Ok((self.columns.tubes[tube] + place::stiffness(self.arm.waters, which), integral_m))
+            }
+            Coordinate::Spring(spring) => Err(self.arm.spring_stiffnesses[spring]),
+        }
+    }
+
+    /// The arm whose parts have some numbers, in a case.
+    pub fn pencil(&self, case: usize, numbers: &[f64]) -> Pencil {
+        let pose = self.pose(case);
+        let stiffness = self.arm.coordinates.iter().zip(&self.rigid[case]);
+        let stiffness = stiffness.map(|(coordinate, rigid)| match self.stiffness(case, coordinate) {
+            _ if *rigid => f64::INFINITY,
+            Ok((number, times)) => times * numbers[number],
+            Err(nm_per_rad) => nm_per_rad,
+        });
+        let mut inertia = pose.inertia.clone();
+        for (number, per) in self.inertias(pose.water).zip(&pose.inertia_per) {
+            inertia.iter_mut().zip(per).for_each(|(entry, per)| *entry += numbers[number] * per);
+        }
+        Pencil::new(stiffness.collect(), inertia)
+    }
+}
+
+/// The least that a gear's twist grows per torque from the least of some torques to any other of them \[rad/(N m)\].
+fn least_twist_per_nm(range: &DriveRange, torque_nm: Span) -> f64 {
+    let Span { least, most } = torque_nm;
+    let stiff = &range.stiff;
+    match least >= 0.0 && most > least {
+        // slopes that rise: the whole way is the stiffest
+        true => (angle_rad(stiff, most) - angle_rad(stiff, least)) / (most - least) * (1.0 - ROUNDING),
+        false => 1.0 / stiff.tangent_nm_per_rad(torque_nm.largest_size() * (1.0 + ROUNDING) + ROUNDING),
+    }
+}
