@@ -14,7 +14,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3, Vector3};
 const NU: f64 = 4.0;
 const MOST_STEPS: usize = 40;
 /// Times a step is halved at the most until it makes the fit no worse.
-const MOST_HALVINGS: i32 = 6;
+const MOST_HALVINGS: i32 = 10;
 /// Standard deviation of a compliance before anything is measured, far beyond any part: what no weight turns is not
 /// known, but no number either that no part could have \[rad/(N m)\].
 const PRIOR_RAD_PER_NM: f64 = 0.1;
@@ -150,8 +150,9 @@ pub fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &F
     here.deviations = here.compliances.iter().map(|own| vec![f64::INFINITY; own.len()]).collect();
     here.effects = effects.to_vec();
     here.moved.resize(numbers.len(), 0.0);
-    here.ln_likelihood = ln_likelihood(&errors(samples, &here), scale(&errors(samples, &here), here.scale_m));
-    let mut merit = here.merit(numbers);
+    let begin = here.towards(&here, 0.0, numbers, &vec![0.0; numbers.len()], samples);
+    // the first step may go through what is worse: far from the best the parabola is none
+    let mut merit = f64::NEG_INFINITY;
     for _ in 0..MOST_STEPS {
         let before = here.clone();
         let step = shortened(numbers, step(samples, numbers, &mut here));
@@ -169,6 +170,9 @@ pub fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &F
         if (here.scale_m / before.scale_m - 1.0).abs() < 1e-6 && largest < 1e-6 {
             break;
         }
+    }
+    if here.merit(numbers) < begin.merit(numbers) {
+        here = Fitted { deviations: here.deviations, number_deviations: here.number_deviations, ..begin };
     }
     let errors = errors(samples, &here);
     let free = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();

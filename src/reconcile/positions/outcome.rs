@@ -19,6 +19,11 @@ use serde_json::{Value, json};
 
 /// Fewest positions that can speak.
 pub const FEWEST: usize = 20;
+/// Variance over the declared one beyond which nothing is explained, whatever the rest follows: what is left is five times
+/// what the instrument may be off.
+const HOPELESS_VARIANCE: f64 = 25.0;
+/// How much further poses kept out of a fit may be missed than those in it.
+const UNSTABLE: f64 = 8.0;
 /// Most alternatives an effect may have and still be named.
 const MOST_ALTERNATIVES: usize = 3;
 /// Part of the error of kept-out poses down to which effects must take it to be written without explaining all.
@@ -106,8 +111,17 @@ impl Positions {
             return (Verdict::InsufficientData, vec![text]);
         }
         let excess = left.chi2_per_dof > MATERIAL_VARIANCE;
-        if left.fails || (findings.is_empty() && excess) {
+        if left.fails || (findings.is_empty() && excess) || left.chi2_per_dof > HOPELESS_VARIANCE {
             return (Verdict::Unexplained, self.left_over(left));
+        }
+        let last = &self.stages[self.stages.len() - 1];
+        if last.median_mm > UNSTABLE * last.fitted_median_mm.max(campaign.positions[0].sigma_mm) {
+            let text = format!(
+                "poses kept out of the fit are missed by {:.3} mm, those in it by {:.3} mm: they are too alike to \
+                 calibrate all that is free; turn every joint through more of its range, or free less",
+                last.median_mm, last.fitted_median_mm
+            );
+            return (Verdict::InsufficientData, vec![text]);
         }
         if findings.is_empty() {
             let text = "noise and calibration of what is free explain every position";

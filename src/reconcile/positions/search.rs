@@ -28,9 +28,12 @@ impl Positions {
         self.take_if_confirmed(campaign, next, self.label(added))
     }
 
-    /// Becomes the next model, without what it makes needless, if that predicts poses kept out better.
+    /// Becomes the next model, without what it makes needless, if that is worth its price and predicts poses kept out better.
     pub(super) fn take_if_confirmed(&mut self, campaign: &Campaign, mut next: Self, added: String) -> bool {
         next.settle(campaign);
+        if next.score() <= self.score() {
+            return false;
+        }
         let dropped = |e: &&usize| !next.fitted.effects.contains(e);
         let dropped: Vec<String> =
             self.fitted.effects.iter().filter(dropped).map(|e| self.label(*e)).collect();
@@ -91,6 +94,12 @@ impl Positions {
 
     pub(super) fn label(&self, candidate: usize) -> String {
         format!("{}@{}", self.candidates[candidate].effect, self.candidates[candidate].at)
+    }
+
+    /// ln of the likelihood less the price of all that yields or turns unevenly.
+    fn score(&self) -> f64 {
+        let uneven = self.transmissions.len() as f64 * self.transmission_price();
+        self.fitted.ln_likelihood - self.prices(&self.fitted.effects) - uneven
     }
 
     /// What effects must bring together.

@@ -25,7 +25,7 @@ impl Positions {
             return false;
         }
         let tried = self.best_transmissions();
-        let price = self.price(numbers(0).count(), self.tree.driven.len());
+        let price = self.transmission_price();
         let worth = tried.into_iter().filter(|(_, f)| f.ln_likelihood > self.fitted.ln_likelihood + price);
         let best = worth.max_by(|a, b| a.1.ln_likelihood.total_cmp(&b.1.ln_likelihood));
         let Some((joint, fitted)) = best else { return false };
@@ -33,6 +33,11 @@ impl Positions {
         next.numbers.extend(numbers(joint));
         next.transmissions.push(joint);
         self.take_if_confirmed(campaign, next, format!("{EFFECT}@{}", self.tree.driven[joint]))
+    }
+
+    /// What the uneven turning of a joint must bring.
+    pub(super) fn transmission_price(&self) -> f64 {
+        self.price(numbers(0).count(), self.tree.driven.len())
     }
 
     /// Models in which one more joint turns unevenly, the most promising fitted in full.
