@@ -5,8 +5,11 @@ use super::fit::Fitted;
 use super::{Point, Positions, samples};
 use crate::reconcile::campaign::Campaign;
 use crate::reconcile::lack_of_fit::LackOfFit;
-use crate::reconcile::next_test::{ENOUGH, WORTHLESS_SIGMAS, spread_pose};
+use crate::reconcile::next_test::{ENOUGH, spread_pose};
 use crate::reconcile::verdict::{NextTest, Verdict};
+
+/// Standard deviations that one reading must tell: of less a hundred readings would not tell enough.
+const WORTHLESS_SIGMAS: f64 = 0.1 * ENOUGH;
 
 /// Poses among which the next test is chosen.
 const PROPOSED_POSES: usize = 60;
@@ -52,7 +55,7 @@ impl Positions {
         let [a, b] = &names;
         if sigmas < WORTHLESS_SIGMAS {
             let separates = format!(
-                "no position separates {a} from {b}: load the tip sideways and measure the turn on both sides \
+                "no position separates {a} from {b}, in a hundred readings: load the tip sideways and measure the turn on both sides \
                  of each place with dial gauges or an inclinometer"
             );
             return (a != b).then(|| NextTest::of_another_kind(separates));
