@@ -30,9 +30,10 @@ const SLACKS: [f64; 25] = [
 ];
 /// Slacks below this are for regions alone: boxes find as much on the way.
 const FINE: f64 = 0.02;
-/// Slacks are passed over, at most so many at once, where a pass should take less than this part of the time left, or
-/// whatever it takes if a gap was asked for.
+/// Slacks are passed over, at most so many at once, where a pass should take less than this part of the time left; if a gap
+/// was asked for so many whatever it takes.
 const MOST_PASSED_OVER: usize = 4;
+const PASSED_OVER_TO_A_GAP: usize = 8;
 const QUICK: f64 = 0.65;
 /// The time of a pass goes as this power of one over the slack, about.
 const GROWTH: f64 = 2.5;
@@ -155,11 +156,13 @@ impl<'p> Exact<'p> {
     fn next_pass(&self, passes: &[f64], last: usize, started: Instant) -> usize {
         let left = self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
         let took_s = started.elapsed().as_secs_f64();
+        let has_gap = self.gap > 0.0;
+        let most = if has_gap { PASSED_OVER_TO_A_GAP } else { MOST_PASSED_OVER };
         let is_quick = |pass: &usize| {
             let should_take_s = took_s * (passes[last] / passes[*pass]).powf(GROWTH);
-            self.gap > 0.0 || left.is_none_or(|left| should_take_s < QUICK * left.as_secs_f64())
+            has_gap || left.is_none_or(|left| should_take_s < QUICK * left.as_secs_f64())
         };
-        let ahead = last + 2..(last + 2 + MOST_PASSED_OVER).min(passes.len());
+        let ahead = last + 2..(last + 2 + most).min(passes.len());
         // one without any slack comes after all
         ahead.take_while(|pass| passes[*pass] > 0.0 && is_quick(pass)).last().unwrap_or(last + 1)
     }
