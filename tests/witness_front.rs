@@ -323,16 +323,13 @@ fn true_front(study: &Study, catalogs: &Catalogs) -> Vec<Evaluated> {
     kept.map(|i| judged[i].clone()).collect()
 }
 
-fn look(study: &Study, catalogs: &Catalogs, front: &[&Evaluated]) -> Looked {
+fn look(study: &Study, catalogs: &Catalogs, front: &[&Evaluated], by: By) -> Looked {
     let objectives: Vec<Objectives> = front.iter().map(|d| d.objectives).collect();
-    missing(&study.space, catalogs, &objectives, By::default(), &AtomicBool::new(false), None)
-}
-
-fn look_by_regions(study: &Study, catalogs: &Catalogs, front: &[&Evaluated]) -> Looked {
-    let objectives: Vec<Objectives> = front.iter().map(|d| d.objectives).collect();
-    let by = By { regions_from: 1, boxes_to: 60.0, apart: 0.0 };
     missing(&study.space, catalogs, &objectives, by, &AtomicBool::new(false), None)
 }
+
+/// Region by region, however small the space.
+const BY_REGIONS: By = By { regions_from: 1, boxes_to: 60.0, apart: 0.0 };
 
 /// Largest space that is searched region by region here: where nearly every design is on the front regions gain little.
 const MOST_BY_REGIONS: u128 = 2_500;
@@ -345,19 +342,20 @@ fn nearly_covers(a: &Evaluated, b: &Evaluated) -> bool {
         && a.lowest_mode_hz >= b.lowest_mode_hz * (1.0 - 2.0 * ROUNDING)
 }
 
-#[test]
-fn nothing_is_missing_beside_a_true_front_and_what_is_dropped_is_found() {
+/// Asserts of the random studies of no more designs that nothing is missing beside their fronts, and that what is dropped
+/// from one is found; at least one study in so many is to have a front.
+fn finds_what_is_dropped(by: By, most_designs: u128, one_in: u64) {
     let catalogs = Catalogs::builtin();
     let (mut fronts, mut dropped, mut boxes) = (0, 0, 0);
     for seed in 0..studies() {
         let study = read(&random_study(seed), &catalogs);
-        if study.space.designs(&catalogs).is_none_or(|designs| designs > MOST_DESIGNS) {
+        if study.space.designs(&catalogs).is_none_or(|designs| designs > most_designs) {
             continue;
         }
         conditions(&study.space).expect("a duty cycle that its bounds know");
         let front = true_front(&study, &catalogs);
         let all: Vec<&Evaluated> = front.iter().collect();
-        let looked = look(&study, &catalogs, &all);
+        let looked = look(&study, &catalogs, &all, by);
         assert_eq!(looked.open, 0);
         let added: Vec<_> =
             looked.candidates.iter().filter(|n| !front.iter().any(|d| d.number == **n)).collect();
@@ -369,45 +367,23 @@ fn nothing_is_missing_beside_a_true_front_and_what_is_dropped_is_found() {
             if rest.iter().any(|row| nearly_covers(row, lost)) {
                 continue;
             }
-            let found = look(&study, &catalogs, &rest).candidates;
+            let found = look(&study, &catalogs, &rest, by).candidates;
             assert!(found.contains(&lost.number), "seed {seed}: {lost:?} is not found");
             dropped += 1;
         }
     }
     println!("{fronts} fronts, {boxes} boxes, {dropped} designs dropped and found");
-    assert!(fronts * 3 > studies() && dropped > fronts, "{fronts} fronts, {dropped} dropped");
+    assert!(fronts * one_in > studies() && dropped > fronts, "{fronts} fronts, {dropped} dropped");
+}
+
+#[test]
+fn nothing_is_missing_beside_a_true_front_and_what_is_dropped_is_found() {
+    finds_what_is_dropped(By::default(), MOST_DESIGNS, 3);
 }
 
 #[test]
 fn region_by_region_nothing_is_missing_and_what_is_dropped_is_found() {
-    let catalogs = Catalogs::builtin();
-    let (mut fronts, mut dropped, mut boxes) = (0, 0, 0);
-    for seed in 0..studies() {
-        let study = read(&random_study(seed), &catalogs);
-        if study.space.designs(&catalogs).is_none_or(|designs| designs > MOST_BY_REGIONS) {
-            continue;
-        }
-        let front = true_front(&study, &catalogs);
-        let all: Vec<&Evaluated> = front.iter().collect();
-        let looked = look_by_regions(&study, &catalogs, &all);
-        assert_eq!(looked.open, 0);
-        let added: Vec<_> =
-            looked.candidates.iter().filter(|n| !front.iter().any(|d| d.number == **n)).collect();
-        assert!(added.is_empty(), "seed {seed}: {added:?} beside {} rows", front.len());
-        (fronts, boxes) = (fronts + u64::from(!front.is_empty()), boxes + looked.boxes);
-        let step = front.len().div_ceil(6).max(1);
-        for lost in front.iter().skip(step / 2).step_by(step) {
-            let rest: Vec<&Evaluated> = all.iter().copied().filter(|d| d.number != lost.number).collect();
-            if rest.iter().any(|row| nearly_covers(row, lost)) {
-                continue;
-            }
-            let found = look_by_regions(&study, &catalogs, &rest).candidates;
-            assert!(found.contains(&lost.number), "seed {seed}: {lost:?} is not found");
-            dropped += 1;
-        }
-    }
-    println!("{fronts} fronts, {boxes} boxes, {dropped} designs dropped and found");
-    assert!(fronts * 8 > studies() && dropped > fronts, "{fronts} fronts, {dropped} dropped");
+    finds_what_is_dropped(BY_REGIONS, MOST_BY_REGIONS, 8);
 }
 
 #[test]
@@ -422,8 +398,8 @@ fn the_answer_is_the_same_with_one_thread_and_says_what_is_left_if_stopped() {
     let front = true_front(&study, &catalogs);
     let some: Vec<&Evaluated> = front.iter().skip(1).collect();
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
-    let one = alone.install(|| look(&study, &catalogs, &some));
-    assert_eq!(one, look(&study, &catalogs, &some));
+    let one = alone.install(|| look(&study, &catalogs, &some, By::default()));
+    assert_eq!(one, look(&study, &catalogs, &some, By::default()));
     let stopped =
         missing(&study.space, &catalogs, &[], By::default(), &AtomicBool::new(false), Some(Instant::now()));
     assert!(stopped.open > 0 && stopped.candidates.is_empty());

@@ -105,7 +105,7 @@ impl Fitted {
         sample.sag.known_m + leaning + pulled.sum::<Vector3<f64>>()
     }
 
-    /// The model a part of the way to where a step of the numbers leads, with the scale that its errors have.
+    /// The model a part of the way to where a step of the numbers leads.
     fn towards(&self, goal: &Self, part: f64, numbers: &[Number], step: &[f64], samples: &[&Sample]) -> Self {
         let mut out = goal.clone();
         let step: Vec<f64> = step.iter().map(|s| part * s).collect();
@@ -113,10 +113,15 @@ impl Fitted {
         out.moved.iter_mut().zip(&step).for_each(|(m, s)| *m += s);
         let own = out.compliances.iter_mut().flatten();
         own.zip(self.compliances.iter().flatten()).for_each(|(c, from)| *c = from + part * (*c - from));
-        let errors = errors(samples, &out);
-        out.scale_m = scale(&errors, self.scale_m);
-        out.ln_likelihood = ln_likelihood(&errors, out.scale_m);
-        out
+        out.judged(samples)
+    }
+
+    /// The same with the scale that its errors have, and its likelihood.
+    fn judged(mut self, samples: &[&Sample]) -> Self {
+        let errors = errors(samples, &self);
+        self.scale_m = scale(&errors, self.scale_m);
+        self.ln_likelihood = ln_likelihood(&errors, self.scale_m);
+        self
     }
 
     /// ln of the likelihood and of the prior of the numbers.
@@ -150,7 +155,7 @@ pub fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &F
     here.deviations = here.compliances.iter().map(|own| vec![f64::INFINITY; own.len()]).collect();
     here.effects = effects.to_vec();
     here.moved.resize(numbers.len(), 0.0);
-    let begin = here.towards(&here, 0.0, numbers, &vec![0.0; numbers.len()], samples);
+    let begin = here.clone().judged(samples);
     // the first step may go through what is worse: far from the best the parabola is none
     let mut merit = f64::NEG_INFINITY;
     for _ in 0..MOST_STEPS {

@@ -12,7 +12,6 @@ use crate::search::Objectives;
 use crate::search::design::number;
 use crate::search::near::{BUFFER, NearDesign, NearDesigns, ROUNDING, Shortfall, Slack, keep_nearest};
 use crate::search::sweep::Candidate;
-use std::sync::Arc;
 
 /// How much a better trial shape may lower a ceiling's frequency.
 const NEAR: f64 = 0.4;
@@ -73,12 +72,7 @@ impl Exact<'_> {
             }
             return Vec::new();
         };
-        let half = |node: u32| {
-            let mut cell = here.cell.clone();
-            cell[level] = node;
-            Opened { cell, shapes: Arc::clone(&here.shapes), ceiling }
-        };
-        problem.halves(&here.cell, level).map_or_else(Vec::new, |halves| halves.map(half).into())
+        here.halves(problem, level, ceiling)
     }
 }
 

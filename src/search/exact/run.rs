@@ -95,6 +95,18 @@ pub(super) struct Opened {
     pub ceiling: Ceiling,
 }
 
+impl Opened {
+    /// The halves of a level, the first last: it is opened first.
+    pub fn halves(&self, problem: &Problem, level: usize, ceiling: Ceiling) -> Vec<Self> {
+        let half = |node: u32| {
+            let mut cell = self.cell.clone();
+            cell[level] = node;
+            Self { cell, shapes: Arc::clone(&self.shapes), ceiling }
+        };
+        problem.halves(&self.cell, level).map_or_else(Vec::new, |[a, b]| vec![half(b), half(a)])
+    }
+}
+
 impl<'p> Exact<'p> {
     /// A search of a space; it ends early when `stop` is set or the deadline has passed.
     pub fn new(
@@ -325,14 +337,7 @@ impl Search<'_, '_> {
             self.problem.judge(&here.cell, &ceiling, work, finds);
             return Vec::new();
         };
-        let Some(halves) = self.problem.halves(&here.cell, level) else { return Vec::new() };
-        // the first half is opened first
-        let half = |node: u32| {
-            let mut cell = here.cell.clone();
-            cell[level] = node;
-            Opened { cell, shapes: Arc::clone(&here.shapes), ceiling }
-        };
-        vec![half(halves[1]), half(halves[0])]
+        here.halves(self.problem, level, ceiling)
     }
 
     /// Whether a design that is known or was found since comes within the slack of a ceiling.

@@ -1,7 +1,7 @@
 //! The cheapest part when every number of it has a price, and the parts that a sum can afford.
 
 use super::stock::TubeStock;
-use std::cmp::Ordering;
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// Nodes that are looked at for the cheapest tube: with too few its price is that of a node.
@@ -46,14 +46,16 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// The node of the cheapest tube below some nodes, or one of no more than its price if that takes too long.
 pub(super) fn cheapest(stock: &TubeStock, nodes: &[u32], prices: &Prices) -> (f64, u32) {
-    let offer = |node: u32| Offer { price: prices.of(stock.bounds(node)), node };
-    let mut open: BinaryHeap<Offer> = nodes.iter().map(|&node| offer(node)).collect();
+    let price = |node: u32| prices.of(stock.bounds(node));
+    // the cheapest first, of equals the first node
+    let offer = |node: u32| Reverse((rank(price(node)), node));
+    let mut open: BinaryHeap<Reverse<(i64, u32)>> = nodes.iter().map(|&node| offer(node)).collect();
     let mut looks = 0;
     loop {
-        let best = open.pop().expect("a zone has tubes");
-        match stock.tree.halves(best.node).filter(|_| looks < MOST_LOOKS) {
+        let Reverse((_, best)) = open.pop().expect("a zone has tubes");
+        match stock.tree.halves(best).filter(|_| looks < MOST_LOOKS) {
             Some(halves) => open.extend(halves.map(offer)),
-            None => return (best.price, best.node),
+            None => return (price(best), best),
         }
         looks += 2;
     }
@@ -79,29 +81,8 @@ pub(super) fn affordable(
     kept
 }
 
-/// A node, and that none of its members is cheaper.
-struct Offer {
-    price: f64,
-    node: u32,
+/// A whole number that rises with a price: that of [`f64::total_cmp`].
+fn rank(price: f64) -> i64 {
+    let bits = price.to_bits() as i64;
+    bits ^ ((bits >> 63) as u64 >> 1) as i64
 }
-
-impl Ord for Offer {
-    /// The cheapest is the greatest; of equals the first.
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.price.total_cmp(&self.price).then(other.node.cmp(&self.node))
-    }
-}
-
-impl PartialOrd for Offer {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Offer {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Offer {}
