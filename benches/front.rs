@@ -1,7 +1,7 @@
 //! Pareto filter and hypervolume of large sets: `cargo bench --bench front`. Rates are points a second.
 
-use armwright::search::front::{exact_front, nondominated};
-use armwright::search::hypervolume::hypervolume;
+use armwright::pareto::front::{exact_front, nondominated};
+use armwright::pareto::hypervolume::hypervolume;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 

@@ -4,10 +4,13 @@
 mod common;
 
 use armwright::catalog::Catalogs;
-use armwright::fault::Document;
-use armwright::search::design::full_objectives;
-use armwright::search::{ArmProblem, OutwardIn, Sweep};
-use armwright::study::{Study, named, read_study};
+use armwright::input::json::Document;
+use armwright::search::sweep::Sweep;
+use armwright::space::design::full_objectives;
+use armwright::space::levels::OutwardIn;
+use armwright::space::problem::ArmProblem;
+use armwright::study::named;
+use armwright::study::read::{Study, read_study};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use std::sync::atomic::AtomicBool;

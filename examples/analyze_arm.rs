@@ -2,10 +2,12 @@
 //!
 //! Run: cargo run --example analyze_arm
 
-use armwright::arm::{JointModel, LinkModel, LoadCase, Payload, read_arm_document};
+use armwright::arm::file::read_arm_document;
+use armwright::arm::load::{LoadCase, Payload};
+use armwright::arm::{JointModel, LinkModel};
 use armwright::catalog::Catalogs;
-use armwright::fault::Document;
-use armwright::mechanics::Chain;
+use armwright::input::json::Document;
+use armwright::mechanics::chain::Chain;
 use nalgebra::Vector3;
 
 const ARM: &str = r#"{

@@ -6,9 +6,11 @@
 //! the answers off.
 
 use armwright::catalog::Catalogs;
-use armwright::fault::Document;
-use armwright::search::{ArmProblem, OutwardIn};
-use armwright::study::{named, read_study};
+use armwright::input::json::Document;
+use armwright::space::levels::OutwardIn;
+use armwright::space::problem::ArmProblem;
+use armwright::study::named;
+use armwright::study::read::read_study;
 use std::io::{BufRead, Write};
 
 fn main() -> std::io::Result<()> {

@@ -7,10 +7,11 @@
 
 use armwright::arm::JointModel;
 use armwright::catalog::Catalogs;
-use armwright::fault::Document;
-use armwright::search::exact::Exact;
-use armwright::search::space::{DesignSpace, DriveChoice, SpacePiece};
-use armwright::study::{named, read_study};
+use armwright::exact::run::Exact;
+use armwright::input::json::Document;
+use armwright::space::design_space::{DesignSpace, DriveChoice, SpacePiece};
+use armwright::study::named;
+use armwright::study::read::read_study;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 

@@ -4,8 +4,8 @@
 //! (1 if nothing dominates it) and prints the least processor seconds, all threads together, of so many repeats: filter,
 //! then hypervolume below the reference point; and the hypervolume. `benches/peers/moocore_front.py` runs it.
 
-use armwright::search::front::exact_front;
-use armwright::search::hypervolume::hypervolume;
+use armwright::pareto::front::exact_front;
+use armwright::pareto::hypervolume::hypervolume;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();

@@ -3,7 +3,7 @@
 //! Run: cargo run --example paper_frequencies
 
 use armwright::arm::LinkModel;
-use armwright::study::paper::arm::PaperArm;
+use armwright::paper::arm::PaperArm;
 
 const PRINTED_HZ: [f64; 3] = [14.8, 74.6, 159.6];
 

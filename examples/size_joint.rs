@@ -2,8 +2,11 @@
 //!
 //! Run: cargo run --example size_joint
 
-use armwright::catalog::{Catalogs, GearMass};
-use armwright::sizing::{DriveFilter, DriveTable, JointSizingRow, MotionRequirement, render_rows};
+use armwright::catalog::Catalogs;
+use armwright::catalog::gear::GearMass;
+use armwright::sizing::requirement::MotionRequirement;
+use armwright::sizing::select::{DriveFilter, DriveTable};
+use armwright::sizing::sheet::{JointSizingRow, render_rows};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let catalogs = Catalogs::builtin();

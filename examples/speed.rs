@@ -8,9 +8,11 @@
 mod common;
 
 use armwright::catalog::Catalogs;
-use armwright::fault::Document;
-use armwright::search::{ArmProblem, Sweep};
-use armwright::study::{Study, named, read_study};
+use armwright::input::json::Document;
+use armwright::search::sweep::Sweep;
+use armwright::space::problem::ArmProblem;
+use armwright::study::named;
+use armwright::study::read::{Study, read_study};
 use std::sync::atomic::AtomicBool;
 
 fn main() {

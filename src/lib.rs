@@ -21,10 +21,16 @@
 pub mod arm;
 pub mod catalog;
 pub mod cli;
-pub mod fault;
+pub mod exact;
+pub mod input;
 pub mod mechanics;
+pub mod paper;
+pub mod pareto;
 pub mod reconcile;
+pub mod relax;
 pub mod report;
 pub mod search;
 pub mod sizing;
+pub mod space;
 pub mod study;
+pub mod verify;

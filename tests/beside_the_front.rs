@@ -5,17 +5,22 @@ mod dice;
 
 use armwright::arm::{Element, LinkBody};
 use armwright::catalog::Catalogs;
-use armwright::fault::Document;
+use armwright::input::json::Document;
+use armwright::pareto::objectives::Objectives;
 use armwright::report::picks;
 use armwright::report::tolerance::Scattered;
-use armwright::search::design::{full_objectives, id_of, number, options};
 use armwright::search::near::{Slack, near_designs};
 use armwright::search::scatter::{ChosenParts, Factors, Figure};
-use armwright::search::{ArmProblem, Objectives, OutwardIn, evaluate};
-use armwright::study::{
-    Extent, Judged, NearFront, Sampling, Study, StudyOutcome, ballast_flags, front_table, near_front,
-    read_study, run_exact, run_study, scatter_front,
-};
+use armwright::space::design::evaluate;
+use armwright::space::design::{full_objectives, id_of, number, options};
+use armwright::space::levels::OutwardIn;
+use armwright::space::problem::ArmProblem;
+use armwright::study::ballast::ballast_flags;
+use armwright::study::near::{NearFront, near_front};
+use armwright::study::outcome::{Extent, Judged, StudyOutcome, run_exact, run_study};
+use armwright::study::read::{Study, read_study};
+use armwright::study::table::front_table;
+use armwright::study::tolerance::{Sampling, scatter_front};
 use assert_cmd::Command;
 use dice::Dice;
 use rayon::prelude::*;

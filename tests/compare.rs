@@ -2,12 +2,13 @@
 
 use armwright::cli::compare::{CompareArgs, run};
 use armwright::report::compare::moved::moved;
-use armwright::report::compare::{Answer, Comparison, Contender, Question, Row, Thresholds, compare};
+use armwright::report::compare::thresholds::Thresholds;
+use armwright::report::compare::{Answer, Comparison, Contender, Question, Row, compare};
 use armwright::report::front_table::FrontTable;
 use armwright::report::summary::{
     MaterialFront, SummaryFacts, SummaryInput, constraint_words, summary_md, terminal_summary,
 };
-use armwright::search::constraint::Constraints;
+use armwright::space::constraint::Constraints;
 use clap::Parser;
 use std::path::Path;
 

@@ -2,9 +2,10 @@
 //! of many is found.
 
 use armwright::catalog::Catalogs;
-use armwright::fault::Document;
-use armwright::search::exact::{Exact, ExactOutcome};
-use armwright::study::{Study, named, read_study};
+use armwright::exact::run::{Exact, ExactOutcome};
+use armwright::input::json::Document;
+use armwright::study::named;
+use armwright::study::read::{Study, read_study};
 use std::sync::atomic::AtomicBool;
 
 fn study(name: &str, catalogs: &Catalogs) -> Study {

@@ -1,10 +1,14 @@
 //! The reference arms, solved by FEDEM, CalculiX, Pinocchio, MuJoCo and an independent finite-element
 //! chain, against the library, to the tolerances their files state.
 
-use armwright::arm::{Arm, JointModel, LinkModel, LoadCase, Payload, read_arm_document};
+use armwright::arm::file::read_arm_document;
+use armwright::arm::load::{LoadCase, Payload};
+use armwright::arm::{Arm, JointModel, LinkModel};
 use armwright::catalog::Catalogs;
-use armwright::fault::Document;
-use armwright::mechanics::{Chain, Mode, Statics};
+use armwright::input::json::Document;
+use armwright::mechanics::chain::Chain;
+use armwright::mechanics::modes::Mode;
+use armwright::mechanics::statics::Statics;
 use nalgebra::Vector3;
 use serde_json::Value;
 

@@ -2,17 +2,21 @@
 
 mod paper_support;
 
-use armwright::arm::{Curve, LinkModel, Section};
+use armwright::arm::LinkModel;
+use armwright::arm::joint_law::Curve;
+use armwright::arm::section::Section;
 use armwright::catalog::Catalogs;
-use armwright::study::paper::arm::PaperArm;
-use armwright::study::paper::claim::Claim;
-use armwright::study::paper::coupled::CoupledArm;
-use armwright::study::paper::equations::deflection_eq_4_m;
-use armwright::study::paper::figures::{self, FORCE_N, LENGTH_M, WALL_M, fig2, fig3, fig4};
-use armwright::study::paper::remedies::{CatalogGears, connections, error_left, stiffer};
-use armwright::study::paper::rows::PaperRow;
-use armwright::study::paper::third_spring::{PRINTED_HZ, closest_reading, readings};
-use armwright::study::paper::{self, NAMES, PaperError, PaperStudyOutput, table1};
+use armwright::paper;
+use armwright::paper::arm::PaperArm;
+use armwright::paper::claim::Claim;
+use armwright::paper::coupled::CoupledArm;
+use armwright::paper::equations::deflection_eq_4_m;
+use armwright::paper::figures;
+use armwright::paper::figures::{FORCE_N, LENGTH_M, WALL_M, fig2, fig3, fig4};
+use armwright::paper::remedies::{CatalogGears, connections, error_left, stiffer};
+use armwright::paper::rows::PaperRow;
+use armwright::paper::third_spring::{PRINTED_HZ, closest_reading, readings};
+use armwright::paper::{NAMES, PaperError, PaperStudyOutput, table1};
 use paper_support::{check_xml, file, table};
 
 fn row(rows: &[PaperRow], id: &str) -> PaperRow {

@@ -1,7 +1,9 @@
 //! What three frequencies can say: the paper's own, as if measured on the arm of its Table 1.
 
 use armwright::catalog::Catalogs;
-use armwright::reconcile::{Campaign, Verdict, reconcile};
+use armwright::reconcile::readings::campaign::Campaign;
+use armwright::reconcile::together::reconcile;
+use armwright::reconcile::verdict::outcome::Verdict;
 use std::path::Path;
 
 #[test]

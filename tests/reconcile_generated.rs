@@ -2,7 +2,8 @@
 //! them are in docs/reconcile.md; here a few of each class hold the line.
 
 use armwright::catalog::Catalogs;
-use armwright::reconcile::{Campaign, reconcile};
+use armwright::reconcile::readings::campaign::Campaign;
+use armwright::reconcile::together::reconcile;
 use reconcile_scoring::Score;
 use std::path::Path;
 

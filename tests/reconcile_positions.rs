@@ -7,13 +7,16 @@
 mod measured;
 mod positions_maker;
 
-use armwright::arm::{JointModel, read_arm_document};
+use armwright::arm::JointModel;
+use armwright::arm::file::read_arm_document;
 use armwright::catalog::Catalogs;
-use armwright::fault::Document;
-use armwright::reconcile::exact::Exact;
-use armwright::reconcile::page::campaign_page;
-use armwright::reconcile::placement::Placement;
-use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};
+use armwright::input::json::Document;
+use armwright::reconcile::model::exact::Exact;
+use armwright::reconcile::readings::campaign::Campaign;
+use armwright::reconcile::readings::placement::Placement;
+use armwright::reconcile::together::reconcile;
+use armwright::reconcile::verdict::outcome::{Outcome, Verdict};
+use armwright::reconcile::verdict::page::campaign_page;
 use nalgebra::Vector3;
 use positions_maker::{LOPSIDED_RAD_PER_NM, Made, UNEVEN_RAD, standard};
 use serde_json::json;

@@ -3,11 +3,14 @@
 mod dice;
 
 use armwright::catalog::Catalogs;
-use armwright::fault::Document;
-use armwright::search::design::{evaluate, options};
-use armwright::search::relax::Relaxation;
-use armwright::search::{ArmProblem, Evaluated, Objectives, OutwardIn};
-use armwright::study::read_study;
+use armwright::input::json::Document;
+use armwright::pareto::objectives::Objectives;
+use armwright::relax::Relaxation;
+use armwright::space::design::Evaluated;
+use armwright::space::design::{evaluate, options};
+use armwright::space::levels::OutwardIn;
+use armwright::space::problem::ArmProblem;
+use armwright::study::read::read_study;
 use dice::Dice;
 use rayon::prelude::*;
 use serde_json::{Value, json};

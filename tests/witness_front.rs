@@ -9,14 +9,18 @@
 mod dice;
 
 use armwright::catalog::Catalogs;
-use armwright::fault::Document;
-use armwright::search::constraint::Constraints;
-use armwright::search::design::{Evaluated, number};
-use armwright::search::front::nondominated;
-use armwright::search::witness::{By, Looked, PartsBox, Witness, conditions, missing};
-use armwright::search::{ArmProblem, Objectives, OutwardIn, Sweep, evaluate};
-use armwright::sizing::PhaseKind;
-use armwright::study::{Study, read_study};
+use armwright::input::json::Document;
+use armwright::pareto::front::nondominated;
+use armwright::pareto::objectives::Objectives;
+use armwright::search::sweep::Sweep;
+use armwright::sizing::requirement::PhaseKind;
+use armwright::space::constraint::Constraints;
+use armwright::space::design::evaluate;
+use armwright::space::design::{Evaluated, number};
+use armwright::space::levels::OutwardIn;
+use armwright::space::problem::ArmProblem;
+use armwright::study::read::{Study, read_study};
+use armwright::verify::{By, Looked, PartsBox, Witness, conditions, missing};
 use dice::Dice;
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;

@@ -1,12 +1,16 @@
 //! Fronts of spaces far too large to visit, checked region by region by bounds that share no code with the search.
 
 use armwright::catalog::Catalogs;
-use armwright::fault::Document;
-use armwright::search::design::number;
-use armwright::search::exact::Exact;
-use armwright::search::witness::{By, Looked, missing};
-use armwright::search::{ArmProblem, Objectives, OutwardIn, evaluate};
-use armwright::study::{Study, named, read_study};
+use armwright::exact::run::Exact;
+use armwright::input::json::Document;
+use armwright::pareto::objectives::Objectives;
+use armwright::space::design::evaluate;
+use armwright::space::design::number;
+use armwright::space::levels::OutwardIn;
+use armwright::space::problem::ArmProblem;
+use armwright::study::named;
+use armwright::study::read::{Study, read_study};
+use armwright::verify::{By, Looked, missing};
 use std::sync::atomic::AtomicBool;
 
 fn full_catalog(catalogs: &Catalogs, up_to_kg: f64) -> Study {

@@ -1,8 +1,8 @@
 //! Studies that the benches and the `speed` example share.
 
 use armwright::catalog::Catalogs;
-use armwright::fault::Document;
-use armwright::study::{Study, read_study};
+use armwright::input::json::Document;
+use armwright::study::read::{Study, read_study};
 use serde_json::json;
 
 /// Two links with fixed joints: rigid links, one stiffness a joint, stretched, `options` sections a link.

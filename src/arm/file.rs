@@ -1,9 +1,13 @@
 //! Reading the arm file.
 
+use super::effect::Effect;
+use super::joint_law::{Curve, Windup};
 use super::load::vector;
-use super::{Arm, Curve, Effect, Element, Joint, Link, LinkBody, LinkMaterial, Section, Windup};
-use crate::catalog::{Catalogs, Gear, GearMass};
-use crate::fault::{Document, Faults, InputError, Node, Object};
+use super::section::{LinkMaterial, Section};
+use super::{Arm, Element, Joint, Link, LinkBody};
+use crate::catalog::Catalogs;
+use crate::catalog::gear::{Gear, GearMass};
+use crate::input::json::{Document, Faults, InputError, Node, Object};
 use nalgebra::{Unit, Vector3};
 use std::path::Path;
 

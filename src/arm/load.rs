@@ -1,7 +1,8 @@
 //! What an arm carries in one case: a pose, a payload, a force at the tip, and the models to use.
 
-use super::{JointModel, LinkModel, Water, Words};
-use crate::fault::{Document, Faults, Node, Object};
+use super::structure::Water;
+use super::{JointModel, LinkModel, Words};
+use crate::input::json::{Document, Faults, Node, Object};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 

@@ -6,23 +6,18 @@
 //! the joints before it.
 
 pub mod effect;
-mod file;
-mod joint_law;
-mod load;
-mod section;
-mod structure;
-mod write;
+pub(crate) mod file;
+pub(crate) mod joint_law;
+pub(crate) mod load;
+pub(crate) mod section;
+pub(crate) mod structure;
+pub(crate) mod write;
 
 pub use effect::Effect;
 pub use file::{read_arm, read_arm_document};
-pub(crate) use file::{
-    read_axis, read_curve, read_effects, read_joint_mass, read_link, read_name, windup_of,
-};
 pub use joint_law::{Curve, JointLaw, LostMotion, Windup};
 pub use load::{LoadCase, Payload, read_load_cases};
-pub(crate) use load::{read_pose, vector, word};
 pub use section::{LinkMaterial, Section, SectionProperties};
-pub(crate) use structure::link_piece;
 pub use structure::{Beam, FrameCompliance, JointAngle, JointPiece, LinkPiece, Piece, Structure, Water};
 
 use nalgebra::{Unit, Vector3};

@@ -1,6 +1,9 @@
 //! The arm as mechanics sees it: pieces with their physics, effects applied, part names gone.
 
-use super::{Arm, Element, Joint, JointLaw, JointModel, Link, LinkBody, LinkMaterial, LoadCase, Section};
+use super::joint_law::JointLaw;
+use super::load::LoadCase;
+use super::section::{LinkMaterial, Section};
+use super::{Arm, Element, Joint, JointModel, Link, LinkBody};
 use nalgebra::{Matrix3, SymmetricEigen, Unit, Vector3};
 
 /// Everything mechanics needs to know of an arm.

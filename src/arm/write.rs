@@ -1,6 +1,9 @@
 //! Writing the arm file.
 
-use super::{Arm, Curve, Effect, Element, Joint, Link, LinkBody, Section};
+use super::effect::Effect;
+use super::joint_law::Curve;
+use super::section::Section;
+use super::{Arm, Element, Joint, Link, LinkBody};
 use serde_json::{Map, Value, json};
 
 impl Arm {

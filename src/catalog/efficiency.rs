@@ -4,7 +4,8 @@
 //! `K_e` on it against the ratio of torque to rated torque, for whole series. Both hold for grease
 //! lubrication at about 20 °C; a sealed housed unit is a few points lower.
 
-use super::{Catalogs, Gear, Provenance};
+use super::gear::Gear;
+use super::{Catalogs, Provenance};
 
 /// What a point of `gears_efficiency.csv` tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

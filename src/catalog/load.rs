@@ -3,8 +3,9 @@
 use super::read::row::Row;
 use super::read::table::{Log, rows};
 use super::read::{efficiency, gears, materials, motors, profiles, trend};
-use super::{CatalogFile, Catalogs, Confidence, Provenance};
-use crate::fault::{Fault, Faults, InputError, closest};
+use super::schema::CatalogFile;
+use super::{Catalogs, Confidence, Provenance};
+use crate::input::json::{Fault, Faults, InputError, closest};
 use std::path::Path;
 
 /// What one file gave.

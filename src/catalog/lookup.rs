@@ -4,8 +4,12 @@
 //! a piece of names that begins a word (`S355` of `Structural steel S355`). It must not end within a
 //! number: `F11-1` does not mean `F11-10`. The first of these that fits any part must fit only one.
 
-use super::{Catalogs, Gear, Material, Motor, Profile};
-use crate::fault::closest;
+use super::Catalogs;
+use super::gear::Gear;
+use super::material::Material;
+use super::motor::Motor;
+use super::profile::Profile;
+use crate::input::json::closest;
 use std::fmt;
 
 /// Kinds of parts one can ask for.

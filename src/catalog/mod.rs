@@ -4,15 +4,15 @@
 //! can be trusted. [`Catalogs::builtin`] is what the program brings along, [`Catalogs::load`] adds the
 //! rows of a folder of the user's; [`Catalogs::gear`] and its sisters find a part by name.
 
-mod efficiency;
-mod gear;
-mod load;
-mod lookup;
-mod material;
-mod motor;
-mod profile;
-mod read;
-mod schema;
+pub(crate) mod efficiency;
+pub(crate) mod gear;
+pub(crate) mod load;
+pub(crate) mod lookup;
+pub(crate) mod material;
+pub(crate) mod motor;
+pub(crate) mod profile;
+pub(crate) mod read;
+pub(crate) mod schema;
 
 pub use efficiency::{EfficiencyKind, EfficiencyPoint};
 pub use gear::{Gear, GearMass};
@@ -23,7 +23,7 @@ pub use motor::{Motor, MotorKind};
 pub use profile::{Profile, ProfileShape};
 pub use schema::{CatalogFile, Cell, Column};
 
-use crate::fault::Fault;
+use crate::input::json::Fault;
 use std::collections::BTreeMap;
 use std::fmt;
 

@@ -1,8 +1,11 @@
 //! The columns of the catalog files: names with units, what a cell may hold, which must be there, which
 //! are figures.
 
+use super::Confidence;
 use super::efficiency::EfficiencyKind;
-use super::{Confidence, MaterialClass, MotorKind, Profile, ProfileShape};
+use super::material::MaterialClass;
+use super::motor::MotorKind;
+use super::profile::{Profile, ProfileShape};
 
 /// The files a catalog folder can hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

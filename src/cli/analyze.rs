@@ -1,10 +1,16 @@
 //! `armwright analyze`: statics, modes and response of an arm file.
 
 use super::{Failure, choice, number_list, numbers};
-use crate::arm::{Arm, Effect, JointModel, LinkModel, LoadCase, Payload, read_arm, read_load_cases};
+use crate::arm::effect::Effect;
+use crate::arm::file::read_arm;
+use crate::arm::load::{LoadCase, Payload, read_load_cases};
+use crate::arm::{Arm, JointModel, LinkModel};
 use crate::catalog::Catalogs;
-use crate::fault::Document;
-use crate::mechanics::{Chain, Mode, Response, Statics, frequency_response};
+use crate::input::json::Document;
+use crate::mechanics::chain::Chain;
+use crate::mechanics::modes::Mode;
+use crate::mechanics::response::{Response, frequency_response};
+use crate::mechanics::statics::Statics;
 use clap::Args;
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};

@@ -7,11 +7,13 @@ use crate::report::front_table::FrontTable;
 use crate::report::html::Extra;
 use crate::report::picks;
 use crate::report::tolerance::Scattered;
-use crate::search::ArmProblem;
 use crate::search::near::{NearDesigns, Slack};
-use crate::study::{
-    NearFront, Sampling, StudyOutcome, Tolerance, ballast_flags, near_front, part, scatter_front, ties,
-};
+use crate::space::problem::ArmProblem;
+use crate::study::ballast::ballast_flags;
+use crate::study::near::{NearFront, near_front};
+use crate::study::outcome::StudyOutcome;
+use crate::study::ties;
+use crate::study::tolerance::{Sampling, Tolerance, part, scatter_front};
 use clap::Args;
 use serde_json::{Map, Value, json};
 use std::sync::atomic::AtomicBool;

@@ -2,11 +2,13 @@
 
 use super::Failure;
 use super::search::Asked;
-use crate::arm::{Arm, read_arm_document};
+use crate::arm::Arm;
+use crate::arm::file::read_arm_document;
 use crate::catalog::Catalogs;
-use crate::fault::Document;
+use crate::input::json::Document;
 use crate::report::compare::text::wrap;
-use crate::study::{Carried, Study, carry_over, read_study};
+use crate::study::effects::{Carried, carry_over};
+use crate::study::read::{Study, read_study};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;

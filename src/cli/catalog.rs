@@ -3,11 +3,15 @@
 //! The functions return the text; nothing is printed here.
 
 use super::Failure;
-use crate::catalog::{
-    CatalogFile, Catalogs, Column, Confidence, Gear, Loaded, Material, MaterialClass, Motor, MotorKind,
-    PartError, Profile, ProfileShape, Provenance,
-};
-use crate::fault::InputError;
+use crate::catalog::gear::Gear;
+use crate::catalog::load::Loaded;
+use crate::catalog::lookup::PartError;
+use crate::catalog::material::{Material, MaterialClass};
+use crate::catalog::motor::{Motor, MotorKind};
+use crate::catalog::profile::{Profile, ProfileShape};
+use crate::catalog::schema::{CatalogFile, Column};
+use crate::catalog::{Catalogs, Confidence, Provenance};
+use crate::input::json::InputError;
 use std::fmt::Write as _;
 use std::path::Path;
 

@@ -1,7 +1,9 @@
 //! `armwright compare`: fronts side by side.
 
 use super::{Failure, number_list, write_all};
-use crate::report::compare::{Comparison, Contender, Thresholds, compare, moved::moved};
+use crate::report::compare::moved::moved;
+use crate::report::compare::thresholds::Thresholds;
+use crate::report::compare::{Comparison, Contender, compare};
 use crate::report::front_svg::{FrontPicture, PlottedFront};
 use crate::report::front_table::{FrontTable, FrontTableError};
 use crate::report::html::comparison::page as comparison_page;

@@ -3,10 +3,10 @@
 use super::finished::{catalogs_hash, pretty};
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
-use crate::fault::Document;
-use crate::search::ArmProblem;
-use crate::search::design::{full_objectives, number_of};
-use crate::study::read_study;
+use crate::input::json::Document;
+use crate::space::design::{full_objectives, number_of};
+use crate::space::problem::ArmProblem;
+use crate::study::read::read_study;
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -46,7 +46,7 @@ pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Fail
     let cases = problem.load_cases();
     let objectives = full_objectives(&arm, &cases);
     let dir = args.out.clone().unwrap_or_else(|| args.results.join(format!("design-{}", args.id)));
-    let cases: Vec<Value> = cases.iter().map(crate::arm::LoadCase::to_json).collect();
+    let cases: Vec<Value> = cases.iter().map(crate::arm::load::LoadCase::to_json).collect();
     write_all(
         &dir,
         &[("arm.json".into(), pretty(&arm.to_json())), ("cases.json".into(), pretty(&json!(cases)))],

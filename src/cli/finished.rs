@@ -2,8 +2,9 @@
 
 use super::beside::{Beside, BesideArgs, FILES, Found};
 use super::{Failure, carry, write_all};
-use crate::arm::Effect;
+use crate::arm::effect::Effect;
 use crate::catalog::Catalogs;
+use crate::pareto::hypervolume::front_hypervolume;
 use crate::report::budget::{PickBudget, budget_csv};
 use crate::report::certificate::certificate_section;
 use crate::report::front_svg::{FrontPicture, PlottedFront, designs_of, mixed_designs};
@@ -15,10 +16,17 @@ use crate::report::summary::{
     MaterialFront, SummaryFacts, SummaryInput, constraint_words, single_materials, summary_md,
     terminal_summary,
 };
-use crate::search::hypervolume::front_hypervolume;
 use crate::search::near::NearDesigns;
-use crate::search::{ArmProblem, DesignSpace, Status};
-use crate::study::{Carried, Study, StudyOutcome, budgets, front_table, slug, study_page, ties};
+use crate::search::sweep::Status;
+use crate::space::design_space::DesignSpace;
+use crate::space::problem::ArmProblem;
+use crate::study::budget::budgets;
+use crate::study::effects::Carried;
+use crate::study::outcome::StudyOutcome;
+use crate::study::page::study_page;
+use crate::study::read::Study;
+use crate::study::table::{front_table, slug};
+use crate::study::ties;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;

@@ -1,25 +1,25 @@
 //! The command line: one file a verb. A verb returns the text it prints; [`print()`] is the one place
 //! that writes to standard output.
 
-mod analyze;
-mod beside;
-mod carry;
+pub(crate) mod analyze;
+pub(crate) mod beside;
+pub(crate) mod carry;
 pub mod catalog;
 pub mod compare;
-mod design;
-mod finished;
-mod front;
+pub(crate) mod design;
+pub(crate) mod finished;
+pub(crate) mod front;
 pub mod predict;
-mod progress;
+pub(crate) mod progress;
 pub mod reconcile;
-mod rerun;
-mod run;
-mod search;
-mod size;
+pub(crate) mod rerun;
+pub(crate) mod run;
+pub(crate) mod search;
+pub(crate) mod size;
 
 use crate::arm::Words;
 use crate::catalog::Catalogs;
-use crate::fault::{Faults, InputError};
+use crate::input::json::{Faults, InputError};
 use clap::{Parser, Subcommand};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -140,8 +140,8 @@ impl From<InputError> for Failure {
     }
 }
 
-impl From<crate::catalog::PartError> for Failure {
-    fn from(error: crate::catalog::PartError) -> Self {
+impl From<crate::catalog::lookup::PartError> for Failure {
+    fn from(error: crate::catalog::lookup::PartError) -> Self {
         Failure::Usage(error.to_string())
     }
 }

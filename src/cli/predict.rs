@@ -1,12 +1,12 @@
 //! `armwright predict`: the model's value beside every reading.
 
 use super::Failure;
-use crate::arm::read_arm;
+use crate::arm::file::read_arm;
 use crate::catalog::Catalogs;
-use crate::reconcile::campaign::{Statement, read_statement};
-use crate::reconcile::placement::Placement;
-use crate::reconcile::predict::{Placed, predict};
-use crate::reconcile::table::Table;
+use crate::reconcile::readings::campaign::{Statement, read_statement};
+use crate::reconcile::readings::placement::Placement;
+use crate::reconcile::readings::table::Table;
+use crate::reconcile::verdict::predict::{Placed, predict};
 use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};

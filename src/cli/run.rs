@@ -5,12 +5,15 @@ use super::finished::{catalogs_hash, facts_of, is_front_of_material, pretty};
 use super::search::{Asked, SearchArgs, With, search};
 use super::{Failure, carry, write_all};
 use crate::catalog::Catalogs;
-use crate::fault::Document;
+use crate::input::json::Document;
 use crate::report::compare::text::wrap;
 use crate::report::html::{Figure, PLOTS, document::DocumentPage};
 use crate::report::table::Table;
-use crate::search::Status;
-use crate::study::{Study, left_out, named, paper_question, read_study, slug};
+use crate::search::sweep::Status;
+use crate::study::effects::left_out;
+use crate::study::read::{Study, read_study};
+use crate::study::table::slug;
+use crate::study::{named, paper_question};
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -50,8 +53,8 @@ pub(super) fn study_text(name: &str) -> Result<(String, String), Failure> {
         Ok(text) => Ok((name.to_string(), text)),
         Err(_) if !name.contains(['/', '.']) => {
             let known = crate::study::names();
-            let near =
-                crate::fault::closest(name, &known).map_or(String::new(), |n| format!("; did you mean {n}?"));
+            let near = crate::input::json::closest(name, &known)
+                .map_or(String::new(), |n| format!("; did you mean {n}?"));
             Err(Failure::Usage(format!("no study is called \"{name}\"{near}; known: {}", known.join(", "))))
         }
         Err(error) => Err(Failure::File(error.to_string())),
@@ -66,7 +69,7 @@ pub(super) fn load_study(name: &str, catalogs: &Catalogs) -> Result<(Study, Stri
 
 /// Carries out the verb.
 pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -> Result<String, Failure> {
-    if crate::study::paper::NAMES.contains(&args.study.as_str()) {
+    if crate::paper::NAMES.contains(&args.study.as_str()) {
         return run_paper(args, catalogs);
     }
     let (study, text) = load_study(&args.study, catalogs)?;
@@ -88,8 +91,7 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(&args.study));
     write_all(&dir, &[])?;
     let started = Instant::now();
-    let output =
-        crate::study::paper::run(&args.study, catalogs).map_err(|e| Failure::Usage(e.to_string()))?;
+    let output = crate::paper::run(&args.study, catalogs).map_err(|e| Failure::Usage(e.to_string()))?;
     let run = json!({
         "schema_version": 1,
         "study": args.study,

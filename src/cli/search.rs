@@ -6,10 +6,13 @@ use super::progress::{watch, watch_boxes};
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
 use crate::report::certificate::certificate_words;
-use crate::search::{ArmProblem, Status};
-use crate::study::{
-    Carried, ExactStudy, Extent, Study, empty_pieces, part, run_exact, run_study, why_infeasible,
-};
+use crate::search::sweep::Status;
+use crate::space::problem::ArmProblem;
+use crate::study::diagnose::{empty_pieces, why_infeasible};
+use crate::study::effects::Carried;
+use crate::study::outcome::{ExactStudy, Extent, run_exact, run_study};
+use crate::study::read::Study;
+use crate::study::tolerance::part;
 use clap::{Args, ValueEnum};
 use std::path::Path;
 use std::sync::Once;

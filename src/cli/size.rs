@@ -3,11 +3,16 @@
 use super::run::load_study;
 use super::{Failure, write_all};
 use crate::catalog::Catalogs;
-use crate::search::design::number_of;
-use crate::search::outward::{ArmProblem, Partial, SizedJoint};
-use crate::search::space::SpacePiece;
-use crate::sizing::{DriveTable, JointDemand, checks, render_rows};
-use crate::study::{Study, sizing_rows};
+use crate::sizing::check::checks;
+use crate::sizing::demand::JointDemand;
+use crate::sizing::select::DriveTable;
+use crate::sizing::sheet::render_rows;
+use crate::space::design::number_of;
+use crate::space::design_space::SpacePiece;
+use crate::space::problem::{ArmProblem, Partial};
+use crate::space::slot::SizedJoint;
+use crate::study::read::Study;
+use crate::study::table::sizing_rows;
 use clap::Args;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -129,7 +134,7 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
     );
     let Some(parts) = problem.parts(chosen) else { return out };
     for (piece, part) in study.space.pieces.iter().zip(parts) {
-        if let (SpacePiece::Choice(choice), crate::search::design::Part::Link(option)) = (piece, part) {
+        if let (SpacePiece::Choice(choice), crate::space::design::Part::Link(option)) = (piece, part) {
             let (width, height) = option.section.outer_m();
             let _ = writeln!(
                 out,
@@ -170,7 +175,7 @@ fn sized<'p, 'c>(
     problem: &'p ArmProblem<'c>,
     piece: usize,
     joint: &str,
-) -> Result<&'p crate::search::outward::SizedJoint<'c>, Failure> {
+) -> Result<&'p crate::space::slot::SizedJoint<'c>, Failure> {
     problem
         .sized_joint(piece)
         .ok_or_else(|| Failure::Usage(format!("joint {joint} has a given drive: there is nothing to choose")))

@@ -18,7 +18,8 @@
 //! inertia does not depend on the stiffness, so frequencies rise with every stiffness and fall with
 //! every mass, which the exact search relies on.
 
-use crate::arm::{Beam, LinkModel, LinkPiece, Structure};
+use crate::arm::LinkModel;
+use crate::arm::structure::{Beam, LinkPiece, Structure};
 use nalgebra::{DMatrix, Matrix3, Matrix6xX, SMatrix, Vector3};
 
 /// Polynomials of curvature in each plane.

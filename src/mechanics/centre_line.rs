@@ -1,8 +1,8 @@
 //! Where the arm's centre line is and how it moves, for drawings.
 //!
-//! Strain coordinates ([`Statics::deformations`](super::Statics), [`Mode::coordinates`](super::Mode)) move
+//! Strain coordinates ([`Statics::deformations`](crate::mechanics::statics::Statics), [`Mode::coordinates`](crate::mechanics::modes::Mode)) move
 //! every point of the chain: each element's twists carry what is outboard of it, and inside a link the
-//! beam's own fields bend it. The walk is the one of [`super::Chain::pose_rad`], element by element.
+//! beam's own fields bend it. The walk is the one of [`crate::mechanics::chain::Chain::pose_rad`], element by element.
 
 use super::chain::{ElasticElement, Posed, Prepared};
 use super::{Twist, displacement_at};
@@ -110,10 +110,12 @@ impl Walk {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arm::{JointModel, LinkModel, Payload, read_arm_document};
+    use crate::arm::file::read_arm_document;
+    use crate::arm::load::Payload;
+    use crate::arm::{JointModel, LinkModel};
     use crate::catalog::Catalogs;
-    use crate::fault::Document;
-    use crate::mechanics::Chain;
+    use crate::input::json::Document;
+    use crate::mechanics::chain::Chain;
 
     const ARM: &str = r#"{"name": "a",
         "materials": {"steel": {"youngs_modulus_pa": 2.1e11, "shear_modulus_pa": 8.1e10, "density_kg_m3": 7850}},

@@ -3,9 +3,10 @@
 use super::beam::PreparedBeam;
 use super::linkage::{Linkage, linkages};
 use super::{Twist, Wrench, body_inertia, force_wrench, rotation_twist, stack};
-use crate::arm::{
-    FrameCompliance, JointLaw, JointPiece, LinkModel, LinkPiece, LoadCase, Payload, Piece, Structure, Water,
-};
+use crate::arm::LinkModel;
+use crate::arm::joint_law::JointLaw;
+use crate::arm::load::{LoadCase, Payload};
+use crate::arm::structure::{FrameCompliance, JointPiece, LinkPiece, Piece, Structure, Water};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Matrix6xX, Rotation3, Vector3};
 
 /// An arm prepared for many poses and loads.

@@ -7,7 +7,7 @@
 
 use super::chain::{Item, Posed};
 use super::{Twist, Wrench, force_wrench};
-use crate::arm::{JointAngle, Piece, Structure};
+use crate::arm::structure::{JointAngle, Piece, Structure};
 use nalgebra::{DMatrix, DVector};
 
 /// One driver of a passive joint.
@@ -120,10 +120,12 @@ impl Posed<'_> {
 
 #[cfg(test)]
 mod tests {
-    use crate::arm::{JointModel, LinkModel, Payload, read_arm_document};
+    use crate::arm::file::read_arm_document;
+    use crate::arm::load::Payload;
+    use crate::arm::{JointModel, LinkModel};
     use crate::catalog::Catalogs;
-    use crate::fault::Document;
-    use crate::mechanics::Chain;
+    use crate::input::json::Document;
+    use crate::mechanics::chain::Chain;
     use nalgebra::Vector3;
 
     /// A driven shoulder, and a wrist that a linkage keeps level.

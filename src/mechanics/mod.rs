@@ -30,7 +30,6 @@ pub mod response;
 pub mod statics;
 
 pub use centre_line::Station;
-pub(crate) use chain::across;
 pub use chain::{Chain, Posed};
 pub use modes::{Mode, Modes};
 pub use response::{Response, frequency_response};

@@ -4,7 +4,7 @@
 //! where `u_k` is the tip's motion in mode k scaled to a strain energy of ½ J. All modes of the model
 //! are summed, so that the static limit is the arm's compliance.
 
-use super::Posed;
+use super::chain::Posed;
 use super::statics::Statics;
 use nalgebra::{Complex, Vector3};
 use std::f64::consts::TAU;

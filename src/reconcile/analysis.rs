@@ -1,19 +1,25 @@
 //! The workflow: is there a gap, what is missing, how sure is that, does it hold on kept-out poses.
 
-use super::campaign::Campaign;
-use super::candidates::candidates;
-use super::fit::{Effort, Fit, Weights};
+use super::fit::descent::{Effort, Fit, Weights};
+use super::fit::interval::{Interval, deviations, intervals};
+use super::fit::kept_out;
+use super::fit::kept_out::{KeptOut, rms};
+use super::fit::noise::Noise;
 use super::forward::{Datum, Forward};
-use super::interval::{Interval, deviations, intervals};
-use super::kept_out::{self, KeptOut, rms};
-use super::lack_of_fit::{LackOfFit, lack_of_fit};
-use super::model::{Calibration, Candidate, Model, Nuisance};
-use super::noise::Noise;
-use super::select::{Scored, Search, Selection};
-use super::settle::Settled;
-use super::unnamed::{self, Better};
-use super::verdict::{Calibrated, Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict};
-use super::{correct, few_rows, locate, next_test, units};
+use super::model::candidates::candidates;
+use super::model::parameters::{Calibration, Candidate, Model, Nuisance};
+use super::readings::campaign::Campaign;
+use super::readings::units;
+use super::select::lack_of_fit::{LackOfFit, lack_of_fit};
+use super::select::screening::{Scored, Search, Selection};
+use super::select::settle::Settled;
+use super::select::unnamed;
+use super::select::unnamed::Better;
+use super::select::{few_rows, next_test};
+use super::verdict::outcome::{
+    Calibrated, Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict,
+};
+use super::verdict::{correct, locate};
 use crate::arm::effect::Channel;
 
 /// Most alternatives an effect may have and still be named.
@@ -471,7 +477,7 @@ fn too_little(campaign: &Campaign, forward: &Forward) -> Vec<String> {
         ));
     }
     let first = campaign.statics.first();
-    let same_load = |r: &super::readings::StaticRow| {
+    let same_load = |r: &super::readings::rows::StaticRow| {
         first.is_some_and(|f| f.payload.mass_kg == r.payload.mass_kg && f.force_n == r.force_n)
     };
     reasons.extend(dead_instruments(forward));

@@ -12,38 +12,15 @@
 //! absolute ones and [`together`] for both.
 
 pub mod analysis;
-pub mod campaign;
-pub mod candidates;
-pub mod correct;
-pub mod curve_interval;
-pub mod exact;
-pub mod expected;
-pub mod few_rows;
 pub mod fit;
 pub mod forward;
-pub mod interval;
-pub mod kept_out;
-pub mod lack_of_fit;
-pub mod laws;
-pub mod locate;
 pub mod model;
-pub mod next_test;
-pub mod noise;
-pub mod page;
-pub mod placement;
 pub mod positions;
-pub mod predict;
 pub mod readings;
-pub mod report;
 pub mod select;
-pub mod settle;
-pub mod stats;
-pub mod table;
 pub mod together;
-pub mod units;
-pub mod unnamed;
 pub mod verdict;
 
-pub use campaign::Campaign;
+pub use readings::campaign::Campaign;
 pub use together::reconcile;
-pub use verdict::{Outcome, Verdict};
+pub use verdict::outcome::{Outcome, Verdict};

@@ -3,14 +3,16 @@
 //! under gravity alone. So each is reconciled with what the other has found.
 
 use super::analysis;
-use super::campaign::Campaign;
-use super::few_rows::FEWEST_ROWS;
-use super::kept_out::KeptOut;
-use super::lack_of_fit::LackOfFit;
-use super::noise::Noise;
-use super::positions::{self, Calibrated, FEWEST, Stage};
-use super::predict::subject;
-use super::verdict::{Finding, Outcome, Verdict};
+use super::fit::kept_out::KeptOut;
+use super::fit::noise::Noise;
+use super::positions;
+use super::positions::outcome::FEWEST;
+use super::positions::{Calibrated, Stage};
+use super::readings::campaign::Campaign;
+use super::select::few_rows::FEWEST_ROWS;
+use super::select::lack_of_fit::LackOfFit;
+use super::verdict::outcome::{Finding, Outcome, Verdict};
+use super::verdict::predict::subject;
 use crate::arm::{Arm, Element};
 use serde_json::json;
 

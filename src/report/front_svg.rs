@@ -7,7 +7,8 @@
 use super::front_table::FrontTable;
 use super::number::significant;
 use super::picks::{Design, Objective, Pick, designs, materials};
-use super::svg::{Axis, MUTED, Note, PALETTE, Plot, Scale, Series, Sheet, Side, Stroke};
+use super::svg::sheet::Sheet;
+use super::svg::{Axis, MUTED, Note, PALETTE, Plot, Scale, Series, Side, Stroke};
 use std::collections::HashSet;
 
 const WIDTH_PX: f64 = 900.0;

@@ -8,7 +8,7 @@ use super::front_table::FrontTable;
 use super::number::significant;
 use super::picks::{Design, Objective, Pick, best, choices, designs, knee, materials, picks};
 use super::table::{Column, Table};
-use crate::search::constraint::Constraints;
+use crate::space::constraint::Constraints;
 
 /// Height of a small plot \[characters\].
 const PLOT_ROWS: usize = 8;

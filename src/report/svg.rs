@@ -20,11 +20,11 @@
 
 pub mod arm;
 pub mod bars;
-mod marker;
+pub(crate) mod marker;
 pub mod parallel;
 pub mod rows;
-mod sheet;
-mod ticks;
+pub(crate) mod sheet;
+pub(crate) mod ticks;
 
 use super::number::fixed;
 pub(super) use marker::outline;

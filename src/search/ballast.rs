@@ -5,15 +5,16 @@
 //! a lighter part that is at least as stiff in everything it would weigh less and sag no more, and only its lowest
 //! mode would fall, because an inboard gear falls to a softer segment or the play of a joint opens.
 
-use super::design::{number, options};
-use super::outward::{ArmProblem, Partial};
-use super::slot::Slot;
-use super::space::SpacePiece;
-use super::station::{Station, StationSlot};
-use super::{Objectives, OutwardIn};
-use crate::arm::{Curve, JointLaw};
+use crate::arm::joint_law::{Curve, JointLaw};
 use crate::mechanics::Wrench;
 use crate::mechanics::beam::line_stiffnesses;
+use crate::pareto::objectives::Objectives;
+use crate::space::design::{number, options};
+use crate::space::design_space::SpacePiece;
+use crate::space::levels::OutwardIn;
+use crate::space::problem::{ArmProblem, Partial};
+use crate::space::slot::Slot;
+use crate::space::station::{Station, StationSlot};
 
 /// Objectives that differ by less than this part are equal.
 const ROUNDING: f64 = 1e-9;
@@ -189,7 +190,7 @@ fn never_softer(a: &Curve, b: &Curve) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arm::Windup;
+    use crate::arm::joint_law::Windup;
 
     #[test]
     fn a_curve_that_bends_later_is_softer_in_between_though_its_slopes_are_the_same() {

@@ -1,160 +1,17 @@
-//! The design space and its Pareto front.
+//! The sweep: every design of a space, in parallel.
 //!
-//! A design is one option at each level of a tree; levels go from the tip inward, because the outward
-//! pass of the mechanics is also the order in which joints are sized. The search knows an arm only
-//! through [`OutwardIn`]: extend a partial arm by an option, or find that no design beyond it can hold;
-//! evaluate a complete one. [`space`] says what there is to choose, [`outward`] puts the arm behind the
-//! trait, [`sweep`] visits every design in parallel, [`front`] keeps what nothing dominates.
+//! [`sweep`] visits every design and keeps what nothing dominates; a *row* is all designs that differ in the innermost
+//! level alone, and is finished eight designs at a time ([`row`](self)). [`near`] finds designs that are nearly on a
+//! front, [`scatter`] what becomes of designs whose parts differ from the catalog, [`ballast`] designs that are
+//! on a front only because weight loads a gear into a stiffer segment.
 
-pub mod archive;
 pub mod ballast;
-pub mod constraint;
-pub mod design;
-mod effects;
-pub mod exact;
-mod excerpt;
-mod figures;
-pub mod fixed;
-pub mod front;
-pub mod hypervolume;
 pub mod near;
-pub mod outward;
-mod ranking;
-pub mod relax;
-mod row;
-mod row_lanes;
-mod row_modes;
+pub(crate) mod row;
+pub(crate) mod row_lanes;
+pub(crate) mod row_modes;
 pub mod scatter;
-mod sieve;
-mod slot;
-pub mod space;
-mod staircase;
-pub mod station;
 pub mod sweep;
-mod visit;
-pub mod witness;
+pub(crate) mod visit;
 
-pub use design::{Evaluated, evaluate};
-pub use outward::ArmProblem;
-pub use space::DesignSpace;
 pub use sweep::{Status, Sweep, SweepOutcome};
-
-/// What a design is judged by.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Objectives {
-    /// Largest displacement of the tip over the study's cases \[m\].
-    pub tip_deflection_m: f64,
-    /// Mass of all links and drives \[kg\].
-    pub mass_kg: f64,
-    /// Smallest first natural frequency over the cases \[Hz\].
-    pub lowest_mode_hz: f64,
-}
-
-impl Objectives {
-    /// Better by a factor in each.
-    pub(crate) fn better_by(&self, factor: f64) -> Self {
-        Self {
-            tip_deflection_m: self.tip_deflection_m / factor,
-            mass_kg: self.mass_kg / factor,
-            lowest_mode_hz: self.lowest_mode_hz * factor,
-        }
-    }
-
-    /// As three numbers to be made small.
-    pub fn minimized(&self) -> [f64; 3] {
-        [self.mass_kg, self.tip_deflection_m, -self.lowest_mode_hz]
-    }
-}
-
-/// A design finished.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Finished {
-    /// Its objectives.
-    pub objectives: Objectives,
-    /// The group it belongs to, if it belongs to one.
-    pub group: Option<usize>,
-}
-
-/// What becomes of the designs that a walk comes to.
-pub trait Keep {
-    /// A design that holds.
-    fn complete(&mut self, number: u128, finished: Finished);
-
-    /// So many designs cannot hold.
-    fn exclude(&mut self, designs: u128);
-
-    /// The lowest mode \[Hz\] below which a design of a group, with this mass and tip deflection, need not be
-    /// finished; 0 if every design is of interest. It serves for heavier and softer ones too.
-    fn bar_hz(&self, group: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
-        let _ = (group, mass_kg, tip_deflection_m);
-        0.0
-    }
-
-    /// So many designs hold, and their lowest modes are below the bar.
-    fn below_bar(&mut self, designs: u64) {
-        let _ = designs;
-    }
-}
-
-/// A tree of designs whose levels go from the tip of the arm inward.
-pub trait OutwardIn: Sync {
-    /// A partial arm: everything outboard of the next level.
-    type Partial: Clone + Send + Sync;
-    /// What a worker keeps from one row of innermost options to the next.
-    type Scratch: Send;
-
-    /// Number of options at each level, tip first.
-    fn level_sizes(&self) -> &[u32];
-
-    /// The empty arm; `None` if no design can hold.
-    fn root(&self) -> Option<Self::Partial>;
-
-    /// Extends `from` by an option of a level and by all that follows without a choice, into `to`.
-    /// `false` if no design with this beginning meets the constraints.
-    fn extend(&self, level: usize, option: u32, from: &Self::Partial, to: &mut Self::Partial) -> bool;
-
-    /// Finishes rows of designs: each an arm that lacks only the innermost level, with the number of its first
-    /// design, by every option of that level.
-    fn finish<K: Keep>(&self, rows: &[(u128, Self::Partial)], scratch: &mut Self::Scratch, keep: &mut K) {
-        let Some((&options, outer)) = self.level_sizes().split_last() else { return };
-        for (first, from) in rows {
-            let mut complete = from.clone();
-            for option in 0..options {
-                self.finish_one(outer.len(), option, from, *first, &mut complete, keep);
-            }
-        }
-        let _ = scratch;
-    }
-
-    /// Finishes one design by itself, in `complete`.
-    fn finish_one(
-        &self,
-        level: usize,
-        option: u32,
-        from: &Self::Partial,
-        first: u128,
-        complete: &mut Self::Partial,
-        keep: &mut dyn Keep,
-    ) {
-        let holds = self.extend(level, option, from, complete);
-        match if holds { self.objectives(complete) } else { None } {
-            Some(objectives) => {
-                let group = self.group(complete);
-                keep.complete(first + u128::from(option), Finished { objectives, group });
-            }
-            None => keep.exclude(1),
-        }
-    }
-
-    /// Room for a worker's rows.
-    fn scratch(&self) -> Self::Scratch;
-
-    /// Objectives of a complete arm; `None` if it breaks a constraint.
-    fn objectives(&self, complete: &Self::Partial) -> Option<Objectives>;
-
-    /// Number of groups that get a front of their own (materials).
-    fn groups(&self) -> usize;
-
-    /// The group a complete arm belongs to, if it belongs to one.
-    fn group(&self, complete: &Self::Partial) -> Option<usize>;
-}

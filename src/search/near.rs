@@ -12,18 +12,19 @@
 //! has none near it, for designs of the front do not beat each other); what it lets through is compared
 //! with every design of the front. Memory follows the number of designs that are asked for.
 
-use super::archive::Archive;
-use super::constraint::Constraints;
 use super::sweep::Candidate;
 use super::visit::Visit;
-use super::{Finished, Keep, Objectives, OutwardIn};
+use crate::pareto::archive::Archive;
+use crate::pareto::objectives::Objectives;
+use crate::space::constraint::Constraints;
+use crate::space::levels::{Finished, Keep, OutwardIn};
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// The fast model and the full one differ by less than this part: no near design is lost to rounding.
-pub(super) const ROUNDING: f64 = 1e-9;
+pub(crate) const ROUNDING: f64 = 1e-9;
 
 /// A front that designs are compared with.
 pub struct Shortfall {
@@ -144,7 +145,7 @@ struct Seeker<'s> {
 }
 
 /// Designs that a task keeps for itself before it hands them over.
-pub(super) const BUFFER: usize = 1 << 12;
+pub(crate) const BUFFER: usize = 1 << 12;
 
 struct Worker<'s> {
     seeker: &'s Seeker<'s>,
@@ -192,7 +193,7 @@ impl Worker<'_> {
     }
 }
 
-pub(super) fn keep_nearest(designs: &mut Vec<NearDesign>, most: usize) {
+pub(crate) fn keep_nearest(designs: &mut Vec<NearDesign>, most: usize) {
     designs.sort_unstable_by(|a, b| {
         a.shortfall.total_cmp(&b.shortfall).then(a.candidate.number.cmp(&b.candidate.number))
     });

@@ -6,25 +6,26 @@
 //! two is [`row_lanes`](super::row_lanes). A chunk is some tens of kilobytes: rows come in batches, so that it is
 //! read once from the nearest cache for all of them.
 
-use super::figures::OptionFigures;
-use super::outward::{ArmProblem, Partial, Slot, block_steps};
 use super::row_lanes::EightArms;
-use super::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot};
-use crate::arm::{Curve, JointLaw};
+use crate::arm::joint_law::{Curve, JointLaw};
 use crate::mechanics::Wrench;
 use crate::mechanics::lanes::{Eight, LANES};
 use crate::mechanics::lowest_lanes::{LaneLink, Outboard};
+use crate::space::figures::OptionFigures;
+use crate::space::problem::{ArmProblem, Partial, block_steps};
+use crate::space::slot::Slot;
+use crate::space::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot};
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 use std::ops::Range;
 
 /// Most cases that a row handles.
-pub(super) const MOST_CASES: usize = 8;
+pub(crate) const MOST_CASES: usize = 8;
 /// Most pieces from the innermost level to the base that a row handles; beyond, designs are finished
 /// one by one.
-pub(super) const MOST_SLOTS: usize = 12;
+pub(crate) const MOST_SLOTS: usize = 12;
 
 /// The pieces from the innermost level to the base.
-pub(super) struct Row {
+pub(crate) struct Row {
     /// Slot of the innermost level.
     pub first: usize,
     /// Eight options each; none if the level is a joint's drive.
@@ -42,7 +43,7 @@ pub(super) struct Row {
 
 /// How a joint's drives twist in the judged cases.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Twisting {
+pub(crate) enum Twisting {
     /// No load turns them: their first slopes are all there is to know.
     AtRest,
     /// By one slope each.
@@ -55,7 +56,7 @@ pub(super) enum Twisting {
 
 /// What something outboard of a joint does at its axis.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct AtJoint {
+pub(crate) struct AtJoint {
     pub torque_nm: f64,
     pub inertia_kgm2: f64,
 }
@@ -64,7 +65,7 @@ pub(super) struct AtJoint {
 type AtJoints = [AtJoint; MOST_SLOTS];
 
 /// What depends on the pose but not on the option.
-pub(super) struct RowCase {
+pub(crate) struct RowCase {
     /// Inner joints that some load or weight turns; in every arm the torque on the others is zero.
     pub turned: [bool; MOST_SLOTS],
     /// What a kilogram of each inner drive does.
@@ -88,7 +89,7 @@ pub(super) struct RowCase {
 
 /// The drives of a joint by index, each with its mass and its torsion curve of three segments, the connection in series.
 #[derive(Debug, Clone, Default)]
-pub(super) struct DriveFigures {
+pub(crate) struct DriveFigures {
     pub mass_kg: Vec<f64>,
     /// Twist per torque \[rad/(N m)\] in each segment.
     pub compliance: [Vec<f64>; 3],
@@ -99,7 +100,7 @@ pub(super) struct DriveFigures {
 }
 
 /// Eight link options. The last chunk is filled up with its last option.
-pub(super) struct Chunk {
+pub(crate) struct Chunk {
     pub mass_kg: Eight,
     pub cost_eur: Eight,
     pub materials: [Option<usize>; LANES],
@@ -113,7 +114,7 @@ pub(super) struct Chunk {
 
 /// Stress over strength per force and moment.
 #[derive(Default)]
-pub(super) struct StressEight {
+pub(crate) struct StressEight {
     pub per_axial_n: Eight,
     pub per_moment_y: Eight,
     pub per_moment_z: Eight,
@@ -122,7 +123,7 @@ pub(super) struct StressEight {
 }
 
 /// Eight link options in one pose.
-pub(super) struct CaseChunk {
+pub(crate) struct CaseChunk {
     pub weight_n: Eight,
     /// Displacement of the tip by the wrench on the link's end.
     pub flexibility: [[Eight; 6]; 3],
@@ -137,27 +138,27 @@ pub(super) struct CaseChunk {
     pub modal: ChunkModal,
 }
 
-pub(super) enum ChunkModal {
+pub(crate) enum ChunkModal {
     Planar(Box<[LaneLink<3>; 2]>),
     Spatial(Box<LaneLink<6>>),
 }
 
 /// Room in which rows are finished.
 pub struct RowScratch {
-    pub(super) rows: Vec<Begun>,
-    pub(super) arms: EightArms,
+    pub(crate) rows: Vec<Begun>,
+    pub(crate) arms: EightArms,
     /// An arm for designs finished one by one.
-    pub(super) spare: Partial,
+    pub(crate) spare: Partial,
 }
 
 /// What follows from the arm outboard of a row.
-pub(super) struct Begun {
+pub(crate) struct Begun {
     pub cases: Vec<CaseBegun>,
     /// Step of each inner joint's ladder of drives at which the last design's was looked for.
     pub steps: [usize; MOST_SLOTS],
 }
 
-pub(super) struct CaseBegun {
+pub(crate) struct CaseBegun {
     pub outboard: CaseOutboard,
     /// What is outboard of the row, and what is inboard and not chosen, does at each inner joint.
     pub at: AtJoints,
@@ -167,7 +168,7 @@ pub(super) struct CaseBegun {
     pub at_root: [f64; 4],
 }
 
-pub(super) enum CaseOutboard {
+pub(crate) enum CaseOutboard {
     Planar(Box<[Outboard<3>; 2]>),
     Spatial(Box<Outboard<6>>),
 }
@@ -404,7 +405,7 @@ impl Chunk {
         let bits = |of: &dyn Fn(&OptionFigures) -> bool| {
             (0..LANES).fold(0, |bits, lane| bits | u8::from(of(&options[at(lane)])) << lane)
         };
-        let stress = |of: &dyn Fn(&super::figures::StressCheck) -> f64| {
+        let stress = |of: &dyn Fn(&crate::space::figures::StressCheck) -> f64| {
             lanes(&|o| o.stress.as_ref().map_or(0.0, |s| of(s) / s.strength_pa))
         };
         let materials: [Option<usize>; LANES] = std::array::from_fn(|lane| options[at(lane)].material);
@@ -488,12 +489,12 @@ fn lane_link<const N: usize>(block: &Block<N>, first: usize, at: &dyn Fn(usize) 
 
 impl RowScratch {
     /// Room for the rows of a problem.
-    pub(super) fn new(problem: &ArmProblem) -> Self {
+    pub(crate) fn new(problem: &ArmProblem) -> Self {
         Self { rows: Vec::new(), arms: EightArms::new(problem), spare: problem.empty() }
     }
 
     /// Works out what each row shares.
-    pub(super) fn begin<'p>(
+    pub(crate) fn begin<'p>(
         &mut self,
         problem: &ArmProblem,
         row: &Row,

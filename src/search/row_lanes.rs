@@ -4,18 +4,20 @@
 // matrices by row and column read better than iterators over them
 #![allow(clippy::needless_range_loop)]
 
-use super::outward::{ArmProblem, Partial, SizedJoint, Slot};
 use super::row::{AtJoint, Begun, Chunk, DriveFigures, MOST_SLOTS, Row, RowScratch, StressEight, Twisting};
 use super::row_modes::Question;
-use super::station::{Station, StationJoint, StationSlot};
-use super::{Finished, Keep, Objectives, OutwardIn};
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, splat_all};
-use crate::sizing::EightDemands;
+use crate::pareto::objectives::Objectives;
+use crate::sizing::eight::EightDemands;
+use crate::space::levels::{Finished, Keep, OutwardIn};
+use crate::space::problem::{ArmProblem, Partial};
+use crate::space::slot::{SizedJoint, Slot};
+use crate::space::station::{Station, StationJoint, StationSlot};
 use std::f64::consts::TAU;
 
 /// Eight options of a row.
 #[derive(Clone, Copy)]
-pub(super) struct RowChunk<'a, 'c> {
+pub(crate) struct RowChunk<'a, 'c> {
     pub problem: &'a ArmProblem<'c>,
     pub row: &'a Row,
     pub from: &'a Partial,
@@ -23,7 +25,7 @@ pub(super) struct RowChunk<'a, 'c> {
 }
 
 /// Rows to be finished, each with the number of its first design.
-pub(super) struct RowsWork<'a, 'c, K> {
+pub(crate) struct RowsWork<'a, 'c, K> {
     pub problem: &'a ArmProblem<'c>,
     pub row: &'a Row,
     pub rows: &'a [(u128, Partial)],
@@ -46,7 +48,7 @@ struct FinishedEight {
 
 /// Eight arms as they grow inward. What is loaded as eight numbers must be stored as eight: a processor waits where it
 /// finds parts of them on the way to memory.
-pub(super) struct EightArms {
+pub(crate) struct EightArms {
     /// Bits of those that hold so far.
     held: u8,
     pub mass_kg: Eight,
@@ -62,7 +64,7 @@ pub(super) struct EightArms {
 
 /// Eight arms in one case.
 #[derive(Clone)]
-pub(super) struct CaseArms {
+pub(crate) struct CaseArms {
     tip_m: [Eight; 3],
     /// Torque on each inner joint that is turned, and inertia about it.
     torque_at: [Eight; MOST_SLOTS],

@@ -6,12 +6,12 @@
 //! largest is solved first; any other block whose lower bound lies below that root gets one pass at it, and only if a
 //! pivot is negative there, a root of its own.
 
-use super::Keep;
 use super::row::{Begun, CaseOutboard, ChunkModal, MOST_CASES, RowCase};
 use super::row_lanes::{EightArms, RowChunk};
-use super::station::{Block, BlockSlot, Modal};
 use crate::mechanics::lanes::{Eight, LANES, Lanes};
 use crate::mechanics::lowest_lanes::{Inner, LaneLink, Outboard, Walk, pass, roots};
+use crate::space::levels::Keep;
+use crate::space::station::{Block, BlockSlot, Modal};
 use std::f64::consts::TAU;
 
 /// Cases and their blocks.
@@ -19,7 +19,7 @@ type Blocks = [Option<(usize, usize)>; 2 * MOST_CASES];
 
 /// Eight complete arms, asked for their lowest modes.
 #[derive(Clone, Copy)]
-pub(super) struct Question<'a, 'c> {
+pub(crate) struct Question<'a, 'c> {
     at: RowChunk<'a, 'c>,
     begun: &'a Begun,
     arms: &'a EightArms,

@@ -5,13 +5,14 @@
 //! material's modulus one factor on E and G, a gear's or motor's mass one factor. A factor belongs to a
 //! catalog row: wherever the row is used, in whichever design, it is the same.
 
-use super::Objectives;
-use super::outward::{ArmProblem, Partial, objectives_over};
-use super::slot::Slot;
-use super::space::{DesignSpace, DriveChoice, SpacePiece};
-use super::station::{Station, StationSlot};
-use crate::arm::{JointLaw, Link, LinkBody};
-use crate::sizing::Drive;
+use crate::arm::joint_law::JointLaw;
+use crate::arm::{Link, LinkBody};
+use crate::pareto::objectives::Objectives;
+use crate::sizing::drive::Drive;
+use crate::space::design_space::{DesignSpace, DriveChoice, SpacePiece};
+use crate::space::problem::{ArmProblem, Partial, objectives_over};
+use crate::space::slot::Slot;
+use crate::space::station::{Station, StationSlot};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A catalog figure that is not quite what it says, by the row it stands in.

@@ -4,11 +4,12 @@
 //! are filtered exactly now and then, so that memory follows the front and not the space. What is kept
 //! at the end does not depend on the order of visits or the number of threads.
 
-use super::archive::Archive;
-use super::constraint::Constraints;
-use super::front::not_clearly_beaten;
 use super::visit::Visit;
-use super::{Finished, Keep, Objectives, OutwardIn};
+use crate::pareto::archive::Archive;
+use crate::pareto::front::not_clearly_beaten;
+use crate::pareto::objectives::Objectives;
+use crate::space::constraint::Constraints;
+use crate::space::levels::{Finished, Keep, OutwardIn};
 use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

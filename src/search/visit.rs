@@ -4,8 +4,8 @@
 //! outboard of its rows one level after the other, keeps those it shares with the row before, and finishes rows in
 //! batches. It keeps what it finds for itself.
 
-use super::design::options;
-use super::{Finished, Keep, OutwardIn};
+use crate::space::design::options;
+use crate::space::levels::{Finished, Keep, OutwardIn};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -19,7 +19,7 @@ const BATCH: usize = 16;
 const BATCH_DESIGNS: usize = 1 << 18;
 
 /// A walk that others can watch and stop.
-pub(super) struct Visit<'p, P: OutwardIn> {
+pub(crate) struct Visit<'p, P: OutwardIn> {
     pub problem: &'p P,
     /// Designs visited or excluded so far.
     pub visited: &'p AtomicU64,

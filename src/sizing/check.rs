@@ -1,9 +1,9 @@
 //! The checks of a drive, one by one, for people: needed, allowed, margin, and what cannot be checked.
 
+use super::demand::{JointDemand, JointMotion};
 use super::drive::{Drive, Figure, MissingFigure};
 use super::limits as limit;
-use super::{JointDemand, JointMotion};
-use crate::catalog::{Gear, GearMass};
+use crate::catalog::gear::{Gear, GearMass};
 use std::fmt;
 
 /// One limit of a gear or a motor.
@@ -292,9 +292,10 @@ mod tests {
     use super::super::testing::{
         any_gear, any_motion, any_motor, any_torques, char_lynn_j_8_2, f11_10, gear, hfuc_40_100, motor,
     };
-    use super::super::{DriveLimits, MotionRequirement, Obstacle};
     use super::*;
-    use crate::catalog::Motor;
+    use crate::catalog::motor::Motor;
+    use crate::sizing::limits::{DriveLimits, Obstacle};
+    use crate::sizing::requirement::MotionRequirement;
     use proptest::prelude::*;
 
     /// A joint at 1.35 m with 300 N m static and 100 N m linear torque.

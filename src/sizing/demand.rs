@@ -1,7 +1,7 @@
 //! What one joint is asked for: its motion, fixed by the study, and its torques, which follow from the
 //! masses outboard (Eqs 8 and 12, cubic mean of the duty cycle).
 
-use super::{LinearReading, MeanTorqueWeights};
+use super::requirement::{LinearReading, MeanTorqueWeights};
 
 /// The motion of one joint. Fixed by study and geometry, whatever masses the arm has.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -145,8 +145,8 @@ pub fn cubic_mean_cubed_nm3(weights: MeanTorqueWeights, static_torque_nm: f64, l
 
 #[cfg(test)]
 mod tests {
-    use super::super::MotionRequirement;
     use super::*;
+    use crate::sizing::requirement::MotionRequirement;
 
     fn paper() -> MotionRequirement {
         MotionRequirement { linear_reading: LinearReading::Paper, ..Default::default() }

@@ -1,7 +1,8 @@
 //! A drive: a gear and a motor, seen from either side of the gear (Eqs 9-12).
 
-use super::JointMotion;
-use crate::catalog::{Gear, GearMass, Motor};
+use super::demand::JointMotion;
+use crate::catalog::gear::{Gear, GearMass};
+use crate::catalog::motor::Motor;
 
 /// A figure that the catalog leaves blank, by its column name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,9 +140,9 @@ pub fn reference_life_h(series: &str) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::MotionRequirement;
     use super::super::testing::{f11_10, hfuc_58_100};
     use super::*;
+    use crate::sizing::requirement::MotionRequirement;
 
     #[test]
     fn the_papers_0_14_and_14_4_newton_metres_count_the_rotor_of_f11_10_alone() {

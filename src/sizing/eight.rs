@@ -3,8 +3,10 @@
 //! The same operations in the same order as [`JointMotion::demand`] and [`DriveTable::first_fit`], so that an arm
 //! gets the same drive by itself and among eight.
 
+use super::demand::JointMotion;
 use super::limits::DriveLimits;
-use super::{DriveTable, JointMotion, LinearReading};
+use super::requirement::LinearReading;
+use super::select::DriveTable;
 use crate::mechanics::lanes::{LANES, Lanes};
 
 /// The torques on one joint of eight arms, output side, none negative; no moment across the axis.
@@ -92,10 +94,11 @@ impl DriveTable<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{any_gear, any_motion, any_motor};
-    use super::super::{DriveFilter, DriveTable};
     use super::*;
-    use crate::catalog::{Gear, GearMass, Motor};
+    use crate::catalog::gear::{Gear, GearMass};
+    use crate::catalog::motor::Motor;
     use crate::mechanics::lanes::{Eight, LaneWork, in_lanes};
+    use crate::sizing::select::{DriveFilter, DriveTable};
     use proptest::prelude::*;
 
     struct Fits<'a>(&'a DriveTable<'a>, Eight, Eight, u8, usize);

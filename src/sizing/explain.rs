@@ -1,7 +1,11 @@
 //! Why a part was not chosen, and what to give way in when nothing holds.
 
+use super::check::{Check, CheckState};
 use super::check::{binding, checks, digits_of, gear_checks, motor_checks};
-use super::{Check, CheckState, Drive, DriveLimits, DriveTable, JointDemand};
+use super::demand::JointDemand;
+use super::drive::Drive;
+use super::limits::DriveLimits;
+use super::select::DriveTable;
 use std::fmt;
 
 /// Which part a rejection is about.
@@ -297,9 +301,13 @@ fn not_holding(checks: Vec<Check>) -> Vec<Check> {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{char_lynn_j_8_2, f11_10, hfuc_40_100, hfuc_58_100, motor};
-    use super::super::{CheckKind, DriveFilter, JointMotion, MotionRequirement};
     use super::*;
-    use crate::catalog::{Gear, GearMass, Motor};
+    use crate::catalog::gear::{Gear, GearMass};
+    use crate::catalog::motor::Motor;
+    use crate::sizing::check::CheckKind;
+    use crate::sizing::demand::JointMotion;
+    use crate::sizing::requirement::MotionRequirement;
+    use crate::sizing::select::DriveFilter;
 
     fn motion() -> JointMotion {
         MotionRequirement::default().joint_motion(1.35, None)

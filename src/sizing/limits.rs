@@ -4,9 +4,11 @@
 //! comparison of one torque with one number. [`DriveLimits`] holds those numbers; a search compares five
 //! pairs and nothing else. The checks printed for people are decided by the same thresholds.
 
+use super::demand::{JointDemand, JointMotion};
 use super::drive::{Drive, Figure, MissingFigure, known, reference_life_h};
-use super::{JointDemand, JointMotion, rpm_from_rad_s};
-use crate::catalog::{Gear, GearMass, Motor};
+use super::rpm_from_rad_s;
+use crate::catalog::gear::{Gear, GearMass};
+use crate::catalog::motor::Motor;
 
 /// Input speed at which a gear's rated torque holds \[rpm\].
 pub(super) const RATED_INPUT_SPEED_RPM: f64 = 2000.0;

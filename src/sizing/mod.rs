@@ -26,24 +26,23 @@
 //! too, where friction would in truth help the motor. Motors have no torque-speed curve in the catalog:
 //! the peak is taken as available up to the largest speed.
 
-mod check;
-mod demand;
-mod drive;
-mod eight;
-mod explain;
-mod limits;
-mod requirement;
-mod select;
-mod sheet;
+pub(crate) mod check;
+pub(crate) mod demand;
+pub(crate) mod drive;
+pub(crate) mod eight;
+pub(crate) mod explain;
+pub(crate) mod limits;
+pub(crate) mod requirement;
+pub(crate) mod select;
+pub(crate) mod sheet;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 
 pub use check::{Check, CheckKind, CheckState, all_hold, binding, checks, gear_checks, motor_checks};
 pub use demand::{JointDemand, JointMotion, cubic_mean_cubed_nm3, linear_torque_nm, stop_torque_nm};
 pub use drive::{
     Drive, MissingFigure, motor_torque_nm, reference_life_h, rotary_torque_motor_nm, rotary_torque_output_nm,
 };
-pub(crate) use eight::EightDemands;
 pub use explain::{RejectedPart, Rejection, Relaxation, RelaxationKind, Shortfall};
 pub use limits::{DriveLimits, Obstacle};
 pub use requirement::{

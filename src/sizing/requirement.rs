@@ -1,6 +1,6 @@
 //! What a study asks of the tip: speed, ramp, emergency stop, duty cycle, life.
 
-use super::JointMotion;
+use super::demand::JointMotion;
 
 /// Which reading of Eq 8 gives the torque of linear acceleration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,10 @@
 //! Selection of a drive for one joint: every legal pair of gear and motor, sorted by mass.
 
-use super::{Drive, DriveLimits, JointDemand, JointMotion};
-use crate::catalog::{Gear, GearMass, Motor, MotorKind};
+use super::demand::{JointDemand, JointMotion};
+use super::drive::Drive;
+use super::limits::DriveLimits;
+use crate::catalog::gear::{Gear, GearMass};
+use crate::catalog::motor::{Motor, MotorKind};
 use std::ops::Range;
 
 /// Which parts of the catalogs a joint may use; `None` allows all.
@@ -287,8 +290,9 @@ fn parts<'c>(drive: &Drive<'c>) -> (&'c str, &'c str) {
 mod tests {
     use super::super::testing::{any_gear, any_motion, any_motor, any_torques, char_lynn_j_8_2, f11_10};
     use super::super::testing::{hfuc_40_100, hfuc_58_100, motor};
-    use super::super::{MotionRequirement, all_hold, checks};
     use super::*;
+    use crate::sizing::check::{all_hold, checks};
+    use crate::sizing::requirement::MotionRequirement;
     use proptest::prelude::*;
 
     fn everything() -> DriveFilter {

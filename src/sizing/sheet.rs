@@ -1,9 +1,10 @@
 //! The numbers of one joint for the table that a designer reads, joint 6 to joint 1.
 
 use super::check::{Check, CheckKind, CheckState, binding, checks};
+use super::demand::{JointDemand, JointMotion};
 use super::drive::{Drive, rotary_torque_output_nm};
 use super::limits::input_speed_rpm;
-use super::{JointDemand, JointMotion, rpm_from_rad_s};
+use super::rpm_from_rad_s;
 use serde::Serialize;
 
 /// One joint, sized. `None` is a number that a blank figure of the catalog leaves open.
@@ -190,9 +191,10 @@ fn shortened(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{char_lynn_j_8_2, f11_10, hfuc_40_100, hfuc_58_100};
-    use super::super::{LinearReading, MotionRequirement};
     use super::*;
-    use crate::catalog::{GearMass, Motor};
+    use crate::catalog::gear::GearMass;
+    use crate::catalog::motor::Motor;
+    use crate::sizing::requirement::{LinearReading, MotionRequirement};
 
     fn paper_joint_2(motor: &Motor) -> JointSizingRow {
         let study = MotionRequirement { linear_reading: LinearReading::Paper, ..Default::default() };

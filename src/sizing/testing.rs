@@ -1,7 +1,10 @@
 //! Parts for tests: rows of the catalog written out, and a drive that holds with room to spare.
 
-use super::{JointMotion, MotionRequirement};
-use crate::catalog::{Confidence, Gear, Motor, MotorKind, Provenance};
+use super::demand::JointMotion;
+use super::requirement::MotionRequirement;
+use crate::catalog::gear::Gear;
+use crate::catalog::motor::{Motor, MotorKind};
+use crate::catalog::{Confidence, Provenance};
 use proptest::prelude::*;
 
 fn provenance() -> Provenance {

@@ -1,12 +1,16 @@
 //! What else may stand in the place of each part of a design: drives that hold there, and tubes.
 
-use crate::arm::{Arm, Beam, Curve, Element, Joint, Link, LinkBody, windup_of};
+use crate::arm::file::windup_of;
+use crate::arm::joint_law::Curve;
+use crate::arm::structure::Beam;
+use crate::arm::{Arm, Element, Joint, Link, LinkBody};
 use crate::mechanics::beam::line_stiffnesses;
 use crate::report::number::significant;
-use crate::search::constraint::Constraints;
-use crate::search::space::{LinkChoice, LinkOption, SpacePiece};
-use crate::search::{ArmProblem, DesignSpace};
-use crate::sizing::Drive;
+use crate::sizing::drive::Drive;
+use crate::space::constraint::Constraints;
+use crate::space::design_space::DesignSpace;
+use crate::space::design_space::{LinkChoice, LinkOption, SpacePiece};
+use crate::space::problem::ArmProblem;
 
 /// What else of the whole space may stand in each place, by name.
 pub(super) fn alternatives(

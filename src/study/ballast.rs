@@ -1,14 +1,17 @@
 //! Designs of a front that are there only because ballast preloads a gear, as a table.
 
+use super::outcome::{Front, Judged};
 use super::table::link_words;
-use super::{Front, Judged};
+use crate::pareto::objectives::Objectives;
 use crate::report::front_table::FrontTable;
 use crate::report::html::Extra;
 use crate::report::number::{shortest, significant};
 use crate::search::ballast::Ballast;
-use crate::search::design::{Part, id_of, options};
-use crate::search::space::SpacePiece;
-use crate::search::{ArmProblem, Objectives, OutwardIn, evaluate};
+use crate::space::design::evaluate;
+use crate::space::design::{Part, id_of, options};
+use crate::space::design_space::SpacePiece;
+use crate::space::levels::OutwardIn;
+use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
 
 /// A flagged design of a front.

@@ -1,9 +1,11 @@
 //! How light a design could be that is as good as a pick.
 
 use crate::catalog::Catalogs;
-use crate::search::exact::Reach;
-use crate::search::relax::{MassBound, Relaxation};
-use crate::search::{ArmProblem, DesignSpace, Objectives};
+use crate::exact::reach::Reach;
+use crate::pareto::objectives::Objectives;
+use crate::relax::{MassBound, Relaxation};
+use crate::space::design_space::DesignSpace;
+use crate::space::problem::ArmProblem;
 
 /// Above this many options of links not each of them is tabulated: a pick's bound is that of the options that reach
 /// as far as it does.

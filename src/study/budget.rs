@@ -8,17 +8,22 @@
 
 use super::alternatives::alternatives;
 use super::bounds::MassBounds;
-use crate::arm::{Arm, Element, LoadCase, Piece, Structure};
+use crate::arm::load::LoadCase;
+use crate::arm::structure::{Piece, Structure};
+use crate::arm::{Arm, Element};
 use crate::catalog::Catalogs;
-use crate::mechanics::Chain;
+use crate::exact::reach::Reach;
+use crate::mechanics::chain::Chain;
+use crate::pareto::objectives::Objectives;
+use crate::relax::Relaxation;
 use crate::report::budget::{BudgetRow, Gain, NextPart, PickBound, PickBudget};
 use crate::report::front_table::FrontTable;
 use crate::report::picks::{Pick, designs, picks};
-use crate::search::design::{evaluate, full_objectives, number, number_of, objectives_with};
-use crate::search::exact::Reach;
-use crate::search::relax::Relaxation;
-use crate::search::space::SpacePiece;
-use crate::search::{ArmProblem, DesignSpace, Objectives, OutwardIn};
+use crate::space::design::{evaluate, full_objectives, number, number_of, objectives_with};
+use crate::space::design_space::DesignSpace;
+use crate::space::design_space::SpacePiece;
+use crate::space::levels::OutwardIn;
+use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
 
 /// Relative step of the derivative in place.

@@ -1,17 +1,21 @@
 //! Finding fault with a finished front.
 
-use super::Study;
 use super::outcome::{Front, judge};
+use super::read::Study;
 use super::table::front_table;
 use super::ties::ties;
 use crate::catalog::Catalogs;
+use crate::exact::run::Exact;
+use crate::pareto::front::nondominated;
+use crate::pareto::objectives::Objectives;
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
-use crate::search::design::{Evaluated, id_of, number, number_of, options};
-use crate::search::exact::Exact;
-use crate::search::front::nondominated;
 use crate::search::sweep::Candidate;
-use crate::search::{ArmProblem, Objectives, OutwardIn, evaluate, witness};
+use crate::space::design::evaluate;
+use crate::space::design::{Evaluated, id_of, number, number_of, options};
+use crate::space::levels::OutwardIn;
+use crate::space::problem::ArmProblem;
+use crate::verify;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -143,11 +147,11 @@ fn look_for_missing(
     stop: &AtomicBool,
     deadline: Option<Instant>,
 ) -> Look {
-    let unseen = witness::conditions(&study.space).err();
+    let unseen = verify::conditions(&study.space).err();
     let (numbers, boxes, open, lacks_ties) = match unseen {
         None => {
-            let by = witness::By { apart: APART * front.gap, ..Default::default() };
-            let looked = witness::missing(&study.space, catalogs, &front.objectives(), by, stop, deadline);
+            let by = verify::By { apart: APART * front.gap, ..Default::default() };
+            let looked = verify::missing(&study.space, catalogs, &front.objectives(), by, stop, deadline);
             let lacks_ties = front.gap == 0.0 && !looked.ties_listed;
             (looked.candidates, looked.boxes, looked.open, lacks_ties)
         }

@@ -1,12 +1,16 @@
 //! Why no design meets what is asked, and the smallest relaxation that would help.
 
-use super::{Study, StudyOutcome};
+use super::outcome::StudyOutcome;
+use super::read::Study;
 use crate::catalog::Catalogs;
-use crate::search::constraint::Constraints;
-use crate::search::outward::{ArmProblem, Partial, SizedJoint};
-use crate::search::space::SpacePiece;
-use crate::search::{Objectives, OutwardIn, Sweep};
+use crate::pareto::objectives::Objectives;
+use crate::search::sweep::Sweep;
 use crate::sizing::rpm_from_rad_s;
+use crate::space::constraint::Constraints;
+use crate::space::design_space::SpacePiece;
+use crate::space::levels::OutwardIn;
+use crate::space::problem::{ArmProblem, Partial};
+use crate::space::slot::SizedJoint;
 use std::sync::atomic::AtomicBool;
 
 /// The reason in words: each limit that alone stands in the way with the value that would do, or the
@@ -208,7 +212,10 @@ fn first_obstacle(study: &Study, catalogs: &Catalogs) -> String {
         "no limit alone stands in the way: at least two of {} must be relaxed together",
         if keys.is_empty() { "the requirements".to_string() } else { keys.join(", ") }
     );
-    let space = crate::search::DesignSpace { constraints: Constraints::default(), ..study.space.clone() };
+    let space = crate::space::design_space::DesignSpace {
+        constraints: Constraints::default(),
+        ..study.space.clone()
+    };
     let problem = ArmProblem::new(&space, catalogs);
     let mut last: Option<Partial> = None;
     let Err(slot) = problem.walk(&lightest_options(&problem), |_, partial| last = Some(partial.clone()))
@@ -271,7 +278,7 @@ fn too_fast(sized: &SizedJoint) -> String {
 fn lightest_options(problem: &ArmProblem) -> Vec<u32> {
     let space = problem.space();
     let slenderest = space.constraints.wall_slenderness_max.unwrap_or(f64::INFINITY);
-    let lightest = |options: &[crate::search::space::LinkOption]| {
+    let lightest = |options: &[crate::space::design_space::LinkOption]| {
         let holding = options.iter().enumerate().filter(|(_, o)| o.wall_slenderness() <= slenderest);
         holding
             .min_by(|(_, a), (_, b)| a.mass_kg_per_m().total_cmp(&b.mass_kg_per_m()))

@@ -7,12 +7,14 @@
 //! gives keeps that drive, so its calibrated value counts; a drive or a tube that the study chooses is
 //! another part, and keeps its catalog figures.
 
-use super::Study;
-use crate::arm::{Arm, Curve, Effect, LinkModel};
-use crate::fault::Object;
+use super::read::Study;
+use crate::arm::effect::Effect;
+use crate::arm::joint_law::Curve;
+use crate::arm::{Arm, LinkModel};
+use crate::input::json::Object;
 use crate::report::number::significant;
-use crate::search::DesignSpace;
-use crate::search::space::{DriveChoice, SpaceJoint, SpacePiece};
+use crate::space::design_space::DesignSpace;
+use crate::space::design_space::{DriveChoice, SpaceJoint, SpacePiece};
 use serde_json::{Value, json};
 
 /// One correction of a measured arm, and whether a study takes it.

@@ -1,21 +1,20 @@
 //! Named questions: read, resolve, run.
 
-mod alternatives;
-mod ballast;
-mod bounds;
-mod budget;
-mod check;
-mod diagnose;
-mod effects;
-mod near;
-mod outcome;
-mod page;
-pub mod paper;
-mod read;
-mod sections;
-mod table;
-mod ties;
-mod tolerance;
+pub(crate) mod alternatives;
+pub(crate) mod ballast;
+pub(crate) mod bounds;
+pub(crate) mod budget;
+pub(crate) mod check;
+pub(crate) mod diagnose;
+pub(crate) mod effects;
+pub(crate) mod near;
+pub(crate) mod outcome;
+pub(crate) mod page;
+pub(crate) mod read;
+pub(crate) mod sections;
+pub(crate) mod table;
+pub(crate) mod ties;
+pub(crate) mod tolerance;
 
 pub use ballast::{BallastFlags, ballast_flags};
 pub use budget::budgets;
@@ -26,7 +25,6 @@ pub use near::{NearFront, near_front};
 pub use outcome::{ExactStudy, Extent, Front, Judged, OfMaterial, StudyOutcome, run_exact, run_study};
 pub use page::study_page;
 pub use read::{Study, read_study};
-pub(crate) use table::sizing_rows;
 pub use table::{front_table, slug};
 pub use ties::{Ties, ties};
 pub use tolerance::{Sampling, Tolerance, part, scatter_front};
@@ -49,7 +47,7 @@ pub fn named(name: &str) -> Option<&'static str> {
 
 /// Names of all built-in studies, the paper's included.
 pub fn names() -> Vec<&'static str> {
-    NAMED.iter().map(|(name, _)| *name).chain(paper::NAMES).collect()
+    NAMED.iter().map(|(name, _)| *name).chain(crate::paper::NAMES).collect()
 }
 
 /// The built-in studies with their questions, as a list.
@@ -61,7 +59,7 @@ pub fn list() -> String {
         out.push_str(&format!("  {name:<20} {question}\n"));
     }
     out.push_str("The paper's own:\n");
-    for (name, what) in paper::NAMES.iter().zip(PAPER_QUESTIONS) {
+    for (name, what) in crate::paper::NAMES.iter().zip(PAPER_QUESTIONS) {
         out.push_str(&format!("  {name:<20} {what}\n"));
     }
     out
@@ -69,7 +67,7 @@ pub fn list() -> String {
 
 /// What one of the paper's studies shows.
 pub fn paper_question(name: &str) -> Option<&'static str> {
-    paper::NAMES.iter().zip(PAPER_QUESTIONS).find(|(n, _)| **n == name).map(|(_, what)| what)
+    crate::paper::NAMES.iter().zip(PAPER_QUESTIONS).find(|(n, _)| **n == name).map(|(_, what)| what)
 }
 
 /// What each of the paper's studies shows, in the order of [`paper::NAMES`].

@@ -1,17 +1,20 @@
 //! Designs near a front, as a table: what is in stock is what gets built.
 
 use super::outcome::by_full_model;
-use super::{Front, Judged, StudyOutcome, front_table};
+use super::outcome::{Front, Judged, StudyOutcome};
+use super::table::front_table;
 use crate::catalog::Catalogs;
+use crate::pareto::front::rounded;
+use crate::pareto::objectives::Objectives;
 use crate::report::front_table::FrontTable;
 use crate::report::html::Extra;
 use crate::report::number::{shortest, significant};
 use crate::report::picks::choices;
 use crate::report::table::{Column, Table};
-use crate::search::design::id_of;
-use crate::search::front::rounded;
 use crate::search::near::{NearDesigns, Shortfall, Slack, near_designs, worse_by};
-use crate::search::{ArmProblem, Evaluated, Objectives};
+use crate::space::design::Evaluated;
+use crate::space::design::id_of;
+use crate::space::problem::ArmProblem;
 use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
 

@@ -1,14 +1,17 @@
 //! Running a study: sweep every design by the fast model, then judge what is left by the full one.
 
-use super::Study;
+use super::read::Study;
 use crate::catalog::Catalogs;
-use crate::search::design::number;
-use crate::search::exact::{Exact, ExactOutcome};
-use crate::search::front::nondominated;
+use crate::exact::run::{Exact, ExactOutcome};
+use crate::pareto::front::nondominated;
 use crate::search::near::{NearDesign, NearDesigns, Slack};
-use crate::search::space::DesignSpace;
+use crate::search::sweep::Status;
 use crate::search::sweep::{Candidate, Sweep, SweepOutcome};
-use crate::search::{ArmProblem, Evaluated, OutwardIn, Status, evaluate};
+use crate::space::design::number;
+use crate::space::design::{Evaluated, evaluate};
+use crate::space::design_space::DesignSpace;
+use crate::space::levels::OutwardIn;
+use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,9 +1,9 @@
 //! The page of a study: picks with their arms, the catalog rows behind them, the materials as beams.
 
-use super::Study;
-use super::paper::figures::{BeamPoint, deflection_plot, points_csv, sizes};
+use super::read::Study;
 use crate::arm::{Element, LinkBody};
 use crate::catalog::{Catalogs, Provenance};
+use crate::paper::figures::{BeamPoint, deflection_plot, points_csv, sizes};
 use crate::report::budget::budget_extra;
 use crate::report::html::Figure;
 use crate::report::html::pick::PickedArm;
@@ -11,8 +11,8 @@ use crate::report::html::study::{CatalogRow, StudyPage};
 use crate::report::picks;
 use crate::report::summary::SummaryInput;
 use crate::report::svg::Series;
-use crate::search::ArmProblem;
-use crate::search::design::number_of;
+use crate::space::design::number_of;
+use crate::space::problem::ArmProblem;
 
 /// Everything on the page of a finished study but the facts of the run.
 pub fn study_page<'a>(
@@ -51,7 +51,7 @@ fn picked(
     Some(PickedArm {
         arm,
         cases: problem.load_cases(),
-        drives: super::sizing_rows(problem, catalogs, &chosen).ok()?,
+        drives: super::table::sizing_rows(problem, catalogs, &chosen).ok()?,
         row: summary.overall.columns.iter().cloned().zip(row.iter().cloned()).collect(),
         pick,
     })

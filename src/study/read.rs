@@ -5,13 +5,18 @@
 
 use super::effects::check_effects;
 use super::sections::{read_materials, read_sections};
-use crate::arm::{JointModel, LinkModel, Payload};
-use crate::arm::{read_curve, read_effects, read_joint_mass, read_link, read_name, read_pose, vector, word};
-use crate::catalog::{Catalogs, GearMass, MotorKind};
-use crate::fault::{Document, Faults, Node, Object};
-use crate::search::constraint::{Constraints, Servo};
-use crate::search::space::{Case, DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
-use crate::sizing::{DriveFilter, MotionRequirement};
+use crate::arm::file::{read_curve, read_effects, read_joint_mass, read_link, read_name};
+use crate::arm::load::Payload;
+use crate::arm::load::{read_pose, vector, word};
+use crate::arm::{JointModel, LinkModel};
+use crate::catalog::Catalogs;
+use crate::catalog::gear::GearMass;
+use crate::catalog::motor::MotorKind;
+use crate::input::json::{Document, Faults, Node, Object};
+use crate::sizing::requirement::MotionRequirement;
+use crate::sizing::select::DriveFilter;
+use crate::space::constraint::{Constraints, Servo};
+use crate::space::design_space::{Case, DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 use nalgebra::Vector3;
 
 /// A study: a named question about an arm.
@@ -181,7 +186,7 @@ fn names(object: &Object, key: &str, known: &[&str]) -> Option<Option<Vec<String
                 name if known.contains(&name) => Some(name.to_string()),
                 name => n.fault(
                     format!("\"{name}\" is not in the catalog"),
-                    &crate::fault::closest(name, known)
+                    &crate::input::json::closest(name, known)
                         .map_or("`armwright catalog show` lists what is".into(), |c| {
                             format!("did you mean \"{c}\"?")
                         }),
@@ -297,7 +302,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         "drives",
     ])?;
     let name = read_name(&object);
-    let axis = object.required("axis").and_then(|n| crate::arm::read_axis(&n));
+    let axis = object.required("axis").and_then(|n| crate::arm::file::read_axis(&n));
     let max_speed = object.or("max_speed_rad_s", None, |n| n.positive().map(Some));
     let drive = match object.optional("drive") {
         Some(drive) => {
@@ -432,7 +437,7 @@ fn read_cases(root: &Object, joints: &[String]) -> Option<Cases> {
 #[derive(Debug, Clone, Default)]
 struct Environment {
     name: String,
-    water: Option<crate::arm::Water>,
+    water: Option<crate::arm::structure::Water>,
 }
 
 fn read_environments(node: &Node) -> Option<Vec<Environment>> {
@@ -445,7 +450,7 @@ fn read_environments(node: &Node) -> Option<Vec<Environment>> {
         .map(|n| {
             let object = n.object(&["name", "water"])?;
             let name = object.required("name").and_then(|n| n.string().map(String::from));
-            let water = object.or("water", None, |n| crate::arm::Water::read(n).map(Some));
+            let water = object.or("water", None, |n| crate::arm::structure::Water::read(n).map(Some));
             Some(Environment { name: name?, water: water? })
         })
         .collect();
@@ -485,7 +490,7 @@ fn read_motion(node: &Node) -> Option<MotionRequirement> {
         emergency_deceleration_m_s2: stop?,
         min_lever_m: lever?,
         life_h: life?,
-        duty_cycle: crate::sizing::DutyCycle::move_and_rest(ramp?),
+        duty_cycle: crate::sizing::requirement::DutyCycle::move_and_rest(ramp?),
         ..default
     })
 }

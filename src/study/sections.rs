@@ -1,10 +1,12 @@
 //! The options of an open link: materials times sections.
 
-use crate::arm::{LinkMaterial, Section};
-use crate::catalog::{Catalogs, Material, Profile, ProfileShape};
-use crate::fault::{Node, closest};
-use crate::search::constraint::Constraints;
-use crate::search::space::LinkOption;
+use crate::arm::section::{LinkMaterial, Section};
+use crate::catalog::Catalogs;
+use crate::catalog::material::Material;
+use crate::catalog::profile::{Profile, ProfileShape};
+use crate::input::json::{Node, closest};
+use crate::space::constraint::Constraints;
+use crate::space::design_space::LinkOption;
 use std::collections::HashSet;
 
 const DEFAULT_POISSON: f64 = 0.3;

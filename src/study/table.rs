@@ -1,14 +1,15 @@
 //! A front as a table: every choice, objective and margin of every design.
 
 use super::outcome::Front;
-use crate::arm::Section;
+use crate::arm::section::Section;
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
-use crate::search::OutwardIn;
-use crate::search::design::{Part, id_of, options};
-use crate::search::outward::{ArmProblem, Partial};
-use crate::search::space::{DriveChoice, LinkOption, SpacePiece};
-use crate::sizing::{JointDemand, JointSizingRow};
+use crate::sizing::demand::JointDemand;
+use crate::sizing::sheet::JointSizingRow;
+use crate::space::design::{Part, id_of, options};
+use crate::space::design_space::{DriveChoice, LinkOption, SpacePiece};
+use crate::space::levels::OutwardIn;
+use crate::space::problem::{ArmProblem, Partial};
 
 /// A name in lower case with runs of anything but letters and digits turned into one `-`.
 pub fn slug(name: &str) -> String {
@@ -61,7 +62,7 @@ fn has_parts(drive: &DriveChoice) -> bool {
     !matches!(drive, DriveChoice::Given { gear: None, motor: None, .. })
 }
 
-fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::Judged) -> Option<Vec<String>> {
+fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::outcome::Judged) -> Option<Vec<String>> {
     let chosen = options(problem.level_sizes(), judged.design.number)?;
     let mut out = vec![id_of(problem.whole_number(judged.design.number))];
     for (piece, part) in problem.space().pieces.iter().zip(problem.parts(&chosen)?) {

@@ -1,15 +1,16 @@
 //! Drives that may stand in for those of a design without a change of any objective, where the designs that have them are
 //! too many to be rows of the front.
 
-use super::{Front, Judged};
+use super::outcome::{Front, Judged};
 use crate::report::compare::text::wrap;
 use crate::report::front_table::FrontTable;
 use crate::report::html::Extra;
 use crate::report::summary::large;
-use crate::search::design::{id_of, options};
-use crate::search::space::SpacePiece;
-use crate::search::{ArmProblem, OutwardIn};
-use crate::sizing::JointDemand;
+use crate::sizing::demand::JointDemand;
+use crate::space::design::{id_of, options};
+use crate::space::design_space::SpacePiece;
+use crate::space::levels::OutwardIn;
+use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 

@@ -12,15 +12,17 @@
 //! | `modulus` | E and G of a material, together | 3 % | an assumption, for metals; a laminate's is larger |
 //! | `mass` | a gear's and a motor's mass, each | 2 % | an assumption |
 
-use super::Front;
+use super::outcome::Front;
 use crate::catalog::Catalogs;
+use crate::pareto::front::nondominated;
+use crate::pareto::objectives::Objectives;
 use crate::report::picks::{self, Design};
 use crate::report::tolerance::{Fate, PICKS, Scattered, percentiles};
-use crate::search::constraint::Constraints;
-use crate::search::front::nondominated;
 use crate::search::scatter::{ChosenParts, Factors, Figure};
-use crate::search::space::SpacePiece;
-use crate::search::{ArmProblem, DesignSpace, Objectives};
+use crate::space::constraint::Constraints;
+use crate::space::design_space::DesignSpace;
+use crate::space::design_space::SpacePiece;
+use crate::space::problem::ArmProblem;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;

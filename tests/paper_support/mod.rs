@@ -1,6 +1,6 @@
 //! Files of a study's output as the paper's tests read them.
 
-use armwright::study::paper::PaperStudyOutput;
+use armwright::paper::PaperStudyOutput;
 use std::collections::HashMap;
 
 /// One row of a CSV file by column name.

@@ -29,12 +29,13 @@ mod tests {
 
     #[test]
     fn it_is_the_same_as_the_tilt_of_a_vertical_first_joint() {
-        use crate::arm::{LinkModel, Payload};
+        use crate::arm::LinkModel;
+        use crate::arm::load::Payload;
         use nalgebra::Vector3;
         let tip = |kind: &Kind, at: &str| {
             let mut subject = subject();
             (kind.apply)(&[3e5], at, &mut subject);
-            let chain = crate::mechanics::Chain::new(&subject.structure, LinkModel::Full);
+            let chain = crate::mechanics::chain::Chain::new(&subject.structure, LinkModel::Full);
             let posed = chain.pose_rad(&[0.7, 0.3], &Payload::default(), Vector3::new(5.0, -3.0, -10.0));
             posed.statics().tip_displacement_m
         };

@@ -31,12 +31,13 @@ mod tests {
 
     #[test]
     fn a_moment_across_the_axis_tilts_the_outboard_arm() {
-        use crate::arm::{LinkModel, Payload};
+        use crate::arm::LinkModel;
+        use crate::arm::load::Payload;
         use nalgebra::Vector3;
         let mut subject = subject();
         apply(&[2e5], "j1", &mut subject);
         subject.structure.gravity_m_s2 = 0.0;
-        let chain = crate::mechanics::Chain::new(&subject.structure, LinkModel::Rigid);
+        let chain = crate::mechanics::chain::Chain::new(&subject.structure, LinkModel::Rigid);
         // j1 turns about z; 10 N down at the tip, 1 m out: moment 10 N m across the axis
         let posed = chain.pose_rad(&[0.0, 0.0], &Payload::default(), Vector3::new(0.0, 0.0, -10.0));
         let share = posed.statics().shares_m.iter().find(|(n, _)| n == "j1.bearing_tilt").expect("share").1;

@@ -31,13 +31,14 @@ mod tests {
 
     #[test]
     fn a_kilogram_at_half_a_metre_adds_its_weight_times_the_lever() {
-        use crate::arm::{LinkModel, Payload};
+        use crate::arm::LinkModel;
+        use crate::arm::load::Payload;
         use nalgebra::Vector3;
         let torque = |delta: f64| {
             let mut subject = subject();
             apply(&[delta], "j2", &mut subject);
             subject.structure.joint_mut("j1").expect("j1").axis = nalgebra::Vector3::y_axis();
-            let chain = crate::mechanics::Chain::new(&subject.structure, LinkModel::Rigid);
+            let chain = crate::mechanics::chain::Chain::new(&subject.structure, LinkModel::Rigid);
             let posed = chain.pose_rad(&[0.0, 0.0], &Payload::default(), Vector3::zeros());
             posed.statics().joint_torques_nm[0].1
         };

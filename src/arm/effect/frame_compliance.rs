@@ -2,7 +2,7 @@
 //! what the arm stands on, or the casting behind a joint.
 
 use super::{Kind, Parameter, Place, Scope, Subject};
-use crate::arm::FrameCompliance;
+use crate::arm::structure::FrameCompliance;
 use nalgebra::{Matrix3, SymmetricEigen};
 
 const PARAMETERS: &[Parameter] = &[
@@ -47,8 +47,9 @@ pub fn is_spring(numbers: &[f64]) -> bool {
 mod tests {
     use super::super::validate::testing::two_link_subject;
     use super::*;
-    use crate::arm::{LinkModel, Payload};
-    use crate::mechanics::Chain;
+    use crate::arm::LinkModel;
+    use crate::arm::load::Payload;
+    use crate::mechanics::chain::Chain;
     use nalgebra::Vector3;
 
     /// The displacement of the tip by a frame alone, under a force at the tip.

@@ -31,12 +31,13 @@ mod tests {
 
     #[test]
     fn the_root_carries_its_weight() {
-        use crate::arm::{LinkModel, Payload};
+        use crate::arm::LinkModel;
+        use crate::arm::load::Payload;
         use nalgebra::Vector3;
         let base_force = |kg_per_m: f64| {
             let mut subject = subject();
             apply(&[kg_per_m], "forearm", &mut subject);
-            let chain = crate::mechanics::Chain::new(&subject.structure, LinkModel::Full);
+            let chain = crate::mechanics::chain::Chain::new(&subject.structure, LinkModel::Full);
             chain.pose_rad(&[0.0, 0.0], &Payload::default(), Vector3::zeros()).statics().base_wrench[2]
         };
         assert!((base_force(2.0) - base_force(0.0) + 2.0 * 0.5 * 9.81).abs() < 1e-9);

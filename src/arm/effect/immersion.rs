@@ -1,7 +1,7 @@
 //! Water around the arm: links are sealed tubes that displace it and carry some of it along.
 
 use super::{Kind, Parameter, Place, Scale, Scope, Subject};
-use crate::arm::Water;
+use crate::arm::structure::Water;
 
 const PARAMETERS: &[Parameter] = &[
     Parameter::number("water_density_kg_m3", 0.0, 2000.0, 1000.0, Scale::Linear).expected(0.0, 1500.0),
@@ -40,14 +40,15 @@ mod tests {
 
     #[test]
     fn the_weight_falls_by_the_displaced_water() {
-        use crate::arm::{LinkModel, Payload};
+        use crate::arm::LinkModel;
+        use crate::arm::load::Payload;
         use nalgebra::Vector3;
         let base_force = |wet: bool| {
             let mut subject = subject();
             if wet {
                 apply(&[1000.0, 1.0, 7850.0], "arm", &mut subject);
             }
-            let chain = crate::mechanics::Chain::new(&subject.structure, LinkModel::Full);
+            let chain = crate::mechanics::chain::Chain::new(&subject.structure, LinkModel::Full);
             let payload = Payload { mass_kg: 7.85, ..Default::default() };
             chain.pose_rad(&[0.0, 0.0], &payload, Vector3::zeros()).statics().base_wrench[2]
         };

@@ -32,7 +32,7 @@ mod tests {
     #[test]
     fn a_rigid_joint_becomes_a_spring() {
         let mut subject = subject();
-        subject.structure.joint_mut("j1").expect("j1").law = crate::arm::Curve::Rigid.into();
+        subject.structure.joint_mut("j1").expect("j1").law = crate::arm::joint_law::Curve::Rigid.into();
         apply(&[5e4], "j1", &mut subject);
         let law = subject.structure.joint_mut("j1").expect("j1").law;
         assert!((law.angle_rad(100.0) - 100.0 / 5e4).abs() < 1e-18);

@@ -31,12 +31,13 @@ mod tests {
 
     #[test]
     fn the_factor_scales_the_links_share() {
-        use crate::arm::{LinkModel, Payload};
+        use crate::arm::LinkModel;
+        use crate::arm::load::Payload;
         use nalgebra::Vector3;
         let share = |factor: f64| {
             let mut subject = subject();
             apply(&[factor], "forearm", &mut subject);
-            let chain = crate::mechanics::Chain::new(&subject.structure, LinkModel::Full);
+            let chain = crate::mechanics::chain::Chain::new(&subject.structure, LinkModel::Full);
             let posed = chain.pose_rad(&[0.0, 0.0], &Payload::default(), Vector3::new(0.0, 0.0, -10.0));
             posed.statics().shares_m.iter().find(|(n, _)| n == "forearm").expect("share").1.z
         };

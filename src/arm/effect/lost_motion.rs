@@ -1,7 +1,7 @@
 //! Play that closes smoothly: `theta += h tanh(T/T_c)`.
 
 use super::{Kind, Parameter, Place, Scale, Scope, Subject};
-use crate::arm::LostMotion;
+use crate::arm::joint_law::LostMotion;
 
 const PARAMETERS: &[Parameter] = &[
     Parameter::number("half_width_rad", 0.0, 5e-3, 1.5e-4, Scale::Linear).expected(0.0, 2e-3),

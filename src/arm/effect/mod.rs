@@ -6,35 +6,35 @@
 //! nothing else in the program lists effects. Effects of the payload or of a measuring channel describe
 //! a test, not the product: only `predict` and `reconcile` use them.
 
-mod base_compliance;
-mod bearing_tilt;
-mod connection_compliance;
-mod drift;
-mod extra_mass;
-mod frame_compliance;
-mod harness_mass;
-mod hysteresis;
-mod immersion;
-mod joint_compliance;
-mod link_flexibility;
-mod lost_motion;
-mod modulus_error;
-mod outlier;
-mod payload_cg_error;
-mod payload_mass_error;
-mod sensor_bias;
-mod sensor_gain;
-mod soft_windup;
-mod time_shift;
-mod transmission_error;
-mod validate;
-mod wrong_unit;
+pub(crate) mod base_compliance;
+pub(crate) mod bearing_tilt;
+pub(crate) mod connection_compliance;
+pub(crate) mod drift;
+pub(crate) mod extra_mass;
+pub(crate) mod frame_compliance;
+pub(crate) mod harness_mass;
+pub(crate) mod hysteresis;
+pub(crate) mod immersion;
+pub(crate) mod joint_compliance;
+pub(crate) mod link_flexibility;
+pub(crate) mod lost_motion;
+pub(crate) mod modulus_error;
+pub(crate) mod outlier;
+pub(crate) mod payload_cg_error;
+pub(crate) mod payload_mass_error;
+pub(crate) mod sensor_bias;
+pub(crate) mod sensor_gain;
+pub(crate) mod soft_windup;
+pub(crate) mod time_shift;
+pub(crate) mod transmission_error;
+pub(crate) mod validate;
+pub(crate) mod wrong_unit;
 
 pub use transmission_error::{transmission_rad, transmission_waves};
 pub use validate::{EffectFault, fits_nominal};
 pub use wrong_unit::SLIPS as UNIT_SLIPS;
 
-use super::{JointAngle, JointPiece, LinkPiece, Piece, Structure};
+use super::structure::{JointAngle, JointPiece, LinkPiece, Piece, Structure};
 use nalgebra::Vector3;
 use serde_json::Value;
 

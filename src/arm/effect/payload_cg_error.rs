@@ -31,7 +31,7 @@ mod tests {
     fn the_true_centre_is_stated_plus_offset() {
         let mut subject = subject();
         apply(&[0.01, 0.0, -0.02], "payload", &mut subject);
-        let stated = crate::arm::Payload { mass_kg: 1.0, cg_m: Vector3::x(), ..Default::default() };
+        let stated = crate::arm::load::Payload { mass_kg: 1.0, cg_m: Vector3::x(), ..Default::default() };
         assert_eq!(subject.payload(&stated).cg_m, Vector3::new(1.01, 0.0, -0.02));
     }
 }

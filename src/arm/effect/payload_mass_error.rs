@@ -31,7 +31,7 @@ mod tests {
     fn the_true_mass_is_stated_plus_delta_where_one_is_stated() {
         let mut subject = subject();
         apply(&[0.3], "payload", &mut subject);
-        let loaded = crate::arm::Payload { mass_kg: 5.0, ..Default::default() };
+        let loaded = crate::arm::load::Payload { mass_kg: 5.0, ..Default::default() };
         assert_eq!(subject.payload(&loaded).mass_kg, 5.3);
         assert_eq!(subject.payload(&Default::default()).mass_kg, 0.0);
     }

@@ -1,7 +1,7 @@
 //! The gear's three-segment torsion curve in place of the joint's single number.
 
 use super::{Kind, Parameter, Place, Scale, Scope, Subject};
-use crate::arm::{Curve, Windup};
+use crate::arm::joint_law::{Curve, Windup};
 
 /// A joint's single number is its gear's middle slope K2, so K2 is expected near it, K1 below, K3 above.
 const PARAMETERS: &[Parameter] = &[

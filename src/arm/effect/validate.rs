@@ -1,8 +1,10 @@
 //! What can be wrong with an effect in a file, and the effects a calculation leaves out.
 
 use super::{Effect, KINDS, Kind, Parameter, Place, Subject, frame_compliance, kind};
-use crate::arm::{Arm, JointModel, Payload, Piece, Structure};
-use crate::fault::closest;
+use crate::arm::load::Payload;
+use crate::arm::structure::{Piece, Structure};
+use crate::arm::{Arm, JointModel};
+use crate::input::json::closest;
 
 /// One thing wrong with an effect: the key it concerns, the problem, and what to try.
 #[derive(Debug, Clone, PartialEq)]
@@ -153,9 +155,9 @@ pub fn fits_nominal(kind: &Kind, place: Place, at: &str, structure: &Structure) 
 #[cfg(test)]
 pub(crate) mod testing {
     use super::*;
-    use crate::arm::read_arm_document;
+    use crate::arm::file::read_arm_document;
     use crate::catalog::Catalogs;
-    use crate::fault::{Document, Faults};
+    use crate::input::json::{Document, Faults};
 
     const CHAIN: &str = r#"{"name": "two",
       "materials": {"steel": {"youngs_modulus_pa": 2.1e11, "shear_modulus_pa": 8.1e10, "density_kg_m3": 7850}},
@@ -203,8 +205,8 @@ mod tests {
     fn a_curve_that_an_effect_brings_is_reduced_to_its_middle_slope() {
         let arm = read_with(&CURVE.replace("T1", "10")).expect("sound arm");
         let curve = |model| arm.structure(model).joint_mut("j2").expect("j2").law.curve;
-        assert_eq!(curve(JointModel::K2), crate::arm::Curve::Linear(2e4));
-        assert!(matches!(curve(JointModel::ThreeSegment), crate::arm::Curve::Windup(_)));
+        assert_eq!(curve(JointModel::K2), crate::arm::joint_law::Curve::Linear(2e4));
+        assert!(matches!(curve(JointModel::ThreeSegment), crate::arm::joint_law::Curve::Windup(_)));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Rows of `gears_efficiency.csv` and what must hold within one row.
 
 use super::row::Row;
-use crate::catalog::{EfficiencyKind, EfficiencyPoint};
+use crate::catalog::efficiency::{EfficiencyKind, EfficiencyPoint};
 
 /// The point of a row; `None` if a core cell was refused.
 pub fn point(row: &Row) -> Option<EfficiencyPoint> {

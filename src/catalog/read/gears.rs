@@ -1,7 +1,7 @@
 //! Rows of `gears.csv` and what must hold within one row.
 
 use super::row::Row;
-use crate::catalog::Gear;
+use crate::catalog::gear::Gear;
 
 /// The gear of a row; `None` if its name or source was refused.
 pub fn gear(row: &Row) -> Option<Gear> {

@@ -1,7 +1,7 @@
 //! Rows of `materials.csv` and what must hold within one row.
 
 use super::row::Row;
-use crate::catalog::{Material, MaterialClass};
+use crate::catalog::material::{Material, MaterialClass};
 
 /// The material of a row; `None` if its name, class, source or a core figure was refused.
 pub fn material(row: &Row) -> Option<Material> {

@@ -1,7 +1,7 @@
 //! Rows of `motors.csv` and what must hold within one row.
 
 use super::row::Row;
-use crate::catalog::{Motor, MotorKind};
+use crate::catalog::motor::{Motor, MotorKind};
 use std::f64::consts::PI;
 
 /// The motor of a row; `None` if its name, type or source was refused.

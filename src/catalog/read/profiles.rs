@@ -1,7 +1,7 @@
 //! Rows of `profiles.csv` and what must hold within one row.
 
 use super::row::Row;
-use crate::catalog::{Profile, ProfileShape};
+use crate::catalog::profile::{Profile, ProfileShape};
 use std::f64::consts::PI;
 
 /// The profile of a row; `None` if its name, shape, source or a dimension was refused.

@@ -2,8 +2,9 @@
 //! refused reads as unknown, so that one bad cell makes one fault.
 
 use super::table::Log;
-use crate::catalog::{CatalogFile, Cell, Confidence, Provenance};
-use crate::fault::closest;
+use crate::catalog::schema::{CatalogFile, Cell};
+use crate::catalog::{Confidence, Provenance};
+use crate::input::json::closest;
 
 /// One row: the cells in the order of the file's known columns, `None` where the column is absent.
 pub struct Row<'a> {

@@ -1,8 +1,9 @@
 //! The text of one catalog file cut into rows; what is wrong with its form is recorded, not returned.
 
 use super::row::Row;
-use crate::catalog::CatalogFile;
-use crate::fault::{Fault, LineCounter, closest};
+use crate::catalog::schema::CatalogFile;
+use crate::input::json::{Fault, closest};
+use crate::input::lines::LineCounter;
 use csv::{ByteRecord, ReaderBuilder, StringRecord, Trim};
 use std::cell::RefCell;
 use std::collections::BTreeMap;

@@ -2,7 +2,9 @@
 //! are unique, curves meet the rated point. Exceptions are warnings: vendors print some.
 
 use super::table::Log;
-use crate::catalog::{Catalogs, EfficiencyKind, Gear, Provenance};
+use crate::catalog::efficiency::EfficiencyKind;
+use crate::catalog::gear::Gear;
+use crate::catalog::{Catalogs, Provenance};
 use std::collections::BTreeMap;
 
 type Figure = (&'static str, fn(&Gear) -> Option<f64>);

@@ -1,9 +1,11 @@
 //! Which coordinates an arm can have, and a subject as numbers on them.
 
+use crate::arm::LinkModel;
 use crate::arm::effect::{Reading, Subject};
-use crate::arm::{FrameCompliance, JointLaw, LinkModel, LinkPiece, Piece, Structure, Water};
-use crate::mechanics::Chain;
+use crate::arm::joint_law::JointLaw;
+use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure, Water};
 use crate::mechanics::beam::{Strain, compliances, strains};
+use crate::mechanics::chain::Chain;
 use nalgebra::Vector3;
 
 /// A joint's coordinates.

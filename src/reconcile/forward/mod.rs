@@ -11,9 +11,10 @@ pub mod statics;
 
 pub use coefficients::{Coefficients, Layout};
 
-use super::campaign::Campaign;
+use super::readings::campaign::Campaign;
+use crate::arm::JointModel;
 use crate::arm::effect::{Channel, Subject};
-use crate::arm::{JointLaw, JointModel};
+use crate::arm::joint_law::JointLaw;
 use modal::ModalTest;
 use statics::StaticPose;
 

@@ -10,11 +10,12 @@ use super::coefficients::{Coefficients, Layout};
 use super::statics::PoseGeometry;
 use super::{Datum, group_of};
 use crate::arm::effect::{Channel, Subject};
-use crate::arm::{Curve, JointLaw, Payload};
-use crate::mechanics::Chain;
+use crate::arm::joint_law::{Curve, JointLaw};
+use crate::arm::load::Payload;
+use crate::mechanics::chain::Chain;
 use crate::mechanics::chain::Posed;
 use crate::mechanics::displacement_at;
-use crate::reconcile::campaign::Campaign;
+use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3xX, SymmetricEigen, Vector3};
 use std::f64::consts::TAU;
 

@@ -6,11 +6,11 @@
 
 use super::coefficients::{Coefficients, Layout};
 use super::{Datum, group_of};
-use crate::arm::Payload;
 use crate::arm::effect::{Channel, Subject};
+use crate::arm::load::Payload;
 use crate::mechanics::chain::{Item, Posed};
 use crate::mechanics::{Twist, Wrench, displacement_at, force_wrench};
-use crate::reconcile::campaign::Campaign;
+use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{Matrix3x6, Rotation3, Vector3};
 
 /// A coordinate's twist and what it moves the tip by.

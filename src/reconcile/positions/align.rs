@@ -4,7 +4,7 @@
 use super::fit::{Fitted, Sample, fit};
 use super::kinematics::{Geometry, Number, mount_numbers};
 use super::tree::Tree;
-use crate::reconcile::campaign::PositionsSpec;
+use crate::reconcile::readings::campaign::PositionsSpec;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use rayon::prelude::*;
 

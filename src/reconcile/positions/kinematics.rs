@@ -1,9 +1,10 @@
 //! Where a point on the tool is, for any calibrated geometry, and how it moves with each number of it.
 
 use super::tree::Tree;
-use crate::arm::effect::{transmission_rad, transmission_waves};
-use crate::arm::{Arm, Element, JointAngle, Piece};
-use crate::reconcile::campaign::PositionsSpec;
+use crate::arm::effect::transmission_error::{transmission_rad, transmission_waves};
+use crate::arm::structure::{JointAngle, Piece};
+use crate::arm::{Arm, Element};
+use crate::reconcile::readings::campaign::PositionsSpec;
 use nalgebra::{Rotation3, Unit, Vector3};
 
 /// One calibrated number of the geometry.
@@ -398,11 +399,11 @@ fn across(axis: &Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arm::read_arm_document;
+    use crate::arm::file::read_arm_document;
     use crate::catalog::Catalogs;
-    use crate::fault::Document;
-    use crate::reconcile::Campaign;
-    use crate::reconcile::campaign::read_statement;
+    use crate::input::json::Document;
+    use crate::reconcile::readings::campaign::Campaign;
+    use crate::reconcile::readings::campaign::read_statement;
 
     const ARM: &str = r#"{"name": "a", "chain": [
         {"type": "joint", "name": "j1", "axis": [0, 0, 1], "stiffness_nm_per_rad": null},

@@ -7,12 +7,16 @@
 
 use super::kinematics::Geometry;
 use super::tree::Tree;
-use crate::arm::{Arm, Curve, FrameCompliance, JointLaw, JointModel, LinkModel, Payload, Piece, Structure};
+use crate::arm::joint_law::{Curve, JointLaw};
+use crate::arm::load::Payload;
+use crate::arm::structure::{FrameCompliance, Piece, Structure};
+use crate::arm::{Arm, JointModel, LinkModel};
+use crate::mechanics::chain::Chain;
 use crate::mechanics::chain::{Body, ElasticElement, Item, Posed};
-use crate::mechanics::{Chain, Twist, angular, displacement_at, linear};
-use crate::reconcile::campaign::Campaign;
-use crate::reconcile::exact::{seen_from_tool, with_tool};
-use crate::reconcile::readings::PositionRow;
+use crate::mechanics::{Twist, angular, displacement_at, linear};
+use crate::reconcile::model::exact::{seen_from_tool, with_tool};
+use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::readings::rows::PositionRow;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 

@@ -5,27 +5,27 @@
 //! gravity moves it; `align` places the arm from nothing, [`fit`](mod@fit) fits, with compliances that are `springs`, `sessions` tells sessions
 //! apart and `standing` where the arm stands in each; `search` finds what yields and `transmission` what turns unevenly; `structure` asks what is left and `outcome` concludes.
 
-mod align;
+pub(crate) mod align;
 pub mod fit;
 pub mod kinematics;
 pub mod loads;
-mod next_test;
-mod outcome;
-mod predict;
-mod search;
-mod sessions;
-mod springs;
-mod standing;
-mod structure;
-mod transmission;
-mod tree;
+pub(crate) mod next_test;
+pub(crate) mod outcome;
+pub(crate) mod predict;
+pub(crate) mod search;
+pub(crate) mod sessions;
+pub(crate) mod springs;
+pub(crate) mod standing;
+pub(crate) mod structure;
+pub(crate) mod transmission;
+pub(crate) mod tree;
 
 pub use outcome::{FEWEST, located, reconcile};
 pub use predict::predicted_mm;
 
-use super::campaign::Campaign;
-use super::readings::PositionRow;
-use super::stats::median;
+use super::fit::stats::median;
+use super::readings::campaign::Campaign;
+use super::readings::rows::PositionRow;
 use crate::arm::Arm;
 use fit::{Fitted, Sample, fit};
 use kinematics::{Geometry, Number, number_groups};

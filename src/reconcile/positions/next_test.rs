@@ -3,10 +3,10 @@
 
 use super::fit::Fitted;
 use super::{Point, Positions, samples};
-use crate::reconcile::campaign::Campaign;
-use crate::reconcile::lack_of_fit::LackOfFit;
-use crate::reconcile::next_test::{ENOUGH, spread_pose};
-use crate::reconcile::verdict::{NextTest, Verdict};
+use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::select::lack_of_fit::LackOfFit;
+use crate::reconcile::select::next_test::{ENOUGH, spread_pose};
+use crate::reconcile::verdict::outcome::{NextTest, Verdict};
 
 /// Standard deviations that one reading must tell: of less a hundred readings would not tell enough.
 const WORTHLESS_SIGMAS: f64 = 0.1 * ENOUGH;
@@ -16,7 +16,7 @@ const PROPOSED_POSES: usize = 60;
 
 impl Positions {
     /// One test for each model that fits as well, the most telling first.
-    pub(super) fn next_tests(
+    pub(crate) fn next_tests(
         &self,
         campaign: &Campaign,
         verdict: Verdict,

@@ -6,15 +6,18 @@ use super::loads::FRAME_ENTRIES;
 use super::springs::frame_matrix;
 use super::structure::{MATERIAL_VARIANCE, MEDIAN_LENGTH};
 use super::{Positions, Stage, analyze, transmission};
+use crate::arm::Arm;
 use crate::arm::effect::{Channel, Effect};
-use crate::arm::{Arm, Piece};
-use crate::reconcile::campaign::Campaign;
-use crate::reconcile::correct;
-use crate::reconcile::kept_out::{KeptOut, rms};
-use crate::reconcile::lack_of_fit::LackOfFit;
-use crate::reconcile::noise::Noise;
-use crate::reconcile::report::CORRECTED_FILE;
-use crate::reconcile::verdict::{Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict};
+use crate::arm::structure::Piece;
+use crate::reconcile::fit::kept_out::{KeptOut, rms};
+use crate::reconcile::fit::noise::Noise;
+use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::select::lack_of_fit::LackOfFit;
+use crate::reconcile::verdict::correct;
+use crate::reconcile::verdict::outcome::{
+    Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict,
+};
+use crate::reconcile::verdict::report::CORRECTED_FILE;
 use serde_json::{Value, json};
 
 /// Fewest positions that can speak.
@@ -214,7 +217,7 @@ impl Positions {
     }
 
     /// One arm with its calibrated geometry and its effects; notes in the provenance where it stands.
-    pub(super) fn corrected(
+    pub(crate) fn corrected(
         &self,
         campaign: &Campaign,
         arm: usize,

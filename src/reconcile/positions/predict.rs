@@ -4,9 +4,9 @@ use super::kinematics::{Geometry, Placing};
 use super::loads::sags;
 use super::tree::Tree;
 use crate::arm::effect::{Channel, Subject};
-use crate::reconcile::campaign::Campaign;
-use crate::reconcile::placement::Stand;
-use crate::reconcile::predict::Placed;
+use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::readings::placement::Stand;
+use crate::reconcile::verdict::predict::Placed;
 use nalgebra::Rotation3;
 
 /// The positions that the campaign's arms would show \[mm\]; `subjects`: each arm with all of its effects.

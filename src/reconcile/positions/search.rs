@@ -4,7 +4,7 @@
 use super::Positions;
 use super::fit::{Factor, Fitted, Sample, fit, ln_likelihood, normal, scale};
 use super::structure::squares;
-use crate::reconcile::campaign::Campaign;
+use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{DMatrix, Vector3};
 use rayon::prelude::*;
 
@@ -16,7 +16,7 @@ pub const TIE: f64 = 3.0;
 impl Positions {
     /// Adds the effect of a class that raises the likelihood most, if it is worth its price and poses kept
     /// out confirm it; drops what it makes needless.
-    pub(super) fn add(&mut self, campaign: &Campaign, class: &[&str]) -> bool {
+    pub(crate) fn add(&mut self, campaign: &Campaign, class: &[&str]) -> bool {
         let base = &self.fitted;
         let tried = self.best_additions(base, |c| class.contains(&self.candidates[c].effect));
         let gain = |(_, f): &(usize, Fitted)| {
@@ -29,7 +29,7 @@ impl Positions {
     }
 
     /// Becomes the next model, without what it makes needless, if that is worth its price and predicts poses kept out better.
-    pub(super) fn take_if_confirmed(&mut self, campaign: &Campaign, mut next: Self, added: String) -> bool {
+    pub(crate) fn take_if_confirmed(&mut self, campaign: &Campaign, mut next: Self, added: String) -> bool {
         next.settle(campaign);
         if next.score() <= self.score() {
             return false;
@@ -92,7 +92,7 @@ impl Positions {
         is_held || numbers.into_iter().all(is_small)
     }
 
-    pub(super) fn label(&self, candidate: usize) -> String {
+    pub(crate) fn label(&self, candidate: usize) -> String {
         format!("{}@{}", self.candidates[candidate].effect, self.candidates[candidate].at)
     }
 
@@ -115,7 +115,7 @@ impl Positions {
 
     /// What so many numbers must bring in ln of the likelihood: for themselves, and for having looked at so
     /// many places.
-    pub(super) fn price(&self, numbers: usize, places: usize) -> f64 {
+    pub(crate) fn price(&self, numbers: usize, places: usize) -> f64 {
         let readings = 3.0 * self.samples.len() as f64;
         0.5 * numbers as f64 * readings.ln() + (places as f64).ln() + 3.0
     }
@@ -156,7 +156,7 @@ impl Positions {
 
     /// Gain in ln of the likelihood of each block of `counts` further columns. A single number is a
     /// compliance: it does not gain where it would be negative.
-    pub(super) fn linear_gains(
+    pub(crate) fn linear_gains(
         &self,
         base: &Fitted,
         columns: &dyn Fn(&Sample) -> Vec<Vector3<f64>>,
@@ -187,7 +187,7 @@ impl Positions {
     }
 
     /// Candidates of as many numbers that could stand in the place of one of the effects and fit as well.
-    pub(super) fn rivals(&self, position: usize) -> Vec<(usize, Fitted)> {
+    pub(crate) fn rivals(&self, position: usize) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let own = self.fitted.effects[position];
         let count = self.candidates[own].count();

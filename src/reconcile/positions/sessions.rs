@@ -57,7 +57,7 @@ struct Split {
 
 impl Positions {
     /// Tells sessions apart while that is worth its price; says where.
-    pub(super) fn find_sessions(&mut self, tools_free: bool, base_free: bool) -> Vec<String> {
+    pub(crate) fn find_sessions(&mut self, tools_free: bool, base_free: bool) -> Vec<String> {
         let mut out = Vec::new();
         while out.len() < MOST {
             let points = (0..self.points.len()).filter(|_| tools_free).map(Moved::Point);

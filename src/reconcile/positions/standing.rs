@@ -3,13 +3,13 @@
 use super::fit::{Fitted, Sample, fit};
 use super::kinematics::{Geometry, Number};
 use super::{Point, Positions, points};
-use crate::reconcile::campaign::Campaign;
-use crate::reconcile::placement::{Placement, Session, Stand, pose_mark, test_numbers};
+use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::readings::placement::{Placement, Session, Stand, pose_mark, test_numbers};
 use nalgebra::Rotation3;
 
 impl Positions {
     /// The places of one of the arms, whose last frame is turned so.
-    pub(super) fn placement(
+    pub(crate) fn placement(
         &self,
         campaign: &Campaign,
         arm: usize,

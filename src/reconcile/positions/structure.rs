@@ -7,9 +7,9 @@
 use super::Positions;
 use super::fit::{Factor, Sample, normal};
 use crate::arm::effect::Channel;
-use crate::reconcile::campaign::Campaign;
-use crate::reconcile::lack_of_fit::{LackOfFit, Structure, order_functions, waves};
-use crate::reconcile::stats::{ln_chi_squared_tail, median};
+use crate::reconcile::fit::stats::{ln_chi_squared_tail, median};
+use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::select::lack_of_fit::{LackOfFit, Structure, order_functions, waves};
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 
 /// Part of the errors' sum of squares that a structure must account for to matter.
@@ -26,7 +26,7 @@ type Question = (String, usize);
 
 impl Positions {
     /// Asks all questions.
-    pub(super) fn lack_of_fit(&self, campaign: &Campaign) -> LackOfFit {
+    pub(crate) fn lack_of_fit(&self, campaign: &Campaign) -> LackOfFit {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let asker = Asker::new(self, campaign);
         let normal = normal(&all, &self.numbers, &self.fitted, &|s| asker.columns(s));
@@ -66,12 +66,12 @@ impl Positions {
     }
 
     /// Part of the errors' sum of squares that a structure accounts for.
-    pub(super) fn part(&self, structure: &Structure) -> f64 {
+    pub(crate) fn part(&self, structure: &Structure) -> f64 {
         structure.statistic / (3 * self.samples.len()) as f64
     }
 
     /// Whether a structure is real and accounts for enough.
-    pub(super) fn is_material(&self, structure: &Structure) -> bool {
+    pub(crate) fn is_material(&self, structure: &Structure) -> bool {
         structure.ln_p < IMPROBABLE.ln() && self.part(structure) > MATERIAL_PART
     }
 

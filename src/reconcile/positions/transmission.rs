@@ -4,8 +4,8 @@ use super::Positions;
 use super::fit::{Fitted, Sample, fit};
 use super::kinematics::Number;
 use super::search::{FULL_FITS, TIE};
-use crate::arm::effect::transmission_waves;
-use crate::reconcile::campaign::Campaign;
+use crate::arm::effect::transmission_error::transmission_waves;
+use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
@@ -20,7 +20,7 @@ pub fn numbers(joint: usize) -> impl Iterator<Item = Number> {
 impl Positions {
     /// Lets the joint turn unevenly whose error raises the likelihood most, if it is worth its price and
     /// poses kept out confirm it.
-    pub(super) fn add_transmission(&mut self, campaign: &Campaign) -> bool {
+    pub(crate) fn add_transmission(&mut self, campaign: &Campaign) -> bool {
         if !campaign.statement.considers(EFFECT) {
             return false;
         }
@@ -36,7 +36,7 @@ impl Positions {
     }
 
     /// What the uneven turning of a joint must bring.
-    pub(super) fn transmission_price(&self) -> f64 {
+    pub(crate) fn transmission_price(&self) -> f64 {
         self.price(numbers(0).count(), self.tree.driven.len())
     }
 
@@ -61,7 +61,7 @@ impl Positions {
     }
 
     /// Joints whose uneven turning would fit as well as that of one.
-    pub(super) fn transmission_rivals(&self, joint: usize) -> Vec<usize> {
+    pub(crate) fn transmission_rivals(&self, joint: usize) -> Vec<usize> {
         let mut without = self.clone();
         let kept = |n: &Number| !matches!(n, Number::Transmission(j, _) if *j == joint);
         without.fitted.moved =

@@ -1,7 +1,8 @@
 //! One arm, or several that stand on a common trunk, as one list of pieces.
 
-use crate::arm::{Arm, JointAngle, JointModel, Piece};
-use crate::reconcile::campaign::Campaign;
+use crate::arm::structure::{JointAngle, Piece};
+use crate::arm::{Arm, JointModel};
+use crate::reconcile::readings::campaign::Campaign;
 
 /// The pieces of all arms of a campaign, those of the trunk once.
 #[derive(Debug, Clone)]

@@ -5,7 +5,8 @@ use super::positions::{Position, Step, angles_figure, axes_figure, sizes_figure,
 use super::{Extra, Figure, Gallery, Page};
 use crate::report::number::{fixed, significant};
 use crate::report::svg::rows::{Mark, Row, RowPlot};
-use crate::report::svg::{Axis, Guide, MUTED, Plot, Scale, Series, Sheet, Stroke};
+use crate::report::svg::sheet::Sheet;
+use crate::report::svg::{Axis, Guide, MUTED, Plot, Scale, Series, Stroke};
 use serde_json::{Value, json};
 
 /// Poses and joint ranges listed at most.

@@ -11,7 +11,7 @@ pub mod comparison;
 pub mod document;
 pub mod front_data;
 pub mod front_views;
-mod packed;
+pub(crate) mod packed;
 pub mod pick;
 pub mod positions;
 pub mod study;

@@ -1,14 +1,19 @@
 //! One picked design: its arm drawn to scale, where its deflection comes from, its modes and its drives.
 
 use super::{Figure, Gallery, table};
-use crate::arm::{Arm, Element, Link, LinkBody, LoadCase};
-use crate::mechanics::{Chain, Mode, Posed, Statics, Station};
+use crate::arm::load::LoadCase;
+use crate::arm::{Arm, Element, Link, LinkBody};
+use crate::mechanics::centre_line::Station;
+use crate::mechanics::chain::{Chain, Posed};
+use crate::mechanics::modes::Mode;
+use crate::mechanics::statics::Statics;
 use crate::report::number::{shortest, significant};
 use crate::report::picks::Pick;
 use crate::report::svg::arm::{ArmSketch, Pivot, Place, Tube};
 use crate::report::svg::bars::{Bar, Part, StackedBars};
 use crate::report::table::{Column, Table};
-use crate::sizing::{Check, CheckKind, CheckState, JointSizingRow};
+use crate::sizing::check::{Check, CheckKind, CheckState};
+use crate::sizing::sheet::JointSizingRow;
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 

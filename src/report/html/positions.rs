@@ -4,7 +4,8 @@
 use super::Figure;
 use crate::report::number::fixed;
 use crate::report::svg::rows::{Mark, Row, RowPlot};
-use crate::report::svg::{Axis, MUTED, Plot, Scale, Series, Sheet, Stroke};
+use crate::report::svg::sheet::Sheet;
+use crate::report::svg::{Axis, MUTED, Plot, Scale, Series, Stroke};
 use crate::report::table::csv_line;
 
 /// Parts of each joint's range.

@@ -1,8 +1,9 @@
 //! Rows of marks along one axis: a value before and after, a value with its interval, a score.
 
+use super::ticks::rule;
 use super::{
-    Axis, FONT_PX, INK, MUTED, NOTE_PX, Scale, Series, Stroke, colour, dashed, head, line, markers, px, rule,
-    text, text_px,
+    Axis, FONT_PX, INK, MUTED, NOTE_PX, Scale, Series, Stroke, colour, dashed, head, line, markers, px, text,
+    text_px,
 };
 use std::fmt::Write;
 

@@ -1,0 +1,45 @@
+//! How much a search that was stopped may have missed.
+
+use super::bound::Ceiling;
+use crate::search::sweep::Candidate;
+use rayon::prelude::*;
+
+/// The smallest `ε` such that for every open box some design of the front, with its mass and deflection
+/// divided and its mode multiplied by `1 + ε`, is no worse than the box's ceiling. No design that was missed is
+/// better than all of the front by more than that in every objective at once. `None` if a ceiling says
+/// nothing or there is no front to compare with.
+pub(super) fn gap(open: &[Ceiling], front: &[Candidate]) -> Option<f64> {
+    let of = |ceiling: &Ceiling| {
+        let factor = |c: &Candidate| {
+            let o = &c.objectives;
+            (o.mass_kg / ceiling.mass_kg)
+                .max(o.tip_deflection_m / ceiling.tip_m)
+                .max(ceiling.hz / o.lowest_mode_hz)
+        };
+        front.iter().map(factor).fold(f64::INFINITY, f64::min)
+    };
+    let worst = open.par_iter().map(of).reduce(|| 1.0, f64::max);
+    (worst.is_finite()).then_some(worst - 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pareto::objectives::Objectives;
+
+    #[test]
+    fn the_gap_is_the_factor_to_the_nearest_design_of_the_front() {
+        let at = |mass_kg: f64, tip_deflection_m: f64, lowest_mode_hz: f64| Candidate {
+            number: 0,
+            objectives: Objectives { tip_deflection_m, mass_kg, lowest_mode_hz },
+        };
+        let front = [at(10.0, 1e-3, 20.0), at(20.0, 5e-4, 30.0)];
+        let ceiling = |mass_kg, tip_m, hz| Ceiling { mass_kg, tip_m, hz };
+        let near = |a: Option<f64>, b: f64| assert!((a.unwrap() - b).abs() < 1e-12, "{a:?} {b}");
+        near(gap(&[], &front), 0.0);
+        near(gap(&[ceiling(10.0, 1e-3, 22.0)], &front), 0.1);
+        near(gap(&[ceiling(16.0, 5e-4, 30.0), ceiling(10.0, 1e-3, 20.2)], &front), 0.25);
+        assert_eq!(gap(&[Ceiling::OPEN], &front), None);
+        assert_eq!(gap(&[ceiling(1.0, 1.0, 1.0)], &[]), None);
+    }
+}

@@ -1,0 +1,80 @@
+//! What a search knows, and what a task adds to it.
+
+use super::archive::{Found, is_better};
+use super::bound::Ceiling;
+use crate::pareto::front::not_clearly_beaten;
+use crate::pareto::objectives::Objectives;
+use crate::search::sweep::{Candidate, SLACK};
+use std::collections::HashSet;
+
+/// Designs are filtered whenever their number reaches a power of two above this.
+const BUFFER: usize = 4096;
+
+/// What all tasks of a round know.
+#[derive(Default)]
+pub(super) struct Known {
+    pub found: Found,
+    /// Numbers of designs that were judged on the way.
+    pub tried: HashSet<u128>,
+    kept: Vec<Candidate>,
+    /// Designs whose ceiling is not their objectives: a demand lies on a threshold. The full model judges them.
+    unsure: Vec<Candidate>,
+    pub evaluated: u64,
+}
+
+/// What a task found.
+#[derive(Default)]
+pub(super) struct Finds {
+    pub kept: Vec<Candidate>,
+    pub unsure: Vec<Candidate>,
+    pub tried: Vec<u128>,
+    pub evaluated: u64,
+}
+
+impl Finds {
+    /// Whether a design found beats every member of a box.
+    pub fn beats(&self, ceiling: &Ceiling) -> bool {
+        let best = Objectives::from(*ceiling);
+        self.kept.iter().any(|c| is_better(&c.objectives, &best))
+    }
+}
+
+impl Known {
+    /// A design that is known already, wherever from.
+    pub fn enter(&mut self, objectives: &Objectives) {
+        self.found.enter(objectives);
+    }
+
+    /// Takes in what a task found.
+    pub fn learn(&mut self, finds: Finds) {
+        self.evaluated += finds.evaluated;
+        self.tried.extend(finds.tried);
+        self.unsure.extend(finds.unsure);
+        for candidate in finds.kept {
+            self.found.enter(&candidate.objectives);
+            self.kept.push(candidate);
+            if self.kept.len().is_power_of_two() && self.kept.len() > BUFFER {
+                clear(&mut self.kept);
+            }
+        }
+    }
+
+    /// The designs found that no other one beats, ascending, and those of which it is not known.
+    pub fn into_front(self) -> Vec<Candidate> {
+        let mut front = self.kept;
+        clear(&mut front);
+        front.sort_unstable_by_key(|c| c.number);
+        front.dedup_by_key(|c| c.number);
+        // what would have been cut had it come later goes, so that the order of discovery does not show
+        let all = front.clone();
+        front.retain(|c| !all.iter().any(|other| is_better(&other.objectives, &c.objectives)));
+        front.extend(self.unsure);
+        front
+    }
+}
+
+/// Drops what another candidate beats.
+fn clear(kept: &mut Vec<Candidate>) {
+    let points: Vec<[f64; 3]> = kept.iter().map(|c| c.objectives.minimized()).collect();
+    *kept = not_clearly_beaten(&points, SLACK).into_iter().map(|i| kept[i]).collect();
+}

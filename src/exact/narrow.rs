@@ -1,0 +1,287 @@
+//! Which options a member below a corner may have at all: those whose price the corner can afford when every other
+//! part is the cheapest (reduced costs).
+
+use super::corners::Corner;
+use super::parts::{DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::price::{Ends, JointPrice, Price};
+use super::problem::Part;
+use super::tradeoff::{Plane, ROUNDING, Rows};
+use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
+
+/// Boxes of options a level is looked at in, about.
+const BOXES: usize = 256;
+/// Weightings that count: the strictest.
+const STRICTEST: usize = 32;
+
+/// The price of a level's options under a weighting, and what the corner can afford.
+type Afforded = (Price, f64);
+
+impl Rows<'_> {
+    /// The nodes of each level's whole tree that hold what no weighting excludes; `None` if some level has none.
+    pub fn kept(&self, cell: &[u32], planes: &[Plane], corner: &Corner) -> Option<Vec<Vec<u32>>> {
+        let mut strict: Vec<(f64, Vec<f64>, &[f64])> = planes
+            .iter()
+            .map(|plane| {
+                let room = self.weighted(&plane.weights, corner) - plane.least + ROUNDING;
+                // modes that were added later had no say
+                let mut weights = plane.weights.clone();
+                weights.resize(self.scale.len(), 0.0);
+                (room, weights, &plane.levels[..])
+            })
+            .collect();
+        strict.sort_by(|a, b| a.0.total_cmp(&b.0));
+        strict.truncate(STRICTEST);
+        let levels = self.problem.level_pieces.iter().enumerate();
+        levels
+            .map(|(level, &piece)| {
+                let afforded: Vec<Afforded> = strict
+                    .iter()
+                    .map(|(room, weights, levels)| (self.price(piece, weights), levels[level] + room))
+                    .collect();
+                let kept = self.affordable(piece, cell[level], &afforded);
+                (!kept.is_empty()).then_some(kept)
+            })
+            .collect()
+    }
+
+    fn affordable(&self, piece: usize, node: u32, afforded: &[Afforded]) -> Vec<u32> {
+        let prices: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
+        let prices = &prices[..];
+        match &self.problem.parts[piece] {
+            Part::Drives { tree, .. } => {
+                let asked = self.work.least[piece].as_ref();
+                let gears = afforded.first().map_or(&[][..], |(price, _)| &price.joint);
+                tree.kept(node, BOXES, |drives| {
+                    asked.is_none_or(|asked| drives.may_hold(asked))
+                        && !in_lanes(DrivesCost { drives, gears, prices })
+                })
+            }
+            Part::Links { tree, .. } => {
+                tree.kept(node, BOXES, |links| !in_lanes(LinksCost { links, prices }))
+            }
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// The prices of a level's options under eight weightings, and what can be afforded under each.
+struct EightPrices {
+    most: Eight,
+    inertia: [Eight; INERTIAS],
+    compliance: [Eight; STIFFNESSES],
+    stiffness: [Eight; STIFFNESSES],
+    /// Per twist, per torque and for the slope of a joint, by judged case.
+    joint: Vec<[Eight; 3]>,
+}
+
+impl EightPrices {
+    /// Where there are fewer anything can be afforded.
+    fn new(afforded: &[Afforded]) -> Self {
+        let lanes = |of: &dyn Fn(&Price) -> f64| -> Eight {
+            std::array::from_fn(|lane| afforded.get(lane).map_or(0.0, |(price, _)| of(price)))
+        };
+        let joints = afforded.first().map_or(0, |(price, _)| price.joint.len());
+        Self {
+            most: std::array::from_fn(|lane| afforded.get(lane).map_or(f64::INFINITY, |(_, most)| *most)),
+            inertia: std::array::from_fn(|k| lanes(&|price| price.inertia[k])),
+            compliance: std::array::from_fn(|k| lanes(&|price| price.compliance[k])),
+            stiffness: std::array::from_fn(|k| lanes(&|price| price.stiffness[k])),
+            joint: (0..joints)
+                .map(|g| {
+                    [
+                        lanes(&|price| price.joint[g].twist),
+                        lanes(&|price| price.joint[g].torque),
+                        lanes(&|price| price.joint[g].slope),
+                    ]
+                })
+                .collect(),
+        }
+    }
+}
+
+/// Whether every drive of a box costs more than can be afforded under some weighting. What is no number excludes nothing.
+struct DrivesCost<'a> {
+    drives: &'a DriveBox,
+    gears: &'a [JointPrice],
+    prices: &'a [EightPrices],
+}
+
+impl LaneWork for DrivesCost<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> bool {
+        let Self { drives, gears, prices } = self;
+        let mut ends = Ends::default();
+        let mut left = [V::zero(); STRICTEST / LANES];
+        for (left, eight) in left.iter_mut().zip(prices) {
+            *left = V::load(&eight.most) - least::<V>(&eight.inertia[inertia::MASS], drives.mass_kg);
+        }
+        for (g, gear) in gears.iter().enumerate() {
+            let Some(curve) = &drives.curve else { return false };
+            gear.ends(curve, &mut ends);
+            for (left, eight) in left.iter_mut().zip(prices) {
+                let [twist, torque, slope] = &eight.joint[g];
+                let mut best = V::splat(f64::INFINITY);
+                for end in ends.as_slice() {
+                    let price = least::<V>(twist, end.twist_rad) + V::load(torque) * V::splat(end.torque_nm);
+                    best = best.min(price - V::load(slope) * V::splat(end.slope));
+                }
+                *left = *left - best;
+            }
+        }
+        let mut excluded = 0;
+        for left in left {
+            excluded |= left.less(V::zero());
+        }
+        excluded != 0
+    }
+}
+
+/// The same of every tube of a box.
+struct LinksCost<'a> {
+    links: &'a LinkBox,
+    prices: &'a [EightPrices],
+}
+
+impl LaneWork for LinksCost<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> bool {
+        let LinkBox { low, high, compliances, .. } = self.links;
+        for eight in self.prices {
+            let mut cost = V::zero();
+            for k in 0..INERTIAS {
+                cost = cost + least::<V>(&eight.inertia[k], [low.inertias[k], high.inertias[k]]);
+            }
+            let [stiff, soft] = compliances;
+            for k in 0..STIFFNESSES {
+                cost = cost + least::<V>(&eight.compliance[k], [stiff[k], soft[k]]);
+                // what does not yield earns nothing
+                let price = V::load(&eight.stiffness[k]);
+                let earned = price * V::splat(high.stiffnesses[k]);
+                cost = cost - V::choose(V::zero().less(price), earned, V::zero());
+            }
+            if V::load(&eight.most).less(cost) != 0 {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// The least that a number between two costs at each of eight prices.
+#[inline(always)]
+fn least<V: Lanes>(price: &Eight, [low, high]: [f64; 2]) -> V {
+    let price = V::load(price);
+    (price * V::splat(low)).min(price * V::splat(high))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::joint_law::{Curve, JointLaw};
+    use crate::exact::parts::Line;
+    use crate::exact::torsion::CurveBox;
+    use crate::sizing::limits::DriveLimits;
+    use proptest::prelude::*;
+
+    /// Prices with what can be afforded at each: more than it costs, but at one of them, or none, less.
+    fn afforded(prices: Vec<Price>, cost: impl Fn(&Price) -> f64, dear: usize) -> Vec<Afforded> {
+        let room = |at: usize| if at == dear { -0.1 } else { 0.1 };
+        let afford = |(at, price): (usize, Price)| {
+            let cost = cost(&price);
+            (price, cost + room(at) * (1.0 + cost.abs()))
+        };
+        prices.into_iter().enumerate().map(afford).collect()
+    }
+
+    fn excluded_one_by_one(afforded: &[Afforded], cost: impl Fn(&Price) -> f64) -> bool {
+        afforded.iter().any(|(price, most)| cost(price) > *most)
+    }
+
+    fn price(numbers: &[f64]) -> Price {
+        let mut numbers = numbers.iter().copied();
+        let mut next = || numbers.next().unwrap_or_default();
+        Price {
+            inertia: std::array::from_fn(|_| next()),
+            compliance: std::array::from_fn(|_| next()),
+            stiffness: std::array::from_fn(|_| next().max(0.0)),
+            joint: Vec::new(),
+        }
+    }
+
+    const ANY: DriveLimits = DriveLimits {
+        static_torque_nm: 0.0,
+        peak_torque_nm: 0.0,
+        stop_torque_nm: 0.0,
+        mean_torque_cubed_nm3: 0.0,
+        tilting_moment_nm: 0.0,
+    };
+
+    proptest! {
+        /// Eight prices at once exclude what each by itself excludes; tubes that do not shear included.
+        #[test]
+        fn tubes_cost_the_same_side_by_side(
+            prices in prop::collection::vec(prop::collection::vec(-1.0f64..1.0, 15), 1..20),
+            low in prop::array::uniform10(0.1f64..2.0), width in prop::array::uniform10(0.0f64..1.0),
+            rigid in any::<bool>(), dear in 0usize..30,
+        ) {
+            let line = |times: f64| Line {
+                inertias: std::array::from_fn(|k| low[k] + times * width[k]),
+                stiffnesses: std::array::from_fn(|k| match rigid && k == 2 {
+                    true => f64::INFINITY,
+                    false => low[5 + k] + times * width[5 + k],
+                }),
+            };
+            let (low, high) = (line(0.0), line(1.0));
+            let compliances = [high.stiffnesses.map(f64::recip), low.stiffnesses.map(f64::recip)];
+            let links =
+                LinkBox { low, high, compliances, stress: [0.0; 4], round: false, cost_eur_per_m: 0.0 };
+            let prices = prices.iter().map(|numbers| price(numbers)).collect();
+            let cost = |price: &Price| price.of_tube(&links);
+            let afforded = afforded(prices, cost, dear);
+            let eights: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
+            let excluded = in_lanes(LinksCost { links: &links, prices: &eights });
+            prop_assert_eq!(excluded, excluded_one_by_one(&afforded, cost));
+        }
+
+        /// The same of drives, whose gears are in one of three segments under torques of either sign.
+        #[test]
+        fn drives_cost_the_same_side_by_side(
+            prices in prop::collection::vec(prop::array::uniform8(-1.0f64..1.0), 1..20),
+            slopes in prop::array::uniform6(0.1f64..3.0), ends in prop::array::uniform2(0.1f64..3.0),
+            torques in prop::array::uniform2((-5.0f64..5.0, 0.0f64..5.0)),
+            mass_kg in 0.1f64..3.0, more_kg in 0.0f64..1.0, dear in 0usize..30,
+        ) {
+            let curve = |k: &[f64]| {
+                let windup = crate::arm::joint_law::Windup {
+                    k1_nm_per_rad: k[0], k2_nm_per_rad: k[1], k3_nm_per_rad: k[2],
+                    t1_nm: ends[0], t2_nm: ends[0] + ends[1],
+                };
+                CurveBox::of(&JointLaw::from(Curve::Windup(windup))).unwrap()
+            };
+            let curve = curve(&slopes[..3]).join(&curve(&slopes[3..]));
+            let drives = DriveBox {
+                mass_kg: [mass_kg, mass_kg + more_kg],
+                limits: ANY, least_limits: ANY, multiples: Default::default(),
+                curve: Some(curve), breaks: Default::default(), each: None,
+            };
+            let joint = |g: usize, n: &[f64]| JointPrice {
+                twist: n[0], torque: n[1], slope: n[2].max(0.0),
+                torques_nm: [torques[g].0, torques[g].0 + torques[g].1], play: None,
+            };
+            let prices = prices.iter().map(|n| Price {
+                joint: vec![joint(0, &n[2..5]), joint(1, &n[5..8])],
+                ..price(&n[..1])
+            });
+            let cost = |price: &Price| price.of_joint(drives.mass_kg, drives.curve.as_ref());
+            let afforded = afforded(prices.collect(), cost, dear);
+            let eights: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
+            let gears = &afforded[0].0.joint;
+            let excluded = in_lanes(DrivesCost { drives: &drives, gears, prices: &eights });
+            prop_assert_eq!(excluded, excluded_one_by_one(&afforded, cost));
+        }
+    }
+}

@@ -1,0 +1,313 @@
+//! What the bound sees of a part, and of a box of parts: every number as an interval.
+
+use super::torsion::{Breaks, CurveBox};
+use super::tree::{Bounds, Key};
+use crate::arm::LinkModel;
+use crate::arm::structure::{Beam, LinkPiece};
+use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
+use crate::sizing::demand::{JointDemand, JointMotion};
+use crate::sizing::limits::DriveLimits;
+use crate::space::design_space::LinkOption;
+use crate::space::figures::StressCheck;
+use std::sync::Arc;
+
+/// Number of [`Line`]'s inertias and of its stiffnesses.
+pub(super) const INERTIAS: usize = 5;
+pub(super) const STIFFNESSES: usize = 5;
+
+/// A tube per metre: what moves and what yields.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Line {
+    /// Mass \[kg/m\], outer area \[m²\], rotary inertia about the link, its y and its z \[kg m\].
+    pub inertias: [f64; INERTIAS],
+    /// `EI` about y, `EI` about z, `κGA`, `GJ`, `EA`; infinite where the link model has no such strain.
+    pub stiffnesses: [f64; STIFFNESSES],
+}
+
+/// Places in [`Line::inertias`].
+pub(super) mod inertia {
+    pub const MASS: usize = 0;
+    pub const OUTER_AREA: usize = 1;
+    pub const POLAR: usize = 2;
+    pub const ROTARY_Y: usize = 3;
+    pub const ROTARY_Z: usize = 4;
+}
+
+impl Line {
+    /// A tube, and what hangs along it, under a link model.
+    pub fn new(beam: &Beam, harness_kg_per_m: f64, model: LinkModel) -> Self {
+        let tube = tube_inertia(beam, model);
+        let yields = |place: usize| match model {
+            LinkModel::Rigid => false,
+            LinkModel::Bending => place < 2,
+            LinkModel::Full => true,
+        };
+        let mut stiffnesses = line_stiffnesses(beam).map(|s| s / beam.flexibility);
+        for (place, stiffness) in stiffnesses.iter_mut().enumerate() {
+            if !yields(place) {
+                *stiffness = f64::INFINITY;
+            }
+        }
+        Self {
+            inertias: [
+                tube.along_kg_per_m + harness_kg_per_m,
+                beam.section.properties(beam.material.poisson).outer_area_m2,
+                tube.polar_kg_m,
+                tube.rotary_y_kg_m,
+                tube.rotary_z_kg_m,
+            ],
+            stiffnesses,
+        }
+    }
+}
+
+/// A box of link options.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct LinkBox {
+    pub low: Line,
+    pub high: Line,
+    /// Least and greatest of one over each stiffness.
+    pub compliances: [[f64; STIFFNESSES]; 2],
+    /// Least stress over strength per axial force, moments about y and z, and torsion; zero where a
+    /// strength is unknown.
+    pub stress: [f64; 4],
+    /// Whether some member is a round tube, whose bending about two axes adds up as a vector.
+    pub round: bool,
+    /// Least cost of the material \[EUR/m\].
+    pub cost_eur_per_m: f64,
+}
+
+impl LinkBox {
+    /// The box of one option, which the study's effects make this link.
+    pub fn of(option: &LinkOption, link: &LinkPiece, model: LinkModel) -> Self {
+        let nominal = Beam { material: option.material, section: option.section, flexibility: 1.0 };
+        let line = Line::new(link.beam.as_ref().unwrap_or(&nominal), link.harness_kg_per_m, model);
+        let check = StressCheck::new(option);
+        let stress = check.as_ref().map_or([0.0; 4], |s| {
+            [s.per_axial_n, s.per_moment_y, s.per_moment_z, s.per_torsion].map(|x| x / s.strength_pa)
+        });
+        Self {
+            low: line,
+            high: line,
+            compliances: [line.stiffnesses.map(f64::recip); 2],
+            stress,
+            round: check.is_none_or(|s| s.round),
+            cost_eur_per_m: option.cost_eur_per_kg.unwrap_or(0.0) * option.mass_kg_per_m(),
+        }
+    }
+}
+
+fn pairwise<const N: usize>(a: &[f64; N], b: &[f64; N], pick: fn(f64, f64) -> f64) -> [f64; N] {
+    std::array::from_fn(|i| pick(a[i], b[i]))
+}
+
+impl Bounds for LinkBox {
+    fn join(&self, other: &Self) -> Self {
+        let line = |a: &Line, b: &Line, pick| Line {
+            inertias: pairwise(&a.inertias, &b.inertias, pick),
+            stiffnesses: pairwise(&a.stiffnesses, &b.stiffnesses, pick),
+        };
+        Self {
+            low: line(&self.low, &other.low, f64::min),
+            high: line(&self.high, &other.high, f64::max),
+            compliances: [
+                pairwise(&self.compliances[0], &other.compliances[0], f64::min),
+                pairwise(&self.compliances[1], &other.compliances[1], f64::max),
+            ],
+            stress: pairwise(&self.stress, &other.stress, f64::min),
+            round: self.round || other.round,
+            cost_eur_per_m: self.cost_eur_per_m.min(other.cost_eur_per_m),
+        }
+    }
+
+    /// Mass counts twice: it is an objective, and it loads everything inboard. Shear and stretch hardly
+    /// move any objective.
+    fn key(&self) -> Key {
+        let s = self.low.stiffnesses.map(|s| if s.is_finite() { s.ln() } else { 0.0 });
+        [2.0 * self.low.inertias[inertia::MASS].ln(), s[0], 0.7 * s[1], 0.1 * s[2], 0.3 * s[3]]
+    }
+}
+
+/// Torques that differ by less than this part may lie on the same side of a break point or not.
+pub(super) const SAME_TORQUE: f64 = 1e-12;
+
+/// Proportions of static torque and inertia in which a box of drives knows what it holds.
+pub(super) const RAYS: usize = 12;
+
+/// Demands in fixed proportions. A drive that holds a demand holds every ray's multiple below it, so a box
+/// none of whose members does holds no demand above, though each single limit may be met by some member.
+pub(super) struct Rays {
+    /// Static torque \[N m\] and inertia \[kg m²\].
+    loads: [(f64, f64); RAYS],
+    demands: [JointDemand; RAYS],
+}
+
+impl Rays {
+    /// Around the proportion that the payload alone asks for.
+    pub fn new(motion: &JointMotion, payload_static_nm: f64, payload_inertia_kgm2: f64) -> Self {
+        let loads = std::array::from_fn(|k| match k {
+            0 => (0.0, 1.0),
+            1 => (1.0, 0.0),
+            _ if payload_static_nm > 0.0 => {
+                (1.0, 1.25 * 0.8f64.powi(k as i32 - 2) * payload_inertia_kgm2 / payload_static_nm)
+            }
+            _ => (0.0, 1.0),
+        });
+        Self { demands: loads.map(|(static_nm, inertia)| motion.demand(static_nm, inertia)), loads }
+    }
+
+    /// How many times each ray's demand a drive holds.
+    pub fn held(&self, limits: &DriveLimits) -> [f64; RAYS] {
+        self.demands.each_ref().map(|demand| limits.multiple_of(demand))
+    }
+}
+
+/// What a joint is asked for at least.
+pub(super) struct Asked {
+    pub demand: JointDemand,
+    /// Multiples of the rays below it.
+    multiples: [f64; RAYS],
+}
+
+impl Asked {
+    /// A static torque and an inertia.
+    pub fn new(motion: &JointMotion, rays: &Rays, static_nm: f64, inertia_kgm2: f64) -> Self {
+        let times = |asked: f64, unit: f64| if unit > 0.0 { asked / unit } else { f64::INFINITY };
+        let multiples =
+            rays.loads.map(|(t, i)| times(static_nm, t).min(times(inertia_kgm2, i)) * (1.0 - 1e-12));
+        Self { demand: motion.demand(static_nm, inertia_kgm2), multiples }
+    }
+}
+
+/// A box of drives.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct DriveBox {
+    /// Least and largest mass \[kg\].
+    pub mass_kg: [f64; 2],
+    /// The largest of each limit.
+    pub limits: DriveLimits,
+    /// The smallest of each limit.
+    pub least_limits: DriveLimits,
+    /// The largest multiple of each ray's demand that a member holds.
+    pub multiples: [f64; RAYS],
+    pub curve: Option<CurveBox>,
+    pub breaks: Breaks,
+    /// Of a single kind of several drives, what each of them holds: the kind holds what any of them does.
+    pub each: Option<Arc<[DriveLimits]>>,
+}
+
+impl DriveBox {
+    /// A kind: drives of one mass and curve.
+    pub fn of_kind(drives: impl Iterator<Item = Self>) -> Option<Self> {
+        let drives: Vec<Self> = drives.collect();
+        let kind =
+            drives.iter().cloned().reduce(|kind, drive| Self { curve: kind.curve, ..kind.join(&drive) })?;
+        let covered = |(at, drive): (usize, &Self)| {
+            let covers = |other: &Self| other.limits.cover(&drive.limits);
+            drives[..at].iter().any(covers)
+                || drives[at + 1..].iter().any(|o| covers(o) && !drive.limits.cover(&o.limits))
+        };
+        let each: Vec<DriveLimits> =
+            drives.iter().enumerate().filter(|d| !covered(*d)).map(|(_, d)| d.limits).collect();
+        // one that covers the others stands for all
+        Some(Self { each: (each.len() > 1).then(|| Arc::from(each)), ..kind })
+    }
+
+    /// Whether a member may hold what is asked.
+    #[inline]
+    pub fn may_hold(&self, asked: &Asked) -> bool {
+        self.hold(&asked.demand)
+            && self.multiples.iter().zip(&asked.multiples).all(|(held, asked)| held >= asked)
+    }
+
+    /// Whether a demand is within the limits; of a single kind whether a drive of it holds.
+    #[inline]
+    pub fn hold(&self, demand: &JointDemand) -> bool {
+        self.limits.hold(demand)
+            && self.each.as_ref().is_none_or(|each| each.iter().any(|limits| limits.hold(demand)))
+    }
+}
+
+impl Bounds for DriveBox {
+    fn join(&self, other: &Self) -> Self {
+        Self {
+            mass_kg: [self.mass_kg[0].min(other.mass_kg[0]), self.mass_kg[1].max(other.mass_kg[1])],
+            limits: self.limits.max(&other.limits),
+            least_limits: self.least_limits.min(&other.least_limits),
+            multiples: pairwise(&self.multiples, &other.multiples, f64::max),
+            // a rigid member makes the stiff side rigid
+            curve: self.curve.zip(other.curve).map(|(a, b)| a.join(&b)),
+            breaks: self.breaks.join(&other.breaks),
+            each: None,
+        }
+    }
+
+    /// First by curve: drives with one gear share it. Then by mass.
+    fn key(&self) -> Key {
+        let k = self.curve.map_or([0.0; 3], |c| {
+            let w = &c.stiff.windup;
+            [w.k1_nm_per_rad.ln(), w.k3_nm_per_rad.ln(), 0.2 * w.t1_nm.min(1e9).ln()]
+        });
+        [
+            4.0 * k[0],
+            2.0 * k[1],
+            k[2],
+            self.mass_kg[0].max(1e-3).ln(),
+            3.0 * self.multiples[RAYS / 2].clamp(1e-9, 1e9).ln(),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sizing::requirement::MotionRequirement;
+    use proptest::prelude::*;
+
+    /// A drive whose limits are multiples of what a joint of 100 N m and 10 kg m² is asked for.
+    fn drive(of: [u32; 5], motion: &JointMotion, rays: &Rays) -> DriveBox {
+        let usual = motion.demand(100.0, 10.0);
+        let times = |k: usize| 0.2 * f64::from(of[k]);
+        let limits = DriveLimits {
+            static_torque_nm: times(0) * usual.static_torque_nm,
+            peak_torque_nm: times(1) * usual.peak_torque_nm(),
+            stop_torque_nm: times(2) * usual.stop_torque_nm,
+            mean_torque_cubed_nm3: times(3).powi(3) * usual.mean_torque_cubed_nm3,
+            tilting_moment_nm: times(4) * usual.static_torque_nm,
+        };
+        DriveBox {
+            mass_kg: [1.0; 2],
+            limits,
+            least_limits: limits,
+            multiples: rays.held(&limits),
+            curve: None,
+            breaks: Breaks::default(),
+            each: None,
+        }
+    }
+
+    proptest! {
+        /// Drives of a kind, and a box of kinds, hold what some drive does; a kind by itself no more than that.
+        #[test]
+        fn a_kind_holds_what_any_of_its_drives_holds(
+            kinds in prop::collection::vec(prop::collection::vec(prop::array::uniform5(1u32..12), 1..5), 1..4),
+            static_nm in 1.0f64..250.0, inertia_kgm2 in 0.1f64..25.0,
+        ) {
+            let motion = MotionRequirement::default().joint_motion(1.35, None);
+            let rays = Rays::new(&motion, 50.0, 5.0);
+            let asked = Asked::new(&motion, &rays, static_nm, inertia_kgm2);
+            let mut of_kinds = Vec::new();
+            for kind in &kinds {
+                let drives: Vec<DriveBox> = kind.iter().map(|of| drive(*of, &motion, &rays)).collect();
+                let some_holds = drives.iter().any(|drive| drive.limits.hold(&asked.demand));
+                let together = DriveBox::of_kind(drives.into_iter()).unwrap();
+                prop_assert_eq!(together.hold(&asked.demand), some_holds);
+                prop_assert_eq!(together.may_hold(&asked), some_holds);
+                of_kinds.push((together, some_holds));
+            }
+            let some_holds = of_kinds.iter().any(|(_, holds)| *holds);
+            let joined = of_kinds.into_iter().map(|(kind, _)| kind).reduce(|a, b| a.join(&b)).unwrap();
+            prop_assert!(joined.may_hold(&asked) || !some_holds);
+        }
+    }
+}

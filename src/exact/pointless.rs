@@ -1,0 +1,164 @@
+//! Drives that a lighter one makes pointless.
+//!
+//! Let a design hold drive B at a joint, and let drive A be lighter, nowhere softer up to the torque it
+//! carries, and able to hold what the joint is asked for, which depends on the arm outboard only. With A in
+//! B's place no torque, force or demand inboard grows, since every force of the study grows with every
+//! weight; so whatever held still holds and the tip sags no further. No inertia grows and no stiffness falls
+//! if the gears inboard stay in their segments; so no mode falls either. The design with B is then beaten,
+//! whatever else it is made of. That a gear inboard may leave its segment is why this cannot be said of
+//! drives once and for all, only within a box: there the torques inboard are intervals.
+
+use super::bound::Work;
+use super::parts::{DriveBox, SAME_TORQUE};
+use super::play::Play;
+use super::pose::{Pose, PosedPiece, Row};
+use super::problem::{Part, Problem};
+use super::torsion::CurveBox;
+use super::tree::Tree;
+use crate::sizing::demand::JointDemand;
+use nalgebra::Vector3;
+
+/// Share of an arm's mass by which a drive must be lighter.
+const LIGHTER: f64 = 1e-6;
+/// Coefficients smaller than this share of the largest are rounding.
+const NOTHING: f64 = 1e-12;
+
+/// Boxes to look into for a drive that makes others pointless.
+const BOXES: usize = 64;
+
+/// A drive to look for.
+struct Wanted<'a> {
+    lighter_than_kg: f64,
+    demand: &'a JointDemand,
+    curve: Option<CurveBox>,
+    most_torque_nm: f64,
+}
+
+impl Wanted<'_> {
+    /// Whether a box of drives may have a member that is wanted; of a box of one, whether it is.
+    fn may_be_in(&self, drives: &DriveBox) -> bool {
+        drives.mass_kg[0] < self.lighter_than_kg
+            && drives.hold(self.demand)
+            && match (&drives.curve, &self.curve) {
+                (None, _) => true,
+                (Some(_), None) => false,
+                (Some(a), Some(b)) => a.stiff.windup.never_softer(&b.stiff.windup, self.most_torque_nm),
+            }
+    }
+
+    /// The mass of a drive that is wanted \[kg\], if one is soon found.
+    fn find(&self, tree: &Tree<DriveBox>, node: u32, boxes_left: &mut usize) -> Option<f64> {
+        let drives = &tree.node(node).bounds;
+        if *boxes_left == 0 || !self.may_be_in(drives) {
+            return None;
+        }
+        *boxes_left -= 1;
+        match tree.children(node) {
+            None => Some(drives.mass_kg[0]),
+            Some([a, b]) => self.find(tree, a, boxes_left).or_else(|| self.find(tree, b, boxes_left)),
+        }
+    }
+}
+
+impl Problem<'_> {
+    /// Whether everything that is asked of an arm, and everything it yields by, grows with every weight: then
+    /// a lighter arm that is no softer is no worse. What friction holds back grows with the weights too.
+    pub fn grows_with_weight(&self) -> bool {
+        let fits_first = self.parts.iter().any(|part| matches!(part, Part::FirstFit { .. }));
+        let friction = self.plays.iter().flatten().any(Play::has_friction);
+        !fits_first && !friction && self.poses.iter().all(Pose::grows_with_weight)
+    }
+
+    /// Takes pointless drives out of a box whose numbers are in `work`. `None` if no design is left,
+    /// otherwise whether the box has shrunk.
+    pub fn without_pointless(&self, cell: &mut [u32], tip_m: f64, work: &Work) -> Option<bool> {
+        let mut shrunk = false;
+        // the tip's way matters where it may be the longest
+        if !self.lighter_is_better || work.most_tip_m.iter().any(|most_m| *most_m > tip_m) {
+            return Some(false);
+        }
+        for (level, &piece) in self.level_pieces.iter().enumerate() {
+            let Part::Drives { tree, .. } = &self.parts[piece] else { continue };
+            let Some(demand) = &work.demands[piece] else { continue };
+            let is_pointless = |drives: &DriveBox| self.is_pointless(piece, tree, drives, demand, work);
+            let node = tree.narrowed(cell[level], |drives| !is_pointless(drives))?;
+            shrunk |= node != cell[level];
+            cell[level] = node;
+        }
+        Some(shrunk)
+    }
+
+    fn is_pointless(
+        &self,
+        piece: usize,
+        tree: &Tree<DriveBox>,
+        drives: &DriveBox,
+        demand: &JointDemand,
+        work: &Work,
+    ) -> bool {
+        let arm_kg: f64 = work.masses.iter().map(|m| m[1]).sum();
+        let wanted = Wanted {
+            lighter_than_kg: drives.mass_kg[0] - LIGHTER * arm_kg,
+            demand,
+            curve: drives.curve,
+            most_torque_nm: work.torques.iter().map(|torques| torques[piece][1]).fold(0.0, f64::max),
+        };
+        wanted.find(tree, 0, &mut BOXES.clone()).is_some_and(|mass_kg| {
+            self.segments_stay(piece, (drives.mass_kg[1] - mass_kg) * self.space.gravity_m_s2, work)
+        })
+    }
+
+    /// Whether every gear inboard stays in its segment, and its play as it is, if a piece loses so much weight \[N\].
+    fn segments_stay(&self, piece: usize, lost_n: f64, work: &Work) -> bool {
+        self.judged_cases().all(|case| {
+            self.poses[case].rows.iter().filter(|row| row.piece > piece && row.coordinate == 0).all(|row| {
+                let Some(curve) = &work.curves[row.piece] else { return true };
+                let [least_nm, most_nm] = work.torques[case][row.piece];
+                let drop_nm = row.per_n.get(piece).map_or(0.0, |c| c.abs() * lost_n);
+                let from_nm = (least_nm * (1.0 - SAME_TORQUE) - drop_nm).max(0.0);
+                let between_nm = [from_nm, most_nm * (1.0 + SAME_TORQUE)];
+                curve.keeps_its_slope(self.plays[row.piece].as_ref(), between_nm, work.breaks[row.piece])
+            })
+        })
+    }
+}
+
+impl Pose {
+    /// Whether every force, and so every demand, grows with every weight.
+    fn grows_with_weight(&self) -> bool {
+        let loads = self.stress.iter().flat_map(|row| &row.loads);
+        self.water_kg_m3 == 0.0
+            && self.rows_that_matter().all(|row| sign(row.fixed, &row.per_n).is_some())
+            && loads.into_iter().all(|(fixed, per_n)| sign(*fixed, per_n).is_some())
+    }
+
+    /// Whether the parts of the arm move the tip in directions no two of which oppose: then it moves further
+    /// if any of them yields more.
+    pub fn parts_sag_together(&self) -> bool {
+        let rows = self.rows_that_matter();
+        let ways: Vec<_> = rows.map(|row| row.tip_m * sign(row.fixed, &row.per_n).unwrap_or(0.0)).collect();
+        let agree = |a: &Vector3<f64>, b: &Vector3<f64>| a.dot(b) >= -NOTHING * a.norm() * b.norm();
+        ways.iter().enumerate().all(|(i, a)| ways[..i].iter().all(|b| agree(a, b)))
+    }
+
+    /// Joints, and what moves the tip.
+    fn rows_that_matter(&self) -> impl Iterator<Item = &Row> {
+        let is_joint = |row: &Row| matches!(self.pieces[row.piece], PosedPiece::Joint { .. });
+        self.rows.iter().filter(move |row| is_joint(row) || row.tip_m.norm() > 0.0)
+    }
+}
+
+/// The one sign of a force and all its parts, 0 if there is none; `None` if they differ.
+fn sign(fixed: f64, per_n: &[f64]) -> Option<f64> {
+    let largest = per_n.iter().fold(0.0f64, |most, c| most.max(c.abs()));
+    // a fixed force is compared in the same measure: as if it were that of one newton or more
+    let nothing = NOTHING * largest.max(fixed.abs()).max(1.0);
+    let numbers = || per_n.iter().chain([&fixed]);
+    let (rise, fall) = (numbers().any(|c| *c > nothing), numbers().any(|c| *c < -nothing));
+    match (rise, fall) {
+        (true, true) => None,
+        (true, false) => Some(1.0),
+        (false, true) => Some(-1.0),
+        (false, false) => Some(0.0),
+    }
+}

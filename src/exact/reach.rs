@@ -1,0 +1,83 @@
+//! What a design may be made of that is as good as a known one: of a space too large to tabulate this leaves few parts.
+
+use super::bound::Work;
+use super::corners::Corner;
+use super::kinds::Alike;
+use super::left::Left;
+use super::problem::Problem;
+use super::regions::Zone;
+use crate::catalog::Catalogs;
+use crate::pareto::objectives::Objectives;
+use crate::space::design_space::DesignSpace;
+use std::collections::BTreeSet;
+
+/// Room between an objective and the corner that asks for it, so that rounding excludes no part.
+const ROOM: f64 = 1e-6;
+/// Zones that are parted at the most, and designs that need no parting.
+const MOST_PARTED: usize = 50;
+const FEW: f64 = 1e6;
+
+/// A design space compiled for the question which parts reach as far as a known design.
+pub struct Reach<'p> {
+    problem: Problem<'p>,
+}
+
+impl<'p> Reach<'p> {
+    /// Compiles a space; `None` if some level has no option.
+    pub fn new(space: &'p DesignSpace, catalogs: &'p Catalogs) -> Option<Self> {
+        Some(Self { problem: Problem::new(space, catalogs, &|_| true, Alike::Together)? })
+    }
+
+    /// The options of each level, tip first and ascending, that a design may have that is no worse than a known one in all
+    /// three objectives; `None` if there is no such design, the known one included.
+    pub fn options_as_good(&self, known: &Objectives) -> Option<Vec<Vec<u32>>> {
+        let corner = Corner {
+            mass_kg: known.mass_kg * (1.0 + ROOM),
+            tip_m: known.tip_deflection_m * (1.0 + ROOM),
+            hz: known.lowest_mode_hz * (1.0 - ROOM),
+        };
+        let mut work = Work::default();
+        let whole = Zone::whole(&self.problem, 0, &mut work)?;
+        let mut open = Vec::from_iter(Narrowed::new(whole, &corner, &mut work));
+        let mut closed = Vec::new();
+        for _ in 0..MOST_PARTED {
+            let largest = (0..open.len()).max_by(|&a, &b| open[a].designs.total_cmp(&open[b].designs));
+            let Some(at) = largest.filter(|&at| open[at].designs > FEW) else { break };
+            let next = open.swap_remove(at);
+            match next.zone.parted(&next.left, &mut work) {
+                Some(halves) => {
+                    open.extend(
+                        halves.into_iter().filter_map(|half| Narrowed::new(half, &corner, &mut work)),
+                    );
+                }
+                None => closed.push(next),
+            }
+        }
+        open.append(&mut closed);
+        let mut options = vec![BTreeSet::new(); self.problem.level_sizes.len()];
+        for narrowed in &open {
+            let below = self.problem.options_below(&narrowed.left.kept);
+            options.iter_mut().zip(below).for_each(|(all, some)| all.extend(some));
+        }
+        (!open.is_empty()).then(|| options.into_iter().map(Vec::from_iter).collect())
+    }
+}
+
+/// A zone narrowed as far as that is worth it.
+struct Narrowed<'p> {
+    zone: Zone<'p>,
+    left: Left,
+    designs: f64,
+}
+
+impl<'p> Narrowed<'p> {
+    fn new(mut zone: Zone<'p>, corner: &Corner, work: &mut Work) -> Option<Self> {
+        loop {
+            let (left, narrowed) = zone.narrow(corner, work, |_| false)?;
+            if !narrowed {
+                let designs = zone.designs_of(&left);
+                return Some(Self { zone, left, designs });
+            }
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! Torsion curves of gears, and boxes of them.
+
+use super::play::Play;
+use crate::arm::joint_law::{Curve, JointLaw, Windup};
+
+/// Stiffness of a rigid gear beside lost motion: to any that yields it adds a part in 1e9 at the most \[N m/rad\].
+const RIGID_NM_PER_RAD: f64 = 1e18;
+
+/// A torsion curve that is asked often: nothing is divided then.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Torsion {
+    pub windup: Windup,
+    /// Twist per torque in each segment \[rad/(N m)\], and the twist where the second and the third begin \[rad\].
+    compliance: [f64; 3],
+    begins_rad: [f64; 2],
+}
+
+impl Torsion {
+    fn new(windup: Windup) -> Self {
+        let compliance = segments(&windup).map(|(slope, ..)| 1.0 / slope);
+        let second = windup.t1_nm * compliance[0];
+        // a segment that never begins has no length
+        let third = second + (windup.t2_nm - windup.t1_nm).max(0.0) * compliance[1];
+        Self { windup, compliance, begins_rad: [second, third] }
+    }
+
+    /// Twist under a torque \[rad\].
+    #[inline]
+    pub fn angle_rad(&self, torque_nm: f64) -> f64 {
+        let t = torque_nm.abs();
+        let segment = usize::from(t > self.windup.t1_nm) + usize::from(t > self.windup.t2_nm);
+        self.angle_in(segment, t).copysign(torque_nm)
+    }
+
+    /// The same in a segment, where the torque is not negative.
+    #[inline]
+    pub fn angle_in(&self, segment: usize, t_nm: f64) -> f64 {
+        let Windup { t1_nm, t2_nm, .. } = self.windup;
+        match segment {
+            0 => t_nm * self.compliance[0],
+            1 => self.begins_rad[0] + (t_nm - t1_nm) * self.compliance[1],
+            _ => self.begins_rad[1] + (t_nm - t2_nm) * self.compliance[2],
+        }
+    }
+}
+
+/// A torsion curve between two: stiffest and softest slope at every torque.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct CurveBox {
+    /// Nowhere softer than a member; of one curve, the curve.
+    pub stiff: Torsion,
+    /// Nowhere stiffer than a member; of one curve, the curve.
+    pub soft: Torsion,
+    /// Whether modes see the first slope under any torque.
+    pub k1_in_modes: bool,
+}
+
+impl CurveBox {
+    /// The box of one joint's law without its play; a joint that does not twist has none.
+    pub fn of(law: &JointLaw) -> Option<Self> {
+        let curve = match law.without_play() {
+            Curve::Rigid if law.lost_motion.is_some() => Curve::Linear(RIGID_NM_PER_RAD),
+            curve => curve,
+        };
+        let torsion = Torsion::new(curve.segments()?);
+        Some(Self { stiff: torsion, soft: torsion, k1_in_modes: !matches!(curve, Curve::Windup(_)) })
+    }
+
+    /// Whether modes see one slope under all torques of these sizes, whichever gear it is, and its play does not change.
+    pub fn keeps_its_slope(
+        &self,
+        play: Option<&Play>,
+        [least_nm, most_nm]: [f64; 2],
+        breaks: Breaks,
+    ) -> bool {
+        let between = |t_nm: f64| least_nm <= t_nm && t_nm <= most_nm;
+        let keeps_its_segment = self.k1_in_modes
+            || match self.stiff == self.soft {
+                true => !between(self.stiff.windup.t1_nm) && !between(self.stiff.windup.t2_nm),
+                false => !breaks.any_between(least_nm, most_nm),
+            };
+        keeps_its_segment && play.is_none_or(|play| play.stays(most_nm))
+    }
+
+    /// The greatest slope at torques of these sizes \[N m\].
+    pub fn stiffest(&self, least_nm: f64, most_nm: f64) -> f64 {
+        self.slopes(&self.stiff.windup, least_nm, most_nm).fold(0.0, f64::max)
+    }
+
+    /// The least slope at torques of these sizes \[N m\].
+    pub fn softest(&self, least_nm: f64, most_nm: f64) -> f64 {
+        self.slopes(&self.soft.windup, least_nm, most_nm).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The greatest slope of the twist at torques of these sizes \[N m\], whatever modes see.
+    pub fn steepest(&self, least_nm: f64, most_nm: f64) -> f64 {
+        slopes(&self.stiff.windup, least_nm, most_nm).fold(0.0, f64::max)
+    }
+
+    /// Least and most twist between two torques, with the play beside it \[rad\].
+    pub fn twist(&self, play: Option<&Play>, [low, high]: [f64; 2]) -> [f64; 2] {
+        let least = if low >= 0.0 { &self.stiff } else { &self.soft }.angle_rad(low);
+        let most = if high >= 0.0 { &self.soft } else { &self.stiff }.angle_rad(high);
+        let [less, more] = self.twist_of_play(play, [low, high]);
+        [least + less, most + more]
+    }
+
+    /// What play adds to it.
+    pub fn twist_of_play(&self, play: Option<&Play>, between_nm: [f64; 2]) -> [f64; 2] {
+        let middle = [&self.stiff, &self.soft].map(|torsion| torsion.compliance[1]);
+        play.map_or([0.0; 2], |play| play.twist(middle, between_nm))
+    }
+
+    /// The slopes that modes may see.
+    fn slopes(&self, w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
+        let (least_nm, most_nm) = if self.k1_in_modes { (0.0, 0.0) } else { (least_nm, most_nm) };
+        slopes(w, least_nm, most_nm)
+    }
+
+    pub fn join(&self, other: &Self) -> Self {
+        Self {
+            stiff: join(rising, [&self.stiff, &other.stiff], f64::max, f64::min),
+            soft: join(rising_below, [&self.soft, &other.soft], f64::min, f64::max),
+            k1_in_modes: self.k1_in_modes && other.k1_in_modes,
+        }
+    }
+}
+
+/// A curve on one side of two, by the extremes of their slopes and break points once slopes do not fall with torque.
+fn join(
+    lifted: fn(&Windup) -> Windup,
+    both: [&Torsion; 2],
+    slope: fn(f64, f64) -> f64,
+    end: fn(f64, f64) -> f64,
+) -> Torsion {
+    let [a, b] = both.map(|torsion| lifted(&torsion.windup));
+    Torsion::new(Windup {
+        k1_nm_per_rad: slope(a.k1_nm_per_rad, b.k1_nm_per_rad),
+        k2_nm_per_rad: slope(a.k2_nm_per_rad, b.k2_nm_per_rad),
+        k3_nm_per_rad: slope(a.k3_nm_per_rad, b.k3_nm_per_rad),
+        t1_nm: end(a.t1_nm, b.t1_nm),
+        t2_nm: end(a.t2_nm, b.t2_nm),
+    })
+}
+
+/// The lowest curve of slopes that do not fall with torque and are nowhere below these: of such curves the
+/// largest slopes and the smallest break points make one that is nowhere below either.
+fn rising(w: &Windup) -> Windup {
+    let k2 = w.k1_nm_per_rad.max(w.k2_nm_per_rad);
+    Windup { k2_nm_per_rad: k2, k3_nm_per_rad: k2.max(w.k3_nm_per_rad), ..*w }
+}
+
+/// The highest curve of slopes that do not fall with torque and are nowhere above these.
+fn rising_below(w: &Windup) -> Windup {
+    let k2 = w.k2_nm_per_rad.min(w.k3_nm_per_rad);
+    Windup { k1_nm_per_rad: k2.min(w.k1_nm_per_rad), k2_nm_per_rad: k2, ..*w }
+}
+
+/// Slope and ends of each segment of a curve.
+pub(super) fn segments(w: &Windup) -> [(f64, f64, f64); 3] {
+    [
+        (w.k1_nm_per_rad, 0.0, w.t1_nm),
+        (w.k2_nm_per_rad, w.t1_nm, w.t2_nm),
+        (w.k3_nm_per_rad, w.t2_nm, f64::INFINITY),
+    ]
+}
+
+/// The slopes of the segments that torques of these sizes lie in.
+fn slopes(w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
+    // a break point belongs to the segment below it
+    let touched = move |&(_, from, to): &(f64, f64, f64)| least_nm <= to && (most_nm > from || from == 0.0);
+    segments(w).into_iter().filter(touched).map(|(slope, ..)| slope)
+}
+
+/// The break points of a set of curves, on a grid of about 5 %.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Breaks([u64; 4]);
+
+impl Breaks {
+    const CELLS: f64 = 256.0;
+    const OCTAVES: f64 = 18.0;
+    const LEAST_LOG2: f64 = -4.0;
+
+    /// Those of one curve.
+    pub fn of(w: &Windup) -> Self {
+        [w.t1_nm, w.t2_nm].into_iter().filter(|t| t.is_finite()).fold(Self::default(), |mut set, t_nm| {
+            let cell = Self::cell(t_nm);
+            set.0[cell / 64] |= 1 << (cell % 64);
+            set
+        })
+    }
+
+    pub fn join(&self, other: &Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] | other.0[i]))
+    }
+
+    /// Whether a break point may lie between two torques \[N m\].
+    fn any_between(&self, least_nm: f64, most_nm: f64) -> bool {
+        (Self::cell(least_nm)..=Self::cell(most_nm)).any(|cell| self.0[cell / 64] >> (cell % 64) & 1 == 1)
+    }
+
+    /// Torques beyond the grid count to its ends.
+    fn cell(t_nm: f64) -> usize {
+        let at = (t_nm.log2() - Self::LEAST_LOG2) * (Self::CELLS / Self::OCTAVES);
+        at.clamp(0.0, Self::CELLS - 1.0) as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The curve without divisions is the curve, and a box of curves lies around its members.
+        #[test]
+        fn twists_are_those_of_the_curve_and_inside_every_box(
+            slopes in prop::array::uniform6(0.1f64..3.0), ends in prop::array::uniform2((0.1f64..3.0, 0.0f64..3.0)),
+            torque_nm in -8.0f64..8.0,
+        ) {
+            let windup = |g: usize| Windup {
+                k1_nm_per_rad: slopes[g], k2_nm_per_rad: slopes[g + 2], k3_nm_per_rad: slopes[g + 4],
+                t1_nm: ends[g].0, t2_nm: ends[g].0 + ends[g].1,
+            };
+            let both = [windup(0), windup(1)];
+            let [a, b] = both.map(|curve| {
+                CurveBox::of(&JointLaw::from(Curve::Windup(curve))).unwrap()
+            });
+            for (curve, windup) in [&a, &b].into_iter().zip(both) {
+                let twist = windup.angle_rad(torque_nm);
+                prop_assert!((curve.stiff.angle_rad(torque_nm) - twist).abs() <= 1e-14 * twist.abs());
+                let [least, most] = a.join(&b).twist(None, [torque_nm; 2]);
+                prop_assert!(least <= twist + 1e-12 && twist <= most + 1e-12, "{least} {twist} {most}");
+            }
+            let line = CurveBox::of(&JointLaw::from(Curve::Linear(2.0))).unwrap();
+            prop_assert_eq!(line.stiff.angle_rad(torque_nm), 0.5 * torque_nm);
+            prop_assert!(line.stiff == line.soft);
+        }
+    }
+}

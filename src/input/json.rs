@@ -1,0 +1,518 @@
+//! What is wrong with an input file: every fault at once, with file, line, field, the value seen and
+//! what to try.
+//!
+//! A [`Document`] is the text of one JSON file. Readers walk it through [`Node`]s; a node never fails,
+//! it records a [`Fault`] and returns `None`, so that one pass over a file finds all of its faults.
+//! [`Document::finish`] turns them into an error.
+
+pub use super::lines::LineCounter;
+
+use serde_json::{Map, Value};
+use std::cell::RefCell;
+use std::fmt;
+use std::path::Path;
+
+/// One thing wrong with an input file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fault {
+    /// File name as the user gave it.
+    pub file: String,
+    /// Line in the file, from 1, where known.
+    pub line: Option<usize>,
+    /// Path of the field (`chain[2].section.wall_m`) or column name.
+    pub field: String,
+    /// What is wrong, with the value seen.
+    pub problem: String,
+    /// What is allowed, or what to try next.
+    pub hint: String,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.file)?;
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+        }
+        if !self.field.is_empty() {
+            write!(f, ": {}", self.field)?;
+        }
+        write!(f, ": {}", self.problem)?;
+        if !self.hint.is_empty() {
+            write!(f, "; {}", self.hint)?;
+        }
+        Ok(())
+    }
+}
+
+/// All faults of one or more input files; never empty.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{}", list(.0))]
+pub struct Faults(pub Vec<Fault>);
+
+fn list(faults: &[Fault]) -> String {
+    let mut text = match faults.len() {
+        1 => "1 fault in the input:".to_string(),
+        n => format!("{n} faults in the input:"),
+    };
+    for fault in faults {
+        text.push_str("\n  ");
+        text.push_str(&fault.to_string());
+    }
+    text
+}
+
+/// Why an input file could not be used.
+#[derive(Debug, thiserror::Error)]
+pub enum InputError {
+    /// The file could not be read at all.
+    #[error("cannot read {file}: {source}")]
+    Unreadable {
+        /// File name as given.
+        file: String,
+        /// The operating system's reason.
+        source: std::io::Error,
+    },
+    /// The file was read and is wrong.
+    #[error(transparent)]
+    Faulty(#[from] Faults),
+}
+
+/// The text of one JSON input file, its parsed value, and the faults found in it so far.
+pub struct Document {
+    file: String,
+    text: String,
+    value: Value,
+    faults: RefCell<Vec<Fault>>,
+}
+
+impl Document {
+    /// Reads a JSON file from disk.
+    ///
+    /// # Errors
+    /// [`InputError::Unreadable`] if the file is missing, [`InputError::Faulty`] if it is not JSON.
+    pub fn read(path: &Path) -> Result<Self, InputError> {
+        let file = path.display().to_string();
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| InputError::Unreadable { file: file.clone(), source })?;
+        Ok(Self::parse(&file, &text)?)
+    }
+
+    /// Parses JSON text; `file` is the name used in messages.
+    ///
+    /// # Errors
+    /// [`Faults`] with the line of the first syntax error.
+    pub fn parse(file: &str, text: &str) -> Result<Self, Faults> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let value = serde_json::from_str(text).map_err(|e| {
+            Faults(vec![Fault {
+                file: file.to_string(),
+                line: Some(e.line()),
+                field: format!("column {}", e.column()),
+                problem: format!("not valid JSON: {}", syntax_message(&e)),
+                hint: "JSON has no NaN, no comments and no trailing commas".into(),
+            }])
+        })?;
+        let document =
+            Self { file: file.to_string(), text: text.to_string(), value, faults: RefCell::default() };
+        for path in super::duplicates::duplicate_keys(text) {
+            document.fault(&path, "is given more than once".into(), "keep the one that holds");
+        }
+        Ok(document)
+    }
+
+    /// The whole document as a node.
+    pub fn root(&self) -> Node<'_> {
+        Node { document: self, value: &self.value, path: String::new() }
+    }
+
+    /// The file name used in messages.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Records a fault that concerns several fields at once.
+    pub fn fault(&self, path: &str, problem: String, hint: &str) {
+        let fault = Fault {
+            file: self.file.clone(),
+            line: line_of(&self.text, path),
+            field: path.to_string(),
+            problem,
+            hint: hint.to_string(),
+        };
+        let mut faults = self.faults.borrow_mut();
+        // two readers may look at one field
+        if !faults.contains(&fault) {
+            faults.push(fault);
+        }
+    }
+
+    /// The value if no fault was found.
+    ///
+    /// # Errors
+    /// All faults recorded so far. A reader that returns `None` has recorded why.
+    pub fn finish<T>(self, value: Option<T>) -> Result<T, Faults> {
+        let faults = self.faults.into_inner();
+        match value {
+            Some(value) if faults.is_empty() => Ok(value),
+            _ if faults.is_empty() => Err(Faults(vec![Fault {
+                file: self.file,
+                line: None,
+                field: String::new(),
+                problem: "the file is incomplete".into(),
+                hint: String::new(),
+            }])),
+            _ => Err(Faults(faults)),
+        }
+    }
+}
+
+fn syntax_message(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    text.split(" at line").next().unwrap_or(&text).to_string()
+}
+
+/// One value inside a [`Document`], with its path.
+#[derive(Clone)]
+pub struct Node<'a> {
+    document: &'a Document,
+    value: &'a Value,
+    path: String,
+}
+
+impl<'a> Node<'a> {
+    /// Path of this node, as printed in messages.
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// The raw value.
+    pub fn value(&self) -> &'a Value {
+        self.value
+    }
+
+    /// Whether the value is JSON `null`.
+    pub fn is_null(&self) -> bool {
+        self.value.is_null()
+    }
+
+    /// Records a fault at this node and returns `None`.
+    pub fn fault<T>(&self, problem: impl Into<String>, hint: &str) -> Option<T> {
+        self.document.fault(&self.path, problem.into(), hint);
+        None
+    }
+
+    /// Records a fault at a path below this node and returns `None`.
+    pub fn fault_below<T>(&self, path: &str, problem: impl Into<String>, hint: &str) -> Option<T> {
+        self.document.fault(&join(&self.path, path), problem.into(), hint);
+        None
+    }
+
+    /// This node as an object whose keys are all among `known`; unknown keys are faults.
+    pub fn object(&self, known: &[&str]) -> Option<Object<'a>> {
+        let Value::Object(map) = self.value else {
+            return self.fault(format!("is {}, not an object", kind(self.value)), "write { ... }");
+        };
+        for key in map.keys().filter(|k| !known.contains(&k.as_str())) {
+            let hint = match closest(key, known) {
+                Some(name) => format!("did you mean \"{name}\"? known keys: {}", known.join(", ")),
+                None => format!("known keys: {}", known.join(", ")),
+            };
+            self.document.fault(&join(&self.path, key), "unknown key".into(), &hint);
+        }
+        Some(Object { node: self.clone(), map })
+    }
+
+    /// This node as a map of names to nodes, in file order.
+    pub fn entries(&self) -> Option<Vec<(&'a str, Node<'a>)>> {
+        let Value::Object(map) = self.value else {
+            return self.fault(format!("is {}, not an object", kind(self.value)), "write { ... }");
+        };
+        Some(map.iter().map(|(k, v)| (k.as_str(), self.child(&join(&self.path, k), v))).collect())
+    }
+
+    /// This node as an array of nodes.
+    pub fn array(&self) -> Option<Vec<Node<'a>>> {
+        let Value::Array(items) = self.value else {
+            return self.fault(format!("is {}, not an array", kind(self.value)), "write [ ... ]");
+        };
+        Some(items.iter().enumerate().map(|(i, v)| self.child(&format!("{}[{i}]", self.path), v)).collect())
+    }
+
+    /// This node as a string.
+    pub fn string(&self) -> Option<&'a str> {
+        match self.value {
+            Value::String(s) => Some(s),
+            other => self.fault(format!("is {}, not a string", kind(other)), "write \"...\""),
+        }
+    }
+
+    /// This node as `true` or `false`.
+    pub fn boolean(&self) -> Option<bool> {
+        match self.value {
+            Value::Bool(b) => Some(*b),
+            other => self.fault(format!("is {}", kind(other)), "write true or false"),
+        }
+    }
+
+    /// This node as a finite number.
+    pub fn number(&self) -> Option<f64> {
+        match self.value.as_f64() {
+            Some(x) if x.is_finite() => Some(x),
+            Some(x) => self.fault(format!("= {x} is not finite"), "give a finite number"),
+            None => self.fault(format!("is {}, not a number", kind(self.value)), "give a number in SI units"),
+        }
+    }
+
+    /// This node as a number greater than zero.
+    pub fn positive(&self) -> Option<f64> {
+        match self.number()? {
+            x if x > 0.0 => Some(x),
+            x => self.fault(format!("= {x} must be greater than 0"), "check sign and unit"),
+        }
+    }
+
+    /// This node as a number not less than zero.
+    pub fn non_negative(&self) -> Option<f64> {
+        match self.number()? {
+            x if x >= 0.0 => Some(x),
+            x => self.fault(format!("= {x} must not be negative"), "check the sign"),
+        }
+    }
+
+    /// This node as an array of `N` finite numbers.
+    pub fn numbers<const N: usize>(&self) -> Option<[f64; N]> {
+        let items = self.array()?;
+        if items.len() != N {
+            return self.fault(format!("has {} numbers, not {N}", items.len()), &format!("give {N} numbers"));
+        }
+        let mut out = [0.0; N];
+        let mut complete = true;
+        for (slot, item) in out.iter_mut().zip(&items) {
+            match item.number() {
+                Some(x) => *slot = x,
+                None => complete = false,
+            }
+        }
+        complete.then_some(out)
+    }
+
+    fn child(&self, path: &str, value: &'a Value) -> Node<'a> {
+        Node { document: self.document, value, path: path.to_string() }
+    }
+}
+
+/// A JSON object inside a [`Document`].
+pub struct Object<'a> {
+    node: Node<'a>,
+    map: &'a Map<String, Value>,
+}
+
+impl<'a> Object<'a> {
+    /// The node of the object itself.
+    pub fn node(&self) -> &Node<'a> {
+        &self.node
+    }
+
+    /// Whether the key is there (with any value, `null` included).
+    pub fn has(&self, key: &str) -> bool {
+        self.map.contains_key(key)
+    }
+
+    /// The node under `key` if it is there.
+    pub fn optional(&self, key: &str) -> Option<Node<'a>> {
+        self.map.get(key).map(|v| self.node.child(&join(&self.node.path, key), v))
+    }
+
+    /// The node under `key`; its absence is a fault.
+    pub fn required(&self, key: &str) -> Option<Node<'a>> {
+        self.optional(key).or_else(|| {
+            self.node.document.fault(
+                &self.node.path,
+                format!("lacks \"{key}\""),
+                &format!("add \"{key}\": ..."),
+            );
+            None
+        })
+    }
+
+    /// A value read with `read` if the key is there, else `default`; `None` only if it is there and faulty.
+    pub fn or<T>(&self, key: &str, default: T, read: impl FnOnce(&Node<'a>) -> Option<T>) -> Option<T> {
+        match self.optional(key) {
+            Some(node) => read(&node),
+            None => Some(default),
+        }
+    }
+}
+
+pub(crate) fn join(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_string() } else { format!("{path}.{key}") }
+}
+
+/// What a JSON value is, in words, with the value where it is short.
+fn kind(value: &Value) -> String {
+    match value {
+        Value::Null => "null".into(),
+        Value::Bool(b) => format!("{b}"),
+        Value::Number(n) => format!("the number {n}"),
+        Value::String(s) => format!("the text \"{s}\""),
+        Value::Array(a) => format!("an array of {}", a.len()),
+        Value::Object(_) => "an object".into(),
+    }
+}
+
+/// The known name nearest to `word` if it is near enough to be a slip of the hand.
+pub fn closest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    known
+        .iter()
+        .map(|k| (edit_distance(&word.to_lowercase(), &k.to_lowercase()), *k))
+        .min()
+        .filter(|(d, k)| *d <= 2.max(k.len() / 3) && *d < word.len())
+        .map(|(_, k)| k)
+}
+
+/// Levenshtein distance, bytes.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let b = b.as_bytes();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.bytes().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, cb) in b.iter().enumerate() {
+            let cost = diagonal + usize::from(ca != *cb);
+            diagonal = row[j + 1];
+            row[j + 1] = cost.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+/// Line (from 1) of the value at `path` in JSON text that is known to parse.
+fn line_of(text: &str, path: &str) -> Option<usize> {
+    let offset = Locator { bytes: text.as_bytes(), at: 0 }.find(&segments(path))?;
+    Some(1 + text.as_bytes()[..offset].iter().filter(|&&b| b == b'\n').count())
+}
+
+enum Segment<'a> {
+    Key(&'a str),
+    Index(usize),
+}
+
+fn segments(path: &str) -> Vec<Segment<'_>> {
+    let mut out = Vec::new();
+    for part in path.split('.').filter(|p| !p.is_empty()) {
+        let mut pieces = part.split('[');
+        if let Some(key) = pieces.next().filter(|k| !k.is_empty()) {
+            out.push(Segment::Key(key));
+        }
+        out.extend(pieces.filter_map(|p| p.trim_end_matches(']').parse().ok()).map(Segment::Index));
+    }
+    out
+}
+
+/// Walks JSON text to the value at a path.
+struct Locator<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl Locator<'_> {
+    fn find(mut self, path: &[Segment]) -> Option<usize> {
+        for segment in path {
+            self.space();
+            let open = *self.bytes.get(self.at)?;
+            self.at += 1;
+            let mut index = 0;
+            loop {
+                self.space();
+                match (segment, open) {
+                    (Segment::Key(wanted), b'{') => {
+                        let start = self.at;
+                        self.skip();
+                        let found = self.bytes.get(start + 1..self.at - 1)? == wanted.as_bytes();
+                        self.space();
+                        self.at += 1;
+                        self.space();
+                        if found {
+                            break;
+                        }
+                    }
+                    (Segment::Index(wanted), b'[') if index == *wanted => break,
+                    (Segment::Index(_), b'[') => index += 1,
+                    _ => return None,
+                }
+                self.skip();
+                self.space();
+                if *self.bytes.get(self.at)? != b',' {
+                    return None;
+                }
+                self.at += 1;
+            }
+        }
+        self.space();
+        Some(self.at)
+    }
+
+    fn space(&mut self) {
+        while self.bytes.get(self.at).is_some_and(u8::is_ascii_whitespace) {
+            self.at += 1;
+        }
+    }
+
+    /// Passes over one value.
+    fn skip(&mut self) {
+        let mut depth = 0usize;
+        while let Some(&byte) = self.bytes.get(self.at) {
+            match byte {
+                b'"' => {
+                    self.at += 1;
+                    while self.bytes.get(self.at).is_some_and(|&b| b != b'"') {
+                        self.at += if self.bytes[self.at] == b'\\' { 2 } else { 1 };
+                    }
+                }
+                b'{' | b'[' => depth += 1,
+                b'}' | b']' if depth == 0 => return,
+                b'}' | b']' => depth -= 1,
+                b',' | b':' if depth == 0 => return,
+                _ => {}
+            }
+            self.at += 1;
+            if depth == 0 && matches!(byte, b'"' | b'}' | b']') {
+                return;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "{\n \"a\": [1,\n  {\"b\": \"x\\\"}\",\n   \"c\": -2}],\n \"d\": true\n}";
+
+    #[test]
+    fn a_fault_names_the_line_of_its_field() {
+        assert_eq!(line_of(TEXT, "a[1].c"), Some(4));
+        assert_eq!(line_of(TEXT, "d"), Some(5));
+        assert_eq!(line_of(TEXT, "a[0]"), Some(2));
+        assert_eq!(line_of(TEXT, "a[2]"), None);
+    }
+
+    #[test]
+    fn a_key_given_twice_is_a_fault_whoever_reads_the_document() {
+        let doc = Document::parse("x.json", "{\"a\": 1,\n \"b\": {\"c\": 1, \"c\": 2}}").expect("valid");
+        let faults = doc.finish(Some(())).expect_err("one fault").0;
+        assert_eq!(faults[0].to_string(), "x.json:2: b.c: is given more than once; keep the one that holds");
+    }
+
+    #[test]
+    fn all_faults_are_reported_at_once() {
+        let doc = Document::parse("x.json", TEXT).expect("valid");
+        let root = doc.root();
+        let object = root.object(&["a", "e"]).expect("object");
+        object.required("e");
+        object.optional("a").expect("there").array().expect("array")[0].string();
+        let faults = doc.finish(Some(())).expect_err("three faults").0;
+        assert_eq!(faults.len(), 3);
+        assert_eq!(faults[0].to_string(), "x.json:5: d: unknown key; known keys: a, e");
+    }
+}

@@ -1,0 +1,7 @@
+//! Files as they come in: JSON documents and tables, every fault kept with file, line, field and hint.
+
+pub(crate) mod duplicates;
+pub mod json;
+pub(crate) mod lines;
+
+pub use json::*;

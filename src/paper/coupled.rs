@@ -1,0 +1,159 @@
+//! The paper's coupled masses and springs (Eqs 16 to 18), written separately from the general mechanics.
+//!
+//! Unknowns are the absolute angles ψ of three rigid links. From Lagrange's equations, with m_i and I_i a
+//! tube's mass and moment of inertia about its centre, m_w the wrist and m_p the load,
+//!
+//! ```text
+//! M11 = I1 + m1 l1²/4 + (m3 + m2 + m_w + m_p) l1²     K = | K2+K3  -K3     0  |
+//! M12 = (m2/2 + m_w + m_p) l1 l2                          | -K3    K3+K4  -K4 |
+//! M13 = m_p l1 l3                                         | 0      -K4     K4 |
+//! M22 = I2 + m2 l2²/4 + (m_w + m_p) l2²
+//! M23 = m_p l2 l3,  M33 = m_p l3²                     right side for a vertical tip force: [l1, l2, l3] F
+//! ```
+//!
+//! Eq 17 asks `det(K - λ M) = 0`, a cubic in λ = ω²; what the paper calls ω in Hz is f = ω/2π.
+
+use super::arm::PaperArm;
+use crate::arm::joint_law::Curve;
+use nalgebra::{Matrix3, Vector3};
+use std::f64::consts::TAU;
+
+/// Eq 16 for one arm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CoupledArm {
+    /// Mass matrix \[kg m²\].
+    pub mass: Matrix3<f64>,
+    /// Stiffness matrix \[N m/rad\].
+    pub stiffness: Matrix3<f64>,
+    /// Lengths l1, l2, l3 \[m\].
+    pub lengths_m: Vector3<f64>,
+}
+
+impl CoupledArm {
+    /// Eq 16 of an arm with constant joint stiffnesses (a curve counts with its middle slope).
+    pub fn new(arm: &PaperArm) -> Self {
+        let [k2, k3, k4] = arm.curves.map(stiffness_nm_per_rad);
+        let lengths_m = Vector3::new(arm.lengths_m[0], arm.lengths_m[1], arm.third_link_m);
+        Self {
+            mass: mass_matrix(arm, &lengths_m),
+            stiffness: Matrix3::new(k2 + k3, -k3, 0.0, -k3, k3 + k4, -k4, 0.0, -k4, k4),
+            lengths_m,
+        }
+    }
+
+    /// The three frequencies \[Hz\] from Eq 17, lowest first.
+    pub fn frequencies_hz(&self) -> [f64; 3] {
+        cubic_roots(self.characteristic_cubic()).map(|lambda| lambda.sqrt() / TAU)
+    }
+
+    /// Coefficients of det(K - λ M), lowest power first: columns of K replaced by columns of -M.
+    pub fn characteristic_cubic(&self) -> [f64; 4] {
+        let mut coefficients = [0.0; 4];
+        for choice in 0..8u32 {
+            let mut columns = self.stiffness;
+            for column in (0..3).filter(|c| choice >> c & 1 == 1) {
+                columns.set_column(column, &-self.mass.column(column));
+            }
+            coefficients[choice.count_ones() as usize] += columns.determinant();
+        }
+        coefficients
+    }
+
+    /// Static motion of the tip under a vertical tip force of 1 N, for a right side of Eq 16 \[m/N\].
+    pub fn tip_compliance_m_per_n(&self, right_side_m: &Vector3<f64>) -> Option<f64> {
+        let angles = self.stiffness.lu().solve(right_side_m)?;
+        Some(self.lengths_m.dot(&angles))
+    }
+
+    /// The right side of Eq 16 as printed, [l2, l2, l3].
+    pub fn printed_right_side_m(&self) -> Vector3<f64> {
+        Vector3::new(self.lengths_m.y, self.lengths_m.y, self.lengths_m.z)
+    }
+}
+
+fn stiffness_nm_per_rad(curve: Curve) -> f64 {
+    1.0 / curve.middle_slope().tangent_compliance_rad_per_nm(0.0)
+}
+
+fn mass_matrix(arm: &PaperArm, l: &Vector3<f64>) -> Matrix3<f64> {
+    let tube = |i: usize| (arm.link_kg(i), tube_inertia_kgm2(arm, i));
+    let ((m1, i1), (m2, i2)) = (tube(0), tube(1));
+    let at_wrist = arm.wrist_kg + arm.load_kg;
+    let m11 = i1 + m1 * l.x * l.x / 4.0 + (arm.joint_3_kg + m2 + at_wrist) * l.x * l.x;
+    let m12 = (m2 / 2.0 + at_wrist) * l.x * l.y;
+    let m22 = i2 + m2 * l.y * l.y / 4.0 + at_wrist * l.y * l.y;
+    let (m13, m23, m33) = (arm.load_kg * l.x * l.z, arm.load_kg * l.y * l.z, arm.load_kg * l.z * l.z);
+    Matrix3::new(m11, m12, m13, m12, m22, m23, m13, m23, m33)
+}
+
+/// Moment of inertia of a tube about its centre, across its axis: m L²/12 + ρ I L \[kg m²\].
+fn tube_inertia_kgm2(arm: &PaperArm, link: usize) -> f64 {
+    let length_m = arm.lengths_m[link];
+    arm.link_kg(link) * length_m * length_m / 12.0
+        + arm.material.density_kg_m3 * arm.second_moment_m4(link) * length_m
+}
+
+/// The three real roots of a cubic, rising: Vieta's trigonometric form, then Newton's method.
+fn cubic_roots([c0, c1, c2, c3]: [f64; 4]) -> [f64; 3] {
+    let (a, b, c) = (c2 / c3, c1 / c3, c0 / c3);
+    let p = (a * a - 3.0 * b) / 9.0;
+    let q = (2.0 * a * a * a - 9.0 * a * b + 27.0 * c) / 54.0;
+    let angle = (q / p.powf(1.5)).clamp(-1.0, 1.0).acos();
+    let root = |k: f64| -2.0 * p.sqrt() * ((angle + TAU * k) / 3.0).cos() - a / 3.0;
+    let mut roots = [0.0, 1.0, -1.0].map(root).map(|x| polish([c, b, a], x));
+    roots.sort_by(f64::total_cmp);
+    roots
+}
+
+/// Newton's method on `x³ + a x² + b x + c` from a good start.
+fn polish([c, b, a]: [f64; 3], start: f64) -> f64 {
+    (0..4).fold(start, |x, _| {
+        let value = ((x + a) * x + b) * x + c;
+        let slope = (3.0 * x + 2.0 * a) * x + b;
+        if slope == 0.0 { x } else { x - value / slope }
+    })
+}
+
+/// Eq 18: one spring and one mass \[Hz\].
+pub fn single_spring_hz(stiffness_n_per_m: f64, mass_kg: f64) -> f64 {
+    (stiffness_n_per_m / mass_kg).sqrt() / TAU
+}
+
+/// The arm with a given third spring whose masses give three wanted frequencies.
+///
+/// Unknowns are wrist mass, load mass and the load's distance; Newton's method on their logarithms from
+/// the arm's own values, in steps that never change one by more than a tenth. `None` if the three
+/// frequencies cannot be had with this spring.
+pub fn masses_that_give(arm: &PaperArm, wanted_hz: [f64; 3]) -> Option<PaperArm> {
+    let wanted = Vector3::from(wanted_hz.map(f64::ln));
+    let mut x = Vector3::new(arm.wrist_kg.ln(), arm.load_kg.ln(), arm.third_link_m.ln());
+    for _ in 0..400 {
+        let here = log_frequencies(arm, &x);
+        let gap = wanted - here;
+        if gap.amax() < 1e-13 {
+            return Some(with_masses(arm, &x));
+        }
+        let jacobian = Matrix3::from_columns(&[0, 1, 2].map(|i| {
+            let mut step = Vector3::zeros();
+            step[i] = 1e-6;
+            (log_frequencies(arm, &(x + step)) - log_frequencies(arm, &(x - step))) / 2e-6
+        }));
+        let step = jacobian.lu().solve(&gap)?;
+        x += step * (0.1 / step.amax()).min(1.0);
+        if x.amax() > 12.0 || !x.amax().is_finite() {
+            return None;
+        }
+    }
+    // rounding may keep the last digit from settling
+    let found = with_masses(arm, &x);
+    let gap = (log_frequencies(arm, &x) - wanted).amax();
+    (gap < 1e-9).then_some(found)
+}
+
+fn with_masses(arm: &PaperArm, x: &Vector3<f64>) -> PaperArm {
+    PaperArm { wrist_kg: x.x.exp(), load_kg: x.y.exp(), third_link_m: x.z.exp(), ..arm.clone() }
+}
+
+fn log_frequencies(arm: &PaperArm, x: &Vector3<f64>) -> Vector3<f64> {
+    Vector3::from(CoupledArm::new(&with_masses(arm, x)).frequencies_hz().map(f64::ln))
+}

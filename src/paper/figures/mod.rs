@@ -1,0 +1,205 @@
+//! The paper's Figs 2 to 4: a hollow square cantilever under an end force, in many sections and materials.
+//!
+//! The figures print neither length nor load nor wall; ours are L = 0.8 m, F = 500 N, T = 0, t = 10 mm,
+//! b = h = 7 to 16 cm. What they call specific gravity is q of Eq 6, the weight per length \[N/m\].
+//! Deflection is Eq 4; beside it stands that of the full link model, which knows shear.
+
+pub mod fig2;
+pub mod fig3;
+pub mod fig4;
+
+use super::claim::{self, Claim};
+use super::equations::deflection_eq_4_m;
+use super::{PaperStudyOutput, arm::GRAVITY_M_S2};
+use crate::arm::load::Payload;
+use crate::arm::section::{LinkMaterial, Section};
+use crate::arm::{Arm, Element, JointModel, Link, LinkBody, LinkModel};
+use crate::catalog::material::Material;
+use crate::mechanics::chain::Chain;
+use crate::report::number::shortest;
+use crate::report::svg::{Axis, Plot, Scale};
+use crate::report::table::{Column, Table};
+use nalgebra::Vector3;
+
+/// Length of the cantilever \[m\].
+pub const LENGTH_M: f64 = 0.8;
+/// Force at its end \[N\].
+pub const FORCE_N: f64 = 500.0;
+/// Wall thickness where it does not vary \[m\].
+pub const WALL_M: f64 = 0.010;
+/// Smallest and largest outer size, in steps of 1 cm \[m\].
+pub const SIZES_M: (f64, f64) = (0.07, 0.16);
+
+/// One section of one material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BeamPoint {
+    /// Name of the material.
+    pub material: String,
+    /// Outer width and height \[m\].
+    pub size_m: f64,
+    /// Wall thickness \[m\].
+    pub wall_m: f64,
+    /// Weight per length \[N/m\] (Eq 6).
+    pub weight_n_per_m: f64,
+    /// Deflection of the end by bending (Eq 4) \[m\].
+    pub deflection_m: f64,
+    /// Deflection of the end with shear, if the shear modulus is known \[m\].
+    pub full_deflection_m: Option<f64>,
+}
+
+impl BeamPoint {
+    /// A square tube of a material.
+    pub fn new(material: &Material, size_m: f64, wall_m: f64) -> Self {
+        let section = Section::RectangularTube { width_m: size_m, height_m: size_m, wall_m };
+        let properties = section.properties(material.poisson.unwrap_or(0.3));
+        let weight_n_per_m = properties.area_m2 * material.density_kg_m3 * GRAVITY_M_S2;
+        let rigidity = material.youngs_modulus_pa * properties.second_moment_y_m4;
+        Self {
+            material: material.name.clone(),
+            size_m,
+            wall_m,
+            weight_n_per_m,
+            deflection_m: deflection_eq_4_m(rigidity, LENGTH_M, FORCE_N, weight_n_per_m, 0.0),
+            full_deflection_m: library_deflection_m(material, section, LinkModel::Full),
+        }
+    }
+
+    /// Force over deflection \[N/m\].
+    pub fn stiffness_n_per_m(&self) -> f64 {
+        FORCE_N / self.deflection_m
+    }
+
+    /// Stiffness over weight per length: N/m over N/m.
+    pub fn stiffness_per_weight(&self) -> f64 {
+        self.stiffness_n_per_m() / self.weight_n_per_m
+    }
+
+    /// Place in the figures: weight per length \[N/m\], deflection \[mm\].
+    pub fn in_figure(&self) -> (f64, f64) {
+        (self.weight_n_per_m, 1e3 * self.deflection_m)
+    }
+}
+
+/// Deflection of the cantilever's end as the general mechanics has it \[m\]; `None` without a shear modulus.
+pub fn library_deflection_m(material: &Material, section: Section, links: LinkModel) -> Option<f64> {
+    let link = LinkMaterial {
+        youngs_modulus_pa: material.youngs_modulus_pa,
+        shear_modulus_pa: material.shear_modulus_pa?,
+        density_kg_m3: material.density_kg_m3,
+        poisson: material.poisson.unwrap_or(0.3),
+    };
+    let body = LinkBody::Tube { material_name: material.name.clone(), material: link, section };
+    let beam = Element::Link(Link { name: "beam".into(), vector_m: Vector3::x() * LENGTH_M, body });
+    let arm =
+        Arm { name: "cantilever".into(), gravity_m_s2: GRAVITY_M_S2, chain: vec![beam], effects: Vec::new() };
+    let chain = Chain::new(&arm.structure(JointModel::K2), links);
+    let posed = chain.pose_rad(&[], &Payload::default(), -Vector3::z() * FORCE_N);
+    Some(-posed.statics().tip_displacement_m.z)
+}
+
+/// The sections of a figure, b = h = 7 to 16 cm with the same wall.
+pub fn sizes(material: &Material) -> Vec<BeamPoint> {
+    (7..=16).map(|cm| BeamPoint::new(material, f64::from(cm) / 100.0, WALL_M)).collect()
+}
+
+/// The points of several materials as CSV.
+pub fn points_csv(points: &[BeamPoint]) -> String {
+    let names = [
+        "material",
+        "outer_mm",
+        "wall_mm",
+        "weight_n_per_m",
+        "deflection_mm",
+        "deflection_with_shear_mm",
+        "stiffness_n_per_m",
+        "stiffness_per_weight",
+    ];
+    let mut table = Table::new(names.map(Column::left).to_vec());
+    for point in points {
+        table.row([
+            point.material.clone(),
+            shortest(millimetres(point.size_m)),
+            shortest(millimetres(point.wall_m)),
+            shortest(point.weight_n_per_m),
+            shortest(1e3 * point.deflection_m),
+            point.full_deflection_m.map_or_else(String::new, |d| shortest(1e3 * d)),
+            shortest(point.stiffness_n_per_m()),
+            shortest(point.stiffness_per_weight()),
+        ]);
+    }
+    table.to_csv()
+}
+
+/// Millimetres without the noise of the conversion: to the nanometre.
+fn millimetres(metres: f64) -> f64 {
+    (metres * 1e9).round() / 1e6
+}
+
+/// A plot with the figures' axes.
+pub fn deflection_plot(title: &str, description: &str) -> Plot {
+    Plot {
+        title: title.to_string(),
+        description: description.to_string(),
+        x: Axis::new("weight per length q (\u{201c}specific gravity\u{201d}) [N/m]", Scale::Linear),
+        y: Axis::new("deflection at the end [mm]", Scale::Log),
+        ..Plot::default()
+    }
+}
+
+/// What a figure's study gives: picture, points, claims, summary.
+struct Figure {
+    name: &'static str,
+    title: &'static str,
+    plot: Plot,
+    points: Vec<BeamPoint>,
+    claims: Vec<Claim>,
+    /// Titled tables of the summary, with the names of their CSV files.
+    tables: Vec<(&'static str, &'static str, Table)>,
+    /// Closing words of the summary.
+    words: String,
+}
+
+impl Figure {
+    fn output(self) -> PaperStudyOutput {
+        let mut out = PaperStudyOutput { files: Vec::new(), terminal: self.terminal() };
+        out.file("summary.md", self.summary());
+        out.file(&format!("{}.csv", self.name), points_csv(&self.points));
+        out.file(&format!("{}.svg", self.name), self.plot.to_svg());
+        out.file("claims.csv", claim::table(&self.claims).to_csv());
+        for (_, file, table) in &self.tables {
+            out.file(&format!("{file}.csv"), table.to_csv());
+        }
+        out
+    }
+
+    fn terminal(&self) -> String {
+        let mut text = format!("{}\n\n", self.title);
+        for claim in &self.claims {
+            text.push_str(&format!("[{}] {}\n  {}\n", claim.verdict(), claim.statement, claim.evidence));
+        }
+        for (title, _, table) in &self.tables {
+            text.push_str(&format!("\n{title}\n\n{}", table.to_text()));
+        }
+        text
+    }
+
+    fn summary(&self) -> String {
+        let mut text = format!(
+            "# {}\n\n![{}]({}.svg)\n\nA square tube, clamped at one end: L = 0.8 m, F = 500 N at the end, no end \
+             torque, wall 10 mm and b = h = 70 to 160 mm unless said otherwise (the paper prints none of these). \
+             Deflection by Eq 4; the CSV has that of the full link model, with shear, beside it.\n\n\
+             ## The figure's claims\n\n{}",
+            self.title,
+            self.plot.title,
+            self.name,
+            claim::list(&self.claims)
+        );
+        for (title, _, table) in &self.tables {
+            text.push_str(&format!("\n## {title}\n\n{}", table.to_markdown()));
+        }
+        if !self.words.is_empty() {
+            text.push_str(&format!("\n{}\n", self.words));
+        }
+        text
+    }
+}

@@ -1,0 +1,212 @@
+//! What would make the paper's arm more accurate: correcting for the joints, stiffer connections,
+//! stiffer drives first.
+
+use super::arm::{JOINTS, LINKS, PaperArm, Solved, connect, stiffen_link};
+use super::{PaperError, parts};
+use crate::arm::LinkModel;
+use crate::arm::joint_law::Curve;
+use crate::catalog::Catalogs;
+use crate::report::number::{fixed, percent_change, shortest};
+use crate::report::table::{Column, Table};
+
+/// How well the gear's curve is known, in the conclusions' second remedy.
+pub const CURVE_ERRORS: [f64; 3] = [0.05, 0.10, 0.20];
+/// Reduction ratio of the drives in the connection table.
+pub const RATIO: f64 = 100.0;
+/// Stiffness of a connection at the output \[N m/rad\].
+const CONNECTIONS_NM_PER_RAD: [f64; 4] = [1e5, 3e5, 1e6, 3e6];
+
+/// Table 1 with the catalog's gears in joints 2, 3 and 4.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CatalogGears {
+    /// The middle slopes K2 alone.
+    pub middle_slope: PaperArm,
+    /// The whole curves.
+    pub curve: PaperArm,
+}
+
+impl CatalogGears {
+    /// Looks the gears up.
+    ///
+    /// # Errors
+    /// A gear is missing or has no complete curve.
+    pub fn new(catalogs: &Catalogs) -> Result<Self, PaperError> {
+        let mut curves = [Curve::Rigid; 3];
+        for (curve, size) in curves.iter_mut().zip([58, 50, 32]) {
+            *curve = Curve::Windup(parts::windup(catalogs, size)?);
+        }
+        let whole = PaperArm { curves, ..PaperArm::table_1() };
+        let middle_slope = PaperArm { curves: curves.map(|c| c.middle_slope()), ..whole.clone() };
+        Ok(Self { middle_slope, curve: whole })
+    }
+}
+
+/// What is left of the tip error after a correction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ErrorLeft {
+    /// What is measured or computed.
+    pub method: String,
+    /// Left if the gears are springs of stiffness K2 \[m\].
+    pub middle_slope_m: f64,
+    /// Left if the gears follow the three-segment curve \[m\].
+    pub curve_m: f64,
+}
+
+/// The conclusions' two remedies: joint deflection measured at the output, or computed from motor torque.
+pub fn error_left(gears: &CatalogGears) -> Vec<ErrorLeft> {
+    let [k2, curve] = [&gears.middle_slope, &gears.curve].map(|arm| arm.solve(LinkModel::Full));
+    let row = |method: &str, left: &dyn Fn(&Solved) -> f64| ErrorLeft {
+        method: method.to_string(),
+        middle_slope_m: left(&k2),
+        curve_m: left(&curve),
+    };
+    let mut rows = vec![
+        row("nothing corrected", &Solved::drop_m),
+        row("joint deflection measured at the output: the links are left", &Solved::links_m),
+    ];
+    for error in CURVE_ERRORS {
+        let method = format!("computed from motor torque, curve known to {} %", fixed(100.0 * error, 0));
+        rows.push(row(&method, &|s| s.links_m() + error * s.joints_m()));
+    }
+    rows.push(row("computed from motor torque with K2 alone", &|s| s.drop_m() - k2.joints_m()));
+    rows
+}
+
+/// [`error_left`] as a table.
+pub fn error_left_table(rows: &[ErrorLeft]) -> Table {
+    let mut table = Table::new(vec![
+        Column::left("correction"),
+        Column::unit("left, gears with K2", "mm"),
+        Column::right("of all"),
+        Column::unit("left, three-segment gears", "mm"),
+        Column::right("of all"),
+    ]);
+    let Some(all) = rows.first() else { return table };
+    for row in rows {
+        table.row([
+            row.method.clone(),
+            millimetres(row.middle_slope_m),
+            percent(row.middle_slope_m / all.middle_slope_m),
+            millimetres(row.curve_m),
+            percent(row.curve_m / all.curve_m),
+        ]);
+    }
+    table
+}
+
+/// What one connection in series with a joint does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Connection {
+    /// Joint.
+    pub joint: &'static str,
+    /// Stiffness between gear and arm \[N m/rad\].
+    pub output_nm_per_rad: f64,
+    /// Stiffness between motor and gear that does the same: N² times smaller \[N m/rad\].
+    pub motor_side_nm_per_rad: f64,
+    /// What it adds to the drop of the load \[m\].
+    pub added_m: f64,
+    /// The lowest frequency over that without the connection.
+    pub frequency_ratio: f64,
+}
+
+/// Rivin's connections, motor to gear and gear to arm, in each joint.
+pub fn connections(arm: &PaperArm) -> Vec<Connection> {
+    let before = arm.solve(LinkModel::Full);
+    let one = |joint: &'static str, stiffness: f64| {
+        let after = arm.solve_changed(LinkModel::Full, |s| connect(s, joint, 1.0 / stiffness));
+        Connection {
+            joint,
+            output_nm_per_rad: stiffness,
+            motor_side_nm_per_rad: stiffness / RATIO.powi(2),
+            added_m: after.drop_m() - before.drop_m(),
+            frequency_ratio: after.lowest_hz() / before.lowest_hz(),
+        }
+    };
+    JOINTS.iter().flat_map(|joint| CONNECTIONS_NM_PER_RAD.map(|c| one(joint, c))).collect()
+}
+
+/// [`connections`] as a table.
+pub fn connection_table(rows: &[Connection]) -> Table {
+    let mut table = Table::new(vec![
+        Column::left("joint"),
+        Column::unit("gear to arm", "N m/rad"),
+        Column::unit("or motor to gear", "N m/rad"),
+        Column::unit("adds at the load", "mm"),
+        Column::right("lowest mode"),
+    ]);
+    for row in rows {
+        table.row([
+            row.joint.to_string(),
+            shortest(row.output_nm_per_rad),
+            shortest(row.motor_side_nm_per_rad),
+            millimetres(row.added_m),
+            percent_change(row.frequency_ratio, 1),
+        ]);
+    }
+    table
+}
+
+/// What doubling one stiffness buys.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stiffer {
+    /// Joint or link.
+    pub element: &'static str,
+    /// Drop of the load \[m\].
+    pub drop_m: f64,
+    /// Drop over that before.
+    pub drop_ratio: f64,
+    /// The lowest frequency \[Hz\].
+    pub lowest_hz: f64,
+    /// The lowest frequency over that before.
+    pub frequency_ratio: f64,
+}
+
+/// Each joint and link in turn with twice its stiffness, masses unchanged.
+pub fn stiffer(arm: &PaperArm) -> Vec<Stiffer> {
+    let before = arm.solve(LinkModel::Full);
+    let row = |element, after: Solved| Stiffer {
+        element,
+        drop_m: after.drop_m(),
+        drop_ratio: after.drop_m() / before.drop_m(),
+        lowest_hz: after.lowest_hz(),
+        frequency_ratio: after.lowest_hz() / before.lowest_hz(),
+    };
+    let joints = [[2.0, 1.0, 1.0], [1.0, 2.0, 1.0], [1.0, 1.0, 2.0]];
+    let joints = JOINTS
+        .iter()
+        .zip(joints)
+        .map(|(name, factors)| row(*name, arm.with_stiffness_factors(factors).solve(LinkModel::Full)));
+    let links = LINKS
+        .iter()
+        .map(|name| row(*name, arm.solve_changed(LinkModel::Full, |s| stiffen_link(s, name, 2.0))));
+    joints.chain(links).collect()
+}
+
+/// [`stiffer`] as a table.
+pub fn stiffer_table(rows: &[Stiffer]) -> Table {
+    let mut table = Table::new(vec![
+        Column::left("twice as stiff"),
+        Column::unit("drop of the load", "mm"),
+        Column::right("change"),
+        Column::unit("lowest mode", "Hz"),
+        Column::right("change"),
+    ]);
+    for row in rows {
+        table.row([
+            row.element.to_string(),
+            millimetres(row.drop_m),
+            percent_change(row.drop_ratio, 1),
+            fixed(row.lowest_hz, 3),
+            percent_change(row.frequency_ratio, 1),
+        ]);
+    }
+    table
+}
+
+fn millimetres(metres: f64) -> String {
+    fixed(1e3 * metres, 4)
+}
+
+fn percent(ratio: f64) -> String {
+    format!("{} %", fixed(100.0 * ratio, 1))
+}

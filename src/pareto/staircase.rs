@@ -1,0 +1,150 @@
+//! The staircase that a sweep along the first of three objectives leaves behind.
+//!
+//! Points are taken in order of their first objective; of those taken so far only the ones that no other
+//! beats in second and third matter, and they form a staircase: the larger the second, the smaller the
+//! third. Second objectives are known beforehand, so a step is addressed by the rank of its second
+//! among all, and the set of steps is a set of small whole numbers: 64 ranks a word, 64 words a word of
+//! the level above. Finding a neighbour or changing a step costs one word a level, whatever the points
+//! look like; with the two sorts this makes a sweep O(n log n) (Kung, Luccio & Preparata 1975).
+
+/// The steps: ranks of second objectives, each with its third.
+pub(crate) struct Staircase {
+    steps: RankSet,
+    third: Vec<f64>,
+}
+
+impl Staircase {
+    /// No steps yet, of so many ranks.
+    pub fn new(ranks: usize) -> Self {
+        Self { steps: RankSet::new(ranks), third: vec![0.0; ranks] }
+    }
+
+    /// Smallest third objective among the points whose rank is at most `rank`, if there is one.
+    pub fn best(&self, rank: u32) -> Option<f64> {
+        self.steps.at_or_below(rank).map(|step| self.third[step as usize])
+    }
+
+    /// Whether a point is no better than one before it.
+    pub fn covers(&self, rank: u32, third: f64) -> bool {
+        self.best(rank).is_some_and(|best| best <= third)
+    }
+
+    /// Adds a step that is not covered and takes away those it covers. Shows, one after the other, the rank of
+    /// each step outboard of the new one with its third, up to and with the first that stays.
+    pub fn insert(&mut self, rank: u32, third: f64, mut see: impl FnMut(u32, f64)) {
+        self.steps.insert(rank);
+        self.third[rank as usize] = third;
+        while let Some(next) = self.steps.above(rank) {
+            see(next, self.third[next as usize]);
+            if self.third[next as usize] < third {
+                return;
+            }
+            self.steps.remove(next);
+        }
+    }
+}
+
+/// A set of whole numbers below a bound, with nearest members.
+struct RankSet {
+    /// Bits of the members; then, level by level, bits of the words that are not empty.
+    levels: Vec<Vec<u64>>,
+}
+
+impl RankSet {
+    fn new(bound: usize) -> Self {
+        let mut levels = vec![vec![0; bound.div_ceil(64).max(1)]];
+        while levels[levels.len() - 1].len() > 1 {
+            let words = levels[levels.len() - 1].len().div_ceil(64);
+            levels.push(vec![0; words]);
+        }
+        Self { levels }
+    }
+
+    fn insert(&mut self, member: u32) {
+        let mut place = member as usize;
+        for level in &mut self.levels {
+            level[place / 64] |= 1 << (place % 64);
+            place /= 64;
+        }
+    }
+
+    fn remove(&mut self, member: u32) {
+        let mut place = member as usize;
+        for level in &mut self.levels {
+            level[place / 64] &= !(1 << (place % 64));
+            if level[place / 64] != 0 {
+                return;
+            }
+            place /= 64;
+        }
+    }
+
+    /// The largest member not above a number.
+    fn at_or_below(&self, number: u32) -> Option<u32> {
+        let mut place = number as usize;
+        // the first level looks at the number itself, the others at words before the one just left
+        let mut kept = u64::MAX >> (63 - place % 64);
+        for (height, level) in self.levels.iter().enumerate() {
+            let word = level[place / 64] & kept;
+            if word != 0 {
+                let top = place / 64 * 64 + (63 - word.leading_zeros() as usize);
+                return Some(self.descend(height, top, |word| 63 - word.leading_zeros() as usize));
+            }
+            place /= 64;
+            kept = (1 << (place % 64)) - 1;
+        }
+        None
+    }
+
+    /// The smallest member above a number.
+    fn above(&self, number: u32) -> Option<u32> {
+        let mut place = number as usize;
+        for (height, level) in self.levels.iter().enumerate() {
+            let word = level[place / 64] & (u64::MAX << (place % 64)) & !(1 << (place % 64));
+            if word != 0 {
+                let top = place / 64 * 64 + word.trailing_zeros() as usize;
+                return Some(self.descend(height, top, |word| word.trailing_zeros() as usize));
+            }
+            place /= 64;
+        }
+        None
+    }
+
+    /// From a word that is not empty down to one of its members.
+    fn descend(&self, height: usize, mut place: usize, bit: impl Fn(u64) -> usize) -> u32 {
+        for level in self.levels[..height].iter().rev() {
+            place = place * 64 + bit(level[place]);
+        }
+        place as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::collections::BTreeSet;
+
+    proptest! {
+        #[test]
+        fn the_set_of_ranks_is_a_set(
+            bound in 1u32..300_000,
+            changes in prop::collection::vec((any::<bool>(), any::<u32>()), 1..200),
+        ) {
+            let mut ours = RankSet::new(bound as usize);
+            let mut plain = BTreeSet::new();
+            for (adds, number) in changes {
+                let number = number % bound;
+                match adds {
+                    true => { ours.insert(number); plain.insert(number); }
+                    false if plain.remove(&number) => ours.remove(number),
+                    false => {}
+                }
+                for probe in [number, number / 2, bound - 1, 0] {
+                    prop_assert_eq!(ours.at_or_below(probe), plain.range(..=probe).next_back().copied());
+                    prop_assert_eq!(ours.above(probe), plain.range(probe + 1..).next().copied());
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,262 @@
+//! 95 % intervals of a gear's curve, from the posterior of its numbers.
+//!
+//! A break point means nothing where the slopes on its two sides are alike, and among many places for it one
+//! always suits the noise. The objective along a break point is therefore the largest of many chance
+//! gains, no parabola, and its rise by 3.84 holds the true value too seldom. Instead every place counts by its
+//! probability: with both break points held the readings are nearly linear in everything else, so a fit
+//! gives the likelihood of the place and how far the slopes may vary there (Laplace). The places are
+//! nodes about the best fit, close together near it; from nodes that are not ruled out their neighbours
+//! are looked at.
+
+use super::descent::{Effort, Fit, Weights, fit_below};
+use super::interval::{Interval, data_curvature};
+use super::stats::normal_below;
+use crate::reconcile::forward::Forward;
+use nalgebra::{Cholesky, DMatrix};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Probability beyond each end.
+const TAIL: f64 = 0.025;
+/// Part of the largest density above which an end of the range is not ruled out: a rise of 3.84.
+const OPEN: f64 = 0.146;
+/// Rise of the objective beyond which a node is ruled out.
+const RULED_OUT: f64 = 14.0;
+/// First step between nodes over the standard deviation of the break point.
+const STEP: f64 = 0.5;
+/// Smallest and largest first step, in ln of the torque.
+const STEPS: (f64, f64) = (0.004, 0.08);
+/// Each step over the one before it, going out.
+const GROWTH: f64 = 1.4;
+/// Of so many neighbouring nodes one is looked at in any case.
+const COARSE: usize = 3;
+/// How hard a fit with both break points held tries.
+const HELD: Effort = Effort { steps: 4, tolerance: 0.05 };
+
+/// Nodes of a break point, rising.
+struct Axis {
+    parameter: usize,
+    nodes: Vec<f64>,
+}
+
+/// What the readings say with both break points held at nodes.
+struct Cell {
+    u: Vec<f64>,
+    /// Standard deviations of all parameters but the two.
+    deviations: Vec<f64>,
+    objective: f64,
+    /// ln of the probability density at the nodes.
+    ln_density: f64,
+}
+
+/// Intervals of the knobs `own` of a gear's curve, in their order; `pair` are its break points.
+pub fn curve_intervals(
+    forward: &Forward,
+    best: &Fit,
+    weights: &Weights,
+    own: std::ops::Range<usize>,
+    pair: [usize; 2],
+    deviations: &[f64],
+) -> Vec<Interval> {
+    let axes = pair.map(|p| Axis::new(best, p, deviations[p]));
+    let posterior = Posterior { cells: explore(forward, best, weights, &axes), axes };
+    own.map(|p| match pair.iter().position(|b| *b == p) {
+        Some(axis) => posterior.break_point(axis),
+        None => posterior.slope(p, best.model.bounds(p)),
+    })
+    .collect()
+}
+
+impl Axis {
+    fn new(best: &Fit, parameter: usize, deviation: f64) -> Self {
+        let (low, high) = best.model.bounds(parameter);
+        let at = best.point.u[parameter].clamp(low, high);
+        let first = (STEP * deviation).clamp(STEPS.0, STEPS.1);
+        let outward = |side: f64, limit: f64| {
+            let offsets = (1..).map(move |n| at + side * first * (GROWTH.powi(n) - 1.0) / (GROWTH - 1.0));
+            let mut nodes: Vec<f64> = offsets.take_while(|v| (limit - v) * side > 0.0).collect();
+            if limit != at {
+                nodes.push(limit);
+            }
+            nodes
+        };
+        let mut nodes = outward(-1.0, low);
+        nodes.reverse();
+        nodes.push(at);
+        nodes.extend(outward(1.0, high));
+        Self { parameter, nodes }
+    }
+
+    /// What of the axis a node stands for: halfway to its neighbours.
+    fn span(&self, node: usize) -> (f64, f64) {
+        let middle = |a: usize, b: usize| 0.5 * (self.nodes[a] + self.nodes[b]);
+        let last = self.nodes.len() - 1;
+        (middle(node.saturating_sub(1), node), middle(node, (node + 1).min(last)))
+    }
+}
+
+/// Nodes of the two axes.
+type Nodes = [usize; 2];
+
+/// Every cell that matters: those of a coarse grid and, from where the readings allow, their neighbours.
+fn explore(forward: &Forward, best: &Fit, weights: &Weights, axes: &[Axis; 2]) -> BTreeMap<Nodes, Cell> {
+    let centre = [0, 1].map(|k| {
+        let (axis, at) = (&axes[k], best.point.u[axes[k].parameter]);
+        (0..axis.nodes.len())
+            .min_by(|a, b| (axis.nodes[*a] - at).abs().total_cmp(&(axis.nodes[*b] - at).abs()))
+    });
+    let centre = centre.map(|c| c.unwrap_or(0));
+    let ordered = |n: &Nodes| axes[0].nodes[n[0]] < axes[1].nodes[n[1]];
+    let coarse = |k: usize| (0..axes[k].nodes.len()).filter(move |n| n.abs_diff(centre[k]) % COARSE == 0);
+    let all = coarse(0).flat_map(|a| coarse(1).map(move |b| [a, b]));
+    let mut frontier: Vec<(Nodes, Vec<f64>)> =
+        all.filter(ordered).map(|nodes| (nodes, best.point.u.clone())).collect();
+    let mut cells: BTreeMap<Nodes, Cell> = BTreeMap::new();
+    while !frontier.is_empty() {
+        let fits: Vec<(Nodes, Cell)> = frontier
+            .into_par_iter()
+            .map(|(nodes, start)| (nodes, Cell::fitted(forward, best, weights, axes, nodes, &start)))
+            .collect();
+        cells.extend(fits);
+        let least = cells.values().map(|c| c.objective).fold(f64::INFINITY, f64::min);
+        let mut next: BTreeMap<Nodes, (f64, Vec<f64>)> = BTreeMap::new();
+        for (nodes, cell) in cells.iter().filter(|(_, c)| c.objective < least + RULED_OUT) {
+            for near in neighbours(*nodes, axes).filter(|n| ordered(n) && !cells.contains_key(n)) {
+                let from = next.entry(near).or_insert((f64::INFINITY, Vec::new()));
+                if cell.objective < from.0 {
+                    *from = (cell.objective, cell.u.clone());
+                }
+            }
+        }
+        frontier = next.into_iter().map(|(nodes, (_, start))| (nodes, start)).collect();
+    }
+    cells
+}
+
+fn neighbours(nodes: Nodes, axes: &[Axis; 2]) -> impl Iterator<Item = Nodes> {
+    let counts = [axes[0].nodes.len(), axes[1].nodes.len()];
+    let moves = [(0, 1), (2, 1), (1, 0), (1, 2)];
+    let moved =
+        moves.into_iter().map(move |(a, b)| [(nodes[0] + a).wrapping_sub(1), (nodes[1] + b).wrapping_sub(1)]);
+    moved.filter(move |n| n[0] < counts[0] && n[1] < counts[1])
+}
+
+impl Cell {
+    fn fitted(
+        forward: &Forward,
+        best: &Fit,
+        weights: &Weights,
+        axes: &[Axis; 2],
+        nodes: Nodes,
+        start: &[f64],
+    ) -> Self {
+        let mut model = best.model.clone();
+        model.held = [0, 1].map(|k| (axes[k].parameter, axes[k].nodes[nodes[k]])).to_vec();
+        let limit = best.point.objective + RULED_OUT;
+        let fitted = fit_below(forward, &model, start, weights, HELD, limit);
+        let held = axes.each_ref().map(|a| a.parameter);
+        let of_rest = without(&fitted.curvature, held);
+        let ln_density =
+            fitted.evidence + 0.5 * (ln_determinant(fitted.curvature.clone()) - ln_determinant(of_rest));
+        let covariance = without(&data_curvature(&fitted), held).try_inverse();
+        let mut deviations = vec![f64::INFINITY; fitted.point.u.len()];
+        let rest = (0..deviations.len()).filter(|p| !held.contains(p)).collect::<Vec<_>>();
+        if let Some(covariance) = covariance {
+            rest.iter().enumerate().for_each(|(i, p)| deviations[*p] = covariance[(i, i)].abs().sqrt());
+        }
+        Self { objective: fitted.point.objective, u: fitted.point.u, deviations, ln_density }
+    }
+}
+
+/// A matrix without two rows and columns.
+fn without(matrix: &DMatrix<f64>, mut held: [usize; 2]) -> DMatrix<f64> {
+    held.sort_unstable();
+    matrix.clone().remove_rows_at(&held).remove_columns_at(&held)
+}
+
+fn ln_determinant(matrix: DMatrix<f64>) -> f64 {
+    Cholesky::new(matrix)
+        .map_or(f64::INFINITY, |c| 2.0 * c.l().diagonal().iter().map(|d| d.ln()).sum::<f64>())
+}
+
+/// The posterior over the nodes.
+struct Posterior {
+    axes: [Axis; 2],
+    cells: BTreeMap<Nodes, Cell>,
+}
+
+impl Posterior {
+    /// Probability of each cell, up to a factor.
+    fn masses(&self) -> impl Iterator<Item = (&Nodes, &Cell, f64)> {
+        let top = self.cells.values().map(|c| c.ln_density).fold(f64::NEG_INFINITY, f64::max);
+        let width = |axis: usize, node: usize| {
+            let (from, to) = self.axes[axis].span(node);
+            to - from
+        };
+        self.cells.iter().map(move |(nodes, cell)| {
+            let area = width(0, nodes[0]) * width(1, nodes[1]);
+            (nodes, cell, (cell.ln_density - top).exp() * area)
+        })
+    }
+
+    fn break_point(&self, axis: usize) -> Interval {
+        let nodes = &self.axes[axis];
+        let mut masses = vec![0.0; nodes.nodes.len()];
+        self.masses().for_each(|(at, _, mass)| masses[at[axis]] += mass);
+        let spans: Vec<(f64, f64)> = (0..masses.len()).map(|n| nodes.span(n)).collect();
+        let density = |n: usize| masses[n] / (spans[n].1 - spans[n].0).max(1e-12);
+        let peak = (0..masses.len()).map(density).fold(0.0, f64::max);
+        let all: f64 = masses.iter().sum();
+        let quantile = |part: f64| {
+            let mut below = 0.0;
+            for (mass, (from, to)) in masses.iter().zip(&spans) {
+                if below + mass >= part * all {
+                    return from + (to - from) * (part * all - below) / mass.max(1e-300);
+                }
+                below += mass;
+            }
+            nodes.nodes[masses.len() - 1]
+        };
+        let open = |n: usize| density(n) > OPEN * peak;
+        Interval {
+            low: (!open(0)).then(|| quantile(TAIL)),
+            high: (!open(masses.len() - 1)).then(|| quantile(1.0 - TAIL)),
+        }
+    }
+
+    /// A mixture of normal distributions, each cut off at the ends of the range.
+    fn slope(&self, p: usize, (low, high): (f64, f64)) -> Interval {
+        let parts: Vec<(f64, f64, f64)> = self
+            .masses()
+            .map(|(_, cell, mass)| {
+                let (u, sd) = (cell.u[p], cell.deviations[p].clamp(1e-9, 1e9));
+                let inside = normal_below((high - u) / sd) - normal_below((low - u) / sd);
+                (u, sd, mass / inside.max(1e-12))
+            })
+            .collect();
+        let below = |v: f64| -> f64 {
+            let part = |(u, sd, mass): &(f64, f64, f64)| {
+                mass * (normal_below((v - u) / sd) - normal_below((low - u) / sd))
+            };
+            parts.iter().map(part).sum()
+        };
+        let density = |v: f64| -> f64 {
+            parts.iter().map(|(u, sd, mass)| mass / sd * (-0.5 * ((v - u) / sd).powi(2)).exp()).sum()
+        };
+        let peak = parts.iter().map(|(u, _, _)| density(*u)).fold(0.0, f64::max);
+        let all = below(high);
+        let quantile = |part: f64| {
+            let (mut from, mut to) = (low, high);
+            for _ in 0..60 {
+                let middle = 0.5 * (from + to);
+                if below(middle) < part * all { from = middle } else { to = middle }
+            }
+            0.5 * (from + to)
+        };
+        let open = |limit: f64| density(limit) > OPEN * peak;
+        Interval {
+            low: (!open(low)).then(|| quantile(TAIL)),
+            high: (!open(high)).then(|| quantile(1.0 - TAIL)),
+        }
+    }
+}

@@ -1,0 +1,420 @@
+//! Fitting a model: the most probable parameters, bounded, with Huber's loss.
+//!
+//! Residuals `r` are in standard deviations. The objective is `Σ ρ(r) + Σ u²` over data and calibrated
+//! numbers (each `u` a standard normal deviate by tolerance); effects' knobs are free within bounds.
+//! Levenberg-Marquardt steps with an active set at the bounds; frequencies enter with their exact
+//! sensitivities, statics and bench, which cost little, by differences.
+
+use crate::reconcile::forward::Forward;
+use crate::reconcile::forward::coefficients::Coefficients;
+use crate::reconcile::forward::modal::Solved;
+use crate::reconcile::model::parameters::Model;
+use nalgebra::{Cholesky, DMatrix, DVector};
+use std::f64::consts::TAU;
+
+/// Where Huber's loss turns from square to straight \[standard deviations\].
+const HUBER: f64 = 4.0;
+/// Step of differences in `u`.
+const STEP: f64 = 1e-4;
+
+/// Which data count and how their standard deviations are scaled.
+#[derive(Debug, Clone)]
+pub struct Weights {
+    /// 1 / (scale x sigma) of each datum; 0 = left out.
+    pub inverse: Vec<f64>,
+    /// Whether the frequencies need not be known.
+    pub smooth_only: bool,
+}
+
+impl Weights {
+    /// The same without the frequencies.
+    pub fn without_modes(&self, forward: &Forward) -> Self {
+        let mut out = self.clone();
+        out.inverse[forward.starts[1]..forward.starts[2]].fill(0.0);
+        out.smooth_only = true;
+        out
+    }
+}
+
+/// A model at one parameter vector.
+pub struct Point {
+    /// Parameters.
+    pub u: Vec<f64>,
+    /// Numbers on the coordinates.
+    pub coefficients: Coefficients,
+    /// True values.
+    pub truth: Vec<f64>,
+    /// Predicted readings.
+    pub predicted: Vec<f64>,
+    /// Solved modes of each modal test.
+    pub solved: Vec<Vec<Solved>>,
+    /// The objective.
+    pub objective: f64,
+}
+
+/// A fitted model.
+pub struct Fit<'a> {
+    /// The model.
+    pub model: Model<'a>,
+    /// Where it is best.
+    pub point: Point,
+    /// Derivative of every prediction by every parameter.
+    pub jacobian: DMatrix<f64>,
+    /// Curvature: `JᵀWJ`, priors included.
+    pub curvature: DMatrix<f64>,
+    /// ln of the evidence.
+    pub evidence: f64,
+}
+
+/// Evaluates a model.
+pub fn evaluate(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Point {
+    let coefficients = model.coefficients(forward, u);
+    let mut truth = vec![0.0; forward.data.len()];
+    forward.predict_smooth(&coefficients, &mut truth);
+    let counts = |test: &crate::reconcile::forward::modal::ModalTest| {
+        test.modes.iter().any(|(datum, _)| weights.inverse[*datum] > 0.0)
+    };
+    let solve =
+        |test: &crate::reconcile::forward::modal::ModalTest| match counts(test) || !weights.smooth_only {
+            true => test.solve(&forward.layout, &coefficients, test.mode_count()),
+            false => Vec::new(),
+        };
+    let solved: Vec<Vec<Solved>> = forward.modal.iter().map(solve).collect();
+    for (test, modes) in forward.modal.iter().zip(&solved) {
+        test.write(modes, &mut truth);
+    }
+    point(forward, model, u.to_vec(), coefficients, truth, solved, weights)
+}
+
+fn point(
+    forward: &Forward,
+    model: &Model,
+    u: Vec<f64>,
+    coefficients: Coefficients,
+    truth: Vec<f64>,
+    solved: Vec<Vec<Solved>>,
+    weights: &Weights,
+) -> Point {
+    let mut predicted = truth.clone();
+    forward.read(&coefficients, &mut predicted);
+    let objective = objective(forward, model, &u, &predicted, weights);
+    Point { u, coefficients, truth, predicted, solved, objective }
+}
+
+/// `Σ ρ(r) + Σ u²`.
+pub fn objective(forward: &Forward, model: &Model, u: &[f64], predicted: &[f64], weights: &Weights) -> f64 {
+    let data: f64 = forward
+        .data
+        .iter()
+        .zip(predicted)
+        .zip(&weights.inverse)
+        .map(|((d, p), w)| loss((p - d.value) * w))
+        .sum();
+    data + u[..model.calibrated()].iter().map(|u| u * u).sum::<f64>()
+}
+
+fn loss(r: f64) -> f64 {
+    let size = r.abs();
+    if size <= HUBER { r * r } else { 2.0 * HUBER * size - HUBER * HUBER }
+}
+
+/// Derivatives of all predictions at a point.
+pub fn jacobian(forward: &Forward, model: &Model, at: &Point) -> DMatrix<f64> {
+    let mut out = DMatrix::zeros(forward.data.len(), model.len());
+    for p in 0..model.len() {
+        let (_, high) = model.bounds(p);
+        let step = if at.u[p] + STEP > high { -STEP } else { STEP };
+        let mut u = at.u.clone();
+        u[p] += step;
+        let change = change(forward, model, at, &u);
+        out.set_column(p, &(DVector::from_vec(change) / step));
+    }
+    out
+}
+
+/// Change of the predictions from a point to other parameters, frequencies to first order.
+pub fn change(forward: &Forward, model: &Model, at: &Point, u: &[f64]) -> Vec<f64> {
+    change_to(forward, at, &model.coefficients(forward, u))
+}
+
+/// Change of the predictions from a point to other coefficients, frequencies to first order.
+pub fn change_to(forward: &Forward, at: &Point, moved: &Coefficients) -> Vec<f64> {
+    let mut truth = at.truth.clone();
+    if !same_smooth(&at.coefficients, moved) {
+        forward.predict_smooth(moved, &mut truth);
+    }
+    if !at.coefficients.same_modes(moved) {
+        let mut delta = vec![0.0; truth.len()];
+        for (test, solved) in forward.modal.iter().zip(&at.solved) {
+            test.change(&forward.layout, solved, &at.coefficients, moved, &mut delta);
+        }
+        for i in forward.starts[1]..forward.starts[2] {
+            truth[i] += delta[i];
+        }
+    }
+    forward.read(moved, &mut truth);
+    truth.iter().zip(&at.predicted).map(|(a, b)| a - b).collect()
+}
+
+/// Whether statics and bench of two subjects are the same.
+fn same_smooth(a: &Coefficients, b: &Coefficients) -> bool {
+    let plain = |c: &Coefficients| {
+        c.laws.iter().all(|l| {
+            l.lost_motion.is_none()
+                && l.hysteresis_rad == 0.0
+                && !matches!(l.curve, crate::arm::joint_law::Curve::Windup(_))
+        })
+    };
+    a.linear == b.linear
+        && a.laws == b.laws
+        && a.payload_delta_kg == b.payload_delta_kg
+        && a.payload_offset_m == b.payload_offset_m
+        && a.payload_weight == b.payload_weight
+        && (a.weights == b.weights || plain(a))
+}
+
+/// Gradient and curvature of half the objective.
+pub struct Normal {
+    /// Gradient.
+    pub gradient: DVector<f64>,
+    /// Curvature.
+    pub curvature: DMatrix<f64>,
+}
+
+/// Normal equations of residuals `r` (predicted less measured, in the unit of the file).
+pub fn normal(
+    forward: &Forward,
+    calibrated: usize,
+    u: &[f64],
+    predicted: &[f64],
+    jacobian: &DMatrix<f64>,
+    weights: &Weights,
+) -> Normal {
+    let residual = DVector::from_iterator(
+        forward.data.len(),
+        forward.data.iter().zip(predicted).zip(&weights.inverse).map(|((d, p), w)| (p - d.value) * w),
+    );
+    let robust = residual.map(|r| if r.abs() <= HUBER { 1.0 } else { (HUBER / r.abs()).sqrt() });
+    let row_factors =
+        DVector::from_iterator(robust.len(), robust.iter().zip(&weights.inverse).map(|(r, w)| r * w));
+    let mut scaled = jacobian.clone();
+    scaled.column_iter_mut().for_each(|mut column| column.component_mul_assign(&row_factors));
+    // a product with the transpose written out is several times as fast as one that reads columns as rows
+    let transposed = scaled.transpose();
+    let mut gradient = &transposed * residual.component_mul(&robust);
+    let mut curvature = &transposed * &scaled;
+    for p in 0..calibrated {
+        gradient[p] += u[p];
+        curvature[(p, p)] += 1.0;
+    }
+    Normal { gradient, curvature }
+}
+
+/// One damped step within bounds.
+pub fn bounded_step(model: &Model, u: &[f64], normal: &Normal, damping: f64) -> Vec<f64> {
+    let n = u.len();
+    let mut free: Vec<usize> = (0..n).collect();
+    loop {
+        let step = damped(normal, &free, damping);
+        let blocked: Vec<usize> = free
+            .iter()
+            .zip(step.iter())
+            .filter(|(p, s)| {
+                let (low, high) = model.bounds(**p);
+                let lowest = u[**p] <= low || model.rests(**p, u);
+                (lowest && **s < 0.0) || (u[**p] >= high && **s > 0.0)
+            })
+            .map(|(p, _)| *p)
+            .collect();
+        if blocked.is_empty() {
+            let mut out = u.to_vec();
+            for (p, s) in free.iter().zip(step.iter()) {
+                let (low, high) = model.bounds(*p);
+                out[*p] = (u[*p] + s).clamp(low, high);
+            }
+            model.put_in_order(&mut out);
+            return out;
+        }
+        free.retain(|p| !blocked.contains(p));
+    }
+}
+
+fn damped(normal: &Normal, free: &[usize], damping: f64) -> DVector<f64> {
+    let n = free.len();
+    let largest = normal.curvature.diagonal().iter().copied().fold(0.0, f64::max);
+    let mut a = DMatrix::from_fn(n, n, |i, j| normal.curvature[(free[i], free[j])]);
+    for i in 0..n {
+        a[(i, i)] += damping * a[(i, i)] + 1e-12 * largest + 1e-30;
+    }
+    let b = DVector::from_fn(n, |i, _| -normal.gradient[free[i]]);
+    match Cholesky::new(a) {
+        Some(cholesky) => cholesky.solve(&b),
+        None => b / (largest + 1e-30),
+    }
+}
+
+/// How hard a fit tries.
+#[derive(Debug, Clone, Copy)]
+pub struct Effort {
+    /// Most steps.
+    pub steps: usize,
+    /// Smallest worthwhile fall of the objective.
+    pub tolerance: f64,
+}
+
+impl Default for Effort {
+    fn default() -> Self {
+        Self { steps: 30, tolerance: 1e-3 }
+    }
+}
+
+/// Fits a model from `start`.
+pub fn fit<'a>(
+    forward: &Forward,
+    model: &Model<'a>,
+    start: &[f64],
+    weights: &Weights,
+    effort: Effort,
+) -> Fit<'a> {
+    fit_below(forward, model, start, weights, effort, f64::INFINITY)
+}
+
+/// The same, given up where the objective will not come below a limit.
+pub fn fit_below<'a>(
+    forward: &Forward,
+    model: &Model<'a>,
+    start: &[f64],
+    weights: &Weights,
+    effort: Effort,
+    limit: f64,
+) -> Fit<'a> {
+    let (point, slopes) = descended(forward, model, start, weights, effort, limit);
+    let slopes = slopes.unwrap_or_else(|| jacobian(forward, model, &point));
+    finish(forward, model, point, slopes, weights)
+}
+
+/// Where a fit that is given up like that ends: all that is needed to go on from there.
+pub fn descent(
+    forward: &Forward,
+    model: &Model,
+    start: &[f64],
+    weights: &Weights,
+    effort: Effort,
+    limit: f64,
+) -> Point {
+    descended(forward, model, start, weights, effort, limit).0
+}
+
+/// Where a descent ends, and the slopes there if they are known.
+fn descended(
+    forward: &Forward,
+    model: &Model,
+    start: &[f64],
+    weights: &Weights,
+    effort: Effort,
+    limit: f64,
+) -> (Point, Option<DMatrix<f64>>) {
+    let mut start: Vec<f64> = start
+        .iter()
+        .enumerate()
+        .map(|(p, u)| {
+            let (low, high) = model.bounds(p);
+            u.clamp(low, high)
+        })
+        .collect();
+    model.put_in_order(&mut start);
+    let mut here = evaluate(forward, model, &start, weights);
+    let mut damping = 1e-4;
+    for _ in 0..effort.steps {
+        let slopes = jacobian(forward, model, &here);
+        let normal = normal(forward, model.calibrated(), &here.u, &here.predicted, &slopes, weights);
+        let Some(next) = descend(forward, model, &here, &normal, weights, &mut damping) else {
+            return (here, Some(slopes));
+        };
+        let fall = here.objective - next.objective;
+        here = next;
+        // falls grow smaller: one more as large as this would not do
+        let hopeless = here.objective - fall > limit;
+        if fall < effort.tolerance || hopeless {
+            break;
+        }
+    }
+    (here, None)
+}
+
+/// The first damped step that lowers the objective.
+fn descend(
+    forward: &Forward,
+    model: &Model,
+    here: &Point,
+    normal: &Normal,
+    weights: &Weights,
+    damping: &mut f64,
+) -> Option<Point> {
+    for _ in 0..7 {
+        let u = bounded_step(model, &here.u, normal, *damping);
+        if u == here.u {
+            return None;
+        }
+        let next = evaluate(forward, model, &u, weights);
+        if next.objective < here.objective {
+            *damping = (*damping * 0.2).max(1e-9);
+            return Some(next);
+        }
+        *damping = (*damping * 10.0).max(1e-5);
+    }
+    None
+}
+
+/// Evidence and curvature at the end of a fit.
+pub fn finish<'a>(
+    forward: &Forward,
+    model: &Model<'a>,
+    point: Point,
+    mut jacobian: DMatrix<f64>,
+    weights: &Weights,
+) -> Fit<'a> {
+    // a number that rests on another could be anywhere below it
+    let resting = (0..model.len()).filter(|p| model.rests(*p, &point.u));
+    resting.for_each(|p| jacobian.fill_column(p, 0.0));
+    let normal = normal(forward, model.calibrated(), &point.u, &point.predicted, &jacobian, weights);
+    let mut curvature = normal.curvature;
+    let mut evidence = -0.5 * point.objective;
+    for (i, knob) in model.knobs().enumerate() {
+        let p = model.calibrated() + i;
+        let width = knob.width(point.u[p]);
+        curvature[(p, p)] += 12.0 / (width * width);
+        evidence += 0.5 * TAU.ln() - width.ln();
+    }
+    let determinant = Cholesky::new(curvature.clone())
+        .map_or(f64::INFINITY, |c| 2.0 * c.l().diagonal().iter().map(|d| d.ln()).sum::<f64>());
+    evidence -= 0.5 * determinant;
+    Fit { model: model.clone(), point, jacobian, curvature, evidence }
+}
+
+impl Fit<'_> {
+    /// Part of each datum's variance that the parameters take up, `wJᵢC(wJᵢ)ᵀ` with the covariance `C`; 0 where
+    /// a datum is left out.
+    pub fn leverages(&self, weights: &Weights) -> Vec<f64> {
+        let n = self.curvature.nrows();
+        let Some(cholesky) = Cholesky::new(self.curvature.clone()) else {
+            return vec![0.0; self.jacobian.nrows()];
+        };
+        let root =
+            cholesky.l().solve_lower_triangular(&DMatrix::identity(n, n)).unwrap_or(DMatrix::zeros(n, n));
+        let reach = &self.jacobian * root.transpose();
+        let rows = reach.row_iter().zip(&weights.inverse);
+        rows.map(|(row, w)| (row.norm_squared() * w * w).min(1.0)).collect()
+    }
+
+    /// Residuals, measured less predicted, in scaled standard deviations.
+    pub fn residuals(&self, forward: &Forward, weights: &Weights) -> Vec<f64> {
+        forward
+            .data
+            .iter()
+            .zip(&self.point.predicted)
+            .zip(&weights.inverse)
+            .map(|((d, p), w)| (d.value - p) * w)
+            .collect()
+    }
+}

@@ -1,0 +1,266 @@
+//! Gross errors and wrongly declared standard deviations, found from the residuals of a model.
+
+use super::descent::{Fit, Weights};
+use super::stats::median;
+use crate::arm::effect::Channel;
+use crate::reconcile::forward::Forward;
+use crate::reconcile::forward::coefficients::Coefficients;
+use crate::reconcile::forward::modal::ModalTest;
+
+/// What the residuals say of the readings' quality.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Noise {
+    /// Factor on the declared standard deviations of static, modal and windup readings.
+    pub scale: [f64; 3],
+    /// Rows that are gross errors: channel, row from 0, size in declared standard deviations.
+    pub outliers: Vec<(Channel, usize, f64)>,
+}
+
+/// Standard deviations from which a reading is a gross error.
+const GROSS: f64 = 5.5;
+/// The same before any effect is looked for: play or a break point can put a single reading ten off.
+const UNMISTAKABLE: f64 = 16.0;
+/// Part of a channel's rows that can be gross errors; more are structure.
+const FEW: f64 = 0.10;
+/// The same before any effect is looked for: the few frequencies that an effect moves must not be taken away.
+const FEW_UNSEEN: f64 = 0.05;
+/// Part of the lists of frequencies that can have been numbered wrongly.
+const FEW_LISTS: f64 = 0.34;
+/// Most gross errors that stand for an effect or a structure; more have a cause.
+const MOST_SLIPS: usize = 2;
+/// Channels whose readings are judged.
+const CHANNELS: [Channel; 3] = [Channel::Static, Channel::Modal, Channel::Windup];
+/// Largest factor on declared deviations that is put down to the declaration.
+const LARGEST_SCALE: f64 = 1.4;
+/// Excess of the residuals' spread, in declared standard deviations, up to which a model fits most readings.
+const CLOSE: f64 = 0.5;
+/// Three standard deviations of the spread of one honest reading, over the root of their number: that of a median of
+/// absolute values is 1.17 of the spread.
+const BY_CHANCE: f64 = 3.5;
+/// Weight of the declaration, in readings.
+const TRUST: f64 = 15.0;
+
+impl Default for Noise {
+    fn default() -> Self {
+        Self { scale: [1.0; 3], outliers: Vec::new() }
+    }
+}
+
+impl Noise {
+    /// Weights of the data.
+    pub fn weights(&self, forward: &Forward) -> Weights {
+        let inverse = forward.data.iter().map(|d| {
+            let gross = self.outliers.iter().any(|(c, row, _)| *c == d.channel && *row == d.row);
+            if gross { 0.0 } else { 1.0 / (d.sigma * self.scale[d.channel as usize]) }
+        });
+        Weights { inverse: inverse.collect(), smooth_only: false }
+    }
+
+    /// Whether a model comes close to most readings of every channel.
+    pub fn is_close(forward: &Forward, fit: &Fit) -> bool {
+        let residuals = declared_residuals(forward, &fit.point.predicted);
+        CHANNELS.into_iter().all(|channel| {
+            let own = &residuals[forward.range(channel)];
+            spread(own) < 1.0 + CLOSE.max(BY_CHANCE / (own.len() as f64).sqrt())
+        })
+    }
+
+    /// The readings without the few of each channel that a fit with these weights misses most, if it does by far: one
+    /// slip among ten frequencies spoils a calibration.
+    pub fn without_worst(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
+        let mut outliers = misses(forward, fit, weights);
+        outliers.retain(|(_, _, size)| *size > UNMISTAKABLE);
+        let mut left = CHANNELS.map(|channel| at_most(FEW_UNSEEN, rows(forward, channel)));
+        outliers.retain(|(channel, _, _)| {
+            let of_channel = &mut left[*channel as usize];
+            let is_among = *of_channel > 0;
+            *of_channel -= usize::from(is_among);
+            is_among
+        });
+        Self { outliers, ..Self::default() }
+    }
+
+    /// The same readings without one or two more, of which a fit says that they could be gross errors; `None` if it
+    /// says so of no row or of many.
+    pub fn with_slips(&self, forward: &Forward, fit: &Fit) -> Option<Self> {
+        let mut slips = misses(forward, fit, &self.weights(forward));
+        slips.retain(|(_, _, size)| *size > GROSS);
+        slips.retain(|slip| !self.outliers.iter().any(|(c, row, _)| (c, row) == (&slip.0, &slip.1)));
+        if slips.is_empty() || slips.len() > MOST_SLIPS {
+            return None;
+        }
+        let mut outliers = [self.outliers.clone(), slips].concat();
+        outliers.sort_by_key(|(channel, row, _)| (*channel as usize, *row));
+        Some(Self { outliers, ..self.clone() })
+    }
+
+    /// The same with all frequencies; `None` if none is left out.
+    pub fn with_frequencies(&self) -> Option<Self> {
+        let mut with = self.clone();
+        with.outliers.retain(|(channel, _, _)| *channel != Channel::Modal);
+        (with.outliers.len() < self.outliers.len()).then_some(with)
+    }
+
+    /// Gross errors that show before any effect is looked for: only where calibration alone comes close
+    /// to most readings, because what an effect does must not be taken for an error.
+    pub fn first_look(forward: &Forward, bare: &Fit, weights: &Weights) -> Self {
+        if !Self::is_close(forward, bare) {
+            return Self::default();
+        }
+        let residuals = declared_residuals(forward, &bare.point.predicted);
+        let mut outliers = Self::from_fit(forward, bare, weights).outliers;
+        outliers.retain(|(_, _, size)| *size > UNMISTAKABLE);
+        let in_channel = |channel| outliers.iter().filter(|(c, _, _)| *c == channel).count();
+        let few: Vec<Channel> = CHANNELS
+            .into_iter()
+            .filter(|c| in_channel(*c) <= at_most(FEW_UNSEEN, rows(forward, *c)))
+            .collect();
+        outliers.retain(|(channel, _, _)| few.contains(channel));
+        Self { outliers, ..Self::default() }.with_whole_lists(forward, &residuals)
+    }
+
+    /// Judges the readings by the residuals of a fit, which had these weights.
+    pub fn from_fit(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
+        let mut noise = Self::default();
+        let residuals = declared_residuals(forward, &fit.point.predicted);
+        let leverages = fit.leverages(weights);
+        for channel in CHANNELS {
+            let range = forward.range(channel);
+            let own = &residuals[range.clone()];
+            let limit = GROSS * spread(own).clamp(1.0, 3.0);
+            let mut gross: Vec<(usize, f64)> = Vec::new();
+            for (r, datum) in own.iter().zip(&forward.data[range.clone()]) {
+                if r.abs() > limit {
+                    match gross.iter_mut().find(|(row, _)| *row == datum.row) {
+                        Some((_, size)) => *size = size.max(r.abs()),
+                        None => gross.push((datum.row, r.abs())),
+                    }
+                }
+            }
+            if gross.len() > at_most(FEW, rows(forward, channel)) {
+                continue;
+            }
+            noise.outliers.extend(gross.iter().map(|(row, size)| (channel, *row, *size)));
+            let kept = range.filter(|i| !gross.iter().any(|(row, _)| *row == forward.data[*i].row));
+            noise.scale[channel as usize] = scale(kept.map(|i| (residuals[i], leverages[i])));
+        }
+        noise.with_whole_lists(forward, &residuals)
+    }
+
+    /// The readings without the few lists of frequencies that these coefficients miss by far; `None` if there are
+    /// none or many.
+    pub fn doubtful_lists(forward: &Forward, coefficients: &Coefficients) -> Option<Self> {
+        let residuals = declared_residuals(forward, &forward.predict(coefficients));
+        let far = |datum: usize| residuals[datum].abs() > UNMISTAKABLE;
+        let is_doubtful = |test: &&ModalTest| test.modes.iter().filter(|(datum, _)| far(*datum)).count() > 1;
+        let doubtful: Vec<&ModalTest> = forward.modal.iter().filter(is_doubtful).collect();
+        if doubtful.is_empty() || doubtful.len() > at_most(FEW_LISTS, forward.modal.len()) {
+            return None;
+        }
+        let rows = doubtful.iter().flat_map(|test| &test.modes);
+        let outliers =
+            rows.map(|(i, _)| (Channel::Modal, forward.data[*i].row, residuals[*i].abs())).collect();
+        Some(Self { outliers, ..Self::default() })
+    }
+
+    /// With all rows of a list of frequencies that has several gross errors: its pose, its payload or its numbering
+    /// is wrong, and what is left of it would mislead.
+    fn with_whole_lists(mut self, forward: &Forward, residuals: &[f64]) -> Self {
+        for list in gross_lists(forward, &self.weights(forward)) {
+            for &(datum, _) in &forward.modal[list].modes {
+                let (channel, row) = (Channel::Modal, forward.data[datum].row);
+                if !self.outliers.iter().any(|(c, r, _)| (*c, *r) == (channel, row)) {
+                    self.outliers.push((channel, row, residuals[datum].abs()));
+                }
+            }
+        }
+        self.outliers.sort_by_key(|(channel, row, _)| (*channel as usize, *row));
+        self
+    }
+
+    /// Whether two judgements leave out the same rows.
+    pub fn same_rows(&self, other: &Self) -> bool {
+        let rows = |n: &Self| n.outliers.iter().map(|(c, r, _)| (*c, *r)).collect::<Vec<_>>();
+        rows(self) == rows(other)
+    }
+
+    /// Whether two judgements lead to the same weights, nearly.
+    pub fn agrees(&self, other: &Self) -> bool {
+        self.same_rows(other) && self.scale.iter().zip(&other.scale).all(|(a, b)| (a / b - 1.0).abs() < 0.03)
+    }
+}
+
+/// Lists of frequencies, by their number from 0, of which several rows are left out.
+pub fn gross_lists(forward: &Forward, weights: &Weights) -> Vec<usize> {
+    let left_out = |list: usize| {
+        let modes = forward.modal[list].modes.iter();
+        modes.filter(|(datum, _)| weights.inverse[*datum] == 0.0).count()
+    };
+    (0..forward.modal.len()).filter(|list| left_out(*list) > 1).collect()
+}
+
+/// How far a fit with these weights would be off each row if it did not follow the row, in declared standard
+/// deviations, the largest first.
+fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<(Channel, usize, f64)> {
+    const LARGEST_LEVERAGE: f64 = 0.9;
+    let residuals = declared_residuals(forward, &fit.point.predicted);
+    let sizes = residuals.iter().zip(fit.leverages(weights));
+    let sizes = sizes.map(|(r, leverage)| r.abs() / (1.0 - leverage.min(LARGEST_LEVERAGE)).sqrt());
+    let mut out: Vec<(Channel, usize, f64)> = Vec::new();
+    for (datum, size) in forward.data.iter().zip(sizes) {
+        match out.iter_mut().find(|(channel, row, _)| (*channel, *row) == (datum.channel, datum.row)) {
+            Some((_, _, largest)) => *largest = largest.max(size),
+            None => out.push((datum.channel, datum.row, size)),
+        }
+    }
+    out.sort_by(|a, b| b.2.total_cmp(&a.2));
+    out
+}
+
+/// Rows of a channel's file.
+fn rows(forward: &Forward, channel: Channel) -> usize {
+    forward.data[forward.range(channel)].iter().map(|d| d.row).max().map_or(0, |r| r + 1)
+}
+
+/// A part of the rows of a file, one at least.
+fn at_most(part: f64, rows: usize) -> usize {
+    ((part * rows as f64) as usize).max(1)
+}
+
+/// Measured less predicted, in declared standard deviations.
+fn declared_residuals(forward: &Forward, predicted: &[f64]) -> Vec<f64> {
+    forward.data.iter().zip(predicted).map(|(d, p)| (d.value - p) / d.sigma).collect()
+}
+
+/// Standard deviation of most residuals, whatever the few largest are.
+fn spread(residuals: &[f64]) -> f64 {
+    1.4826 * median(residuals.iter().map(|r| r.abs()).collect())
+}
+
+/// Factor on declared deviations from residuals and their leverages. The square of a residual is expected to be
+/// `1 - leverage`, for the rest of it the parameters have taken up. A factor within what chance does to honest
+/// declarations counts too: to wait until it is significant would leave intervals too narrow wherever a channel
+/// has few readings.
+fn scale(kept: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let (sum, count) =
+        kept.fold((TRUST, TRUST), |(sum, count), (r, leverage)| (sum + r * r, count + 1.0 - leverage));
+    (sum / count).sqrt().clamp(1.0, LARGEST_SCALE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forty_readings_a_sixth_noisier_than_declared_are_scaled_though_chance_could_do_that() {
+        // of 40 squares with a quarter of each taken up by parameters, declared 1, true 1.15
+        let readings = (0..40).map(|_| (1.15 * 0.75f64.sqrt(), 0.25));
+        assert!((scale(readings) - ((15.0 + 30.0 * 1.15f64.powi(2)) / 45.0).sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_declaration_is_neither_improved_nor_blamed_for_missing_physics() {
+        assert_eq!(scale((0..40).map(|_| (0.5, 0.0))), 1.0);
+        assert_eq!(scale((0..40).map(|_| (5.0, 0.0))), LARGEST_SCALE);
+    }
+}

@@ -1,0 +1,170 @@
+//! Readings predicted by mechanics directly, one row at a time: what `predict` writes, and the check
+//! on the prepared model that fits use.
+
+use crate::arm::LinkModel;
+use crate::arm::effect::{Channel, Subject};
+use crate::arm::joint_law::JointLaw;
+use crate::arm::load::Payload;
+use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure};
+use crate::mechanics::chain::Chain;
+use crate::mechanics::chain::{Posed, Yielding};
+use crate::mechanics::{Twist, displacement_at};
+use crate::reconcile::forward::{ARCMIN_PER_RAD, bench_twists_rad};
+use crate::reconcile::readings::placement::Placement;
+use crate::reconcile::readings::rows::{ModalRow, PositionRow, StaticRow, WindupRow};
+use nalgebra::Vector3;
+
+/// A subject ready to be asked.
+pub struct Exact<'a> {
+    subject: &'a Subject,
+    chain: Chain,
+}
+
+impl<'a> Exact<'a> {
+    /// Prepares a subject.
+    pub fn new(subject: &'a Subject) -> Self {
+        Self { subject, chain: Chain::new(&subject.structure, LinkModel::Full) }
+    }
+
+    /// Displacement readings \[mm\], the rows in the order of their file.
+    pub fn statics_mm(&self, rows: &[StaticRow]) -> Vec<[f64; 3]> {
+        let reading = &self.subject.channels[Channel::Static as usize];
+        let mut out = Vec::with_capacity(rows.len());
+        let mut pose: &[f64] = &[];
+        let (mut play, mut reference) = (Vec::new(), Vector3::zeros());
+        for row in rows {
+            if row.pose_deg != pose || out.is_empty() {
+                pose = &row.pose_deg;
+                let unloaded = self.posed(pose, &Payload::default(), Vector3::zeros());
+                play = rest(&unloaded);
+                reference = tip_m(&unloaded, &mut play);
+            }
+            let loaded = self.posed(pose, &row.payload, row.force_n);
+            let d = tip_m(&loaded, &mut play) - reference;
+            out.push(std::array::from_fn(|c| reading.of(1e3 * d[c], c, row.row)));
+        }
+        out
+    }
+
+    /// Frequency readings \[Hz\]; `None` where the arm has no such mode.
+    pub fn frequencies_hz(&self, rows: &[ModalRow]) -> Vec<Option<f64>> {
+        let reading = &self.subject.channels[Channel::Modal as usize];
+        let mut last: Option<(&ModalRow, Vec<f64>)> = None;
+        rows.iter()
+            .map(|row| {
+                let again = last
+                    .as_ref()
+                    .is_some_and(|(r, _)| r.pose_deg == row.pose_deg && r.payload == row.payload);
+                if !again {
+                    let posed = self.posed(&row.pose_deg, &row.payload, Vector3::zeros());
+                    let modes = posed.solve_modes(&posed.statics());
+                    last = Some((row, modes.finite().map(|(_, f)| f).collect()));
+                }
+                let frequency = last.as_ref().and_then(|(_, f)| f.get(row.mode - 1).copied());
+                frequency.map(|f| reading.of(f, 0, row.row))
+            })
+            .collect()
+    }
+
+    /// Bench readings \[arcmin\].
+    pub fn windups_arcmin(&self, rows: &[WindupRow]) -> Vec<f64> {
+        let reading = &self.subject.channels[Channel::Windup as usize];
+        let mut out = vec![0.0; rows.len()];
+        for joint in self.subject.structure.joints() {
+            let own: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].joint == joint.name).collect();
+            let torques: Vec<f64> = own.iter().map(|&i| rows[i].torque_nm).collect();
+            for (i, twist) in own.into_iter().zip(bench_twists_rad(&joint.law, &torques)) {
+                out[i] = reading.of(twist * ARCMIN_PER_RAD, 0, rows[i].row);
+            }
+        }
+        out
+    }
+
+    /// Positions of the points on the last frame, in the instrument's frame, under gravity and payload
+    /// \[mm\].
+    pub fn positions_mm(&self, rows: &[PositionRow], placement: &Placement) -> Vec<[f64; 3]> {
+        let reading = &self.subject.channels[Channel::Positions as usize];
+        let mut chains: Vec<(Vector3<f64>, Chain)> = Vec::new();
+        let mut out = Vec::with_capacity(rows.len());
+        for (row, stand) in rows.iter().zip(placement.stands(rows)) {
+            let tool_m = stand.point_m(&row.point);
+            if !chains.iter().any(|(at_m, _)| *at_m == tool_m) {
+                let structure = with_tool(&self.subject.structure, tool_m);
+                chains.push((tool_m, Chain::new(&structure, LinkModel::Full)));
+            }
+            let known = chains.iter().find(|(at_m, _)| *at_m == tool_m);
+            let (_, chain) = known.expect("just made");
+            let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
+            let pose_rad = self.subject.turned_rad(&pose_rad);
+            let payload = seen_from_tool(&self.subject.payload(&row.payload), &tool_m);
+            let posed = chain.pose_rad(&pose_rad, &payload, Vector3::zeros());
+            let own = posed.tip_m + posed.statics().tip_displacement_m;
+            let at = stand.rotation * own + stand.origin_m;
+            out.push(std::array::from_fn(|c| reading.of(1e3 * at[c], c, row.row)));
+        }
+        out
+    }
+
+    /// Torque on every joint by name \[N m\].
+    pub fn torques_nm(&self, row: &StaticRow) -> Vec<(String, f64)> {
+        let posed = self.posed(&row.pose_deg, &row.payload, row.force_n);
+        let torques = posed.statics().joint_torques_nm;
+        torques.into_iter().map(|(joint, torque_nm)| (joint.to_string(), torque_nm)).collect()
+    }
+
+    fn posed(&self, pose_deg: &[f64], stated: &Payload, force_n: Vector3<f64>) -> Posed<'_> {
+        let pose_rad: Vec<f64> = pose_deg.iter().map(|a| a.to_radians()).collect();
+        self.chain.pose_rad(&pose_rad, &self.subject.payload(stated), force_n)
+    }
+}
+
+/// The structure with its tip moved to a point of the last frame.
+pub fn with_tool(structure: &Structure, tool_m: Vector3<f64>) -> Structure {
+    let mut out = structure.clone();
+    out.pieces.push(Piece::Link(LinkPiece {
+        name: "point".into(),
+        vector_m: tool_m,
+        beam: None,
+        point_mass_kg: 0.0,
+        harness_kg_per_m: 0.0,
+        root_frame: FrameCompliance::default(),
+    }));
+    out
+}
+
+/// A payload stated from the tip, as seen from a point of the last frame.
+pub fn seen_from_tool(payload: &Payload, tool_m: &Vector3<f64>) -> Payload {
+    Payload { cg_m: payload.cg_m - tool_m, ..*payload }
+}
+
+/// Each joint's law, twist and torque, base to tip.
+fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
+    let torques = posed.statics().joint_torques_nm;
+    let mut twists = posed.tip_twists().into_iter();
+    let laws = posed.elements().filter_map(|element| {
+        // a rigid link has no twist of its own
+        let own: Vec<Twist> = twists.by_ref().take(element.twists.len()).collect();
+        match element.yielding {
+            Yielding::Joint(law) => Some((law, own[0])),
+            Yielding::Linear(_) => None,
+        }
+    });
+    laws.zip(torques).map(|((law, twist), (_, torque))| (law, twist, torque)).collect()
+}
+
+/// Where each joint's friction play stands when the arm has come to rest.
+fn rest(posed: &Posed) -> Vec<f64> {
+    joints(posed).iter().map(|(law, _, torque)| law.play_at_rest_nm(*torque)).collect()
+}
+
+/// Displacement of the tip from the weightless arm \[m\], the friction play following.
+fn tip_m(posed: &Posed, play: &mut [f64]) -> Vector3<f64> {
+    let joints = joints(posed);
+    let statics = posed.statics();
+    let mut tip = statics.tip_displacement_m;
+    for ((law, twist, torque), state) in joints.into_iter().zip(play) {
+        let followed = law.play_angle_rad(torque, state) - law.rising_angle_rad(torque);
+        tip += displacement_at(&(twist * followed), &posed.tip_m);
+    }
+    tip
+}

@@ -1,0 +1,436 @@
+//! A campaign: an arm file, what is stated about it, and the readings.
+
+use super::rows::{
+    ModalRow, PositionRow, StaticRow, WindupRow, modal_rows, position_rows, static_rows, windup_rows,
+};
+use super::table::Table;
+use crate::arm::effect::{Channel, KINDS};
+use crate::arm::file::read_arm;
+use crate::arm::{Arm, Element};
+use crate::catalog::Catalogs;
+use crate::input::json::{Document, Fault, Faults, InputError, Node, Object};
+use std::path::{Path, PathBuf};
+
+/// Within what honest parts lie: 95 % limits, as parts of the nominal value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerance {
+    /// Stiffness of each joint on its own.
+    pub joint_stiffness: f64,
+    /// One factor a material on E and G together.
+    pub modulus: f64,
+    /// Mass of each joint on its own.
+    pub joint_mass: f64,
+}
+
+/// What `campaign.json` says about absolute positions.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PositionsSpec {
+    /// The arm stands anywhere in the instrument's frame.
+    pub base_placement: bool,
+    /// Each point sits anywhere on the last frame.
+    pub tool_offset: bool,
+    /// Each joint's zero is off.
+    pub joint_offsets: bool,
+    /// Each link's vector and each joint's axis is off.
+    pub geometry: bool,
+    /// Gravity need not point along the arm's -z.
+    pub gravity_direction: bool,
+    /// Links behind which place and attitude are unknown, as of an arm mounted anyhow on a trunk.
+    pub mounts: Vec<String>,
+}
+
+impl PositionsSpec {
+    /// Whether gravity has a direction to be found: as stated, or because base and first axis are both free, so that
+    /// positions alone cannot say which of them is off the vertical.
+    pub fn frees_gravity(&self) -> bool {
+        self.gravity_direction || (self.geometry && self.base_placement)
+    }
+}
+
+/// What `campaign.json` states.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Statement {
+    /// Name.
+    pub name: String,
+    /// Tolerance of the parts.
+    pub tolerance: Tolerance,
+    /// Density of the payloads, for their buoyancy \[kg/m³\].
+    pub payload_density_kg_m3: f64,
+    /// Whether the nominal model holds the links rigid.
+    pub rigid_links: bool,
+    /// The effects that come into question; all without a list.
+    pub effects: Option<Vec<String>>,
+    /// What is free in absolute positions.
+    pub positions: PositionsSpec,
+    arm_file: String,
+    /// Files of further arms on the same trunk, beside `campaign.json`.
+    pub other_arm_files: Vec<String>,
+    files: [Option<String>; 4],
+}
+
+/// A campaign, read and checked.
+#[derive(Debug, Clone)]
+pub struct Campaign {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// What it states.
+    pub statement: Statement,
+    /// The nominal arm.
+    pub arm: Arm,
+    /// Further arms on the same trunk, for absolute positions.
+    pub other_arms: Vec<Arm>,
+    /// Tip displacements, in the order of the file.
+    pub statics: Vec<StaticRow>,
+    /// Natural frequencies.
+    pub modal: Vec<ModalRow>,
+    /// Bench twists.
+    pub windup: Vec<WindupRow>,
+    /// Absolute positions.
+    pub positions: Vec<PositionRow>,
+    /// blake3 of all files of the campaign.
+    pub hash: String,
+}
+
+const DEFAULT_FILES: [&str; 4] = ["static.csv", "modal.csv", "windup.csv", "positions.csv"];
+const DEFAULT_PAYLOAD_DENSITY_KG_M3: f64 = 7850.0;
+
+/// Reads `campaign.json`.
+///
+/// # Errors
+/// The file is missing, or all of its faults.
+pub fn read_statement(path: &Path) -> Result<Statement, InputError> {
+    let document = Document::read(path)?;
+    let statement = statement(&document.root());
+    Ok(document.finish(statement)?)
+}
+
+fn statement(node: &Node) -> Option<Statement> {
+    let root = node.object(&[
+        "name",
+        "arm",
+        "other_arms",
+        "conventions",
+        "tolerance",
+        "static",
+        "modal",
+        "windup",
+        "positions",
+        "links",
+        "effects",
+        "description",
+        "machine",
+        "date",
+        "provenance",
+    ])?;
+    let name = root.or("name", "campaign".to_string(), |n| n.string().map(String::from));
+    let arm_file = root.or("arm", "arm.json".to_string(), |n| n.string().map(String::from));
+    let other_arm_files = root.or("other_arms", Vec::new(), read_names);
+    let tolerance = root.or("tolerance", DEFAULT_TOLERANCE, read_tolerance);
+    let payload_density_kg_m3 = root.or("conventions", DEFAULT_PAYLOAD_DENSITY_KG_M3, |n| {
+        match n.value().get("payload_density_kg_m3").and_then(|v| v.as_f64()) {
+            Some(density) if density > 0.0 => Some(density),
+            Some(density) => n.fault(format!("payload_density_kg_m3 = {density}"), "give a density in kg/m³"),
+            None => Some(DEFAULT_PAYLOAD_DENSITY_KG_M3),
+        }
+    });
+    let rigid_links = root.or("links", false, |n| match n.string()? {
+        "rigid" => Some(true),
+        "full" => Some(false),
+        other => n.fault(format!("\"{other}\" is not known"), "choose one of: rigid, full"),
+    });
+    let effects = root.or("effects", None, |n| read_effect_names(n).map(Some));
+    let positions = root.or("positions", PositionsSpec::default(), read_positions);
+    Some(Statement {
+        name: name?,
+        tolerance: tolerance?,
+        payload_density_kg_m3: payload_density_kg_m3?,
+        rigid_links: rigid_links?,
+        effects: effects?,
+        positions: positions?,
+        arm_file: arm_file?,
+        other_arm_files: other_arm_files?,
+        files: Channel::ALL.map(|c| file_of(&root, c)),
+    })
+}
+
+/// Parts of the nominal value that are taken for honest where a campaign says nothing.
+const DEFAULT_TOLERANCE: Tolerance = Tolerance { joint_stiffness: 0.10, modulus: 0.03, joint_mass: 0.02 };
+
+fn read_tolerance(node: &Node) -> Option<Tolerance> {
+    let object = node.object(&["joint_stiffness", "modulus", "joint_mass"])?;
+    let part = |key, default| {
+        object.or(key, default, |n| match n.non_negative()? {
+            x if x < 1.0 => Some(x),
+            x => n.fault(format!("= {x} is no part of 1"), "write 0.05 for 5 %"),
+        })
+    };
+    let (k, e, m) = (part("joint_stiffness", 0.0), part("modulus", 0.0), part("joint_mass", 0.0));
+    Some(Tolerance { joint_stiffness: k?, modulus: e?, joint_mass: m? })
+}
+
+fn read_positions(node: &Node) -> Option<PositionsSpec> {
+    const KEYS: [&str; 5] =
+        ["base_placement", "tool_offset", "joint_offsets", "geometry", "gravity_direction"];
+    let object = node.object(&[KEYS.as_slice(), &["mounts", "file", "boundary", "reference"]].concat())?;
+    let flags = KEYS.map(|key| object.or(key, false, Node::boolean));
+    let mounts = object.or("mounts", Vec::new(), read_names);
+    Some(PositionsSpec {
+        base_placement: flags[0]?,
+        tool_offset: flags[1]?,
+        joint_offsets: flags[2]?,
+        geometry: flags[3]?,
+        gravity_direction: flags[4]?,
+        mounts: mounts?,
+    })
+}
+
+fn read_effect_names(node: &Node) -> Option<Vec<String>> {
+    let known: Vec<&str> = KINDS.iter().map(|k| k.name).collect();
+    let read = |n: &Node| match n.string()? {
+        name if known.contains(&name) => Some(name.to_string()),
+        name => n.fault(
+            format!("effect \"{name}\" is not known"),
+            &format!("known effects: {}", known.join(", ")),
+        ),
+    };
+    let names: Vec<Option<String>> = node.array()?.iter().map(read).collect();
+    names.into_iter().collect()
+}
+
+fn read_names(node: &Node) -> Option<Vec<String>> {
+    node.array()?.iter().map(|n| n.string().map(String::from)).collect()
+}
+
+/// The file of a channel that `campaign.json` names.
+fn file_of(root: &Object, channel: Channel) -> Option<String> {
+    let node = root.optional(channel.word())?;
+    match node.value().get("file").and_then(|v| v.as_str()) {
+        Some(file) => Some(file.to_string()),
+        None => Some(DEFAULT_FILES[channel as usize].to_string()),
+    }
+}
+
+impl Statement {
+    /// Whether an effect comes into question.
+    pub fn considers(&self, effect: &str) -> bool {
+        self.effects.as_ref().is_none_or(|list| list.iter().any(|name| name == effect))
+    }
+}
+
+impl Campaign {
+    /// Reads a campaign folder.
+    ///
+    /// # Errors
+    /// A file is missing, or all faults of all files.
+    pub fn read(folder: &Path, catalogs: &Catalogs) -> Result<Self, InputError> {
+        if !folder.join("campaign.json").exists() && folder.is_file() {
+            return Self::read(folder.parent().unwrap_or(folder), catalogs);
+        }
+        let mut faults = Vec::new();
+        let statement = keep_faults(read_statement(&folder.join("campaign.json")), &mut faults)?;
+        let arm_file = statement.as_ref().map_or("arm.json", |s| s.arm_file.as_str());
+        let arm = keep_faults(read_arm(&folder.join(arm_file), catalogs), &mut faults)?;
+        let mut other_arms = Vec::new();
+        for file in statement.iter().flat_map(|s| &s.other_arm_files) {
+            other_arms.extend(keep_faults(read_arm(&folder.join(file), catalogs), &mut faults)?);
+        }
+        let (Some(statement), Some(arm)) = (statement, arm) else { return Err(Faults(faults).into()) };
+        let mut campaign = Self {
+            folder: folder.to_path_buf(),
+            statement,
+            arm,
+            other_arms,
+            statics: Vec::new(),
+            modal: Vec::new(),
+            windup: Vec::new(),
+            positions: Vec::new(),
+            hash: String::new(),
+        };
+        faults.extend(campaign.faults());
+        for channel in Channel::ALL {
+            if let Some(file) = campaign.file(channel) {
+                let table = Table::read(&file)?;
+                campaign.read_channel(channel, &table);
+                faults.extend(table.into_faults());
+            }
+        }
+        campaign.hash = campaign.hash_files();
+        if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults).into()) }
+    }
+
+    fn read_channel(&mut self, channel: Channel, table: &Table) {
+        match channel {
+            Channel::Static => self.statics = static_rows(table, &self.arm),
+            Channel::Modal => self.modal = modal_rows(table, &self.arm),
+            Channel::Windup => self.windup = windup_rows(table, &self.arm),
+            Channel::Positions => {
+                let names: Vec<&str> = self.arms().iter().map(|a| a.name.as_str()).collect();
+                self.positions = position_rows(table, &names, &self.driven_joint_names());
+            }
+        }
+    }
+
+    /// The arm and the others on its trunk.
+    pub fn arms(&self) -> Vec<&Arm> {
+        std::iter::once(&self.arm).chain(&self.other_arms).collect()
+    }
+
+    /// Joints that have an entry in a pose: the arm's, then those that only other arms have.
+    pub fn driven_joint_names(&self) -> Vec<String> {
+        driven_joint_names(&self.arms())
+    }
+
+    /// Arms with absolute positions of points on them, as if they were a campaign.
+    ///
+    /// # Errors
+    /// The arms do not stand on one trunk.
+    pub fn of_positions(
+        statement: &Statement,
+        arms: &[&Arm],
+        rows: Vec<PositionRow>,
+    ) -> Result<Self, Faults> {
+        let campaign = Self {
+            folder: PathBuf::new(),
+            statement: statement.clone(),
+            arm: arms[0].clone(),
+            other_arms: arms[1..].iter().map(|arm| (*arm).clone()).collect(),
+            statics: Vec::new(),
+            modal: Vec::new(),
+            windup: Vec::new(),
+            positions: rows,
+            hash: String::new(),
+        };
+        let faults = campaign.faults();
+        if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults)) }
+    }
+
+    /// How many elements all arms begin with: the trunk.
+    pub fn trunk(&self) -> usize {
+        let shared =
+            |other: &Arm| self.arm.chain.iter().zip(&other.chain).take_while(|(a, b)| a == b).count();
+        self.other_arms.iter().map(shared).min().unwrap_or(self.arm.chain.len())
+    }
+
+    /// What is wrong with the arms together and with the names in `campaign.json`.
+    fn faults(&self) -> Vec<Fault> {
+        let mut out = Vec::new();
+        let trunk: Vec<&str> = self.arm.chain[..self.trunk()].iter().map(Element::name).collect();
+        let mut taken: Vec<&str> = self.arm.chain.iter().map(Element::name).collect();
+        let mut names = vec![self.arm.name.as_str()];
+        for other in &self.other_arms {
+            if names.contains(&other.name.as_str()) {
+                out.push(self.fault(
+                    "other_arms",
+                    format!("two arms are called \"{}\"", other.name),
+                    "give each a name of its own",
+                ));
+            }
+            names.push(&other.name);
+            for name in other.chain.iter().map(Element::name).filter(|n| !trunk.contains(n)) {
+                if taken.contains(&name) {
+                    let problem =
+                        format!("\"{name}\" of {} is also in another arm, but not the same", other.name);
+                    out.push(self.fault(
+                        "other_arms",
+                        problem,
+                        "elements of the trunk are alike in all arms; others have names of their own",
+                    ));
+                }
+                taken.push(name);
+            }
+        }
+        let links: Vec<&str> = self.arms().iter().flat_map(|a| a.links()).map(|l| l.name.as_str()).collect();
+        for name in self.statement.positions.mounts.iter().filter(|m| !links.contains(&m.as_str())) {
+            let hint = format!("the arms' links: {}", links.join(", "));
+            out.push(self.fault("positions.mounts", format!("\"{name}\" is no link"), &hint));
+        }
+        out
+    }
+
+    /// The readings other than absolute positions, and those, as campaigns of their own.
+    pub fn parted(&self) -> (Self, Self) {
+        let loaded = Self { positions: Vec::new(), other_arms: Vec::new(), ..self.clone() };
+        let placed = Self { statics: Vec::new(), modal: Vec::new(), windup: Vec::new(), ..self.clone() };
+        (loaded, placed)
+    }
+
+    /// Whether there are readings other than absolute positions.
+    pub fn has_displacements(&self) -> bool {
+        !self.statics.is_empty() || !self.modal.is_empty() || !self.windup.is_empty()
+    }
+
+    fn fault(&self, field: &str, problem: String, hint: &str) -> Fault {
+        let file = self.folder.join("campaign.json").display().to_string();
+        Fault { file, line: None, field: field.into(), problem, hint: hint.into() }
+    }
+
+    /// The file of a channel: the one named in `campaign.json`, else the usual one if it is there.
+    fn file(&self, channel: Channel) -> Option<PathBuf> {
+        let usual = self.folder.join(DEFAULT_FILES[channel as usize]);
+        match &self.statement.files[channel as usize] {
+            Some(file) => Some(self.folder.join(file)),
+            None => usual.exists().then_some(usual),
+        }
+    }
+
+    fn hash_files(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        let others = self.statement.other_arm_files.iter();
+        let named = ["campaign.json", &self.statement.arm_file].into_iter().chain(others.map(String::as_str));
+        let files =
+            named.map(|f| self.folder.join(f)).chain(Channel::ALL.into_iter().filter_map(|c| self.file(c)));
+        for file in files {
+            hasher.update(&std::fs::read(file).unwrap_or_default());
+        }
+        hasher.finalize().to_hex().to_string()
+    }
+
+    /// Joins further campaigns of the same arm to this one.
+    ///
+    /// # Errors
+    /// The arms or what is stated of them differ.
+    pub fn join(mut self, others: Vec<Campaign>) -> Result<Self, String> {
+        for other in others {
+            let alike = other.arm == self.arm && other.other_arms == self.other_arms;
+            if !alike || other.statement.tolerance != self.statement.tolerance {
+                return Err(format!(
+                    "{} and {} measure different arms or state different tolerances: reconcile them one by one",
+                    self.folder.display(),
+                    other.folder.display()
+                ));
+            }
+            self.statics.extend(other.statics);
+            self.modal.extend(other.modal);
+            self.windup.extend(other.windup);
+            self.positions.extend(other.positions);
+            self.statement.name = format!("{}+{}", self.statement.name, other.statement.name);
+            self.hash = blake3::hash(format!("{}{}", self.hash, other.hash).as_bytes()).to_hex().to_string();
+        }
+        Ok(self)
+    }
+}
+
+/// Joints of several arms that have an entry in a pose: the first arm's, then those that only others have.
+pub fn driven_joint_names(arms: &[&Arm]) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    for name in arms.iter().flat_map(|arm| arm.driven_joint_names()) {
+        if !out.iter().any(|known| known == name) {
+            out.push(name.to_string());
+        }
+    }
+    out
+}
+
+fn keep_faults<T>(
+    result: Result<T, InputError>,
+    faults: &mut Vec<crate::input::json::Fault>,
+) -> Result<Option<T>, InputError> {
+    match result {
+        Ok(value) => Ok(Some(value)),
+        Err(InputError::Faulty(found)) => {
+            faults.extend(found.0);
+            Ok(None)
+        }
+        Err(other) => Err(other),
+    }
+}

@@ -1,0 +1,182 @@
+//! Where an arm stands in the frame of an instrument, session by session.
+//!
+//! Between two sessions a reflector is put back a little differently, or instrument or base are moved. Which
+//! session a row belongs to is told by the number of its test, as long as the rows are numbered as those of
+//! the campaign were; any other row has the place that suits all sessions best.
+
+use super::rows::PositionRow;
+use nalgebra::{Matrix3, Vector3};
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+
+/// One place of the arm and of the points on it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stand {
+    /// The arm's base frame in the instrument's.
+    pub rotation: Matrix3<f64>,
+    /// Its origin \[m\].
+    pub origin_m: Vector3<f64>,
+    /// Points by name, last frame \[m\].
+    pub points_m: Vec<(String, Vector3<f64>)>,
+}
+
+/// A session.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Session {
+    /// The first test number that is not in it any more; infinite for the last.
+    pub before_test: f64,
+    /// Its place.
+    pub stand: Stand,
+}
+
+/// All places of an arm.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Placement {
+    /// The place that suits all sessions best.
+    pub usual: Stand,
+    /// The sessions in the order of their tests; none if they are all one.
+    pub sessions: Vec<Session>,
+    /// The poses of the tests that the sessions are known from, as [`pose_mark`] has them.
+    pub tests: BTreeMap<String, String>,
+}
+
+impl Default for Stand {
+    fn default() -> Self {
+        Self { rotation: Matrix3::identity(), origin_m: Vector3::zeros(), points_m: Vec::new() }
+    }
+}
+
+impl Stand {
+    /// Where a point sits on the last frame \[m\]; the tip if it is not known.
+    pub fn point_m(&self, name: &str) -> Vector3<f64> {
+        self.points_m.iter().find(|(n, _)| n == name).map_or(Vector3::zeros(), |(_, at)| *at)
+    }
+
+    fn from_json(stand: &Value) -> Option<Self> {
+        let vector = |v: &Value| Vector3::from_fn(|i, _| v[i].as_f64().unwrap_or_default());
+        let points = stand["points_m"].as_object()?;
+        Some(Self {
+            rotation: Matrix3::from_fn(|i, j| stand["rotation"][i][j].as_f64().unwrap_or_default()),
+            origin_m: vector(&stand["origin_m"]),
+            points_m: points.iter().map(|(name, v)| (name.clone(), vector(v))).collect(),
+        })
+    }
+
+    fn to_json(&self) -> Value {
+        let rows: Vec<Vec<f64>> = (0..3).map(|i| self.rotation.row(i).iter().copied().collect()).collect();
+        let point = |(name, at): &(String, Vector3<f64>)| (name.clone(), json!(at.as_slice()));
+        let points: Map<String, Value> = self.points_m.iter().map(point).collect();
+        json!({"rotation": rows, "origin_m": self.origin_m.as_slice(), "points_m": points})
+    }
+}
+
+impl Placement {
+    /// Reads the `placement` of a corrected arm's provenance; the identity if there is none.
+    pub fn from_json(arm_file: &Value) -> Self {
+        let placement = &arm_file["provenance"]["placement"];
+        let session = |s: &Value| {
+            let before_test = s["before_test"].as_f64().unwrap_or(f64::INFINITY);
+            Some(Session { before_test, stand: Stand::from_json(s)? })
+        };
+        let tests = placement["tests"].as_object().into_iter().flatten();
+        Self {
+            usual: Stand::from_json(placement).unwrap_or_default(),
+            sessions: placement["sessions"].as_array().into_iter().flatten().filter_map(session).collect(),
+            tests: tests.filter_map(|(test, mark)| Some((test.clone(), mark.as_str()?.into()))).collect(),
+        }
+    }
+
+    /// As in the provenance of a corrected arm.
+    pub fn to_json(&self) -> Value {
+        let mut out = self.usual.to_json();
+        if !self.sessions.is_empty() {
+            let session = |s: &Session| {
+                let mut own = s.stand.to_json();
+                own["before_test"] = json!(s.before_test.is_finite().then_some(s.before_test));
+                own
+            };
+            out["sessions"] = self.sessions.iter().map(session).collect();
+            out["tests"] = json!(self.tests);
+        }
+        out
+    }
+
+    /// The place at each row.
+    pub fn stands<'a>(&'a self, rows: &[PositionRow]) -> Vec<&'a Stand> {
+        let numbered = test_numbers(rows).filter(|_| rows.iter().all(|row| self.agrees(row)));
+        let Some(numbers) = numbered else { return vec![&self.usual; rows.len()] };
+        let of = |number: f64| self.sessions.iter().find(|s| number < s.before_test).map(|s| &s.stand);
+        numbers.into_iter().map(|number| of(number).unwrap_or(&self.usual)).collect()
+    }
+
+    /// Whether a row's test is not another than the one of the same name that the sessions are known from.
+    fn agrees(&self, row: &PositionRow) -> bool {
+        self.tests.get(&row.test).is_none_or(|mark| *mark == pose_mark(&row.pose_deg))
+    }
+}
+
+/// The tests' numbers, if they are numbers.
+pub fn test_numbers(rows: &[PositionRow]) -> Option<Vec<f64>> {
+    rows.iter().map(|row| row.test.trim().parse().ok().filter(|n: &f64| n.is_finite())).collect()
+}
+
+/// A short mark of a pose: equal for equal angles.
+pub fn pose_mark(pose_deg: &[f64]) -> String {
+    // angles that differ by rounding on the way through a file are the same
+    let angles: String = pose_deg.iter().map(|angle| format!("{angle:.6},")).collect();
+    blake3::hash(angles.as_bytes()).to_hex()[..8].to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::load::Payload;
+
+    fn row(test: &str, angle_deg: f64) -> PositionRow {
+        PositionRow {
+            row: 0,
+            test: test.into(),
+            pose_deg: vec![angle_deg],
+            payload: Payload::default(),
+            arm: 0,
+            point: "tip".into(),
+            position_mm: [0.0; 3],
+            sigma_mm: 1.0,
+        }
+    }
+
+    fn at(x_m: f64) -> Stand {
+        Stand { origin_m: Vector3::x() * x_m, ..Stand::default() }
+    }
+
+    fn placement() -> Placement {
+        let sessions = [(10.5, 1.0), (f64::INFINITY, 2.0)];
+        Placement {
+            usual: at(1.5),
+            sessions: sessions.map(|(before_test, x_m)| Session { before_test, stand: at(x_m) }).into(),
+            tests: [("4".into(), pose_mark(&[30.0]))].into(),
+        }
+    }
+
+    fn places(rows: &[PositionRow]) -> Vec<f64> {
+        placement().stands(rows).iter().map(|s| s.origin_m.x).collect()
+    }
+
+    #[test]
+    fn the_number_of_a_test_tells_its_session() {
+        assert_eq!(places(&[row("3", 5.0), row("4", 30.0), row("11", -7.0)]), [1.0, 1.0, 2.0]);
+    }
+
+    #[test]
+    fn tests_that_are_numbered_anew_or_not_at_all_have_the_usual_place() {
+        assert_eq!(places(&[row("3", 5.0), row("4", 31.0)]), [1.5, 1.5], "test 4 is another");
+        assert_eq!(places(&[row("3", 5.0), row("b", 30.0)]), [1.5, 1.5]);
+    }
+
+    #[test]
+    fn a_file_holds_all_of_it() {
+        let file = json!({"provenance": {"placement": placement().to_json()}});
+        assert_eq!(Placement::from_json(&file), placement());
+        assert_eq!(Placement::from_json(&json!({})), Placement::default());
+    }
+}

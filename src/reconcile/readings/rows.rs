@@ -1,0 +1,341 @@
+//! The rows of `static.csv`, `modal.csv`, `windup.csv` and `positions.csv`.
+
+use super::table::Table;
+use crate::arm::Arm;
+use crate::arm::load::Payload;
+use nalgebra::Vector3;
+use std::collections::HashMap;
+
+/// A tip displacement under load.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StaticRow {
+    /// Row of the file, from 0.
+    pub row: usize,
+    /// Joint angles \[deg\].
+    pub pose_deg: Vec<f64>,
+    /// Stated payload.
+    pub payload: Payload,
+    /// Tip force, world \[N\].
+    pub force_n: Vector3<f64>,
+    /// The operator's label.
+    pub branch: String,
+    /// Displacement from the reference state \[mm\].
+    pub d_mm: [f64; 3],
+    /// Standard deviation of each component \[mm\].
+    pub sigma_mm: f64,
+}
+
+/// A natural frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModalRow {
+    /// Row of the file, from 0.
+    pub row: usize,
+    /// Joint angles \[deg\].
+    pub pose_deg: Vec<f64>,
+    /// Stated payload.
+    pub payload: Payload,
+    /// Number of the mode in its list, from 1.
+    pub mode: usize,
+    /// Frequency \[Hz\].
+    pub frequency_hz: f64,
+    /// Standard deviation \[Hz\].
+    pub sigma_hz: f64,
+}
+
+/// The twist of one joint on a bench.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WindupRow {
+    /// Row of the file, from 0.
+    pub row: usize,
+    /// Joint.
+    pub joint: String,
+    /// Torque \[N m\].
+    pub torque_nm: f64,
+    /// Label.
+    pub branch: String,
+    /// Twist \[arcmin\].
+    pub windup_arcmin: f64,
+    /// Standard deviation \[arcmin\].
+    pub sigma_arcmin: f64,
+}
+
+/// An absolute position of a point on the tool.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PositionRow {
+    /// Row of the file, from 0.
+    pub row: usize,
+    /// Name or number of the test; empty if it has none.
+    pub test: String,
+    /// Joint angles \[deg\].
+    pub pose_deg: Vec<f64>,
+    /// Stated payload.
+    pub payload: Payload,
+    /// Which arm the point is on: index among the campaign's.
+    pub arm: usize,
+    /// Name of the point.
+    pub point: String,
+    /// Position in the frame of the instrument \[mm\].
+    pub position_mm: [f64; 3],
+    /// Standard deviation of each coordinate \[mm\].
+    pub sigma_mm: f64,
+}
+
+/// The columns that say in which state the arm was.
+struct StateColumns {
+    pose: Vec<usize>,
+    payload: Option<[usize; 4]>,
+}
+
+impl StateColumns {
+    fn find(table: &Table, joints: &[&str], payload_needed: bool) -> Option<Self> {
+        let expected: Vec<String> = joints.iter().map(|j| format!("q_{j}_deg")).collect();
+        for column in table.columns.iter().filter(|c| c.starts_with("q_") && !expected.contains(c)) {
+            table.fault(
+                Some(1),
+                column,
+                "is the angle of no driven joint".into(),
+                &format!("the arm's joints: {}", joints.join(", ")),
+            );
+        }
+        let pose: Vec<Option<usize>> = expected.iter().map(|name| table.required(name)).collect();
+        const PAYLOAD: [&str; 4] = ["payload_kg", "payload_cg_x_m", "payload_cg_y_m", "payload_cg_z_m"];
+        let stated = payload_needed || table.optional(PAYLOAD[0]).is_some();
+        let payload = match stated {
+            true => {
+                let found = PAYLOAD.map(|name| table.required(name));
+                Some([found[0]?, found[1]?, found[2]?, found[3]?])
+            }
+            false => None,
+        };
+        Some(Self { pose: pose.into_iter().collect::<Option<_>>()?, payload })
+    }
+
+    fn pose(&self, table: &Table, row: usize) -> Option<Vec<f64>> {
+        let angles: Vec<_> = self
+            .pose
+            .iter()
+            .map(|&c| table.number_that(row, c, |a| a.abs() <= 720.0, "an angle in degrees is below 720"))
+            .collect();
+        angles.into_iter().collect()
+    }
+
+    fn payload(&self, table: &Table, row: usize) -> Option<Payload> {
+        let Some([mass, cg @ ..]) = self.payload else { return Some(Payload::default()) };
+        let mass_kg = table.number_that(
+            row,
+            mass,
+            |m| (0.0..=1e4).contains(&m),
+            "a payload in kg is neither negative nor above 10 t; is it in grams?",
+        );
+        let cg = cg.map(|c| {
+            table.number_that(row, c, |x| x.abs() <= 5.0, "more than 5 m from the tip: is it in mm?")
+        });
+        let cg_m = Vector3::new(cg[0]?, cg[1]?, cg[2]?);
+        Some(Payload { mass_kg: mass_kg?, cg_m, ..Payload::default() })
+    }
+}
+
+const SIGMA: &str = "a standard deviation is greater than 0";
+
+/// Numbers beyond this, or standard deviations below its reciprocal, are no measurement in any unit.
+const ABSURD: f64 = 1e9;
+
+fn sigma(table: &Table, row: usize, column: usize) -> Option<f64> {
+    let value = table.number_that(row, column, |s| s > 0.0, SIGMA)?;
+    if (1.0 / ABSURD..ABSURD).contains(&value) {
+        return Some(value);
+    }
+    let hint = "no instrument has this standard deviation; state the one it has";
+    table.row_fault(row, &table.columns[column], format!("= {}", table.text(row, column)), hint);
+    None
+}
+
+/// A cell as a number that something can have been measured or applied at.
+fn measured(table: &Table, row: usize, column: usize) -> Option<f64> {
+    table.number_that(row, column, |x| x.abs() < ABSURD, "too large for any unit: is it a slip?")
+}
+
+/// Reads static rows.
+pub fn static_rows(table: &Table, arm: &Arm) -> Vec<StaticRow> {
+    let state = StateColumns::find(table, &arm.driven_joint_names(), true);
+    let find = |names: [&str; 3]| names.map(|n| table.required(n));
+    let (force, d) = (find(["force_x_n", "force_y_n", "force_z_n"]), find(["dx_mm", "dy_mm", "dz_mm"]));
+    let (branch, sigma_mm) = (table.optional("branch"), table.required("sigma_mm"));
+    let (Some(state), [Some(fx), Some(fy), Some(fz)], [Some(dx), Some(dy), Some(dz)], Some(sigma_mm)) =
+        (state, force, d, sigma_mm)
+    else {
+        return Vec::new();
+    };
+    let rows = each_row(table, |row| {
+        let number = |c| measured(table, row, c);
+        let (pose_deg, payload) = (state.pose(table, row), state.payload(table, row));
+        let (force, d) = ([fx, fy, fz].map(number), [dx, dy, dz].map(number));
+        let sigma_mm = sigma(table, row, sigma_mm);
+        Some(StaticRow {
+            row,
+            pose_deg: pose_deg?,
+            payload: payload?,
+            force_n: Vector3::new(force[0]?, force[1]?, force[2]?),
+            branch: branch.map_or(String::new(), |c| table.text(row, c).to_string()),
+            d_mm: [d[0]?, d[1]?, d[2]?],
+            sigma_mm: sigma_mm?,
+        })
+    });
+    check_angles(table, rows.iter().map(|r| r.pose_deg.as_slice()));
+    rows
+}
+
+/// Reads modal rows.
+pub fn modal_rows(table: &Table, arm: &Arm) -> Vec<ModalRow> {
+    let state = StateColumns::find(table, &arm.driven_joint_names(), true);
+    let columns = ["mode", "frequency_hz", "sigma_hz"].map(|n| table.required(n));
+    let (Some(state), [Some(mode), Some(frequency), Some(sigma_hz)]) = (state, columns) else {
+        return Vec::new();
+    };
+    let rows = each_row(table, |row| {
+        let (pose_deg, payload) = (state.pose(table, row), state.payload(table, row));
+        let mode = table.number_that(
+            row,
+            mode,
+            |m| m >= 1.0 && m.fract() == 0.0 && m < 1000.0,
+            "modes are numbered 1, 2, 3 ... by rising frequency",
+        );
+        let frequency_hz = table.number_that(
+            row,
+            frequency,
+            |f| f > 0.0 && f < ABSURD,
+            "a frequency is greater than 0 and below 1 GHz",
+        );
+        let sigma_hz = sigma(table, row, sigma_hz);
+        Some(ModalRow {
+            row,
+            pose_deg: pose_deg?,
+            payload: payload?,
+            mode: mode? as usize,
+            frequency_hz: frequency_hz?,
+            sigma_hz: sigma_hz?,
+        })
+    });
+    check_angles(table, rows.iter().map(|r| r.pose_deg.as_slice()));
+    rows
+}
+
+/// Reads bench rows.
+pub fn windup_rows(table: &Table, arm: &Arm) -> Vec<WindupRow> {
+    let columns = ["joint", "torque_nm", "windup_arcmin", "sigma_arcmin"].map(|n| table.required(n));
+    let branch = table.optional("branch");
+    let [Some(joint), Some(torque), Some(windup), Some(sigma_arcmin)] = columns else {
+        return Vec::new();
+    };
+    let names: Vec<&str> = arm.joints().map(|j| j.name.as_str()).collect();
+    each_row(table, |row| {
+        let name = table.text(row, joint);
+        if !names.contains(&name) {
+            let hint = format!("the arm's joints: {}", names.join(", "));
+            table.row_fault(row, "joint", format!("\"{name}\" is no joint of the arm"), &hint);
+        }
+        let torque_nm = measured(table, row, torque);
+        let windup_arcmin = measured(table, row, windup);
+        let sigma_arcmin = sigma(table, row, sigma_arcmin);
+        Some(WindupRow {
+            row,
+            joint: name.to_string(),
+            torque_nm: torque_nm?,
+            branch: branch.map_or(String::new(), |c| table.text(row, c).to_string()),
+            windup_arcmin: windup_arcmin?,
+            sigma_arcmin: sigma_arcmin?,
+        })
+    })
+}
+
+/// Reads absolute positions.
+///
+/// `arms`: names of the arms; `driven`: the joints that have a column.
+pub fn position_rows(table: &Table, arms: &[&str], driven: &[String]) -> Vec<PositionRow> {
+    let joints: Vec<&str> = driven.iter().map(String::as_str).collect();
+    let state = StateColumns::find(table, &joints, false);
+    let columns = ["x_mm", "y_mm", "z_mm", "sigma_mm"].map(|n| table.required(n));
+    let point = table.optional("point");
+    let test = table.optional("test");
+    let arm = table.optional("arm");
+    let (Some(state), [Some(x), Some(y), Some(z), Some(sigma_mm)]) = (state, columns) else {
+        return Vec::new();
+    };
+    let rows = each_row(table, |row| {
+        let (pose_deg, payload) = (state.pose(table, row), state.payload(table, row));
+        let position = [x, y, z].map(|c| measured(table, row, c));
+        let arm = match arm {
+            Some(column) => arm_named(table, row, column, arms),
+            None => Some(0),
+        };
+        let sigma_mm = sigma(table, row, sigma_mm);
+        Some(PositionRow {
+            row,
+            test: test.map_or(String::new(), |c| table.text(row, c).to_string()),
+            pose_deg: pose_deg?,
+            payload: payload?,
+            arm: arm?,
+            point: point.map_or("tip".to_string(), |c| table.text(row, c).to_string()),
+            position_mm: [position[0]?, position[1]?, position[2]?],
+            sigma_mm: sigma_mm?,
+        })
+    });
+    check_angles(table, rows.iter().map(|r| r.pose_deg.as_slice()));
+    rows
+}
+
+fn arm_named(table: &Table, row: usize, column: usize, arms: &[&str]) -> Option<usize> {
+    let name = table.text(row, column);
+    let found = arms.iter().position(|a| *a == name);
+    if found.is_none() {
+        table.row_fault(
+            row,
+            "arm",
+            format!("\"{name}\" is no arm"),
+            &format!("the arms: {}", arms.join(", ")),
+        );
+    }
+    found
+}
+
+fn each_row<T>(table: &Table, read: impl Fn(usize) -> Option<T>) -> Vec<T> {
+    let rows: Vec<Option<T>> = (0..table.rows.len()).map(read).collect();
+    check_duplicates(table);
+    rows.into_iter().flatten().collect()
+}
+
+/// Rows that repeat an earlier one in everything but the test's label: a copying error, and the noise
+/// of the two would not be independent.
+fn check_duplicates(table: &Table) {
+    let label = table.optional("test");
+    let mut seen: HashMap<Vec<&str>, usize> = HashMap::new();
+    for (row, cells) in table.rows.iter().enumerate() {
+        let key: Vec<&str> =
+            cells.iter().enumerate().filter(|(c, _)| Some(*c) != label).map(|(_, s)| s.as_str()).collect();
+        if let Some(first) = seen.get(&key) {
+            let problem = format!("repeats line {} in every value", table.lines[*first]);
+            table.row_fault(row, "", problem, "remove the copy; a repeated test has noise of its own");
+        } else {
+            seen.insert(key, row);
+        }
+    }
+}
+
+/// Angles that are all within half a turn in radians, in several poses, are radians.
+fn check_angles<'a>(table: &Table, poses: impl Iterator<Item = &'a [f64]>) {
+    let mut distinct: Vec<&[f64]> = Vec::new();
+    for pose in poses {
+        if !distinct.contains(&pose) {
+            distinct.push(pose);
+        }
+    }
+    let largest = distinct.iter().flat_map(|p| p.iter()).fold(0.0f64, |m, a| m.max(a.abs()));
+    if distinct.len() >= 5 && largest > 0.3 && largest < 3.2 {
+        table.fault(
+            Some(1),
+            "q_..._deg",
+            format!("no angle of {} poses exceeds {largest} degrees", distinct.len()),
+            "they look like radians; write degrees",
+        );
+    }
+}

@@ -1,0 +1,366 @@
+//! What a handful of readings can say: every small set of effects that explains them is listed, because
+//! with few rows several always do.
+//!
+//! Sets of one, two and three effects are fitted, up to one effect more than the smallest set that explains
+//! the readings has. Those that explain every reading within its standard deviation, and that would not
+//! without any one of their effects, are kept, unless the evidence is far behind the best. What all of them
+//! share, masses and stiffnesses included, is what the readings say; a number on which they differ is one
+//! that the readings cannot give.
+
+use super::screening::{MOST_EFFECTS, Scored, Search, Selection};
+use crate::arm::effect::Subject;
+use crate::arm::structure::Piece;
+use crate::reconcile::fit::descent::{Effort, Fit, Weights, fit};
+use crate::reconcile::fit::interval::intervals;
+use crate::reconcile::fit::stats::ln_chi_squared_tail;
+use crate::reconcile::model::parameters::{Calibration, Knob, Model};
+use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::verdict::outcome::{Estimate, Finding};
+use rayon::prelude::*;
+
+/// Fewest rows from which one model can be chosen.
+pub const FEWEST_ROWS: usize = 11;
+/// Most fits for sets of one size; beyond it only the most promising smaller sets are extended.
+const MOST_FITS: usize = 6000;
+/// Probability below which a set does not explain the readings.
+const IMPROBABLE: f64 = 0.01;
+/// Explaining sets this far behind the best in evidence are not listed; with few readings the evidence is
+/// little more than what was expected before, so this is wide.
+const IMPLAUSIBLE: f64 = 15.0;
+/// Part of a mass by which every set must differ from the arm file to be told.
+const MATERIAL: f64 = 0.02;
+/// Largest over smallest stiffness from which it is not identified.
+const WIDE: f64 = 1.2;
+/// Factors on a stiffness that are tried in turn, and their reciprocals.
+const FACTORS: [f64; 9] = [1.1, 1.2, 1.4, 1.7, 2.0, 3.0, 4.0, 6.0, 10.0];
+/// Sets whose stiffnesses are tried.
+const MOST_PROFILES: usize = 6;
+
+/// Weighs every small set of effects; `others` are those that explain the readings, best first.
+pub fn weigh(search: &Search) -> Selection {
+    let bare = scored(search, &[], &[]);
+    let mut tried = vec![bare.clone()];
+    let mut level = tried.clone();
+    // one effect more than the smallest set that explains needs: as many numbers can sit in other effects
+    let mut beyond = false;
+    for _ in 0..MOST_EFFECTS.min(search.forward.data.len()) {
+        if beyond {
+            break;
+        }
+        beyond = level.iter().any(|s| explains(search, s));
+        level = extend(search, &level);
+        tried.extend(level.iter().cloned());
+    }
+    let others = explaining(search, tried);
+    let best = others.first().cloned().unwrap_or_else(|| bare.clone());
+    Selection { best, bare, others, given_up: false }
+}
+
+/// The sets that explain the readings, no smaller part of which does, best first.
+fn explaining(search: &Search, tried: Vec<Scored>) -> Vec<Scored> {
+    let all: Vec<Scored> = tried.into_iter().filter(|s| explains(search, s)).collect();
+    let within = |a: &Scored, b: &Scored| {
+        a.effects.len() < b.effects.len() && a.effects.iter().all(|e| b.effects.contains(e))
+    };
+    let mut out: Vec<Scored> = all.iter().filter(|s| !all.iter().any(|t| within(t, s))).cloned().collect();
+    out.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.effects.cmp(&b.effects)));
+    let top = out.first().map_or(0.0, |s| s.score);
+    out.retain(|s| s.score > top - IMPLAUSIBLE);
+    out
+}
+
+/// Whether the readings are as near to the set's predictions as their standard deviations say.
+fn explains(search: &Search, scored: &Scored) -> bool {
+    is_probable(search, scored, scored.objective)
+}
+
+/// Whether chance leaves such a misfit to a set.
+fn is_probable(search: &Search, set: &Scored, misfit: f64) -> bool {
+    let readings = search.forward.data.len();
+    let free = knobs(search, &set.effects);
+    let dof = readings.saturating_sub(free).max(1) as f64;
+    ln_chi_squared_tail(misfit, dof) > IMPROBABLE.ln()
+}
+
+fn knobs(search: &Search, effects: &[usize]) -> usize {
+    effects.iter().map(|&e| search.candidates[e].knobs.len()).sum()
+}
+
+/// Every set of `level` with one more effect, fitted; no set twice.
+fn extend(search: &Search, level: &[Scored]) -> Vec<Scored> {
+    let candidates = 0..search.candidates.len();
+    let mut from: Vec<&Scored> = level.iter().collect();
+    from.sort_by(|a, b| a.objective.total_cmp(&b.objective).then(a.effects.cmp(&b.effects)));
+    from.truncate((MOST_FITS / candidates.len().max(1)).max(1));
+    let mut sets: Vec<(Vec<usize>, &Scored, usize)> = from
+        .into_iter()
+        .flat_map(|base| candidates.clone().map(move |c| (base, c)))
+        .filter(|(base, c)| !base.effects.contains(c))
+        .map(|(base, c)| {
+            let mut sorted = [base.effects.as_slice(), &[c]].concat();
+            sorted.sort_unstable();
+            (sorted, base, c)
+        })
+        .filter(|(sorted, ..)| sorted.len() <= search.forward.data.len())
+        .collect();
+    sets.sort_by(|a, b| a.0.cmp(&b.0));
+    sets.dedup_by(|a, b| a.0 == b.0);
+    sets.into_par_iter()
+        .map(|(_, base, c)| {
+            let effects = [base.effects.as_slice(), &[c]].concat();
+            let starts = search.candidates[c].starts.iter();
+            let starts: Vec<Vec<f64>> = starts.map(|s| [base.u.as_slice(), s].concat()).collect();
+            scored(search, &effects, &starts)
+        })
+        .collect()
+}
+
+/// The best fit of a set from several starts.
+fn scored(search: &Search, effects: &[usize], starts: &[Vec<f64>]) -> Scored {
+    let nothing = [vec![0.0; search.nuisance.numbers.len()]];
+    let starts = if starts.is_empty() { &nothing } else { starts };
+    let fits = starts.iter().map(|u| search.fit(effects, u, Effort::default()));
+    let best =
+        fits.min_by(|a, b| a.point.objective.total_cmp(&b.point.objective)).expect("at least one start");
+    let strange: f64 =
+        best.model.knobs().zip(&best.point.u[best.model.calibrated()..]).map(|(k, u)| surprise(k, *u)).sum();
+    let scored = search.scored(effects, &best);
+    Scored { score: scored.score - strange, ..scored }
+}
+
+/// What a number beyond the expected costs, in ln of the evidence: as much as a normal deviate whose
+/// standard deviation is a quarter of the expected width.
+fn surprise(knob: &Knob, u: f64) -> f64 {
+    0.5 * (knob.beyond_expected(u) / 0.25).powi(2)
+}
+
+/// What the sets that explain the readings have in common, and what they do not.
+pub fn sentences(search: &Search, campaign: &Campaign, bare: &Fit, explaining: &[Scored]) -> Vec<String> {
+    let Some(first) = explaining.first() else {
+        return vec![
+            gap(search, bare),
+            format!("no {MOST_EFFECTS} effects of the library explain every reading"),
+        ];
+    };
+    if first.effects.is_empty() {
+        return vec!["noise and calibration within tolerance explain every reading".into()];
+    }
+    let mut out = vec![gap(search, bare)];
+    out.push(match explaining.len() {
+        1 => format!("one set of effects explains every reading: {}", search.model(&first.effects).label()),
+        n => format!(
+            "{n} sets of effects explain every reading and cannot be told apart by these; the most probable: {}",
+            explaining[..n.min(3)].iter().map(|s| search.model(&s.effects).label()).collect::<Vec<_>>().join("; ")
+        ),
+    });
+    let subjects: Vec<Subject> =
+        explaining.iter().map(|s| search.model(&s.effects).subject(search.forward, &s.u)).collect();
+    out.extend(missing_mass(search, campaign, explaining, &subjects));
+    out.extend(unidentified_stiffnesses(search, explaining, &subjects));
+    out
+}
+
+/// The worst reading of the arm as given.
+fn gap(search: &Search, bare: &Fit) -> String {
+    let sigmas = |i: usize| {
+        let datum = &search.forward.data[i];
+        ((datum.value - bare.point.predicted[i]) / datum.sigma).abs()
+    };
+    let worst = (0..search.forward.data.len()).max_by(|&a, &b| sigmas(a).total_cmp(&sigmas(b)));
+    let Some(i) = worst else { return "there is no reading".into() };
+    let datum = &search.forward.data[i];
+    format!(
+        "the arm as given, calibrated within tolerance, cannot give the readings: {} row {} is {} where the arm has {:.2}",
+        datum.channel.word(),
+        datum.row + 1,
+        datum.value,
+        bare.point.predicted[i]
+    )
+}
+
+/// The outermost joint at and beyond which every set that leaves the stiffnesses as they are wants more mass
+/// than the arm file has, or less.
+fn missing_mass(
+    search: &Search,
+    campaign: &Campaign,
+    explaining: &[Scored],
+    subjects: &[Subject],
+) -> Option<String> {
+    let forward = search.forward;
+    let nominal = &forward.nominal;
+    let as_stiff: Vec<usize> = (0..subjects.len()).filter(|&i| is_as_stiff(&subjects[i], nominal)).collect();
+    let first = explaining.get(*as_stiff.first()?)?;
+    let payloads =
+        campaign.modal.iter().map(|r| &r.payload).chain(campaign.statics.iter().map(|r| &r.payload));
+    let stated = payloads.max_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg)).copied().unwrap_or_default();
+    let names: Vec<String> = nominal.structure.joints().map(|j| j.name.clone()).collect();
+    names.iter().rev().find_map(|joint| {
+        let outboard = |s: &Subject| s.payload(&stated).mass_kg + outboard_kg(s, joint);
+        let known_kg = outboard(nominal);
+        let missing_kg = |i: &usize| outboard(&subjects[*i]) - known_kg;
+        let (low, high) = span(as_stiff.iter().map(missing_kg));
+        let (word, low, high) = if high < 0.0 { ("too much", -high, -low) } else { ("missing", low, high) };
+        let kg =
+            if high - low < 0.005 { format!("{low:.2} kg") } else { format!("{low:.2} to {high:.2} kg") };
+        (low > MATERIAL * known_kg).then(|| {
+            format!(
+                "with the stiffnesses as given the masses cannot give the readings: {kg} are {word} at and beyond {joint}, \
+                 where the arm file and the payload have {known_kg:.2} kg; most probably {} with {:.2} kg",
+                search.model(&first.effects).label(),
+                missing_kg(&as_stiff[0]).abs()
+            )
+        })
+    })
+}
+
+/// Whether the joints, the bearings, the links and the base yield as in the arm file.
+fn is_as_stiff(subject: &Subject, nominal: &Subject) -> bool {
+    let pieces = subject.structure.pieces.iter().zip(&nominal.structure.pieces);
+    let alike = |(a, b): (&Piece, &Piece)| match (a, b) {
+        (Piece::Joint(a), Piece::Joint(b)) => a.law == b.law && a.tilt_rad_per_nm == b.tilt_rad_per_nm,
+        (Piece::Link(a), Piece::Link(b)) => a.beam == b.beam,
+        _ => false,
+    };
+    subject.structure.base_tilt_rad_per_nm == nominal.structure.base_tilt_rad_per_nm
+        && pieces.into_iter().all(alike)
+}
+
+/// Mass of everything from a joint outward, without the payload \[kg\].
+fn outboard_kg(subject: &Subject, joint: &str) -> f64 {
+    let pieces = subject.structure.pieces.iter();
+    let outboard = pieces.skip_while(|p| !matches!(p, Piece::Joint(j) if j.name == joint));
+    outboard
+        .map(|piece| match piece {
+            Piece::Joint(joint) => joint.mass_kg,
+            Piece::Link(link) => link.mass_kg(),
+        })
+        .sum()
+}
+
+/// Joints whose stiffness may have very different values with every reading explained, the widest first.
+fn unidentified_stiffnesses(search: &Search, explaining: &[Scored], subjects: &[Subject]) -> Vec<String> {
+    let joints = search.forward.nominal.structure.joints().filter(|j| !j.law.is_rigid());
+    let mut ranges: Vec<(String, f64, f64)> = joints
+        .map(|joint| {
+            let ends = explaining.par_iter().zip(subjects).take(MOST_PROFILES).map(|(set, subject)| {
+                let stiffness = stiffness_nm_per_rad(subject, &joint.name);
+                let (low, high) = free_factors(search, set, &joint.name);
+                (low * stiffness, high * stiffness)
+            });
+            let ends: Vec<(f64, f64)> = ends.collect();
+            let (low, high) = span(ends.into_iter().flat_map(|(low, high)| [low, high]));
+            (joint.name.clone(), low, high)
+        })
+        .filter(|(_, low, high)| high / low > WIDE)
+        .collect();
+    ranges.sort_by(|a, b| (b.2 / b.1).total_cmp(&(a.2 / a.1)));
+    ranges
+        .into_iter()
+        .map(|(name, low, high)| {
+            format!(
+                "the stiffness of {name} cannot be identified: the readings are explained as well with {low:.0} as with \
+                 {high:.0} N m/rad"
+            )
+        })
+        .collect()
+}
+
+fn stiffness_nm_per_rad(subject: &Subject, joint: &str) -> f64 {
+    let joint = subject.structure.joints().find(|j| j.name == joint);
+    joint.map_or(f64::INFINITY, |j| 1.0 / j.law.tangent_compliance_rad_per_nm(0.0))
+}
+
+/// The least and the largest factor on a joint's stiffness with which a set, its other numbers refitted,
+/// still explains the readings.
+fn free_factors(search: &Search, set: &Scored, joint: &str) -> (f64, f64) {
+    let mut nuisance = search.nuisance.clone();
+    let index = nuisance.numbers.len();
+    nuisance.numbers.push((Calibration::Stiffness(joint.to_string()), 1.0));
+    let mut model = Model { nuisance: &nuisance, ..search.model(&set.effects) };
+    let mut reach = |factors: &[f64]| {
+        let mut u = set.u.clone();
+        u.insert(index, 0.0);
+        let mut reached = 1.0;
+        for factor in factors {
+            model.held = vec![(index, factor.ln())];
+            let fitted = fit(search.forward, &model, &u, search.weights, Effort::default());
+            // what holding the factor costs is no misfit
+            let misfit = fitted.point.objective - factor.ln().powi(2);
+            if !is_probable(search, set, misfit) {
+                break;
+            }
+            (reached, u) = (*factor, fitted.point.u);
+        }
+        reached
+    };
+    (reach(&FACTORS.map(|f| 1.0 / f)), reach(&FACTORS))
+}
+
+fn span(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+}
+
+/// Every effect of the sets, with the range of its numbers over the sets that have it and what stands in
+/// its place in the others. A stiffness that some set does without has no upper end.
+pub fn suspects(search: &Search, explaining: &[Scored], weights: &Weights) -> Vec<Finding> {
+    let mut effects: Vec<usize> = Vec::new();
+    for &e in explaining.iter().flat_map(|s| &s.effects) {
+        if !effects.contains(&e) {
+            effects.push(e);
+        }
+    }
+    let fits: Vec<Vec<(usize, Vec<Estimate>)>> =
+        explaining.par_iter().map(|s| estimates(search, s, weights)).collect();
+    effects.iter().map(|&e| suspect(search, explaining, &fits, e)).collect()
+}
+
+/// The numbers of every effect of a set with their intervals.
+fn estimates(search: &Search, set: &Scored, weights: &Weights) -> Vec<(usize, Vec<Estimate>)> {
+    let fit = search.fit(&set.effects, &set.u, Effort { steps: 0, tolerance: 0.0 });
+    let mut ends = intervals(search.forward, &fit, weights).into_iter();
+    let of = |(position, &e): (usize, &usize)| {
+        let candidate = &search.candidates[e];
+        let first = fit.model.first_knob(position);
+        let values = candidate.numbers(&fit.point.u[first..first + candidate.knobs.len()]);
+        let knobs = candidate.knobs.iter().zip(values).zip(ends.by_ref());
+        (e, knobs.map(|((knob, value), end)| knob.estimate(value, &end)).collect())
+    };
+    set.effects.iter().enumerate().map(of).collect()
+}
+
+fn suspect(
+    search: &Search,
+    explaining: &[Scored],
+    fits: &[Vec<(usize, Vec<Estimate>)>],
+    effect: usize,
+) -> Finding {
+    let candidate = &search.candidates[effect];
+    let own: Vec<&Vec<Estimate>> =
+        fits.iter().flatten().filter(|(e, _)| *e == effect).map(|(_, list)| list).collect();
+    let absent = own.len() < explaining.len();
+    let mut parameters: Vec<(String, Vec<Estimate>)> = Vec::new();
+    for (k, knob) in candidate.knobs.iter().enumerate() {
+        let end = |of: fn(&Estimate) -> Option<f64>, pick: fn(f64, f64) -> f64| {
+            own.iter().map(|list| of(&list[k])).reduce(|a, b| Some(pick(a?, b?))).flatten()
+        };
+        let high = end(|e| e.high, f64::max).filter(|_| !(absent && knob.reversed()));
+        let estimate = Estimate { value: own[0][k].value, low: end(|e| e.low, f64::min), high };
+        match parameters.iter_mut().find(|(name, _)| name == knob.name) {
+            Some((_, list)) => list.push(estimate),
+            None => parameters.push((knob.name.to_string(), vec![estimate])),
+        }
+    }
+    let mut others: Vec<(String, String)> = Vec::new();
+    for &e in explaining.iter().filter(|s| !s.effects.contains(&effect)).flat_map(|s| &s.effects) {
+        let name = (search.candidates[e].kind.name.to_string(), search.candidates[e].at.clone());
+        if !others.contains(&name) {
+            others.push(name);
+        }
+    }
+    Finding {
+        effect: candidate.kind.name.into(),
+        at: candidate.at.clone(),
+        parameters,
+        indistinguishable_from: others,
+    }
+}

@@ -1,0 +1,377 @@
+//! Whether the best model leaves a structure that it should not.
+//!
+//! The residuals of a right model are noise: they do not follow the order of the tests, a joint's angle,
+//! the load, the branch, the torque. Each such question is a few regressors `X`; with the part that the
+//! model could still fit removed, `zᵀ S⁻¹ z` with `z = Xᵀr`, `S = XᵀX - XᵀJ (JᵀWJ)⁻¹ JᵀX` is
+//! chi-squared if there is nothing. The smooth laws of `unnamed` are asked beside these.
+
+use super::unnamed;
+use crate::arm::effect::Channel;
+use crate::reconcile::fit::descent::{Fit, Weights};
+use crate::reconcile::fit::stats::ln_chi_squared_tail;
+use crate::reconcile::forward::Forward;
+use crate::reconcile::model::parameters::Calibration;
+use crate::reconcile::readings::campaign::Campaign;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use std::f64::consts::TAU;
+
+/// One question put to the residuals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Structure {
+    /// Channel; all of them together if none.
+    pub channel: Option<Channel>,
+    /// What the residuals would follow, in words.
+    pub follows: String,
+    /// Test statistic.
+    pub statistic: f64,
+    /// Its degrees of freedom.
+    pub dof: f64,
+    /// ln of the probability of so large a statistic, times the number of questions.
+    pub ln_p: f64,
+}
+
+/// The answer to all questions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LackOfFit {
+    /// Every question, the most telling first.
+    pub structures: Vec<Structure>,
+    /// Sum of squares over degrees of freedom of all data, in declared standard deviations.
+    pub chi2_per_dof: f64,
+    /// Whether the model fails.
+    pub fails: bool,
+}
+
+/// Sum of squares over degrees of freedom that wrong declared deviations could hardly leave.
+const MATERIAL: f64 = 2.5;
+/// The same where a structure is suspected.
+const SUSPICIOUS: f64 = 1.8;
+/// Probability, all questions together, below which a structure is no chance.
+const CHANCE: f64 = 1e-3;
+/// Probability below which a structure is suspected.
+const SUSPECTED: f64 = 0.02;
+/// Structures that are put into words.
+const TOLD: usize = 3;
+
+impl LackOfFit {
+    /// The most telling structures that are no chance, in words, each said once.
+    pub fn sentences(&self) -> Vec<String> {
+        let mut told: Vec<&Structure> = Vec::new();
+        for structure in self.structures.iter().filter(|s| s.ln_p < CHANCE.ln()) {
+            if !told.iter().any(|t| t.channel == structure.channel && t.follows == structure.follows) {
+                told.push(structure);
+            }
+        }
+        told.into_iter().take(TOLD).map(Structure::sentence).collect()
+    }
+}
+
+/// Asks all questions.
+pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> LackOfFit {
+    let tester = Tester::new(forward, fit, weights);
+    let mut structures = Vec::new();
+    for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
+        let range = forward.range(channel);
+        if range.len() >= 8 {
+            structures.extend(
+                questions(campaign, forward, fit, weights, channel)
+                    .into_iter()
+                    .filter_map(|(follows, regressors)| tester.ask(channel, follows, &regressors)),
+            );
+        }
+    }
+    let asked = (structures.len() as f64).max(1.0).ln();
+    structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
+    structures.extend(unnamed::beside(campaign, forward, fit, weights));
+    structures.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
+    let chi2_per_dof = tester.chi2_per_dof(forward, fit);
+    let ln_p = structures.first().map_or(0.0, |s| s.ln_p);
+    let fails =
+        ln_p < CHANCE.ln() || chi2_per_dof > MATERIAL || (ln_p < SUSPECTED.ln() && chi2_per_dof > SUSPICIOUS);
+    LackOfFit { structures, chi2_per_dof, fails }
+}
+
+/// Part of a regressor's square that the model leaves below which it counts as the model's own: what is left of
+/// it then tells how well the fit converged.
+const ABSORBED: f64 = 1e-3;
+
+/// Columns of length 1.
+fn unit_columns(mut x: DMatrix<f64>) -> DMatrix<f64> {
+    for mut column in x.column_iter_mut() {
+        let length = column.norm();
+        if length > 0.0 {
+            column /= length;
+        }
+    }
+    x
+}
+
+struct Tester {
+    residual: DVector<f64>,
+    jacobian: DMatrix<f64>,
+    covariance: DMatrix<f64>,
+    weight: Vec<f64>,
+}
+
+impl Tester {
+    fn new(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
+        let residual = DVector::from_vec(fit.residuals(forward, weights)).map(|r| r.clamp(-5.0, 5.0));
+        let mut jacobian = fit.jacobian.clone();
+        for (mut row, w) in jacobian.row_iter_mut().zip(&weights.inverse) {
+            row *= *w;
+        }
+        let n = fit.curvature.nrows();
+        let covariance = fit.curvature.clone().try_inverse().unwrap_or_else(|| DMatrix::zeros(n, n));
+        Self { residual, jacobian, covariance, weight: weights.inverse.clone() }
+    }
+
+    fn ask(&self, channel: Channel, follows: String, regressors: &[Vec<f64>]) -> Option<Structure> {
+        let n = self.residual.len();
+        let x =
+            DMatrix::from_fn(
+                n,
+                regressors.len(),
+                |i, k| {
+                    if self.weight[i] > 0.0 { regressors[k][i] } else { 0.0 }
+                },
+            );
+        let x = unit_columns(x);
+        let z = x.tr_mul(&self.residual);
+        let xj = x.tr_mul(&self.jacobian);
+        let s = x.tr_mul(&x) - &xj * &self.covariance * xj.transpose();
+        let eigen = SymmetricEigen::new((&s + s.transpose()) * 0.5);
+        let largest = eigen.eigenvalues.max();
+        let (mut statistic, mut dof) = (0.0, 0.0);
+        for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            if *value > ABSORBED * largest && *value > 1e-9 {
+                statistic += vector.dot(&z).powi(2) / value;
+                dof += 1.0;
+            }
+        }
+        (dof > 0.0).then(|| Structure {
+            channel: Some(channel),
+            follows,
+            statistic,
+            dof,
+            ln_p: ln_chi_squared_tail(statistic, dof),
+        })
+    }
+
+    fn chi2_per_dof(&self, forward: &Forward, fit: &Fit) -> f64 {
+        let (mut chi2, mut count) = (0.0, 0.0);
+        for (i, datum) in forward.data.iter().enumerate() {
+            if self.weight[i] > 0.0 {
+                chi2 += ((datum.value - fit.point.predicted[i]) / datum.sigma).powi(2);
+                count += 1.0;
+            }
+        }
+        chi2 / (count - fit.model.effects.len() as f64 - 4.0).max(1.0)
+    }
+}
+
+/// Functions of what a datum belongs to, each zero outside its channel.
+fn questions(
+    campaign: &Campaign,
+    forward: &Forward,
+    fit: &Fit,
+    weights: &Weights,
+    channel: Channel,
+) -> Vec<(String, Vec<Vec<f64>>)> {
+    let mut out = match channel {
+        Channel::Static => static_questions(campaign, forward, fit),
+        Channel::Modal => modal_questions(campaign, forward),
+        _ => return windup_questions(campaign, forward),
+    };
+    out.extend(stiffness_questions(campaign, forward, fit, weights, channel));
+    out.extend(change_questions(forward, fit, weights, channel));
+    out
+}
+
+/// Whether what an effect is, or a material's modulus, changes in the course of the tests: what a small change of it does
+/// to each reading, times functions of the order.
+fn change_questions(
+    forward: &Forward,
+    fit: &Fit,
+    weights: &Weights,
+    channel: Channel,
+) -> Vec<(String, Vec<Vec<f64>>)> {
+    let range = forward.range(channel);
+    let part = |i: usize| (i - range.start) as f64 / range.len() as f64;
+    let ordered = |p: usize, k: usize| -> Vec<f64> {
+        let mut column = vec![0.0; forward.data.len()];
+        for i in range.clone() {
+            column[i] = fit.jacobian[(i, p)] * weights.inverse[i] * order_functions(part(i))[k];
+        }
+        column
+    };
+    let question = |what: String, numbers: std::ops::Range<usize>| {
+        let columns = numbers.flat_map(|p| [0, 2].map(|k| (p, k))).map(|(p, k)| ordered(p, k)).collect();
+        (format!("{what} that changes with the order of the tests"), columns)
+    };
+    let moduli = fit.model.nuisance.numbers.iter().enumerate().filter_map(|(p, (calibration, _))| {
+        let Calibration::Modulus(material, _) = calibration else { return None };
+        Some(question(format!("a modulus of {material}"), p..p + 1))
+    });
+    // an effect may have no size to be fitted: a wrong unit
+    let sized = fit.model.effects.iter().enumerate().filter(|(_, of)| !of.knobs.is_empty());
+    let effects = sized.map(|(effect, of)| {
+        let first = fit.model.first_knob(effect);
+        question(format!("a size of {}", of.label()), first..first + of.knobs.len())
+    });
+    moduli.chain(effects).collect()
+}
+
+/// Whether a joint's stiffness changes with its angle, its torque or the order of the tests: what a
+/// small change of it does to each reading, times functions of these.
+fn stiffness_questions(
+    campaign: &Campaign,
+    forward: &Forward,
+    fit: &Fit,
+    weights: &Weights,
+    channel: Channel,
+) -> Vec<(String, Vec<Vec<f64>>)> {
+    let mut out = Vec::new();
+    let torques = forward.torques_nm(&fit.point.coefficients);
+    let names: Vec<String> = campaign.arm.joints().map(|j| j.name.clone()).collect();
+    let driven = campaign.arm.driven_joint_names();
+    let count = forward.range(channel).len() as f64;
+    for (p, (calibration, _)) in fit.model.nuisance.numbers.iter().enumerate() {
+        let Calibration::Stiffness(name) = calibration else { continue };
+        let Some(joint) = names.iter().position(|n| n == name) else { continue };
+        let largest = torques.iter().map(|t| t[joint].abs()).fold(1e-9, f64::max);
+        let times = |f: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            let mut column = vec![0.0; forward.data.len()];
+            for i in forward.range(channel) {
+                column[i] = fit.jacobian[(i, p)] * weights.inverse[i] * f(i);
+            }
+            column
+        };
+        if let Some(j) = driven.iter().position(|n| n == name) {
+            let pose = |i: usize| match channel {
+                Channel::Static => &campaign.statics[i / 3].pose_deg,
+                _ => &campaign.modal[i - forward.starts[1]].pose_deg,
+            };
+            let angle = (0..4).map(|k| times(&|i| waves(pose(i)[j])[k])).collect();
+            out.push((format!("a stiffness of {name} that changes with its angle"), angle));
+        }
+        let first = forward.range(channel).start;
+        let part = |i: usize| (i - first) as f64 / count;
+        let order = (0..4).map(|k| times(&|i| order_functions(part(i))[k])).collect();
+        out.push((format!("a stiffness of {name} that changes with the order of the tests"), order));
+        let law: [fn(f64) -> f64; 4] = [|t| t.abs(), |t| t * t, |t| t.signum(), |t| t];
+        let torque = law.iter().map(|f| times(&|i| f(torques[i][joint] / largest))).collect();
+        out.push((format!("a stiffness of {name} that changes with its torque"), torque));
+    }
+    out
+}
+
+/// Values at the data of a channel, zero elsewhere.
+fn spread(forward: &Forward, channel: Channel, value: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+    let mut out = vec![0.0; forward.data.len()];
+    for i in forward.range(channel) {
+        out[i] = value(i, forward.data[i].component);
+    }
+    out
+}
+
+/// Sine and cosine of an angle, once and twice a turn.
+pub fn waves(angle_deg: f64) -> [f64; 4] {
+    let a = angle_deg.to_radians();
+    [a.sin(), a.cos(), (2.0 * a).sin(), (2.0 * a).cos()]
+}
+
+/// Slow and fast waves and a line over the order of the rows.
+pub fn order_functions(part: f64) -> [f64; 6] {
+    let (a, b) = (TAU * part, 2.0 * TAU * part);
+    [part - 0.5, (part - 0.5).powi(2), a.sin(), a.cos(), b.sin(), b.cos()]
+}
+
+fn static_questions(campaign: &Campaign, forward: &Forward, fit: &Fit) -> Vec<(String, Vec<Vec<f64>>)> {
+    let rows = &campaign.statics;
+    let row = |i: usize| i / 3;
+    let count = rows.len() as f64;
+    let channel = Channel::Static;
+    // each component on its own, and along the predicted displacement (a stiffness that changes)
+    let vary = |f: &dyn Fn(usize) -> f64| -> Vec<Vec<f64>> {
+        let mut out: Vec<Vec<f64>> = (0..3)
+            .map(|c| spread(forward, channel, |i, component| if component == c { f(row(i)) } else { 0.0 }))
+            .collect();
+        out.push(spread(forward, channel, |i, _| {
+            f(row(i)) * fit.point.predicted[i] / forward.data[i].sigma / 30.0
+        }));
+        out
+    };
+    let mut out = Vec::new();
+    let order: Vec<Vec<f64>> = (0..6).flat_map(|k| vary(&|r| order_functions(r as f64 / count)[k])).collect();
+    out.push(("the order of the tests".to_string(), order));
+    for (j, name) in campaign.arm.driven_joint_names().iter().enumerate() {
+        let angle: Vec<Vec<f64>> = (0..4).flat_map(|k| vary(&|r| waves(rows[r].pose_deg[j])[k])).collect();
+        out.push((format!("the angle of {name}"), angle));
+    }
+    let load: Vec<Vec<f64>> = [
+        vary(&|r| rows[r].payload.mass_kg / 10.0),
+        vary(&|r| (rows[r].payload.mass_kg / 10.0).powi(2)),
+        vary(&|r| rows[r].force_n.norm() / 100.0),
+    ]
+    .concat();
+    out.push(("the load".to_string(), load));
+    let branch = vary(&|r| if rows[r].branch == "unloading" { 1.0 } else { 0.0 });
+    out.push(("loading or unloading".to_string(), branch));
+    out
+}
+
+fn modal_questions(campaign: &Campaign, forward: &Forward) -> Vec<(String, Vec<Vec<f64>>)> {
+    let rows = &campaign.modal;
+    let first = forward.starts[1];
+    let count = rows.len() as f64;
+    let function = |f: &dyn Fn(usize) -> f64| spread(forward, Channel::Modal, |i, _| f(i - first));
+    let mut out = Vec::new();
+    let order = (0..6).map(|k| function(&|r| order_functions(r as f64 / count)[k])).collect();
+    out.push(("the order of the tests".to_string(), order));
+    for (j, name) in campaign.arm.driven_joint_names().iter().enumerate() {
+        let low = |r: usize, k: usize| if rows[r].mode <= 2 { waves(rows[r].pose_deg[j])[k] } else { 0.0 };
+        let angle = (0..4)
+            .flat_map(|k| [function(&|r| waves(rows[r].pose_deg[j])[k]), function(&|r| low(r, k))])
+            .collect();
+        out.push((format!("the angle of {name}"), angle));
+    }
+    let load = vec![function(&|r| rows[r].payload.mass_kg / 10.0), function(&|_| 1.0)];
+    out.push(("the payload".to_string(), load));
+    let modes = (1..=6).map(|m| function(&|r| if rows[r].mode == m { 1.0 } else { 0.0 })).collect();
+    out.push(("the number of the mode".to_string(), modes));
+    out
+}
+
+fn windup_questions(campaign: &Campaign, forward: &Forward) -> Vec<(String, Vec<Vec<f64>>)> {
+    let rows = &campaign.windup;
+    let first = forward.starts[2];
+    let names: Vec<&str> = campaign.arm.joints().map(|j| j.name.as_str()).collect();
+    names
+        .into_iter()
+        .filter(|name| rows.iter().filter(|r| r.joint == *name).count() >= 6)
+        .map(|name| {
+            let largest =
+                rows.iter().filter(|r| r.joint == name).map(|r| r.torque_nm.abs()).fold(1e-9, f64::max);
+            let function = |f: &dyn Fn(f64, f64) -> f64| {
+                spread(forward, Channel::Windup, |i, _| {
+                    let row = &rows[i - first];
+                    let side = if row.branch == "unloading" { 1.0 } else { -1.0 };
+                    if row.joint == name { f(row.torque_nm / largest, side) } else { 0.0 }
+                })
+            };
+            let mut regressors: Vec<Vec<f64>> = (0..6).map(|k| function(&|t, _| t.powi(k))).collect();
+            regressors.extend((0..3).map(|k| function(&|t, side| side * t.powi(k))));
+            (format!("the torque on {name}"), regressors)
+        })
+        .collect()
+}
+
+impl Structure {
+    /// The structure in one line.
+    pub fn sentence(&self) -> String {
+        let of = self.channel.map_or(String::new(), |c| format!(" of {}", c.word()));
+        format!(
+            "the residuals{of} follow {} (chi-squared {:.0} on {} degrees of freedom)",
+            self.follows, self.statistic, self.dof
+        )
+    }
+}

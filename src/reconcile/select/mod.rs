@@ -1,0 +1,9 @@
+//! Which effects are missing: screening, laws without a name, lack of fit, and the next test.
+
+pub mod few_rows;
+pub mod lack_of_fit;
+pub mod laws;
+pub mod next_test;
+pub mod screening;
+pub mod settle;
+pub mod unnamed;

@@ -1,0 +1,91 @@
+//! The corrected arm: calibrated values in place of nominal ones, effects added, each with its source.
+
+use super::outcome::{Calibrated, Finding, Verdict};
+use crate::arm::effect::Place;
+use crate::arm::{Arm, Element, LinkBody};
+use crate::reconcile::fit::descent::Fit;
+use crate::reconcile::forward::Forward;
+use crate::reconcile::model::parameters::Calibration;
+use crate::reconcile::readings::campaign::Campaign;
+use serde_json::{Value, json};
+
+/// The corrected arm and the provenance of its values. Where nothing explains the gap the arm is
+/// returned as it was: calibration against missing physics would be wrong.
+pub fn corrected(
+    campaign: &Campaign,
+    forward: &Forward,
+    fit: &Fit,
+    findings: &[Finding],
+    calibrated: &[Calibrated],
+    verdict: Verdict,
+) -> (Arm, Value) {
+    let mut arm = campaign.arm.clone();
+    let keep = matches!(verdict, Verdict::Explained | Verdict::NoGap);
+    let mut values = Vec::new();
+    if keep {
+        for ((calibration, _), c) in fit.model.nuisance.numbers.iter().zip(calibrated) {
+            calibrate(&mut arm, calibration, c.factor.value);
+            values.push(json!({
+                "value": c.name, "factor": c.factor.value, "low": c.factor.low, "high": c.factor.high,
+                "source": "calibrated within tolerance",
+            }));
+        }
+        add_effects(campaign, forward, fit, findings, &mut arm);
+    }
+    let provenance = provenance(campaign, verdict, values);
+    (arm, provenance)
+}
+
+/// Where the values of a corrected arm come from.
+pub fn provenance(campaign: &Campaign, verdict: Verdict, calibrated: Vec<Value>) -> Value {
+    json!({
+        "campaign": campaign.statement.name, "campaign_blake3": campaign.hash,
+        "tool": format!("armwright {}", env!("CARGO_PKG_VERSION")),
+        "verdict": verdict.word(), "calibrated": calibrated,
+    })
+}
+
+fn add_effects(campaign: &Campaign, forward: &Forward, fit: &Fit, findings: &[Finding], arm: &mut Arm) {
+    for (i, (candidate, finding)) in fit.model.effects.iter().zip(findings).enumerate() {
+        let first = fit.model.first_knob(i);
+        let u = &fit.point.u[first..first + candidate.knobs.len()];
+        let place = forward.nominal.structure.place(&candidate.at, candidate.kind.places);
+        let mut effect = candidate.effect(u, place.unwrap_or(Place::Arm));
+        let intervals: Vec<Value> = finding
+            .parameters
+            .iter()
+            .map(|(name, list)| {
+                json!({"parameter": name,
+                       "low": list.iter().map(|e| e.low).collect::<Vec<_>>(),
+                       "high": list.iter().map(|e| e.high).collect::<Vec<_>>()})
+            })
+            .collect();
+        let source = json!({
+            "campaign": campaign.statement.name, "campaign_blake3": campaign.hash, "interval_95": intervals,
+        });
+        effect.source = Some(source);
+        arm.effects.push(effect);
+    }
+}
+
+fn calibrate(arm: &mut Arm, calibration: &Calibration, factor: f64) {
+    for element in &mut arm.chain {
+        match (calibration, element) {
+            (Calibration::Stiffness(name), Element::Joint(joint)) if joint.name == *name => {
+                joint.curve = joint.curve.stiffened(factor);
+            }
+            (Calibration::Mass(name), Element::Joint(joint)) if joint.name == *name => {
+                joint.mass_kg *= factor;
+            }
+            (Calibration::Modulus(name, _), Element::Link(link)) => {
+                if let LinkBody::Tube { material_name, material, .. } = &mut link.body
+                    && material_name == name
+                {
+                    material.youngs_modulus_pa *= factor;
+                    material.shear_modulus_pa *= factor;
+                }
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Where the gap sits: the readings split by channel, branch, load, mode, joint and pose.
+
+use super::outcome::Located;
+use crate::arm::effect::Channel;
+use crate::reconcile::fit::descent::{Fit, Weights};
+use crate::reconcile::fit::kept_out::rms;
+use crate::reconcile::forward::Forward;
+use crate::reconcile::readings::campaign::Campaign;
+
+/// Poses listed.
+const WORST_POSES: usize = 3;
+
+/// Root mean squares of every part of the readings \[declared standard deviations\], gross errors left out.
+pub fn located(
+    campaign: &Campaign,
+    forward: &Forward,
+    bare: &Fit,
+    best: &Fit,
+    weights: &Weights,
+) -> Vec<Located> {
+    let mut parts: Vec<(String, Vec<usize>)> = Vec::new();
+    for (i, datum) in forward.data.iter().enumerate() {
+        if weights.inverse[i] > 0.0 {
+            for name in names(campaign, forward, i) {
+                match parts.iter_mut().find(|(n, _)| *n == name) {
+                    Some((_, list)) => list.push(i),
+                    None => parts.push((name, vec![i])),
+                }
+            }
+        }
+        debug_assert!(datum.sigma > 0.0);
+    }
+    let residual =
+        |fit: &Fit, i: usize| (forward.data[i].value - fit.point.predicted[i]) / forward.data[i].sigma;
+    let mut all: Vec<Located> = parts
+        .into_iter()
+        .map(|(part, list)| Located {
+            count: list.len(),
+            rms_before: rms(list.iter().map(|&i| residual(bare, i))),
+            rms_after: rms(list.iter().map(|&i| residual(best, i))),
+            part,
+        })
+        .collect();
+    let (mut poses, mut rest): (Vec<_>, Vec<_>) = all.drain(..).partition(|l| l.part.starts_with("pose"));
+    poses.sort_by(|a, b| b.rms_before.total_cmp(&a.rms_before));
+    rest.extend(poses.into_iter().take(WORST_POSES));
+    rest
+}
+
+fn names(campaign: &Campaign, forward: &Forward, i: usize) -> Vec<String> {
+    let datum = &forward.data[i];
+    let mut out = vec![datum.channel.word().to_string()];
+    match datum.channel {
+        Channel::Static => {
+            let row = &campaign.statics[i / 3];
+            if !row.branch.is_empty() {
+                out.push(format!("static, {}", row.branch));
+            }
+            out.push(if row.force_n.norm() > 0.0 {
+                "static, tip force".into()
+            } else {
+                format!("static, payload {} kg", row.payload.mass_kg)
+            });
+        }
+        Channel::Modal => {
+            let row = &campaign.modal[i - forward.starts[1]];
+            out.push(format!("modal, mode {}", row.mode));
+            out.push(format!("modal, payload {} kg", row.payload.mass_kg));
+        }
+        _ => out.push(format!("windup, {}", campaign.windup[i - forward.starts[2]].joint)),
+    }
+    if let Some(pose) = forward.groups.get(datum.group) {
+        out.push(format!("pose {pose} deg"));
+    }
+    out
+}

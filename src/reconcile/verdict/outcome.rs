@@ -1,0 +1,353 @@
+//! What `reconcile` concludes.
+
+use super::report::{CORRECTED_FILE, corrected_file};
+use crate::arm::Arm;
+use crate::arm::effect::Channel;
+use crate::reconcile::fit::kept_out::KeptOut;
+use crate::reconcile::fit::noise::Noise;
+use crate::reconcile::positions::Stage;
+use crate::reconcile::select::lack_of_fit::LackOfFit;
+use serde_json::{Map, Value, json};
+
+/// The four answers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Noise and tolerance explain all.
+    NoGap,
+    /// The effects found explain it.
+    Explained,
+    /// No effect of the library does.
+    Unexplained,
+    /// The readings cannot tell.
+    InsufficientData,
+}
+
+impl Verdict {
+    /// The word in `verdict.json`.
+    pub fn word(self) -> &'static str {
+        match self {
+            Verdict::NoGap => "no_gap",
+            Verdict::Explained => "explained",
+            Verdict::Unexplained => "unexplained",
+            Verdict::InsufficientData => "insufficient_data",
+        }
+    }
+}
+
+/// A value with its 95 % interval; an end that the data do not bound is `None`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// Best value.
+    pub value: f64,
+    /// Lower end.
+    pub low: Option<f64>,
+    /// Upper end.
+    pub high: Option<f64>,
+}
+
+/// An effect found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// Name.
+    pub effect: String,
+    /// Place.
+    pub at: String,
+    /// Parameters; a vector parameter has several estimates.
+    pub parameters: Vec<(String, Vec<Estimate>)>,
+    /// Effects that these readings cannot tell from it.
+    pub indistinguishable_from: Vec<(String, String)>,
+}
+
+/// A calibrated value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Calibrated {
+    /// What: `j2.stiffness`, `steel.modulus`, `j2.mass`.
+    pub name: String,
+    /// Factor on the nominal value.
+    pub factor: Estimate,
+    /// Standard deviation of ln of the factor over what tolerance alone leaves; 1 = nothing learnt.
+    pub learnt: f64,
+}
+
+/// Root mean squares before and after, of one part of the readings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Located {
+    /// Which part: `static`, `static, unloading`, `modal, mode 2`, `windup, j3`.
+    pub part: String,
+    /// Numbers in it.
+    pub count: usize,
+    /// With the nominal model, calibrated.
+    pub rms_before: f64,
+    /// With the effects.
+    pub rms_after: f64,
+}
+
+/// A test worth making.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NextTest {
+    /// `static`, `modal` or `windup`.
+    pub kind: String,
+    /// What to do, in words.
+    pub description: String,
+    /// Pose, if the test has one \[deg\].
+    pub pose_deg: Option<Vec<f64>>,
+    /// Payload \[kg\].
+    pub payload_kg: f64,
+    /// Tip force \[N\].
+    pub force_n: [f64; 3],
+    /// Joint on the bench.
+    pub joint: Option<String>,
+    /// What it tells apart.
+    pub separates: Vec<String>,
+    /// Expected difference \[standard deviations\].
+    pub expected_sigmas: f64,
+    /// How many such readings reach four standard deviations.
+    pub readings_needed: usize,
+}
+
+/// One reading with both models' values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReadingResidual {
+    /// Channel.
+    pub channel: Channel,
+    /// Row of its file, from 1.
+    pub row: usize,
+    /// `dx_mm`, `frequency_hz` ...
+    pub quantity: &'static str,
+    /// Measured.
+    pub measured: f64,
+    /// Declared standard deviation.
+    pub sigma: f64,
+    /// Model as given, calibrated within tolerance.
+    pub before: f64,
+    /// With the effects.
+    pub after: f64,
+    /// Predicted with the pose kept out of the fit.
+    pub kept_out: Option<f64>,
+    /// Whether the row was taken for a gross error.
+    pub gross: bool,
+}
+
+/// A candidate's evidence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evidence {
+    /// The model: effects joined by `+`.
+    pub model: String,
+    /// Its score less that of the best.
+    pub score: f64,
+    /// Chi-squared-like objective.
+    pub objective: f64,
+}
+
+/// Everything `reconcile` found.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// Campaign.
+    pub campaign: String,
+    /// blake3 of its files.
+    pub hash: String,
+    /// The answer.
+    pub verdict: Verdict,
+    /// Why, one sentence each.
+    pub reasons: Vec<String>,
+    /// Effects, if explained.
+    pub effects: Vec<Finding>,
+    /// What could be behind it when the readings cannot tell.
+    pub suspects: Vec<Finding>,
+    /// Confirmation.
+    pub kept_out: Option<KeptOut>,
+    /// Where the gap sits.
+    pub located: Vec<Located>,
+    /// What to measure next, best first.
+    pub next_tests: Vec<NextTest>,
+    /// Quality of the readings.
+    pub noise: Noise,
+    /// Lack of fit of the best model.
+    pub lack_of_fit: Option<LackOfFit>,
+    /// Calibrated values.
+    pub calibrated: Vec<Calibrated>,
+    /// Models that were weighed.
+    pub evidence: Vec<Evidence>,
+    /// Absolute positions: how the error falls as each effect is added.
+    pub stages: Vec<Stage>,
+    /// Readings and residuals.
+    pub residuals: Vec<ReadingResidual>,
+    /// The corrected arm.
+    pub corrected: Arm,
+    /// Further corrected arms on the same trunk.
+    pub other_corrected: Vec<Arm>,
+    /// Provenance of the corrected arm's values.
+    pub provenance: Value,
+}
+
+impl Estimate {
+    fn json(&self) -> Value {
+        json!({"value": self.value, "low": self.low, "high": self.high})
+    }
+}
+
+impl Finding {
+    /// `effect@place`.
+    pub fn label(&self) -> String {
+        format!("{}@{}", self.effect, self.at)
+    }
+
+    fn json(&self) -> Value {
+        let parameters: Map<String, Value> = self
+            .parameters
+            .iter()
+            .map(|(name, estimates)| {
+                let value = match estimates.as_slice() {
+                    [one] => one.json(),
+                    many => {
+                        let part = |f: fn(&Estimate) -> Option<f64>| many.iter().map(f).collect::<Vec<_>>();
+                        json!({"value": part(|e| Some(e.value)), "low": part(|e| e.low), "high": part(|e| e.high)})
+                    }
+                };
+                (name.clone(), value)
+            })
+            .collect();
+        let others: Vec<Value> = self
+            .indistinguishable_from
+            .iter()
+            .map(|(effect, at)| json!({"effect": effect, "at": at}))
+            .collect();
+        json!({"effect": self.effect, "at": self.at, "parameters": parameters, "indistinguishable_from": others})
+    }
+}
+
+impl NextTest {
+    /// A test of another kind, whose worth these readings do not tell.
+    pub fn of_another_kind(description: String) -> Self {
+        Self {
+            kind: "another kind".into(),
+            description,
+            pose_deg: None,
+            payload_kg: 0.0,
+            force_n: [0.0; 3],
+            joint: None,
+            separates: Vec::new(),
+            expected_sigmas: 0.0,
+            readings_needed: 0,
+        }
+    }
+
+    fn json(&self) -> Value {
+        json!({
+            "kind": self.kind, "description": self.description, "pose_deg": self.pose_deg,
+            "payload_kg": self.payload_kg, "force_n": self.force_n, "joint": self.joint,
+            "separates": self.separates, "expected_sigmas": self.expected_sigmas,
+            "readings_needed": self.readings_needed,
+        })
+    }
+}
+
+impl Outcome {
+    /// `verdict.json`.
+    pub fn to_json(&self) -> Value {
+        let kept_out = self.kept_out.map(|k| {
+            json!({"rms_sigma_before": k.rms_before, "rms_sigma_after": k.rms_after, "rms_declared_sigma_after": k.rms_declared_after, "readings": k.count})
+        });
+        let located: Vec<Value> = self
+            .located
+            .iter()
+            .map(|l| {
+                json!({"part": l.part, "readings": l.count, "rms_sigma_before": l.rms_before, "rms_sigma_after": l.rms_after})
+            })
+            .collect();
+        let next = self.next_tests.first().map_or(json!({}), NextTest::json);
+        json!({
+            "schema": 1,
+            "campaign": self.campaign,
+            "campaign_blake3": self.hash,
+            "tool_version": env!("CARGO_PKG_VERSION"),
+            "verdict": self.verdict.word(),
+            "reasons": self.reasons,
+            "effects": self.effects.iter().map(Finding::json).collect::<Vec<_>>(),
+            "suspects": self.suspects.iter().map(Finding::json).collect::<Vec<_>>(),
+            "kept_out": kept_out.unwrap_or(json!({})),
+            "located": {"parts": located},
+            "next_test": next,
+            "further_tests": self.next_tests.iter().skip(1).map(NextTest::json).collect::<Vec<_>>(),
+            "readings": self.noise_json(),
+            "lack_of_fit": self.lack_of_fit_json(),
+            "calibrated": self.calibrated.iter().map(|c| json!({
+                "name": c.name, "factor": c.factor.json(), "learnt": c.learnt,
+            })).collect::<Vec<_>>(),
+            "stages": self.stages.iter().map(Stage::json).collect::<Vec<_>>(),
+            "evidence": self.evidence.iter().map(|e| json!({
+                "model": e.model, "score": e.score, "chi_squared": e.objective,
+            })).collect::<Vec<_>>(),
+        })
+    }
+
+    fn noise_json(&self) -> Value {
+        let outliers: Vec<Value> = self
+            .noise
+            .outliers
+            .iter()
+            .map(|(c, row, size)| json!({"channel": c.word(), "row": row + 1, "sigmas": size}))
+            .collect();
+        let [s, m, w] = self.noise.scale;
+        json!({"gross_errors": outliers, "sigma_scale": {"static": s, "modal": m, "windup": w}})
+    }
+
+    fn lack_of_fit_json(&self) -> Value {
+        let Some(l) = &self.lack_of_fit else { return json!({}) };
+        let structures: Vec<Value> = l
+            .structures
+            .iter()
+            .take(5)
+            .map(|s| {
+                json!({"channel": s.channel.map_or("all", |c| c.word()), "follows": s.follows, "chi_squared": s.statistic,
+                       "degrees_of_freedom": s.dof, "log10_probability": s.ln_p / std::f64::consts::LN_10})
+            })
+            .collect();
+        json!({"chi_squared_per_degree_of_freedom": l.chi2_per_dof, "fails": l.fails, "structures": structures})
+    }
+
+    /// `residuals.csv`.
+    pub fn residuals_csv(&self) -> String {
+        let mut out = String::from(
+            "channel,row,quantity,measured,sigma,model_before,model_after,kept_out_residual_sigma,gross_error\n",
+        );
+        for r in &self.residuals {
+            let kept_out = r.kept_out.map_or(String::new(), |k| format!("{k:.4}"));
+            out.push_str(&format!(
+                "{},{},{},{},{},{:.6},{:.6},{},{}\n",
+                r.channel.word(),
+                r.row,
+                r.quantity,
+                r.measured,
+                r.sigma,
+                r.before,
+                r.after,
+                kept_out,
+                r.gross
+            ));
+        }
+        out
+    }
+
+    /// A further corrected arm as its file, with its own placement.
+    pub fn other_json(&self, arm: &Arm) -> Value {
+        let mut out = arm.to_json();
+        out["provenance"] = self.provenance.clone();
+        out["provenance"]["placement"] = self.provenance["other_placements"][&arm.name].clone();
+        let beside = self.other_corrected.iter().filter(|o| o.name != arm.name).map(corrected_file);
+        out["provenance"]["other_arms"] =
+            json!([vec![CORRECTED_FILE.to_string()], beside.collect()].concat());
+        out
+    }
+
+    /// The corrected arm as its file.
+    pub fn corrected_json(&self) -> Value {
+        let mut arm = self.corrected.to_json();
+        arm["provenance"] = self.provenance.clone();
+        if !self.other_corrected.is_empty() {
+            let beside: Vec<String> = self.other_corrected.iter().map(corrected_file).collect();
+            arm["provenance"]["other_arms"] = json!(beside);
+        }
+        arm
+    }
+}

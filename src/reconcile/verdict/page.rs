@@ -1,0 +1,193 @@
+//! What `reconcile` found, as the values of its page.
+
+use super::outcome::{Estimate, Finding, NextTest, Outcome, ReadingResidual, Verdict};
+use crate::arm::effect::Channel;
+use crate::reconcile::positions::Stage;
+use crate::reconcile::readings::campaign::Campaign;
+use crate::report::html::campaign::{CampaignPage, Compared, Found, Ranged, Reading, Test, Weighed};
+use crate::report::html::pick::degrees;
+use crate::report::html::positions::{Position, Step};
+use crate::report::number::shortest;
+
+/// The page of a campaign and its outcome.
+pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
+    let text = outcome.to_text();
+    CampaignPage {
+        name: outcome.campaign.clone(),
+        sentence: sentence(outcome),
+        reasons: outcome.reasons.clone(),
+        explained: outcome.verdict == Verdict::Explained,
+        joints: campaign.driven_joint_names(),
+        parts: outcome
+            .located
+            .iter()
+            .map(|l| Compared {
+                part: l.part.clone(),
+                count: l.count,
+                before: l.rms_before,
+                after: l.rms_after,
+            })
+            .collect(),
+        readings: readings(campaign, outcome),
+        steps: outcome.stages.iter().map(step).collect(),
+        positions: positions(campaign, outcome),
+        found: outcome.effects.iter().chain(&outcome.suspects).map(found).collect(),
+        // positions are weighed by the error of kept-out poses: that is what `steps` shows
+        weighed: outcome
+            .evidence
+            .iter()
+            .filter(|_| campaign.has_displacements())
+            .map(|e| Weighed { model: e.model.clone(), score: e.score, chi_squared: e.objective })
+            .collect(),
+        calibrated: outcome.calibrated.iter().map(|c| ranged(c.name.clone(), &c.factor)).collect(),
+        kept_out: outcome.kept_out.map(|k| (k.count, k.rms_before, k.rms_after)),
+        quality: text.lines().filter(|l| is_quality(l)).map(|l| l.trim().to_string()).collect(),
+        tests: outcome.next_tests.iter().map(test).collect(),
+        optimum: None,
+        facts: facts(campaign, outcome),
+    }
+}
+
+/// The verdict as a sentence that can be read aloud.
+fn sentence(outcome: &Outcome) -> String {
+    let place = |f: &Finding| match f.at.as_str() {
+        "" => f.effect.replace('_', " "),
+        at => format!("{} at {at}", f.effect.replace('_', " ")),
+    };
+    match outcome.verdict {
+        Verdict::NoGap => {
+            "There is no gap: noise and the tolerance of the parts explain every reading.".into()
+        }
+        Verdict::Explained => {
+            let names: Vec<String> = outcome.effects.iter().map(place).collect();
+            format!("The gap between model and measurement is explained by {}.", names.join(" and "))
+        }
+        Verdict::Unexplained => "The model is wrong in a way that no known effect explains.".into(),
+        Verdict::InsufficientData => "The readings do not suffice to tell what is behind the gap.".into(),
+    }
+}
+
+/// Lines of the verdict about the readings themselves.
+fn is_quality(line: &str) -> bool {
+    line.trim_start().starts_with("gross error") || line.trim_start().starts_with("the sigma declared")
+}
+
+/// The residuals with the poses they were taken in: rows come channel by channel, in the files' order.
+fn readings(campaign: &Campaign, outcome: &Outcome) -> Vec<Reading> {
+    let mut seen = [0usize; 2];
+    let own = outcome.residuals.iter().filter(|r| r.channel != Channel::Positions);
+    own.map(|r| {
+        let pose = match r.channel {
+            Channel::Static => {
+                seen[0] += 1;
+                campaign.statics.get((seen[0] - 1) / 3).map(|s| s.pose_deg.clone())
+            }
+            Channel::Modal => {
+                seen[1] += 1;
+                campaign.modal.get(seen[1] - 1).map(|m| m.pose_deg.clone())
+            }
+            Channel::Windup | Channel::Positions => None,
+        };
+        Reading {
+            channel: r.channel.word(),
+            row: r.row,
+            quantity: r.quantity,
+            pose_deg: pose,
+            before_sigma: (r.measured - r.before) / r.sigma,
+            after_sigma: (r.measured - r.after) / r.sigma,
+            kept_out_sigma: r.kept_out,
+            gross: r.gross,
+        }
+    })
+    .collect()
+}
+
+/// The errors of absolute positions, their three coordinates together.
+fn positions(campaign: &Campaign, outcome: &Outcome) -> Vec<Position> {
+    let own: Vec<&ReadingResidual> =
+        outcome.residuals.iter().filter(|r| r.channel == Channel::Positions).collect();
+    let rows = own.chunks_exact(3).zip(&campaign.positions);
+    rows.map(|(axes, row)| {
+        let along = |of: fn(&ReadingResidual) -> f64| std::array::from_fn(|c| of(axes[c]));
+        Position {
+            row: axes[0].row,
+            pose_deg: row.pose_deg.clone(),
+            before_mm: along(|r| r.measured - r.before),
+            after_mm: along(|r| r.measured - r.after),
+            kept_out_mm: along(|r| r.kept_out.unwrap_or_default() * r.sigma),
+        }
+    })
+    .collect()
+}
+
+fn step(stage: &Stage) -> Step {
+    let Stage { added, fitted_median_mm, median_mm, mean_mm, max_mm, .. } = stage;
+    Step {
+        added: added.clone(),
+        fitted_median: *fitted_median_mm,
+        median: *median_mm,
+        mean: *mean_mm,
+        max: *max_mm,
+    }
+}
+
+fn found(finding: &Finding) -> Found {
+    let named = |(name, estimates): &(String, Vec<Estimate>)| -> Vec<Ranged> {
+        let axis = |i: usize| if estimates.len() > 1 { format!("{name} [{i}]") } else { name.clone() };
+        estimates.iter().enumerate().map(|(i, e)| ranged(axis(i), e)).collect()
+    };
+    Found {
+        label: finding.label(),
+        parameters: finding.parameters.iter().flat_map(named).collect(),
+        like: finding.indistinguishable_from.iter().map(|(effect, at)| format!("{effect}@{at}")).collect(),
+    }
+}
+
+fn ranged(name: String, estimate: &Estimate) -> Ranged {
+    Ranged { name, value: estimate.value, low: estimate.low, high: estimate.high }
+}
+
+fn test(test: &NextTest) -> Test {
+    let mut words = format!("{}: {}", test.kind, test.description);
+    if let Some(joint) = &test.joint {
+        words.push_str(&format!(" of {joint}"));
+    }
+    if let Some(pose) = &test.pose_deg {
+        let rounded: Vec<f64> = pose.iter().map(|a| (10.0 * a).round() / 10.0).collect();
+        words.push_str(&format!(" at pose {}", degrees(&rounded)));
+    }
+    if test.payload_kg > 0.0 {
+        words.push_str(&format!(", payload {} kg", shortest(test.payload_kg)));
+    }
+    if test.force_n.iter().any(|f| *f != 0.0) {
+        let force: Vec<String> = test.force_n.iter().map(|f| shortest(*f)).collect();
+        words.push_str(&format!(", tip force {} N", force.join(", ")));
+    }
+    Test {
+        words,
+        separates: test.separates.clone(),
+        expected_sigmas: test.expected_sigmas,
+        readings_needed: test.readings_needed,
+    }
+}
+
+fn facts(campaign: &Campaign, outcome: &Outcome) -> Vec<(String, String)> {
+    let named = |name: &str, value: String| (name.to_string(), value);
+    let mut out = vec![
+        named("arm", campaign.arm.name.clone()),
+        named("static rows", campaign.statics.len().to_string()),
+        named("modal rows", campaign.modal.len().to_string()),
+        named("wind-up rows", campaign.windup.len().to_string()),
+        named("position rows", campaign.positions.len().to_string()),
+        named("verdict", outcome.verdict.word().to_string()),
+        named("tool version", env!("CARGO_PKG_VERSION").into()),
+        named("blake3 of the campaign", outcome.hash.clone()),
+    ];
+    if let Some(fit) = &outcome.lack_of_fit {
+        out.push(named(
+            "squares per degree of freedom",
+            crate::report::number::significant(fit.chi2_per_dof, 3),
+        ));
+    }
+    out
+}

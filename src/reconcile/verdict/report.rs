@@ -1,0 +1,161 @@
+//! The verdict in words that can be read aloud, and the files.
+
+use super::outcome::{Estimate, Finding, Outcome, Verdict};
+use crate::arm::Arm;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Factor on declared standard deviations from which it is put into words: less is within what chance does.
+const WORTH_SAYING: f64 = 1.05;
+
+/// File of the first corrected arm.
+pub const CORRECTED_FILE: &str = "arm.corrected.json";
+
+/// File of a further corrected arm.
+pub fn corrected_file(arm: &Arm) -> String {
+    format!("{}.corrected.json", arm.name)
+}
+
+impl Outcome {
+    /// A short verdict for the terminal.
+    pub fn to_text(&self) -> String {
+        let mut out = String::new();
+        let _ = writeln!(out, "{}: {}", self.campaign, self.headline());
+        for reason in &self.reasons {
+            let _ = writeln!(out, "  {reason}");
+        }
+        for finding in self.effects.iter().chain(&self.suspects) {
+            out.push_str(&describe(finding, self.verdict));
+        }
+        if let Some(k) = &self.kept_out {
+            let _ = writeln!(
+                out,
+                "  on {} readings of poses kept out of the fit: {:.2} sigma before, {:.2} after",
+                k.count, k.rms_before, k.rms_after
+            );
+        }
+        self.stages_table(&mut out);
+        self.quality(&mut out);
+        if let Some(test) = self.next_tests.first() {
+            let angles = |p: &Vec<f64>| p.iter().map(|a| format!("{a:.1}")).collect::<Vec<_>>().join(", ");
+            let pose = test.pose_deg.as_ref().map_or(String::new(), |p| format!(" at [{}] deg", angles(p)));
+            let joint = test.joint.as_ref().map_or(String::new(), |j| format!(" of {j}"));
+            let expect = match test.expected_sigmas {
+                0.0 => String::new(),
+                s if s > 100.0 => format!(": expect more than 100 sigma, {} needed", test.readings_needed),
+                s => format!(": expect {s:.1} sigma, {} needed", test.readings_needed),
+            };
+            let load = match test.kind.as_str() {
+                "windup" | "another kind" => String::new(),
+                _ => format!(", payload {} kg, force {:?} N", test.payload_kg, test.force_n),
+            };
+            let _ =
+                writeln!(out, "  next test: {} ({}){joint}{pose}{load}{expect}", test.kind, test.description);
+        }
+        out
+    }
+
+    fn headline(&self) -> String {
+        let names = |list: &[Finding]| list.iter().map(|f| f.label()).collect::<Vec<_>>().join(" and ");
+        match self.verdict {
+            Verdict::NoGap => "no gap between model and measurement".into(),
+            Verdict::Explained => format!("explained by {}", names(&self.effects)),
+            Verdict::Unexplained => {
+                "UNEXPLAINED: the model is wrong in a way the library does not know".into()
+            }
+            Verdict::InsufficientData => "the readings are insufficient to tell".into(),
+        }
+    }
+
+    fn stages_table(&self, out: &mut String) {
+        if self.stages.is_empty() {
+            return;
+        }
+        let _ = writeln!(
+            out,
+            "  {:<41} {:>8} {:>26}",
+            "position error [mm], each line adds", "fitted", "kept out"
+        );
+        let _ = writeln!(out, "  {:<41} {:>8} {:>8} {:>8} {:>8}", "", "median", "median", "mean", "largest");
+        for s in &self.stages {
+            let _ = writeln!(
+                out,
+                "  {:<41} {:>8.3} {:>8.3} {:>8.3} {:>8.3}",
+                s.added, s.fitted_median_mm, s.median_mm, s.mean_mm, s.max_mm
+            );
+            s.dropped.iter().for_each(|name| out.push_str(&format!("    in place of {name}\n")));
+        }
+    }
+
+    fn quality(&self, out: &mut String) {
+        for (channel, row, size) in &self.noise.outliers {
+            let _ = writeln!(
+                out,
+                "  gross error: {} row {} is {size:.0} sigma off; left out of the fit",
+                channel.word(),
+                row + 1
+            );
+        }
+        for (word, scale) in ["static", "modal", "windup"].iter().zip(self.noise.scale) {
+            if scale > WORTH_SAYING {
+                let _ = writeln!(out, "  the sigma declared for {word} appears {scale:.2} times too small");
+            }
+        }
+    }
+
+    /// The files of the outcome with their names.
+    pub fn files(&self) -> Vec<(String, String)> {
+        let json = |value: &serde_json::Value| format!("{value:#}\n");
+        let mut out = vec![
+            ("verdict.json".to_string(), json(&self.to_json())),
+            ("verdict.txt".to_string(), self.to_text()),
+            (CORRECTED_FILE.to_string(), json(&self.corrected_json())),
+            ("residuals.csv".to_string(), self.residuals_csv()),
+        ];
+        let others = self.other_corrected.iter();
+        out.extend(others.map(|arm| (corrected_file(arm), json(&self.other_json(arm)))));
+        out
+    }
+
+    /// Writes `verdict.json`, `verdict.txt`, `arm.corrected.json` and `residuals.csv` into a folder.
+    ///
+    /// # Errors
+    /// The folder or a file cannot be written.
+    pub fn write(&self, folder: &Path) -> std::io::Result<()> {
+        fs_err::create_dir_all(folder)?;
+        self.files().into_iter().try_for_each(|(name, text)| fs_err::write(folder.join(name), text))
+    }
+}
+
+fn describe(finding: &Finding, verdict: Verdict) -> String {
+    let word = if verdict == Verdict::Explained { "" } else { "suspect " };
+    let mut out = format!("  {word}{}:", finding.label());
+    for (name, estimates) in &finding.parameters {
+        let values: Vec<String> = estimates.iter().map(value).collect();
+        let _ = write!(out, " {name} = {}", values.join("; "));
+    }
+    out.push('\n');
+    if !finding.indistinguishable_from.is_empty() {
+        let others: Vec<String> =
+            finding.indistinguishable_from.iter().map(|(e, at)| format!("{e}@{at}")).collect();
+        let _ = writeln!(out, "    these readings cannot tell it from {}", others.join(", "));
+    }
+    out
+}
+
+fn value(e: &Estimate) -> String {
+    let end = |v: Option<f64>| v.map_or("?".to_string(), number);
+    format!("{} ({} to {})", number(e.value), end(e.low), end(e.high))
+}
+
+/// Four figures.
+fn number(x: f64) -> String {
+    match x.abs() {
+        0.0 => "0".into(),
+        a if (1e-3..1e5).contains(&a) => {
+            let digits = (3 - a.log10().floor() as i32).max(0) as usize;
+            format!("{x:.digits$}")
+        }
+        _ => format!("{x:.3e}"),
+    }
+}

@@ -1,0 +1,249 @@
+//! Trial shapes: linear inequalities that follow from a required lowest mode, in one case.
+//!
+//! `λ₁ = min_x xᵀK x / xᵀM x`, so a design whose `λ₁` is at least `ω²` has `ω² xᵀM x - xᵀK x ≤ 0` for every
+//! shape `x` of strain coordinates (joint angles and the polynomials of [`beam`](crate::mechanics::beam)). `M` is
+//! linear in the pieces' masses and `K` in their stiffnesses, and neither depends on the other, so for a
+//! fixed `x` the left side is a sum of one number a piece. The shapes are the modes of mixtures that are
+//! too slow, found one after the other.
+
+use super::parts::Parts;
+use super::program::Row;
+use crate::arm::structure::{LinkPiece, Structure};
+use crate::mechanics::beam::{PreparedBeam, compliances, line_densities};
+use crate::mechanics::{displacement_at, stack};
+use crate::space::design_space::{DesignSpace, SpacePiece};
+use crate::space::effects::Layer;
+use crate::space::problem::ArmProblem;
+use crate::space::station::{StationSlot, Walk};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, SymmetricEigen, Vector3};
+
+/// Shapes taken from one mixture.
+const MOST_SHAPES: usize = 3;
+
+/// Masses and stiffnesses of one case by strain coordinates.
+pub(super) struct ShapeModel {
+    /// Case of the study.
+    pub case: usize,
+    /// Inertia of what is given: payload and rigid offsets.
+    given: DMatrix<f64>,
+    joints: Vec<JointShape>,
+    links: Vec<LinkShape>,
+}
+
+/// A joint: its coordinate and how its mass moves.
+struct JointShape {
+    slot: usize,
+    column: usize,
+    /// Velocity of the joint per coordinate.
+    motion: DMatrix<f64>,
+}
+
+/// A tube: its coordinates, how it moves, and what its options weigh and resist.
+struct LinkShape {
+    slot: usize,
+    first: usize,
+    /// Weighted displacement and rotation at each Gauss point per coordinate.
+    fields: Vec<Matrix6xX<f64>>,
+    /// Inertia per length of each option.
+    densities: Vec<[f64; 6]>,
+    /// Stiffness of each coordinate of each option.
+    stiffness: Vec<Vec<f64>>,
+}
+
+impl ShapeModel {
+    /// Compiles a case.
+    pub fn new(problem: &ArmProblem, case: usize) -> Self {
+        let space = problem.space();
+        let around = space.surroundings();
+        let structure = Structure { water: space.cases[case].water.or(around.water), ..around };
+        let station = &problem.stations()[case];
+        let walk = Walk::new(space, &space.cases[case]);
+        let layers = space.layers();
+        let tubes: Vec<Vec<LinkPiece>> = layers.iter().map(|(_, layer)| tubes(space, layer)).collect();
+        let beam = |slot: usize| PreparedBeam::new(tubes[slot].first()?, &structure, space.links);
+        let sizes = station.slots.iter().enumerate().map(|(slot, placed)| match placed {
+            StationSlot::Joint(_) => 1,
+            StationSlot::Body { .. } => 0,
+            StationSlot::Link { .. } => tubes[slot].first().map_or(0, |t| compliances(t, space.links).len()),
+        });
+        let count: usize = sizes.sum();
+        let mut model =
+            Self { case, given: DMatrix::zeros(count, count), joints: Vec::new(), links: Vec::new() };
+        // twist of everything so far per coordinate, base to tip
+        let mut twist = DMatrix::<f64>::zeros(6, count);
+        let mut column = 0;
+        for (slot, placed) in station.slots.iter().enumerate().rev() {
+            let (at_m, rotation) = &walk.places[layers[slot].0];
+            match placed {
+                StationSlot::Joint(joint) => {
+                    model.joints.push(JointShape { slot, column, motion: point_motion(&twist, at_m) });
+                    twist.set_column(column, &joint.twist);
+                    column += 1;
+                }
+                StationSlot::Body { inertia, .. } => model.given += twist.transpose() * inertia * &twist,
+                StationSlot::Link { place, .. } => {
+                    let Some(beam) = beam(slot) else { continue };
+                    let frame = rotation.matrix() * beam.frame;
+                    let stiffness =
+                        |l: &LinkPiece| compliances(l, space.links).iter().map(|c| 1.0 / c).collect();
+                    model.links.push(LinkShape {
+                        slot,
+                        first: column,
+                        fields: link_fields(&beam, &frame, &place.root_m, &twist, column),
+                        densities: tubes[slot]
+                            .iter()
+                            .map(|l| line_densities(l, &structure, space.links))
+                            .collect(),
+                        stiffness: tubes[slot].iter().map(stiffness).collect(),
+                    });
+                    for (k, field) in beam.end_fields.column_iter().enumerate() {
+                        let turn: Vector3<f64> = frame * field.fixed_rows::<3>(3);
+                        let move_m = frame * field.fixed_rows::<3>(0) + place.end_m.cross(&turn);
+                        twist.set_column(column + k, &stack(&move_m, &turn));
+                    }
+                    column += beam.compliances.len();
+                }
+            }
+        }
+        model.given += twist.transpose() * station.start_inertia * &twist;
+        model
+    }
+
+    /// The inequality of a shape at an eigenvalue; `stiffness` of the joints' options left.
+    pub fn row(&self, parts: &Parts, stiffness: &[Vec<f64>], x: &DVector<f64>, eigenvalue: f64) -> Row {
+        let mut row =
+            Row { coefficients: parts.each(|_, _| 0.0), limit: -eigenvalue * x.dot(&(&self.given * x)) };
+        for joint in &self.joints {
+            let moved = (&joint.motion * x).norm_squared();
+            let bent = x[joint.column].powi(2);
+            for (at, &option) in parts.alive[joint.slot].iter().enumerate() {
+                let resisted = if bent > 0.0 { bent * stiffness[joint.slot][at] } else { 0.0 };
+                row.coefficients[joint.slot][at] +=
+                    eigenvalue * parts.mass_kg(joint.slot, option) * moved - resisted;
+            }
+        }
+        for link in &self.links {
+            let moved = link.moved(x);
+            for (at, &option) in parts.alive[link.slot].iter().enumerate() {
+                let (densities, stiffness) =
+                    (&link.densities[option as usize], &link.stiffness[option as usize]);
+                let weighed: f64 = densities.iter().zip(&moved).map(|(d, m)| d * m).sum();
+                let own = x.rows(link.first, stiffness.len());
+                let bent = own.iter().zip(stiffness).filter(|(x, _)| **x != 0.0);
+                let resisted: f64 = bent.map(|(x, k)| x * x * k).sum();
+                row.coefficients[link.slot][at] += eigenvalue * weighed - resisted;
+            }
+        }
+        row.ready()
+    }
+
+    /// Modes of a mixture that lie below an eigenvalue, as shapes, the slowest first.
+    pub fn violated(
+        &self,
+        parts: &Parts,
+        stiffness: &[Vec<f64>],
+        weights: &[Vec<f64>],
+        eigenvalue: f64,
+    ) -> Vec<DVector<f64>> {
+        let count = self.given.nrows();
+        if count == 0 || !eigenvalue.is_finite() {
+            return Vec::new();
+        }
+        let mut inertia = self.given.clone();
+        let mut resistance = vec![0.0; count];
+        for joint in &self.joints {
+            let mix = mixture(&weights[joint.slot]);
+            let mass: f64 =
+                mix.clone().map(|(at, w)| w * parts.mass_kg(joint.slot, parts.alive[joint.slot][at])).sum();
+            inertia += joint.motion.transpose() * &joint.motion * mass;
+            // a joint that may be rigid gives no inequality a finite right side
+            let rigid = stiffness[joint.slot].iter().any(|k| k.is_infinite());
+            resistance[joint.column] =
+                if rigid { f64::INFINITY } else { mix.map(|(at, w)| w * stiffness[joint.slot][at]).sum() };
+        }
+        for link in &self.links {
+            let mut densities = [0.0; 6];
+            for (at, weight) in mixture(&weights[link.slot]) {
+                let option = parts.alive[link.slot][at] as usize;
+                densities.iter_mut().zip(&link.densities[option]).for_each(|(sum, d)| *sum += weight * d);
+                for (k, own) in link.stiffness[option].iter().enumerate() {
+                    resistance[link.first + k] += weight * own;
+                }
+            }
+            for field in &link.fields {
+                let mut weighted = field.clone();
+                for (mut row, density) in weighted.row_iter_mut().zip(densities) {
+                    row *= density;
+                }
+                inertia += field.transpose() * weighted;
+            }
+        }
+        let soft = DVector::from_iterator(count, resistance.iter().map(|k| 1.0 / k.sqrt()));
+        let scaled = DMatrix::from_fn(count, count, |i, j| soft[i] * inertia[(i, j)] * soft[j]);
+        let modes = SymmetricEigen::new(scaled);
+        let mut slow: Vec<usize> =
+            (0..count).filter(|&i| modes.eigenvalues[i] * eigenvalue > 1.0 + 1e-7).collect();
+        slow.sort_by(|&a, &b| modes.eigenvalues[b].total_cmp(&modes.eigenvalues[a]));
+        slow.truncate(MOST_SHAPES);
+        slow.into_iter().map(|i| modes.eigenvectors.column(i).component_mul(&soft)).collect()
+    }
+}
+
+impl LinkShape {
+    /// Integral of each squared component of the motion of a shape along the link.
+    fn moved(&self, x: &DVector<f64>) -> [f64; 6] {
+        let mut out = [0.0; 6];
+        for field in &self.fields {
+            let here = field * x;
+            out.iter_mut().zip(here.iter()).for_each(|(sum, v)| *sum += v * v);
+        }
+        out
+    }
+}
+
+/// The options of a link, with the effects at it; none if the layer is no link.
+fn tubes(space: &DesignSpace, layer: &Layer) -> Vec<LinkPiece> {
+    match layer {
+        Layer::Piece(SpacePiece::Choice(choice)) => {
+            choice.options.iter().map(|option| space.link_piece(&choice.link(option))).collect()
+        }
+        Layer::Piece(SpacePiece::Link(link)) => vec![space.link_piece(link)],
+        _ => Vec::new(),
+    }
+}
+
+/// Places and weights of the options that take part.
+fn mixture(weights: &[f64]) -> impl Iterator<Item = (usize, f64)> + Clone + '_ {
+    weights.iter().copied().enumerate().filter(|(_, w)| *w > 0.0)
+}
+
+/// Velocity of a point that moves with everything so far.
+fn point_motion(twist: &DMatrix<f64>, at_m: &Vector3<f64>) -> DMatrix<f64> {
+    let columns: Vec<Vector3<f64>> =
+        twist.column_iter().map(|t| displacement_at(&t.fixed_rows::<6>(0).into_owned(), at_m)).collect();
+    DMatrix::from_fn(3, columns.len(), |i, j| columns[j][i])
+}
+
+/// Displacement and rotation in the section frame at each Gauss point, times the root of its weight.
+fn link_fields(
+    beam: &PreparedBeam,
+    frame: &Matrix3<f64>,
+    root_m: &Vector3<f64>,
+    twist: &DMatrix<f64>,
+    first: usize,
+) -> Vec<Matrix6xX<f64>> {
+    let turned = frame.transpose();
+    let mut root = DMatrix::zeros(6, twist.ncols());
+    root.rows_mut(0, 3).copy_from(&(turned * point_motion(twist, root_m)));
+    root.rows_mut(3, 3).copy_from(&(turned * twist.rows(3, 3)));
+    beam.quadrature()
+        .map(|(xi, weight)| {
+            let fields = beam.fields(xi);
+            let mut all = fields.columns(0, 6) * &root;
+            let own = fields.ncols() - 6;
+            let inner = all.columns(first, own) + fields.columns(6, own);
+            all.columns_mut(first, own).copy_from(&inner);
+            all * weight.sqrt()
+        })
+        .collect()
+}

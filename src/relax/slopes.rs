@@ -1,0 +1,100 @@
+//! How steep a joint's law can be between two torques.
+
+use crate::arm::joint_law::{Curve, JointLaw};
+
+/// Rounding may put a torque on either side of a break point.
+const NEAR: f64 = 1e-12;
+
+/// Least and greatest compliance of a joint to small oscillations about any torque between two
+/// \[rad/(N m)\].
+pub(super) fn tangent_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
+    let size = size_range(torque_nm);
+    let curve = curve_range(&law.curve, size);
+    // its slope falls as the torque grows
+    let play = law
+        .lost_motion
+        .map_or([0.0; 2], |lost| [size[1], size[0]].map(|t| lost.tangent_compliance_rad_per_nm(t)));
+    [0, 1].map(|end| curve[end] + law.connection_rad_per_nm + play[end])
+}
+
+/// Bounds of the mean slope, between any two torques of a range, of the twist when torque has risen from
+/// rest \[rad/(N m)\]. Friction holds the spring it drags until the play's half width is used up.
+pub(super) fn rising_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
+    let [least, most] = tangent_range(law, torque_nm);
+    let Some(stiffness) = law.play_stiffness_nm_per_rad() else { return [least, most] };
+    let [near, far] = size_range(torque_nm);
+    let reach = stiffness * law.hysteresis_rad;
+    let held = if near <= reach { 1.0 / stiffness } else { 0.0 };
+    let freed = if far < reach { 1.0 / stiffness } else { 0.0 };
+    [least - held, most - freed]
+}
+
+/// Least and greatest size of a torque between two \[N m\].
+fn size_range([low, high]: [f64; 2]) -> [f64; 2] {
+    [low.max(-high).max(0.0) * (1.0 - NEAR), high.max(-low) * (1.0 + NEAR)]
+}
+
+fn curve_range(curve: &Curve, [near, far]: [f64; 2]) -> [f64; 2] {
+    match curve {
+        Curve::Rigid => [0.0; 2],
+        Curve::Linear(stiffness) => [1.0 / stiffness; 2],
+        Curve::WindupK1(w) => [1.0 / w.k1_nm_per_rad; 2],
+        Curve::Windup(w) => {
+            let segments = [
+                (0.0, w.t1_nm, w.k1_nm_per_rad),
+                (w.t1_nm, w.t2_nm, w.k2_nm_per_rad),
+                (w.t2_nm, f64::INFINITY, w.k3_nm_per_rad),
+            ];
+            let met = segments.iter().filter(|(from, to, _)| near <= *to && far >= *from);
+            met.fold([f64::INFINITY, 0.0], |[least, most], (_, _, k)| [least.min(1.0 / k), most.max(1.0 / k)])
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::joint_law::{LostMotion, Windup};
+    use proptest::prelude::*;
+
+    fn law() -> impl Strategy<Value = JointLaw> {
+        let curve = (1e4..1e6f64, 1e4..1e6f64, 1e4..1e6f64, 1.0..50.0f64, 50.0..200.0f64);
+        let curve = curve.prop_map(|(k1, k2, k3, t1_nm, t2_nm)| Windup {
+            k1_nm_per_rad: k1,
+            k2_nm_per_rad: k2,
+            k3_nm_per_rad: k3,
+            t1_nm,
+            t2_nm,
+        });
+        let lost = prop::option::of((1e-5..1e-3f64, 1.0..50.0f64));
+        (curve, 0.0..1e-5f64, lost, prop::option::of(1e-5..1e-3f64)).prop_map(
+            |(curve, connection, lost, play)| JointLaw {
+                curve: Curve::Windup(curve),
+                connection_rad_per_nm: connection,
+                lost_motion: lost.map(|(half_width_rad, torque_nm)| LostMotion { half_width_rad, torque_nm }),
+                hysteresis_rad: play.unwrap_or(0.0),
+            },
+        )
+    }
+
+    proptest! {
+        #[test]
+        fn no_slope_between_two_torques_leaves_the_range(
+            law in law(),
+            ends in (-300.0..300.0f64, -300.0..300.0f64),
+            inside in (0.0..1.0f64, 0.0..1.0f64),
+        ) {
+            let (low, high) = (ends.0.min(ends.1), ends.0.max(ends.1));
+            let [a, b] = [inside.0, inside.1].map(|part| low + part * (high - low));
+            let [least, most] = tangent_range(&law, [low, high]);
+            let tangent = law.tangent_compliance_rad_per_nm(a);
+            prop_assert!(least <= tangent * (1.0 + 1e-12) && tangent <= most * (1.0 + 1e-12));
+            prop_assume!((b - a).abs() > 1e-3);
+            let [least, most] = rising_range(&law, [low, high]);
+            let slope = (law.rising_angle_rad(b) - law.rising_angle_rad(a)) / (b - a);
+            let rounding = 1e-12 * (most.abs() + slope.abs()) + 1e-15;
+            prop_assert!(least <= slope + rounding, "{least} {slope}");
+            prop_assert!(slope <= most + rounding, "{slope} {most}");
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! Linear lower bounds of the tip's deflection and of what the joints carry, in one case.
+//!
+//! Everything outboard loads a piece by `W = W₀ + Σ_j q_j û_j`, with `û_j` the wrench of one unit of what slot
+//! `j` weighs and `q_j` how much the chosen option weighs. The tip's displacement along a direction `d` is a
+//! sum over the pieces; with `q` between `q⁻` and `q⁺` each term is at least its value at one of these corners
+//! plus the least slope times the way from the corner, per load. Both corners give a row.
+
+use super::parts::Parts;
+use super::program::Row;
+use super::slopes::{rising_range, tangent_range};
+use crate::arm::joint_law::JointLaw;
+use crate::mechanics::Wrench;
+use crate::sizing::requirement::LinearReading;
+use crate::space::problem::ArmProblem;
+use crate::space::slot::Slot;
+use crate::space::station::{Station, StationJoint, StationSlot};
+use nalgebra::{Matrix6, Vector3};
+
+/// One case: where each slot's weight acts, and how much of it each option has.
+pub(super) struct CaseLoads {
+    case: usize,
+    unit: Vec<Wrench>,
+    amount: Vec<Vec<f64>>,
+    /// Inertia about each joint's axis of every option of every slot outboard of it \[kg m²\]; nothing
+    /// where a slot is no joint.
+    inertia: Vec<Vec<Vec<f64>>>,
+}
+
+/// A corner of the box of loads.
+#[derive(Clone, Copy, PartialEq)]
+enum Corner {
+    Low,
+    High,
+}
+
+/// A lower bound of one piece's part of the deflection.
+struct Term {
+    /// At the corner, for each option left \[m\].
+    at_corner: Vec<f64>,
+    /// Per unit of each load outboard on the way from the corner \[m\].
+    slopes: Vec<f64>,
+}
+
+impl CaseLoads {
+    /// Reads the loads of a case.
+    pub fn new(problem: &ArmProblem, case: usize) -> Self {
+        let station = &problem.stations()[case];
+        let (mut unit, mut amount) = (Vec::new(), Vec::new());
+        for (slot, placed) in problem.slots().iter().zip(&station.slots) {
+            match placed {
+                StationSlot::Joint(joint) => {
+                    unit.push(joint.weight_per_kg);
+                    amount.push(joint_masses(slot));
+                }
+                StationSlot::Body { weight, .. } => {
+                    unit.push(*weight);
+                    amount.push(vec![1.0]);
+                }
+                StationSlot::Link { options, .. } => {
+                    let weights: Vec<f64> = options.iter().map(|o| -o.weight[2]).collect();
+                    let weighing = options.iter().zip(&weights).find(|(_, w)| **w != 0.0);
+                    unit.push(weighing.map_or(Wrench::zeros(), |(o, w)| o.weight / *w));
+                    amount.push(weights);
+                }
+            }
+        }
+        let inertia = (0..unit.len()).map(|slot| inertias(station, slot, &amount)).collect();
+        Self { case, unit, amount, inertia }
+    }
+
+    /// Least and greatest amount of what is left of a slot.
+    fn range(&self, parts: &Parts, slot: usize) -> [f64; 2] {
+        let amounts = parts.alive[slot].iter().map(|&o| self.amount[slot][o as usize]);
+        amounts.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q), high.max(q)])
+    }
+
+    fn corner(&self, parts: &Parts, slot: usize, corner: Corner) -> f64 {
+        self.range(parts, slot)[usize::from(corner == Corner::High)]
+    }
+
+    /// Outboard wrench of a slot at a corner.
+    fn wrench(&self, problem: &ArmProblem, parts: &Parts, slot: usize, corner: Corner) -> Wrench {
+        let start = problem.stations()[self.case].start_wrench;
+        (0..slot).fold(start, |sum, j| sum + self.unit[j] * self.corner(parts, j, corner))
+    }
+
+    fn joint<'p>(&self, problem: &'p ArmProblem, slot: usize) -> Option<&'p StationJoint> {
+        match &problem.stations()[self.case].slots[slot] {
+            StationSlot::Joint(joint) => Some(joint),
+            _ => None,
+        }
+    }
+
+    /// Least and greatest torque on a joint \[N m\].
+    fn torque_range(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
+        let Some(joint) = self.joint(problem, slot) else { return [0.0; 2] };
+        let start = joint.twist.dot(&problem.stations()[self.case].start_wrench);
+        (0..slot).fold([start; 2], |[low, high], j| {
+            let per_unit = joint.twist.dot(&self.unit[j]);
+            let ends = self.range(parts, j).map(|q| q * per_unit);
+            [low + ends[0].min(ends[1]), high + ends[0].max(ends[1])]
+        })
+    }
+
+    /// Least and greatest size of the torque on a joint \[N m\].
+    pub fn torque_size(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
+        let [low, high] = self.torque_range(problem, parts, slot);
+        [low.max(-high).max(0.0), high.max(-low)]
+    }
+
+    /// Whether some joint's torque may have either sign.
+    pub fn opposes(&self, problem: &ArmProblem, parts: &Parts) -> bool {
+        (0..self.unit.len()).any(|slot| {
+            let [low, high] = self.torque_range(problem, parts, slot);
+            low < -1e-9 && high > 1e-9
+        })
+    }
+
+    /// Least and greatest inertia outboard of a joint about its axis \[kg m²\].
+    pub fn inertia_range(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
+        let Some(joint) = self.joint(problem, slot) else { return [0.0; 2] };
+        let start = joint.twist.dot(&(problem.stations()[self.case].start_inertia * joint.twist));
+        (0..slot).fold([start; 2], |[low, high], j| {
+            let all = parts.alive[j].iter().map(|&o| self.inertia[slot][j][o as usize]);
+            let [least, most] = all.fold([f64::INFINITY, 0.0], |[a, b]: [f64; 2], x| [a.min(x), b.max(x)]);
+            [low + least, high + most]
+        })
+    }
+
+    /// Largest tangent stiffness of every joint's options under the torques left \[N m/rad\]; infinite for a
+    /// rigid joint, empty for what is no joint.
+    pub fn stiffest(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Vec<f64>> {
+        let slots = problem.slots().iter().enumerate();
+        slots
+            .map(|(slot, piece)| {
+                if self.joint(problem, slot).is_none() {
+                    return Vec::new();
+                }
+                let torque = self.torque_range(problem, parts, slot);
+                let stiffest = |&o: &u32| {
+                    piece.law(o as usize).map_or(f64::INFINITY, |law| 1.0 / tangent_range(law, torque)[0])
+                };
+                parts.alive[slot].iter().map(stiffest).collect()
+            })
+            .collect()
+    }
+
+    /// Two rows that every design whose tip moves at most `limit_m` along a direction fulfils.
+    pub fn deflection_rows(
+        &self,
+        problem: &ArmProblem,
+        parts: &Parts,
+        direction: &Vector3<f64>,
+        limit_m: f64,
+    ) -> [Row; 2] {
+        [Corner::Low, Corner::High].map(|corner| {
+            let mut coefficients = parts.each(|_, _| 0.0);
+            for slot in 0..self.unit.len() {
+                let Some(term) = self.term(problem, parts, slot, direction, corner) else { continue };
+                add(&mut coefficients[slot], &term.at_corner);
+                for (outboard, slope) in term.slopes.iter().enumerate() {
+                    let from = self.corner(parts, outboard, corner);
+                    let amounts = parts.alive[outboard].iter().map(|&o| self.amount[outboard][o as usize]);
+                    let way: Vec<f64> = amounts.map(|q| slope * (q - from)).collect();
+                    add(&mut coefficients[outboard], &way);
+                }
+            }
+            Row { coefficients, limit: limit_m }.ready()
+        })
+    }
+
+    fn term(
+        &self,
+        problem: &ArmProblem,
+        parts: &Parts,
+        slot: usize,
+        direction: &Vector3<f64>,
+        corner: Corner,
+    ) -> Option<Term> {
+        let wrench = self.wrench(problem, parts, slot, corner);
+        // on the way from the low corner loads rise, from the high corner they fall
+        let least = |a: f64, b: f64| if corner == Corner::Low { a.min(b) } else { a.max(b) };
+        match &problem.stations()[self.case].slots[slot] {
+            StationSlot::Joint(joint) => {
+                let lever = direction.dot(&joint.tip_m_per_rad);
+                let torque = self.torque_range(problem, parts, slot);
+                let piece = &problem.slots()[slot];
+                let laws: Vec<&JointLaw> =
+                    parts.alive[slot].iter().filter_map(|&o| piece.law(o as usize)).collect();
+                let at = joint.twist.dot(&wrench);
+                let [flattest, steepest] = laws
+                    .iter()
+                    .map(|law| rising_range(law, torque))
+                    .fold([f64::INFINITY, f64::NEG_INFINITY], |[flat, steep]: [f64; 2], [low, high]| {
+                        [flat.min(low), steep.max(high)]
+                    });
+                let slope = |j: usize| {
+                    let per_unit = lever * joint.twist.dot(&self.unit[j]);
+                    least(per_unit * flattest, per_unit * steepest)
+                };
+                Some(Term {
+                    at_corner: laws.iter().map(|law| lever * law.rising_angle_rad(at)).collect(),
+                    slopes: (0..slot).map(slope).collect(),
+                })
+            }
+            StationSlot::Link { options, .. } => {
+                let left: Vec<_> = parts.alive[slot].iter().map(|&o| &options[o as usize]).collect();
+                let arms: Vec<Wrench> = left.iter().map(|o| o.end * o.tip.tr_mul(direction)).collect();
+                let sags = left.iter().map(|o| direction.dot(&(o.tip * o.sag)));
+                let slope = |j: usize| {
+                    arms.iter().map(|arm| arm.dot(&self.unit[j])).reduce(least).unwrap_or_default()
+                };
+                Some(Term {
+                    at_corner: arms.iter().zip(sags).map(|(arm, sag)| arm.dot(&wrench) + sag).collect(),
+                    slopes: (0..slot).map(slope).collect(),
+                })
+            }
+            StationSlot::Body { .. } => None,
+        }
+    }
+
+    /// Rows that hold if every sized joint's drive holds its static, peak and emergency torque in this case.
+    pub fn torque_rows(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Row> {
+        let mut rows = Vec::new();
+        for (slot, piece) in problem.slots().iter().enumerate() {
+            let (Slot::Sized(sized), Some(joint)) = (piece, self.joint(problem, slot)) else { continue };
+            let motion = sized.table.motion();
+            let [low, high] = self.torque_range(problem, parts, slot);
+            let sign = if high >= -low { 1.0 } else { -1.0 };
+            let ramp = |factor: f64| match motion.linear_reading {
+                LinearReading::Exact => [1.0, factor * motion.acceleration_rad_s2],
+                LinearReading::Paper => [1.0 + factor * motion.acceleration_over_gravity, 0.0],
+            };
+            let limits = |o: u32| sized.table.limits(o as usize);
+            let demands: [([f64; 2], Vec<f64>); 3] = [
+                ([1.0, 0.0], parts.alive[slot].iter().map(|&o| limits(o).static_torque_nm).collect()),
+                (ramp(1.0), parts.alive[slot].iter().map(|&o| limits(o).peak_torque_nm).collect()),
+                (
+                    ramp(motion.stop_factor),
+                    parts.alive[slot].iter().map(|&o| limits(o).stop_torque_nm).collect(),
+                ),
+            ];
+            for ([torque, inertia], allowed) in demands {
+                let station = &problem.stations()[self.case];
+                let own = |wrench: &Wrench| sign * torque * joint.twist.dot(wrench);
+                let mut coefficients = parts.each(|j, o| match j < slot {
+                    false => 0.0,
+                    true => {
+                        own(&self.unit[j]) * self.amount[j][o as usize]
+                            + if inertia == 0.0 { 0.0 } else { inertia * self.inertia[slot][j][o as usize] }
+                    }
+                });
+                coefficients[slot] = allowed.iter().map(|x| -x).collect();
+                let start = own(&station.start_wrench)
+                    + inertia * joint.twist.dot(&(station.start_inertia * joint.twist));
+                let row = Row { coefficients, limit: -start };
+                if row.can_bind() {
+                    rows.push(row.ready());
+                }
+            }
+        }
+        rows
+    }
+}
+
+/// Inertia about a joint's axis of every option outboard of it \[kg m²\].
+fn inertias(station: &Station, slot: usize, amount: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let StationSlot::Joint(StationJoint { twist, .. }) = &station.slots[slot] else { return Vec::new() };
+    let about = |inertia: &Matrix6<f64>| twist.dot(&(inertia * twist));
+    let outboard = station.slots[..slot].iter().zip(amount);
+    outboard
+        .map(|(placed, amount)| match placed {
+            StationSlot::Joint(joint) => {
+                let per_kg = about(&joint.inertia_per_kg);
+                amount.iter().map(|kg| kg * per_kg).collect()
+            }
+            StationSlot::Body { inertia, .. } => vec![about(inertia)],
+            StationSlot::Link { options, .. } => options.iter().map(|o| about(&o.inertia)).collect(),
+        })
+        .collect()
+}
+
+fn joint_masses(slot: &Slot) -> Vec<f64> {
+    match slot {
+        Slot::Sized(sized) => (0..sized.table.len()).map(|i| sized.table.mass_kg(i)).collect(),
+        Slot::Given { mass_kg, .. } | Slot::Offset { mass_kg } => vec![*mass_kg],
+        Slot::Link { .. } => Vec::new(),
+    }
+}
+
+fn add(to: &mut [f64], what: &[f64]) {
+    to.iter_mut().zip(what).for_each(|(a, b)| *a += b);
+}

@@ -1,0 +1,48 @@
+//! What every design must meet.
+
+use crate::pareto::objectives::Objectives;
+
+/// Limits on a design; `None` is no limit.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Constraints {
+    /// Largest tip deflection \[m\].
+    pub tip_deflection_max_m: Option<f64>,
+    /// Largest mass \[kg\].
+    pub mass_max_kg: Option<f64>,
+    /// Smallest lowest mode \[Hz\].
+    pub lowest_mode_min_hz: Option<f64>,
+    /// Servo bandwidth that the lowest mode must stay above, and by what ratio.
+    pub servo: Option<Servo>,
+    /// Smallest strength over stress at peak load.
+    pub stress_safety_factor_min: Option<f64>,
+    /// Largest flat width (or diameter) over wall thickness: local buckling.
+    pub wall_slenderness_max: Option<f64>,
+    /// Largest cost of the links' material \[EUR\]; a material of unknown cost is refused then.
+    pub material_cost_max_eur: Option<f64>,
+}
+
+/// A servo loop below the lowest mode.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Servo {
+    /// Bandwidth \[Hz\].
+    pub bandwidth_hz: f64,
+    /// Least ratio of the lowest mode to it.
+    pub ratio: f64,
+}
+
+impl Constraints {
+    /// Whether a design breaks the limit on its deflection, its mass, its lowest mode.
+    pub fn broken(&self, o: &Objectives) -> [bool; 3] {
+        [
+            self.tip_deflection_max_m.is_some_and(|max| o.tip_deflection_m > max),
+            self.mass_max_kg.is_some_and(|max| o.mass_kg > max),
+            o.lowest_mode_hz < self.required_mode_hz(),
+        ]
+    }
+
+    /// The lowest mode that is asked for \[Hz\].
+    pub fn required_mode_hz(&self) -> f64 {
+        let servo = self.servo.map_or(0.0, |s| s.bandwidth_hz * s.ratio);
+        self.lowest_mode_min_hz.unwrap_or(0.0).max(servo)
+    }
+}

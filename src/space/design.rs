@@ -1,0 +1,213 @@
+//! One complete design: its parts, its arm, and its objectives by the full model.
+
+use super::design_space::{DriveChoice, LinkOption, SpacePiece};
+use super::levels::OutwardIn;
+use super::problem::ArmProblem;
+use crate::arm::file::windup_of;
+use crate::arm::joint_law::Curve;
+use crate::arm::load::LoadCase;
+use crate::arm::structure::Structure;
+use crate::arm::{Arm, Element, Joint};
+use crate::mechanics::chain::Chain;
+use crate::pareto::objectives::Objectives;
+use crate::sizing::drive::Drive;
+
+/// The part chosen for one piece of the arm.
+#[derive(Debug, Clone)]
+pub enum Part<'a> {
+    /// A drive of the catalogs.
+    Drive(Drive<'a>),
+    /// A material and section.
+    Link(&'a LinkOption),
+    /// Nothing was chosen here.
+    Given,
+}
+
+/// A design judged by the full model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evaluated {
+    /// Number of the design in its space.
+    pub number: u128,
+    /// Objectives by the full model.
+    pub objectives: Objectives,
+    /// Group (material) if all its links are of one.
+    pub group: Option<usize>,
+}
+
+/// Number of the design with these options, one a level: a mixed-radix number, the tip's level the
+/// most significant.
+pub fn number(level_sizes: &[u32], options: &[u32]) -> u128 {
+    level_sizes.iter().zip(options).fold(0, |n, (&size, &option)| n * u128::from(size) + u128::from(option))
+}
+
+/// Options, one a level, of a numbered design; `None` if there is no such design.
+pub fn options(level_sizes: &[u32], mut number: u128) -> Option<Vec<u32>> {
+    let mut out = vec![0; level_sizes.len()];
+    for (slot, &size) in out.iter_mut().zip(level_sizes).rev() {
+        *slot = (number % u128::from(size)) as u32;
+        number /= u128::from(size);
+    }
+    (number == 0).then_some(out)
+}
+
+/// A design's name in files: its number in base 36.
+pub fn id_of(mut number: u128) -> String {
+    let mut digits = Vec::new();
+    while digits.is_empty() || number > 0 {
+        digits.push(char::from_digit((number % 36) as u32, 36).unwrap_or('?'));
+        number /= 36;
+    }
+    digits.iter().rev().collect()
+}
+
+/// The number behind a design's name.
+pub fn number_of(id: &str) -> Option<u128> {
+    if id.is_empty() {
+        return None;
+    }
+    id.chars().try_fold(0u128, |n, c| n.checked_mul(36)?.checked_add(u128::from(c.to_digit(36)?)))
+}
+
+impl<'c> ArmProblem<'c> {
+    /// The parts of a design, base to tip; `None` if the design cannot hold.
+    pub fn parts(&self, options: &[u32]) -> Option<Vec<Part<'c>>> {
+        let complete = self.walk(options, |_, _| {}).ok()?;
+        let parts = self
+            .space()
+            .pieces
+            .iter()
+            .enumerate()
+            .zip(self.options(&complete))
+            .map(|((piece, what), option)| match what {
+                SpacePiece::Choice(choice) => Part::Link(&choice.options[option as usize]),
+                SpacePiece::Joint(_) => self
+                    .sized_joint(piece)
+                    .map_or(Part::Given, |s| Part::Drive(s.table.drive(option as usize))),
+                SpacePiece::Link(_) => Part::Given,
+            })
+            .collect();
+        Some(parts)
+    }
+
+    /// The arm of a design with every part resolved to numbers.
+    pub fn arm(&self, options: &[u32]) -> Option<Arm> {
+        let parts = self.parts(options)?;
+        let space = self.space();
+        let chain = space
+            .pieces
+            .iter()
+            .zip(parts)
+            .map(|(piece, part)| match (piece, part) {
+                (SpacePiece::Choice(choice), Part::Link(option)) => Some(Element::Link(choice.link(option))),
+                (SpacePiece::Link(link), _) => Some(Element::Link(link.clone())),
+                (SpacePiece::Joint(joint), part) => {
+                    let (curve, mass_kg, [gear, motor]) = drive_of(&joint.drive, &part)?;
+                    Some(Element::Joint(Joint {
+                        name: joint.name.clone(),
+                        axis: joint.axis,
+                        curve,
+                        mass_kg,
+                        gear,
+                        motor,
+                        coupled: None,
+                    }))
+                }
+                _ => None,
+            })
+            .collect::<Option<Vec<_>>>()?;
+        Some(Arm {
+            name: space.name.clone(),
+            gravity_m_s2: space.gravity_m_s2,
+            chain,
+            effects: space.effects.clone(),
+        })
+    }
+
+    /// The cases that objectives are taken over, as load cases.
+    pub fn load_cases(&self) -> Vec<LoadCase> {
+        let space = self.space();
+        space
+            .judged_cases
+            .iter()
+            .map(|&i| &space.cases[i])
+            .map(|case| LoadCase {
+                name: case.name.clone(),
+                pose_deg: case.pose_deg.clone(),
+                payload: case.payload,
+                tip_force_n: case.tip_force_n,
+                links: space.links,
+                joints: space.joints,
+                water: case.water,
+            })
+            .collect()
+    }
+}
+
+/// Curve, mass \[kg\], names of gear and motor.
+fn drive_of(choice: &DriveChoice, part: &Part) -> Option<(Curve, f64, [Option<String>; 2])> {
+    match (choice, part) {
+        (DriveChoice::Given { curve, mass_kg, gear, motor }, _) => {
+            Some((*curve, *mass_kg, [gear.clone(), motor.clone()]))
+        }
+        (_, Part::Drive(drive)) => {
+            let curve = windup_of(drive.gear).map_or(Curve::Rigid, Curve::Windup);
+            let names = [&drive.gear.id, &drive.motor.id].map(|id| Some(id.clone()));
+            Some((curve, drive.mass_kg().ok()?, names))
+        }
+        _ => None,
+    }
+}
+
+/// Objectives of an arm over load cases by the full model: what `analyze` prints.
+pub fn full_objectives(arm: &Arm, cases: &[LoadCase]) -> Objectives {
+    objectives_with(arm, cases, |_| ())
+}
+
+/// The same of an arm whose structure, effects applied, is changed; the mass is that of the arm as it was.
+pub fn objectives_with(arm: &Arm, cases: &[LoadCase], change: impl Fn(&mut Structure)) -> Objectives {
+    let mut out = Objectives { tip_deflection_m: 0.0, mass_kg: arm.mass_kg(), lowest_mode_hz: f64::INFINITY };
+    for case in cases {
+        let mut structure = arm.structure_in(case);
+        change(&mut structure);
+        let chain = Chain::new(&structure, case.links);
+        let posed = chain.pose(case);
+        let statics = posed.statics();
+        out.tip_deflection_m = out.tip_deflection_m.max(statics.tip_displacement_m.norm());
+        out.lowest_mode_hz = out.lowest_mode_hz.min(posed.lowest_frequency_hz(&statics));
+    }
+    out
+}
+
+/// Judges a numbered design by the full model.
+pub fn evaluate(problem: &ArmProblem, number: u128) -> Option<Evaluated> {
+    let options = options(problem.level_sizes(), number)?;
+    let complete = problem.walk(&options, |_, _| {}).ok()?;
+    let arm = problem.arm(&options)?;
+    let objectives = full_objectives(&arm, &problem.load_cases());
+    Some(Evaluated { number, objectives, group: problem.group(&complete) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_given_gear_keeps_its_name_without_a_motor() {
+        let gear = Some("HFUC-50-100".to_string());
+        let choice =
+            DriveChoice::Given { curve: Curve::Linear(4e5), mass_kg: 3.2, gear: gear.clone(), motor: None };
+        assert_eq!(drive_of(&choice, &Part::Given), Some((Curve::Linear(4e5), 3.2, [gear, None])));
+    }
+
+    #[test]
+    fn numbers_and_names_are_one_to_one() {
+        let sizes = [3, 7, 2];
+        for n in 0..42 {
+            let o = options(&sizes, n).expect("in range");
+            assert_eq!(number(&sizes, &o), n);
+            assert_eq!(number_of(&id_of(n)), Some(n));
+        }
+        assert_eq!(options(&sizes, 42), None);
+        assert_eq!(number_of("not an id"), None);
+    }
+}

@@ -1,0 +1,184 @@
+//! The effects of a study on its arm as the search builds it.
+//!
+//! An effect is a piece of the arm: it changes a joint's law or a link's tube, or stands in the chain as a
+//! piece of its own, a spring that tilts or a mass that weighs. Each is applied by the same code that
+//! applies it to an arm file, so that the search, `analyze` and `reconcile` see it alike; stations, rows and
+//! lanes only ever see pieces.
+
+use super::design_space::{DesignSpace, SpaceJoint, SpacePiece};
+use crate::arm::Link;
+use crate::arm::effect::Subject;
+use crate::arm::joint_law::{Curve, JointLaw};
+use crate::arm::structure::{JointAngle, JointPiece, LinkPiece, Piece, Structure, link_piece};
+use crate::mechanics::chain::across;
+use nalgebra::{Rotation3, Vector3};
+
+/// What the search adds to an arm in one step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Layer<'s> {
+    /// A piece of the chain.
+    Piece(&'s SpacePiece),
+    /// A spring about an axis across a joint's.
+    Tilt(Tilt<'s>),
+    /// A point mass at a joint beyond its drive's \[kg\].
+    Mass(f64),
+}
+
+/// About what a spring turns.
+#[derive(Debug, Clone, Copy)]
+enum About<'s> {
+    /// One of the two axes across a joint's.
+    Across(&'s SpaceJoint, usize),
+    /// An axis of the frame that the spring stands in.
+    Fixed(Vector3<f64>),
+    /// An axis of the world.
+    World(Vector3<f64>),
+}
+
+/// One of the springs of a bearing that tilts, of a frame that yields, or of the base.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tilt<'s> {
+    about: About<'s>,
+    /// Tilt per moment \[rad/(N m)\].
+    pub rad_per_nm: f64,
+}
+
+impl Tilt<'_> {
+    /// The spring's axis where the frame it stands in is turned by `rotation`.
+    pub fn axis(&self, rotation: &Rotation3<f64>) -> Vector3<f64> {
+        match self.about {
+            About::Across(joint, which) => across(&(rotation * joint.axis))[which],
+            About::Fixed(axis) => rotation * axis,
+            About::World(axis) => axis,
+        }
+    }
+
+    /// Twist under a moment.
+    pub fn law(&self) -> JointLaw {
+        JointLaw { connection_rad_per_nm: self.rad_per_nm, ..JointLaw::from(Curve::Rigid) }
+    }
+}
+
+impl DesignSpace {
+    /// Everything the search adds, tip first, each with the piece (base to tip) it stands at.
+    ///
+    /// The springs of a bearing turn about the joint's own place: they may come before the joint, where
+    /// everything outboard of an open drive is worked out once.
+    pub(crate) fn layers(&self) -> Vec<(usize, Layer<'_>)> {
+        let mut out = Vec::with_capacity(self.pieces.len());
+        for (index, piece) in self.pieces.iter().enumerate().rev() {
+            let joint = match piece {
+                SpacePiece::Joint(joint) => joint,
+                SpacePiece::Link(link) => {
+                    out.push((index, Layer::Piece(piece)));
+                    out.extend(self.root_springs(link).map(|tilt| (index, tilt)));
+                    continue;
+                }
+                SpacePiece::Choice(choice) => {
+                    out.push((index, Layer::Piece(piece)));
+                    out.extend(self.root_springs(&choice.first_link()).map(|tilt| (index, tilt)));
+                    continue;
+                }
+            };
+            let affected = self.joint_piece(joint, Curve::Rigid);
+            let across = [About::Across(joint, 0), About::Across(joint, 1)];
+            out.extend(tilts(across, affected.tilt_rad_per_nm).map(|tilt| (index, tilt)));
+            out.push((index, Layer::Piece(piece)));
+            if affected.mass_kg != 0.0 {
+                out.push((index, Layer::Mass(affected.mass_kg)));
+            }
+        }
+        let base = self.surroundings();
+        let fixed = base.base_frame.springs().into_iter();
+        out.extend(
+            fixed.map(|(axis, c)| (0, Layer::Tilt(Tilt { about: About::World(axis), rad_per_nm: c }))),
+        );
+        let level = [About::World(Vector3::x()), About::World(Vector3::y())];
+        out.extend(tilts(level, base.base_tilt_rad_per_nm).map(|tilt| (0, tilt)));
+        out
+    }
+
+    /// The springs of the frame at a link's root.
+    fn root_springs(&self, link: &Link) -> impl Iterator<Item = Layer<'_>> + use<'_> {
+        let springs = self.link_piece(link).root_frame.springs().into_iter();
+        springs.map(|(axis, c)| Layer::Tilt(Tilt { about: About::Fixed(axis), rad_per_nm: c }))
+    }
+
+    /// A joint with this torsion curve under the study's joint model and with the effects at it; the mass
+    /// is what the effects add.
+    pub(crate) fn joint_piece(&self, joint: &SpaceJoint, curve: Curve) -> JointPiece {
+        let nominal = nominal_joint(joint, self.curve(curve));
+        let mut affected = match self.affected(Piece::Joint(nominal.clone())) {
+            Some(Piece::Joint(joint)) => joint,
+            _ => nominal,
+        };
+        // an effect may bring a curve of its own
+        affected.law.curve = affected.law.curve.reduced(self.joints);
+        affected
+    }
+
+    /// A link with the effects at it.
+    pub(crate) fn link_piece(&self, link: &Link) -> LinkPiece {
+        let nominal = link_piece(link);
+        match self.affected(Piece::Link(nominal.clone())) {
+            Some(Piece::Link(link)) => link,
+            _ => nominal,
+        }
+    }
+
+    /// The arm's surroundings: gravity, the base, water.
+    pub(crate) fn surroundings(&self) -> Structure {
+        self.with_effects(Vec::new())
+    }
+
+    /// Mass that the effects add to the arm \[kg\]: on top of links and drives, the same for every design.
+    pub fn effects_mass_kg(&self) -> f64 {
+        self.nominal_structure()
+            .pieces
+            .into_iter()
+            .filter_map(|piece| self.affected(piece))
+            .map(|piece| match piece {
+                Piece::Joint(joint) => joint.mass_kg,
+                Piece::Link(link) => link.harness_kg_per_m * link.vector_m.norm(),
+            })
+            .sum()
+    }
+
+    /// Names and kinds of all pieces without any effect, for checking where effects can sit: joints are
+    /// rigid and massless, open links have their first option.
+    pub fn nominal_structure(&self) -> Structure {
+        let piece = |piece: &SpacePiece| match piece {
+            SpacePiece::Joint(joint) => Piece::Joint(nominal_joint(joint, Curve::Rigid)),
+            SpacePiece::Link(link) => Piece::Link(link_piece(link)),
+            SpacePiece::Choice(choice) => Piece::Link(link_piece(&choice.first_link())),
+        };
+        Structure::bare(self.gravity_m_s2, self.pieces.iter().map(piece).collect())
+    }
+
+    fn affected(&self, piece: Piece) -> Option<Piece> {
+        self.with_effects(vec![piece]).pieces.pop()
+    }
+
+    fn with_effects(&self, pieces: Vec<Piece>) -> Structure {
+        let mut subject = Subject::new(Structure::bare(self.gravity_m_s2, pieces));
+        self.effects.iter().filter(|effect| !effect.is_of_test()).for_each(|effect| subject.apply(effect));
+        subject.structure
+    }
+}
+
+fn nominal_joint(joint: &SpaceJoint, curve: Curve) -> JointPiece {
+    JointPiece {
+        name: joint.name.clone(),
+        axis: joint.axis,
+        law: JointLaw::from(curve),
+        tilt_rad_per_nm: 0.0,
+        mass_kg: 0.0,
+        angle: JointAngle::Driven(0),
+    }
+}
+
+/// The two springs of a bearing or base that tilts; none if it does not.
+fn tilts(axes: [About<'_>; 2], rad_per_nm: f64) -> impl Iterator<Item = Layer<'_>> {
+    let present = axes.into_iter().filter(move |_| rad_per_nm > 0.0);
+    present.map(move |about| Layer::Tilt(Tilt { about, rad_per_nm }))
+}

@@ -1,0 +1,165 @@
+//! A design space cut down to what some of its designs are made of.
+//!
+//! Of a space with a hundred thousand sections a link, a front has a few thousand designs. What an
+//! [`ArmProblem`] tabulates for every option of every pose is then worked out for the options of those
+//! designs alone. A design keeps its number in the whole space, and so its name.
+
+use super::design::{number, options};
+use super::design_space::{DesignSpace, Excerpt, LinkChoice, LinkOption, SpacePiece};
+use super::problem::ArmProblem;
+use super::slot::{Slot, joint_slot};
+use super::station::reaches_m;
+use crate::catalog::Catalogs;
+use std::collections::BTreeSet;
+
+impl DesignSpace {
+    /// Options of each level, tip first, without tabulating anything else.
+    pub fn level_sizes(&self, catalogs: &Catalogs) -> Vec<u32> {
+        let sizing = self.sizing_cases.iter().map(|&i| &self.cases[i]);
+        let mut reaches = reaches_m(self, sizing).into_iter();
+        let mut sizes: Vec<u32> = self
+            .pieces
+            .iter()
+            .filter_map(|piece| match piece {
+                SpacePiece::Joint(joint) => {
+                    let slot = joint_slot(self, joint, reaches.next().unwrap_or_default(), catalogs);
+                    slot.is_level().then(|| slot.options())
+                }
+                SpacePiece::Choice(choice) => Some(choice.options.len() as u32),
+                SpacePiece::Link(_) => None,
+            })
+            .collect();
+        sizes.reverse();
+        sizes
+    }
+
+    /// Number of designs; `None` beyond what 128 bits hold.
+    pub fn designs(&self, catalogs: &Catalogs) -> Option<u128> {
+        self.level_sizes(catalogs).into_iter().try_fold(1u128, |n, size| n.checked_mul(u128::from(size)))
+    }
+
+    /// The space with only those link options that the designs with these numbers are made of; `None` if
+    /// one of them is not in the space.
+    pub fn excerpt(&self, catalogs: &Catalogs, designs: &[u128]) -> Option<DesignSpace> {
+        let sizes = self.level_sizes(catalogs);
+        let mut used: Vec<BTreeSet<u32>> = vec![BTreeSet::new(); sizes.len()];
+        for &design in designs {
+            for (used, option) in used.iter_mut().zip(options(&sizes, design)?) {
+                used.insert(option);
+            }
+        }
+        let lists: Vec<Vec<u32>> = used.into_iter().map(|used| used.into_iter().collect()).collect();
+        self.of_options(&lists)
+    }
+
+    /// The space with only those link options whose numbers a level has, ascending, tip first; `None` if a level has no
+    /// list.
+    pub fn of_options(&self, lists: &[Vec<u32>]) -> Option<DesignSpace> {
+        let mut out = self.clone();
+        let mut levels = lists.iter();
+        for piece in out.pieces.iter_mut().rev() {
+            match piece {
+                SpacePiece::Choice(choice) => choice.keep(levels.next()?.clone()),
+                SpacePiece::Joint(joint) if joint.drive.is_open() => {
+                    levels.next()?;
+                }
+                _ => {}
+            }
+        }
+        out.renumber_materials();
+        Some(out)
+    }
+
+    /// The space with at most so many options of every open link, those in the middle of its list.
+    pub fn middle(&self, most: u32) -> DesignSpace {
+        let mut out = self.clone();
+        for piece in &mut out.pieces {
+            if let SpacePiece::Choice(choice) = piece
+                && choice.options.len() as u32 > most
+            {
+                let first = choice.options.len() as u32 / 2 - most / 2;
+                choice.keep((first..first + most).collect());
+            }
+        }
+        out.renumber_materials();
+        out
+    }
+
+    /// Materials are numbered without gaps, in the study's order.
+    fn renumber_materials(&mut self) {
+        let options = |piece: &mut SpacePiece| match piece {
+            SpacePiece::Choice(choice) => std::mem::take(&mut choice.options),
+            _ => Vec::new(),
+        };
+        let mut taken: Vec<Vec<LinkOption>> = self.pieces.iter_mut().map(options).collect();
+        let used: BTreeSet<usize> = taken.iter().flatten().map(|o| o.material_index).collect();
+        let place: Vec<usize> = used.into_iter().collect();
+        for option in taken.iter_mut().flatten() {
+            option.material_index = place.binary_search(&option.material_index).unwrap_or_default();
+        }
+        for (piece, taken) in self.pieces.iter_mut().zip(taken) {
+            if let SpacePiece::Choice(choice) = piece {
+                choice.options = taken;
+            }
+        }
+    }
+}
+
+impl LinkChoice {
+    /// Keeps the options at these places of the whole list.
+    fn keep(&mut self, places: Vec<u32>) {
+        let of = self.options.len() as u32;
+        self.options = places.iter().map(|&i| self.options[i as usize].clone()).collect();
+        self.excerpt = Some(Excerpt { places, of });
+    }
+}
+
+impl ArmProblem<'_> {
+    /// Whether two designs, by their options in the whole space, differ only in drives that weigh and twist alike.
+    pub fn are_alike(&self, a: &[u32], b: &[u32]) -> bool {
+        let pairs = self.level_slots().iter().zip(a.iter().zip(b));
+        pairs.into_iter().all(|(&slot, (a, b))| match &self.slots()[slot] {
+            Slot::Sized(sized) => sized.are_alike(*a as usize, *b as usize),
+            _ => a == b,
+        })
+    }
+
+    /// Number in the whole space of a design of this one.
+    pub fn whole_number(&self, design: u128) -> u128 {
+        let here = options(self.level_sizes_slice(), design).unwrap_or_default();
+        let (sizes, places): (Vec<u32>, Vec<u32>) = self
+            .excerpts()
+            .zip(here.iter().zip(self.level_sizes_slice()))
+            .map(|(excerpt, (&option, &size))| {
+                excerpt.map_or((size, option), |e| (e.of, e.places[option as usize]))
+            })
+            .unzip();
+        number(&sizes, &places)
+    }
+
+    /// Options here, one a level, of a design of the whole space; `None` if it is not among those kept.
+    pub fn options_of_whole(&self, design: u128) -> Option<Vec<u32>> {
+        let excerpts: Vec<Option<&Excerpt>> = self.excerpts().collect();
+        let sizes: Vec<u32> = excerpts
+            .iter()
+            .zip(self.level_sizes_slice())
+            .map(|(e, &size)| e.map_or(size, |e| e.of))
+            .collect();
+        let whole = options(&sizes, design)?;
+        excerpts
+            .iter()
+            .zip(whole)
+            .map(|(e, option)| {
+                e.map_or(Some(option), |e| e.places.binary_search(&option).ok().map(|i| i as u32))
+            })
+            .collect()
+    }
+
+    /// What each level keeps of its whole list, tip first.
+    fn excerpts(&self) -> impl Iterator<Item = Option<&Excerpt>> {
+        self.level_slots().iter().map(|&slot| match &self.space().pieces[self.piece_of_slot(slot)] {
+            SpacePiece::Choice(choice) => choice.excerpt.as_ref(),
+            _ => None,
+        })
+    }
+}

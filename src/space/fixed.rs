@@ -1,0 +1,53 @@
+//! A drive that the study gives instead of choosing: the same checks, for information. A part with blank
+//! figures may be used here; what could not be checked is said.
+
+use super::design_space::{DriveChoice, SpacePiece};
+use super::problem::{ArmProblem, Partial};
+use super::station::reaches_m;
+use crate::catalog::Catalogs;
+use crate::catalog::gear::GearMass;
+use crate::sizing::demand::{JointDemand, JointMotion};
+use crate::sizing::drive::Drive;
+
+/// A given drive whose parts are a catalog's.
+#[derive(Debug, Clone, Copy)]
+pub struct FixedDrive<'c> {
+    /// Its parts.
+    pub drive: Drive<'c>,
+    /// Its mass as the study gives it \[kg\].
+    pub mass_kg: f64,
+    /// What the study's motion asks of its joint.
+    pub motion: JointMotion,
+}
+
+impl ArmProblem<'_> {
+    /// The given drive of a piece (base to tip), if its gear and motor are in the catalogs.
+    pub fn fixed_drive<'c>(&self, piece: usize, catalogs: &'c Catalogs) -> Option<FixedDrive<'c>> {
+        let space = self.space();
+        let SpacePiece::Joint(joint) = &space.pieces[piece] else { return None };
+        let DriveChoice::Given { gear: Some(gear), motor: Some(motor), mass_kg, .. } = &joint.drive else {
+            return None;
+        };
+        let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
+        let joints_before =
+            space.pieces[..piece].iter().filter(|p| matches!(p, SpacePiece::Joint(_))).count();
+        let reach_m = reaches_m(space, sizing)[joints_before];
+        let (gear, motor) = (catalogs.gear(gear).ok()?, catalogs.motor(motor).ok()?);
+        // which of the gear's masses the study took follows from the mass it gives
+        let set_mass_kg = gear.mass_component_set_kg.zip(motor.mass_kg).map(|(g, m)| g + m);
+        let gear_mass = match set_mass_kg.is_some_and(|m| (m - mass_kg).abs() < 1e-9) {
+            true => GearMass::ComponentSet,
+            false => GearMass::HousedUnit,
+        };
+        Some(FixedDrive {
+            drive: Drive { gear, motor, gear_mass },
+            mass_kg: *mass_kg,
+            motion: space.motion.joint_motion(reach_m, joint.max_speed_rad_s),
+        })
+    }
+
+    /// What a joint with a given drive is asked for when everything outboard is known.
+    pub fn fixed_demand(&self, outboard: &Partial, slot: usize, motion: &JointMotion) -> JointDemand {
+        self.demand(&outboard.stations, slot, Some(motion))
+    }
+}

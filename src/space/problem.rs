@@ -1,0 +1,502 @@
+//! The arm behind the search's trait: built from the tip inward, each joint sized when everything
+//! outboard of it is known (Eqs 7-12), deflection and inertia carried along (Eqs 13-16).
+
+use super::design_space::{DesignSpace, SpacePiece};
+use super::effects::Layer;
+use super::figures::OptionFigures;
+use super::levels::{Keep, OutwardIn};
+pub use super::slot::SizedJoint;
+pub(crate) use super::slot::Slot;
+use super::slot::{choice_slot, joint_slot, link_slot};
+use super::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot, reaches_m};
+use crate::arm::joint_law::JointLaw;
+use crate::catalog::Catalogs;
+use crate::mechanics::Wrench;
+use crate::mechanics::lanes::in_lanes;
+use crate::mechanics::lowest::{Step, frequency_hz, lowest_eigenvalue};
+use crate::pareto::objectives::Objectives;
+use crate::search::row::{Row, RowScratch};
+use crate::search::row_lanes::RowsWork;
+use crate::sizing::demand::{JointDemand, JointMotion};
+use nalgebra::{Matrix6, Vector3};
+
+/// The search's view of a design space: drives tabulated, poses compiled.
+pub struct ArmProblem<'c> {
+    space: &'c DesignSpace,
+    slots: Vec<Slot<'c>>,
+    /// Slot of each piece, base to tip; effects may have slots of their own beside them.
+    piece_slots: Vec<usize>,
+    level_slots: Vec<usize>,
+    level_sizes: Vec<u32>,
+    stations: Vec<Station>,
+    materials: usize,
+    peak_factor: f64,
+    row: Option<Row>,
+}
+
+/// An arm from the tip to some level.
+#[derive(Debug, Clone, Default)]
+pub struct Partial {
+    next_slot: usize,
+    pub(crate) mass_kg: f64,
+    pub(crate) cost_eur: f64,
+    pub(crate) group: Group,
+    /// Largest stress over strength at peak load, where strengths are known.
+    pub(crate) stress_ratio: f64,
+    /// Option per slot.
+    pub(crate) options: Vec<u32>,
+    /// Drive or point mass per slot \[kg\].
+    pub(crate) masses_kg: Vec<f64>,
+    pub(crate) stations: Vec<StationState>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) enum Group {
+    #[default]
+    None,
+    One(usize),
+    Mixed,
+}
+
+/// What everything outboard does in one case.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct StationState {
+    pub wrench: Wrench,
+    pub inertia: Matrix6<f64>,
+    pub tip_m: Vector3<f64>,
+    /// Dunkerley's sum per block \[s²\].
+    pub trace_s2: [f64; 2],
+    /// Tangent compliance per slot \[rad/(N m)\].
+    pub compliances: Vec<f64>,
+}
+
+impl<'c> ArmProblem<'c> {
+    /// Tabulates drives and compiles poses.
+    pub fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Self {
+        let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
+        let mut reaches = reaches_m(space, sizing);
+        let mut piece_slots = vec![0; space.pieces.len()];
+        let mut slots: Vec<Slot> = Vec::new();
+        for (piece, layer) in space.layers() {
+            if let Layer::Piece(_) = layer {
+                piece_slots[piece] = slots.len();
+            }
+            slots.push(match layer {
+                Layer::Piece(SpacePiece::Joint(joint)) => {
+                    joint_slot(space, joint, reaches.pop().unwrap_or_default(), catalogs)
+                }
+                Layer::Piece(SpacePiece::Link(link)) => link_slot(space, link),
+                Layer::Piece(SpacePiece::Choice(choice)) => choice_slot(space, choice),
+                Layer::Tilt(tilt) => Slot::Given { law: tilt.law(), mass_kg: 0.0 },
+                // it weighs, but is none of the links and drives whose mass counts
+                Layer::Mass(_) => Slot::Offset { mass_kg: 0.0 },
+            });
+        }
+        let level_slots: Vec<usize> = (0..slots.len()).filter(|&i| slots[i].is_level()).collect();
+        let level_sizes = level_slots.iter().map(|&i| slots[i].options()).collect();
+        let a_over_g = space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE);
+        let mut problem = Self {
+            space,
+            level_slots,
+            level_sizes,
+            stations: Station::all(space),
+            materials: space.material_names().len(),
+            peak_factor: 1.0 + a_over_g,
+            slots,
+            piece_slots,
+            row: None,
+        };
+        problem.row = Row::new(&problem);
+        problem
+    }
+
+    /// The design space.
+    pub fn space(&self) -> &'c DesignSpace {
+        self.space
+    }
+
+    /// The table of a sized joint by its place among the pieces, base to tip.
+    pub fn sized_joint(&self, piece: usize) -> Option<&SizedJoint<'c>> {
+        match &self.slots[self.piece_slots[piece]] {
+            Slot::Sized(sized) => Some(sized),
+            _ => None,
+        }
+    }
+
+    /// Smallest strength over stress of an arm at peak load; `None` if no strength is known.
+    pub fn stress_safety_factor(&self, partial: &Partial) -> Option<f64> {
+        (partial.stress_ratio > 0.0).then(|| 1.0 / partial.stress_ratio)
+    }
+
+    /// Cost of the chosen links' material \[EUR\]; `None` if a cost is unknown.
+    pub fn material_cost_eur(&self, partial: &Partial) -> Option<f64> {
+        let known = self.slots.iter().zip(&partial.options).all(|(slot, &option)| match slot {
+            Slot::Link { options, open: true } => options[option as usize].cost_eur.is_some(),
+            _ => true,
+        });
+        known.then_some(partial.cost_eur)
+    }
+
+    /// Largest wall slenderness of a complete arm's chosen links.
+    pub fn wall_slenderness(&self, complete: &Partial) -> f64 {
+        let chosen = self.space.pieces.iter().zip(self.options(complete));
+        chosen
+            .filter_map(|(piece, option)| match piece {
+                SpacePiece::Choice(choice) => Some(choice.options[option as usize].wall_slenderness()),
+                _ => None,
+            })
+            .fold(0.0, f64::max)
+    }
+
+    /// Mass of an arm so far \[kg\].
+    pub fn mass_kg(&self, partial: &Partial) -> f64 {
+        partial.mass_kg
+    }
+
+    /// Option of every piece of a complete arm, base to tip.
+    pub fn options<'p>(&'p self, complete: &'p Partial) -> impl Iterator<Item = u32> + 'p {
+        self.piece_slots.iter().map(|&slot| complete.options[slot])
+    }
+
+    /// What each sized joint of an arm is asked for, base to tip, as pairs of piece and demand; and the mass
+    /// outboard of each.
+    pub fn demand_at(&self, partial: &Partial, slot: usize) -> JointDemand {
+        self.demand(&partial.stations, slot, self.slots[slot].motion())
+    }
+
+    /// Walks a complete choice (one option a level) and shows the arm outboard of every piece on the way,
+    /// tip first. Returns the arm, or the slot at which it fails.
+    pub fn walk(&self, options: &[u32], mut see: impl FnMut(usize, &Partial)) -> Result<Partial, usize> {
+        let mut partial = self.empty();
+        let mut levels = options.iter();
+        while partial.next_slot < self.slots.len() {
+            let slot = partial.next_slot;
+            if self.piece_slots.contains(&slot) {
+                see(slot, &partial);
+            }
+            let option = if self.slots[slot].is_level() { levels.next().copied().unwrap_or(0) } else { 0 };
+            if !self.add(slot, option, &mut partial) {
+                return Err(slot);
+            }
+        }
+        Ok(partial)
+    }
+
+    /// The piece (base to tip) that stands in a slot (tip first).
+    pub fn piece_of_slot(&self, slot: usize) -> usize {
+        self.piece_slots.iter().position(|&s| s == slot).unwrap_or_default()
+    }
+
+    /// The piece of the chain that stands in a slot; none in a slot of an effect.
+    pub(crate) fn piece_in_slot(&self, slot: usize) -> Option<&'c SpacePiece> {
+        self.piece_slots.iter().position(|&s| s == slot).map(|piece| &self.space.pieces[piece])
+    }
+
+    pub(crate) fn slots(&self) -> &[Slot<'c>] {
+        &self.slots
+    }
+
+    pub(crate) fn level_slots(&self) -> &[usize] {
+        &self.level_slots
+    }
+
+    pub(crate) fn level_sizes_slice(&self) -> &[u32] {
+        &self.level_sizes
+    }
+
+    pub(crate) fn stations(&self) -> &[Station] {
+        &self.stations
+    }
+
+    pub(crate) fn peak_factor(&self) -> f64 {
+        self.peak_factor
+    }
+
+    pub(crate) fn empty(&self) -> Partial {
+        Partial {
+            options: vec![0; self.slots.len()],
+            masses_kg: vec![0.0; self.slots.len()],
+            stations: self
+                .stations
+                .iter()
+                .map(|station| StationState {
+                    wrench: station.start_wrench,
+                    inertia: station.start_inertia,
+                    tip_m: Vector3::zeros(),
+                    trace_s2: [0.0; 2],
+                    compliances: vec![0.0; self.slots.len()],
+                })
+                .collect(),
+            ..Partial::default()
+        }
+    }
+
+    /// Adds pieces without a choice until the next level.
+    fn advance(&self, partial: &mut Partial) -> bool {
+        while partial.next_slot < self.slots.len() && !self.slots[partial.next_slot].is_level() {
+            if !self.add(partial.next_slot, 0, partial) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Adds one piece inboard; `false` if the arm cannot hold with it.
+    fn add(&self, slot: usize, option: u32, to: &mut Partial) -> bool {
+        to.next_slot = slot + 1;
+        to.options[slot] = option;
+        let added = match &self.slots[slot] {
+            Slot::Given { law, mass_kg } => self.add_joint(slot, law, *mass_kg, to),
+            Slot::Sized(sized) => self.add_sized(slot, sized, option, to),
+            Slot::Link { options, .. } => self.add_link(slot, option, &options[option as usize], to),
+            Slot::Offset { mass_kg } => self.add_offset(slot, *mass_kg, to),
+        };
+        added && self.space.constraints.mass_max_kg.is_none_or(|max| to.mass_kg <= max)
+    }
+
+    fn add_sized(&self, slot: usize, sized: &SizedJoint, option: u32, to: &mut Partial) -> bool {
+        let demand = self.demand(&to.stations, slot, Some(sized.table.motion()));
+        let index = match sized.all_fits {
+            true => Some(option as usize).filter(|&i| sized.table.limits(i).hold(&demand)),
+            false => sized.table.first_fit(&demand),
+        };
+        let Some(index) = index else { return false };
+        to.options[slot] = index as u32;
+        self.add_joint(slot, &sized.laws[index], sized.table.mass_kg(index), to)
+    }
+
+    /// What a joint is asked for: worst static torque and worst outboard inertia over the sizing cases.
+    pub(crate) fn demand(
+        &self,
+        states: &[StationState],
+        slot: usize,
+        motion: Option<&JointMotion>,
+    ) -> JointDemand {
+        let (mut static_nm, mut inertia_kgm2) = (0.0f64, 0.0f64);
+        for &case in &self.space.sizing_cases {
+            let StationSlot::Joint(joint) = &self.stations[case].slots[slot] else { continue };
+            let state = &states[case];
+            static_nm = static_nm.max(joint.twist.dot(&state.wrench).abs());
+            inertia_kgm2 = inertia_kgm2.max(joint.twist.dot(&(state.inertia * joint.twist)));
+        }
+        motion.map_or_else(
+            || self.space.motion.joint_motion(0.0, None).demand(static_nm, inertia_kgm2),
+            |motion| motion.demand(static_nm, inertia_kgm2),
+        )
+    }
+
+    fn add_joint(&self, slot: usize, law: &JointLaw, mass_kg: f64, to: &mut Partial) -> bool {
+        to.mass_kg += mass_kg;
+        to.masses_kg[slot] = mass_kg;
+        for (station, state) in self.stations.iter().zip(&mut to.stations) {
+            if let StationSlot::Joint(joint) = &station.slots[slot] {
+                state.add_joint(slot, joint, law, mass_kg);
+            }
+        }
+        true
+    }
+
+    fn add_offset(&self, slot: usize, mass_kg: f64, to: &mut Partial) -> bool {
+        to.mass_kg += mass_kg;
+        for (station, state) in self.stations.iter().zip(&mut to.stations) {
+            if let StationSlot::Body { inertia, weight } = &station.slots[slot] {
+                state.add_body(inertia, weight);
+            }
+        }
+        true
+    }
+
+    fn add_link(&self, slot: usize, option: u32, figures: &OptionFigures, to: &mut Partial) -> bool {
+        if figures.slender {
+            return false;
+        }
+        to.mass_kg += figures.mass_kg;
+        to.cost_eur += figures.cost_eur.unwrap_or(0.0);
+        to.group = to.group.with(figures.material);
+        if self.space.constraints.material_cost_max_eur.is_some_and(|max| to.cost_eur > max) {
+            return false;
+        }
+        for (case, (station, state)) in self.stations.iter().zip(&mut to.stations).enumerate() {
+            let StationSlot::Link { options, place } = &station.slots[slot] else { continue };
+            let outboard = state.wrench;
+            state.add_link(&options[option as usize]);
+            let Some(stress) = &figures.stress else { continue };
+            // where joints are sized the arm also accelerates; elsewhere it only stands
+            let factor = if self.space.sizing_cases.contains(&case) { self.peak_factor } else { 1.0 };
+            for (wrench, at_m) in [(&outboard, &place.end_m), (&state.wrench, &place.root_m)] {
+                to.stress_ratio = to.stress_ratio.max(stress.ratio(wrench, at_m, place) * factor);
+            }
+        }
+        self.space.constraints.stress_safety_factor_min.is_none_or(|least| to.stress_ratio * least <= 1.0)
+    }
+
+    /// The cases that objectives are taken over.
+    fn judged<'s>(
+        &'s self,
+        complete: &'s Partial,
+    ) -> impl Iterator<Item = (&'s Station, &'s StationState)> + Clone {
+        self.space.judged_cases.iter().map(|&i| (&self.stations[i], &complete.stations[i]))
+    }
+}
+
+/// Objectives of a complete arm from what it does in each judged case.
+pub(crate) fn objectives_over<'s>(
+    judged: impl Iterator<Item = (&'s Station, &'s StationState)> + Clone,
+    complete: &Partial,
+) -> Objectives {
+    let tip_deflection_m = judged.clone().map(|(_, s)| s.tip_m.norm()).fold(0.0, f64::max);
+    let lowest_mode_hz = lowest_mode_hz(judged, complete);
+    Objectives { tip_deflection_m, mass_kg: complete.mass_kg, lowest_mode_hz }
+}
+
+/// Smallest first natural frequency over the cases \[Hz\].
+fn lowest_mode_hz<'s>(
+    judged: impl Iterator<Item = (&'s Station, &'s StationState)>,
+    complete: &Partial,
+) -> f64 {
+    let lowest = judged
+        .map(|(station, state)| match &station.modal {
+            Modal::Planar(blocks) => {
+                let [within, across] = &**blocks;
+                block_eigenvalue(within, complete, state, state.trace_s2[0]).min(block_eigenvalue(
+                    across,
+                    complete,
+                    state,
+                    state.trace_s2[1],
+                ))
+            }
+            Modal::Spatial(block) => block_eigenvalue(block, complete, state, state.trace_s2[0]),
+        })
+        .fold(f64::INFINITY, f64::min);
+    frequency_hz(lowest)
+}
+
+fn block_eigenvalue<const N: usize>(
+    block: &Block<N>,
+    complete: &Partial,
+    state: &StationState,
+    trace_s2: f64,
+) -> f64 {
+    let steps: Vec<Step<N>> = block_steps(block, complete, state, block.slots.len()).collect();
+    lowest_eigenvalue(&steps, trace_s2)
+}
+
+/// What the pass for the lowest mode sees of an arm's first `slots` slots, tip first.
+pub(crate) fn block_steps<'a, const N: usize>(
+    block: &'a Block<N>,
+    arm: &'a Partial,
+    state: &'a StationState,
+    slots: usize,
+) -> impl Iterator<Item = Step<'a, N>> {
+    let steps = block.slots[..slots].iter().enumerate().flat_map(|(slot, piece)| match piece {
+        BlockSlot::Joint { twist, inertia_per_kg } => {
+            let yields = state.compliances[slot] > 0.0 && twist.amax() > 0.0;
+            let weighs = arm.masses_kg[slot] > 0.0;
+            [
+                yields.then_some(Step::Joint(twist, state.compliances[slot])),
+                weighs.then_some(Step::Body(arm.masses_kg[slot], inertia_per_kg)),
+            ]
+        }
+        BlockSlot::Body(inertia) => [Some(Step::Body(1.0, inertia)), None],
+        BlockSlot::Links(options) => [Some(Step::Link(&options[arm.options[slot] as usize])), None],
+    });
+    std::iter::once(Step::Body(1.0, &block.payload)).chain(steps.flatten())
+}
+
+impl StationState {
+    pub(crate) fn add_joint(&mut self, slot: usize, joint: &StationJoint, law: &JointLaw, mass_kg: f64) {
+        let torque_nm = joint.twist.dot(&self.wrench);
+        let compliance = law.tangent_compliance_rad_per_nm(torque_nm);
+        self.tip_m += joint.tip_m_per_rad * law.rising_angle_rad(torque_nm);
+        self.compliances[slot] = compliance;
+        self.trace_s2[joint.block] += compliance * joint.twist.dot(&(self.inertia * joint.twist));
+        self.inertia += joint.inertia_per_kg * mass_kg;
+        self.wrench += joint.weight_per_kg * mass_kg;
+    }
+
+    pub(crate) fn add_body(&mut self, inertia: &Matrix6<f64>, weight: &Wrench) {
+        self.inertia += inertia;
+        self.wrench += weight;
+    }
+
+    pub(crate) fn add_link(&mut self, link: &StationLink) {
+        let end = link.end.tr_mul(&self.wrench) + link.sag;
+        self.tip_m += link.tip * end;
+        let carried = self.inertia * link.end;
+        for g in 0..6 {
+            let own: f64 = link.end.column(g).dot(&carried.column(g)) + link.end_inertia[g];
+            self.trace_s2[link.block[g]] += own;
+        }
+        self.trace_s2.iter_mut().for_each(|t| *t += link.inner_trace_s2);
+        self.inertia += link.inertia;
+        self.wrench += link.weight;
+    }
+}
+
+impl OutwardIn for ArmProblem<'_> {
+    type Partial = Partial;
+
+    fn level_sizes(&self) -> &[u32] {
+        &self.level_sizes
+    }
+
+    fn root(&self) -> Option<Partial> {
+        let mut partial = self.empty();
+        self.advance(&mut partial).then_some(partial)
+    }
+
+    fn extend(&self, level: usize, option: u32, from: &Partial, to: &mut Partial) -> bool {
+        to.clone_from(from);
+        self.add(self.level_slots[level], option, to) && self.advance(to)
+    }
+
+    fn objectives(&self, complete: &Partial) -> Option<Objectives> {
+        Some(objectives_over(self.judged(complete), complete))
+    }
+
+    fn groups(&self) -> usize {
+        self.materials
+    }
+
+    fn group(&self, complete: &Partial) -> Option<usize> {
+        complete.group.material()
+    }
+
+    type Scratch = RowScratch;
+
+    fn scratch(&self) -> RowScratch {
+        RowScratch::new(self)
+    }
+
+    fn finish<K: Keep>(&self, rows: &[(u128, Partial)], scratch: &mut RowScratch, keep: &mut K) {
+        let Some((&options, outer)) = self.level_sizes.split_last() else { return };
+        let Some(row) = &self.row else {
+            for (first, from) in rows {
+                for option in 0..options {
+                    self.finish_one(outer.len(), option, from, *first, &mut scratch.spare, keep);
+                }
+            }
+            return;
+        };
+        scratch.begin(self, row, rows.iter().map(|(_, from)| from));
+        in_lanes(RowsWork { problem: self, row, rows, options, scratch, keep });
+    }
+}
+
+impl Group {
+    pub(crate) fn material(self) -> Option<usize> {
+        match self {
+            Group::One(material) => Some(material),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn with(self, material: Option<usize>) -> Self {
+        match (self, material) {
+            (group, None) => group,
+            (Group::None, Some(m)) => Group::One(m),
+            (Group::One(a), Some(m)) if a == m => Group::One(a),
+            _ => Group::Mixed,
+        }
+    }
+}

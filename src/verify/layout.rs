@@ -1,0 +1,274 @@
+//! Where joints, tubes and masses are in a pose, and how every coordinate moves a point.
+//!
+//! The coordinates are a joint's twist, the tilt of an effect's spring and, for each tube, curvature constant and linear along it in both
+//! planes, and constant shear, twist and stretch. The full model has these among its own and more; a body
+//! that can move in fewer ways is stiffer, so its lowest mode is at least that of the full model.
+
+use crate::arm::{Link, LinkBody, LinkModel};
+use crate::mechanics::beam::section_frame;
+use crate::space::design_space::{Case, DesignSpace, SpacePiece};
+use crate::space::effects::Layer;
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+/// Place of a piece's springs in the order from base to tip.
+fn spring_rank(piece: usize) -> usize {
+    2 * piece
+}
+
+/// Place of a piece itself in that order: its springs come before it.
+fn piece_rank(piece: usize) -> usize {
+    2 * piece + 1
+}
+
+/// A joint in a pose.
+pub(super) struct PlacedJoint {
+    pub rank: usize,
+    pub at_m: Vector3<f64>,
+    pub axis: Vector3<f64>,
+}
+
+/// A tube in a pose; the frame's columns are its axis and the section's y and z.
+pub(super) struct PlacedTube {
+    pub rank: usize,
+    pub root_m: Vector3<f64>,
+    pub frame: Matrix3<f64>,
+    pub length_m: f64,
+}
+
+/// A mass that no choice changes.
+pub(super) struct PlacedMass {
+    pub rank: usize,
+    pub at_m: Vector3<f64>,
+    pub mass_kg: f64,
+}
+
+/// A spring of an effect: it tilts everything outboard about an axis.
+pub(super) struct PlacedSpring {
+    pub rank: usize,
+    pub at_m: Vector3<f64>,
+    pub axis: Vector3<f64>,
+    pub rad_per_nm: f64,
+}
+
+/// An arm in a pose, base to tip.
+pub(super) struct Layout {
+    pub joints: Vec<PlacedJoint>,
+    pub tubes: Vec<PlacedTube>,
+    pub masses: Vec<PlacedMass>,
+    pub springs: Vec<PlacedSpring>,
+    pub tip_m: Vector3<f64>,
+    pub tip_rotation: Matrix3<f64>,
+}
+
+impl Layout {
+    /// Puts a space's arm into the pose of a case.
+    pub fn new(space: &DesignSpace, case: &Case) -> Self {
+        let mut angles = case.pose_deg.iter();
+        let mut rotation = Rotation3::identity();
+        let mut layout = Self {
+            joints: Vec::new(),
+            tubes: Vec::new(),
+            masses: Vec::new(),
+            springs: Vec::new(),
+            tip_m: Vector3::zeros(),
+            tip_rotation: Matrix3::identity(),
+        };
+        for (piece, what) in space.pieces.iter().enumerate() {
+            layout.add_effects(space, piece, &rotation);
+            match what {
+                SpacePiece::Joint(joint) => {
+                    let axis = rotation * joint.axis.into_inner();
+                    layout.joints.push(PlacedJoint { rank: piece_rank(piece), at_m: layout.tip_m, axis });
+                    let angle = angles.next().copied().unwrap_or_default().to_radians();
+                    rotation *= Rotation3::from_axis_angle(&joint.axis, angle);
+                }
+                SpacePiece::Link(link) => layout.add_link(space, piece, link, &rotation),
+                SpacePiece::Choice(choice) => layout.add_tube(piece, &choice.vector_m, &rotation),
+            }
+        }
+        layout.tip_rotation = *rotation.matrix();
+        layout
+    }
+
+    /// What effects put before a piece where the arm has come to: springs and masses.
+    fn add_effects(&mut self, space: &DesignSpace, piece: usize, rotation: &Rotation3<f64>) {
+        for (_, layer) in space.layers().into_iter().filter(|(at, _)| *at == piece) {
+            match layer {
+                Layer::Tilt(tilt) => self.springs.push(PlacedSpring {
+                    rank: spring_rank(piece),
+                    at_m: self.tip_m,
+                    axis: tilt.axis(rotation),
+                    rad_per_nm: tilt.rad_per_nm,
+                }),
+                Layer::Mass(mass_kg) => {
+                    self.masses.push(PlacedMass { rank: piece_rank(piece), at_m: self.tip_m, mass_kg });
+                }
+                Layer::Piece(_) => {}
+            }
+        }
+    }
+
+    fn add_link(&mut self, space: &DesignSpace, piece: usize, link: &Link, rotation: &Rotation3<f64>) {
+        if let Some(mass_kg) = offset_mass_kg(link) {
+            let at_m = self.tip_m + rotation * link.vector_m / 2.0;
+            self.masses.push(PlacedMass { rank: piece_rank(piece), at_m, mass_kg });
+        }
+        match has_line(space, link) {
+            true => self.add_tube(piece, &link.vector_m, rotation),
+            false => self.tip_m += rotation * link.vector_m,
+        }
+    }
+
+    fn add_tube(&mut self, piece: usize, vector_m: &Vector3<f64>, rotation: &Rotation3<f64>) {
+        self.tubes.push(PlacedTube {
+            rank: piece_rank(piece),
+            root_m: self.tip_m,
+            frame: rotation.matrix() * section_frame(vector_m),
+            length_m: vector_m.norm(),
+        });
+        self.tip_m += rotation * vector_m;
+    }
+}
+
+/// Whether something weighs along a link: it is a tube, or cables run along it.
+pub(super) fn has_line(space: &DesignSpace, link: &Link) -> bool {
+    let cables = space.link_piece(link).harness_kg_per_m != 0.0 && link.vector_m.norm() > 0.0;
+    offset_mass_kg(link).is_none() || cables
+}
+
+/// Mass of a rigid offset; a tube is none.
+pub(super) fn offset_mass_kg(link: &Link) -> Option<f64> {
+    match link.body {
+        LinkBody::Offset { mass_kg } => Some(mass_kg),
+        LinkBody::Tube { .. } => None,
+    }
+}
+
+/// A point of the arm: beyond everything of a lower rank, and maybe inside the tube of this rank.
+#[derive(Clone, Copy)]
+pub(super) struct Point {
+    pub at_m: Vector3<f64>,
+    pub rank: usize,
+    /// Distance from the root of the tube that the point is in \[m\].
+    pub inside_m: Option<f64>,
+}
+
+/// In which ways a tube yields.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Shape {
+    /// Curvature that moves the tube along z, constant or from 1 at the root to -1 at the end.
+    BendZ {
+        linear: bool,
+    },
+    /// The same along y.
+    BendY {
+        linear: bool,
+    },
+    ShearZ,
+    ShearY,
+    Twist,
+    Stretch,
+}
+
+const BENDING: [Shape; 4] = [
+    Shape::BendZ { linear: false },
+    Shape::BendZ { linear: true },
+    Shape::BendY { linear: false },
+    Shape::BendY { linear: true },
+];
+const REST: [Shape; 4] = [Shape::ShearZ, Shape::ShearY, Shape::Twist, Shape::Stretch];
+
+impl Shape {
+    /// Displacement and rotation of the section at `x` per unit, from the clamped root, in the tube's frame.
+    fn field(self, x: f64, length_m: f64) -> (Vector3<f64>, Vector3<f64>) {
+        let slope = |linear: bool| if linear { x - x * x / length_m } else { x };
+        let moved =
+            |linear: bool| if linear { x * x / 2.0 - x.powi(3) / (3.0 * length_m) } else { x * x / 2.0 };
+        let none = Vector3::zeros();
+        match self {
+            // a rotation about y lowers the end, one about z moves it along y
+            Shape::BendZ { linear } => {
+                (Vector3::new(0.0, 0.0, moved(linear)), Vector3::new(0.0, -slope(linear), 0.0))
+            }
+            Shape::BendY { linear } => {
+                (Vector3::new(0.0, moved(linear), 0.0), Vector3::new(0.0, 0.0, slope(linear)))
+            }
+            Shape::ShearZ => (Vector3::new(0.0, 0.0, x), none),
+            Shape::ShearY => (Vector3::new(0.0, x, 0.0), none),
+            Shape::Twist => (none, Vector3::new(x, 0.0, 0.0)),
+            Shape::Stretch => (Vector3::new(x, 0.0, 0.0), none),
+        }
+    }
+
+    /// Which of a tube's stiffnesses resists, and the integral of the squared strain \[m\].
+    pub fn stiffness(self, length_m: f64) -> (usize, f64) {
+        let bending = |linear: bool| if linear { length_m / 3.0 } else { length_m };
+        match self {
+            Shape::BendZ { linear } => (0, bending(linear)),
+            Shape::BendY { linear } => (1, bending(linear)),
+            Shape::ShearZ | Shape::ShearY => (2, length_m),
+            Shape::Twist => (3, length_m),
+            Shape::Stretch => (4, length_m),
+        }
+    }
+}
+
+/// One way in which the arm yields.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Coordinate {
+    /// Twist of a joint.
+    Joint(usize),
+    /// A shape of a tube.
+    Tube(usize, Shape),
+    /// Tilt of an effect's spring.
+    Spring(usize),
+}
+
+/// All coordinates of an arm, those of joints first.
+pub(super) fn coordinates(layout: &Layout, model: LinkModel) -> Vec<Coordinate> {
+    let shapes: &[&[Shape]] = match model {
+        LinkModel::Rigid => &[],
+        LinkModel::Bending => &[&BENDING],
+        LinkModel::Full => &[&BENDING, &REST],
+    };
+    let shapes = shapes.concat();
+    let joints = (0..layout.joints.len()).map(Coordinate::Joint);
+    let tubes = 0..layout.tubes.len();
+    let tubes = tubes.flat_map(|tube| shapes.iter().map(move |&shape| Coordinate::Tube(tube, shape)));
+    joints.chain(tubes).chain((0..layout.springs.len()).map(Coordinate::Spring)).collect()
+}
+
+impl Layout {
+    /// Displacement and rotation of a point per unit of a coordinate, world.
+    pub fn motion(&self, coordinate: Coordinate, point: &Point) -> (Vector3<f64>, Vector3<f64>) {
+        let still = (Vector3::zeros(), Vector3::zeros());
+        let turned = |axis: &Vector3<f64>, at_m| (axis.cross(&(point.at_m - at_m)), *axis);
+        match coordinate {
+            Coordinate::Joint(joint) => {
+                let joint = &self.joints[joint];
+                if joint.rank < point.rank { turned(&joint.axis, joint.at_m) } else { still }
+            }
+            Coordinate::Spring(spring) => {
+                let spring = &self.springs[spring];
+                if spring.rank < point.rank { turned(&spring.axis, spring.at_m) } else { still }
+            }
+            Coordinate::Tube(tube, shape) => self.tubes[tube].motion(shape, point).unwrap_or(still),
+        }
+    }
+}
+
+impl PlacedTube {
+    /// Displacement and rotation of a point in or beyond the tube per unit of a shape, world.
+    fn motion(&self, shape: Shape, point: &Point) -> Option<(Vector3<f64>, Vector3<f64>)> {
+        let world = |x: f64| {
+            let (moved, turned) = shape.field(x, self.length_m);
+            (self.frame * moved, self.frame * turned)
+        };
+        if self.rank == point.rank {
+            return point.inside_m.map(world);
+        }
+        let (moved, turned) = world(self.length_m);
+        let end_m = self.root_m + self.frame.column(0) * self.length_m;
+        (self.rank < point.rank).then(|| (moved + turned.cross(&(point.at_m - end_m)), turned))
+    }
+}

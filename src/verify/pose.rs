@@ -1,0 +1,308 @@
+//! One case of a study as sums over parts: torques, deflection, stress and inertia.
+//!
+//! *Loads* are the masses of drives \[kg\] and the weights of tubes per length \[N/m\]; each adds in
+//! proportion to the torque on a joint (its lever arm) and to the force and moment in a tube's section.
+//!
+//! *Deflection* is found by the method of the unit load: the tip's displacement along `e` is the work of the
+//! real internal loads, over the stiffness, on those of a unit force `e` at the tip,
+//! `Σ θ_j (a_j · (r_j x e)) + Σ ∫ (N n/EA + V·v/κGA + T t/GJ + M_y m_y/EI_y + M_z m_z/EI_z) dx`. Real loads
+//! are at most quadratic in `x`, virtual ones linear: the quadrature is exact.
+//!
+//! *Inertia* is the kinetic energy of the coordinates of [`super::layout`], a sum over the masses of drives
+//! and the inertias of tubes per length.
+
+use super::layout::{Coordinate, Layout, Point};
+use super::span::{Linear, LinearVector};
+use super::tubes::{DENSITIES, STIFFNESSES};
+use crate::arm::structure::Water;
+use crate::space::design_space::{Case, DesignSpace};
+use nalgebra::{Matrix3, Vector3};
+
+/// Gauss-Legendre points and weights on 0..1, exact to degree 7.
+const GAUSS: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
+/// A case of the study.
+pub(super) struct Pose {
+    pub judged: bool,
+    pub sizing: bool,
+    /// Place of its water among the study's surroundings.
+    pub water: usize,
+    /// Stress over that of the static loads.
+    pub stress_factor: f64,
+    /// Torque on each joint.
+    pub torques: Vec<Linear>,
+    /// Displacement of the tip per twist of each joint \[m/rad\].
+    pub ways_m: Vec<Vector3<f64>>,
+    /// Displacement of the tip by each spring of an effect.
+    pub tilts_m: Vec<LinearVector>,
+    /// Displacement of the tip times each stiffness of each tube.
+    pub works: Vec<[LinearVector; STIFFNESSES]>,
+    /// Force and moment at root and end of each tube, in its frame.
+    pub ends: Vec<[[Linear; 6]; 2]>,
+    /// Inertia that no choice changes, lower triangle by rows.
+    pub inertia: Vec<f64>,
+    /// Inertia per drive mass, and then per inertia of each tube.
+    pub inertia_per: Vec<Vec<f64>>,
+}
+
+/// A force and a moment.
+#[derive(Debug, Clone, Copy, Default)]
+struct Wrench {
+    force: Vector3<f64>,
+    moment: Vector3<f64>,
+}
+
+/// What a section carries: of fixed loads, and of a unit of each load.
+struct Carried {
+    fixed: Wrench,
+    per_load: Vec<Wrench>,
+}
+
+/// A case before it is summed.
+struct Builder<'a> {
+    layout: &'a Layout,
+    gravity_m_s2: f64,
+    /// Payload and tip force with the points they act at.
+    tip_loads: [(Vector3<f64>, Vector3<f64>); 2],
+    coordinates: &'a [Coordinate],
+}
+
+impl Pose {
+    /// Works out a case; `waters` are the study's surroundings.
+    pub fn new(
+        space: &DesignSpace,
+        index: usize,
+        waters: &[Option<Water>],
+        coordinates: &[Coordinate],
+    ) -> Self {
+        let case = &space.cases[index];
+        let water = water_of(space, case);
+        let layout = Layout::new(space, case);
+        let tip_loads = [
+            (payload_weight(space, case, water), payload_at(&layout, case)),
+            (case.tip_force_n, layout.tip_m),
+        ];
+        let builder = Builder { layout: &layout, gravity_m_s2: space.gravity_m_s2, tip_loads, coordinates };
+        let sizing = space.sizing_cases.contains(&index);
+        let acceleration = space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE);
+        Self {
+            judged: space.judged_cases.contains(&index),
+            sizing,
+            water: waters.iter().position(|other| *other == water).unwrap_or_default(),
+            stress_factor: if sizing { 1.0 + acceleration } else { 1.0 },
+            torques: (0..layout.joints.len()).map(|joint| builder.torque(joint)).collect(),
+            ways_m: layout.joints.iter().map(|j| j.axis.cross(&(layout.tip_m - j.at_m))).collect(),
+            tilts_m: (0..layout.springs.len()).map(|spring| builder.tilt(spring)).collect(),
+            works: (0..layout.tubes.len()).map(|tube| builder.works(tube)).collect(),
+            ends: (0..layout.tubes.len()).map(|tube| builder.ends(tube)).collect(),
+            inertia: builder.fixed_inertia(case),
+            inertia_per: builder.inertia_per(),
+        }
+    }
+}
+
+/// The water of a case, or that of an effect.
+pub(super) fn water_of(space: &DesignSpace, case: &Case) -> Option<Water> {
+    case.water.or(space.surroundings().water)
+}
+
+fn payload_weight(space: &DesignSpace, case: &Case, water: Option<Water>) -> Vector3<f64> {
+    let lifted = water.map_or(0.0, |water| water.density_kg_m3 / water.payload_density_kg_m3);
+    Vector3::new(0.0, 0.0, -case.payload.mass_kg * space.gravity_m_s2 * (1.0 - lifted))
+}
+
+fn payload_at(layout: &Layout, case: &Case) -> Vector3<f64> {
+    layout.tip_m + layout.tip_rotation * case.payload.cg_m
+}
+
+impl Wrench {
+    fn of(force: Vector3<f64>, at_m: &Vector3<f64>, about_m: &Vector3<f64>) -> Self {
+        Self { force, moment: (at_m - about_m).cross(&force) }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self { force: self.force + other.force, moment: self.moment + other.moment }
+    }
+
+    /// Components in a frame: force, then moment.
+    fn in_frame(&self, frame: &Matrix3<f64>) -> [f64; 6] {
+        let (force, moment) = (frame.tr_mul(&self.force), frame.tr_mul(&self.moment));
+        [force.x, force.y, force.z, moment.x, moment.y, moment.z]
+    }
+}
+
+impl Builder<'_> {
+    /// What is carried at a point by everything beyond it.
+    fn carried(&self, point: &Point) -> Carried {
+        let down = |size: f64| Vector3::new(0.0, 0.0, -size);
+        let about_m = &point.at_m;
+        let none = Wrench::default();
+        let tip = self.tip_loads.iter().map(|(force, at_m)| Wrench::of(*force, at_m, about_m));
+        let masses = self.layout.masses.iter().filter(|mass| mass.rank > point.rank);
+        let masses = masses.map(|m| Wrench::of(down(m.mass_kg * self.gravity_m_s2), &m.at_m, about_m));
+        let drives = self.layout.joints.iter().map(|joint| match joint.rank > point.rank {
+            true => Wrench::of(down(self.gravity_m_s2), &joint.at_m, about_m),
+            false => none,
+        });
+        let tubes = self.layout.tubes.iter().map(|tube| {
+            let from_m = match (tube.rank.cmp(&point.rank), point.inside_m) {
+                (std::cmp::Ordering::Greater, _) => 0.0,
+                (std::cmp::Ordering::Equal, Some(x)) => x,
+                _ => return none,
+            };
+            let middle_m = tube.root_m + tube.frame.column(0) * (0.5 * (from_m + tube.length_m));
+            Wrench::of(down(tube.length_m - from_m), &middle_m, about_m)
+        });
+        Carried { fixed: tip.chain(masses).fold(none, Wrench::plus), per_load: drives.chain(tubes).collect() }
+    }
+
+    fn torque(&self, joint: usize) -> Linear {
+        let joint = &self.layout.joints[joint];
+        let carried = self.carried(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });
+        Linear {
+            fixed: joint.axis.dot(&carried.fixed.moment),
+            per_load: carried.per_load.iter().map(|wrench| joint.axis.dot(&wrench.moment)).collect(),
+        }
+    }
+
+    /// Displacement of the tip by a spring: its tilt under the moment about its axis times the way of the tip.
+    fn tilt(&self, spring: usize) -> LinearVector {
+        let spring = &self.layout.springs[spring];
+        let carried = self.carried(&Point { at_m: spring.at_m, rank: spring.rank, inside_m: None });
+        let way_m = spring.axis.cross(&(self.layout.tip_m - spring.at_m)) * spring.rad_per_nm;
+        LinearVector {
+            fixed: way_m * spring.axis.dot(&carried.fixed.moment),
+            per_load: carried.per_load.iter().map(|w| way_m * spring.axis.dot(&w.moment)).collect(),
+        }
+    }
+
+    /// A point of a tube's axis.
+    fn inside(&self, tube: usize, x: f64) -> Point {
+        let tube = &self.layout.tubes[tube];
+        Point { at_m: tube.root_m + tube.frame.column(0) * x, rank: tube.rank, inside_m: Some(x) }
+    }
+
+    fn ends(&self, tube: usize) -> [[Linear; 6]; 2] {
+        let placed = &self.layout.tubes[tube];
+        [0.0, placed.length_m].map(|x| {
+            let carried = self.carried(&self.inside(tube, x));
+            let fixed = carried.fixed.in_frame(&placed.frame);
+            let per_load: Vec<[f64; 6]> =
+                carried.per_load.iter().map(|wrench| wrench.in_frame(&placed.frame)).collect();
+            std::array::from_fn(|i| Linear {
+                fixed: fixed[i],
+                per_load: per_load.iter().map(|wrench| wrench[i]).collect(),
+            })
+        })
+    }
+
+    fn works(&self, tube: usize) -> [LinearVector; STIFFNESSES] {
+        let placed = &self.layout.tubes[tube];
+        let loads = self.layout.joints.len() + self.layout.tubes.len();
+        let mut works: [LinearVector; STIFFNESSES] = std::array::from_fn(|_| LinearVector {
+            fixed: Vector3::zeros(),
+            per_load: vec![Vector3::zeros(); loads],
+        });
+        for (xi, weight) in GAUSS {
+            let point = self.inside(tube, xi * placed.length_m);
+            let carried = self.carried(&point);
+            let units = [Vector3::x(), Vector3::y(), Vector3::z()]
+                .map(|e| Wrench::of(e, &self.layout.tip_m, &point.at_m).in_frame(&placed.frame));
+            let length_m = weight * placed.length_m;
+            let parts = |real: &Wrench| products(&real.in_frame(&placed.frame), &units, length_m);
+            for (work, part) in works.iter_mut().zip(parts(&carried.fixed)) {
+                work.fixed += part;
+            }
+            for (load, real) in carried.per_load.iter().enumerate() {
+                for (work, part) in works.iter_mut().zip(parts(real)) {
+                    work.per_load[load] += part;
+                }
+            }
+        }
+        works
+    }
+
+    /// Inertia of payload and masses without a choice.
+    fn fixed_inertia(&self, case: &Case) -> Vec<f64> {
+        let mut out = self.no_inertia();
+        let rotation = &self.layout.tip_rotation;
+        let payload = Point { at_m: payload_at(self.layout, case), rank: usize::MAX, inside_m: None };
+        let spin = Matrix3::from_diagonal(&case.payload.inertia_about_cg_kgm2.map(|i| i.max(0.0).sqrt()));
+        let (moved, turned) = self.motions(&payload);
+        for axis in 0..3 {
+            add_square(&mut out, &along(&moved, &Vector3::ith(axis, 1.0)), case.payload.mass_kg);
+            add_square(&mut out, &along(&turned, &(rotation * spin.column(axis))), 1.0);
+        }
+        for mass in &self.layout.masses {
+            let (moved, _) = self.motions(&Point { at_m: mass.at_m, rank: mass.rank, inside_m: None });
+            for axis in 0..3 {
+                add_square(&mut out, &along(&moved, &Vector3::ith(axis, 1.0)), mass.mass_kg);
+            }
+        }
+        out
+    }
+
+    fn inertia_per(&self) -> Vec<Vec<f64>> {
+        let drives = self.layout.joints.iter().map(|joint| {
+            let mut out = self.no_inertia();
+            let (moved, _) = self.motions(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });
+            for axis in 0..3 {
+                add_square(&mut out, &along(&moved, &Vector3::ith(axis, 1.0)), 1.0);
+            }
+            out
+        });
+        let tubes = (0..self.layout.tubes.len()).flat_map(|tube| self.tube_inertia(tube));
+        drives.chain(tubes).collect()
+    }
+
+    /// Inertia per unit of each inertia per length of a tube.
+    fn tube_inertia(&self, tube: usize) -> [Vec<f64>; DENSITIES] {
+        let mut out: [Vec<f64>; DENSITIES] = std::array::from_fn(|_| self.no_inertia());
+        let placed = &self.layout.tubes[tube];
+        for (xi, weight) in GAUSS {
+            let weight_m = weight * placed.length_m;
+            let (moved, turned) = self.motions(&self.inside(tube, xi * placed.length_m));
+            for axis in 0..3 {
+                let direction = placed.frame.column(axis).into_owned();
+                add_square(&mut out[axis.min(1)], &along(&moved, &direction), weight_m);
+                add_square(&mut out[2 + axis], &along(&turned, &direction), weight_m);
+            }
+        }
+        out
+    }
+
+    /// Displacement and rotation of a point per unit of every coordinate.
+    fn motions(&self, point: &Point) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
+        self.coordinates.iter().map(|&coordinate| self.layout.motion(coordinate, point)).unzip()
+    }
+
+    fn no_inertia(&self) -> Vec<f64> {
+        let n = self.coordinates.len();
+        vec![0.0; n * (n + 1) / 2]
+    }
+}
+
+/// Products of real and unit internal loads that each stiffness divides, times a length.
+fn products(real: &[f64; 6], units: &[[f64; 6]; 3], length_m: f64) -> [Vector3<f64>; STIFFNESSES] {
+    let product = |i: usize| Vector3::from_fn(|axis, _| real[i] * units[axis][i] * length_m);
+    [product(4), product(5), product(1) + product(2), product(3), product(0)]
+}
+
+fn along(motions: &[Vector3<f64>], direction: &Vector3<f64>) -> Vec<f64> {
+    motions.iter().map(|motion| motion.dot(direction)).collect()
+}
+
+/// Adds `weight` times the square of a row to a lower triangle.
+fn add_square(triangle: &mut [f64], row: &[f64], weight: f64) {
+    let mut entries = triangle.iter_mut();
+    for (i, a) in row.iter().enumerate() {
+        for (b, entry) in row[..=i].iter().zip(&mut entries) {
+            *entry += weight * a * b;
+        }
+    }
+}
