@@ -10,7 +10,7 @@ use armwright::space::design::full_objectives;
 use armwright::space::levels::OutwardIn;
 use armwright::space::problem::ArmProblem;
 use armwright::study::named;
-use armwright::study::read::{Study, read_study};
+use armwright::study::{Study, read_study};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use std::sync::atomic::AtomicBool;

@@ -2,7 +2,7 @@
 
 use armwright::catalog::Catalogs;
 use armwright::input::json::Document;
-use armwright::study::read::{Study, read_study};
+use armwright::study::{Study, read_study};
 use serde_json::json;
 
 /// Two links with fixed joints: rigid links, one stiffness a joint, stretched, `options` sections a link.
