@@ -4,11 +4,11 @@
 mod common;
 
 use armwright::catalog::Catalogs;
-use armwright::input::json::Document;
-use armwright::search::sweep::Sweep;
+use armwright::input::Document;
+use armwright::search::Sweep;
+use armwright::space::ArmProblem;
+use armwright::space::OutwardIn;
 use armwright::space::design::full_objectives;
-use armwright::space::levels::OutwardIn;
-use armwright::space::problem::ArmProblem;
 use armwright::study::named;
 use armwright::study::{Study, read_study};
 use divan::Bencher;

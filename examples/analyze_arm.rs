@@ -2,12 +2,12 @@
 //!
 //! Run: cargo run --example analyze_arm
 
-use armwright::arm::file::read_arm_document;
-use armwright::arm::load::{LoadCase, Payload};
+use armwright::arm::read_arm_document;
 use armwright::arm::{JointModel, LinkModel};
+use armwright::arm::{LoadCase, Payload};
 use armwright::catalog::Catalogs;
-use armwright::input::json::Document;
-use armwright::mechanics::chain::Chain;
+use armwright::input::Document;
+use armwright::mechanics::Chain;
 use nalgebra::Vector3;
 
 const ARM: &str = r#"{

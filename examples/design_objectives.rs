@@ -6,11 +6,11 @@
 //! the answers off.
 
 use armwright::catalog::Catalogs;
-use armwright::input::json::Document;
-use armwright::space::levels::OutwardIn;
-use armwright::space::problem::ArmProblem;
+use armwright::input::Document;
+use armwright::space::ArmProblem;
+use armwright::space::OutwardIn;
 use armwright::study::named;
-use armwright::study::read::read_study;
+use armwright::study::read_study;
 use std::io::{BufRead, Write};
 
 fn main() -> std::io::Result<()> {

@@ -7,11 +7,12 @@
 
 use armwright::arm::JointModel;
 use armwright::catalog::Catalogs;
-use armwright::exact::run::Exact;
-use armwright::input::json::Document;
-use armwright::space::design_space::{DesignSpace, DriveChoice, SpacePiece};
+use armwright::exact::Exact;
+use armwright::input::Document;
+use armwright::space::DesignSpace;
+use armwright::space::design_space::{DriveChoice, SpacePiece};
 use armwright::study::named;
-use armwright::study::read::read_study;
+use armwright::study::read_study;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 

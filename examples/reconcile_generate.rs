@@ -11,7 +11,7 @@
 //! `cargo run --release --example reconcile_generate -- OUT SEED arm ARM.json EFFECTS.json`
 
 use armwright::catalog::Catalogs;
-use armwright::reconcile::readings::campaign::Campaign;
+use armwright::reconcile::Campaign;
 use serde_json::Value;
 use std::path::Path;
 

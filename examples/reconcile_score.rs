@@ -9,8 +9,8 @@
 //! estimate, ends of the interval.
 
 use armwright::catalog::Catalogs;
-use armwright::reconcile::readings::campaign::Campaign;
-use armwright::reconcile::together::reconcile;
+use armwright::reconcile::Campaign;
+use armwright::reconcile::reconcile;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;

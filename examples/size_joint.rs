@@ -3,10 +3,10 @@
 //! Run: cargo run --example size_joint
 
 use armwright::catalog::Catalogs;
-use armwright::catalog::gear::GearMass;
-use armwright::sizing::requirement::MotionRequirement;
-use armwright::sizing::select::{DriveFilter, DriveTable};
-use armwright::sizing::sheet::{JointSizingRow, render_rows};
+use armwright::catalog::GearMass;
+use armwright::sizing::MotionRequirement;
+use armwright::sizing::{DriveFilter, DriveTable};
+use armwright::sizing::{JointSizingRow, render_rows};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let catalogs = Catalogs::builtin();

@@ -8,11 +8,11 @@
 mod common;
 
 use armwright::catalog::Catalogs;
-use armwright::input::json::Document;
-use armwright::search::sweep::Sweep;
-use armwright::space::problem::ArmProblem;
+use armwright::input::Document;
+use armwright::search::Sweep;
+use armwright::space::ArmProblem;
 use armwright::study::named;
-use armwright::study::read::{Study, read_study};
+use armwright::study::{Study, read_study};
 use std::sync::atomic::AtomicBool;
 
 fn main() {

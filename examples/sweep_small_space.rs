@@ -3,11 +3,11 @@
 //! Run: cargo run --example sweep_small_space
 
 use armwright::catalog::Catalogs;
-use armwright::input::json::Document;
+use armwright::input::Document;
+use armwright::space::ArmProblem;
 use armwright::space::design::{Part, id_of, options};
-use armwright::space::problem::ArmProblem;
-use armwright::study::outcome::run_study;
-use armwright::study::read::read_study;
+use armwright::study::read_study;
+use armwright::study::run_study;
 use std::sync::atomic::AtomicBool;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     let problem = ArmProblem::new(&study.space, &catalogs);
     let lightest = outcome.front.first().ok_or("no design meets the constraints")?;
-    let by_mode = |d: &&armwright::study::outcome::Judged| d.design.objectives.lowest_mode_hz;
+    let by_mode = |d: &&armwright::study::Judged| d.design.objectives.lowest_mode_hz;
     let fastest = outcome
         .front
         .iter()
@@ -41,8 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             o.tip_deflection_m * 1e3,
             o.lowest_mode_hz
         );
-        let chosen =
-            options(armwright::space::levels::OutwardIn::level_sizes(&problem), judged.design.number);
+        let chosen = options(armwright::space::OutwardIn::level_sizes(&problem), judged.design.number);
         for part in problem.parts(&chosen.ok_or("a design of the space")?).ok_or("a design that holds")? {
             match part {
                 Part::Link(option) => println!("  {} {:?}", option.material_name, option.section),

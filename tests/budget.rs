@@ -1,18 +1,18 @@
 //! What one more kilogram buys: against a spring in closed form, and against arm files changed as text.
 
-use armwright::arm::file::read_arm_document;
-use armwright::arm::load::LoadCase;
+use armwright::arm::LoadCase;
+use armwright::arm::read_arm_document;
 use armwright::catalog::Catalogs;
-use armwright::input::json::Document;
-use armwright::pareto::objectives::Objectives;
+use armwright::input::Document;
+use armwright::pareto::Objectives;
 use armwright::report::budget::{BudgetRow, Gain, PickBudget, budget_csv, budget_markdown, budget_text};
+use armwright::space::ArmProblem;
+use armwright::space::OutwardIn;
 use armwright::space::design::{full_objectives, number_of, options};
-use armwright::space::levels::OutwardIn;
-use armwright::space::problem::ArmProblem;
-use armwright::study::budget::budgets;
-use armwright::study::outcome::run_study;
-use armwright::study::read::{Study, read_study};
-use armwright::study::table::front_table;
+use armwright::study::budgets;
+use armwright::study::front_table;
+use armwright::study::run_study;
+use armwright::study::{Study, read_study};
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 

@@ -1,13 +1,13 @@
 //! The catalogs as a user meets them: what is built in, what a folder of one's own adds, and what is
 //! said about a folder that is wrong.
 
-use armwright::catalog::lookup::PartError;
-use armwright::catalog::material::MaterialClass;
-use armwright::catalog::motor::MotorKind;
-use armwright::catalog::profile::ProfileShape;
-use armwright::catalog::schema::CatalogFile;
+use armwright::catalog::CatalogFile;
+use armwright::catalog::MaterialClass;
+use armwright::catalog::MotorKind;
+use armwright::catalog::PartError;
+use armwright::catalog::ProfileShape;
 use armwright::catalog::{Catalogs, Confidence};
-use armwright::input::json::{Fault, InputError};
+use armwright::input::{Fault, InputError};
 use std::path::{Path, PathBuf};
 
 const GEAR_HEADER: &str = "series,size,ratio,rated_torque_nm,average_torque_limit_nm,repeated_peak_torque_nm,\

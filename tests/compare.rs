@@ -1,8 +1,8 @@
 //! Fronts made by hand, small enough to know the answers by eye.
 
 use armwright::cli::compare::{CompareArgs, run};
+use armwright::report::compare::Thresholds;
 use armwright::report::compare::moved::moved;
-use armwright::report::compare::thresholds::Thresholds;
 use armwright::report::compare::{Answer, Comparison, Contender, Question, Row, compare};
 use armwright::report::front_table::FrontTable;
 use armwright::report::summary::{

@@ -5,12 +5,12 @@
 //! `...` alone stands for any number of lines, `…` inside a line for any text. A comment
 //! `<!-- file: NAME -->` before a block makes it a file of that name.
 
-use armwright::arm::file::read_arm_document;
-use armwright::arm::load::read_load_cases;
+use armwright::arm::read_arm_document;
+use armwright::arm::read_load_cases;
 use armwright::catalog::Catalogs;
-use armwright::input::json::{Document, Faults};
+use armwright::input::{Document, Faults};
 use armwright::study::NAMED;
-use armwright::study::read::read_study;
+use armwright::study::read_study;
 use assert_cmd::Command;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;

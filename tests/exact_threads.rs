@@ -2,10 +2,10 @@
 //! of many is found.
 
 use armwright::catalog::Catalogs;
-use armwright::exact::run::{Exact, ExactOutcome};
-use armwright::input::json::Document;
+use armwright::exact::{Exact, ExactOutcome};
+use armwright::input::Document;
 use armwright::study::named;
-use armwright::study::read::{Study, read_study};
+use armwright::study::{Study, read_study};
 use std::sync::atomic::AtomicBool;
 
 fn study(name: &str, catalogs: &Catalogs) -> Study {

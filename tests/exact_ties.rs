@@ -4,9 +4,9 @@ mod dice;
 mod exact_support;
 
 use armwright::catalog::Catalogs;
-use armwright::exact::run::Exact;
-use armwright::search::sweep::Sweep;
-use armwright::space::problem::ArmProblem;
+use armwright::exact::Exact;
+use armwright::search::Sweep;
+use armwright::space::ArmProblem;
 use assert_cmd::Command;
 use dice::Dice;
 use exact_support::{agree, read};
@@ -70,9 +70,8 @@ fn ties_that_are_too_many_to_list_have_one_design_each_that_holds() {
     let (all, few) = (search().run(&[]), search().with_ties_up_to(0).run(&[]));
     assert!(all.ties_listed && !few.ties_listed);
     assert!(few.front.len() < all.front.len(), "{} of {}", few.front.len(), all.front.len());
-    let point = |o: &armwright::pareto::objectives::Objectives| {
-        o.minimized().map(|x| (x.abs().ln() * 1e8).round() as i64)
-    };
+    let point =
+        |o: &armwright::pareto::Objectives| o.minimized().map(|x| (x.abs().ln() * 1e8).round() as i64);
     let points: BTreeSet<[i64; 3]> = all.front.iter().map(|c| point(&c.objectives)).collect();
     assert_eq!(points, few.front.iter().map(|c| point(&c.objectives)).collect());
     assert!(few.front.iter().all(|c| all.front.iter().any(|other| other.number == c.number)));

@@ -1,14 +1,14 @@
 //! The reference arms, solved by FEDEM, CalculiX, Pinocchio, MuJoCo and an independent finite-element
 //! chain, against the library, to the tolerances their files state.
 
-use armwright::arm::file::read_arm_document;
-use armwright::arm::load::{LoadCase, Payload};
+use armwright::arm::read_arm_document;
 use armwright::arm::{Arm, JointModel, LinkModel};
+use armwright::arm::{LoadCase, Payload};
 use armwright::catalog::Catalogs;
-use armwright::input::json::Document;
-use armwright::mechanics::chain::Chain;
-use armwright::mechanics::modes::Mode;
-use armwright::mechanics::statics::Statics;
+use armwright::input::Document;
+use armwright::mechanics::Chain;
+use armwright::mechanics::Mode;
+use armwright::mechanics::Statics;
 use nalgebra::Vector3;
 use serde_json::Value;
 

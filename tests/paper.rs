@@ -2,9 +2,9 @@
 
 mod paper_support;
 
+use armwright::arm::Curve;
 use armwright::arm::LinkModel;
-use armwright::arm::joint_law::Curve;
-use armwright::arm::section::Section;
+use armwright::arm::Section;
 use armwright::catalog::Catalogs;
 use armwright::paper;
 use armwright::paper::arm::PaperArm;

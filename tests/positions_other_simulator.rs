@@ -2,10 +2,10 @@
 //! documentation alone. Each of these once got another verdict.
 
 use armwright::catalog::Catalogs;
-use armwright::reconcile::readings::campaign::Campaign;
-use armwright::reconcile::together::reconcile;
-use armwright::reconcile::verdict::outcome::Outcome;
-use armwright::reconcile::verdict::outcome::Verdict;
+use armwright::reconcile::Campaign;
+use armwright::reconcile::Outcome;
+use armwright::reconcile::Verdict;
+use armwright::reconcile::reconcile;
 use std::path::Path;
 
 fn outcome_of(name: &str) -> Outcome {

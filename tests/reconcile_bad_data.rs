@@ -1,9 +1,9 @@
 //! Bad campaigns: every fault is listed at once, and too little is called too little.
 
 use armwright::catalog::Catalogs;
-use armwright::reconcile::readings::campaign::Campaign;
-use armwright::reconcile::together::reconcile;
-use armwright::reconcile::verdict::outcome::{Outcome, Verdict};
+use armwright::reconcile::Campaign;
+use armwright::reconcile::reconcile;
+use armwright::reconcile::{Outcome, Verdict};
 use std::path::{Path, PathBuf};
 
 fn data(campaign: &str) -> PathBuf {

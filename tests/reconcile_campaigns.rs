@@ -2,8 +2,8 @@
 //! verdicts have been written.
 
 use armwright::catalog::Catalogs;
-use armwright::reconcile::readings::campaign::Campaign;
-use armwright::reconcile::together::reconcile;
+use armwright::reconcile::Campaign;
+use armwright::reconcile::reconcile;
 use std::path::{Path, PathBuf};
 
 mod reconcile_scoring;

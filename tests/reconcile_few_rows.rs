@@ -1,9 +1,9 @@
 //! What three frequencies can say: the paper's own, as if measured on the arm of its Table 1.
 
 use armwright::catalog::Catalogs;
-use armwright::reconcile::readings::campaign::Campaign;
-use armwright::reconcile::together::reconcile;
-use armwright::reconcile::verdict::outcome::Verdict;
+use armwright::reconcile::Campaign;
+use armwright::reconcile::Verdict;
+use armwright::reconcile::reconcile;
 use std::path::Path;
 
 #[test]

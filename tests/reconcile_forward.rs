@@ -1,12 +1,12 @@
 //! The prepared model that fits use against mechanics itself, for every effect at every place.
 
 use armwright::catalog::Catalogs;
+use armwright::reconcile::Campaign;
 use armwright::reconcile::fit::descent::{Weights, evaluate, jacobian};
 use armwright::reconcile::forward::Forward;
 use armwright::reconcile::model::candidates::candidates;
 use armwright::reconcile::model::exact::Exact;
 use armwright::reconcile::model::parameters::{Model, Nuisance};
-use armwright::reconcile::readings::campaign::Campaign;
 use std::path::Path;
 
 fn campaign() -> Campaign {

@@ -2,8 +2,8 @@
 //! them are in docs/reconcile.md; here a few of each class hold the line.
 
 use armwright::catalog::Catalogs;
-use armwright::reconcile::readings::campaign::Campaign;
-use armwright::reconcile::together::reconcile;
+use armwright::reconcile::Campaign;
+use armwright::reconcile::reconcile;
 use reconcile_scoring::Score;
 use std::path::Path;
 

@@ -2,9 +2,9 @@
 //! coordinates, written from the documentation alone. Each of these once got another verdict than its key.
 
 use armwright::catalog::Catalogs;
-use armwright::reconcile::readings::campaign::Campaign;
-use armwright::reconcile::together::reconcile;
-use armwright::reconcile::verdict::outcome::Verdict;
+use armwright::reconcile::Campaign;
+use armwright::reconcile::Verdict;
+use armwright::reconcile::reconcile;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;

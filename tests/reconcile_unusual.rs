@@ -1,9 +1,9 @@
 //! Effects of unusual size, links that are not as drawn, and wrong readings beside an effect.
 
 use armwright::catalog::Catalogs;
-use armwright::reconcile::readings::campaign::Campaign;
-use armwright::reconcile::together::reconcile;
-use armwright::reconcile::verdict::outcome::{Outcome, Verdict};
+use armwright::reconcile::Campaign;
+use armwright::reconcile::reconcile;
+use armwright::reconcile::{Outcome, Verdict};
 use reconcile_generator::{Dice, Plan, Specimen};
 use serde_json::{Value, json};
 

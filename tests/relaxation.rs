@@ -3,14 +3,15 @@
 mod dice;
 
 use armwright::catalog::Catalogs;
-use armwright::input::json::Document;
-use armwright::pareto::objectives::Objectives;
+use armwright::input::Document;
+use armwright::pareto::Objectives;
 use armwright::relax::Relaxation;
-use armwright::space::design::Evaluated;
-use armwright::space::design::{evaluate, options};
-use armwright::space::levels::OutwardIn;
-use armwright::space::problem::ArmProblem;
-use armwright::study::read::read_study;
+use armwright::space::ArmProblem;
+use armwright::space::Evaluated;
+use armwright::space::OutwardIn;
+use armwright::space::design::options;
+use armwright::space::evaluate;
+use armwright::study::read_study;
 use dice::Dice;
 use rayon::prelude::*;
 use serde_json::{Value, json};

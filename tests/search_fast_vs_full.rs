@@ -7,14 +7,14 @@
 mod dice;
 
 use armwright::catalog::Catalogs;
-use armwright::input::json::Document;
-use armwright::search::sweep::{Status, Sweep};
+use armwright::input::Document;
+use armwright::search::{Status, Sweep};
+use armwright::space::ArmProblem;
 use armwright::space::design;
-use armwright::space::design::evaluate;
-use armwright::space::levels::{Finished, Keep, OutwardIn};
-use armwright::space::problem::ArmProblem;
+use armwright::space::evaluate;
+use armwright::space::{Finished, Keep, OutwardIn};
 use armwright::study::named;
-use armwright::study::read::{Study, read_study};
+use armwright::study::{Study, read_study};
 use dice::Dice;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -264,7 +264,7 @@ fn the_outcome_is_the_same_for_any_number_of_threads() {
     };
     let one = run(1);
     assert_ne!(one.status, Status::Interrupted);
-    let key = |o: &armwright::search::sweep::SweepOutcome| {
+    let key = |o: &armwright::search::SweepOutcome| {
         (o.designs_evaluated, o.designs_excluded, o.front.clone(), o.groups.clone())
     };
     for threads in [2, 3] {

@@ -9,17 +9,18 @@
 mod dice;
 
 use armwright::catalog::Catalogs;
-use armwright::input::json::Document;
+use armwright::input::Document;
+use armwright::pareto::Objectives;
 use armwright::pareto::front::nondominated;
-use armwright::pareto::objectives::Objectives;
-use armwright::search::sweep::Sweep;
-use armwright::sizing::requirement::PhaseKind;
+use armwright::search::Sweep;
+use armwright::sizing::PhaseKind;
+use armwright::space::ArmProblem;
+use armwright::space::Evaluated;
+use armwright::space::OutwardIn;
 use armwright::space::constraint::Constraints;
-use armwright::space::design::evaluate;
-use armwright::space::design::{Evaluated, number};
-use armwright::space::levels::OutwardIn;
-use armwright::space::problem::ArmProblem;
-use armwright::study::read::{Study, read_study};
+use armwright::space::design::number;
+use armwright::space::evaluate;
+use armwright::study::{Study, read_study};
 use armwright::verify::{By, Looked, PartsBox, Witness, conditions, missing};
 use dice::Dice;
 use serde_json::{Value, json};

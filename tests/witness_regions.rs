@@ -1,15 +1,15 @@
 //! Fronts of spaces far too large to visit, checked region by region by bounds that share no code with the search.
 
 use armwright::catalog::Catalogs;
-use armwright::exact::run::Exact;
-use armwright::input::json::Document;
-use armwright::pareto::objectives::Objectives;
-use armwright::space::design::evaluate;
+use armwright::exact::Exact;
+use armwright::input::Document;
+use armwright::pareto::Objectives;
+use armwright::space::ArmProblem;
+use armwright::space::OutwardIn;
 use armwright::space::design::number;
-use armwright::space::levels::OutwardIn;
-use armwright::space::problem::ArmProblem;
+use armwright::space::evaluate;
 use armwright::study::named;
-use armwright::study::read::{Study, read_study};
+use armwright::study::{Study, read_study};
 use armwright::verify::{By, Looked, missing};
 use std::sync::atomic::AtomicBool;
 

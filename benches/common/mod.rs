@@ -1,7 +1,7 @@
 //! Studies that the benches and the `speed` example share.
 
 use armwright::catalog::Catalogs;
-use armwright::input::json::Document;
+use armwright::input::Document;
 use armwright::study::{Study, read_study};
 use serde_json::json;
 

@@ -3,14 +3,14 @@
 #![allow(dead_code)]
 
 use armwright::catalog::Catalogs;
-use armwright::exact::run::Exact;
-use armwright::input::json::Document;
+use armwright::exact::Exact;
+use armwright::input::Document;
 use armwright::pareto::front::nondominated;
+use armwright::search::Sweep;
 use armwright::search::sweep::Candidate;
-use armwright::search::sweep::Sweep;
-use armwright::space::design::evaluate;
-use armwright::space::problem::ArmProblem;
-use armwright::study::read::{Study, read_study};
+use armwright::space::ArmProblem;
+use armwright::space::evaluate;
+use armwright::study::{Study, read_study};
 use serde_json::Value;
 use std::sync::atomic::AtomicBool;
 

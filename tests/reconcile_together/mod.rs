@@ -2,15 +2,15 @@
 //! witness whose lengths are off by millimetres.
 
 use super::reconcile_generator::{self, Dice, Plan, Specimen};
-use armwright::arm::file::read_arm_document;
+use armwright::arm::read_arm_document;
 use armwright::catalog::Catalogs;
-use armwright::input::json::Document;
-use armwright::reconcile::readings::campaign::Campaign;
+use armwright::input::Document;
+use armwright::reconcile::Campaign;
 use armwright::reconcile::readings::placement::Placement;
 use armwright::reconcile::readings::table::Table;
-use armwright::reconcile::together::reconcile;
-use armwright::reconcile::verdict::outcome::{Outcome, Verdict};
+use armwright::reconcile::reconcile;
 use armwright::reconcile::verdict::predict::{Placed, predict};
+use armwright::reconcile::{Outcome, Verdict};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
