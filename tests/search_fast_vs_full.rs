@@ -8,6 +8,7 @@ mod dice;
 
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
+use armwright::search::FinishRows;
 use armwright::search::{Status, Sweep};
 use armwright::space::ArmProblem;
 use armwright::space::design;
@@ -170,7 +171,7 @@ fn compare(problem: &ArmProblem, dice: &mut Dice, rows: usize, stride: usize) ->
     let sizes = problem.level_sizes().to_vec();
     let (&last, outer) = sizes.split_last().expect("a level");
     let root = problem.root().expect("a root");
-    let mut scratch = problem.scratch();
+    let (compiled, mut scratch) = (problem.compile(), problem.scratch());
     let mut differences = Vec::new();
     for _ in 0..rows {
         let options: Vec<u32> = outer.iter().map(|&n| dice.below(u64::from(n)) as u32).collect();
@@ -184,7 +185,7 @@ fn compare(problem: &ArmProblem, dice: &mut Dice, rows: usize, stride: usize) ->
         }
         let start = dice.below(u64::from(last)) as u32;
         let mut row = Seen(BTreeMap::new());
-        problem.finish(&[(0, from)], &mut scratch, &mut row);
+        problem.finish(&compiled, &[(0, from)], &mut scratch, &mut row);
         for option in (start..last.min(start + 60)).step_by(stride) {
             let fast = row.0.get(&u128::from(option)).copied();
             let number = design::number(&sizes, &[options.as_slice(), &[option]].concat());

@@ -1,6 +1,5 @@
 //! What an arm carries in one case: a pose, a payload, a force at the tip, and the models to use.
 
-use super::structure::Water;
 use super::{JointModel, LinkModel, Words};
 use crate::input::json::{Document, Faults, Node, Object};
 use nalgebra::Vector3;
@@ -72,6 +71,17 @@ impl Payload {
         let inertia = object.or("inertia_about_cg_kgm2", Vector3::zeros(), read_inertia);
         Some(Self { mass_kg: mass_kg?, cg_m: cg_m?, inertia_about_cg_kgm2: inertia? })
     }
+}
+
+/// Water around the arm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Water {
+    /// Density of the water \[kg/m³\].
+    pub density_kg_m3: f64,
+    /// Added mass across a link over the mass of the water it displaces.
+    pub added_mass_coefficient: f64,
+    /// Density of the payload, for its buoyancy \[kg/m³\].
+    pub payload_density_kg_m3: f64,
 }
 
 impl Water {

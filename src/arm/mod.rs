@@ -8,6 +8,7 @@
 pub mod effect;
 pub(crate) mod file;
 pub(crate) mod joint_law;
+pub(crate) mod linkage;
 pub(crate) mod load;
 pub(crate) mod section;
 pub(crate) mod structure;
@@ -16,9 +17,10 @@ pub(crate) mod write;
 pub use effect::Effect;
 pub use file::{read_arm, read_arm_document};
 pub use joint_law::{Curve, JointLaw, LostMotion, Windup};
-pub use load::{LoadCase, Payload, read_load_cases};
+pub use linkage::Linkage;
+pub use load::{LoadCase, Payload, Water, read_load_cases};
 pub use section::{LinkMaterial, Section, SectionProperties};
-pub use structure::{Beam, FrameCompliance, JointAngle, JointPiece, LinkPiece, Piece, Structure, Water};
+pub use structure::{Beam, FrameCompliance, JointAngle, JointPiece, LinkPiece, Piece, Structure};
 
 use nalgebra::{Unit, Vector3};
 

@@ -1,7 +1,7 @@
 //! The arm as mechanics sees it: pieces with their physics, effects applied, part names gone.
 
 use super::joint_law::JointLaw;
-use super::load::LoadCase;
+use super::load::{LoadCase, Water};
 use super::section::{LinkMaterial, Section};
 use super::{Arm, Element, Joint, JointModel, Link, LinkBody};
 use nalgebra::{Matrix3, SymmetricEigen, Unit, Vector3};
@@ -36,17 +36,6 @@ impl FrameCompliance {
         let springs = eigen.eigenvectors.column_iter().zip(eigen.eigenvalues.iter());
         springs.filter(|(_, c)| **c > least).map(|(axis, c)| (axis.into_owned(), *c)).collect()
     }
-}
-
-/// Water around the arm.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Water {
-    /// Density of the water \[kg/m³\].
-    pub density_kg_m3: f64,
-    /// Added mass across a link over the mass of the water it displaces.
-    pub added_mass_coefficient: f64,
-    /// Density of the payload, for its buoyancy \[kg/m³\].
-    pub payload_density_kg_m3: f64,
 }
 
 /// One piece of the chain.

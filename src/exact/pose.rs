@@ -8,7 +8,8 @@
 use super::parts::{INERTIAS, inertia};
 use super::problem::harness_kg;
 use crate::arm::LinkModel;
-use crate::arm::structure::{LinkPiece, Structure, Water};
+use crate::arm::load::Water;
+use crate::arm::structure::{LinkPiece, Structure};
 use crate::mechanics::beam::{PreparedBeam, section_frame};
 use crate::mechanics::{Twist, Wrench, angular, body_inertia, displacement_at, linear, rotation_twist};
 use crate::space::design_space::{DesignSpace, SpacePiece};

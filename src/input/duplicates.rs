@@ -38,7 +38,7 @@ impl<'de> Visitor<'de> for Walk<'_> {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
         let mut seen = HashSet::new();
         while let Some(key) = map.next_key::<String>()? {
-            let path = super::json::join(&self.path, &key);
+            let path = super::path::join(&self.path, &key);
             if !seen.insert(key) {
                 self.found.push(path.clone());
             }

@@ -7,6 +7,7 @@
 
 pub use super::lines::LineCounter;
 
+use super::path::join;
 use serde_json::{Map, Value};
 use std::cell::RefCell;
 use std::fmt;
@@ -342,10 +343,6 @@ impl<'a> Object<'a> {
             None => Some(default),
         }
     }
-}
-
-pub(crate) fn join(path: &str, key: &str) -> String {
-    if path.is_empty() { key.to_string() } else { format!("{path}.{key}") }
 }
 
 /// What a JSON value is, in words, with the value where it is short.

@@ -3,5 +3,6 @@
 pub(crate) mod duplicates;
 pub mod json;
 pub(crate) mod lines;
+pub(crate) mod path;
 
 pub use json::*;

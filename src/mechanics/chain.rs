@@ -1,12 +1,13 @@
 //! The arm put into a pose: elements with their twists, bodies with their inertia, from base to tip.
 
 use super::beam::PreparedBeam;
-use super::linkage::{Linkage, linkages};
 use super::{Twist, Wrench, body_inertia, force_wrench, rotation_twist, stack};
 use crate::arm::LinkModel;
 use crate::arm::joint_law::JointLaw;
+use crate::arm::linkage::{Linkage, linkages};
+use crate::arm::load::Water;
 use crate::arm::load::{LoadCase, Payload};
-use crate::arm::structure::{FrameCompliance, JointPiece, LinkPiece, Piece, Structure, Water};
+use crate::arm::structure::{FrameCompliance, JointPiece, LinkPiece, Piece, Structure};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Matrix6xX, Rotation3, Vector3};
 
 /// An arm prepared for many poses and loads.

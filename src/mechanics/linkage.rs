@@ -7,19 +7,7 @@
 
 use super::chain::{Item, Posed};
 use super::{Twist, Wrench, force_wrench};
-use crate::arm::structure::{JointAngle, Piece, Structure};
 use nalgebra::{DMatrix, DVector};
-
-/// One driver of a passive joint.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Linkage {
-    /// The joint that drives.
-    pub driver: String,
-    /// The passive joint.
-    pub passive: String,
-    /// Turn of the passive joint per turn of the driver.
-    pub factor: f64,
-}
 
 /// What a linkage adds to its driver in a pose under a load.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,25 +18,6 @@ pub struct Carried {
     pub twist: Twist,
     /// Work of the loads on it \[N m\].
     pub torque_nm: f64,
-}
-
-/// Every driver of every passive joint.
-pub fn linkages(structure: &Structure) -> Vec<Linkage> {
-    let driver = |index: usize| {
-        structure.joints().find(|j| j.angle == JointAngle::Driven(index)).map(|j| j.name.clone())
-    };
-    let mut out = Vec::new();
-    for piece in &structure.pieces {
-        if let Piece::Joint(joint) = piece
-            && let JointAngle::Coupled(terms) = &joint.angle
-        {
-            let of = |(index, factor): &(usize, f64)| {
-                Some(Linkage { driver: driver(*index)?, passive: joint.name.clone(), factor: *factor })
-            };
-            out.extend(terms.iter().filter_map(of));
-        }
-    }
-    out
 }
 
 impl Posed<'_> {

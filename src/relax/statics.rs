@@ -10,7 +10,7 @@ use super::program::Row;
 use super::slopes::{rising_range, tangent_range};
 use crate::arm::joint_law::JointLaw;
 use crate::mechanics::Wrench;
-use crate::sizing::requirement::LinearReading;
+use crate::sizing::demand::LinearReading;
 use crate::space::problem::ArmProblem;
 use crate::space::slot::Slot;
 use crate::space::station::{Station, StationJoint, StationSlot};

@@ -12,12 +12,13 @@
 //! has none near it, for designs of the front do not beat each other); what it lets through is compared
 //! with every design of the front. Memory follows the number of designs that are asked for.
 
+use super::finish::FinishRows;
 use super::sweep::Candidate;
 use super::visit::Visit;
 use crate::pareto::archive::Archive;
 use crate::pareto::objectives::Objectives;
 use crate::space::constraint::Constraints;
-use crate::space::levels::{Finished, Keep, OutwardIn};
+use crate::space::levels::{Finished, Keep};
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::sync::Mutex;
@@ -98,7 +99,7 @@ pub struct Slack {
 
 /// Finds the designs that are not among `front`, keep the constraints and whose shortfall is at most the slack;
 /// `None` if it was stopped.
-pub fn near_designs<P: OutwardIn>(
+pub fn near_designs<P: FinishRows>(
     problem: &P,
     constraints: &Constraints,
     front: &[Candidate],
@@ -124,7 +125,7 @@ pub fn near_designs<P: OutwardIn>(
     };
     let visited = AtomicU64::new(0);
     let total = problem.root().map_or(0, |root| {
-        Visit { problem, visited: &visited, stop }
+        Visit { problem, compiled: problem.compile(), visited: &visited, stop }
             .every_design(&root, || Worker { seeker: &seeker, found: 0, buffer: Vec::new() })
             .map(Worker::finish)
             .sum()

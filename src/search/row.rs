@@ -6,7 +6,7 @@
 //! two is [`row_lanes`](super::row_lanes). A chunk is some tens of kilobytes: rows come in batches, so that it is
 //! read once from the nearest cache for all of them.
 
-use super::row_lanes::EightArms;
+use super::arms::{EightArms, MOST_SLOTS};
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::mechanics::Wrench;
 use crate::mechanics::lanes::{Eight, LANES};
@@ -20,9 +20,6 @@ use std::ops::Range;
 
 /// Most cases that a row handles.
 pub(crate) const MOST_CASES: usize = 8;
-/// Most pieces from the innermost level to the base that a row handles; beyond, designs are finished
-/// one by one.
-pub(crate) const MOST_SLOTS: usize = 12;
 
 /// The pieces from the innermost level to the base.
 pub(crate) struct Row {
@@ -171,6 +168,15 @@ pub(crate) struct CaseBegun {
 pub(crate) enum CaseOutboard {
     Planar(Box<[Outboard<3>; 2]>),
     Spatial(Box<Outboard<6>>),
+}
+
+/// Eight options of a row.
+#[derive(Clone, Copy)]
+pub(crate) struct RowChunk<'a, 'c> {
+    pub problem: &'a ArmProblem<'c>,
+    pub row: &'a Row,
+    pub from: &'a Partial,
+    pub chunk: usize,
 }
 
 impl DriveFigures {

@@ -6,8 +6,8 @@
 //! largest is solved first; any other block whose lower bound lies below that root gets one pass at it, and only if a
 //! pivot is negative there, a root of its own.
 
-use super::row::{Begun, CaseOutboard, ChunkModal, MOST_CASES, RowCase};
-use super::row_lanes::{EightArms, RowChunk};
+use super::arms::EightArms;
+use super::row::{Begun, CaseOutboard, ChunkModal, MOST_CASES, RowCase, RowChunk};
 use crate::mechanics::lanes::{Eight, LANES, Lanes};
 use crate::mechanics::lowest_lanes::{Inner, LaneLink, Outboard, Walk, pass, roots};
 use crate::space::levels::Keep;

@@ -4,12 +4,13 @@
 //! are filtered exactly now and then, so that memory follows the front and not the space. What is kept
 //! at the end does not depend on the order of visits or the number of threads.
 
+use super::finish::FinishRows;
 use super::visit::Visit;
 use crate::pareto::archive::Archive;
 use crate::pareto::front::not_clearly_beaten;
 use crate::pareto::objectives::Objectives;
 use crate::space::constraint::Constraints;
-use crate::space::levels::{Finished, Keep, OutwardIn};
+use crate::space::levels::{Finished, Keep};
 use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -78,7 +79,7 @@ pub struct SweepOutcome {
 }
 
 /// A sweep that others can watch and stop.
-pub struct Sweep<'p, P: OutwardIn> {
+pub struct Sweep<'p, P: FinishRows> {
     problem: &'p P,
     constraints: Constraints,
     visited: AtomicU64,
@@ -171,7 +172,7 @@ fn note(best: &mut Option<f64>, x: f64) {
     *best = Some(best.map_or(x, |b| b.min(x)));
 }
 
-impl<'p, P: OutwardIn> Sweep<'p, P> {
+impl<'p, P: FinishRows> Sweep<'p, P> {
     /// A sweep of a problem's designs; it ends early when `stop` is set.
     pub fn new(problem: &'p P, constraints: Constraints, stop: &'p AtomicBool) -> Self {
         Self { problem, constraints, visited: AtomicU64::new(0), stop }
@@ -194,17 +195,22 @@ impl<'p, P: OutwardIn> Sweep<'p, P> {
         let groups: Vec<Pool> = (0..self.problem.groups()).map(|_| Pool::new(5)).collect();
         let tally = match self.problem.root() {
             None => Tally { excluded: self.total(), ..Tally::default() },
-            Some(root) => Visit { problem: self.problem, visited: &self.visited, stop: self.stop }
-                .every_design(&root, || Worker {
-                    constraints: &self.constraints,
-                    overall: &overall,
-                    groups: &groups,
-                    tally: Tally::default(),
-                    buffer: Vec::new(),
-                    group_buffers: vec![Vec::new(); groups.len()],
-                })
-                .map(Worker::finish)
-                .reduce(Tally::default, Tally::merge),
+            Some(root) => Visit {
+                problem: self.problem,
+                compiled: self.problem.compile(),
+                visited: &self.visited,
+                stop: self.stop,
+            }
+            .every_design(&root, || Worker {
+                constraints: &self.constraints,
+                overall: &overall,
+                groups: &groups,
+                tally: Tally::default(),
+                buffer: Vec::new(),
+                group_buffers: vec![Vec::new(); groups.len()],
+            })
+            .map(Worker::finish)
+            .reduce(Tally::default, Tally::merge),
         };
         let front = overall.finish();
         let status = match (self.stop.load(Ordering::Relaxed), front.is_empty() || sizes.contains(&0)) {

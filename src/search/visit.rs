@@ -4,8 +4,9 @@
 //! outboard of its rows one level after the other, keeps those it shares with the row before, and finishes rows in
 //! batches. It keeps what it finds for itself.
 
+use super::finish::FinishRows;
 use crate::space::design::options;
-use crate::space::levels::{Finished, Keep, OutwardIn};
+use crate::space::levels::{Finished, Keep};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -19,14 +20,16 @@ const BATCH: usize = 16;
 const BATCH_DESIGNS: usize = 1 << 18;
 
 /// A walk that others can watch and stop.
-pub(crate) struct Visit<'p, P: OutwardIn> {
+pub(crate) struct Visit<'p, P: FinishRows> {
     pub problem: &'p P,
+    /// The innermost level, compiled.
+    pub compiled: P::Compiled,
     /// Designs visited or excluded so far.
     pub visited: &'p AtomicU64,
     pub stop: &'p AtomicBool,
 }
 
-impl<P: OutwardIn> Visit<'_, P> {
+impl<P: FinishRows> Visit<'_, P> {
     /// Visits every design beyond the empty arm; what the tasks kept comes in the order of the tasks.
     pub fn every_design<'v, K: Keep + Send + 'v>(
         &'v self,
@@ -47,7 +50,7 @@ impl<P: OutwardIn> Visit<'_, P> {
 }
 
 /// One task at work.
-struct Walker<'v, 'p, P: OutwardIn, K> {
+struct Walker<'v, 'p, P: FinishRows, K> {
     visit: &'v Visit<'p, P>,
     keeper: K,
     /// The arms that the last row began with: the empty one, with one level, ...
@@ -58,7 +61,7 @@ struct Walker<'v, 'p, P: OutwardIn, K> {
     scratch: P::Scratch,
 }
 
-impl<'v, 'p, P: OutwardIn, K: Keep> Walker<'v, 'p, P, K> {
+impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
     fn new(visit: &'v Visit<'p, P>, root: &P::Partial, keeper: K) -> Self {
         let levels = visit.problem.level_sizes().len();
         Self {
@@ -123,7 +126,8 @@ impl<'v, 'p, P: OutwardIn, K: Keep> Walker<'v, 'p, P, K> {
     }
 
     fn finish(&mut self, row_length: u32) {
-        self.visit.problem.finish(&self.batch, &mut self.scratch, &mut self.keeper);
+        let Visit { problem, compiled, .. } = self.visit;
+        problem.finish(compiled, &self.batch, &mut self.scratch, &mut self.keeper);
         self.count(self.batch.len() as u128 * u128::from(row_length));
         self.batch.clear();
     }

@@ -1,7 +1,16 @@
 //! What one joint is asked for: its motion, fixed by the study, and its torques, which follow from the
 //! masses outboard (Eqs 8 and 12, cubic mean of the duty cycle).
 
-use super::requirement::{LinearReading, MeanTorqueWeights};
+use super::duty::MeanTorqueWeights;
+
+/// Which reading of Eq 8 gives the torque of linear acceleration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LinearReading {
+    /// Sum over the outboard bodies of m a ρ² / r, that is inertia about the axis times a / r.
+    Exact,
+    /// The paper's (a / g) T; zero for a vertical axis, which has no static torque.
+    Paper,
+}
 
 /// The motion of one joint. Fixed by study and geometry, whatever masses the arm has.
 #[derive(Debug, Clone, Copy, PartialEq)]

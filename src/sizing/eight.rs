@@ -4,8 +4,8 @@
 //! gets the same drive by itself and among eight.
 
 use super::demand::JointMotion;
+use super::demand::LinearReading;
 use super::limits::DriveLimits;
-use super::requirement::LinearReading;
 use super::select::DriveTable;
 use crate::mechanics::lanes::{LANES, Lanes};
 

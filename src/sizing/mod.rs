@@ -29,6 +29,7 @@
 pub(crate) mod check;
 pub(crate) mod demand;
 pub(crate) mod drive;
+pub(crate) mod duty;
 pub(crate) mod eight;
 pub(crate) mod explain;
 pub(crate) mod limits;
@@ -39,15 +40,16 @@ pub(crate) mod sheet;
 pub(crate) mod testing;
 
 pub use check::{Check, CheckKind, CheckState, all_hold, binding, checks, gear_checks, motor_checks};
-pub use demand::{JointDemand, JointMotion, cubic_mean_cubed_nm3, linear_torque_nm, stop_torque_nm};
+pub use demand::{
+    JointDemand, JointMotion, LinearReading, cubic_mean_cubed_nm3, linear_torque_nm, stop_torque_nm,
+};
 pub use drive::{
     Drive, MissingFigure, motor_torque_nm, reference_life_h, rotary_torque_motor_nm, rotary_torque_output_nm,
 };
+pub use duty::{DutyCycle, MeanTorqueWeights, Phase, PhaseKind};
 pub use explain::{RejectedPart, Rejection, Relaxation, RelaxationKind, Shortfall};
 pub use limits::{DriveLimits, Obstacle};
-pub use requirement::{
-    DutyCycle, LinearReading, MeanTorqueWeights, MotionRequirement, Phase, PhaseKind, RequirementError,
-};
+pub use requirement::{MotionRequirement, RequirementError};
 pub use select::{DriveFilter, DriveTable};
 pub use sheet::{JointSizingRow, render_rows};
 

@@ -194,7 +194,8 @@ mod tests {
     use super::*;
     use crate::catalog::gear::GearMass;
     use crate::catalog::motor::Motor;
-    use crate::sizing::requirement::{LinearReading, MotionRequirement};
+    use crate::sizing::demand::LinearReading;
+    use crate::sizing::requirement::MotionRequirement;
 
     fn paper_joint_2(motor: &Motor) -> JointSizingRow {
         let study = MotionRequirement { linear_reading: LinearReading::Paper, ..Default::default() };

@@ -36,8 +36,6 @@ pub trait Keep {
 pub trait OutwardIn: Sync {
     /// A partial arm: everything outboard of the next level.
     type Partial: Clone + Send + Sync;
-    /// What a worker keeps from one row of innermost options to the next.
-    type Scratch: Send;
 
     /// Number of options at each level, tip first.
     fn level_sizes(&self) -> &[u32];
@@ -48,19 +46,6 @@ pub trait OutwardIn: Sync {
     /// Extends `from` by an option of a level and by all that follows without a choice, into `to`.
     /// `false` if no design with this beginning meets the constraints.
     fn extend(&self, level: usize, option: u32, from: &Self::Partial, to: &mut Self::Partial) -> bool;
-
-    /// Finishes rows of designs: each an arm that lacks only the innermost level, with the number of its first
-    /// design, by every option of that level.
-    fn finish<K: Keep>(&self, rows: &[(u128, Self::Partial)], scratch: &mut Self::Scratch, keep: &mut K) {
-        let Some((&options, outer)) = self.level_sizes().split_last() else { return };
-        for (first, from) in rows {
-            let mut complete = from.clone();
-            for option in 0..options {
-                self.finish_one(outer.len(), option, from, *first, &mut complete, keep);
-            }
-        }
-        let _ = scratch;
-    }
 
     /// Finishes one design by itself, in `complete`.
     fn finish_one(
@@ -81,9 +66,6 @@ pub trait OutwardIn: Sync {
             None => keep.exclude(1),
         }
     }
-
-    /// Room for a worker's rows.
-    fn scratch(&self) -> Self::Scratch;
 
     /// Objectives of a complete arm; `None` if it breaks a constraint.
     fn objectives(&self, complete: &Self::Partial) -> Option<Objectives>;

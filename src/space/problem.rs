@@ -4,7 +4,7 @@
 use super::design_space::{DesignSpace, SpacePiece};
 use super::effects::Layer;
 use super::figures::OptionFigures;
-use super::levels::{Keep, OutwardIn};
+use super::levels::OutwardIn;
 pub use super::slot::SizedJoint;
 pub(crate) use super::slot::Slot;
 use super::slot::{choice_slot, joint_slot, link_slot};
@@ -12,11 +12,8 @@ use super::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink
 use crate::arm::joint_law::JointLaw;
 use crate::catalog::Catalogs;
 use crate::mechanics::Wrench;
-use crate::mechanics::lanes::in_lanes;
 use crate::mechanics::lowest::{Step, frequency_hz, lowest_eigenvalue};
 use crate::pareto::objectives::Objectives;
-use crate::search::row::{Row, RowScratch};
-use crate::search::row_lanes::RowsWork;
 use crate::sizing::demand::{JointDemand, JointMotion};
 use nalgebra::{Matrix6, Vector3};
 
@@ -31,7 +28,6 @@ pub struct ArmProblem<'c> {
     stations: Vec<Station>,
     materials: usize,
     peak_factor: f64,
-    row: Option<Row>,
 }
 
 /// An arm from the tip to some level.
@@ -95,7 +91,7 @@ impl<'c> ArmProblem<'c> {
         let level_slots: Vec<usize> = (0..slots.len()).filter(|&i| slots[i].is_level()).collect();
         let level_sizes = level_slots.iter().map(|&i| slots[i].options()).collect();
         let a_over_g = space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE);
-        let mut problem = Self {
+        Self {
             space,
             level_slots,
             level_sizes,
@@ -104,10 +100,7 @@ impl<'c> ArmProblem<'c> {
             peak_factor: 1.0 + a_over_g,
             slots,
             piece_slots,
-            row: None,
-        };
-        problem.row = Row::new(&problem);
-        problem
+        }
     }
 
     /// The design space.
@@ -460,26 +453,6 @@ impl OutwardIn for ArmProblem<'_> {
 
     fn group(&self, complete: &Partial) -> Option<usize> {
         complete.group.material()
-    }
-
-    type Scratch = RowScratch;
-
-    fn scratch(&self) -> RowScratch {
-        RowScratch::new(self)
-    }
-
-    fn finish<K: Keep>(&self, rows: &[(u128, Partial)], scratch: &mut RowScratch, keep: &mut K) {
-        let Some((&options, outer)) = self.level_sizes.split_last() else { return };
-        let Some(row) = &self.row else {
-            for (first, from) in rows {
-                for option in 0..options {
-                    self.finish_one(outer.len(), option, from, *first, &mut scratch.spare, keep);
-                }
-            }
-            return;
-        };
-        scratch.begin(self, row, rows.iter().map(|(_, from)| from));
-        in_lanes(RowsWork { problem: self, row, rows, options, scratch, keep });
     }
 }
 

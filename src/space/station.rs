@@ -6,7 +6,8 @@
 
 use super::design_space::{Case, DesignSpace, SpacePiece};
 use super::effects::Layer;
-use crate::arm::structure::{LinkPiece, Structure, Water};
+use crate::arm::load::Water;
+use crate::arm::structure::{LinkPiece, Structure};
 use crate::arm::{Link, LinkModel};
 use crate::mechanics::beam::{PreparedBeam, section_frame};
 use crate::mechanics::condensed::{CondensedLink, PlacedLink};

@@ -5,7 +5,7 @@ use super::drives::{Alike, DriveOptions};
 use super::layout::{Coordinate, Layout, coordinates, has_line, offset_mass_kg};
 use super::pose::{Pose, water_of};
 use super::tubes::TubeOptions;
-use crate::arm::structure::Water;
+use crate::arm::load::Water;
 use crate::catalog::Catalogs;
 use crate::space::constraint::Constraints;
 use crate::space::design_space::{DesignSpace, SpacePiece};

@@ -14,7 +14,7 @@
 use super::layout::{Coordinate, Layout, Point};
 use super::span::{Linear, LinearVector};
 use super::tubes::{DENSITIES, STIFFNESSES};
-use crate::arm::structure::Water;
+use crate::arm::load::Water;
 use crate::space::design_space::{Case, DesignSpace};
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,7 +1,8 @@
 //! What a link's tubes are in numbers, and the least and the most of each over a set of tubes.
 
 use super::tree::Tree;
-use crate::arm::structure::{LinkPiece, Structure, Water};
+use crate::arm::load::Water;
+use crate::arm::structure::{LinkPiece, Structure};
 use crate::arm::{Link, LinkModel};
 use crate::mechanics::beam::{line_densities, line_stiffnesses};
 use crate::space::design_space::{DesignSpace, LinkChoice};

@@ -1,7 +1,7 @@
 //! Water around the arm: links are sealed tubes that displace it and carry some of it along.
 
 use super::{Kind, Parameter, Place, Scale, Scope, Subject};
-use crate::arm::structure::Water;
+use crate::arm::load::Water;
 
 const PARAMETERS: &[Parameter] = &[
     Parameter::number("water_density_kg_m3", 0.0, 2000.0, 1000.0, Scale::Linear).expected(0.0, 1500.0),

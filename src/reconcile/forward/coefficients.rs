@@ -3,7 +3,8 @@
 use crate::arm::LinkModel;
 use crate::arm::effect::{Reading, Subject};
 use crate::arm::joint_law::JointLaw;
-use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure, Water};
+use crate::arm::load::Water;
+use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure};
 use crate::mechanics::beam::{Strain, compliances, strains};
 use crate::mechanics::chain::Chain;
 use nalgebra::Vector3;

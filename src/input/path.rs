@@ -1,0 +1,6 @@
+//! Where a value stands in a JSON document, as words: `chain[2].section.wall_m`.
+
+/// The path of a key inside the object at `path`.
+pub(crate) fn join(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_string() } else { format!("{path}.{key}") }
+}
