@@ -8,7 +8,7 @@
 //!
 //! A joint or link that cannot hold even the least demand makes the whole box infeasible.
 
-use super::check::Inertia;
+use super::interval::interval;
 use super::parts::{Asked, DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
 use super::pose::{Pose, RESISTED, degree_factor};
 use super::problem::{Part, Problem};
@@ -107,20 +107,6 @@ impl<'c> Problem<'c> {
     /// The box of everything.
     pub fn root(&self) -> Cell {
         vec![0; self.level_pieces.len()]
-    }
-
-    /// The inertia matrices of every judged case.
-    pub(super) fn with_inertias(mut self) -> Self {
-        let mut work = Work::default();
-        let filled = self.fill(&mut self.root(), &mut work);
-        if filled.and_then(|()| self.least_tip_m(&mut work)).is_some() {
-            let of = |case: usize| {
-                let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
-                Inertia::new(&self.poses[case], &ideal)
-            };
-            self.inertias = Arc::new(self.judged_cases().map(of).collect());
-        }
-        self
     }
 
     /// The objectives of a box of one whose ceiling is known: the ceiling, with its mode made sure of.
@@ -350,7 +336,7 @@ impl<'c> Problem<'c> {
     }
 
     /// Least deflection of the tip in the worst judged case \[m\]; `None` if no member has the forces that are held.
-    fn least_tip_m(&self, work: &mut Work) -> Option<f64> {
+    pub(super) fn least_tip_m(&self, work: &mut Work) -> Option<f64> {
         let mut worst = 0.0f64;
         work.sagging = None;
         work.most_tip_m.clear();
@@ -462,31 +448,6 @@ pub(super) fn stretch(
     let factor = degree_factor(coordinate) / tube.length_m;
     let (least, most) = (factor / stiff, factor / soft);
     [low * if low >= 0.0 { least } else { most }, high * if high >= 0.0 { most } else { least }]
-}
-
-/// `fixed + Σ per_n · weight` as an interval.
-#[inline]
-pub(super) fn interval(fixed: f64, per_n: &[f64], weights: &[[f64; 2]]) -> [f64; 2] {
-    let (mut low, mut high) = (fixed, fixed);
-    for (c, w) in per_n.iter().zip(weights) {
-        let (a, b) = (c * w[0], c * w[1]);
-        low += a.min(b);
-        high += a.max(b);
-    }
-    [low, high]
-}
-
-impl Pose {
-    /// Torque on a joint as an interval \[N m\].
-    fn torque(&self, piece: usize, weights: &[[f64; 2]]) -> [f64; 2] {
-        let row = self.rows.iter().find(|row| row.piece == piece);
-        row.map_or([0.0; 2], |row| interval(row.fixed, &row.per_n, weights))
-    }
-
-    /// Torque on a joint without the weight of any part \[N m\].
-    pub fn payload_torque_nm(&self, piece: usize) -> f64 {
-        self.rows.iter().find(|row| row.piece == piece).map_or(0.0, |row| row.fixed)
-    }
 }
 
 impl Work {

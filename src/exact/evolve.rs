@@ -7,10 +7,10 @@
 
 use super::archive::Found;
 use super::bound::{Cell, Verdict, Work};
+use super::budget::Budget;
 use super::grid::thinned;
 use super::known::{Finds, Known};
 use super::problem::Problem;
-use super::run::Exact;
 use super::shape::Shape;
 use crate::pareto::objectives::Objectives;
 use crate::search::sweep::Candidate;
@@ -37,19 +37,19 @@ pub(super) struct Member {
 }
 
 /// Finds designs that come of some, for generations.
-pub(super) fn evolve<'p>(exact: &Exact<'p>, problem: &Problem<'p>, first: Vec<Member>, known: &mut Known) {
+pub(super) fn evolve<'p>(budget: &Budget, problem: &Problem<'p>, first: Vec<Member>, known: &mut Known) {
     let mut seen = Found::default();
     first.iter().for_each(|member| seen.enter(&member.objectives));
     let mut parents = by_mass(first);
     let brood = (problem.designs() as f64).sqrt().min(MOST_CHILDREN) as u64;
     let mut finds = Finds::default();
     for generation in 0..GENERATIONS {
-        if parents.is_empty() || exact.stopped() {
+        if parents.is_empty() || budget.stopped() {
             break;
         }
         let children = (0..brood).into_par_iter().map_init(Work::default, |work, n| {
             let dice = Xoshiro256PlusPlus::seed_from_u64(generation * brood + n);
-            Mating { exact, problem, parents: &parents, seen: &seen, dice }.child(work)
+            Mating { budget, problem, parents: &parents, seen: &seen, dice }.child(work)
         });
         let judged: Vec<Option<Member>> = children.flatten().collect();
         finds.evaluated += judged.len() as u64;
@@ -75,7 +75,7 @@ fn by_mass(members: Vec<Member>) -> Vec<Member> {
 
 /// Where one child comes from.
 struct Mating<'a, 'p> {
-    exact: &'a Exact<'p>,
+    budget: &'a Budget<'p>,
     problem: &'a Problem<'p>,
     parents: &'a [Member],
     seen: &'a Found,
@@ -102,7 +102,7 @@ impl Mating<'_, '_> {
         if cell == parent.cell {
             return None;
         }
-        self.exact.count_box();
+        self.budget.count_box();
         let mut shapes = Arc::clone(&parent.shapes);
         let verdict = self.problem.bound(&mut cell, &mut shapes, work, |c| self.seen.beats(c), |_| true);
         let Verdict::Open(ceiling) = verdict else { return None };

@@ -5,9 +5,10 @@
 //! pointless. Once as many designs as are asked for are held, only nearer ones are looked for.
 
 use super::bound::{Ceiling, Verdict, Work};
+use super::boxes::{Opened, every_box};
 use super::kinds::Alike;
 use super::problem::Problem;
-use super::run::{Exact, Opened};
+use super::run::Exact;
 use crate::pareto::objectives::Objectives;
 use crate::search::near::{BUFFER, NearDesign, NearDesigns, ROUNDING, Shortfall, Slack, keep_nearest};
 use crate::search::sweep::Candidate;
@@ -28,7 +29,8 @@ impl Exact<'_> {
             nearest: Vec::new(),
         };
         if let Some(problem) = self.problem(&|_| true, Alike::Apart) {
-            let left = self.every_box(
+            let left = every_box(
+                &self.budget,
                 &problem,
                 &mut seeker,
                 |seeker, next, work, near| self.open_near(&problem, seeker, next, work, near),
@@ -53,7 +55,7 @@ impl Exact<'_> {
         work: &mut Work,
         near: &mut Vec<NearDesign>,
     ) -> Vec<Opened> {
-        self.count_box();
+        self.budget.count_box();
         let lower = |ceiling: &Ceiling| Ceiling { hz: ceiling.hz * NEAR, ..*ceiling };
         let verdict = problem.bound(
             &mut here.cell,

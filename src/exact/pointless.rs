@@ -11,17 +11,14 @@
 use super::bound::Work;
 use super::parts::{DriveBox, SAME_TORQUE};
 use super::play::Play;
-use super::pose::{Pose, PosedPiece, Row};
+use super::pose::Pose;
 use super::problem::{Part, Problem};
 use super::torsion::CurveBox;
 use super::tree::Tree;
 use crate::sizing::demand::JointDemand;
-use nalgebra::Vector3;
 
 /// Share of an arm's mass by which a drive must be lighter.
 const LIGHTER: f64 = 1e-6;
-/// Coefficients smaller than this share of the largest are rounding.
-const NOTHING: f64 = 1e-12;
 
 /// Boxes to look into for a drive that makes others pointless.
 const BOXES: usize = 64;
@@ -120,45 +117,5 @@ impl Problem<'_> {
                 curve.keeps_its_slope(self.plays[row.piece].as_ref(), between_nm, work.breaks[row.piece])
             })
         })
-    }
-}
-
-impl Pose {
-    /// Whether every force, and so every demand, grows with every weight.
-    fn grows_with_weight(&self) -> bool {
-        let loads = self.stress.iter().flat_map(|row| &row.loads);
-        self.water_kg_m3 == 0.0
-            && self.rows_that_matter().all(|row| sign(row.fixed, &row.per_n).is_some())
-            && loads.into_iter().all(|(fixed, per_n)| sign(*fixed, per_n).is_some())
-    }
-
-    /// Whether the parts of the arm move the tip in directions no two of which oppose: then it moves further
-    /// if any of them yields more.
-    pub fn parts_sag_together(&self) -> bool {
-        let rows = self.rows_that_matter();
-        let ways: Vec<_> = rows.map(|row| row.tip_m * sign(row.fixed, &row.per_n).unwrap_or(0.0)).collect();
-        let agree = |a: &Vector3<f64>, b: &Vector3<f64>| a.dot(b) >= -NOTHING * a.norm() * b.norm();
-        ways.iter().enumerate().all(|(i, a)| ways[..i].iter().all(|b| agree(a, b)))
-    }
-
-    /// Joints, and what moves the tip.
-    fn rows_that_matter(&self) -> impl Iterator<Item = &Row> {
-        let is_joint = |row: &Row| matches!(self.pieces[row.piece], PosedPiece::Joint { .. });
-        self.rows.iter().filter(move |row| is_joint(row) || row.tip_m.norm() > 0.0)
-    }
-}
-
-/// The one sign of a force and all its parts, 0 if there is none; `None` if they differ.
-fn sign(fixed: f64, per_n: &[f64]) -> Option<f64> {
-    let largest = per_n.iter().fold(0.0f64, |most, c| most.max(c.abs()));
-    // a fixed force is compared in the same measure: as if it were that of one newton or more
-    let nothing = NOTHING * largest.max(fixed.abs()).max(1.0);
-    let numbers = || per_n.iter().chain([&fixed]);
-    let (rise, fall) = (numbers().any(|c| *c > nothing), numbers().any(|c| *c < -nothing));
-    match (rise, fall) {
-        (true, true) => None,
-        (true, false) => Some(1.0),
-        (false, true) => Some(-1.0),
-        (false, false) => Some(0.0),
     }
 }

@@ -5,10 +5,10 @@
 //! nothing and is not lost: a search that knows good designs cuts early.
 
 use super::bound::{Ceiling, Cell, Verdict, Work};
+use super::budget::Budget;
 use super::evolve::Member;
 use super::known::{Finds, Known};
 use super::problem::Problem;
-use super::run::Exact;
 use super::shape::Shape;
 use crate::pareto::objectives::Objectives;
 use rayon::prelude::*;
@@ -53,7 +53,7 @@ struct Best {
 
 /// Probes the space in so many proportions of the objectives.
 pub(super) fn probe<'p>(
-    exact: &Exact<'p>,
+    budget: &Budget,
     problem: &Problem<'p>,
     probes: usize,
     known: &mut Known,
@@ -63,7 +63,7 @@ pub(super) fn probe<'p>(
     let probed: Vec<(Option<Member>, Finds)> = (0..probes)
         .into_par_iter()
         .map(|n| {
-            let probe = Probe { exact, problem, merit: Merit::nth(n) };
+            let probe = Probe { budget, problem, merit: Merit::nth(n) };
             let mut finds = Finds::default();
             (probe.best(&shapes, &mut finds), finds)
         })
@@ -75,7 +75,7 @@ pub(super) fn probe<'p>(
 
 /// One probe.
 struct Probe<'a, 'p> {
-    exact: &'a Exact<'p>,
+    budget: &'a Budget<'p>,
     problem: &'a Problem<'p>,
     merit: Merit,
 }
@@ -93,7 +93,7 @@ impl Probe<'_, '_> {
                 let shapes = Arc::clone(&best.shapes);
                 best = self.descend(cell, &shapes, LEVEL_BOXES, Some(best), &mut work, finds)?;
             }
-            if best.merit >= before || self.exact.stopped() {
+            if best.merit >= before || self.budget.stopped() {
                 break;
             }
         }
@@ -113,7 +113,7 @@ impl Probe<'_, '_> {
         let mut stack: Vec<Promising> = self.look(cell, shapes, &mut best, work, finds).into_iter().collect();
         let mut boxes = 1;
         while let Some(next) = stack.pop() {
-            if boxes >= most_boxes || self.exact.stopped() {
+            if boxes >= most_boxes || self.budget.stopped() {
                 break;
             }
             if best.as_ref().is_some_and(|b| next.merit >= b.merit) {
@@ -147,7 +147,7 @@ impl Probe<'_, '_> {
     ) -> Option<Promising> {
         let mut shapes = Arc::clone(shapes);
         let least = best.as_ref().map_or(f64::INFINITY, |b| b.merit);
-        self.exact.count_box();
+        self.budget.count_box();
         let is_worse = |ceiling: &Ceiling| self.merit.of(ceiling) >= least;
         let verdict = self.problem.bound(&mut cell, &mut shapes, work, is_worse, |_| true);
         let Verdict::Open(ceiling) = verdict else { return None };

@@ -8,13 +8,15 @@
 //! ([`parting`](super::parting)) until few designs are left, which are searched box by box.
 
 use super::bound::{Ceiling, Cell, Verdict, Work};
+use super::boxes::{Opened, Search, some_boxes};
+use super::budget::Budget;
 use super::corners::{Corner, Corners};
 use super::grid::thinned;
 use super::known::{Finds, Known};
 use super::left::Left;
 use super::problem::Problem;
 use super::rounds::{Done, in_rounds};
-use super::run::{Exact, Opened, Search};
+
 use super::shape::Shape;
 use super::tradeoff::{BEATEN, Trade};
 use crate::pareto::objectives::Objectives;
@@ -45,38 +47,37 @@ enum Task<'p> {
     Boxes { problem: Arc<Problem<'p>>, corner: Corner, first: Opened },
 }
 
-impl<'p> Exact<'p> {
-    /// One pass over everything that the designs known leave open; returns a ceiling for everything that was left.
-    pub(super) fn pass_by_regions(
-        &self,
-        problem: &Problem<'p>,
-        known: &mut Known,
-        slack: f64,
-    ) -> Vec<Ceiling> {
-        let mut found: Vec<Objectives> = known.found.all().iter().map(|o| tightened(o, slack)).collect();
-        // fewer designs leave more open, by less than the slack
-        found = thinned(found, THINNED * slack, |o| o);
-        let corners = Arc::new(Corners::new(&mut found, problem.limits()));
-        let zone = Zone::whole(problem, known.found.all().len(), &mut Work::default());
-        let first = zone.map(|zone| Task::Region { corners, at: 0, zone });
-        let task = |known: &Known, task: Task<'p>| match task {
-            Task::Region { corners, at, zone } => {
-                let mut finds = Finds::default();
-                let search = Search { exact: self, problem, known, slack, below: None };
-                let tasks = search.region(corners, at, zone, &mut finds);
-                Done { tasks, finds }
-            }
-            Task::Boxes { problem, corner, first } => {
-                let search = Search { exact: self, problem: &problem, known, slack, below: Some(corner) };
-                let Done { tasks, finds } =
-                    self.some_boxes(first, |next, work, finds| search.open(next, work, finds));
-                let boxes = |first: Opened| Task::Boxes { problem: Arc::clone(&problem), corner, first };
-                Done { tasks: tasks.into_iter().map(boxes).collect(), finds }
-            }
-        };
-        let left = in_rounds(known, first.into_iter().collect(), || self.stopped(), task, Known::learn);
-        left.iter().map(|_| Ceiling::OPEN).collect()
-    }
+/// One pass over everything that the designs known leave open; returns a ceiling for everything that was left.
+pub(super) fn pass_by_regions<'p>(
+    budget: &Budget<'p>,
+    problem: &Problem<'p>,
+    known: &mut Known,
+    slack: f64,
+    regions_to: f64,
+) -> Vec<Ceiling> {
+    let mut found: Vec<Objectives> = known.found.all().iter().map(|o| tightened(o, slack)).collect();
+    // fewer designs leave more open, by less than the slack
+    found = thinned(found, THINNED * slack, |o| o);
+    let corners = Arc::new(Corners::new(&mut found, problem.limits()));
+    let zone = Zone::whole(problem, known.found.all().len(), &mut Work::default());
+    let first = zone.map(|zone| Task::Region { corners, at: 0, zone });
+    let task = |known: &Known, task: Task<'p>| match task {
+        Task::Region { corners, at, zone } => {
+            let mut finds = Finds::default();
+            let search = Search { budget, problem, known, slack, below: None };
+            let tasks = search.region(corners, at, zone, regions_to, &mut finds);
+            Done { tasks, finds }
+        }
+        Task::Boxes { problem, corner, first } => {
+            let search = Search { budget, problem: &problem, known, slack, below: Some(corner) };
+            let Done { tasks, finds } =
+                some_boxes(budget, first, |next, work, finds| search.open(next, work, finds));
+            let boxes = |first: Opened| Task::Boxes { problem: Arc::clone(&problem), corner, first };
+            Done { tasks: tasks.into_iter().map(boxes).collect(), finds }
+        }
+    };
+    let left = in_rounds(known, first.into_iter().collect(), || budget.stopped(), task, Known::learn);
+    left.iter().map(|_| Ceiling::OPEN).collect()
 }
 
 impl<'p> Search<'_, 'p> {
@@ -86,17 +87,18 @@ impl<'p> Search<'_, 'p> {
         corners: Arc<Corners>,
         at: usize,
         mut zone: Zone<'p>,
+        regions_to: f64,
         finds: &mut Finds,
     ) -> Vec<Task<'p>> {
         let Some((corner, halves)) = corners.node(at) else { return Vec::new() };
         if halves.is_none()
             && let Some(clipped) = self.clipped(&corner, &mut zone.known)
         {
-            return self.region(Arc::new(clipped), 0, zone, finds);
+            return self.region(Arc::new(clipped), 0, zone, regions_to, finds);
         }
         let mut work = Work::default();
         let Some(left) = self.narrow(&mut zone, &corner, &mut work, finds) else { return Vec::new() };
-        if zone.designs_of(&left) <= self.exact.regions_to {
+        if zone.designs_of(&left) <= regions_to {
             return vec![zone.in_boxes(corner)];
         }
         let zones = match halves {
@@ -120,7 +122,7 @@ impl<'p> Search<'_, 'p> {
         finds: &mut Finds,
     ) -> Option<Left> {
         loop {
-            self.exact.count_box();
+            self.budget.count_box();
             let (left, narrowed) = zone.narrow(corner, work, |ceiling| self.beats(ceiling, finds))?;
             if !narrowed {
                 left.likely.iter().for_each(|cell| self.try_design(zone, cell.clone(), finds));
@@ -139,7 +141,7 @@ impl<'p> Search<'_, 'p> {
         }
         finds.tried.push(number);
         let (mut shapes, mut work) = (Arc::clone(&zone.shapes), Work::default());
-        self.exact.count_box();
+        self.budget.count_box();
         let beaten = |ceiling: &Ceiling| self.known.found.beats(ceiling) || finds.beats(ceiling);
         if let Verdict::Open(ceiling) = problem.bound(&mut cell, &mut shapes, &mut work, beaten, |_| true) {
             problem.judge(&cell, &ceiling, &work, finds);

@@ -1,27 +1,22 @@
 //! Branch and bound: cut, halve, judge. First with slack, so that little is left open if time runs out; in rounds, so
 //! that it does not matter who is quicker.
 
-use super::bound::{Ceiling, Cell, Verdict, Work};
-use super::corners::Corner;
+use super::boxes::pass_by_boxes;
+use super::budget::Budget;
 use super::evolve::evolve;
 use super::gap::gap;
 use super::kinds::Alike;
-use super::known::{Finds, Known};
+use super::known::Known;
 use super::probe::probe;
 use super::problem::Problem;
-use super::rounds::{Done, in_rounds};
-use super::shape::Shape;
+use super::regions::pass_by_regions;
 use crate::catalog::Catalogs;
 use crate::pareto::objectives::Objectives;
 use crate::search::sweep::Candidate;
-use crate::space::design::number;
 use crate::space::design_space::{DesignSpace, LinkOption};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Boxes that a task opens.
-const BOXES: usize = 32;
 /// Slacks of the passes over a large space: with slack a box is also cut if a design found comes that close
 /// to its ceiling, so a pass that comes to its end proves that nothing is missing by more.
 const SLACKS: [f64; 25] = [
@@ -54,14 +49,12 @@ const MOST_WITH_TIES: usize = 20_000;
 pub struct Exact<'p> {
     space: &'p DesignSpace,
     catalogs: &'p Catalogs,
-    stop: &'p AtomicBool,
-    deadline: Option<Instant>,
-    boxes: AtomicU64,
+    pub(super) budget: Budget<'p>,
     /// The slack with which the search is content: that of the last pass, or of a search from known designs.
     gap: f64,
     /// Designs above which a space is searched region by region, and down to how many.
     regions_from: f64,
-    pub(super) regions_to: f64,
+    regions_to: f64,
     /// Designs that are listed with all their ties at the most.
     most_with_ties: usize,
 }
@@ -88,25 +81,6 @@ pub struct ExactOutcome {
     pub ties_listed: bool,
 }
 
-/// A box on its way, with what its parent knew.
-pub(super) struct Opened {
-    pub cell: Cell,
-    pub shapes: Arc<Vec<Shape>>,
-    pub ceiling: Ceiling,
-}
-
-impl Opened {
-    /// The halves of a level, the first last: it is opened first.
-    pub fn halves(&self, problem: &Problem, level: usize, ceiling: Ceiling) -> Vec<Self> {
-        let half = |node: u32| {
-            let mut cell = self.cell.clone();
-            cell[level] = node;
-            Self { cell, shapes: Arc::clone(&self.shapes), ceiling }
-        };
-        problem.halves(&self.cell, level).map_or_else(Vec::new, |[a, b]| vec![half(b), half(a)])
-    }
-}
-
 impl<'p> Exact<'p> {
     /// A search of a space; it ends early when `stop` is set or the deadline has passed.
     pub fn new(
@@ -115,13 +89,10 @@ impl<'p> Exact<'p> {
         stop: &'p AtomicBool,
         deadline: Option<Instant>,
     ) -> Self {
-        let boxes = AtomicU64::new(0);
         Self {
             space,
             catalogs,
-            stop,
-            deadline,
-            boxes,
+            budget: Budget::new(stop, deadline),
             gap: 0.0,
             regions_from: VAST,
             regions_to: FEW,
@@ -152,21 +123,13 @@ impl<'p> Exact<'p> {
 
     /// Boxes bounded so far.
     pub fn boxes(&self) -> u64 {
-        self.boxes.load(Ordering::Relaxed)
-    }
-
-    pub(super) fn count_box(&self) {
-        self.boxes.fetch_add(1, Ordering::Relaxed);
-    }
-
-    pub(super) fn stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+        self.budget.boxes()
     }
 
     /// The pass after one that began then and has just ended: the one with the least slack that there should be time
     /// for. A front with a gap depends on the passes before it, so these then do not ask for the time.
     fn next_pass(&self, passes: &[f64], last: usize, started: Instant) -> usize {
-        let left = self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
+        let left = self.budget.deadline().map(|deadline| deadline.saturating_duration_since(Instant::now()));
         let took_s = started.elapsed().as_secs_f64();
         let has_gap = self.gap > 0.0;
         let most = if has_gap { PASSED_OVER_TO_A_GAP } else { MOST_PASSED_OVER };
@@ -195,40 +158,6 @@ impl<'p> Exact<'p> {
         Problem::new(self.space, self.catalogs, takes, alike)
     }
 
-    /// Opens the box of everything and all that comes of it, and learns what is found; returns the boxes that are left
-    /// when the search is stopped.
-    pub(super) fn every_box<K: Sync, F: Send + Default>(
-        &self,
-        problem: &Problem,
-        known: &mut K,
-        open: impl Fn(&K, Opened, &mut Work, &mut F) -> Vec<Opened> + Sync,
-        learn: impl Fn(&mut K, F),
-    ) -> Vec<Opened> {
-        let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return Vec::new() };
-        let root = Opened { cell: problem.root(), shapes: Arc::new(shapes), ceiling: Ceiling::OPEN };
-        let task = |known: &K, root: Opened| {
-            self.some_boxes(root, |next, work, finds| open(known, next, work, finds))
-        };
-        in_rounds(known, vec![root], || self.stopped(), task, learn)
-    }
-
-    /// Opens a box and some of those that come of it.
-    pub(super) fn some_boxes<F: Default>(
-        &self,
-        first: Opened,
-        open: impl Fn(Opened, &mut Work, &mut F) -> Vec<Opened>,
-    ) -> Done<Opened, F> {
-        let (mut work, mut finds, mut stack) = (Work::default(), F::default(), vec![first]);
-        for _ in 0..BOXES {
-            if self.stopped() {
-                break;
-            }
-            let Some(next) = stack.pop() else { break };
-            stack.extend(open(next, &mut work, &mut finds));
-        }
-        Done { tasks: stack, finds }
-    }
-
     fn run_of(&self, whole: Option<Problem<'p>>, given: &[Objectives]) -> ExactOutcome {
         let mut known = Known::default();
         given.iter().for_each(|objectives| known.enter(objectives));
@@ -239,9 +168,10 @@ impl<'p> Exact<'p> {
             let is_large = by_regions || designs > LARGE;
             if given.is_empty() {
                 let probes = if by_regions { PROBES_TO_EVOLVE } else { PROBES };
-                let probed = probe(self, whole, (probes * designs.log10().powi(2)) as usize, &mut known);
+                let probed =
+                    probe(&self.budget, whole, (probes * designs.log10().powi(2)) as usize, &mut known);
                 if by_regions {
-                    evolve(self, whole, probed, &mut known);
+                    evolve(&self.budget, whole, probed, &mut known);
                 }
             }
             let helps = |slack: &f64| is_large && given.is_empty() && (by_regions || *slack >= FINE);
@@ -251,8 +181,8 @@ impl<'p> Exact<'p> {
             while let Some(&slack) = passes.get(next) {
                 let started = Instant::now();
                 open = match by_regions {
-                    true => self.pass_by_regions(whole, &mut known, slack),
-                    false => self.pass_by_boxes(whole, &mut known, slack),
+                    true => pass_by_regions(&self.budget, whole, &mut known, slack, self.regions_to),
+                    false => pass_by_boxes(&self.budget, whole, &mut known, slack),
                 };
                 if !open.is_empty() {
                     last_slack = slack;
@@ -283,102 +213,9 @@ impl<'p> Exact<'p> {
             ties_listed,
         }
     }
-
-    /// One pass over all boxes; returns the ceilings of those that were left.
-    fn pass_by_boxes(&self, problem: &Problem<'p>, known: &mut Known, slack: f64) -> Vec<Ceiling> {
-        let left = self.every_box(
-            problem,
-            known,
-            |known, next, work, finds| {
-                Search { exact: self, problem, known, slack, below: None }.open(next, work, finds)
-            },
-            Known::learn,
-        );
-        left.iter().map(|opened| opened.ceiling).collect()
-    }
 }
 
 /// The smaller of two bounds that may be unknown.
 fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::min)
-}
-
-/// A search of a problem, or of a part of it, as far as it goes with what is known.
-pub(super) struct Search<'s, 'p> {
-    pub exact: &'s Exact<'p>,
-    pub problem: &'s Problem<'p>,
-    pub known: &'s Known,
-    /// How close a design found must come to a box's ceiling to cut it.
-    pub slack: f64,
-    /// The corner below which designs are looked for.
-    pub below: Option<Corner>,
-}
-
-impl Search<'_, '_> {
-    /// Bounds a box and halves it, or judges it if it is one design.
-    pub fn open(&self, mut here: Opened, work: &mut Work, finds: &mut Finds) -> Vec<Opened> {
-        self.exact.count_box();
-        let verdict = self.problem.bound(
-            &mut here.cell,
-            &mut here.shapes,
-            work,
-            |ceiling| {
-                self.below.is_some_and(|corner| !corner.is_in_reach_of(ceiling)) || self.beats(ceiling, finds)
-            },
-            |ceiling| self.below.is_some() || self.known.found.nearly_beats(&ceiling.slackened(self.slack)),
-        );
-        let Verdict::Open(ceiling) = verdict else { return Vec::new() };
-        match self.problem.without_pointless(&mut here.cell, ceiling.tip_m, work) {
-            None => return Vec::new(),
-            Some(true) => return vec![here],
-            Some(false) => {}
-        }
-        let Some(level) = self.problem.widest_level(&here.cell, &here.shapes, work) else {
-            self.problem.judge(&here.cell, &ceiling, work, finds);
-            return Vec::new();
-        };
-        here.halves(self.problem, level, ceiling)
-    }
-
-    /// Whether a design that is known or was found since comes within the slack of a ceiling.
-    pub fn beats(&self, ceiling: &Ceiling, finds: &Finds) -> bool {
-        let slackened = ceiling.slackened(self.slack);
-        self.known.found.beats(&slackened) || finds.beats(&slackened)
-    }
-}
-
-impl Problem<'_> {
-    /// What every design on the front keeps.
-    pub fn limits(&self) -> Corner {
-        let limits = &self.space.constraints;
-        Corner {
-            mass_kg: limits.mass_max_kg.unwrap_or(f64::INFINITY),
-            tip_m: limits.tip_deflection_max_m.unwrap_or(f64::INFINITY),
-            hz: limits.required_mode_hz(),
-        }
-    }
-
-    /// One design: its ceiling is its objectives once its mode is made sure of; `None` if it is not known that it meets
-    /// the constraints.
-    pub fn judge(
-        &self,
-        cell: &[u32],
-        ceiling: &Ceiling,
-        work: &Work,
-        finds: &mut Finds,
-    ) -> Option<Objectives> {
-        let options = self.options(cell)?;
-        let number = number(&self.level_sizes, &options);
-        finds.evaluated += 1;
-        let objectives = self.objectives(ceiling, work);
-        if !work.is_point() {
-            finds.unsure.push(Candidate { number, objectives });
-            return None;
-        }
-        if self.space.constraints.broken(&objectives).contains(&true) {
-            return None;
-        }
-        finds.kept.push(Candidate { number, objectives });
-        Some(objectives)
-    }
 }

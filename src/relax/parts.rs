@@ -1,7 +1,6 @@
 //! The options that each piece may still have, tip first.
 
-use super::program::Row;
-use super::statics::CaseLoads;
+use super::row::Row;
 use crate::space::problem::ArmProblem;
 use crate::space::slot::Slot;
 
@@ -77,38 +76,6 @@ impl Parts {
             option == known || passes(at - 1, option)
         });
         self.alive[slot].len() < before
-    }
-
-    /// Drops drives that the loads left do not allow: those that cannot hold the least demand and, where the
-    /// lightest that holds is taken, those heavier than the lightest that holds the greatest demand.
-    pub fn drop_drives(&mut self, problem: &ArmProblem, cases: &[CaseLoads]) -> bool {
-        let mut dropped = false;
-        for (slot, piece) in problem.slots().iter().enumerate() {
-            let Slot::Sized(sized) = piece else { continue };
-            let motion = sized.table.motion();
-            // otherwise the mean torque may fall while a load rises
-            if motion.mean_torque.sum < motion.mean_torque.difference {
-                continue;
-            }
-            let (mut static_nm, mut inertia_kgm2) = ([0.0f64; 2], [0.0f64; 2]);
-            for &case in &problem.space().sizing_cases {
-                let torque = cases[case].torque_size(problem, self, slot);
-                let inertia = cases[case].inertia_range(problem, self, slot);
-                for end in 0..2 {
-                    static_nm[end] = static_nm[end].max(torque[end]);
-                    inertia_kgm2[end] = inertia_kgm2[end].max(inertia[end]);
-                }
-            }
-            let relaxed = [1.0 - 1e-12, 1.0 + 1e-12];
-            let [least, most] = [0, 1]
-                .map(|end| motion.demand(static_nm[end] * relaxed[end], inertia_kgm2[end] * relaxed[end]));
-            let heaviest = if sized.all_fits { None } else { sized.table.first_fit(&most) };
-            dropped |= self.keep(slot, |_, option| {
-                sized.table.limits(option as usize).hold(&least)
-                    && heaviest.is_none_or(|heaviest| option as usize <= heaviest)
-            });
-        }
-        dropped
     }
 }
 

@@ -7,7 +7,7 @@
 //! too slow, found one after the other.
 
 use super::parts::Parts;
-use super::program::Row;
+use super::row::Row;
 use crate::arm::structure::{LinkPiece, Structure};
 use crate::mechanics::beam::{PreparedBeam, compliances, line_densities};
 use crate::mechanics::{displacement_at, stack};

@@ -6,7 +6,7 @@
 //! plus the least slope times the way from the corner, per load. Both corners give a row.
 
 use super::parts::Parts;
-use super::program::Row;
+use super::row::Row;
 use super::slopes::{rising_range, tangent_range};
 use crate::arm::joint_law::JointLaw;
 use crate::mechanics::Wrench;

@@ -3,7 +3,7 @@
 use crate::catalog::Catalogs;
 use crate::exact::reach::Reach;
 use crate::pareto::objectives::Objectives;
-use crate::relax::{MassBound, Relaxation};
+use crate::relax::relaxation::{MassBound, Relaxation};
 use crate::space::design_space::DesignSpace;
 use crate::space::problem::ArmProblem;
 

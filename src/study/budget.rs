@@ -15,7 +15,7 @@ use crate::catalog::Catalogs;
 use crate::exact::reach::Reach;
 use crate::mechanics::chain::Chain;
 use crate::pareto::objectives::Objectives;
-use crate::relax::Relaxation;
+use crate::relax::relaxation::Relaxation;
 use crate::report::budget::{BudgetRow, Gain, NextPart, PickBound, PickBudget};
 use crate::report::front_table::FrontTable;
 use crate::report::picks::{Pick, designs, picks};
