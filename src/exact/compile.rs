@@ -1,16 +1,16 @@
 //! Compiles a design space into the [`Problem`] of branch and bound.
 
-use super::bound::Work;
-use super::check::Inertia;
 use super::compile_pose::harness_kg;
-use super::kinds::{Alike, Kinds};
+use super::joint_play::JointPlay;
+use super::kinds::{Kinds, Ties};
+use super::lowest_eigenvalue::CaseInertia;
 use super::parts::{DriveBox, LinkBox, Rays};
-use super::play::Play;
 use super::pose::Pose;
 use super::problem::{Ladder, Part, Problem};
 use super::shape::Ideal;
-use super::torsion::{Breaks, CurveBox};
+use super::torsion::{BreakPoints, CurveBox};
 use super::tree::Tree;
+use super::work::Work;
 use crate::arm::LinkBody;
 use crate::arm::joint_law::Curve;
 use crate::catalog::Catalogs;
@@ -28,7 +28,7 @@ impl<'c> Problem<'c> {
         space: &'c DesignSpace,
         catalogs: &'c Catalogs,
         takes: &dyn Fn(&LinkOption) -> bool,
-        alike: Alike,
+        ties: Ties,
     ) -> Option<Self> {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let mut reaches = reaches_m(space, sizing).into_iter();
@@ -47,21 +47,21 @@ impl<'c> Problem<'c> {
             peak_factor: 1.0
                 + space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE),
             lighter_is_better: false,
-            plays: Vec::new(),
-            held: Arc::default(),
+            joint_plays: Vec::new(),
+            force_bounds: Arc::default(),
         };
         for (place, layer) in space.layers() {
             let part = match layer {
-                Layer::Piece(piece) => problem.part(piece, reaches_m[place], catalogs, takes, alike)?,
+                Layer::Piece(piece) => problem.part(piece, reaches_m[place], catalogs, takes, ties)?,
                 Layer::Tilt(tilt) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&tilt.law()) },
                 // beyond what a design weighs
                 Layer::Mass(_) => Part::Offset { mass_kg: 0.0 },
             };
             problem.parts.push(part);
             // of a joint, whichever drive it has
-            problem.plays.push(match layer {
+            problem.joint_plays.push(match layer {
                 Layer::Piece(SpacePiece::Joint(joint)) => {
-                    Play::of(&space.joint_piece(joint, Curve::Linear(1.0)).law)
+                    JointPlay::of(&space.joint_piece(joint, Curve::Linear(1.0)).law)
                 }
                 _ => None,
             });
@@ -70,7 +70,7 @@ impl<'c> Problem<'c> {
                 && let Some(harness_kg) = harness_kg(space, piece)
             {
                 problem.parts.push(Part::Offset { mass_kg: -harness_kg });
-                problem.plays.push(None);
+                problem.joint_plays.push(None);
             }
         }
         problem.lighter_is_better = problem.grows_with_weight();
@@ -83,39 +83,14 @@ impl<'c> Problem<'c> {
         reach_m: f64,
         catalogs: &'c Catalogs,
         takes: &dyn Fn(&LinkOption) -> bool,
-        alike: Alike,
+        ties: Ties,
     ) -> Option<Part<'c>> {
         let space = self.space;
         Some(match piece {
             SpacePiece::Joint(joint) => match joint_slot(space, joint, reach_m, catalogs) {
                 Slot::Given { law, mass_kg } => Part::Given { mass_kg, curve: CurveBox::of(&law) },
-                Slot::Sized(sized) if sized.all_fits => {
-                    self.level(sized.table.len());
-                    let rays = self.rays(self.parts.len(), sized.table.motion());
-                    let kinds = Kinds::of(&sized, alike);
-                    let drives =
-                        |kind: &[u32]| DriveBox::of_kind(kind.iter().map(|&i| drive_box(&sized, i, &rays)));
-                    let tree = Tree::build(kinds.iter().filter_map(|kind| Some((kind[0], drives(kind)?))))?;
-                    Part::Drives {
-                        sized: Arc::new(sized),
-                        kinds: Arc::new(kinds),
-                        tree: Arc::new(tree),
-                        rays: Arc::new(rays),
-                    }
-                }
-                Slot::Sized(sized) => {
-                    let rays = self.rays(self.parts.len(), sized.table.motion());
-                    let steps: Vec<DriveBox> = sized
-                        .table
-                        .first_fit_candidates()
-                        .iter()
-                        .map(|&i| drive_box(&sized, i, &rays))
-                        .collect();
-                    (!steps.is_empty()).then(|| Part::FirstFit {
-                        ladder: Arc::new(Ladder::new(steps)),
-                        sized: Arc::new(sized),
-                    })?
-                }
+                Slot::Sized(sized) if sized.all_fits => self.drives(sized, ties)?,
+                Slot::Sized(sized) => self.first_fit(sized)?,
                 Slot::Link { .. } | Slot::Offset { .. } => return None,
             },
             SpacePiece::Choice(choice) => {
@@ -144,6 +119,30 @@ impl<'c> Problem<'c> {
         })
     }
 
+    /// A joint whose drive is a level of the search.
+    fn drives(&mut self, sized: SizedJoint<'c>, ties: Ties) -> Option<Part<'c>> {
+        self.level(sized.table.len());
+        let rays = self.rays(self.parts.len(), sized.table.motion());
+        let kinds = Kinds::of(&sized, ties);
+        let drives = |kind: &[u32]| DriveBox::of_kind(kind.iter().map(|&i| drive_box(&sized, i, &rays)));
+        let tree = Tree::build(kinds.iter().filter_map(|kind| Some((kind[0], drives(kind)?))))?;
+        Some(Part::Drives {
+            sized: Arc::new(sized),
+            kinds: Arc::new(kinds),
+            tree: Arc::new(tree),
+            rays: Arc::new(rays),
+        })
+    }
+
+    /// A joint that takes the lightest drive that holds its demand.
+    fn first_fit(&self, sized: SizedJoint<'c>) -> Option<Part<'c>> {
+        let rays = self.rays(self.parts.len(), sized.table.motion());
+        let candidates = sized.table.first_fit_candidates();
+        let steps: Vec<DriveBox> = candidates.iter().map(|&i| drive_box(&sized, i, &rays)).collect();
+        let ladder = (!steps.is_empty()).then(|| Arc::new(Ladder::new(steps)))?;
+        Some(Part::FirstFit { ladder, sized: Arc::new(sized) })
+    }
+
     /// Opens the next level and returns its options.
     fn level(&mut self, size: usize) -> std::ops::Range<u32> {
         self.level_pieces.push(self.parts.len());
@@ -169,7 +168,7 @@ impl<'c> Problem<'c> {
         if filled.and_then(|()| self.least_tip_m(&mut work)).is_some() {
             let of = |case: usize| {
                 let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
-                Inertia::new(&self.poses[case], &ideal)
+                CaseInertia::new(&self.poses[case], &ideal)
             };
             self.inertias = Arc::new(self.judged_cases().map(of).collect());
         }
@@ -187,7 +186,7 @@ fn drive_box(sized: &SizedJoint, index: u32, rays: &Rays) -> DriveBox {
         least_limits: *sized.table.limits(index),
         multiples: rays.held(sized.table.limits(index)),
         curve,
-        breaks: curve.map_or_else(Breaks::default, |c| Breaks::of(&c.stiff.windup)),
+        breaks: curve.map_or_else(BreakPoints::default, |c| BreakPoints::of(&c.stiff.windup)),
         each: None,
     }
 }

@@ -36,7 +36,7 @@ impl Pose {
         let mut pose = Self {
             judged: space.judged_cases.contains(&index),
             sizing: space.sizing_cases.contains(&index),
-            parts_sag_together: false,
+            contributions_align: false,
             water_kg_m3: water.map_or(0.0, |w| w.density_kg_m3),
             pieces,
             payload_inertia,
@@ -45,7 +45,7 @@ impl Pose {
             inertia_about: Vec::new(),
         };
         pose.compile(space, payload_wrench, &walk.tip_m);
-        pose.parts_sag_together = pose.parts_sag_together();
+        pose.contributions_align = pose.contributions_align();
         pose
     }
 
@@ -258,7 +258,7 @@ impl Outboard {
         let mut per_n: Vec<f64> = self.per_n.iter().map(|w| twist.dot(w)).collect();
         per_n.push(own_per_n);
         let tip_m = displacement_at(twist, tip_m);
-        Row { piece, coordinate, fixed: twist.dot(&self.fixed), per_n, tip_m, way_m: tip_m.norm() }
+        Row { piece, coordinate, fixed: twist.dot(&self.fixed), per_n, tip_m, tip_m_per_unit: tip_m.norm() }
     }
 
     fn inertia_row(&self, fixed: &Matrix6<f64>, twist: &Twist) -> InertiaRow {

@@ -5,13 +5,14 @@
 //! in mass, or parts close to its own, and stays if nothing seen before beats it. So that the many that differ by
 //! little do not crowd out the others, one design a cell of a grid is kept ([`thinned`](super::grid::thinned)). What is found proves nothing; it is judged and listed like every other design.
 
-use super::archive::Found;
-use super::bound::{Cell, Verdict, Work};
+use super::bound::{DesignBox, Verdict};
 use super::budget::Budget;
 use super::grid::thinned;
-use super::known::{Finds, Known};
+use super::incumbents::Incumbents;
 use super::problem::Problem;
+use super::search_state::{Findings, SearchState};
 use super::shape::Shape;
+use super::work::Work;
 use crate::pareto::objectives::Objectives;
 use crate::search::sweep::Candidate;
 use crate::space::design::number;
@@ -30,91 +31,125 @@ const STEP: f64 = 0.02;
 const CLOSE: u64 = 12;
 
 /// A design with the shapes that bound its modes, or those of a design like it.
-pub(super) struct Member {
-    pub cell: Cell,
+pub(super) struct Individual {
+    pub design_box: DesignBox,
     pub objectives: Objectives,
     pub shapes: Arc<Vec<Shape>>,
 }
 
+/// What became of a child of two designs.
+enum Offspring {
+    /// It has the parts of its parent.
+    Unchanged,
+    /// A design seen before is at least as good in every objective, or a part cannot carry its load.
+    Dominated,
+    /// Its objectives are known, and it breaks a constraint.
+    Infeasible,
+    /// It meets every constraint, and nothing seen before is better.
+    Feasible(Individual),
+}
+
+impl Offspring {
+    /// Whether its three objectives were computed.
+    fn is_evaluated(&self) -> bool {
+        matches!(self, Self::Infeasible | Self::Feasible(_))
+    }
+
+    fn feasible(self) -> Option<Individual> {
+        match self {
+            Self::Feasible(individual) => Some(individual),
+            _ => None,
+        }
+    }
+}
+
 /// Finds designs that come of some, for generations.
-pub(super) fn evolve<'p>(budget: &Budget, problem: &Problem<'p>, first: Vec<Member>, known: &mut Known) {
-    let mut seen = Found::default();
+pub(super) fn evolve<'p>(
+    budget: &Budget,
+    problem: &Problem<'p>,
+    first: Vec<Individual>,
+    state: &mut SearchState,
+) {
+    let mut seen = Incumbents::default();
     first.iter().for_each(|member| seen.enter(&member.objectives));
     let mut parents = by_mass(first);
-    let brood = (problem.designs() as f64).sqrt().min(MOST_CHILDREN) as u64;
-    let mut finds = Finds::default();
+    let children_per_generation = (problem.designs() as f64).sqrt().min(MOST_CHILDREN) as u64;
+    let mut findings = Findings::default();
     for generation in 0..GENERATIONS {
         if parents.is_empty() || budget.stopped() {
             break;
         }
-        let children = (0..brood).into_par_iter().map_init(Work::default, |work, n| {
-            let dice = Xoshiro256PlusPlus::seed_from_u64(generation * brood + n);
-            Mating { budget, problem, parents: &parents, seen: &seen, dice }.child(work)
+        let children = (0..children_per_generation).into_par_iter().map_init(Work::default, |work, n| {
+            let rng = Xoshiro256PlusPlus::seed_from_u64(generation * children_per_generation + n);
+            Recombination { budget, problem, parents: &parents, seen: &seen, rng }.child(work)
         });
-        let judged: Vec<Option<Member>> = children.flatten().collect();
-        finds.evaluated += judged.len() as u64;
-        let children: Vec<Member> = judged.into_iter().flatten().collect();
+        let offspring: Vec<Offspring> = children.collect();
+        findings.evaluated += offspring.iter().filter(|child| child.is_evaluated()).count() as u64;
+        let children: Vec<Individual> = offspring.into_iter().filter_map(Offspring::feasible).collect();
         children.iter().for_each(|member| seen.enter(&member.objectives));
         parents.extend(children);
         parents = by_mass(parents);
     }
-    let candidate = |member: &Member| {
-        let options = problem.options(&member.cell)?;
+    let candidate = |member: &Individual| {
+        let options = problem.options(&member.design_box)?;
         Some(Candidate { number: number(&problem.level_sizes, &options), objectives: member.objectives })
     };
-    finds.kept.extend(parents.iter().filter_map(candidate));
-    known.learn(finds);
+    findings.kept.extend(parents.iter().filter_map(candidate));
+    state.learn(findings);
 }
 
 /// One design a cell, the lightest first.
-fn by_mass(members: Vec<Member>) -> Vec<Member> {
+fn by_mass(members: Vec<Individual>) -> Vec<Individual> {
     let mut kept = thinned(members, STEP, |member| &member.objectives);
     kept.sort_by(|a, b| a.objectives.mass_kg.total_cmp(&b.objectives.mass_kg));
     kept
 }
 
 /// Where one child comes from.
-struct Mating<'a, 'p> {
+struct Recombination<'a, 'p> {
     budget: &'a Budget<'p>,
     problem: &'a Problem<'p>,
-    parents: &'a [Member],
-    seen: &'a Found,
-    dice: Xoshiro256PlusPlus,
+    parents: &'a [Individual],
+    seen: &'a Incumbents,
+    rng: Xoshiro256PlusPlus,
 }
 
-impl Mating<'_, '_> {
+impl Recombination<'_, '_> {
     /// A child that nothing seen beats, if it meets the constraints; none at all if something beats it.
-    fn child(mut self, work: &mut Work) -> Option<Option<Member>> {
+    fn child(mut self, work: &mut Work) -> Offspring {
         let first = self.below(self.parents.len() as u64);
         let from = first.saturating_sub(CLOSE);
         let to = (first + CLOSE + 1).min(self.parents.len() as u64);
         let second = from + self.below(to - from);
         let [parent, other] = [first, second].map(|i| &self.parents[i as usize]);
-        let mut cell = parent.cell.clone();
+        let mut design_box = parent.design_box.clone();
         if self.below(2) == 0 {
-            self.exchange(&mut cell, &other.cell);
+            self.exchange(&mut design_box, &other.design_box);
         }
-        let changes = self.below(2) + u64::from(cell == parent.cell);
+        let changes = self.below(2) + u64::from(design_box == parent.design_box);
         for _ in 0..changes {
-            let level = self.below(cell.len() as u64) as usize;
-            self.change(&mut cell, level);
+            let level = self.below(design_box.len() as u64) as usize;
+            self.change(&mut design_box, level);
         }
-        if cell == parent.cell {
-            return None;
+        if design_box == parent.design_box {
+            return Offspring::Unchanged;
         }
         self.budget.count_box();
         let mut shapes = Arc::clone(&parent.shapes);
-        let verdict = self.problem.bound(&mut cell, &mut shapes, work, |c| self.seen.beats(c), |_| true);
-        let Verdict::Open(ceiling) = verdict else { return None };
-        let objectives = self.problem.objectives(&ceiling, work);
-        let holds = work.is_point() && !self.problem.space.constraints.broken(&objectives).contains(&true);
+        let verdict =
+            self.problem.bound(&mut design_box, &mut shapes, work, |c| self.seen.dominates(c), |_| true);
+        let Verdict::Open(box_bound) = verdict else { return Offspring::Dominated };
+        let objectives = self.problem.objectives(&box_bound, work);
+        if !work.is_point() || self.problem.space.constraints.broken(&objectives).contains(&true) {
+            return Offspring::Infeasible;
+        }
         let shapes = Arc::clone(&parent.shapes);
-        Some(holds.then_some(Member { cell, objectives, shapes }))
+        Offspring::Feasible(Individual { design_box, objectives, shapes })
     }
 
     /// Takes a third of another design's parts.
-    fn exchange(&mut self, cell: &mut Cell, other: &Cell) {
-        for (mine, theirs) in cell.iter_mut().zip(other) {
+    fn exchange(&mut self, design_box: &mut DesignBox, other: &DesignBox) {
+        for (mine, theirs) in design_box.iter_mut().zip(other) {
             if self.below(3) == 0 {
                 *mine = *theirs;
             }
@@ -122,27 +157,27 @@ impl Mating<'_, '_> {
     }
 
     /// Takes another option of a level: any below a box around the present one, more often a small box.
-    fn change(&mut self, cell: &mut Cell, level: usize) {
+    fn change(&mut self, design_box: &mut DesignBox, level: usize) {
         let problem = self.problem;
-        let option = std::mem::take(&mut cell[level]);
-        let mut around = vec![cell[level]];
-        while let Some([low, high]) = problem.halves(cell, level) {
+        let option = std::mem::take(&mut design_box[level]);
+        let mut around = vec![design_box[level]];
+        while let Some([low, high]) = problem.halves(design_box, level) {
             // trees are numbered from the root, the first half before the second
-            cell[level] = if option < high { low } else { high };
-            around.push(cell[level]);
+            design_box[level] = if option < high { low } else { high };
+            around.push(design_box[level]);
         }
         let mut up = 1 + self.below(3) as usize;
         while self.below(2) == 0 {
             up += 1;
         }
-        cell[level] = around[around.len().saturating_sub(1 + up)];
-        while let Some(halves) = problem.halves(cell, level) {
-            cell[level] = halves[self.below(2) as usize];
+        design_box[level] = around[around.len().saturating_sub(1 + up)];
+        while let Some(halves) = problem.halves(design_box, level) {
+            design_box[level] = halves[self.below(2) as usize];
         }
     }
 
     /// A whole number below another.
     fn below(&mut self, n: u64) -> u64 {
-        ((u128::from(self.dice.next_u64()) * u128::from(n)) >> 64) as u64
+        ((u128::from(self.rng.next_u64()) * u128::from(n)) >> 64) as u64
     }
 }

@@ -1,6 +1,6 @@
 //! The forces of a case as intervals, within what a region holds.
 
-use super::held::Held;
+use super::force_bound::ForceBound;
 use super::interval::interval;
 use super::problem::Problem;
 use std::sync::Arc;
@@ -12,11 +12,11 @@ impl Problem<'_> {
         forces.clear();
         for row in rows {
             let mut force = interval(row.fixed, &row.per_n, &weights[case]);
-            for held in self.held.iter() {
+            for bound in self.force_bounds.iter() {
                 // in water of another density the same parts weigh something else
-                if self.poses[held.case].water_kg_m3 == self.poses[case].water_kg_m3 {
-                    let by = &self.poses[held.case].rows[held.row];
-                    held.tighten(row, by, &weights[case], &mut force);
+                if self.poses[bound.case].water_kg_m3 == self.poses[case].water_kg_m3 {
+                    let by = &self.poses[bound.case].rows[bound.row];
+                    bound.tighten(row, by, &weights[case], &mut force);
                 }
             }
             if force[0] > force[1] {
@@ -28,17 +28,17 @@ impl Problem<'_> {
     }
 
     /// The problem with a force held between bounds, within those it is held between already.
-    pub fn holding(&self, case: usize, row: usize, [low, high]: [f64; 2]) -> Self {
-        let mut held = self.held.to_vec();
-        match held.iter_mut().find(|held| held.case == case && held.row == row) {
-            Some(Held { between, .. }) => *between = [between[0].max(low), between[1].min(high)],
-            None => held.push(Held { case, row, between: [low, high] }),
+    pub fn with_force_bound(&self, case: usize, row: usize, [low, high]: [f64; 2]) -> Self {
+        let mut bounds = self.force_bounds.to_vec();
+        match bounds.iter_mut().find(|bound| bound.case == case && bound.row == row) {
+            Some(ForceBound { between, .. }) => *between = [between[0].max(low), between[1].min(high)],
+            None => bounds.push(ForceBound { case, row, between: [low, high] }),
         }
-        Self { held: Arc::from(held), ..self.clone() }
+        Self { force_bounds: Arc::from(bounds), ..self.clone() }
     }
 
     /// The problem with no force held.
-    pub fn holding_nothing(&self) -> Self {
-        Self { held: Arc::default(), ..self.clone() }
+    pub fn without_force_bounds(&self) -> Self {
+        Self { force_bounds: Arc::default(), ..self.clone() }
     }
 }

@@ -1,18 +1,19 @@
 //! What every design keeps, and the judgement of one.
 
-use super::bound::{Ceiling, Work};
-use super::corners::Corner;
-use super::known::Finds;
+use super::bound::BoxBound;
+use super::local_upper_bounds::LocalUpperBound;
 use super::problem::Problem;
+use super::search_state::Findings;
+use super::work::Work;
 use crate::pareto::objectives::Objectives;
 use crate::search::sweep::Candidate;
 use crate::space::design::number;
 
 impl Problem<'_> {
     /// What every design on the front keeps.
-    pub fn limits(&self) -> Corner {
+    pub fn limits(&self) -> LocalUpperBound {
         let limits = &self.space.constraints;
-        Corner {
+        LocalUpperBound {
             mass_kg: limits.mass_max_kg.unwrap_or(f64::INFINITY),
             tip_m: limits.tip_deflection_max_m.unwrap_or(f64::INFINITY),
             hz: limits.required_mode_hz(),
@@ -23,23 +24,23 @@ impl Problem<'_> {
     /// the constraints.
     pub fn judge(
         &self,
-        cell: &[u32],
-        ceiling: &Ceiling,
+        design_box: &[u32],
+        box_bound: &BoxBound,
         work: &Work,
-        finds: &mut Finds,
+        findings: &mut Findings,
     ) -> Option<Objectives> {
-        let options = self.options(cell)?;
+        let options = self.options(design_box)?;
         let number = number(&self.level_sizes, &options);
-        finds.evaluated += 1;
-        let objectives = self.objectives(ceiling, work);
+        findings.evaluated += 1;
+        let objectives = self.objectives(box_bound, work);
         if !work.is_point() {
-            finds.unsure.push(Candidate { number, objectives });
+            findings.undecided.push(Candidate { number, objectives });
             return None;
         }
         if self.space.constraints.broken(&objectives).contains(&true) {
             return None;
         }
-        finds.kept.push(Candidate { number, objectives });
+        findings.kept.push(Candidate { number, objectives });
         Some(objectives)
     }
 }

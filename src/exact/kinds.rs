@@ -10,19 +10,19 @@ use crate::space::slot::SizedJoint;
 
 /// Whether drives of a kind are one option of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Alike {
-    Together,
-    Apart,
+pub(super) enum Ties {
+    Merged,
+    Separate,
 }
 
 /// The drives of a joint by kinds, ascending; the first of each is the kind's number.
 pub(super) struct Kinds(Vec<Vec<u32>>);
 
 impl Kinds {
-    pub fn of(sized: &SizedJoint, alike: Alike) -> Self {
-        Self(match alike {
-            Alike::Together => sized.kinds(),
-            Alike::Apart => (0..sized.table.len() as u32).map(|drive| vec![drive]).collect(),
+    pub fn of(sized: &SizedJoint, ties: Ties) -> Self {
+        Self(match ties {
+            Ties::Merged => sized.kinds(),
+            Ties::Separate => (0..sized.table.len() as u32).map(|drive| vec![drive]).collect(),
         })
     }
 

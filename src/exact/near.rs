@@ -4,11 +4,12 @@
 //! is at least as good. So a box is cut if its ceiling is not near; nothing found on the way counts, and no drive is
 //! pointless. Once as many designs as are asked for are held, only nearer ones are looked for.
 
-use super::bound::{Ceiling, Verdict, Work};
-use super::boxes::{Opened, every_box};
-use super::kinds::Alike;
+use super::bound::{BoxBound, Verdict};
+use super::boxes::{OpenBox, open_all_boxes};
+use super::kinds::Ties;
 use super::problem::Problem;
 use super::run::Exact;
+use super::work::Work;
 use crate::pareto::objectives::Objectives;
 use crate::search::near::{BUFFER, NearDesign, NearDesigns, ROUNDING, Shortfall, Slack, keep_nearest};
 use crate::search::sweep::Candidate;
@@ -28,8 +29,8 @@ impl Exact<'_> {
             found: 0,
             nearest: Vec::new(),
         };
-        if let Some(problem) = self.problem(&|_| true, Alike::Apart) {
-            let left = every_box(
+        if let Some(problem) = self.problem(&|_| true, Ties::Separate) {
+            let left = open_all_boxes(
                 &self.budget,
                 &problem,
                 &mut seeker,
@@ -51,30 +52,30 @@ impl Exact<'_> {
         &self,
         problem: &Problem,
         seeker: &Seeker,
-        mut here: Opened,
+        mut here: OpenBox,
         work: &mut Work,
         near: &mut Vec<NearDesign>,
-    ) -> Vec<Opened> {
+    ) -> Vec<OpenBox> {
         self.budget.count_box();
-        let lower = |ceiling: &Ceiling| Ceiling { hz: ceiling.hz * NEAR, ..*ceiling };
+        let lower = |box_bound: &BoxBound| BoxBound { hz: box_bound.hz * NEAR, ..*box_bound };
         let verdict = problem.bound(
-            &mut here.cell,
+            &mut here.design_box,
             &mut here.shapes,
             work,
-            |ceiling| !seeker.is_near(ceiling),
-            |ceiling| !seeker.is_near(&lower(ceiling)),
+            |box_bound| !seeker.is_near(box_bound),
+            |box_bound| !seeker.is_near(&lower(box_bound)),
         );
-        let Verdict::Open(ceiling) = verdict else { return Vec::new() };
-        let Some(level) = problem.widest_level(&here.cell, &here.shapes, work) else {
-            let Some(options) = problem.options(&here.cell) else { return Vec::new() };
-            let objectives = problem.objectives(&ceiling, work);
+        let Verdict::Open(box_bound) = verdict else { return Vec::new() };
+        let Some(level) = problem.widest_level(&here.design_box, &here.shapes, work) else {
+            let Some(options) = problem.options(&here.design_box) else { return Vec::new() };
+            let objectives = problem.objectives(&box_bound, work);
             if !problem.space.constraints.broken(&objectives).contains(&true) {
                 let candidate = Candidate { number: number(&problem.level_sizes, &options), objectives };
                 near.extend(seeker.if_near(candidate));
             }
             return Vec::new();
         };
-        here.halves(problem, level, ceiling)
+        here.halves(problem, level, box_bound)
     }
 }
 
@@ -95,8 +96,8 @@ struct Seeker {
 
 impl Seeker {
     /// Whether a box with this ceiling may have a member that is near.
-    fn is_near(&self, ceiling: &Ceiling) -> bool {
-        self.shortfall.is_within(self.reach, &Objectives::from(*ceiling))
+    fn is_near(&self, box_bound: &BoxBound) -> bool {
+        self.shortfall.is_within(self.reach, &Objectives::from(*box_bound))
     }
 
     fn if_near(&self, candidate: Candidate) -> Option<NearDesign> {

@@ -1,6 +1,6 @@
 //! What the bound sees of a part, and of a box of parts: every number as an interval.
 
-use super::torsion::{Breaks, CurveBox};
+use super::torsion::{BreakPoints, CurveBox};
 use super::tree::{Bounds, Key};
 use crate::arm::LinkModel;
 use crate::arm::structure::{Beam, LinkPiece};
@@ -163,13 +163,13 @@ impl Rays {
 }
 
 /// What a joint is asked for at least.
-pub(super) struct Asked {
+pub(super) struct LeastDemand {
     pub demand: JointDemand,
     /// Multiples of the rays below it.
     multiples: [f64; RAYS],
 }
 
-impl Asked {
+impl LeastDemand {
     /// A static torque and an inertia.
     pub fn new(motion: &JointMotion, rays: &Rays, static_nm: f64, inertia_kgm2: f64) -> Self {
         let times = |asked: f64, unit: f64| if unit > 0.0 { asked / unit } else { f64::INFINITY };
@@ -191,7 +191,7 @@ pub(super) struct DriveBox {
     /// The largest multiple of each ray's demand that a member holds.
     pub multiples: [f64; RAYS],
     pub curve: Option<CurveBox>,
-    pub breaks: Breaks,
+    pub breaks: BreakPoints,
     /// Of a single kind of several drives, what each of them holds: the kind holds what any of them does.
     pub each: Option<Arc<[DriveLimits]>>,
 }
@@ -215,7 +215,7 @@ impl DriveBox {
 
     /// Whether a member may hold what is asked.
     #[inline]
-    pub fn may_hold(&self, asked: &Asked) -> bool {
+    pub fn may_hold(&self, asked: &LeastDemand) -> bool {
         self.hold(&asked.demand)
             && self.multiples.iter().zip(&asked.multiples).all(|(held, asked)| held >= asked)
     }
@@ -281,7 +281,7 @@ mod tests {
             least_limits: limits,
             multiples: rays.held(&limits),
             curve: None,
-            breaks: Breaks::default(),
+            breaks: BreakPoints::default(),
             each: None,
         }
     }
@@ -295,18 +295,18 @@ mod tests {
         ) {
             let motion = MotionRequirement::default().joint_motion(1.35, None);
             let rays = Rays::new(&motion, 50.0, 5.0);
-            let asked = Asked::new(&motion, &rays, static_nm, inertia_kgm2);
-            let mut of_kinds = Vec::new();
+            let asked = LeastDemand::new(&motion, &rays, static_nm, inertia_kgm2);
+            let mut with_ties = Vec::new();
             for kind in &kinds {
                 let drives: Vec<DriveBox> = kind.iter().map(|of| drive(*of, &motion, &rays)).collect();
                 let some_holds = drives.iter().any(|drive| drive.limits.hold(&asked.demand));
                 let together = DriveBox::of_kind(drives.into_iter()).unwrap();
                 prop_assert_eq!(together.hold(&asked.demand), some_holds);
                 prop_assert_eq!(together.may_hold(&asked), some_holds);
-                of_kinds.push((together, some_holds));
+                with_ties.push((together, some_holds));
             }
-            let some_holds = of_kinds.iter().any(|(_, holds)| *holds);
-            let joined = of_kinds.into_iter().map(|(kind, _)| kind).reduce(|a, b| a.join(&b)).unwrap();
+            let some_holds = with_ties.iter().any(|(_, holds)| *holds);
+            let joined = with_ties.into_iter().map(|(kind, _)| kind).reduce(|a, b| a.join(&b)).unwrap();
             prop_assert!(joined.may_hold(&asked) || !some_holds);
         }
     }

@@ -46,7 +46,7 @@ pub(super) struct Pose {
     pub judged: bool,
     pub sizing: bool,
     /// Whether no two parts move the tip against each other.
-    pub parts_sag_together: bool,
+    pub contributions_align: bool,
     /// Weight of the water in a tube's outer area over that of its mass: net weight per length is
     /// `g (mass - water area)`.
     pub water_kg_m3: f64,
@@ -107,7 +107,7 @@ pub(super) struct Row {
     pub per_n: Vec<f64>,
     /// Displacement of the tip per unit of the coordinate, and how far that is.
     pub tip_m: Vector3<f64>,
-    pub way_m: f64,
+    pub tip_m_per_unit: f64,
 }
 
 /// Force and moments at an end of an open tube.
@@ -141,21 +141,21 @@ impl Pose {
     pub fn grows_with_weight(&self) -> bool {
         let loads = self.stress.iter().flat_map(|row| &row.loads);
         self.water_kg_m3 == 0.0
-            && self.rows_that_matter().all(|row| sign(row.fixed, &row.per_n).is_some())
+            && self.relevant_rows().all(|row| sign(row.fixed, &row.per_n).is_some())
             && loads.into_iter().all(|(fixed, per_n)| sign(*fixed, per_n).is_some())
     }
 
     /// Whether the parts of the arm move the tip in directions no two of which oppose: then it moves further
     /// if any of them yields more.
-    pub fn parts_sag_together(&self) -> bool {
-        let rows = self.rows_that_matter();
+    pub fn contributions_align(&self) -> bool {
+        let rows = self.relevant_rows();
         let ways: Vec<_> = rows.map(|row| row.tip_m * sign(row.fixed, &row.per_n).unwrap_or(0.0)).collect();
         let agree = |a: &Vector3<f64>, b: &Vector3<f64>| a.dot(b) >= -NOTHING * a.norm() * b.norm();
         ways.iter().enumerate().all(|(i, a)| ways[..i].iter().all(|b| agree(a, b)))
     }
 
     /// Joints, and what moves the tip.
-    fn rows_that_matter(&self) -> impl Iterator<Item = &Row> {
+    fn relevant_rows(&self) -> impl Iterator<Item = &Row> {
         let is_joint = |row: &Row| matches!(self.pieces[row.piece], PosedPiece::Joint { .. });
         self.rows.iter().filter(move |row| is_joint(row) || row.tip_m.norm() > 0.0)
     }

@@ -1,11 +1,11 @@
 //! A design space compiled for the bound: a tree of boxes for every level, rows of numbers for every
 //! case.
 
-use super::check::Inertia;
-use super::held::Held;
+use super::force_bound::ForceBound;
+use super::joint_play::JointPlay;
 use super::kinds::Kinds;
+use super::lowest_eigenvalue::CaseInertia;
 use super::parts::{DriveBox, LinkBox, Rays};
-use super::play::Play;
 use super::pose::Pose;
 use super::torsion::CurveBox;
 use super::tree::{Bounds, Tree};
@@ -24,15 +24,15 @@ pub(super) struct Problem<'c> {
     pub level_sizes: Vec<u32>,
     pub poses: Arc<Vec<Pose>>,
     /// Inertia matrices of the judged cases.
-    pub inertias: Arc<Vec<Inertia>>,
+    pub inertias: Arc<Vec<CaseInertia>>,
     /// Peak over static stress in sizing cases.
     pub peak_factor: f64,
     /// Whether a lighter arm that is no softer is no worse.
     pub lighter_is_better: bool,
     /// Play of each piece.
-    pub plays: Vec<Option<Play>>,
+    pub joint_plays: Vec<Option<JointPlay>>,
     /// Forces between bounds that a member must keep.
-    pub held: Arc<[Held]>,
+    pub force_bounds: Arc<[ForceBound]>,
 }
 
 /// What may stand at a place of the chain.
@@ -86,7 +86,7 @@ impl Ladder {
 
 impl<'c> Problem<'c> {
     /// The problem with some of the options only: those below nodes of each level's whole tree.
-    pub fn narrowed_to(&self, kept: &[Vec<u32>]) -> Option<Self> {
+    pub fn restricted_to(&self, kept: &[Vec<u32>]) -> Option<Self> {
         let mut narrower = self.clone();
         for (&piece, nodes) in self.level_pieces.iter().zip(kept) {
             match &mut narrower.parts[piece] {
@@ -99,13 +99,13 @@ impl<'c> Problem<'c> {
     }
 
     /// Designs in a box, drives of a kind as one.
-    pub fn members(&self, cell: &[u32]) -> f64 {
+    pub fn members(&self, design_box: &[u32]) -> f64 {
         let of = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
             Part::Drives { tree, .. } => f64::from(tree.node(node).members),
             Part::Links { tree, .. } => f64::from(tree.node(node).members),
             _ => 1.0,
         };
-        self.level_pieces.iter().zip(cell).map(of).product()
+        self.level_pieces.iter().zip(design_box).map(of).product()
     }
 
     /// Numbers of each level's options below nodes of its whole tree, all drives of a kind.

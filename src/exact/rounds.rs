@@ -12,7 +12,7 @@ const TASKS: usize = 32;
 /// What a task leaves: tasks that come of it, the first to be done last, and what it found.
 pub(super) struct Done<T, F> {
     pub tasks: Vec<T>,
-    pub finds: F,
+    pub findings: F,
 }
 
 /// Does tasks and those that come of them, the last first; returns those that are left when the search is stopped.
@@ -29,7 +29,7 @@ pub(super) fn in_rounds<K: Sync, T: Send, F: Send>(
         let done: Vec<Done<T, F>> = round.into_par_iter().map(|one| task(known, one)).collect();
         for one in done {
             tasks.extend(one.tasks);
-            learn(known, one.finds);
+            learn(known, one.findings);
         }
     }
     tasks

@@ -5,11 +5,11 @@ use super::boxes::pass_by_boxes;
 use super::budget::Budget;
 use super::evolve::evolve;
 use super::gap::gap;
-use super::kinds::Alike;
-use super::known::Known;
+use super::kinds::Ties;
 use super::probe::probe;
 use super::problem::Problem;
 use super::regions::pass_by_regions;
+use super::search_state::SearchState;
 use crate::catalog::Catalogs;
 use crate::pareto::objectives::Objectives;
 use crate::search::sweep::Candidate;
@@ -143,24 +143,24 @@ impl<'p> Exact<'p> {
     }
 
     /// Finds the front, starting from designs that are known already.
-    pub fn run(&self, known: &[Objectives]) -> ExactOutcome {
-        self.run_of(self.problem(&|_| true, Alike::Together), known)
+    pub fn run(&self, state: &[Objectives]) -> ExactOutcome {
+        self.run_of(self.problem(&|_| true, Ties::Merged), state)
     }
 
     /// Finds the front of the designs whose chosen links are all of one material, by its index in the study.
     pub fn run_of_material(&self, material_index: usize) -> ExactOutcome {
         let is_of_it = |option: &LinkOption| option.material_index == material_index;
-        self.run_of(self.problem(&is_of_it, Alike::Together), &[])
+        self.run_of(self.problem(&is_of_it, Ties::Merged), &[])
     }
 
     /// The space with some of its link options; `None` if a level has none.
-    pub(super) fn problem(&self, takes: &dyn Fn(&LinkOption) -> bool, alike: Alike) -> Option<Problem<'p>> {
-        Problem::new(self.space, self.catalogs, takes, alike)
+    pub(super) fn problem(&self, takes: &dyn Fn(&LinkOption) -> bool, ties: Ties) -> Option<Problem<'p>> {
+        Problem::new(self.space, self.catalogs, takes, ties)
     }
 
     fn run_of(&self, whole: Option<Problem<'p>>, given: &[Objectives]) -> ExactOutcome {
-        let mut known = Known::default();
-        given.iter().for_each(|objectives| known.enter(objectives));
+        let mut state = SearchState::default();
+        given.iter().for_each(|objectives| state.enter(objectives));
         let (mut proven, mut last_slack, mut open) = (None, 0.0, Vec::new());
         if let Some(whole) = &whole {
             let designs = whole.designs() as f64;
@@ -169,9 +169,9 @@ impl<'p> Exact<'p> {
             if given.is_empty() {
                 let probes = if by_regions { PROBES_TO_EVOLVE } else { PROBES };
                 let probed =
-                    probe(&self.budget, whole, (probes * designs.log10().powi(2)) as usize, &mut known);
+                    probe(&self.budget, whole, (probes * designs.log10().powi(2)) as usize, &mut state);
                 if by_regions {
-                    evolve(&self.budget, whole, probed, &mut known);
+                    evolve(&self.budget, whole, probed, &mut state);
                 }
             }
             let helps = |slack: &f64| is_large && given.is_empty() && (by_regions || *slack >= FINE);
@@ -181,8 +181,8 @@ impl<'p> Exact<'p> {
             while let Some(&slack) = passes.get(next) {
                 let started = Instant::now();
                 open = match by_regions {
-                    true => pass_by_regions(&self.budget, whole, &mut known, slack, self.regions_to),
-                    false => pass_by_boxes(&self.budget, whole, &mut known, slack),
+                    true => pass_by_regions(&self.budget, whole, &mut state, slack, self.regions_to),
+                    false => pass_by_boxes(&self.budget, whole, &mut state, slack),
                 };
                 if !open.is_empty() {
                     last_slack = slack;
@@ -192,10 +192,10 @@ impl<'p> Exact<'p> {
                 next = self.next_pass(&passes, next, started);
             }
         }
-        let designs_evaluated = known.evaluated;
-        let front = known.into_front();
+        let designs_evaluated = state.evaluated;
+        let front = state.into_front();
         let (mut front, ties_listed) = match &whole {
-            Some(whole) => whole.of_kinds(&front, self.most_with_ties),
+            Some(whole) => whole.with_ties(&front, self.most_with_ties),
             None => (front, true),
         };
         front.sort_unstable_by_key(|c| c.number);

@@ -1,7 +1,7 @@
 //! Designs that differ only in drives of one kind.
 
-use super::bound::Work;
 use super::problem::{Part, Problem};
+use super::work::Work;
 use crate::search::sweep::Candidate;
 use crate::space::design::{number, options};
 use std::collections::{BTreeSet, HashMap};
@@ -9,13 +9,13 @@ use std::collections::{BTreeSet, HashMap};
 impl Problem<'_> {
     /// The designs that designs of kinds stand for: all of them if they are no more than `most`, else the first of each;
     /// and whether they are all.
-    pub fn of_kinds(&self, found: &[Candidate], most: usize) -> (Vec<Candidate>, bool) {
-        let of_kinds: Vec<(&Candidate, Vec<Vec<u32>>)> = self.drives_that_hold(found);
+    pub fn with_ties(&self, found: &[Candidate], most: usize) -> (Vec<Candidate>, bool) {
+        let with_ties: Vec<(&Candidate, Vec<Vec<u32>>)> = self.feasible_drives(found);
         let count = |lists: &Vec<Vec<u32>>| lists.iter().map(|list| list.len() as f64).product::<f64>();
-        let all: f64 = of_kinds.iter().map(|(_, lists)| count(lists)).sum();
+        let all: f64 = with_ties.iter().map(|(_, lists)| count(lists)).sum();
         let lists_all = all <= most as f64;
         let mut designs = Vec::new();
-        for (candidate, lists) in &of_kinds {
+        for (candidate, lists) in &with_ties {
             let mut chosen: Vec<Vec<u32>> = vec![Vec::new()];
             for list in lists {
                 let choices = if lists_all { &list[..] } else { &list[..1] };
@@ -33,21 +33,21 @@ impl Problem<'_> {
 
     /// What each level of a design of kinds may be, tip first and never empty: the drives of the kind that hold, those
     /// first that do by more than rounding.
-    fn drives_that_hold<'f>(&self, found: &'f [Candidate]) -> Vec<(&'f Candidate, Vec<Vec<u32>>)> {
+    fn feasible_drives<'f>(&self, found: &'f [Candidate]) -> Vec<(&'f Candidate, Vec<Vec<u32>>)> {
         let chosen: Vec<Option<Vec<u32>>> =
             found.iter().map(|candidate| options(&self.level_sizes, candidate.number)).collect();
         let leaves = self.leaves_of(&chosen);
         let mut work = Work::default();
         let mut lists_of = |options: &[u32]| -> Option<Vec<Vec<u32>>> {
-            let mut cell: Vec<u32> = options
+            let mut design_box: Vec<u32> = options
                 .iter()
                 .zip(&leaves)
                 .map(|(o, leaves)| leaves.get(o).copied())
                 .collect::<Option<_>>()?;
-            self.fill(&mut cell, &mut work)?;
+            self.fill(&mut design_box, &mut work)?;
             let levels = self.level_pieces.iter().zip(options);
             levels
-                .map(|(&piece, &option)| match (&self.parts[piece], &work.least[piece]) {
+                .map(|(&piece, &option)| match (&self.parts[piece], &work.least_demands[piece]) {
                     (Part::Drives { sized, kinds, .. }, Some(asked)) => {
                         let holds = |drive: &&u32| sized.table.limits(**drive as usize).hold(&asked.demand);
                         let mut drives: Vec<u32> =
@@ -55,7 +55,7 @@ impl Problem<'_> {
                         // those that hold whatever rounding does come first
                         let surely = |drive: &u32| {
                             let limits = sized.table.limits(*drive as usize);
-                            work.demands[piece].as_ref().is_some_and(|most| limits.hold(most))
+                            work.greatest_demands[piece].as_ref().is_some_and(|most| limits.hold(most))
                         };
                         drives.sort_by_key(|drive| !surely(drive));
                         (!drives.is_empty()).then_some(drives)

@@ -1,6 +1,6 @@
 //! Torsion curves of gears, and boxes of them.
 
-use super::play::Play;
+use super::joint_play::JointPlay;
 use crate::arm::joint_law::{Curve, JointLaw, Windup};
 
 /// Stiffness of a rigid gear beside lost motion: to any that yields it adds a part in 1e9 at the most \[N m/rad\].
@@ -69,9 +69,9 @@ impl CurveBox {
     /// Whether modes see one slope under all torques of these sizes, whichever gear it is, and its play does not change.
     pub fn keeps_its_slope(
         &self,
-        play: Option<&Play>,
+        play: Option<&JointPlay>,
         [least_nm, most_nm]: [f64; 2],
-        breaks: Breaks,
+        breaks: BreakPoints,
     ) -> bool {
         let between = |t_nm: f64| least_nm <= t_nm && t_nm <= most_nm;
         let keeps_its_segment = self.k1_in_modes
@@ -98,7 +98,7 @@ impl CurveBox {
     }
 
     /// Least and most twist between two torques, with the play beside it \[rad\].
-    pub fn twist(&self, play: Option<&Play>, [low, high]: [f64; 2]) -> [f64; 2] {
+    pub fn twist(&self, play: Option<&JointPlay>, [low, high]: [f64; 2]) -> [f64; 2] {
         let least = if low >= 0.0 { &self.stiff } else { &self.soft }.angle_rad(low);
         let most = if high >= 0.0 { &self.soft } else { &self.stiff }.angle_rad(high);
         let [less, more] = self.twist_of_play(play, [low, high]);
@@ -106,7 +106,7 @@ impl CurveBox {
     }
 
     /// What play adds to it.
-    pub fn twist_of_play(&self, play: Option<&Play>, between_nm: [f64; 2]) -> [f64; 2] {
+    pub fn twist_of_play(&self, play: Option<&JointPlay>, between_nm: [f64; 2]) -> [f64; 2] {
         let middle = [&self.stiff, &self.soft].map(|torsion| torsion.compliance[1]);
         play.map_or([0.0; 2], |play| play.twist(middle, between_nm))
     }
@@ -174,9 +174,9 @@ fn slopes(w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> 
 
 /// The break points of a set of curves, on a grid of about 5 %.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Breaks([u64; 4]);
+pub(super) struct BreakPoints([u64; 4]);
 
-impl Breaks {
+impl BreakPoints {
     const CELLS: f64 = 256.0;
     const OCTAVES: f64 = 18.0;
     const LEAST_LOG2: f64 = -4.0;

@@ -181,7 +181,7 @@ impl<B: Bounds> Tree<B> {
     }
 
     /// The smallest box with all the options below a node that may hold; `None` if there are none.
-    pub fn narrowed(&self, mut node: u32, holds: impl Fn(&B) -> bool) -> Option<u32> {
+    pub fn smallest_node(&self, mut node: u32, holds: impl Fn(&B) -> bool) -> Option<u32> {
         if !holds(&self.node(node).bounds) {
             return None;
         }

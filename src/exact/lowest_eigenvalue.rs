@@ -12,7 +12,7 @@ use crate::mechanics::Twist;
 const TOLERANCE: f64 = 1e-9;
 
 /// The inertia of a case, matrix by matrix: it is linear in the inertias of the parts.
-pub(super) struct Inertia {
+pub(super) struct CaseInertia {
     /// Piece and coordinate of each row.
     coordinates: Vec<(usize, usize)>,
     fixed: Vec<f64>,
@@ -20,7 +20,7 @@ pub(super) struct Inertia {
     forms: Vec<(usize, usize, Vec<f64>)>,
 }
 
-impl Inertia {
+impl CaseInertia {
     /// The matrices of a case, over the coordinates that yield in an arm.
     pub fn new(pose: &Pose, some_arm: &Ideal) -> Self {
         let mut coordinates = Vec::new();

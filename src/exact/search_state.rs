@@ -1,7 +1,7 @@
 //! What a search knows, and what a task adds to it.
 
-use super::archive::{Found, is_better};
-use super::bound::Ceiling;
+use super::bound::BoxBound;
+use super::incumbents::{Incumbents, is_better};
 use crate::pareto::front::not_clearly_beaten;
 use crate::pareto::objectives::Objectives;
 use crate::search::sweep::{Candidate, SLACK};
@@ -12,46 +12,46 @@ const BUFFER: usize = 4096;
 
 /// What all tasks of a round know.
 #[derive(Default)]
-pub(super) struct Known {
-    pub found: Found,
+pub(super) struct SearchState {
+    pub incumbents: Incumbents,
     /// Numbers of designs that were judged on the way.
     pub tried: HashSet<u128>,
     kept: Vec<Candidate>,
     /// Designs whose ceiling is not their objectives: a demand lies on a threshold. The full model judges them.
-    unsure: Vec<Candidate>,
+    undecided: Vec<Candidate>,
     pub evaluated: u64,
 }
 
 /// What a task found.
 #[derive(Default)]
-pub(super) struct Finds {
+pub(super) struct Findings {
     pub kept: Vec<Candidate>,
-    pub unsure: Vec<Candidate>,
+    pub undecided: Vec<Candidate>,
     pub tried: Vec<u128>,
     pub evaluated: u64,
 }
 
-impl Finds {
+impl Findings {
     /// Whether a design found beats every member of a box.
-    pub fn beats(&self, ceiling: &Ceiling) -> bool {
-        let best = Objectives::from(*ceiling);
+    pub fn dominates(&self, box_bound: &BoxBound) -> bool {
+        let best = Objectives::from(*box_bound);
         self.kept.iter().any(|c| is_better(&c.objectives, &best))
     }
 }
 
-impl Known {
+impl SearchState {
     /// A design that is known already, wherever from.
     pub fn enter(&mut self, objectives: &Objectives) {
-        self.found.enter(objectives);
+        self.incumbents.enter(objectives);
     }
 
     /// Takes in what a task found.
-    pub fn learn(&mut self, finds: Finds) {
-        self.evaluated += finds.evaluated;
-        self.tried.extend(finds.tried);
-        self.unsure.extend(finds.unsure);
-        for candidate in finds.kept {
-            self.found.enter(&candidate.objectives);
+    pub fn learn(&mut self, findings: Findings) {
+        self.evaluated += findings.evaluated;
+        self.tried.extend(findings.tried);
+        self.undecided.extend(findings.undecided);
+        for candidate in findings.kept {
+            self.incumbents.enter(&candidate.objectives);
             self.kept.push(candidate);
             if self.kept.len().is_power_of_two() && self.kept.len() > BUFFER {
                 clear(&mut self.kept);
@@ -68,7 +68,7 @@ impl Known {
         // what would have been cut had it come later goes, so that the order of discovery does not show
         let all = front.clone();
         front.retain(|c| !all.iter().any(|other| is_better(&other.objectives, &c.objectives)));
-        front.extend(self.unsure);
+        front.extend(self.undecided);
         front
     }
 }

@@ -8,7 +8,7 @@
 use super::parts::{STIFFNESSES, inertia};
 use super::pose::Row;
 use super::problem::{Part, Problem};
-use super::tradeoff::{Member, Rows};
+use super::rows::{RelaxedDesign, Rows};
 use super::tree::Key;
 
 /// Places of mass and stiffness among the coordinates of drives, and of tubes; what their logarithms are taken times.
@@ -23,16 +23,16 @@ const SAME: f64 = 1e-3;
 
 /// What is parted, and where.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Parting {
+pub(super) struct Branching {
     /// What it should gain, in parts of a row.
     gain: f64,
-    by: By,
+    by: BranchOn,
     at: f64,
 }
 
 /// What two halves differ in.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum By {
+pub(super) enum BranchOn {
     /// A level's options, along a coordinate.
     Options { level: usize, axis: usize },
     /// A force: that of a row of a case.
@@ -40,42 +40,42 @@ pub(super) enum By {
 }
 
 /// Members that together may be below a corner, and their shares.
-type Mixed<'a> = [(&'a Member, f64)];
+type Mixed<'a> = [(&'a RelaxedDesign, f64)];
 
-fn mean(mixed: &Mixed, of: impl Fn(&Member) -> f64) -> f64 {
+fn mean(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
     mixed.iter().map(|(member, share)| share * of(member)).sum()
 }
 
 /// How far members are from their mean.
-fn spread(mixed: &Mixed, of: impl Fn(&Member) -> f64) -> f64 {
+fn spread(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
     let middle = mean(mixed, &of);
     mean(mixed, |member| (of(member) - middle).abs())
 }
 
 impl Rows<'_> {
     /// Where to part levels, the most promising first.
-    pub fn partings(&self, mixed: &Mixed, weights: &[f64]) -> Vec<Parting> {
-        let mut partings = Vec::new();
-        let left_out = self.left_out(mixed, weights);
+    pub fn branchings(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
+        let mut branchings = Vec::new();
+        let left_out = self.left_out(mixed, multipliers);
         for (level, &piece) in self.problem.level_pieces.iter().enumerate() {
-            let key = |member: &Member| self.problem.key(level, member.cell[level]);
-            let rows = weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0);
+            let key = |member: &RelaxedDesign| self.problem.key(level, member.design_box[level]);
+            let rows = multipliers.iter().enumerate().filter(|(_, multiplier)| **multiplier > 0.0);
             let gain = rows.map(|(row, w)| w * spread(mixed, |member| self.added(member, piece, row))).sum();
             let spreads = [0, 1, 2, 3, 4].map(|axis| spread(mixed, |member| key(member)[axis]));
             let axis = (0..spreads.len()).max_by(|&a, &b| spreads[a].total_cmp(&spreads[b])).unwrap_or(0);
             if spreads[axis] > NOTHING {
                 let at = mean(mixed, |member| key(member)[axis]);
-                partings.push(Parting { gain, by: By::Options { level, axis }, at });
+                branchings.push(Branching { gain, by: BranchOn::Options { level, axis }, at });
             }
             for ((axis, best), gain) in self.best_of(piece).into_iter().zip(left_out[piece]) {
                 let at = 0.5 * (best + mean(mixed, |member| key(member)[axis]));
-                partings.push(Parting { gain, by: By::Options { level, axis }, at });
+                branchings.push(Branching { gain, by: BranchOn::Options { level, axis }, at });
             }
         }
-        partings.extend(self.by_torque(mixed, weights));
-        partings.retain(|parting| parting.gain > NOTHING);
-        partings.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        partings
+        branchings.extend(self.by_torque(mixed, multipliers));
+        branchings.retain(|branching| branching.gain > NOTHING);
+        branchings.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        branchings
     }
 
     /// The coordinates of mass and stiffness of a piece, and the box's best number of each.
@@ -90,15 +90,15 @@ impl Rows<'_> {
     }
 
     /// What the products of force and compliance leave out, by the weight and by the compliance of each piece.
-    fn left_out(&self, mixed: &Mixed, weights: &[f64]) -> Vec<[f64; 2]> {
+    fn left_out(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<[f64; 2]> {
         let mut left_out = vec![[0.0; 2]; self.problem.parts.len()];
         for (judged, tip) in self.tips.iter().enumerate() {
-            let weight = weights[1 + judged] / self.scale[1 + judged];
+            let multiplier = multipliers[1 + judged] / self.scale[1 + judged];
             for row in &self.problem.poses[tip.case].rows {
-                let way = self.work.tip_ways[judged].dot(&row.tip_m);
-                let heavier = self.heavier(mixed, judged, row, way);
+                let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
+                let heavier = self.heavier(mixed, judged, row, tip_per_unit);
                 let more: f64 = heavier.iter().sum();
-                let left = weight * self.product(mixed, judged, row, more);
+                let left = multiplier * self.product(mixed, judged, row, more);
                 if left > 0.0 {
                     left_out[row.piece][1] += left;
                     let pieces = left_out.iter_mut().zip(&heavier);
@@ -111,25 +111,25 @@ impl Rows<'_> {
 
     /// Partings by the torque on a joint, where it is far from known: for what the products of its own twist leave out,
     /// and those of the tubes between it and the next joint outboard; and where its gear is mixed of states apart.
-    fn by_torque(&self, mixed: &Mixed, weights: &[f64]) -> Vec<Parting> {
-        let mut partings = Vec::new();
+    fn by_torque(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
+        let mut branchings = Vec::new();
         for (judged, tip) in self.tips.iter().enumerate() {
-            let (case, weight) = (tip.case, weights[1 + judged] / self.scale[1 + judged]);
+            let (case, multiplier) = (tip.case, multipliers[1 + judged] / self.scale[1 + judged]);
             let mut left_out = 0.0;
             for (at, row) in self.problem.poses[case].rows.iter().enumerate() {
-                let way = self.work.tip_ways[judged].dot(&row.tip_m);
+                let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
                 let [low, high] = self.work.forces[case][at];
-                let least = if way > 0.0 { low } else { high };
-                let made = |member: &Member| -> f64 {
+                let least = if tip_per_unit > 0.0 { low } else { high };
+                let made = |member: &RelaxedDesign| -> f64 {
                     row.per_n.iter().zip(&member.weights_n[judged]).map(|(c, w)| c * w).sum()
                 };
                 let acting = row.fixed + mean(mixed, made);
-                left_out += weight * self.product(mixed, judged, row, acting - least);
+                left_out += multiplier * self.product(mixed, judged, row, acting - least);
                 if self.work.curves[row.piece].is_none() {
                     continue;
                 }
                 let apart = self.free_gear(judged, row.piece).map_or(0.0, |next| {
-                    (weights[next] + weights[next + 1]) * spread(mixed, |member| member.values[next])
+                    (multipliers[next] + multipliers[next + 1]) * spread(mixed, |member| member.values[next])
                 });
                 let gain = left_out + apart;
                 let at_nm = if apart > left_out { acting } else { 0.5 * (least + acting) };
@@ -138,26 +138,26 @@ impl Rows<'_> {
                     && low + margin < at_nm
                     && at_nm < high - margin
                 {
-                    partings.push(Parting { gain, by: By::Force { case, row: at }, at: at_nm });
+                    branchings.push(Branching { gain, by: BranchOn::Force { case, row: at }, at: at_nm });
                 }
                 left_out = 0.0;
             }
         }
-        partings
+        branchings
     }
 
     /// Way of the tip by what a force is above its least times what its coordinate yields above its least \[m\].
     fn product(&self, mixed: &Mixed, judged: usize, row: &Row, more: f64) -> f64 {
-        let way = self.work.tip_ways[judged].dot(&row.tip_m);
-        (way * more * self.softer(mixed, judged, row)).abs()
+        let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
+        (tip_per_unit * more * self.softer(mixed, judged, row)).abs()
     }
 
     /// By how much the weight of each piece makes a force greater than the least.
-    fn heavier(&self, mixed: &Mixed, judged: usize, row: &Row, way: f64) -> Vec<f64> {
-        let weights = row.per_n.iter().zip(&self.work.weights[self.tips[judged].case]).enumerate();
-        weights
+    fn heavier(&self, mixed: &Mixed, judged: usize, row: &Row, tip_per_unit: f64) -> Vec<f64> {
+        let multipliers = row.per_n.iter().zip(&self.work.weights[self.tips[judged].case]).enumerate();
+        multipliers
             .map(|(piece, (per_n, [light, heavy]))| {
-                let least = if way * per_n > 0.0 { light } else { heavy };
+                let least = if tip_per_unit * per_n > 0.0 { light } else { heavy };
                 per_n * (mean(mixed, |member| member.weights_n[judged][piece]) - least)
             })
             .collect()
@@ -191,22 +191,22 @@ impl Problem<'_> {
     }
 
     /// The two halves of what is kept; `None` if all is on one side.
-    pub fn parted(&self, kept: &[Vec<u32>], parting: &Parting) -> Option<[Self; 2]> {
-        match parting.by {
-            By::Options { level, axis } => {
-                let [low, high] = self.parted_options(kept, level, axis, parting.at)?;
-                Some([self.narrowed_to(&low)?, self.narrowed_to(&high)?])
+    pub fn branch(&self, kept: &[Vec<u32>], branching: &Branching) -> Option<[Self; 2]> {
+        match branching.by {
+            BranchOn::Options { level, axis } => {
+                let [low, high] = self.branch_on_options(kept, level, axis, branching.at)?;
+                Some([self.restricted_to(&low)?, self.restricted_to(&high)?])
             }
-            By::Force { case, row } => {
-                let narrower = self.narrowed_to(kept)?;
-                let halves = [[f64::NEG_INFINITY, parting.at], [parting.at, f64::INFINITY]];
-                Some(halves.map(|half| narrower.holding(case, row, half)))
+            BranchOn::Force { case, row } => {
+                let narrower = self.restricted_to(kept)?;
+                let halves = [[f64::NEG_INFINITY, branching.at], [branching.at, f64::INFINITY]];
+                Some(halves.map(|half| narrower.with_force_bound(case, row, half)))
             }
         }
     }
 
     /// Two lists of nodes of the whole trees, one on each side of a coordinate of a level's options.
-    fn parted_options(
+    fn branch_on_options(
         &self,
         kept: &[Vec<u32>],
         level: usize,

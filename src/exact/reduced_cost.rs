@@ -1,11 +1,11 @@
 //! Which options a member below a corner may have at all: those whose price the corner can afford when every other
 //! part is the cheapest (reduced costs).
 
-use super::corners::Corner;
+use super::dual_price::{DualPrice, GearStates, JointPrice};
+use super::local_upper_bounds::LocalUpperBound;
 use super::parts::{DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
-use super::price::{Ends, JointPrice, Price};
 use super::problem::Part;
-use super::tradeoff::{Plane, ROUNDING, Rows};
+use super::rows::{DualPoint, ROUNDING, Rows};
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
 
 /// Boxes of options a level is looked at in, about.
@@ -14,19 +14,24 @@ const BOXES: usize = 256;
 const STRICTEST: usize = 32;
 
 /// The price of a level's options under a weighting, and what the corner can afford.
-type Afforded = (Price, f64);
+type PricedLimit = (DualPrice, f64);
 
 impl Rows<'_> {
     /// The nodes of each level's whole tree that hold what no weighting excludes; `None` if some level has none.
-    pub fn kept(&self, cell: &[u32], planes: &[Plane], corner: &Corner) -> Option<Vec<Vec<u32>>> {
-        let mut strict: Vec<(f64, Vec<f64>, &[f64])> = planes
+    pub fn affordable_options(
+        &self,
+        design_box: &[u32],
+        points: &[DualPoint],
+        upper: &LocalUpperBound,
+    ) -> Option<Vec<Vec<u32>>> {
+        let mut strict: Vec<(f64, Vec<f64>, &[f64])> = points
             .iter()
-            .map(|plane| {
-                let room = self.weighted(&plane.weights, corner) - plane.least + ROUNDING;
+            .map(|point| {
+                let room = self.allowed_sum(&point.multipliers, upper) - point.least + ROUNDING;
                 // modes that were added later had no say
-                let mut weights = plane.weights.clone();
-                weights.resize(self.scale.len(), 0.0);
-                (room, weights, &plane.levels[..])
+                let mut multipliers = point.multipliers.clone();
+                multipliers.resize(self.scale.len(), 0.0);
+                (room, multipliers, &point.levels[..])
             })
             .collect();
         strict.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -34,22 +39,22 @@ impl Rows<'_> {
         let levels = self.problem.level_pieces.iter().enumerate();
         levels
             .map(|(level, &piece)| {
-                let afforded: Vec<Afforded> = strict
+                let afforded: Vec<PricedLimit> = strict
                     .iter()
-                    .map(|(room, weights, levels)| (self.price(piece, weights), levels[level] + room))
+                    .map(|(room, multipliers, levels)| (self.price(piece, multipliers), levels[level] + room))
                     .collect();
-                let kept = self.affordable(piece, cell[level], &afforded);
+                let kept = self.affordable(piece, design_box[level], &afforded);
                 (!kept.is_empty()).then_some(kept)
             })
             .collect()
     }
 
-    fn affordable(&self, piece: usize, node: u32, afforded: &[Afforded]) -> Vec<u32> {
+    fn affordable(&self, piece: usize, node: u32, afforded: &[PricedLimit]) -> Vec<u32> {
         let prices: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
         let prices = &prices[..];
         match &self.problem.parts[piece] {
             Part::Drives { tree, .. } => {
-                let asked = self.work.least[piece].as_ref();
+                let asked = self.work.least_demands[piece].as_ref();
                 let gears = afforded.first().map_or(&[][..], |(price, _)| &price.joint);
                 tree.kept(node, BOXES, |drives| {
                     asked.is_none_or(|asked| drives.may_hold(asked))
@@ -76,8 +81,8 @@ struct EightPrices {
 
 impl EightPrices {
     /// Where there are fewer anything can be afforded.
-    fn new(afforded: &[Afforded]) -> Self {
-        let lanes = |of: &dyn Fn(&Price) -> f64| -> Eight {
+    fn new(afforded: &[PricedLimit]) -> Self {
+        let lanes = |of: &dyn Fn(&DualPrice) -> f64| -> Eight {
             std::array::from_fn(|lane| afforded.get(lane).map_or(0.0, |(price, _)| of(price)))
         };
         let joints = afforded.first().map_or(0, |(price, _)| price.joint.len());
@@ -112,7 +117,7 @@ impl LaneWork for DrivesCost<'_> {
     #[inline(always)]
     fn run<V: Lanes>(self) -> bool {
         let Self { drives, gears, prices } = self;
-        let mut ends = Ends::default();
+        let mut ends = GearStates::default();
         let mut left = [V::zero(); STRICTEST / LANES];
         for (left, eight) in left.iter_mut().zip(prices) {
             *left = V::load(&eight.most) - least::<V>(&eight.inertia[inertia::MASS], drives.mass_kg);
@@ -188,23 +193,23 @@ mod tests {
     use proptest::prelude::*;
 
     /// Prices with what can be afforded at each: more than it costs, but at one of them, or none, less.
-    fn afforded(prices: Vec<Price>, cost: impl Fn(&Price) -> f64, dear: usize) -> Vec<Afforded> {
+    fn afforded(prices: Vec<DualPrice>, cost: impl Fn(&DualPrice) -> f64, dear: usize) -> Vec<PricedLimit> {
         let room = |at: usize| if at == dear { -0.1 } else { 0.1 };
-        let afford = |(at, price): (usize, Price)| {
+        let afford = |(at, price): (usize, DualPrice)| {
             let cost = cost(&price);
             (price, cost + room(at) * (1.0 + cost.abs()))
         };
         prices.into_iter().enumerate().map(afford).collect()
     }
 
-    fn excluded_one_by_one(afforded: &[Afforded], cost: impl Fn(&Price) -> f64) -> bool {
+    fn excluded_one_by_one(afforded: &[PricedLimit], cost: impl Fn(&DualPrice) -> f64) -> bool {
         afforded.iter().any(|(price, most)| cost(price) > *most)
     }
 
-    fn price(numbers: &[f64]) -> Price {
+    fn price(numbers: &[f64]) -> DualPrice {
         let mut numbers = numbers.iter().copied();
         let mut next = || numbers.next().unwrap_or_default();
-        Price {
+        DualPrice {
             inertia: std::array::from_fn(|_| next()),
             compliance: std::array::from_fn(|_| next()),
             stiffness: std::array::from_fn(|_| next().max(0.0)),
@@ -240,7 +245,7 @@ mod tests {
             let links =
                 LinkBox { low, high, compliances, stress: [0.0; 4], round: false, cost_eur_per_m: 0.0 };
             let prices = prices.iter().map(|numbers| price(numbers)).collect();
-            let cost = |price: &Price| price.of_tube(&links);
+            let cost = |price: &DualPrice| price.of_tube(&links);
             let afforded = afforded(prices, cost, dear);
             let eights: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
             let excluded = in_lanes(LinksCost { links: &links, prices: &eights });
@@ -272,11 +277,11 @@ mod tests {
                 twist: n[0], torque: n[1], slope: n[2].max(0.0),
                 torques_nm: [torques[g].0, torques[g].0 + torques[g].1], play: None,
             };
-            let prices = prices.iter().map(|n| Price {
+            let prices = prices.iter().map(|n| DualPrice {
                 joint: vec![joint(0, &n[2..5]), joint(1, &n[5..8])],
                 ..price(&n[..1])
             });
-            let cost = |price: &Price| price.of_joint(drives.mass_kg, drives.curve.as_ref());
+            let cost = |price: &DualPrice| price.of_joint(drives.mass_kg, drives.curve.as_ref());
             let afforded = afforded(prices.collect(), cost, dear);
             let eights: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
             let gears = &afforded[0].0.joint;

@@ -3,7 +3,7 @@
 //! A table ([`Archive`]) answers for designs that are better by a cell in mass and deflection; a list a
 //! row and a list a column of cells hold the designs that share one of them.
 
-use super::bound::Ceiling;
+use super::bound::BoxBound;
 use crate::pareto::archive::Archive;
 use crate::pareto::objectives::Objectives;
 use std::collections::HashMap;
@@ -18,20 +18,20 @@ const NEAR: f64 = 0.4;
 const STEPS: f64 = 64.0;
 
 /// Designs that meet every constraint.
-pub(super) struct Found {
+pub(super) struct Incumbents {
     table: Archive,
     rows: HashMap<i32, Vec<Objectives>>,
     columns: HashMap<i32, Vec<Objectives>>,
     all: Vec<Objectives>,
 }
 
-impl Default for Found {
+impl Default for Incumbents {
     fn default() -> Self {
         Self { table: Archive::new(6), rows: HashMap::new(), columns: HashMap::new(), all: Vec::new() }
     }
 }
 
-impl Found {
+impl Incumbents {
     /// Enters a design that meets every constraint.
     pub fn enter(&mut self, found: &Objectives) {
         self.table.enter(found);
@@ -57,8 +57,8 @@ impl Found {
     }
 
     /// Whether some design found beats every member of a box.
-    pub fn beats(&self, ceiling: &Ceiling) -> bool {
-        let best = Objectives::from(*ceiling);
+    pub fn dominates(&self, box_bound: &BoxBound) -> bool {
+        let best = Objectives::from(*box_bound);
         if self.table.rejects(&best) {
             return true;
         }
@@ -70,8 +70,8 @@ impl Found {
 
     /// Whether some design found would beat the box if its ceiling were a little lower in frequency: then
     /// a better trial shape is worth its price.
-    pub fn nearly_beats(&self, ceiling: &Ceiling) -> bool {
-        self.beats(&Ceiling { hz: ceiling.hz * NEAR, ..*ceiling })
+    pub fn nearly_dominates(&self, box_bound: &BoxBound) -> bool {
+        self.dominates(&BoxBound { hz: box_bound.hz * NEAR, ..*box_bound })
     }
 }
 

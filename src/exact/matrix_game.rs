@@ -134,9 +134,9 @@ mod tests {
                 let worst = (0..6).min_by(|&a, &b| counts[a].total_cmp(&counts[b])).unwrap();
                 sums.iter_mut().zip(&rows[worst * 4..]).for_each(|(s, a)| *s += a);
                 if step == 4000 {
-                    let ceiling = sums.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s / 4000.0));
-                    prop_assert!(value <= ceiling + 1e-9, "{value} {ceiling}");
-                    prop_assert!(value >= ceiling - 0.1, "{value} {ceiling}");
+                    let box_bound = sums.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s / 4000.0));
+                    prop_assert!(value <= box_bound + 1e-9, "{value} {box_bound}");
+                    prop_assert!(value >= box_bound - 0.1, "{value} {box_bound}");
                 }
             }
         }

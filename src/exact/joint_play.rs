@@ -11,13 +11,13 @@ const AT_REST: f64 = 1e-8;
 
 /// What twists beside a joint's torsion curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Play {
+pub(super) struct JointPlay {
     lost_motion: Option<LostMotion>,
     /// Half width of what friction holds back \[rad\].
     friction_rad: f64,
 }
 
-impl Play {
+impl JointPlay {
     /// That of a joint; `None` if it has none.
     pub fn of(law: &JointLaw) -> Option<Self> {
         let play = Self { lost_motion: law.lost_motion, friction_rad: law.hysteresis_rad };
@@ -83,7 +83,7 @@ mod tests {
                 .iter()
                 .map(|curve| JointLaw { lost_motion, hysteresis_rad: friction_rad, ..(*curve).into() })
                 .collect();
-            let play = Play::of(&laws[0]).expect("play");
+            let play = JointPlay::of(&laws[0]).expect("play");
             let range = [ends[0].min(ends[1]), ends[0].max(ends[1])];
             let boxes = || laws.iter().filter_map(CurveBox::of);
             let all = boxes().reduce(|a, b| a.join(&b)).expect("curves");

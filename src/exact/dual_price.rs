@@ -1,7 +1,7 @@
 //! What a part costs when every number of it has a price, and the cheapest part below a node of a tree.
 
+use super::joint_play::JointPlay;
 use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia};
-use super::play::Play;
 use super::torsion::{CurveBox, segments};
 use super::tree::{Bounds, Tree};
 use std::cmp::Ordering;
@@ -50,7 +50,7 @@ impl Gear {
 
 /// The price of a piece: of each of its numbers.
 #[derive(Default)]
-pub(super) struct Price {
+pub(super) struct DualPrice {
     /// Per line inertia of a tube; per kg of anything else in the first place.
     pub inertia: [f64; INERTIAS],
     /// Per compliance of a tube, and what each stiffness earns.
@@ -67,7 +67,7 @@ pub(super) struct JointPrice {
     pub torque: f64,
     pub slope: f64,
     pub torques_nm: [f64; 2],
-    pub play: Option<Play>,
+    pub play: Option<JointPlay>,
 }
 
 /// A gear's state.
@@ -81,7 +81,7 @@ pub(super) struct JointState {
 /// A state of a gear that is worth a price: twist is linear in the torque within a segment, so the ends of the segments
 /// are enough. Of a box of gears the least and the greatest twist, without the play, and the greatest slope, with it.
 #[derive(Clone, Copy, Default)]
-pub(super) struct End {
+pub(super) struct GearState {
     pub torque_nm: f64,
     pub twist_rad: [f64; 2],
     pub slope: f64,
@@ -89,37 +89,42 @@ pub(super) struct End {
 
 /// The ends of a gear: two of each of three segments under torques of either sign, at the most.
 #[derive(Default)]
-pub(super) struct Ends {
-    all: [End; 12],
+pub(super) struct GearStates {
+    all: [GearState; 12],
     count: usize,
 }
 
-impl Ends {
+impl GearStates {
     #[inline]
-    pub fn as_slice(&self) -> &[End] {
+    pub fn as_slice(&self) -> &[GearState] {
         &self.all[..self.count]
     }
 }
 
 /// Shows the ends of a curve between two torques \[N m\].
 #[inline(always)]
-fn each_end(curve: &CurveBox, play: Option<&Play>, [low_nm, high_nm]: [f64; 2], see: &mut impl FnMut(End)) {
+fn each_state(
+    curve: &CurveBox,
+    play: Option<&JointPlay>,
+    [low_nm, high_nm]: [f64; 2],
+    see: &mut impl FnMut(GearState),
+) {
     if high_nm >= 0.0 {
-        each_end_of_sign(curve, play, 1.0, [low_nm.max(0.0), high_nm], see);
+        each_state_of_sign(curve, play, 1.0, [low_nm.max(0.0), high_nm], see);
     }
     if low_nm < 0.0 {
-        each_end_of_sign(curve, play, -1.0, [(-high_nm).max(0.0), -low_nm], see);
+        each_state_of_sign(curve, play, -1.0, [(-high_nm).max(0.0), -low_nm], see);
     }
 }
 
 /// The same of torques of one sign, by their sizes.
 #[inline(always)]
-fn each_end_of_sign(
+fn each_state_of_sign(
     curve: &CurveBox,
-    play: Option<&Play>,
+    play: Option<&JointPlay>,
     sign: f64,
     [low, high]: [f64; 2],
-    see: &mut impl FnMut(End),
+    see: &mut impl FnMut(GearState),
 ) {
     let w = &curve.stiff.windup;
     for (segment, (slope, start, end)) in segments(w).into_iter().enumerate() {
@@ -131,7 +136,7 @@ fn each_end_of_sign(
             let most = sign * curve.soft.angle_rad(to);
             for torque in [from, to].into_iter().take(if from < to { 2 } else { 1 }) {
                 let least = sign * curve.stiff.angle_in(segment, torque);
-                see(End { torque_nm: sign * torque, twist_rad: [least, most], slope });
+                see(GearState { torque_nm: sign * torque, twist_rad: [least, most], slope });
             }
         }
         if high <= end {
@@ -145,8 +150,8 @@ impl JointPrice {
     pub fn best_of(&self, curve: Option<&CurveBox>) -> (f64, JointState) {
         let Some(curve) = curve else { return self.rigid() };
         let mut best = (f64::INFINITY, JointState::default());
-        each_end(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
-            let price = self.of_end(&end);
+        each_state(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
+            let price = self.of_state(&end);
             if price < best.0 {
                 let [least, most] = end.twist_rad;
                 let twist_rad = if self.twist * most < self.twist * least { most } else { least };
@@ -161,23 +166,23 @@ impl JointPrice {
     pub fn least_of(&self, curve: Option<&CurveBox>) -> f64 {
         let Some(curve) = curve else { return self.rigid().0 };
         let mut least = f64::INFINITY;
-        each_end(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
-            least = least.min(self.of_end(&end));
+        each_state(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
+            least = least.min(self.of_state(&end));
         });
         least
     }
 
     #[inline]
-    fn of_end(&self, end: &End) -> f64 {
+    fn of_state(&self, end: &GearState) -> f64 {
         let [least, most] = end.twist_rad.map(|twist| self.twist * twist);
         least.min(most) + self.torque * end.torque_nm - self.slope * end.slope
     }
 
     /// The states of a joint with this curve that are worth a price.
     #[inline]
-    pub fn ends(&self, curve: &CurveBox, ends: &mut Ends) {
+    pub fn ends(&self, curve: &CurveBox, ends: &mut GearStates) {
         ends.count = 0;
-        each_end(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
+        each_state(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
             ends.all[ends.count] = end;
             ends.count += 1;
         });
@@ -194,7 +199,7 @@ impl JointPrice {
     }
 }
 
-impl Price {
+impl DualPrice {
     /// Of a joint's drive; of a box of drives, no more than that of any.
     pub fn of_joint(&self, mass_kg: [f64; 2], curve: Option<&CurveBox>) -> f64 {
         self.of_mass(mass_kg) + self.joint.iter().map(|price| price.least_of(curve)).sum::<f64>()

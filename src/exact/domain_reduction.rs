@@ -1,11 +1,11 @@
 //! What a design may be made of that is as good as a known one: of a space too large to tabulate this leaves few parts.
 
-use super::bound::Work;
-use super::corners::Corner;
-use super::kinds::Alike;
-use super::left::Left;
+use super::kinds::Ties;
+use super::local_upper_bounds::LocalUpperBound;
 use super::problem::Problem;
-use super::regions::Zone;
+use super::region_bound::Survivors;
+use super::regions::Subproblem;
+use super::work::Work;
 use crate::catalog::Catalogs;
 use crate::pareto::objectives::Objectives;
 use crate::space::design_space::DesignSpace;
@@ -18,45 +18,43 @@ const MOST_PARTED: usize = 50;
 const FEW: f64 = 1e6;
 
 /// A design space compiled for the question which parts reach as far as a known design.
-pub struct Reach<'p> {
+pub struct DomainReduction<'p> {
     problem: Problem<'p>,
 }
 
-impl<'p> Reach<'p> {
+impl<'p> DomainReduction<'p> {
     /// Compiles a space; `None` if some level has no option.
     pub fn new(space: &'p DesignSpace, catalogs: &'p Catalogs) -> Option<Self> {
-        Some(Self { problem: Problem::new(space, catalogs, &|_| true, Alike::Together)? })
+        Some(Self { problem: Problem::new(space, catalogs, &|_| true, Ties::Merged)? })
     }
 
     /// The options of each level, tip first and ascending, that a design may have that is no worse than a known one in all
     /// three objectives; `None` if there is no such design, the known one included.
     pub fn options_as_good(&self, known: &Objectives) -> Option<Vec<Vec<u32>>> {
-        let corner = Corner {
+        let upper = LocalUpperBound {
             mass_kg: known.mass_kg * (1.0 + ROOM),
             tip_m: known.tip_deflection_m * (1.0 + ROOM),
             hz: known.lowest_mode_hz * (1.0 - ROOM),
         };
         let mut work = Work::default();
-        let whole = Zone::whole(&self.problem, 0, &mut work)?;
-        let mut open = Vec::from_iter(Narrowed::new(whole, &corner, &mut work));
+        let whole = Subproblem::whole(&self.problem, 0, &mut work)?;
+        let mut open = Vec::from_iter(Reduced::new(whole, &upper, &mut work));
         let mut closed = Vec::new();
         for _ in 0..MOST_PARTED {
             let largest = (0..open.len()).max_by(|&a, &b| open[a].designs.total_cmp(&open[b].designs));
             let Some(at) = largest.filter(|&at| open[at].designs > FEW) else { break };
             let next = open.swap_remove(at);
-            match next.zone.parted(&next.left, &mut work) {
+            match next.subproblem.branch(&next.survivors, &mut work) {
                 Some(halves) => {
-                    open.extend(
-                        halves.into_iter().filter_map(|half| Narrowed::new(half, &corner, &mut work)),
-                    );
+                    open.extend(halves.into_iter().filter_map(|half| Reduced::new(half, &upper, &mut work)));
                 }
                 None => closed.push(next),
             }
         }
         open.append(&mut closed);
         let mut options = vec![BTreeSet::new(); self.problem.level_sizes.len()];
-        for narrowed in &open {
-            let below = self.problem.options_below(&narrowed.left.kept);
+        for reduced in &open {
+            let below = self.problem.options_below(&reduced.survivors.options);
             options.iter_mut().zip(below).for_each(|(all, some)| all.extend(some));
         }
         (!open.is_empty()).then(|| options.into_iter().map(Vec::from_iter).collect())
@@ -64,19 +62,19 @@ impl<'p> Reach<'p> {
 }
 
 /// A zone narrowed as far as that is worth it.
-struct Narrowed<'p> {
-    zone: Zone<'p>,
-    left: Left,
+struct Reduced<'p> {
+    subproblem: Subproblem<'p>,
+    survivors: Survivors,
     designs: f64,
 }
 
-impl<'p> Narrowed<'p> {
-    fn new(mut zone: Zone<'p>, corner: &Corner, work: &mut Work) -> Option<Self> {
+impl<'p> Reduced<'p> {
+    fn new(mut subproblem: Subproblem<'p>, upper: &LocalUpperBound, work: &mut Work) -> Option<Self> {
         loop {
-            let (left, narrowed) = zone.narrow(corner, work, |_| false)?;
-            if !narrowed {
-                let designs = zone.designs_of(&left);
-                return Some(Self { zone, left, designs });
+            let (survivors, reduced) = subproblem.reduce(upper, work, |_| false)?;
+            if !reduced {
+                let designs = subproblem.designs_of(&survivors);
+                return Some(Self { subproblem, survivors, designs });
             }
         }
     }
