@@ -1,12 +1,12 @@
-//! The bound of a box: the best that any of its members could be.
+//! The bound of a box: the best that any of its members could be, objective by objective.
 //!
 //! | objective | bound of the box |
 //! |---|---|
-//! | mass | every part at its least |
-//! | tip deflection | torques, forces and compliances as intervals; the point of the tip's box nearest to rest |
-//! | lowest mode | Rayleigh's quotient ([`shape`](super::shape)) of every stiffness at its greatest over every inertia at its least; a gear's slope, and its play's, at the largest torque it may carry |
+//! | mass | the sum of the least masses |
+//! | tip deflection | torques, forces and compliances are intervals and give a box for the tip's displacement; the bound is the distance of that box from zero |
+//! | lowest mode | the Rayleigh quotient of a trial shape ([`shape`](super::shape)) with every stiffness at its greatest and every inertia at its least; the slope of a gear's curve is the greatest that it has under the torques of the box |
 //!
-//! A joint or link that cannot hold even the least demand makes the whole box infeasible.
+//! If a joint or a link cannot carry even its least load, the whole box is infeasible.
 
 use super::intervals::ROUNDING;
 use super::pose::{Pose, PosedPiece, RESISTED, degree_factor};
@@ -17,17 +17,17 @@ use crate::pareto::objectives::Objectives;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// A shape that improves by less than this is as good as it gets.
+/// Refinement of the trial shapes stops when the bound improves by less than this (relative).
 const SETTLED: f64 = 1e-10;
-/// Accelerations of the base that trial shapes start from: vertical, and sideways with a little forward.
+/// Accelerations of the base from which the trial shapes start: vertical, and sideways with a little forward.
 pub(super) const STARTS: [[f64; 3]; 2] = [[0.0, 0.0, 1.0], [0.3, 1.0, 0.0]];
-/// Steps at the most on one box.
+/// Greatest number of refinement steps on one box.
 const MOST_STEPS: usize = 30;
 
-/// A box of designs: a node of each level's tree.
+/// A box of designs: one node of each level's tree, tip first.
 pub(super) type DesignBox = Vec<u32>;
 
-/// The best that a member of a box could be.
+/// The best objectives that a member of a box could have. No member is better in any of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BoxBound {
     pub mass_kg: f64,
@@ -36,10 +36,10 @@ pub(super) struct BoxBound {
 }
 
 impl BoxBound {
-    /// Of a box of which nothing is known.
+    /// The bound of a box about which nothing is known.
     pub const OPEN: Self = Self { mass_kg: 0.0, tip_m: 0.0, hz: f64::INFINITY };
 
-    /// The ceiling worsened by a part in all three.
+    /// The bound with all three objectives made worse by the factor `1 + slack`.
     pub fn slackened(&self, slack: f64) -> Self {
         let factor = 1.0 + slack;
         Self { mass_kg: self.mass_kg * factor, tip_m: self.tip_m * factor, hz: self.hz / factor }
@@ -52,21 +52,22 @@ impl From<BoxBound> for Objectives {
     }
 }
 
-/// What is known of a box.
+/// The result of bounding a box.
 pub(super) enum Verdict {
-    /// No member meets the constraints, or a design found is better than any.
+    /// No member meets the constraints, or an incumbent dominates the bound.
     Pruned,
     /// Some member may be on the front.
     Open(BoxBound),
 }
 
 impl<'c> Problem<'c> {
-    /// The box of everything.
+    /// The box of all designs.
     pub fn root(&self) -> DesignBox {
         vec![0; self.level_pieces.len()]
     }
 
-    /// The objectives of a box of one whose ceiling is known: the ceiling, with its mode made sure of.
+    /// The objectives of a box of one design. Mass and deflection are those of the bound; the mode is
+    /// computed exactly, because a trial shape gives only an upper bound of it.
     pub fn objectives(&self, box_bound: &BoxBound, work: &Work) -> Objectives {
         let quotient = (box_bound.hz * std::f64::consts::TAU).powi(2);
         let lowest =
@@ -84,7 +85,8 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// First shapes: the box of everything, started vertically and sideways in each judged case.
+    /// The first trial shapes: those of the box of all designs, one for each start in each judged case.
+    /// `None` if no design meets the constraints.
     pub fn first_shapes(&self, work: &mut Work) -> Option<Vec<Shape>> {
         self.fill(&mut self.root(), work)?;
         self.least_tip_m(work)?;
@@ -101,8 +103,9 @@ impl<'c> Problem<'c> {
         Some(shapes)
     }
 
-    /// Bounds a box. `shapes` come from the box above and are replaced by this box's own where that helps.
-    /// `beaten` tells whether a design found is better than a ceiling.
+    /// Bounds a box. `shapes` are the trial shapes of the parent box; they are replaced by this box's own
+    /// where that helps. `is_dominated` tells whether an incumbent dominates a bound, and `worth_refining`
+    /// whether a better shape could prune the box.
     pub fn bound(
         &self,
         design_box: &mut [u32],
@@ -117,13 +120,15 @@ impl<'c> Problem<'c> {
         let Some(mut box_bound) = self.first_bound(design_box, shapes, work, &fails) else {
             return Verdict::Pruned;
         };
+        // A step of inverse iteration costs about as much as the rest of the bound, so it is made only where
+        // it can prune the box. A single design is refined in any case, for its mode is reported.
         if !work.is_point() && !worth_refining(&box_bound) {
             return Verdict::Open(box_bound);
         }
         self.refine(&mut box_bound, Arc::make_mut(shapes).as_mut_slice(), work, fails)
     }
 
-    /// The ceiling of a box with the shapes of the box above; `None` if no member can be on the front.
+    /// The bound of a box with the trial shapes of its parent. `None` if no member can be on the front.
     fn first_bound(
         &self,
         design_box: &mut [u32],
@@ -161,7 +166,7 @@ impl<'c> Problem<'c> {
         Some(box_bound)
     }
 
-    /// Improves the shapes until the box is cut or none moves any more.
+    /// Improves the trial shapes until the box is pruned or the bound no longer moves.
     fn refine(
         &self,
         box_bound: &mut BoxBound,
@@ -174,6 +179,8 @@ impl<'c> Problem<'c> {
             let before = box_bound.hz;
             for (judged, case) in self.judged_cases().enumerate() {
                 for start in 0..STARTS.len() {
+                    // The second shape is kept orthogonal to the first. Without that both would converge to
+                    // the same mode and the bound would miss a soft plane.
                     let (others, rest) = shapes[judged * STARTS.len()..].split_at_mut(start);
                     let shape = &mut rest[0];
                     let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
@@ -195,7 +202,8 @@ impl<'c> Problem<'c> {
         Verdict::Open(*box_bound)
     }
 
-    /// Least deflection of the tip in the worst judged case \[m\]; `None` if no member has the forces that are held.
+    /// Least deflection of the tip in the worst judged case \[m\]. `None` if no member has forces within the
+    /// force bounds of the problem.
     pub(super) fn least_tip_m(&self, work: &mut Work) -> Option<f64> {
         let mut worst = 0.0f64;
         work.worst_tip = None;
@@ -233,6 +241,8 @@ impl<'c> Problem<'c> {
             if !pose.contributions_align {
                 work.greatest_tip_m.push(most_m);
             }
+            // Each component of the tip's displacement has its own interval, so the nearest point of the box
+            // to zero is found component by component.
             let nearest = Vector3::from(tip_m.map(|[low, high]| if low > 0.0 { low } else { high.min(0.0) }));
             work.tip_directions.push(nearest.try_normalize(0.0).unwrap_or_default());
             if nearest.norm() > worst {
@@ -247,7 +257,7 @@ impl<'c> Problem<'c> {
         (0..self.poses.len()).filter(|&case| self.poses[case].judged)
     }
 
-    /// The options of a box of one, tip first.
+    /// The options of a box of one design, tip first. `None` if the box has several designs.
     pub fn options(&self, design_box: &[u32]) -> Option<Vec<u32>> {
         self.level_pieces
             .iter()
@@ -265,7 +275,8 @@ fn hertz(lambda: f64) -> f64 {
     lambda.sqrt() / std::f64::consts::TAU * (1.0 + ROUNDING)
 }
 
-/// A tube's coordinate between two forces.
+/// The strain coordinate of a tube, as an interval, for a force in an interval. The stiffness of the piece is
+/// an interval too, and the coordinate is the product of force and compliance.
 pub(super) fn tube_strain(
     coordinate: usize,
     pose: &Pose,

@@ -10,10 +10,10 @@ use super::shape::Shape;
 use super::work::Work;
 use std::sync::Arc;
 
-/// Boxes that a task opens.
+/// Number of boxes that one task opens.
 const BOXES: usize = 32;
 
-/// A box on its way, with what its parent knew.
+/// A box that waits to be bounded, with what its parent box knew.
 pub(super) struct OpenBox {
     pub design_box: DesignBox,
     pub shapes: Arc<Vec<Shape>>,
@@ -21,7 +21,7 @@ pub(super) struct OpenBox {
 }
 
 impl OpenBox {
-    /// The halves of a level, the first last: it is opened first.
+    /// The two halves along a level. The first half stands last, because the stack is opened from its end.
     pub fn halves(&self, problem: &Problem, level: usize, box_bound: BoxBound) -> Vec<Self> {
         let half = |node: u32| {
             let mut design_box = self.design_box.clone();
@@ -32,8 +32,8 @@ impl OpenBox {
     }
 }
 
-/// Opens the box of everything and all that comes of it, and learns what is found; returns the boxes that are left
-/// when the search is stopped.
+/// Opens the box of all designs and every box that comes of it. Findings are learned at the end of each
+/// round. Returns the boxes that are still open when the search is stopped.
 pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
     problem: &Problem,
@@ -49,7 +49,8 @@ pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     in_rounds(state, vec![root], || budget.stopped(), task, learn)
 }
 
-/// Opens a box and some of those that come of it.
+/// Opens a box and then some of the boxes that come of it, depth first. Returns the open boxes and the
+/// findings.
 pub(super) fn open_boxes<F: Default>(
     budget: &Budget,
     first: OpenBox,
@@ -66,7 +67,7 @@ pub(super) fn open_boxes<F: Default>(
     Done { tasks: stack, findings }
 }
 
-/// One pass over all boxes; returns the ceilings of those that were left.
+/// One pass over all boxes. Returns the bounds of the boxes that are still open when the search is stopped.
 pub(super) fn pass_by_boxes(
     budget: &Budget,
     problem: &Problem,
@@ -85,19 +86,19 @@ pub(super) fn pass_by_boxes(
     left.iter().map(|opened| opened.box_bound).collect()
 }
 
-/// A search of a problem, or of a part of it, as far as it goes with what is known.
+/// A search of a problem, with the state that was shared when its round began.
 pub(super) struct Search<'s, 'p> {
     pub budget: &'s Budget<'p>,
     pub problem: &'s Problem<'p>,
     pub state: &'s SearchState,
-    /// How close a design found must come to a box's ceiling to cut it.
+    /// A box is pruned if an incumbent dominates its bound made worse by this slack (relative, 0 for none).
     pub slack: f64,
-    /// The corner below which designs are looked for.
+    /// The local upper bound below which designs are sought; `None` for the whole space.
     pub below: Option<LocalUpperBound>,
 }
 
 impl Search<'_, '_> {
-    /// Bounds a box and halves it, or judges it if it is one design.
+    /// Bounds a box and returns its halves. A box of one design is judged and returns nothing.
     pub fn open(&self, mut here: OpenBox, work: &mut Work, findings: &mut Findings) -> Vec<OpenBox> {
         self.budget.count_box();
         let verdict = self.problem.bound(
@@ -114,6 +115,7 @@ impl Search<'_, '_> {
             },
         );
         let Verdict::Open(box_bound) = verdict else { return Vec::new() };
+        // The box may have lost drives. Then its numbers in `work` are out of date, and it is bounded anew.
         match self.problem.prune_dominated_drives(&mut here.design_box, box_bound.tip_m, work) {
             None => return Vec::new(),
             Some(true) => return vec![here],
@@ -126,7 +128,7 @@ impl Search<'_, '_> {
         here.halves(self.problem, level, box_bound)
     }
 
-    /// Whether a design that is known or was found since comes within the slack of a ceiling.
+    /// Whether a design of the shared state or of the findings dominates the bound made worse by the slack.
     pub fn dominates(&self, box_bound: &BoxBound, findings: &Findings) -> bool {
         let slackened = box_bound.slackened(self.slack);
         self.state.incumbents.dominates(&slackened) || findings.dominates(&slackened)

@@ -1,9 +1,12 @@
 //! Which level of a box to halve.
 //!
-//! The ceiling of a box takes every part at its lightest and at its stiffest. A level matters as much as
-//! the ceiling would worsen if its part were a middling one: the geometric mean of lightest and heaviest,
-//! of stiffest and softest. The halves themselves are a worse guide: a box has to be halved several times
-//! before the ceiling moves at all.
+//! The bound of a box takes every part at its lightest and at its stiffest. The score of a level is how much
+//! the bound would worsen if the level's part had middling numbers instead: the geometric mean of the
+//! lightest and the heaviest, and of the stiffest and the softest. The level with the greatest score is
+//! halved.
+//!
+//! The bounds of the two halves would be a worse guide, because a box has to be halved several times before
+//! its bound moves at all.
 
 use super::bound::{STARTS, tube_strain};
 use super::parts::{INERTIAS, STIFFNESSES};
@@ -13,13 +16,13 @@ use super::shape::{Shape, products};
 use super::torsion::Torsion;
 use super::work::Work;
 
-/// A middling number over the least or the greatest of a range, less one.
+/// Ratio of the geometric mean of a range to its lower end, less one. Zero for an empty range.
 fn middling(low: f64, high: f64) -> f64 {
     if low > 0.0 && high > low { (high / low).sqrt() - 1.0 } else { 0.0 }
 }
 
 impl Problem<'_> {
-    /// The level whose halving should sharpen the bound most; `None` if every level is down to one option.
+    /// The level whose halving should sharpen the bound most. `None` if every level has a single option.
     pub fn widest_level(&self, design_box: &[u32], shapes: &[Shape], work: &mut Work) -> Option<usize> {
         self.weigh_tip(work);
         let (judged, start) = work.worst;
@@ -61,8 +64,9 @@ impl Problem<'_> {
         best.map(|(_, level)| level)
     }
 
-    /// By what part a shape's quotient would fall if the torques that a piece makes uncertain were middling: a
-    /// heavier part may press a gear inboard into a stiffer segment.
+    /// The relative fall of a shape's quotient if the torques, which each piece's weight makes uncertain, had
+    /// middling values. Such a fall occurs because a heavier part may press a gear inboard into a stiffer
+    /// segment of its curve. One number for each piece.
     fn softened_by_torque(&self, case: usize, shape: &Shape, strain: f64, work: &Work) -> Vec<f64> {
         let mut softened = vec![0.0; self.parts.len()];
         let pose = &self.poses[case];
@@ -81,7 +85,8 @@ impl Problem<'_> {
         softened
     }
 
-    /// By what part the least deflection would grow if a piece were middling, for every piece.
+    /// The relative growth of the least deflection if a piece had middling numbers, one number for each
+    /// piece.
     fn weigh_tip(&self, work: &mut Work) {
         work.tip_growth.clear();
         work.tip_growth.resize(self.parts.len(), 0.0);
@@ -111,7 +116,7 @@ impl Problem<'_> {
         }
     }
 
-    /// The two halves of a box along a level.
+    /// The two halves of a box along a level. `None` if the level has a single option.
     pub fn halves(&self, design_box: &[u32], level: usize) -> Option<[u32; 2]> {
         match &self.parts[self.level_pieces[level]] {
             Part::Drives { tree, .. } => tree.children(design_box[level]),

@@ -1,9 +1,13 @@
-//! Where to part the options of a level, or a force, when a box may still have a member below a corner.
+//! Where to branch when a region may still have a member below a local upper bound.
 //!
-//! What stands for that member in the sums is a mixture of members, and its products of force and compliance are
-//! bounded from below. Parting helps where the mixed members differ, and where the products leave out most. A product is
-//! left out because a force is not known, and that is due to all weights outboard: so torques are parted as well as
-//! options. And a gear that stands for several states of itself, one soft and one stiff, is told apart by its torque.
+//! The Lagrangian bound (`lagrangian.rs`) ends with a mixture: several relaxed designs with shares that sum
+//! to one. The bound is loose where these designs differ, and where the product of a force and a compliance
+//! is replaced by its McCormick underestimate. There are two ways to branch:
+//!
+//! - on the options of a level, where the mixed designs differ or a product is underestimated;
+//! - on a joint torque. A force is uncertain because of all the weights outboard, not because of one level,
+//! so halving the torque's interval helps where halving a level does not. It also separates the states of a
+//! gear that is mixed of a soft and a stiff one.
 
 use super::parts::{STIFFNESSES, inertia};
 use super::pose::Row;
@@ -11,49 +15,50 @@ use super::problem::{Part, Problem};
 use super::rows::{RelaxedDesign, Rows};
 use super::tree::Key;
 
-/// Places of mass and stiffness among the coordinates of drives, and of tubes; what their logarithms are taken times.
+/// Coordinates of mass and stiffness in the key of a drive and of a tube, and the factors of their logarithms
+/// there.
 const DRIVE: [(usize, f64); 2] = [(3, 1.0), (0, 4.0)];
 const TUBE: [(usize, f64); 2] = [(0, 2.0), (1, 1.0)];
-/// Gains smaller than this are rounding.
+/// Gains below this are rounding.
 const NOTHING: f64 = 1e-9;
-/// A force is known well enough if its bounds differ by no more than this part of it.
+/// A force is known well enough if its interval is narrower than this part of its size.
 const KNOWN: f64 = 0.1;
-/// Parts of an interval that are the same.
+/// Least distance of a branching point from the ends of the interval, as a part of the interval.
 const SAME: f64 = 1e-3;
 
-/// What is parted, and where.
+/// What to branch on, and at which value.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Branching {
-    /// What it should gain, in parts of a row.
+    /// The gain that is expected, in units of a scaled row.
     gain: f64,
     by: BranchOn,
     at: f64,
 }
 
-/// What two halves differ in.
+/// What the two halves differ in.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum BranchOn {
-    /// A level's options, along a coordinate.
+    /// The options of a level, along a coordinate of their key.
     Options { level: usize, axis: usize },
-    /// A force: that of a row of a case.
+    /// The force of a row of a case.
     Force { case: usize, row: usize },
 }
 
-/// Members that together may be below a corner, and their shares.
+/// Relaxed designs that together may lie below a local upper bound, and their shares.
 type Mixed<'a> = [(&'a RelaxedDesign, f64)];
 
 fn mean(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
     mixed.iter().map(|(member, share)| share * of(member)).sum()
 }
 
-/// How far members are from their mean.
+/// Mean distance of a number of the mixed designs from its mean.
 fn spread(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
     let middle = mean(mixed, &of);
     mean(mixed, |member| (of(member) - middle).abs())
 }
 
 impl Rows<'_> {
-    /// Where to part levels, the most promising first.
+    /// Where to branch, the most promising first.
     pub fn branchings(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
         let mut branchings = Vec::new();
         let left_out = self.left_out(mixed, multipliers);
@@ -78,7 +83,7 @@ impl Rows<'_> {
         branchings
     }
 
-    /// The coordinates of mass and stiffness of a piece, and the box's best number of each.
+    /// The key coordinates of a piece's mass and stiffness, and the best value that the box has of each.
     fn best_of(&self, piece: usize) -> [(usize, f64); 2] {
         let (light, stiff) = (self.work.light[piece][inertia::MASS], self.work.stiff[piece][0]);
         let (places, stiff) = match &self.work.curves[piece] {
@@ -89,7 +94,8 @@ impl Rows<'_> {
         [number(places[0], light), number(places[1], stiff)]
     }
 
-    /// What the products of force and compliance leave out, by the weight and by the compliance of each piece.
+    /// How much the McCormick underestimates leave out, in units of a scaled row. For each piece: what its
+    /// weight contributes, and what its compliance contributes.
     fn left_out(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<[f64; 2]> {
         let mut left_out = vec![[0.0; 2]; self.problem.parts.len()];
         for (judged, tip) in self.tips.iter().enumerate() {
@@ -109,8 +115,9 @@ impl Rows<'_> {
         left_out
     }
 
-    /// Partings by the torque on a joint, where it is far from known: for what the products of its own twist leave out,
-    /// and those of the tubes between it and the next joint outboard; and where its gear is mixed of states apart.
+    /// Branchings on the torque of a joint whose interval is wide. The gain is what the products leave out in
+    /// the joint's own twist and in the tubes between it and the next joint outboard, plus the spread of the
+    /// states of its gear.
     fn by_torque(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
         let mut branchings = Vec::new();
         for (judged, tip) in self.tips.iter().enumerate() {
@@ -146,13 +153,14 @@ impl Rows<'_> {
         branchings
     }
 
-    /// Way of the tip by what a force is above its least times what its coordinate yields above its least \[m\].
+    /// Tip displacement that the underestimate of one product leaves out \[m\]: the excess of the force over
+    /// its least, times the excess of the compliance over its least.
     fn product(&self, mixed: &Mixed, judged: usize, row: &Row, more: f64) -> f64 {
         let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
         (tip_per_unit * more * self.softer(mixed, judged, row)).abs()
     }
 
-    /// By how much the weight of each piece makes a force greater than the least.
+    /// The excess of a force over its least that the weight of each piece contributes.
     fn heavier(&self, mixed: &Mixed, judged: usize, row: &Row, tip_per_unit: f64) -> Vec<f64> {
         let multipliers = row.per_n.iter().zip(&self.work.weights[self.tips[judged].case]).enumerate();
         multipliers
@@ -163,7 +171,7 @@ impl Rows<'_> {
             .collect()
     }
 
-    /// By how much a coordinate yields more than the least.
+    /// The excess of a coordinate's compliance over its least.
     fn softer(&self, mixed: &Mixed, judged: usize, row: &Row) -> f64 {
         let case = self.tips[judged].case;
         let posed = &self.problem.poses[case].pieces[row.piece];
@@ -181,7 +189,7 @@ impl Rows<'_> {
 }
 
 impl Problem<'_> {
-    /// Where a node of a level is among others.
+    /// The key of a node of a level's tree.
     fn key(&self, level: usize, node: u32) -> Key {
         match &self.parts[self.level_pieces[level]] {
             Part::Drives { tree, .. } => tree.node(node).key,
@@ -190,7 +198,7 @@ impl Problem<'_> {
         }
     }
 
-    /// The two halves of what is kept; `None` if all is on one side.
+    /// The problem restricted to each side of a branching. `None` if all options lie on one side.
     pub fn branch(&self, kept: &[Vec<u32>], branching: &Branching) -> Option<[Self; 2]> {
         match branching.by {
             BranchOn::Options { level, axis } => {
@@ -205,7 +213,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Two lists of nodes of the whole trees, one on each side of a coordinate of a level's options.
+    /// For both sides of a branching on options: the nodes of each level's base tree that remain.
     fn branch_on_options(
         &self,
         kept: &[Vec<u32>],

@@ -22,8 +22,8 @@ use crate::space::station::reaches_m;
 use std::sync::Arc;
 
 impl<'c> Problem<'c> {
-    /// Compiles a space with some of its link options only, drives that are alike together or apart; `None` if some level
-    /// has none.
+    /// Compiles a space with the link options that `takes` admits. `ties` says whether drives of one mass and
+    /// one curve are one option. `None` if some level has no option.
     pub fn new(
         space: &'c DesignSpace,
         catalogs: &'c Catalogs,
@@ -54,18 +54,19 @@ impl<'c> Problem<'c> {
             let part = match layer {
                 Layer::Piece(piece) => problem.part(piece, reaches_m[place], catalogs, takes, ties)?,
                 Layer::Tilt(tilt) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&tilt.law()) },
-                // beyond what a design weighs
+                // A given mass beyond the parts loads the arm, but a design's mass does not count it.
                 Layer::Mass(_) => Part::Offset { mass_kg: 0.0 },
             };
             problem.parts.push(part);
-            // of a joint, whichever drive it has
+            // Play belongs to the joint, whichever drive it has.
             problem.joint_plays.push(match layer {
                 Layer::Piece(SpacePiece::Joint(joint)) => {
                     JointPlay::of(&space.joint_piece(joint, Curve::Linear(1.0)).law)
                 }
                 _ => None,
             });
-            // a harness is no part of what a design weighs, but of what its link does
+            // A harness moves and weighs with its link, so the link's inertia has it. The mass of a design
+            // does not count it; a negative offset takes it out of the sum of masses.
             if let Layer::Piece(piece) = layer
                 && let Some(harness_kg) = harness_kg(space, piece)
             {
@@ -77,6 +78,7 @@ impl<'c> Problem<'c> {
         Some(problem.with_inertias())
     }
 
+    /// Compiles one piece of the chain. `None` if it has no option.
     fn part(
         &mut self,
         piece: &'c SpacePiece,
@@ -134,7 +136,7 @@ impl<'c> Problem<'c> {
         })
     }
 
-    /// A joint that takes the lightest drive that holds its demand.
+    /// A joint that takes the lightest drive that can carry its load.
     fn first_fit(&self, sized: SizedJoint<'c>) -> Option<Part<'c>> {
         let rays = self.rays(self.parts.len(), sized.table.motion());
         let candidates = sized.table.first_fit_candidates();
@@ -143,14 +145,15 @@ impl<'c> Problem<'c> {
         Some(Part::FirstFit { ladder, sized: Arc::new(sized) })
     }
 
-    /// Opens the next level and returns its options.
+    /// Opens the next level and returns the numbers of its options.
     fn level(&mut self, size: usize) -> std::ops::Range<u32> {
         self.level_pieces.push(self.parts.len());
         self.level_sizes.push(size as u32);
         0..size as u32
     }
 
-    /// Proportions around that of the payload alone.
+    /// The fixed proportions of static torque and inertia for a joint, around the proportion that the payload
+    /// alone causes.
     fn rays(&self, piece: usize, motion: &JointMotion) -> Rays {
         let (mut static_nm, mut inertia_kgm2) = (0.0f64, 0.0f64);
         for pose in self.poses.iter().filter(|pose| pose.sizing) {
@@ -161,7 +164,8 @@ impl<'c> Problem<'c> {
         Rays::new(motion, static_nm, inertia_kgm2)
     }
 
-    /// The inertia matrices of every judged case.
+    /// Adds the inertia matrices of every judged case. They need the numbers of some arm, to know which
+    /// coordinates yield.
     pub(super) fn with_inertias(mut self) -> Self {
         let mut work = Work::default();
         let filled = self.fill(&mut self.root(), &mut work);
@@ -176,6 +180,7 @@ impl<'c> Problem<'c> {
     }
 }
 
+/// The box of a single drive.
 fn drive_box(sized: &SizedJoint, index: u32, rays: &Rays) -> DriveBox {
     let index = index as usize;
     let mass_kg = sized.table.mass_kg(index);
@@ -184,7 +189,7 @@ fn drive_box(sized: &SizedJoint, index: u32, rays: &Rays) -> DriveBox {
         mass_kg: [mass_kg; 2],
         limits: *sized.table.limits(index),
         least_limits: *sized.table.limits(index),
-        multiples: rays.held(sized.table.limits(index)),
+        multiples: rays.capacity(sized.table.limits(index)),
         curve,
         breaks: curve.map_or_else(BreakPoints::default, |c| BreakPoints::of(&c.stiff.windup)),
         each: None,

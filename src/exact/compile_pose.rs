@@ -1,9 +1,10 @@
-//! One case of a study as rows of numbers: what each weight does to each coordinate.
+//! Compiles one case of a study into a [`Pose`].
 //!
-//! A serial chain is statically determinate, so the generalized force on every strain coordinate (a
-//! joint's twist, a link's lowest polynomials) is linear in the weights of the pieces outboard, and the
-//! tip moves by the sum over the coordinates of force times compliance times a constant vector. With
-//! weights and compliances as intervals both become intervals: no condition on the pose is needed.
+//! A serial chain is statically determinate. The generalized force on every strain coordinate (the twist of a
+//! joint, a polynomial coefficient of a link's deformation) is therefore linear in the weights of the pieces
+//! outboard. The tip's displacement is the sum, over the coordinates, of force times compliance times a
+//! constant vector. With weights and compliances as intervals both become intervals. This holds in every
+//! pose.
 
 use super::parts::{INERTIAS, inertia};
 use super::pose::{COORDINATES, ENDS, InertiaRow, Pose, PosedPiece, PosedTube, Row, StressRow, TubeForms};
@@ -17,7 +18,7 @@ use crate::space::station::{Walk, payload_in, weight_wrench};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Rotation3, SMatrix, Vector3};
 
 impl Pose {
-    /// Compiles a case.
+    /// Compiles the case with this index.
     pub fn new(space: &DesignSpace, index: usize) -> Self {
         let case = &space.cases[index];
         let water = case.water.or(space.surroundings().water);
@@ -49,7 +50,8 @@ impl Pose {
         pose
     }
 
-    /// Goes inward with the wrench of everything outboard as a linear function of the weights.
+    /// Goes inward from the tip. The wrench of everything outboard is kept as a linear function of the
+    /// weights.
     fn compile(&mut self, space: &DesignSpace, payload: Wrench, tip_m: &Vector3<f64>) {
         let mut outboard = Outboard { fixed: payload, per_n: Vec::new(), inertia: Vec::new() };
         let mut fixed_inertia = self.payload_inertia;
@@ -92,13 +94,14 @@ impl Pose {
             }
         }
         let scale = self.rows.iter().map(Row::largest).fold(0.0, f64::max);
-        // coordinates that nothing strains, such as those across a vertical plane
+        // Coordinates that nothing strains, such as those across a vertical plane, are left out. Joints stay,
+        // because their demand is needed in any case.
         let strained = |row: &Row| matches!(self.pieces[row.piece], PosedPiece::Joint { .. });
         self.rows.retain(|row| strained(row) || row.largest() > 1e-13 * scale);
     }
 }
 
-/// A layer at a place of the chain.
+/// One layer of the chain at its place in the pose.
 fn posed(
     space: &DesignSpace,
     water: Option<Water>,
@@ -121,7 +124,7 @@ fn posed(
             if link.beam.is_some() && link.vector_m.norm() > 0.0 {
                 return posed_tube(space, water, &link, at_m, rotation.matrix(), false);
             }
-            // what hangs along a rigid offset is a slender rod
+            // A harness along a rigid offset is a slender rod.
             let vector_m = rotation * link.vector_m;
             let along_kg = link.harness_kg_per_m * vector_m.norm();
             let rod = Matrix3::identity() * vector_m.norm_squared() - vector_m * vector_m.transpose();
@@ -130,6 +133,7 @@ fn posed(
     }
 }
 
+/// A tube whose root is at a place of the pose.
 fn posed_tube(
     space: &DesignSpace,
     water: Option<Water>,
@@ -140,7 +144,7 @@ fn posed_tube(
 ) -> PosedPiece {
     let structure = Structure::bare(space.gravity_m_s2, Vec::new());
     let frame = rotation * section_frame(&link.vector_m);
-    // shapes depend on the length alone
+    // The fields of the coordinates depend on the length alone, so the first option stands for all.
     let Some(beam) = PreparedBeam::new(link, &structure, LinkModel::Full) else {
         return PosedPiece::Body(Matrix6::zeros());
     };
@@ -188,7 +192,7 @@ impl TubeForms {
 }
 
 impl PosedTube {
-    /// Rigid inertia about the world origin per unit of each line inertia.
+    /// Rigid-body inertia about the world's origin per unit of each line inertia.
     fn rigid_forms(&self) -> [Matrix6<f64>; INERTIAS] {
         let to_local = crate::mechanics::condensed::world_to_local(&self.root_m, &self.frame);
         let f = &self.forms;
@@ -218,11 +222,11 @@ impl PosedTube {
     }
 }
 
-/// Force on each of [`ENDS`] per newton of the tube's own weight, spread along it.
+/// Force on each of the coordinates [`ENDS`] per newton of the tube's own weight, which is spread along it.
 fn areas_per_n(tube: &PosedTube) -> [f64; 8] {
     let down = tube.frame.tr_mul(&-Vector3::z());
     let f = &tube.forms;
-    // ∫ field · (force per length) = row of the translation in the inertia form, over the length
+    // ∫ field · (force per length) is the translation row of the inertia form divided by the length.
     let per = |form: &SMatrix<f64, 9, 9>, place: usize| form[(0, place)] / tube.length_m;
     ENDS.map(|coordinate| match coordinate {
         0 | 1 => down.z * per(&f.across_z, 2 + coordinate),
@@ -234,7 +238,7 @@ fn areas_per_n(tube: &PosedTube) -> [f64; 8] {
     })
 }
 
-/// The wrench and inertia of everything outboard as linear functions of the parts.
+/// The wrench and the inertia of everything outboard, as linear functions of the parts.
 struct Outboard {
     fixed: Wrench,
     per_n: Vec<Wrench>,
@@ -261,6 +265,7 @@ impl Outboard {
         Row { piece, coordinate, fixed: twist.dot(&self.fixed), per_n, tip_m, tip_m_per_unit: tip_m.norm() }
     }
 
+    /// The inertia of everything outboard about a joint's axis.
     fn inertia_row(&self, fixed: &Matrix6<f64>, twist: &Twist) -> InertiaRow {
         let about = |m: &Matrix6<f64>| twist.dot(&(m * twist)).max(0.0);
         InertiaRow {
@@ -269,6 +274,7 @@ impl Outboard {
         }
     }
 
+    /// The loads on the section of a tube at a point.
     fn stress(&self, piece: usize, tube: &PosedTube, at_m: &Vector3<f64>) -> StressRow {
         let local = |wrench: &Wrench| {
             let force = tube.frame.tr_mul(&linear(wrench));
@@ -287,7 +293,7 @@ impl Row {
     }
 }
 
-/// Mass of what hangs along a tube, if anything does \[kg\].
+/// Mass of the harness along a tube \[kg\]. `None` without a harness.
 pub(super) fn harness_kg(space: &DesignSpace, piece: &SpacePiece) -> Option<f64> {
     let link = match piece {
         SpacePiece::Joint(_) => return None,

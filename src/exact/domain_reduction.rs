@@ -1,4 +1,7 @@
-//! What a design may be made of that is as good as a known one: of a space too large to tabulate this leaves few parts.
+//! The parts of which a design as good as a known one can be made.
+//!
+//! In a space too large to tabulate these are few, and the relaxation (`src/relax`) can be solved over them
+//! alone.
 
 use super::kinds::Ties;
 use super::local_upper_bounds::LocalUpperBound;
@@ -11,25 +14,27 @@ use crate::pareto::objectives::Objectives;
 use crate::space::design_space::DesignSpace;
 use std::collections::BTreeSet;
 
-/// Room between an objective and the corner that asks for it, so that rounding excludes no part.
+/// Relative room between an objective of the known design and the local upper bound made of it, so that
+/// rounding excludes no part.
 const ROOM: f64 = 1e-6;
-/// Zones that are parted at the most, and designs that need no parting.
-const MOST_PARTED: usize = 50;
+/// Greatest number of subproblems that are branched, and the number of designs below which branching is not
+/// worth its time.
+const MOST_BRANCHED: usize = 50;
 const FEW: f64 = 1e6;
 
-/// A design space compiled for the question which parts reach as far as a known design.
+/// A design space compiled to ask which parts can belong to a design as good as a known one.
 pub struct DomainReduction<'p> {
     problem: Problem<'p>,
 }
 
 impl<'p> DomainReduction<'p> {
-    /// Compiles a space; `None` if some level has no option.
+    /// Compiles a space. `None` if some level has no option.
     pub fn new(space: &'p DesignSpace, catalogs: &'p Catalogs) -> Option<Self> {
         Some(Self { problem: Problem::new(space, catalogs, &|_| true, Ties::Merged)? })
     }
 
-    /// The options of each level, tip first and ascending, that a design may have that is no worse than a known one in all
-    /// three objectives; `None` if there is no such design, the known one included.
+    /// The options of each level, tip first and ascending, that a design may have that is no worse than a
+    /// known one in all three objectives. `None` if there is no such design, not even the known one.
     pub fn options_as_good(&self, known: &Objectives) -> Option<Vec<Vec<u32>>> {
         let upper = LocalUpperBound {
             mass_kg: known.mass_kg * (1.0 + ROOM),
@@ -40,7 +45,7 @@ impl<'p> DomainReduction<'p> {
         let whole = Subproblem::whole(&self.problem, 0, &mut work)?;
         let mut open = Vec::from_iter(Reduced::new(whole, &upper, &mut work));
         let mut closed = Vec::new();
-        for _ in 0..MOST_PARTED {
+        for _ in 0..MOST_BRANCHED {
             let largest = (0..open.len()).max_by(|&a, &b| open[a].designs.total_cmp(&open[b].designs));
             let Some(at) = largest.filter(|&at| open[at].designs > FEW) else { break };
             let next = open.swap_remove(at);
@@ -61,7 +66,7 @@ impl<'p> DomainReduction<'p> {
     }
 }
 
-/// A zone narrowed as far as that is worth it.
+/// A subproblem whose options are reduced as far as that is worth its time.
 struct Reduced<'p> {
     subproblem: Subproblem<'p>,
     survivors: Survivors,

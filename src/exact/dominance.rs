@@ -1,12 +1,17 @@
-//! Drives that a lighter one makes pointless.
+//! Drives that a lighter drive dominates within a box.
 //!
-//! Let a design hold drive B at a joint, and let drive A be lighter, nowhere softer up to the torque it
-//! carries, and able to hold what the joint is asked for, which depends on the arm outboard only. With A in
-//! B's place no torque, force or demand inboard grows, since every force of the study grows with every
-//! weight; so whatever held still holds and the tip sags no further. No inertia grows and no stiffness falls
-//! if the gears inboard stay in their segments; so no mode falls either. The design with B is then beaten,
-//! whatever else it is made of. That a gear inboard may leave its segment is why this cannot be said of
-//! drives once and for all, only within a box: there the torques inboard are intervals.
+//! Let a design have drive B at a joint. Let drive A be lighter, at least as stiff up to the torque that the
+//! joint carries, and able to carry the joint's demand. The demand depends only on the arm outboard, so it is
+//! the same for both. Now put A in the place of B:
+//!
+//! - Every force of the study grows with every weight, so no torque, stress or demand inboard grows and the
+//! tip does not deflect further.
+//! - No inertia grows. No stiffness falls if every gear inboard stays in its segment of the torsion curve.
+//! Then no mode falls.
+//!
+//! So the design with A dominates the design with B, whatever its other parts are. A gear inboard may leave
+//! its segment when a part becomes lighter; therefore the step is valid only within a box, in which the
+//! torques inboard are known as intervals.
 
 use super::joint_play::JointPlay;
 use super::parts::{DriveBox, SAME_TORQUE};
@@ -17,13 +22,13 @@ use super::tree::Tree;
 use super::work::Work;
 use crate::sizing::demand::JointDemand;
 
-/// Share of an arm's mass by which a drive must be lighter.
+/// Part of the arm's mass by which the dominating drive must be lighter, so that rounding cannot decide.
 const LIGHTER: f64 = 1e-6;
 
-/// Boxes to look into for a drive that makes others pointless.
+/// Number of tree nodes that may be visited in the search for a dominating drive.
 const BOXES: usize = 64;
 
-/// A drive to look for.
+/// What a dominating drive has to be.
 struct DominatingDrive<'a> {
     lighter_than_kg: f64,
     demand: &'a JointDemand,
@@ -32,7 +37,7 @@ struct DominatingDrive<'a> {
 }
 
 impl DominatingDrive<'_> {
-    /// Whether a box of drives may have a member that is wanted; of a box of one, whether it is.
+    /// Whether a box of drives may have such a drive. For a box of one drive: whether it is one.
     fn may_be_in(&self, drives: &DriveBox) -> bool {
         drives.mass_kg[0] < self.lighter_than_kg
             && drives.hold(self.demand)
@@ -43,7 +48,7 @@ impl DominatingDrive<'_> {
             }
     }
 
-    /// The mass of a drive that is wanted \[kg\], if one is soon found.
+    /// The mass of such a drive below a node \[kg\], if one is found before the visits are used up.
     fn find(&self, tree: &Tree<DriveBox>, node: u32, boxes_left: &mut usize) -> Option<f64> {
         let drives = &tree.node(node).bounds;
         if *boxes_left == 0 || !self.may_be_in(drives) {
@@ -58,19 +63,22 @@ impl DominatingDrive<'_> {
 }
 
 impl Problem<'_> {
-    /// Whether everything that is asked of an arm, and everything it yields by, grows with every weight: then
-    /// a lighter arm that is no softer is no worse. What friction holds back grows with the weights too.
+    /// Whether every load of the arm, and every displacement that it causes, grows with every weight. Then a
+    /// lighter arm of the same stiffness is no worse. It is not so with friction, because what friction holds
+    /// back grows with the weights too, nor with drives that fit first, because a lighter arm would get
+    /// softer drives.
     pub fn grows_with_weight(&self) -> bool {
         let fits_first = self.parts.iter().any(|part| matches!(part, Part::FirstFit { .. }));
         let friction = self.joint_plays.iter().flatten().any(JointPlay::has_friction);
         !fits_first && !friction && self.poses.iter().all(Pose::grows_with_weight)
     }
 
-    /// Takes pointless drives out of a box whose numbers are in `work`. `None` if no design is left,
-    /// otherwise whether the box has shrunk.
+    /// Removes dominated drives from a box whose numbers are in `work`. `None` if no design is left;
+    /// otherwise whether the box became smaller.
     pub fn prune_dominated_drives(&self, design_box: &mut [u32], tip_m: f64, work: &Work) -> Option<bool> {
         let mut shrunk = false;
-        // the tip's way matters where it may be the longest
+        // The argument needs contributions to the tip that do not oppose each other. A pose where they may
+        // oppose does no harm if it cannot be the worst pose of the box.
         if !self.lighter_is_better || work.greatest_tip_m.iter().any(|most_m| *most_m > tip_m) {
             return Some(false);
         }
@@ -85,6 +93,7 @@ impl Problem<'_> {
         Some(shrunk)
     }
 
+    /// Whether a lighter drive dominates every drive of a box.
     fn is_dominated(
         &self,
         piece: usize,
@@ -105,7 +114,8 @@ impl Problem<'_> {
         })
     }
 
-    /// Whether every gear inboard stays in its segment, and its play as it is, if a piece loses so much weight \[N\].
+    /// Whether every gear inboard stays in its segment, and its play unchanged, if a piece loses this much
+    /// weight \[N\].
     fn slopes_stay(&self, piece: usize, lost_n: f64, work: &Work) -> bool {
         self.judged_cases().all(|case| {
             self.poses[case].rows.iter().filter(|row| row.piece > piece && row.coordinate == 0).all(|row| {

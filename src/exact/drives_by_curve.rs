@@ -1,7 +1,8 @@
-//! The drives below a node that hold, by their torsion curves.
+//! The feasible drives below a node, grouped by torsion curve.
 //!
-//! What a drive costs is the price of its mass and that of its curve. A joint has hundreds of drives of some dozens of
-//! curves; of one curve only the lightest or the heaviest can be the cheapest, whatever the prices are.
+//! A joint has hundreds of drives but only some dozens of curves. The price of a drive is the price of its
+//! mass plus the price of its curve. Among the drives of one curve only the lightest or the heaviest can
+//! therefore be the cheapest, whatever the prices are.
 
 use super::dual_price::DualPrice;
 use super::parts::{DriveBox, LeastDemand};
@@ -16,7 +17,8 @@ struct CurveGroup {
 }
 
 impl CurveGroup {
-    /// One more drive; of equal masses the first node counts.
+    /// Adds a drive. Among equal masses the first node counts, so that the result does not depend on the
+    /// order.
     fn add(&mut self, drive: (f64, u32)) {
         if drive < self.lightest {
             self.lightest = drive;
@@ -27,12 +29,12 @@ impl CurveGroup {
     }
 }
 
-/// The drives that hold, curve by curve.
+/// The feasible drives, one group for each curve.
 #[derive(Default)]
 pub(super) struct DrivesByCurve(Vec<CurveGroup>);
 
 impl DrivesByCurve {
-    /// The drives below a node that hold what is asked.
+    /// The drives below a node that can carry the least demand.
     pub fn new(tree: &Tree<DriveBox>, node: u32, asked: Option<&LeastDemand>) -> Self {
         let mut curves: Vec<CurveGroup> = Vec::new();
         let (mut open, mut last) = (vec![node], 0);
@@ -46,7 +48,7 @@ impl DrivesByCurve {
                 continue;
             }
             let drive = (drives.mass_kg[0], at);
-            // neighbours in the tree mostly share their curve
+            // Neighbours in the tree mostly have the same curve, so the last group is tried first.
             let is_of = |at: &usize| curves.get(*at).is_some_and(|of| of.curve == drives.curve);
             match Some(last).filter(is_of).or_else(|| (0..curves.len()).find(|at| is_of(at))) {
                 Some(place) => {
@@ -62,7 +64,7 @@ impl DrivesByCurve {
         Self(curves)
     }
 
-    /// The least price of a drive and the node that has it; `None` if no drive holds.
+    /// The least price of a drive and its node. `None` if no drive is feasible.
     pub fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
         let of = |of: &CurveGroup| {
             let (mass_kg, node) = if price.of_mass([0.0, 1.0]) < 0.0 { of.heaviest } else { of.lightest };
@@ -102,7 +104,7 @@ mod tests {
             mass_kg: [mass_kg; 2],
             limits,
             least_limits: limits,
-            multiples: rays.held(&limits),
+            multiples: rays.capacity(&limits),
             curve: CurveBox::of(&JointLaw::from(Curve::Windup(windup))),
             breaks: BreakPoints::of(&windup),
             each: None,

@@ -1,9 +1,12 @@
-//! Better designs from those that the probes found, by exchange of parts.
+//! Better incumbents from those that the probes found, by a genetic algorithm.
 //!
-//! The proof of a front is only as good as its designs: what they leave open has to be taken apart. Probes find some
-//! hundreds one by one. From these come others, as in a genetic algorithm: a child takes some parts of a design close by
-//! in mass, or parts close to its own, and stays if nothing seen before beats it. So that the many that differ by
-//! little do not crowd out the others, one design a cell of a grid is kept ([`thinned`](super::grid::thinned)). What is found proves nothing; it is judged and listed like every other design.
+//! The proof of a front is only as fast as its incumbents are good, for what they leave open has to be
+//! searched. Probes find some hundreds of designs one by one. From these come others: a child takes some
+//! parts from a parent of similar mass, or options close to its own, and is kept if no design seen before
+//! dominates it. Of the many that differ by little, one is kept for each cell of a grid
+//! ([`thinned`](super::grid::thinned)), so that they do not crowd out the others.
+//!
+//! The result proves nothing. Its designs are judged and listed like every other design.
 
 use super::bound::{DesignBox, Verdict};
 use super::budget::Budget;
@@ -21,36 +24,37 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Generations at most: later ones hardly find better designs.
+/// Greatest number of generations. Later ones hardly find better designs.
 const GENERATIONS: u64 = 20;
-/// Children of a generation at most; a space has no more than the root of its designs.
+/// Greatest number of children in a generation. A small space has fewer: the square root of its number of
+/// designs.
 const MOST_CHILDREN: f64 = 8192.0;
-/// Step of the grid, in logarithms of the objectives.
+/// Width of a grid cell, in logarithms of the objectives.
 const STEP: f64 = 0.02;
-/// Places in the order of mass within which the other parent is.
+/// The second parent stands within this many places of the first in the order of mass.
 const CLOSE: u64 = 12;
 
-/// A design with the shapes that bound its modes, or those of a design like it.
+/// A design, and trial shapes that bound its modes (its own, or those of a similar design).
 pub(super) struct Individual {
     pub design_box: DesignBox,
     pub objectives: Objectives,
     pub shapes: Arc<Vec<Shape>>,
 }
 
-/// What became of a child of two designs.
+/// The result of one recombination.
 enum Offspring {
-    /// It has the parts of its parent.
+    /// The child has the parts of its parent.
     Unchanged,
-    /// A design seen before is at least as good in every objective, or a part cannot carry its load.
+    /// A design seen before dominates the child, or one of its parts cannot carry its load.
     Dominated,
-    /// Its objectives are known, and it breaks a constraint.
+    /// The objectives of the child are known, and it breaks a constraint.
     Infeasible,
-    /// It meets every constraint, and nothing seen before is better.
+    /// The child meets every constraint, and no design seen before dominates it.
     Feasible(Individual),
 }
 
 impl Offspring {
-    /// Whether its three objectives were computed.
+    /// Whether the three objectives were computed.
     fn is_evaluated(&self) -> bool {
         matches!(self, Self::Infeasible | Self::Feasible(_))
     }
@@ -63,7 +67,7 @@ impl Offspring {
     }
 }
 
-/// Finds designs that come of some, for generations.
+/// Evolves designs from those in `first` and adds what it finds to the state.
 pub(super) fn evolve<'p>(
     budget: &Budget,
     problem: &Problem<'p>,
@@ -98,14 +102,14 @@ pub(super) fn evolve<'p>(
     state.learn(findings);
 }
 
-/// One design a cell, the lightest first.
+/// One design for each cell of the grid, the lightest first.
 fn by_mass(members: Vec<Individual>) -> Vec<Individual> {
     let mut kept = thinned(members, STEP, |member| &member.objectives);
     kept.sort_by(|a, b| a.objectives.mass_kg.total_cmp(&b.objectives.mass_kg));
     kept
 }
 
-/// Where one child comes from.
+/// The sources of one child.
 struct Recombination<'a, 'p> {
     budget: &'a Budget<'p>,
     problem: &'a Problem<'p>,
@@ -115,7 +119,7 @@ struct Recombination<'a, 'p> {
 }
 
 impl Recombination<'_, '_> {
-    /// A child that nothing seen beats, if it meets the constraints; none at all if something beats it.
+    /// Makes one child, bounds it and checks the constraints.
     fn child(mut self, work: &mut Work) -> Offspring {
         let first = self.below(self.parents.len() as u64);
         let from = first.saturating_sub(CLOSE);
@@ -147,7 +151,7 @@ impl Recombination<'_, '_> {
         Offspring::Feasible(Individual { design_box, objectives, shapes })
     }
 
-    /// Takes a third of another design's parts.
+    /// Takes about a third of another design's parts.
     fn exchange(&mut self, design_box: &mut DesignBox, other: &DesignBox) {
         for (mine, theirs) in design_box.iter_mut().zip(other) {
             if self.below(3) == 0 {
@@ -156,13 +160,14 @@ impl Recombination<'_, '_> {
         }
     }
 
-    /// Takes another option of a level: any below a box around the present one, more often a small box.
+    /// Replaces the option of a level by any option below a box around the present one. Small boxes, and thus
+    /// similar options, are more likely.
     fn change(&mut self, design_box: &mut DesignBox, level: usize) {
         let problem = self.problem;
         let option = std::mem::take(&mut design_box[level]);
         let mut around = vec![design_box[level]];
         while let Some([low, high]) = problem.halves(design_box, level) {
-            // trees are numbered from the root, the first half before the second
+            // Nodes are numbered from the root, the first half before the second.
             design_box[level] = if option < high { low } else { high };
             around.push(design_box[level]);
         }
@@ -176,7 +181,7 @@ impl Recombination<'_, '_> {
         }
     }
 
-    /// A whole number below another.
+    /// A random whole number below `n`.
     fn below(&mut self, n: u64) -> u64 {
         ((u128::from(self.rng.next_u64()) * u128::from(n)) >> 64) as u64
     }

@@ -22,10 +22,10 @@ fn force(row: &Row, weights: &[f64]) -> f64 {
 }
 
 proptest! {
-    /// Tightened bounds hold for all weights whose held force is within its own; they are the best there are: by a
-    /// grid over the weights that keep to it.
+    /// The tightened bounds hold for all weights that keep the bounded force in its interval, and no bounds
+    /// are better: both are compared with a grid over the weights.
     #[test]
-    fn a_held_force_tightens_others_and_leaves_out_none(
+    fn a_bounded_force_tightens_others_and_leaves_out_none(
         of in prop::collection::vec(-3i32..4, 4), by in prop::collection::vec(-3i32..4, 4),
         low in prop::collection::vec(0u32..4, 3), wide in prop::collection::vec(0u32..4, 3), at in 0usize..64,
     ) {
@@ -37,9 +37,9 @@ proptest! {
             weights.iter().zip(0..).map(|([a, b], k)| a + (b - a) * part(k)).collect()
         };
         let middle = force(&by, &grid(at, 3));
-        let held = ForceBound { case: 0, row: 0, between: [middle - 0.5, middle + 0.5] };
+        let bound = ForceBound { case: 0, row: 0, between: [middle - 0.5, middle + 0.5] };
         let mut bounds = interval(of.fixed, &of.per_n, &weights);
-        held.tighten(&of, &by, &weights, &mut bounds);
+        bound.tighten(&of, &by, &weights, &mut bounds);
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         for n in 0..41usize.pow(3) {
             let weights = grid(n, 40);
@@ -49,11 +49,11 @@ proptest! {
                 (least, most) = (least.min(force), most.max(force));
             }
         }
-        // a step of the grid moves either force by no more than 3 coefficients of 3 at 3/40 each
+        // One step of the grid moves either force by at most three coefficients of 3, each times 3/40.
         prop_assert!(least - bounds[0] < 1.5 && bounds[1] - most < 1.5, "{least} {most} {bounds:?}");
     }
 
-    /// A weight whose lever arm is rounding does not make rounding a bound.
+    /// A coefficient that is only rounding must not turn rounding into a bound.
     #[test]
     fn a_coefficient_of_next_to_nothing_does_no_harm(at in 1.0f64..9.0, nearly in 1e-18f64..1e-16) {
         let (of, by) = (row(&[0.0, 1.0, 1.0, 1.0]), row(&[0.0, 1.0, nearly, 1.0]));

@@ -1,4 +1,4 @@
-//! The forces of a case as intervals, within what a region holds.
+//! The forces of a case as intervals, within the force bounds of the region.
 
 use super::force_bound::ForceBound;
 use super::interval::interval;
@@ -6,14 +6,15 @@ use super::problem::Problem;
 use std::sync::Arc;
 
 impl Problem<'_> {
-    /// The force of each row of a case between weights; `None` if what is held leaves none.
+    /// The interval of each row's force in a case. `None` if the force bounds leave an empty interval.
     pub fn forces(&self, case: usize, weights: &[Vec<[f64; 2]>], forces: &mut Vec<[f64; 2]>) -> Option<()> {
         let rows = &self.poses[case].rows;
         forces.clear();
         for row in rows {
             let mut force = interval(row.fixed, &row.per_n, &weights[case]);
             for bound in self.force_bounds.iter() {
-                // in water of another density the same parts weigh something else
+                // In water of another density the same parts have other weights, so the bound says nothing
+                // there.
                 if self.poses[bound.case].water_kg_m3 == self.poses[case].water_kg_m3 {
                     let by = &self.poses[bound.case].rows[bound.row];
                     bound.tighten(row, by, &weights[case], &mut force);
@@ -27,7 +28,7 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// The problem with a force held between bounds, within those it is held between already.
+    /// The problem with one more force bound. A bound that exists already is intersected.
     pub fn with_force_bound(&self, case: usize, row: usize, [low, high]: [f64; 2]) -> Self {
         let mut bounds = self.force_bounds.to_vec();
         match bounds.iter_mut().find(|bound| bound.case == case && bound.row == row) {
@@ -37,7 +38,7 @@ impl Problem<'_> {
         Self { force_bounds: Arc::from(bounds), ..self.clone() }
     }
 
-    /// The problem with no force held.
+    /// The problem without force bounds.
     pub fn without_force_bounds(&self) -> Self {
         Self { force_bounds: Arc::default(), ..self.clone() }
     }

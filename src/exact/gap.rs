@@ -1,13 +1,13 @@
-//! How much a search that was stopped may have missed.
+//! How much better than the front a design may be that a stopped search has missed.
 
 use super::bound::BoxBound;
 use crate::search::sweep::Candidate;
 use rayon::prelude::*;
 
-/// The smallest `ε` such that for every open box some design of the front, with its mass and deflection
-/// divided and its mode multiplied by `1 + ε`, is no worse than the box's ceiling. No design that was missed is
-/// better than all of the front by more than that in every objective at once. `None` if a ceiling says
-/// nothing or there is no front to compare with.
+/// The least `ε` such that for every open box some design of the front, with mass and deflection divided by
+/// `1 + ε` and mode multiplied by it, is no worse than the bound of the box. No missed design is then better
+/// than the whole front by more than `ε` in every objective at once. `None` if a bound says nothing, or if
+/// the front is empty.
 pub(super) fn gap(open: &[BoxBound], front: &[Candidate]) -> Option<f64> {
     let of = |box_bound: &BoxBound| {
         let factor = |c: &Candidate| {

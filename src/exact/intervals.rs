@@ -1,4 +1,4 @@
-//! Every number of a box as an interval, part by part from the tip inward.
+//! Fills in the numbers of a box as intervals, part by part from the tip inward.
 
 use super::interval::interval;
 use super::parts::{DriveBox, LeastDemand, LinkBox, Rays};
@@ -9,13 +9,14 @@ use crate::sizing::demand::JointDemand;
 use crate::space::figures::von_mises;
 use crate::space::slot::SizedJoint;
 
-/// Rounding of a sum of a few dozen terms, with room.
+/// Relative rounding of a sum of a few dozen terms, with a margin.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// Levels of a tree to look down for drives that cannot hold.
+/// Levels of a tree that are descended in the search for infeasible drives.
 const DEPTH: usize = 6;
 
 impl Problem<'_> {
-    /// Fills in every interval from the tip inward; `None` if a part cannot hold.
+    /// Fills in every interval from the tip inward, and shrinks the nodes of the box to the options that can
+    /// carry the least load. `None` if some part cannot carry it.
     pub fn fill(&self, design_box: &mut [u32], work: &mut Work) -> Option<()> {
         work.clear(self.parts.len(), self.poses.len());
         let mut level = 0;
@@ -47,7 +48,7 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Shrinks a box of drives to those that may hold the least demand, and fills in their numbers.
+    /// Shrinks a box of drives to those that may carry the least demand, and fills in their numbers.
     fn fill_drives(
         &self,
         piece: usize,
@@ -68,7 +69,7 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Fills in the drives from the first fit of the least demand to that of the greatest.
+    /// Fills in the drives from the first fit of the least demand to the first fit of the greatest.
     fn fill_first_fit(
         &self,
         piece: usize,
@@ -90,7 +91,7 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Shrinks a box of link options to those that may hold the least stress, and fills in their numbers.
+    /// Shrinks a box of link options to those that may carry the least stress, and fills in their numbers.
     fn fill_links(
         &self,
         piece: usize,
@@ -106,14 +107,15 @@ impl Problem<'_> {
             if smaller == *node {
                 break;
             }
-            // what is left weighs more, and has to carry itself
+            // The remaining options are heavier, and a link carries its own weight, so the loads are computed
+            // again.
             *node = smaller;
             work.tube(self, piece, length_m, &tree.node(smaller).bounds);
         }
         Some(())
     }
 
-    /// The least and the largest static torque on a joint and inertia about it.
+    /// Least and greatest static torque on a joint \[N m\], and inertia about it \[kg m²\].
     fn loads(&self, piece: usize, work: &Work) -> ([f64; 2], [f64; 2]) {
         let (mut static_nm, mut inertia_kgm2) = ([0.0f64; 2], [0.0f64; 2]);
         for (pose, weights) in self.poses.iter().zip(&work.weights).filter(|(p, _)| p.sizing) {
@@ -131,8 +133,8 @@ impl Problem<'_> {
         (rounded(static_nm), rounded(inertia_kgm2))
     }
 
-    /// The least axial force, moments and torsion at the ends of a tube in every case, times what they are
-    /// to be multiplied with before they are compared with the strength.
+    /// The least axial force \[N\], moments about y and z and torsion \[N m\] at the ends of a tube in every
+    /// case, times the factors that are applied before the comparison with the strength.
     fn least_loads(&self, piece: usize, safety: f64, work: &Work) -> Vec<[f64; 4]> {
         let cases = self.poses.iter().zip(&work.weights);
         cases
@@ -150,7 +152,8 @@ impl Problem<'_> {
     }
 }
 
-/// The box around the drives below a node that may hold a demand; looks a few levels down.
+/// The box around the drives below a node that may carry a demand. It descends a few levels, so that
+/// infeasible drives do not widen the box. `None` if no drive may carry it.
 fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth: usize) -> Option<DriveBox> {
     let drives = &tree.node(node).bounds;
     if !drives.may_hold(asked) {
@@ -166,7 +169,7 @@ fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth:
     }
 }
 
-/// Whether some option of a box may hold a load.
+/// Whether some option of a box may carry a load.
 fn stress_holds(links: &LinkBox, load: &[f64; 4]) -> bool {
     let [axial, y, z, torsion]: [f64; 4] = std::array::from_fn(|k| load[k] * links.stress[k]);
     let bending = if links.round { y.hypot(z) } else { y + z };

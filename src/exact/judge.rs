@@ -1,4 +1,4 @@
-//! What every design keeps, and the judgement of one.
+//! The limits that every design keeps, and the judgement of a single design.
 
 use super::bound::BoxBound;
 use super::local_upper_bounds::LocalUpperBound;
@@ -10,7 +10,7 @@ use crate::search::sweep::Candidate;
 use crate::space::design::number;
 
 impl Problem<'_> {
-    /// What every design on the front keeps.
+    /// The limits of mass, deflection and mode, as the upper bound of the whole front.
     pub fn limits(&self) -> LocalUpperBound {
         let limits = &self.space.constraints;
         LocalUpperBound {
@@ -20,8 +20,8 @@ impl Problem<'_> {
         }
     }
 
-    /// One design: its ceiling is its objectives once its mode is made sure of; `None` if it is not known that it meets
-    /// the constraints.
+    /// Judges a box of one design. Its objectives are those of the bound, with the mode computed exactly.
+    /// `None` if it breaks a constraint, or if rounding leaves open whether it meets one.
     pub fn judge(
         &self,
         design_box: &[u32],

@@ -1,24 +1,30 @@
-//! Drives that no objective tells apart.
+//! Drives that no objective distinguishes.
 //!
-//! Deflection, mass and modes see a drive's mass and torsion curve and nothing else, and gears of one size have the same
-//! curve for several ratios, and in several series. So the drives of one mass and one curve are a **kind**: one option of
-//! the search, which holds what any of its drives holds. A design of kinds stands for all designs whose joints have drives
-//! of these kinds, each able to hold what its joint is asked for. That depends on the masses outboard alone, which are the
-//! same for all of them: every joint may choose whatever the others choose.
+//! Deflection, mass and modes depend on a drive only through its mass and its torsion curve. Gears of one
+//! size have the same curve for several ratios and in several series. So the drives of one mass and one curve
+//! form a **kind**, which is a single option of the search. A kind can carry a demand if any of its drives
+//! can.
+//!
+//! A design of kinds stands for every design whose joints have drives of these kinds, each able to carry its
+//! joint's demand. The demand depends only on the masses outboard, which are the same for all of them, so
+//! each joint chooses its drive independently of the others.
 
 use crate::space::slot::SizedJoint;
 
-/// Whether drives of a kind are one option of a search.
+/// Whether tied drives (those of one kind) are one option of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ties {
+    /// One option for each kind.
     Merged,
+    /// One option for each drive.
     Separate,
 }
 
-/// The drives of a joint by kinds, ascending; the first of each is the kind's number.
+/// The drives of a joint by kind, ascending. The first drive of a kind is its number.
 pub(super) struct Kinds(Vec<Vec<u32>>);
 
 impl Kinds {
+    /// The kinds of a joint's drives.
     pub fn of(sized: &SizedJoint, ties: Ties) -> Self {
         Self(match ties {
             Ties::Merged => sized.kinds(),
@@ -26,11 +32,12 @@ impl Kinds {
         })
     }
 
+    /// The drives of each kind.
     pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
         self.0.iter().map(Vec::as_slice)
     }
 
-    /// The drives of a kind.
+    /// The drives of the kind with this number.
     pub fn drives(&self, first: u32) -> &[u32] {
         self.0.binary_search_by_key(&first, |kind| kind[0]).map_or(&[], |at| &self.0[at])
     }

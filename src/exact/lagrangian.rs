@@ -1,4 +1,12 @@
-//! PLACEHOLDER
+//! The Lagrangian bound of a box, part by part, and the multipliers that improve it.
+//!
+//! For multipliers `y ≥ 0` the weighted sum of the rows ([`rows`](super::rows)) is a sum of one number for
+//! each part, its price. The least sum over all members of the box is therefore the sum of the least prices,
+//! which are found level by level. It is the value of the dual function at `y`. If it exceeds the weighted
+//! limits of a local upper bound, no member lies below that bound.
+//!
+//! The next multipliers are the solution of a matrix game against the relaxed designs found so far (Kelley's
+//! cutting-plane method). If none refutes the bound, the modes of the mixed arm give new rows.
 
 use super::bound::STARTS;
 use super::dual_price::{DualPrice, JointPrice, cheapest};
@@ -10,14 +18,15 @@ use super::rows::{DualPoint, Force, Mode, RelaxedDesign, Rows};
 use super::shape::{Ideal, Shape, Work as ShapeWork, dot, products};
 use super::torsion::CurveBox;
 
-/// Steps towards the mode of an arm in between.
+/// Steps of inverse iteration towards a mode of the mixed arm.
 const STEPS: usize = 3;
 
-/// Stiffness and inertia of each piece.
+/// Stiffnesses and inertias of each piece.
 type Arm = (Vec<[f64; STIFFNESSES]>, Vec<[f64; INERTIAS]>);
 
 impl Problem<'_> {
-    /// Mass per line mass of a piece: a tube's length, one for anything else.
+    /// Mass of a piece per unit of its first line inertia: the length of a tube \[m\], and 1 for any other
+    /// piece.
     fn length_m(&self, piece: usize) -> f64 {
         match &self.parts[piece] {
             Part::Links { length_m, .. } | Part::Tube { length_m, .. } => *length_m,
@@ -27,20 +36,22 @@ impl Problem<'_> {
 }
 
 impl Rows<'_> {
-    /// The weights that raise the worst of some members furthest above a corner.
+    /// The multipliers that raise the lowest of some relaxed designs as far as possible above the limits of a
+    /// local upper bound.
     pub fn best_multipliers(&self, members: &[RelaxedDesign], upper: &LocalUpperBound) -> Game {
-        /// A row this far below what is allowed has no say.
+        /// A row this far below its limit (scaled) has no influence.
         const NO_SAY: f64 = -10.0;
         let row_limits: Vec<f64> = self.row_limits(upper).collect();
         let above = |member: &RelaxedDesign| -> Vec<f64> {
             member.values.iter().zip(&row_limits).map(|(v, a)| (v - a).max(NO_SAY)).collect()
         };
-        // what a force is does not count among what is to be kept low
+        // The rows of a force are equalities on the mixture and not numbers to be kept low.
         let balanced = 1 + self.tips.len()..self.first_mode;
         solve(&members.iter().flat_map(above).collect::<Vec<f64>>(), row_limits.len(), balanced)
     }
 
-    /// Adds the modes of the arm in between some members, where they lie below a corner's; whether any does.
+    /// Adds the modes of the mixed arm that lie below the required frequency, as new rows. Returns whether
+    /// there were any.
     pub fn add_violated_modes(
         &mut self,
         members: &mut [RelaxedDesign],
@@ -78,7 +89,7 @@ impl Rows<'_> {
         self.modes.len() > before
     }
 
-    /// Stiffness and inertia of the arm in between some members in a case.
+    /// Stiffness and inertia of the mixed arm in a case: the mean of the relaxed designs by their shares.
     fn mixed_arm(&self, members: &[RelaxedDesign], mix: &[f64], judged: usize) -> Arm {
         let pieces = self.problem.parts.len();
         let mut arm = (vec![[0.0; STIFFNESSES]; pieces], vec![[0.0; INERTIAS]; pieces]);
@@ -90,7 +101,7 @@ impl Rows<'_> {
         arm
     }
 
-    /// The least weighted sum of any member, and the member that has it.
+    /// The least weighted sum over the members of the box, and the relaxed design that attains it.
     pub fn minimize(&self, design_box: &[u32], multipliers: Vec<f64>) -> (DualPoint, RelaxedDesign) {
         let pieces = self.problem.parts.len();
         let mut total: f64 = multipliers.iter().zip(&self.fixed).map(|(w, f)| w * f).sum();
@@ -152,7 +163,7 @@ impl Rows<'_> {
         (DualPoint { multipliers, least: total, levels }, member)
     }
 
-    /// Puts a drive in its place in the state that its price makes best.
+    /// Adds a drive to a relaxed design, in the state that is cheapest for its price.
     fn add_joint(
         &self,
         piece: usize,
@@ -177,7 +188,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Puts a tube in its place: of a box the lightest and stiffest.
+    /// Adds a tube to a relaxed design. For a box of tubes: the lightest and stiffest numbers.
     fn add_tube(&self, piece: usize, length_m: f64, links: &LinkBox, member: &mut RelaxedDesign) {
         let (line, stiffnesses) = (&links.low.inertias, &links.high.stiffnesses);
         let mass_kg = line[inertia::MASS] * length_m;
@@ -188,12 +199,12 @@ impl Rows<'_> {
             self.add_weight(piece, judged, (mass_kg - water_kg) * self.problem.space.gravity_m_s2, member);
             let yields = tip.tubes[piece].iter().zip(stiffnesses).map(|(c, s)| c / s);
             member.values[1 + judged] += yields.sum::<f64>();
-            // what does not yield stores nothing
+            // What does not yield stores no energy.
             member.stiffness[judged][piece] = stiffnesses.map(|s| if s.is_finite() { s } else { 0.0 });
         }
     }
 
-    /// Adds what the weight of a piece does to the tip and to the torques of the gears inboard.
+    /// Adds the effect of a piece's weight on the tip and on the torques of the gears inboard.
     fn add_weight(&self, piece: usize, judged: usize, weight_n: f64, member: &mut RelaxedDesign) {
         member.values[1 + judged] += weight_n * self.tips[judged].per_n[piece];
         member.weights_n[judged][piece] = weight_n;
@@ -204,7 +215,7 @@ impl Rows<'_> {
         }
     }
 
-    /// What a piece adds to the sum with these weights, by its numbers.
+    /// The dual prices of a piece under these multipliers.
     pub fn price(&self, piece: usize, multipliers: &[f64]) -> DualPrice {
         let multiplier = |row: usize| multipliers[row] / self.scale[row];
         let (length_m, is_joint) = (self.problem.length_m(piece), self.work.curves[piece].is_some());
@@ -222,6 +233,7 @@ impl Rows<'_> {
                 *c += multiplier(1 + judged) * tube;
             }
         }
+        // A drive has no outer area; the weight of water on it is not counted by the model either.
         if is_joint {
             price.inertia[inertia::OUTER_AREA] = 0.0;
         }
@@ -254,7 +266,7 @@ impl Rows<'_> {
         price
     }
 
-    /// What a piece of a member adds to a row.
+    /// What a piece of a relaxed design adds to a row, scaled.
     pub fn added(&self, member: &RelaxedDesign, piece: usize, row: usize) -> f64 {
         let adds = match row.checked_sub(self.first_mode) {
             None => member.adds[piece][row],
@@ -267,7 +279,7 @@ impl Rows<'_> {
         adds / self.scale[row]
     }
 
-    /// `λ xᵀMx - xᵀKx` of a member but for what is fixed.
+    /// `λ xᵀMx - xᵀKx` of a relaxed design, without the part of the payload and given bodies.
     fn mode_value(&self, mode: &Mode, member: &RelaxedDesign) -> f64 {
         let moves = products(&mode.shape.kinetic, &member.inertia);
         self.lambda * moves - products(&mode.shape.strain, &member.stiffness[mode.judged])

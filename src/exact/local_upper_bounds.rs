@@ -1,14 +1,18 @@
-//! What the designs found leave open: the corners of the region that none of them beats.
+//! Local upper bounds: what the incumbents leave open.
 //!
-//! A design that nothing found beats is lighter than some corner's mass, sags less than its deflection and is
-//! faster than its mode. Corners come from one sweep over the designs by rising mass: a staircase of deflection
-//! and mode has a corner between any two steps, and such a corner becomes one of the region at the mass at which
-//! a further design cuts it off.
+//! The search region is the set of objective vectors that no incumbent dominates. It is the union of boxes
+//! below local upper bounds: a design that is not dominated is lighter, deflects less and has a higher mode
+//! than some local upper bound.
+//!
+//! One sweep over the incumbents by rising mass finds them all. Deflection and mode of the incumbents so far
+//! form a staircase, with a bound between any two neighbouring steps. Such a bound is complete, and gets its
+//! mass, when a heavier incumbent cuts it off.
 
 use super::bound::BoxBound;
 use crate::pareto::objectives::Objectives;
 
-/// A corner: a design below it in mass and deflection and above it in its mode is not beaten.
+/// A local upper bound. A design that is below it in mass and deflection, and above it in mode, is not
+/// dominated by the incumbents that made it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LocalUpperBound {
     pub mass_kg: f64,
@@ -17,7 +21,7 @@ pub(super) struct LocalUpperBound {
 }
 
 impl LocalUpperBound {
-    /// The corner that bounds two.
+    /// The local upper bound that covers two.
     fn join(&self, other: &Self) -> Self {
         Self {
             mass_kg: self.mass_kg.max(other.mass_kg),
@@ -26,13 +30,13 @@ impl LocalUpperBound {
         }
     }
 
-    /// Whether a box with this ceiling may have a member below the corner.
+    /// Whether a box with this bound may have a member below the local upper bound.
     #[inline]
     pub fn is_in_reach_of(&self, box_bound: &BoxBound) -> bool {
         box_bound.mass_kg <= self.mass_kg && box_bound.tip_m <= self.tip_m && box_bound.hz >= self.hz
     }
 
-    /// Square of its frequency \[1/s²\].
+    /// The eigenvalue of its frequency, `(2πf)²` \[1/s²\].
     pub fn lambda(&self) -> f64 {
         (self.hz * std::f64::consts::TAU).powi(2)
     }
@@ -42,20 +46,22 @@ impl LocalUpperBound {
     }
 }
 
-/// All corners, in a tree whose nodes know the corner that bounds those below.
+/// All local upper bounds in a binary tree. Each node has a bound that covers those below it, so that many
+/// are refuted at once.
 pub(super) struct LocalUpperBounds {
     nodes: Vec<Node>,
 }
 
-/// A node in preorder.
+/// A node, in preorder.
 struct Node {
     bound: LocalUpperBound,
-    /// The first node that is not below this one.
+    /// Index after the last node of this subtree.
     end: usize,
 }
 
 impl LocalUpperBounds {
-    /// The corners that designs leave open within limits. Designs that another one beats are taken out.
+    /// The local upper bounds that designs leave open within limits. Dominated designs are removed from the
+    /// list.
     pub fn new(designs: &mut Vec<Objectives>, limits: LocalUpperBound) -> Self {
         designs.sort_unstable_by(|a, b| {
             (a.mass_kg.total_cmp(&b.mass_kg))
@@ -65,7 +71,7 @@ impl LocalUpperBounds {
         let mut stairs = Stairs { steps: Vec::new(), limits };
         let mut upper_bounds = Vec::new();
         designs.retain(|design| stairs.add(design, &mut upper_bounds));
-        upper_bounds.extend((0..=stairs.steps.len()).map(|k| stairs.upper(k, limits.mass_kg)));
+        upper_bounds.extend((0..=stairs.steps.len()).map(|k| stairs.bound_before(k, limits.mass_kg)));
         upper_bounds.retain(|c| c.tip_m > 0.0 && c.hz < f64::INFINITY);
         let mut nodes = Vec::with_capacity(2 * upper_bounds.len());
         if !upper_bounds.is_empty() {
@@ -74,7 +80,8 @@ impl LocalUpperBounds {
         Self { nodes }
     }
 
-    /// A node, the first of all being 0: the corner that bounds those below it, and its two halves.
+    /// The bound of a node and its two halves, if it has any. Node 0 is the root. `None` if there is no such
+    /// node.
     pub fn node(&self, at: usize) -> Option<(LocalUpperBound, Option<[usize; 2]>)> {
         let node = self.nodes.get(at)?;
         let halves = (node.end > at + 1).then(|| [at + 1, self.nodes[at + 1].end]);
@@ -82,31 +89,31 @@ impl LocalUpperBounds {
     }
 }
 
-/// Deflection and mode of the designs so far that none of them beats: both rise.
+/// Deflection and mode of the incumbents so far that are not dominated, in ascending order of both.
 struct Stairs {
     steps: Vec<[f64; 2]>,
     limits: LocalUpperBound,
 }
 
 impl Stairs {
-    /// Adds a design heavier than all before and returns the corners that it cuts off; whether it is no worse
-    /// than any before.
+    /// Adds a design that is at least as heavy as all before, and appends the bounds that it completes.
+    /// Returns whether the design is not dominated.
     fn add(&mut self, design: &Objectives, upper_bounds: &mut Vec<LocalUpperBound>) -> bool {
         let (tip_m, hz) = (design.tip_deflection_m, design.lowest_mode_hz);
-        // steps before `from` sag less; steps before `to` are no faster
+        // Steps before `from` deflect less; steps before `to` have no higher mode.
         let from = self.steps.partition_point(|step| step[0] < tip_m);
         let to = self.steps.partition_point(|step| step[1] <= hz);
         if to < from || self.steps.get(from).is_some_and(|step| step[0] == tip_m && step[1] >= hz) {
             return false;
         }
-        // corners k between the steps k - 1 and k, the outer ones shared with the neighbours
-        upper_bounds.extend((from..=to).map(|k| self.upper(k, design.mass_kg)));
+        // Bound k lies between the steps k - 1 and k. The outer two are shared with the neighbours.
+        upper_bounds.extend((from..=to).map(|k| self.bound_before(k, design.mass_kg)));
         self.steps.splice(from..to, [[tip_m, hz]]);
         true
     }
 
-    /// The corner before a step.
-    fn upper(&self, k: usize, mass_kg: f64) -> LocalUpperBound {
+    /// The bound before a step.
+    fn bound_before(&self, k: usize, mass_kg: f64) -> LocalUpperBound {
         LocalUpperBound {
             mass_kg,
             tip_m: self.steps.get(k).map_or(self.limits.tip_m, |step| step[0]),
@@ -115,7 +122,7 @@ impl Stairs {
     }
 }
 
-/// Halves corners at the median of the coordinate with the largest ratio.
+/// Builds the tree: halves the bounds at the median of the objective with the greatest ratio.
 fn grow(upper_bounds: &mut [LocalUpperBound], nodes: &mut Vec<Node>) -> LocalUpperBound {
     let here = nodes.len();
     nodes.push(Node { bound: upper_bounds[0], end: here + 1 });
@@ -155,7 +162,7 @@ mod tests {
         prop::collection::vec(design, 0..40)
     }
 
-    /// Whether a design is below some corner under a node, asked node by node.
+    /// Whether a design is below some local upper bound under a node, asked node by node.
     fn is_below(upper_bounds: &LocalUpperBounds, at: usize, design: [f64; 3]) -> bool {
         let [mass_kg, tip_m, hz] = design;
         upper_bounds.node(at).is_some_and(|(c, halves)| {
@@ -167,17 +174,17 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_design_is_below_a_corner_exactly_if_none_beats_it(designs in designs()) {
+        fn a_design_is_below_a_bound_exactly_if_none_dominates_it(designs in designs()) {
             let mut kept = designs.clone();
             let upper_bounds = LocalUpperBounds::new(&mut kept, LIMITS);
             for cell in 0..12 * 12 * 12 {
                 let [mass_kg, tip_m, hz] = [cell % 12, cell / 12 % 12, cell / 144].map(|k| f64::from(k) + 0.5);
-                let beaten = |o: &Objectives| {
+                let dominated = |o: &Objectives| {
                     o.mass_kg < mass_kg && o.tip_deflection_m < tip_m && o.lowest_mode_hz > hz
                 };
                 let below = is_below(&upper_bounds, 0, [mass_kg, tip_m, hz]);
-                prop_assert_eq!(below, !designs.iter().any(beaten));
-                prop_assert_eq!(below, !kept.iter().any(beaten));
+                prop_assert_eq!(below, !designs.iter().any(dominated));
+                prop_assert_eq!(below, !kept.iter().any(dominated));
             }
         }
     }

@@ -1,12 +1,19 @@
-//! The exact front of spaces far too large to visit: branch and bound over boxes of parts.
+//! The exact front of design spaces that are far too large to enumerate: branch and bound over boxes of
+//! parts.
 //!
-//! Every level of the design space is a binary tree over its options; a box is a node of each tree. A
-//! `bound.rs` says how good the best member of a box could be, by the same mechanics with every number an
-//! interval. A box is cut when no member can hold, or when a design already found is better than any member
-//! could be; otherwise it is halved. Of a very large space the options are narrowed first, for one part at a time of what
-//! the designs found leave open (`regions.rs`). What is left at the end is judged by the full model. Nothing is
-//! assumed about the poses, the order of the parts or the shape of torsion curves: see `docs/exact.md` for
-//! the proof and its conditions.
+//! The options of each level of the design space (the tubes of a link, the drives of a joint) form a binary
+//! tree. A box is one node of each tree; its members are all designs whose parts lie below those nodes. The
+//! bound of a box (`bound.rs`) says how good its best member could be: it is the same mechanics with every
+//! number replaced by an interval. A box is pruned if no member meets the constraints, or if a design already
+//! found (an incumbent) dominates the bound. Otherwise the box is halved. A box of one design is judged by
+//! the full model.
+//!
+//! A very large space is searched region by region (`regions.rs`). A region holds the designs that are better
+//! than one local upper bound of the incumbents. A Lagrangian bound over the region removes most options of
+//! each level before boxes are searched.
+//!
+//! No assumption is made about the poses, the order of the parts or the shape of the torsion curves. The
+//! proof and its conditions are in `docs/exact.md`.
 
 pub(crate) mod bound;
 pub(crate) mod boxes;

@@ -1,8 +1,9 @@
 //! Designs near a finished front, box by box.
 //!
-//! No member of a box has a smaller shortfall ([`Shortfall`]) than its ceiling has, for every objective of the ceiling
-//! is at least as good. So a box is cut if its ceiling is not near; nothing found on the way counts, and no drive is
-//! pointless. Once as many designs as are asked for are held, only nearer ones are looked for.
+//! Every objective of a box's bound is at least as good as that of any member, so no member has a smaller
+//! shortfall ([`Shortfall`]) than the bound. A box is pruned if its bound is not near. Incumbents do not
+//! prune here, and dominated drives stay, because near designs may be dominated. Once more designs have been
+//! found than are asked for, only nearer ones are sought.
 
 use super::bound::{BoxBound, Verdict};
 use super::boxes::{OpenBox, open_all_boxes};
@@ -15,12 +16,13 @@ use crate::search::near::{BUFFER, NearDesign, NearDesigns, ROUNDING, Shortfall, 
 use crate::search::sweep::Candidate;
 use crate::space::design::number;
 
-/// How much a better trial shape may lower a ceiling's frequency.
+/// A better trial shape may lower the frequency of a bound to this part of it.
 const NEAR: f64 = 0.4;
 
 impl Exact<'_> {
-    /// Finds the designs that keep the constraints and whose shortfall is at most the slack, those of the front among
-    /// them; `None` if it was stopped. Of far more designs than are asked for the number is not known.
+    /// Finds the designs that meet the constraints and whose shortfall is at most the slack, the front
+    /// included. `None` if the search was stopped. The total is not counted if it is far more than what is
+    /// asked for.
     pub fn near(&self, front: &[Candidate], slack: Slack) -> Option<NearDesigns> {
         let mut seeker = Seeker {
             shortfall: Shortfall::of(front.iter().map(|c| c.objectives)),
@@ -43,11 +45,11 @@ impl Exact<'_> {
         }
         let Seeker { mut nearest, found, .. } = seeker;
         keep_nearest(&mut nearest, slack.most);
-        let total = (found <= held_at_most(slack.most) as u64).then_some(found);
+        let total = (found <= kept_at_most(slack.most) as u64).then_some(found);
         Some(NearDesigns { nearest, total })
     }
 
-    /// Bounds a box and halves it, or keeps it if it is one design.
+    /// Bounds a box and returns its halves. A box of one design is kept if it is near.
     fn open_near(
         &self,
         problem: &Problem,
@@ -79,23 +81,23 @@ impl Exact<'_> {
     }
 }
 
-/// Designs that are held before the nearest of them are told from the others.
-fn held_at_most(most: usize) -> usize {
+/// Number of designs that are kept before they are thinned out to the nearest.
+fn kept_at_most(most: usize) -> usize {
     2 * most + BUFFER
 }
 
-/// What is known of the designs near a front.
+/// The state of the search for near designs.
 struct Seeker {
     shortfall: Shortfall,
     most: usize,
-    /// The largest shortfall that is looked for.
+    /// The greatest shortfall that is still of interest.
     reach: f64,
     found: u64,
     nearest: Vec<NearDesign>,
 }
 
 impl Seeker {
-    /// Whether a box with this ceiling may have a member that is near.
+    /// Whether a box with this bound may have a near member.
     fn is_near(&self, box_bound: &BoxBound) -> bool {
         self.shortfall.is_within(self.reach, &Objectives::from(*box_bound))
     }
@@ -105,11 +107,11 @@ impl Seeker {
         Some(NearDesign { candidate, shortfall })
     }
 
-    /// Keeps designs that are near.
+    /// Takes in near designs, and lowers the limit once there are enough of them.
     fn learn(&mut self, near: Vec<NearDesign>) {
         self.found += near.len() as u64;
         self.nearest.extend(near);
-        if self.nearest.len() > held_at_most(self.most) {
+        if self.nearest.len() > kept_at_most(self.most) {
             keep_nearest(&mut self.nearest, self.most);
             let last = self.nearest.last().map_or(0.0, |near| near.shortfall);
             self.reach = self.reach.min(last + ROUNDING);

@@ -1,18 +1,20 @@
-//! One case of a study as rows of numbers: what each weight does to each coordinate.
+//! One case of a study as rows of numbers: the effect of each weight on each strain coordinate.
 
 use super::interval::interval;
 use super::parts::INERTIAS;
 use crate::mechanics::Twist;
 use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
 
-/// Coefficients smaller than this share of the largest are rounding.
+/// Coefficients below this part of the largest are rounding.
 const NOTHING: f64 = 1e-12;
 
-/// Coordinates of a tube: curvatures along z and y (4 each), shears (3 each), twist, stretch (3 each).
+/// Number of strain coordinates of a tube: curvatures along z and y (4 each), shears along z and y (3 each),
+/// twists (3), stretches (3).
 pub(super) const COORDINATES: usize = 20;
-/// The coordinates that move a tube's end.
+/// The coordinates that move the end of a tube.
 pub(super) const ENDS: [usize; 8] = [0, 1, 4, 5, 8, 11, 14, 17];
-/// Which stiffness of a [`Line`](super::parts::Line) resists each coordinate, and its degree.
+/// For each coordinate: the index of the stiffness of a [`Line`](super::parts::Line) that resists it, and the
+/// degree of its polynomial.
 pub(super) const RESISTED: [(usize, u8); COORDINATES] = [
     (0, 0),
     (0, 1),
@@ -36,35 +38,36 @@ pub(super) const RESISTED: [(usize, u8); COORDINATES] = [
     (4, 2),
 ];
 
-/// Compliance of a tube's coordinate times its stiffness and length: `2i + 1`.
+/// `2i + 1` for a polynomial of degree `i`: the compliance of a coordinate times its stiffness and the tube's
+/// length.
 pub(super) fn degree_factor(coordinate: usize) -> f64 {
     f64::from(2 * RESISTED[coordinate].1 + 1)
 }
 
-/// A case compiled for the bound. Pieces are counted from the tip.
+/// A case, compiled for bounds. Pieces are counted from the tip.
 pub(super) struct Pose {
     pub judged: bool,
     pub sizing: bool,
-    /// Whether no two parts move the tip against each other.
+    /// Whether no two contributions to the tip's displacement oppose each other.
     pub contributions_align: bool,
-    /// Weight of the water in a tube's outer area over that of its mass: net weight per length is
-    /// `g (mass - water area)`.
+    /// Density of the water around the arm, 0 in air \[kg/m³\]. The net weight per length of a tube is `g
+    /// (mass - water · outer area)`.
     pub water_kg_m3: f64,
     pub pieces: Vec<PosedPiece>,
-    /// What the payload and massive offsets do to a wrench or an inertia before any part is chosen.
+    /// Inertia of the payload, before any part is chosen.
     pub payload_inertia: Matrix6<f64>,
-    /// Every coordinate that any weight or load strains, tip first.
+    /// The rows of all coordinates that a weight or a load strains, tip first.
     pub rows: Vec<Row>,
     pub stress: Vec<StressRow>,
-    /// Inertia about each joint's axis.
+    /// Inertia about each joint's axis; `None` for a piece that is no joint.
     pub inertia_about: Vec<Option<InertiaRow>>,
 }
 
 /// A piece in a pose.
 pub(super) enum PosedPiece {
-    /// A joint: its twist, and where its mass is.
+    /// A joint: its unit twist, and the point of its mass.
     Joint { twist: Twist, at_m: Vector3<f64> },
-    /// A point mass, already counted.
+    /// The inertia of a given body.
     Body(Matrix6<f64>),
     /// A tube.
     Tube(Box<PosedTube>),
@@ -75,18 +78,18 @@ pub(super) struct PosedTube {
     pub length_m: f64,
     pub root_m: Vector3<f64>,
     pub frame: Matrix3<f64>,
-    /// Twist of everything outboard per unit of each of [`ENDS`].
+    /// Twist of everything outboard per unit of each of the coordinates [`ENDS`].
     pub ends: [Twist; 8],
-    /// Inertia over root motion and coordinates per unit of line density.
+    /// Inertia forms over the motion of the root and the coordinates, per unit of each line inertia.
     pub forms: TubeForms,
     /// Added mass across the tube per outer area \[kg/m³\].
     pub added_kg_m3: f64,
-    /// Whether its section is a choice.
+    /// Whether its section is chosen by the search.
     pub chosen: bool,
 }
 
-/// Inertia forms over `(root translation, root rotation, curvatures, shears)` of each plane, and over
-/// `(root rotation, twists)` and `(root translation, stretches)` along the tube.
+/// Quadratic forms of kinetic energy. In each plane they are over `(root translation, root rotation,
+/// curvatures, shears)`; along the tube over `(root rotation, twists)` and `(root translation, stretches)`.
 pub(super) struct TubeForms {
     pub across_z: SMatrix<f64, 9, 9>,
     pub across_y: SMatrix<f64, 9, 9>,
@@ -96,35 +99,35 @@ pub(super) struct TubeForms {
     pub along: SMatrix<f64, 4, 4>,
 }
 
-/// The force on a strain coordinate and what it does to the tip.
+/// The force on a strain coordinate, and the effect of the coordinate on the tip.
 pub(super) struct Row {
     pub piece: usize,
-    /// Coordinate of a tube; 0 for a joint.
+    /// Index of a tube's coordinate; 0 for a joint.
     pub coordinate: usize,
-    /// Force without any weight of parts.
+    /// Force without the weight of any part \[N or N m\].
     pub fixed: f64,
-    /// Force per newton of each piece's weight, up to and including `piece`.
+    /// Force per newton of the weight of each piece, up to and including `piece`.
     pub per_n: Vec<f64>,
-    /// Displacement of the tip per unit of the coordinate, and how far that is.
+    /// Displacement of the tip per unit of the coordinate, and its length.
     pub tip_m: Vector3<f64>,
     pub tip_m_per_unit: f64,
 }
 
-/// Force and moments at an end of an open tube.
+/// Force and moments on the section at an end of a chosen tube.
 pub(super) struct StressRow {
     pub piece: usize,
-    /// Axial force, moments about y and z, torsion, as `fixed + per_n · weights`.
+    /// Axial force, moments about y and z, and torsion, each as `fixed + per_n · weights`.
     pub loads: [(f64, Vec<f64>); 4],
 }
 
-/// Inertia about a joint's axis: `fixed + Σ per_line · inertias` of the pieces outboard.
+/// Inertia about a joint's axis \[kg m²\]: `fixed + Σ per_line · inertias` of the pieces outboard.
 pub(super) struct InertiaRow {
     pub fixed: f64,
     pub per_line: Vec<[f64; INERTIAS]>,
 }
 
 impl Pose {
-    /// Torque on a joint as an interval \[N m\].
+    /// Torque on a joint, as an interval \[N m\].
     pub fn torque(&self, piece: usize, weights: &[[f64; 2]]) -> [f64; 2] {
         let row = self.rows.iter().find(|row| row.piece == piece);
         row.map_or([0.0; 2], |row| interval(row.fixed, &row.per_n, weights))
@@ -145,8 +148,8 @@ impl Pose {
             && loads.into_iter().all(|(fixed, per_n)| sign(*fixed, per_n).is_some())
     }
 
-    /// Whether the parts of the arm move the tip in directions no two of which oppose: then it moves further
-    /// if any of them yields more.
+    /// Whether no two contributions to the tip's displacement oppose each other. Then the tip moves further
+    /// if any part yields more.
     pub fn contributions_align(&self) -> bool {
         let rows = self.relevant_rows();
         let ways: Vec<_> = rows.map(|row| row.tip_m * sign(row.fixed, &row.per_n).unwrap_or(0.0)).collect();
@@ -154,17 +157,18 @@ impl Pose {
         ways.iter().enumerate().all(|(i, a)| ways[..i].iter().all(|b| agree(a, b)))
     }
 
-    /// Joints, and what moves the tip.
+    /// The rows of joints, and the rows of coordinates that move the tip.
     fn relevant_rows(&self) -> impl Iterator<Item = &Row> {
         let is_joint = |row: &Row| matches!(self.pieces[row.piece], PosedPiece::Joint { .. });
         self.rows.iter().filter(move |row| is_joint(row) || row.tip_m.norm() > 0.0)
     }
 }
 
-/// The one sign of a force and all its parts, 0 if there is none; `None` if they differ.
+/// The common sign of a force without weights and per weight; 0 if all are zero, `None` if signs differ.
 fn sign(fixed: f64, per_n: &[f64]) -> Option<f64> {
     let largest = per_n.iter().fold(0.0f64, |most, c| most.max(c.abs()));
-    // a fixed force is compared in the same measure: as if it were that of one newton or more
+    // The fixed force and the coefficients have different units. They are compared as if every weight were
+    // one newton.
     let nothing = NOTHING * largest.max(fixed.abs()).max(1.0);
     let numbers = || per_n.iter().chain([&fixed]);
     let (rise, fall) = (numbers().any(|c| *c > nothing), numbers().any(|c| *c < -nothing));

@@ -1,8 +1,8 @@
-//! Good designs to start from: what the bounds think best, then each part at its best given the others.
+//! The first incumbents, found by diving.
 //!
-//! A probe minimizes one weighting of the logarithms of mass, deflection and mode. It follows the better
-//! half of every box down to one design, then lets one level at a time go free. What it finds proves
-//! nothing and is not lost: a search that knows good designs cuts early.
+//! A probe minimizes one weighted sum of the logarithms of mass, deflection and mode. It follows the better
+//! half of every box down to one design, and then optimizes one level at a time with the others fixed. Its
+//! result proves nothing, but a search with good incumbents prunes early.
 
 use super::bound::{BoxBound, DesignBox, Verdict};
 use super::budget::Budget;
@@ -15,20 +15,19 @@ use crate::pareto::objectives::Objectives;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Boxes that the way down from the box of everything may open.
+/// Greatest number of boxes in the first dive.
 const DIVE_BOXES: usize = 2_000;
-/// Boxes that a level left free may open.
+/// Greatest number of boxes when one level is optimized.
 const LEVEL_BOXES: usize = 300;
-/// Times every level is let go free.
+/// Greatest number of rounds over all levels.
 const ROUNDS: usize = 3;
 
-/// Weights of mass, deflection and mode.
+/// Weights of mass, deflection and mode. They sum to one.
 #[derive(Clone, Copy)]
 struct Merit([f64; 3]);
 
 impl Merit {
-    /// Spread evenly over all proportions: Roberts' sequence with the plastic number, folded into the
-    /// triangle of weights that add up to one.
+    /// The weights of probe `n`, spread evenly over the triangle of all weights by Roberts' sequence.
     fn nth(n: usize) -> Self {
         const PLASTIC: f64 = 1.324_717_957_244_746;
         let at = |step: f64| (0.5 + (n + 1) as f64 / step).fract();
@@ -37,14 +36,14 @@ impl Merit {
         Self([u, v, 1.0 - u - v])
     }
 
-    /// Less is better.
+    /// The merit of a bound. Less is better.
     fn of(&self, box_bound: &BoxBound) -> f64 {
         let [mass, tip, mode] = self.0;
         mass * box_bound.mass_kg.ln() + tip * box_bound.tip_m.max(1e-12).ln() - mode * box_bound.hz.ln()
     }
 }
 
-/// The best design so far of one probe.
+/// The best design of one probe so far.
 struct Best {
     merit: f64,
     design_box: DesignBox,
@@ -52,7 +51,7 @@ struct Best {
     shapes: Arc<Vec<Shape>>,
 }
 
-/// Probes the space in so many proportions of the objectives.
+/// Runs this many probes, each with other weights, and adds what they find to the state.
 pub(super) fn probe<'p>(
     budget: &Budget,
     problem: &Problem<'p>,
@@ -82,7 +81,7 @@ struct Probe<'a, 'p> {
 }
 
 impl Probe<'_, '_> {
-    /// The best design that it finds: down from the box of everything, then each level by itself.
+    /// The best design that the probe finds: a dive from the box of all designs, then each level by itself.
     fn best(&self, shapes: &Arc<Vec<Shape>>, findings: &mut Findings) -> Option<Individual> {
         let mut work = Work::default();
         let mut best = self.descend(self.problem.root(), shapes, DIVE_BOXES, None, &mut work, findings)?;
@@ -101,7 +100,8 @@ impl Probe<'_, '_> {
         Some(Individual { design_box: best.design_box, objectives: best.objectives, shapes: best.shapes })
     }
 
-    /// The design of most merit in a box, or the best known, the better half looked at first.
+    /// The design of least merit value in a box, or `best` if that is better. The better half is opened
+    /// first.
     fn descend(
         &self,
         design_box: DesignBox,
@@ -138,7 +138,7 @@ impl Probe<'_, '_> {
         best
     }
 
-    /// Bounds a box; a box of one design is judged and remembered if it is the best.
+    /// Bounds a box. A box of one design is judged, and remembered if it is the best so far.
     fn look(
         &self,
         mut design_box: DesignBox,
@@ -165,7 +165,7 @@ impl Probe<'_, '_> {
     }
 }
 
-/// A box that may hold a design of more merit than the best.
+/// A box that may hold a better design than the best so far.
 struct Promising {
     merit: f64,
     design_box: DesignBox,

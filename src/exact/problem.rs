@@ -1,4 +1,4 @@
-//! A design space compiled for the bound: a tree of boxes for every level, rows of numbers for every
+//! A design space as branch and bound sees it: a tree of boxes for every level, and rows of numbers for every
 //! case.
 
 use super::force_bound::ForceBound;
@@ -13,38 +13,39 @@ use crate::space::design_space::DesignSpace;
 use crate::space::slot::SizedJoint;
 use std::sync::Arc;
 
-/// A design space as branch and bound sees it. Pieces count from the tip.
+/// A compiled design space. Pieces are counted from the tip.
 #[derive(Clone)]
 pub(super) struct Problem<'c> {
     pub space: &'c DesignSpace,
     pub parts: Vec<Part<'c>>,
     /// The piece of each level, tip first.
     pub level_pieces: Vec<usize>,
-    /// Options of each level.
+    /// Number of options of each level.
     pub level_sizes: Vec<u32>,
     pub poses: Arc<Vec<Pose>>,
     /// Inertia matrices of the judged cases.
     pub inertias: Arc<Vec<CaseInertia>>,
-    /// Peak over static stress in sizing cases.
+    /// Ratio of peak stress to static stress in sizing cases.
     pub peak_factor: f64,
-    /// Whether a lighter arm that is no softer is no worse.
+    /// Whether a lighter arm of the same stiffness is never worse, which the pruning of dominated drives
+    /// needs.
     pub lighter_is_better: bool,
-    /// Play of each piece.
+    /// Play of each piece; `None` if it has none.
     pub joint_plays: Vec<Option<JointPlay>>,
-    /// Forces between bounds that a member must keep.
+    /// Intervals to which a region restricts single forces.
     pub force_bounds: Arc<[ForceBound]>,
 }
 
-/// What may stand at a place of the chain.
+/// The part, or the choice of parts, at one place of the chain.
 #[derive(Clone)]
 pub(super) enum Part<'c> {
     /// A given joint.
     Given { mass_kg: f64, curve: Option<CurveBox> },
-    /// A joint whose drive is a choice; an option of the tree is the first drive of a kind.
+    /// A joint whose drive is a level of the search. An option of the tree is the first drive of a kind.
     Drives { sized: Arc<SizedJoint<'c>>, kinds: Arc<Kinds>, tree: Arc<Tree<DriveBox>>, rays: Arc<Rays> },
-    /// A joint that takes the lightest drive that holds.
+    /// A joint that takes the lightest drive that carries its demand.
     FirstFit { sized: Arc<SizedJoint<'c>>, ladder: Arc<Ladder> },
-    /// A link to choose.
+    /// A link whose section and material are a level of the search.
     Links { length_m: f64, tree: Arc<Tree<LinkBox>> },
     /// A given tube.
     Tube { length_m: f64, tube: Box<LinkBox> },
@@ -52,9 +53,9 @@ pub(super) enum Part<'c> {
     Offset { mass_kg: f64 },
 }
 
-/// The drives that can be a first fit, and the box around any run of them.
+/// The drives that can be a first fit, by rising mass, with the box around any run of them.
 pub(super) struct Ladder {
-    /// `runs[k][i]`: the box of the drives `i..i + 2^k`.
+    /// `runs[k][i]` is the box of the drives `i..i + 2^k`, so that any run is the union of two of them.
     runs: Vec<Vec<DriveBox>>,
 }
 
@@ -71,12 +72,12 @@ impl Ladder {
         Self { runs }
     }
 
-    /// Number of steps.
+    /// Number of drives.
     pub fn len(&self) -> usize {
         self.runs[0].len()
     }
 
-    /// The box around the steps `first..=last`.
+    /// The box around the drives `first..=last`.
     pub fn run(&self, first: usize, last: usize) -> DriveBox {
         let k = (last - first + 1).ilog2() as usize;
         let run = &self.runs[k];
@@ -85,7 +86,8 @@ impl Ladder {
 }
 
 impl<'c> Problem<'c> {
-    /// The problem with some of the options only: those below nodes of each level's whole tree.
+    /// The problem restricted to the options below some nodes of each level's base tree. `None` if a level
+    /// has none.
     pub fn restricted_to(&self, kept: &[Vec<u32>]) -> Option<Self> {
         let mut narrower = self.clone();
         for (&piece, nodes) in self.level_pieces.iter().zip(kept) {
@@ -98,7 +100,7 @@ impl<'c> Problem<'c> {
         Some(narrower)
     }
 
-    /// Designs in a box, drives of a kind as one.
+    /// Number of designs in a box, with the drives of a kind counted once.
     pub fn members(&self, design_box: &[u32]) -> f64 {
         let of = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
             Part::Drives { tree, .. } => f64::from(tree.node(node).members),
@@ -108,7 +110,7 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(design_box).map(of).product()
     }
 
-    /// Numbers of each level's options below nodes of its whole tree, all drives of a kind.
+    /// The options of each level below some nodes of its base tree, with all drives of a kind.
     pub fn options_below(&self, kept: &[Vec<u32>]) -> Vec<Vec<u32>> {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, kinds, .. } => kinds.drives_of(&tree.options_of(nodes)),
@@ -118,7 +120,7 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(kept).map(of).collect()
     }
 
-    /// Designs below nodes of each level's whole tree, drives of a kind as one.
+    /// Number of designs below some nodes of each level's base tree, with the drives of a kind counted once.
     pub fn designs_below(&self, kept: &[Vec<u32>]) -> f64 {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, .. } => tree.members_of(nodes),
@@ -128,7 +130,7 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(kept).map(of).product()
     }
 
-    /// Designs in the space.
+    /// Number of designs in the space.
     pub fn designs(&self) -> u128 {
         self.level_sizes.iter().map(|&s| u128::from(s)).product()
     }

@@ -1,5 +1,8 @@
-//! Which options a member below a corner may have at all: those whose price the corner can afford when every other
-//! part is the cheapest (reduced costs).
+//! Reduced-cost fixing: removes the options that no member below a local upper bound can have.
+//!
+//! At a dual point, let every other part be the cheapest. An option whose price exceeds what is then left of
+//! the limits belongs to no member below the local upper bound. All prices of a box of options are compared
+//! eight dual points at a time.
 
 use super::dual_price::{DualPrice, GearStates, JointPrice};
 use super::local_upper_bounds::LocalUpperBound;
@@ -8,16 +11,16 @@ use super::problem::Part;
 use super::rows::{DualPoint, ROUNDING, Rows};
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
 
-/// Boxes of options a level is looked at in, about.
+/// Approximate number of boxes into which the options of a level are divided.
 const BOXES: usize = 256;
-/// Weightings that count: the strictest.
+/// Number of dual points that are used, the strictest first.
 const STRICTEST: usize = 32;
 
-/// The price of a level's options under a weighting, and what the corner can afford.
+/// The dual prices of a level's options, and the greatest price that the local upper bound allows.
 type PricedLimit = (DualPrice, f64);
 
 impl Rows<'_> {
-    /// The nodes of each level's whole tree that hold what no weighting excludes; `None` if some level has none.
+    /// The nodes of each level's base tree whose options no dual point excludes. `None` if a level has none.
     pub fn affordable_options(
         &self,
         design_box: &[u32],
@@ -28,7 +31,7 @@ impl Rows<'_> {
             .iter()
             .map(|point| {
                 let room = self.allowed_sum(&point.multipliers, upper) - point.least + ROUNDING;
-                // modes that were added later had no say
+                // The dual points have no multipliers for the modes that were added after them.
                 let mut multipliers = point.multipliers.clone();
                 multipliers.resize(self.scale.len(), 0.0);
                 (room, multipliers, &point.levels[..])
@@ -69,18 +72,18 @@ impl Rows<'_> {
     }
 }
 
-/// The prices of a level's options under eight weightings, and what can be afforded under each.
+/// The dual prices of a level's options at eight dual points, and the greatest allowed price at each.
 struct EightPrices {
     most: Eight,
     inertia: [Eight; INERTIAS],
     compliance: [Eight; STIFFNESSES],
     stiffness: [Eight; STIFFNESSES],
-    /// Per twist, per torque and for the slope of a joint, by judged case.
+    /// Prices per twist, per torque and of the slope of a joint, for each judged case.
     joint: Vec<[Eight; 3]>,
 }
 
 impl EightPrices {
-    /// Where there are fewer anything can be afforded.
+    /// Packs up to eight dual points. In unused lanes any price is allowed.
     fn new(afforded: &[PricedLimit]) -> Self {
         let lanes = |of: &dyn Fn(&DualPrice) -> f64| -> Eight {
             std::array::from_fn(|lane| afforded.get(lane).map_or(0.0, |(price, _)| of(price)))
@@ -104,7 +107,8 @@ impl EightPrices {
     }
 }
 
-/// Whether every drive of a box costs more than can be afforded under some weighting. What is no number excludes nothing.
+/// Whether at some dual point every drive of a box costs more than allowed. A price that is not a number
+/// excludes nothing.
 struct DrivesCost<'a> {
     drives: &'a DriveBox,
     gears: &'a [JointPrice],
@@ -143,7 +147,7 @@ impl LaneWork for DrivesCost<'_> {
     }
 }
 
-/// The same of every tube of a box.
+/// The same for every tube of a box.
 struct LinksCost<'a> {
     links: &'a LinkBox,
     prices: &'a [EightPrices],
@@ -163,7 +167,8 @@ impl LaneWork for LinksCost<'_> {
             let [stiff, soft] = compliances;
             for k in 0..STIFFNESSES {
                 cost = cost + least::<V>(&eight.compliance[k], [stiff[k], soft[k]]);
-                // what does not yield earns nothing
+                // What does not yield earns no credit, and an infinite stiffness times a zero price must not
+                // become NaN.
                 let price = V::load(&eight.stiffness[k]);
                 let earned = price * V::splat(high.stiffnesses[k]);
                 cost = cost - V::choose(V::zero().less(price), earned, V::zero());
@@ -176,7 +181,7 @@ impl LaneWork for LinksCost<'_> {
     }
 }
 
-/// The least that a number between two costs at each of eight prices.
+/// The least price of a number in an interval, at each of eight dual points.
 #[inline(always)]
 fn least<V: Lanes>(price: &Eight, [low, high]: [f64; 2]) -> V {
     let price = V::load(price);
@@ -192,7 +197,7 @@ mod tests {
     use crate::sizing::limits::DriveLimits;
     use proptest::prelude::*;
 
-    /// Prices with what can be afforded at each: more than it costs, but at one of them, or none, less.
+    /// Prices with an allowed price that is higher than the cost, except at the index `dear`.
     fn afforded(prices: Vec<DualPrice>, cost: impl Fn(&DualPrice) -> f64, dear: usize) -> Vec<PricedLimit> {
         let room = |at: usize| if at == dear { -0.1 } else { 0.1 };
         let afford = |(at, price): (usize, DualPrice)| {
@@ -226,7 +231,7 @@ mod tests {
     };
 
     proptest! {
-        /// Eight prices at once exclude what each by itself excludes; tubes that do not shear included.
+        /// Eight prices at once exclude exactly what each excludes alone, for tubes with and without shear.
         #[test]
         fn tubes_cost_the_same_side_by_side(
             prices in prop::collection::vec(prop::collection::vec(-1.0f64..1.0, 15), 1..20),
@@ -252,7 +257,7 @@ mod tests {
             prop_assert_eq!(excluded, excluded_one_by_one(&afforded, cost));
         }
 
-        /// The same of drives, whose gears are in one of three segments under torques of either sign.
+        /// The same for drives, whose gears are in one of three segments under torques of either sign.
         #[test]
         fn drives_cost_the_same_side_by_side(
             prices in prop::collection::vec(prop::array::uniform8(-1.0f64..1.0), 1..20),

@@ -1,5 +1,5 @@
-//! What is left of a box below a corner: the weightings that refute it, or else the options that they leave, where to
-//! part them, and designs that may be there.
+//! The result of bounding a region: a refutation, or the surviving options, the branchings and promising
+//! designs.
 
 use super::bound::{BoxBound, DesignBox};
 use super::branching::Branching;
@@ -8,28 +8,30 @@ use super::problem::Problem;
 use super::rows::{DualPoint, ROUNDING, RelaxedDesign, Rows, WarmStart};
 use super::work::Work;
 
-/// Weightings of several rows, and new sets of shapes, at the most for one box.
+/// Greatest number of dual points, and of rounds of new shapes, for one box.
 const MOST_POINTS: usize = 24;
 const MOST_SHAPES: usize = 3;
-/// Weightings once no more than the options may be narrowed.
+/// Greatest number of dual points after the game's value shows that the bound cannot be refuted. They improve
+/// the reduced costs.
 const MOST_TO_REDUCE: usize = 8;
-/// The best weighting found is as good as any if the game promises no more than this beyond it.
+/// The iteration stops when the game promises at most this much more than the best dual point so far.
 const SETTLED: f64 = 1e-4;
 /// Shares of a mixture below this are rounding.
 const SHARE: f64 = 1e-9;
 
-/// What is left of a box below a corner.
+/// What a region may still contain.
 pub(super) struct Survivors {
-    /// The nodes of each level's whole tree that hold every option a member below the corner may have.
+    /// The nodes of each level's base tree that hold every option a member of the region may have.
     pub options: Vec<Vec<u32>>,
-    /// Where to part them, the most promising first.
+    /// Where to branch, the most promising first.
     pub branchings: Vec<Branching>,
-    /// Designs that may be below the corner.
+    /// Designs that may lie in the region; they are tried as incumbents.
     pub candidates: Vec<DesignBox>,
 }
 
 impl Problem<'_> {
-    /// What is left of a box, whose numbers are in `work`, below a corner; `None` if no member is.
+    /// Bounds a box, whose numbers are in `work`, below a local upper bound. `None` if no member lies below
+    /// it.
     pub fn bound_below(
         &self,
         design_box: &[u32],
@@ -64,6 +66,8 @@ impl Problem<'_> {
             };
             let (point, member) = rows.minimize(design_box, multipliers);
             let above = point.least - rows.allowed_sum(&point.multipliers, upper);
+            // The value of the dual function exceeds the limits: the multipliers are a certificate that the
+            // region is empty.
             if above > ROUNDING {
                 return None;
             }

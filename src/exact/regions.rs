@@ -1,11 +1,13 @@
-//! Region by region: what the designs found leave open is taken apart, and for each part of it the options are
-//! narrowed to those that a design there may have at all.
+//! The search region by region.
 //!
-//! A region is all that is below a [`Corner`]. Far fewer options reach into it than there are: a weighting of what a
-//! corner allows excludes every option that costs more than the corner can afford ([`narrow`](super::narrow)), and
-//! with fewer options the bounds are sharper, so more can be excluded. Whole groups of corners are refuted so, under the
-//! corner that bounds them; those that are not are taken apart, then their options or a torque parted
-//! ([`parting`](super::parting)) until few designs are left, which are searched box by box.
+//! A region is the part of the objective space below a [`LocalUpperBound`] of the incumbents. Far fewer
+//! options can reach a region than the space has: a dual point excludes every option whose price the local
+//! upper bound does not allow ([`reduced_cost`](super::reduced_cost)). With fewer options the bounds are
+//! sharper, and more options can be excluded.
+//!
+//! Local upper bounds are refuted in groups, by one that covers them all. A group that is not refuted is
+//! split. A single bound that is not refuted is branched on options or on a torque
+//! ([`branching`](super::branching)) until few designs are left, which are searched box by box.
 
 use super::bound::{BoxBound, DesignBox, Verdict};
 use super::boxes::{OpenBox, Search, open_boxes};
@@ -18,37 +20,38 @@ use super::rounds::{Done, in_rounds};
 use super::search_state::{Findings, SearchState};
 use super::work::Work;
 
-use super::rows::{BEATEN, WarmStart};
+use super::rows::{DOMINANCE_MARGIN, WarmStart};
 use super::shape::Shape;
 use crate::pareto::objectives::Objectives;
 use crate::space::design::number;
 use std::sync::Arc;
 
-/// Part of the designs that must be excluded for the options to be narrowed once more.
+/// Part of the designs that must be excluded for the bound to be computed again.
 const WORTH_IT: f64 = 0.1;
-/// Part of the slack by which corners may be apart.
+/// Width of a grid cell for thinning the incumbents, as a part of the slack.
 const THINNED: f64 = 0.45;
 
-/// Options that may reach into a region, with what the region around it knew.
+/// The options that may reach a region, with what was learned in the region around it.
 #[derive(Clone)]
 pub(super) struct Subproblem<'p> {
     problem: Arc<Problem<'p>>,
     design_box: DesignBox,
     shapes: Arc<Vec<Shape>>,
     warm_start: Arc<WarmStart>,
-    /// How many of the designs found the region knows of.
+    /// Number of incumbents that the local upper bounds of this region know.
     incumbents_seen: usize,
 }
 
-/// What is to be searched.
+/// A task of the search.
 enum Task<'p> {
-    /// What is below a node of a tree of corners.
+    /// The local upper bounds below a node of their tree.
     Region { upper_bounds: Arc<LocalUpperBounds>, at: usize, subproblem: Subproblem<'p> },
-    /// Few designs of a region, box by box.
+    /// The few designs of a region, box by box.
     Boxes { problem: Arc<Problem<'p>>, upper: LocalUpperBound, first: OpenBox },
 }
 
-/// One pass over everything that the designs known leave open; returns a ceiling for everything that was left.
+/// One pass over the whole search region. Returns one bound for each task that is left when the search is
+/// stopped.
 pub(super) fn pass_by_regions<'p>(
     budget: &Budget<'p>,
     problem: &Problem<'p>,
@@ -58,7 +61,7 @@ pub(super) fn pass_by_regions<'p>(
 ) -> Vec<BoxBound> {
     let mut found: Vec<Objectives> =
         state.incumbents.all().iter().map(|o| improved_by_slack(o, slack)).collect();
-    // fewer designs leave more open, by less than the slack
+    // Fewer incumbents leave more open, so nothing is missed; the regions stay within the slack.
     found = thinned(found, THINNED * slack, |o| o);
     let upper_bounds = Arc::new(LocalUpperBounds::new(&mut found, problem.limits()));
     let subproblem = Subproblem::whole(problem, state.incumbents.all().len(), &mut Work::default());
@@ -84,7 +87,7 @@ pub(super) fn pass_by_regions<'p>(
 }
 
 impl<'p> Search<'_, 'p> {
-    /// Searches what is below a node of a tree of corners; returns what is left to be searched.
+    /// Searches the regions below a node of the tree of local upper bounds. Returns the tasks that remain.
     fn region(
         &self,
         upper_bounds: Arc<LocalUpperBounds>,
@@ -112,13 +115,13 @@ impl<'p> Search<'_, 'p> {
         };
         let Some([a, b]) = subproblems else { return vec![subproblem.in_boxes(upper)] };
         let [first, second] = halves.unwrap_or([at; 2]);
-        // the first is searched first
+        // Tasks are taken from the end, so the first half is searched first.
         [(second, b), (first, a)]
             .map(|(at, subproblem)| Task::Region { upper_bounds: Arc::clone(&upper_bounds), at, subproblem })
             .into()
     }
 
-    /// Narrows the options as long as that is worth it; `None` if no design is below the corner.
+    /// Reduces the options as long as that is worth its time. `None` if the region is empty.
     fn reduce(
         &self,
         subproblem: &mut Subproblem<'p>,
@@ -140,7 +143,7 @@ impl<'p> Search<'_, 'p> {
         }
     }
 
-    /// Judges what may be a good design, once.
+    /// Judges a design that may be a good incumbent, once.
     fn try_design(&self, subproblem: &Subproblem<'p>, mut design_box: DesignBox, findings: &mut Findings) {
         let problem = &subproblem.problem;
         let Some(options) = problem.options(&design_box) else { return };
@@ -151,17 +154,18 @@ impl<'p> Search<'_, 'p> {
         findings.tried.push(number);
         let (mut shapes, mut work) = (Arc::clone(&subproblem.shapes), Work::default());
         self.budget.count_box();
-        let beaten = |box_bound: &BoxBound| {
+        let is_dominated = |box_bound: &BoxBound| {
             self.state.incumbents.dominates(box_bound) || findings.dominates(box_bound)
         };
         if let Verdict::Open(box_bound) =
-            problem.bound(&mut design_box, &mut shapes, &mut work, beaten, |_| true)
+            problem.bound(&mut design_box, &mut shapes, &mut work, is_dominated, |_| true)
         {
             problem.judge(&design_box, &box_bound, &work, findings);
         }
     }
 
-    /// The corners that designs found since leave of a region; `None` if none of them is in it.
+    /// The local upper bounds that newer incumbents leave of a region. `None` if no newer incumbent lies in
+    /// it.
     fn clipped(&self, upper: &LocalUpperBound, incumbents_seen: &mut usize) -> Option<LocalUpperBounds> {
         let is_inside = |o: &Objectives| {
             o.mass_kg < upper.mass_kg && o.tip_deflection_m < upper.tip_m && o.lowest_mode_hz > upper.hz
@@ -174,13 +178,13 @@ impl<'p> Search<'_, 'p> {
     }
 }
 
-/// A design taken for better than it is by the slack, so that what is left is missed by more.
+/// An incumbent improved by the slack, so that only designs better by more than the slack are sought.
 fn improved_by_slack(found: &Objectives, slack: f64) -> Objectives {
-    found.better_by(1.0 + slack - BEATEN)
+    found.better_by(1.0 + slack - DOMINANCE_MARGIN)
 }
 
 impl<'p> Subproblem<'p> {
-    /// Everything, to begin with.
+    /// The subproblem of the whole space. `None` if no design meets the constraints.
     pub fn whole(problem: &Problem<'p>, incumbents_seen: usize, work: &mut Work) -> Option<Self> {
         let shapes = problem.first_shapes(work)?;
         Some(Self {
@@ -192,8 +196,8 @@ impl<'p> Subproblem<'p> {
         })
     }
 
-    /// What is left of the zone below a corner, and whether its options were narrowed to it: if enough designs went.
-    /// `None` if none is left.
+    /// Bounds the subproblem below a local upper bound. Returns the survivors, and whether the subproblem was
+    /// restricted to them, which is done if enough designs were excluded. `None` if the region is empty.
     pub fn reduce(
         &mut self,
         upper: &LocalUpperBound,
@@ -219,7 +223,8 @@ impl<'p> Subproblem<'p> {
         Some((survivors, reduced))
     }
 
-    /// The zone box by box, whatever the forces: that is quick where designs are few.
+    /// The subproblem as a search box by box. Force bounds are dropped, because they cost time and gain
+    /// little where designs are few.
     fn in_boxes(self, upper: LocalUpperBound) -> Task<'p> {
         let problem = Arc::new(self.problem.without_force_bounds());
         Task::Boxes {
@@ -229,13 +234,12 @@ impl<'p> Subproblem<'p> {
         }
     }
 
-    /// Designs of what is left.
+    /// Number of surviving designs.
     pub fn designs_of(&self, survivors: &Survivors) -> f64 {
         self.problem.designs_below(&survivors.options)
     }
 
-    /// Two zones with half the options of a level each, the level that should gain most; `None` if a single design is
-    /// left.
+    /// Two halves of the subproblem, by the most promising branching. `None` if a single design is left.
     pub fn branch(&self, survivors: &Survivors, work: &mut Work) -> Option<[Self; 2]> {
         let branch = survivors
             .branchings

@@ -1,19 +1,18 @@
-//! What no arm of a box can have at once: lightness and stiffness, traded part by part.
+//! Rows that bound mass, deflection and mode of a box's members together.
 //!
-//! The ceiling of a box takes every part at its lightest *and* at its stiffest; a part has one or the other.
-//! Here mass, tip deflection and lowest mode of every member are bounded together, by sums over the parts:
+//! The bound of a box takes every part at its lightest *and* at its stiffest, but a part is one or the other.
+//! The rows below are sums of one number for each part, so lightness and stiffness are traded part by part:
 //!
-//! | row | sum over the parts | left out |
+//! | row | sum over the parts | what is lost |
 //! |---|---|---|
-//! | mass | exact | |
-//! | way of the tip in a case | twists of the gears, each at a torque of its own; `F₀ c + c₀ (F - F₀)` for force `F` and compliance `c` of a tube, `F₀` and `c₀` the least of the box (McCormick) | product of the widths of `F` and `c` |
-//! | torque of a gear | its own, less what the weights outboard make of it: zero | |
-//! | mode | `λ xᵀMx - xᵀKx`, not positive for a member whose modes are above `λ`, whatever the shape `x` | the square of the shape's error |
+//! | mass | exact | nothing |
+//! | displacement of the tip in a case, along a fixed direction | twist of the gears, each at a torque of its own; `F₀ c + c₀ (F - F₀)` for the force `F` and the compliance `c` of a tube, with `F₀` and `c₀` the least of the box (McCormick) | the product of the widths of `F` and `c` |
+//! | torque of a gear | its own torque less the torque that the weights outboard make: zero | nothing |
+//! | mode | `λ xᵀMx - xᵀKx` for a trial shape `x`: not positive for a member whose eigenvalues are at least `λ` | the square of the shape's error |
 //!
-//! A member below a [`Corner`] of the region that no design found beats has each row below what the corner
-//! allows. So has every weighted sum of rows with weights that are not negative; and the least such sum of any
-//! member is found part by part. If it is more than the corner allows, no member is below the corner. Weights
-//! are the best for the members found so far (a matrix game), shapes those of an arm in between them.
+//! For a member below a [`LocalUpperBound`] each row has an upper limit. With multipliers that are not
+//! negative, the weighted sum of the rows then has one too. This is the Lagrangian relaxation of the region;
+//! [`lagrangian`](super::lagrangian) minimizes the sum.
 
 use super::bound::{BoxBound, DesignBox, STARTS};
 use super::drives_by_curve::DrivesByCurve;
@@ -26,20 +25,21 @@ use super::shape::Shape;
 use super::tip_row::TipRow;
 use super::work::Work;
 
-/// By how much a member must be beaten in every objective, at least: more than what counts as equal.
-pub(super) const BEATEN: f64 = 2e-7;
-/// Rounding of sums whose terms are about one.
+/// Relative margin by which an incumbent must dominate. It is more than the difference that counts as equal.
+pub(super) const DOMINANCE_MARGIN: f64 = 2e-7;
+/// Rounding of sums whose terms are about 1.
 pub(super) const ROUNDING: f64 = 1e-9;
-/// Where the search for weights starts: what served the box above.
+/// Multipliers and shapes from the parent box, where the search for multipliers starts.
 #[derive(Clone, Default)]
 pub(super) struct WarmStart {
-    /// Of mass, ways of the tip and modes; torques have their own in every box.
+    /// Multipliers of the mass, the tip rows and the modes. Torque rows get their own in every box.
     pub multipliers: Vec<f64>,
     pub shapes: Vec<Shape>,
 }
 
 impl WarmStart {
-    /// For the box of everything: even weights, its own shapes.
+    /// For the box of all designs: no multipliers, its own shapes.
+    /// The rows of a box whose numbers are in `work`, for a local upper bound.
     pub fn new(shapes: &[Shape]) -> Self {
         Self { multipliers: Vec::new(), shapes: shapes.to_vec() }
     }
@@ -49,50 +49,61 @@ impl WarmStart {
 pub(super) struct Rows<'a> {
     pub problem: &'a Problem<'a>,
     pub work: &'a Work,
-    /// What each row is divided by, so that it is about one, and what no part changes.
+    /// The scale of each row, which makes its values about 1.
     pub scale: Vec<f64>,
+    /// The part of each scaled row that no choice changes.
     pub fixed: Vec<f64>,
+    /// The displacement of the tip in each judged case.
     pub tips: Vec<TipRow>,
+    /// The gears that yield, in each judged case.
     pub gears: Vec<Gear>,
+    /// The forces that have rows.
     pub forces: Vec<Force<'a>>,
-    /// Square of the frequency at which the modes are taken \[1/s²\].
+    /// Eigenvalue at which the mode rows are taken \[1/s²\].
     pub lambda: f64,
+    /// The trial shapes, one row each.
     pub modes: Vec<Mode>,
+    /// Index of the first mode row.
     pub first_mode: usize,
-    /// The drives of each level that hold; none of a level of links.
+    /// The feasible drives of each level; empty for a level of links.
     pub drives: Vec<DrivesByCurve>,
 }
 
-/// A force that weights make in a judged case: less of it in a row, more of it in the next.
+/// A force that the weights make in a judged case. It takes two rows, one for each sign.
 pub(super) struct Force<'a> {
     pub judged: usize,
     pub per_n: &'a [f64],
     pub row: usize,
 }
 
-/// A shape whose quotient bounds the modes of a judged case.
+/// A trial shape that bounds the modes of a judged case.
 pub(super) struct Mode {
     pub judged: usize,
     pub start: usize,
     pub shape: Shape,
-    /// `xᵀMx` of the lightest and of the heaviest parts.
+    /// `xᵀMx` with the lightest and with the heaviest parts.
     pub kinetic: [f64; 2],
 }
 
-/// A member of the box, or what stands for it in the sums: its gears need not agree with its weights.
+/// A minimizer of the weighted sum. It need not be a member of the box: the torques of its gears need not
+/// agree with its weights, and a level may be a box of several options.
 pub(super) struct RelaxedDesign {
     /// Its node of each level.
     pub design_box: DesignBox,
-    /// Every row of it, and what each piece adds to those before the modes.
+    /// The scaled value of every row.
     pub values: Vec<f64>,
+    /// What each piece adds to the rows before the modes, unscaled.
     pub adds: Vec<Vec<f64>>,
-    /// Inertia of each piece; its weight \[N\] and its stiffness in each judged case.
+    /// Line inertias of each piece.
     pub inertia: Vec<[f64; INERTIAS]>,
+    /// Weight of each piece in each judged case \[N\].
     pub weights_n: Vec<Vec<f64>>,
+    /// Stiffnesses of each piece in each judged case.
     pub stiffness: Vec<Vec<[f64; STIFFNESSES]>>,
 }
 
-/// A weighting, the least weighted sum of any member, and what each level adds to it.
+/// A point of the dual function: the multipliers, the least weighted sum over the box, and the part of it
+/// that each level adds.
 pub(super) struct DualPoint {
     pub multipliers: Vec<f64>,
     pub least: f64,
@@ -100,7 +111,7 @@ pub(super) struct DualPoint {
 }
 
 impl Problem<'_> {
-    /// The drives of each level of a box that hold, those of a level of links none.
+    /// The feasible drives of each level of a box; empty for a level of links.
     fn drives_by_curve(&self, design_box: &[u32], work: &Work) -> Vec<DrivesByCurve> {
         let of = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
             Part::Drives { tree, .. } => DrivesByCurve::new(tree, node, work.least_demands[piece].as_ref()),
@@ -171,7 +182,8 @@ impl<'a> Rows<'a> {
         rows
     }
 
-    /// The first of the rows of a gear that may leave its segment.
+    /// The first of the two rows of a gear whose slope may change in a case. `None` if the gear has one
+    /// slope.
     pub fn free_gear(&self, judged: usize, piece: usize) -> Option<usize> {
         self.gears.iter().find(|gear| gear.judged == judged && gear.piece == piece)?.row
     }
@@ -181,10 +193,11 @@ impl<'a> Rows<'a> {
         self.fixed.push(fixed / scale);
     }
 
-    /// Adds the rows of a force: the least it may be less what the weights make, and that less the most.
+    /// Adds the two rows of a force: its least value less what the weights make, and that less its greatest
+    /// value.
     fn push_force(&mut self, judged: usize, row: &'a Row, [low, high]: [f64; 2], between: [f64; 2]) -> usize {
         let next = self.scale.len();
-        // in proportion to the other rows, however close the bounds are
+        // The scale stays comparable to that of the other rows however narrow the interval is.
         let scale = (high - low).max(0.1 * low.abs().max(high.abs())).max(f64::MIN_POSITIVE);
         self.push(scale, between[0] - row.fixed);
         self.push(scale, row.fixed - between[1]);
@@ -194,13 +207,13 @@ impl<'a> Rows<'a> {
 
     pub fn push_mode(&mut self, judged: usize, start: usize, shape: Shape) {
         let kinetic = [&self.work.light, &self.work.heavy].map(|inertia| shape.kinetic_energy(inertia));
-        // a shape that moves nothing says nothing
+        // A shape that moves nothing bounds nothing.
         let moves = if kinetic[0] > 0.0 { kinetic[0] } else { 1.0 };
         self.push(self.lambda * moves, self.lambda * shape.kinetic_fixed);
         self.modes.push(Mode { judged, start, shape, kinetic });
     }
 
-    /// The weights of the box above, for the rows of this one; even ones if there are none.
+    /// Multipliers that start from those of the parent box, or equal ones if there are none.
     pub fn starting_multipliers(&self, above: &[f64]) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.scale.len()];
         let others: Vec<usize> = (0..=self.tips.len()).chain(self.first_mode..self.scale.len()).collect();
@@ -211,8 +224,8 @@ impl<'a> Rows<'a> {
         self.with_torques(multipliers)
     }
 
-    /// Weights by which the twist of a gear grows with the torque that the weights make on it, as fast as any gear of
-    /// the box does at least (McCormick); without them it would be free to choose a torque.
+    /// Adds the multipliers that make the twist of a gear grow with the torque of the weights, by the least
+    /// compliance of the box (McCormick). Without them a gear could choose its torque at no price.
     pub fn with_torques(&self, mut multipliers: Vec<f64>) -> Vec<f64> {
         for gear in &self.gears {
             let Some(row) = gear.row else { continue };
@@ -224,7 +237,7 @@ impl<'a> Rows<'a> {
         multipliers
     }
 
-    /// Leaves the weights and the last shapes to the halves of the box.
+    /// Saves the multipliers and the last shapes for the halves of the box.
     pub fn save_warm_start(&mut self, multipliers: &[f64], warm_start: &mut WarmStart) {
         let (tips, kept) = (self.tips.len(), warm_start.shapes.len());
         warm_start.multipliers.clear();
@@ -237,7 +250,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// What each row of a member below a corner is at most.
+    /// The upper limit of each scaled row for members below a local upper bound.
     pub fn row_limits<'b>(&'b self, upper: &'b LocalUpperBound) -> impl Iterator<Item = f64> + 'b {
         let below = self.lambda - upper.lambda();
         let objectives = std::iter::once(upper.mass_kg).chain(self.tips.iter().map(|_| upper.tip_m));
@@ -246,7 +259,7 @@ impl<'a> Rows<'a> {
         objectives.chain(torques).chain(modes).zip(&self.scale).map(|(row, scale)| row / scale)
     }
 
-    /// Every row by itself of which a corner allows no more than a number.
+    /// Multipliers that take each limited row by itself.
     pub fn single_row_multipliers(&self, upper: &LocalUpperBound) -> Vec<Vec<f64>> {
         let is_torque = |row: usize| (1 + self.tips.len()..self.first_mode).contains(&row);
         let rows = self.row_limits(upper).enumerate().filter(|(row, a)| a.is_finite() && !is_torque(*row));
@@ -258,7 +271,7 @@ impl<'a> Rows<'a> {
         rows.map(single).collect()
     }
 
-    /// The weighted sum that a corner allows.
+    /// The upper limit of the weighted sum for members below a local upper bound.
     pub fn allowed_sum(&self, multipliers: &[f64], upper: &LocalUpperBound) -> f64 {
         let pairs = multipliers.iter().zip(self.row_limits(upper));
         pairs.filter(|(w, _)| **w > 0.0).map(|(w, a)| w * a).sum()

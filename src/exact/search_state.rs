@@ -1,4 +1,4 @@
-//! What a search knows, and what a task adds to it.
+//! The state of a search, and what a task adds to it.
 
 use super::bound::BoxBound;
 use super::incumbents::{Incumbents, is_better};
@@ -7,17 +7,17 @@ use crate::pareto::objectives::Objectives;
 use crate::search::sweep::{Candidate, SLACK};
 use std::collections::HashSet;
 
-/// Designs are filtered whenever their number reaches a power of two above this.
+/// Above this number, candidates are filtered whenever their number reaches a power of two.
 const BUFFER: usize = 4096;
 
-/// What all tasks of a round know.
+/// The state that all tasks of a round share.
 #[derive(Default)]
 pub(super) struct SearchState {
     pub incumbents: Incumbents,
-    /// Numbers of designs that were judged on the way.
+    /// Numbers of the designs that were tried as incumbents.
     pub tried: HashSet<u128>,
     kept: Vec<Candidate>,
-    /// Designs whose ceiling is not their objectives: a demand lies on a threshold. The full model judges them.
+    /// Designs for which rounding leaves open whether a part carries its demand. The full model judges them.
     undecided: Vec<Candidate>,
     pub evaluated: u64,
 }
@@ -32,7 +32,7 @@ pub(super) struct Findings {
 }
 
 impl Findings {
-    /// Whether a design found beats every member of a box.
+    /// Whether a design found dominates every member of a box.
     pub fn dominates(&self, box_bound: &BoxBound) -> bool {
         let best = Objectives::from(*box_bound);
         self.kept.iter().any(|c| is_better(&c.objectives, &best))
@@ -40,12 +40,12 @@ impl Findings {
 }
 
 impl SearchState {
-    /// A design that is known already, wherever from.
+    /// Adds the objectives of a known design, from whatever source.
     pub fn enter(&mut self, objectives: &Objectives) {
         self.incumbents.enter(objectives);
     }
 
-    /// Takes in what a task found.
+    /// Takes in the findings of a task.
     pub fn learn(&mut self, findings: Findings) {
         self.evaluated += findings.evaluated;
         self.tried.extend(findings.tried);
@@ -59,13 +59,14 @@ impl SearchState {
         }
     }
 
-    /// The designs found that no other one beats, ascending, and those of which it is not known.
+    /// The designs found that no other dominates, in ascending order, followed by the undecided ones.
     pub fn into_front(self) -> Vec<Candidate> {
         let mut front = self.kept;
         clear(&mut front);
         front.sort_unstable_by_key(|c| c.number);
         front.dedup_by_key(|c| c.number);
-        // what would have been cut had it come later goes, so that the order of discovery does not show
+        // A design that would have been pruned had it come later is removed too, so that the result does not
+        // depend on the order of discovery.
         let all = front.clone();
         front.retain(|c| !all.iter().any(|other| is_better(&other.objectives, &c.objectives)));
         front.extend(self.undecided);
@@ -73,7 +74,7 @@ impl SearchState {
     }
 }
 
-/// Drops what another candidate beats.
+/// Removes the candidates that another one dominates.
 fn clear(kept: &mut Vec<Candidate>) {
     let points: Vec<[f64; 3]> = kept.iter().map(|c| c.objectives.minimized()).collect();
     *kept = not_clearly_beaten(&points, SLACK).into_iter().map(|i| kept[i]).collect();

@@ -1,4 +1,4 @@
-//! Designs that differ only in drives of one kind.
+//! Tied designs: those that differ only in drives of one kind.
 
 use super::problem::{Part, Problem};
 use super::work::Work;
@@ -7,8 +7,8 @@ use crate::space::design::{number, options};
 use std::collections::{BTreeSet, HashMap};
 
 impl Problem<'_> {
-    /// The designs that designs of kinds stand for: all of them if they are no more than `most`, else the first of each;
-    /// and whether they are all.
+    /// The designs that designs of kinds stand for. If they are at most `most` all are returned, otherwise
+    /// the first of each. The flag says whether all are.
     pub fn with_ties(&self, found: &[Candidate], most: usize) -> (Vec<Candidate>, bool) {
         let with_ties: Vec<(&Candidate, Vec<Vec<u32>>)> = self.feasible_drives(found);
         let count = |lists: &Vec<Vec<u32>>| lists.iter().map(|list| list.len() as f64).product::<f64>();
@@ -31,8 +31,8 @@ impl Problem<'_> {
         (designs, lists_all)
     }
 
-    /// What each level of a design of kinds may be, tip first and never empty: the drives of the kind that hold, those
-    /// first that do by more than rounding.
+    /// For each design of kinds, the options of each level, tip first: the drives of its kind that carry the
+    /// demand. Those that carry it by more than rounding come first.
     fn feasible_drives<'f>(&self, found: &'f [Candidate]) -> Vec<(&'f Candidate, Vec<Vec<u32>>)> {
         let chosen: Vec<Option<Vec<u32>>> =
             found.iter().map(|candidate| options(&self.level_sizes, candidate.number)).collect();
@@ -52,7 +52,7 @@ impl Problem<'_> {
                         let holds = |drive: &&u32| sized.table.limits(**drive as usize).hold(&asked.demand);
                         let mut drives: Vec<u32> =
                             kinds.drives(option).iter().filter(holds).copied().collect();
-                        // those that hold whatever rounding does come first
+                        // Drives that carry the demand whatever rounding does come first.
                         let surely = |drive: &u32| {
                             let limits = sized.table.limits(*drive as usize);
                             work.greatest_demands[piece].as_ref().is_some_and(|most| limits.hold(most))
@@ -68,7 +68,7 @@ impl Problem<'_> {
         pairs.filter_map(|(candidate, options)| Some((candidate, lists_of(options.as_ref()?)?))).collect()
     }
 
-    /// For every level the leaves of the options that some designs have.
+    /// For every level, the leaves of the options that some designs have.
     fn leaves_of(&self, designs: &[Option<Vec<u32>>]) -> Vec<HashMap<u32, u32>> {
         let of_level = |(level, &piece): (usize, &usize)| {
             let wanted: BTreeSet<u32> = designs.iter().flatten().map(|options| options[level]).collect();

@@ -1,24 +1,26 @@
-//! The way of the tip of a box's members, as a sum over their parts.
+//! The displacement of the tip along a direction, as a sum over the parts of a box's members.
 
 use super::parts::STIFFNESSES;
 use super::pose::{PosedPiece, RESISTED, degree_factor};
 use super::problem::{Part, Problem};
 use super::work::Work;
 
-/// The way of the tip in a judged case, along its least deflection.
+/// The displacement of the tip in a judged case, along the direction of its least deflection.
 pub(super) struct TipRow {
     pub case: usize,
-    /// Per newton of each piece's weight \[m/N\]: by tubes, and by gears that stay in their segment.
+    /// Displacement per newton of each piece's weight \[m/N\], through tubes and through gears of a single
+    /// slope.
     pub per_n: Vec<f64>,
-    /// Per twist of each joint \[m/rad\]; and at which torque it twists, if its gear stays in its segment \[N m\].
+    /// Displacement per twist of each joint \[m/rad\].
     pub joints: Vec<f64>,
+    /// The torque at which a gear of a single slope twists \[N m\]; `None` if its slope may change.
     pub torques_nm: Vec<Option<f64>>,
-    /// Per compliance of each tube.
+    /// Displacement per compliance of each tube.
     pub tubes: Vec<[f64; STIFFNESSES]>,
 }
 
 impl TipRow {
-    /// The way of the tip in a case along its least deflection, and what no part changes \[m\].
+    /// The tip row of a judged case, and the part of it that no choice changes \[m\].
     pub fn new(problem: &Problem, judged: usize, case: usize, work: &Work) -> (Self, f64) {
         let pose = &problem.poses[case];
         let pieces = problem.parts.len();
@@ -50,6 +52,7 @@ impl TipRow {
                 let [less, more] = curve.twist_of_play(play, force);
                 fixed_m += tip_per_unit * if tip_per_unit > 0.0 { less } else { more };
                 let known = matches!(problem.parts[row.piece], Part::Drives { .. } | Part::Given { .. });
+                // A gear whose slope may change gets a torque of its own, with rows that balance it.
                 if !known || !curve.keeps_its_slope(play, [least_nm, most_nm], breaks) {
                     continue;
                 }

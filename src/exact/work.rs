@@ -7,44 +7,52 @@ use super::torsion::{BreakPoints, CurveBox};
 use crate::sizing::demand::JointDemand;
 use nalgebra::Vector3;
 
-/// Numbers of one box, kept by a worker.
+/// The numbers of one box. A worker keeps them between boxes, so that nothing is allocated.
 #[derive(Default)]
 pub(super) struct Work {
-    /// Greatest and least stiffness and inertia of each piece.
+    /// Greatest stiffnesses of each piece.
     pub(super) stiff: Vec<[f64; STIFFNESSES]>,
+    /// Least stiffnesses of each piece.
     pub(super) soft: Vec<[f64; STIFFNESSES]>,
+    /// Least line inertias of each piece; the mass \[kg\] of a joint in the first place.
     pub(super) light: Vec<[f64; INERTIAS]>,
+    /// Greatest line inertias of each piece.
     pub(super) heavy: Vec<[f64; INERTIAS]>,
-    /// Weight interval of each piece of the case at hand \[N\].
+    /// Weight of each piece in each case, as an interval \[N\].
     pub(super) weights: Vec<Vec<[f64; 2]>>,
-    /// The force of each row of a judged case.
+    /// The force of each row of each case, as an interval.
     pub(super) forces: Vec<Vec<[f64; 2]>>,
+    /// Torsion curves of each joint; `None` for a rigid joint or another piece.
     pub(super) curves: Vec<Option<CurveBox>>,
-    /// Greatest stiffness of each piece by case: a gear's slope depends on its torque.
+    /// Greatest stiffnesses of each piece in each case. A gear's slope depends on its torque, so it differs
+    /// between cases.
     pub(super) stiff_in: Vec<Vec<[f64; STIFFNESSES]>>,
+    /// Mass of each piece, as an interval \[kg\].
     pub(super) masses: Vec<[f64; 2]>,
-    /// The least that is asked of each drive that is a choice.
+    /// The least demand on each joint whose drive is a level.
     pub(super) least_demands: Vec<Option<LeastDemand>>,
-    /// The most that is asked of each drive that is a choice.
+    /// The greatest demand on each joint whose drive is a level.
     pub(super) greatest_demands: Vec<Option<JointDemand>>,
     /// Break points of the curves of each joint.
     pub(super) breaks: Vec<BreakPoints>,
-    /// Least and greatest size of the torque on each joint, by judged case \[N m\].
+    /// Least and greatest magnitude of the torque on each joint, in each judged case \[N m\].
     pub(super) torques: Vec<Vec<[f64; 2]>>,
-    /// The case whose tip moves most at least, and in which direction.
+    /// The case whose tip has the greatest least deflection, and its direction.
     pub(super) worst_tip: Option<(usize, Vector3<f64>)>,
     /// Direction of the tip's least deflection in each judged case.
     pub(super) tip_directions: Vec<Vector3<f64>>,
-    /// No less than the tip moves in each judged case in which parts may move it against each other \[m\].
+    /// Upper bound of the tip's deflection in each judged case in which contributions may oppose each other
+    /// \[m\].
     pub(super) greatest_tip_m: Vec<f64>,
-    /// By what part the deflection would grow if a piece were middling.
+    /// The relative growth of the deflection if a piece had middling numbers.
     pub(super) tip_growth: Vec<f64>,
     pub(super) shape: ShapeWork,
-    /// Judged case and start whose quotient is least.
+    /// Judged case and start of the shape with the least quotient.
     pub(super) worst: (usize, usize),
 }
 
 impl Work {
+    /// Empties all numbers for a problem of this size.
     pub fn clear(&mut self, pieces: usize, cases: usize) {
         fn zero<T: Clone>(items: &mut Vec<T>, n: usize, value: T) {
             items.clear();
@@ -70,6 +78,7 @@ impl Work {
         }
     }
 
+    /// Fills in the numbers of a joint.
     pub fn joint(&mut self, problem: &Problem, piece: usize, mass_kg: [f64; 2], curve: Option<CurveBox>) {
         self.masses[piece] = mass_kg;
         self.curves[piece] = curve;
@@ -81,6 +90,7 @@ impl Work {
         }
     }
 
+    /// Fills in the numbers of a tube.
     pub fn tube(&mut self, problem: &Problem, piece: usize, length_m: f64, links: &LinkBox) {
         let finite = |s: f64| if s.is_finite() { s } else { 0.0 };
         self.stiff[piece] = links.high.stiffnesses.map(finite);
@@ -98,7 +108,7 @@ impl Work {
         }
     }
 
-    /// Whether the box has no width in anything a mode sees.
+    /// Whether the box has no width in any number that a mode depends on.
     pub fn is_point(&self) -> bool {
         self.light == self.heavy
             && self.stiff == self.soft

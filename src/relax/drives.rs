@@ -1,4 +1,4 @@
-//! Drives that the loads left do not allow.
+//! Drops the drives that the remaining loads do not allow.
 
 use super::parts::Parts;
 use super::statics::CaseLoads;
@@ -6,14 +6,16 @@ use crate::space::problem::ArmProblem;
 use crate::space::slot::Slot;
 
 impl Parts {
-    /// Drops drives that the loads left do not allow: those that cannot hold the least demand and, where the
-    /// lightest that holds is taken, those heavier than the lightest that holds the greatest demand.
+    /// Drops the drives that cannot carry the least demand. Where the joint takes the lightest drive that
+    /// carries its demand, it also drops those heavier than the lightest that carries the greatest demand.
+    /// Returns whether any was dropped.
     pub fn drop_drives(&mut self, problem: &ArmProblem, cases: &[CaseLoads]) -> bool {
         let mut dropped = false;
         for (slot, piece) in problem.slots().iter().enumerate() {
             let Slot::Sized(sized) = piece else { continue };
             let motion = sized.table.motion();
-            // otherwise the mean torque may fall while a load rises
+            // With such a duty cycle the mean torque may fall while a load rises, so the ends of the
+            // intervals prove nothing.
             if motion.mean_torque.sum < motion.mean_torque.difference {
                 continue;
             }

@@ -1,14 +1,21 @@
-//! A lower bound on the mass of every design that deflects no more and vibrates no lower than is asked.
+//! A lower bound on the mass of every design that deflects no more and vibrates no lower than required.
 //!
-//! Each piece of the arm is allowed to be a mixture of its catalog options (weights that sum to one). In the
-//! weights, mass is linear; tip deflection has linear lower bounds (`statics`: loads at their least, plus
-//! McCormick's envelope of load times compliance); what a drive must hold is linear; and a required lowest
-//! mode is `K - ω² M ⪰ 0` with `K` and `M` linear, of which each trial shape `x` gives one linear
-//! inequality (`shapes`). The lightest mixture is a linear program; it is solved by Clarabel
-//! (`program`), and the bound that is returned is the Lagrangian one at the solver's multipliers, which is
-//! valid for any multipliers, so that nothing rests on the solver's tolerance. Options that cannot belong
-//! to a design as good and as light as the one at hand are dropped, which narrows the loads and tightens
-//! the bound, until nothing changes. Every step is proved in `docs/relaxation.md`.
+//! Each piece of the arm may be a mixture of its catalog options, with weights that sum to one. Then
+//!
+//! - mass is linear in the weights;
+//! - tip deflection has lower bounds that are linear (`statics`: loads at an end of their range, plus
+//! McCormick's envelope of load times compliance);
+//! - what a drive must carry is linear;
+//! - a required lowest mode is `K - ω² M ⪰ 0` with `K` and `M` linear, and each trial shape `x` gives one
+//! linear inequality (`shapes`).
+//!
+//! The lightest mixture is a linear program, which Clarabel solves (`program`). The bound that is returned is
+//! the Lagrangian bound at the solver's multipliers. It is valid for any multipliers, so it does not depend
+//! on the solver's tolerance.
+//!
+//! Options that cannot belong to a design as good and as light as the known one are dropped. This shrinks the
+//! ranges of the loads and tightens the bound; it is repeated until nothing changes. Every step is proved in
+//! `docs/relaxation.md`.
 
 pub(crate) mod drives;
 pub(crate) mod parts;

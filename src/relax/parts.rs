@@ -4,9 +4,9 @@ use super::row::Row;
 use crate::space::problem::ArmProblem;
 use crate::space::slot::Slot;
 
-/// Options and masses of every slot.
+/// Remaining options and masses of every slot.
 pub(super) struct Parts {
-    /// Options, ascending, that are left of each slot.
+    /// Remaining options of each slot, ascending.
     pub alive: Vec<Vec<u32>>,
     /// The known design's option of each slot.
     pub known: Vec<u32>,
@@ -38,25 +38,27 @@ impl Parts {
         self.mass_kg[slot][option as usize]
     }
 
-    /// Masses of what is left.
+    /// Masses of the remaining options \[kg\].
     pub fn masses(&self) -> Vec<Vec<f64>> {
         self.each(|slot, option| self.mass_kg(slot, option))
     }
 
-    /// A number for every option that is left.
+    /// One number for each remaining option.
     pub fn each(&self, number: impl Fn(usize, u32) -> f64) -> Vec<Vec<f64>> {
         let slots = self.alive.iter().enumerate();
         slots.map(|(slot, alive)| alive.iter().map(|&o| number(slot, o)).collect()).collect()
     }
 
-    /// Drops options with which a row exceeds its limit whatever the others are. Says whether any went.
+    /// Drops the options with which a row exceeds its limit whatever the other pieces are. Returns whether
+    /// any was dropped.
     pub fn drop_by(&mut self, row: &Row) -> bool {
         let least = row.least();
         let total: f64 = least.iter().sum();
         let mut dropped = false;
         for (slot, coefficients) in row.coefficients.iter().enumerate() {
             if coefficients.len() != self.alive[slot].len() {
-                // an earlier row has dropped options here: the next round sees this one again
+                // An earlier row has dropped options here, so the coefficients no longer match. The next
+                // round builds this row again.
                 continue;
             }
             let room = row.limit - (total - least[slot]) + 1e-12 * row.limit.abs();
@@ -65,8 +67,8 @@ impl Parts {
         dropped
     }
 
-    /// Keeps the options of a slot that pass, given their place and number, and the known one always.
-    /// Says whether any went.
+    /// Keeps the options of a slot that pass, given their index and number, and always the known one. Returns
+    /// whether any was dropped.
     pub fn keep(&mut self, slot: usize, passes: impl Fn(usize, u32) -> bool) -> bool {
         let known = self.known[slot];
         let before = self.alive[slot].len();

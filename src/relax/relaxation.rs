@@ -8,25 +8,26 @@ use super::statics::CaseLoads;
 use crate::pareto::objectives::Objectives;
 use crate::space::problem::ArmProblem;
 
-/// Rounds of solving and dropping options.
+/// Greatest number of rounds of solving and dropping options.
 const ROUNDS: usize = 4;
-/// Solutions of the program in a round: each adds shapes or options.
+/// Greatest number of solutions of the program in a round. Each adds shapes or options.
 const STEPS: usize = 40;
-/// What rounding may do to an objective, relative.
+/// Relative rounding of an objective.
 const ROUNDING: f64 = 1e-9;
 
-/// What is known of the designs that are good enough.
+/// What the relaxation says about the designs that are good enough.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MassBound {
     /// No design with at most the deflection and at least the lowest mode is lighter \[kg\].
     pub mass_lower_bound_kg: f64,
-    /// What the program gave at first, before options were dropped by it: about the mass of the lightest
-    /// mixture of catalog parts \[kg\].
+    /// The bound before it was used to drop options \[kg\]: about the mass of the lightest mixture of catalog
+    /// parts.
     pub mixture_kg: f64,
-    /// Options of each piece, tilting bearings and added masses included, base to tip, that such a design of
-    /// at most the known one's mass may have.
+    /// Number of options of each piece that such a design of at most the known one's mass may have, base to
+    /// tip. Tilting bearings and added masses are pieces too.
     pub options_left: Vec<usize>,
-    /// Whether a load changes sign within what is left somewhere, so that the bound had to take the better sign.
+    /// Whether some load may have either sign within the remaining options. The bound then has to take the
+    /// more favourable sign and is weaker.
     pub loads_oppose: bool,
 }
 
@@ -39,7 +40,7 @@ pub struct Relaxation<'a> {
 }
 
 impl<'a> Relaxation<'a> {
-    /// Compiles every case.
+    /// Compiles every case of the problem.
     pub fn new(problem: &'a ArmProblem<'a>) -> Self {
         Self {
             problem,
@@ -48,9 +49,9 @@ impl<'a> Relaxation<'a> {
         }
     }
 
-    /// Bounds the mass of every design that deflects no more and vibrates no lower than is asked, by means
-    /// of a known one (one option a level) that does, of at most the mass asked; `None` if the known design
-    /// does not hold.
+    /// Bounds the mass of every design that deflects no more and vibrates no lower than `asked`. `known` is a
+    /// design (one option for each level) that meets these objectives, of at most the mass asked. `None` if a
+    /// part of the known design cannot carry its load.
     pub fn mass_lower_bound(&self, known: &[u32], asked: &Objectives) -> Option<MassBound> {
         let arm = self.problem.walk(known, |_, _| {}).ok()?;
         let mut search = Search {
@@ -65,7 +66,7 @@ impl<'a> Relaxation<'a> {
             first_kg: 0.0,
         };
         search.run();
-        // nothing else is left: the known design is the lightest
+        // If nothing else is left, the known design is the lightest.
         let alone = search.parts.alive.iter().all(|options| options.len() == 1);
         Some(MassBound {
             mass_lower_bound_kg: if alone { self.problem.mass_kg(&arm) } else { search.best_kg }
@@ -88,20 +89,21 @@ struct Search<'a> {
     /// Trial shapes: judged case and strain coordinates.
     shapes: Vec<(usize, nalgebra::DVector<f64>)>,
     best_kg: f64,
-    /// The best after the first round of solving.
+    /// The best bound after the first round of solving \[kg\].
     first_kg: f64,
 }
 
 impl Search<'_> {
+    /// Alternates between solving and dropping options until nothing changes.
     fn run(&mut self) {
         for round in 0..ROUNDS {
-            self.narrow();
+            self.reduce();
             let before: usize = self.parts.alive.iter().map(Vec::len).sum();
             self.solve();
             if round == 0 {
                 self.first_kg = self.best_kg;
             }
-            self.narrow();
+            self.reduce();
             let after: usize = self.parts.alive.iter().map(Vec::len).sum();
             if after == before || self.best_kg >= self.asked.mass_kg * (1.0 - 1e-6) {
                 return;
@@ -109,8 +111,8 @@ impl Search<'_> {
         }
     }
 
-    /// Drops options that no row of inequalities admits, whatever the other pieces are.
-    fn narrow(&mut self) {
+    /// Drops options that some row excludes, whatever the other pieces are.
+    fn reduce(&mut self) {
         loop {
             let mut dropped = self.parts.drop_drives(self.problem, self.cases);
             let mass =
@@ -124,7 +126,7 @@ impl Search<'_> {
         }
     }
 
-    /// Every inequality that a design as good as the known one fulfils.
+    /// Every inequality that a design as good as required satisfies.
     fn rows(&self) -> Vec<Row> {
         let mut rows = Vec::new();
         for (case, direction) in &self.directions {
@@ -139,12 +141,13 @@ impl Search<'_> {
         rows
     }
 
+    /// The least eigenvalue that the required mode allows \[1/s²\].
     fn eigenvalue(&self) -> f64 {
         let omega = std::f64::consts::TAU * self.asked.lowest_mode_hz;
         omega * omega * (1.0 - ROUNDING)
     }
 
-    /// Largest stiffness of every joint's options, by slot, for each model.
+    /// Greatest stiffness of every joint's options, by slot, for each judged case \[N m/rad\].
     fn stiffness(&self) -> Vec<Vec<Vec<f64>>> {
         self.models.iter().map(|m| self.cases[m.case].stiffest(self.problem, &self.parts)).collect()
     }
@@ -153,7 +156,7 @@ impl Search<'_> {
         self.models[model].row(&self.parts, &stiffness[model], shape, self.eigenvalue())
     }
 
-    /// Solves the program, adding shapes that the mixture violates and options that it lacks.
+    /// Solves the program, and adds shapes that the mixture violates and options that it lacks.
     fn solve(&mut self) {
         let stiffness = self.stiffness();
         let mut program = Program::new(&self.parts, self.rows());
@@ -172,6 +175,7 @@ impl Search<'_> {
         program.drop_options(&mut self.parts, self.asked.mass_kg * (1.0 + ROUNDING));
     }
 
+    /// Shapes that the mixture violates, with their judged case.
     fn violated(
         &self,
         stiffness: &[Vec<Vec<f64>>],
@@ -187,7 +191,7 @@ impl Search<'_> {
 }
 
 impl ArmProblem<'_> {
-    /// The unit vector along which the tip of an arm moves in each judged case; where it does not, down.
+    /// The unit vector along which the tip of an arm moves in each judged case; downward if it does not move.
     fn judged_directions(
         &self,
         arm: &crate::space::problem::Partial,

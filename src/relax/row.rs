@@ -1,9 +1,9 @@
 //! One linear inequality of the program.
 
-/// What rounding may do to an inequality, relative to its largest terms.
+/// Rounding of an inequality, relative to its largest terms.
 const ROUNDING: f64 = 1e-9;
 
-/// `Σ coefficient × weight ≤ limit`, coefficients by slot and by option left.
+/// `Σ coefficient · weight ≤ limit`. Coefficients are by slot and by remaining option.
 #[derive(Clone)]
 pub(super) struct Row {
     pub coefficients: Vec<Vec<f64>>,
@@ -11,7 +11,7 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// Smallest coefficient of each slot.
+    /// Least coefficient of each slot.
     pub fn least(&self) -> Vec<f64> {
         self.coefficients.iter().map(|c| c.iter().copied().fold(f64::INFINITY, f64::min)).collect()
     }
@@ -23,7 +23,7 @@ impl Row {
         most > self.limit
     }
 
-    /// The same inequality, its limit raised by what rounding may do to it, with no number larger than 1.
+    /// The same inequality scaled so that no number exceeds 1, with its limit raised by the rounding.
     pub fn ready(mut self) -> Self {
         let largest_of = |c: &Vec<f64>| c.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
         let terms: Vec<f64> = self.coefficients.iter().map(largest_of).collect();
