@@ -10,8 +10,7 @@ mod dice;
 mod exact_support;
 
 use armwright::catalog::Catalogs;
-use armwright::exact::Exact;
-use armwright::exact::Reach;
+use armwright::exact::{DomainReduction, Exact};
 use armwright::input::Document;
 use armwright::pareto::Objectives;
 use armwright::pareto::front::nondominated;
@@ -376,7 +375,7 @@ fn every_design_as_good_as_a_known_one_is_made_of_the_parts_in_reach() {
         let problem = ArmProblem::new(&study.space, &catalogs);
         let sizes = problem.level_sizes();
         let front = Sweep::new(&problem, study.space.constraints, &stop).run().front;
-        let Some(reach) = Reach::new(&study.space, &catalogs) else { continue };
+        let Some(reach) = DomainReduction::new(&study.space, &catalogs) else { continue };
         for known in front.iter().step_by(1 + front.len() / 8) {
             // loosened, so that several designs do
             let loosened = dice.within(1.0, 1.1);
@@ -418,7 +417,7 @@ fn few_of_the_parts_of_the_whole_catalog_reach_as_far_as_a_good_design() {
     let study = read_study(Document::parse("full-catalog", text).expect("JSON"), &catalogs).expect("whole");
     // a knee that `armwright run full-catalog` finds, loosened by a percent
     let asked = Objectives { mass_kg: 16.56, tip_deflection_m: 1.702e-3, lowest_mode_hz: 13.84 };
-    let reach = Reach::new(&study.space, &catalogs).expect("no level is empty");
+    let reach = DomainReduction::new(&study.space, &catalogs).expect("no level is empty");
     let lists = reach.options_as_good(&asked).expect("it was found");
     let left = study.space.of_options(&lists).expect("a list a level").link_options();
     println!("{left} of {} tubes", study.space.link_options());

@@ -1,11 +1,12 @@
-//! A few designs for many: one a cell of a logarithmic grid over the objectives.
+//! A few designs that represent many: one for each cell of a logarithmic grid over the objectives.
 
 use crate::pareto::front::exact_front;
 use crate::pareto::objectives::Objectives;
 use std::collections::BTreeMap;
 
-/// The best of each cell, where no other cell that has one is better; of every design there was, one that is kept is
-/// worse by a step or less in each objective. Without a step all are kept.
+/// The best design of each cell that no other occupied cell dominates. For every design that is dropped, one
+/// is kept that is worse by at most one `step` in the logarithm of each objective. With `step <= 0` all are
+/// kept.
 pub(super) fn thinned<T>(all: Vec<T>, step: f64, objectives: impl Fn(&T) -> &Objectives) -> Vec<T> {
     if step <= 0.0 {
         return all;
@@ -21,7 +22,7 @@ pub(super) fn thinned<T>(all: Vec<T>, step: f64, objectives: impl Fn(&T) -> &Obj
     }
     let points: Vec<[f64; 3]> = cells.keys().map(|cell| cell.map(|i| i as f64)).collect();
     let mut kept = vec![false; points.len()];
-    // cells are numbers
+    // The cells are finite numbers, so the front exists.
     exact_front(&points).unwrap_or_default().into_iter().for_each(|i| kept[i] = true);
     cells.into_values().zip(kept).filter_map(|((_, one), kept)| kept.then_some(one)).collect()
 }

@@ -1,47 +1,49 @@
-//! Play of a joint, between torques.
+//! Play of a joint: lost motion and friction, with bounds over an interval of torque.
 //!
-//! Lost motion `h tanh(T/T_c)` grows with the torque `T` and yields the less to further torque the greater it is. Friction
-//! holds back the twist `c T` of the gear's spring, taken at its middle slope, by no more than its half width; small
-//! oscillations do not move it. Both are the joint's, whichever drive it has; only `c` is the drive's.
+//! Lost motion is a twist `h tanh(T/T_c)`. It grows with the torque `T`, and its slope falls. Friction holds
+//! back the twist `c T` of the gear's spring (with the compliance `c` of its middle segment), by at most its
+//! half width; small oscillations do not overcome it. Both belong to the joint, whichever drive it has. Only
+//! `c` depends on the drive.
 
 use crate::arm::joint_law::{JointLaw, LostMotion};
 
-/// Beside its torque scale, a torque this small leaves the slope of lost motion as it is at rest.
+/// Torques below this part of `T_c` do not change the slope of lost motion.
 const AT_REST: f64 = 1e-8;
 
-/// What twists beside a joint's torsion curve.
+/// The twist of a joint beyond its torsion curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Play {
+pub(super) struct JointPlay {
     lost_motion: Option<LostMotion>,
-    /// Half width of what friction holds back \[rad\].
+    /// Half width of the twist that friction holds back \[rad\].
     friction_rad: f64,
 }
 
-impl Play {
-    /// That of a joint; `None` if it has none.
+impl JointPlay {
+    /// The play of a joint's law. `None` if it has none.
     pub fn of(law: &JointLaw) -> Option<Self> {
         let play = Self { lost_motion: law.lost_motion, friction_rad: law.hysteresis_rad };
         law.has_play().then_some(play)
     }
 
-    /// Whether friction holds something back: then a smaller torque may twist more.
+    /// Whether friction holds back a twist. Then a smaller torque may twist the joint more.
     pub fn has_friction(&self) -> bool {
         self.friction_rad > 0.0
     }
 
-    /// The least and the most that it adds to the twist between two torques \[rad\], for springs of compliances between two.
+    /// Least and greatest twist that play adds for torques in an interval \[N m\] and springs with
+    /// compliances between `stiff` and `soft` \[rad/(N m)\]. The result is in rad.
     pub fn twist(&self, [stiff, soft]: [f64; 2], [low, high]: [f64; 2]) -> [f64; 2] {
         let lost = |torque_nm: f64| self.lost_motion.map_or(0.0, |lost| lost.angle_rad(torque_nm));
-        let held = |torque_nm: f64, compliance: f64| {
+        let held_back = |torque_nm: f64, compliance: f64| {
             (torque_nm.abs() * compliance).min(self.friction_rad).copysign(torque_nm)
         };
-        let least_held = held(low, if low >= 0.0 { stiff } else { soft });
-        let most_held = held(high, if high >= 0.0 { soft } else { stiff });
-        [lost(low) - most_held, lost(high) - least_held]
+        let least_held_back = held_back(low, if low >= 0.0 { stiff } else { soft });
+        let most_held_back = held_back(high, if high >= 0.0 { soft } else { stiff });
+        [lost(low) - most_held_back, lost(high) - least_held_back]
     }
 
-    /// A stiffness with what yields to small oscillations in series, at torques of no more than a size \[N m/rad\]: at
-    /// least what it is at any.
+    /// The stiffness that small oscillations see, in series with lost motion \[N m/rad\]. For all torques of
+    /// at most this magnitude it is an upper bound.
     pub fn in_series(&self, stiffness: f64, most_nm: f64) -> f64 {
         match self.lost_motion {
             None => stiffness,
@@ -49,7 +51,7 @@ impl Play {
         }
     }
 
-    /// Whether small oscillations see the same play under all torques up to a size \[N m\].
+    /// Whether small oscillations see the same slope of play under all torques up to a magnitude \[N m\].
     pub fn stays(&self, most_nm: f64) -> bool {
         self.lost_motion.is_none_or(|lost| most_nm <= AT_REST * lost.torque_nm)
     }
@@ -71,8 +73,8 @@ mod tests {
     }
 
     proptest! {
-        /// Twist and stiffness of every drive at every torque lie within the bounds; between a torque and itself the
-        /// twist of one drive is its bound.
+        /// The twist and the stiffness of every drive lie within the bounds at every torque. If the interval
+        /// is a point, the bounds of one drive are its exact values.
         #[test]
         fn no_drive_twists_beyond_the_bounds(
             curves in prop::collection::vec(curve(), 1..4), ends in [-300.0..300.0f64, -300.0..300.0f64],
@@ -83,7 +85,7 @@ mod tests {
                 .iter()
                 .map(|curve| JointLaw { lost_motion, hysteresis_rad: friction_rad, ..(*curve).into() })
                 .collect();
-            let play = Play::of(&laws[0]).expect("play");
+            let play = JointPlay::of(&laws[0]).expect("play");
             let range = [ends[0].min(ends[1]), ends[0].max(ends[1])];
             let boxes = || laws.iter().filter_map(CurveBox::of);
             let all = boxes().reduce(|a, b| a.join(&b)).expect("curves");

@@ -1,25 +1,29 @@
 //! Which level of a box to halve.
 //!
-//! The ceiling of a box takes every part at its lightest and at its stiffest. A level matters as much as
-//! the ceiling would worsen if its part were a middling one: the geometric mean of lightest and heaviest,
-//! of stiffest and softest. The halves themselves are a worse guide: a box has to be halved several times
-//! before the ceiling moves at all.
+//! The bound of a box takes every part at its lightest and at its stiffest. The score of a level is how much
+//! the bound would worsen if the level's part had middling numbers instead: the geometric mean of the
+//! lightest and the heaviest, and of the stiffest and the softest. The level with the greatest score is
+//! halved.
+//!
+//! The bounds of the two halves would be a worse guide, because a box has to be halved several times before
+//! its bound moves at all.
 
-use super::bound::{STARTS, Work, stretch};
+use super::bound::{STARTS, tube_strain};
 use super::parts::{INERTIAS, STIFFNESSES};
 use super::pose::RESISTED;
 use super::problem::{Part, Problem};
 use super::shape::{Shape, products};
 use super::torsion::Torsion;
+use super::work::Work;
 
-/// A middling number over the least or the greatest of a range, less one.
+/// Ratio of the geometric mean of a range to its lower end, less one. Zero for an empty range.
 fn middling(low: f64, high: f64) -> f64 {
     if low > 0.0 && high > low { (high / low).sqrt() - 1.0 } else { 0.0 }
 }
 
 impl Problem<'_> {
-    /// The level whose halving should sharpen the bound most; `None` if every level is down to one option.
-    pub fn widest_level(&self, cell: &[u32], shapes: &[Shape], work: &mut Work) -> Option<usize> {
+    /// The level whose halving should sharpen the bound most. `None` if every level has a single option.
+    pub fn widest_level(&self, design_box: &[u32], shapes: &[Shape], work: &mut Work) -> Option<usize> {
         self.weigh_tip(work);
         let (judged, start) = work.worst;
         let shape = &shapes[judged * STARTS.len() + start];
@@ -30,7 +34,7 @@ impl Problem<'_> {
         let softened = self.softened_by_torque(case, shape, strain, work);
         let mut best: Option<(f64, usize)> = None;
         for (level, &piece) in self.level_pieces.iter().enumerate() {
-            if self.halves(cell, level).is_none() {
+            if self.halves(design_box, level).is_none() {
                 continue;
             }
             let (mut softer, mut heavier) = (softened[piece], 0.0);
@@ -51,7 +55,7 @@ impl Problem<'_> {
             let [light, heavy] = work.masses[piece];
             let mass = light * middling(light, heavy) / mass_kg.max(f64::MIN_POSITIVE);
             let score = f64::ln_1p(mass)
-                + f64::ln_1p(work.tip_yields[piece])
+                + f64::ln_1p(work.tip_growth[piece])
                 + 0.5 * (f64::ln_1p(softer) + f64::ln_1p(heavier));
             if best.is_none_or(|(most, _)| score > most) {
                 best = Some((score, level));
@@ -60,8 +64,9 @@ impl Problem<'_> {
         best.map(|(_, level)| level)
     }
 
-    /// By what part a shape's quotient would fall if the torques that a piece makes uncertain were middling: a
-    /// heavier part may press a gear inboard into a stiffer segment.
+    /// The relative fall of a shape's quotient if the torques, which each piece's weight makes uncertain, had
+    /// middling values. Such a fall occurs because a heavier part may press a gear inboard into a stiffer
+    /// segment of its curve. One number for each piece.
     fn softened_by_torque(&self, case: usize, shape: &Shape, strain: f64, work: &Work) -> Vec<f64> {
         let mut softened = vec![0.0; self.parts.len()];
         let pose = &self.poses[case];
@@ -80,41 +85,42 @@ impl Problem<'_> {
         softened
     }
 
-    /// By what part the least deflection would grow if a piece were middling, for every piece.
+    /// The relative growth of the least deflection if a piece had middling numbers, one number for each
+    /// piece.
     fn weigh_tip(&self, work: &mut Work) {
-        work.tip_yields.clear();
-        work.tip_yields.resize(self.parts.len(), 0.0);
-        let Some((case, direction)) = work.sagging else { return };
+        work.tip_growth.clear();
+        work.tip_growth.resize(self.parts.len(), 0.0);
+        let Some((case, direction)) = work.worst_tip else { return };
         let pose = &self.poses[case];
         let mut total = 0.0;
         for (row, &force) in pose.rows.iter().zip(&work.forces[case]) {
             let (moved, softer) = match &work.curves[row.piece] {
                 Some(curve) => {
-                    let play = self.plays[row.piece].as_ref();
+                    let play = self.joint_plays[row.piece].as_ref();
                     let middle = |torsion: &Torsion| torsion.windup.k2_nm_per_rad;
                     (curve.twist(play, force), middling(middle(&curve.soft), middle(&curve.stiff)))
                 }
                 None => {
                     let (resisted, _) = RESISTED[row.coordinate];
                     let (soft, stiff) = (work.soft[row.piece][resisted], work.stiff[row.piece][resisted]);
-                    (stretch(row.coordinate, pose, row.piece, force, work), middling(soft, stiff))
+                    (tube_strain(row.coordinate, pose, row.piece, force, work), middling(soft, stiff))
                 }
             };
             let least = if moved[0] >= 0.0 { moved[0] } else { moved[1].min(0.0) };
             let part_m = direction.dot(&row.tip_m) * least;
             total += part_m;
-            work.tip_yields[row.piece] += part_m.abs() * softer;
+            work.tip_growth[row.piece] += part_m.abs() * softer;
         }
         if total > 0.0 {
-            work.tip_yields.iter_mut().for_each(|yields| *yields /= total);
+            work.tip_growth.iter_mut().for_each(|yields| *yields /= total);
         }
     }
 
-    /// The two halves of a box along a level.
-    pub fn halves(&self, cell: &[u32], level: usize) -> Option<[u32; 2]> {
+    /// The two halves of a box along a level. `None` if the level has a single option.
+    pub fn halves(&self, design_box: &[u32], level: usize) -> Option<[u32; 2]> {
         match &self.parts[self.level_pieces[level]] {
-            Part::Drives { tree, .. } => tree.children(cell[level]),
-            Part::Links { tree, .. } => tree.children(cell[level]),
+            Part::Drives { tree, .. } => tree.children(design_box[level]),
+            Part::Links { tree, .. } => tree.children(design_box[level]),
             _ => None,
         }
     }

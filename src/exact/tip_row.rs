@@ -1,24 +1,26 @@
-//! The way of the tip of a box's members, as a sum over their parts.
+//! The displacement of the tip along a direction, as a sum over the parts of a box's members.
 
-use super::bound::Work;
 use super::parts::STIFFNESSES;
 use super::pose::{PosedPiece, RESISTED, degree_factor};
 use super::problem::{Part, Problem};
+use super::work::Work;
 
-/// The way of the tip in a judged case, along its least deflection.
-pub(super) struct Tip {
+/// The displacement of the tip in a judged case, along the direction of its least deflection.
+pub(super) struct TipRow {
     pub case: usize,
-    /// Per newton of each piece's weight \[m/N\]: by tubes, and by gears that stay in their segment.
+    /// Displacement per newton of each piece's weight \[m/N\], through tubes and through gears of a single
+    /// slope.
     pub per_n: Vec<f64>,
-    /// Per twist of each joint \[m/rad\]; and at which torque it twists, if its gear stays in its segment \[N m\].
+    /// Displacement per twist of each joint \[m/rad\].
     pub joints: Vec<f64>,
+    /// The torque at which a gear of a single slope twists \[N m\]; `None` if its slope may change.
     pub torques_nm: Vec<Option<f64>>,
-    /// Per compliance of each tube.
+    /// Displacement per compliance of each tube.
     pub tubes: Vec<[f64; STIFFNESSES]>,
 }
 
-impl Tip {
-    /// The way of the tip in a case along its least deflection, and what no part changes \[m\].
+impl TipRow {
+    /// The tip row of a judged case, and the part of it that no choice changes \[m\].
     pub fn new(problem: &Problem, judged: usize, case: usize, work: &Work) -> (Self, f64) {
         let pose = &problem.poses[case];
         let pieces = problem.parts.len();
@@ -31,8 +33,8 @@ impl Tip {
         };
         let mut fixed_m = 0.0;
         for (row, &force) in pose.rows.iter().zip(&work.forces[case]) {
-            let way = work.tip_ways[judged].dot(&row.tip_m);
-            let at = if way > 0.0 { force[0] } else { force[1] };
+            let tip_per_unit = work.tip_directions[judged].dot(&row.tip_m);
+            let at = if tip_per_unit > 0.0 { force[0] } else { force[1] };
             let least = if let PosedPiece::Tube(tube) = &pose.pieces[row.piece] {
                 let resisted = RESISTED[row.coordinate].0;
                 let stiffness = work.stiff[row.piece][resisted];
@@ -40,21 +42,22 @@ impl Tip {
                     continue;
                 }
                 let factor = degree_factor(row.coordinate) / tube.length_m;
-                tip.tubes[row.piece][resisted] += way * at * factor;
-                way * factor / stiffness
+                tip.tubes[row.piece][resisted] += tip_per_unit * at * factor;
+                tip_per_unit * factor / stiffness
             } else {
-                tip.joints[row.piece] = way;
+                tip.joints[row.piece] = tip_per_unit;
                 let [least_nm, most_nm] = work.torques[case][row.piece];
                 let Some(curve) = &work.curves[row.piece] else { continue };
-                let (breaks, play) = (work.breaks[row.piece], problem.plays[row.piece].as_ref());
+                let (breaks, play) = (work.breaks[row.piece], problem.joint_plays[row.piece].as_ref());
                 let [less, more] = curve.twist_of_play(play, force);
-                fixed_m += way * if way > 0.0 { less } else { more };
+                fixed_m += tip_per_unit * if tip_per_unit > 0.0 { less } else { more };
                 let known = matches!(problem.parts[row.piece], Part::Drives { .. } | Part::Given { .. });
+                // A gear whose slope may change gets a torque of its own, with rows that balance it.
                 if !known || !curve.keeps_its_slope(play, [least_nm, most_nm], breaks) {
                     continue;
                 }
                 tip.torques_nm[row.piece] = Some(at);
-                way / curve.steepest(least_nm, most_nm)
+                tip_per_unit / curve.steepest(least_nm, most_nm)
             };
             fixed_m += least * (row.fixed - at);
             for (total, c) in tip.per_n.iter_mut().zip(&row.per_n) {

@@ -1,41 +1,45 @@
-//! Weights under which the least of several rows is as large as can be: a matrix game.
+//! A matrix game: the weights of columns under which the least weighted row is as large as possible.
 
 use std::ops::Range;
 
-/// Pivots at the most.
+/// Greatest number of simplex pivots.
 const MOST_PIVOTS: usize = 200;
-/// Numbers smaller than this are rounding.
+/// Numbers below this are rounding.
 const NOTHING: f64 = 1e-11;
 
-/// By how much sums that are balanced may be off.
+/// Tolerance of the sums over balanced columns. A different value for each column breaks ties between pivots.
 const BALANCED: f64 = 1e-6;
 
 /// The solution of a game.
 pub(super) struct Game {
-    /// Weights of the columns: not negative, one in sum.
+    /// Weights of the columns. None is negative, and they sum to one.
     pub weights: Vec<f64>,
-    /// Shares of the rows in the mixture that keeps every column lowest.
+    /// Shares of the rows in the mixture that keeps every column as low as possible. They sum to one.
     pub mix: Vec<f64>,
     /// The least weighted row.
     pub value: f64,
 }
 
-/// The weights of columns that make the least weighted row as large as can be. Rows have `width` numbers each.
+/// The weights of columns that make the least weighted row as large as possible. Each row has `width`
+/// numbers.
 ///
-/// By the simplex method on the other player's program, `max Σ z : Σ_j (a_ji + c) z_j <= 1`, `z >= 0`, whose
-/// dual values are the weights.
+/// The simplex method solves the other player's linear program: `max Σ z` with `Σ_j (a_ji + c) z_j <= 1` for
+/// every column `i` and `z >= 0`. Its dual values are the weights.
 ///
-/// Balanced columns are no stakes of the game but conditions on the mixture: `Σ_j a_ji z_j <= 0`. A pair of opposite ones
-/// would otherwise be a way to play for nothing.
+/// Balanced columns are conditions on the mixture instead: `Σ_j a_ji z_j <= 0`. They come in pairs of
+/// opposite sign, so the sum is zero. As ordinary columns such a pair would guarantee the value zero without
+/// saying anything.
 pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game {
     let count = rows.len() / width;
     let least = rows.iter().copied().fold(f64::INFINITY, f64::min);
     let most = rows.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // all entries at least one times the spread: the value of the game is then positive
+    // All entries become at least 1 after scaling by the spread, so the value of the game is positive and the
+    // program is bounded.
     let spread = (most - least).max(f64::MIN_POSITIVE);
     let entry =
         |i: usize, a: f64| if balanced.contains(&i) { a / spread } else { (a - least) / spread + 1.0 };
-    // a line a column of the game (its slack is basic), then that of the objective; z, slacks, right side
+    // The tableau has one line for each column of the game (its slack is basic) and one for the objective.
+    // Each line has z, the slacks and the right side.
     let line = count + width + 1;
     let mut table = vec![0.0; (width + 1) * line];
     let mut basic: Vec<usize> = (count..count + width).collect();
@@ -102,8 +106,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The mixture keeps to the balanced pair, and what it keeps the others below is what the weights guarantee: no
-        /// weights are better then, and none are played for nothing.
+        /// The mixture satisfies the balanced pair. What it keeps the other columns below equals what the
+        /// weights guarantee, so no weights are better.
         #[test]
         fn a_balanced_pair_is_a_condition_and_no_stake(rows in prop::collection::vec(-1.0f64..1.0, 3 * 6)) {
             let rows: Vec<f64> = rows.chunks(3).flat_map(|r| [r[0], r[1], r[2], -r[2]]).collect();
@@ -118,8 +122,8 @@ mod tests {
             prop_assert!((mixed(0).max(mixed(1)) - stakes).abs() < 1e-3, "{} {stakes}", mixed(0).max(mixed(1)));
         }
 
-        /// The value lies between what the weights guarantee and what some mixture of rows keeps every column
-        /// below; fictitious play finds such mixtures.
+        /// The value lies between what the weights guarantee and what some mixture of rows attains.
+        /// Fictitious play finds such mixtures independently.
         #[test]
         fn no_other_weights_are_better(rows in prop::collection::vec(-1.0f64..1.0, 4 * 6)) {
             let Game { weights, mix, value } = solve(&rows, 4, 0..0);
@@ -134,9 +138,9 @@ mod tests {
                 let worst = (0..6).min_by(|&a, &b| counts[a].total_cmp(&counts[b])).unwrap();
                 sums.iter_mut().zip(&rows[worst * 4..]).for_each(|(s, a)| *s += a);
                 if step == 4000 {
-                    let ceiling = sums.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s / 4000.0));
-                    prop_assert!(value <= ceiling + 1e-9, "{value} {ceiling}");
-                    prop_assert!(value >= ceiling - 0.1, "{value} {ceiling}");
+                    let box_bound = sums.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s / 4000.0));
+                    prop_assert!(value <= box_bound + 1e-9, "{value} {box_bound}");
+                    prop_assert!(value >= box_bound - 0.1, "{value} {box_bound}");
                 }
             }
         }

@@ -1,27 +1,27 @@
-//! Whether a frequency is the lowest of one arm: an inertia count, independent of any trial shape.
+//! The exact lowest eigenvalue of one arm, independent of any trial shape.
 //!
-//! With `A = C^½ M C^½` all eigenvalues of `K φ = λ M φ` lie above `λ` exactly if `1/λ - A` is positive
-//! definite, which a Cholesky factorization decides (Sylvester).
+//! With `A = C^½ M C^½`, all eigenvalues of `K φ = λ M φ` lie above `λ` exactly if `1/λ - A` is positive
+//! definite (Sylvester's law of inertia). One Cholesky factorization decides that.
 
 use super::parts::INERTIAS;
 use super::pose::{COORDINATES, Pose};
 use super::shape::{Ideal, Work, inertia_forces};
 use crate::mechanics::Twist;
 
-/// How far below a quotient the lowest eigenvalue may lie.
+/// Relative tolerance of the lowest eigenvalue.
 const TOLERANCE: f64 = 1e-9;
 
-/// The inertia of a case, matrix by matrix: it is linear in the inertias of the parts.
-pub(super) struct Inertia {
-    /// Piece and coordinate of each row.
+/// The inertia matrix of a case as a linear function of the inertias of the parts.
+pub(super) struct CaseInertia {
+    /// Piece and coordinate of each row of the matrix.
     coordinates: Vec<(usize, usize)>,
     fixed: Vec<f64>,
-    /// Piece, place in its inertias, and the matrix per unit of it.
+    /// Piece, index among its inertias, and the matrix per unit of that inertia.
     forms: Vec<(usize, usize, Vec<f64>)>,
 }
 
-impl Inertia {
-    /// The matrices of a case, over the coordinates that yield in an arm.
+impl CaseInertia {
+    /// The matrices of a case, over the coordinates that yield in some arm of the space.
     pub fn new(pose: &Pose, some_arm: &Ideal) -> Self {
         let mut coordinates = Vec::new();
         for (piece, posed) in pose.pieces.iter().enumerate() {
@@ -48,7 +48,8 @@ impl Inertia {
         Self { coordinates, fixed, forms }
     }
 
-    /// The lowest eigenvalue of an arm, given that it is at most `quotient`.
+    /// The lowest eigenvalue of an arm \[1/s²\], given that it is at most `quotient`. In most cases the
+    /// quotient is it, so that is tested first.
     pub fn lowest(&self, pose: &Pose, arm: &Ideal, quotient: f64) -> f64 {
         let scaled = self.scaled(pose, arm);
         let (mut low, mut high) = (quotient * (1.0 - TOLERANCE), quotient);
@@ -63,7 +64,7 @@ impl Inertia {
         low
     }
 
-    /// `C^½ M C^½`.
+    /// The matrix `C^½ M C^½` of an arm.
     fn scaled(&self, pose: &Pose, arm: &Ideal) -> Vec<f64> {
         let n = self.coordinates.len();
         let mut m = self.fixed.clone();
@@ -86,7 +87,7 @@ impl Inertia {
         m
     }
 
-    /// Whether `1/λ - A` is positive definite.
+    /// Whether `1/λ - A` is positive definite, by a Cholesky factorization.
     fn all_above(&self, scaled: &[f64], lambda: f64) -> bool {
         let n = self.coordinates.len();
         let mut l: Vec<f64> = scaled.iter().map(|a| -a).collect();
@@ -112,7 +113,7 @@ impl Inertia {
     }
 }
 
-/// `M` by columns of unit motions.
+/// The matrix `M`, column by column: the inertia forces of unit motions.
 fn matrix(pose: &Pose, coordinates: &[(usize, usize)], inertia: &[[f64; INERTIAS]]) -> Vec<f64> {
     let n = coordinates.len();
     let mut work = Work::default();

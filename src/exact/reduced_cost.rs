@@ -1,32 +1,40 @@
-//! Which options a member below a corner may have at all: those whose price the corner can afford when every other
-//! part is the cheapest (reduced costs).
+//! Reduced-cost fixing: removes the options that no member below a local upper bound can have.
+//!
+//! At a dual point, let every other part be the cheapest. An option whose price exceeds what is then left of
+//! the limits belongs to no member below the local upper bound. All prices of a box of options are compared
+//! eight dual points at a time.
 
-use super::corners::Corner;
+use super::dual_price::{DualPrice, GearStates, JointPrice};
+use super::local_upper_bounds::LocalUpperBound;
 use super::parts::{DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
-use super::price::{Ends, JointPrice, Price};
 use super::problem::Part;
-use super::tradeoff::{Plane, ROUNDING, Rows};
+use super::rows::{DualPoint, ROUNDING, Rows};
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
 
-/// Boxes of options a level is looked at in, about.
+/// Approximate number of boxes into which the options of a level are divided.
 const BOXES: usize = 256;
-/// Weightings that count: the strictest.
+/// Number of dual points that are used, the strictest first.
 const STRICTEST: usize = 32;
 
-/// The price of a level's options under a weighting, and what the corner can afford.
-type Afforded = (Price, f64);
+/// The dual prices of a level's options, and the greatest price that the local upper bound allows.
+type PricedLimit = (DualPrice, f64);
 
 impl Rows<'_> {
-    /// The nodes of each level's whole tree that hold what no weighting excludes; `None` if some level has none.
-    pub fn kept(&self, cell: &[u32], planes: &[Plane], corner: &Corner) -> Option<Vec<Vec<u32>>> {
-        let mut strict: Vec<(f64, Vec<f64>, &[f64])> = planes
+    /// The nodes of each level's base tree whose options no dual point excludes. `None` if a level has none.
+    pub fn affordable_options(
+        &self,
+        design_box: &[u32],
+        points: &[DualPoint],
+        upper: &LocalUpperBound,
+    ) -> Option<Vec<Vec<u32>>> {
+        let mut strict: Vec<(f64, Vec<f64>, &[f64])> = points
             .iter()
-            .map(|plane| {
-                let room = self.weighted(&plane.weights, corner) - plane.least + ROUNDING;
-                // modes that were added later had no say
-                let mut weights = plane.weights.clone();
-                weights.resize(self.scale.len(), 0.0);
-                (room, weights, &plane.levels[..])
+            .map(|point| {
+                let room = self.allowed_sum(&point.multipliers, upper) - point.least + ROUNDING;
+                // The dual points have no multipliers for the modes that were added after them.
+                let mut multipliers = point.multipliers.clone();
+                multipliers.resize(self.scale.len(), 0.0);
+                (room, multipliers, &point.levels[..])
             })
             .collect();
         strict.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -34,22 +42,22 @@ impl Rows<'_> {
         let levels = self.problem.level_pieces.iter().enumerate();
         levels
             .map(|(level, &piece)| {
-                let afforded: Vec<Afforded> = strict
+                let afforded: Vec<PricedLimit> = strict
                     .iter()
-                    .map(|(room, weights, levels)| (self.price(piece, weights), levels[level] + room))
+                    .map(|(room, multipliers, levels)| (self.price(piece, multipliers), levels[level] + room))
                     .collect();
-                let kept = self.affordable(piece, cell[level], &afforded);
+                let kept = self.affordable(piece, design_box[level], &afforded);
                 (!kept.is_empty()).then_some(kept)
             })
             .collect()
     }
 
-    fn affordable(&self, piece: usize, node: u32, afforded: &[Afforded]) -> Vec<u32> {
+    fn affordable(&self, piece: usize, node: u32, afforded: &[PricedLimit]) -> Vec<u32> {
         let prices: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
         let prices = &prices[..];
         match &self.problem.parts[piece] {
             Part::Drives { tree, .. } => {
-                let asked = self.work.least[piece].as_ref();
+                let asked = self.work.least_demands[piece].as_ref();
                 let gears = afforded.first().map_or(&[][..], |(price, _)| &price.joint);
                 tree.kept(node, BOXES, |drives| {
                     asked.is_none_or(|asked| drives.may_hold(asked))
@@ -64,20 +72,20 @@ impl Rows<'_> {
     }
 }
 
-/// The prices of a level's options under eight weightings, and what can be afforded under each.
+/// The dual prices of a level's options at eight dual points, and the greatest allowed price at each.
 struct EightPrices {
     most: Eight,
     inertia: [Eight; INERTIAS],
     compliance: [Eight; STIFFNESSES],
     stiffness: [Eight; STIFFNESSES],
-    /// Per twist, per torque and for the slope of a joint, by judged case.
+    /// Prices per twist, per torque and of the slope of a joint, for each judged case.
     joint: Vec<[Eight; 3]>,
 }
 
 impl EightPrices {
-    /// Where there are fewer anything can be afforded.
-    fn new(afforded: &[Afforded]) -> Self {
-        let lanes = |of: &dyn Fn(&Price) -> f64| -> Eight {
+    /// Packs up to eight dual points. In unused lanes any price is allowed.
+    fn new(afforded: &[PricedLimit]) -> Self {
+        let lanes = |of: &dyn Fn(&DualPrice) -> f64| -> Eight {
             std::array::from_fn(|lane| afforded.get(lane).map_or(0.0, |(price, _)| of(price)))
         };
         let joints = afforded.first().map_or(0, |(price, _)| price.joint.len());
@@ -99,7 +107,8 @@ impl EightPrices {
     }
 }
 
-/// Whether every drive of a box costs more than can be afforded under some weighting. What is no number excludes nothing.
+/// Whether at some dual point every drive of a box costs more than allowed. A price that is not a number
+/// excludes nothing.
 struct DrivesCost<'a> {
     drives: &'a DriveBox,
     gears: &'a [JointPrice],
@@ -112,7 +121,7 @@ impl LaneWork for DrivesCost<'_> {
     #[inline(always)]
     fn run<V: Lanes>(self) -> bool {
         let Self { drives, gears, prices } = self;
-        let mut ends = Ends::default();
+        let mut ends = GearStates::default();
         let mut left = [V::zero(); STRICTEST / LANES];
         for (left, eight) in left.iter_mut().zip(prices) {
             *left = V::load(&eight.most) - least::<V>(&eight.inertia[inertia::MASS], drives.mass_kg);
@@ -138,7 +147,7 @@ impl LaneWork for DrivesCost<'_> {
     }
 }
 
-/// The same of every tube of a box.
+/// The same for every tube of a box.
 struct LinksCost<'a> {
     links: &'a LinkBox,
     prices: &'a [EightPrices],
@@ -158,7 +167,8 @@ impl LaneWork for LinksCost<'_> {
             let [stiff, soft] = compliances;
             for k in 0..STIFFNESSES {
                 cost = cost + least::<V>(&eight.compliance[k], [stiff[k], soft[k]]);
-                // what does not yield earns nothing
+                // What does not yield earns no credit, and an infinite stiffness times a zero price must not
+                // become NaN.
                 let price = V::load(&eight.stiffness[k]);
                 let earned = price * V::splat(high.stiffnesses[k]);
                 cost = cost - V::choose(V::zero().less(price), earned, V::zero());
@@ -171,7 +181,7 @@ impl LaneWork for LinksCost<'_> {
     }
 }
 
-/// The least that a number between two costs at each of eight prices.
+/// The least price of a number in an interval, at each of eight dual points.
 #[inline(always)]
 fn least<V: Lanes>(price: &Eight, [low, high]: [f64; 2]) -> V {
     let price = V::load(price);
@@ -187,24 +197,24 @@ mod tests {
     use crate::sizing::limits::DriveLimits;
     use proptest::prelude::*;
 
-    /// Prices with what can be afforded at each: more than it costs, but at one of them, or none, less.
-    fn afforded(prices: Vec<Price>, cost: impl Fn(&Price) -> f64, dear: usize) -> Vec<Afforded> {
+    /// Prices with an allowed price that is higher than the cost, except at the index `dear`.
+    fn afforded(prices: Vec<DualPrice>, cost: impl Fn(&DualPrice) -> f64, dear: usize) -> Vec<PricedLimit> {
         let room = |at: usize| if at == dear { -0.1 } else { 0.1 };
-        let afford = |(at, price): (usize, Price)| {
+        let afford = |(at, price): (usize, DualPrice)| {
             let cost = cost(&price);
             (price, cost + room(at) * (1.0 + cost.abs()))
         };
         prices.into_iter().enumerate().map(afford).collect()
     }
 
-    fn excluded_one_by_one(afforded: &[Afforded], cost: impl Fn(&Price) -> f64) -> bool {
+    fn excluded_one_by_one(afforded: &[PricedLimit], cost: impl Fn(&DualPrice) -> f64) -> bool {
         afforded.iter().any(|(price, most)| cost(price) > *most)
     }
 
-    fn price(numbers: &[f64]) -> Price {
+    fn price(numbers: &[f64]) -> DualPrice {
         let mut numbers = numbers.iter().copied();
         let mut next = || numbers.next().unwrap_or_default();
-        Price {
+        DualPrice {
             inertia: std::array::from_fn(|_| next()),
             compliance: std::array::from_fn(|_| next()),
             stiffness: std::array::from_fn(|_| next().max(0.0)),
@@ -221,7 +231,7 @@ mod tests {
     };
 
     proptest! {
-        /// Eight prices at once exclude what each by itself excludes; tubes that do not shear included.
+        /// Eight prices at once exclude exactly what each excludes alone, for tubes with and without shear.
         #[test]
         fn tubes_cost_the_same_side_by_side(
             prices in prop::collection::vec(prop::collection::vec(-1.0f64..1.0, 15), 1..20),
@@ -240,14 +250,14 @@ mod tests {
             let links =
                 LinkBox { low, high, compliances, stress: [0.0; 4], round: false, cost_eur_per_m: 0.0 };
             let prices = prices.iter().map(|numbers| price(numbers)).collect();
-            let cost = |price: &Price| price.of_tube(&links);
+            let cost = |price: &DualPrice| price.of_tube(&links);
             let afforded = afforded(prices, cost, dear);
             let eights: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
             let excluded = in_lanes(LinksCost { links: &links, prices: &eights });
             prop_assert_eq!(excluded, excluded_one_by_one(&afforded, cost));
         }
 
-        /// The same of drives, whose gears are in one of three segments under torques of either sign.
+        /// The same for drives, whose gears are in one of three segments under torques of either sign.
         #[test]
         fn drives_cost_the_same_side_by_side(
             prices in prop::collection::vec(prop::array::uniform8(-1.0f64..1.0), 1..20),
@@ -272,11 +282,11 @@ mod tests {
                 twist: n[0], torque: n[1], slope: n[2].max(0.0),
                 torques_nm: [torques[g].0, torques[g].0 + torques[g].1], play: None,
             };
-            let prices = prices.iter().map(|n| Price {
+            let prices = prices.iter().map(|n| DualPrice {
                 joint: vec![joint(0, &n[2..5]), joint(1, &n[5..8])],
                 ..price(&n[..1])
             });
-            let cost = |price: &Price| price.of_joint(drives.mass_kg, drives.curve.as_ref());
+            let cost = |price: &DualPrice| price.of_joint(drives.mass_kg, drives.curve.as_ref());
             let afforded = afforded(prices.collect(), cost, dear);
             let eights: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
             let gears = &afforded[0].0.joint;

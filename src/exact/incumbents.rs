@@ -1,38 +1,39 @@
-//! The designs found so far, and whether one of them beats a box.
+//! The incumbents: the designs found so far, and whether one of them dominates the bound of a box.
 //!
-//! A table ([`Archive`]) answers for designs that are better by a cell in mass and deflection; a list a
-//! row and a list a column of cells hold the designs that share one of them.
+//! A table ([`Archive`]) answers for incumbents that are better by at least one grid cell in mass and in
+//! deflection. Lists for each row and each column of cells hold the incumbents that share a cell with the
+//! bound in one of these objectives.
 
-use super::bound::Ceiling;
+use super::bound::BoxBound;
 use crate::pareto::archive::Archive;
 use crate::pareto::objectives::Objectives;
 use std::collections::HashMap;
 
-/// What two objectives may differ by and still count as equal.
+/// Two objectives that differ by less than this (relative) count as equal.
 const EQUAL: f64 = 1e-9;
-/// By how much the better design must be better in one objective.
+/// The dominating design must be better by this (relative) in at least one objective.
 const BETTER: f64 = 1e-7;
-/// How much a better trial shape may lower a ceiling's frequency.
+/// A better trial shape may lower the frequency of a bound to this part of it.
 const NEAR: f64 = 0.4;
-/// Steps an octave of the lists.
+/// Number of grid steps in a factor of two.
 const STEPS: f64 = 64.0;
 
 /// Designs that meet every constraint.
-pub(super) struct Found {
+pub(super) struct Incumbents {
     table: Archive,
     rows: HashMap<i32, Vec<Objectives>>,
     columns: HashMap<i32, Vec<Objectives>>,
     all: Vec<Objectives>,
 }
 
-impl Default for Found {
+impl Default for Incumbents {
     fn default() -> Self {
         Self { table: Archive::new(6), rows: HashMap::new(), columns: HashMap::new(), all: Vec::new() }
     }
 }
 
-impl Found {
-    /// Enters a design that meets every constraint.
+impl Incumbents {
+    /// Adds a design that meets every constraint.
     pub fn enter(&mut self, found: &Objectives) {
         self.table.enter(found);
         self.all.push(*found);
@@ -51,14 +52,14 @@ impl Found {
         }
     }
 
-    /// All designs, in the order in which they were entered.
+    /// All designs, in the order in which they were added.
     pub fn all(&self) -> &[Objectives] {
         &self.all
     }
 
-    /// Whether some design found beats every member of a box.
-    pub fn beats(&self, ceiling: &Ceiling) -> bool {
-        let best = Objectives::from(*ceiling);
+    /// Whether an incumbent dominates every member of a box.
+    pub fn dominates(&self, box_bound: &BoxBound) -> bool {
+        let best = Objectives::from(*box_bound);
         if self.table.rejects(&best) {
             return true;
         }
@@ -68,19 +69,19 @@ impl Found {
         in_list(self.rows.get(&step(best.mass_kg))) || in_list(self.columns.get(&step(best.tip_deflection_m)))
     }
 
-    /// Whether some design found would beat the box if its ceiling were a little lower in frequency: then
-    /// a better trial shape is worth its price.
-    pub fn nearly_beats(&self, ceiling: &Ceiling) -> bool {
-        self.beats(&Ceiling { hz: ceiling.hz * NEAR, ..*ceiling })
+    /// Whether an incumbent would dominate the bound if its frequency were lower. Then a better trial shape,
+    /// which lowers it, is worth its time.
+    pub fn nearly_dominates(&self, box_bound: &BoxBound) -> bool {
+        self.dominates(&BoxBound { hz: box_bound.hz * NEAR, ..*box_bound })
     }
 }
 
-/// The step of a positive number on a logarithmic scale.
+/// The grid step of a positive number on a logarithmic scale.
 fn step(x: f64) -> i32 {
     (x.max(f64::MIN_POSITIVE).log2() * STEPS).floor() as i32
 }
 
-/// Better in one objective, and not worse in any by more than rounding.
+/// Whether `a` dominates `b`: better in at least one objective, and worse in none by more than rounding.
 pub(super) fn is_better(a: &Objectives, b: &Objectives) -> bool {
     let pairs = [
         (a.mass_kg, b.mass_kg),

@@ -1,22 +1,24 @@
-//! The drives below a node that hold, by their torsion curves.
+//! The feasible drives below a node, grouped by torsion curve.
 //!
-//! What a drive costs is the price of its mass and that of its curve. A joint has hundreds of drives of some dozens of
-//! curves; of one curve only the lightest or the heaviest can be the cheapest, whatever the prices are.
+//! A joint has hundreds of drives but only some dozens of curves. The price of a drive is the price of its
+//! mass plus the price of its curve. Among the drives of one curve only the lightest or the heaviest can
+//! therefore be the cheapest, whatever the prices are.
 
-use super::parts::{Asked, DriveBox};
-use super::price::Price;
+use super::dual_price::DualPrice;
+use super::parts::{DriveBox, LeastDemand};
 use super::torsion::CurveBox;
 use super::tree::Tree;
 
 /// The drives of one curve: mass \[kg\] and node of the lightest and of the heaviest.
-struct OfCurve {
+struct CurveGroup {
     curve: Option<CurveBox>,
     lightest: (f64, u32),
     heaviest: (f64, u32),
 }
 
-impl OfCurve {
-    /// One more drive; of equal masses the first node counts.
+impl CurveGroup {
+    /// Adds a drive. Among equal masses the first node counts, so that the result does not depend on the
+    /// order.
     fn add(&mut self, drive: (f64, u32)) {
         if drive < self.lightest {
             self.lightest = drive;
@@ -27,14 +29,14 @@ impl OfCurve {
     }
 }
 
-/// The drives that hold, curve by curve.
+/// The feasible drives, one group for each curve.
 #[derive(Default)]
-pub(super) struct ByCurve(Vec<OfCurve>);
+pub(super) struct DrivesByCurve(Vec<CurveGroup>);
 
-impl ByCurve {
-    /// The drives below a node that hold what is asked.
-    pub fn new(tree: &Tree<DriveBox>, node: u32, asked: Option<&Asked>) -> Self {
-        let mut curves: Vec<OfCurve> = Vec::new();
+impl DrivesByCurve {
+    /// The drives below a node that can carry the least demand.
+    pub fn new(tree: &Tree<DriveBox>, node: u32, asked: Option<&LeastDemand>) -> Self {
+        let mut curves: Vec<CurveGroup> = Vec::new();
         let (mut open, mut last) = (vec![node], 0);
         while let Some(at) = open.pop() {
             let drives = &tree.node(at).bounds;
@@ -46,7 +48,7 @@ impl ByCurve {
                 continue;
             }
             let drive = (drives.mass_kg[0], at);
-            // neighbours in the tree mostly share their curve
+            // Neighbours in the tree mostly have the same curve, so the last group is tried first.
             let is_of = |at: &usize| curves.get(*at).is_some_and(|of| of.curve == drives.curve);
             match Some(last).filter(is_of).or_else(|| (0..curves.len()).find(|at| is_of(at))) {
                 Some(place) => {
@@ -55,16 +57,16 @@ impl ByCurve {
                 }
                 None => {
                     last = curves.len();
-                    curves.push(OfCurve { curve: drives.curve, lightest: drive, heaviest: drive });
+                    curves.push(CurveGroup { curve: drives.curve, lightest: drive, heaviest: drive });
                 }
             }
         }
         Self(curves)
     }
 
-    /// The least price of a drive and the node that has it; `None` if no drive holds.
-    pub fn cheapest(&self, price: &Price) -> Option<(f64, u32)> {
-        let of = |of: &OfCurve| {
+    /// The least price of a drive and its node. `None` if no drive is feasible.
+    pub fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
+        let of = |of: &CurveGroup| {
             let (mass_kg, node) = if price.of_mass([0.0, 1.0]) < 0.0 { of.heaviest } else { of.lightest };
             (price.of_joint([mass_kg; 2], of.curve.as_ref()), node)
         };
@@ -76,9 +78,9 @@ impl ByCurve {
 mod tests {
     use super::*;
     use crate::arm::joint_law::{Curve, JointLaw, Windup};
+    use crate::exact::dual_price::JointPrice;
     use crate::exact::parts::Rays;
-    use crate::exact::price::JointPrice;
-    use crate::exact::torsion::Breaks;
+    use crate::exact::torsion::BreakPoints;
     use crate::sizing::limits::DriveLimits;
     use crate::sizing::requirement::MotionRequirement;
     use proptest::prelude::*;
@@ -102,9 +104,9 @@ mod tests {
             mass_kg: [mass_kg; 2],
             limits,
             least_limits: limits,
-            multiples: rays.held(&limits),
+            multiples: rays.capacity(&limits),
             curve: CurveBox::of(&JointLaw::from(Curve::Windup(windup))),
-            breaks: Breaks::of(&windup),
+            breaks: BreakPoints::of(&windup),
             each: None,
         }
     }
@@ -117,20 +119,20 @@ mod tests {
         ) {
             let motion = MotionRequirement::default().joint_motion(1.35, None);
             let rays = Rays::new(&motion, 5.0, 1.0);
-            let asked = Asked::new(&motion, &rays, asked_nm, 0.1 * asked_nm);
+            let asked = LeastDemand::new(&motion, &rays, asked_nm, 0.1 * asked_nm);
             let drives: Vec<DriveBox> = drives
                 .into_iter()
                 .map(|(kg, k, nm)| drive(f64::from(kg), f64::from(k), f64::from(nm), &rays))
                 .collect();
             let joint = JointPrice { twist, torque, slope, torques_nm: [from_nm, from_nm + wide_nm], play: None };
-            let mut price = Price { joint: vec![joint], ..Price::default() };
+            let mut price = DualPrice { joint: vec![joint], ..DualPrice::default() };
             price.inertia[0] = per_kg;
             let options = drives.iter().cloned().enumerate().map(|(i, drive)| (i as u32, drive));
             let tree = Tree::build(options).unwrap();
             let cost = |drive: &DriveBox| price.of_joint(drive.mass_kg, drive.curve.as_ref());
             let holding: Vec<&DriveBox> = drives.iter().filter(|drive| drive.hold(&asked.demand)).collect();
             let least = holding.iter().map(|drive| cost(drive)).fold(f64::INFINITY, f64::min);
-            let found = ByCurve::new(&tree, 0, Some(&asked)).cheapest(&price);
+            let found = DrivesByCurve::new(&tree, 0, Some(&asked)).cheapest(&price);
             prop_assert_eq!(found.is_none(), holding.is_empty());
             if let Some((found, node)) = found {
                 let drive = &drives[tree.option(node).unwrap() as usize];
