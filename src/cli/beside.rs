@@ -1,12 +1,12 @@
 //! What `armwright run` works out beside the front: files, words and facts of the run.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::catalog::Catalogs;
-use crate::report::compare::text::wrap;
 use crate::report::front_table::FrontTable;
-use crate::report::html::Extra;
 use crate::report::picks;
+use crate::report::section::Extra;
 use crate::report::tolerance::Scattered;
+use crate::report::words::wrap;
 use crate::search::near::{NearDesigns, Slack};
 use crate::space::problem::ArmProblem;
 use crate::study::ballast::ballast_flags;

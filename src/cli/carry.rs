@@ -1,14 +1,15 @@
 //! A measured arm's corrections in a study: read from an arm file, and said in words.
 
-use super::Failure;
-use super::search::Asked;
+use super::asked::Asked;
+use super::failure::Failure;
 use crate::arm::Arm;
 use crate::arm::file::read_arm_document;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
-use crate::report::compare::text::wrap;
+use crate::report::words::wrap;
+use crate::study::definition::Study;
 use crate::study::effects::{Carried, carry_over};
-use crate::study::read::{Study, read_study};
+use crate::study::read::read_study;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;

@@ -2,7 +2,7 @@
 //!
 //! The functions return the text; nothing is printed here.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::catalog::gear::Gear;
 use crate::catalog::load::Loaded;
 use crate::catalog::lookup::PartError;

@@ -1,9 +1,12 @@
 //! `armwright compare`: fronts side by side.
 
-use super::{Failure, number_list, write_all};
+use super::failure::Failure;
+use super::values::number_list;
+use super::write::write_all;
+use crate::report::compare::comparison::{Comparison, compare};
+use crate::report::compare::contender::Contender;
 use crate::report::compare::moved::moved;
 use crate::report::compare::thresholds::Thresholds;
-use crate::report::compare::{Comparison, Contender, compare};
 use crate::report::front_svg::{FrontPicture, PlottedFront};
 use crate::report::front_table::{FrontTable, FrontTableError};
 use crate::report::html::comparison::page as comparison_page;

@@ -1,7 +1,8 @@
 //! `armwright design`: a design of a result as an arm file and its cases.
 
+use super::failure::Failure;
 use super::finished::{catalogs_hash, pretty};
-use super::{Failure, write_all};
+use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::space::design::{full_objectives, number_of};

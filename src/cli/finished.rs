@@ -1,30 +1,33 @@
 //! What a finished search has to say: its files, its page and its words.
 
 use super::beside::{Beside, BesideArgs, FILES, Found};
-use super::{Failure, carry, write_all};
+use super::carry;
+use super::failure::Failure;
+use super::write::write_all;
 use crate::arm::effect::Effect;
 use crate::catalog::Catalogs;
 use crate::pareto::hypervolume::front_hypervolume;
 use crate::report::budget::{PickBudget, budget_csv};
 use crate::report::certificate::certificate_section;
+use crate::report::facts::{SummaryFacts, constraint_words};
 use crate::report::front_svg::{FrontPicture, PlottedFront, designs_of, mixed_designs};
 use crate::report::front_table::FrontTable;
-use crate::report::html::{Extra, PLOTS, Page, study::StudyPage};
+use crate::report::html::gallery::Page;
+use crate::report::html::render::PLOTS;
+use crate::report::html::study::StudyPage;
 use crate::report::number::significant;
 use crate::report::picks;
-use crate::report::summary::{
-    MaterialFront, SummaryFacts, SummaryInput, constraint_words, single_materials, summary_md,
-    terminal_summary,
-};
+use crate::report::section::Extra;
+use crate::report::summary::{MaterialFront, SummaryInput, single_materials, summary_md, terminal_summary};
 use crate::search::near::NearDesigns;
 use crate::search::sweep::Status;
 use crate::space::design_space::DesignSpace;
 use crate::space::problem::ArmProblem;
 use crate::study::budget::budgets;
+use crate::study::definition::Study;
 use crate::study::effects::Carried;
 use crate::study::outcome::StudyOutcome;
 use crate::study::page::study_page;
-use crate::study::read::Study;
 use crate::study::table::{front_table, slug};
 use crate::study::ties;
 use serde_json::{Value, json};

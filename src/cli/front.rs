@@ -1,14 +1,14 @@
 //! `armwright front check`: is a finished front right, and is it all of it?
 
-use super::Failure;
 use super::beside::TIES;
 use super::design::check_catalogs;
+use super::failure::Failure;
 use super::search::stopped_by_signal;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::report::certificate::gap_words;
-use crate::report::compare::text::wrap;
 use crate::report::front_table::FrontTable;
+use crate::report::words::wrap;
 use crate::study::check::{Claim, Completeness, check_front};
 use crate::study::read::read_study;
 use clap::{Args, Subcommand};

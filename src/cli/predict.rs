@@ -1,6 +1,6 @@
 //! `armwright predict`: the model's value beside every reading.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::arm::file::read_arm;
 use crate::catalog::Catalogs;
 use crate::reconcile::readings::campaign::{Statement, read_statement};

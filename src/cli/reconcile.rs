@@ -1,14 +1,15 @@
 //! `armwright reconcile`: where model and measurement disagree, what is missing, and what that changes.
 
+use super::failure::Failure;
 use super::rerun::{Rerun, rerun};
 use super::search::SearchArgs;
-use super::{Failure, write_all};
+use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::together::reconcile;
 use crate::reconcile::verdict::outcome::Outcome;
 use crate::reconcile::verdict::page::campaign_page;
-use crate::report::compare::text::wrap;
+use crate::report::words::wrap;
 use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -52,7 +53,7 @@ pub fn run(
 ) -> Result<(Outcome, String), Failure> {
     match &args.study {
         // a study that does not read, or a search that does not suit it, fails now and not after the fits
-        Some(study) => drop(args.how.kind(&super::run::load_study(study, catalogs)?.0, catalogs)?),
+        Some(study) => drop(args.how.kind(&super::asked::load_study(study, catalogs)?.0, catalogs)?),
         None if !args.how.is_default() => {
             return Err(Failure::Usage("--search and --time-limit are for the runs of --study".into()));
         }

@@ -1,16 +1,17 @@
 //! A study run twice, as it stands and with what a reconciled arm taught, and what that changes.
 
+use super::asked::{Asked, load_study};
 use super::beside::BesideArgs;
+use super::carry;
+use super::failure::Failure;
 use super::finished::Written;
-use super::run::load_study;
-use super::search::{Asked, SearchArgs, With, search};
-use super::{Failure, carry};
+use super::search::{SearchArgs, With, search};
 use crate::catalog::Catalogs;
 use crate::reconcile::verdict::outcome::{Outcome, Verdict};
 use crate::report::certificate::gap_words;
 use crate::report::compare::changes::{Changes, Model, Values};
-use crate::report::compare::text::wrap;
 use crate::report::picks::designs;
+use crate::report::words::wrap;
 use crate::search::sweep::Status;
 use crate::space::design::evaluate;
 use crate::space::design::{number, number_of};

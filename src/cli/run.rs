@@ -1,19 +1,22 @@
 //! `armwright run`: find a study's front and write it.
 
+use super::asked::{Asked, load_study};
 use super::beside::BesideArgs;
+use super::carry;
+use super::failure::Failure;
 use super::finished::{catalogs_hash, facts_of, is_front_of_material, pretty};
-use super::search::{Asked, SearchArgs, With, search};
-use super::{Failure, carry, write_all};
+use super::search::{SearchArgs, With, search};
+use super::write::write_all;
 use crate::catalog::Catalogs;
-use crate::input::json::Document;
-use crate::report::compare::text::wrap;
-use crate::report::html::{Figure, PLOTS, document::DocumentPage};
+use crate::paper::names::{NAMES, question};
+use crate::report::html::document::DocumentPage;
+use crate::report::html::render::PLOTS;
+use crate::report::section::Figure;
 use crate::report::table::Table;
+use crate::report::words::wrap;
 use crate::search::sweep::Status;
 use crate::study::effects::left_out;
-use crate::study::read::{Study, read_study};
 use crate::study::table::slug;
-use crate::study::{named, paper_question};
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -43,33 +46,9 @@ pub struct RunArgs {
     beside: BesideArgs,
 }
 
-/// The text of a study and the name it goes by in messages.
-pub(super) fn study_text(name: &str) -> Result<(String, String), Failure> {
-    if let Some(text) = named(name) {
-        return Ok((format!("{name} (built in)"), text.to_string()));
-    }
-    let path = Path::new(name);
-    match fs_err::read_to_string(path) {
-        Ok(text) => Ok((name.to_string(), text)),
-        Err(_) if !name.contains(['/', '.']) => {
-            let known = crate::study::names();
-            let near = crate::input::json::closest(name, &known)
-                .map_or(String::new(), |n| format!("; did you mean {n}?"));
-            Err(Failure::Usage(format!("no study is called \"{name}\"{near}; known: {}", known.join(", "))))
-        }
-        Err(error) => Err(Failure::File(error.to_string())),
-    }
-}
-
-/// Reads a study by name or file.
-pub(super) fn load_study(name: &str, catalogs: &Catalogs) -> Result<(Study, String), Failure> {
-    let (file, text) = study_text(name)?;
-    Ok((read_study(Document::parse(&file, &text)?, catalogs)?, text))
-}
-
 /// Carries out the verb.
 pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -> Result<String, Failure> {
-    if crate::paper::NAMES.contains(&args.study.as_str()) {
+    if NAMES.contains(&args.study.as_str()) {
         return run_paper(args, catalogs);
     }
     let (study, text) = load_study(&args.study, catalogs)?;
@@ -91,7 +70,7 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(&args.study));
     write_all(&dir, &[])?;
     let started = Instant::now();
-    let output = crate::paper::run(&args.study, catalogs).map_err(|e| Failure::Usage(e.to_string()))?;
+    let output = crate::paper::run::run(&args.study, catalogs).map_err(|e| Failure::Usage(e.to_string()))?;
     let run = json!({
         "schema_version": 1,
         "study": args.study,
@@ -117,7 +96,7 @@ fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> Document
     let ending = |end: &'static str| files.iter().filter_map(move |(n, b)| Some((n.strip_suffix(end)?, b)));
     DocumentPage {
         title: study.to_string(),
-        question: paper_question(study).unwrap_or_default().to_string(),
+        question: question(study).unwrap_or_default().to_string(),
         words: Vec::new(),
         figures: ending(".svg")
             .map(|(name, bytes)| Figure { name: name.into(), svg: text(bytes), ..Figure::default() })

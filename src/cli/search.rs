@@ -1,17 +1,18 @@
 //! A study's search: which one, and until when.
 
+use super::asked::Asked;
 use super::beside::BesideArgs;
+use super::failure::Failure;
 use super::finished::{Finished, FoundExactly, Written};
 use super::progress::{watch, watch_boxes};
-use super::{Failure, write_all};
+use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::report::certificate::certificate_words;
 use crate::search::sweep::Status;
 use crate::space::problem::ArmProblem;
+use crate::study::definition::Study;
 use crate::study::diagnose::{empty_pieces, why_infeasible};
-use crate::study::effects::Carried;
 use crate::study::outcome::{ExactStudy, Extent, run_exact, run_study};
-use crate::study::read::Study;
 use crate::study::tolerance::part;
 use clap::{Args, ValueEnum};
 use std::path::Path;
@@ -91,16 +92,6 @@ fn part_or_none(text: &str) -> Result<f64, String> {
         Ok(0.0) => Ok(0.0),
         _ => part(text),
     }
-}
-
-/// A study to be searched.
-pub(super) struct Asked {
-    /// The study.
-    pub study: Study,
-    /// Its file's text.
-    pub text: String,
-    /// What of a measured arm carries over to it, and what does not.
-    pub carried: Vec<Carried>,
 }
 
 /// What a study is searched with, and how.

@@ -1,7 +1,8 @@
 //! `armwright size`: the drive of every joint, joint 6 to joint 1, and why others were rejected.
 
-use super::run::load_study;
-use super::{Failure, write_all};
+use super::asked::load_study;
+use super::failure::Failure;
+use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::sizing::check::checks;
 use crate::sizing::demand::JointDemand;
@@ -11,7 +12,7 @@ use crate::space::design::number_of;
 use crate::space::design_space::SpacePiece;
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::SizedJoint;
-use crate::study::read::Study;
+use crate::study::definition::Study;
 use crate::study::table::sizing_rows;
 use clap::Args;
 use std::fmt::Write;

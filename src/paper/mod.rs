@@ -16,66 +16,17 @@ pub mod coupled;
 pub mod equations;
 pub mod figures;
 pub(crate) mod modes_rows;
+pub mod names;
+pub mod output;
 pub mod parts;
 pub mod remedies;
 pub mod rows;
+pub mod run;
 pub(crate) mod statics_rows;
 pub mod table1;
 pub mod third_spring;
 pub(crate) mod torque_rows;
 
-use crate::catalog::Catalogs;
-
-/// The names of the paper's studies.
-pub const NAMES: [&str; 4] = ["paper-table1", "fig2-metals", "fig3-wall-or-width", "fig4-composites"];
-
-/// What a paper study gives.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PaperStudyOutput {
-    /// Files to write: name and content. `summary.md` is among them.
-    pub files: Vec<(String, Vec<u8>)>,
-    /// What to print.
-    pub terminal: String,
-}
-
-impl PaperStudyOutput {
-    /// Adds a text file.
-    pub(crate) fn file(&mut self, name: &str, content: String) {
-        self.files.push((name.to_string(), content.into_bytes()));
-    }
-}
-
-/// Why a paper study could not run.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum PaperError {
-    /// No paper study has this name.
-    #[error("\"{name}\" is not a study of the paper; choose one of: {}", NAMES.join(", "))]
-    UnknownStudy {
-        /// Name as given.
-        name: String,
-    },
-    /// A part the paper names is not in the catalogs, or lacks a figure.
-    #[error(
-        "the catalogs have no {kind} \"{name}\", which this study needs; run with the built-in catalogs, or add it"
-    )]
-    Missing {
-        /// What is missing.
-        kind: &'static str,
-        /// Its name.
-        name: String,
-    },
-}
-
-/// Runs a study of the paper.
-///
-/// # Errors
-/// The name is not in [`NAMES`], or the catalogs lack a part the paper names.
-pub fn run(name: &str, catalogs: &Catalogs) -> Result<PaperStudyOutput, PaperError> {
-    match name {
-        "paper-table1" => table1::run(catalogs),
-        "fig2-metals" => figures::fig2::run(catalogs),
-        "fig3-wall-or-width" => figures::fig3::run(catalogs),
-        "fig4-composites" => figures::fig4::run(catalogs),
-        _ => Err(PaperError::UnknownStudy { name: name.to_string() }),
-    }
-}
+pub use names::{NAMES, QUESTIONS, question};
+pub use output::{PaperError, PaperStudyOutput};
+pub use run::run;

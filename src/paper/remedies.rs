@@ -2,7 +2,8 @@
 //! stiffer drives first.
 
 use super::arm::{JOINTS, LINKS, PaperArm, Solved, connect, stiffen_link};
-use super::{PaperError, parts};
+use super::output::PaperError;
+use super::parts;
 use crate::arm::LinkModel;
 use crate::arm::joint_law::Curve;
 use crate::catalog::Catalogs;

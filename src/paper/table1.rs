@@ -1,12 +1,13 @@
 //! `paper-table1`: the paper's numbers beside ours.
 
 use super::arm::PaperArm;
+use super::output::{PaperError, PaperStudyOutput};
 use super::remedies::{
     CatalogGears, connection_table, connections, error_left, error_left_table, stiffer, stiffer_table,
 };
 use super::rows::{self, PaperRow};
 use super::third_spring::{self, Reading, closest_reading, readings};
-use super::{PaperError, PaperStudyOutput, modes_rows, parts, statics_rows, torque_rows};
+use super::{modes_rows, parts, statics_rows, torque_rows};
 use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::mechanics::response::frequency_response;

@@ -1,10 +1,10 @@
 //! The stiffness budget of a front's picks as words, tables and CSV: what one more kilogram buys at each joint
 //! and link, and how far each pick is from the lightest arm that could do as well.
 
-use super::compare::text::wrap;
-use super::html::Extra;
 use super::number::{fixed, shortest, significant};
+use super::section::Extra;
 use super::table::{Column, Table, csv_line};
+use super::words::wrap;
 
 /// Change per kilogram added.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -196,7 +196,7 @@ const FULL: [&str; 9] = [
     "with it: tip [mm/kg]",
     "mode [Hz/kg]",
 ];
-const TERMINAL: [&str; 9] =
+const NARROW: [&str; 9] =
     ["piece", "mass kg", "% of sag", "mm/kg", "Hz/kg", "", "next: kg", "mm/kg", "Hz/kg"];
 
 /// The budget of a pick under these headers; an empty header leaves its column out.
@@ -263,7 +263,7 @@ fn opposed(budgets: &[PickBudget]) -> bool {
 pub fn budget_text(budgets: &[PickBudget], width: usize) -> String {
     let Some(pick) = shown(budgets) else { return String::new() };
     let mut out = format!("What one more kilogram buys at each joint and link: {}\n", pick.title());
-    out.push_str(&budget_table(pick, TERMINAL).to_text());
+    out.push_str(&budget_table(pick, NARROW).to_text());
     out.push_str(&wrap(&pick.advice(), width, ""));
     if let Some(table) = bounds_table(budgets) {
         out.push_str(&format!("\n{}", table.to_text()));

@@ -1,9 +1,9 @@
 //! How sure a front is: what was visited, what was cut and why, what may be missing.
 
-use super::compare::text::wrap;
-use super::html::Extra;
-use super::number::significant;
-use super::summary::{SummaryFacts, TERMINAL, large};
+use super::facts::SummaryFacts;
+use super::number::{large, significant};
+use super::section::Extra;
+use super::words::{TERMINAL, wrap};
 
 /// The section of a page; `boxes` are those bounded and left open by an exact search.
 pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Extra {

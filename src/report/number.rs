@@ -37,6 +37,32 @@ pub fn percent_change(ratio: f64, decimals: usize) -> String {
     if rises { format!("+{text} %") } else { format!("{text} %") }
 }
 
+/// A cost with three digits, whole above 100.
+pub fn cost_words(value: f64) -> String {
+    if value.abs() >= 100.0 { format!("{value:.0}") } else { significant(value, 3) }
+}
+
+/// A count in digits, or as a power of ten where nobody counts digits.
+pub fn large(n: u128) -> String {
+    if n < 1_000_000_000_000 { grouped(n) } else { format!("{:.2e}", n as f64) }
+}
+
+/// A whole number with commas; above 1e12 in powers of ten.
+pub fn grouped(n: u128) -> String {
+    if n >= 1_000_000_000_000 {
+        return significant(n as f64, 3);
+    }
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (i, c) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(c);
+    }
+    out
+}
+
 /// The shortest text that reads back as exactly the same `f64`.
 pub fn shortest(value: f64) -> String {
     let size = value.abs();

@@ -1,6 +1,7 @@
 //! The designs of a front that a reader looks for first: lightest, stiffest, highest mode, knee.
 
 use super::front_table::FrontTable;
+use super::number::significant;
 use std::cmp::Ordering;
 
 /// One design of a front by its objectives.
@@ -57,6 +58,11 @@ impl Objective {
             Self::Mass => "kg",
             Self::Mode => "Hz",
         }
+    }
+
+    /// A value with four digits and its unit.
+    pub fn amount(self, value: f64) -> String {
+        format!("{} {}", significant(value, 4), self.unit())
     }
 }
 

@@ -2,64 +2,16 @@
 
 use super::budget::{PickBudget, budget_markdown, budget_text};
 use super::certificate::gap_words;
-use super::compare::cost_words;
-use super::compare::text::{short_labels, wrap};
+use super::compare::text::short_labels;
+use super::facts::SummaryFacts;
 use super::front_table::FrontTable;
-use super::number::significant;
+use super::number::{cost_words, grouped, large, significant};
 use super::picks::{Design, Objective, Pick, best, choices, designs, knee, materials, picks};
 use super::table::{Column, Table};
-use crate::space::constraint::Constraints;
+use super::words::{TERMINAL, and, capital, wrap};
 
 /// Height of a small plot \[characters\].
 const PLOT_ROWS: usize = 8;
-/// Width of a terminal \[characters\].
-pub(super) const TERMINAL: usize = 80;
-
-/// What a run knows besides its fronts.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct SummaryFacts {
-    /// Name of the study.
-    pub study: String,
-    /// Its question in a sentence.
-    pub question: String,
-    /// How the search ended: `complete`, `certified`, `partial`, `infeasible` or `interrupted`.
-    pub status: String,
-    /// Designs in the space.
-    pub designs_total: u128,
-    /// Designs whose three objectives were computed.
-    pub designs_evaluated: u128,
-    /// Designs left out because a limit cannot hold.
-    pub designs_excluded: u128,
-    /// By what part at most a design that is not listed beats every listed one in all three objectives, of a
-    /// search that was stopped.
-    pub gap: Option<f64>,
-    /// Duration of the search \[s\].
-    pub elapsed_s: f64,
-    /// Worker threads; 0 = not known.
-    pub threads: usize,
-    /// Version of the program.
-    pub tool_version: String,
-    /// Constraints in words; see [`constraint_words`].
-    pub constraints: Vec<String>,
-    /// Names of the cases, the worst of which counts.
-    pub cases: Vec<String>,
-    /// Parts and options left out because a figure is unknown, in words.
-    pub not_checked: Vec<String>,
-    /// Result folder as it is typed.
-    pub results: String,
-}
-
-impl SummaryFacts {
-    /// Whether the search did not come to its end.
-    pub fn is_stopped(&self) -> bool {
-        ["partial", "interrupted"].contains(&self.status.as_str())
-    }
-
-    /// Whether no design is missing.
-    pub fn is_whole(&self) -> bool {
-        !self.is_stopped() && self.gap.is_none_or(|gap| gap == 0.0)
-    }
-}
 
 /// The front of one material's designs.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,29 +39,6 @@ pub struct SummaryInput {
     pub materials: Vec<MaterialFront>,
     /// What one more kilogram buys in each pick, and how light it could be.
     pub budgets: Vec<PickBudget>,
-}
-
-/// Constraints in words, one a line; empty if there are none.
-pub fn constraint_words(constraints: &Constraints) -> Vec<String> {
-    let c = constraints;
-    let plain = super::number::shortest;
-    [
-        c.tip_deflection_max_m.map(|v| format!("tip deflection at most {} mm", significant(v * 1e3, 4))),
-        c.mass_max_kg.map(|v| format!("mass at most {} kg", plain(v))),
-        c.lowest_mode_min_hz.map(|v| format!("lowest mode at least {} Hz", plain(v))),
-        c.servo.map(|s| {
-            let (bandwidth, ratio) = (plain(s.bandwidth_hz), plain(s.ratio));
-            format!("lowest mode at least {ratio} times the servo bandwidth of {bandwidth} Hz")
-        }),
-        c.stress_safety_factor_min
-            .map(|v| format!("strength at least {} times the stress at peak load", plain(v))),
-        c.wall_slenderness_max
-            .map(|v| format!("flat width at most {} times the wall (local buckling)", plain(v))),
-        c.material_cost_max_eur.map(|v| format!("links' material at most {} EUR", plain(v))),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
 }
 
 /// The summary as a Markdown document.
@@ -267,7 +196,7 @@ fn winners(input: &SummaryInput, found: &Found) -> String {
     let mut by_material: Vec<(String, Vec<String>)> = Vec::new();
     for (objective, words) in sought {
         let Some(design) = best(objective, &found.designs) else { continue };
-        let what = format!("{words} ({})", amount(objective, design));
+        let what = format!("{words} ({})", objective.amount(objective.of(design)));
         let material = made_of(&input.overall, design.row);
         match by_material.iter_mut().find(|(m, _)| *m == material) {
             Some((_, list)) => list.push(what),
@@ -281,7 +210,7 @@ fn winners(input: &SummaryInput, found: &Found) -> String {
 
 fn compromise(input: &SummaryInput, found: &Found, knee: &Design) -> String {
     let values: Vec<String> =
-        [Objective::Mass, Objective::Deflection, Objective::Mode].map(|o| amount(o, knee)).into();
+        [Objective::Mass, Objective::Deflection, Objective::Mode].map(|o| o.amount(o.of(knee))).into();
     let mut out = format!(
         "The knee, nearest to the best of all three, is design {} ({}): {}",
         knee.design_id,
@@ -440,11 +369,6 @@ fn counts(facts: &SummaryFacts) -> String {
     )
 }
 
-/// A count in digits, or as a power of ten where nobody counts digits.
-pub fn large(n: u128) -> String {
-    if n < 1_000_000_000_000 { grouped(n) } else { format!("{:.2e}", n as f64) }
-}
-
 /// The commands that take a design out and analyse it, one a line.
 fn commands(facts: &SummaryFacts, pick: &Pick) -> String {
     let (results, id) = (&facts.results, &pick.design.design_id);
@@ -454,22 +378,6 @@ fn commands(facts: &SummaryFacts, pick: &Pick) -> String {
          armwright analyze {dir}/arm.json --cases {dir}/cases.json\n\
          armwright compare {results}\n"
     )
-}
-
-/// A whole number with commas; above 1e12 in powers of ten.
-fn grouped(n: u128) -> String {
-    if n >= 1_000_000_000_000 {
-        return significant(n as f64, 3);
-    }
-    let digits = n.to_string();
-    let mut out = String::new();
-    for (i, c) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(c);
-    }
-    out
 }
 
 /// A share that is never rounded to nothing or to all.
@@ -484,32 +392,12 @@ fn percent(part: usize, whole: usize) -> String {
     }
 }
 
-fn amount(objective: Objective, design: &Design) -> String {
-    format!("{} {}", significant(objective.of(design), 4), objective.unit())
-}
-
 fn known(value: Option<f64>) -> String {
     value.map_or("unknown".into(), cost_words)
 }
 
 fn listed(words: &[String]) -> String {
     if words.is_empty() { "none".into() } else { words.join("; ") }
-}
-
-fn and(words: &[impl AsRef<str>]) -> String {
-    match words {
-        [] => String::new(),
-        [one] => one.as_ref().to_string(),
-        [init @ .., last] => {
-            let init: Vec<&str> = init.iter().map(AsRef::as_ref).collect();
-            format!("{} and {}", init.join(", "), last.as_ref())
-        }
-    }
-}
-
-fn capital(text: &str) -> String {
-    let mut chars = text.chars();
-    chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
 }
 
 #[cfg(test)]
@@ -524,19 +412,5 @@ mod tests {
         assert_eq!(percent(1, 5000), "<0.1 %");
         assert_eq!(percent(4999, 5000), ">99.9 %");
         assert_eq!(percent(0, 0), "0 %");
-    }
-
-    #[test]
-    fn constraints_are_said_in_words() {
-        let constraints = Constraints {
-            tip_deflection_max_m: Some(0.002),
-            stress_safety_factor_min: Some(2.0),
-            ..Constraints::default()
-        };
-        assert_eq!(
-            constraint_words(&constraints),
-            ["tip deflection at most 2.000 mm", "strength at least 2 times the stress at peak load"]
-        );
-        assert!(constraint_words(&Constraints::default()).is_empty());
     }
 }

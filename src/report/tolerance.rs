@@ -1,9 +1,9 @@
 //! What becomes of a front when the catalog figures scatter: how often a design stays on it, how often a
 //! pick stays the pick, and what takes its place.
 
-use super::html::Extra;
 use super::number::{shortest, significant};
 use super::picks::{Design, Objective};
+use super::section::Extra;
 use super::table::{Column, Table, csv_line};
 use serde_json::{Value, json};
 

@@ -1,7 +1,7 @@
 //! Finding fault with a finished front.
 
+use super::definition::Study;
 use super::outcome::{Front, judge};
-use super::read::Study;
 use super::table::front_table;
 use super::ties::ties;
 use crate::catalog::Catalogs;

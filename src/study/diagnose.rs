@@ -1,7 +1,7 @@
 //! Why no design meets what is asked, and the smallest relaxation that would help.
 
+use super::definition::Study;
 use super::outcome::StudyOutcome;
-use super::read::Study;
 use crate::catalog::Catalogs;
 use crate::pareto::objectives::Objectives;
 use crate::search::sweep::Sweep;

@@ -7,7 +7,7 @@
 //! gives keeps that drive, so its calibrated value counts; a drive or a tube that the study chooses is
 //! another part, and keeps its catalog figures.
 
-use super::read::Study;
+use super::definition::Study;
 use crate::arm::effect::Effect;
 use crate::arm::joint_law::Curve;
 use crate::arm::{Arm, LinkModel};

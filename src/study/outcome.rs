@@ -1,6 +1,6 @@
 //! Running a study: sweep every design by the fast model, then judge what is left by the full one.
 
-use super::read::Study;
+use super::definition::Study;
 use crate::catalog::Catalogs;
 use crate::exact::run::{Exact, ExactOutcome};
 use crate::pareto::front::nondominated;

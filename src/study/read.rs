@@ -3,6 +3,7 @@
 //! Lengths of sections and limits are in millimetres because that is how profiles are sold; everything
 //! else is SI. The resolved [`DesignSpace`] is SI throughout.
 
+use super::definition::Study;
 use super::effects::check_effects;
 use super::sections::{read_materials, read_sections};
 use crate::arm::file::{read_curve, read_effects, read_joint_mass, read_link, read_name};
@@ -18,21 +19,6 @@ use crate::sizing::select::DriveFilter;
 use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{Case, DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 use nalgebra::Vector3;
-
-/// A study: a named question about an arm.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Study {
-    /// Name.
-    pub name: String,
-    /// The question in a sentence.
-    pub question: String,
-    /// What there is to choose and what it is asked to do.
-    pub space: DesignSpace,
-    /// By what part in all three objectives at once a design may beat every one listed when an exact search is content.
-    pub gap: f64,
-    /// Options left out because a figure that a check needs is unknown, in words.
-    pub not_checked: Vec<String>,
-}
 
 const KEYS: [&str; 15] = [
     "name",

@@ -2,10 +2,10 @@
 //! too many to be rows of the front.
 
 use super::outcome::{Front, Judged};
-use crate::report::compare::text::wrap;
 use crate::report::front_table::FrontTable;
-use crate::report::html::Extra;
-use crate::report::summary::large;
+use crate::report::number::large;
+use crate::report::section::Extra;
+use crate::report::words::wrap;
 use crate::sizing::demand::JointDemand;
 use crate::space::design::{id_of, options};
 use crate::space::design_space::SpacePiece;

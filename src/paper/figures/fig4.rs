@@ -4,10 +4,13 @@
 //! and marked axial: their E along the fibre is that of bending alone, and their small shear modulus
 //! shows in the deflection with shear.
 
-use super::super::{PaperError, PaperStudyOutput, claim::Claim, parts};
-use super::{BeamPoint, Figure, WALL_M, deflection_plot, sizes};
+use super::beam::{BeamPoint, WALL_M, sizes};
+use super::figure::{Figure, deflection_plot};
 use crate::catalog::Catalogs;
 use crate::catalog::material::Material;
+use crate::paper::claim::Claim;
+use crate::paper::output::{PaperError, PaperStudyOutput};
+use crate::paper::parts;
 use crate::report::number::{fixed, percent_change};
 use crate::report::svg::{Guide, Plot, Series};
 use crate::report::table::{Column, Table};

@@ -1,10 +1,11 @@
 //! What changed between two runs of a study: designs that stayed, came and went, and how far the best
 //! values moved.
 
-use super::{Contender, amount};
+use super::contender::Contender;
 use crate::report::front_table::{FrontTable, OBJECTIVE_COLUMNS};
 use crate::report::number::significant;
 use crate::report::picks::{Objective, best, designs};
+use crate::report::words::capital;
 use serde::Serialize;
 use std::collections::HashMap;
 
@@ -74,19 +75,19 @@ fn words(moved: &Moved, before: &Contender, after: &Contender) -> String {
     .into_iter()
     .filter_map(|(name, o)| Some(change(name, o, o.of(best(o, &old)?), o.of(best(o, &new)?))));
     let changes: Vec<String> = changes.collect();
-    if changes.is_empty() { counts } else { format!("{counts} {}.", super::capital(&changes.join("; "))) }
+    if changes.is_empty() { counts } else { format!("{counts} {}.", capital(&changes.join("; "))) }
 }
 
 fn change(name: &str, objective: Objective, old: f64, new: f64) -> String {
     if old == new {
-        return format!("{name} still {}", amount(objective, new));
+        return format!("{name} still {}", objective.amount(new));
     }
     let percent = 100.0 * (new / old - 1.0);
     let sign = if percent > 0.0 { "+" } else { "" };
     format!(
         "{name} {} to {} ({sign}{} %)",
-        amount(objective, old),
-        amount(objective, new),
+        objective.amount(old),
+        objective.amount(new),
         significant(percent, 2)
     )
 }

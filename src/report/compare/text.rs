@@ -1,9 +1,11 @@
 //! A comparison for people and for programs: text tables, Markdown, CSV.
 
-use super::{Answer, Comparison, Question, Reach, Row, cost_words, plain};
-use crate::report::number::{shortest, significant};
+use super::comparison::{Answer, Comparison, Reach, Row};
+use super::question::Question;
+use crate::report::number::{cost_words, shortest, significant};
 use crate::report::picks::{Design, Objective};
 use crate::report::table::{Column, Table, csv_line};
+use crate::report::words::wrap;
 
 /// Width that text tables keep to, if the labels allow it \[characters\].
 const WIDTH: usize = 80;
@@ -232,7 +234,7 @@ fn table(rows: &[&Row], labels: &[String]) -> Table {
 
 fn header(row: &Row) -> String {
     let sign = if row.question.limited() == Objective::Mode { '≥' } else { '≤' };
-    format!("{sign} {} {}", plain(row.limit), row.question.limited().unit())
+    format!("{sign} {} {}", shortest(row.limit), row.question.limited().unit())
 }
 
 fn answer_cells(question: Question, answer: &Answer) -> [String; 3] {
@@ -326,47 +328,9 @@ fn item(sentence: &str) -> String {
     wrap(sentence, WIDTH, "    ").replacen("    ", "  - ", 1)
 }
 
-/// Breaks words into lines of at most `width` characters, each beginning with `lead`; a number and its
-/// unit stay together.
-pub fn wrap(words: &str, width: usize, lead: &str) -> String {
-    let mut lines: Vec<String> = Vec::new();
-    for word in bound(words) {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
-                line.push(' ');
-                line.push_str(&word);
-            }
-            _ => lines.push(format!("{lead}{word}")),
-        }
-    }
-    lines.iter().map(|l| format!("{l}\n")).collect()
-}
-
-/// Words, with units bound to the numbers before them.
-fn bound(words: &str) -> Vec<String> {
-    const UNITS: [&str; 5] = ["%", "mm", "kg", "Hz", "EUR"];
-    let mut out: Vec<String> = Vec::new();
-    for word in words.split_whitespace() {
-        let is_unit = UNITS.contains(&word.trim_end_matches([',', ';', '.', ')', ':']));
-        match out.last_mut() {
-            Some(number) if is_unit && number.ends_with(|c: char| c.is_ascii_digit()) => {
-                number.push(' ');
-                number.push_str(word);
-            }
-            _ => out.push(word.to_string()),
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_number_and_its_unit_stay_on_one_line() {
-        assert_eq!(wrap("it is 28 %, or 12 kg", 8, ""), "it is\n28 %, or\n12 kg\n");
-    }
 
     #[test]
     fn labels_are_shortened_only_where_they_must_and_stay_different() {

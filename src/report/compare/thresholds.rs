@@ -1,6 +1,6 @@
 //! Round limits to compare fronts at, spread over where the fronts overlap.
 
-use super::Question;
+use super::question::Question;
 use crate::report::picks::{Design, Objective, best};
 use serde::Serialize;
 

@@ -1,9 +1,10 @@
 //! A campaign's page: the verdict in a sentence, the gap before and after, where it sits, what speaks for
 //! each candidate, what is known of its parameters, whether it holds on readings kept out, what to measure.
 
+use super::gallery::{Gallery, Page};
 use super::positions::{Position, Step, angles_figure, axes_figure, sizes_figure, steps_figure};
-use super::{Extra, Figure, Gallery, Page};
 use crate::report::number::{fixed, significant};
+use crate::report::section::{Extra, Figure};
 use crate::report::svg::rows::{Mark, Row, RowPlot};
 use crate::report::svg::sheet::Sheet;
 use crate::report::svg::{Axis, Guide, MUTED, Plot, Scale, Series, Stroke};

@@ -2,9 +2,12 @@
 
 use super::front_data::{FrontData, Group, MOST_BYTES, Row};
 use super::front_views::FrontViews;
-use super::{Figure, Gallery, Page, table};
-use crate::report::compare::{Comparison, Contender, Question};
+use super::gallery::{Gallery, Page, table};
+use crate::report::compare::comparison::Comparison;
+use crate::report::compare::contender::Contender;
+use crate::report::compare::question::Question;
 use crate::report::picks;
+use crate::report::section::Figure;
 use crate::report::svg::MUTED;
 use serde_json::{Value, json};
 

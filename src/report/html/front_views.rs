@@ -1,10 +1,10 @@
 //! The front in linked views, as a study's and a comparison's page show it.
 
 use super::front_data::{Axis, FrontData, Row};
-use super::{Figure, Gallery};
-use crate::report::number::significant;
+use super::gallery::Gallery;
+use crate::report::number::{large, significant};
 use crate::report::picks::{Design, Pick};
-use crate::report::summary::large;
+use crate::report::section::Figure;
 use crate::report::svg::parallel::{Parallel, ParallelAxis, ParallelLine};
 use serde_json::{Value, json};
 

@@ -1,6 +1,6 @@
 //! One picked design: its arm drawn to scale, where its deflection comes from, its modes and its drives.
 
-use super::{Figure, Gallery, table};
+use super::gallery::{Gallery, table};
 use crate::arm::load::LoadCase;
 use crate::arm::{Arm, Element, Link, LinkBody};
 use crate::mechanics::centre_line::Station;
@@ -9,6 +9,7 @@ use crate::mechanics::modes::Mode;
 use crate::mechanics::statics::Statics;
 use crate::report::number::{shortest, significant};
 use crate::report::picks::Pick;
+use crate::report::section::Figure;
 use crate::report::svg::arm::{ArmSketch, Pivot, Place, Tube};
 use crate::report::svg::bars::{Bar, Part, StackedBars};
 use crate::report::table::{Column, Table};
@@ -99,7 +100,7 @@ impl PickedArm {
             "id": self.pick.design.design_id,
             "slug": self.slug(),
             "headline": super::front_views::headline(&self.pick.design),
-            "cost": self.pick.design.material_cost_eur.map(crate::report::compare::cost_words),
+            "cost": self.pick.design.material_cost_eur.map(crate::report::number::cost_words),
             "drawing": drawing,
             "modes": modes,
             "worst_case": worst.as_ref().map(|s| s.case.name.clone()),

@@ -1,8 +1,8 @@
 //! Pictures of absolute positions: how the error falls as each thing is added, how large the errors are,
 //! which way they point, and which angle of which joint goes with them.
 
-use super::Figure;
 use crate::report::number::fixed;
+use crate::report::section::Figure;
 use crate::report::svg::rows::{Mark, Row, RowPlot};
 use crate::report::svg::sheet::Sheet;
 use crate::report::svg::{Axis, MUTED, Plot, Scale, Series, Stroke};

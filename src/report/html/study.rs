@@ -3,10 +3,13 @@
 
 use super::front_data::{FrontData, Group, MOST_BYTES, Row};
 use super::front_views::FrontViews;
+use super::gallery::{Gallery, Page, table};
 use super::pick::{PickedArm, deflection_bars};
-use super::{Extra, Figure, Gallery, Page, table};
+use super::render::anchor;
+use crate::report::number::large;
 use crate::report::picks::{self, materials};
-use crate::report::summary::{SummaryInput, answer_words, large, materials_side_by_side, single_materials};
+use crate::report::section::{Extra, Figure};
+use crate::report::summary::{SummaryInput, answer_words, materials_side_by_side, single_materials};
 use crate::report::svg::MUTED;
 use serde_json::{Value, json};
 use std::collections::HashSet;
@@ -162,10 +165,4 @@ fn part(row: &CatalogRow) -> Value {
         "unverified": row.unverified,
         "cells": row.cells.iter().filter(|(_, cell)| !cell.is_empty()).collect::<Vec<_>>(),
     })
-}
-
-/// The name a link on the page finds a part by.
-pub(super) fn anchor(name: &str) -> String {
-    let letters = name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' });
-    format!("part-{}", letters.collect::<String>())
 }
