@@ -12,6 +12,7 @@ use crate::mechanics::chain::Chain;
 use crate::mechanics::modes::Mode;
 use crate::mechanics::response::{Response, frequency_response};
 use crate::mechanics::statics::Statics;
+use crate::report::number::percent;
 use clap::Args;
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
@@ -285,7 +286,8 @@ impl Solved {
             let mut parts: Vec<&(String, f64)> =
                 mode.strain_energy.iter().filter(|(_, e)| *e >= 0.01).collect();
             parts.sort_by(|a, b| b.1.total_cmp(&a.1));
-            let parts: Vec<String> = parts.iter().map(|(n, e)| format!("{n} {:.0} %", 100.0 * e)).collect();
+            let parts: Vec<String> =
+                parts.iter().map(|(n, e)| format!("{n} {}", percent(100.0 * e, 0))).collect();
             let plane = mode.plane.unwrap_or("-");
             let _ = writeln!(
                 out,

@@ -1,8 +1,8 @@
 //! What a finished search has to say: its files, its page and its words.
 
-use super::beside::{Beside, BesideArgs, FILES, Found};
-use super::carry;
+use super::corrections;
 use super::failure::Failure;
+use super::supplements::{FILES, Found, SupplementArgs};
 use super::write::write_all;
 use crate::arm::effect::Effect;
 use crate::catalog::Catalogs;
@@ -17,8 +17,9 @@ use crate::report::html::render::PLOTS;
 use crate::report::html::study::StudyPage;
 use crate::report::number::significant;
 use crate::report::picks;
-use crate::report::section::Extra;
+use crate::report::section::PageSection;
 use crate::report::summary::{MaterialFront, SummaryInput, single_materials, summary_md, terminal_summary};
+use crate::report::supplement::Supplement;
 use crate::search::near::NearDesigns;
 use crate::search::sweep::Status;
 use crate::space::design_space::DesignSpace;
@@ -29,7 +30,7 @@ use crate::study::effects::Carried;
 use crate::study::outcome::StudyOutcome;
 use crate::study::page::study_page;
 use crate::study::table::{front_table, slug};
-use crate::study::ties;
+use crate::study::ties::ties;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -120,41 +121,50 @@ pub(super) struct Finished<'a> {
 }
 
 impl Finished<'_> {
-    /// All that is written and said of it, with what was asked for beside the front.
+    /// All that is written and said of it, with the supplements that were asked for.
     ///
     /// # Errors
-    /// What is asked for beside the front cannot be had.
-    pub fn files(&self, asked: &BesideArgs, stop: &AtomicBool) -> Result<Written, Failure> {
+    /// A supplement cannot be worked out.
+    pub fn files(&self, asked: &SupplementArgs, stop: &AtomicBool) -> Result<Written, Failure> {
         let summary = self.summary();
         let Self { problem, catalogs, outcome, near, .. } = *self;
         let (is_exact, ties_listed) = (self.exact.is_some(), self.ties_listed());
         let found = Found { problem, catalogs, outcome, near, is_exact, ties_listed, stop };
-        let beside = asked.work(&found, &summary.overall);
+        let supplements = asked.work_out(&found, &summary.overall);
         // succeeds only on an empty folder: earlier results stay
-        let beside = beside.inspect_err(|_| drop(std::fs::remove_dir(self.dir)))?;
-        let mut files = vec![("front.csv".to_string(), summary.overall.to_csv())];
-        for (material, of) in summary.materials.iter().zip(&outcome.by_material) {
-            let slug = slug(&material.name);
-            files.push((format!("front.{slug}.csv"), material.front.to_csv()));
-            if !of.ties_listed {
-                files.push((format!("ties.{slug}.csv"), ties(problem, &of.front).to_csv()));
-            }
-        }
+        let supplements = supplements.inspect_err(|_| drop(std::fs::remove_dir(self.dir)))?;
+        let mut files = self.tables(&summary);
         let picture = picture(&summary);
         files.push(("front.svg".into(), picture.clone().into_bytes()));
         files.push(("budget.csv".into(), budget_csv(&summary.budgets).into_bytes()));
-        let Beside { files: more, markdown, terminal, sections, run: mut facts } = beside;
-        files.extend(more);
+        let listed = supplements.iter().filter_map(|s| s.file.clone());
+        files.extend(listed.map(|(name, bytes)| (name.to_string(), bytes)));
+        let markdown: String = supplements.iter().map(|s| s.markdown.as_str()).collect();
         files.push(("summary.md".into(), (summary_md(&summary) + &markdown).into_bytes()));
-        let mut run = self.run_json(&summary);
-        run.as_object_mut().into_iter().for_each(|run| run.append(&mut facts));
+        let run = self.run_json(&summary, &supplements);
         files.push(("run.json".into(), pretty(&run)));
+        let sections = supplements.iter().filter_map(|s| s.section.clone()).collect();
         files.extend(self.page(&summary, picture, sections, &run).into_files());
         files.push(("study.json".into(), self.text.as_bytes().to_vec()));
-        let terminal = terminal_summary(&summary) + &terminal;
+        let paragraphs = supplements.iter().map(|s| &s.terminal).filter(|text| !text.is_empty());
+        let paragraphs: String = paragraphs.map(|text| format!("\n{text}")).collect();
+        let terminal = terminal_summary(&summary) + &paragraphs;
         let (status, gap) = (self.outcome.sweep.status, summary.facts.gap);
         let is_whole = summary.facts.is_whole();
         Ok(Written { files, terminal, front: summary.overall, status, gap, is_whole })
+    }
+
+    /// The front, and the front and ties of every material.
+    fn tables(&self, summary: &SummaryInput) -> Vec<(String, Vec<u8>)> {
+        let mut files = vec![("front.csv".to_string(), summary.overall.to_csv())];
+        for (material, of) in summary.materials.iter().zip(&self.outcome.by_material) {
+            let slug = slug(&material.name);
+            files.push((format!("front.{slug}.csv"), material.front.to_csv()));
+            if !of.ties_listed {
+                files.push((format!("ties.{slug}.csv"), ties(self.problem, &of.front).to_csv()));
+            }
+        }
+        files
     }
 
     fn summary(&self) -> SummaryInput {
@@ -206,7 +216,7 @@ impl Finished<'_> {
     }
 
     /// The page for a browser.
-    fn page(&self, summary: &SummaryInput, picture: String, sections: Vec<Extra>, run: &Value) -> Page {
+    fn page(&self, summary: &SummaryInput, picture: String, sections: Vec<PageSection>, run: &Value) -> Page {
         let mut page = study_page(self.study, self.problem, self.catalogs, summary);
         page.extras.extend(sections);
         page.extras.push(certificate_section(&summary.facts, self.exact.map(|exact| exact.boxes)));
@@ -222,7 +232,7 @@ impl Finished<'_> {
         space.judged_cases.iter().map(|&i| space.cases[i].name.clone()).collect()
     }
 
-    fn run_json(&self, summary: &SummaryInput) -> Value {
+    fn run_json(&self, summary: &SummaryInput, supplements: &[Supplement]) -> Value {
         let (study, sweep) = (self.study, &self.outcome.sweep);
         let materials: Vec<Value> = summary
             .materials
@@ -235,7 +245,7 @@ impl Finished<'_> {
                 })
             })
             .collect();
-        json!({
+        let mut run = json!({
             "schema_version": 1,
             "study": study.name,
             "question": study.question,
@@ -258,7 +268,7 @@ impl Finished<'_> {
             "not_checked": study.not_checked,
             "effects": self.effects(),
             "effects_mass_kg": study.space.effects_mass_kg(),
-            "carried_over": carry::to_json(self.carried),
+            "carried_over": corrections::to_json(self.carried),
             "catalogs": self.overlay.map(|p| p.display().to_string()),
             "study_hash": blake3::hash(self.text.as_bytes()).to_hex().to_string(),
             "catalogs_hash": catalogs_hash(self.catalogs),
@@ -267,7 +277,11 @@ impl Finished<'_> {
             "boxes_open": self.exact.map(|exact| exact.boxes[1]),
             "gap": self.exact.and_then(|exact| exact.gap),
             "ties_listed": self.ties_listed(),
-        })
+        });
+        for (key, value) in supplements.iter().filter_map(|s| s.run.as_ref()) {
+            run[*key] = value.clone();
+        }
+        run
     }
 }
 

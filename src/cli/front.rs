@@ -1,6 +1,5 @@
 //! `armwright front check`: is a finished front right, and is it all of it?
 
-use super::beside::TIES;
 use super::design::check_catalogs;
 use super::failure::Failure;
 use super::search::stopped_by_signal;
@@ -11,6 +10,7 @@ use crate::report::front_table::FrontTable;
 use crate::report::words::wrap;
 use crate::study::check::{Claim, Completeness, check_front};
 use crate::study::read::read_study;
+use crate::study::ties;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
@@ -74,7 +74,7 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
     let stop = stopped_by_signal();
     let deadline = args.time_limit.map(|s| Instant::now() + Duration::from_secs_f64(s));
     // a file that is not there has none
-    let ties_csv = fs_err::read(args.results.join(TIES)).unwrap_or_default();
+    let ties_csv = fs_err::read(args.results.join(ties::FILE)).unwrap_or_default();
     let claim = Claim { table: &table, gap, ties_listed, ties_csv: &ties_csv };
     let check = check_front(&study, catalogs, &claim, stop, deadline);
     if stop.load(Ordering::Relaxed) {

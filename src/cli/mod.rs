@@ -3,10 +3,9 @@
 
 pub(crate) mod analyze;
 pub(crate) mod asked;
-pub(crate) mod beside;
-pub(crate) mod carry;
 pub mod catalog;
 pub mod compare;
+pub(crate) mod corrections;
 pub(crate) mod design;
 pub(crate) mod failure;
 pub(crate) mod finished;
@@ -18,6 +17,7 @@ pub(crate) mod rerun;
 pub(crate) mod run;
 pub(crate) mod search;
 pub(crate) mod size;
+pub(crate) mod supplements;
 pub(crate) mod values;
 pub(crate) mod verbs;
 pub(crate) mod write;

@@ -1,11 +1,11 @@
 //! A study run twice, as it stands and with what a reconciled arm taught, and what that changes.
 
 use super::asked::{Asked, load_study};
-use super::beside::BesideArgs;
-use super::carry;
+use super::corrections;
 use super::failure::Failure;
 use super::finished::Written;
 use super::search::{SearchArgs, With, search};
+use super::supplements::SupplementArgs;
 use crate::catalog::Catalogs;
 use crate::reconcile::verdict::outcome::{Outcome, Verdict};
 use crate::report::certificate::gap_words;
@@ -63,19 +63,19 @@ pub(super) fn rerun(
     let name = nominal.name.clone();
     let calibrated: Vec<(String, f64)> =
         outcome.calibrated.iter().map(|c| (c.name.clone(), c.factor.value)).collect();
-    let corrected = carry::corrected(&nominal, &text, &outcome.corrected, &calibrated, catalogs)?;
+    let corrected = corrections::corrected(&nominal, &text, &outcome.corrected, &calibrated, catalogs)?;
     if corrected.study.space.effects.len() == nominal.space.effects.len() {
         let mut rerun = Rerun::without(&name, "not_run", "not re-run: no effect carries over to it");
-        rerun.text.push_str(carry::to_text(&corrected.carried).trim_start());
-        rerun.json["carried_over"] = carry::to_json(&corrected.carried);
+        rerun.text.push_str(corrections::to_text(&corrected.carried).trim_start());
+        rerun.json["carried_over"] = corrections::to_json(&corrected.carried);
         return Ok(rerun);
     }
     let nominal = Asked { study: nominal, text, carried: Vec::new() };
     let mut found = Vec::new();
     for (asked, folder) in [(&nominal, "nominal"), (&corrected, "corrected")] {
         let results = dir.join("study").join(folder);
-        let beside = BesideArgs::default();
-        match search(asked, &With { catalogs, overlay, dir: &results, how, beside: &beside }) {
+        let supplements = SupplementArgs::default();
+        match search(asked, &With { catalogs, overlay, dir: &results, how, supplements: &supplements }) {
             Ok(written) => {
                 written.write(&results)?;
                 found.push(written);
@@ -118,7 +118,7 @@ fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> 
     let json = json!({
         "study": name,
         "status": if all_whole { Status::Complete } else { Status::Partial }.word(),
-        "carried_over": carry::to_json(&corrected.carried),
+        "carried_over": corrections::to_json(&corrected.carried),
         "effects_mass_kg": corrected.study.space.effects_mass_kg(),
         "nominal": {"results": "study/nominal", "front_size": sizes[0], "gap": found[0].gap},
         "corrected": {"results": "study/corrected", "front_size": sizes[1], "gap": found[1].gap},
@@ -127,7 +127,7 @@ fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> 
     });
     let text = format!(
         "\nstudy {name}, re-run with the corrected arm\n{}\n{}{}",
-        carry::to_text(&corrected.carried).trim_start(),
+        corrections::to_text(&corrected.carried).trim_start(),
         changes.to_text(),
         if all_whole { String::new() } else { lacking_words(found) }
     );

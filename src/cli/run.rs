@@ -1,11 +1,11 @@
 //! `armwright run`: find a study's front and write it.
 
 use super::asked::{Asked, load_study};
-use super::beside::BesideArgs;
-use super::carry;
+use super::corrections;
 use super::failure::Failure;
 use super::finished::{catalogs_hash, facts_of, is_front_of_material, pretty};
 use super::search::{SearchArgs, With, search};
+use super::supplements::SupplementArgs;
 use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::paper::names::{NAMES, question};
@@ -43,7 +43,7 @@ pub struct RunArgs {
     #[command(flatten)]
     search: SearchArgs,
     #[command(flatten)]
-    beside: BesideArgs,
+    supplements: SupplementArgs,
 }
 
 /// Carries out the verb.
@@ -54,14 +54,16 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
     let (study, text) = load_study(&args.study, catalogs)?;
     let (asked, suffix) = match &args.effects {
         None => (Asked { carried: left_out(&study), study, text }, ""),
-        Some(path) => (carry::from_arm_file(path, &study, &text, catalogs)?, "-with-effects"),
+        Some(path) => (corrections::from_arm_file(path, &study, &text, catalogs)?, "-with-effects"),
     };
     let name = format!("{}{suffix}", slug(&asked.study.name));
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(name));
-    let written =
-        search(&asked, &With { catalogs, overlay, dir: &dir, how: &args.search, beside: &args.beside })?;
+    let written = search(
+        &asked,
+        &With { catalogs, overlay, dir: &dir, how: &args.search, supplements: &args.supplements },
+    )?;
     written.write(&dir)?;
-    let carried = carry::to_text(&asked.carried);
+    let carried = corrections::to_text(&asked.carried);
     Ok(format!("{}{carried}\n{}", written.terminal, told(&dir, &written.files)))
 }
 

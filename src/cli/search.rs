@@ -1,10 +1,10 @@
 //! A study's search: which one, and until when.
 
 use super::asked::Asked;
-use super::beside::BesideArgs;
 use super::failure::Failure;
 use super::finished::{Finished, FoundExactly, Written};
 use super::progress::{watch, watch_boxes};
+use super::supplements::SupplementArgs;
 use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::report::certificate::certificate_words;
@@ -102,8 +102,8 @@ pub(super) struct With<'a> {
     /// Where the results go.
     pub dir: &'a Path,
     pub how: &'a SearchArgs,
-    /// What is asked for beside the front.
-    pub beside: &'a BesideArgs,
+    /// What is asked for in addition to the front.
+    pub supplements: &'a SupplementArgs,
 }
 
 /// Searches a study; nothing is written yet.
@@ -119,7 +119,7 @@ pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
 
 /// Visits every design of a study.
 fn visit_all(Asked { study, text, carried }: &Asked, with: &With) -> Result<Written, Failure> {
-    let With { catalogs, overlay, dir, beside, .. } = *with;
+    let With { catalogs, overlay, dir, supplements, .. } = *with;
     let problem = ArmProblem::new(&study.space, catalogs);
     refuse_empty(study, &problem)?;
     // a folder that cannot be written fails now, not after the search
@@ -157,7 +157,7 @@ fn visit_all(Asked { study, text, carried }: &Asked, with: &With) -> Result<Writ
                 catalogs,
                 dir,
             };
-            finished.files(beside, stop)
+            finished.files(supplements, stop)
         }
     }
 }
@@ -180,14 +180,14 @@ pub(super) fn stopped_by_signal() -> &'static AtomicBool {
 
 /// Finds the front of a study without visiting every design.
 fn search_exactly(Asked { study, text, carried }: &Asked, with: &With) -> Result<Written, Failure> {
-    let With { catalogs, overlay, dir, how, beside } = *with;
+    let With { catalogs, overlay, dir, how, supplements } = *with;
     write_all(dir, &[])?;
     let stop = stopped_by_signal();
     let started = Instant::now();
     let extent = Extent {
         deadline: how.time_limit.map(|s| started + Duration::from_secs_f64(s)),
         gap: how.gap.unwrap_or(study.gap),
-        near: beside.slack(),
+        near: supplements.slack(),
     };
     let ExactStudy { study: part, outcome, boxes, gap, near, ties_listed } =
         run_exact(study, catalogs, stop, extent, watch_boxes);
@@ -224,7 +224,7 @@ fn search_exactly(Asked { study, text, carried }: &Asked, with: &With) -> Result
                 catalogs,
                 dir,
             };
-            let mut written = finished.files(beside, stop)?;
+            let mut written = finished.files(supplements, stop)?;
             written.terminal.push_str(&certificate_words(boxes, gap));
             Ok(written)
         }

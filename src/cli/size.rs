@@ -4,6 +4,7 @@ use super::asked::load_study;
 use super::failure::Failure;
 use super::write::write_all;
 use crate::catalog::Catalogs;
+use crate::report::tube::section_size;
 use crate::sizing::check::checks;
 use crate::sizing::demand::JointDemand;
 use crate::sizing::select::DriveTable;
@@ -136,16 +137,10 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
     let Some(parts) = problem.parts(chosen) else { return out };
     for (piece, part) in study.space.pieces.iter().zip(parts) {
         if let (SpacePiece::Choice(choice), crate::space::design::Part::Link(option)) = (piece, part) {
-            let (width, height) = option.section.outer_m();
-            let _ = writeln!(
-                out,
-                "link {}: {}, {:.0} x {:.0} x {:.1} mm",
-                choice.name,
-                option.material_name,
-                width * 1e3,
-                height * 1e3,
-                option.section.wall_m() * 1e3
-            );
+            let outer_mm = |m: f64| format!("{:.0}", m * 1e3);
+            let wall_mm = |m: f64| format!("{:.1}", m * 1e3);
+            let size = section_size(&option.section, outer_mm, wall_mm);
+            let _ = writeln!(out, "link {}: {}, {size}", choice.name, option.material_name);
         }
     }
     out

@@ -7,7 +7,7 @@ use super::parts;
 use crate::arm::LinkModel;
 use crate::arm::joint_law::Curve;
 use crate::catalog::Catalogs;
-use crate::report::number::{fixed, percent_change, shortest};
+use crate::report::number::{fixed, percent, percent_change, shortest};
 use crate::report::table::{Column, Table};
 
 /// How well the gear's curve is known, in the conclusions' second remedy.
@@ -66,7 +66,7 @@ pub fn error_left(gears: &CatalogGears) -> Vec<ErrorLeft> {
         row("joint deflection measured at the output: the links are left", &Solved::links_m),
     ];
     for error in CURVE_ERRORS {
-        let method = format!("computed from motor torque, curve known to {} %", fixed(100.0 * error, 0));
+        let method = format!("computed from motor torque, curve known to {}", percent(100.0 * error, 0));
         rows.push(row(&method, &|s| s.links_m() + error * s.joints_m()));
     }
     rows.push(row("computed from motor torque with K2 alone", &|s| s.drop_m() - k2.joints_m()));
@@ -87,9 +87,9 @@ pub fn error_left_table(rows: &[ErrorLeft]) -> Table {
         table.row([
             row.method.clone(),
             millimetres(row.middle_slope_m),
-            percent(row.middle_slope_m / all.middle_slope_m),
+            percent(100.0 * (row.middle_slope_m / all.middle_slope_m), 1),
             millimetres(row.curve_m),
-            percent(row.curve_m / all.curve_m),
+            percent(100.0 * (row.curve_m / all.curve_m), 1),
         ]);
     }
     table
@@ -206,8 +206,4 @@ pub fn stiffer_table(rows: &[Stiffer]) -> Table {
 
 fn millimetres(metres: f64) -> String {
     fixed(1e3 * metres, 4)
-}
-
-fn percent(ratio: f64) -> String {
-    format!("{} %", fixed(100.0 * ratio, 1))
 }

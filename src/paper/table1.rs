@@ -12,7 +12,8 @@ use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::mechanics::response::frequency_response;
 use crate::report::number::{fixed, shortest};
-use crate::report::svg::{Axis, Guide, Plot, Scale, Series, Stroke};
+use crate::report::svg::plot::{Axis, Guide, Plot, Series, Stroke};
+use crate::report::svg::scale::Scale;
 use crate::report::table::{Column, Table};
 use nalgebra::Vector3;
 

@@ -1,8 +1,8 @@
 //! The stiffness budget of a front's picks as words, tables and CSV: what one more kilogram buys at each joint
 //! and link, and how far each pick is from the lightest arm that could do as well.
 
-use super::number::{fixed, shortest, significant};
-use super::section::Extra;
+use super::number::{fixed, percent, shortest, significant};
+use super::section::PageSection;
 use super::table::{Column, Table, csv_line};
 use super::words::wrap;
 
@@ -100,9 +100,9 @@ impl PickBudget {
     /// Where effort should go, in a sentence.
     fn advice(&self) -> String {
         let lead = format!(
-            "{}: joints give {} % of the tip's deflection",
+            "{}: joints give {} of the tip's deflection",
             self.title(),
-            fixed(100.0 * self.joints_share(), 0)
+            percent(100.0 * self.joints_share(), 0)
         );
         let (joint, link) = (self.best(true), self.best(false));
         let paying = |row: Option<&BudgetRow>| row.is_some_and(|r| r.in_place.mm_per_kg < 0.0);
@@ -296,7 +296,7 @@ pub fn budget_markdown(budgets: &[PickBudget]) -> String {
 }
 
 /// The part of the page; `None` if there is no budget.
-pub fn budget_extra(budgets: &[PickBudget]) -> Option<Extra> {
+pub fn budget_extra(budgets: &[PickBudget]) -> Option<PageSection> {
     let mut tables: Vec<(String, Table)> = budgets
         .iter()
         .map(|pick| (format!("What one more kilogram buys: {}", pick.title()), budget_table(pick, FULL)))
@@ -307,11 +307,11 @@ pub fn budget_extra(budgets: &[PickBudget]) -> Option<Extra> {
         let note = if opposed(budgets) { format!(" {OPPOSED_WORDS}") } else { String::new() };
         tables.push((format!("How light could the picks be? {BOUND_WORDS}{note}"), table));
     }
-    (!budgets.is_empty()).then(|| Extra {
+    (!budgets.is_empty()).then(|| PageSection {
         title: "Stiffness budget".into(),
         words,
         tables,
-        ..Extra::default()
+        ..PageSection::default()
     })
 }
 

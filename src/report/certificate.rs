@@ -1,12 +1,12 @@
 //! How sure a front is: what was visited, what was cut and why, what may be missing.
 
 use super::facts::SummaryFacts;
-use super::number::{large, significant};
-use super::section::Extra;
+use super::number::{large, percent_rounded};
+use super::section::PageSection;
 use super::words::{TERMINAL, wrap};
 
 /// The section of a page; `boxes` are those bounded and left open by an exact search.
-pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Extra {
+pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> PageSection {
     let words = match (boxes, facts.is_stopped()) {
         (None, false) => vec![format!(
             "Every design was visited: of {} {} hold and were judged, and {} were excluded because a drive, a link \
@@ -57,14 +57,14 @@ pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Ext
     };
     let how = "Check it again from this front (the check says by whose bounds): armwright front check";
     let words = words.into_iter().chain([format!("{how} {}", facts.results)]).collect();
-    Extra { title: "How sure is this front?".into(), words, tables: Vec::new(), figures: Vec::new() }
+    PageSection { title: "How sure is this front?".into(), words, tables: Vec::new(), figures: Vec::new() }
 }
 
 /// How much an exact search may have missed: the words that page, terminal and summary share.
 pub fn gap_words(gap: f64) -> String {
     format!(
-        "no design beats every listed one by more than {} % in tip deflection, mass and lowest mode at once",
-        significant(100.0 * gap, 2)
+        "no design beats every listed one by more than {} in tip deflection, mass and lowest mode at once",
+        percent_rounded(100.0 * gap, 2)
     )
 }
 

@@ -7,8 +7,10 @@
 use super::front_table::FrontTable;
 use super::number::significant;
 use super::picks::{Design, Objective, Pick, designs, materials};
+use super::svg::draw::{MUTED, PALETTE};
+use super::svg::plot::{Axis, Note, Plot, Series, Side, Stroke};
+use super::svg::scale::Scale;
 use super::svg::sheet::Sheet;
-use super::svg::{Axis, MUTED, Note, PALETTE, Plot, Scale, Series, Side, Stroke};
 use std::collections::HashSet;
 
 const WIDTH_PX: f64 = 900.0;

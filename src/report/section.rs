@@ -19,7 +19,7 @@ pub struct Figure {
 /// A titled part of a page that another room fills: a stiffness budget, a certificate, a run with the
 /// corrected arm.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Extra {
+pub struct PageSection {
     /// Title.
     pub title: String,
     /// Paragraphs.

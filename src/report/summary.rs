@@ -5,7 +5,7 @@ use super::certificate::gap_words;
 use super::compare::text::short_labels;
 use super::facts::SummaryFacts;
 use super::front_table::FrontTable;
-use super::number::{cost_words, grouped, large, significant};
+use super::number::{cost_words, grouped, large, percent_of, significant};
 use super::picks::{Design, Objective, Pick, best, choices, designs, knee, materials, picks};
 use super::table::{Column, Table};
 use super::words::{TERMINAL, and, capital, wrap};
@@ -217,8 +217,9 @@ fn compromise(input: &SummaryInput, found: &Found, knee: &Design) -> String {
         made_of(&input.overall, knee.row),
         values.join(", ")
     );
-    let share =
-        |(name, count): &(String, usize)| format!("{} of them {name}", percent(*count, found.designs.len()));
+    let share = |(name, count): &(String, usize)| {
+        format!("{} of them {name}", percent_of(*count, found.designs.len()))
+    };
     if let Some(most) = owners(input).iter().max_by_key(|(_, count)| *count).filter(|(_, c)| *c > 0) {
         let size = found.designs.len();
         let designs = if size == 1 { "design" } else { "designs" };
@@ -311,11 +312,11 @@ fn materials_table(input: &SummaryInput, names: &[String], headers: [&str; 7]) -
             "partial" => &format!("{name} (stopped)"),
             _ => name,
         };
-        table.row(material_cells(name, &designs(&material.front), percent(*count, total), cost));
+        table.row(material_cells(name, &designs(&material.front), percent_of(*count, total), cost));
     }
     let mixed = designs(&super::front_svg::mixed_designs(&input.overall));
     if !mixed.is_empty() {
-        table.row(material_cells("mixed", &mixed, percent(mixed.len(), total), String::new()));
+        table.row(material_cells("mixed", &mixed, percent_of(mixed.len(), total), String::new()));
     }
     table
 }
@@ -380,37 +381,10 @@ fn commands(facts: &SummaryFacts, pick: &Pick) -> String {
     )
 }
 
-/// A share that is never rounded to nothing or to all.
-fn percent(part: usize, whole: usize) -> String {
-    let share = 100.0 * part as f64 / whole.max(1) as f64;
-    match share {
-        _ if part == 0 => "0 %".into(),
-        s if part > 0 && s < 0.1 => "<0.1 %".into(),
-        s if part < whole && s > 99.9 => ">99.9 %".into(),
-        s if s < 10.0 || (part < whole && s >= 99.0) => format!("{s:.1} %"),
-        s => format!("{s:.0} %"),
-    }
-}
-
 fn known(value: Option<f64>) -> String {
     value.map_or("unknown".into(), cost_words)
 }
 
 fn listed(words: &[String]) -> String {
     if words.is_empty() { "none".into() } else { words.join("; ") }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn counts_are_grouped_and_shares_never_rounded_to_nothing() {
-        assert_eq!(grouped(10_536_192), "10,536,192");
-        assert_eq!(grouped(999), "999");
-        assert_eq!(grouped(12_300_000_000_000_000_000), "1.23e19");
-        assert_eq!(percent(1, 5000), "<0.1 %");
-        assert_eq!(percent(4999, 5000), ">99.9 %");
-        assert_eq!(percent(0, 0), "0 %");
-    }
 }

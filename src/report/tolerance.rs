@@ -1,11 +1,18 @@
 //! What becomes of a front when the catalog figures scatter: how often a design stays on it, how often a
 //! pick stays the pick, and what takes its place.
 
-use super::number::{shortest, significant};
+use super::number::{percent_short, shortest, significant};
 use super::picks::{Design, Objective};
-use super::section::Extra;
+use super::section::PageSection;
+use super::supplement::Supplement;
 use super::table::{Column, Table, csv_line};
+use super::words::{TERMINAL, wrap};
 use serde_json::{Value, json};
+
+/// Name of the file that lists every design.
+pub const FILE: &str = "tolerance.csv";
+/// Key in `run.json`.
+pub const KEY: &str = "tolerance";
 
 /// What a design may be picked for, in the order of [`Fate::picked`].
 pub const PICKS: [&str; 4] = ["lightest", "stiffest", "highest mode", "knee"];
@@ -91,8 +98,8 @@ impl Scattered {
             table.row([
                 PICKS[name].to_string(),
                 fate.design.design_id.clone(),
-                percent(self.share(fate.on_front)),
-                percent(self.share(fate.picked[name])),
+                percent_short(self.share(fate.on_front)),
+                percent_short(self.share(fate.picked[name])),
                 band(0),
                 band(2),
             ]);
@@ -115,24 +122,36 @@ impl Scattered {
         out.push(format!(
             "Of the {} designs of the front, {firm} stay on it in at least 90 % of the samples; the least firm stays in {}.",
             shares.len(),
-            shares.first().map_or_else(String::new, |&s| percent(s)),
+            shares.first().map_or_else(String::new, |&s| percent_short(s)),
         ));
         let meets = self.fates.iter().filter(|f| f.keeps_limits < self.samples).count();
         if meets > 0 {
             out.push(format!("{meets} of them break a limit in some sample."));
         }
         if self.without_design > 0 {
-            let share = percent(self.share(self.without_design));
+            let share = percent_short(self.share(self.without_design));
             out.push(format!("In {share} of the samples no design of the front keeps the limits."));
         }
         out
     }
 
+    /// All that a result says of it.
+    pub fn supplement(&self) -> Supplement {
+        let sentences: String = self.sentences().iter().map(|s| wrap(s, TERMINAL, "")).collect();
+        Supplement {
+            file: Some((FILE, self.to_csv().into_bytes())),
+            markdown: self.to_markdown(),
+            section: Some(self.section()),
+            run: Some((KEY, self.to_json())),
+            terminal: format!("{}\n{sentences}", self.table().to_text()),
+        }
+    }
+
     /// The section of a page.
-    pub fn section(&self) -> Extra {
+    pub fn section(&self) -> PageSection {
         let mut words = self.sentences();
         words.push("The parts stay as they were sized; only designs of this front compete.".into());
-        Extra {
+        PageSection {
             title: "Under scatter".into(),
             words,
             tables: vec![("Picks under scatter; tolerance.csv has every design".into(), self.table())],
@@ -182,7 +201,7 @@ impl Scattered {
         let most: Vec<String> = others
             .iter()
             .take(3)
-            .map(|f| format!("{} in {}", f.design.design_id, percent(self.share(f.picked[name]))))
+            .map(|f| format!("{} in {}", f.design.design_id, percent_short(self.share(f.picked[name]))))
             .collect();
         let more = match others.len().saturating_sub(3) {
             0 => String::new(),
@@ -196,12 +215,6 @@ impl Scattered {
     fn share(&self, samples: u32) -> f64 {
         f64::from(samples) / f64::from(self.samples)
     }
-}
-
-/// A share in percent, with a tenth where it is neither all nor nothing.
-fn percent(share: f64) -> String {
-    let text = format!("{:.1}", 100.0 * share);
-    format!("{} %", text.strip_suffix(".0").unwrap_or(&text))
 }
 
 /// The value below which a share of sorted values lies, between neighbours in proportion.

@@ -6,6 +6,7 @@ use crate::arm::structure::Beam;
 use crate::arm::{Arm, Element, Joint, Link, LinkBody};
 use crate::mechanics::beam::line_stiffnesses;
 use crate::report::number::significant;
+use crate::report::tube::section_size;
 use crate::sizing::drive::Drive;
 use crate::space::constraint::Constraints;
 use crate::space::design_space::DesignSpace;
@@ -93,10 +94,14 @@ fn end_compliances(beam: &Beam, length_m: f64) -> [f64; 3] {
     [along_z, along_y, along_z + along_y]
 }
 
+/// Size and material of a tube, sizes to four digits at most: `60 x 40 x 2 mm Aluminium 6061-T6`.
 fn section_words(option: &LinkOption) -> String {
-    let (width, height) = option.section.outer_m();
-    let sizes = [width, height, option.section.wall_m()].map(|m| significant(m * 1e3, 4));
-    let sizes =
-        sizes.map(|s| if s.contains('.') { s.trim_end_matches('0').trim_end_matches('.').into() } else { s });
-    format!("{} mm {}", sizes.join(" x "), option.material_name)
+    let mm = |m: f64| {
+        let digits = significant(m * 1e3, 4);
+        match digits.contains('.') {
+            true => digits.trim_end_matches('0').trim_end_matches('.').to_string(),
+            false => digits,
+        }
+    };
+    format!("{} {}", section_size(&option.section, mm, mm), option.material_name)
 }

@@ -5,7 +5,9 @@ use super::table::link_words;
 use crate::pareto::objectives::Objectives;
 use crate::report::front_table::FrontTable;
 use crate::report::number::{shortest, significant};
-use crate::report::section::Extra;
+use crate::report::section::PageSection;
+use crate::report::supplement::Supplement;
+use crate::report::words::{TERMINAL, wrap};
 use crate::search::ballast::Ballast;
 use crate::space::design::evaluate;
 use crate::space::design::{Part, id_of, options};
@@ -13,6 +15,7 @@ use crate::space::design_space::SpacePiece;
 use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
+use serde_json::json;
 
 /// A flagged design of a front.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +31,9 @@ pub struct BallastFlags {
     flagged: Vec<Flagged>,
     front: usize,
 }
+
+/// Name of the file that lists them.
+pub const FILE: &str = "ballast.csv";
 
 const COLUMNS: [&str; 13] = [
     "design_id",
@@ -120,11 +126,31 @@ impl BallastFlags {
         )
     }
 
+    /// All that a result says of them.
+    pub fn supplement(&self) -> Supplement {
+        let run = Some(("ballast_designs", json!(self.len())));
+        if self.is_empty() {
+            return Supplement { run, ..Supplement::default() };
+        }
+        Supplement {
+            file: Some((FILE, self.to_csv())),
+            markdown: self.to_markdown(),
+            section: Some(self.section()),
+            run,
+            terminal: wrap(&self.sentence(), TERMINAL, ""),
+        }
+    }
+
     /// The section of a page.
-    pub fn section(&self) -> Extra {
+    pub fn section(&self) -> PageSection {
         let words =
             std::iter::once(self.sentence()).chain(self.flagged.iter().take(5).map(|f| f.words.clone()));
-        Extra { title: "Ballast".into(), words: words.collect(), tables: Vec::new(), figures: Vec::new() }
+        PageSection {
+            title: "Ballast".into(),
+            words: words.collect(),
+            tables: Vec::new(),
+            figures: Vec::new(),
+        }
     }
 
     /// The section of a summary: the first few in words.

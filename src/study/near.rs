@@ -9,14 +9,22 @@ use crate::pareto::objectives::Objectives;
 use crate::report::front_table::FrontTable;
 use crate::report::number::{shortest, significant};
 use crate::report::picks::choices;
-use crate::report::section::Extra;
+use crate::report::section::PageSection;
+use crate::report::supplement::Supplement;
 use crate::report::table::{Column, Table};
+use crate::report::words::{TERMINAL, wrap};
 use crate::search::near::{NearDesigns, Shortfall, Slack, near_designs, worse_by};
 use crate::space::design::Evaluated;
 use crate::space::design::id_of;
 use crate::space::problem::ArmProblem;
+use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
+
+/// Name of the file that lists them.
+pub const FILE: &str = "near.csv";
+/// Key in `run.json`.
+pub const KEY: &str = "within";
 
 /// The designs near a front.
 #[derive(Debug, Clone, PartialEq)]
@@ -188,8 +196,29 @@ impl NearFront {
         groups.chunk_by(|a, b| a == b).filter(|group| group.len() > 1).count()
     }
 
+    /// All that a result says of them.
+    pub fn supplement(&self) -> Supplement {
+        Supplement {
+            file: Some((FILE, self.table.to_csv())),
+            markdown: self.to_markdown(),
+            section: Some(self.section()),
+            run: Some((KEY, self.to_json())),
+            terminal: self.sentences().iter().map(|s| wrap(s, TERMINAL, "")).collect(),
+        }
+    }
+
+    /// What `run.json` says of them.
+    fn to_json(&self) -> Value {
+        json!({
+            "slack_percent": 100.0 * self.slack,
+            "designs": self.total,
+            "listed": self.table.rows.len(),
+            "capped": self.capped,
+        })
+    }
+
     /// The section of a page: how many there are, and the nearest.
-    pub fn section(&self) -> Extra {
+    pub fn section(&self) -> PageSection {
         let words = [("design_id", "design"), ("near_to", "near to")];
         let numbers = [
             ("shortfall_percent", "worse by at most [%]"),
@@ -209,7 +238,7 @@ impl NearFront {
             nearest.row(named.chain(numbers.map(number)));
         }
         let some = !self.table.rows.is_empty();
-        Extra {
+        PageSection {
             title: "Near the front".into(),
             words: self.sentences(),
             tables: some.then(|| ("The nearest; near.csv has all".into(), nearest)).into_iter().collect(),

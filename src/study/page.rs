@@ -11,7 +11,7 @@ use crate::report::html::study::{CatalogRow, StudyPage};
 use crate::report::picks;
 use crate::report::section::Figure;
 use crate::report::summary::SummaryInput;
-use crate::report::svg::Series;
+use crate::report::svg::plot::Series;
 use crate::space::design::number_of;
 use crate::space::problem::ArmProblem;
 

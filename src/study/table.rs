@@ -4,6 +4,7 @@ use super::outcome::Front;
 use crate::arm::section::Section;
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
+use crate::report::tube::tube_size;
 use crate::sizing::demand::JointDemand;
 use crate::sizing::sheet::JointSizingRow;
 use crate::space::design::{Part, id_of, options};
@@ -113,8 +114,7 @@ fn link_cells(option: &LinkOption) -> [String; 6] {
 /// A tube in words: `120 x 100 x 3 mm Aluminium 6061-T6`.
 pub(super) fn link_words(option: &LinkOption) -> String {
     let [material, shape, width, height, wall, _] = link_cells(option);
-    let round = if shape == "round_tube" { "round " } else { "" };
-    format!("{round}{width} x {height} x {wall} mm {material}")
+    format!("{} {material}", tube_size(shape == "round_tube", [&width, &height, &wall]))
 }
 
 /// A length as the millimetres it was given in: the shortest decimal that reads back the same.

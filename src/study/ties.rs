@@ -4,8 +4,9 @@
 use super::outcome::{Front, Judged};
 use crate::report::front_table::FrontTable;
 use crate::report::number::large;
-use crate::report::section::Extra;
-use crate::report::words::wrap;
+use crate::report::section::PageSection;
+use crate::report::supplement::Supplement;
+use crate::report::words::{TERMINAL, wrap};
 use crate::sizing::demand::JointDemand;
 use crate::space::design::{id_of, options};
 use crate::space::design_space::SpacePiece;
@@ -22,6 +23,9 @@ pub struct Ties {
     front: usize,
     designs: f64,
 }
+
+/// Name of the file that lists them.
+pub const FILE: &str = "ties.csv";
 
 const COLUMNS: [&str; 4] = ["design_id", "at", "part", "instead"];
 
@@ -109,14 +113,20 @@ impl Ties {
         )
     }
 
-    /// The sentence for a terminal.
-    pub fn to_text(&self) -> String {
-        wrap(&self.sentence(), 80, "")
+    /// All that a result says of them.
+    pub fn supplement(&self) -> Supplement {
+        Supplement {
+            file: Some((FILE, self.to_csv())),
+            markdown: self.to_markdown(),
+            section: Some(self.section()),
+            run: None,
+            terminal: wrap(&self.sentence(), TERMINAL, ""),
+        }
     }
 
     /// The section of a page.
-    pub fn section(&self) -> Extra {
-        Extra {
+    pub fn section(&self) -> PageSection {
+        PageSection {
             title: "Drives that may be exchanged".into(),
             words: vec![self.sentence()],
             tables: Vec::new(),

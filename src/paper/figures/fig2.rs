@@ -8,7 +8,7 @@ use crate::paper::claim::Claim;
 use crate::paper::output::{PaperError, PaperStudyOutput};
 use crate::paper::parts;
 use crate::report::number::{fixed, shortest, significant};
-use crate::report::svg::{Note, Plot, Series, Side};
+use crate::report::svg::plot::{Note, Plot, Series, Side};
 use crate::report::table::{Column, Table};
 
 /// The figure's metals in the catalog, as the legend names them.

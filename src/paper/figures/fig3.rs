@@ -8,7 +8,8 @@ use crate::paper::claim::Claim;
 use crate::paper::output::{PaperError, PaperStudyOutput};
 use crate::paper::parts;
 use crate::report::number::{fixed, percent_change};
-use crate::report::svg::{Axis, Plot, Scale, Series};
+use crate::report::svg::plot::{Axis, Plot, Series};
+use crate::report::svg::scale::Scale;
 use crate::report::table::{Column, Table};
 
 /// The figure's material.

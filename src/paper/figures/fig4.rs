@@ -12,7 +12,7 @@ use crate::paper::claim::Claim;
 use crate::paper::output::{PaperError, PaperStudyOutput};
 use crate::paper::parts;
 use crate::report::number::{fixed, percent_change};
-use crate::report::svg::{Guide, Plot, Series};
+use crate::report::svg::plot::{Guide, Plot, Series};
 use crate::report::table::{Column, Table};
 
 /// The reference deflection \[m\].

@@ -3,7 +3,8 @@
 use super::beam::{BeamPoint, points_csv};
 use crate::paper::claim::{self, Claim};
 use crate::paper::output::PaperStudyOutput;
-use crate::report::svg::{Axis, Plot, Scale};
+use crate::report::svg::plot::{Axis, Plot};
+use crate::report::svg::scale::Scale;
 use crate::report::table::Table;
 
 /// A plot with the figures' axes.

@@ -4,7 +4,7 @@ use super::contender::Contender;
 use super::moved::Moved;
 use super::question::{Question, comparative, superlative};
 use super::thresholds::Thresholds;
-use crate::report::number::{cost_words, significant};
+use crate::report::number::{cost_words, percent_rounded};
 use crate::report::picks::{Design, Objective, best, designs};
 use crate::report::words::capital;
 use serde::Serialize;
@@ -142,7 +142,7 @@ fn sentence(question: Question, limit: f64, answers: &[Answer]) -> String {
     let lead = match reached.get(winners.len()) {
         Some((a, second)) => format!(
             ", {} {} than {} ({})",
-            percent(sought, best, second),
+            advantage(sought, best, second),
             comparative(question),
             a.label,
             sought.amount(sought.of(second))
@@ -174,7 +174,7 @@ fn mixed(question: Question, winner: &Design, answers: &[Answer]) -> String {
         Some(d) => format!(
             "; materials mixed reach {}, {} {}",
             sought.amount(sought.of(d)),
-            percent(sought, d, winner),
+            advantage(sought, d, winner),
             comparative(question)
         ),
         None => String::new(),
@@ -196,8 +196,8 @@ fn out_of_reach(question: Question, answers: &[Answer]) -> String {
 }
 
 /// How much better a design is than another, as a share of the other: `12.3 %`.
-fn percent(sought: Objective, better: &Design, other: &Design) -> String {
+fn advantage(sought: Objective, better: &Design, other: &Design) -> String {
     let (a, b) = (sought.of(better), sought.of(other));
     let percent = 100.0 * ((a - b) / b).abs();
-    format!("{} %", significant(percent, if percent < 10.0 { 2 } else { 3 }))
+    percent_rounded(percent, if percent < 10.0 { 2 } else { 3 })
 }

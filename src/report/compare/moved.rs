@@ -3,7 +3,7 @@
 
 use super::contender::Contender;
 use crate::report::front_table::{FrontTable, OBJECTIVE_COLUMNS};
-use crate::report::number::significant;
+use crate::report::number::percent_rounded;
 use crate::report::picks::{Objective, best, designs};
 use crate::report::words::capital;
 use serde::Serialize;
@@ -85,9 +85,9 @@ fn change(name: &str, objective: Objective, old: f64, new: f64) -> String {
     let percent = 100.0 * (new / old - 1.0);
     let sign = if percent > 0.0 { "+" } else { "" };
     format!(
-        "{name} {} to {} ({sign}{} %)",
+        "{name} {} to {} ({sign}{})",
         objective.amount(old),
         objective.amount(new),
-        significant(percent, 2)
+        percent_rounded(percent, 2)
     )
 }

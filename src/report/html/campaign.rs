@@ -4,10 +4,12 @@
 use super::gallery::{Gallery, Page};
 use super::positions::{Position, Step, angles_figure, axes_figure, sizes_figure, steps_figure};
 use crate::report::number::{fixed, significant};
-use crate::report::section::{Extra, Figure};
+use crate::report::section::{Figure, PageSection};
+use crate::report::svg::draw::MUTED;
+use crate::report::svg::plot::{Axis, Guide, Plot, Series, Stroke};
 use crate::report::svg::rows::{Mark, Row, RowPlot};
+use crate::report::svg::scale::Scale;
 use crate::report::svg::sheet::Sheet;
-use crate::report::svg::{Axis, Guide, MUTED, Plot, Scale, Series, Stroke};
 use serde_json::{Value, json};
 
 /// Poses and joint ranges listed at most.
@@ -134,7 +136,7 @@ pub struct CampaignPage {
     /// Tests worth making, best first.
     pub tests: Vec<Test>,
     /// What changes in the optimum with the corrected arm.
-    pub optimum: Option<Extra>,
+    pub optimum: Option<PageSection>,
     /// Facts: names and values.
     pub facts: Vec<(String, String)>,
 }

@@ -8,7 +8,7 @@ use crate::report::compare::contender::Contender;
 use crate::report::compare::question::Question;
 use crate::report::picks;
 use crate::report::section::Figure;
-use crate::report::svg::MUTED;
+use crate::report::svg::draw::MUTED;
 use serde_json::{Value, json};
 
 /// The page of a comparison; `picture` is its `compare.svg`.

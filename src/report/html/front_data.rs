@@ -10,9 +10,10 @@ use crate::report::front_svg::WIDE;
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
 use crate::report::picks::Objective;
-use crate::report::svg;
+use crate::report::svg::draw::{MUTED, colour};
+use crate::report::svg::marker::outline;
+use crate::report::svg::scale::Scale;
 use crate::report::svg::ticks::rule;
-use crate::report::svg::{MUTED, Scale};
 use serde_json::{Value, json};
 use std::cmp::Ordering;
 use std::collections::HashSet;
@@ -137,7 +138,7 @@ impl<'a> FrontData<'a> {
             .groups
             .iter()
             .map(|g| {
-                let (colour, path) = (svg::colour(g.style), svg::outline(g.style, 1.0));
+                let (colour, path) = (colour(g.style), outline(g.style, 1.0));
                 json!({"name": g.name, "colour": colour, "path": path, "muted": u8::from(g.style == MUTED)})
             })
             .collect();

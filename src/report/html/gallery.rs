@@ -1,7 +1,7 @@
 //! The pictures of a page, numbered and kept as files, and tables as templates show them.
 
 use super::render::{PLOTS, render};
-use crate::report::section::{Extra, Figure};
+use crate::report::section::{Figure, PageSection};
 use crate::report::table::{Align, Table};
 use serde_json::{Value, json};
 
@@ -46,7 +46,7 @@ impl Gallery {
     }
 
     /// A part that another room filled, as its template shows it.
-    pub(super) fn extra(&mut self, extra: &Extra) -> Value {
+    pub(super) fn extra(&mut self, extra: &PageSection) -> Value {
         let figures: Vec<Value> = extra.figures.iter().map(|f| self.show(f)).collect();
         let tables: Vec<Value> = extra
             .tables

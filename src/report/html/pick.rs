@@ -7,12 +7,13 @@ use crate::mechanics::centre_line::Station;
 use crate::mechanics::chain::{Chain, Posed};
 use crate::mechanics::modes::Mode;
 use crate::mechanics::statics::Statics;
-use crate::report::number::{shortest, significant};
+use crate::report::number::{cost_words, fixed, percent, shortest, significant};
 use crate::report::picks::Pick;
 use crate::report::section::Figure;
 use crate::report::svg::arm::{ArmSketch, Pivot, Place, Tube};
 use crate::report::svg::bars::{Bar, Part, StackedBars};
 use crate::report::table::{Column, Table};
+use crate::report::tube::section_size;
 use crate::sizing::check::{Check, CheckKind, CheckState};
 use crate::sizing::sheet::JointSizingRow;
 use nalgebra::Vector3;
@@ -100,7 +101,7 @@ impl PickedArm {
             "id": self.pick.design.design_id,
             "slug": self.slug(),
             "headline": super::front_views::headline(&self.pick.design),
-            "cost": self.pick.design.material_cost_eur.map(crate::report::number::cost_words),
+            "cost": self.pick.design.material_cost_eur.map(cost_words),
             "drawing": drawing,
             "modes": modes,
             "worst_case": worst.as_ref().map(|s| s.case.name.clone()),
@@ -203,13 +204,13 @@ impl PickedArm {
             Element::Link(link) => match &link.body {
                 LinkBody::Tube { material_name, material, section } => {
                     let p = section.properties(material.poisson);
-                    let (width, height) = section.outer_m();
-                    let mm = |m: f64| significant(m * 1e3, 3);
+                    let outer_mm = |m: f64| significant(m * 1e3, 3);
+                    let wall_mm = |m: f64| shortest((m * 1e9).round() / 1e6);
                     Some(json!({
                         "name": link.name,
                         "material": material_name,
                         "length_m": significant(link.vector_m.norm(), 3),
-                        "size": format!("{} × {} × {} mm", mm(width), mm(height), shortest((section.wall_m() * 1e9).round() / 1e6)),
+                        "size": section_size(section, outer_mm, wall_mm),
                         "mass_kg": significant(e.mass_kg(), 4),
                         "area_cm2": significant(p.area_m2 * 1e4, 4),
                         "second_moment_cm4": significant(p.second_moment_y_m4 * 1e8, 4),
@@ -308,11 +309,11 @@ fn parts_table(parts: &[DeflectionPart]) -> Table {
     ]);
     let whole: f64 = parts.iter().map(|p| p.along_mm).sum();
     for part in parts {
-        let mm = |v: f64| crate::report::number::fixed(v, 4);
+        let mm = |v: f64| fixed(v, 4);
         let [x, y, z] = part.moved_mm.map(mm);
         let torque = part.torque_nm.map_or(String::new(), |t| significant(t, 4));
-        let share = crate::report::number::fixed(100.0 * part.along_mm / whole, 1);
-        table.row([part.element.clone(), torque, x, y, z, mm(part.along_mm), format!("{share} %")]);
+        let share = percent(100.0 * part.along_mm / whole, 1);
+        table.row([part.element.clone(), torque, x, y, z, mm(part.along_mm), share]);
     }
     table
 }
@@ -322,7 +323,7 @@ fn energy_words(mode: &Mode, most: usize) -> String {
     let mut parts: Vec<&(String, f64)> = mode.strain_energy.iter().filter(|(_, e)| *e >= 0.01).collect();
     parts.sort_by(|a, b| b.1.total_cmp(&a.1));
     let words: Vec<String> =
-        parts.iter().take(most).map(|(n, e)| format!("{n} {:.0} %", 100.0 * e)).collect();
+        parts.iter().take(most).map(|(n, e)| format!("{n} {}", percent(100.0 * e, 0))).collect();
     words.join(", ")
 }
 

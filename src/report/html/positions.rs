@@ -3,9 +3,11 @@
 
 use crate::report::number::fixed;
 use crate::report::section::Figure;
+use crate::report::svg::draw::MUTED;
+use crate::report::svg::plot::{Axis, Plot, Series, Stroke};
 use crate::report::svg::rows::{Mark, Row, RowPlot};
+use crate::report::svg::scale::Scale;
 use crate::report::svg::sheet::Sheet;
-use crate::report::svg::{Axis, MUTED, Plot, Scale, Series, Stroke};
 use crate::report::table::csv_line;
 
 /// Parts of each joint's range.

@@ -8,9 +8,9 @@ use super::pick::{PickedArm, deflection_bars};
 use super::render::anchor;
 use crate::report::number::large;
 use crate::report::picks::{self, materials};
-use crate::report::section::{Extra, Figure};
+use crate::report::section::{Figure, PageSection};
 use crate::report::summary::{SummaryInput, answer_words, materials_side_by_side, single_materials};
-use crate::report::svg::MUTED;
+use crate::report::svg::draw::MUTED;
 use serde_json::{Value, json};
 use std::collections::HashSet;
 
@@ -51,7 +51,7 @@ pub struct StudyPage<'a> {
     /// Facts of the run: names and values.
     pub run: Vec<(String, String)>,
     /// Further sections: the stiffness budget, the front under scatter, how sure the front is, ...
-    pub extras: Vec<Extra>,
+    pub extras: Vec<PageSection>,
 }
 
 impl StudyPage<'_> {

@@ -1,33 +1,29 @@
-//! What `armwright run` works out beside the front: files, words and facts of the run.
+//! What `armwright run` works out in addition to the front: ballast, ties, the front under scatter, near designs.
 
 use super::failure::Failure;
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
 use crate::report::picks;
-use crate::report::section::Extra;
-use crate::report::tolerance::Scattered;
-use crate::report::words::wrap;
+use crate::report::supplement::Supplement;
+use crate::report::tolerance::{self, Scattered};
+use crate::report::words::{TERMINAL, wrap};
 use crate::search::near::{NearDesigns, Slack};
 use crate::space::problem::ArmProblem;
-use crate::study::ballast::ballast_flags;
-use crate::study::near::{NearFront, near_front};
+use crate::study::ballast::{self, ballast_flags};
+use crate::study::near::{self, NearFront, near_front};
 use crate::study::outcome::StudyOutcome;
-use crate::study::ties;
+use crate::study::ties::{self, ties};
 use crate::study::tolerance::{Sampling, Tolerance, part, scatter_front};
 use clap::Args;
-use serde_json::{Map, Value, json};
+use serde_json::Value;
 use std::sync::atomic::AtomicBool;
 
-/// Files beside the front that not every run has.
-pub(super) const FILES: [&str; 4] = [BALLAST, TIES, TOLERANCE, NEAR];
-const BALLAST: &str = "ballast.csv";
-pub(super) const TIES: &str = "ties.csv";
-const TOLERANCE: &str = "tolerance.csv";
-const NEAR: &str = "near.csv";
+/// Files of supplements; not every run has them.
+pub(super) const FILES: [&str; 4] = [ballast::FILE, ties::FILE, tolerance::FILE, near::FILE];
 
-/// What may be asked for beside a front.
+/// What may be asked for in addition to a front.
 #[derive(Debug, Clone, Default, Args)]
-pub(super) struct BesideArgs {
+pub(super) struct SupplementArgs {
     /// How far catalog figures scatter, such as gear_stiffness=20%,modulus=3%,mass=2%: the front is sampled,
     /// and each design's share of samples on the front goes to tolerance.csv. A name alone stands for the
     /// number above. 95 % of the rows of a catalog lie within it (log-normal)
@@ -51,21 +47,6 @@ pub(super) struct BesideArgs {
     within_most: u32,
 }
 
-/// Files, words and facts that go beside a front's own.
-#[derive(Debug, Default)]
-pub(super) struct Beside {
-    /// Files by name.
-    pub files: Vec<(String, Vec<u8>)>,
-    /// Sections of `summary.md`.
-    pub markdown: String,
-    /// Text for the terminal.
-    pub terminal: String,
-    /// Sections of the page.
-    pub sections: Vec<Extra>,
-    /// Keys of `run.json`.
-    pub run: Map<String, Value>,
-}
-
 /// A finished search.
 pub(super) struct Found<'a> {
     pub problem: &'a ArmProblem<'a>,
@@ -79,48 +60,31 @@ pub(super) struct Found<'a> {
     pub stop: &'a AtomicBool,
 }
 
-impl BesideArgs {
+impl SupplementArgs {
     /// Works out what was asked for; `front` is the table of the front.
-    pub(super) fn work(&self, found: &Found, front: &FrontTable) -> Result<Beside, Failure> {
-        let mut beside = Beside::default();
-        let flags = ballast_flags(found.problem, &found.outcome.front);
-        beside.run.insert("ballast_designs".into(), json!(flags.len()));
-        if !flags.is_empty() {
-            beside.files.push((BALLAST.into(), flags.to_csv()));
-            beside.markdown.push_str(&flags.to_markdown());
-            beside.sections.push(flags.section());
-            beside.terminal.push_str(&format!("\n{}", wrap(&flags.sentence(), 80, "")));
-        }
-        if !found.ties_listed {
-            let ties = ties(found.problem, &found.outcome.front);
-            beside.files.push((TIES.into(), ties.to_csv()));
-            beside.markdown.push_str(&ties.to_markdown());
-            beside.sections.push(ties.section());
-            beside.terminal.push_str(&format!("\n{}", ties.to_text()));
-        }
+    ///
+    /// # Errors
+    /// The user stops it.
+    pub(super) fn work_out(&self, found: &Found, front: &FrontTable) -> Result<Vec<Supplement>, Failure> {
         let stopped = || Failure::Interrupted("stopped after the search; nothing was written".into());
-        let scattered = self.scattered(found, front).map_err(|()| stopped())?;
-        beside.run.insert("tolerance".into(), scattered.as_ref().map_or(Value::Null, Scattered::to_json));
-        if let Some(scattered) = scattered {
-            beside.files.push((TOLERANCE.into(), scattered.to_csv().into_bytes()));
-            beside.markdown.push_str(&scattered.to_markdown());
-            beside.sections.push(scattered.section());
-            let sentences: String = scattered.sentences().iter().map(|s| wrap(s, 80, "")).collect();
-            beside.terminal.push_str(&format!("\n{}\n{sentences}", scattered.table().to_text()));
+        let mut out = vec![ballast_flags(found.problem, &found.outcome.front).supplement()];
+        if !found.ties_listed {
+            out.push(ties(found.problem, &found.outcome.front).supplement());
         }
-        let near = self.near(found).map_err(|()| stopped())?;
-        beside.run.insert("within".into(), near.as_ref().map_or(Value::Null, near_json));
-        if near.is_none() && self.within.is_some() {
-            beside.terminal.push_str(&format!("\n{}", wrap(NO_NEAR, 80, "")));
-        }
-        if let Some(near) = near {
-            beside.files.push((NEAR.into(), near.table.to_csv()));
-            beside.markdown.push_str(&near.to_markdown());
-            beside.sections.push(near.section());
-            let sentences: String = near.sentences().iter().map(|s| wrap(s, 80, "")).collect();
-            beside.terminal.push_str(&format!("\n{sentences}"));
-        }
-        Ok(beside)
+        out.push(match self.scattered(found, front).map_err(|()| stopped())? {
+            Some(scattered) => scattered.supplement(),
+            None => Supplement::fact(tolerance::KEY, Value::Null),
+        });
+        out.push(match self.near(found).map_err(|()| stopped())? {
+            Some(near) => near.supplement(),
+            None => Supplement { terminal: self.why_no_near(), ..Supplement::fact(near::KEY, Value::Null) },
+        });
+        Ok(out)
+    }
+
+    /// Why there is no list of designs near the front, if one was asked for.
+    fn why_no_near(&self) -> String {
+        if self.within.is_some() { wrap(NO_NEAR, TERMINAL, "") } else { String::new() }
     }
 
     /// Which designs near the front are asked for, if any are.
@@ -153,10 +117,3 @@ impl BesideArgs {
 /// Why there is no list of designs near a front although it was asked for.
 const NO_NEAR: &str = "No near.csv: designs near a front are looked for if it is whole and has its ties as rows; a longer \
                        --time-limit, --gap 0% and narrower constraints help.";
-
-fn near_json(near: &NearFront) -> Value {
-    json!({
-        "slack_percent": 100.0 * near.slack, "designs": near.total, "listed": near.table.rows.len(),
-        "capped": near.capped,
-    })
-}
