@@ -1,10 +1,10 @@
-//! The study that a verb is asked for: its text, read, with the corrections that apply to it.
+//! The study that a verb is asked for, read from its text, with the corrections of a measured arm.
 
 use super::failure::Failure;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::study::definition::Study;
-use crate::study::effects::Carried;
+use crate::study::effects::Correction;
 use crate::study::named;
 use crate::study::read::read_study;
 use std::path::Path;
@@ -15,8 +15,8 @@ pub(super) struct Asked {
     pub study: Study,
     /// Its file's text.
     pub text: String,
-    /// What of a measured arm carries over to it, and what does not.
-    pub carried: Vec<Carried>,
+    /// The corrections of a measured arm: which apply to the study and which do not.
+    pub corrections: Vec<Correction>,
 }
 
 /// The text of a study and the name it goes by in messages.

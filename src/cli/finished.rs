@@ -1,4 +1,4 @@
-//! What a finished search has to say: its files, its page and its words.
+//! The output of a finished search: files, page and terminal text.
 
 use super::corrections;
 use super::failure::Failure;
@@ -26,7 +26,7 @@ use crate::space::design_space::DesignSpace;
 use crate::space::problem::ArmProblem;
 use crate::study::budget::budgets;
 use crate::study::definition::Study;
-use crate::study::effects::Carried;
+use crate::study::effects::Correction;
 use crate::study::outcome::StudyOutcome;
 use crate::study::page::study_page;
 use crate::study::table::{front_table, slug};
@@ -35,7 +35,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// What a finished search has to say.
+/// The output of a finished search.
 pub(super) struct Written {
     /// Files by name.
     pub files: Vec<(String, Vec<u8>)>,
@@ -43,7 +43,7 @@ pub(super) struct Written {
     pub terminal: String,
     /// The front of all designs.
     pub front: FrontTable,
-    /// How the search ended, and by how much its front may be bettered if it was stopped.
+    /// How the search ended.
     pub status: Status,
     pub gap: Option<f64>,
     /// Whether no design is missing in it.
@@ -51,8 +51,8 @@ pub(super) struct Written {
 }
 
 impl Written {
-    /// Writes the files. Those of an earlier run that this one does not have go: beside its front they would be
-    /// another's.
+    /// Writes the files, and removes files of an earlier run that this run does not write: they would belong
+    /// to another front.
     ///
     /// # Errors
     /// A file cannot be written or removed.
@@ -86,18 +86,18 @@ fn of_some_runs(dir: &Path) -> Vec<String> {
     out
 }
 
-/// Whether a file has the front of a material.
+/// Whether a file holds the front of one material.
 pub(super) fn is_front_of_material(name: &str) -> bool {
     name.starts_with("front.") && name.ends_with(".csv") && name != "front.csv"
 }
 
-/// What an exact search says of its front.
+/// What an exact search proved about its front.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FoundExactly {
     /// Boxes bounded and left open.
     pub boxes: [u64; 2],
     pub gap: Option<f64>,
-    /// Whether drives of equal mass and curve are rows of their own.
+    /// Whether designs that differ only in drives of equal mass and torsion curve all have rows.
     pub ties_listed: bool,
 }
 
@@ -105,14 +105,14 @@ pub(super) struct FoundExactly {
 pub(super) struct Finished<'a> {
     pub study: &'a Study,
     pub text: &'a str,
-    pub carried: &'a [Carried],
+    pub corrections: &'a [Correction],
     pub problem: &'a ArmProblem<'a>,
     /// The space with all options of the study.
     pub whole: &'a DesignSpace,
     pub outcome: &'a StudyOutcome,
     /// The designs near the front that an exact search found.
     pub near: Option<&'a NearDesigns>,
-    /// What an exact search says of its front.
+    /// What an exact search proved about its front.
     pub exact: Option<FoundExactly>,
     pub elapsed_s: f64,
     pub overlay: Option<&'a Path>,
@@ -205,7 +205,7 @@ impl Finished<'_> {
         }
     }
 
-    /// The study's effects, each with whether it counts: those that describe a test do not.
+    /// The study's effects. An effect that describes a test does not count, and says so.
     fn effects(&self) -> Vec<Value> {
         let counted = |effect: &Effect| {
             let mut value = effect.to_json();
@@ -268,7 +268,7 @@ impl Finished<'_> {
             "not_checked": study.not_checked,
             "effects": self.effects(),
             "effects_mass_kg": study.space.effects_mass_kg(),
-            "carried_over": corrections::to_json(self.carried),
+            "carried_over": corrections::to_json(self.corrections),
             "catalogs": self.overlay.map(|p| p.display().to_string()),
             "study_hash": blake3::hash(self.text.as_bytes()).to_hex().to_string(),
             "catalogs_hash": catalogs_hash(self.catalogs),
@@ -330,7 +330,7 @@ fn count(n: u128) -> Value {
     u64::try_from(n).map_or_else(|_| json!(n as f64), |n| json!(n))
 }
 
-/// A hash of every figure of every part: results taken from other catalogs are told apart.
+/// A hash of every rating of every part, to recognize results that were made with other catalogs.
 pub(super) fn catalogs_hash(catalogs: &Catalogs) -> String {
     blake3::hash(format!("{catalogs:?}").as_bytes()).to_hex().to_string()
 }

@@ -1,4 +1,4 @@
-//! `armwright run`: find a study's front and write it.
+//! `armwright run`: finds the front of a study and writes it.
 
 use super::asked::{Asked, load_study};
 use super::corrections;
@@ -22,8 +22,8 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Runs a study: visits every design in parallel, keeps the Pareto front on tip deflection, mass and
-/// lowest mode, and one front per material.
+/// Runs a study: finds its Pareto front on tip deflection, mass and lowest mode, and one front per material.
+/// Every design is visited in parallel, or the exact search proves the front without visiting every design.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: armwright run compare-materials\n         armwright run my-study.json --out results/mine\n         \
@@ -36,8 +36,8 @@ pub struct RunArgs {
     /// Folder for the results; default results/<study>, or results/<study>-with-effects
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Arm file, such as the arm.corrected.json of `reconcile`, whose effects the study's arm has too, at the
-    /// joints and links of the same name; every effect that does not carry over is listed
+    /// Arm file, such as the arm.corrected.json of `reconcile`: its effects are applied to the study's joints
+    /// and links of the same name; every effect that does not apply is listed
     #[arg(long, value_name = "ARM")]
     effects: Option<PathBuf>,
     #[command(flatten)]
@@ -46,14 +46,14 @@ pub struct RunArgs {
     supplements: SupplementArgs,
 }
 
-/// Carries out the verb.
+/// Executes the verb.
 pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -> Result<String, Failure> {
     if NAMES.contains(&args.study.as_str()) {
         return run_paper(args, catalogs);
     }
     let (study, text) = load_study(&args.study, catalogs)?;
     let (asked, suffix) = match &args.effects {
-        None => (Asked { carried: left_out(&study), study, text }, ""),
+        None => (Asked { corrections: left_out(&study), study, text }, ""),
         Some(path) => (corrections::from_arm_file(path, &study, &text, catalogs)?, "-with-effects"),
     };
     let name = format!("{}{suffix}", slug(&asked.study.name));
@@ -63,11 +63,11 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
         &With { catalogs, overlay, dir: &dir, how: &args.search, supplements: &args.supplements },
     )?;
     written.write(&dir)?;
-    let carried = corrections::to_text(&asked.carried);
-    Ok(format!("{}{carried}\n{}", written.terminal, told(&dir, &written.files)))
+    let applied = corrections::to_text(&asked.corrections);
+    Ok(format!("{}{applied}\n{}", written.terminal, told(&dir, &written.files)))
 }
 
-/// Runs one of the paper's studies, which have a course of their own.
+/// Runs one of the paper's studies, which are computed without a search.
 fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(&args.study));
     write_all(&dir, &[])?;
@@ -113,12 +113,12 @@ fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> Document
     }
 }
 
-/// Where the files are, in lines of at most 80 columns.
+/// Says which files were written, in lines of at most 80 columns.
 fn told(dir: &Path, files: &[(String, Vec<u8>)]) -> String {
     wrap(&format!("written to {}: {}", dir.display(), names(files)), 80, "")
 }
 
-/// The files that were written, those of one kind counted.
+/// Names of the files that were written; fronts by material and plots are only counted.
 fn names(files: &[(String, Vec<u8>)]) -> String {
     let kind = |name: &str| match name {
         n if n.starts_with(PLOTS) => 2,

@@ -1,4 +1,5 @@
-//! `armwright size`: the drive of every joint, joint 6 to joint 1, and why others were rejected.
+//! `armwright size`: sizes the drive of every joint from the tip inward, and says why other drives were
+//! rejected.
 
 use super::asked::load_study;
 use super::failure::Failure;
@@ -19,8 +20,8 @@ use clap::Args;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Sizes every joint of a study's arm from the tip inward: torques (Eqs 7-12), speed, the chosen gear
-/// and motor, what binds, margin, life and the mass passed on inward.
+/// Sizes every joint of a study's arm from the tip inward: torques (Eqs 7-12), speed, the chosen gear and
+/// motor, the binding check, margin, life, and the mass that the next joint inward carries.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: armwright size light-arm\n         armwright size compare-materials --explain j2\n\n\
@@ -32,10 +33,10 @@ pub struct SizeArgs {
     /// Take the links (and chosen drives) of this design_id
     #[arg(long, value_name = "ID")]
     design: Option<String>,
-    /// Say for every part why this joint rejects it
+    /// Say for every part why it was rejected for this joint
     #[arg(long, value_name = "JOINT")]
     explain: Option<String>,
-    /// List every drive that holds at this joint, lightest first, not only the first fit
+    /// List every drive that is strong enough for this joint, lightest first
     #[arg(long, value_name = "JOINT")]
     all_fits: Option<String>,
     /// Folder for sizing.json and sizing.txt
@@ -46,7 +47,7 @@ pub struct SizeArgs {
     json: bool,
 }
 
-/// Carries out the verb.
+/// Executes the verb.
 pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let (study, _) = load_study(&args.study, catalogs)?;
     let named = |id: &String| number_of(id).ok_or_else(|| no_design(args, &study));
@@ -76,7 +77,7 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     Ok(if args.json { json } else { text })
 }
 
-/// Options of a link among which the middle one that holds is looked for.
+/// The most options of a link among which a middle one is looked for.
 const MOST_OPTIONS: u32 = 4096;
 
 fn no_design(args: &SizeArgs, study: &Study) -> Failure {
@@ -84,7 +85,7 @@ fn no_design(args: &SizeArgs, study: &Study) -> Failure {
     Failure::Usage(format!("the study \"{}\" has no design \"{id}\"", study.name))
 }
 
-/// The middle option of every open link; a joint whose drive is a choice takes the first that holds.
+/// Takes the middle option of every open link and the first drive that holds for every joint with `all_fits`.
 fn middle(problem: &ArmProblem) -> Vec<u32> {
     let mut out = Vec::new();
     for (piece, what) in problem.space().pieces.iter().enumerate().rev() {
@@ -236,7 +237,7 @@ fn fails(problem: &ArmProblem, chosen: &[u32], slot: usize) -> Failure {
     }
 }
 
-/// Why the drive that a design has at a joint does not hold, where others would.
+/// Why the drive of a design is too weak at a joint where another drive would hold.
 fn too_weak(
     problem: &ArmProblem,
     chosen: &[u32],

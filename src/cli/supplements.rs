@@ -18,15 +18,15 @@ use clap::Args;
 use serde_json::Value;
 use std::sync::atomic::AtomicBool;
 
-/// Files of supplements; not every run has them.
+/// Names of the files of supplements; not every run has them.
 pub(super) const FILES: [&str; 4] = [ballast::FILE, ties::FILE, tolerance::FILE, near::FILE];
 
 /// What may be asked for in addition to a front.
 #[derive(Debug, Clone, Default, Args)]
 pub(super) struct SupplementArgs {
-    /// How far catalog figures scatter, such as gear_stiffness=20%,modulus=3%,mass=2%: the front is sampled,
-    /// and each design's share of samples on the front goes to tolerance.csv. A name alone stands for the
-    /// number above. 95 % of the rows of a catalog lie within it (log-normal)
+    /// Scatter of catalog ratings, such as gear_stiffness=20%,modulus=3%,mass=2%. The front is sampled, and
+    /// tolerance.csv lists for each design the share of samples in which it is on the front. A name alone
+    /// stands for the number above. 95 % of the rows of a catalog lie within the scatter (log-normal)
     #[arg(long, value_name = "SCATTER")]
     tolerance: Option<Tolerance>,
     /// Number of samples of --tolerance
@@ -36,12 +36,12 @@ pub(super) struct SupplementArgs {
     /// Seed of the samples; the same seed gives the same samples on any number of threads
     #[arg(long, value_name = "N", default_value_t = 1, requires = "tolerance")]
     seed: u64,
-    /// Also list the designs that come within this part of a design of the front in mass, in deflection and in
-    /// lowest mode, such as 2%, in near.csv. The designs are searched a second time; after an exact search that
-    /// was stopped, whose front may not be the front, there is no such list
+    /// Also list in near.csv the designs that are worse than some design of the front by at most this
+    /// percentage, such as 2%, in mass, deflection and lowest mode. This needs a second search. There is no
+    /// list after an exact search that was stopped, because its front may be incomplete
     #[arg(long, value_name = "PERCENT", value_parser = part)]
     within: Option<f64>,
-    /// How many designs --within lists at most, the nearest first
+    /// The largest number of designs that --within lists, the nearest first
     #[arg(long, value_name = "N", default_value_t = 10_000, requires = "within",
           value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     within_most: u32,
@@ -115,5 +115,5 @@ impl SupplementArgs {
 }
 
 /// Why there is no list of designs near a front although it was asked for.
-const NO_NEAR: &str = "No near.csv: designs near a front are looked for if it is whole and has its ties as rows; a longer \
-                       --time-limit, --gap 0% and narrower constraints help.";
+const NO_NEAR: &str = "No near.csv was written: near designs are listed only if the front is complete and has all ties as rows. A longer \
+                       --time-limit, --gap 0% or tighter constraints help.";

@@ -1,4 +1,4 @@
-//! Values of options: lists of numbers, one of some words.
+//! Parsers for the values of options: lists of numbers, and one of several words.
 
 use crate::arm::Words;
 

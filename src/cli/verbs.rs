@@ -1,4 +1,4 @@
-//! All verbs: what each is called, and which file carries it out.
+//! All verbs: their names, and the functions that execute them.
 
 use super::failure::Failure;
 use super::{analyze, catalog, compare, design, front, predict, reconcile, size};
@@ -17,8 +17,8 @@ use std::path::PathBuf;
                   9 a check failed.\n\nStart with: armwright run compare-materials"
 )]
 pub struct Cli {
-    /// Folder of your own catalog rows (gears.csv, motors.csv, materials.csv, profiles.csv), laid over the
-    /// built-in ones.
+    /// Folder with your own catalog rows (gears.csv, motors.csv, materials.csv, profiles.csv), added to the
+    /// built-in ones; a row of the same name replaces the built-in one.
     #[arg(long, global = true, value_name = "DIR")]
     catalogs: Option<PathBuf>,
     /// Worker threads; the default is one per core. Results do not depend on it.
@@ -34,28 +34,29 @@ enum Verb {
     Studies,
     /// Run a study: find its Pareto front and write it
     Run(super::run::RunArgs),
-    /// Size every joint of a study's arm, joint 6 to joint 1
+    /// Size every joint of a study's arm, from the tip inward
     Size(size::SizeArgs),
-    /// Statics, modes and response of an arm file
+    /// Compute statics, modes and response of an arm file
     Analyze(analyze::AnalyzeArgs),
-    /// Take a design out of a result as an arm file
+    /// Write a design of a result as an arm file
     Design(design::DesignArgs),
     /// Check a finished front
     Front(front::FrontArgs),
-    /// Put fronts side by side: materials of one study, or several studies
+    /// Compare fronts: the materials of one study, or several studies
     Compare(compare::CompareArgs),
     /// Find where an arm and its measurements disagree and which physics is missing
     Reconcile(reconcile::ReconcileArgs),
-    /// Write the model's value beside every reading of a file
+    /// Add the model's value to every reading of a file
     Predict(predict::PredictArgs),
     /// Check the catalogs, or list what is in them
     Catalog(catalog::CatalogArgs),
 }
 
-/// Stack of a worker \[bytes\]: regions of an exact search nest, and a worker that waits takes up others' meanwhile.
+/// Stack of a worker \[bytes\]: regions of an exact search are nested calls, and a waiting worker runs those
+/// of others on its own stack.
 const STACK: usize = 64 << 20;
 
-/// Carries out a command line.
+/// Executes a command line.
 ///
 /// # Errors
 /// See [`Failure`].

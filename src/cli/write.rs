@@ -1,4 +1,4 @@
-//! What goes out: text to standard output, files to a folder of results.
+//! Output: text to standard output, files to a folder of results.
 
 use super::failure::Failure;
 use std::io::Write;
@@ -13,7 +13,7 @@ pub fn print(text: &str) {
     }
 }
 
-/// A path in a folder's files written all at once: temporary files first, then renamed.
+/// Writes files into a folder, all or none: temporary files first, which are then renamed.
 pub(crate) fn write_all(dir: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Failure> {
     fs_err::create_dir_all(dir).map_err(|e| Failure::file(dir, "create", &e))?;
     let mut staged = Vec::with_capacity(files.len());

@@ -187,7 +187,7 @@ fn response_csv(rigid: &[(f64, f64)], full: &[(f64, f64)]) -> String {
 
 fn response_plot(rigid: Vec<(f64, f64)>, full: Vec<(f64, f64)>) -> Plot {
     let lowest = PaperArm::table_1().solve(LinkModel::Full).lowest_hz();
-    let bare =
+    let unmarked =
         |name, style, points, stroke| Series { stroke, marker_px: 0.0, ..Series::line(name, style, points) };
     Plot {
         title: "The paper's arm under a harmonic force at the load".into(),
@@ -199,8 +199,8 @@ fn response_plot(rigid: Vec<(f64, f64)>, full: Vec<(f64, f64)>) -> Plot {
         x: Axis::new("frequency [Hz]", Scale::Log),
         y: Axis::new("amplitude at the load [\u{b5}m/N]", Scale::Log),
         series: vec![
-            bare("flexible links", 0, full, Stroke::Solid),
-            bare("rigid links (Eq 16)", 1, rigid, Stroke::Dashed),
+            unmarked("flexible links", 0, full, Stroke::Solid),
+            unmarked("rigid links (Eq 16)", 1, rigid, Stroke::Dashed),
         ],
         guides: vec![Guide {
             vertical: true,

@@ -16,10 +16,10 @@ pub struct SummaryFacts {
     pub designs_total: u128,
     /// Designs whose three objectives were computed.
     pub designs_evaluated: u128,
-    /// Designs left out because a limit cannot hold.
+    /// Designs left out because a limit cannot be met.
     pub designs_excluded: u128,
-    /// By what part at most a design that is not listed beats every listed one in all three objectives, of a
-    /// search that was stopped.
+    /// For a search that was stopped or asked for a gap: the largest fraction by which an unlisted design may
+    /// beat every listed one in all three objectives at once.
     pub gap: Option<f64>,
     /// Duration of the search \[s\].
     pub elapsed_s: f64,
@@ -31,14 +31,14 @@ pub struct SummaryFacts {
     pub constraints: Vec<String>,
     /// Names of the cases, the worst of which counts.
     pub cases: Vec<String>,
-    /// Parts and options left out because a figure is unknown, in words.
+    /// Parts and options left out because a rating is unknown, in words.
     pub not_checked: Vec<String>,
     /// Result folder as it is typed.
     pub results: String,
 }
 
 impl SummaryFacts {
-    /// Whether the search did not come to its end.
+    /// Whether the search was stopped before its end.
     pub fn is_stopped(&self) -> bool {
         ["partial", "interrupted"].contains(&self.status.as_str())
     }

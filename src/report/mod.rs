@@ -1,4 +1,4 @@
-//! Numbers, tables and pictures on paper: csv, json, svg, terminal.
+//! Results for people and programs: numbers, tables, pictures, pages (CSV, JSON, SVG, HTML, terminal).
 
 pub mod braille;
 pub mod budget;

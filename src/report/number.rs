@@ -40,13 +40,13 @@ pub fn percent_rounded(value: f64, digits: usize) -> String {
     format!("{} %", significant(value, digits))
 }
 
-/// A share in percent, with a tenth where it is neither all nor nothing.
+/// A share in percent, with one decimal unless that is zero.
 pub fn percent_short(share: f64) -> String {
     let text = format!("{:.1}", 100.0 * share);
     format!("{} %", text.strip_suffix(".0").unwrap_or(&text))
 }
 
-/// A share that is never rounded to nothing or to all.
+/// A share in percent; a part is never rounded to 0 % or to 100 %.
 pub fn percent_of(part: usize, whole: usize) -> String {
     let share = 100.0 * part as f64 / whole.max(1) as f64;
     match share {

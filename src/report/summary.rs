@@ -66,13 +66,13 @@ pub fn summary_md(input: &SummaryInput) -> String {
                 "\n## Materials\n\n{}",
                 materials_table(input, &names, MARKDOWN_MATERIALS).to_markdown()
             ));
-            out.push_str("\nThe front of a material holds the designs whose links are all of it; its share counts its designs on the front of all.\n");
+            out.push_str("\nThe front of a material holds the designs whose links are all of that material. Its share is the part of the whole front that is made of it alone.\n");
         }
     }
     out.push_str(&budget_markdown(&input.budgets));
     out.push_str(&format!("\n## What was searched\n\n- {}\n", counts(facts)));
     out.push_str(&format!(
-        "- Constraints: {}.\n- Cases, the worst of which counts: {}.\n",
+        "- Constraints: {}.\n- Cases (the worst counts): {}.\n",
         listed(&facts.constraints),
         listed(&facts.cases)
     ));
@@ -89,7 +89,7 @@ pub fn summary_md(input: &SummaryInput) -> String {
     out
 }
 
-const KNEE: &str = "\nThe knee is the design nearest to the ideal point (the best of all three at once), distances in logarithms,\neach objective scaled by its range over the front.\n";
+const KNEE: &str = "\nThe knee is the design nearest to the ideal point, which has the best value of every objective. Distances are\nmeasured in logarithms, each objective scaled by its range over the front.\n";
 
 /// The summary for a terminal of 80 columns.
 pub fn terminal_summary(input: &SummaryInput) -> String {
@@ -111,8 +111,7 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
     }
     out.push_str(&format!("\n{}", wrap(&counts(facts), TERMINAL, "")));
     if !facts.not_checked.is_empty() {
-        let words =
-            format!("Options or parts not checked: {}; summary.md lists them.", facts.not_checked.len());
+        let words = format!("Options or parts not checked: {}; see summary.md.", facts.not_checked.len());
         out.push_str(&wrap(&words, TERMINAL, ""));
     }
     if let Some(pick) = found.default_pick() {
@@ -342,7 +341,7 @@ fn ties(pick: &Pick, designs: &[Design]) -> String {
 fn counts(facts: &SummaryFacts) -> String {
     if ["certified", "partial"].contains(&facts.status.as_str()) {
         return format!(
-            "{} designs: {} judged one by one, the others cut in boxes, in {} s; search {}.",
+            "{} designs: {} evaluated one by one, the others discarded in groups, in {} s; search {}.",
             large(facts.designs_total),
             grouped(facts.designs_evaluated),
             significant(facts.elapsed_s, 3),

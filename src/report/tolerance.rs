@@ -1,5 +1,5 @@
-//! What becomes of a front when the catalog figures scatter: how often a design stays on it, how often a
-//! pick stays the pick, and what takes its place.
+//! The front under scatter of the catalog ratings: how often a design stays on the front, how often a pick
+//! stays the pick, and what takes its place.
 
 use super::number::{percent_short, shortest, significant};
 use super::picks::{Design, Objective};
@@ -22,9 +22,9 @@ pub const PERCENTILES: [u32; 3] = [5, 50, 95];
 /// One design of the front over all samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fate {
-    /// The design by its catalog figures.
+    /// The design with its catalog ratings.
     pub design: Design,
-    /// What it is picked for by its catalog figures.
+    /// The picks it is with its catalog ratings.
     pub picks: Vec<&'static str>,
     /// Samples in which it is on the front.
     pub on_front: u32,
@@ -110,7 +110,7 @@ impl Scattered {
     /// Sentences: what was sampled, what takes a pick's place, how much of the front stays.
     pub fn sentences(&self) -> Vec<String> {
         let mut out = vec![format!(
-            "{} samples (seed {}) of {}: 95 % of the rows' true figures lie within it.",
+            "{} samples (seed {}) of {}; 95 % of the true ratings of catalog rows are taken to lie within that scatter.",
             self.samples,
             self.seed,
             self.words.join(", ")
@@ -120,13 +120,13 @@ impl Scattered {
         shares.sort_unstable_by(f64::total_cmp);
         let firm = shares.iter().filter(|s| **s >= 0.9).count();
         out.push(format!(
-            "Of the {} designs of the front, {firm} stay on it in at least 90 % of the samples; the least firm stays in {}.",
+            "Of the {} designs of the front, {firm} stay on it in at least 90 % of the samples; the least robust design stays in {}.",
             shares.len(),
             shares.first().map_or_else(String::new, |&s| percent_short(s)),
         ));
         let meets = self.fates.iter().filter(|f| f.keeps_limits < self.samples).count();
         if meets > 0 {
-            out.push(format!("{meets} of them break a limit in some sample."));
+            out.push(format!("{meets} of them break a limit in at least one sample."));
         }
         if self.without_design > 0 {
             let share = percent_short(self.share(self.without_design));
@@ -150,7 +150,7 @@ impl Scattered {
     /// The section of a page.
     pub fn section(&self) -> PageSection {
         let mut words = self.sentences();
-        words.push("The parts stay as they were sized; only designs of this front compete.".into());
+        words.push("Parts are not sized again, and only designs of this front are compared.".into());
         PageSection {
             title: "Under scatter".into(),
             words,
@@ -163,7 +163,7 @@ impl Scattered {
     pub fn to_markdown(&self) -> String {
         let lines: Vec<String> = self.sentences().iter().map(|s| format!("- {s}\n")).collect();
         format!(
-            "\n## Under scatter\n\n{}\n{}- The parts stay as they were sized; only designs of this front compete. Every design: tolerance.csv.\n",
+            "\n## Under scatter\n\n{}\n{}- Parts are not sized again, and only designs of this front are compared. Every design: tolerance.csv.\n",
             self.table().to_markdown(),
             lines.concat()
         )
@@ -186,7 +186,7 @@ impl Scattered {
         json!({"scatter": scatter, "samples": self.samples, "seed": self.seed, "picks": picks})
     }
 
-    /// Every pick by its place in [`PICKS`], with the design that it is by the catalogs' figures.
+    /// Every pick by its index in [`PICKS`], with the design that it is by the catalog ratings.
     fn picks(&self) -> impl Iterator<Item = (usize, &Fate)> {
         PICKS.iter().enumerate().filter_map(|(name, word)| {
             Some((name, self.fates.iter().find(|fate| fate.picks.contains(word))?))

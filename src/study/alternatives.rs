@@ -1,4 +1,4 @@
-//! What else may stand in the place of each part of a design: drives that hold there, and tubes.
+//! Alternatives to each part of a design: other drives that are strong enough there, and other tubes.
 
 use crate::arm::file::windup_of;
 use crate::arm::joint_law::Curve;
@@ -13,7 +13,7 @@ use crate::space::design_space::DesignSpace;
 use crate::space::design_space::{LinkChoice, LinkOption, SpacePiece};
 use crate::space::problem::ArmProblem;
 
-/// What else of the whole space may stand in each place, by name.
+/// The alternatives of the whole space for each piece, by name.
 pub(super) fn alternatives(
     problem: &ArmProblem,
     whole: &DesignSpace,
@@ -39,7 +39,7 @@ pub(super) fn alternatives(
     Some(others)
 }
 
-/// The drives that hold at a joint, lightest first, each with a gear that no lighter one matches in stiffness.
+/// The drives that hold at a joint, lightest first; each has a gear that is stiffer than all lighter ones.
 fn drives<'c>(joint: &Joint, drives: impl Iterator<Item = (Drive<'c>, f64)>) -> Vec<(String, Element)> {
     let mut out: Vec<(String, Element)> = Vec::new();
     let mut kept: Vec<[f64; 3]> = Vec::new();
@@ -56,8 +56,8 @@ fn drives<'c>(joint: &Joint, drives: impl Iterator<Item = (Drive<'c>, f64)>) -> 
     out
 }
 
-/// The tubes that may stand in place of one, are no softer along either axis of the section, and that no lighter one
-/// matches: along either axis, or along both together.
+/// The tubes that are no softer than the present one along either axis of the section. Each is stiffer than
+/// all lighter ones along one axis or along both together.
 fn tubes(choice: &LinkChoice, limits: &Constraints, now: &Element) -> Vec<(String, Element)> {
     let Element::Link(Link { body: LinkBody::Tube { material, section, .. }, .. }) = now else {
         return Vec::new();

@@ -9,10 +9,11 @@ pub struct Study {
     pub name: String,
     /// The question in a sentence.
     pub question: String,
-    /// What there is to choose and what it is asked to do.
+    /// What may be chosen, and what the arm must do.
     pub space: DesignSpace,
-    /// By what part in all three objectives at once a design may beat every one listed when an exact search is content.
+    /// An exact search ends when no design beats every listed one by more than this fraction in all three
+    /// objectives at once.
     pub gap: f64,
-    /// Options left out because a figure that a check needs is unknown, in words.
+    /// Options left out because a rating that a check needs is unknown, in words.
     pub not_checked: Vec<String>,
 }

@@ -23,7 +23,7 @@ pub use budget::budgets;
 pub use check::{Claim, Completeness, FrontCheck, check_front};
 pub use definition::Study;
 pub use diagnose::{empty_pieces, why_infeasible};
-pub use effects::{Carried, CorrectedStudy, carry_over, left_out};
+pub use effects::{CorrectedStudy, Correction, apply_corrections, left_out};
 pub use named::{NAMED, list, named, names};
 pub use near::{NearFront, near_front};
 pub use outcome::{ExactStudy, Extent, Front, Judged, OfMaterial, StudyOutcome, run_exact, run_study};

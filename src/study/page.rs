@@ -15,7 +15,7 @@ use crate::report::svg::plot::Series;
 use crate::space::design::number_of;
 use crate::space::problem::ArmProblem;
 
-/// Everything on the page of a finished study but the facts of the run.
+/// Everything on the page of a finished study except the facts of the run.
 pub fn study_page<'a>(
     study: &Study,
     problem: &ArmProblem,

@@ -196,8 +196,8 @@ pub fn scatter_front(
     let numbers: Vec<u128> = designs.iter().map(|d| front[d.row].design.number).collect();
     let place = |(row, design): (usize, &Design)| Design { row, ..design.clone() };
     let designs: &[Design] = &designs.iter().enumerate().map(place).collect::<Vec<_>>();
-    let bare = without_excerpt(problem);
-    let space = bare.excerpt(catalogs, &numbers)?;
+    let unrestricted = without_excerpt(problem);
+    let space = unrestricted.excerpt(catalogs, &numbers)?;
     let small = ArmProblem::new(&space, catalogs);
     let chosen: Option<Vec<Vec<u32>>> = numbers.iter().map(|&n| small.options_of_whole(n)).collect();
     let parts = ChosenParts::new(&small, &chosen?)?;

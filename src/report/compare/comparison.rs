@@ -18,9 +18,9 @@ pub struct Answer {
     pub reached: bool,
     /// Whether no other competing front has a better answer.
     pub winner: bool,
-    /// Whether the front only stands beside the others.
+    /// Whether the front is only a reference and cannot win.
     pub reference: bool,
-    /// The best design, or, where none keeps the limit, the one that comes nearest to it; `None` if the
+    /// The best design within the limit. If no design keeps the limit, the one nearest to it; `None` if the
     /// front is empty.
     pub design: Option<Design>,
 }
@@ -34,7 +34,7 @@ pub struct Row {
     pub limit: f64,
     /// One answer a front, in the order of the contenders.
     pub answers: Vec<Answer>,
-    /// Which wins and by how much, in a sentence.
+    /// Which front wins and by how much, in a sentence.
     pub sentence: String,
 }
 
@@ -43,7 +43,7 @@ pub struct Row {
 pub struct Reach {
     /// Label of the front.
     pub label: String,
-    /// Whether the front only stands beside the others.
+    /// Whether the front is only a reference and cannot win.
     pub reference: bool,
     /// Number of its designs.
     pub designs: usize,
@@ -62,7 +62,7 @@ pub struct Comparison {
     pub reach: Vec<Reach>,
     /// One row a question and limit.
     pub rows: Vec<Row>,
-    /// What moved from the first result to each other one, where they are runs of one study.
+    /// Changes from the first result to each other one, if all are runs of one study.
     pub moved: Vec<Moved>,
 }
 
@@ -162,7 +162,7 @@ fn sentence(question: Question, limit: f64, answers: &[Answer]) -> String {
     capital(&(out + "."))
 }
 
-/// What the reference front reaches, where it beats the winner.
+/// What the reference front reaches, if that is better than the winner.
 fn mixed(question: Question, winner: &Design, answers: &[Answer]) -> String {
     let sought = question.sought();
     let better = |a: &&Answer| {

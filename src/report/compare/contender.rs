@@ -9,7 +9,7 @@ pub struct Contender {
     pub label: String,
     /// Its designs.
     pub front: FrontTable,
-    /// Whether it only stands beside the others: the front of all materials mixed.
+    /// Whether it is only a reference and cannot win: the front of all materials mixed.
     pub reference: bool,
 }
 

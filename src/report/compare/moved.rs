@@ -1,5 +1,5 @@
-//! What changed between two runs of a study: designs that stayed, came and went, and how far the best
-//! values moved.
+//! What changed between two runs of a study: designs that stayed, entered and left, and how the best values
+//! changed.
 
 use super::contender::Contender;
 use crate::report::front_table::{FrontTable, OBJECTIVE_COLUMNS};
@@ -9,7 +9,7 @@ use crate::report::words::capital;
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// What moved from one front to another.
+/// The changes from one front to another.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Moved {
     /// Label of the front before.
@@ -47,7 +47,7 @@ pub fn moved(before: &Contender, after: &Contender) -> Moved {
     moved
 }
 
-/// The objectives of every design by its choices. Where the tables have no choices, by its name.
+/// The objectives of every design, keyed by its choices, or by its name if the table has no choices.
 fn by_choice(front: &FrontTable) -> HashMap<Vec<&str>, Vec<&str>> {
     let objectives: Vec<usize> = OBJECTIVE_COLUMNS.iter().filter_map(|c| front.column(c)).collect();
     let first = objectives.iter().copied().min().unwrap_or(0);

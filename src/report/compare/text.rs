@@ -181,7 +181,7 @@ fn reach_table(reach: &[Reach], labels: &[String]) -> Table {
     table
 }
 
-/// The same without counts and cost, for a terminal.
+/// The same table without counts and cost, for a terminal.
 fn short_reach_table(reach: &[Reach], labels: &[String]) -> Table {
     let mut columns = vec![Column::left("front")];
     for unit in ["kg", "mm", "Hz"] {
@@ -206,7 +206,7 @@ fn is_best(objective: Objective, own: &Option<Design>, reach: &[Reach]) -> bool 
     reach.len() > 1 && own.as_ref().is_some_and(|d| objective.minimized(d) == best)
 }
 
-/// Value, name and cost of a design; the best is starred.
+/// Value, name and cost of a design; a star marks the best.
 fn triple(objective: Objective, design: Option<&Design>, starred: bool) -> [String; 3] {
     let Some(d) = design else { return ["none".into(), String::new(), String::new()] };
     let star = if starred { "* " } else { "" };
@@ -242,7 +242,7 @@ fn answer_cells(question: Question, answer: &Answer) -> [String; 3] {
     triple(question.sought(), design, answer.winner)
 }
 
-/// Splits the limits of a question over as many tables as keep to the width.
+/// Splits the limits of a question into tables that fit the width.
 fn groups<'a>(rows: &[&'a Row], labels: &[String]) -> Vec<Vec<&'a Row>> {
     let mut out: Vec<Vec<&Row>> = Vec::new();
     for row in rows {
@@ -259,7 +259,7 @@ fn groups<'a>(rows: &[&'a Row], labels: &[String]) -> Vec<Vec<&'a Row>> {
     out
 }
 
-/// Which fronts cannot keep a limit, and the nearest they get.
+/// The fronts that cannot keep a limit, and how near each comes.
 fn out_of_reach(row: &Row, labels: &[String]) -> String {
     let limited = row.question.limited();
     let missed: Vec<String> = row
@@ -285,7 +285,7 @@ fn out_of_reach(row: &Row, labels: &[String]) -> String {
     format!("Cannot reach {}; nearest: {}.", header(row), missed.join(", "))
 }
 
-/// Labels that fit a narrow table and still differ.
+/// Labels short enough for a narrow table, still different from each other.
 pub fn short_labels(labels: &[String]) -> Vec<String> {
     let short: Vec<String> = labels.iter().map(|l| shorten(l)).collect();
     let unique = |i: usize| short.iter().filter(|s| **s == short[i]).count() == 1;
@@ -344,7 +344,7 @@ mod tests {
             short_labels(&labels),
             ["Aluminium 6061-T6", "CFRP T300/5208 QI", "SiC p/Al 2124 25 vol% w…"]
         );
-        let alike = [long("Titanium Ti-6Al-4V sheet (annealed)"), long("Titanium Ti-6Al-4V sheet (aged)")];
-        assert_eq!(short_labels(&alike), alike);
+        let similar = [long("Titanium Ti-6Al-4V sheet (annealed)"), long("Titanium Ti-6Al-4V sheet (aged)")];
+        assert_eq!(short_labels(&similar), similar);
     }
 }

@@ -1,5 +1,6 @@
-//! A campaign's page: the verdict in a sentence, the gap before and after, where it sits, what speaks for
-//! each candidate, what is known of its parameters, whether it holds on readings kept out, what to measure.
+//! A campaign's page: the verdict in a sentence, the gap before and after, where it is largest, the evidence
+//! for each candidate, its parameters with intervals, whether it predicts held-out readings, and what to
+//! measure next.
 
 use super::gallery::{Gallery, Page};
 use super::positions::{Position, Step, angles_figure, axes_figure, sizes_figure, steps_figure};
@@ -16,7 +17,7 @@ use serde_json::{Value, json};
 const MOST_ROWS: usize = 26;
 /// Evidence below this is drawn at the edge.
 const LEAST_SCORE: f64 = -30.0;
-/// Parts of each joint's range that are looked at on their own.
+/// Each joint's range is divided into this many parts.
 const THIRDS: usize = 3;
 const BEFORE_AFTER: [&str; 2] = ["before: the model as given, calibrated", "after: with what was found"];
 
@@ -48,7 +49,7 @@ pub struct Reading {
     pub before_sigma: f64,
     /// With what was found.
     pub after_sigma: f64,
-    /// With what was found, this pose kept out of the fit.
+    /// With the effects found, fitted without this pose (held out).
     pub kept_out_sigma: Option<f64>,
     /// Whether it was taken for a gross error.
     pub gross: bool,
@@ -74,7 +75,7 @@ pub struct Found {
     pub label: String,
     /// Its parameters.
     pub parameters: Vec<Ranged>,
-    /// What these readings cannot tell it from.
+    /// Effects that these readings cannot distinguish from it.
     pub like: Vec<String>,
 }
 
@@ -129,13 +130,13 @@ pub struct CampaignPage {
     pub weighed: Vec<Weighed>,
     /// Calibrated factors.
     pub calibrated: Vec<Ranged>,
-    /// On readings of poses kept out: how many, root mean square before and after.
+    /// Held-out readings: how many, and the root mean square before and after.
     pub kept_out: Option<(usize, f64, f64)>,
     /// Gross errors and wrongly declared deviations, in words.
     pub quality: Vec<String>,
     /// Tests worth making, best first.
     pub tests: Vec<Test>,
-    /// What changes in the optimum with the corrected arm.
+    /// What the corrected arm changes in the study's optimum.
     pub optimum: Option<PageSection>,
     /// Facts: names and values.
     pub facts: Vec<(String, String)>,
@@ -214,7 +215,8 @@ impl CampaignPage {
         gallery.page("campaign.html", &self.name, content, &json!({}))
     }
 
-    /// The gap by channel before and after, as bars for a terminal of 80 columns; bars count in ratios.
+    /// The gap by channel before and after, as bars for a terminal of 80 columns; the lengths of the bars are
+    /// logarithmic.
     pub fn terminal(&self) -> String {
         let rows = || self.parts.iter().filter(|p| !p.part.contains([',', ' ']));
         let values = || rows().flat_map(|c| [c.before, c.after]).filter(|v| *v > 0.0);
@@ -423,7 +425,7 @@ impl CampaignPage {
         })
     }
 
-    /// Residuals of readings whose pose was kept out of the fit, one after another.
+    /// Residuals of held-out readings, one after another.
     fn kept_out_figure(&self) -> Option<Figure> {
         let predicted: Vec<(usize, &Reading, f64)> = self
             .readings
@@ -518,7 +520,7 @@ fn test(test: &Test) -> Value {
     })
 }
 
-/// An end of an interval, or that there is none.
+/// An end of an interval in words; says so if the readings do not bound it.
 fn end(value: Option<f64>, digits: usize) -> String {
     value.map_or("open".into(), |v| significant(v, digits))
 }

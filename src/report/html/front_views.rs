@@ -1,4 +1,4 @@
-//! The front in linked views, as a study's and a comparison's page show it.
+//! The front in linked views, for the page of a study and that of a comparison.
 
 use super::front_data::{Axis, FrontData, Row};
 use super::gallery::Gallery;
@@ -43,7 +43,7 @@ impl FrontViews<'_> {
         })
     }
 
-    /// What is not drawn for want of room, in a sentence.
+    /// Says how many designs are not drawn because the page would be too large; `None` if all are drawn.
     fn left_out(&self) -> Option<String> {
         let ([front, own], [all_front, all_own]) = (self.data.rows_drawn(), self.data.rows_total);
         let part = |drawn: usize, all: usize, of: &str| {

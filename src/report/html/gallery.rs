@@ -62,7 +62,7 @@ impl Gallery {
     }
 }
 
-/// Letters from which on a cell needs room to be read.
+/// A cell with more letters than this gets a wide column.
 const WORDY: usize = 40;
 
 /// A table as its template shows it: headers and rows of cells, with the side each column stands on.
@@ -84,8 +84,8 @@ pub(super) fn table(table: &Table) -> Value {
     json!({ "columns": columns, "rows": table.rows() })
 }
 
-/// A picture to stand inside a page: names that pictures share are made its own, so that hiding one does
-/// not take the markers of another with it.
+/// An SVG picture as part of a page. Its ids are made unique, so that hiding one picture does not remove the
+/// markers of another.
 fn inline(svg: &str, number: usize) -> String {
     svg.replace(" id=\"", &format!(" id=\"p{number}-"))
         .replace("url(#", &format!("url(#p{number}-"))

@@ -1,10 +1,10 @@
 //! Pages for a browser: one self-contained file a study, a campaign or a comparison.
 //!
-//! A page opens from disk: style, program, data and pictures are inside it, and its content security
-//! policy forbids the network, `eval` and inline handlers. Everything can be read without the program:
-//! pictures are the same SVG that stands beside the page in `plots/`, tables are tables. The program adds
-//! views that are linked: hovering, brushing, filters. [`study`], [`campaign`] and [`comparison`] take plain
-//! values from the rooms below and fill the templates beside this file.
+//! A page opens from disk: style, program, data and pictures are inside it, and its content security policy
+//! forbids the network, `eval` and inline handlers. Everything can be read without the program: pictures are
+//! the same SVG that stands beside the page in `plots/`, tables are tables. The program adds linked views
+//! with hovering, brushing and filters. [`study`], [`campaign`] and [`comparison`] take plain values and fill
+//! the templates in this folder.
 
 pub mod campaign;
 pub mod comparison;

@@ -21,7 +21,7 @@ use serde_json::{Value, json};
 
 /// Modes drawn.
 const MODES: usize = 3;
-/// Motion below this share of the largest counts as none when a view is chosen.
+/// A sideways motion below this share of the largest motion is ignored when the view is chosen.
 const SIDEWAYS: f64 = 0.5;
 
 /// A picked design with everything its card needs.
@@ -56,9 +56,9 @@ pub struct DeflectionPart {
     pub element: String,
     /// Torque on a joint \[N m\].
     pub torque_nm: Option<f64>,
-    /// What it moves the tip by, world \[mm\].
+    /// By how much it moves the tip, world axes \[mm\].
     pub moved_mm: [f64; 3],
-    /// Its part along the whole deflection \[mm\].
+    /// Component of that along the whole deflection \[mm\].
     pub along_mm: f64,
 }
 
@@ -85,7 +85,7 @@ impl PickedArm {
         self.cases.iter().map(|case| solve(&self.arm, case)).min_by(|a, b| first(a).total_cmp(&first(b)))
     }
 
-    /// What each element adds to the deflection in the worst case.
+    /// What each element adds to the tip deflection in the worst case.
     pub fn deflection_parts(&self) -> Vec<DeflectionPart> {
         self.worst().map_or(Vec::new(), |s| s.parts)
     }
@@ -345,7 +345,8 @@ struct View {
 }
 
 impl View {
-    /// The upright plane through base and tip; from above, if `moving` moves mostly out of it.
+    /// The vertical plane through base and tip; the view from above, if `moving` moves mostly out of that
+    /// plane.
     fn of(moving: &[Station], arm: &[Station], keep_upright: bool) -> Self {
         let tip = arm.last().map_or(Vector3::zeros(), |s| s.at_m);
         let level = Vector3::new(tip.x, tip.y, 0.0);

@@ -12,9 +12,9 @@ use crate::report::table::csv_line;
 
 /// Parts of each joint's range.
 const BINS: usize = 9;
-/// Fewest positions in a part whose median is drawn.
+/// A part of a joint's range with fewer positions than this has no median.
 const FEWEST: usize = 4;
-/// Joints drawn at most, those first whose angle goes most with the error.
+/// Most joints that are drawn, in order of how strongly the error follows their angle.
 const MOST_JOINTS: usize = 8;
 const NAMES: [&str; 3] = ["before", "after", "after, pose kept out"];
 
@@ -25,7 +25,7 @@ pub struct Step {
     pub added: String,
     /// Median over the poses of the fit.
     pub fitted_median: f64,
-    /// Median over poses kept out.
+    /// Median over held-out poses.
     pub median: f64,
     /// Their mean.
     pub mean: f64,
@@ -44,7 +44,7 @@ pub struct Position {
     pub before_mm: [f64; 3],
     /// With what was found.
     pub after_mm: [f64; 3],
-    /// The same, the pose kept out of the fit.
+    /// The same with the pose held out of the fit.
     pub kept_out_mm: [f64; 3],
 }
 
@@ -52,7 +52,7 @@ fn length(v: &[f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// How the error falls as each thing is added.
+/// How the error falls as each effect is added.
 pub fn steps_figure(steps: &[Step]) -> Option<Figure> {
     let row = |s: &Step| Row {
         label: s.added.clone(),
@@ -87,7 +87,7 @@ pub fn steps_figure(steps: &[Step]) -> Option<Figure> {
     })
 }
 
-/// The part of the positions whose error is at most so large.
+/// The share of positions whose error is at most so large.
 pub fn sizes_figure(positions: &[Position]) -> Option<Figure> {
     let sorted = |of: fn(&Position) -> &[f64; 3]| {
         let mut out: Vec<f64> = positions.iter().map(|p| length(of(p))).collect();
@@ -224,7 +224,7 @@ fn bins(positions: &[Position], joint: usize) -> Vec<Bin> {
         .collect()
 }
 
-/// The median error over the range of each joint, the joints first whose angle goes most with it.
+/// The median error over the range of each joint, joints first whose angle the error follows most.
 pub fn angles_figure(joints: &[String], positions: &[Position]) -> Option<Figure> {
     let swing = |bins: &[Bin]| {
         let (low, high) =

@@ -18,7 +18,7 @@ const TEMPLATES: [(&str, &str); 7] = [
     ("document.html", include_str!("document.html")),
 ];
 
-/// Fills a template. The policy lets run and style only what carries the page's own word.
+/// Fills a template. The content security policy allows only scripts and styles that have the page's nonce.
 pub(super) fn render(template: &str, title: &str, content: Value, data: &Value) -> String {
     let mut environment = Environment::new();
     environment.add_filter("anchor", |name: String| anchor(&name));
@@ -44,7 +44,7 @@ pub(super) fn render(template: &str, title: &str, content: Value, data: &Value) 
         .expect("the templates use only what the pages give them")
 }
 
-/// Words whose numbers do not part from their units at the end of a line.
+/// Words with a no-break space between a number and its unit.
 fn bound(words: &str) -> String {
     let units = ["%", "mm", "kg", "Hz", "EUR"].map(|unit| (format!(" {unit}"), format!("\u{a0}{unit}")));
     units.iter().fold(words.to_string(), |text, (apart, joined)| text.replace(apart, joined))

@@ -28,7 +28,7 @@ pub struct CatalogRow {
     pub place: String,
     /// Document the figures come from.
     pub source: String,
-    /// How far it can be trusted, in a word.
+    /// How reliable it is, in a word.
     pub confidence: String,
     /// Columns of the row that no document was seen for.
     pub unverified: Vec<String>,
@@ -55,7 +55,7 @@ pub struct StudyPage<'a> {
 }
 
 impl StudyPage<'_> {
-    /// The page and its pictures. If the rest of it needs the room, the front has less.
+    /// The page and its pictures. If the page would be too large, fewer designs of the front are drawn.
     pub fn page(&self) -> Page {
         let page = self.page_with(MOST_BYTES);
         match page.html.len().saturating_sub(MOST_PAGE_BYTES) {
@@ -105,7 +105,8 @@ impl StudyPage<'_> {
         ]
     }
 
-    /// The fronts as linked views: the front of all, and what only a material's own front has.
+    /// The fronts as linked views: the front of all designs, and the designs that are only on their
+    /// material's front.
     fn views<'v>(&'v self, chosen: &'v [picks::Pick], front_bytes: usize) -> FrontViews<'v> {
         let summary = self.summary;
         let names = single_materials(summary);
