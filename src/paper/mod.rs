@@ -1,14 +1,14 @@
-//! The paper, reproduced: its table and its three figures, every number computed.
+//! Reproduces the paper: its table and its three figures, every number computed.
 //!
 //! | study | what it answers |
 //! |---|---|
-//! | `paper-table1` | each number the paper gets from its Table 1 beside ours: the reading that gives it, the exact frame's value, the reason for a difference; and what the conclusions' remedies would leave |
+//! | `paper-table1` | each number that the paper derives from its Table 1, next to ours: the reading of the equation that gives it, the value of the exact model, and the reason for a difference; also the error that the remedies of the conclusions would leave |
 //! | `fig2-metals` | deflection against weight per length of three metals |
-//! | `fig3-wall-or-width` | whether a kilogram belongs into wall or outer dimensions |
-//! | `fig4-composites` | composites against the best metal |
+//! | `fig3-wall-or-width` | whether a kilogram is better spent on the wall or on the outer dimensions |
+//! | `fig4-composites` | composites compared with the best metal |
 //!
 //! The paper's equations are written down as printed ([`equations`], [`coupled`]) and separately from the
-//! general mechanics, so that each checks the other.
+//! general mechanics, so that one checks the other.
 
 pub mod arm;
 pub mod claim;

@@ -27,7 +27,7 @@ pub enum PaperError {
         /// Name as given.
         name: String,
     },
-    /// A part the paper names is not in the catalogs, or lacks a figure.
+    /// A part named in the paper is not in the catalogs, or lacks a rating.
     #[error(
         "the catalogs have no {kind} \"{name}\", which this study needs; run with the built-in catalogs, or add it"
     )]

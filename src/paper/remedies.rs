@@ -1,5 +1,5 @@
-//! What would make the paper's arm more accurate: correcting for the joints, stiffer connections,
-//! stiffer drives first.
+//! Remedies that would make the paper's arm more accurate: correction of the joint deflection, stiffer
+//! connections, stiffer drives.
 
 use super::arm::{JOINTS, LINKS, PaperArm, Solved, connect, stiffen_link};
 use super::output::PaperError;
@@ -42,14 +42,14 @@ impl CatalogGears {
     }
 }
 
-/// What is left of the tip error after a correction.
+/// The tip error that remains after a correction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorLeft {
     /// What is measured or computed.
     pub method: String,
-    /// Left if the gears are springs of stiffness K2 \[m\].
+    /// Remaining error if the gears are springs of stiffness K2 \[m\].
     pub middle_slope_m: f64,
-    /// Left if the gears follow the three-segment curve \[m\].
+    /// Remaining error if the gears follow the three-segment curve \[m\].
     pub curve_m: f64,
 }
 
@@ -102,7 +102,7 @@ pub struct Connection {
     pub joint: &'static str,
     /// Stiffness between gear and arm \[N m/rad\].
     pub output_nm_per_rad: f64,
-    /// Stiffness between motor and gear that does the same: N² times smaller \[N m/rad\].
+    /// Stiffness between motor and gear with the same effect: N² times smaller \[N m/rad\].
     pub motor_side_nm_per_rad: f64,
     /// What it adds to the drop of the load \[m\].
     pub added_m: f64,

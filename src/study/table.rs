@@ -12,7 +12,7 @@ use crate::space::design_space::{DriveChoice, LinkOption, SpacePiece};
 use crate::space::levels::OutwardIn;
 use crate::space::problem::{ArmProblem, Partial};
 
-/// A name in lower case with runs of anything but letters and digits turned into one `-`.
+/// A name in lower case; every run of other characters than letters and digits becomes one `-`.
 pub fn slug(name: &str) -> String {
     let mut out = String::new();
     for c in name.chars() {
@@ -128,8 +128,8 @@ fn number(x: f64) -> String {
     format!("{x}")
 }
 
-/// The sizing of every joint with a drive from the catalogs, chosen or given, tip first; or the slot at
-/// which the design cannot hold.
+/// The sizing of every joint with a drive from the catalogs, chosen or given, tip first; or the slot at which
+/// no drive holds.
 pub(crate) fn sizing_rows(
     problem: &ArmProblem,
     catalogs: &Catalogs,

@@ -70,7 +70,7 @@ impl BeamPoint {
     }
 }
 
-/// Deflection of the cantilever's end as the general mechanics has it \[m\]; `None` without a shear modulus.
+/// Deflection of the end of the cantilever by the general mechanics \[m\]; `None` without a shear modulus.
 pub fn library_deflection_m(material: &Material, section: Section, links: LinkModel) -> Option<f64> {
     let link = LinkMaterial {
         youngs_modulus_pa: material.youngs_modulus_pa,
@@ -120,7 +120,7 @@ pub fn points_csv(points: &[BeamPoint]) -> String {
     table.to_csv()
 }
 
-/// Millimetres without the noise of the conversion: to the nanometre.
+/// A length in millimetres, rounded to the nanometre to remove conversion noise.
 fn millimetres(metres: f64) -> f64 {
     (metres * 1e9).round() / 1e6
 }

@@ -54,7 +54,7 @@ impl Comparison {
     /// A Markdown document with full labels.
     pub fn to_markdown(&self) -> String {
         let labels = self.labels();
-        let mut out = format!("# Fronts side by side\n\n{REACH_TITLE}.\n\n");
+        let mut out = format!("# Fronts compared\n\n{REACH_TITLE}.\n\n");
         out.push_str(&reach_table(&self.reach, &labels).to_markdown());
         for question in Question::ALL {
             let rows: Vec<&Row> = self.rows.iter().filter(|r| r.question == question).collect();

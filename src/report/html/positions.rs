@@ -16,7 +16,7 @@ const BINS: usize = 9;
 const FEWEST: usize = 4;
 /// Most joints that are drawn, in order of how strongly the error follows their angle.
 const MOST_JOINTS: usize = 8;
-const NAMES: [&str; 3] = ["before", "after", "after, pose kept out"];
+const NAMES: [&str; 3] = ["before", "after", "after, pose held out"];
 
 /// How large the error is at a stage of the model, \[mm\].
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -66,7 +66,7 @@ pub fn steps_figure(steps: &[Step]) -> Option<Figure> {
     let caption = "Distance between measured and predicted position, each pose predicted by the model fitted without \
                    it: median, mean and largest. Every line adds one thing to the model above it.";
     let plot = RowPlot {
-        title: "The error of kept-out poses, step by step".into(),
+        title: "The error of held-out poses, step by step".into(),
         description: caption.into(),
         x: Axis::new("position error [mm]", Scale::Log),
         kinds: ["median", "mean", "largest"].map(String::from).to_vec(),

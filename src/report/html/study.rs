@@ -101,7 +101,7 @@ impl StudyPage<'_> {
             ("designs searched", large(facts.designs_total)),
             ("on the front", large(front as u128)),
             ("limits", listed(&facts.constraints)),
-            ("poses, the worst of which counts", listed(&facts.cases)),
+            ("poses (the worst counts)", listed(&facts.cases)),
         ]
     }
 
@@ -142,8 +142,8 @@ impl StudyPage<'_> {
             picks: chosen,
             scatter: Figure {
                 name: "front".into(),
-                caption: "Tip deflection and lowest mode over mass. Every dot is a design; a line joins the best of a \
-                          material at each mass; the picks are ringed."
+                caption: "Tip deflection and lowest mode over mass. Every dot is a design. A line joins the best designs \
+                          of a material at each mass. The picks have rings."
                     .into(),
                 svg: self.scatter_svg.clone(),
                 csv: String::new(),
