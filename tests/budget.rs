@@ -60,12 +60,12 @@ fn at_a_single_spring_a_kilogram_more_buys_the_deflection_over_the_mass() {
     assert!((pick.rows[0].share - 1.0).abs() < 1e-12 && tube.share == 0.0);
     let words = budget_text(&all, 80).split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        words.contains("effort goes into the drive of j1 first, where added mass lowers the sag by"),
+        words.contains("add mass first to the drive of j1, where it lowers the deflection by"),
         "{words}"
     );
     // rates, not what a whole kilogram would do
-    let sag = format!("by {:.3} mm/kg and raises the mode by {:.1} Hz/kg", -gain.mm_per_kg, gain.hz_per_kg);
-    assert!(words.contains(&sag), "{words}");
+    let change = format!("by {:.3} mm/kg and raises the mode by {:.1} Hz/kg", -gain.mm_per_kg, gain.hz_per_kg);
+    assert!(words.contains(&change), "{words}");
 }
 
 #[test]

@@ -4,10 +4,9 @@ use armwright::cli::compare::{CompareArgs, run};
 use armwright::report::compare::Thresholds;
 use armwright::report::compare::moved::moved;
 use armwright::report::compare::{Answer, Comparison, Contender, Question, Row, compare};
+use armwright::report::facts::{SummaryFacts, constraint_words};
 use armwright::report::front_table::FrontTable;
-use armwright::report::summary::{
-    MaterialFront, SummaryFacts, SummaryInput, constraint_words, summary_md, terminal_summary,
-};
+use armwright::report::summary::{MaterialFront, SummaryInput, summary_md, terminal_summary};
 use armwright::space::constraint::Constraints;
 use clap::Parser;
 use std::path::Path;

@@ -5,10 +5,11 @@
 
 mod browser;
 
+use armwright::report::facts::SummaryFacts;
 use armwright::report::front_table::FrontTable;
 use armwright::report::html::study::StudyPage;
 use armwright::report::number::significant;
-use armwright::report::summary::{MaterialFront, SummaryFacts, SummaryInput};
+use armwright::report::summary::{MaterialFront, SummaryInput};
 use assert_cmd::Command;
 use browser::Browser;
 use serde_json::{Value, json};

@@ -1,8 +1,9 @@
-//! `armwright catalog check` and `armwright catalog show`: what can be bought, and how far it is known.
+//! `armwright catalog check` and `armwright catalog show`: the catalog parts, and how reliable their ratings
+//! are.
 //!
 //! The functions return the text; nothing is printed here.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::catalog::gear::Gear;
 use crate::catalog::load::Loaded;
 use crate::catalog::lookup::PartError;
@@ -30,7 +31,7 @@ pub struct CatalogArgs {
 /// What to do with the catalogs.
 #[derive(Debug, Clone, clap::Subcommand)]
 pub enum CatalogVerb {
-    /// Validate every row; count rows, trust and blank figures; list what is odd.
+    /// Validate every row; count rows, confidence and blank ratings; list what is odd.
     ///
     /// Reports every fault of every file at once, with file, line, column, value and what is allowed.
     #[command(after_help = "Example: armwright catalog check --catalogs my-parts")]
@@ -87,8 +88,7 @@ pub struct ShowArgs {
     /// Only profiles of this shape: square, rectangular or `--shape round` [default: all].
     #[arg(long)]
     pub shape: Option<String>,
-    /// Print the rows as they stand in their files, as CSV that an own catalog folder can hold
-    /// [default: a table].
+    /// Print the rows as they stand in their files, as CSV for your own catalog folder [default: a table].
     #[arg(long)]
     pub csv: bool,
 }
@@ -104,7 +104,7 @@ pub fn run(args: &CatalogArgs, overlay: Option<&Path>) -> Result<String, Failure
     }
 }
 
-/// Loads the catalogs and tells what is in them: rows, trust, blank figures, warnings.
+/// Loads the catalogs and reports what is in them: rows, confidence, blank ratings, warnings.
 ///
 /// # Errors
 /// Every fault of every file.
@@ -245,7 +245,7 @@ pub fn show(catalogs: &Catalogs, args: &ShowArgs) -> Result<String, Failure> {
     }
 }
 
-/// A filter that belongs to other parts is a slip, not something to pass over.
+/// Refuses a filter that belongs to another kind of part: it is a mistake, and to ignore it would mislead.
 fn refuse_stray_filters(parts: Parts, args: &ShowArgs) -> Result<(), Failure> {
     let given = [
         ("--series", args.series.is_some(), Parts::Gears),
@@ -514,7 +514,7 @@ fn wrapped(text: &str) -> String {
     out
 }
 
-/// A known figure times a factor, in four significant digits without trailing zeros; blank if unknown.
+/// A rating times a factor, in four significant digits without trailing zeros; blank if unknown.
 fn figure(x: Option<f64>, factor: f64) -> String {
     let Some(x) = x.map(|x| x * factor) else { return String::new() };
     if x == 0.0 {
@@ -530,7 +530,7 @@ fn figure(x: Option<f64>, factor: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }
 
-/// A table of text: heads (`name|unit`) over columns, figures to the right.
+/// A table of text: headers (`name|unit`) above columns, numbers aligned to the right.
 struct TextTable {
     head: Vec<String>,
     rows: Vec<Vec<String>>,
@@ -557,7 +557,7 @@ impl TextTable {
         lines.iter().fold(String::new(), |out, line| out + &aligned(line, &columns) + "\n")
     }
 
-    /// Width of a column, and whether it holds figures.
+    /// Width of a column, and whether it holds numbers.
     fn column(&self, i: usize, lines: &[Vec<String>]) -> (usize, bool) {
         let width = lines.iter().map(|line| line[i].chars().count()).max().unwrap_or(0);
         (width, self.rows.iter().all(|row| row[i].is_empty() || row[i].parse::<f64>().is_ok()))

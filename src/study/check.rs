@@ -1,7 +1,7 @@
 //! Finding fault with a finished front.
 
+use super::definition::Study;
 use super::outcome::{Front, judge};
-use super::read::Study;
 use super::table::front_table;
 use super::ties::ties;
 use crate::catalog::Catalogs;
@@ -20,53 +20,54 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// What rounding may do to a gap.
+/// Allowance for rounding in a gap.
 const ROUNDING: f64 = 1e-6;
 /// Largest relative difference of a number in a row from what the full model gives.
 const AGREE: f64 = 1e-9;
-/// Part of the gap by which rows may differ that stand for each other.
+/// Two rows may stand for each other if they differ by at most this fraction of the gap.
 const APART: f64 = 0.45;
-/// Faults of one kind that are listed one by one.
+/// At most this many faults of one kind are listed one by one.
 const LISTED: usize = 10;
 
-/// What a check of a front found.
+/// The result of checking a front.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrontCheck {
     /// What is wrong, in words; empty if nothing is.
     pub faults: Vec<String>,
     /// Rows checked.
     pub rows: usize,
-    /// How it was settled that no design is missing but those among the faults; if it was not, why.
+    /// How it was proved that no design is missing, apart from those among the faults; or why it was not.
     pub completeness: Result<Completeness, String>,
 }
 
-/// A look at all designs that came to its end.
+/// A completed search for missing designs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Completeness {
     /// Boxes bounded.
     pub boxes: u64,
-    /// No design beats every row by more than this part in all three objectives at once; 0 if none is missing.
+    /// No design beats every row by more than this fraction in all three objectives at once; 0 if none is
+    /// missing.
     pub gap: f64,
-    /// Why the exact search's own bounds were used; `None` if it was by bounds that share no code with them.
+    /// Why the exact search's own bounds had to be used; `None` if independent bounds were used.
     pub by_exact_search: Option<String>,
 }
 
-/// What a finished front says of itself.
+/// What a finished front claims.
 #[derive(Debug, Clone, Copy)]
 pub struct Claim<'t> {
     /// Its rows.
     pub table: &'t FrontTable,
-    /// No design beats every row by more than this part in all three objectives at once, 0 if it is whole; `None` if it
-    /// claims no more than its rows.
+    /// No design beats every row by more than this fraction in all three objectives at once; 0 if the front
+    /// is whole. `None` if no such claim is made.
     pub gap: Option<f64>,
-    /// Whether designs that differ only in drives of equal mass and curve are all rows of it.
+    /// Whether designs that differ only in drives of equal mass and torsion curve all have rows.
     pub ties_listed: bool,
-    /// If not, the file that has them.
+    /// If not, the content of the file that lists them.
     pub ties_csv: &'t [u8],
 }
 
-/// Checks a front against its study: every row by the full model, rows against each other, and all other designs by a
-/// search that starts from the rows.
+/// Checks a front against its study. Every row is computed again by the full model, rows are compared with
+/// each other, and a search that starts from the rows looks for missing designs.
 pub fn check_front(
     study: &Study,
     catalogs: &Catalogs,
@@ -114,7 +115,7 @@ pub fn check_front(
     FrontCheck { faults, rows: table.rows.len(), completeness }
 }
 
-/// A front, and by how much it says that it may be bettered.
+/// A front with its claimed gap.
 struct Claimed<'f> {
     front: &'f Front,
     gap: f64,
@@ -122,14 +123,14 @@ struct Claimed<'f> {
 }
 
 impl Claimed<'_> {
-    /// The rows, each better than it is by the gap: what they do not beat is missing.
+    /// The objectives of the rows, improved by the gap: a design that they do not dominate is missing.
     fn objectives(&self) -> Vec<Objectives> {
         let by = if self.gap > 0.0 { 1.0 + self.gap + ROUNDING } else { 1.0 };
         self.front.iter().map(|d| d.design.objectives.better_by(by)).collect()
     }
 }
 
-/// A look at all designs beside a front.
+/// The result of looking for missing designs.
 struct Look {
     /// Numbers of designs that may be missing.
     numbers: Vec<u128>,
@@ -139,7 +140,7 @@ struct Look {
     lacks_ties: bool,
 }
 
-/// Looks at all designs beside a front, by bounds that share no code with the exact search's where they can.
+/// Looks for missing designs, with the independent bounds of `verify` if they can handle the study.
 fn look_for_missing(
     study: &Study,
     catalogs: &Catalogs,
@@ -177,7 +178,7 @@ fn candidate(problem: &ArmProblem, whole: u128) -> Option<Candidate> {
     Some(Candidate { number, objectives })
 }
 
-/// Every row against what it should be.
+/// Compares every row with what it should be.
 fn compare_rows(
     expected: &FrontTable,
     table: &FrontTable,
@@ -225,7 +226,8 @@ fn broken_limits(study: &Study, front: &Front, problem: &ArmProblem, faults: &mu
     );
 }
 
-/// Designs found by a search that belong on the front and are not in it, nor near enough to what is.
+/// Designs found by the search that belong on the front but are neither on it nor close enough to one of its
+/// rows.
 fn missing(
     study: &Study,
     catalogs: &Catalogs,
@@ -267,7 +269,7 @@ fn missing(
     ids.into_iter().map(|n| format!("design {} {what}", id_of(n))).collect()
 }
 
-/// The first few of many faults, and how many there are.
+/// Lists the first few of many faults, and their number.
 fn list(faults: &mut Vec<String>, found: Vec<String>, what: &str) {
     let more = found.len().saturating_sub(LISTED);
     faults.extend(found.into_iter().take(LISTED));

@@ -10,7 +10,7 @@ use crate::space::design_space::LinkOption;
 use std::collections::HashSet;
 
 const DEFAULT_POISSON: f64 = 0.3;
-/// No grid has more points than this; a larger one is a slip in the step.
+/// Most points of a grid; more would be a mistake in the step.
 const MOST_POINTS: usize = 100_000;
 
 /// Sections to choose from.
@@ -70,7 +70,7 @@ pub(super) fn read_sections(node: &Node, catalogs: &Catalogs) -> Option<Sections
     Some(Sections { sections })
 }
 
-/// What tells a section from every other.
+/// The identity of a section, to find duplicates.
 fn identity((section, profile): &Named) -> (bool, [u64; 3], Option<ProfileName>) {
     let is_round = matches!(section, Section::RoundTube { .. });
     let (width_m, height_m) = section.outer_m();
