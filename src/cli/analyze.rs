@@ -1,7 +1,7 @@
 //! `armwright analyze`: statics, modes and response of an arm file.
 
 use super::{Failure, choice, number_list, numbers};
-use crate::arm::effect::Effect;
+use crate::arm::effect::entry::Effect;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
 use crate::arm::{Arm, JointModel, LinkModel};

@@ -2,7 +2,7 @@
 
 use super::beside::{Beside, BesideArgs, FILES, Found};
 use super::{Failure, carry, write_all};
-use crate::arm::effect::Effect;
+use crate::arm::effect::entry::Effect;
 use crate::catalog::Catalogs;
 use crate::pareto::hypervolume::front_hypervolume;
 use crate::report::budget::{PickBudget, budget_csv};

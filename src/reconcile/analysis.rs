@@ -1,26 +1,29 @@
 //! The workflow: is there a gap, what is missing, how sure is that, does it hold on kept-out poses.
 
 use super::fit::descent::{Effort, Fit, Weights};
-use super::fit::interval::{Interval, deviations, intervals};
+use super::fit::interval::{deviations, intervals};
 use super::fit::kept_out;
 use super::fit::kept_out::{KeptOut, rms};
 use super::fit::noise::Noise;
-use super::forward::{Datum, Forward};
+use super::fit::units;
+use super::forward::datum::Datum;
+use super::forward::prepared::Forward;
 use super::model::candidates::candidates;
+use super::model::estimate::Interval;
+use super::model::estimate::{Estimate, Finding};
 use super::model::parameters::{Calibration, Candidate, Model, Nuisance};
 use super::readings::campaign::Campaign;
-use super::readings::units;
+use super::select::few_rows;
 use super::select::lack_of_fit::{LackOfFit, lack_of_fit};
-use super::select::screening::{Scored, Search, Selection};
+use super::select::screening::Selection;
+use super::select::search::{Scored, Search};
 use super::select::settle::Settled;
 use super::select::unnamed;
 use super::select::unnamed::Better;
-use super::select::{few_rows, next_test};
-use super::verdict::outcome::{
-    Calibrated, Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict,
-};
+use super::verdict::next_test;
+use super::verdict::outcome::{Calibrated, Evidence, Located, Outcome, ReadingResidual, Verdict};
 use super::verdict::{correct, locate};
-use crate::arm::effect::Channel;
+use crate::arm::effect::channel::Channel;
 
 /// Most alternatives an effect may have and still be named.
 const MOST_ALTERNATIVES: usize = 3;
@@ -406,7 +409,7 @@ impl Analysis<'_> {
             Some(sets) => sets.iter().skip(1).collect(),
             None => self.alternatives.iter().flatten().collect(),
         };
-        let mut rivals: Vec<(String, crate::arm::effect::Subject)> = others
+        let mut rivals: Vec<(String, crate::arm::effect::subject::Subject)> = others
             .into_iter()
             .take(4)
             .map(|s| {
@@ -422,7 +425,7 @@ impl Analysis<'_> {
 
     /// The same arm without each of the named effects: what shows one that nothing else could be confirms it. A refit
     /// would not do: it bends stiffnesses that are not in question.
-    fn without_each(&self) -> Vec<(String, crate::arm::effect::Subject)> {
+    fn without_each(&self) -> Vec<(String, crate::arm::effect::subject::Subject)> {
         let best = &self.best;
         (0..best.model.effects.len())
             .map(|i| {

@@ -16,6 +16,7 @@ pub mod fit;
 pub mod forward;
 pub mod model;
 pub mod positions;
+pub mod predict;
 pub mod readings;
 pub mod select;
 pub mod together;

@@ -5,14 +5,16 @@
 use super::analysis;
 use super::fit::kept_out::KeptOut;
 use super::fit::noise::Noise;
+use super::model::estimate::Finding;
 use super::positions;
+use super::positions::analysis::Calibrated;
 use super::positions::outcome::FEWEST;
-use super::positions::{Calibrated, Stage};
+use super::predict::subject;
 use super::readings::campaign::Campaign;
 use super::select::few_rows::FEWEST_ROWS;
 use super::select::lack_of_fit::LackOfFit;
-use super::verdict::outcome::{Finding, Outcome, Verdict};
-use super::verdict::predict::subject;
+use super::verdict::outcome::{Outcome, Verdict};
+use super::verdict::stage::Stage;
 use crate::arm::{Arm, Element};
 use serde_json::json;
 
@@ -24,7 +26,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         return analysis::reconcile(campaign);
     }
     if rows == 0 {
-        return positions::reconcile(campaign);
+        return positions::outcome::reconcile(campaign);
     }
     let left_out = |mut outcome: Outcome, what: String| {
         outcome.reasons.push(format!("{what}: they are left out"));
@@ -36,7 +38,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     }
     if rows < FEWEST_ROWS {
         let what = format!("{rows} rows beside the positions are too few, give at least {FEWEST_ROWS}");
-        return left_out(positions::reconcile(&placed), what);
+        return left_out(positions::outcome::reconcile(&placed), what);
     }
     of_both(campaign, loaded, placed)
 }
@@ -44,15 +46,15 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
 /// What yields is asked of the loaded arm on calibrated geometry, then the positions are asked what is
 /// still missing. Where the loaded arm does not settle it, what the positions find is tried on it.
 fn of_both(campaign: &Campaign, mut loaded: Campaign, placed: Campaign) -> Outcome {
-    let calibrated = positions::calibrated(&placed);
+    let calibrated = positions::analysis::calibrated(&placed);
     loaded.arm = calibrated.arms[0].clone();
     let first = analysis::reconcile(&loaded);
     if settled(first.verdict) {
-        let second = positions::reconcile(&with_what_yields(&placed, &first));
+        let second = positions::outcome::reconcile(&with_what_yields(&placed, &first));
         let corrected = second.corrected.clone();
         return Both { campaign, calibrated, loaded: first, placed: second, told: true, corrected }.outcome();
     }
-    let second = positions::reconcile(&placed);
+    let second = positions::outcome::reconcile(&placed);
     loaded.arm = second.corrected.clone();
     let again = if second.effects.is_empty() { first } else { analysis::reconcile(&loaded) };
     let corrected = again.corrected.clone();
@@ -152,7 +154,7 @@ impl Both<'_> {
             effects,
             suspects,
             kept_out,
-            located: [loaded.located, positions::located(campaign, &placed.residuals)].concat(),
+            located: [loaded.located, positions::outcome::located(campaign, &placed.residuals)].concat(),
             next_tests,
             noise: Noise {
                 outliers: [loaded.noise.outliers, placed.noise.outliers].concat(),

@@ -1,6 +1,8 @@
 //! Single rows that are gross errors: a slipped reflector, a typing error.
 
-use super::{Channel, Kind, Parameter, Place, Scale, Scope, Subject};
+use super::channel::Channel;
+use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
+use super::subject::Subject;
 
 /// As many rows as there are.
 const ROWS: &[Parameter] =
@@ -19,6 +21,7 @@ pub const KIND: Kind = Kind {
     ],
     parameters: |_| ROWS,
     apply,
+    traits: Traits { is_sought: false, ..Traits::USUAL },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

@@ -8,10 +8,11 @@
 //! nodes about the best fit, close together near it; from nodes that are not ruled out their neighbours
 //! are looked at.
 
+use super::descent::data_curvature;
 use super::descent::{Effort, Fit, Weights, fit_below};
-use super::interval::{Interval, data_curvature};
 use super::stats::normal_below;
-use crate::reconcile::forward::Forward;
+use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::model::estimate::Interval;
 use nalgebra::{Cholesky, DMatrix};
 use rayon::prelude::*;
 use std::collections::BTreeMap;

@@ -5,9 +5,9 @@
 //! Levenberg-Marquardt steps with an active set at the bounds; frequencies enter with their exact
 //! sensitivities, statics and bench, which cost little, by differences.
 
-use crate::reconcile::forward::Forward;
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::modal::Solved;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Model;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::f64::consts::TAU;
@@ -417,4 +417,15 @@ impl Fit<'_> {
             .map(|((d, p), w)| (d.value - p) * w)
             .collect()
     }
+}
+
+/// The curvature without most of the prior's width of the knobs: that belongs to the evidence, not to what the
+/// data say.
+pub fn data_curvature(fit: &Fit) -> DMatrix<f64> {
+    let mut curvature = fit.curvature.clone();
+    for (i, knob) in fit.model.knobs().enumerate() {
+        let p = fit.model.calibrated() + i;
+        curvature[(p, p)] -= 11.9 / knob.width(fit.point.u[p]).powi(2);
+    }
+    curvature
 }

@@ -5,8 +5,9 @@
 //! objective has risen by 3.84.
 
 use super::curve_interval::curve_intervals;
-use super::descent::{Effort, Fit, Weights, descent};
-use crate::reconcile::forward::Forward;
+use super::descent::{Effort, Fit, Weights, data_curvature, descent};
+use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::model::estimate::Interval;
 use crate::reconcile::model::parameters::{Calibration, Model};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -16,32 +17,12 @@ const Z95: f64 = 1.959_964;
 /// Rise of the objective at the ends of a 95 % interval.
 const RISE: f64 = 3.841_459;
 
-/// An interval in `u`; an end the data do not bound is `None`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Interval {
-    /// Lower end.
-    pub low: Option<f64>,
-    /// Upper end.
-    pub high: Option<f64>,
-}
-
 /// Standard deviation of every parameter from the curvature.
 pub fn deviations(fit: &Fit) -> Vec<f64> {
     let n = fit.curvature.nrows();
     let covariance =
         data_curvature(fit).try_inverse().unwrap_or_else(|| DMatrix::from_element(n, n, f64::INFINITY));
     (0..n).map(|p| covariance[(p, p)].abs().sqrt()).collect()
-}
-
-/// The curvature without most of the prior's width of the knobs: that belongs to the evidence, not to what the
-/// data say.
-pub fn data_curvature(fit: &Fit) -> DMatrix<f64> {
-    let mut curvature = fit.curvature.clone();
-    for (i, knob) in fit.model.knobs().enumerate() {
-        let p = fit.model.calibrated() + i;
-        curvature[(p, p)] -= 11.9 / knob.width(fit.point.u[p]).powi(2);
-    }
-    curvature
 }
 
 /// Intervals of the effects' knobs, in their order.
@@ -72,7 +53,7 @@ pub fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec<Interv
 
 /// The interval of one number of an effect.
 fn interval(forward: &Forward, best: &Fit, weights: &Weights, effect: usize, p: usize, sd: f64) -> Interval {
-    let crooked = matches!(best.model.effects[effect].kind.name, "lost_motion" | "immersion");
+    let crooked = best.model.effects[effect].kind.traits.is_nonlinear;
     let (low, high) = best.model.bounds(p);
     let end = |side: f64| {
         let straight = best.point.u[p] + side * Z95 * sd;
@@ -83,21 +64,6 @@ fn interval(forward: &Forward, best: &Fit, weights: &Weights, effect: usize, p: 
         value.filter(|v| *v > low && *v < high)
     };
     Interval { low: end(-1.0), high: end(1.0) }
-}
-
-impl Interval {
-    /// So wide that it holds the best value.
-    fn with(self, u: f64) -> Self {
-        Self { low: self.low.map(|v| v.min(u)), high: self.high.map(|v| v.max(u)) }
-    }
-
-    /// With ends moved out, but not beyond bounds.
-    fn wider(self, by: f64, (low, high): (f64, f64)) -> Self {
-        Self {
-            low: self.low.map(|v| v - by).filter(|v| *v > low),
-            high: self.high.map(|v| v + by).filter(|v| *v < high),
-        }
-    }
 }
 
 /// Standard deviation of ln of the torques that calibrated masses leave: a step of the frequencies at a

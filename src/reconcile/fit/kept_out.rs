@@ -6,7 +6,7 @@
 //! pose and stay in every fit.
 
 use super::descent::{Effort, Weights, descent};
-use crate::reconcile::forward::Forward;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Model;
 use rayon::prelude::*;
 

@@ -6,3 +6,4 @@ pub mod interval;
 pub mod kept_out;
 pub mod noise;
 pub mod stats;
+pub mod units;

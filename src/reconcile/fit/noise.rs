@@ -2,10 +2,10 @@
 
 use super::descent::{Fit, Weights};
 use super::stats::median;
-use crate::arm::effect::Channel;
-use crate::reconcile::forward::Forward;
+use crate::arm::effect::channel::Channel;
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::modal::ModalTest;
+use crate::reconcile::forward::prepared::Forward;
 
 /// What the residuals say of the readings' quality.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,8 @@
 //! Which coordinates an arm can have, and a subject as numbers on them.
 
 use crate::arm::LinkModel;
-use crate::arm::effect::{Reading, Subject};
+use crate::arm::effect::channel::Reading;
+use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::JointLaw;
 use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure, Water};
 use crate::mechanics::beam::{Strain, compliances, strains};

@@ -7,9 +7,10 @@
 //! `dμ = yᵀ dC y / μ + xᵀ dM x`.
 
 use super::coefficients::{Coefficients, Layout};
+use super::datum::{Datum, group_of};
 use super::statics::PoseGeometry;
-use super::{Datum, group_of};
-use crate::arm::effect::{Channel, Subject};
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::load::Payload;
 use crate::mechanics::chain::Chain;

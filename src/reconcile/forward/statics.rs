@@ -5,8 +5,9 @@
 //! following the order of the rows.
 
 use super::coefficients::{Coefficients, Layout};
-use super::{Datum, group_of};
-use crate::arm::effect::{Channel, Subject};
+use super::datum::{Datum, group_of};
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::subject::Subject;
 use crate::arm::load::Payload;
 use crate::mechanics::chain::{Item, Posed};
 use crate::mechanics::{Twist, Wrench, displacement_at, force_wrench};

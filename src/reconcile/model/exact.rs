@@ -2,14 +2,15 @@
 //! on the prepared model that fits use.
 
 use crate::arm::LinkModel;
-use crate::arm::effect::{Channel, Subject};
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::JointLaw;
 use crate::arm::load::Payload;
 use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure};
 use crate::mechanics::chain::Chain;
 use crate::mechanics::chain::{Posed, Yielding};
 use crate::mechanics::{Twist, displacement_at};
-use crate::reconcile::forward::{ARCMIN_PER_RAD, bench_twists_rad};
+use crate::reconcile::forward::bench::{ARCMIN_PER_RAD, bench_twists_rad};
 use crate::reconcile::readings::placement::Placement;
 use crate::reconcile::readings::rows::{ModalRow, PositionRow, StaticRow, WindupRow};
 use nalgebra::Vector3;

@@ -1,14 +1,16 @@
 //! A model to fit: the calibration that tolerance allows, always free, and a list of effects.
 
-use crate::arm::effect::{Effect, Kind, Parameter, Place, Scale, Subject};
+use super::estimate::Estimate;
+use super::estimate::Interval;
+use crate::arm::effect::entry::Effect;
+use crate::arm::effect::kind::{Absent, Kind, Parameter, Place, Scale};
+use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::Curve;
 use crate::arm::structure::Piece;
 use crate::arm::{Arm, Element, LinkBody};
-use crate::reconcile::fit::interval::Interval;
-use crate::reconcile::forward::Forward;
 use crate::reconcile::forward::coefficients::Coefficients;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Tolerance;
-use crate::reconcile::verdict::outcome::Estimate;
 
 /// One fitted number of an effect: `u` is what the fit moves, near 1 in size.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,22 +48,21 @@ impl Knob {
     pub(crate) fn new(parameter: &Parameter, component: usize, joint_stiffness: f64) -> Self {
         let expected = parameter.prior;
         let (low, high) = (parameter.low, parameter.high);
-        let absent_is_zero = !matches!(parameter.name, "k1_nm_per_rad" | "k2_nm_per_rad" | "k3_nm_per_rad");
         let (reference, (low, high), expected, absent) = match parameter.scale {
             Scale::Linear => {
                 let size = parameter.typical.abs().max(1e-12);
                 let by_size = |(a, b): (f64, f64)| (a / size, b / size);
-                let absent = match parameter.name {
-                    "added_mass_coefficient" => None,
-                    "gain" => Some(1.0 / size),
-                    _ => Some(0.0),
+                let absent = match parameter.absent {
+                    Absent::AtZero => Some(0.0),
+                    Absent::AtOne => Some(1.0 / size),
+                    Absent::Never => None,
                 };
                 (size, by_size((low, high)), by_size(expected), absent)
             }
-            Scale::Stiffness if absent_is_zero => {
-                (joint_stiffness, (expected.0, expected.1.max(SOFTEST)), expected, Some(0.0))
+            Scale::Stiffness if parameter.absent == Absent::Never => {
+                (joint_stiffness, expected, expected, None)
             }
-            Scale::Stiffness => (joint_stiffness, expected, expected, None),
+            Scale::Stiffness => (joint_stiffness, (expected.0, expected.1.max(SOFTEST)), expected, Some(0.0)),
             Scale::Reciprocal => (1.0, (1.0 / high, 1.0 / low), expected, Some(1.0)),
             Scale::Log => (1.0, (low.ln(), high.ln()), (expected.0.ln(), expected.1.ln()), None),
         };

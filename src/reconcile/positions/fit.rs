@@ -7,8 +7,9 @@
 
 use super::kinematics::{Geometry, Number, Placing};
 use super::loads::Sag;
+use super::normal::Normal;
 use super::springs::{Best, best_springs};
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// Degrees of freedom of the errors.
 const NU: f64 = 4.0;
@@ -235,16 +236,6 @@ pub fn ln_likelihood(errors: &[Vector3<f64>], scale_m: f64) -> f64 {
     errors.iter().map(one).sum()
 }
 
-/// Weighted normal equations of a model: its numbers, its effects, and further columns.
-pub struct Normal {
-    /// Curvature, priors included.
-    pub curvature: DMatrix<f64>,
-    /// Gradient towards the readings.
-    pub gradient: DVector<f64>,
-    /// How many of the columns belong to the model.
-    pub own: usize,
-}
-
 /// The normal equations at a model; `further` gives a sample's further columns \[m per unit\].
 pub fn normal(
     samples: &[&Sample],
@@ -295,29 +286,6 @@ pub fn normal(
         gradient[i] -= precision * compliance;
     }
     Normal { curvature, gradient, own }
-}
-
-/// A factorized curvature, scaled to a unit diagonal.
-pub struct Factor {
-    cholesky: Cholesky<f64, Dyn>,
-    diagonal: DVector<f64>,
-}
-
-impl Factor {
-    /// Of the rows and columns that are free.
-    pub fn new(curvature: &DMatrix<f64>, free: &[usize]) -> Option<Self> {
-        let sub = DMatrix::from_fn(free.len(), free.len(), |i, j| curvature[(free[i], free[j])]);
-        let diagonal = sub.diagonal().map(|d| 1.0 / d.max(1e-300).sqrt());
-        let scaled = DMatrix::from_fn(free.len(), free.len(), |i, j| {
-            diagonal[i] * sub[(i, j)] * diagonal[j] + if i == j { 1e-12 } else { 0.0 }
-        });
-        Some(Self { cholesky: Cholesky::new(scaled)?, diagonal })
-    }
-
-    /// Solves for one right side.
-    pub fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
-        self.cholesky.solve(&right.component_mul(&self.diagonal)).component_mul(&self.diagonal)
-    }
 }
 
 /// One weighted Gauss-Newton step of the geometry; the compliances are set to their best that are springs.

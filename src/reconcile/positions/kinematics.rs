@@ -1,7 +1,7 @@
 //! Where a point on the tool is, for any calibrated geometry, and how it moves with each number of it.
 
 use super::tree::Tree;
-use crate::arm::effect::transmission_error::{transmission_rad, transmission_waves};
+use crate::arm::effect::waves::{transmission_rad, transmission_waves};
 use crate::arm::structure::{JointAngle, Piece};
 use crate::arm::{Arm, Element};
 use crate::reconcile::readings::campaign::PositionsSpec;

@@ -7,6 +7,10 @@
 
 use super::kinematics::Geometry;
 use super::tree::Tree;
+use crate::arm::effect::kind::{Kind, Yields};
+use crate::arm::effect::{
+    base_compliance, bearing_tilt, connection_compliance, frame_compliance, joint_compliance,
+};
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::load::Payload;
 use crate::arm::structure::{FrameCompliance, Piece, Structure};
@@ -26,8 +30,10 @@ pub const FRAME_ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (0, 1), (0, 2), 
 /// What yields, as a candidate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Yielding {
-    /// Effect.
+    /// Name of the effect.
     pub effect: &'static str,
+    /// What turns.
+    pub yields: Yields,
     /// Place.
     pub at: String,
 }
@@ -52,19 +58,20 @@ pub fn candidates(tree: &Tree) -> Vec<Yielding> {
     let mut out = Vec::new();
     for piece in &tree.pieces {
         if let Piece::Joint(joint) = piece {
-            let effect = if joint.law.is_rigid() { "joint_compliance" } else { "connection_compliance" };
-            out.push(Yielding { effect, at: joint.name.clone() });
-            out.push(Yielding { effect: "bearing_tilt", at: joint.name.clone() });
+            let rigid = joint.law.is_rigid();
+            let about_axis = if rigid { &joint_compliance::KIND } else { &connection_compliance::KIND };
+            out.extend(Yielding::new(about_axis, &joint.name));
+            out.extend(Yielding::new(&bearing_tilt::KIND, &joint.name));
         }
     }
-    out.push(Yielding { effect: "base_compliance", at: "base".into() });
-    out.push(Yielding { effect: "frame_compliance", at: "base".into() });
+    out.extend(Yielding::new(&base_compliance::KIND, "base"));
+    out.extend(Yielding::new(&frame_compliance::KIND, "base"));
     let behind = tree.arms.iter().flat_map(|chain| chain.windows(2));
     for (joint, link) in behind.map(|pair| (&tree.pieces[pair[0]], &tree.pieces[pair[1]])) {
         if let (Piece::Joint(_), Piece::Link(link)) = (joint, link)
-            && !out.iter().any(|c| c.effect == "frame_compliance" && c.at == link.name)
+            && !out.iter().any(|c| c.yields == Yields::Frame && c.at == link.name)
         {
-            out.push(Yielding { effect: "frame_compliance", at: link.name.clone() });
+            out.extend(Yielding::new(&frame_compliance::KIND, &link.name));
         }
     }
     out
@@ -78,19 +85,34 @@ impl Tree {
             (Piece::Joint(joint), Piece::Link(link)) => joint.name == other.at && link.name == frame.at,
             _ => false,
         };
-        frame.effect == "frame_compliance"
-            && other.effect != "frame_compliance"
+        frame.yields == Yields::Frame
+            && other.yields != Yields::Frame
             && (frame.at == other.at || self.arms.iter().any(|chain| chain.windows(2).any(is_behind)))
     }
 }
 
 impl Yielding {
+    /// A kind at a place; `None` if positions do not show that it yields.
+    fn new(kind: &'static Kind, at: &str) -> Option<Self> {
+        kind.traits.yields.map(|yields| Self { effect: kind.name, yields, at: at.into() })
+    }
+
     /// How many compliances it has: of a frame xx, yy, xy, xz, yz, and zz where weights can turn it so.
     pub fn count(&self) -> usize {
-        match (self.effect, self.at.as_str()) {
-            ("frame_compliance", "base") => 5,
-            ("frame_compliance", _) => 6,
+        match (self.yields, self.at.as_str()) {
+            (Yields::Frame, "base") => 5,
+            (Yields::Frame, _) => 6,
             _ => 1,
+        }
+    }
+
+    /// The name of its element in the chain.
+    fn element(&self) -> String {
+        let is_base_tilt = self.effect == base_compliance::KIND.name;
+        match self.yields {
+            Yields::AboutAxis => self.at.clone(),
+            Yields::Tilt if is_base_tilt => self.at.clone(),
+            Yields::Tilt | Yields::Frame => format!("{}.{}", self.at, self.effect),
         }
     }
 }
@@ -257,8 +279,8 @@ fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Vec<Ma
     candidates
         .iter()
         .map(|candidate| {
-            let mut list = of(&share_name(candidate));
-            for linkage in unit.chain.linkages().iter().filter(|l| l.driver == share_name(candidate)) {
+            let mut list = of(&candidate.element());
+            for linkage in unit.chain.linkages().iter().filter(|l| l.driver == candidate.element()) {
                 for (driver, passive) in list.iter_mut().zip(of(&linkage.passive)) {
                     driver.0 += passive.0 * linkage.factor;
                     driver.1 += passive.1 * linkage.factor;
@@ -314,11 +336,4 @@ fn answers<'a>(unit: &'a Posed, own: &Ready) -> Vec<(&'a str, Vec<Answer>)> {
 /// Generalized force of gravity on a twist, per direction of gravity.
 fn pull(twist: &Twist, weight_n: f64, moment_nm: &Vector3<f64>) -> Vector3<f64> {
     linear(twist) * weight_n + angular(twist).cross(moment_nm)
-}
-
-fn share_name(candidate: &Yielding) -> String {
-    match candidate.effect {
-        "bearing_tilt" | "frame_compliance" => format!("{}.{}", candidate.at, candidate.effect),
-        _ => candidate.at.clone(),
-    }
 }

@@ -1,11 +1,12 @@
 //! What to measure next: the pose in which the model differs most from what it is to be told from; where no
 //! pose tells them apart, or nothing in the library fits, another kind of test.
 
+use super::analysis::{Positions, samples};
 use super::fit::Fitted;
-use super::{Point, Positions, samples};
+use super::points::Point;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
-use crate::reconcile::select::next_test::{ENOUGH, spread_pose};
+use crate::reconcile::verdict::next_test::{ENOUGH, spread_pose};
 use crate::reconcile::verdict::outcome::{NextTest, Verdict};
 
 /// Standard deviations that one reading must tell: of less a hundred readings would not tell enough.

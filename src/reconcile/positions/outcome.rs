@@ -1,23 +1,26 @@
 //! What a campaign of absolute positions concludes.
 
+use super::analysis::{Positions, analyze};
 use super::fit::Fitted;
 use super::kinematics::Number;
 use super::loads::FRAME_ENTRIES;
 use super::springs::frame_matrix;
 use super::structure::{MATERIAL_VARIANCE, MEDIAN_LENGTH};
-use super::{Positions, Stage, analyze, transmission};
+use super::transmission;
 use crate::arm::Arm;
-use crate::arm::effect::{Channel, Effect};
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::entry::Effect;
+use crate::arm::effect::kind::Yields;
 use crate::arm::structure::Piece;
 use crate::reconcile::fit::kept_out::{KeptOut, rms};
 use crate::reconcile::fit::noise::Noise;
+use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
 use crate::reconcile::verdict::correct;
-use crate::reconcile::verdict::outcome::{
-    Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict,
-};
-use crate::reconcile::verdict::report::CORRECTED_FILE;
+use crate::reconcile::verdict::files::CORRECTED_FILE;
+use crate::reconcile::verdict::outcome::{Evidence, Located, Outcome, ReadingResidual, Verdict};
+use crate::reconcile::verdict::stage::Stage;
 use serde_json::{Value, json};
 
 /// Fewest positions that can speak.
@@ -93,16 +96,6 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         other_corrected: corrected[1..].to_vec(),
         stages: found.stages.clone(),
         effects,
-    }
-}
-
-impl Stage {
-    /// As in `verdict.json`.
-    pub fn json(&self) -> Value {
-        json!({
-            "added": self.added, "dropped": self.dropped, "fitted_median_mm": self.fitted_median_mm, "kept_out_median_mm": self.median_mm,
-            "kept_out_mean_mm": self.mean_mm, "kept_out_largest_mm": self.max_mm,
-        })
     }
 }
 
@@ -187,9 +180,11 @@ impl Positions {
     fn finding(&self, i: usize, rivals: &[(usize, Fitted)]) -> Finding {
         let candidate = &self.candidates[self.fitted.effects[i]];
         let (c, sd) = (&self.fitted.compliances[i], &self.fitted.deviations[i]);
-        let parameters = match candidate.effect {
-            "frame_compliance" => frame_parameters(c, sd),
-            _ => vec![("stiffness_nm_per_rad".into(), vec![stiffness(c[0], sd[0])])],
+        let parameters = match candidate.yields {
+            Yields::Frame => frame_parameters(c, sd),
+            Yields::AboutAxis | Yields::Tilt => {
+                vec![("stiffness_nm_per_rad".into(), vec![stiffness(c[0], sd[0])])]
+            }
         };
         let names = rivals.iter().map(|(r, _)| &self.candidates[*r]);
         Finding {

@@ -3,10 +3,11 @@
 use super::kinematics::{Geometry, Placing};
 use super::loads::sags;
 use super::tree::Tree;
-use crate::arm::effect::{Channel, Subject};
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::subject::Subject;
 use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::readings::placement::Placed;
 use crate::reconcile::readings::placement::Stand;
-use crate::reconcile::verdict::predict::Placed;
 use nalgebra::Rotation3;
 
 /// The positions that the campaign's arms would show \[mm\]; `subjects`: each arm with all of its effects.

@@ -1,9 +1,11 @@
 //! Which candidates yield: each is screened by the model made linear, the most promising are fitted in full,
 //! and what is worth its price stays if poses kept out of the fit confirm it.
 
-use super::Positions;
-use super::fit::{Factor, Fitted, Sample, fit, ln_likelihood, normal, scale};
+use super::analysis::Positions;
+use super::fit::{Fitted, Sample, fit, ln_likelihood, normal, scale};
+use super::normal::Factor;
 use super::structure::squares;
+use crate::arm::effect::kind::Yields;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{DMatrix, Vector3};
 use rayon::prelude::*;
@@ -16,9 +18,9 @@ pub const TIE: f64 = 3.0;
 impl Positions {
     /// Adds the effect of a class that raises the likelihood most, if it is worth its price and poses kept
     /// out confirm it; drops what it makes needless.
-    pub(crate) fn add(&mut self, campaign: &Campaign, class: &[&str]) -> bool {
+    pub(crate) fn add(&mut self, campaign: &Campaign, class: Yields) -> bool {
         let base = &self.fitted;
-        let tried = self.best_additions(base, |c| class.contains(&self.candidates[c].effect));
+        let tried = self.best_additions(base, |c| self.candidates[c].yields == class);
         let gain = |(_, f): &(usize, Fitted)| {
             f.ln_likelihood - self.prices(&f.effects) - (base.ln_likelihood - self.prices(&base.effects))
         };

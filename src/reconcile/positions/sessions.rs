@@ -5,9 +5,11 @@
 //! row is tried as the first of a new session, by the gain of the model made linear; the earlier rows then
 //! have an offset or a placement of their own.
 
-use super::fit::{Factor, Fitted, Sample, fit, normal};
+use super::analysis::Positions;
+use super::fit::{Fitted, Sample, fit, normal};
 use super::kinematics::Number;
-use super::{Point, Positions};
+use super::normal::Factor;
+use super::points::Point;
 use nalgebra::{DMatrix, Vector3};
 
 /// Fewest positions of a session.

@@ -4,8 +4,8 @@
 //! at zero. The matrix of a frame is written as `L Lᵀ`, which is a spring whatever `L` is, and
 //! the parabola made as small as it gets over the entries of `L` and all other numbers.
 
-use super::fit::{Factor, Normal};
 use super::loads::FRAME_ENTRIES;
+use super::normal::{Factor, Normal};
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix2, Matrix3, Vector2};
 use std::ops::Range;
 

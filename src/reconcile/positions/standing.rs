@@ -1,8 +1,9 @@
 //! Where the calibrated arms stand: session by session, and the place that suits all sessions best.
 
+use super::analysis::Positions;
 use super::fit::{Fitted, Sample, fit};
 use super::kinematics::{Geometry, Number};
-use super::{Point, Positions, points};
+use super::points::{Point, points};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::placement::{Placement, Session, Stand, pose_mark, test_numbers};
 use nalgebra::Rotation3;

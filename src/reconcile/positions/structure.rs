@@ -4,12 +4,16 @@
 //! still fit taken out, the sum of squares they explain is chi-squared if there is nothing, in units of the
 //! fitted scale of the errors. It is a tenth of what is left, or more, that makes a structure material.
 
-use super::Positions;
-use super::fit::{Factor, Sample, normal};
-use crate::arm::effect::Channel;
+use super::analysis::Positions;
+use super::fit::{Sample, normal};
+use super::normal::Factor;
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::kind::Yields;
 use crate::reconcile::fit::stats::{ln_chi_squared_tail, median};
 use crate::reconcile::readings::campaign::Campaign;
-use crate::reconcile::select::lack_of_fit::{LackOfFit, Structure, order_functions, waves};
+use crate::reconcile::select::lack_of_fit::LackOfFit;
+use crate::reconcile::select::structure::Structure;
+use crate::reconcile::select::waves::{order_functions, waves};
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 
 /// Part of the errors' sum of squares that a structure must account for to matter.
@@ -113,9 +117,7 @@ struct Asker<'a> {
 
 impl<'a> Asker<'a> {
     fn new(found: &'a Positions, campaign: &Campaign) -> Self {
-        let joint = |c: &usize| {
-            !matches!(found.candidates[*c].effect, "bearing_tilt" | "base_compliance" | "frame_compliance")
-        };
+        let joint = |c: &usize| found.candidates[*c].yields == Yields::AboutAxis;
         let torque = |c: usize| found.samples.iter().map(|s| s.sag.levers[c].1.abs()).fold(1e-9, f64::max);
         let joints: Vec<(usize, f64)> =
             (0..found.candidates.len()).filter(joint).map(|c| (c, torque(c))).collect();

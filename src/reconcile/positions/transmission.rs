@@ -1,16 +1,17 @@
 //! Joints that turn unevenly: the error of a gear or its sensor, once and twice a turn.
 
-use super::Positions;
+use super::analysis::Positions;
 use super::fit::{Fitted, Sample, fit};
 use super::kinematics::Number;
 use super::search::{FULL_FITS, TIE};
-use crate::arm::effect::transmission_error::transmission_waves;
+use crate::arm::effect::transmission_error;
+use crate::arm::effect::waves::transmission_waves;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
 /// Name of the effect.
-pub const EFFECT: &str = "transmission_error";
+pub const EFFECT: &str = transmission_error::KIND.name;
 
 /// The numbers of a driven joint's error.
 pub fn numbers(joint: usize) -> impl Iterator<Item = Number> {

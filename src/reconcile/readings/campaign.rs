@@ -4,7 +4,8 @@ use super::rows::{
     ModalRow, PositionRow, StaticRow, WindupRow, modal_rows, position_rows, static_rows, windup_rows,
 };
 use super::table::Table;
-use crate::arm::effect::{Channel, KINDS};
+use crate::arm::effect::catalogue::KINDS;
+use crate::arm::effect::channel::Channel;
 use crate::arm::file::read_arm;
 use crate::arm::{Arm, Element};
 use crate::catalog::Catalogs;

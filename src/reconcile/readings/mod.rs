@@ -4,4 +4,3 @@ pub mod campaign;
 pub mod placement;
 pub mod rows;
 pub mod table;
-pub mod units;

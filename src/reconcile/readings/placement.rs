@@ -5,6 +5,7 @@
 //! the campaign were; any other row has the place that suits all sessions best.
 
 use super::rows::PositionRow;
+use crate::arm::Arm;
 use nalgebra::{Matrix3, Vector3};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -125,6 +126,15 @@ pub fn pose_mark(pose_deg: &[f64]) -> String {
     // angles that differ by rounding on the way through a file are the same
     let angles: String = pose_deg.iter().map(|angle| format!("{angle:.6},")).collect();
     blake3::hash(angles.as_bytes()).to_hex()[..8].to_string()
+}
+
+/// An arm with where it stands.
+#[derive(Debug, Clone)]
+pub struct Placed {
+    /// The arm.
+    pub arm: Arm,
+    /// Its placement, for absolute positions.
+    pub placement: Placement,
 }
 
 #[cfg(test)]

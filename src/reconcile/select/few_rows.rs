@@ -7,15 +7,16 @@
 //! share, masses and stiffnesses included, is what the readings say; a number on which they differ is one
 //! that the readings cannot give.
 
-use super::screening::{MOST_EFFECTS, Scored, Search, Selection};
-use crate::arm::effect::Subject;
+use super::screening::{MOST_EFFECTS, Selection};
+use super::search::{Scored, Search};
+use crate::arm::effect::subject::Subject;
 use crate::arm::structure::Piece;
 use crate::reconcile::fit::descent::{Effort, Fit, Weights, fit};
 use crate::reconcile::fit::interval::intervals;
 use crate::reconcile::fit::stats::ln_chi_squared_tail;
+use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::model::parameters::{Calibration, Knob, Model};
 use crate::reconcile::readings::campaign::Campaign;
-use crate::reconcile::verdict::outcome::{Estimate, Finding};
 use rayon::prelude::*;
 
 /// Fewest rows from which one model can be chosen.

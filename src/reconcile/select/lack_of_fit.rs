@@ -5,30 +5,16 @@
 //! model could still fit removed, `zᵀ S⁻¹ z` with `z = Xᵀr`, `S = XᵀX - XᵀJ (JᵀWJ)⁻¹ JᵀX` is
 //! chi-squared if there is nothing. The smooth laws of `unnamed` are asked beside these.
 
+use super::structure::Structure;
 use super::unnamed;
-use crate::arm::effect::Channel;
+use super::waves::{order_functions, waves};
+use crate::arm::effect::channel::Channel;
 use crate::reconcile::fit::descent::{Fit, Weights};
 use crate::reconcile::fit::stats::ln_chi_squared_tail;
-use crate::reconcile::forward::Forward;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Calibration;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
-use std::f64::consts::TAU;
-
-/// One question put to the residuals.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Structure {
-    /// Channel; all of them together if none.
-    pub channel: Option<Channel>,
-    /// What the residuals would follow, in words.
-    pub follows: String,
-    /// Test statistic.
-    pub statistic: f64,
-    /// Its degrees of freedom.
-    pub dof: f64,
-    /// ln of the probability of so large a statistic, times the number of questions.
-    pub ln_p: f64,
-}
 
 /// The answer to all questions.
 #[derive(Debug, Clone, PartialEq)]
@@ -273,18 +259,6 @@ fn spread(forward: &Forward, channel: Channel, value: impl Fn(usize, usize) -> f
     out
 }
 
-/// Sine and cosine of an angle, once and twice a turn.
-pub fn waves(angle_deg: f64) -> [f64; 4] {
-    let a = angle_deg.to_radians();
-    [a.sin(), a.cos(), (2.0 * a).sin(), (2.0 * a).cos()]
-}
-
-/// Slow and fast waves and a line over the order of the rows.
-pub fn order_functions(part: f64) -> [f64; 6] {
-    let (a, b) = (TAU * part, 2.0 * TAU * part);
-    [part - 0.5, (part - 0.5).powi(2), a.sin(), a.cos(), b.sin(), b.cos()]
-}
-
 fn static_questions(campaign: &Campaign, forward: &Forward, fit: &Fit) -> Vec<(String, Vec<Vec<f64>>)> {
     let rows = &campaign.statics;
     let row = |i: usize| i / 3;
@@ -363,15 +337,4 @@ fn windup_questions(campaign: &Campaign, forward: &Forward) -> Vec<(String, Vec<
             (format!("the torque on {name}"), regressors)
         })
         .collect()
-}
-
-impl Structure {
-    /// The structure in one line.
-    pub fn sentence(&self) -> String {
-        let of = self.channel.map_or(String::new(), |c| format!(" of {}", c.word()));
-        format!(
-            "the residuals{of} follow {} (chi-squared {:.0} on {} degrees of freedom)",
-            self.follows, self.statistic, self.dof
-        )
-    }
 }

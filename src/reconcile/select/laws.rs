@@ -3,12 +3,13 @@
 //! another mass or wall than drawn; a reading as a smooth function of the true value, of the direction, of the kind of
 //! load or of the time in a pose. A law is a few columns of changes of the readings, made linear about a fit.
 
-use super::lack_of_fit::waves;
-use crate::arm::effect::Channel;
+use super::waves::waves;
+use crate::arm::effect::channel::Channel;
 use crate::mechanics::beam::Strain;
 use crate::reconcile::fit::descent::{Fit, change_to};
+use crate::reconcile::forward::bench::ARCMIN_PER_RAD;
 use crate::reconcile::forward::coefficients::Coefficients;
-use crate::reconcile::forward::{ARCMIN_PER_RAD, Forward};
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::DVector;
 use std::f64::consts::TAU;

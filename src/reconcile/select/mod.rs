@@ -3,7 +3,9 @@
 pub mod few_rows;
 pub mod lack_of_fit;
 pub mod laws;
-pub mod next_test;
 pub mod screening;
+pub mod search;
 pub mod settle;
+pub mod structure;
 pub mod unnamed;
+pub mod waves;

@@ -5,14 +5,12 @@
 //! far, the best are fitted in full. From two effects on each is dropped and swapped against all others
 //! until nothing improves, which repairs greedy mistakes.
 
+use super::search::{Scored, Search};
 use super::unnamed::{self, Better};
 use crate::reconcile::fit::descent::{
-    Effort, Fit, Normal, Point, Weights, bounded_step, change, descent, evaluate, fit, jacobian, normal,
-    objective,
+    Effort, Fit, Normal, Point, bounded_step, change, descent, evaluate, fit, jacobian, normal, objective,
 };
-use crate::reconcile::forward::Forward;
-use crate::reconcile::model::parameters::{Candidate, Model, Nuisance};
-use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::model::parameters::Model;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::cell::OnceCell;
@@ -25,49 +23,14 @@ const FIRST_WORTH: f64 = 0.0;
 const CREDIBLE: f64 = 0.95;
 /// Models this far behind after a few steps are not fitted further.
 const HOPELESS: f64 = 40.0;
-/// Smoothing of a gear's curve, in ln of the torque: so that a descent sees past the frequencies' steps, and so
-/// that they are nearly sharp.
-const WIDE: f64 = 0.1;
-const NARROW: f64 = 0.01;
-/// Rise of the objective beyond which a break point is not followed further.
-const RULED_OUT: f64 = 14.0;
 /// Models within this score of a stage's best are worth a closer look.
 const PROMISING: f64 = 12.0;
 /// Most effects.
 pub const MOST_EFFECTS: usize = 3;
-/// Objective per datum above which a model cannot become the explanation, whatever the declared deviations.
-const BEYOND_HOPE: f64 = 3.0;
 /// Rise of the evidence over the best effects by which a law without a name settles that they are not it.
 const SETTLES: f64 = 12.0;
 /// Candidates fitted in full at each stage.
 const FULL_FITS: usize = 7;
-
-/// All that a search needs.
-pub struct Search<'a> {
-    /// Campaign.
-    pub campaign: &'a Campaign,
-    /// Prepared campaign.
-    pub forward: &'a Forward,
-    /// Calibration.
-    pub nuisance: &'a Nuisance,
-    /// Candidates.
-    pub candidates: &'a [Candidate],
-    /// Weights of the data.
-    pub weights: &'a Weights,
-}
-
-/// A model with its score.
-#[derive(Clone)]
-pub struct Scored {
-    /// Indices of the candidates in it.
-    pub effects: Vec<usize>,
-    /// Its parameters.
-    pub u: Vec<f64>,
-    /// Evidence less ln of the number of candidates for each effect.
-    pub score: f64,
-    /// `Σ ρ(r) + Σ u²`.
-    pub objective: f64,
-}
 
 /// What a search found.
 pub struct Selection {
@@ -82,143 +45,6 @@ pub struct Selection {
 }
 
 impl<'a> Search<'a> {
-    /// A model of the named candidates.
-    pub fn model(&self, effects: &[usize]) -> Model<'a> {
-        Model::of(self.nuisance, self.candidates, effects)
-    }
-
-    /// Fits the model of the named candidates from `u`.
-    pub fn fit(&self, effects: &[usize], u: &[f64], effort: Effort) -> Fit<'a> {
-        self.fit_model(self.model(effects), u, effort)
-    }
-
-    /// Fits a model from `u`; where the last effect is a gear's curve, its break points' steps in the
-    /// frequencies are first smoothed, then sharpened.
-    fn fit_model(&self, mut model: Model<'a>, u: &[f64], effort: Effort) -> Fit<'a> {
-        let mut start = u.to_vec();
-        if !self.forward.modal.is_empty()
-            && model.effects.last().is_some_and(|e| e.kind.name == "soft_windup")
-        {
-            for smoothing in [WIDE, 0.03, NARROW] {
-                model.smoothing = smoothing;
-                let steps = Effort { steps: 8, tolerance: 0.05 };
-                start = self.descent(&model, &start, steps).u;
-            }
-            model.smoothing = 0.0;
-        }
-        fit(self.forward, &model, &start, self.weights, effort)
-    }
-
-    fn descent(&self, model: &Model, u: &[f64], effort: Effort) -> Point {
-        descent(self.forward, model, u, self.weights, effort, f64::INFINITY)
-    }
-
-    /// A few steps, enough to see whether a model is near; where its last effect is a gear's curve, after a few
-    /// with the frequencies' steps smoothed widely.
-    fn rough(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
-        let mut model = self.model(effects);
-        let mut start = u.to_vec();
-        let few = Effort { steps: 4, tolerance: 0.02 };
-        if model.effects.last().is_some_and(|e| e.kind.name == "soft_windup") {
-            let smoothed = Effort { steps: 6, tolerance: 0.05 };
-            model.smoothing = WIDE;
-            start = self.descent(&model, &start, smoothed).u;
-            model.smoothing = NARROW;
-        }
-        fit(self.forward, &model, &start, self.weights, few)
-    }
-
-    /// Fits a model to the end: the break points of a gear's curve are moved in steps, because the
-    /// frequencies' steps at them hide lower ground from a descent.
-    pub fn polish(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
-        let model = self.model(effects);
-        let breaks = model.break_points();
-        if breaks.is_empty() {
-            return fit(self.forward, &model, u, self.weights, Effort::default());
-        }
-        let mut best = self.descent(&model, u, Effort::default());
-        for reach in [0.3, 0.12, 0.04] {
-            for &p in &breaks {
-                let moves = [-1.0, -0.5, 0.5, 1.0].map(|m| best.u[p] + m * reach);
-                let tried: Vec<Point> =
-                    moves.into_par_iter().filter_map(|v| self.held_then_free(&model, &best, p, v)).collect();
-                for point in tried {
-                    if point.objective < best.objective - 1e-6 {
-                        best = point;
-                    }
-                }
-            }
-        }
-        self.centre_breaks(model, best)
-    }
-
-    /// A model that may be the explanation, fitted to the end if it has break points: else a further effect is
-    /// found that only makes good what the descent left.
-    fn settled(&self, scored: Scored) -> Scored {
-        if self.model(&scored.effects).break_points().is_empty() || !self.may_explain(&scored) {
-            return scored;
-        }
-        let polished = self.scored(&scored.effects, &self.polish(&scored.effects, &scored.u));
-        if polished.score > scored.score { polished } else { scored }
-    }
-
-    /// Moves break points from the brink of a frequency's step into the middle of where the objective is
-    /// flat, so that a small change of the torques does not carry a test across.
-    fn centre_breaks(&self, model: Model<'a>, best: Point) -> Fit<'a> {
-        const STEP: f64 = 0.002;
-        let mut u = best.u.clone();
-        for p in model.break_points() {
-            let flat = |side: f64| {
-                let rises = (1..=10).map(|i| {
-                    let mut moved = u.clone();
-                    moved[p] += side * STEP * i as f64;
-                    evaluate(self.forward, &model, &moved, self.weights).objective
-                });
-                rises.take_while(|o| *o < best.objective + 1.0).count() as f64
-            };
-            let middle = 0.5 * STEP * (flat(1.0) - flat(-1.0));
-            u[p] += middle;
-        }
-        let mut held = model.clone();
-        held.held = model.break_points().into_iter().map(|p| (p, u[p])).collect();
-        let centred = self.descent(&held, &u, Effort { steps: 4, tolerance: 0.02 });
-        let end = if centred.objective > best.objective + 4.0 { best } else { centred };
-        fit(self.forward, &model, &end.u, self.weights, Effort { steps: 0, tolerance: 0.0 })
-    }
-
-    /// Descends with a parameter held at a value, then lets it go, unless the readings rule the value out.
-    fn held_then_free(&self, model: &Model, from: &Point, parameter: usize, value: f64) -> Option<Point> {
-        let effort = Effort { steps: 5, tolerance: 0.02 };
-        let mut held = model.clone();
-        held.held = vec![(parameter, value)];
-        let limit = from.objective + RULED_OUT;
-        let end = descent(self.forward, &held, &from.u, self.weights, effort, limit);
-        (end.objective <= limit).then(|| self.descent(model, &end.u, effort))
-    }
-
-    /// The score of a fit.
-    pub fn scored(&self, effects: &[usize], fit: &Fit) -> Scored {
-        let penalty = effects.len() as f64 * (self.places() as f64).ln();
-        Scored {
-            effects: effects.to_vec(),
-            u: fit.point.u.clone(),
-            score: fit.evidence - penalty,
-            objective: fit.point.objective,
-        }
-    }
-
-    /// Whether a model comes near enough to the readings to be worth refining.
-    pub fn may_explain(&self, scored: &Scored) -> bool {
-        scored.objective < BEYOND_HOPE * self.forward.data.len() as f64
-    }
-
-    /// In how many ways an effect could be named; a unit slip counts once a channel.
-    pub fn places(&self) -> usize {
-        let mut labels: Vec<String> = self.candidates.iter().map(|c| c.label()).collect();
-        labels.dedup();
-        labels.len()
-    }
-
     /// Looks for the effects; from two effects on a model found before is a better start than nothing.
     pub fn run(&self, before: Option<&Scored>) -> Selection {
         let bare_model = self.model(&[]);
@@ -338,16 +164,6 @@ impl<'a> Search<'a> {
         parts
     }
 
-    /// A model without one of its effects, and where to start it from.
-    pub fn without(&self, scored: &Scored, effect: usize) -> (Vec<usize>, Vec<f64>) {
-        let model = self.model(&scored.effects);
-        let first = model.first_knob(effect);
-        let (mut effects, mut u) = (scored.effects.clone(), scored.u.clone());
-        effects.remove(effect);
-        u.drain(first..first + model.effects[effect].knobs.len());
-        (effects, u)
-    }
-
     /// The best models with one more effect; those that were fitted before are not fitted again.
     fn extend(&self, base: &Scored, seen: &[Scored]) -> Vec<Scored> {
         let screened = self.screen(base);
@@ -380,7 +196,7 @@ impl<'a> Search<'a> {
     /// threes only those of a curve that is new, for the others have been found in pairs.
     fn regrid(&self, fits: &mut [Scored], least: f64) {
         for scored in fits.iter_mut().filter(|s| s.score > least && self.may_explain(s)) {
-            let curve = scored.effects.iter().rposition(|&e| self.candidates[e].kind.name == "soft_windup");
+            let curve = scored.effects.iter().rposition(|&e| self.candidates[e].kind.traits.is_gear_curve);
             let Some(position) = curve else { continue };
             if position + 1 < scored.effects.len() && scored.effects.len() > 2 {
                 continue;
@@ -438,7 +254,7 @@ impl<'a> Search<'a> {
     fn best_start(
         &self,
         base: &Model<'a>,
-        here: &crate::reconcile::fit::descent::Point,
+        here: &Point,
         slopes: &DMatrix<f64>,
         index: usize,
     ) -> Option<(usize, Vec<f64>, f64)> {
@@ -457,13 +273,7 @@ impl<'a> Search<'a> {
     }
 
     /// Best parameters and score of a model made linear about `here` plus the candidate's start.
-    fn linear(
-        &self,
-        model: &Model,
-        here: &crate::reconcile::fit::descent::Point,
-        slopes: &DMatrix<f64>,
-        start: &[f64],
-    ) -> (Vec<f64>, f64) {
+    fn linear(&self, model: &Model, here: &Point, slopes: &DMatrix<f64>, start: &[f64]) -> (Vec<f64>, f64) {
         let mut u = here.u.clone();
         u.extend_from_slice(start);
         let base = change(self.forward, model, here, &u);

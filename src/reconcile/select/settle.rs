@@ -3,11 +3,12 @@
 //! without the wrong rows.
 
 use super::few_rows;
-use super::screening::{Scored, Search, Selection};
+use super::screening::Selection;
+use super::search::{Scored, Search};
 use crate::reconcile::fit::descent::{Effort, Fit, Weights, fit};
 use crate::reconcile::fit::noise::{Noise, gross_lists};
-use crate::reconcile::forward::Forward;
 use crate::reconcile::forward::coefficients::Coefficients;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::{Candidate, Model, Nuisance};
 use crate::reconcile::readings::campaign::Campaign;
 

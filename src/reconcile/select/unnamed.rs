@@ -5,12 +5,12 @@
 //! against general [`laws`](super::laws), fitted jointly with the calibration, beside the named effects or
 //! instead of them.
 
-use super::lack_of_fit::Structure;
 use super::laws::{Law, laws};
-use super::screening::{Scored, Search};
+use super::search::{Scored, Search};
+use super::structure::Structure;
 use crate::reconcile::fit::descent::{Effort, Fit, Weights, normal, objective};
 use crate::reconcile::fit::stats::ln_chi_squared_tail;
-use crate::reconcile::forward::Forward;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;

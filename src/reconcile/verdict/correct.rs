@@ -1,10 +1,11 @@
 //! The corrected arm: calibrated values in place of nominal ones, effects added, each with its source.
 
-use super::outcome::{Calibrated, Finding, Verdict};
-use crate::arm::effect::Place;
+use super::outcome::{Calibrated, Verdict};
+use crate::arm::effect::kind::Place;
 use crate::arm::{Arm, Element, LinkBody};
 use crate::reconcile::fit::descent::Fit;
-use crate::reconcile::forward::Forward;
+use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::model::estimate::Finding;
 use crate::reconcile::model::parameters::Calibration;
 use crate::reconcile::readings::campaign::Campaign;
 use serde_json::{Value, json};

@@ -1,10 +1,10 @@
 //! Where the gap sits: the readings split by channel, branch, load, mode, joint and pose.
 
 use super::outcome::Located;
-use crate::arm::effect::Channel;
+use crate::arm::effect::channel::Channel;
 use crate::reconcile::fit::descent::{Fit, Weights};
 use crate::reconcile::fit::kept_out::rms;
-use crate::reconcile::forward::Forward;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
 
 /// Poses listed.

@@ -1,13 +1,14 @@
 //! What `reconcile` concludes.
 
-use super::report::{CORRECTED_FILE, corrected_file};
+use super::files::{CORRECTED_FILE, corrected_file};
+use super::stage::Stage;
 use crate::arm::Arm;
-use crate::arm::effect::Channel;
+use crate::arm::effect::channel::Channel;
 use crate::reconcile::fit::kept_out::KeptOut;
 use crate::reconcile::fit::noise::Noise;
-use crate::reconcile::positions::Stage;
+use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::select::lack_of_fit::LackOfFit;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 /// The four answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,30 +33,6 @@ impl Verdict {
             Verdict::InsufficientData => "insufficient_data",
         }
     }
-}
-
-/// A value with its 95 % interval; an end that the data do not bound is `None`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
-    /// Best value.
-    pub value: f64,
-    /// Lower end.
-    pub low: Option<f64>,
-    /// Upper end.
-    pub high: Option<f64>,
-}
-
-/// An effect found.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Finding {
-    /// Name.
-    pub effect: String,
-    /// Place.
-    pub at: String,
-    /// Parameters; a vector parameter has several estimates.
-    pub parameters: Vec<(String, Vec<Estimate>)>,
-    /// Effects that these readings cannot tell from it.
-    pub indistinguishable_from: Vec<(String, String)>,
 }
 
 /// A calibrated value.
@@ -178,42 +155,6 @@ pub struct Outcome {
     pub other_corrected: Vec<Arm>,
     /// Provenance of the corrected arm's values.
     pub provenance: Value,
-}
-
-impl Estimate {
-    fn json(&self) -> Value {
-        json!({"value": self.value, "low": self.low, "high": self.high})
-    }
-}
-
-impl Finding {
-    /// `effect@place`.
-    pub fn label(&self) -> String {
-        format!("{}@{}", self.effect, self.at)
-    }
-
-    fn json(&self) -> Value {
-        let parameters: Map<String, Value> = self
-            .parameters
-            .iter()
-            .map(|(name, estimates)| {
-                let value = match estimates.as_slice() {
-                    [one] => one.json(),
-                    many => {
-                        let part = |f: fn(&Estimate) -> Option<f64>| many.iter().map(f).collect::<Vec<_>>();
-                        json!({"value": part(|e| Some(e.value)), "low": part(|e| e.low), "high": part(|e| e.high)})
-                    }
-                };
-                (name.clone(), value)
-            })
-            .collect();
-        let others: Vec<Value> = self
-            .indistinguishable_from
-            .iter()
-            .map(|(effect, at)| json!({"effect": effect, "at": at}))
-            .collect();
-        json!({"effect": self.effect, "at": self.at, "parameters": parameters, "indistinguishable_from": others})
-    }
 }
 
 impl NextTest {

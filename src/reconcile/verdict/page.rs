@@ -1,8 +1,9 @@
 //! What `reconcile` found, as the values of its page.
 
-use super::outcome::{Estimate, Finding, NextTest, Outcome, ReadingResidual, Verdict};
-use crate::arm::effect::Channel;
-use crate::reconcile::positions::Stage;
+use super::outcome::{NextTest, Outcome, ReadingResidual, Verdict};
+use super::stage::Stage;
+use crate::arm::effect::channel::Channel;
+use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::report::html::campaign::{CampaignPage, Compared, Found, Ranged, Reading, Test, Weighed};
 use crate::report::html::pick::degrees;

@@ -1,20 +1,13 @@
 //! The verdict in words that can be read aloud, and the files.
 
-use super::outcome::{Estimate, Finding, Outcome, Verdict};
-use crate::arm::Arm;
+use super::files::{CORRECTED_FILE, corrected_file};
+use super::outcome::{Outcome, Verdict};
+use crate::reconcile::model::estimate::{Estimate, Finding};
 use std::fmt::Write as _;
 use std::path::Path;
 
 /// Factor on declared standard deviations from which it is put into words: less is within what chance does.
 const WORTH_SAYING: f64 = 1.05;
-
-/// File of the first corrected arm.
-pub const CORRECTED_FILE: &str = "arm.corrected.json";
-
-/// File of a further corrected arm.
-pub fn corrected_file(arm: &Arm) -> String {
-    format!("{}.corrected.json", arm.name)
-}
 
 impl Outcome {
     /// A short verdict for the terminal.

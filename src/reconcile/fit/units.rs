@@ -3,11 +3,11 @@
 //! A column times 25.4 has 25.4 times the noise too. Beside the deviations as declared no model comes near such readings,
 //! the one with the right factor neither, so the slip shows only once they are taken to be as much too small.
 
-use crate::arm::effect::Channel;
-use crate::arm::effect::wrong_unit::SLIPS as UNIT_SLIPS;
-use crate::reconcile::fit::stats::median;
-use crate::reconcile::forward::Forward;
+use super::stats::median;
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::wrong_unit;
 use crate::reconcile::forward::coefficients::Coefficients;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Candidate;
 
 /// How far the readings of a channel may be from a factor of the unit slips, in ln: missing physics, and more.
@@ -23,7 +23,9 @@ pub struct Stretch {
 impl Stretch {
     /// Whether the slip is among some effects.
     pub fn is_among(&self, effects: &[&Candidate]) -> bool {
-        effects.iter().any(|effect| effect.kind.name == "wrong_unit" && effect.at == self.channel.word())
+        effects
+            .iter()
+            .any(|effect| effect.kind.name == wrong_unit::KIND.name && effect.at == self.channel.word())
     }
 
     /// What is taken for granted, in words.
@@ -50,7 +52,7 @@ pub fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> {
             .zip(&nominal[range.clone()])
             .fold((0.0, 0.0), |(both, square), (d, model)| (both + d.value * model, square + model * model));
         let ratio = both / square;
-        let slips = UNIT_SLIPS.iter().map(|(factor, _)| *factor).filter(|factor| *factor > 1.0);
+        let slips = wrong_unit::SLIPS.iter().map(|(factor, _)| *factor).filter(|factor| *factor > 1.0);
         let factor = slips.min_by(|a, b| {
             let apart = |factor: &f64| (ratio / factor).ln().abs();
             apart(a).total_cmp(&apart(b))

@@ -4,12 +4,12 @@
 //! payload and tip force it used, each with its frequencies; each joint on the bench. For every test the
 //! rival models' predictions, both fitted to the readings so far, are compared.
 
-use crate::arm::effect::Subject;
+use super::outcome::{NextTest, Verdict};
+use crate::arm::effect::subject::Subject;
 use crate::arm::load::Payload;
 use crate::reconcile::model::exact::Exact;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::{ModalRow, StaticRow, WindupRow};
-use crate::reconcile::verdict::outcome::{NextTest, Verdict};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
