@@ -2,8 +2,9 @@
 
 use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia};
 use super::play::Play;
-use super::torsion::{CurveBox, segments};
+use super::torsion::CurveBox;
 use super::tree::{Bounds, Tree};
+use crate::arm::joint_law::Segment;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -122,7 +123,8 @@ fn each_end_of_sign(
     see: &mut impl FnMut(End),
 ) {
     let w = &curve.stiff.windup;
-    for (segment, (slope, start, end)) in segments(w).into_iter().enumerate() {
+    for (segment, part) in w.segments().into_iter().enumerate() {
+        let Segment { from_nm: start, to_nm: end, stiffness_nm_per_rad: slope } = part;
         let (from, to) = (low.max(start), high.min(end));
         // a break point belongs to the segment below it
         if from <= to && (to > start || start == 0.0) {

@@ -1,4 +1,4 @@
-//! `predict`: the model's value beside every reading of a file.
+//! `predict`: adds the model's values to the readings of a file.
 
 use super::forward::prepared::make_links_rigid;
 use super::model::exact::Exact;
@@ -12,7 +12,7 @@ use crate::arm::{Arm, JointModel};
 use crate::input::json::Faults;
 use crate::reconcile::readings::placement::Placed;
 
-/// What kind of readings a file holds, by its columns.
+/// The channel of a file, by its columns.
 pub fn channel_of(table: &Table) -> Option<Channel> {
     let has = |name: &str| table.optional(name).is_some();
     match () {
@@ -65,7 +65,7 @@ pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<S
     if faults.is_empty() { Ok(text) } else { Err(Faults(faults)) }
 }
 
-/// The arm under test with all effects its file has.
+/// The arm under test, with all effects of its file.
 pub(crate) fn subject(arm: &Arm, statement: &Statement) -> Subject {
     let mut nominal = Arm { effects: Vec::new(), ..arm.clone() }.subject(JointModel::ThreeSegment);
     if statement.rigid_links {
@@ -78,7 +78,7 @@ pub(crate) fn subject(arm: &Arm, statement: &Statement) -> Subject {
     nominal
 }
 
-/// Positions by one arm, or by several that load each other's trunk \[mm\].
+/// Positions on one arm, or on several whose weights load a common trunk \[mm\].
 fn positions_mm(
     arms: &[Placed],
     statement: &Statement,

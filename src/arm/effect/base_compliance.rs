@@ -1,4 +1,4 @@
-//! What the arm stands on: tilt about world x and y at the chain's origin.
+//! `base_compliance`: what the arm stands on tilts about world x and y at the chain's origin.
 
 use super::bearing_tilt;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits, Yields};

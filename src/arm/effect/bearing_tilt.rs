@@ -1,4 +1,5 @@
-//! The output bearing: equal rotational springs about the two axes across the joint's.
+//! `bearing_tilt`: the output bearing yields like equal rotational springs about the two axes across the
+//! joint's.
 
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits, Yields};
 use super::subject::Subject;

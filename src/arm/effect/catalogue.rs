@@ -1,4 +1,5 @@
-//! Every effect there is. A new effect is one file beside this one, one line here and a page in `docs/effects`.
+//! The list of every effect. A new effect needs one file in this folder, one line here and a page in
+//! `docs/effects`.
 
 use super::kind::Kind;
 use super::{

@@ -1,4 +1,4 @@
-//! Flange, shaft or bolts that twist in series with the gear: `1/k = 1/k_gear + 1/c`.
+//! `connection_compliance`: flange, shaft or bolts twist in series with the gear: `1/k = 1/k_gear + 1/c`.
 
 use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits, Yields};
 use super::subject::Subject;

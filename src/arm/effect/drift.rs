@@ -1,4 +1,5 @@
-//! A sensor or mounting that creeps with time: reading = truth + rate x (row - 1) over the file.
+//! `drift`: the zero of a sensor or of its mounting creeps. The reading is truth + rate x (row - 1) over the
+//! file.
 
 use super::channel::Channel;
 use super::kind::{Kind, Measure, Parameter, Place, Scope, Traits};

@@ -1,4 +1,4 @@
-//! A point mass at a joint beyond tolerance.
+//! `extra_mass`: a point mass at a joint that its mass tolerance does not cover.
 
 use super::kind::{Kind, Measure, Parameter, Place, Removes, Scale, Scope, Traits};
 use super::subject::Subject;

@@ -1,4 +1,4 @@
-//! A structure that yields differently about its three axes, and about one when it is bent about another:
+//! `frame_compliance`: a structure turns about three axes under a moment, each differently and coupled. It is
 //! what the arm stands on, or the casting behind a joint.
 
 use super::kind::{Kind, Parameter, Place, Scope, Traits, Yields};
@@ -29,7 +29,7 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
         None if at == "base" => {
             subject.structure.base_frame = FrameCompliance(subject.structure.base_frame.0 + added);
         }
-        // a part of an arm may lack the link
+        // a part of an arm may lack the link, and then nothing changes
         None => {}
     }
 }
@@ -46,7 +46,7 @@ fn contradiction(numbers: &[f64]) -> Option<(&'static str, &'static str)> {
     ))
 }
 
-/// Whether the numbers are a spring: no moment turns the frame against itself.
+/// Whether the numbers describe a spring: no moment turns the frame against itself.
 fn is_spring(numbers: &[f64]) -> bool {
     let eigenvalues = SymmetricEigen::new(matrix(numbers)).eigenvalues;
     eigenvalues.min() >= -1e-9 * eigenvalues.max().abs()

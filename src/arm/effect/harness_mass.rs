@@ -1,4 +1,4 @@
-//! Cables and hoses along a link: mass and weight on its axis, no stiffness.
+//! `harness_mass`: cables and hoses along a link add mass and weight on its axis, and no stiffness.
 
 use super::kind::{Kind, Measure, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;

@@ -1,4 +1,4 @@
-//! Friction play: the twist lags a torque reversal by up to the half width.
+//! `hysteresis`: by friction play the twist lags a reversal of torque by up to the half width.
 
 use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
@@ -17,8 +17,8 @@ pub const KIND: Kind = Kind {
     traits: Traits { needs: Needs::TwistingJoint, starts, ..Traits::USUAL },
 };
 
-/// Half widths to start from. Where the play is as wide as the largest twist the joint does not move, and a
-/// descent sees no slope; so no start is wider than 0.3 of that twist.
+/// Half widths to start from. A joint whose play is as wide as its largest twist does not move, and a descent
+/// sees no slope. So no start is wider than 0.3 of that twist.
 fn starts(setting: &Setting) -> Vec<Vec<f64>> {
     const WIDEST: f64 = 0.3;
     let usual_rad = [0.25e-4, 1e-4, 3e-4].into_iter().filter(|h| *h < WIDEST * setting.twist_rad);

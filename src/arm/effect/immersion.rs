@@ -1,10 +1,11 @@
-//! Water around the arm: links are sealed tubes that displace it and carry some of it along.
+//! `immersion`: the arm is in water. Its links are sealed tubes, which lose weight by buoyancy and accelerate
+//! some water with them (added mass).
 
 use super::kind::{Absent, Kind, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;
 use crate::arm::structure::Water;
 
-/// Name of the payload's density, which a campaign may state.
+/// Name of the parameter for the payload's density, which a campaign may state.
 pub const PAYLOAD_DENSITY: &str = "payload_density_kg_m3";
 
 const PARAMETERS: &[Parameter] = &[

@@ -1,4 +1,4 @@
-//! The twist of a joint whose nominal model is rigid.
+//! `joint_compliance`: a joint that the nominal model holds rigid twists.
 
 use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits, Yields};
 use super::subject::Subject;

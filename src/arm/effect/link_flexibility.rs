@@ -1,4 +1,5 @@
-//! The bending, shear, torsion and stretch of a link that the nominal model holds rigid, as a factor on its own compliance.
+//! `link_flexibility`: a link that the nominal model holds rigid bends, shears, twists and stretches. The
+//! parameter is a factor on the compliance of its section.
 
 use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;

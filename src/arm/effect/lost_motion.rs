@@ -1,4 +1,4 @@
-//! Play that closes smoothly: `theta += h tanh(T/T_c)`.
+//! `lost_motion`: play closes smoothly as the torque grows: `theta += h tanh(T/T_c)`.
 
 use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Setting, Traits};
 use super::subject::Subject;

@@ -1,4 +1,5 @@
-//! A factor on Young's modulus of one link: layup, bond lines. G and density unchanged.
+//! `modulus_error`: a factor on Young's modulus of one link, by its layup or bond lines. G and density are
+//! unchanged.
 
 use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;

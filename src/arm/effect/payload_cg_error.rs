@@ -1,4 +1,4 @@
-//! The payload's centre of gravity is not where it is stated, last frame.
+//! `payload_cg_error`: the payload's centre of gravity is off the stated one, in the last frame.
 
 use super::kind::{Kind, Parameter, Place, Scope, Traits};
 use super::subject::Subject;

@@ -1,4 +1,4 @@
-//! The payload weighs more or less than stated, wherever one is stated.
+//! `payload_mass_error`: the payload weighs more or less than stated, wherever one is stated.
 
 use super::kind::{Kind, Measure, Parameter, Place, Removes, Scale, Scope, Traits};
 use super::subject::Subject;

@@ -1,4 +1,4 @@
-//! Finding the pieces of an arm by name, and the places where an effect can sit.
+//! Finds the pieces of an arm by name, and the places where an effect can sit.
 
 use super::kind::Place;
 use crate::arm::structure::{JointPiece, LinkPiece, Piece, Structure};

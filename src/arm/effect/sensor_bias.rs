@@ -1,4 +1,4 @@
-//! A sensor whose reading is the truth plus a constant.
+//! `sensor_bias`: the reading is the truth plus a constant.
 
 use super::channel::Channel;
 use super::kind::{Kind, Measure, Parameter, Place, Scale, Scope, Traits};

@@ -1,4 +1,4 @@
-//! A sensor whose reading is a factor times the truth.
+//! `sensor_gain`: the reading is a factor times the truth.
 
 use super::channel::Channel;
 use super::kind::{Absent, Kind, Parameter, Place, Scale, Scope, Traits};

@@ -1,10 +1,11 @@
-//! The gear's three-segment torsion curve in place of the joint's single number.
+//! `soft_windup`: the gear's three-segment torsion curve replaces the joint's single stiffness.
 
 use super::kind::{Absent, Kind, Needs, Parameter, Place, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
 use crate::arm::joint_law::{Curve, Windup};
 
-/// A joint's single number is its gear's middle slope K2, so K2 is expected near it, K1 below, K3 above.
+/// The nominal stiffness of a joint is usually the middle slope K2 of its gear. So K2 is expected near it, K1
+/// below and K3 above.
 const PARAMETERS: &[Parameter] = &[
     Parameter::number("k1_nm_per_rad", 1.0, 1e10, 1e5, Scale::Stiffness)
         .expected(1.02, 4.0)
@@ -22,8 +23,8 @@ const PARAMETERS: &[Parameter] = &[
         .at_least("t1_nm"),
 ];
 
-/// Break points of a gear's curve to start from, as parts of the largest torque. A fit finds only the break
-/// points near its start, so the pairs cover the range.
+/// Break points to start from, as parts of the largest torque. A fit finds only break points near its start,
+/// so the pairs cover the range.
 const BREAKS: [(f64, f64); 8] = [
     (0.08, 0.25),
     (0.08, 0.6),

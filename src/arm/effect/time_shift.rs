@@ -1,4 +1,4 @@
-//! A channel whose clock runs ahead or behind. It has a meaning for time records only.
+//! `time_shift`: the clock of a channel runs ahead or behind. This matters for time records only.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};

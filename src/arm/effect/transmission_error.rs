@@ -1,4 +1,4 @@
-//! A gear or its sensor that turns unevenly, once and twice a turn of the joint.
+//! `transmission_error`: a joint turns unevenly by an error of its gear or its sensor, once and twice a turn.
 
 use super::kind::{Kind, Parameter, Place, Scope, Traits};
 use super::subject::Subject;

@@ -1,4 +1,4 @@
-//! What can be wrong with an effect in a file, and the effects a calculation leaves out.
+//! Checks the effects of a file, and names those that a calculation leaves out.
 
 use super::catalogue::{KINDS, kind};
 use super::entry::Effect;
@@ -8,7 +8,7 @@ use crate::arm::structure::{Piece, Structure};
 use crate::arm::{Arm, JointModel};
 use crate::input::json::closest;
 
-/// One thing wrong with an effect: the key it concerns, the problem, and what to try.
+/// One thing that is wrong with an effect: the key, the problem, and what to try.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectFault {
     /// `effect`, `at` or `parameters.NAME`, relative to the effect.
@@ -94,7 +94,7 @@ impl Effect {
         Some(EffectFault { field: format!("parameters.{}", parameter.name), problem, hint })
     }
 
-    /// The parameter, with its value, that this one must not be below and is.
+    /// The parameter, with its value, that this one must not be below but is.
     fn is_below_another(&self, parameter: &Parameter, value: f64) -> Option<(&str, f64)> {
         let (name, numbers) =
             self.parameters.iter().find(|(name, _)| Some(name.as_str()) == parameter.not_below)?;
@@ -108,8 +108,8 @@ impl Arm {
         self.effects.iter().filter(|e| e.is_of_test()).collect()
     }
 
-    /// The arm with all of its effects, those of the payload and of the channels included; a curve that
-    /// an effect brings is reduced as the model asks, like the arm's own.
+    /// The arm with all of its effects, including those of the payload and of the channels. A curve that an
+    /// effect brings is reduced as the joint model asks, like the arm's own.
     pub fn subject(&self, joints: JointModel) -> Subject {
         let mut subject = Subject::new(self.nominal_structure(joints));
         self.effects.iter().for_each(|effect| subject.apply(effect));

@@ -1,4 +1,4 @@
-//! A channel written in another unit than its column says: inches, metres, degrees.
+//! `wrong_unit`: a channel is written in another unit than its column says: inches, metres, degrees.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
@@ -28,7 +28,7 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     }
 }
 
-/// Factors that unit slips leave in a column, with what happened.
+/// The factors that unit slips leave in a column, each with its cause.
 pub const SLIPS: &[(f64, &str)] = &[
     (25.4, "a value in mm stands 25.4 times too large: converted from inches twice"),
     (1.0 / 25.4, "inches in a column of mm"),

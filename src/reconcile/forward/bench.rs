@@ -12,7 +12,7 @@ pub const ARCMIN_PER_RAD: f64 = 10800.0 / std::f64::consts::PI;
 /// One joint's rows on the bench, in the order of the file.
 #[derive(Debug, Clone)]
 pub struct Bench {
-    /// Its place in the layout.
+    /// Index of the joint in the layout.
     pub joint: usize,
     torques_nm: Vec<f64>,
     rows: Vec<usize>,
@@ -58,7 +58,8 @@ impl Bench {
     }
 }
 
-/// Twists of a joint on the bench \[rad\]: the cycle runs once unrecorded, then once recorded.
+/// Twists of a joint on the bench \[rad\]. The cycle runs once unrecorded, so that the friction play has
+/// settled, and then once recorded.
 pub fn bench_twists_rad(law: &JointLaw, torques_nm: &[f64]) -> Vec<f64> {
     let mut state = 0.0;
     for &torque in torques_nm {

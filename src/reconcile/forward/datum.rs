@@ -11,15 +11,15 @@ pub struct Datum {
     pub row: usize,
     /// Component 0-2 of a vector.
     pub component: usize,
-    /// Which pose: data of one pose are kept out together.
+    /// Index of the pose. Data of one pose are held out together.
     pub group: usize,
     /// Measured value, in the unit of the file.
     pub value: f64,
-    /// Standard deviation.
+    /// Its standard deviation, in the unit of the file.
     pub sigma: f64,
 }
 
-/// The group of a pose; a new one if it was not seen before.
+/// The group of a pose. A pose that was not seen before starts a new group.
 pub fn group_of(pose_deg: &[f64], groups: &mut Vec<(Vec<f64>, String)>) -> usize {
     if let Some(found) = groups.iter().position(|(p, _)| p == pose_deg) {
         return found;

@@ -1,4 +1,5 @@
-//! A campaign prepared for fitting: its data, and everything of its poses and tests that no parameter changes.
+//! Prepares a campaign for fitting: its data, and everything about its poses and tests that no parameter
+//! changes.
 
 use super::bench::{self, Bench};
 use super::coefficients::{Coefficients, Layout};
@@ -14,24 +15,24 @@ use crate::reconcile::readings::campaign::Campaign;
 pub struct Forward {
     /// The coordinates.
     pub layout: Layout,
-    /// The nominal arm under a test as described.
+    /// The nominal arm in a test that goes as described.
     pub nominal: Subject,
     /// Every measured number: static, modal, bench.
     pub data: Vec<Datum>,
-    /// Poses of the static rows.
+    /// Poses of the static rows, each with its loads.
     pub statics: Vec<StaticPose>,
     /// Tests of the modal rows.
     pub modal: Vec<ModalTest>,
     bench: Vec<Bench>,
-    /// Where each channel's data begin: static, modal, windup, end.
+    /// Index where each channel's data begin: static, modal, windup, and the end.
     pub starts: [usize; 4],
-    /// Names of the poses that can be kept out.
+    /// Names of the poses that can be held out.
     pub groups: Vec<String>,
     /// Density of the payloads \[kg/m³\].
     pub payload_density_kg_m3: f64,
     /// The largest payload that was stated \[kg\].
     pub largest_payload_kg: f64,
-    /// The lightest that was stated and is not nothing \[kg\].
+    /// The lightest payload that was stated and is not zero \[kg\].
     pub lightest_payload_kg: f64,
 }
 
@@ -73,8 +74,8 @@ impl Forward {
         }
     }
 
-    /// Numbers lists of frequencies anew that do not rise with the number of the mode, though frequencies are
-    /// numbered as they rise, unless one wrong frequency is the simpler cause; says which.
+    /// Renumbers frequency lists that do not rise with the mode number, unless one wrong frequency is the
+    /// simpler cause. Frequencies are numbered as they rise. Returns a sentence for each list.
     pub fn put_modes_in_order(&mut self) -> Vec<String> {
         let nominal = self.coefficients(&self.nominal);
         let (layout, data) = (&self.layout, &self.data);
@@ -89,7 +90,7 @@ impl Forward {
             .collect()
     }
 
-    /// Counts lists of frequencies from which a mode is missing one higher; says which.
+    /// Renumbers frequency lists from which a mode is missing. Returns a sentence for each list.
     pub fn find_missed_modes(&mut self, coefficients: &Coefficients) -> Vec<String> {
         let mut out = Vec::new();
         for (i, test) in self.modal.iter_mut().enumerate() {
@@ -100,13 +101,13 @@ impl Forward {
         out
     }
 
-    /// Takes the trial shapes of all modal tests from these coefficients.
+    /// Takes the trial shapes of all modal tests from the modes with these coefficients.
     pub fn refresh(&mut self, coefficients: &Coefficients) {
         let layout = &self.layout;
         self.modal.iter_mut().for_each(|test| test.refresh(layout, coefficients));
     }
 
-    /// The channel's data.
+    /// Range of the channel's data.
     pub fn range(&self, channel: Channel) -> std::ops::Range<usize> {
         match channel {
             Channel::Static => self.starts[0]..self.starts[1],
@@ -138,7 +139,7 @@ impl Forward {
         out
     }
 
-    /// What the subject is seen through.
+    /// Expresses a subject as compliances, joint laws and masses.
     pub fn coefficients(&self, subject: &Subject) -> Coefficients {
         Coefficients::new(&self.layout, &self.nominal, subject)
     }
@@ -154,7 +155,7 @@ impl Forward {
         out
     }
 
-    /// Statics and bench only; the modal entries are left as they are.
+    /// Predicts statics and bench only. The modal entries stay as they are.
     pub fn predict_smooth(&self, coefficients: &Coefficients, out: &mut [f64]) {
         for pose in &self.statics {
             pose.predict(&self.layout, coefficients, out);
@@ -164,7 +165,7 @@ impl Forward {
         }
     }
 
-    /// Turns truth into readings.
+    /// Turns true values into readings.
     pub fn read(&self, coefficients: &Coefficients, out: &mut [f64]) {
         for (value, datum) in out.iter_mut().zip(&self.data) {
             *value = coefficients.channels[datum.channel as usize].of(*value, datum.component, datum.row);
@@ -172,7 +173,7 @@ impl Forward {
     }
 }
 
-/// A nominal model without flexible links.
+/// Makes all links of a nominal model rigid.
 pub fn make_links_rigid(subject: &mut Subject) {
     let names: Vec<String> = subject.structure.links().map(|l| l.name.clone()).collect();
     for name in names {

@@ -1,8 +1,8 @@
-//! What is looked for: every effect at every place that a campaign could show, how large it may be and where
-//! fits start.
+//! Lists what a search looks for: every effect at every place that a campaign could show, how large it may be
+//! and where fits start.
 
 use super::expected::Sizes;
-use super::parameters::{Candidate, Knob};
+use super::parameters::{Candidate, FreeParameter};
 use crate::arm::effect::catalogue::KINDS;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::immersion::PAYLOAD_DENSITY;
@@ -32,8 +32,8 @@ pub fn candidates(forward: &Forward) -> Vec<Candidate> {
     out
 }
 
-/// Makes one candidate of two that are the same thing where the first joint is vertical and stands at the
-/// origin, as the tilt of its bearing and that of the base.
+/// Merges two candidates that are the same thing in this arm. Where the first joint is vertical and at the
+/// origin, the tilt of its bearing is the tilt of the base.
 fn merge_twins(forward: &Forward, candidates: &mut Vec<Candidate>) {
     let Some(Piece::Joint(first)) = forward.nominal.structure.pieces.first() else { return };
     if first.axis.z.abs() < 1.0 - 1e-12 {
@@ -60,39 +60,41 @@ fn candidate(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place
         false => reference_stiffness(forward, &at),
     };
     let torque_nm = largest_torque_nm(forward, &at).max(1.0);
-    let mut knobs = Vec::new();
+    let mut free_parameters = Vec::new();
     let mut fixed = Vec::new();
     for parameter in (kind.parameters)(place) {
         match parameter.default {
             None => {
                 let sized = &of_size(parameter, sizes);
-                let free = (0..sized.count).map(|component| Knob::new(sized, component, reference));
-                knobs.extend(free.map(|knob| within_torque(knob, parameter, torque_nm)));
+                let free = (0..sized.count).map(|component| FreeParameter::new(sized, component, reference));
+                free_parameters.extend(free.map(|free| within_torque(free, parameter, torque_nm)));
             }
             Some(_) if parameter.name == PAYLOAD_DENSITY => fixed.push(forward.payload_density_kg_m3),
             Some(default) => fixed.push(default),
         }
     }
     if let Some(least_kg) = lightest_kg(forward, kind, &at) {
-        // a share is left, for nothing swings without a mass
-        knobs[0].low = knobs[0].low.max(-0.999 * least_kg / knobs[0].value(1.0));
+        // a small mass remains, because nothing oscillates without mass
+        free_parameters[0].low =
+            free_parameters[0].low.max(-0.999 * least_kg / free_parameters[0].value(1.0));
     }
-    let values_at_one: Vec<f64> = knobs.iter().map(|knob| knob.value(1.0)).collect();
+    let values_at_one: Vec<f64> = free_parameters.iter().map(|free| free.value(1.0)).collect();
     let setting = Setting { torque_nm, twist_rad: torque_nm / reference, values_at_one: &values_at_one };
     let starts = (kind.traits.starts)(&setting);
-    Candidate { kind, at, knobs, fixed, starts, twins: Vec::new() }
+    Candidate { kind, at, free_parameters, fixed, starts, twins: Vec::new() }
 }
 
-/// A torque within its parts of the largest one: a law that changes where no torque of the campaign reaches
+/// Limits a torque to parts of the largest torque of the campaign. A law that changes where no torque reaches
 /// cannot be told from another.
-fn within_torque(knob: Knob, parameter: &Parameter, torque_nm: f64) -> Knob {
+fn within_torque(free: FreeParameter, parameter: &Parameter, torque_nm: f64) -> FreeParameter {
     match parameter.torque_parts {
-        Some((low, high)) => knob.within((low * torque_nm).ln(), (high * torque_nm).ln()),
-        None => knob,
+        Some((low, high)) => free.within((low * torque_nm).ln(), (high * torque_nm).ln()),
+        None => free,
     }
 }
 
-/// The mass that an effect takes from, if it can take mass away: a joint's own, the lightest payload's \[kg\].
+/// The mass that an effect reduces, if it can reduce one: that of the joint, or of the lightest payload
+/// \[kg\].
 fn lightest_kg(forward: &Forward, kind: &Kind, at: &str) -> Option<f64> {
     match kind.traits.removes? {
         Removes::JointMass => forward.nominal.structure.joints().find(|j| j.name == at).map(|j| j.mass_kg),
@@ -100,7 +102,7 @@ fn lightest_kg(forward: &Forward, kind: &Kind, at: &str) -> Option<f64> {
     }
 }
 
-/// The parameter over a wider range where the arm or its readings are large.
+/// Widens the range of a parameter where the arm or its readings are large.
 fn of_size(parameter: &Parameter, sizes: &Sizes) -> Parameter {
     let Some((measure, part)) = parameter.grows_with else { return *parameter };
     let size = sizes.expected(measure, part);
@@ -109,7 +111,8 @@ fn of_size(parameter: &Parameter, sizes: &Sizes) -> Parameter {
     Parameter { prior, low: parameter.low * wider, high: parameter.high * wider, ..*parameter }
 }
 
-/// Stiffness that compliances are measured by: the joint's own, else the first joint's.
+/// The stiffness in which compliances are expressed: that of the joint itself, or of the first joint that
+/// twists \[N m/rad\].
 fn reference_stiffness(forward: &Forward, at: &str) -> f64 {
     let joints: Vec<_> = forward.nominal.structure.joints().collect();
     let own = joints.iter().find(|j| j.name == at);
@@ -119,7 +122,7 @@ fn reference_stiffness(forward: &Forward, at: &str) -> f64 {
         .map_or(1e5, |j| 1.0 / j.law.tangent_compliance_rad_per_nm(0.0))
 }
 
-/// The middle slope of a joint's curve, which is what a gear is known by \[N m/rad\].
+/// The middle slope of a joint's curve, by which a gear is usually rated \[N m/rad\].
 fn middle_stiffness(forward: &Forward, at: &str) -> f64 {
     let own = forward.nominal.structure.joints().find(|j| j.name == at);
     match own.map(|joint| joint.law.curve) {
@@ -128,7 +131,7 @@ fn middle_stiffness(forward: &Forward, at: &str) -> f64 {
     }
 }
 
-/// Largest torque a joint sees in the campaign, bench included \[N m\].
+/// Largest torque on a joint in the campaign, including the bench \[N m\].
 fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
     let Some(j) = forward.layout.joints.iter().position(|s| s.name == at) else { return 0.0 };
     let nominal = forward.coefficients(&forward.nominal);
@@ -138,13 +141,13 @@ fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
     statics.chain(modal).map(|t| t[j].abs()).chain(bench).fold(0.0, f64::max)
 }
 
-/// A unit slip is a gain that is known exactly: no number to fit.
+/// Candidates for unit slips. A slip has an exactly known factor and therefore no free parameter.
 fn unit_slips(forward: &Forward) -> Vec<Candidate> {
     let channels = Channel::ALL.into_iter().filter(|c| !forward.range(*c).is_empty());
     let slip = |channel: Channel, factor: f64| Candidate {
         kind: &wrong_unit::KIND,
         at: channel.word().into(),
-        knobs: Vec::new(),
+        free_parameters: Vec::new(),
         fixed: vec![factor],
         starts: vec![Vec::new()],
         twins: Vec::new(),

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-/// An interval in `u`; an end the data do not bound is `None`.
+/// An interval of a fitted parameter, in `u`. An end is `None` where the data do not bound it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
     /// Lower end.
@@ -12,12 +12,12 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// So wide that it holds the best value.
+    /// The interval, widened to contain the best value `u`.
     pub(crate) fn with(self, u: f64) -> Self {
         Self { low: self.low.map(|v| v.min(u)), high: self.high.map(|v| v.max(u)) }
     }
 
-    /// With ends moved out, but not beyond bounds.
+    /// The interval with both ends moved out by `by`. An end that leaves the bounds becomes open.
     pub(crate) fn wider(self, by: f64, (low, high): (f64, f64)) -> Self {
         Self {
             low: self.low.map(|v| v - by).filter(|v| *v > low),
@@ -26,7 +26,7 @@ impl Interval {
     }
 }
 
-/// A value with its 95 % interval; an end that the data do not bound is `None`.
+/// A value with its 95 % interval. An end is `None` where the data do not bound it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// Best value.
@@ -38,22 +38,22 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// As files have it.
+    /// As JSON.
     pub(crate) fn json(&self) -> Value {
         json!({"value": self.value, "low": self.low, "high": self.high})
     }
 }
 
-/// An effect found.
+/// An effect that was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
-    /// Name.
+    /// Name of the effect.
     pub effect: String,
-    /// Place.
+    /// The place where it sits.
     pub at: String,
     /// Parameters; a vector parameter has several estimates.
     pub parameters: Vec<(String, Vec<Estimate>)>,
-    /// Effects that these readings cannot tell from it.
+    /// Name and place of effects that these readings cannot tell from it.
     pub indistinguishable_from: Vec<(String, String)>,
 }
 
@@ -63,7 +63,7 @@ impl Finding {
         format!("{}@{}", self.effect, self.at)
     }
 
-    /// As `verdict.json` has it.
+    /// As JSON of `verdict.json`.
     pub(crate) fn json(&self) -> Value {
         let parameters: Map<String, Value> = self
             .parameters

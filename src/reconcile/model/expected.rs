@@ -1,11 +1,11 @@
-//! How large an effect is expected to be in an arm and a campaign of this size: kilograms that are a surprise on
-//! a small arm are none on a large one.
+//! The size that an effect is expected to have in an arm and a campaign of this size. A few kilograms are a
+//! surprise on a small arm and nothing special on a large one.
 
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::kind::Measure;
 use crate::reconcile::forward::prepared::Forward;
 
-/// Sizes of an arm and its campaign.
+/// Measures of an arm and of its campaign.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sizes {
     arm_kg: f64,
@@ -17,7 +17,7 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// Of the nominal arm and the readings.
+    /// Measures the nominal arm and the readings.
     pub fn of(forward: &Forward) -> Self {
         let structure = &forward.nominal.structure;
         let largest = |channel| {
@@ -35,7 +35,8 @@ impl Sizes {
         }
     }
 
-    /// Largest size expected of a parameter that grows with a part of a measure, in the parameter's unit.
+    /// The largest size expected of a parameter that grows with a measure: this part of it, in the
+    /// parameter's unit.
     pub fn expected(&self, measure: Measure, part: f64) -> f64 {
         match measure {
             Measure::ArmMass => part * self.arm_kg,

@@ -1,10 +1,10 @@
-//! The analysis of absolute positions: the geometry is calibrated stage by stage, then what yields and what turns
-//! unevenly is added effect by effect.
+//! Analyses absolute positions: calibrates the geometry stage by stage, and then adds what yields and what
+//! turns unevenly, effect by effect.
 
 use super::align;
 use super::fit::{Fitted, Sample, fit};
 use super::kinematics::{Geometry, Number, number_groups};
-use super::loads::{Yielding, candidates, sags};
+use super::loads::{Yielding, candidates, deflections};
 use super::points::{Point, points};
 use super::tree::Tree;
 use crate::arm::Arm;
@@ -16,57 +16,57 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 use serde_json::Value;
 
-/// Hands the poses are dealt into; one is kept out at a time.
+/// Number of folds that the poses are dealt into. One fold is held out at a time.
 const HANDS: usize = 5;
-/// Errors beyond this many scales are gross.
+/// An error beyond this many scales is gross.
 const GROSS: f64 = 8.0;
 /// Scale of the errors before anything is fitted \[m\].
 const ROUGH_M: f64 = 0.01;
-/// Step of gravity's direction for slopes \[rad\].
+/// Step of the direction of gravity for numerical derivatives \[rad\].
 const LEAN: f64 = 1e-3;
 
-/// The classes of effects in the order in which they are looked for.
+/// The classes of effects in the order in which they are searched.
 const CLASSES: [Yields; 3] = [Yields::AboutAxis, Yields::Tilt, Yields::Frame];
 
-/// Everything a positions campaign tells.
+/// Everything that a campaign of positions shows.
 #[derive(Clone)]
 pub struct Positions {
-    /// The table of errors, effect by effect.
+    /// The table of position errors, stage by stage.
     pub stages: Vec<Stage>,
-    /// All that could yield.
+    /// All candidates.
     pub candidates: Vec<Yielding>,
-    /// Which of them come into question.
+    /// Which of the candidates may be named.
     pub(super) considered: Vec<bool>,
     /// The final fit.
     pub fitted: Fitted,
-    /// The same geometry's numbers fitted without any effect.
+    /// A fit of the same geometry without any effect.
     pub rigid: Fitted,
-    /// Rows that are gross errors, from 0, with their error \[mm\].
+    /// Rows that are gross errors, counted from 0, with their error \[mm\].
     pub gross: Vec<(usize, f64)>,
     pub(super) samples: Vec<Sample>,
     pub(super) numbers: Vec<Number>,
-    /// Driven joints with a transmission error, by their place in a pose.
+    /// Driven joints that turn unevenly, by their index in a pose.
     pub(super) transmissions: Vec<usize>,
     pub(super) tree: Tree,
-    /// Points, those of separate sessions apart.
+    /// The points on the tools, with those of separate sessions apart.
     pub(super) points: Vec<Point>,
-    /// Where sessions were told apart, in words.
+    /// Sentences on where a session begins.
     pub(super) sessions: Vec<String>,
-    /// Errors of the last stage's kept-out predictions \[m\], by row.
-    pub(super) kept_out: Vec<Vector3<f64>>,
+    /// Held-out errors of the last stage, by row \[m\].
+    pub(super) held_out: Vec<Vector3<f64>>,
 }
 
-/// An arm whose geometry alone is calibrated.
+/// Arms whose geometry alone is calibrated.
 pub struct Calibrated {
-    /// The arms with their geometry, effects and all else as they were.
+    /// The arms with calibrated geometry. Their effects and all else are unchanged.
     pub arms: Vec<Arm>,
-    /// How the error falls.
+    /// The table of position errors.
     pub stages: Vec<Stage>,
     /// Predicted positions \[mm\], by row.
     pub predicted_mm: Vec<[f64; 3]>,
 }
 
-/// Calibrates the geometry and finds nothing that yields.
+/// Calibrates the geometry without a search for effects.
 pub fn calibrated(campaign: &Campaign) -> Calibrated {
     let found = Positions::on_its_geometry(campaign);
     let mut provenance = Value::Null;
@@ -78,10 +78,10 @@ pub fn calibrated(campaign: &Campaign) -> Calibrated {
     }
 }
 
-/// Calibrates and finds what yields.
+/// Calibrates the geometry, and finds what yields and what turns unevenly.
 pub fn analyze(campaign: &Campaign) -> Positions {
     let mut found = Positions::on_its_geometry(campaign);
-    // what turns unevenly hides what yields
+    // An uneven joint can hide what yields, so the search begins again after each.
     loop {
         for class in CLASSES {
             while found.add(campaign, class) {}
@@ -118,11 +118,11 @@ impl Positions {
             tree,
             points,
             sessions: Vec::new(),
-            kept_out: Vec::new(),
+            held_out: Vec::new(),
         }
     }
 
-    /// What is free in the geometry, fitted; sessions told apart.
+    /// Fits all that is unknown in the geometry, and tells sessions apart.
     fn on_its_geometry(campaign: &Campaign) -> Self {
         let mut found = Self::new(campaign);
         found.calibrate(campaign);
@@ -135,13 +135,13 @@ impl Positions {
         found
     }
 
-    /// Places the arm and lets one group of numbers free after the other.
+    /// Places the arm, and frees one group of numbers after the other.
     fn calibrate(&mut self, campaign: &Campaign) {
         let spec = &campaign.statement.positions;
         align::align(&self.tree, spec, &self.samples, &mut self.fitted.geometry);
         for (name, group) in number_groups(&self.tree, spec, self.points.len()) {
             self.numbers.extend(group);
-            // the sag depends on the geometry, a little
+            // the deflection depends slightly on the geometry, so two rounds are needed
             for _ in 0..2 {
                 self.refresh(campaign);
                 self.refit();
@@ -150,40 +150,44 @@ impl Positions {
         }
     }
 
-    /// Fits the model of the moment again.
+    /// Fits the current model again.
     pub(super) fn refit(&mut self) {
         let all: Vec<&Sample> = self.samples.iter().collect();
         self.fitted = fit(&all, &self.numbers, &self.fitted.effects, &self.fitted);
     }
 
-    /// Computes what gravity does anew, for the geometry as fitted.
+    /// Computes the effect of gravity again for the fitted geometry.
     pub(super) fn refresh(&mut self, campaign: &Campaign) {
         self.fitted.geometry.relevel();
         let points: Vec<usize> = self.samples.iter().map(|s| s.point).collect();
-        let sags = sags(campaign, &self.tree, &self.fitted.geometry, &self.candidates, &points);
-        self.samples.iter_mut().zip(sags).for_each(|(sample, sag)| sample.sag = sag);
+        let deflections = deflections(campaign, &self.tree, &self.fitted.geometry, &self.candidates, &points);
+        self.samples
+            .iter_mut()
+            .zip(deflections)
+            .for_each(|(sample, deflection)| sample.deflection = deflection);
         if campaign.statement.positions.frees_gravity() {
             (0..2).for_each(|c| self.lean(campaign, &points, c));
         }
     }
 
-    /// How the sag that the model already has changes with one component of the direction of gravity.
+    /// Computes how the known deflection changes with one component of the direction of gravity.
     fn lean(&mut self, campaign: &Campaign, points: &[usize], component: usize) {
         let upright = &self.fitted.geometry;
         let mut leaning = upright.clone();
         leaning.step(&[Number::Gravity(component)], &[LEAN]);
         leaning.relevel();
         let back = upright.level * leaning.level.inverse();
-        let sags = sags(campaign, &self.tree, &leaning, &self.candidates, points);
-        for (sample, sag) in self.samples.iter_mut().zip(sags) {
-            sample.sag.known_slopes_m[component] = (back * sag.known_m - sample.sag.known_m) / LEAN;
+        let deflections = deflections(campaign, &self.tree, &leaning, &self.candidates, points);
+        for (sample, deflection) in self.samples.iter_mut().zip(deflections) {
+            sample.deflection.known_slopes_m[component] =
+                (back * deflection.known_m - sample.deflection.known_m) / LEAN;
         }
     }
 
-    /// Notes how well the model of the moment does.
+    /// Adds a row about the current model to the table of position errors.
     pub(super) fn stage(&mut self, added: String, dropped: Vec<String>) {
-        self.kept_out = self.kept_out_errors_m(&self.fitted);
-        let mm: Vec<f64> = self.kept_out.iter().map(|e| 1e3 * e.norm()).collect();
+        self.held_out = self.held_out_errors_m(&self.fitted);
+        let mm: Vec<f64> = self.held_out.iter().map(|e| 1e3 * e.norm()).collect();
         let fitted = self.samples.iter().map(|s| 1e3 * self.fitted.error(s).norm());
         self.stages.push(Stage {
             added,
@@ -195,8 +199,8 @@ impl Positions {
         });
     }
 
-    /// Error of every position when the hand of its pose is kept out \[m\].
-    fn kept_out_errors_m(&self, fitted: &Fitted) -> Vec<Vector3<f64>> {
+    /// Error of every position with the fold of its pose held out \[m\].
+    fn held_out_errors_m(&self, fitted: &Fitted) -> Vec<Vector3<f64>> {
         let mut out = vec![Vector3::zeros(); self.samples.len()];
         let hands: Vec<Vec<(usize, Vector3<f64>)>> = (0..HANDS)
             .into_par_iter()
@@ -213,7 +217,7 @@ impl Positions {
     }
 }
 
-/// The measured positions with what gravity does to each.
+/// The measured positions, each with the effect of gravity on it.
 pub(super) fn samples(
     campaign: &Campaign,
     tree: &Tree,
@@ -226,11 +230,11 @@ pub(super) fn samples(
         .iter()
         .map(|row| points.iter().position(|p| *p == Point::of(row)).unwrap_or_default())
         .collect();
-    let sags = sags(campaign, tree, geometry, candidates, &points);
+    let deflections = deflections(campaign, tree, geometry, candidates, &points);
     let mut poses: Vec<&Vec<f64>> = Vec::new();
-    let rows = campaign.positions.iter().zip(sags).zip(points);
+    let rows = campaign.positions.iter().zip(deflections).zip(points);
     rows.enumerate()
-        .map(|(index, ((row, sag), point))| {
+        .map(|(index, ((row, deflection), point))| {
             let known = poses.iter().position(|p| **p == row.pose_deg);
             let group = known.unwrap_or_else(|| {
                 poses.push(&row.pose_deg);
@@ -244,7 +248,7 @@ pub(super) fn samples(
                 index,
                 group,
                 measured_m: Vector3::from(row.position_mm) / 1e3,
-                sag,
+                deflection,
             }
         })
         .collect()

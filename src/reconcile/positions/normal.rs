@@ -2,24 +2,25 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Weighted normal equations of a model: its numbers, its effects, and further columns.
+/// Weighted normal equations of a model: of its numbers, its compliances, and further columns.
 pub struct Normal {
-    /// Curvature, priors included.
+    /// Curvature, with the priors included.
     pub curvature: DMatrix<f64>,
-    /// Gradient towards the readings.
+    /// Gradient towards the readings; the step is the inverse curvature times it.
     pub gradient: DVector<f64>,
-    /// How many of the columns belong to the model.
+    /// Number of columns that belong to the model.
     pub own: usize,
 }
 
-/// A factorized curvature, scaled to a unit diagonal.
+/// A Cholesky factor of a curvature that is scaled to a unit diagonal. Numbers in different units would
+/// otherwise ruin its condition.
 pub struct Factor {
     cholesky: Cholesky<f64, Dyn>,
     diagonal: DVector<f64>,
 }
 
 impl Factor {
-    /// Of the rows and columns that are free.
+    /// Factorizes the rows and columns that are free; `None` if they are singular.
     pub fn new(curvature: &DMatrix<f64>, free: &[usize]) -> Option<Self> {
         let sub = DMatrix::from_fn(free.len(), free.len(), |i, j| curvature[(free[i], free[j])]);
         let diagonal = sub.diagonal().map(|d| 1.0 / d.max(1e-300).sqrt());

@@ -1,4 +1,4 @@
-//! The points on the tools of the arms, those of separate sessions apart.
+//! The points on the tools of the arms. A point of a separate session is a separate point.
 
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::PositionRow;
@@ -10,7 +10,7 @@ pub struct Point {
     pub arm: usize,
     /// Its name in the readings.
     pub name: String,
-    /// Where it sat before this row, from 1, if that was a session of its own.
+    /// For a session of its own: the row, from 1, before which the session ends.
     pub before_row: Option<usize>,
 }
 

@@ -1,4 +1,4 @@
-//! The readings of a campaign: files, rows, units, what stands where.
+//! Reads the files of a campaign: its statement, its rows, and where the arm and the points stand.
 
 pub mod campaign;
 pub mod placement;

@@ -1,9 +1,9 @@
-//! Which effects are missing: every candidate at every place, judged by evidence that pays for each
-//! parameter and for having looked in many places.
+//! Finds which effects are missing. Every candidate at every place is judged by evidence, which charges for
+//! each parameter and for having looked in many places.
 //!
-//! One stage adds one effect: all candidates are screened with the model made linear about the fit so
-//! far, the best are fitted in full. From two effects on each is dropped and swapped against all others
-//! until nothing improves, which repairs greedy mistakes.
+//! One stage adds one effect. All candidates are screened with the model linearized about the fit so far, and
+//! the best are fitted in full. From two effects on, each effect is dropped and exchanged for all others
+//! until nothing improves. This repairs mistakes of the greedy search.
 
 use super::search::{Scored, Search};
 use super::unnamed::{self, Better};
@@ -15,62 +15,70 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::cell::OnceCell;
 
-/// Rise of the score that a further effect must bring: two things missing at once are rarer than one.
+/// A further effect must raise the score by this much, because two missing things at once are rarer than one.
 const WORTH: f64 = 3.0;
-/// Rise of the score that the first effect must bring: that something is missing is as likely as not.
+/// The first effect must raise the score by this much. It is 0, because something missing is as likely as
+/// nothing missing.
 const FIRST_WORTH: f64 = 0.0;
-/// Part of the probability that an effect and its alternatives must hold together.
+/// Probability that an effect and its alternatives must have together.
 const CREDIBLE: f64 = 0.95;
-/// Models this far behind after a few steps are not fitted further.
+/// Models whose score is this far behind after a few steps are not fitted further.
 const HOPELESS: f64 = 40.0;
-/// Models within this score of a stage's best are worth a closer look.
+/// Models within this score of the best of a stage are examined further.
 const PROMISING: f64 = 12.0;
-/// Most effects.
+/// Largest number of effects in a model.
 pub const MOST_EFFECTS: usize = 3;
-/// Rise of the evidence over the best effects by which a law without a name settles that they are not it.
+/// A law without a name whose ln of the evidence is higher by this much settles that the effects found are
+/// not the cause.
 const SETTLES: f64 = 12.0;
-/// Candidates fitted in full at each stage.
+/// Number of candidates fitted in full at each stage.
 const FULL_FITS: usize = 7;
 
 /// What a search found.
 pub struct Selection {
     /// The best model.
     pub best: Scored,
-    /// Calibration only.
-    pub bare: Scored,
+    /// The baseline: calibration and no effect.
+    pub baseline: Scored,
     /// Every other model that was fitted, best first.
     pub others: Vec<Scored>,
-    /// Whether a law without a name is so much better that the search was given up.
+    /// Whether the search was given up, because a law without a name is far better.
     pub given_up: bool,
 }
 
 impl<'a> Search<'a> {
-    /// Looks for the effects; from two effects on a model found before is a better start than nothing.
+    /// Searches for the effects. With two effects or more, a model from an earlier search is a better start
+    /// than none.
     pub fn run(&self, before: Option<&Scored>) -> Selection {
-        let bare_model = self.model(&[]);
-        let bare_fit =
-            fit(self.forward, &bare_model, &vec![0.0; bare_model.len()], self.weights, Effort::default());
-        let bare = self.scored(&[], &bare_fit);
+        let baseline_model = self.model(&[]);
+        let baseline_fit = fit(
+            self.forward,
+            &baseline_model,
+            &vec![0.0; baseline_model.len()],
+            self.weights,
+            Effort::default(),
+        );
+        let baseline = self.scored(&[], &baseline_fit);
         let mut seen: Vec<Scored> = Vec::new();
-        let mut best = bare.clone();
+        let mut best = baseline.clone();
         if let Some(known) = before.filter(|b| b.effects.len() > 1) {
             let effort = Effort { steps: 12, tolerance: 0.02 };
             let again = fit(self.forward, &self.model(&known.effects), &known.u, self.weights, effort);
             best = self.repair(self.scored(&known.effects, &again), &mut seen);
-            if best.score < bare.score + FIRST_WORTH {
-                best = bare.clone();
+            if best.score < baseline.score + FIRST_WORTH {
+                best = baseline.clone();
             }
         }
         let law = OnceCell::new();
         let mut given_up = false;
         while best.effects.len() < MOST_EFFECTS {
-            let law = || law.get_or_init(|| unnamed::beside_calibration(self, &bare_fit));
+            let law = || law.get_or_init(|| unnamed::better_than_calibration(self, &baseline_fit));
             let tried = self.extend(&best, &seen);
             seen.extend(tried.iter().cloned());
             let worth = if best.effects.is_empty() { FIRST_WORTH } else { WORTH };
             let Some(next) = better(&tried, best.score + worth) else { break };
             best = self.settled(next);
-            given_up = self.is_settled_by(law(), &bare, &best);
+            given_up = self.is_settled_by(law(), &baseline, &best);
             if given_up {
                 break;
             }
@@ -79,23 +87,26 @@ impl<'a> Search<'a> {
             }
         }
         seen.sort_by(|a, b| b.score.total_cmp(&a.score));
-        Selection { best, bare, others: seen, given_up }
+        Selection { best, baseline, others: seen, given_up }
     }
 
-    /// Whether further effects are not worth looking for, because a law without a name is far better than the best
-    /// so far: than one effect where the law leaves no more than noise, for two could be better still.
-    fn is_settled_by(&self, law: &Option<Better>, bare: &Scored, best: &Scored) -> bool {
+    /// Whether a law without a name is so much better than the best model that further effects are not worth
+    /// a search. With one effect so far it must also leave no more than noise, because two effects could
+    /// still be better.
+    fn is_settled_by(&self, law: &Option<Better>, baseline: &Scored, best: &Scored) -> bool {
         let readings = self.forward.data.len() as f64;
         let noise = readings + 2.0 * (2.0 * readings).sqrt();
         law.as_ref().is_some_and(|law| {
-            bare.score + law.gain > best.score + SETTLES && (best.effects.len() > 1 || law.objective < noise)
+            baseline.score + law.gain > best.score + SETTLES
+                && (best.effects.len() > 1 || law.objective < noise)
         })
     }
 
-    /// Fits the promising models of a selection again, with other weights, and chooses among them; those with some of the
-    /// best one's effects too, for what the other weights were to blame for may have been named.
+    /// Fits the promising models of a selection again with other weights, and chooses among them. It includes
+    /// models with only some of the best model's effects, because the others may have been named for the
+    /// faults of the old weights.
     pub fn weigh_again(&self, before: &Selection) -> Selection {
-        let mut promising: Vec<Scored> = vec![before.bare.clone()];
+        let mut promising: Vec<Scored> = vec![before.baseline.clone()];
         let near = before.others.iter().filter(|s| s.score > before.best.score - PROMISING).cloned();
         let parts = self.parts(&before.best);
         for scored in [before.best.clone()].into_iter().chain(parts).chain(near) {
@@ -105,25 +116,25 @@ impl<'a> Search<'a> {
         }
         let effort = Effort { steps: 12, tolerance: 0.02 };
         let again = |s: &Scored| {
-            // about the middle of where the objective is flat all are judged alike
+            // at the middle of the flat part of the objective, so that all models are judged equally
             let model = self.model(&s.effects);
             let end = self.descent(&model, &s.u, effort);
             self.scored(&s.effects, &self.centre_breaks(model, end))
         };
         let mut seen: Vec<Scored> = promising.par_iter().map(again).collect();
-        let bare = seen.remove(0);
+        let baseline = seen.remove(0);
         let worth = |s: &Scored| match s.effects.len() {
             0 => 0.0,
             n => FIRST_WORTH + (n - 1) as f64 * WORTH,
         };
         let net = |s: &&Scored| s.score - worth(s);
-        let best = seen.iter().chain([&bare]).max_by(|a, b| net(a).total_cmp(&net(b)));
-        let best = best.cloned().unwrap_or_else(|| bare.clone());
+        let best = seen.iter().chain([&baseline]).max_by(|a, b| net(a).total_cmp(&net(b)));
+        let best = best.cloned().unwrap_or_else(|| baseline.clone());
         seen.sort_by(|a, b| b.score.total_cmp(&a.score));
-        Selection { best, bare, others: seen, given_up: before.given_up }
+        Selection { best, baseline, others: seen, given_up: before.given_up }
     }
 
-    /// Drops and swaps effects until nothing improves.
+    /// Drops and exchanges effects until nothing improves.
     fn repair(&self, mut best: Scored, seen: &mut Vec<Scored>) -> Scored {
         for _ in 0..4 {
             let mut improved = false;
@@ -148,7 +159,7 @@ impl<'a> Search<'a> {
         best
     }
 
-    /// The models with some of a model's effects, started from it.
+    /// The models with some of a model's effects, each with a start from that model.
     fn parts(&self, scored: &Scored) -> Vec<Scored> {
         let mut parts: Vec<Scored> = Vec::new();
         let mut open = vec![scored.clone()];
@@ -164,7 +175,7 @@ impl<'a> Search<'a> {
         parts
     }
 
-    /// The best models with one more effect; those that were fitted before are not fitted again.
+    /// The best models with one more effect. Models that were fitted before are taken from `seen`.
     fn extend(&self, base: &Scored, seen: &[Scored]) -> Vec<Scored> {
         let screened = self.screen(base);
         let starts = screened.into_iter().map(|(c, u, _)| ([base.effects.as_slice(), &[c]].concat(), u));
@@ -191,9 +202,10 @@ impl<'a> Search<'a> {
         fits
     }
 
-    /// Break points of the promising gear curves found over a grid, with the frequencies left out at first: where
-    /// the model may be the explanation, for as long as more is missing they are not to be found that closely; in
-    /// threes only those of a curve that is new, for the others have been found in pairs.
+    /// Searches the break points of promising gear curves over a grid, at first without the frequencies. This
+    /// is done only where the model may be the explanation, because a model that still lacks something does
+    /// not need break points that exact. With three effects only a new curve is searched, because the others
+    /// were found in pairs.
     fn regrid(&self, fits: &mut [Scored], least: f64) {
         for scored in fits.iter_mut().filter(|s| s.score > least && self.may_explain(s)) {
             let curve = scored.effects.iter().rposition(|&e| self.candidates[e].kind.traits.is_gear_curve);
@@ -209,10 +221,10 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The best fit from the grid of break points of one effect.
+    /// The best fit over the grid of break points of one effect.
     fn over_breaks(&self, from: &Scored, position: usize) -> Fit<'a> {
         let model = self.model(&from.effects);
-        let first = model.first_knob(position);
+        let first = model.first_parameter(position);
         let smooth = self.weights.without_modes(self.forward);
         let effort = Effort { steps: 8, tolerance: 0.05 };
         let starts = &model.effects[position].starts;
@@ -235,8 +247,8 @@ impl<'a> Search<'a> {
             .expect("at least one start")
     }
 
-    /// The most promising candidates with a start for each: candidate, parameters, score of the model
-    /// made linear about the base.
+    /// The most promising candidates, each with a start: index, parameters, and score of the linearized
+    /// model.
     fn screen(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
         let model = self.model(&base.effects);
         let here = evaluate(self.forward, &model, &base.u, self.weights);
@@ -261,7 +273,8 @@ impl<'a> Search<'a> {
         let candidate = &self.candidates[index];
         let mut model = base.with(candidate);
         model.smoothing = 0.1;
-        // a straight line knows nothing of the frequencies' steps at them
+        // the linearized model does not contain the steps of the frequencies at break points, so they are
+        // held
         model.held =
             model.break_points().into_iter().filter(|p| *p < base.len()).map(|p| (p, here.u[p])).collect();
         candidate
@@ -272,7 +285,7 @@ impl<'a> Search<'a> {
             .map(|(u, score)| (index, u, score))
     }
 
-    /// Best parameters and score of a model made linear about `here` plus the candidate's start.
+    /// Best parameters and score of a model, linearized about `here` plus the candidate's start.
     fn linear(&self, model: &Model, here: &Point, slopes: &DMatrix<f64>, start: &[f64]) -> (Vec<f64>, f64) {
         let mut u = here.u.clone();
         u.extend_from_slice(start);
@@ -304,18 +317,20 @@ impl<'a> Search<'a> {
         }
         let objective = objective(self.forward, model, &u, &predicted, self.weights);
         let mut score = -0.5 * objective;
-        for (i, knob) in model.knobs().enumerate() {
+        for (i, parameter) in model.free_parameters().enumerate() {
             let p = model.calibrated() + i;
-            let prior = knob.width(u[p]);
+            let prior = parameter.width(u[p]);
             let width = 1.0 / (curvature[(p, p)] + 12.0 / prior.powi(2)).sqrt();
             score += (width / prior).ln() + 0.9;
         }
         (u, score)
     }
 
-    /// Models with as many effects as the best, one of them another, that the data cannot tell from it:
-    /// for each effect of the best the candidates that could stand in its place, the likeliest first, as
-    /// many as make the right one be among them with 95 %.
+    /// For each effect of the best model, the models with another effect in its place that the data cannot
+    /// tell from it.
+    ///
+    /// The likeliest come first. There are as many as needed for the right one to be among them with a
+    /// probability of 95 %.
     pub fn alternatives(&self, best: &Scored, seen: &[Scored]) -> Vec<Vec<Scored>> {
         (0..best.effects.len())
             .map(|i| {
@@ -326,21 +341,21 @@ impl<'a> Search<'a> {
                         && !s.effects.contains(&own)
                         && rest.iter().all(|e| s.effects.contains(e))
                 };
-                let mut rivals: Vec<Scored> = Vec::new();
-                for rival in seen.iter().filter(in_its_place) {
-                    if rivals.iter().all(|r| r.effects != rival.effects) {
-                        rivals.push(rival.clone());
+                let mut competitors: Vec<Scored> = Vec::new();
+                for competitor in seen.iter().filter(in_its_place) {
+                    if competitors.iter().all(|r| r.effects != competitor.effects) {
+                        competitors.push(competitor.clone());
                     }
                 }
                 let odds = |s: &Scored| (s.score - best.score).exp();
-                let all = 1.0 + rivals.iter().map(odds).sum::<f64>();
+                let all = 1.0 + competitors.iter().map(odds).sum::<f64>();
                 let mut held = 1.0;
-                rivals.retain(|s| {
+                competitors.retain(|s| {
                     let needed = held < CREDIBLE * all;
                     held += odds(s);
                     needed
                 });
-                rivals
+                competitors
             })
             .collect()
     }

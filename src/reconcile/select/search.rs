@@ -9,24 +9,25 @@ use crate::reconcile::model::parameters::{Candidate, Model, Nuisance};
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
-/// Smoothing of a gear's curve, in ln of the torque: so that a descent sees past the frequencies' steps, and so
-/// that they are nearly sharp.
+/// Widths of smoothing of a gear's curve \[ln of the torque\]. The wide one lets a descent see past the steps
+/// of the frequencies. The narrow one leaves the steps nearly sharp.
 const WIDE: f64 = 0.1;
 const NARROW: f64 = 0.01;
-/// Rise of the objective beyond which a break point is not followed further.
+/// A break point is not followed further where the objective has risen by more than this.
 const RULED_OUT: f64 = 14.0;
-/// Objective per datum above which a model cannot become the explanation, whatever the declared deviations.
+/// A model with a larger objective per datum cannot become the explanation, whatever the declared standard
+/// deviations.
 const BEYOND_HOPE: f64 = 3.0;
 
-/// All that a search needs.
+/// Everything that a search needs.
 pub struct Search<'a> {
-    /// Campaign.
+    /// The campaign.
     pub campaign: &'a Campaign,
-    /// Prepared campaign.
+    /// The campaign, prepared for fitting.
     pub forward: &'a Forward,
-    /// Calibration.
+    /// The calibrated parameters.
     pub nuisance: &'a Nuisance,
-    /// Candidates.
+    /// All candidates.
     pub candidates: &'a [Candidate],
     /// Weights of the data.
     pub weights: &'a Weights,
@@ -39,25 +40,25 @@ pub struct Scored {
     pub effects: Vec<usize>,
     /// Its parameters.
     pub u: Vec<f64>,
-    /// Evidence less ln of the number of candidates for each effect.
+    /// ln of the evidence minus ln of the number of places for each effect.
     pub score: f64,
-    /// `Σ ρ(r) + Σ u²`.
+    /// The objective `Σ ρ(r) + Σ u²`.
     pub objective: f64,
 }
 
 impl<'a> Search<'a> {
-    /// A model of the named candidates.
+    /// A model of the candidates with these indices.
     pub fn model(&self, effects: &[usize]) -> Model<'a> {
         Model::of(self.nuisance, self.candidates, effects)
     }
 
-    /// Fits the model of the named candidates from `u`.
+    /// Fits that model from `u`.
     pub fn fit(&self, effects: &[usize], u: &[f64], effort: Effort) -> Fit<'a> {
         self.fit_model(self.model(effects), u, effort)
     }
 
-    /// Fits a model from `u`; where the last effect is a gear's curve, its break points' steps in the
-    /// frequencies are first smoothed, then sharpened.
+    /// Fits a model from `u`. Where the last effect is a gear's curve, the steps of the frequencies at its
+    /// break points are smoothed at first and then sharpened.
     fn fit_model(&self, mut model: Model<'a>, u: &[f64], effort: Effort) -> Fit<'a> {
         let mut start = u.to_vec();
         if !self.forward.modal.is_empty() && model.effects.last().is_some_and(|e| e.kind.traits.is_gear_curve)
@@ -76,8 +77,8 @@ impl<'a> Search<'a> {
         descent(self.forward, model, u, self.weights, effort, f64::INFINITY)
     }
 
-    /// A few steps, enough to see whether a model is near; where its last effect is a gear's curve, after a few
-    /// with the frequencies' steps smoothed widely.
+    /// Takes a few steps, enough to see whether a model is close. Where the last effect is a gear's curve,
+    /// the frequencies' steps are smoothed widely at first.
     pub(super) fn rough(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
         let mut model = self.model(effects);
         let mut start = u.to_vec();
@@ -91,8 +92,8 @@ impl<'a> Search<'a> {
         fit(self.forward, &model, &start, self.weights, few)
     }
 
-    /// Fits a model to the end: the break points of a gear's curve are moved in steps, because the
-    /// frequencies' steps at them hide lower ground from a descent.
+    /// Fits a model to the end. Break points of a gear's curve are moved by hand, because the frequencies'
+    /// steps hide lower ground from a descent.
     pub fn polish(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
         let model = self.model(effects);
         let breaks = model.break_points();
@@ -115,8 +116,8 @@ impl<'a> Search<'a> {
         self.centre_breaks(model, best)
     }
 
-    /// A model that may be the explanation, fitted to the end if it has break points: else a further effect is
-    /// found that only makes good what the descent left.
+    /// Fits a model with break points to the end if it may be the explanation. Otherwise a further effect
+    /// might be named that only makes up for what the descent missed.
     pub(super) fn settled(&self, scored: Scored) -> Scored {
         if self.model(&scored.effects).break_points().is_empty() || !self.may_explain(&scored) {
             return scored;
@@ -125,8 +126,8 @@ impl<'a> Search<'a> {
         if polished.score > scored.score { polished } else { scored }
     }
 
-    /// Moves break points from the brink of a frequency's step into the middle of where the objective is
-    /// flat, so that a small change of the torques does not carry a test across.
+    /// Moves break points from the edge of a frequency's step to the middle of the flat part of the
+    /// objective. A small change of the torques then does not move a test across the step.
     pub(super) fn centre_breaks(&self, model: Model<'a>, best: Point) -> Fit<'a> {
         const STEP: f64 = 0.002;
         let mut u = best.u.clone();
@@ -149,7 +150,8 @@ impl<'a> Search<'a> {
         fit(self.forward, &model, &end.u, self.weights, Effort { steps: 0, tolerance: 0.0 })
     }
 
-    /// Descends with a parameter held at a value, then lets it go, unless the readings rule the value out.
+    /// Descends with a parameter held at a value, then frees it. Returns `None` if the readings rule the
+    /// value out.
     fn held_then_free(&self, model: &Model, from: &Point, parameter: usize, value: f64) -> Option<Point> {
         let effort = Effort { steps: 5, tolerance: 0.02 };
         let mut held = model.clone();
@@ -159,7 +161,7 @@ impl<'a> Search<'a> {
         (end.objective <= limit).then(|| self.descent(model, &end.u, effort))
     }
 
-    /// The score of a fit.
+    /// Scores a fit.
     pub fn scored(&self, effects: &[usize], fit: &Fit) -> Scored {
         let penalty = effects.len() as f64 * (self.places() as f64).ln();
         Scored {
@@ -170,25 +172,25 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether a model comes near enough to the readings to be worth refining.
+    /// Whether a model fits the readings well enough to be worth refining.
     pub fn may_explain(&self, scored: &Scored) -> bool {
         scored.objective < BEYOND_HOPE * self.forward.data.len() as f64
     }
 
-    /// In how many ways an effect could be named; a unit slip counts once a channel.
+    /// Number of places where an effect could be named. All unit slips of a channel count once.
     pub fn places(&self) -> usize {
         let mut labels: Vec<String> = self.candidates.iter().map(|c| c.label()).collect();
         labels.dedup();
         labels.len()
     }
 
-    /// A model without one of its effects, and where to start it from.
+    /// A model without one of its effects, and its start.
     pub fn without(&self, scored: &Scored, effect: usize) -> (Vec<usize>, Vec<f64>) {
         let model = self.model(&scored.effects);
-        let first = model.first_knob(effect);
+        let first = model.first_parameter(effect);
         let (mut effects, mut u) = (scored.effects.clone(), scored.u.clone());
         effects.remove(effect);
-        u.drain(first..first + model.effects[effect].knobs.len());
+        u.drain(first..first + model.effects[effect].free_parameters.len());
         (effects, u)
     }
 }

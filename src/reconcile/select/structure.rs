@@ -1,11 +1,11 @@
-//! A structure that residuals follow, as one question put to them answers it.
+//! A structure that residuals follow: the answer to one question about them.
 
 use crate::arm::effect::channel::Channel;
 
-/// One question put to the residuals.
+/// One question about the residuals, and its answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Structure {
-    /// Channel; all of them together if none.
+    /// The channel; `None` for all of them together.
     pub channel: Option<Channel>,
     /// What the residuals would follow, in words.
     pub follows: String,
@@ -13,7 +13,7 @@ pub struct Structure {
     pub statistic: f64,
     /// Its degrees of freedom.
     pub dof: f64,
-    /// ln of the probability of so large a statistic, times the number of questions.
+    /// ln of the probability that chance gives so large a statistic, times the number of questions.
     pub ln_p: f64,
 }
 

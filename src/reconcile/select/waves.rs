@@ -8,7 +8,7 @@ pub fn waves(angle_deg: f64) -> [f64; 4] {
     [a.sin(), a.cos(), (2.0 * a).sin(), (2.0 * a).cos()]
 }
 
-/// Slow and fast waves and a line over the order of the rows.
+/// A line, a parabola, and slow and fast waves over the order of the rows; `part` runs from 0 to 1.
 pub fn order_functions(part: f64) -> [f64; 6] {
     let (a, b) = (TAU * part, 2.0 * TAU * part);
     [part - 0.5, (part - 0.5).powi(2), a.sin(), a.cos(), b.sin(), b.cos()]

@@ -1,4 +1,4 @@
-//! What is concluded, and the files that say it.
+//! The conclusion of a reconciliation, and the files that state it.
 
 pub mod correct;
 pub mod files;

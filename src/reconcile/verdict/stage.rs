@@ -1,17 +1,17 @@
-//! A row of the table of position errors.
+//! One row of the table of position errors.
 
 use serde_json::{Value, json};
 
 /// How well a model predicts positions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stage {
-    /// What was added to the stage before.
+    /// The effect or the group of numbers that was added to the stage before.
     pub added: String,
-    /// What it made needless.
+    /// The effects that it made unnecessary.
     pub dropped: Vec<String>,
-    /// Median error of the poses it was fitted to \[mm\].
+    /// Median error of the poses in the fit \[mm\].
     pub fitted_median_mm: f64,
-    /// Median error of poses kept out of the fit \[mm\].
+    /// Median error of held-out poses \[mm\].
     pub median_mm: f64,
     /// Their mean error \[mm\].
     pub mean_mm: f64,
@@ -20,7 +20,7 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// As in `verdict.json`.
+    /// As JSON for `verdict.json`.
     pub fn json(&self) -> Value {
         json!({
             "added": self.added, "dropped": self.dropped, "fitted_median_mm": self.fitted_median_mm, "kept_out_median_mm": self.median_mm,
