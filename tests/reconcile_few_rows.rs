@@ -24,5 +24,5 @@ fn the_papers_frequencies_want_more_mass_at_the_wrist_than_its_table_has_and_lea
     let third = says("the stiffness of wrist cannot be identified");
     let numbers: Vec<f64> = third.split(' ').filter_map(|word| word.parse().ok()).collect();
     assert!(numbers[0] < 0.65 * 108e3 && numbers[1] > 2.0 * 108e3, "{third}");
-    assert!(outcome.kept_out.is_none(), "one pose cannot be predicted from none");
+    assert!(outcome.held_out.is_none(), "one pose cannot be predicted from none");
 }

@@ -22,12 +22,12 @@ fn the_prepared_model_is_mechanics_for_every_effect_at_every_place() {
     let campaign = campaign();
     let forward = Forward::new(&campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
-    let bare = Model::bare(&nuisance);
-    let mut u: Vec<f64> = (0..bare.len()).map(|i| ((i * 7) % 5) as f64 * 0.4 - 0.8).collect();
+    let baseline = Model::baseline(&nuisance);
+    let mut u: Vec<f64> = (0..baseline.len()).map(|i| ((i * 7) % 5) as f64 * 0.4 - 0.8).collect();
     let calibrated = u.len();
     for candidate in candidates(&forward) {
         for start in &candidate.starts {
-            let model = bare.with(&candidate);
+            let model = baseline.with(&candidate);
             u.truncate(calibrated);
             u.extend(start);
             let coefficients = model.coefficients(&forward, &u);
@@ -74,7 +74,7 @@ fn sensitivities_are_differences_of_predictions() {
         "sensor_gain@modal",
     ] {
         let candidate = all.iter().find(|c| c.label() == name).expect("candidate");
-        let model = Model::bare(&nuisance).with(candidate);
+        let model = Model::baseline(&nuisance).with(candidate);
         let mut u = vec![0.3; model.calibrated()];
         u.extend(&candidate.starts[0]);
         let here = evaluate(&forward, &model, &u, &weights);

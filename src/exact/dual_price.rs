@@ -5,8 +5,9 @@
 
 use super::joint_play::JointPlay;
 use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia};
-use super::torsion::{CurveBox, segments};
+use super::torsion::CurveBox;
 use super::tree::{Bounds, Tree};
+use crate::arm::joint_law::Segment;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -132,7 +133,8 @@ fn each_state_of_sign(
     see: &mut impl FnMut(GearState),
 ) {
     let w = &curve.stiff.windup;
-    for (segment, (slope, start, end)) in segments(w).into_iter().enumerate() {
+    for (segment, part) in w.segments().into_iter().enumerate() {
+        let Segment { from_nm: start, to_nm: end, stiffness_nm_per_rad: slope } = part;
         let (from, to) = (low.max(start), high.min(end));
         // A break point belongs to the segment below it.
         if from <= to && (to > start || start == 0.0) {

@@ -1,7 +1,7 @@
 //! Torsion curves of gears, and boxes of curves.
 
 use super::joint_play::JointPlay;
-use crate::arm::joint_law::{Curve, JointLaw, Windup};
+use crate::arm::joint_law::{Curve, JointLaw, Segment, Windup};
 
 /// Stiffness that stands for a rigid gear where lost motion is in series \[N m/rad\]. It adds at most a part
 /// in 1e9 to any compliance.
@@ -19,7 +19,7 @@ pub(super) struct Torsion {
 
 impl Torsion {
     fn new(windup: Windup) -> Self {
-        let compliance = segments(&windup).map(|(slope, ..)| 1.0 / slope);
+        let compliance = windup.segments().map(|s| 1.0 / s.stiffness_nm_per_rad);
         let second = windup.t1_nm * compliance[0];
         // A segment that never begins has no length.
         let third = second + (windup.t2_nm - windup.t1_nm).max(0.0) * compliance[1];
@@ -64,7 +64,7 @@ impl CurveBox {
             Curve::Rigid if law.lost_motion.is_some() => Curve::Linear(RIGID_NM_PER_RAD),
             curve => curve,
         };
-        let torsion = Torsion::new(curve.segments()?);
+        let torsion = Torsion::new(curve.as_windup()?);
         Some(Self { stiff: torsion, soft: torsion, k1_in_modes: !matches!(curve, Curve::Windup(_)) })
     }
 
@@ -161,20 +161,11 @@ fn rising_below(w: &Windup) -> Windup {
     Windup { k1_nm_per_rad: k2.min(w.k1_nm_per_rad), k2_nm_per_rad: k2, ..*w }
 }
 
-/// The slope \[N m/rad\], start and end \[N m\] of each segment.
-pub(super) fn segments(w: &Windup) -> [(f64, f64, f64); 3] {
-    [
-        (w.k1_nm_per_rad, 0.0, w.t1_nm),
-        (w.k2_nm_per_rad, w.t1_nm, w.t2_nm),
-        (w.k3_nm_per_rad, w.t2_nm, f64::INFINITY),
-    ]
-}
-
-/// The slopes of the segments that torque magnitudes in an interval touch.
+/// The slopes of the segments that torques touch, given by magnitudes.
 fn slopes(w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
-    // A break point belongs to the segment below it.
-    let touched = move |&(_, from, to): &(f64, f64, f64)| least_nm <= to && (most_nm > from || from == 0.0);
-    segments(w).into_iter().filter(touched).map(|(slope, ..)| slope)
+    // A break point belongs to the segment below it
+    let touched = move |s: &Segment| least_nm <= s.to_nm && (most_nm > s.from_nm || s.from_nm == 0.0);
+    w.segments().into_iter().filter(touched).map(|s| s.stiffness_nm_per_rad)
 }
 
 /// The break points of a set of curves, as bits on a logarithmic grid of about 5 %.

@@ -1,5 +1,6 @@
 //! Files as they come in: JSON documents and tables, every fault kept with file, line, field and hint.
 
+pub(crate) mod csv;
 pub(crate) mod duplicates;
 pub mod json;
 pub(crate) mod lines;

@@ -40,13 +40,11 @@ fn curve_range(curve: &Curve, [near, far]: [f64; 2]) -> [f64; 2] {
         Curve::Linear(stiffness) => [1.0 / stiffness; 2],
         Curve::WindupK1(w) => [1.0 / w.k1_nm_per_rad; 2],
         Curve::Windup(w) => {
-            let segments = [
-                (0.0, w.t1_nm, w.k1_nm_per_rad),
-                (w.t1_nm, w.t2_nm, w.k2_nm_per_rad),
-                (w.t2_nm, f64::INFINITY, w.k3_nm_per_rad),
-            ];
-            let met = segments.iter().filter(|(from, to, _)| near <= *to && far >= *from);
-            met.fold([f64::INFINITY, 0.0], |[least, most], (_, _, k)| [least.min(1.0 / k), most.max(1.0 / k)])
+            let met = w.segments().into_iter().filter(|s| near <= s.to_nm && far >= s.from_nm);
+            met.fold([f64::INFINITY, 0.0], |[least, most], s| {
+                let compliance = 1.0 / s.stiffness_nm_per_rad;
+                [least.min(compliance), most.max(compliance)]
+            })
         }
     }
 }

@@ -21,21 +21,21 @@ pub fn detectable_sigmas(campaign: &Campaign, hidden: &[Value]) -> Option<f64> {
         .collect::<Option<_>>()?;
     let mut u = vec![0.0; nuisance.numbers.len()];
     for (effect, key) in effects.iter().zip(hidden) {
-        u.extend(effect.knobs.iter().enumerate().map(|(i, knob)| {
-            let stated = key.get(knob.name).or_else(|| key["parameters"].get(knob.name));
-            let number = stated.and_then(|v| v.get(knob.component).unwrap_or(v).as_f64());
-            number.map_or(effect.starts[0][i], |value| knob.u(value))
+        u.extend(effect.free_parameters.iter().enumerate().map(|(i, parameter)| {
+            let stated = key.get(parameter.name).or_else(|| key["parameters"].get(parameter.name));
+            let number = stated.and_then(|v| v.get(parameter.component).unwrap_or(v).as_f64());
+            number.map_or(effect.starts[0][i], |value| parameter.u(value))
         }));
     }
-    let truth = Model { effects, ..Model::bare(&nuisance) };
+    let truth = Model { effects, ..Model::baseline(&nuisance) };
     let seen = forward.predict(&truth.coefficients(&forward, &u));
     forward.data.iter_mut().zip(seen).for_each(|(datum, value)| datum.value = value);
     let weights = Noise::default().weights(&forward);
     let departure = |i: usize| {
         let model = truth.without(i);
         let mut start = u.clone();
-        let first = truth.first_knob(i);
-        start.drain(first..first + truth.effects[i].knobs.len());
+        let first = truth.first_parameter(i);
+        start.drain(first..first + truth.effects[i].free_parameters.len());
         fit(&forward, &model, &start, &weights, Effort::default()).point.objective.sqrt()
     };
     let least = (0..truth.effects.len()).map(departure).fold(f64::INFINITY, f64::min);

@@ -1,7 +1,8 @@
-//! A structure that yields differently about its three axes, and about one when it is bent about another:
+//! `frame_compliance`: a structure turns about three axes under a moment, each differently and coupled. It is
 //! what the arm stands on, or the casting behind a joint.
 
-use super::{Kind, Parameter, Place, Scope, Subject};
+use super::kind::{Kind, Parameter, Place, Scope, Traits, Yields};
+use super::subject::Subject;
 use crate::arm::structure::FrameCompliance;
 use nalgebra::{Matrix3, SymmetricEigen};
 
@@ -18,6 +19,7 @@ pub const KIND: Kind = Kind {
     places: &[Place::Base, Place::Link],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits { is_sought: false, yields: Some(Yields::Frame), contradiction, ..Traits::USUAL },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
@@ -27,7 +29,7 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
         None if at == "base" => {
             subject.structure.base_frame = FrameCompliance(subject.structure.base_frame.0 + added);
         }
-        // a part of an arm may lack the link
+        // a part of an arm may lack the link, and then nothing changes
         None => {}
     }
 }
@@ -37,8 +39,15 @@ fn matrix(numbers: &[f64]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }
 
-/// Whether the numbers are a spring: no moment turns the frame against itself.
-pub fn is_spring(numbers: &[f64]) -> bool {
+fn contradiction(numbers: &[f64]) -> Option<(&'static str, &'static str)> {
+    (!is_spring(numbers)).then_some((
+        "some moment would turn the frame against itself",
+        "each coupling squared is at most the product of its two diagonal numbers",
+    ))
+}
+
+/// Whether the numbers describe a spring: no moment turns the frame against itself.
+fn is_spring(numbers: &[f64]) -> bool {
     let eigenvalues = SymmetricEigen::new(matrix(numbers)).eigenvalues;
     eigenvalues.min() >= -1e-9 * eigenvalues.max().abs()
 }

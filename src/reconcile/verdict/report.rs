@@ -1,20 +1,13 @@
-//! The verdict in words that can be read aloud, and the files.
+//! Writes the verdict in words, and the files of the outcome.
 
-use super::outcome::{Estimate, Finding, Outcome, Verdict};
-use crate::arm::Arm;
+use super::files::{CORRECTED_FILE, corrected_file};
+use super::outcome::{Outcome, Verdict};
+use crate::reconcile::model::estimate::{Estimate, Finding};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Factor on declared standard deviations from which it is put into words: less is within what chance does.
+/// A factor on declared standard deviations below this is not mentioned, because chance produces as much.
 const WORTH_SAYING: f64 = 1.05;
-
-/// File of the first corrected arm.
-pub const CORRECTED_FILE: &str = "arm.corrected.json";
-
-/// File of a further corrected arm.
-pub fn corrected_file(arm: &Arm) -> String {
-    format!("{}.corrected.json", arm.name)
-}
 
 impl Outcome {
     /// A short verdict for the terminal.
@@ -27,7 +20,7 @@ impl Outcome {
         for finding in self.effects.iter().chain(&self.suspects) {
             out.push_str(&describe(finding, self.verdict));
         }
-        if let Some(k) = &self.kept_out {
+        if let Some(k) = &self.held_out {
             let _ = writeln!(
                 out,
                 "  on {} readings of poses kept out of the fit: {:.2} sigma before, {:.2} after",
@@ -148,7 +141,7 @@ fn value(e: &Estimate) -> String {
     format!("{} ({} to {})", number(e.value), end(e.low), end(e.high))
 }
 
-/// Four figures.
+/// A number with four significant figures.
 fn number(x: f64) -> String {
     match x.abs() {
         0.0 => "0".into(),

@@ -1,17 +1,18 @@
-//! `predict`: the model's value beside every reading of a file.
+//! `predict`: adds the model's values to the readings of a file.
 
-use crate::arm::effect::{Channel, Subject};
+use super::forward::prepared::make_links_rigid;
+use super::model::exact::Exact;
+use super::positions;
+use super::readings::campaign::{Campaign, Statement, driven_joint_names};
+use super::readings::rows::{modal_rows, position_rows, static_rows, windup_rows};
+use super::readings::table::Table;
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::subject::Subject;
 use crate::arm::{Arm, JointModel};
 use crate::input::json::Faults;
-use crate::reconcile::forward::make_links_rigid;
-use crate::reconcile::model::exact::Exact;
-use crate::reconcile::positions;
-use crate::reconcile::readings::campaign::{Campaign, Statement, driven_joint_names};
-use crate::reconcile::readings::placement::Placement;
-use crate::reconcile::readings::rows::{modal_rows, position_rows, static_rows, windup_rows};
-use crate::reconcile::readings::table::Table;
+use crate::reconcile::readings::placement::Placed;
 
-/// What kind of readings a file holds, by its columns.
+/// The channel of a file, by its columns.
 pub fn channel_of(table: &Table) -> Option<Channel> {
     let has = |name: &str| table.optional(name).is_some();
     match () {
@@ -21,15 +22,6 @@ pub fn channel_of(table: &Table) -> Option<Channel> {
         () if has("x_mm") => Some(Channel::Positions),
         () => None,
     }
-}
-
-/// An arm with where it stands.
-#[derive(Debug, Clone)]
-pub struct Placed {
-    /// The arm.
-    pub arm: Arm,
-    /// Its placement, for absolute positions.
-    pub placement: Placement,
 }
 
 /// The file with the model's columns added, by the first of the arms that stand on one trunk; absolute
@@ -73,7 +65,7 @@ pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<S
     if faults.is_empty() { Ok(text) } else { Err(Faults(faults)) }
 }
 
-/// The arm under test with all effects its file has.
+/// The arm under test, with all effects of its file.
 pub(crate) fn subject(arm: &Arm, statement: &Statement) -> Subject {
     let mut nominal = Arm { effects: Vec::new(), ..arm.clone() }.subject(JointModel::ThreeSegment);
     if statement.rigid_links {
@@ -86,7 +78,7 @@ pub(crate) fn subject(arm: &Arm, statement: &Statement) -> Subject {
     nominal
 }
 
-/// Positions by one arm, or by several that load each other's trunk \[mm\].
+/// Positions on one arm, or on several whose weights load a common trunk \[mm\].
 fn positions_mm(
     arms: &[Placed],
     statement: &Statement,
@@ -101,7 +93,7 @@ fn positions_mm(
         several => {
             let subjects: Vec<Subject> = all.iter().map(|arm| subject(arm, statement)).collect();
             let campaign = Campaign::of_positions(statement, &all, rows)?;
-            Ok(positions::predicted_mm(campaign, several, &subjects))
+            Ok(positions::predict::predicted_mm(campaign, several, &subjects))
         }
     }
 }

@@ -1,19 +1,21 @@
-//! Readings in another unit than the file says whose standard deviations are in the one it says.
+//! Finds readings in another unit than the file states, whose standard deviations are in the stated unit.
 //!
-//! A column times 25.4 has 25.4 times the noise too. Beside the deviations as declared no model comes near such readings,
-//! the one with the right factor neither, so the slip shows only once they are taken to be as much too small.
+//! A column that was multiplied by 25.4 has 25.4 times the noise. With the declared deviations no model fits
+//! such readings, not even one with the right factor. So the slip shows only after the deviations are
+//! enlarged by the same factor.
 
-use crate::arm::effect::Channel;
-use crate::arm::effect::wrong_unit::SLIPS as UNIT_SLIPS;
-use crate::reconcile::fit::stats::median;
-use crate::reconcile::forward::Forward;
+use super::stats::median;
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::wrong_unit;
 use crate::reconcile::forward::coefficients::Coefficients;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Candidate;
 
-/// How far the readings of a channel may be from a factor of the unit slips, in ln: missing physics, and more.
+/// Largest distance of the readings of a channel from a slip's factor \[ln\]. It leaves room for missing
+/// physics.
 const NEAR: f64 = 0.25;
 
-/// Deviations of a channel that are too small by a factor.
+/// Standard deviations of a channel that are too small by a factor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
     channel: Channel,
@@ -21,12 +23,14 @@ pub struct Stretch {
 }
 
 impl Stretch {
-    /// Whether the slip is among some effects.
+    /// Whether one of the effects is this slip.
     pub fn is_among(&self, effects: &[&Candidate]) -> bool {
-        effects.iter().any(|effect| effect.kind.name == "wrong_unit" && effect.at == self.channel.word())
+        effects
+            .iter()
+            .any(|effect| effect.kind.name == wrong_unit::KIND.name && effect.at == self.channel.word())
     }
 
-    /// What is taken for granted, in words.
+    /// The assumption, in words.
     pub fn sentence(&self) -> String {
         let Self { channel, factor } = self;
         let (channel, factor) = (channel.word(), crate::report::number::significant(*factor, 4));
@@ -37,8 +41,8 @@ impl Stretch {
     }
 }
 
-/// The channels whose readings are about a slip's factor of what the nominal arm gives, and which the best model misses
-/// by far more than declared: nearer to the factor than to one.
+/// The channels whose readings are about a slip's factor times those of the nominal arm, and that the best
+/// model misses by far more than declared: by a ratio nearer to the factor than to one.
 pub fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> {
     let nominal = forward.predict(&forward.coefficients(&forward.nominal));
     let predicted = forward.predict(best);
@@ -50,7 +54,7 @@ pub fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> {
             .zip(&nominal[range.clone()])
             .fold((0.0, 0.0), |(both, square), (d, model)| (both + d.value * model, square + model * model));
         let ratio = both / square;
-        let slips = UNIT_SLIPS.iter().map(|(factor, _)| *factor).filter(|factor| *factor > 1.0);
+        let slips = wrong_unit::SLIPS.iter().map(|(factor, _)| *factor).filter(|factor| *factor > 1.0);
         let factor = slips.min_by(|a, b| {
             let apart = |factor: &f64| (ratio / factor).ln().abs();
             apart(a).total_cmp(&apart(b))
@@ -62,7 +66,7 @@ pub fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> {
     [Channel::Static, Channel::Modal, Channel::Windup].into_iter().filter_map(of_channel).collect()
 }
 
-/// Takes the declared deviations of some channels for larger.
+/// Multiplies the declared standard deviations of some channels.
 pub fn stretch(forward: &mut Forward, stretches: &[Stretch]) {
     for Stretch { channel, factor } in stretches {
         let range = forward.range(*channel);

@@ -1,37 +1,37 @@
-//! Confirmation on whole poses kept out of the fit.
+//! Confirms a model on whole poses that are held out of the fit (cross-validation).
 //!
-//! The poses are dealt into four hands. Each hand in turn is kept out, the model refitted to the rest
-//! (its effects as selected, their values and the calibration anew, only break points held), and the hand predicted. Rows
-//! of one pose are never split: they share a history and a reference reading. Bench rows belong to no
-//! pose and stay in every fit.
+//! The poses are dealt into four folds. Each fold in turn is held out, the model is refitted to the rest, and
+//! the fold is predicted. The refit keeps the selected effects. It fits their values and the calibration anew
+//! and holds only the break points. Rows of one pose are never split, because they share a history and a
+//! reference reading. Bench rows belong to no pose and stay in every fit.
 
 use super::descent::{Effort, Weights, descent};
-use crate::reconcile::forward::Forward;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Model;
 use rayon::prelude::*;
 
-/// Hands the poses are dealt into.
+/// Number of folds.
 const HANDS: usize = 4;
 
-/// Root mean square of kept-out residuals, in standard deviations: the declared ones times the scale
-/// that the readings showed (1 unless the report says otherwise).
+/// Root mean squares of held-out residuals, in standard deviations. These are the declared ones times the
+/// scale that the readings showed, which is 1 unless the report says otherwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct KeptOut {
-    /// Without any effect, calibration refitted.
+pub struct HeldOut {
+    /// Without any effect, with the calibration refitted.
     pub rms_before: f64,
     /// With the effects.
     pub rms_after: f64,
     /// With the effects, in the standard deviations as declared.
     pub rms_declared_after: f64,
-    /// Numbers that were predicted.
+    /// How many numbers were predicted.
     pub count: usize,
 }
 
-/// Residuals of every datum when its pose is kept out \[declared standard deviations\]; `None` for data
-/// that never are.
+/// Residual of every datum with its pose held out \[declared standard deviations\]; `None` for data that are
+/// never held out.
 pub fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Vec<Option<f64>> {
-    // a frequency steps where a torque passes a break point: held, else a kept-out test on the step
-    // would be predicted from either side by chance
+    // A frequency steps where a torque passes a break point. With the break points free, a held-out test on
+    // the step would be predicted from either side by chance.
     let mut model = model.clone();
     model.held = model.break_points().into_iter().map(|p| (p, u[p])).collect();
     let model = &model;
@@ -59,7 +59,7 @@ pub fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &Weights)
     all
 }
 
-/// Root mean square of those that are there.
+/// Root mean square; 0 of nothing.
 pub fn rms(residuals: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = residuals.fold((0.0, 0.0), |(s, n), r| (s + r * r, n + 1.0));
     if count == 0.0 { 0.0 } else { f64::sqrt(sum / count) }

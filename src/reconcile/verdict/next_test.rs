@@ -1,29 +1,30 @@
-//! The test that best separates what is still confusable, in expected standard deviations.
+//! Proposes the test that best separates models that the readings cannot yet tell apart.
 //!
-//! Poses from a low-discrepancy sequence over the range of the campaign's own, each with the largest
-//! payload and tip force it used, each with its frequencies; each joint on the bench. For every test the
-//! rival models' predictions, both fitted to the readings so far, are compared.
+//! Poses come from a low-discrepancy sequence over the range of the campaign. Each has the largest payload
+//! and tip force that the campaign used, and its frequencies; each joint can also go on the bench. For every
+//! test, the predictions of the competing models are compared, all fitted to the readings so far. The
+//! difference is in expected standard deviations.
 
-use crate::arm::effect::Subject;
+use super::outcome::{NextTest, Verdict};
+use crate::arm::effect::subject::Subject;
 use crate::arm::load::Payload;
 use crate::reconcile::model::exact::Exact;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::{ModalRow, StaticRow, WindupRow};
-use crate::reconcile::verdict::outcome::{NextTest, Verdict};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// What is asked.
+/// The models to separate, and what is known so far.
 pub struct Question<'a> {
     /// The campaign so far.
     pub campaign: &'a Campaign,
     /// The best model.
     pub best: (String, Subject),
-    /// What it is to be told from.
-    pub rivals: Vec<(String, Subject)>,
-    /// The pose that is explained worst.
+    /// The competing models, with their names.
+    pub competitors: Vec<(String, Subject)>,
+    /// The pose that the best model explains worst \[deg\].
     pub residuals: Option<Vec<f64>>,
-    /// What was concluded.
+    /// The verdict so far.
     pub verdict: Verdict,
 }
 
@@ -32,9 +33,9 @@ const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
 /// Separation that settles a question \[standard deviations\].
 pub const ENOUGH: f64 = 4.0;
-/// Expected difference below which no number of readings is worth taking \[standard deviations\].
+/// A test that separates by less than this is not worth any number of readings \[standard deviations\].
 pub const WORTHLESS_SIGMAS: f64 = 0.1;
-/// Deviations that are assumed where a channel was not measured.
+/// Standard deviations that are assumed where a channel was not measured.
 const DEFAULT_SIGMA_MM: f64 = 0.01;
 const DEFAULT_SIGMA_PART: f64 = 0.003;
 const DEFAULT_SIGMA_ARCMIN: f64 = 0.05;
@@ -52,7 +53,7 @@ pub fn propose(question: &Question) -> Vec<NextTest> {
     if question.verdict == Verdict::Unexplained {
         return question.residuals.iter().map(|pose| repeat(question.campaign, pose)).collect();
     }
-    if question.rivals.is_empty() {
+    if question.competitors.is_empty() {
         return Vec::new();
     }
     let best = Exact::new(&question.best.1);
@@ -61,22 +62,25 @@ pub fn propose(question: &Question) -> Vec<NextTest> {
         .par_iter()
         .map(|test| {
             let own = predict(&best, test);
-            let rivals = question.rivals.iter();
-            rivals.map(|(_, rival)| separation(test, &own, &predict(&Exact::new(rival), test))).collect()
+            let competitors = question.competitors.iter();
+            competitors
+                .map(|(_, competitor)| separation(test, &own, &predict(&Exact::new(competitor), test)))
+                .collect()
         })
         .collect();
-    let most = |rival: usize| gaps.iter().map(|list| list[rival]).fold(0.0, f64::max);
-    let (open, alike): (Vec<usize>, Vec<usize>) =
-        (0..question.rivals.len()).partition(|&rival| most(rival) >= WORTHLESS_SIGMAS);
+    let most = |competitor: usize| gaps.iter().map(|list| list[competitor]).fold(0.0, f64::max);
+    let (open, twins): (Vec<usize>, Vec<usize>) =
+        (0..question.competitors.len()).partition(|&competitor| most(competitor) >= WORTHLESS_SIGMAS);
     if open.is_empty() {
-        let names: Vec<&str> = alike.iter().map(|&rival| question.rivals[rival].0.as_str()).collect();
+        let names: Vec<&str> =
+            twins.iter().map(|&competitor| question.competitors[competitor].0.as_str()).collect();
         return vec![nothing_tells(&question.best.0, &names)];
     }
     let mut out: Vec<NextTest> = tests
         .iter()
         .zip(&gaps)
         .map(|(test, list)| {
-            let worst = open.iter().map(|&rival| list[rival]).fold(f64::INFINITY, f64::min);
+            let worst = open.iter().map(|&competitor| list[competitor]).fold(f64::INFINITY, f64::min);
             describe(question, test, worst, &open)
         })
         .collect();
@@ -97,11 +101,11 @@ pub fn propose(question: &Question) -> Vec<NextTest> {
     out
 }
 
-/// That no reading of the arm tells models apart.
-fn nothing_tells(best: &str, rivals: &[&str]) -> NextTest {
+/// Says that no reading of the arm tells the models apart.
+fn nothing_tells(best: &str, competitors: &[&str]) -> NextTest {
     NextTest::of_another_kind(format!(
         "no displacement, frequency or bench reading separates {best} from {}: weigh or take apart what is in question",
-        rivals.join(" or ")
+        competitors.join(" or ")
     ))
 }
 
@@ -144,7 +148,7 @@ fn ranges(campaign: &Campaign) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// A pose of Halton's sequence within ranges of angles \[deg\], in whole degrees.
+/// A pose of Halton's sequence within ranges of angles, in whole degrees.
 pub fn spread_pose(ranges: &[(f64, f64)], index: usize) -> Vec<f64> {
     ranges
         .iter()
@@ -153,7 +157,7 @@ pub fn spread_pose(ranges: &[(f64, f64)], index: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Halton's sequence.
+/// A number of Halton's low-discrepancy sequence, from 0 to 1.
 fn halton(mut index: usize, base: usize) -> f64 {
     let (mut f, mut r) = (1.0, 0.0);
     while index > 0 {
@@ -208,8 +212,8 @@ fn tests(campaign: &Campaign, best: &Exact) -> Vec<Test> {
     out
 }
 
-/// A cycle on the bench for each joint that has not been there, up to the largest torque that it carries in the
-/// static tests: one that has been there is known as well as its readings say.
+/// A bench cycle for each joint that has not been on the bench, up to its largest torque in the static tests.
+/// A joint that has been there is known as well as its readings say.
 fn benches(campaign: &Campaign, best: &Exact, statics: &[Test]) -> Vec<Test> {
     let mut largest: Vec<(String, f64)> = Vec::new();
     for row in statics.iter().filter_map(|t| if let Test::Static(rows) = t { rows.first() } else { None }) {
@@ -248,7 +252,8 @@ fn predict(exact: &Exact, test: &Test) -> Vec<f64> {
     }
 }
 
-/// Root of the sum of squares of the difference \[standard deviations\], over the modes that both have.
+/// Difference of two predictions of a test \[standard deviations\]: the root of the sum of squares, over the
+/// modes that both have.
 fn separation(test: &Test, a: &[f64], b: &[f64]) -> f64 {
     let sigma = |value: f64| match test {
         Test::Static(rows) => rows[0].sigma_mm,
@@ -305,7 +310,7 @@ fn describe(question: &Question, test: &Test, sigmas: f64, open: &[usize]) -> Ne
         force_n: force_n.into(),
         joint,
         separates: std::iter::once(question.best.0.clone())
-            .chain(open.iter().map(|&rival| question.rivals[rival].0.clone()))
+            .chain(open.iter().map(|&competitor| question.competitors[competitor].0.clone()))
             .filter(|name| !name.is_empty())
             .collect(),
         expected_sigmas: sigmas,
