@@ -18,9 +18,6 @@
 //! A drive must hold the largest T of all sizing poses together with the largest L of all, though no one pose may have
 //! both: the arm passes between its poses.
 
-// Every test file compiles this module for itself and none uses all of it.
-#![allow(dead_code)]
-
 pub mod arm;
 pub mod catalog;
 pub mod demand;

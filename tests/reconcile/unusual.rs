@@ -1,13 +1,9 @@
 //! Effects of unusual size, links that are not as drawn, and wrong readings beside an effect.
 
+use crate::generator::{self, Dice, Plan, Specimen};
 use armwright::catalog::Catalogs;
 use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};
-use reconcile_generator::{Dice, Plan, Specimen};
 use serde_json::{Value, json};
-
-#[allow(dead_code)]
-mod reconcile_generator;
-mod witness;
 
 /// A campaign of a six-axis arm with what is hidden in it; the drawing says what `redrawn` makes of the arm.
 fn campaign(seed: u64, hidden: &[Value], redrawn: impl Fn(&mut Value)) -> tempfile::TempDir {
@@ -16,7 +12,7 @@ fn campaign(seed: u64, hidden: &[Value], redrawn: impl Fn(&mut Value)) -> tempfi
     let specimen = Specimen::six_axis(&mut dice);
     let key = out.path().join("key.json");
     let plan = Plan { static_poses: 20, modal_poses: 8, ..Plan::plain() };
-    reconcile_generator::write(&mut dice, &out.path().join("c"), &key, &specimen, hidden, &plan);
+    generator::write(&mut dice, &out.path().join("c"), &key, &specimen, hidden, &plan);
     let mut arm = specimen.arm.clone();
     redrawn(&mut arm);
     std::fs::write(out.path().join("c/arm.json"), arm.to_string()).expect("written");

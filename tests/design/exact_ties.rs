@@ -1,14 +1,11 @@
 //! Drives of equal mass and curve are one option of the exact search: every one of them that holds is listed all the same.
 
-mod dice;
-mod exact_support;
-
+use crate::dice::Dice;
+use crate::exact_support::{agree, read};
 use armwright::catalog::Catalogs;
 use armwright::search::exact::Exact;
 use armwright::search::{ArmProblem, Sweep};
 use assert_cmd::Command;
-use dice::Dice;
-use exact_support::{agree, read};
 use serde_json::{Value, json};
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Absolute positions beside displacements, frequencies and bench readings, of arms made by the independent
 //! witness whose lengths are off by millimetres.
 
-use super::reconcile_generator::{self, Dice, Plan, Specimen};
+use super::generator::{self, Dice, Plan, Specimen};
 use armwright::arm::read_arm_document;
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
@@ -18,7 +18,7 @@ fn made(seed: u64, hidden: &[Value], plan: &Plan) -> (TempDir, Campaign) {
     let mut dice = Dice(seed);
     let arm = Specimen::six_axis(&mut dice);
     let own = folder.path().join("made");
-    reconcile_generator::write(&mut dice, &own, &folder.path().join("key.json"), &arm, hidden, plan);
+    generator::write(&mut dice, &own, &folder.path().join("key.json"), &arm, hidden, plan);
     let campaign = Campaign::read(&own, &Catalogs::default()).unwrap_or_else(|e| panic!("{e}"));
     (folder, campaign)
 }

@@ -1,16 +1,14 @@
 //! The pages in a real browser: quiet, linked, equal to their files. Without Chromium these tests say so
 //! and pass; `scripts/test` installs it where it may.
 //!
-//! `ARMWRIGHT_SCREENSHOTS=DIR cargo test --test pages` also writes pictures of the pages into a folder.
+//! `ARMWRIGHT_SCREENSHOTS=DIR cargo test --test program pages` also writes pictures of the pages into a folder.
 
-mod browser;
-
+use crate::browser::Browser;
 use armwright::report::front_table::FrontTable;
 use armwright::report::html::study::StudyPage;
 use armwright::report::number::significant;
 use armwright::report::summary::{MaterialFront, SummaryFacts, SummaryInput};
 use assert_cmd::Command;
-use browser::Browser;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 

@@ -1,14 +1,11 @@
 //! A measured arm's study run again: `reconcile --study` on the campaign of `examples/measured-arm`, whose picks must
 //! change as a slow, separately written search says (see `brute`).
 
-mod brute;
-mod witness;
-
-use brute::catalog::Catalog;
-use brute::design::{Design, search};
-use brute::front::{Place, places};
-use brute::program::{FrontRow, Results, armwright_ok, read_json, word};
-use brute::study::Study;
+use crate::brute::catalog::Catalog;
+use crate::brute::design::{Design, search};
+use crate::brute::front::{Place, places};
+use crate::brute::program::{FrontRow, Results, armwright_ok, read_json, word};
+use crate::brute::study::Study;
 use serde_json::Value;
 use std::path::Path;
 

@@ -4,10 +4,9 @@
 //! No member of a box may be better than the box's ceiling; nothing is missing beside a true front; and a
 //! design taken out of it is found.
 //!
-//! `ARMWRIGHT_WITNESS_STUDIES=300 cargo test --release --test witness_front` runs more of them.
+//! `ARMWRIGHT_WITNESS_STUDIES=300 cargo test --release --test design witness_front` runs more of them.
 
-mod dice;
-
+use crate::dice::Dice;
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
 use armwright::search::constraint::Constraints;
@@ -17,7 +16,6 @@ use armwright::search::witness::{By, Looked, PartsBox, Witness, conditions, miss
 use armwright::search::{ArmProblem, Objectives, OutwardIn, Sweep, evaluate};
 use armwright::sizing::PhaseKind;
 use armwright::study::{Study, read_study};
-use dice::Dice;
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;

@@ -1,8 +1,7 @@
 //! What a run works out beside its front: the front under scatter, the designs near it, and those that are on it for
 //! their ballast; each against a slow calculation from its definition.
 
-mod dice;
-
+use crate::dice::Dice;
 use armwright::arm::{Element, LinkBody};
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
@@ -17,7 +16,6 @@ use armwright::study::{
     read_study, run_exact, run_study, scatter_front,
 };
 use assert_cmd::Command;
-use dice::Dice;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;

@@ -89,7 +89,7 @@ fn the_next_tube_is_no_softer_either_way_and_not_too_slender() {
 
 /// The bench arm of the examples with few drives, and effects at its elbow and forearm.
 fn bench() -> Value {
-    let mut study: Value = serde_json::from_str(include_str!("../examples/bench-arm.json")).expect("JSON");
+    let mut study: Value = serde_json::from_str(include_str!("../../examples/bench-arm.json")).expect("JSON");
     study["drives"] = json!({"gear_series": ["CSG"], "ratios": [100],
         "motor_models": ["MF0060008 48V", "MF0076008 48V", "MF0076032 48V"]});
     study["effects"] = json!([

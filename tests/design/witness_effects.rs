@@ -1,11 +1,11 @@
 //! Each effect the witness can switch on, against what its law says of a case simple enough to do by hand.
 
-mod witness;
-
+use crate::witness::{
+    self, Answer, Effects, Immersion, LoadCase, LostMotion, Options, Payload, ThreeSegment,
+};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use witness::{Answer, Effects, Immersion, LoadCase, LostMotion, Options, Payload, ThreeSegment};
 
 const STIFFNESS_NM_PER_RAD: f64 = 2e4;
 const LEVER_M: f64 = 0.6;

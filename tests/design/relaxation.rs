@@ -1,14 +1,12 @@
 //! The lower bound on mass against every design of small random studies.
 
-mod dice;
-
+use crate::dice::Dice;
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
 use armwright::search::design::{evaluate, options};
 use armwright::search::relax::Relaxation;
 use armwright::search::{ArmProblem, Evaluated, Objectives, OutwardIn};
 use armwright::study::read_study;
-use dice::Dice;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 

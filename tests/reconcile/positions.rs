@@ -3,10 +3,8 @@
 //! The machines' measurements may not be redistributed: the folder that holds them is named by the
 //! environment variable ARMWRIGHT_MEASURED, and their tests say aloud when they are skipped.
 
-#[path = "../examples/measured/mod.rs"]
-mod measured;
-mod positions_maker;
-
+use crate::measured;
+use crate::positions_maker::{LOPSIDED_RAD_PER_NM, Made, UNEVEN_RAD, standard};
 use armwright::arm::{JointModel, read_arm_document};
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
@@ -15,7 +13,6 @@ use armwright::reconcile::page::campaign_page;
 use armwright::reconcile::placement::Placement;
 use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};
 use nalgebra::Vector3;
-use positions_maker::{LOPSIDED_RAD_PER_NM, Made, UNEVEN_RAD, standard};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 

@@ -1,11 +1,10 @@
 //! Made campaigns from an independent model, reconciled without their keys; the keys are opened when all
 //! verdicts have been written.
 
+use crate::scoring;
 use armwright::catalog::Catalogs;
 use armwright::reconcile::{Campaign, reconcile};
 use std::path::{Path, PathBuf};
-
-mod reconcile_scoring;
 
 fn data(folder: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(folder)
@@ -23,7 +22,7 @@ fn made_campaigns_are_named_as_their_keys_say() {
         let campaign = Campaign::read(&data("campaigns").join(name), &Catalogs::default()).expect("sound");
         reconcile(&campaign).write(&out.path().join(name)).expect("written");
     }
-    let score = reconcile_scoring::score(&names, out.path(), &data("campaign_keys")).expect("scored");
+    let score = scoring::score(&names, out.path(), &data("campaign_keys")).expect("scored");
     println!("{}\n{}", score.table(), score.confusion_csv());
     assert!(score.classes.values().all(|(right, all)| right == all), "{}", score.table());
     assert!(score.covered.0 * 10 >= score.covered.1 * 8, "{}", score.table());

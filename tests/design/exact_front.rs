@@ -4,11 +4,10 @@
 //! forces, counterweights behind the shoulder, water, link models, three-segment gears that are given,
 //! sized or chosen, and constraints. The two fronts must hold the same designs.
 //!
-//! `ARMWRIGHT_EXACT_STUDIES=500 cargo test --release --test exact_front` runs more of them.
+//! `ARMWRIGHT_EXACT_STUDIES=500 cargo test --release --test design exact_front` runs more of them.
 
-mod dice;
-mod exact_support;
-
+use crate::dice::Dice;
+use crate::exact_support::{agree, agrees, judged, read};
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
 use armwright::search::design::options;
@@ -18,8 +17,6 @@ use armwright::search::relax::Relaxation;
 use armwright::search::sweep::Candidate;
 use armwright::search::{ArmProblem, Objectives, OutwardIn, Sweep, evaluate};
 use armwright::study::{named, read_study};
-use dice::Dice;
-use exact_support::{agree, agrees, judged, read};
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;

@@ -3,10 +3,8 @@
 //! `tests/data/planar-arms.json` and `tests/data/spatial-arms.json` say what was solved, by whom, and to what tolerance
 //! agreement may be asked for.
 
-mod witness;
-
+use crate::witness::{self, Answer, LoadCase, MassShape, Options};
 use serde_json::Value;
-use witness::{Answer, LoadCase, MassShape, Options};
 
 /// Deviations from one set of expected numbers, in percent.
 #[derive(Debug, Default)]
@@ -143,7 +141,7 @@ fn as_the_spatial_reference_did() -> Options {
 
 /// Suggested are 0.2 %, but for its mass matrix (see `MassShape::EulerBernoulli`) the reference has the sixth mode of S01
 /// 0.253 % too low; the five lowest modes of all arms stay within 0.06 %. The planar arms by FEDEM and the exact solution
-/// of a stout cantilever (`tests/closed_forms.rs`) side with the Timoshenko shapes.
+/// of a stout cantilever (`tests/design/closed_forms.rs`) side with the Timoshenko shapes.
 const SPATIAL_TIMOSHENKO_PCT: f64 = 0.3;
 
 /// The file with only the lowest expected frequencies.

@@ -1,7 +1,5 @@
 //! Whether an exact search lists what a visit to every design finds.
 
-#![allow(dead_code)]
-
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
 use armwright::search::exact::Exact;
@@ -28,7 +26,7 @@ pub fn judged(problem: &ArmProblem, candidates: &[Candidate]) -> Vec<u128> {
     numbers
 }
 
-/// How the fast objectives may differ from the full model's (tests/search_fast_vs_full.rs).
+/// How the fast objectives may differ from the full model's (tests/design/search_fast_vs_full.rs).
 const ROUNDING: f64 = 2e-10;
 
 /// Designs that are better than every other by at least `least` in something, or tie with what beats them.

@@ -1,11 +1,9 @@
 //! The witness against closed forms, and the paper's Eqs 16-18 against their printed and corrected numbers.
 
-mod witness;
-
+use crate::witness::closed_forms::{self, StoutBeam};
+use crate::witness::paper::PaperArm;
+use crate::witness::{self, LoadCase, MassShape, Options, Payload};
 use serde_json::{Value, json};
-use witness::closed_forms::{self, StoutBeam};
-use witness::paper::PaperArm;
-use witness::{LoadCase, MassShape, Options, Payload};
 
 const E_PA: f64 = 2.1e11;
 const G_PA: f64 = 8.1e10;

@@ -1,17 +1,12 @@
 //! Fresh campaigns made by the independent witness, reconciled without their keys. The rates over hundreds of
 //! them are in docs/reconcile.md; here a few of each class hold the line.
 
+use crate::detectability;
+use crate::generator;
+use crate::scoring::{self, Score};
 use armwright::catalog::Catalogs;
 use armwright::reconcile::{Campaign, reconcile};
-use reconcile_scoring::Score;
 use std::path::Path;
-
-#[path = "reconcile_scoring/detectability.rs"]
-mod detectability;
-mod reconcile_generator;
-mod reconcile_scoring;
-mod reconcile_together;
-mod witness;
 
 /// Smallest departure that a hidden effect must cause to be a fair question \[standard deviations\].
 const FAIR: f64 = 4.0;
@@ -26,8 +21,7 @@ fn score(set: &str, class: &str, seed: u64, numbers: impl Iterator<Item = usize>
         names.push(name);
     }
     let score =
-        reconcile_scoring::score(&names, &folder.path().join("verdicts"), &folder.path().join("keys"))
-            .expect("scored");
+        scoring::score(&names, &folder.path().join("verdicts"), &folder.path().join("keys")).expect("scored");
     println!("{}\n{}", score.table(), score.confusion_csv());
     score
 }
@@ -36,7 +30,7 @@ fn score(set: &str, class: &str, seed: u64, numbers: impl Iterator<Item = usize>
 fn fair_campaign(out: &Path, set: &str, class: &str, seed: u64, number: usize) -> (String, Campaign) {
     let mut last = None;
     for eased in 0..8 {
-        let (name, hidden) = reconcile_generator::make(out, set, class, seed, number, eased);
+        let (name, hidden) = generator::make(out, set, class, seed, number, eased);
         let campaign =
             Campaign::read(&out.join("campaigns").join(&name), &Catalogs::default()).expect("sound");
         let seen = detectability::detectable_sigmas(&campaign, &hidden);

@@ -2,23 +2,22 @@
 //!
 //! Each study runs through the `armwright` program; its files are all that is compared.
 
-mod brute;
-mod witness;
-
-use brute::arm::{Chosen, Tube, arm_file};
-use brute::catalog::Catalog;
-use brute::demand::Demand;
-use brute::design::{Design, Searched, chains, joint_that_nothing_holds, link_key, objectives, search};
-use brute::front::{Place, SLACK, are_tied, exact_front_size, places};
-use brute::program::{
+use crate::brute::arm::{Chosen, Tube, arm_file};
+use crate::brute::catalog::Catalog;
+use crate::brute::demand::Demand;
+use crate::brute::design::{
+    Design, Searched, chains, joint_that_nothing_holds, link_key, objectives, search,
+};
+use crate::brute::front::{Place, SLACK, are_tied, exact_front_size, places};
+use crate::brute::program::{
     FrontRow, Results, armwright_fails, armwright_ok, read_json, run_study, run_study_with, word,
 };
-use brute::study::Study;
+use crate::brute::study::Study;
+use crate::witness::LoadCase;
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::path::Path;
-use witness::LoadCase;
 
 // Both programs solve the same equations, the one by compliances, the other by finite elements.
 const DEFLECTION_TOLERANCE: f64 = 1e-9;

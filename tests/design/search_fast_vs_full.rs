@@ -4,13 +4,11 @@
 //! payloads with an offset centre and inertia, water, tip force, given and sized joints, and in what the
 //! innermost level is; once without and once with effects at random joints and links. A design must hold in both or in neither, and all objectives must agree to 1e-10 (half of them to 1e-13).
 
-mod dice;
-
+use crate::dice::Dice;
 use armwright::catalog::Catalogs;
 use armwright::fault::Document;
 use armwright::search::{ArmProblem, Finished, Keep, OutwardIn, Status, Sweep, design, evaluate};
 use armwright::study::{Study, named, read_study};
-use dice::Dice;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;

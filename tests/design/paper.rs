@@ -1,7 +1,6 @@
 //! The paper's numbers and the claims of its figures, to the digits the project states.
 
-mod paper_support;
-
+use crate::paper_support::{check_xml, file, table};
 use armwright::arm::{Curve, LinkModel, Section};
 use armwright::catalog::Catalogs;
 use armwright::study::paper::arm::PaperArm;
@@ -13,7 +12,6 @@ use armwright::study::paper::remedies::{CatalogGears, connections, error_left, s
 use armwright::study::paper::rows::PaperRow;
 use armwright::study::paper::third_spring::{PRINTED_HZ, closest_reading, readings};
 use armwright::study::paper::{self, NAMES, PaperError, PaperStudyOutput, table1};
-use paper_support::{check_xml, file, table};
 
 fn row(rows: &[PaperRow], id: &str) -> PaperRow {
     rows.iter().find(|r| r.id == id).unwrap_or_else(|| panic!("row {id}")).clone()
