@@ -15,11 +15,11 @@ use armwright::study::{
     Extent, Judged, NearFront, Sampling, Study, StudyOutcome, ballast_flags, front_table, near_front,
     read_study, run_exact, run_study, scatter_front,
 };
-use assert_cmd::Command;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::process::Command;
 use std::sync::atomic::AtomicBool;
 
 fn read(study: &Value, catalogs: &Catalogs) -> Study {
@@ -414,7 +414,7 @@ fn designs_are_flagged_whose_heavier_part_only_presses_a_gear_into_a_stiffer_seg
 fn run(dir: &Path, out: &str, words: &[&str]) -> (Option<i32>, String, String) {
     let file = dir.join("study.json");
     std::fs::write(&file, random_study(4).to_string()).expect("written");
-    let mut command = Command::cargo_bin("armwright").expect("built");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));
     let output = command
         .current_dir(dir)
         .args(["run", "study.json", "--out", out])

@@ -5,10 +5,10 @@ use crate::exact_support::{agree, read};
 use armwright::catalog::Catalogs;
 use armwright::search::exact::Exact;
 use armwright::search::{ArmProblem, Sweep};
-use assert_cmd::Command;
 use serde_json::{Value, json};
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
+use std::process::Command;
 use std::sync::atomic::AtomicBool;
 
 /// Two joints that may have all ratios of both series. What holds is now the motor, which asks for a high ratio, now
@@ -102,7 +102,7 @@ fn a_search_to_a_gap_lists_fewer_designs_and_none_is_better_by_more() {
 }
 
 fn armwright(words: &[&str]) -> (i32, String) {
-    let output = Command::cargo_bin("armwright").expect("the program").args(words).output().expect("runs");
+    let output = Command::new(env!("CARGO_BIN_EXE_armwright")).args(words).output().expect("runs");
     let text = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
     (output.status.code().unwrap_or(-1), text.split_whitespace().collect::<Vec<_>>().join(" "))
 }

@@ -1,11 +1,11 @@
 //! The command line as a user meets it: help, exit codes, where text goes.
 
-use assert_cmd::Command;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 fn armwright(folder: &Path) -> Command {
-    let mut command = Command::cargo_bin("armwright").expect("the binary is built");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));
     command.current_dir(folder);
     command
 }
@@ -108,9 +108,8 @@ fn each_reason_to_fail_has_its_own_exit_code() {
 
 #[test]
 fn a_closed_pipe_is_no_error() {
-    use std::process::{Command, Stdio};
     let here = folder();
-    let mut child = Command::new(assert_cmd::cargo::cargo_bin!("armwright"))
+    let mut child = Command::new(env!("CARGO_BIN_EXE_armwright"))
         .args(["catalog", "show", "profiles"])
         .current_dir(here.path())
         .stdout(Stdio::piped())
@@ -341,11 +340,11 @@ fn endless_study(folder: &Path) {
 fn ctrl_c_ends_an_exact_search_and_what_was_found_is_written() {
     let folder = folder();
     endless_study(folder.path());
-    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("armwright"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));
     let command = command.current_dir(folder.path()).args(["run", "endless.json", "--out", "found"]);
-    let search = command.stdout(std::process::Stdio::piped()).spawn().expect("it runs");
+    let search = command.stdout(Stdio::piped()).spawn().expect("it runs");
     std::thread::sleep(std::time::Duration::from_secs(4));
-    let interrupt = std::process::Command::new("kill").args(["-INT", &search.id().to_string()]).status();
+    let interrupt = Command::new("kill").args(["-INT", &search.id().to_string()]).status();
     assert!(interrupt.expect("kill runs").success());
     let output = search.wait_with_output().expect("it ends");
     let text = String::from_utf8_lossy(&output.stdout);

@@ -9,11 +9,11 @@ use armwright::arm::{read_arm_document, read_load_cases};
 use armwright::catalog::Catalogs;
 use armwright::fault::{Document, Faults};
 use armwright::study::{NAMED, read_study};
-use assert_cmd::Command;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 fn project() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -120,7 +120,7 @@ fn run_step(page: &str, step: &str, here: &Path) {
     let mut lines = step.lines();
     let words: Vec<&str> = lines.next().unwrap_or_default().split_whitespace().collect();
     let shown: Vec<&str> = lines.collect();
-    let output = Command::cargo_bin("armwright").expect("built").current_dir(here).args(&words).output();
+    let output = Command::new(env!("CARGO_BIN_EXE_armwright")).current_dir(here).args(&words).output();
     let output = output.expect("it runs");
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{page}: armwright {}: {errors}", words.join(" "));
@@ -279,12 +279,12 @@ fn every_key_of_an_arm_file_is_described() {
 fn every_column_and_key_of_a_result_is_described() {
     let here = tempfile::tempdir().expect("a temporary folder");
     let study = project().join("examples/bench-arm.json");
-    Command::cargo_bin("armwright")
-        .expect("built")
+    let run = Command::new(env!("CARGO_BIN_EXE_armwright"))
         .current_dir(here.path())
         .args(["run", study.to_str().expect("text"), "--out", "out"])
-        .assert()
-        .success();
+        .output()
+        .expect("the program starts");
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
     let read = |name: &str| fs::read_to_string(here.path().join("out").join(name)).expect(name);
     let header = read("front.csv").lines().next().expect("a header").to_string();
     let general = |column: &str| {

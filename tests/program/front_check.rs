@@ -1,9 +1,9 @@
 //! `armwright run --search exact` and `armwright front check` from the command line: a sound front passes, and
 //! a cell changed, a row dropped or a row added is found out, whichever search made the front.
 
-use assert_cmd::Command;
 use serde_json::Value;
 use std::path::Path;
+use std::process::Command;
 use tempfile::TempDir;
 
 const STUDY: &str = r#"{"name": "short-arm", "chain": [
@@ -18,7 +18,7 @@ const STUDY: &str = r#"{"name": "short-arm", "chain": [
   "payload": {"mass_kg": 3}, "poses": [{"pose_deg": [0, 0]}, {"pose_deg": [-40, 90]}]}"#;
 
 fn armwright(words: &[&str]) -> (i32, String) {
-    let output = Command::cargo_bin("armwright").expect("the program").args(words).output().expect("runs");
+    let output = Command::new(env!("CARGO_BIN_EXE_armwright")).args(words).output().expect("runs");
     let text = [output.stdout, output.stderr].concat();
     (output.status.code().unwrap_or(-1), String::from_utf8_lossy(&text).into_owned())
 }

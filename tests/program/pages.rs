@@ -8,9 +8,9 @@ use armwright::report::front_table::FrontTable;
 use armwright::report::html::study::StudyPage;
 use armwright::report::number::significant;
 use armwright::report::summary::{MaterialFront, SummaryFacts, SummaryInput};
-use assert_cmd::Command;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Most that a page may weigh \[bytes\].
 const MOST_BYTES: u64 = 2_000_000;
@@ -20,7 +20,9 @@ fn project(name: &str) -> PathBuf {
 }
 
 fn armwright(arguments: &[&str]) {
-    Command::cargo_bin("armwright").expect("the program").args(arguments).assert().success();
+    let run =
+        Command::new(env!("CARGO_BIN_EXE_armwright")).args(arguments).output().expect("the program starts");
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
 }
 
 /// Runs the bench arm's study with a short list of drives, so that it takes a moment and not a minute.

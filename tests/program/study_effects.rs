@@ -1,8 +1,8 @@
 //! Effects in studies, by the program as a user meets it: in a study file, from an arm file, from a campaign.
 
-use assert_cmd::Command;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary folder")
@@ -10,7 +10,7 @@ fn folder() -> tempfile::TempDir {
 
 /// Exit code and what was said: standard output if it succeeds, standard error if not.
 fn armwright(here: &Path, words: &[&str]) -> (i32, String) {
-    let mut command = Command::cargo_bin("armwright").expect("the binary is built");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));
     let output = command.current_dir(here).args(words).output().expect("it runs");
     let said = if output.status.success() { output.stdout } else { output.stderr };
     (output.status.code().expect("a code"), String::from_utf8(said).expect("text"))
