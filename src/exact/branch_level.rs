@@ -54,6 +54,7 @@ impl Problem<'_> {
             }
             let [light, heavy] = work.masses[piece];
             let mass = light * middling(light, heavy) / mass_kg.max(f64::MIN_POSITIVE);
+            // Frequency is the square root of the quotient, hence the half.
             let score = f64::ln_1p(mass)
                 + f64::ln_1p(work.tip_growth[piece])
                 + 0.5 * (f64::ln_1p(softer) + f64::ln_1p(heavier));
@@ -106,6 +107,7 @@ impl Problem<'_> {
                     (tube_strain(row.coordinate, pose, row.piece, force, work), middling(soft, stiff))
                 }
             };
+            // A coordinate whose interval contains zero need not move the tip at all.
             let least = if moved[0] >= 0.0 { moved[0] } else { moved[1].min(0.0) };
             let part_m = direction.dot(&row.tip_m) * least;
             total += part_m;

@@ -67,11 +67,14 @@ impl Rows<'_> {
             let rows = multipliers.iter().enumerate().filter(|(_, multiplier)| **multiplier > 0.0);
             let gain = rows.map(|(row, w)| w * spread(mixed, |member| self.added(member, piece, row))).sum();
             let spreads = [0, 1, 2, 3, 4].map(|axis| spread(mixed, |member| key(member)[axis]));
+            // The coordinate in which the mixed designs differ most separates them best.
             let axis = (0..spreads.len()).max_by(|&a, &b| spreads[a].total_cmp(&spreads[b])).unwrap_or(0);
             if spreads[axis] > NOTHING {
                 let at = mean(mixed, |member| key(member)[axis]);
                 branchings.push(Branching { gain, by: BranchOn::Options { level, axis }, at });
             }
+            // Halfway between the best value and the mean: one half then excludes the best value, and with it
+            // the underestimate.
             for ((axis, best), gain) in self.best_of(piece).into_iter().zip(left_out[piece]) {
                 let at = 0.5 * (best + mean(mixed, |member| key(member)[axis]));
                 branchings.push(Branching { gain, by: BranchOn::Options { level, axis }, at });
@@ -122,10 +125,12 @@ impl Rows<'_> {
         let mut branchings = Vec::new();
         for (judged, tip) in self.tips.iter().enumerate() {
             let (case, multiplier) = (tip.case, multipliers[1 + judged] / self.scale[1 + judged]);
+            // What the tubes further inboard leave out is due to the next joint's torque.
             let mut left_out = 0.0;
             for (at, row) in self.problem.poses[case].rows.iter().enumerate() {
                 let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
                 let [low, high] = self.work.forces[case][at];
+                // The underestimate takes the force at the end of its interval that moves the tip least.
                 let least = if tip_per_unit > 0.0 { low } else { high };
                 let made = |member: &RelaxedDesign| -> f64 {
                     row.per_n.iter().zip(&member.weights_n[judged]).map(|(c, w)| c * w).sum()
@@ -139,6 +144,8 @@ impl Rows<'_> {
                     (multipliers[next] + multipliers[next + 1]) * spread(mixed, |member| member.values[next])
                 });
                 let gain = left_out + apart;
+                // To separate two states of a gear the mean torque is best. To shrink a product, the middle
+                // between the least torque and the acting one.
                 let at_nm = if apart > left_out { acting } else { 0.5 * (least + acting) };
                 let margin = SAME * (high - low);
                 if high - low > KNOWN * low.abs().max(high.abs())

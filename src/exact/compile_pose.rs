@@ -78,11 +78,14 @@ impl Pose {
                 PosedPiece::Tube(tube) => {
                     self.inertia_about.push(None);
                     let end_m = tube.root_m + tube.frame * Vector3::x() * tube.length_m;
+                    // The bound checks stress only where the section is a choice.
                     if tube.chosen {
                         self.stress.push(outboard.stress(piece, tube, &end_m));
                     }
                     let areas = areas_per_n(tube);
                     for (end, coordinate) in ENDS.into_iter().enumerate() {
+                        // A tube's own weight strains its coordinates too, though it is not outboard of the
+                        // tube.
                         let own = areas[end];
                         self.rows.push(outboard.row(piece, coordinate, &tube.ends[end], own, tip_m));
                     }

@@ -47,6 +47,7 @@ impl<'p> DomainReduction<'p> {
         let mut closed = Vec::new();
         for _ in 0..MOST_BRANCHED {
             let largest = (0..open.len()).max_by(|&a, &b| open[a].designs.total_cmp(&open[b].designs));
+            // The largest subproblem contributes most options, so branching it helps most.
             let Some(at) = largest.filter(|&at| open[at].designs > FEW) else { break };
             let next = open.swap_remove(at);
             match next.subproblem.branch(&next.survivors, &mut work) {

@@ -109,6 +109,7 @@ impl Problem<'_> {
             curve: drives.curve,
             most_torque_nm: work.torques.iter().map(|torques| torques[piece][1]).fold(0.0, f64::max),
         };
+        // The search starts at the root, for the dominating drive need not be in the box.
         wanted.find(tree, 0, &mut BOXES.clone()).is_some_and(|mass_kg| {
             self.slopes_stay(piece, (drives.mass_kg[1] - mass_kg) * self.space.gravity_m_s2, work)
         })

@@ -138,8 +138,10 @@ fn each_state_of_sign(
         let (from, to) = (low.max(start), high.min(end));
         // A break point belongs to the segment below it.
         if from <= to && (to > start || start == 0.0) {
+            // With K1 in the modes the segment of the torque does not matter to the slope.
             let seen = if curve.k1_in_modes { w.k1_nm_per_rad } else { slope };
             let slope = play.map_or(seen, |play| play.in_series(seen, to));
+            // The soft envelope is taken at the end of the segment: one value is valid for both ends.
             let most = sign * curve.soft.angle_rad(to);
             for torque in [from, to].into_iter().take(if from < to { 2 } else { 1 }) {
                 let least = sign * curve.stiff.angle_in(segment, torque);
@@ -200,6 +202,8 @@ impl JointPrice {
     /// nothing is known, so the price must be a lower bound for those too.
     fn rigid(&self) -> (f64, JointState) {
         let [low, high] = self.torques_nm.map(|t| self.torque * t);
+        // Other members of the box may twist by any angle. If a twist may earn something, no finite lower
+        // bound exists.
         let opposed = self.torques_nm.iter().any(|t| t * self.twist < 0.0);
         match opposed || self.slope > 0.0 {
             true => (f64::NEG_INFINITY, JointState::default()),
@@ -246,6 +250,7 @@ pub(super) fn cheapest<B: Bounds>(tree: &Tree<B>, node: u32, price: impl Fn(&B) 
     let mut open = BinaryHeap::with_capacity(2 + MOST_LOOKS / 2);
     let (mut cheapest, mut looks) = (offer(node), 0);
     while let Some(halves) = tree.children(cheapest.node).filter(|_| looks < MOST_LOOKS) {
+        // Best-first search: the cheapest open box is opened next.
         looks += 2;
         let [cheaper, dearer] = order(halves.map(offer));
         open.push(dearer);

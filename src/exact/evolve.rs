@@ -130,6 +130,7 @@ impl Recombination<'_, '_> {
         if self.below(2) == 0 {
             self.exchange(&mut design_box, &other.design_box);
         }
+        // A child that has only its first parent's parts is changed in any case.
         let changes = self.below(2) + u64::from(design_box == parent.design_box);
         for _ in 0..changes {
             let level = self.below(design_box.len() as u64) as usize;
@@ -171,6 +172,7 @@ impl Recombination<'_, '_> {
             design_box[level] = if option < high { low } else { high };
             around.push(design_box[level]);
         }
+        // Each further step up the tree is half as likely, which favours similar options.
         let mut up = 1 + self.below(3) as usize;
         while self.below(2) == 0 {
             up += 1;

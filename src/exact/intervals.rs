@@ -85,6 +85,7 @@ impl Problem<'_> {
             sized.table.first_fit_candidates().binary_search(&fit).ok()
         };
         let first = step(&least)?;
+        // If no drive carries the greatest demand, the heaviest may still be the fit of some member.
         let last = step(&most).unwrap_or(ladder.len() - 1);
         let DriveBox { mass_kg, curve, .. } = ladder.run(first, last);
         work.joint(self, piece, mass_kg, curve);
@@ -172,6 +173,7 @@ fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth:
 /// Whether some option of a box may carry a load.
 fn stress_holds(links: &LinkBox, load: &[f64; 4]) -> bool {
     let [axial, y, z, torsion]: [f64; 4] = std::array::from_fn(|k| load[k] * links.stress[k]);
+    // For other sections the two bending stresses add up at one edge of the section.
     let bending = if links.round { y.hypot(z) } else { y + z };
     von_mises(axial + bending, torsion) <= 1.0
 }

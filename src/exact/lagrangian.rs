@@ -74,11 +74,13 @@ impl Rows<'_> {
                 shapes.push(shape);
             }
             for (start, shape) in shapes.into_iter().enumerate() {
+                // A shape whose quotient is higher would give a row that the mixture satisfies already.
                 if shape.quotient(&ideal) < lambda * (1.0 - 1e-6) {
                     self.push_mode(judged, start, shape);
                 }
             }
         }
+        // The relaxed designs found so far get the values of the new rows too, so that the game may use them.
         for member in members {
             for mode in &self.modes[before..] {
                 let row = member.values.len();
@@ -103,25 +105,19 @@ impl Rows<'_> {
 
     /// The least weighted sum over the members of the box, and the relaxed design that attains it.
     pub fn minimize(&self, design_box: &[u32], multipliers: Vec<f64>) -> (DualPoint, RelaxedDesign) {
-        let pieces = self.problem.parts.len();
         let mut total: f64 = multipliers.iter().zip(&self.fixed).map(|(w, f)| w * f).sum();
         let mut levels = Vec::with_capacity(design_box.len());
-        let mut member = RelaxedDesign {
-            design_box: design_box.to_vec(),
-            adds: Vec::with_capacity(pieces),
-            weights_n: vec![vec![0.0; pieces]; self.tips.len()],
-            values: vec![0.0; self.scale.len()],
-            inertia: vec![[0.0; INERTIAS]; pieces],
-            stiffness: vec![vec![[0.0; STIFFNESSES]; pieces]; self.tips.len()],
-        };
+        let mut member = self.empty_design(design_box);
         for (piece, part) in self.problem.parts.iter().enumerate() {
             let level = levels.len();
             let price = || self.price(piece, &multipliers);
+            // What the piece adds to each row is needed to choose a branching.
             let before = member.values[..self.first_mode].to_vec();
             total += match part {
                 Part::Drives { tree, .. } => {
                     let price = price();
                     let cheapest = self.drives[level].cheapest(&price);
+                    // If no drive is feasible the sum is infinite, and any local upper bound is refuted.
                     let (least, at) = cheapest.unwrap_or((f64::INFINITY, design_box[level]));
                     member.design_box[level] = at;
                     levels.push(least);
@@ -139,6 +135,7 @@ impl Rows<'_> {
                 }
                 Part::Tube { tube, length_m } => {
                     self.add_tube(piece, *length_m, tube, &mut member);
+                    // A given part has no choice, so its price is a constant of the sum.
                     price().of_tube(tube)
                 }
                 Part::Given { .. } | Part::FirstFit { .. } => {
@@ -161,6 +158,19 @@ impl Rows<'_> {
             *value = *value / scale + fixed;
         }
         (DualPoint { multipliers, least: total, levels }, member)
+    }
+
+    /// A relaxed design without parts.
+    fn empty_design(&self, design_box: &[u32]) -> RelaxedDesign {
+        let pieces = self.problem.parts.len();
+        RelaxedDesign {
+            design_box: design_box.to_vec(),
+            adds: Vec::with_capacity(pieces),
+            weights_n: vec![vec![0.0; pieces]; self.tips.len()],
+            values: vec![0.0; self.scale.len()],
+            inertia: vec![[0.0; INERTIAS]; pieces],
+            stiffness: vec![vec![[0.0; STIFFNESSES]; pieces]; self.tips.len()],
+        }
     }
 
     /// Adds a drive to a relaxed design, in the state that is cheapest for its price.
@@ -210,6 +220,7 @@ impl Rows<'_> {
         member.weights_n[judged][piece] = weight_n;
         for force in self.forces.iter().filter(|force| force.judged == judged) {
             let Some(per_n) = force.per_n.get(piece) else { continue };
+            // The gear's own torque enters these rows with the opposite sign, in `add_joint`.
             member.values[force.row] -= weight_n * per_n;
             member.values[force.row + 1] += weight_n * per_n;
         }
@@ -228,6 +239,7 @@ impl Rows<'_> {
                 per_n -= by.get(piece).map_or(0.0, |c| c * (multiplier(*row) - multiplier(row + 1)));
             }
             price.inertia[inertia::MASS] += g * per_n;
+            // Buoyancy: the net weight falls with the outer area.
             price.inertia[inertia::OUTER_AREA] -= g * per_n * self.problem.poses[tip.case].water_kg_m3;
             for (c, tube) in price.compliance.iter_mut().zip(&tip.tubes[piece]) {
                 *c += multiplier(1 + judged) * tube;
@@ -251,12 +263,14 @@ impl Rows<'_> {
         }
         for (m, mode) in self.modes.iter().enumerate() {
             let w = multiplier(self.first_mode + m);
+            // Most mode rows have no multiplier; skipping them saves most of the time of this loop.
             if w == 0.0 {
                 continue;
             }
             for (p, kinetic) in price.inertia.iter_mut().zip(&mode.shape.kinetic[piece]) {
                 *p += w * self.lambda * kinetic;
             }
+            // The slope of a gear depends on its state, so `JointPrice` has its credit instead.
             if !is_joint {
                 for (p, strain) in price.stiffness.iter_mut().zip(&mode.shape.strain[piece]) {
                     *p += w * strain;

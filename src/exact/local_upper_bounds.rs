@@ -72,6 +72,7 @@ impl LocalUpperBounds {
         let mut upper_bounds = Vec::new();
         designs.retain(|design| stairs.add(design, &mut upper_bounds));
         upper_bounds.extend((0..=stairs.steps.len()).map(|k| stairs.bound_before(k, limits.mass_kg)));
+        // A bound that asks for no deflection, or for an infinite mode, admits no design.
         upper_bounds.retain(|c| c.tip_m > 0.0 && c.hz < f64::INFINITY);
         let mut nodes = Vec::with_capacity(2 * upper_bounds.len());
         if !upper_bounds.is_empty() {
@@ -103,6 +104,7 @@ impl Stairs {
         // Steps before `from` deflect less; steps before `to` have no higher mode.
         let from = self.steps.partition_point(|step| step[0] < tip_m);
         let to = self.steps.partition_point(|step| step[1] <= hz);
+        // An incumbent so far deflects no more and has no lower mode, and all of them are no heavier.
         if to < from || self.steps.get(from).is_some_and(|step| step[0] == tip_m && step[1] >= hz) {
             return false;
         }

@@ -56,6 +56,7 @@ impl CaseInertia {
         if self.all_above(&scaled, low) {
             return quotient;
         }
+        // Bisection: the trial shapes missed the lowest mode, which is rare.
         low = 0.0;
         while high - low > TOLERANCE * high {
             let middle = 0.5 * (low + high);
@@ -96,6 +97,7 @@ impl CaseInertia {
         }
         for j in 0..n {
             let pivot = l[j * n + j];
+            // A pivot that is not positive proves an eigenvalue at or below `lambda`.
             if pivot <= 0.0 {
                 return false;
             }

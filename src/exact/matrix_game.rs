@@ -57,6 +57,7 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
         let Some((enter, &cost)) = objective.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else {
             break;
         };
+        // No variable improves the objective: the tableau is optimal.
         if cost > -NOTHING {
             break;
         }
@@ -65,6 +66,7 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
             if a > NOTHING { table[i * line + line - 1] / a } else { f64::INFINITY }
         };
         let Some(leave) = (0..width).min_by(|&a, &b| ratio(a).total_cmp(&ratio(b))) else { break };
+        // The program is bounded, so this is rounding; the solution so far is used.
         if ratio(leave).is_infinite() {
             break;
         }

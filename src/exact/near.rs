@@ -111,6 +111,7 @@ impl Seeker {
     fn learn(&mut self, near: Vec<NearDesign>) {
         self.found += near.len() as u64;
         self.nearest.extend(near);
+        // The limit falls to the shortfall of the last design that is kept, with room for rounding.
         if self.nearest.len() > kept_at_most(self.most) {
             keep_nearest(&mut self.nearest, self.most);
             let last = self.nearest.last().map_or(0.0, |near| near.shortfall);

@@ -153,6 +153,7 @@ impl Pose {
     pub fn contributions_align(&self) -> bool {
         let rows = self.relevant_rows();
         let ways: Vec<_> = rows.map(|row| row.tip_m * sign(row.fixed, &row.per_n).unwrap_or(0.0)).collect();
+        // Rounding of right angles must not count as opposition.
         let agree = |a: &Vector3<f64>, b: &Vector3<f64>| a.dot(b) >= -NOTHING * a.norm() * b.norm();
         ways.iter().enumerate().all(|(i, a)| ways[..i].iter().all(|b| agree(a, b)))
     }

@@ -93,6 +93,7 @@ impl Probe<'_, '_> {
                 let shapes = Arc::clone(&best.shapes);
                 best = self.descend(design_box, &shapes, LEVEL_BOXES, Some(best), &mut work, findings)?;
             }
+            // A round without progress means a local optimum.
             if best.merit >= before || self.budget.stopped() {
                 break;
             }
@@ -118,6 +119,7 @@ impl Probe<'_, '_> {
             if boxes >= most_boxes || self.budget.stopped() {
                 break;
             }
+            // The best design may have improved since this box was put on the stack.
             if best.as_ref().is_some_and(|b| next.merit >= b.merit) {
                 continue;
             }

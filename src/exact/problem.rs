@@ -1,6 +1,7 @@
 //! A design space as branch and bound sees it: a tree of boxes for every level, and rows of numbers for every
 //! case.
 
+// {} => Given parts and first fits have no options of their own.
 use super::force_bound::ForceBound;
 use super::joint_play::JointPlay;
 use super::kinds::Kinds;

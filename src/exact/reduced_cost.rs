@@ -37,6 +37,8 @@ impl Rows<'_> {
                 (room, multipliers, &point.levels[..])
             })
             .collect();
+        // The strictest dual points exclude most options. Beyond some dozens, another one hardly excludes
+        // more than it costs.
         strict.sort_by(|a, b| a.0.total_cmp(&b.0));
         strict.truncate(STRICTEST);
         let levels = self.problem.level_pieces.iter().enumerate();
@@ -127,6 +129,7 @@ impl LaneWork for DrivesCost<'_> {
             *left = V::load(&eight.most) - least::<V>(&eight.inertia[inertia::MASS], drives.mass_kg);
         }
         for (g, gear) in gears.iter().enumerate() {
+            // A box with a rigid member has no bound of its price, so it stays.
             let Some(curve) = &drives.curve else { return false };
             gear.ends(curve, &mut ends);
             for (left, eight) in left.iter_mut().zip(prices) {

@@ -51,12 +51,14 @@ impl Problem<'_> {
                 Some(multipliers) => multipliers,
                 None => {
                     let game = rows.best_multipliers(&members, upper);
+                    // The rows at hand cannot refute the bound. New shapes may.
                     if game.value <= ROUNDING && new_shapes < MOST_SHAPES {
                         new_shapes += 1;
                         if rows.add_violated_modes(&mut members, &game.mix, upper) {
                             continue;
                         }
                     }
+                    // From here on the multipliers serve only to exclude options.
                     to_reduce += usize::from(game.value <= ROUNDING);
                     if points.len() >= most || to_reduce > MOST_TO_REDUCE || game.value <= nearest + SETTLED {
                         break game;

@@ -97,6 +97,7 @@ impl<'p> Search<'_, 'p> {
         findings: &mut Findings,
     ) -> Vec<Task<'p>> {
         let Some((upper, halves)) = upper_bounds.node(at) else { return Vec::new() };
+        // A single local upper bound may be out of date, because incumbents were found since it was made.
         if halves.is_none()
             && let Some(clipped) = self.clipped(&upper, &mut subproblem.incumbents_seen)
         {
@@ -106,6 +107,7 @@ impl<'p> Search<'_, 'p> {
         let Some(survivors) = self.reduce(&mut subproblem, &upper, &mut work, findings) else {
             return Vec::new();
         };
+        // A box costs microseconds and a region milliseconds, so few designs are faster box by box.
         if subproblem.designs_of(&survivors) <= regions_to {
             return vec![subproblem.in_boxes(upper)];
         }
@@ -148,6 +150,7 @@ impl<'p> Search<'_, 'p> {
         let problem = &subproblem.problem;
         let Some(options) = problem.options(&design_box) else { return };
         let number = number(&problem.level_sizes, &options);
+        // The same design comes up in many neighbouring regions.
         if self.state.tried.contains(&number) || findings.tried.contains(&number) {
             return;
         }

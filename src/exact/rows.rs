@@ -29,6 +29,7 @@ use super::work::Work;
 pub(super) const DOMINANCE_MARGIN: f64 = 2e-7;
 /// Rounding of sums whose terms are about 1.
 pub(super) const ROUNDING: f64 = 1e-9;
+
 /// Multipliers and shapes from the parent box, where the search for multipliers starts.
 #[derive(Clone, Default)]
 pub(super) struct WarmStart {
@@ -39,7 +40,6 @@ pub(super) struct WarmStart {
 
 impl WarmStart {
     /// For the box of all designs: no multipliers, its own shapes.
-    /// The rows of a box whose numbers are in `work`, for a local upper bound.
     pub fn new(shapes: &[Shape]) -> Self {
         Self { multipliers: Vec::new(), shapes: shapes.to_vec() }
     }
@@ -122,6 +122,7 @@ impl Problem<'_> {
 }
 
 impl<'a> Rows<'a> {
+    /// The rows of a box whose numbers are in `work`, for a local upper bound.
     pub fn new(
         problem: &'a Problem,
         design_box: &[u32],
@@ -130,6 +131,8 @@ impl<'a> Rows<'a> {
         shapes: &[Shape],
         work: &'a Work,
     ) -> Self {
+        // Far below the modes of the box the rows would say nothing, even if the local upper bound asks for
+        // no mode. Half the box's bound keeps them informative.
         let hz = upper.hz.max(0.5 * box_bound.hz.min(1e6));
         let mut rows = Self {
             problem,
@@ -146,40 +149,58 @@ impl<'a> Rows<'a> {
         };
         for (judged, case) in problem.judged_cases().enumerate() {
             let (tip, fixed_m) = TipRow::new(problem, judged, case, work);
+            // A local upper bound may be infinite. A scale far above the values of the row would make the row
+            // vanish in the game.
             let most = if box_bound.tip_m > 0.0 { 1e3 * box_bound.tip_m } else { 1.0 };
             let scale = upper.tip_m.min(most).max(f64::MIN_POSITIVE);
             rows.tips.push(tip);
             rows.push(scale, fixed_m);
         }
         for (judged, case) in problem.judged_cases().enumerate() {
-            for (at, row) in problem.poses[case].rows.iter().enumerate() {
-                let Some(curve) = &work.curves[row.piece] else { continue };
-                let gear = match rows.tips[judged].torques_nm[row.piece] {
-                    Some(torque_nm) => Gear::at(row.piece, judged, torque_nm),
-                    None => {
-                        let [least_nm, most_nm] = work.torques[case][row.piece];
-                        let compliance = 1.0 / curve.steepest(least_nm, most_nm);
-                        let torques_nm = work.forces[case][at];
-                        let next = rows.push_force(judged, row, torques_nm, [0.0; 2]);
-                        Gear::free(row.piece, judged, torques_nm, next, compliance)
-                    }
-                };
-                rows.gears.push(gear);
-            }
-            for bound in problem.force_bounds.iter().filter(|bound| bound.case == case) {
-                let row = &problem.poses[case].rows[bound.row];
-                let is_free = |gear: &Gear| gear.piece == row.piece && gear.row.is_some();
-                if !rows.gears.iter().any(is_free) {
-                    let between = work.forces[case][bound.row];
-                    rows.push_force(judged, row, between, between);
-                }
-            }
+            rows.push_gears(judged, case);
+            rows.push_force_bounds(judged, case);
         }
         rows.first_mode = rows.scale.len();
         for (place, shape) in shapes.iter().enumerate() {
             rows.push_mode(place / STARTS.len(), place % STARTS.len(), shape.clone());
         }
         rows
+    }
+
+    /// Adds the gears of a judged case, with two rows for each whose slope may change.
+    fn push_gears(&mut self, judged: usize, case: usize) {
+        let (problem, work) = (self.problem, self.work);
+        for (at, row) in problem.poses[case].rows.iter().enumerate() {
+            let Some(curve) = &work.curves[row.piece] else { continue };
+            let gear = match self.tips[judged].torques_nm[row.piece] {
+                Some(torque_nm) => Gear::at(row.piece, judged, torque_nm),
+                None => {
+                    // The slope may change within the interval. The gear gets a torque of its own and two
+                    // rows that hold it equal to that of the weights.
+                    let [least_nm, most_nm] = work.torques[case][row.piece];
+                    let compliance = 1.0 / curve.steepest(least_nm, most_nm);
+                    let torques_nm = work.forces[case][at];
+                    let next = self.push_force(judged, row, torques_nm, [0.0; 2]);
+                    Gear::free(row.piece, judged, torques_nm, next, compliance)
+                }
+            };
+            self.gears.push(gear);
+        }
+    }
+
+    /// Adds two rows for each bounded force of a judged case that no gear's rows cover.
+    fn push_force_bounds(&mut self, judged: usize, case: usize) {
+        let (problem, work) = (self.problem, self.work);
+        for bound in problem.force_bounds.iter().filter(|bound| bound.case == case) {
+            let row = &problem.poses[case].rows[bound.row];
+            let is_free = |gear: &Gear| gear.piece == row.piece && gear.row.is_some();
+            // A bounded force that belongs to no such gear needs rows of its own. The gear's rows cover
+            // it otherwise.
+            if !self.gears.iter().any(is_free) {
+                let between = work.forces[case][bound.row];
+                self.push_force(judged, row, between, between);
+            }
+        }
     }
 
     /// The first of the two rows of a gear whose slope may change in a case. `None` if the gear has one
@@ -217,6 +238,7 @@ impl<'a> Rows<'a> {
     pub fn starting_multipliers(&self, above: &[f64]) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.scale.len()];
         let others: Vec<usize> = (0..=self.tips.len()).chain(self.first_mode..self.scale.len()).collect();
+        // New rows have no multiplier from the parent; equal ones are as good a guess as any.
         let even = 1.0 / others.len() as f64;
         for (k, row) in others.into_iter().enumerate() {
             multipliers[row] = above.get(k).copied().unwrap_or(even);
@@ -231,6 +253,7 @@ impl<'a> Rows<'a> {
             let Some(row) = gear.row else { continue };
             let tip = 1 + gear.judged;
             let per_twist = multipliers[tip] / self.scale[tip] * self.tips[gear.judged].joints[gear.piece];
+            // The row whose sign makes a larger torque dearer.
             let at = if per_twist > 0.0 { row + 1 } else { row };
             multipliers[at] += per_twist.abs() * gear.least_compliance * self.scale[at];
         }
@@ -252,6 +275,8 @@ impl<'a> Rows<'a> {
 
     /// The upper limit of each scaled row for members below a local upper bound.
     pub fn row_limits<'b>(&'b self, upper: &'b LocalUpperBound) -> impl Iterator<Item = f64> + 'b {
+        // The rows are taken at `lambda`, the bound may ask for another eigenvalue. The difference times
+        // `xᵀMx` is bounded by the lightest or the heaviest parts, depending on its sign.
         let below = self.lambda - upper.lambda();
         let objectives = std::iter::once(upper.mass_kg).chain(self.tips.iter().map(|_| upper.tip_m));
         let torques = (1 + self.tips.len()..self.first_mode).map(|_| 0.0);

@@ -170,6 +170,7 @@ impl<'p> Exact<'p> {
             let designs = whole.designs() as f64;
             let by_regions = designs > self.regions_from;
             let is_large = by_regions || designs > LARGE;
+            // With given designs there is something to prune with from the start.
             if given.is_empty() {
                 let probes = if by_regions { PROBES_TO_EVOLVE } else { PROBES };
                 let probed =
@@ -178,6 +179,7 @@ impl<'p> Exact<'p> {
                     evolve(&self.budget, whole, probed, &mut state);
                 }
             }
+            // Small spaces, and searches with given designs, need no passes with slack.
             let helps = |slack: &f64| is_large && given.is_empty() && (by_regions || *slack >= FINE);
             let coarser = SLACKS.into_iter().filter(|slack| helps(slack) && *slack > self.gap);
             let passes: Vec<f64> = coarser.chain([self.gap]).collect();
@@ -203,6 +205,7 @@ impl<'p> Exact<'p> {
             None => (front, true),
         };
         front.sort_unstable_by_key(|c| c.number);
+        // Tied kinds may stand for the same design.
         front.dedup_by_key(|c| c.number);
         ExactOutcome {
             designs_total: whole.as_ref().map_or(0, Problem::designs),

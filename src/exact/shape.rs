@@ -97,10 +97,12 @@ impl Shape {
             let stiffness = &ideal.stiffness[piece];
             for (c, (x, force)) in x.iter_mut().zip(forces).enumerate().take(posed.coordinates()) {
                 let stiffness = posed.coordinate_stiffness(c, stiffness);
+                // A stiffness of 0 stands for a coordinate that does not yield.
                 *x = if stiffness > 0.0 { force / stiffness } else { 0.0 };
                 largest = largest.max(x.abs());
             }
         }
+        // The scale of a shape is free. Scaling prevents overflow over many steps.
         if largest > 0.0 {
             self.x.iter_mut().for_each(|x| *x /= largest);
         }
@@ -135,6 +137,7 @@ impl Shape {
                 PosedPiece::Joint { twist: axis, at_m } => {
                     kinetic[inertia::MASS] = displacement(&twist, at_m).norm_squared();
                     strain[0] = x[0] * x[0];
+                    // A joint's mass is inboard of its spring, so it moves before the twist is added.
                     twist += axis * x[0];
                 }
                 PosedPiece::Body(body) => self.kinetic_fixed += twist.dot(&(body * twist)),

@@ -18,6 +18,8 @@ impl Problem<'_> {
         for (candidate, lists) in &with_ties {
             let mut chosen: Vec<Vec<u32>> = vec![Vec::new()];
             for list in lists {
+                // Listing all ties of some designs and not of others would be arbitrary, so it is all or one
+                // of each.
                 let choices = if lists_all { &list[..] } else { &list[..1] };
                 let longer = |start: Vec<u32>| choices.iter().map(move |o| [&start[..], &[*o]].concat());
                 chosen = chosen.into_iter().flat_map(longer).collect();

@@ -72,6 +72,7 @@ impl<B: Bounds> Tree<B> {
 
     /// A tree over some nodes of the base tree, none of which is below another. `None` if there are none.
     pub fn over(tree: &Arc<Self>, kept: &[u32]) -> Option<Arc<Self>> {
+        // Nothing was excluded, so the same tree serves.
         if tree.whole.is_some() && tree.stands_on == kept {
             return Some(Arc::clone(tree));
         }
@@ -110,6 +111,7 @@ impl<B: Bounds> Tree<B> {
             }
         };
         match &self.whole {
+            // => The root covers every node over which the tree stands.
             Some(_) if node == 0 => self.stands_on.iter().for_each(|&at| enter(at + WHOLE)),
             Some(_) => {
                 let mut open = vec![node];
@@ -244,6 +246,7 @@ fn grow<'b, B: Bounds + 'b>(
     }
     // The root is the first node, so its place is taken before its halves grow.
     nodes.push(Node { bounds: bounds.clone(), key: items[0].key, members: 0, kind: NodeKind::Option(0) });
+    // Halving the widest coordinate keeps the boxes narrow, and so their bounds sharp.
     let axis = widest(items);
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| a.key[axis].total_cmp(&b.key[axis]).then(a.at.cmp(&b.at)));

@@ -92,6 +92,8 @@ impl Work {
 
     /// Fills in the numbers of a tube.
     pub fn tube(&mut self, problem: &Problem, piece: usize, length_m: f64, links: &LinkBox) {
+        // Infinite stiffness becomes 0, which stands for a coordinate that does not yield; infinity times
+        // zero strain would be NaN.
         let finite = |s: f64| if s.is_finite() { s } else { 0.0 };
         self.stiff[piece] = links.high.stiffnesses.map(finite);
         self.soft[piece] = links.low.stiffnesses.map(finite);
@@ -102,6 +104,7 @@ impl Work {
         let g = problem.space.gravity_m_s2 * length_m;
         for (weights, pose) in self.weights.iter_mut().zip(problem.poses.iter()) {
             weights[piece] = [
+                // The least net weight has the least mass and the greatest buoyancy.
                 g * (light[inertia::MASS] - pose.water_kg_m3 * heavy[inertia::OUTER_AREA]),
                 g * (heavy[inertia::MASS] - pose.water_kg_m3 * light[inertia::OUTER_AREA]),
             ];

@@ -80,6 +80,7 @@ impl Program {
         if bound_kg > self.best.0 {
             self.best = (bound_kg, multipliers);
         }
+        // If the bound has reached the value of the mixture, no further option can improve it.
         let grew = bound_kg < value_kg * (1.0 - 1e-5) && self.see_more(&reduced);
         Some(Solution { bound_kg, weights, grew })
     }
@@ -118,6 +119,7 @@ impl Program {
         for (seen, reduced) in self.seen.iter_mut().zip(reduced) {
             let mut order: Vec<usize> = (0..reduced.len()).collect();
             let most = ADDED.min(order.len());
+            // Only the least are needed; a full sort would cost more.
             if most < order.len() {
                 order.select_nth_unstable_by(most, |&a, &b| reduced[a].total_cmp(&reduced[b]));
             }

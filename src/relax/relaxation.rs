@@ -105,6 +105,7 @@ impl Search<'_> {
             }
             self.reduce();
             let after: usize = self.parts.alive.iter().map(Vec::len).sum();
+            // Nothing was dropped, or the bound has reached the known design.
             if after == before || self.best_kg >= self.asked.mass_kg * (1.0 - 1e-6) {
                 return;
             }
@@ -172,6 +173,8 @@ impl Search<'_> {
                 break;
             }
         }
+        // With the best multipliers of this round, options that make the mass exceed that asked for are
+        // dropped.
         program.drop_options(&mut self.parts, self.asked.mass_kg * (1.0 + ROUNDING));
     }
 

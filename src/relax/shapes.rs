@@ -180,10 +180,12 @@ impl ShapeModel {
                 inertia += field.transpose() * weighted;
             }
         }
+        // Scaled by `K^-½`, so that a rigid coordinate has weight 0 and the matrix stays symmetric.
         let soft = DVector::from_iterator(count, resistance.iter().map(|k| 1.0 / k.sqrt()));
         let scaled = DMatrix::from_fn(count, count, |i, j| soft[i] * inertia[(i, j)] * soft[j]);
         let modes = SymmetricEigen::new(scaled);
         let mut slow: Vec<usize> =
+            // The eigenvalues of the scaled matrix are reciprocals, so a low mode is a large one.
             (0..count).filter(|&i| modes.eigenvalues[i] * eigenvalue > 1.0 + 1e-7).collect();
         slow.sort_by(|&a, &b| modes.eigenvalues[b].total_cmp(&modes.eigenvalues[a]));
         slow.truncate(MOST_SHAPES);

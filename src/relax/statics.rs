@@ -60,6 +60,7 @@ impl CaseLoads {
                 }
                 StationSlot::Link { options, .. } => {
                     let weights: Vec<f64> = options.iter().map(|o| -o.weight[2]).collect();
+                    // All options of a link weigh along the same line, so one of them gives the direction.
                     let weighing = options.iter().zip(&weights).find(|(_, w)| **w != 0.0);
                     unit.push(weighing.map_or(Wrench::zeros(), |(o, w)| o.weight / *w));
                     amount.push(weights);
@@ -230,6 +231,8 @@ impl CaseLoads {
             let (Slot::Sized(sized), Some(joint)) = (piece, self.joint(problem, slot)) else { continue };
             let motion = sized.table.motion();
             let [low, high] = self.torque_range(problem, parts, slot);
+            // The rows bound the torque on the side where it can be larger. Its other side is not used, which
+            // only weakens the bound.
             let sign = if high >= -low { 1.0 } else { -1.0 };
             let ramp = |factor: f64| match motion.linear_reading {
                 LinearReading::Exact => [1.0, factor * motion.acceleration_rad_s2],
