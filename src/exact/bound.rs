@@ -17,7 +17,7 @@ use super::torsion::{Breaks, CurveBox};
 use super::tree::{Bounds, Tree};
 use crate::pareto::objectives::Objectives;
 use crate::sizing::demand::JointDemand;
-use crate::space::figures::von_mises;
+use crate::space::attributes::von_mises;
 use nalgebra::Vector3;
 use std::sync::Arc;
 

@@ -59,7 +59,7 @@ fn ties_of(problem: &ArmProblem, judged: &Judged) -> Option<(Vec<Vec<String>>, f
             continue;
         };
         let own = of_pieces[*piece] as usize;
-        let alike: Vec<usize> = sized.alike(own, demand).collect();
+        let alike: Vec<usize> = sized.ties_of(own, demand).collect();
         designs *= alike.len() as f64;
         let name = |drive: usize| sized.table.drive(drive).name();
         let others: Vec<String> = alike.iter().filter(|&&drive| drive != own).map(|&d| name(d)).collect();
