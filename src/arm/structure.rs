@@ -151,7 +151,7 @@ impl Arm {
                 Element::Link(link) => Piece::Link(link_piece(link)),
             })
             .collect();
-        Structure::bare(self.gravity_m_s2, pieces)
+        Structure::nominal(self.gravity_m_s2, pieces)
     }
 }
 
@@ -166,7 +166,7 @@ impl Structure {
     }
 
     /// Pieces on a rigid base in air.
-    pub(crate) fn bare(gravity_m_s2: f64, pieces: Vec<Piece>) -> Self {
+    pub(crate) fn nominal(gravity_m_s2: f64, pieces: Vec<Piece>) -> Self {
         Self {
             gravity_m_s2,
             base_tilt_rad_per_nm: 0.0,

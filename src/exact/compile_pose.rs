@@ -146,7 +146,7 @@ fn posed_tube(
     rotation: &Matrix3<f64>,
     chosen: bool,
 ) -> PosedPiece {
-    let structure = Structure::bare(space.gravity_m_s2, Vec::new());
+    let structure = Structure::nominal(space.gravity_m_s2, Vec::new());
     let frame = rotation * section_frame(&link.vector_m);
     // The fields of the coordinates depend on the length alone, so the first option stands for all.
     let Some(beam) = PreparedBeam::new(link, &structure, LinkModel::Full) else {

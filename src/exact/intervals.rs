@@ -6,7 +6,7 @@ use super::problem::{Ladder, Part, Problem};
 use super::tree::{Bounds, Tree};
 use super::work::Work;
 use crate::sizing::demand::JointDemand;
-use crate::space::figures::von_mises;
+use crate::space::attributes::von_mises;
 use crate::space::slot::SizedJoint;
 
 /// Relative rounding of a sum of a few dozen terms, with a margin.

@@ -7,8 +7,8 @@ use crate::arm::structure::{Beam, LinkPiece};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
 use crate::sizing::demand::{JointDemand, JointMotion};
 use crate::sizing::limits::DriveLimits;
+use crate::space::attributes::StressCheck;
 use crate::space::design_space::LinkOption;
-use crate::space::figures::StressCheck;
 use std::sync::Arc;
 
 /// Number of inertias and of stiffnesses of a [`Line`].

@@ -28,7 +28,7 @@ pub struct CondensedLink {
     /// Motion of the end (displacement, rotation) per end coordinate: `L`.
     pub end: Matrix6<f64>,
     /// End coordinates under the link's own weight, per unit of weight along each section axis \[1/N·m⁻¹\].
-    pub sag: SMatrix<f64, 6, 3>,
+    pub end_per_line_load: SMatrix<f64, 6, 3>,
     /// Sum of `1/λ` over the inner modes with root and end held, an upper bound of each.
     pub inner_trace_s2: f64,
 }
@@ -59,7 +59,7 @@ impl CondensedLink {
                 fixed(&first * inner_mass * first.transpose()),
             ],
             end,
-            sag: SMatrix::from_iterator((spread.transpose() * areas).iter().copied()),
+            end_per_line_load: SMatrix::from_iterator((spread.transpose() * areas).iter().copied()),
             inner_trace_s2: (&inner * inner_mass).trace().max(0.0),
         }
     }
@@ -80,7 +80,7 @@ impl CondensedLink {
         PlacedLink {
             inertia: self.inertia.map(|m| to_local.transpose() * m * to_local),
             end,
-            sag_per_weight: self.sag * (frame.transpose() * -Vector3::z()),
+            end_per_weight: self.end_per_line_load * (frame.transpose() * -Vector3::z()),
             inner_trace_s2: self.inner_trace_s2,
         }
     }
@@ -94,7 +94,7 @@ pub struct PlacedLink {
     /// Twist of everything outboard per end coordinate.
     pub end: Matrix6<f64>,
     /// End coordinates per unit of net weight per length \[1/(N/m)\].
-    pub sag_per_weight: Vector6<f64>,
+    pub end_per_weight: Vector6<f64>,
     /// Sum of `1/λ` over the inner modes.
     pub inner_trace_s2: f64,
 }

@@ -210,7 +210,7 @@ impl CaseLoads {
             StationSlot::Link { options, .. } => {
                 let left: Vec<_> = parts.alive[slot].iter().map(|&o| &options[o as usize]).collect();
                 let arms: Vec<Wrench> = left.iter().map(|o| o.end * o.tip.tr_mul(direction)).collect();
-                let sags = left.iter().map(|o| direction.dot(&(o.tip * o.sag)));
+                let sags = left.iter().map(|o| direction.dot(&(o.tip * o.own_weight_end)));
                 let slope = |j: usize| {
                     arms.iter().map(|arm| arm.dot(&self.unit[j])).reduce(least).unwrap_or_default()
                 };

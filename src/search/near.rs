@@ -44,7 +44,7 @@ impl Shortfall {
     /// The shortfall of a design; `None` if it is more than `most`.
     pub fn within(&self, most: f64, design: &Objectives) -> Option<f64> {
         let first = self.front.partition_point(|f| design.mass_kg > f.mass_kg * (1.0 + most));
-        let worst = |rival: &Objectives| worse_by(design, rival).into_iter().fold(0.0, f64::max);
+        let worst = |other: &Objectives| worse_by(design, other).into_iter().fold(0.0, f64::max);
         self.front[first..].iter().map(worst).reduce(f64::min).filter(|shortfall| *shortfall <= most)
     }
 
@@ -61,12 +61,12 @@ impl Shortfall {
 
 /// By how much a design is worse than another in deflection, mass and lowest mode, as parts; negative where it
 /// is better.
-pub fn worse_by(design: &Objectives, rival: &Objectives) -> [f64; 3] {
+pub fn worse_by(design: &Objectives, other: &Objectives) -> [f64; 3] {
     let over = |a: f64, b: f64| if a == b { 0.0 } else { a / b - 1.0 };
     [
-        over(design.tip_deflection_m, rival.tip_deflection_m),
-        over(design.mass_kg, rival.mass_kg),
-        over(rival.lowest_mode_hz, design.lowest_mode_hz),
+        over(design.tip_deflection_m, other.tip_deflection_m),
+        over(design.mass_kg, other.mass_kg),
+        over(other.lowest_mode_hz, design.lowest_mode_hz),
     ]
 }
 

@@ -11,7 +11,7 @@ use crate::arm::joint_law::{Curve, JointLaw};
 use crate::mechanics::Wrench;
 use crate::mechanics::lanes::{Eight, LANES};
 use crate::mechanics::lowest_lanes::{LaneLink, Outboard};
-use crate::space::figures::OptionFigures;
+use crate::space::attributes::OptionAttributes;
 use crate::space::problem::{ArmProblem, Partial, block_steps};
 use crate::space::slot::Slot;
 use crate::space::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot};
@@ -29,7 +29,7 @@ pub(crate) struct Row {
     pub chunks: Vec<Chunk>,
     pub cases: Vec<RowCase>,
     /// Drives by inner slot; empty for links.
-    pub drives: Vec<DriveFigures>,
+    pub drives: Vec<DriveAttributes>,
     /// Inner slots that are joints.
     pub joints: Vec<usize>,
     /// Mass of all that is not chosen.
@@ -86,7 +86,7 @@ pub(crate) struct RowCase {
 
 /// The drives of a joint by index, each with its mass and its torsion curve of three segments, the connection in series.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct DriveFigures {
+pub(crate) struct DriveAttributes {
     pub mass_kg: Vec<f64>,
     /// Twist per torque \[rad/(N m)\] in each segment.
     pub compliance: [Vec<f64>; 3],
@@ -125,7 +125,7 @@ pub(crate) struct CaseChunk {
     /// Displacement of the tip by the wrench on the link's end.
     pub flexibility: [[Eight; 6]; 3],
     /// Displacement of the tip by the link's own weight.
-    pub sag_m: [Eight; 3],
+    pub own_weight_deflection_m: [Eight; 3],
     /// Inertia about each inner joint.
     pub inertia_at: [Eight; MOST_SLOTS],
     /// Of the outboard inertia, what each entry adds to the sum of `1/λ`.
@@ -179,7 +179,7 @@ pub(crate) struct RowChunk<'a, 'c> {
     pub chunk: usize,
 }
 
-impl DriveFigures {
+impl DriveAttributes {
     fn push(&mut self, mass_kg: f64, law: &JointLaw) {
         let (stiffness, ends_nm) = match law.curve.as_windup().map(|windup| windup.segments()) {
             None => ([f64::INFINITY; 3], [f64::INFINITY; 2]),
@@ -227,7 +227,7 @@ impl Row {
                 .collect(),
             _ => Vec::new(),
         };
-        let drives: Vec<DriveFigures> = slots.iter().map(drive_figures).collect();
+        let drives: Vec<DriveAttributes> = slots.iter().map(drive_attributes).collect();
         let is_joint = |k: &usize| matches!(slots[*k], Slot::Given { .. } | Slot::Sized(_));
         Some(Self {
             first,
@@ -241,19 +241,19 @@ impl Row {
     }
 }
 
-fn drive_figures(slot: &Slot) -> DriveFigures {
-    let mut figures = DriveFigures::default();
+fn drive_attributes(slot: &Slot) -> DriveAttributes {
+    let mut drives = DriveAttributes::default();
     match slot {
-        Slot::Given { law, mass_kg } => figures.push(*mass_kg, law),
+        Slot::Given { law, mass_kg } => drives.push(*mass_kg, law),
         Slot::Sized(sized) => {
-            sized.laws.iter().enumerate().for_each(|(i, law)| figures.push(sized.table.mass_kg(i), law));
+            sized.laws.iter().enumerate().for_each(|(i, law)| drives.push(sized.table.mass_kg(i), law));
         }
         _ => {}
     }
-    figures
+    drives
 }
 
-fn twisting(slot: &Slot, drives: &DriveFigures, k: usize, cases: &[RowCase]) -> Twisting {
+fn twisting(slot: &Slot, drives: &DriveAttributes, k: usize, cases: &[RowCase]) -> Twisting {
     let has_play = match slot {
         Slot::Given { law, .. } => law.has_play(),
         Slot::Sized(sized) => sized.laws.iter().any(JointLaw::has_play),
@@ -356,8 +356,8 @@ fn turning(
 /// Directions in which some link moves the tip.
 fn bends(links: &[StationLink]) -> [bool; 3] {
     links.iter().fold([false; 3], |bends, link| {
-        let (flexibility, sag_m) = (link.flexibility(), link.sag_m());
-        std::array::from_fn(|i| bends[i] || sag_m[i] != 0.0 || flexibility.row(i).amax() > 0.0)
+        let (flexibility, own_m) = (link.flexibility(), link.own_weight_deflection_m());
+        std::array::from_fn(|i| bends[i] || own_m[i] != 0.0 || flexibility.row(i).amax() > 0.0)
     })
 }
 
@@ -401,16 +401,17 @@ impl Chunk {
     fn new(
         problem: &ArmProblem,
         cases: &[RowCase],
-        options: &[OptionFigures],
+        options: &[OptionAttributes],
         first: usize,
         c: usize,
     ) -> Self {
         let at = |lane: usize| (LANES * c + lane).min(options.len() - 1);
-        let lanes = |of: &dyn Fn(&OptionFigures) -> f64| std::array::from_fn(|lane| of(&options[at(lane)]));
-        let bits = |of: &dyn Fn(&OptionFigures) -> bool| {
+        let lanes =
+            |of: &dyn Fn(&OptionAttributes) -> f64| std::array::from_fn(|lane| of(&options[at(lane)]));
+        let bits = |of: &dyn Fn(&OptionAttributes) -> bool| {
             (0..LANES).fold(0, |bits, lane| bits | u8::from(of(&options[at(lane)])) << lane)
         };
-        let stress = |of: &dyn Fn(&crate::space::figures::StressCheck) -> f64| {
+        let stress = |of: &dyn Fn(&crate::space::attributes::StressCheck) -> f64| {
             lanes(&|o| o.stress.as_ref().map_or(0.0, |s| of(s) / s.strength_pa))
         };
         let materials: [Option<usize>; LANES] = std::array::from_fn(|lane| options[at(lane)].material);
@@ -442,7 +443,8 @@ impl CaseChunk {
         let StationSlot::Link { options, .. } = &station.slots[first] else { return None };
         let links: [&StationLink; LANES] = std::array::from_fn(|lane| &options[at(lane)]);
         let lanes = |of: &dyn Fn(&StationLink) -> f64| links.map(of);
-        let (flexibility, sag) = (links.map(StationLink::flexibility), links.map(StationLink::sag_m));
+        let (flexibility, own_m) =
+            (links.map(StationLink::flexibility), links.map(StationLink::own_weight_deflection_m));
         let joints: Vec<_> = station.slots[first..]
             .iter()
             .map(|slot| match slot {
@@ -462,7 +464,7 @@ impl CaseChunk {
             flexibility: std::array::from_fn(|i| {
                 std::array::from_fn(|j| flexibility.map(|f: Matrix3x6<f64>| f[(i, j)]))
             }),
-            sag_m: std::array::from_fn(|i| sag.map(|s: Vector3<f64>| s[i])),
+            own_weight_deflection_m: std::array::from_fn(|i| own_m.map(|s: Vector3<f64>| s[i])),
             inertia_at: std::array::from_fn(|j| lanes(&|l| joint(j).dot(&(l.inertia * joint(j))))),
             spread: case.spread_entries.iter().map(|entry| lanes(&|l| spread_of(l, *entry))).collect(),
             trace_s2: [trace(0), trace(1)],

@@ -5,7 +5,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::arms::EightArms;
-use super::row::{AtJoint, Begun, Chunk, DriveFigures, Row, RowChunk, RowScratch, StressEight, Twisting};
+use super::row::{AtJoint, Begun, Chunk, DriveAttributes, Row, RowChunk, RowScratch, StressEight, Twisting};
 use super::row_modes::Question;
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, splat_all};
 use crate::sizing::eight::EightDemands;
@@ -191,7 +191,7 @@ impl RowChunk<'_, '_> {
             for i in 0..3 {
                 let mut tip = V::splat(state.tip_m[i]);
                 if case.bends[i] {
-                    tip = tip + V::load(&own.sag_m[i]);
+                    tip = tip + V::load(&own.own_weight_deflection_m[i]);
                     for j in (0..6).filter(|&j| state.wrench[j] != 0.0) {
                         tip = tip + V::load(&own.flexibility[i][j]) * V::splat(state.wrench[j]);
                     }
@@ -264,7 +264,7 @@ impl RowChunk<'_, '_> {
     /// Mass of each arm's drive, and what it does at the joints inboard.
     #[inline(always)]
     fn add_drive<V: Lanes>(&self, k: usize, indices: &[usize; LANES], arms: &mut EightArms) {
-        let mass: V = at_places(&self.row.drives[k].mass_kg, indices, all_alike(indices));
+        let mass: V = at_places(&self.row.drives[k].mass_kg, indices, all_equal(indices));
         add(&mut arms.mass_kg, mass);
         arms.masses_kg[k] = mass.store();
         for (case, lanes) in self.row.cases.iter().zip(&mut arms.cases) {
@@ -284,11 +284,11 @@ impl RowChunk<'_, '_> {
     #[inline(always)]
     fn add_joint<V: Lanes>(&self, k: usize, indices: [usize; LANES], arms: &mut EightArms) -> V {
         let drives = &self.row.drives[k];
-        let alike = all_alike(&indices);
-        let first: V = at_places(&drives.compliance[0], &indices, alike);
+        let all_same = all_equal(&indices);
+        let first: V = at_places(&drives.compliance[0], &indices, all_same);
         let twisting = self.row.twisting[k];
         let curves = match twisting {
-            Twisting::Segments => Curves::<V>::gather(drives, &indices, alike),
+            Twisting::Segments => Curves::<V>::gather(drives, &indices, all_same),
             _ => Curves::line(first),
         };
         let mut largest = V::zero();
@@ -381,16 +381,16 @@ fn load_all<V: Lanes, const K: usize>(from: &[Eight; K]) -> [V; K] {
     out
 }
 
-/// Eight arms much alike often have the same drive.
+/// Eight arms much all_same often have the same drive.
 #[inline(always)]
-fn all_alike(indices: &[usize; LANES]) -> bool {
+fn all_equal(indices: &[usize; LANES]) -> bool {
     indices.iter().all(|index| *index == indices[0])
 }
 
 /// Numbers of a list at eight places, or at one that all share.
 #[inline(always)]
-fn at_places<V: Lanes>(list: &[f64], at: &[usize; LANES], alike: bool) -> V {
-    if alike { V::splat(list[at[0]]) } else { V::gather(list, at) }
+fn at_places<V: Lanes>(list: &[f64], at: &[usize; LANES], all_same: bool) -> V {
+    if all_same { V::splat(list[at[0]]) } else { V::gather(list, at) }
 }
 
 /// Square of the von Mises stress of bending, axial force and torsion, over the strength.
@@ -422,15 +422,15 @@ impl<V: Lanes> Curves<V> {
     }
 
     #[inline(always)]
-    fn gather(of: &DriveFigures, at: &[usize; LANES], alike: bool) -> Self {
+    fn gather(of: &DriveAttributes, at: &[usize; LANES], all_same: bool) -> Self {
         let zero = V::zero();
         let mut curves =
             Self { compliance: [zero; 3], ends_nm: [zero; 2], first_in_modes: of.first_in_modes };
         for segment in 0..3 {
-            curves.compliance[segment] = at_places(&of.compliance[segment], at, alike);
+            curves.compliance[segment] = at_places(&of.compliance[segment], at, all_same);
         }
         for end in 0..2 {
-            curves.ends_nm[end] = at_places(&of.ends_nm[end], at, alike);
+            curves.ends_nm[end] = at_places(&of.ends_nm[end], at, all_same);
         }
         curves
     }

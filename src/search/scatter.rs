@@ -15,9 +15,9 @@ use crate::space::slot::Slot;
 use crate::space::station::{Station, StationSlot};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A catalog figure that is not quite what it says, by the row it stands in.
+/// A catalog rating that is not quite what it says, by the row it stands in.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Figure {
+pub enum Rating {
     /// The torsion curve of a gear.
     GearStiffness(String),
     /// E and G of a material.
@@ -28,8 +28,8 @@ pub enum Figure {
     MotorMass(String),
 }
 
-/// True value over the catalog's, by figure; a figure that is not listed is exact.
-pub type Factors = BTreeMap<Figure, f64>;
+/// True value over the catalog's, by rating; a rating that is not listed is exact.
+pub type Factors = BTreeMap<Rating, f64>;
 
 /// Designs of a problem whose parts are to be scattered.
 pub struct ChosenParts<'p, 'c> {
@@ -74,16 +74,16 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         self.designs.is_empty()
     }
 
-    /// Every catalog figure that the designs depend on.
-    pub fn figures(&self) -> BTreeSet<Figure> {
+    /// Every catalog rating that the designs depend on.
+    pub fn ratings(&self) -> BTreeSet<Rating> {
         let used = self.used.iter().enumerate().flat_map(|(slot, used)| used.iter().map(move |&o| (slot, o)));
         used.flat_map(|(slot, option)| {
             let drive = self.drive(slot, option);
             [
-                self.gear(slot, option).map(Figure::GearStiffness),
-                self.material(slot, option).map(Figure::Modulus),
-                drive.map(|d| Figure::GearMass(d.gear.id.clone())),
-                drive.map(|d| Figure::MotorMass(d.motor.id.clone())),
+                self.gear(slot, option).map(Rating::GearStiffness),
+                self.material(slot, option).map(Rating::Modulus),
+                drive.map(|d| Rating::GearMass(d.gear.id.clone())),
+                drive.map(|d| Rating::MotorMass(d.motor.id.clone())),
             ]
         })
         .flatten()
@@ -92,7 +92,7 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
 
     /// The parts with their true figures.
     pub fn built(&self, factors: &Factors) -> BuiltParts<'_, 'c> {
-        let bends = factors.keys().any(|figure| matches!(figure, Figure::Modulus(_)));
+        let bends = factors.keys().any(|rating| matches!(rating, Rating::Modulus(_)));
         let stations = bends.then(|| {
             let space = with_moduli(self.problem.space(), factors);
             Station::all(&space)
@@ -108,17 +108,17 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
     }
 
     fn built_joint(&self, slot: usize, option: u32, factors: &Factors) -> Option<BuiltJoint> {
-        let factor = |figure: Figure| factors.get(&figure).copied().unwrap_or(1.0);
+        let factor = |rating: Rating| factors.get(&rating).copied().unwrap_or(1.0);
         let law = *self.problem.slots()[slot].law(option as usize)?;
-        let stiffness = self.gear(slot, option).map_or(1.0, |gear| factor(Figure::GearStiffness(gear)));
+        let stiffness = self.gear(slot, option).map_or(1.0, |gear| factor(Rating::GearStiffness(gear)));
         let mass_kg = match &self.problem.slots()[slot] {
             Slot::Given { mass_kg, .. } => *mass_kg,
             Slot::Sized(sized) => {
                 let (drive, mass_kg) =
                     (sized.table.drive(option as usize), sized.table.mass_kg(option as usize));
                 let motor_kg = drive.motor.mass_kg.unwrap_or(0.0);
-                let gear_off = factor(Figure::GearMass(drive.gear.id.clone())) - 1.0;
-                let motor_off = factor(Figure::MotorMass(drive.motor.id.clone())) - 1.0;
+                let gear_off = factor(Rating::GearMass(drive.gear.id.clone())) - 1.0;
+                let motor_off = factor(Rating::MotorMass(drive.motor.id.clone())) - 1.0;
                 mass_kg + (mass_kg - motor_kg) * gear_off + motor_kg * motor_off
             }
             _ => 0.0,
@@ -199,7 +199,7 @@ impl BuiltParts<'_, '_> {
 
 /// The space with every tube's material as it is.
 fn with_moduli(space: &DesignSpace, factors: &Factors) -> DesignSpace {
-    let factor = |name: &str| factors.get(&Figure::Modulus(name.to_string())).copied().unwrap_or(1.0);
+    let factor = |name: &str| factors.get(&Rating::Modulus(name.to_string())).copied().unwrap_or(1.0);
     let mut out = space.clone();
     for piece in &mut out.pieces {
         match piece {

@@ -262,8 +262,8 @@ impl Keep for Worker<'_> {
     // what one of its own group beats, one of all designs beats; those entered keep the constraints, so that near
     // misses no longer matter once there is a bar
     fn bar_hz(&self, group: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
-        let rivals = group.map_or(self.overall, |group| &self.groups[group]);
-        rivals.archive.bar_hz(mass_kg, tip_deflection_m)
+        let pool = group.map_or(self.overall, |group| &self.groups[group]);
+        pool.archive.bar_hz(mass_kg, tip_deflection_m)
     }
 
     fn below_bar(&mut self, designs: u64) {

@@ -94,8 +94,9 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
                 }
                 Err(level) => {
                     // every row with the same options up to this level
-                    let alike: u128 = outer[level + 1..].iter().map(|&size| u128::from(size)).product();
-                    let next = ((row / alike + 1) * alike).min(rows.end);
+                    let rows_of_level: u128 =
+                        outer[level + 1..].iter().map(|&size| u128::from(size)).product();
+                    let next = ((row / rows_of_level + 1) * rows_of_level).min(rows.end);
                     let designs = (next - row) * u128::from(last);
                     self.keeper.exclude(designs);
                     self.count(designs);

@@ -251,7 +251,7 @@ fn missing(
     // a tie that is not listed stands behind a row
     let stands_behind_a_row = |whole: u128| {
         !ties_listed
-            && options(&sizes, whole).is_some_and(|own| rows.iter().any(|row| beyond.are_alike(&own, row)))
+            && options(&sizes, whole).is_some_and(|own| rows.iter().any(|row| beyond.are_ties(&own, row)))
     };
     let mut ids: Vec<u128> = nondominated(&points)
         .expect("objectives are numbers")

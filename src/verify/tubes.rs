@@ -5,8 +5,8 @@ use crate::arm::load::Water;
 use crate::arm::structure::{LinkPiece, Structure};
 use crate::arm::{Link, LinkModel};
 use crate::mechanics::beam::{line_densities, line_stiffnesses};
+use crate::space::attributes::{OptionAttributes, StressCheck};
 use crate::space::design_space::{DesignSpace, LinkChoice};
-use crate::space::figures::{OptionFigures, StressCheck};
 use crate::space::slot::{Slot, choice_slot, link_slot};
 
 /// Stiffnesses of a tube: `E I` about y and z, `κ G A`, `G J`, `E A`.
@@ -118,7 +118,7 @@ impl Tubes {
     }
 }
 
-fn figures(slot: Slot) -> Vec<OptionFigures> {
+fn figures(slot: Slot) -> Vec<OptionAttributes> {
     match slot {
         Slot::Link { options, .. } => options,
         _ => Vec::new(),
@@ -162,7 +162,7 @@ fn stiffnesses(piece: &LinkPiece, model: LinkModel) -> [f64; STIFFNESSES] {
 }
 
 fn around(space: &DesignSpace, piece: &LinkPiece, water: Option<Water>) -> TubeAround {
-    let structure = Structure { water, ..Structure::bare(space.gravity_m_s2, Vec::new()) };
+    let structure = Structure { water, ..Structure::nominal(space.gravity_m_s2, Vec::new()) };
     let [along, across, _, polar, about_y, about_z] = line_densities(piece, &structure, space.links);
     let outer_m2 = piece.beam.map_or(0.0, |b| b.section.properties(b.material.poisson).outer_area_m2);
     let displaced = water.map_or(0.0, |water| water.density_kg_m3 * outer_m2);

@@ -9,7 +9,7 @@ use armwright::pareto::Objectives;
 use armwright::report::picks;
 use armwright::report::tolerance::Scattered;
 use armwright::search::near::{Slack, near_designs};
-use armwright::search::scatter::{ChosenParts, Factors, Figure};
+use armwright::search::scatter::{ChosenParts, Factors, Rating};
 use armwright::space::ArmProblem;
 use armwright::space::OutwardIn;
 use armwright::space::design::{full_objectives, id_of, number, options};
@@ -78,23 +78,23 @@ fn apart(a: &Objectives, b: &Objectives) -> f64 {
 
 /// Objectives by the full model of a design whose arm is taken out and changed part by part.
 fn by_the_full_model(problem: &ArmProblem, chosen: &[u32], factors: &Factors) -> Objectives {
-    let factor = |figure: Figure| factors.get(&figure).copied().unwrap_or(1.0);
+    let factor = |figure: Rating| factors.get(&figure).copied().unwrap_or(1.0);
     let mut arm = problem.arm(chosen).expect("a design that holds");
     for element in &mut arm.chain {
         match element {
             Element::Joint(joint) => {
                 let Some(gear) = joint.gear.clone() else { continue };
-                joint.curve = joint.curve.stiffened(factor(Figure::GearStiffness(gear.clone())));
+                joint.curve = joint.curve.stiffened(factor(Rating::GearStiffness(gear.clone())));
                 let Some(motor) = joint.motor.clone() else { continue };
                 let catalogs = Catalogs::builtin();
                 let motor_kg = catalogs.motor(&motor).expect("a motor").mass_kg.expect("its mass");
                 let gear_kg = joint.mass_kg - motor_kg;
                 joint.mass_kg =
-                    gear_kg * factor(Figure::GearMass(gear)) + motor_kg * factor(Figure::MotorMass(motor));
+                    gear_kg * factor(Rating::GearMass(gear)) + motor_kg * factor(Rating::MotorMass(motor));
             }
             Element::Link(link) => {
                 if let LinkBody::Tube { material_name, material, .. } = &mut link.body {
-                    *material = material.stiffened(factor(Figure::Modulus(material_name.clone())));
+                    *material = material.stiffened(factor(Rating::Modulus(material_name.clone())));
                 }
             }
         }
@@ -115,11 +115,11 @@ fn a_scattered_design_has_the_objectives_of_the_full_model_with_the_same_parts()
         let designs: Vec<Vec<u32>> = picked.filter(|o| problem.arm(o).is_some()).take(5).collect();
         let parts = ChosenParts::new(&problem, &designs).expect("designs that hold");
         for kinds in [1, 2, 3] {
-            let draw = |figure: Figure| {
-                let scatters = kinds == 3 || matches!(figure, Figure::GearStiffness(_)) == (kinds == 1);
+            let draw = |figure: Rating| {
+                let scatters = kinds == 3 || matches!(figure, Rating::GearStiffness(_)) == (kinds == 1);
                 (figure, if scatters { dice.within(0.7, 1.3) } else { 1.0 })
             };
-            let factors: Factors = parts.figures().into_iter().map(draw).collect();
+            let factors: Factors = parts.ratings().into_iter().map(draw).collect();
             let built = parts.built(&factors);
             for (i, design) in designs.iter().enumerate() {
                 let full = by_the_full_model(&problem, design, &factors);

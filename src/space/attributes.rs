@@ -1,20 +1,26 @@
-//! What the search needs of a link option besides its mechanics: mass, cost, slenderness, stress.
+//! Attributes of a link option that do not depend on the pose: mass, cost, slenderness and stress factors.
 
 use super::design_space::{DesignSpace, LinkOption};
 use super::station::Place;
 use crate::arm::section::Section;
 use nalgebra::{Vector3, Vector6};
 
-/// What the search needs of a link option besides its mechanics.
-pub(crate) struct OptionFigures {
+/// What the search needs to know of a link option in addition to its mechanics.
+pub(crate) struct OptionAttributes {
     pub mass_kg: f64,
+    /// Number of the material; `None` for a tube that is not chosen, which belongs to no group.
     pub material: Option<usize>,
+    /// Cost of the material \[EUR\]; `None` if unknown.
     pub cost_eur: Option<f64>,
+    /// `None` if the strength of the material is unknown.
     pub stress: Option<StressCheck>,
+    /// Whether the wall is more slender than the study allows.
     pub slender: bool,
 }
 
-/// Von Mises stress at a link's ends from force and moment in its section frame.
+/// Von Mises stress at the ends of a link, from force and moment in the section frame of the link.
+///
+/// `per_axial_n` is in \[1/m²\], the other factors are in \[1/m³\].
 pub(crate) struct StressCheck {
     pub per_axial_n: f64,
     pub per_moment_y: f64,
@@ -30,7 +36,8 @@ impl StressCheck {
         let (width, height) = option.section.outer_m();
         let wall = option.section.wall_m();
         let round = matches!(option.section, Section::RoundTube { .. });
-        // a round tube exactly, on its outside; any other by Bredt, with what the middle line of its wall encloses
+        // a round tube has an exact solution, largest on its outside; a rectangular one follows Bredt's formula, in
+        // which the area is the one that the middle line of the wall encloses
         let per_torsion = match round {
             true => width / 2.0 / p.torsion_constant_m4,
             false => 1.0 / (2.0 * (width - wall) * (height - wall) * wall),
@@ -45,10 +52,12 @@ impl StressCheck {
         })
     }
 
-    /// Von Mises stress of bending, axial force and torsion at an end, over the strength.
+    /// Ratio of the von Mises stress of bending, axial force and torsion to the strength. `wrench` is the load about the
+    /// world's origin, `at_m` the end of the link at which the stress is asked for.
     pub fn ratio(&self, wrench: &Vector6<f64>, at_m: &Vector3<f64>, place: &Place) -> f64 {
         let [axial_n, torsion_nm, moment_y_nm, moment_z_nm] = place.local(wrench, at_m);
         let (y, z) = (moment_y_nm.abs() * self.per_moment_y, moment_z_nm.abs() * self.per_moment_z);
+        // the stresses of both bending moments meet in the corner of a rectangle, but not in one point of a circle
         let bending = if self.round { y.hypot(z) } else { y + z };
         let normal = axial_n.abs() * self.per_axial_n + bending;
         let shear = torsion_nm.abs() * self.per_torsion;
@@ -56,15 +65,15 @@ impl StressCheck {
     }
 }
 
-/// The uniaxial stress that strains a ductile material as much as a normal and a shear stress.
+/// Von Mises stress of a normal and a shear stress, in their unit.
 pub(crate) fn von_mises(normal: f64, shear: f64) -> f64 {
     (normal * normal + 3.0 * shear * shear).sqrt()
 }
 
-/// The figures of an option of a link of this length.
-pub(crate) fn figures(space: &DesignSpace, option: &LinkOption, length_m: f64) -> OptionFigures {
+/// The attributes of an option for a link of this length \[m\].
+pub(crate) fn attributes_of(space: &DesignSpace, option: &LinkOption, length_m: f64) -> OptionAttributes {
     let mass_kg = option.mass_kg_per_m() * length_m;
-    OptionFigures {
+    OptionAttributes {
         slender: space.constraints.wall_slenderness_max.is_some_and(|max| option.wall_slenderness() > max),
         mass_kg,
         material: Some(option.material_index),
