@@ -234,9 +234,9 @@ fn deflection(
     let empty = Payload::default();
     // the weight of other arms loads the trunk, and so moves the point
     for other in (0..ready.len()).filter(|&other| other != row.arm) {
-        let beside = &ready[other][0];
-        let posed = beside.pose(&beside.unit, &tree.pose_of(other, &pose_rad), &empty);
-        let hanging = || bodies(&posed.items[unit_trunk..], &beside.unit_structure);
+        let neighbour = &ready[other][0];
+        let posed = neighbour.pose(&neighbour.unit, &tree.pose_of(other, &pose_rad), &empty);
+        let hanging = || bodies(&posed.items[unit_trunk..], &neighbour.unit_structure);
         known.items.splice(known_trunk..known_trunk, hanging().map(Item::Body));
         unit.items.splice(unit_trunk..unit_trunk, hanging().map(Item::Body));
     }
