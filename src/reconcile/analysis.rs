@@ -43,24 +43,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     if few {
         candidates = candidates.into_iter().map(Candidate::from_corners).collect();
     }
-    let mut found = match few {
-        true => Settled::of_few(campaign, &forward, &nuisance, &candidates),
-        false => Settled::of_many(campaign, &mut forward, &nuisance, &candidates),
-    };
-    let best = &found.selection.best;
-    let coefficients = Model::of(&nuisance, &candidates, &best.effects).coefficients(&forward, &best.u);
-    let stretches = units::stretches(&forward, &coefficients);
-    if !few && !stretches.is_empty() {
-        let mut stretched = Forward::new(campaign);
-        units::stretch(&mut stretched, &stretches);
-        let again = Settled::of_many(campaign, &mut stretched, &nuisance, &candidates);
-        let named: Vec<&Candidate> = again.selection.best.effects.iter().map(|&i| &candidates[i]).collect();
-        // larger standard deviations would hide other physics
-        if stretches.iter().all(|stretch| stretch.is_among(&named)) {
-            (forward, found) = (stretched, again);
-            found.remarks.extend(stretches.iter().map(units::Stretch::sentence));
-        }
-    }
+    let found = settled(campaign, &mut forward, &nuisance, &candidates, few);
     let weights = found.noise.weights(&forward);
     let chosen = &found.selection.best;
     let coefficients = Model::of(&nuisance, &candidates, &chosen.effects).coefficients(&forward, &chosen.u);
@@ -105,6 +88,38 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         left_out,
     };
     analysis.conclude()
+}
+
+/// Finds the effects and the noise. Where the noise of a channel shows a unit slip, the search is repeated with the
+/// standard deviations of that channel enlarged, and `forward` has them from then on.
+fn settled(
+    campaign: &Campaign,
+    forward: &mut Forward,
+    nuisance: &Nuisance,
+    candidates: &[Candidate],
+    few: bool,
+) -> Settled {
+    if few {
+        return Settled::of_few(campaign, forward, nuisance, candidates);
+    }
+    let found = Settled::of_many(campaign, forward, nuisance, candidates);
+    let best = &found.selection.best;
+    let coefficients = Model::of(nuisance, candidates, &best.effects).coefficients(forward, &best.u);
+    let stretches = units::stretches(forward, &coefficients);
+    if stretches.is_empty() {
+        return found;
+    }
+    let mut stretched = Forward::new(campaign);
+    units::stretch(&mut stretched, &stretches);
+    let mut again = Settled::of_many(campaign, &mut stretched, nuisance, candidates);
+    let named: Vec<&Candidate> = again.selection.best.effects.iter().map(|&i| &candidates[i]).collect();
+    // larger standard deviations would hide other physics
+    if !stretches.iter().all(|stretch| stretch.is_among(&named)) {
+        return found;
+    }
+    *forward = stretched;
+    again.remarks.extend(stretches.iter().map(units::Stretch::sentence));
+    again
 }
 
 struct Analysis<'a> {
@@ -215,7 +230,7 @@ impl Analysis<'_> {
     fn gap_sentences(&self) -> Vec<String> {
         let gain = self.selection.best.score - self.selection.baseline.score;
         let mut out = vec![format!(
-            "with {} the evidence rises by {gain:.1} (chi-squared {:.0} to {:.0} on {} readings)",
+            "with {} ln of the evidence rises by {gain:.1} (chi-squared {:.0} to {:.0} on {} readings)",
             self.best.model.label(),
             self.baseline.point.objective,
             self.best.point.objective,
@@ -224,7 +239,7 @@ impl Analysis<'_> {
         if gain < WEAK {
             let odds = gain.exp();
             out.push(format!(
-                "that is weak, odds of {odds:.0} to 1: take the next test before you rely on it"
+                "that is weak evidence, with odds of {odds:.0} to 1: take the next test before relying on it"
             ));
         }
         out
@@ -233,7 +248,7 @@ impl Analysis<'_> {
     /// Says that an effect has reached the largest size that is searched for. It names no effect, because it
     /// may not be the right one.
     fn at_a_limit(&self) -> Option<String> {
-        let text = "a size of the best effects is the largest that is looked for: is arm.json the arm that was measured?";
+        let text = "the size of one of the best effects is the largest that is looked for: is arm.json the arm that was measured?";
         self.best.model.is_at_a_limit(&self.best.point.u).then(|| text.to_string())
     }
 
@@ -241,12 +256,12 @@ impl Analysis<'_> {
     fn left_over(&self) -> Vec<String> {
         let mut out = self.lack_of_fit.sentences();
         out.push(format!(
-            "the best model leaves {:.2} times the declared variance; no effect of the library accounts for it",
+            "the best model leaves {:.2} times the declared variance; no effect of the library explains the rest",
             self.lack_of_fit.chi2_per_dof
         ));
         out.extend(self.unnamed.as_ref().map(|law| {
             format!(
-                "of laws without a name {} does best: beside calibration alone it takes chi-squared from {:.0} to {:.0}",
+                "the best law without a name is {}: added to calibration alone it lowers chi-squared from {:.0} to {:.0}",
                 law.what, self.baseline.point.objective, law.objective
             )
         }));
@@ -256,8 +271,8 @@ impl Analysis<'_> {
     /// Says that a law without a name is better than the effects of the library, without naming any of these.
     fn beaten(&self, law: &Better) -> String {
         format!(
-            "{}, which no effect of the library is, accounts for the readings better than any that is \
-             (chi-squared {:.0} with {} number(s) of it, {:.0} with {} of the best effects; the evidence rises by {:.1})",
+            "the library lacks this law, and it explains the readings better than any effect of the library: {} \
+             (chi-squared {:.0} with its {} parameter(s), {:.0} with {} of the best effects; ln of the evidence rises by {:.1})",
             law.what,
             law.objective,
             law.numbers,
@@ -275,7 +290,7 @@ impl Analysis<'_> {
             .filter(|c| c.learnt > 0.9 && c.name.ends_with("stiffness"))
             .map(|c| c.name)
             .collect();
-        let text = format!("the readings say nothing of {}", blind.join(", "));
+        let text = format!("the readings say nothing about {}", blind.join(", "));
         if blind.is_empty() { Vec::new() } else { vec![text] }
     }
 
@@ -484,7 +499,7 @@ fn too_little(campaign: &Campaign, forward: &Forward) -> Vec<String> {
     poses.dedup();
     if poses.len() < FEWEST_POSES && !(poses.is_empty() && rows >= few_rows::FEWEST_ROWS) {
         reasons.push(format!(
-            "{} distinct pose(s): effects at different places look alike; measure at least {FEWEST_POSES}",
+            "{} distinct pose(s): effects at different places look the same; measure at least {FEWEST_POSES}",
             poses.len()
         ));
     }
@@ -495,7 +510,7 @@ fn too_little(campaign: &Campaign, forward: &Forward) -> Vec<String> {
     reasons.extend(dead_instruments(forward));
     if first.is_some() && campaign.statics.iter().all(same_load) {
         reasons.push(
-            "every static reading has the same load: what grows with it cannot be told from what does not"
+            "every static reading has the same load: an effect that grows with load cannot be told from one that does not"
                 .into(),
         );
     }

@@ -39,7 +39,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         return left_out(analysis::reconcile(&loaded), what);
     }
     if rows < FEWEST_ROWS {
-        let what = format!("{rows} rows beside the positions are too few, give at least {FEWEST_ROWS}");
+        let what = format!("{rows} rows other than positions are too few, give at least {FEWEST_ROWS}");
         return left_out(positions::outcome::reconcile(&placed), what);
     }
     of_both(campaign, loaded, placed)
@@ -190,7 +190,7 @@ impl Both<'_> {
             }
             out
         };
-        [of(&self.loaded, "the readings beside the positions"), of(&self.placed, "the positions")].concat()
+        [of(&self.loaded, "the readings other than positions"), of(&self.placed, "the positions")].concat()
     }
 
     /// The last stage of the positions before an effect was searched for.

@@ -119,5 +119,5 @@ fn a_handful_of_either_kind_is_left_out_and_said_to_be() {
     let few = Plan { static_poses: 2, modal_poses: 0, bench: false, ..plan() };
     let few_others = outcome(16, &[], &few);
     assert_eq!(few_others.verdict, Verdict::NoGap);
-    assert!(few_others.reasons.iter().any(|r| r.contains("10 rows beside the positions are too few")));
+    assert!(few_others.reasons.iter().any(|r| r.contains("10 rows other than positions are too few")));
 }

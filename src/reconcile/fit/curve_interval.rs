@@ -110,6 +110,7 @@ fn explore(forward: &Forward, best: &Fit, weights: &Weights, axes: &[Axis; 2]) -
             .min_by(|a, b| (axis.nodes[*a] - at).abs().total_cmp(&(axis.nodes[*b] - at).abs()))
     });
     let centre = centre.map(|c| c.unwrap_or(0));
+    // the second break point is above the first
     let ordered = |n: &Nodes| axes[0].nodes[n[0]] < axes[1].nodes[n[1]];
     let coarse = |k: usize| (0..axes[k].nodes.len()).filter(move |n| n.abs_diff(centre[k]) % COARSE == 0);
     let all = coarse(0).flat_map(|a| coarse(1).map(move |b| [a, b]));
@@ -163,6 +164,7 @@ impl Cell {
         // the density at the nodes is the evidence divided by the width of the two break points
         let ln_density =
             fitted.evidence + 0.5 * (ln_determinant(fitted.curvature.clone()) - ln_determinant(of_rest));
+        // the two held parameters are not part of the covariance
         let covariance = without(&data_curvature(&fitted), held).try_inverse();
         let mut deviations = vec![f64::INFINITY; fitted.point.u.len()];
         let rest = (0..deviations.len()).filter(|p| !held.contains(p)).collect::<Vec<_>>();
@@ -199,6 +201,7 @@ impl Posterior {
             to - from
         };
         self.cells.iter().map(move |(nodes, cell)| {
+            // a node stands for its area, because nodes are not equally spaced
             let area = width(0, nodes[0]) * width(1, nodes[1]);
             (nodes, cell, (cell.ln_density - top).exp() * area)
         })

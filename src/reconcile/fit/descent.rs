@@ -239,6 +239,7 @@ pub fn bounded_step(model: &Model, u: &[f64], normal: &Normal, damping: f64) -> 
             model.put_in_order(&mut out);
             return out;
         }
+        // a parameter that would leave its bounds stays there, and the rest is solved again
         free.retain(|p| !blocked.contains(p));
     }
 }
@@ -364,9 +365,11 @@ fn descend(
         }
         let next = evaluate(forward, model, &u, weights);
         if next.objective < here.objective {
+            // a good step: trust the parabola more
             *damping = (*damping * 0.2).max(1e-9);
             return Some(next);
         }
+        // a bad step: move closer to steepest descent
         *damping = (*damping * 10.0).max(1e-5);
     }
     None

@@ -41,6 +41,7 @@ pub fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &Weights)
             let out = |i: usize| forward.data[i].group != usize::MAX && forward.data[i].group % HANDS == hand;
             let mut kept = weights.clone();
             (0..forward.data.len()).filter(|&i| out(i)).for_each(|i| kept.inverse[i] = 0.0);
+            // the start is close to the minimum, so a few steps are enough
             let effort = Effort { steps: 6, tolerance: 0.05 };
             let end = descent(forward, model, u, &kept, effort, f64::INFINITY);
             (0..forward.data.len())

@@ -38,6 +38,7 @@ pub fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec<Interv
         match pair.as_slice() {
             [a, b] => {
                 let ends = curve_intervals(forward, best, weights, own.clone(), [*a, *b], &deviations);
+                // the posterior does not know by how much the masses shift the torques
                 let slack = |p| if pair.contains(&p) { Z95 * torque_deviation(best) } else { 0.0 };
                 let widened = |(p, ends): (usize, Interval)| {
                     ends.with(best.point.u[p]).wider(slack(p), best.model.bounds(p))
@@ -84,6 +85,7 @@ fn refit(forward: &Forward, mut model: Model, u: &[f64], weights: &Weights, enou
     let effort = Effort { steps: 5, tolerance: 0.02 };
     let end = |model: &Model, u: &[f64], effort| descent(forward, model, u, weights, effort, f64::INFINITY);
     let straight = end(&model, u, effort).objective;
+    // without frequencies there are no steps to stop a descent
     if straight < enough || model.break_points().is_empty() || forward.modal.is_empty() {
         return straight;
     }
@@ -105,6 +107,7 @@ fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64
         refit(forward, model, &best.point.u, weights, objective + RISE) - objective
     };
     let clamp = |value: f64| value.clamp(low, high);
+    // the profile starts at the best value, where the rise is zero
     let mut near = (u, 0.0);
     let mut value = clamp(u + side * Z95 * sd.clamp(1e-6, 10.0));
     for _ in 0..6 {

@@ -130,6 +130,7 @@ impl Noise {
         for channel in CHANNELS {
             let range = forward.range(channel);
             let own = &residuals[range.clone()];
+            // where the model fits badly, only rows that stand out from the rest are gross
             let limit = GROSS * spread(own).clamp(1.0, 3.0);
             let mut gross: Vec<(usize, f64)> = Vec::new();
             for (r, datum) in own.iter().zip(&forward.data[range.clone()]) {
@@ -140,6 +141,7 @@ impl Noise {
                     }
                 }
             }
+            // many large residuals are a structure and not errors
             if gross.len() > at_most(FEW, rows(forward, channel)) {
                 continue;
             }
@@ -205,6 +207,7 @@ pub fn gross_lists(forward: &Forward, weights: &Weights) -> Vec<usize> {
 /// The misfit of each row if the fit did not follow that row \[declared standard deviations\], the largest
 /// first.
 fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<(Channel, usize, f64)> {
+    // a row that the fit follows completely would otherwise divide by zero
     const LARGEST_LEVERAGE: f64 = 0.9;
     let residuals = declared_residuals(forward, &fit.point.predicted);
     let sizes = residuals.iter().zip(fit.leverages(weights));

@@ -35,8 +35,7 @@ impl Stretch {
         let Self { channel, factor } = self;
         let (channel, factor) = (channel.word(), crate::report::number::significant(*factor, 4));
         format!(
-            "the noise of the {channel} readings is about {factor} times what is declared, as they themselves are: their \
-             standard deviations are taken to be {factor} times those of the file"
+            "the noise of the {channel} readings is about {factor} times what is declared, as the readings themselves are: their standard deviations are taken to be {factor} times those of the file"
         )
     }
 }
@@ -53,6 +52,7 @@ pub fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> {
             .iter()
             .zip(&nominal[range.clone()])
             .fold((0.0, 0.0), |(both, square), (d, model)| (both + d.value * model, square + model * model));
+        // least-squares factor between readings and nominal model
         let ratio = both / square;
         let slips = wrong_unit::SLIPS.iter().map(|(factor, _)| *factor).filter(|factor| *factor > 1.0);
         let factor = slips.min_by(|a, b| {

@@ -61,6 +61,7 @@ impl Bench {
 /// Twists of a joint on the bench \[rad\]. The cycle runs once unrecorded, so that the friction play has
 /// settled, and then once recorded.
 pub fn bench_twists_rad(law: &JointLaw, torques_nm: &[f64]) -> Vec<f64> {
+    // the first round only brings the play to where a closed cycle has it
     let mut state = 0.0;
     for &torque in torques_nm {
         law.play_angle_rad(torque, &mut state);

@@ -1,10 +1,9 @@
-//! Natural frequencies by a reduced flexibility form, with exact sensitivities.
+//! Predicts natural frequencies by a reduced flexibility form, with exact sensitivities.
 //!
-//! Let `F` hold the inertia forces of the nominal arm's lowest modes, all coordinates included, those
-//! without compliance too. The trial shapes `C F` are then right to first order in every compliance
-//! and mass, and with `B = C F` the reduced problem is `BᵀM B z = μ FᵀB z`, `μ = 1/ω²`. From one
-//! solution `x = B z` (scaled to `xᵀK x = 1`, `y = M x`) every parameter's effect follows:
-//! `dμ = yᵀ dC y / μ + xᵀ dM x`.
+//! Let `F` hold the inertia forces of the nominal arm's lowest modes, with all coordinates included, even
+//! those without compliance. The trial shapes `C F` are then right to first order in every compliance and
+//! mass. With `B = C F` the reduced problem is `BᵀM B z = μ FᵀB z`, where `μ = 1/ω²`. One solution `x = B z`,
+//! scaled to `xᵀK x = 1`, with `y = M x`, gives the effect of every parameter: `dμ = yᵀ dC y / μ + xᵀ dM x`.
 
 use super::coefficients::{Coefficients, Layout};
 use super::datum::{Datum, group_of};
@@ -134,6 +133,7 @@ impl ModalTest {
             self.forces = forces;
             return;
         }
+        // a rigid joint that an effect may free needs a trial shape too, although it does not move now
         let softest = layout.joints.iter().map(|joint| compliances[joint.twist]).fold(0.0, f64::max);
         for (own, drawn) in compliances.iter_mut().zip(&layout.lacking) {
             *own = if *own == 0.0 { *drawn } else { *own };
@@ -157,6 +157,7 @@ impl ModalTest {
         coefficients: &Coefficients,
         compliances: &[f64],
     ) -> DMatrix<f64> {
+        // C^½ M C^½ has the eigenvalues 1/ω² and stays symmetric where some compliances are zero
         let roots = DVector::from_iterator(layout.n, compliances.iter().map(|c| c.sqrt()));
         let mass = self.momenta(coefficients, &DMatrix::identity(layout.n, layout.n));
         let mut a = mass.clone();
@@ -167,6 +168,7 @@ impl ModalTest {
         let eigen = SymmetricEigen::new(a);
         let mut order: Vec<usize> = (0..layout.n).collect();
         order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]).then(i.cmp(&j)));
+        // smaller eigenvalues are rounding error and would give meaningless shapes
         let floor = 1e-12 * eigen.eigenvalues[order[0]];
         let columns: Vec<DVector<f64>> = order
             .iter()
@@ -250,6 +252,7 @@ impl ModalTest {
         let reduced_mass = shapes.transpose() * &momenta;
         let strain = self.forces.transpose() * &shapes;
         let Some((amounts, a)) = unit_strains(strain, &reduced_mass) else { return Vec::new() };
+        // symmetric but for rounding: the mean with the transpose makes it exactly so
         let eigen = SymmetricEigen::new((&a + a.transpose()) * 0.5);
         let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
         order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]).then(i.cmp(&j)));
@@ -320,9 +323,11 @@ impl ModalTest {
             };
             self.modes.iter().map(miss).sum()
         };
+        // the cost of the list as it is numbered
         let none = cost(usize::MAX);
         let (best, missed) =
             (0..self.mode_count()).map(|m| (cost(m), m)).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        // renumbering must remove one whole miss and most of the misfit, else noise could cause it
         if none < best + MISS || best > 0.2 * none {
             return None;
         }
@@ -372,6 +377,7 @@ impl ModalTest {
         let payloads = payload_moves.then(|| (self.payload_jacobian(from), self.payload_jacobian(to)));
         for &(datum, mode) in &self.modes {
             let Some(s) = solved.get(mode) else { continue };
+            // first-order perturbation of the eigenvalue; the shape itself need not be solved again
             let mut d_mu = 0.0;
             for (i, (a, b)) in before.iter().zip(&after).enumerate() {
                 if a != b {
@@ -448,6 +454,7 @@ fn leading(matrix: &DMatrix<f64>) -> usize {
 /// and only the leading rows that are not zero.
 fn factor(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let mut rest = matrix.clone();
+    // the matrix is semidefinite, so smaller pivots are rounding error
     let floor = 1e-13 * matrix.diagonal().max();
     let mut columns = Vec::new();
     while columns.len() < matrix.nrows() {

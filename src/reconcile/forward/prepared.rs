@@ -51,6 +51,7 @@ impl Forward {
         let modal = modal::prepare(campaign, &layout, &nominal, &mut groups, &mut data);
         let windup_start = data.len();
         let bench = bench::prepare(campaign, &layout, &mut data);
+        // the data lie channel by channel, so one index range selects a channel
         let starts = [0, modal_start, windup_start, data.len()];
         let payloads_kg = campaign.statics.iter().map(|r| r.payload.mass_kg);
         let payloads_kg: Vec<f64> =

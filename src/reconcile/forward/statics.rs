@@ -70,6 +70,7 @@ pub fn prepare(
     let mut last: Option<&[f64]> = None;
     for row in &campaign.statics {
         let group = group_of(&row.pose_deg, groups);
+        // loads in one pose share a history, so only a change of pose starts a new one
         if last != Some(&row.pose_deg) {
             let geometry = PoseGeometry::new(layout, nominal, &row.pose_deg);
             poses.push(StaticPose { geometry, loads: Vec::new() });
@@ -103,6 +104,7 @@ impl PoseGeometry {
         };
         let is_joint = |i: usize| layout.joints.iter().any(|j| j.twist == i);
         let dead_nm = dead_torques(&posed);
+        // torques are linear in the masses, so one unit of each is enough
         let dead_per_mass_nm = layout
             .with_mass
             .iter()
@@ -188,6 +190,7 @@ impl StaticPose {
             .filter(|m| coefficients.linear[m.index] != 0.0)
             .map(|m| m.tip * (coefficients.linear[m.index] * m.twist.transpose()))
             .sum();
+        // the unloaded arm comes to rest before each pose, and its reading is the reference
         let mut play: Vec<f64> =
             coefficients.laws.iter().zip(&dead).map(|(law, t)| law.play_at_rest_nm(*t)).collect();
         let reference: Vec<f64> = coefficients

@@ -27,6 +27,7 @@ pub fn candidates(forward: &Forward) -> Vec<Candidate> {
             }
         }
     }
+    // two names for the same thing would count as two places and as an alternative
     merge_twins(forward, &mut out);
     out.extend(unit_slips(forward));
     out
@@ -59,6 +60,7 @@ fn candidate(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place
         true => middle_stiffness(forward, &at),
         false => reference_stiffness(forward, &at),
     };
+    // at least 1 N m, so that logarithms exist for a joint without torque
     let torque_nm = largest_torque_nm(forward, &at).max(1.0);
     let mut free_parameters = Vec::new();
     let mut fixed = Vec::new();

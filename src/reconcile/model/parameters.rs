@@ -125,6 +125,7 @@ impl FreeParameter {
 
     /// Whether the effect has reached the largest size that is searched for.
     fn is_at_its_limit(&self, u: f64) -> bool {
+        // the end where the effect is absent is no limit
         let near = 1e-6 * (self.high - self.low);
         let ends = [self.low, self.high]
             .into_iter()
@@ -140,6 +141,7 @@ impl FreeParameter {
     pub fn width(&self, u: f64) -> f64 {
         let range = self.expected.1 - self.expected.0;
         let Some(absent) = self.absent else { return range };
+        // a density that falls as 1/size, cut off near zero where it would diverge
         let small = SMALL * range;
         let decades = |end: f64| ((end - absent).abs() / small).ln_1p();
         (decades(self.low) + decades(self.high)) * ((u - absent).abs() + small)
@@ -436,6 +438,7 @@ impl<'a> Model<'a> {
             return (*value, *value);
         }
         match index.checked_sub(self.calibrated()) {
+            // eight standard deviations of tolerance: beyond what any honest part has
             None => (-8.0, 8.0),
             Some(i) => self.free_parameters().nth(i).map_or((0.0, 0.0), |k| (k.low, k.high)),
         }

@@ -98,6 +98,7 @@ fn nearest_motion(samples: &[&Sample], geometry: &mut Geometry) {
         let svd = h.svd(true, true);
         let (Some(u), Some(vt)) = (svd.u, svd.v_t) else { return };
         let mut flip = Matrix3::identity();
+        // the determinant decides between a rotation and a reflection
         flip[(2, 2)] = (vt.transpose() * u.transpose()).determinant().signum();
         let rotation = Rotation3::from_matrix_unchecked(vt.transpose() * flip * u.transpose());
         let origin = to - rotation * from;
@@ -106,6 +107,7 @@ fn nearest_motion(samples: &[&Sample], geometry: &mut Geometry) {
         let error = |i: usize| (samples[i].measured_m - origin - rotation * nominal[i]).norm();
         let mut order: Vec<usize> = (0..samples.len()).collect();
         order.sort_by(|&i, &j| error(i).total_cmp(&error(j)));
+        // gross errors must not turn the arm
         order.truncate((samples.len() * 9).div_ceil(10).max(4));
         kept = order;
     }

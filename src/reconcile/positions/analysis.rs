@@ -139,6 +139,7 @@ impl Positions {
     fn calibrate(&mut self, campaign: &Campaign) {
         let spec = &campaign.statement.positions;
         align::align(&self.tree, spec, &self.samples, &mut self.fitted.geometry);
+        // one group after the other, because a fit of all numbers from a bad start can end anywhere
         for (name, group) in number_groups(&self.tree, spec, self.points.len()) {
             self.numbers.extend(group);
             // the deflection depends slightly on the geometry, so two rounds are needed
@@ -176,6 +177,7 @@ impl Positions {
         let mut leaning = upright.clone();
         leaning.step(&[Number::Gravity(component)], &[LEAN]);
         leaning.relevel();
+        // deflections are compared in the same level frame
         let back = upright.level * leaning.level.inverse();
         let deflections = deflections(campaign, &self.tree, &leaning, &self.candidates, points);
         for (sample, deflection) in self.samples.iter_mut().zip(deflections) {

@@ -158,6 +158,7 @@ pub fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &F
     here.deviations = here.compliances.iter().map(|own| vec![f64::INFINITY; own.len()]).collect();
     here.effects = effects.to_vec();
     here.moved.resize(numbers.len(), 0.0);
+    // kept for comparison: the start can be better than where a first bad step leads
     let begin = here.clone().judged(samples);
     // The first step may make the fit worse, because the parabola is a poor model far from the best fit.
     let mut merit = f64::NEG_INFINITY;
@@ -258,6 +259,7 @@ pub fn normal(
     for (i, sample) in samples.iter().enumerate() {
         let placed = here.geometry.place(sample.placing(), numbers);
         let error = sample.measured_m - placed.at_m - from_level * here.displacement(sample);
+        // rows are scaled by the root of the weight, so their product has the weight
         let root = here.weight(&error).sqrt();
         let mut columns = placed.slopes;
         let gravity = numbers.iter().enumerate().filter_map(|(n, number)| match number {
@@ -288,6 +290,7 @@ pub fn normal(
     }
     let compliances = here.compliances.iter().flatten();
     for (i, compliance) in (numbers.len()..).zip(compliances) {
+        // a weak prior keeps the equations regular for a compliance that no weight loads
         let precision = PRIOR_RAD_PER_NM.powi(-2);
         curvature[(i, i)] += precision;
         gradient[i] -= precision * compliance;

@@ -232,10 +232,11 @@ fn deflection(
     let mut known = own.pose(&own.known, &own_pose, &row.payload);
     let mut unit = own.pose(&own.unit, &own_pose, &row.payload);
     let empty = Payload::default();
+    // the weight of other arms loads the trunk, and so moves the point
     for other in (0..ready.len()).filter(|&other| other != row.arm) {
-        let beside = &ready[other][0];
-        let posed = beside.pose(&beside.unit, &tree.pose_of(other, &pose_rad), &empty);
-        let hanging = || bodies(&posed.items[unit_trunk..], &beside.unit_structure);
+        let neighbour = &ready[other][0];
+        let posed = neighbour.pose(&neighbour.unit, &tree.pose_of(other, &pose_rad), &empty);
+        let hanging = || bodies(&posed.items[unit_trunk..], &neighbour.unit_structure);
         known.items.splice(known_trunk..known_trunk, hanging().map(Item::Body));
         unit.items.splice(unit_trunk..unit_trunk, hanging().map(Item::Body));
     }
@@ -281,6 +282,7 @@ fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Vec<Ma
         .iter()
         .map(|candidate| {
             let mut list = of(&candidate.element());
+            // a passive joint turns with its driver, so its compliance acts through the driver
             for linkage in unit.chain.linkages().iter().filter(|l| l.driver == candidate.element()) {
                 for (driver, passive) in list.iter_mut().zip(of(&linkage.passive)) {
                     driver.0 += passive.0 * linkage.factor;
@@ -317,6 +319,7 @@ fn answers<'a>(unit: &'a Posed, own: &Ready) -> Vec<(&'a str, Vec<Answer>)> {
     let mut out = Vec::new();
     // weight and its first moment of everything outboard so far
     let (mut weight_n, mut moment_nm) = (0.0, Vector3::zeros());
+    // from the tip to the base: what has been passed is outboard
     for item in unit.items.iter().rev() {
         let body = match item {
             Item::Body(body) => Some(body.clone()),

@@ -121,7 +121,7 @@ impl Positions {
             }
             _ => "repeat this pose, which the best model misses most, from both sides, on another day".into(),
         };
-        let description = format!("no further pose of its own separates anything, for no model fits: {what}");
+        let description = format!("no further pose alone separates anything, because no model fits: {what}");
         Some(NextTest {
             pose_deg: Some(row.pose_deg.clone()),
             payload_kg: row.payload.mass_kg,

@@ -55,8 +55,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     let helps = verdict == Verdict::Unexplained && after.median_mm < HELPFUL * before.median_mm;
     if helps {
         reasons.push(format!(
-            "{CORRECTED_FILE} has what predicts best, not all that is missing: on poses kept out of the fit the \
-             median error falls from {:.3} to {:.3} mm",
+            "{CORRECTED_FILE} has what predicts best, but not all that is missing: on poses held out of the fit the median error falls from {:.3} to {:.3} mm",
             before.median_mm, after.median_mm
         ));
     }
@@ -114,14 +113,14 @@ impl Positions {
         let last = &self.stages[self.stages.len() - 1];
         if last.median_mm > UNSTABLE * last.fitted_median_mm.max(campaign.positions[0].sigma_mm) {
             let text = format!(
-                "poses kept out of the fit are missed by {:.3} mm, those in it by {:.3} mm: they are too alike to \
-                 calibrate all that is free; turn every joint through more of its range, or free less",
+                "the median error is {:.3} mm for poses held out of the fit and {:.3} mm for those in it: the poses are too \
+                 similar to calibrate everything that is free; turn every joint through more of its range, or free less",
                 last.median_mm, last.fitted_median_mm
             );
             return (Verdict::InsufficientData, vec![text]);
         }
         if findings.is_empty() {
-            let text = "noise and calibration of what is free explain every position";
+            let text = "noise and the calibration of everything that is free explain every position";
             return (Verdict::NoGap, vec![text.into()]);
         }
         if let Some(f) = findings.iter().find(|f| f.indistinguishable_from.len() > MOST_ALTERNATIVES) {
@@ -135,7 +134,7 @@ impl Positions {
             return (Verdict::InsufficientData, vec![text]);
         }
         let mut reasons = vec![format!(
-            "on poses kept out of the fit the median error falls from {:.3} to {:.3} mm",
+            "on poses held out of the fit the median error falls from {:.3} to {:.3} mm",
             before.median_mm, after.median_mm
         )];
         if excess {
@@ -151,11 +150,11 @@ impl Positions {
             left.chi2_per_dof.sqrt()
         )];
         let telling = left.structures.iter().filter(|s| s.ln_p < (1e-6f64).ln()).take(3);
-        out.extend(
-            telling.map(|s| format!("{}: {:.0} % of what is left", s.sentence(), 100.0 * self.part(s))),
-        );
+        out.extend(telling.map(|s| {
+            format!("{}: {:.0} % of the remaining sum of squares", s.sentence(), 100.0 * self.part(s))
+        }));
         if out.len() == 1 {
-            out.push("what is left follows neither order, angles, torques nor payload".into());
+            out.push("the remaining errors follow neither order, angles, torques nor payload".into());
         }
         out
     }

@@ -41,14 +41,14 @@ impl Positions {
         let dropped: Vec<String> =
             self.fitted.effects.iter().filter(dropped).map(|e| self.label(*e)).collect();
         next.stage(added, dropped);
-        let confirmed = next.kept_out_ln_likelihood() > self.kept_out_ln_likelihood();
+        let confirmed = next.held_out_ln_likelihood() > self.held_out_ln_likelihood();
         if confirmed {
             *self = next;
         }
         confirmed
     }
 
-    fn kept_out_ln_likelihood(&self) -> f64 {
+    fn held_out_ln_likelihood(&self) -> f64 {
         ln_likelihood(&self.held_out, scale(&self.held_out, self.fitted.scale_m))
     }
 
@@ -144,9 +144,9 @@ impl Positions {
     fn with(&self, base: &Fitted, added: usize) -> Vec<Vec<usize>> {
         let contains =
             |effect: &usize| self.tree.contains(&self.candidates[added], &self.candidates[*effect]);
-        let beside = [base.effects.as_slice(), &[added]].concat();
-        let instead: Vec<usize> = beside.iter().copied().filter(|effect| !contains(effect)).collect();
-        if instead.len() < beside.len() { vec![beside, instead] } else { vec![beside] }
+        let both = [base.effects.as_slice(), &[added]].concat();
+        let instead: Vec<usize> = both.iter().copied().filter(|effect| !contains(effect)).collect();
+        if instead.len() < both.len() { vec![both, instead] } else { vec![both] }
     }
 
     /// Rise of ln of the likelihood that the linearized model expects of each candidate.

@@ -166,7 +166,7 @@ impl Positions {
                 let (own_turn, own_shift_m) = geometry.stations[s];
                 let (mm, mrad) = (1e3 * (shift_m - own_shift_m).norm(), 1e3 * turn.angle_to(&own_turn));
                 format!(
-                    "before row {row} instrument or base stood {mm:.2} mm and {mrad:.2} mrad elsewhere: a session of its own"
+                    "before row {row} the instrument or the base stood {mm:.2} mm and {mrad:.2} mrad elsewhere: a session of its own"
                 )
             }
         }

@@ -57,6 +57,7 @@ pub fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) -> Option
     loop {
         let mut best = parabola.best()?;
         // from the nearest springs the descent may end above its start
+        // zero is the value at the start, so a positive one is worse than no step
         if parabola.value(&best.step) > 0.0 {
             parabola.frames_from_now();
             best = parabola.best()?;
@@ -69,6 +70,7 @@ pub fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) -> Option
             let step = &best.step[parabola.ranges[k].clone()];
             let wanted: Vec<f64> = own.iter().zip(step).map(|(c, by)| c + by).collect();
             let spring = nearest_spring(&wanted);
+            // this block leaves the springs: hold it there and solve the rest again
             if spring != wanted {
                 is_settled = false;
                 parabola.blocks[k] = match own.len() {
@@ -122,6 +124,7 @@ impl Parabola<'_> {
                 (linear, self.blocks) = (from, blocks);
                 step = self.step(&linear);
             }
+            // without frames the parabola is solved in one step
             let is_linear = !self.blocks.iter().any(|block| matches!(block, Block::Frame(_)));
             if is_linear || !is_better || right.dot(&move_by) < SETTLED {
                 break;

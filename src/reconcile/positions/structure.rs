@@ -44,6 +44,7 @@ impl Positions {
             at += count;
             let Some(factor) = &factor else { break };
             let cross = normal.curvature.view((0, block[0]), (normal.own, *count)).into_owned();
+            // the part of the columns that the model could still fit
             let answered = DMatrix::from_columns(
                 &(0..*count).map(|k| factor.solve(&cross.column(k).into_owned())).collect::<Vec<_>>(),
             );
@@ -63,6 +64,7 @@ impl Positions {
                 });
             }
         }
+        // Bonferroni, as in the test of the other readings
         let asked = (structures.len() as f64).max(1.0).ln();
         structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
         structures.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
@@ -96,6 +98,7 @@ pub fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64) {
     let eigen = SymmetricEigen::new((s + s.transpose()) * 0.5);
     let largest = eigen.eigenvalues.max();
     let (mut statistic, mut dof) = (0.0, 0.0);
+    // directions that the model has absorbed carry no information
     for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
         if *value > 1e-6 * largest && *value > 1e-9 {
             statistic += vector.dot(z).powi(2) / value;

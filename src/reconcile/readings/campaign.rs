@@ -334,7 +334,7 @@ impl Campaign {
                     out.push(self.fault(
                         "other_arms",
                         problem,
-                        "elements of the trunk are alike in all arms; others have names of their own",
+                        "elements of the trunk are the same in all arms; others have names of their own",
                     ));
                 }
                 taken.push(name);

@@ -94,6 +94,7 @@ fn extend(search: &Search, level: &[Scored]) -> Vec<Scored> {
     let candidates = 0..search.candidates.len();
     let mut from: Vec<&Scored> = level.iter().collect();
     from.sort_by(|a, b| a.objective.total_cmp(&b.objective).then(a.effects.cmp(&b.effects)));
+    // the number of fits is limited, and sets that fit badly seldom lead to one that explains
     from.truncate((MOST_FITS / candidates.len().max(1)).max(1));
     let mut sets: Vec<(Vec<usize>, &Scored, usize)> = from
         .into_iter()
@@ -107,6 +108,7 @@ fn extend(search: &Search, level: &[Scored]) -> Vec<Scored> {
         .filter(|(sorted, ..)| sorted.len() <= search.forward.data.len())
         .collect();
     sets.sort_by(|a, b| a.0.cmp(&b.0));
+    // the same set is reached from several smaller ones
     sets.dedup_by(|a, b| a.0 == b.0);
     sets.into_par_iter()
         .map(|(_, base, c)| {
@@ -125,6 +127,7 @@ fn scored(search: &Search, effects: &[usize], starts: &[Vec<f64>]) -> Scored {
     let fits = starts.iter().map(|u| search.fit(effects, u, Effort::default()));
     let best =
         fits.min_by(|a, b| a.point.objective.total_cmp(&b.point.objective)).expect("at least one start");
+    // with few readings a size beyond the expected would otherwise cost nothing
     let strange: f64 = best
         .model
         .free_parameters()
@@ -204,6 +207,7 @@ fn missing_mass(
     names.iter().rev().find_map(|joint| {
         let outboard = |s: &Subject| s.payload(&stated).mass_kg + outboard_kg(s, joint);
         let known_kg = outboard(nominal);
+        // only mass outboard of a joint loads it, so the outermost joint is named
         let missing_kg = |i: &usize| outboard(&subjects[*i]) - known_kg;
         let (low, high) = span(as_stiff.iter().map(missing_kg));
         let (word, low, high) = if high < 0.0 { ("too much", -high, -low) } else { ("missing", low, high) };
@@ -287,6 +291,7 @@ fn free_factors(search: &Search, set: &Scored, joint: &str) -> (f64, f64) {
     let mut model = Model { nuisance: &nuisance, ..search.model(&set.effects) };
     let mut reach = |factors: &[f64]| {
         let mut u = set.u.clone();
+        // the factor is a further calibrated parameter with a prior of its own
         u.insert(index, 0.0);
         let mut reached = 1.0;
         for factor in factors {

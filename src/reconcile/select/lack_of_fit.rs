@@ -67,12 +67,14 @@ pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &
             );
         }
     }
+    // Bonferroni: with many questions one of them looks improbable by chance
     let asked = (structures.len() as f64).max(1.0).ln();
     structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
     structures.extend(unnamed::law_questions(campaign, forward, fit, weights));
     structures.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
     let chi2_per_dof = tester.chi2_per_dof(forward, fit);
     let ln_p = structures.first().map_or(0.0, |s| s.ln_p);
+    // a structure alone fails only if chance is excluded; a large chi-squared fails by itself
     let fails =
         ln_p < CHANCE.ln() || chi2_per_dof > MATERIAL || (ln_p < SUSPECTED.ln() && chi2_per_dof > SUSPICIOUS);
     LackOfFit { structures, chi2_per_dof, fails }
@@ -102,6 +104,7 @@ struct Tester {
 
 impl Tester {
     fn new(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
+        // clamped, so that a gross error does not make up a structure
         let residual = DVector::from_vec(fit.residuals(forward, weights)).map(|r| r.clamp(-5.0, 5.0));
         let mut jacobian = fit.jacobian.clone();
         for (mut row, w) in jacobian.row_iter_mut().zip(&weights.inverse) {
@@ -122,6 +125,7 @@ impl Tester {
                     if self.weight[i] > 0.0 { regressors[k][i] } else { 0.0 }
                 },
             );
+        // one scale for all regressors, so that small eigenvalues mean dependence and not units
         let x = unit_columns(x);
         let z = x.tr_mul(&self.residual);
         let xj = x.tr_mul(&self.jacobian);

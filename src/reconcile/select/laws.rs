@@ -34,6 +34,7 @@ pub fn laws(campaign: &Campaign, forward: &Forward, fit: &Fit) -> Vec<Law> {
         .chain(builder.link_laws())
         .chain(builder.reading_laws())
         .collect();
+    // a law that changes no reading cannot be tested
     out.retain(|law| law.columns.iter().all(|c| c.iter().any(|x| *x != 0.0)));
     out
 }

@@ -69,12 +69,14 @@ impl<'a> Search<'a> {
                 best = baseline.clone();
             }
         }
+        // the law is computed only if a first effect is found
         let law = OnceCell::new();
         let mut given_up = false;
         while best.effects.len() < MOST_EFFECTS {
             let law = || law.get_or_init(|| unnamed::better_than_calibration(self, &baseline_fit));
             let tried = self.extend(&best, &seen);
             seen.extend(tried.iter().cloned());
+            // several missing effects are less probable than one
             let worth = if best.effects.is_empty() { FIRST_WORTH } else { WORTH };
             let Some(next) = better(&tried, best.score + worth) else { break };
             best = self.settled(next);
@@ -190,6 +192,7 @@ impl<'a> Search<'a> {
         let rough = |(effects, u): (Vec<usize>, Vec<f64>)| self.scored(&effects, &self.rough(&effects, &u));
         let first: Vec<Scored> = fresh.into_par_iter().map(rough).collect();
         let top = first.iter().chain(&known).map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
+        // a few steps show which models are hopeless; only the others are worth a full fit
         let (near, far): (Vec<Scored>, Vec<Scored>) =
             first.into_iter().partition(|s| s.score > top - HOPELESS);
         let effort = Effort { steps: 14, tolerance: 0.02 };
@@ -293,6 +296,7 @@ impl<'a> Search<'a> {
         let mut columns = slopes.clone().resize_horizontally(u.len(), 0.0);
         for p in here.u.len()..u.len() {
             let (_, high) = model.bounds(p);
+            // a difference must stay within the bounds
             let step = if u[p] + 1e-3 > high { -1e-3 } else { 1e-3 };
             let mut moved = u.clone();
             moved[p] += step;
@@ -321,6 +325,7 @@ impl<'a> Search<'a> {
             let p = model.calibrated() + i;
             let prior = parameter.width(u[p]);
             let width = 1.0 / (curvature[(p, p)] + 12.0 / prior.powi(2)).sqrt();
+            // the Occam factor of the parameter; 0.9 is ln of the root of 2 pi
             score += (width / prior).ln() + 0.9;
         }
         (u, score)
@@ -347,6 +352,7 @@ impl<'a> Search<'a> {
                         competitors.push(competitor.clone());
                     }
                 }
+                // the score is a logarithm of probability, so its difference gives the odds
                 let odds = |s: &Scored| (s.score - best.score).exp();
                 let all = 1.0 + competitors.iter().map(odds).sum::<f64>();
                 let mut held = 1.0;

@@ -101,6 +101,7 @@ impl<'a> Search<'a> {
             return fit(self.forward, &model, u, self.weights, Effort::default());
         }
         let mut best = self.descent(&model, u, Effort::default());
+        // large moves first, then finer ones about the best
         for reach in [0.3, 0.12, 0.04] {
             for &p in &breaks {
                 let moves = [-1.0, -0.5, 0.5, 1.0].map(|m| best.u[p] + m * reach);
@@ -144,6 +145,7 @@ impl<'a> Search<'a> {
             u[p] += middle;
         }
         let mut held = model.clone();
+        // the other parameters adapt to the moved break points
         held.held = model.break_points().into_iter().map(|p| (p, u[p])).collect();
         let centred = self.descent(&held, &u, Effort { steps: 4, tolerance: 0.02 });
         let end = if centred.objective > best.objective + 4.0 { best } else { centred };
@@ -163,6 +165,7 @@ impl<'a> Search<'a> {
 
     /// Scores a fit.
     pub fn scored(&self, effects: &[usize], fit: &Fit) -> Scored {
+        // each effect could have been named at any place, and the price is the logarithm of their number
         let penalty = effects.len() as f64 * (self.places() as f64).ln();
         Scored {
             effects: effects.to_vec(),
@@ -180,6 +183,7 @@ impl<'a> Search<'a> {
     /// Number of places where an effect could be named. All unit slips of a channel count once.
     pub fn places(&self) -> usize {
         let mut labels: Vec<String> = self.candidates.iter().map(|c| c.label()).collect();
+        // all unit slips of a channel have the same label
         labels.dedup();
         labels.len()
     }

@@ -200,6 +200,7 @@ impl Settling<'_> {
             let pairs = self.forward.data.iter().zip(before.iter().zip(&after));
             let moved =
                 pairs.map(|(d, (before, after))| ((after - before) / d.sigma).abs()).fold(0.0, f64::max);
+            // the trial shapes were good enough: only the weighing is repeated
             if moved < INEXACT {
                 if round.hopeful {
                     round = self.run(round.noise, Before::Weights(&round.selection));
@@ -221,6 +222,7 @@ impl Settling<'_> {
         }
         let weights = round.noise.weights(self.forward);
         let search = self.search(&weights);
+        // an effect may stand for a slip, so the model without it judges the rows too
         let fewer = (0..best.effects.len()).map(|effect| {
             let (effects, u) = search.without(best, effect);
             search.fit(&effects, &u, Effort::default())

@@ -51,6 +51,7 @@ pub struct Better {
 /// The misfit that each law would remove from a model's residuals, as questions for the lack-of-fit test.
 pub fn law_questions(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<Structure> {
     let competitors = competitors(forward, fit, &laws(campaign, forward, fit), weights);
+    // Bonferroni: one of many laws fits better by chance
     let asked = (competitors.len() as f64).max(1.0).ln();
     competitors
         .into_iter()
@@ -72,6 +73,7 @@ pub fn better_than_calibration(search: &Search, baseline: &Fit) -> Option<Better
 /// The law that explains the readings better in place of one named effect, or of all of them.
 pub fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<Better> {
     let (named, places) = (best.effects.len(), search.places() as f64);
+    // with one effect, the model without it is the baseline, which is tried anyway
     let single = (0..named).filter(|_| named > 1).map(|i| {
         let (effects, u) = search.without(best, i);
         search.fit(&effects, &u, Effort::default())
@@ -123,6 +125,7 @@ fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Com
         curvature = equations.curvature;
         let mut damped = curvature.clone();
         for p in fit.model.calibrated()..n {
+            // the prior of an effect or a law: variance of a uniform distribution of this width
             damped[(p, p)] += 12.0 / width(fit, own, p, u[p]).powi(2);
         }
         let Some(cholesky) = Cholesky::new(damped) else { break };

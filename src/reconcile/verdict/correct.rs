@@ -22,6 +22,7 @@ pub fn corrected(
     verdict: Verdict,
 ) -> (Arm, Value) {
     let mut arm = campaign.arm.clone();
+    // an arm that is not explained must not be changed by calibration
     let keep = matches!(verdict, Verdict::Explained | Verdict::NoGap);
     let mut values = Vec::new();
     if keep {

@@ -68,6 +68,7 @@ pub fn propose(question: &Question) -> Vec<NextTest> {
                 .collect()
         })
         .collect();
+    // a competing model that no test separates cannot be decided by measuring more
     let most = |competitor: usize| gaps.iter().map(|list| list[competitor]).fold(0.0, f64::max);
     let (open, twins): (Vec<usize>, Vec<usize>) =
         (0..question.competitors.len()).partition(|&competitor| most(competitor) >= WORTHLESS_SIGMAS);
@@ -104,7 +105,7 @@ pub fn propose(question: &Question) -> Vec<NextTest> {
 /// Says that no reading of the arm tells the models apart.
 fn nothing_tells(best: &str, competitors: &[&str]) -> NextTest {
     NextTest::of_another_kind(format!(
-        "no displacement, frequency or bench reading separates {best} from {}: weigh or take apart what is in question",
+        "no displacement, frequency or bench reading separates {best} from {}: weigh the parts in question, or take them apart",
         competitors.join(" or ")
     ))
 }

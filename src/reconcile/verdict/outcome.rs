@@ -276,9 +276,9 @@ impl Outcome {
         let mut out = arm.to_json();
         out["provenance"] = self.provenance.clone();
         out["provenance"]["placement"] = self.provenance["other_placements"][&arm.name].clone();
-        let beside = self.other_corrected.iter().filter(|o| o.name != arm.name).map(corrected_file);
+        let others = self.other_corrected.iter().filter(|o| o.name != arm.name).map(corrected_file);
         out["provenance"]["other_arms"] =
-            json!([vec![CORRECTED_FILE.to_string()], beside.collect()].concat());
+            json!([vec![CORRECTED_FILE.to_string()], others.collect()].concat());
         out
     }
 
@@ -287,8 +287,8 @@ impl Outcome {
         let mut arm = self.corrected.to_json();
         arm["provenance"] = self.provenance.clone();
         if !self.other_corrected.is_empty() {
-            let beside: Vec<String> = self.other_corrected.iter().map(corrected_file).collect();
-            arm["provenance"]["other_arms"] = json!(beside);
+            let others: Vec<String> = self.other_corrected.iter().map(corrected_file).collect();
+            arm["provenance"]["other_arms"] = json!(others);
         }
         arm
     }

@@ -70,7 +70,7 @@ fn sentence(outcome: &Outcome) -> String {
 
 /// Lines of the verdict about the readings themselves.
 fn is_quality(line: &str) -> bool {
-    line.trim_start().starts_with("gross error") || line.trim_start().starts_with("the sigma declared")
+    line.trim_start().starts_with("gross error") || line.ends_with("times as much as declared")
 }
 
 /// The residuals, each with its pose. Rows come channel by channel, in the order of the files.

@@ -23,7 +23,7 @@ impl Outcome {
         if let Some(k) = &self.held_out {
             let _ = writeln!(
                 out,
-                "  on {} readings of poses kept out of the fit: {:.2} sigma before, {:.2} after",
+                "  on {} readings of poses held out of the fit: {:.2} sigma before, {:.2} after",
                 k.count, k.rms_before, k.rms_after
             );
         }
@@ -35,8 +35,14 @@ impl Outcome {
             let joint = test.joint.as_ref().map_or(String::new(), |j| format!(" of {j}"));
             let expect = match test.expected_sigmas {
                 0.0 => String::new(),
-                s if s > 100.0 => format!(": expect more than 100 sigma, {} needed", test.readings_needed),
-                s => format!(": expect {s:.1} sigma, {} needed", test.readings_needed),
+                s if s > 100.0 => format!(
+                    ": the models differ by more than 100 sigma there, readings needed: {}",
+                    test.readings_needed
+                ),
+                s => format!(
+                    ": the models differ by {s:.1} sigma there, readings needed: {}",
+                    test.readings_needed
+                ),
             };
             let load = match test.kind.as_str() {
                 "windup" | "another kind" => String::new(),
@@ -54,7 +60,7 @@ impl Outcome {
             Verdict::NoGap => "no gap between model and measurement".into(),
             Verdict::Explained => format!("explained by {}", names(&self.effects)),
             Verdict::Unexplained => {
-                "UNEXPLAINED: the model is wrong in a way the library does not know".into()
+                "UNEXPLAINED: no effect of the library explains where the model is wrong".into()
             }
             Verdict::InsufficientData => "the readings are insufficient to tell".into(),
         }
@@ -67,7 +73,7 @@ impl Outcome {
         let _ = writeln!(
             out,
             "  {:<41} {:>8} {:>26}",
-            "position error [mm], each line adds", "fitted", "kept out"
+            "position error [mm], each line adds", "fitted", "held out"
         );
         let _ = writeln!(out, "  {:<41} {:>8} {:>8} {:>8} {:>8}", "", "median", "median", "mean", "largest");
         for s in &self.stages {
@@ -76,7 +82,7 @@ impl Outcome {
                 "  {:<41} {:>8.3} {:>8.3} {:>8.3} {:>8.3}",
                 s.added, s.fitted_median_mm, s.median_mm, s.mean_mm, s.max_mm
             );
-            s.dropped.iter().for_each(|name| out.push_str(&format!("    in place of {name}\n")));
+            s.dropped.iter().for_each(|name| out.push_str(&format!("    replaces {name}\n")));
         }
     }
 
@@ -91,7 +97,7 @@ impl Outcome {
         }
         for (word, scale) in ["static", "modal", "windup"].iter().zip(self.noise.scale) {
             if scale > WORTH_SAYING {
-                let _ = writeln!(out, "  the sigma declared for {word} appears {scale:.2} times too small");
+                let _ = writeln!(out, "  {word} readings scatter {scale:.2} times as much as declared");
             }
         }
     }
