@@ -64,7 +64,8 @@ fn at_a_single_spring_a_kilogram_more_buys_the_deflection_over_the_mass() {
         "{words}"
     );
     // rates, not what a whole kilogram would do
-    let change = format!("by {:.3} mm/kg and raises the mode by {:.1} Hz/kg", -gain.mm_per_kg, gain.hz_per_kg);
+    let change =
+        format!("by {:.3} mm/kg and raises the mode by {:.1} Hz/kg", -gain.mm_per_kg, gain.hz_per_kg);
     assert!(words.contains(&change), "{words}");
 }
 
