@@ -6,16 +6,13 @@ use crate::arm::Arm;
 use crate::arm::file::read_arm_document;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
-use crate::report::words::wrap;
+use crate::report::words::{TERMINAL, wrap};
 use crate::study::definition::Study;
 use crate::study::effects::{Correction, apply_corrections};
 use crate::study::read::read_study;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
-
-/// Width of the terminal's text.
-const COLUMNS: usize = 80;
 
 /// A study with the corrections of an arm file applied.
 ///
@@ -82,7 +79,7 @@ pub(super) fn to_text(corrections: &[Correction]) -> String {
             let _ = writeln!(out, "\n{head}:");
         }
         for (words, what) in lines {
-            out.push_str(&wrap(&format!("{}: {words}", what.join(", ")), COLUMNS, "  "));
+            out.push_str(&wrap(&format!("{}: {words}", what.join(", ")), TERMINAL, "  "));
         }
     }
     out
@@ -103,7 +100,7 @@ mod tests {
             |what: &str, words: &str| Correction { what: what.into(), applied: false, words: words.into() };
         let words = "the study chooses this joint's gear, so that what was measured of another gear says nothing of it";
         let text = to_text(&[left_out("j2.stiffness", words), left_out("j3.stiffness", words)]);
-        assert!(text.lines().all(|l| l.chars().count() <= COLUMNS), "{text}");
+        assert!(text.lines().all(|l| l.chars().count() <= TERMINAL), "{text}");
         assert_eq!(text.matches("says nothing of it").count(), 1, "{text}");
         assert!(text.lines().skip(2).all(|l| l.starts_with("  ")), "{text}");
     }

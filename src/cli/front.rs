@@ -7,7 +7,7 @@ use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::report::certificate::gap_words;
 use crate::report::front_table::FrontTable;
-use crate::report::words::wrap;
+use crate::report::words::{TERMINAL, wrap};
 use crate::study::check::{Claim, Completeness, check_front};
 use crate::study::read::read_study;
 use crate::study::ties;
@@ -96,7 +96,7 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
         let rows = check.rows;
         let words =
             format!("{rows} designs agree with the model, and none dominates another; {completeness}");
-        return Ok(wrap(&words, 80, ""));
+        return Ok(wrap(&words, TERMINAL, ""));
     }
     Err(Failure::Check(format!("{}:\n  {}", args.results.display(), faults.join("\n  "))))
 }

@@ -9,7 +9,7 @@ use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::together::reconcile;
 use crate::reconcile::verdict::outcome::Outcome;
 use crate::reconcile::verdict::page::campaign_page;
-use crate::report::words::wrap;
+use crate::report::words::{TERMINAL, wrap};
 use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -101,11 +101,11 @@ fn add(files: &mut Vec<(String, Vec<u8>)>, outcome: &Outcome, rerun: Rerun) {
 /// Breaks lines at 80 columns; continued lines keep the indent. Tables are not touched.
 fn narrow(text: &str) -> String {
     let line = |line: &str| {
-        if line.chars().count() <= 80 {
+        if line.chars().count() <= TERMINAL {
             return format!("{line}\n");
         }
         let lead: String = line.chars().take_while(|c| *c == ' ').collect();
-        wrap(line, 80, &lead)
+        wrap(line, TERMINAL, &lead)
     };
     text.lines().map(line).collect()
 }

@@ -11,7 +11,7 @@ use crate::reconcile::verdict::outcome::{Outcome, Verdict};
 use crate::report::certificate::gap_words;
 use crate::report::compare::changes::{Changes, Model, Values};
 use crate::report::picks::designs;
-use crate::report::words::wrap;
+use crate::report::words::{TERMINAL, wrap};
 use crate::search::sweep::Status;
 use crate::space::design::evaluate;
 use crate::space::design::{number, number_of};
@@ -147,5 +147,5 @@ fn lacking_words(found: &[Written]) -> String {
         lacks(&found[0]),
         lacks(&found[1])
     );
-    wrap(&words, 80, "")
+    wrap(&words, TERMINAL, "")
 }

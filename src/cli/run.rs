@@ -13,7 +13,7 @@ use crate::report::html::document::DocumentPage;
 use crate::report::html::render::PLOTS;
 use crate::report::section::Figure;
 use crate::report::table::Table;
-use crate::report::words::wrap;
+use crate::report::words::{TERMINAL, wrap};
 use crate::search::sweep::Status;
 use crate::study::effects::left_out;
 use crate::study::table::slug;
@@ -115,7 +115,7 @@ fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> Document
 
 /// Says which files were written, in lines of at most 80 columns.
 fn told(dir: &Path, files: &[(String, Vec<u8>)]) -> String {
-    wrap(&format!("written to {}: {}", dir.display(), names(files)), 80, "")
+    wrap(&format!("written to {}: {}", dir.display(), names(files)), TERMINAL, "")
 }
 
 /// Names of the files that were written; fronts by material and plots are only counted.

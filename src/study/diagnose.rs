@@ -280,7 +280,7 @@ fn too_fast(sized: &SizedJoint) -> String {
             )
         }
         _ => format!(
-            "joint {}: every drive that \"drives\" offers is too fast for its average input speed or lacks a figure \
+            "joint {}: every drive that \"drives\" offers is too fast for its average input speed or lacks a rating \
              that a check needs; `armwright size STUDY --explain {}` lists them",
             table.joint(),
             table.joint()

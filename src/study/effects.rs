@@ -153,7 +153,7 @@ impl CorrectedStudy {
         match found {
             None => self.say(what, false, format!("the study has no joint {part}")),
             Some((_, SpaceJoint { drive: DriveChoice::FirstFit(_) | DriveChoice::AllFits(_), .. })) => {
-                self.say(what, false, "the study chooses this joint's drive: it keeps its catalog figures");
+                self.say(what, false, "the study chooses this joint's drive: it keeps its catalog ratings");
             }
             Some((index, SpaceJoint { drive: DriveChoice::Given { curve, mass_kg, .. }, .. })) => {
                 let entry = &mut self.file["chain"][index];

@@ -1,8 +1,8 @@
 //! A front under scatter: catalog ratings are averages, and a real part differs from them.
 //!
-//! A stated scatter of `p` is a log-normal factor on a catalog figure, its median 1: 95 % of the factors lie
+//! A stated scatter of `p` is a log-normal factor on a catalog rating, its median 1: 95 % of the factors lie
 //! between `1/(1+p)` and `1+p`, as with the tolerances of a campaign. One factor belongs to one row of a
-//! catalog, and so to every joint and design that uses it. Each figure has a stream of random numbers of its
+//! catalog, and so to every joint and design that uses it. Each rating has a stream of random numbers of its
 //! own, made from the seed and the row's name: its factors do not depend on what else is on the front, on the
 //! number of samples or on threads.
 //!
@@ -94,7 +94,7 @@ impl Tolerance {
         KINDS.iter().zip(self.parts).map(|((name, _), part)| (*name, part)).filter(|(_, part)| *part > 0.0)
     }
 
-    /// Scatter of a figure.
+    /// Scatter of a rating.
     fn of(&self, figure: &Rating) -> f64 {
         let [gear_stiffness, modulus, mass] = self.parts;
         match figure {
@@ -105,7 +105,7 @@ impl Tolerance {
     }
 }
 
-/// The stream of random factors of one figure.
+/// The stream of random factors of one rating.
 struct Stream {
     generator: Xoshiro256PlusPlus,
     sigma: f64,
@@ -143,7 +143,7 @@ struct Sample {
 struct Trial<'a> {
     parts: &'a ChosenParts<'a, 'a>,
     constraints: &'a Constraints,
-    /// The front by the catalogs' figures.
+    /// The front with the catalog ratings.
     designs: &'a [Design],
     /// Places of the nominal picks in it.
     picks: &'a [usize],
