@@ -106,7 +106,7 @@ impl Search<'_, '_> {
             &mut here.shapes,
             work,
             |box_bound| {
-                self.below.is_some_and(|upper| !upper.is_in_reach_of(box_bound))
+                self.below.is_some_and(|upper| !upper.admits(box_bound))
                     || self.dominates(box_bound, findings)
             },
             |box_bound| {

@@ -6,8 +6,8 @@
 //!
 //! - on the options of a level, where the mixed designs differ or a product is underestimated;
 //! - on a joint torque. A force is uncertain because of all the weights outboard, not because of one level,
-//! so halving the torque's interval helps where halving a level does not. It also separates the states of a
-//! gear that is mixed of a soft and a stiff one.
+//!   so halving the torque's interval helps where halving a level does not. It also separates the states of a
+//!   gear that is mixed of a soft and a stiff one.
 
 use super::parts::{STIFFNESSES, inertia};
 use super::pose::Row;

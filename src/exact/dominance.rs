@@ -5,9 +5,9 @@
 //! the same for both. Now put A in the place of B:
 //!
 //! - Every force of the study grows with every weight, so no torque, stress or demand inboard grows and the
-//! tip does not deflect further.
+//!   tip does not deflect further.
 //! - No inertia grows. No stiffness falls if every gear inboard stays in its segment of the torsion curve.
-//! Then no mode falls.
+//!   Then no mode falls.
 //!
 //! So the design with A dominates the design with B, whatever its other parts are. A gear inboard may leave
 //! its segment when a part becomes lighter; therefore the step is valid only within a box, in which the

@@ -32,7 +32,7 @@ impl LocalUpperBound {
 
     /// Whether a box with this bound may have a member below the local upper bound.
     #[inline]
-    pub fn is_in_reach_of(&self, box_bound: &BoxBound) -> bool {
+    pub fn admits(&self, box_bound: &BoxBound) -> bool {
         box_bound.mass_kg <= self.mass_kg && box_bound.tip_m <= self.tip_m && box_bound.hz >= self.hz
     }
 

@@ -81,9 +81,9 @@ pub(super) fn pass_by_regions<'p>(
             Done { tasks: tasks.into_iter().map(boxes).collect(), findings }
         }
     };
-    let survivors =
+    let remaining =
         in_rounds(state, first.into_iter().collect(), || budget.stopped(), task, SearchState::learn);
-    survivors.iter().map(|_| BoxBound::OPEN).collect()
+    remaining.iter().map(|_| BoxBound::OPEN).collect()
 }
 
 impl<'p> Search<'_, 'p> {
@@ -212,7 +212,7 @@ impl<'p> Subproblem<'p> {
             &mut self.design_box,
             &mut self.shapes,
             work,
-            |box_bound| !upper.is_in_reach_of(box_bound) || is_beaten(box_bound),
+            |box_bound| !upper.admits(box_bound) || is_beaten(box_bound),
             |_| true,
         );
         let Verdict::Open(box_bound) = verdict else { return None };

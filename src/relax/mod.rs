@@ -4,10 +4,10 @@
 //!
 //! - mass is linear in the weights;
 //! - tip deflection has lower bounds that are linear (`statics`: loads at an end of their range, plus
-//! McCormick's envelope of load times compliance);
+//!   McCormick's envelope of load times compliance);
 //! - what a drive must carry is linear;
 //! - a required lowest mode is `K - ω² M ⪰ 0` with `K` and `M` linear, and each trial shape `x` gives one
-//! linear inequality (`shapes`).
+//!   linear inequality (`shapes`).
 //!
 //! The lightest mixture is a linear program, which Clarabel solves (`program`). The bound that is returned is
 //! the Lagrangian bound at the solver's multipliers. It is valid for any multipliers, so it does not depend
