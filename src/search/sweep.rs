@@ -85,12 +85,10 @@ pub struct SweepOutcome {
 /// The example is an arm whose only drive is found by first fit, so that the space has one design.
 ///
 /// ```
-/// use armwright::arm::load::Payload;
-/// use armwright::arm::{JointModel, Link, LinkBody, LinkModel};
-/// use armwright::catalog::Catalogs;
-/// use armwright::catalog::gear::GearMass;
+/// use armwright::arm::{JointModel, Link, LinkBody, LinkModel, Payload};
+/// use armwright::catalog::{Catalogs, GearMass};
 /// use armwright::search::{Status, Sweep};
-/// use armwright::sizing::select::DriveFilter;
+/// use armwright::sizing::DriveFilter;
 /// use armwright::space::design_space::{Case, DriveChoice, SpaceJoint, SpacePiece};
 /// use armwright::space::{ArmProblem, DesignSpace};
 /// use nalgebra::Vector3;
@@ -123,7 +121,7 @@ pub struct SweepOutcome {
 ///     constraints: Default::default(),
 ///     effects: Vec::new(),
 /// };
-/// let catalogs = Catalogs::builtin().expect("the catalogs of the program");
+/// let catalogs = Catalogs::builtin();
 /// let problem = ArmProblem::new(&space, &catalogs);
 /// let stop = AtomicBool::new(false);
 /// let outcome = Sweep::new(&problem, space.constraints, &stop).run();
