@@ -1,25 +1,27 @@
-//! Eight arms side by side as they grow inward.
+//! Eight arms side by side, as pieces are added from the innermost level to the base.
 
 use crate::mechanics::lanes::{Eight, LANES};
 use crate::pareto::objectives::Objectives;
 use crate::space::problem::ArmProblem;
 
-/// Most pieces from the innermost level to the base that a row handles; beyond, designs are finished
-/// one by one.
+/// The largest number of slots from the innermost level to the base that a row handles. With more slots, designs are
+/// finished one by one.
 pub(crate) const MOST_SLOTS: usize = 12;
 
-/// Eight arms as they grow inward. What is loaded as eight numbers must be stored as eight: a processor waits where it
-/// finds parts of them on the way to memory.
+/// Eight arms as they grow inward.
+///
+/// Eight numbers that are loaded together must also be stored together. Partial stores would defeat store-to-load
+/// forwarding: the processor would wait until they have reached the cache.
 pub(crate) struct EightArms {
-    /// Bits of those that hold so far.
+    /// One bit for each arm that holds so far.
     pub held: u8,
     pub mass_kg: Eight,
-    /// Mass of the drive in each inner slot; those of given drives stand from the beginning.
+    /// Mass of the drive in each inner slot. The masses of given drives are set from the beginning.
     pub masses_kg: [Eight; MOST_SLOTS],
-    /// The largest of what single joints add to Dunkerley's sums: no lowest eigenvalue is above one over that.
+    /// Largest part of Dunkerley's sums that a single joint adds \[s²\]. The lowest eigenvalue is at most its reciprocal.
     pub largest_s2: Eight,
     pub cases: Vec<CaseArms>,
-    /// What they come to, once finished.
+    /// Objectives of the finished arms.
     pub tip_deflection_m: Eight,
     pub lowest_mode_hz: Eight,
 }
@@ -28,16 +30,17 @@ pub(crate) struct EightArms {
 #[derive(Clone)]
 pub(crate) struct CaseArms {
     pub tip_m: [Eight; 3],
-    /// Torque on each inner joint that is turned, and inertia about it.
+    /// Torque \[N m\] on each inner joint that some load turns, and outboard inertia \[kg m²\] about it.
     pub torque_at: [Eight; MOST_SLOTS],
     pub inertia_at: [Eight; MOST_SLOTS],
+    /// Tangent compliance of each inner joint \[rad/(N m)\].
     pub compliance: [Eight; MOST_SLOTS],
-    /// Dunkerley's sum of each block.
+    /// Dunkerley's sum of each block \[s²\].
     pub trace_s2: [Eight; 2],
 }
 
 impl EightArms {
-    /// Room for eight arms.
+    /// Working space for eight arms of a problem.
     pub fn new(problem: &ArmProblem) -> Self {
         let zeros = [0.0; LANES];
         let nothing = CaseArms {

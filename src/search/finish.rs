@@ -1,9 +1,11 @@
 //! Rows of designs, finished together.
 //!
-//! A *row* is all designs that differ in the innermost level alone. What follows from the innermost options without
-//! any outboard arm is compiled once ([`FinishRows::compile`]); each worker then finishes rows in room of its own.
+//! A *row* is the set of designs that differ in the innermost level alone. Whatever depends on the innermost options but
+//! not on the arm outboard of them is compiled once ([`FinishRows::compile`]). Each worker then finishes rows in working
+//! space of its own.
 
-use super::row::{Row, RowScratch};
+use super::row::Row;
+use super::row_begun::RowScratch;
 use super::row_lanes::RowsWork;
 use crate::mechanics::lanes::in_lanes;
 use crate::space::levels::{Keep, OutwardIn};
@@ -11,19 +13,19 @@ use crate::space::problem::{ArmProblem, Partial};
 
 /// A tree of designs that knows how to finish whole rows.
 pub trait FinishRows: OutwardIn {
-    /// What is compiled once for all rows.
+    /// The innermost level, compiled once for all rows.
     type Compiled: Send + Sync;
-    /// What a worker keeps from one row to the next.
+    /// Working space of a worker, kept from one row to the next.
     type Scratch: Send;
 
     /// Compiles the innermost level.
     fn compile(&self) -> Self::Compiled;
 
-    /// Room for a worker's rows.
+    /// Working space for one worker.
     fn scratch(&self) -> Self::Scratch;
 
-    /// Finishes rows of designs: each an arm that lacks only the innermost level, with the number of its first
-    /// design, by every option of that level.
+    /// Finishes rows of designs and shows them to `keep`. Each row is an arm that lacks only the innermost level, with the
+    /// number of its first design.
     fn finish<K: Keep>(
         &self,
         compiled: &Self::Compiled,
@@ -33,7 +35,7 @@ pub trait FinishRows: OutwardIn {
     );
 }
 
-/// Finishes rows design by design.
+/// Finishes rows design by design. It is slower than rows in lanes and works for every tree.
 pub fn finish_one_by_one<P: OutwardIn>(
     problem: &P,
     rows: &[(u128, P::Partial)],
@@ -48,7 +50,7 @@ pub fn finish_one_by_one<P: OutwardIn>(
     }
 }
 
-/// The innermost level of an arm, compiled; `None` if its rows are finished design by design.
+/// The innermost level of an arm, compiled. It is `None` inside if the rows are finished design by design.
 pub struct CompiledArm(Option<Row>);
 
 impl FinishRows for ArmProblem<'_> {

@@ -1,11 +1,17 @@
-//! Eight designs finished at once: the pieces from the innermost level to the base added in lanes, then
-//! [their lowest modes](super::row_modes).
+//! The kernel of the sweep: eight designs of a row, finished at once.
+//!
+//! The slots from the innermost level to the base are added in lanes, one design in each lane. Then follow
+//! [the lowest modes](super::row_modes). Designs that cannot hold, or that are surely dominated, are only counted.
+//!
+//! The functions are `#[inline(always)]` because the lanes are compiled for the instructions of one processor, and a call
+//! out of that code would be compiled for the common ones.
 
 // matrices by row and column read better than iterators over them
 #![allow(clippy::needless_range_loop)]
 
 use super::arms::EightArms;
-use super::row::{AtJoint, Begun, Chunk, DriveAttributes, Row, RowChunk, RowScratch, StressEight, Twisting};
+use super::row::{AtJoint, Chunk, DriveAttributes, Row, RowChunk, StressEight, Twisting};
+use super::row_begun::{Begun, RowScratch};
 use super::row_modes::Question;
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, splat_all};
 use crate::sizing::eight::EightDemands;
@@ -15,25 +21,25 @@ use crate::space::slot::{SizedJoint, Slot};
 use crate::space::station::{Station, StationJoint, StationSlot};
 use std::f64::consts::TAU;
 
-/// Rows to be finished, each with the number of its first design.
+/// Rows to be finished, each an outboard arm with the number of the row's first design.
 pub(crate) struct RowsWork<'a, 'c, K> {
     pub problem: &'a ArmProblem<'c>,
     pub row: &'a Row,
     pub rows: &'a [(u128, Partial)],
-    /// Designs in each.
+    /// Number of designs in each row.
     pub options: u32,
     pub scratch: &'a mut RowScratch,
     pub keep: &'a mut K,
 }
 
-/// What became of eight designs; what they come to is in their [`EightArms`].
+/// The outcome of eight designs, one bit for each. Their objectives are in the [`EightArms`].
 #[derive(Clone, Copy, Default)]
 struct FinishedEight {
-    /// Bits of the designs that hold.
+    /// The designs that hold.
     held: u8,
-    /// Bits of those whose lowest mode is below the bar, wherever it is.
+    /// The designs that hold and whose lowest mode is below the bar, so that its value does not matter.
     below_bar: u8,
-    /// Bits of those whose lowest mode was not found.
+    /// The designs that hold and whose lowest mode was not found.
     unsure: u8,
 }
 
@@ -44,6 +50,7 @@ impl<K: Keep> LaneWork for RowsWork<'_, '_, K> {
     fn run<V: Lanes>(self) {
         let RowsWork { problem, row, rows, options, scratch, keep } = self;
         let (mut excluded, mut below_bar) = (0, 0);
+        // chunks outside, rows inside: a chunk is read from memory once for all rows
         for chunk in 0..(options as usize).div_ceil(LANES) {
             let lanes = LANES.min(options as usize - chunk * LANES);
             let valid = u8::MAX >> (LANES - lanes);
@@ -63,6 +70,8 @@ impl<K: Keep> LaneWork for RowsWork<'_, '_, K> {
 }
 
 impl RowChunk<'_, '_> {
+    /// Finishes eight designs, `valid` of which exist. Tests go from the cheapest to the dearest, and the function returns
+    /// as soon as nothing is left to decide.
     #[inline(always)]
     fn finish<V: Lanes>(
         &self,
@@ -101,7 +110,7 @@ impl RowChunk<'_, '_> {
         FinishedEight { held, below_bar, unsure }
     }
 
-    /// Shows those that are of interest.
+    /// Shows the designs that are of interest to `keep`. It is rarely called, so it is kept out of the kernel.
     #[inline(never)]
     fn hand_over(
         &self,
@@ -113,6 +122,7 @@ impl RowChunk<'_, '_> {
     ) {
         for lane in (0..LANES).filter(|lane| (done.held & !done.below_bar) >> lane & 1 == 1) {
             let option = (self.chunk * LANES + lane) as u32;
+            // the iteration in lanes may fail to converge; the search by itself does not
             if done.unsure >> lane & 1 == 1 {
                 let level = self.problem.level_sizes_slice().len() - 1;
                 self.problem.finish_one(level, option, self.from, first, spare, keep);
@@ -123,12 +133,12 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// Adds piece after piece.
+    /// Adds piece after piece, until every arm is complete or none holds.
     #[inline(always)]
     fn grow<V: Lanes>(&self, begun: &mut Begun, arms: &mut EightArms) {
         let slots = &self.problem.slots()[self.row.first..];
         let mut largest_s2 = V::zero();
-        // a link comes first or not at all
+        // the innermost level is a link or a drive, and no other inner slot is a link
         match self.row.chunks.get(self.chunk) {
             Some(chunk) => self.start_with_link::<V>(chunk, begun, arms),
             None => self.start::<V>(begun, arms),
@@ -148,7 +158,7 @@ impl RowChunk<'_, '_> {
         arms.largest_s2 = largest_s2.store();
     }
 
-    /// The arm outboard of the row, eight times.
+    /// Starts with the arm outboard of the row, the same in every lane.
     #[inline(always)]
     fn start<V: Lanes>(&self, begun: &Begun, arms: &mut EightArms) {
         arms.mass_kg = V::splat(self.from.mass_kg + self.row.fixed_kg).store();
@@ -163,7 +173,7 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// The same with a link on it.
+    /// Starts with the arm outboard of the row and one link option in each lane.
     #[inline(always)]
     fn start_with_link<V: Lanes>(&self, chunk: &Chunk, begun: &Begun, arms: &mut EightArms) {
         let constraints = &self.problem.space().constraints;
@@ -205,7 +215,7 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// The largest stress at the ends of the links so far at peak load, over the strength.
+    /// Largest ratio of stress to strength at peak load, over the ends of all links so far.
     #[inline(always)]
     fn stress<V: Lanes>(&self, chunk: &Chunk, begun: &Begun) -> V {
         let (mut standing, mut moving) = (V::zero(), V::zero());
@@ -217,7 +227,7 @@ impl RowChunk<'_, '_> {
             }
             let at_end: V = stress_squared(&chunk.stress, splat_all(begun.cases[k].at_end));
             let largest = at_end.max(stress_squared(&chunk.stress, at_root));
-            // where joints are sized the arm also accelerates; elsewhere it only stands
+            // in a sizing case the arm accelerates; in the other cases it stands still
             match case.sizing {
                 true => moving = moving.max(largest),
                 false => standing = standing.max(largest),
@@ -227,7 +237,7 @@ impl RowChunk<'_, '_> {
         own.max(V::splat(self.from.stress_ratio))
     }
 
-    /// The drive of each arm; an arm without one is no longer held.
+    /// The drive of each arm. An arm for which no drive holds is no longer `held`.
     #[inline(always)]
     fn pick<V: Lanes>(
         &self,
@@ -261,7 +271,7 @@ impl RowChunk<'_, '_> {
         indices
     }
 
-    /// Mass of each arm's drive, and what it does at the joints inboard.
+    /// Adds the mass of each arm's drive, with its torque and inertia at the joints inboard.
     #[inline(always)]
     fn add_drive<V: Lanes>(&self, k: usize, indices: &[usize; LANES], arms: &mut EightArms) {
         let mass: V = at_places(&self.row.drives[k].mass_kg, indices, all_equal(indices));
@@ -280,7 +290,7 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// How each arm's drive yields; the largest of what the joint adds to Dunkerley's sums.
+    /// Adds the twist of each arm's drive. Returns the largest part that this joint adds to Dunkerley's sums \[s²\].
     #[inline(always)]
     fn add_joint<V: Lanes>(&self, k: usize, indices: [usize; LANES], arms: &mut EightArms) -> V {
         let drives = &self.row.drives[k];
@@ -313,7 +323,7 @@ impl RowChunk<'_, '_> {
         largest
     }
 
-    /// Dunkerley's sums.
+    /// Dunkerley's sum of each case and block: the trace of flexibility times mass.
     #[inline(always)]
     fn sum_traces<V: Lanes>(&self, begun: &Begun, arms: &mut EightArms) {
         for (c, case) in self.row.cases.iter().enumerate().filter(|(_, case)| case.judged) {
@@ -337,7 +347,7 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// Twist under a torque and twist per further torque of joints with play or friction.
+    /// Twist and tangent compliance of joints with play or friction, lane by lane: their laws have no form in lanes.
     #[inline(always)]
     fn each_by_itself<V: Lanes>(&self, k: usize, indices: [usize; LANES], torque_nm: V) -> (V, V) {
         let slot = &self.problem.slots()[self.row.first + k];
@@ -356,6 +366,7 @@ impl RowChunk<'_, '_> {
         &self.problem.stations()[case]
     }
 
+    /// The joint in inner slot `k`, if there is one.
     #[inline(always)]
     fn joint(&self, case: usize, k: usize) -> Option<&StationJoint> {
         match &self.station(case).slots[self.row.first + k] {
@@ -365,13 +376,13 @@ impl RowChunk<'_, '_> {
     }
 }
 
-/// Adds to eight numbers.
+/// Adds to eight numbers in memory.
 #[inline(always)]
 fn add<V: Lanes>(to: &mut Eight, more: V) {
     *to = (V::load(to) + more).store();
 }
 
-/// Eights from memory.
+/// Loads several eights from memory.
 #[inline(always)]
 fn load_all<V: Lanes, const K: usize>(from: &[Eight; K]) -> [V; K] {
     let mut out = [V::zero(); K];
@@ -381,19 +392,19 @@ fn load_all<V: Lanes, const K: usize>(from: &[Eight; K]) -> [V; K] {
     out
 }
 
-/// Eight arms much all_same often have the same drive.
+/// Whether all eight have the same drive. Neighbouring options often do, and one load is cheaper than a gather.
 #[inline(always)]
 fn all_equal(indices: &[usize; LANES]) -> bool {
     indices.iter().all(|index| *index == indices[0])
 }
 
-/// Numbers of a list at eight places, or at one that all share.
+/// The numbers of a list at eight places; `all_same` says that the places are equal.
 #[inline(always)]
 fn at_places<V: Lanes>(list: &[f64], at: &[usize; LANES], all_same: bool) -> V {
     if all_same { V::splat(list[at[0]]) } else { V::gather(list, at) }
 }
 
-/// Square of the von Mises stress of bending, axial force and torsion, over the strength.
+/// Square of the ratio of von Mises stress (bending, axial force and torsion) to strength.
 #[inline(always)]
 fn stress_squared<V: Lanes>(per: &StressEight, [axial, torsion, y, z]: [V; 4]) -> V {
     let y = y.abs() * V::load(&per.per_moment_y);
@@ -415,12 +426,13 @@ struct Curves<V> {
 }
 
 impl<V: Lanes> Curves<V> {
-    /// Those of one slope.
+    /// Curves with a single slope each.
     #[inline(always)]
     fn line(compliance: V) -> Self {
         Self { compliance: [compliance; 3], ends_nm: [V::zero(); 2], first_in_modes: true }
     }
 
+    /// The curves of eight drives of a joint.
     #[inline(always)]
     fn gather(of: &DriveAttributes, at: &[usize; LANES], all_same: bool) -> Self {
         let zero = V::zero();
@@ -435,7 +447,7 @@ impl<V: Lanes> Curves<V> {
         curves
     }
 
-    /// Twist under a torque, and compliance in modes.
+    /// Twist under a torque, and compliance in modes. Every segment is computed and masked, because lanes cannot branch.
     #[inline(always)]
     fn windup(&self, torque_nm: V) -> (V, V) {
         let Self { compliance, ends_nm, first_in_modes } = self;

@@ -1,4 +1,4 @@
-//! The cycle that a joint repeats, its mean speed, and the weights of its cubic mean torque.
+//! Duty cycles: the cycle that a joint repeats, its mean speed, and the weights of its cubic mean torque.
 
 /// What a joint does during one phase of the duty cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -9,7 +9,8 @@ pub enum PhaseKind {
     Constant,
     /// Slowing down: the difference of static and linear torque, half the speed on average.
     Decelerate,
-    /// Standing still. Counts in the mean speed; turns no wave-generator bearing, so not in the mean torque.
+    /// Standing still. A rest counts in the mean speed. It does not count in the mean torque, because the wave-generator
+    /// bearing does not turn.
     Rest,
     /// Stated fractions of static torque and speed.
     Fraction {
@@ -23,17 +24,17 @@ pub enum PhaseKind {
 /// One phase of a duty cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Phase {
-    /// How long it lasts \[s\].
+    /// Duration of the phase \[s\].
     pub duration_s: f64,
-    /// What happens.
+    /// What the joint does.
     pub kind: PhaseKind,
 }
 
 /// A cycle that the joint repeats for its whole life.
 ///
-/// Mean values are the vendor's (Harmonic Drive, engineering data 1019659, Eqs 18.2 and 18.5): the mean
-/// torque is the cubic mean weighted by time *and* speed, the mean speed counts pauses. A lift followed by
-/// a lowering swaps the torques of the two ramps, which leaves the mean of the pair as it is.
+/// The mean values follow the vendor (Harmonic Drive, engineering data 1019659, Eqs 18.2 and 18.5). The mean torque is the
+/// cubic mean weighted by time *and* speed; the mean speed counts pauses. When a lift is followed by a lowering, the
+/// torques of the two ramps change places, and the mean of the pair stays the same.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DutyCycle {
     /// The phases in order.
@@ -41,8 +42,8 @@ pub struct DutyCycle {
 }
 
 impl DutyCycle {
-    /// The default: ramp up in t_a, move for 3 t_a, ramp down in t_a, rest for 5 t_a; half of the time in
-    /// motion, 40 % of the full speed on average.
+    /// The default cycle: ramp up in t_a, move for 3 t_a, ramp down in t_a, rest for 5 t_a. The joint moves for half of
+    /// the time and has 40 % of its full speed on average.
     pub fn move_and_rest(ramp_time_s: f64) -> Self {
         let phase = |ramps: f64, kind| Phase { duration_s: ramps * ramp_time_s, kind };
         Self {
@@ -55,13 +56,13 @@ impl DutyCycle {
         }
     }
 
-    /// Mean speed over full speed, pauses included.
+    /// Ratio of mean speed to full speed, pauses included.
     pub fn mean_speed_fraction(&self) -> f64 {
         let total: f64 = self.phases.iter().map(|p| p.duration_s).sum();
         if total > 0.0 { self.travel_s() / total } else { 0.0 }
     }
 
-    /// The weights of the cubic mean torque. A cycle that never moves has its static torque as mean.
+    /// Weights of the cubic mean torque. The mean of a cycle that never moves is its static torque.
     pub fn mean_torque_weights(&self) -> MeanTorqueWeights {
         let travel_s = self.travel_s();
         if travel_s <= 0.0 {
@@ -82,14 +83,14 @@ impl DutyCycle {
         weights
     }
 
-    /// Travel over full speed \[s\].
+    /// Travel of the whole cycle divided by the full speed \[s\].
     fn travel_s(&self) -> f64 {
         self.phases.iter().map(Phase::travel_s).sum()
     }
 }
 
 impl Phase {
-    /// Duration times mean speed over full speed \[s\].
+    /// Travel of the phase divided by the full speed \[s\].
     fn travel_s(&self) -> f64 {
         let speed = match self.kind {
             PhaseKind::Accelerate | PhaseKind::Decelerate => 0.5,
@@ -101,8 +102,8 @@ impl Phase {
     }
 }
 
-/// Weights of the cubed torques in the cubic mean of a duty cycle:
-/// T_mean³ = sum (T + T_lin)³ + steady T³ + difference |T - T_lin|³.
+/// Weights of the cubic mean torque of a duty cycle:
+/// T_mean³ = sum (T + T_lin)³ + steady T³ + difference |T - T_lin|³. They add up to 1 for a cycle of ramps and travel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeanTorqueWeights {
     /// Weight of (T + T_lin)³.

@@ -1,21 +1,20 @@
-//! What a study asks of the tip: speed, ramp, emergency stop, duty cycle, life.
+//! The motion that a study asks of the tip: speed, ramp, emergency stop, duty cycle, life.
 
 use super::demand::{JointMotion, LinearReading};
 use super::duty::{DutyCycle, Phase, PhaseKind};
 
-/// What a study asks of every joint.
+/// The motion that a study asks of the tip, and the life it asks of every gear.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionRequirement {
     /// Speed v of the tip \[m/s\].
     pub tip_speed_m_s: f64,
-    /// Time t_a in which it is reached \[s\].
+    /// Time t_a in which this speed is reached \[s\].
     pub ramp_time_s: f64,
-    /// Deceleration of the tip in an emergency stop \[m/s²\]; `None` is twice v / t_a.
+    /// Deceleration of the tip in an emergency stop \[m/s²\]; `None`: twice v / t_a.
     pub emergency_deceleration_m_s2: Option<f64>,
-    /// Smallest lever that turns tip speed into joint speed \[m\]: at 0.05 m a roll joint would be asked
-    /// for 191 rpm.
+    /// Smallest lever by which tip speed becomes joint speed \[m\]. With a lever of 0.05 m a roll joint would need 191 rpm.
     pub min_lever_m: f64,
-    /// The cycle behind mean torque and mean speed.
+    /// The cycle over which mean torque and mean speed are taken.
     pub duty_cycle: DutyCycle,
     /// Required life of the gear, L10 \[h\].
     pub life_h: f64,
@@ -26,7 +25,7 @@ pub struct MotionRequirement {
 }
 
 impl Default for MotionRequirement {
-    /// The paper's 1 m/s in 0.20 s; lever 0.3 m (191 degrees a second at most), 10 000 h.
+    /// The paper's 1 m/s in 0.20 s, with a smallest lever of 0.3 m (at most 191 degrees per second) and 10 000 h.
     fn default() -> Self {
         Self {
             tip_speed_m_s: 1.0,
@@ -47,7 +46,7 @@ impl MotionRequirement {
         self.tip_speed_m_s / self.ramp_time_s
     }
 
-    /// Emergency deceleration over acceleration.
+    /// Ratio of emergency deceleration to acceleration.
     pub fn stop_factor(&self) -> f64 {
         match self.emergency_deceleration_m_s2 {
             Some(deceleration) => deceleration / self.tip_acceleration_m_s2(),
@@ -55,10 +54,21 @@ impl MotionRequirement {
         }
     }
 
-    /// What this asks of a joint whose axis the tip is at most `reach_m` away from.
+    /// The motion of a joint whose axis is at most `reach_m` \[m\] away from the tip.
     ///
-    /// ω = `max_speed_rad_s` if the study gives one, else v / r with r = max(reach, least lever);
-    /// α = ω / t_a, which is a / r (Eq 10, output side).
+    /// The speed ω is `max_speed_rad_s` \[rad/s\] if the study gives one, else v / r with r = max(reach, smallest lever). The
+    /// acceleration is α = ω / t_a, which is a / r (Eq 10, output side).
+    ///
+    /// ```
+    /// use armwright::sizing::MotionRequirement;
+    ///
+    /// let motion = MotionRequirement::default().joint_motion(1.35, None);
+    /// assert!((motion.speed_rad_s - 1.0 / 1.35).abs() < 1e-12);
+    /// assert!((motion.acceleration_rad_s2 - 5.0 / 1.35).abs() < 1e-12);
+    /// // a roll joint with the tip on its axis gets the smallest lever, 0.3 m
+    /// let roll = MotionRequirement::default().joint_motion(0.0, None);
+    /// assert!((roll.speed_rad_s - 1.0 / 0.3).abs() < 1e-12);
+    /// ```
     pub fn joint_motion(&self, reach_m: f64, max_speed_rad_s: Option<f64>) -> JointMotion {
         let lever_m = reach_m.max(self.min_lever_m);
         let speed_rad_s = max_speed_rad_s.unwrap_or(self.tip_speed_m_s / lever_m);
@@ -75,10 +85,10 @@ impl MotionRequirement {
         }
     }
 
-    /// Checks that every figure is usable.
+    /// Checks that every number is usable.
     ///
     /// # Errors
-    /// The first figure that is not: [`RequirementError`].
+    /// [`RequirementError`] for the first number that is not.
     pub fn validate(&self) -> Result<(), RequirementError> {
         positive("tip_speed_m_s", self.tip_speed_m_s)?;
         positive("ramp_time_s", self.ramp_time_s)?;
@@ -107,20 +117,20 @@ impl Phase {
 /// Why a requirement cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RequirementError {
-    /// A figure that must be greater than zero is not.
+    /// A number that must be greater than zero is not.
     #[error("{field} = {value} must be a finite number greater than 0")]
     NotPositive {
-        /// Name of the figure.
+        /// Name of the number.
         field: &'static str,
-        /// Its value.
+        /// Value of the number.
         value: f64,
     },
-    /// A figure that must not be negative is.
+    /// A number that must not be negative is.
     #[error("{field} = {value} must be a finite number, not negative")]
     Negative {
-        /// Name of the figure.
+        /// Name of the number.
         field: &'static str,
-        /// Its value.
+        /// Value of the number.
         value: f64,
     },
 }
@@ -165,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_requirement_that_cannot_be_used_names_the_figure() {
+    fn a_requirement_that_cannot_be_used_names_the_number() {
         assert!(MotionRequirement::default().validate().is_ok());
         let still = MotionRequirement { ramp_time_s: 0.0, ..Default::default() };
         assert_eq!(

@@ -18,12 +18,9 @@ use nalgebra::{Unit, Vector3};
 /// program can also fill in the fields itself, as below: a steel upper arm of two possible walls on one given joint.
 ///
 /// ```
-/// use armwright::arm::joint_law::Curve;
-/// use armwright::arm::load::Payload;
-/// use armwright::arm::section::{LinkMaterial, Section};
-/// use armwright::arm::{JointModel, LinkModel};
+/// use armwright::arm::{Curve, JointModel, LinkMaterial, LinkModel, Payload, Section};
 /// use armwright::catalog::Catalogs;
-/// use armwright::sizing::requirement::MotionRequirement;
+/// use armwright::sizing::MotionRequirement;
 /// use armwright::space::constraint::Constraints;
 /// use armwright::space::design_space::{Case, DriveChoice, LinkChoice, LinkOption, SpaceJoint, SpacePiece};
 /// use armwright::space::{ArmProblem, DesignSpace, evaluate};
@@ -73,7 +70,7 @@ use nalgebra::{Unit, Vector3};
 ///     effects: Vec::new(),
 /// };
 /// assert_eq!(space.link_options(), 2);
-/// let catalogs = Catalogs::builtin().expect("the catalogs of the program");
+/// let catalogs = Catalogs::builtin();
 /// let problem = ArmProblem::new(&space, &catalogs);
 /// let [thin, thick] = [0, 1].map(|number| evaluate(&problem, number).expect("this design holds").objectives);
 /// assert!(thin.mass_kg < thick.mass_kg && thin.tip_deflection_m > thick.tip_deflection_m);
