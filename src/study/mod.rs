@@ -10,6 +10,7 @@ pub(crate) mod effects;
 pub(crate) mod near;
 pub(crate) mod outcome;
 pub(crate) mod page;
+pub mod question;
 pub(crate) mod read;
 pub(crate) mod sections;
 pub(crate) mod table;

@@ -19,7 +19,7 @@ const MOST: f64 = 3.0;
 const SHORT_OF: f64 = 0.95;
 
 /// Weights of the columns that are stakes, and shares of the rows, each one in sum.
-pub(super) struct Game {
+pub(super) struct Minimax {
     pub weights: Vec<f64>,
     pub shares: Vec<f64>,
     /// No weights make the least weighted row greater than this.
@@ -30,7 +30,7 @@ pub(super) struct Game {
 ///
 /// Columns that are conditions are no stakes: their weights do not count in the sum, and the mixture is to keep them from
 /// being positive. Two opposite ones would otherwise be a way to play for nothing.
-pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Game {
+pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Minimax {
     let (count, width) = (rows.len(), rows[0].len());
     let is_stake = |column: &usize| !conditions.contains(column);
     let stakes = (0..width).filter(is_stake).count() as f64;
@@ -68,7 +68,7 @@ pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Game {
     let mixed = |column: usize| rows.iter().zip(&shares).map(|(row, share)| row[column] * share).sum::<f64>();
     let stake = (0..width).filter(is_stake).map(mixed).fold(f64::NEG_INFINITY, f64::max);
     let most = stake + conditions.clone().map(|column| MOST * mixed(column).max(0.0)).sum::<f64>();
-    Game { weights: w, shares, most }
+    Minimax { weights: w, shares, most }
 }
 
 /// Newton's step of weights and `t`.
@@ -116,7 +116,7 @@ mod tests {
         fn no_weights_are_better_by_much_and_none_than_what_is_said(
             rows in prop::collection::vec(prop::collection::vec(-1.0f64..1.0, 4), 1..9),
         ) {
-            let Game { weights, shares, most } = solve(&rows, 0..0);
+            let Minimax { weights, shares, most } = solve(&rows, 0..0);
             prop_assert!(weights.iter().chain(&shares).all(|x| *x >= 0.0));
             prop_assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-9);
             prop_assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-9);
@@ -129,8 +129,8 @@ mod tests {
                 let worst = (0..rows.len()).min_by(|&a, &b| counts[a].total_cmp(&counts[b])).unwrap();
                 sums.iter_mut().zip(&rows[worst]).for_each(|(sum, a)| *sum += a);
             }
-            let ceiling = sums.iter().fold(f64::NEG_INFINITY, |most, sum| most.max(sum / 4000.0));
-            prop_assert!(least <= ceiling + 1e-9 && least >= ceiling - 0.15, "{least} {ceiling}");
+            let ideal = sums.iter().fold(f64::NEG_INFINITY, |most, sum| most.max(sum / 4000.0));
+            prop_assert!(least <= ideal + 1e-9 && least >= ideal - 0.15, "{least} {ideal}");
         }
     }
 }
