@@ -109,7 +109,7 @@ fn random_study(seed: u64) -> Value {
             json!({"pose_deg": angles, "judged": i == 0 || dice.below(2) == 0})
         })
         .collect();
-    let mut study = json!({"name": format!("boxes-{seed}"), "chain": chain, "poses": poses,
+    let mut study = json!({"name": format!("verify-{seed}"), "chain": chain, "poses": poses,
         "payload": {"mass_kg": dice.within(0.5, 9.0), "cg_m": [0.05, dice.of(&[0.0, -0.06]), 0.03],
             "inertia_about_cg_kgm2": [0.01, 0.02, 0.015]},
         "models": {"links": dice.of(&["full", "full", "bending", "rigid"]),

@@ -1,4 +1,4 @@
-//! Fronts of spaces far too large to visit, checked region by region by bounds that share no code with the search.
+//! Fronts of spaces far too large to visit, checked region by region by the verifier, which shares no code with the search.
 
 use armwright::catalog::Catalogs;
 use armwright::exact::Exact;

@@ -28,9 +28,10 @@ pub struct FrontArgs {
 enum FrontVerb {
     /// Try to find fault with a front: every row, rows against each other, designs that are missing
     ///
-    /// Missing designs are looked for by bounds that share no code with the exact search's (docs/exact.md). The
-    /// last line says so, or why the exact search's own had to do. Of a front with a gap that is checked: that
-    /// no design beats every row by more.
+    /// The check works out from the study and the catalogs which drives hold, and looks for missing designs by
+    /// bounds of its own. It shares with the search the reader of studies and catalogs, and the full model that
+    /// judges a single design (docs/exact.md). The last line says whether these bounds sufficed, or why the exact
+    /// search's were used. For a front with a gap the gap is checked: no design may beat every row by more.
     Check(CheckArgs),
 }
 

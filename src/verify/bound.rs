@@ -1,11 +1,11 @@
-//! What no member of a box betters: mass and deflection, and whether one may be as fast as some frequency.
+//! Bounds of the members of a box: least mass, least deflection, and the stiffest and lightest arm.
 
+use super::demand::Demand;
 use super::drive_range::DriveRange;
 use super::duty::Duty;
 use super::layout::Coordinate;
 use super::pencil::Pencil;
 use super::pose::Pose;
-use super::ratings::Demand;
 use super::skeleton::Skeleton;
 use super::span::Span;
 use super::tubes::{DENSITIES, STIFFNESSES, TubeRange};
@@ -50,7 +50,7 @@ impl<'w> Members<'w> {
         Self { loads: (0..waters).map(loads).collect(), drives, tubes }
     }
 
-    /// Says what drives a joint may have.
+    /// Sets the range of drives of a joint.
     pub fn set_drive(&mut self, joint: usize, range: DriveRange) {
         self.drives[joint] = range;
         let mass = Span { least: range.least_kg, most: range.most_kg };
@@ -184,7 +184,7 @@ pub(super) fn compliances(tube: &TubeRange) -> [Span; STIFFNESSES] {
     })
 }
 
-/// Where about the tip of a box's stiffest arm goes; `None` if nowhere. Any direction gives a bound.
+/// About the direction in which the tip of a box's stiffest arm moves; `None` if it does not. Any direction gives a bound.
 pub(super) fn direction(pose: &Pose, members: &Members) -> Option<Vector3<f64>> {
     let loads = &members.loads[pose.water];
     let joints = members.drives.iter().zip(&pose.torques).zip(&pose.tip_m_per_rad).map(

@@ -10,8 +10,8 @@ use super::pencil::square;
 use super::tubes::{DENSITIES, TubeRange};
 use crate::arm::joint_law::Windup;
 
-/// Settings how much a middling part in place of the best harms the ideal: the level that harms it most is halved.
-/// Any rule would do; this one only says where boxes shrink fastest.
+/// Scores the levels of a box: how much the ideal point loses if an average part replaces the best one. The level with
+/// the largest score is halved. Any rule gives a valid proof; this one makes boxes shrink fast.
 pub(super) struct BranchScore<'a> {
     pub boxes: &'a Boxes,
     pub members: &'a Members<'a>,
@@ -21,7 +21,7 @@ pub(super) struct BranchScore<'a> {
 }
 
 impl BranchScore<'_> {
-    /// How much the ideal point loses.
+    /// How much the ideal point loses by a level.
     pub fn score_of(&self, level: usize) -> f64 {
         let node = self.parts.0[level];
         let [mass_kg, tip_m, eigenvalue] = match self.boxes.skeleton.levels[level] {
@@ -35,7 +35,7 @@ impl BranchScore<'_> {
         part(mass_kg, self.ideal.mass_kg) + part(tip_m, self.ideal.tip_m).ln_1p() + 0.5 * slower.ln_1p()
     }
 
-    /// Mass, deflection and `λ` that the middle of a set of drives costs.
+    /// Loss of mass, deflection and `λ` by an average drive.
     fn of_joint(&self, joint: usize, node: u32) -> [f64; 3] {
         let (range, whole) = (&self.members.drives[joint], self.boxes.joints[joint].range(node));
         let mass_kg = 0.5 * (whole.most_kg.min(range.most_kg) - range.least_kg);
@@ -51,7 +51,7 @@ impl BranchScore<'_> {
         [mass_kg, tip_m + self.deflection_per(joint) * mass_kg, eigenvalue]
     }
 
-    /// The same of a set of tubes.
+    /// Loss of mass, deflection and `λ` by an average tube.
     fn of_tube(&self, tube: usize) -> [f64; 3] {
         let range: &TubeRange = self.members.tubes[tube];
         let pose = &self.boxes.skeleton.poses[self.ideal.worst];

@@ -1,16 +1,17 @@
 //! The drives that a joint may have in a box or a region, and the tree that halves them.
 
+use super::demand::{Demand, Quantity};
 use super::drive_range::DriveRange;
 use super::duty::Duty;
 use super::offers::{CatalogOffers, JointOffers};
 use super::parts_box::Choice;
-use super::ratings::{Demand, Quantity, Ratings};
+use super::ratings::Ratings;
 use super::tree::Tree;
 
 /// Sets of drives no larger than this are looked through one by one.
 const FEW: usize = 64;
 
-/// What a joint may have as its drive.
+/// The drives that a joint may have.
 pub(super) struct DriveOptions {
     /// Place among the levels of the space, if there is a choice.
     pub level: Option<usize>,
@@ -97,7 +98,7 @@ impl DriveOption {
         Choice { options: drives.into_iter().map(|&(number, _)| number).collect(), one_holds }
     }
 
-    /// Largest of each limit of its drives.
+    /// The largest rating of its drives for each quantity.
     fn ratings(&self) -> Ratings {
         let (first, rest) = self.drives.split_first().expect("an option has a drive");
         rest.iter().fold(first.1, |ratings, (_, other)| ratings.max(other))
@@ -167,7 +168,7 @@ pub(super) fn first_fits<'o, T>(
     options.scan(false, fit).filter(move |(_, option)| option.holds(&least))
 }
 
-/// What drives are told apart by.
+/// The numbers by which the tree separates drives.
 fn keys(option: &DriveOption) -> Vec<f64> {
     let (drive, ratings) = (&option.range, option.ratings());
     let stiff = &drive.stiff;

@@ -2,8 +2,8 @@
 //!
 //! Everything here follows from the question and the geometry alone; torque and inertia come in when a demand is made.
 
+use super::demand::{Demand, QUANTITIES, Quantity};
 use super::question::{AskedMotion, AskedPhase, AskedPhaseKind, LinearTorque};
-use super::ratings::{Demand, QUANTITIES, Quantity};
 
 /// The motion of one joint, on the output side of its gear.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,13 +1,13 @@
-//! Which frequency a design needs so that no row of the front is as good.
+//! An index of the rows of a front: which frequency does a design need so that no row is as good?
 
 use crate::pareto::objectives::Objectives;
 
 /// Objectives closer than this count as equal (relative).
 const TIE: f64 = 1e-9;
-/// A row that cuts a box is better by this in one objective (relative).
+/// A row must be better by this in one objective to discard a box (relative).
 const BETTER: f64 = 1e-7;
 
-/// The rows of a front, in the order of mass, for questions after their highest frequency.
+/// The rows of a front in the order of mass. It finds the highest frequency of all rows up to a mass and a deflection.
 ///
 /// Position `i` of `blocks` (from 1, as in a Fenwick tree) stands for the last `i & -i` rows up to the `i`-th:
 /// deflections rising, each with the highest frequency of those that deflect no more.
@@ -39,7 +39,7 @@ impl FrontIndex {
         }
     }
 
-    /// Highest frequency among rows that score and deflect no more \[Hz\]; zero if there is none.
+    /// Highest frequency among rows that weigh and deflect no more \[Hz\]; zero if there is none.
     fn highest_hz(&self, mass_kg: f64, tip_m: f64) -> f64 {
         let mut end = self.masses_kg.partition_point(|row| *row <= mass_kg);
         let mut highest = 0.0f64;

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// Single designs beyond which the search stops: what it looks beside is far from a front.
+/// The search stops at more single designs: the rows are then far from a front.
 const MOST_DESIGNS: usize = 200_000;
 
 /// What a search found.

@@ -1,8 +1,8 @@
 //! Where joints, tubes and masses are in a pose, and how every coordinate moves a point.
 //!
-//! The coordinates are a joint's twist, the tilt of an effect's spring and, for each tube, curvature constant and linear along it in both
-//! surrogates, and constant shear, twist and stretch. The full model has these among its own and more; a body
-//! that can move in fewer branchings is stiffer, so its lowest mode is at least that of the full model.
+//! The coordinates are the twist of a joint, the tilt of an effect's spring and, for each tube, constant and linear curvature in
+//! both planes, and constant shear, twist and stretch. The full model has all of these, and more. A body that can move in
+//! fewer ways is stiffer, so its lowest mode is no lower than that of the full model.
 
 use crate::arm::LinkModel;
 use crate::arm::load::LoadCase;
@@ -153,7 +153,7 @@ pub(super) struct Point {
     pub inside_m: Option<f64>,
 }
 
-/// In which branchings a tube yields.
+/// A way in which a tube yields.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Shape {
     /// Curvature that moves the tube along z, constant or from 1 at the root to -1 at the end.

@@ -1,29 +1,33 @@
 //! A second proof that a front lacks no design.
 //!
-//! This module shares no code with the exact search (`search::exact`), so that a mistake in one shows in the
-//! other. What it knows are the pieces of a space, the tables of drives and sections, and the full model,
-//! which judges single designs.
+//! This room shares no code with the searches, so that a mistake there shows here. It is given the [`Question`] as
+//! plain data, and works out the rest by itself from catalog rows, the arm and its mechanics. What it shares with the
+//! searches is the reader of studies and catalogs, `arm`, and the full model of `mechanics`, which judges single
+//! designs.
 //!
-//! A box is, for each level, a node of a binary tree over the level's options (`tree.rs`). The members of a
+//! A box is, for each level, a node of a binary tree over the level's options ([`tree`]). The members of a
 //! box are bounded by
 //!
 //! - *mass*: the sum of the least masses;
-//! - *demand on joints*: torques by lever arms, every weight an interval that enters once (`span.rs`,
-//!   `pose.rs`). A box none of whose drives holds the least demand is cut; the drive that fits first is one
-//!   that holds the least demand and none that comes after the fit of the greatest (`drives.rs`);
-//! - *deflection*: the method of the unit load along a fixed direction; a displacement is at least as long
-//!   as its component along any direction (`bound.rs`);
+//! - *demand on joints*: torques by lever arms. Every weight is an interval that enters once ([`span`], [`pose`]). A
+//!   box is discarded if none of its drives holds the least demand. The drive that fits first holds the least demand,
+//!   and does not come after the fit of the greatest ([`drives`]);
+//! - *deflection*: the method of the unit load along a fixed direction. A displacement is at least as long
+//!   as its component along any direction ([`bound`]);
 //! - *lowest mode*: that of an arm as stiff as the stiffest and as light as the lightest number of the box
-//!   allows, which has fewer ways to move than the full model (`pencil.rs`, `layout.rs`).
+//!   allows. It has fewer ways to move than the full model, so its lowest mode is no lower ([`pencil`], [`layout`]).
 //!
-//! A box is cut if no member holds or if a row of the front is no worse in all three objectives and better
-//! in one (`staircase.rs`). Otherwise one of its levels is halved (`search.rs`). What is left are single
-//! designs, which the full model judges: those that hold and that no row beats belong on the front. So every
-//! design of the space is either in a box that was cut, and then beaten by a row, or among those judged.
+//! A box is discarded if no member holds, or if a row of the front is no worse in all three objectives and better
+//! in one ([`front_index`]). Otherwise one of its levels is halved ([`search`]). Single designs are left. The full model
+//! judges them: those that hold and that no row beats belong on the front ([`judge`]). So every design of the question is
+//! either in a discarded box, and then a row beats it or it does not hold, or it is among those judged.
+//!
+//! Vast spaces are searched region by region ([`region`]).
 
 pub(crate) mod bound;
 pub(crate) mod boxes;
 pub(crate) mod branch_score;
+pub(crate) mod demand;
 pub(crate) mod drive_range;
 pub(crate) mod drives;
 pub(crate) mod duty;

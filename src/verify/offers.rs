@@ -1,8 +1,9 @@
 //! What the catalogs offer a joint: every drive that may be used, turns fast enough and has all numbers that are needed.
 
+use super::demand::Demand;
 use super::duty::Duty;
 use super::question::{AllowedParts, AskedDrive, AskedJoint, Question};
-use super::ratings::{Demand, Ratings};
+use super::ratings::Ratings;
 use crate::arm::joint_law::{Curve, JointLaw, Windup};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::Gear;

@@ -64,7 +64,7 @@ struct Carried {
     per_load: Vec<Wrench>,
 }
 
-/// A case before it is summed.
+/// What is needed to work out the sums of a case.
 struct Builder<'a> {
     layout: &'a Layout,
     gravity_m_s2: f64,

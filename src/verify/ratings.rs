@@ -7,29 +7,10 @@
 //!
 //! Nothing of `sizing` is used: a wrong threshold there must not be repeated here.
 
+use super::demand::{Demand, QUANTITIES, Quantity};
 use super::duty::Duty;
 use crate::catalog::gear::Gear;
 use crate::catalog::motor::Motor;
-
-/// A torque on the output side that a drive must hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Quantity {
-    /// While standing in the worst pose (Eq 7) \[N m\].
-    Static,
-    /// While accelerating (Eqs 7, 8) \[N m\].
-    Peak,
-    /// In an emergency stop \[N m\].
-    Stop,
-    /// Cube of the cubic mean over the duty cycle \[(N m)³\]: a cube root is not needed to compare.
-    MeanCubed,
-}
-
-/// Number of quantities.
-pub(super) const QUANTITIES: usize = 4;
-
-/// What is asked for of each quantity.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Demand(pub [f64; QUANTITIES]);
 
 /// The most that a drive holds of each quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]

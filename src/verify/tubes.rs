@@ -1,4 +1,4 @@
-//! What a link's tubes are in numbers, and the least and the most of each over a set of tubes.
+//! The numbers of a tube that mass, torques, deflection, stress and modes depend on, and their ranges over a set of tubes.
 
 use super::layout::has_line;
 use super::question::{AskedLink, AskedTube, Question};
@@ -86,7 +86,7 @@ impl TubeOptions {
                 LinkBody::Tube { section, .. } => is_too_slender(question, section),
                 LinkBody::Offset { .. } => false,
             };
-            // what cables score is no mass of a design, and the strength of a given tube is not known
+            // what cables weigh is no mass of a design, and the strength of a given tube is not known
             let mass_kg = piece.beam.map_or(0.0, |_| piece.tube_kg_per_m() * piece.vector_m.norm());
             let numbers = TubeNumbers::new(question, &piece, mass_kg, waters);
             let tubes = if slender { Vec::new() } else { vec![(0, numbers)] };
@@ -129,7 +129,7 @@ pub(super) fn is_too_slender(question: &Question, section: &Section) -> bool {
     question.limits.wall_slenderness_max.is_some_and(|most| slenderness > most)
 }
 
-/// What tubes are told apart by.
+/// The numbers by which the tree separates tubes.
 fn keys(tube: &TubeNumbers) -> Vec<f64> {
     let [bending_y, bending_z, _, torsion, _] = tube.stiffnesses.map(f64::ln);
     vec![1.5 * tube.mass_kg.ln(), bending_y, bending_z, 0.3 * torsion]

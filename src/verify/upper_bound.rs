@@ -1,4 +1,4 @@
-//! A local upper bound: the upper bound of a part of the objective space that no row of the front covers.
+//! A local upper bound of a front: every design that no row beats lies below one.
 
 use super::bound::{IdealPoint, ROUNDING};
 use super::modes::eigenvalue_of;
@@ -26,7 +26,7 @@ impl UpperBound {
         eigenvalue_of(self.hz)
     }
 
-    /// The upper bound that bounds two.
+    /// The least bound above two.
     pub fn join(&self, other: &Self) -> Self {
         Self {
             mass_kg: self.mass_kg.max(other.mass_kg),

@@ -1,8 +1,8 @@
-//! Where to part a subproblem below a single upper bound: the options of a level, or a torque.
+//! Where to branch a subproblem below a single upper bound: the options of a level, or a torque.
 //!
-//! The mixture of members that no weights refute says where. A level whose mixed members differ in what they add to the rows is
-//! one: no single option is what the mixture makes of them. A torque is another, if the mixture twists less or is
-//! stiffer than its gears are at the torque that its own weights make.
+//! No weights refute the mixture of the cheapest members, though no single design is such a mixture. So the search branches
+//! where the mixture is furthest from a design: at a level whose mixed options differ most in what they add to the rows, or at a
+//! torque if the mixture twists less, or is stiffer, than its gears are at the torque that its own weights make.
 
 use super::super::bound::{Members, compliances};
 use super::super::span::{Linear, Span};
@@ -11,19 +11,19 @@ use super::rows::Rows;
 use super::subproblem::{Subproblem, TorqueInterval};
 use super::weights::{Member, Reduced};
 
-/// Gains below this part of what the upper bound allows are no reason to part: then the most options are.
+/// Gains below this part of what the upper bound allows are no reason to branch: then the most options are.
 const WORTH_IT: f64 = 1e-4;
 /// Rows in which the mixture has less room than this count for this more than their weights.
 const NEAR: f64 = 0.2;
 const SAY: f64 = 0.1;
-/// Members of smaller shares do not say where to part a torque.
+/// Members of smaller shares do not say where to branch a torque.
 const SHARE: f64 = 1e-3;
 /// A torque within this part of itself is known.
 const KNOWN: f64 = 2e-3;
 /// Part of a torque's interval from either end in which it is not branched.
 const EDGE: f64 = 0.1;
 
-/// A way to part a subproblem.
+/// A way to branch a subproblem.
 pub(super) enum Branching {
     /// The options of a part, joints before tubes, by the sum of their numbers times factors: up to one and beyond, or in
     /// equal parts.
@@ -39,7 +39,7 @@ pub(super) enum Branching {
     },
 }
 
-/// Branchings to part a subproblem, the most promising first, with the numbers of the curves that they are about.
+/// Ways to branch, the most promising first, with the numbers of the torsion curves that they refer to.
 #[derive(Default)]
 pub(super) struct Branchings {
     pub branchings: Vec<Branching>,
@@ -72,7 +72,7 @@ impl Rows<'_> {
         between
     }
 
-    /// Settings how much the mixed members differ in a part, and the row in which they do most.
+    /// How much the mixed members differ in a part, and the row in which they differ most.
     fn by_options(
         &self,
         part: usize,
@@ -143,7 +143,7 @@ impl Rows<'_> {
         self.tips.iter().map(of_tip).sum()
     }
 
-    /// What the mixture gains in a case by gears at other torques than its own weights make: branchings to part these torques.
+    /// Ways to branch at torques of a case: the mixture gains by gears that are at other torques than its own weights make.
     fn by_torques(&self, case: usize, between: &[f64], left: &Reduced) -> Vec<(f64, Branching)> {
         let pose = self.pose(case);
         let own_nm = |torque: &Linear| {
@@ -195,7 +195,7 @@ impl Rows<'_> {
         left.weights[row] * self.rows[row].per_number[twist] * less
     }
 
-    /// Where to part a torque: at the nearest torque beyond the mixture's at which the slope of one of its gears grows, else
+    /// Where to branch a torque: at the nearest torque beyond the mixture's at which the slope of one of its gears grows, else
     /// at the mixture's own or in the middle. `None` if it is known.
     fn branching_nm(&self, case: usize, joint: usize, torque_nm: f64, left: &Reduced) -> Option<f64> {
         let Span { least, most } = self.torques[case][joint];

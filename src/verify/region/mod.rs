@@ -1,14 +1,17 @@
-//! Region by region: a front of a huge space is proved whole below one upper bound of what it leaves open after the other.
+//! Region by region: proves that a front of a huge space lacks no design.
 //!
-//! Boxes take every part at its lightest and at its stiffest at once. A part is one or the other, and sums over the parts
-//! that score mass, deflection and modes against each other know it ([`rows`]). Below a upper bound few options are of
-//! any use: a weighting whose least over all members is close to what the upper bound allows excludes every option that costs
-//! more than what is left ([`score`], reduced costs).
+//! A design that no row beats lies below some *local upper bound* of the front ([`upper_bounds`]): it is no heavier than the
+//! bound, deflects no more and is no slower. So the verifier goes from bound to bound.
 //!
-//! The upper bounds ([`upper bounds`]) are the leaves of a tree, and a node's upper bound bounds those below. From the root on, at every
-//! node, the options are narrowed as long as that pays. If none is left, or if a weighting refutes that any member is below
-//! the upper bound, that part of the tree is done; else its two halves are looked at with the options left. Below a single
-//! upper bound the options of a level, or a torque, are branched in two ([`part`]). What has few designs left is searched box by box.
+//! A box takes every part at its lightest and at its stiffest at once, though a part is one or the other. Weighted sums over the
+//! parts take mass, deflection and modes together ([`rows`]), and are much sharper. If the least sum of any member is more than
+//! the upper bound allows, there is no member below it. If it is only close to that, options that cost more than what is left are
+//! excluded ([`weights`], by reduced costs).
+//!
+//! The upper bounds are the leaves of a tree; the bound of a node covers those below it. At every node, from the root on, options
+//! are excluded as long as that pays ([`search`]). If no option is left, or no member can be below the bound, that part
+//! of the tree is done. Else its two halves are searched with the options left. Below a single bound the search branches: it
+//! splits the options of a level, or a torque, in two ([`branch`]). Few designs are searched box by box.
 
 pub(super) mod branch;
 pub(super) mod matrix_game;

@@ -1,11 +1,11 @@
-//! What every member of a subproblem below a upper bound keeps to, as sums over the parts.
+//! What every member of a subproblem below an upper bound keeps to, as sums over the parts.
 //!
 //! | row | at most |
 //! |---|---|
 //! | mass: the sum of the parts' masses | that of the upper bound |
 //! | in a judged case, way of the tip along a direction `e` | deflection of the upper bound |
 //! | in a judged case, for a shape `x`: `λ xᵀMx - xᵀKx`, `λ` of the upper bound | 0 |
-//! | a torque that is torque_intervals, and its negative | its bound |
+//! | a torque that has an interval, and its negative | the end of the interval |
 //!
 //! *Way of the tip.* With force `F`, a sum over the loads, and compliance `c` of a tube, `(F - F₀)(c - c₀) >= 0` gives
 //! `F c >= F₀ c + c₀ (F - F₀)`. A gear twists under a torque `T`, in the sense that moves the tip along `e`, by at least
@@ -29,7 +29,7 @@ use super::parts_table::{Numbers, PartsTable, place};
 use super::subproblem::{Subproblem, TorqueInterval};
 use nalgebra::Vector3;
 
-/// A torque that is torque_intervals is a row in its own right.
+/// Room for rounding in rows of torque intervals (relative).
 const ROUNDING: f64 = 1e-9;
 
 /// A row: a sum over the numbers of all parts that is not positive.
@@ -55,7 +55,7 @@ pub(super) struct Rows<'a> {
     pub columns: Columns,
     pub upper: UpperBound,
     pub rows: Vec<Row>,
-    /// Place of the first row of a torque that is torque_intervals.
+    /// Place of the first row of a torque interval.
     pub first_interval: usize,
     /// Place of the first row of a mode, and the case and shape of each.
     pub first_mode: usize,
@@ -182,8 +182,8 @@ impl<'a> Rows<'a> {
         }
         rows.add_slopes();
         rows.first_interval = rows.rows.len();
-        for torque_intervals in &subproblem.torque_intervals {
-            rows.add_interval(torque_intervals, judged[torque_intervals.case], members);
+        for interval in &subproblem.torque_intervals {
+            rows.add_interval(interval, judged[interval.case], members);
         }
         rows.first_mode = rows.rows.len();
         for shape in &subproblem.shapes {
@@ -274,11 +274,11 @@ impl<'a> Rows<'a> {
         }
     }
 
-    fn add_interval(&mut self, torque_intervals: &TorqueInterval, pose: &Pose, members: &Members) {
-        let torque = &pose.torques[torque_intervals.joint];
+    fn add_interval(&mut self, interval: &TorqueInterval, pose: &Pose, members: &Members) {
+        let torque = &pose.torques[interval.joint];
         let own = torque.over(&members.loads[pose.water]);
         let scale = (own.most - own.least).max(0.01 * own.largest_size()).max(f64::MIN_POSITIVE);
-        for (sense, bound) in [(1.0, torque_intervals.between.most), (-1.0, -torque_intervals.between.least)]
+        for (sense, bound) in [(1.0, interval.between.most), (-1.0, -interval.between.least)]
         {
             if bound.is_finite() {
                 let mut row = Row::new(&self.columns);

@@ -101,7 +101,7 @@ impl RegionSearch<'_> {
         }
     }
 
-    /// Leaves out what no member below a upper bound has, and says where to part the rest; `None` if no member is left.
+    /// Leaves out what no member below an upper bound has, and says where to branch the rest; `None` if no member is left.
     fn narrow_once(&self, subproblem: &mut Subproblem, upper: UpperBound) -> Option<Branchings> {
         let tubes = subproblem.tube_ranges(&self.table);
         let members = subproblem.hold(&self.skeleton, &self.table, &tubes)?;
@@ -115,7 +115,7 @@ impl RegionSearch<'_> {
         if rows.rows.is_empty() {
             return Some(Branchings::default());
         }
-        let left = rows.left(subproblem)?;
+        let left = rows.reduce(subproblem)?;
         let branchings = rows.branchings(&members, &left);
         let Reduced { joints, tubes: kept, weights, .. } = left;
         let curves = std::mem::take(&mut rows.curves);

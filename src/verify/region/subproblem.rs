@@ -1,4 +1,4 @@
-//! Options that may reach below a upper bound.
+//! The options that may have members below an upper bound.
 
 use super::super::bound::Members;
 use super::super::drive_range::DriveRange;
@@ -9,10 +9,10 @@ use super::super::span::Span;
 use super::super::tubes::TubeRange;
 use super::parts_table::PartsTable;
 
-/// Weights of shapes no larger than this are not passed on.
+/// Shapes whose weights are no larger than this are not handed on.
 const NO_SAY: f64 = 0.01;
 
-/// The torque on a joint in a judged case, torque_intervals between two.
+/// The torque on a joint in a judged case is between two numbers: a branch of the search.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TorqueInterval {
     pub case: usize,
@@ -20,7 +20,7 @@ pub(super) struct TorqueInterval {
     pub between: Span,
 }
 
-/// Options of every joint and link, and what the subproblem around them knew.
+/// Options of every joint and link, and what their parent leaves them: torque intervals, weights, shapes.
 #[derive(Clone)]
 pub(super) struct Subproblem {
     /// Drives of each joint, ascending.
@@ -28,7 +28,7 @@ pub(super) struct Subproblem {
     /// Nodes of each link's tree of tubes.
     pub tubes: Vec<Vec<u32>>,
     pub torque_intervals: Vec<TorqueInterval>,
-    /// Weights of the rows but for torques and modes, and shapes, to begin with.
+    /// Weights to begin with, of all rows but those of torques and modes.
     pub weights: Vec<f64>,
     pub shapes: Vec<Shape>,
 }
@@ -57,7 +57,7 @@ impl Subproblem {
         })
     }
 
-    /// How many designs there are: of a joint sized by first fit every drive counts for none.
+    /// Number of designs. The drive that fits first is no choice, so such a joint counts once.
     pub fn designs(&self, table: &PartsTable) -> f64 {
         let joints = self.joints.iter().zip(&table.joints);
         let joints = joints.map(|(kept, joint)| if joint.drives.level.is_some() { kept.len() } else { 1 });
@@ -65,11 +65,9 @@ impl Subproblem {
         joints.chain(tubes).map(|count| count as f64).product()
     }
 
-    /// Holds a torque between two, within those it is torque_intervals between already.
+    /// Narrows the interval of a torque.
     pub fn keep_torque(&mut self, new: TorqueInterval) {
-        let known = self.torque_intervals.iter_mut().find(|torque_intervals| {
-            torque_intervals.case == new.case && torque_intervals.joint == new.joint
-        });
+        let known = self.torque_intervals.iter_mut().find(|known| known.case == new.case && known.joint == new.joint);
         match known {
             Some(TorqueInterval { between, .. }) => {
                 between.least = between.least.max(new.between.least);
@@ -79,7 +77,7 @@ impl Subproblem {
         }
     }
 
-    /// Keeps the shapes that have a say, and of each case the last.
+    /// Keeps the shapes that have some weight, and the last one of each case.
     pub fn keep_shapes(&mut self, cases: usize) {
         let mut kept = Vec::new();
         for case in 0..cases {
@@ -95,7 +93,7 @@ impl Subproblem {
         self.tubes.iter().zip(&table.tubes).map(|(nodes, tubes)| tubes.range(nodes)).collect()
     }
 
-    /// Leaves out the drives that do not hold; what is left as ranges. `None` if no member holds.
+    /// Removes the drives that cannot hold, and returns the ranges of what is left; `None` if no member holds.
     pub fn hold<'t>(
         &mut self,
         skeleton: &Skeleton,
@@ -132,17 +130,14 @@ impl Subproblem {
         }
     }
 
-    /// Torque on each joint in a judged case, within what is torque_intervals.
+    /// Torque on each joint in a judged case, within its interval if it has one.
     pub fn torques(&self, case: usize, pose: &Pose, members: &Members) -> Vec<Span> {
         let torque = |(joint, torque): (usize, &super::super::span::Linear)| {
             let own = torque.over(&members.loads[pose.water]);
-            let torque_intervals = self
-                .torque_intervals
-                .iter()
-                .filter(|torque_intervals| torque_intervals.case == case && torque_intervals.joint == joint);
-            torque_intervals.fold(own, |span, torque_intervals| Span {
-                least: span.least.max(torque_intervals.between.least).min(span.most),
-                most: span.most.min(torque_intervals.between.most).max(span.least),
+            let intervals = self.torque_intervals.iter().filter(|i| i.case == case && i.joint == joint);
+            intervals.fold(own, |span, TorqueInterval { between, .. }| Span {
+                least: span.least.max(between.least).min(span.most),
+                most: span.most.min(between.most).max(span.least),
             })
         };
         pose.torques.iter().enumerate().map(torque).collect()

@@ -1,8 +1,8 @@
-//! What the rows of a front leave open: upper bounds below which a design lies that no row beats, in a tree.
+//! All local upper bounds of a front, in a tree.
 //!
-//! A upper bound is a mass, a deflection and a frequency. What no row beats is below some upper bound: no heavier, deflects
-//! no more, is no slower. The upper bounds are made row by row: those that a row beats are each replaced by three that it does not,
-//! one an objective, and of these those that lie within another go.
+//! A design that no row beats lies below some upper bound: it is no heavier, deflects no more and is no slower. The bounds
+//! are made row by row. A bound that the row beats is replaced by three that it does not beat, one for each objective; bounds that
+//! lie within another are removed.
 
 use super::super::upper_bound::UpperBound;
 use crate::pareto::objectives::Objectives;
@@ -35,7 +35,7 @@ impl UpperBounds {
     }
 }
 
-/// One row a cell of a grid whose lines are a part apart; all rows if it is none.
+/// One row for each cell of a grid whose lines are `apart` (relative) from each other; all rows if that is zero.
 fn thinned(front: &[Objectives], apart: f64) -> Vec<UpperBound> {
     let mut taken = HashSet::new();
     let step = apart.ln_1p();

@@ -1,5 +1,8 @@
-//! Weightings of a subproblem's rows: the least weighted sum of any member, found part by part; and those that refute the
-//! upper bound or say which parts it cannot afford.
+//! Weighted sums of a subproblem's rows (surrogate constraints).
+//!
+//! With weights that are not negative a weighted sum of the rows must not be positive either. Its least over all members
+//! is found part by part. If that is positive, no member lies below the upper bound; else the part of it that is left tells
+//! which options are too dear for any member (reduced costs).
 
 use super::matrix_game::{Minimax, solve};
 use super::price::{Prices, affordable, cheapest};
@@ -7,22 +10,24 @@ use super::rows::Rows;
 use super::subproblem::Subproblem;
 use std::ops::Range;
 
-/// Weightings at the most for a subproblem, and new sets of shapes; weightings once none can refute.
+/// Most weightings that are tried for a subproblem.
 const MOST_SURROGATES: usize = 24;
+/// Most times that shapes are renewed.
 const MOST_SHAPES: usize = 3;
+/// Further weightings once no weights can refute: better weights exclude more options.
 const TO_NARROW: usize = 4;
-/// The best weighting is as good as any if the minimax promises no more than this beyond it.
+/// A weighting is good enough if no other can exceed its least sum by more than this.
 const SETTLED: f64 = 5e-4;
-/// A row this far from what is allowed has no more say.
+/// Rows are clamped to this size, so that one that is far from its limit does not drown the others.
 const FAR: f64 = 10.0;
 /// Rounding of sums whose terms are about one.
 pub(super) const ROUNDING: f64 = 1e-9;
-/// Weightings that say what can be afforded: the strictest.
+/// How many weightings exclude options: those with the greatest least sums.
 const STRICTEST: usize = 12;
-/// Nodes that a link's tubes are kept in, about.
+/// About how many nodes the tubes of a link are kept in.
 const NODES: usize = 128;
 
-/// A weighting, the least weighted sum of any member, and what each part adds to it.
+/// Weights of the rows, the least weighted sum of any member, and what each part adds to it.
 struct Surrogate {
     weights: Vec<f64>,
     least: f64,
@@ -36,12 +41,12 @@ pub(super) struct Member {
     pub drives: Vec<u32>,
 }
 
-/// What is left of a subproblem below a upper bound.
+/// What is left of a subproblem below an upper bound.
 pub(super) struct Reduced {
     /// Drives of each joint and nodes of each link's tubes that a member below the upper bound may have.
     pub joints: Vec<Vec<u32>>,
     pub tubes: Vec<Vec<u32>>,
-    /// The cheapest members with their shares in the mixture that no weights refute.
+    /// The cheapest members, with their shares in the mixture that no weights refute.
     pub mixed: Vec<(f64, Member)>,
     /// The weights that come nearest to refuting them.
     pub weights: Vec<f64>,
@@ -57,7 +62,7 @@ impl Rows<'_> {
         prices
     }
 
-    /// What each curve of a joint costs; infinite if the subproblem has it not.
+    /// What each torsion curve of a joint costs; infinite if no drive of the subproblem has it.
     fn curve_prices(&self, joint: usize, prices: &[f64]) -> Vec<f64> {
         let first = self.columns.mass(joint) + 1;
         let price = |numbers: &Vec<f64>| numbers.iter().zip(&prices[first..]).map(|(a, b)| a * b).sum();
@@ -102,20 +107,20 @@ impl Rows<'_> {
         (Surrogate { weights, least, parts }, Member { numbers, drives })
     }
 
-    /// The weights that a subproblem came with; even ones if it has none.
+    /// The weights that the parent ended with; equal weights if there is none.
     fn inherited(&self, subproblem: &Subproblem) -> Vec<f64> {
         let mut weights = subproblem.weights.clone();
         weights.resize(self.first_mode, 0.0);
         weights.extend(subproblem.shapes.iter().map(|shape| shape.weight));
-        let stakes = (0..weights.len()).filter(|row| !self.conditions().contains(row));
-        let sum: f64 = stakes.map(|row| weights[row]).sum();
+        let counted = (0..weights.len()).filter(|row| !self.conditions().contains(row));
+        let sum: f64 = counted.map(|row| weights[row]).sum();
         let fits = weights.len() == self.rows.len() && sum > 0.0;
         let even = vec![1.0 / self.rows.len() as f64; self.rows.len()];
         if fits { weights.iter().map(|weight| weight / sum).collect() } else { even }
     }
 
-    /// What is left of a subproblem; `None` if some weighting refutes that a member is below the upper bound.
-    pub fn left(&mut self, subproblem: &Subproblem) -> Option<Reduced> {
+    /// What is left of a subproblem; `None` if some weighting proves that no member is below the upper bound.
+    pub fn reduce(&mut self, subproblem: &Subproblem) -> Option<Reduced> {
         let (mut surrogates, mut members, mut values) = (Vec::new(), Vec::new(), Vec::<Vec<f64>>::new());
         let (mut shapes, mut to_narrow, mut nearest) = (0, 0, f64::NEG_INFINITY);
         let mut weights = self.inherited(subproblem);
@@ -145,7 +150,7 @@ impl Rows<'_> {
             }
             weights = minimax.weights;
         };
-        // a subproblem that came with weights has left out what the objectives exclude one by one
+        // each row by itself; the parent has done so with the rows of the objectives
         let first = if subproblem.weights.is_empty() { 0 } else { self.first_interval };
         let singles = (first..self.first_mode).map(|row| {
             let mut weights = vec![0.0; self.rows.len()];
@@ -168,7 +173,7 @@ impl Rows<'_> {
         })
     }
 
-    /// The rows that are no stakes of the minimax: torques that are torque_intervals.
+    /// The rows of torque intervals. They come in opposite pairs, so they do not count in the sum of the weights.
     fn conditions(&self) -> Range<usize> {
         self.first_interval..self.first_mode
     }
@@ -177,7 +182,8 @@ impl Rows<'_> {
         self.rows.iter().map(|row| row.value(&member.numbers).clamp(-FAR, FAR)).collect()
     }
 
-    /// Adds the lowest modes of the arm in between some members where they are below the upper bound's; whether any is.
+    /// Adds the lowest mode of the mixture of some members in every case in which it is below that of the upper bound. Returns
+    /// whether there is one.
     fn add_shapes(&mut self, members: &[Member], minimax: &Minimax) -> bool {
         let mut between = vec![0.0; self.columns.len()];
         for (member, share) in members.iter().zip(&minimax.shares) {
