@@ -20,6 +20,7 @@ mod search_fast_vs_full;
 mod study_rerun;
 #[path = "../witness/mod.rs"]
 mod witness;
+mod witness_drives;
 mod witness_effects;
 mod witness_front;
 mod witness_regions;

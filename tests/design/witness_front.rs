@@ -19,8 +19,9 @@ use armwright::space::OutwardIn;
 use armwright::space::constraint::Constraints;
 use armwright::space::design::number;
 use armwright::space::evaluate;
+use armwright::study::question::{number_of_picks, picks, question};
 use armwright::study::{Study, read_study};
-use armwright::verify::{By, Looked, PartsBox, Witness, conditions, missing};
+use armwright::verify::{Boxes, Judge, Judged, Looked, PartsBox, Pick, Settings, conditions};
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -106,7 +107,7 @@ fn random_study(seed: u64) -> Value {
             json!({"pose_deg": angles, "judged": i == 0 || dice.below(2) == 0})
         })
         .collect();
-    let mut study = json!({"name": format!("witness-{seed}"), "chain": chain, "poses": poses,
+    let mut study = json!({"name": format!("verify-{seed}"), "chain": chain, "poses": poses,
         "payload": {"mass_kg": dice.within(0.5, 9.0), "cg_m": [0.05, dice.of(&[0.0, -0.06]), 0.03],
             "inertia_about_cg_kgm2": [0.01, 0.02, 0.015]},
         "models": {"links": dice.of(&["full", "full", "bending", "rigid"]),
@@ -189,13 +190,13 @@ fn read(study: &Value, catalogs: &Catalogs) -> Study {
 }
 
 /// A box at the end of a walk of some steps down the trees.
-fn random_box(witness: &Witness, dice: &mut Dice) -> Option<PartsBox> {
-    let mut parts = witness.root()?;
-    let levels = witness.options(&parts).len() as u64;
+fn random_box(boxes: &Boxes, dice: &mut Dice) -> Option<PartsBox> {
+    let mut parts = boxes.root()?;
+    let levels = boxes.options(&parts).len() as u64;
     // a study without a choice is its one box
     let steps = if levels > 0 { dice.below(5 * levels) } else { 0 };
     for _ in 0..steps {
-        if let Some(halves) = witness.halves(&parts, dice.below(levels) as usize) {
+        if let Some(halves) = boxes.halves(&parts, dice.below(levels) as usize) {
             parts = dice.of(&halves);
         }
     }
@@ -203,18 +204,18 @@ fn random_box(witness: &Witness, dice: &mut Dice) -> Option<PartsBox> {
 }
 
 /// A box of one design.
-fn random_design(witness: &Witness, dice: &mut Dice) -> Option<PartsBox> {
-    let mut parts = witness.root()?;
-    for level in 0..witness.options(&parts).len() {
-        while let Some(halves) = witness.halves(&parts, level) {
+fn random_design(boxes: &Boxes, dice: &mut Dice) -> Option<PartsBox> {
+    let mut parts = boxes.root()?;
+    for level in 0..boxes.options(&parts).len() {
+        while let Some(halves) = boxes.halves(&parts, level) {
             parts = dice.of(&halves);
         }
     }
     Some(parts)
 }
 
-fn random_member(witness: &Witness, parts: &PartsBox, sizes: &[u32], dice: &mut Dice) -> u128 {
-    let options: Vec<u32> = witness.options(parts).iter().map(|options| dice.of(options)).collect();
+fn random_member(boxes: &Boxes, parts: &PartsBox, sizes: &[u32], dice: &mut Dice) -> u128 {
+    let options: Vec<u32> = boxes.options(parts).iter().map(|options| dice.of(options)).collect();
     number(sizes, &options)
 }
 
@@ -224,6 +225,37 @@ fn judged(study: &Study, problem: &ArmProblem, number: u128) -> Option<Objective
     (!study.space.constraints.broken(&objectives).contains(&true)).then_some(objectives)
 }
 
+/// The judge builds the arm of a design on its own, and comes to what the search's full model says: the same bits.
+#[test]
+fn a_design_is_judged_as_by_the_full_model_of_the_search() {
+    let catalogs = Catalogs::builtin();
+    let (mut holding, mut others) = (0, 0);
+    for seed in 0..studies() {
+        let study = read(&random_study(seed), &catalogs);
+        let problem = ArmProblem::new(&study.space, &catalogs);
+        let question = question(&study.space);
+        let (boxes, judge) = (Boxes::new(&question, &catalogs), Judge::new(&question, &catalogs));
+        let dice = &mut Dice(seed);
+        for _ in 0..30 {
+            let Some(root) = boxes.root() else { break };
+            let options: Vec<u32> = boxes.options(&root).iter().map(|options| dice.of(options)).collect();
+            let number = number(problem.level_sizes(), &options);
+            let by_search = judged(&study, &problem, number);
+            let own = judge.judge(&judge.picks(&options));
+            let what = format!("seed {seed}, design {number}");
+            assert_eq!(own.as_ref().map(|own| own.objectives), by_search, "{what}");
+            if let Some(own) = own {
+                let named: Option<Vec<Pick>> = picks(&problem, &catalogs, number);
+                assert_eq!(Some(&own.picks), named.as_ref(), "{what}");
+                assert_eq!(judge.judge(&own.picks).as_ref(), Some(&own), "{what}");
+            }
+            *(if by_search.is_some() { &mut holding } else { &mut others }) += 1;
+        }
+    }
+    println!("{holding} designs hold, {others} do not");
+    assert!(holding > 5 * studies() && others > studies(), "{holding} {others}");
+}
+
 #[test]
 fn no_member_of_a_box_is_better_than_its_ceiling() {
     let catalogs = Catalogs::builtin();
@@ -231,21 +263,21 @@ fn no_member_of_a_box_is_better_than_its_ceiling() {
     for seed in 0..studies() {
         let study = read(&random_study(seed), &catalogs);
         let problem = ArmProblem::new(&study.space, &catalogs);
-        let witness = Witness::new(&study.space, &catalogs);
+        let boxes = Boxes::new(&question(&study.space), &catalogs);
         let dice = &mut Dice(seed);
         for _ in 0..40 {
-            let Some(parts) = random_box(&witness, dice) else { break };
+            let Some(parts) = random_box(&boxes, dice) else { break };
             for _ in 0..4 {
-                let number = random_member(&witness, &parts, problem.level_sizes(), dice);
+                let number = random_member(&boxes, &parts, problem.level_sizes(), dice);
                 let Some(found) = judged(&study, &problem, number) else { continue };
                 let what = format!("seed {seed}, design {number}: {found:?}");
-                let ceiling = witness.least_mass_and_deflection(&parts);
+                let ceiling = boxes.least_mass_and_deflection(&parts);
                 let [mass_kg, tip_m] = ceiling.unwrap_or_else(|| panic!("cut, but holds: {what}"));
                 assert!(mass_kg <= found.mass_kg * (1.0 + ROUNDING), "{mass_kg} kg: {what}");
                 assert!(tip_m <= found.tip_deflection_m * (1.0 + ROUNDING), "{tip_m} m: {what}");
                 let slower_hz = found.lowest_mode_hz * (1.0 - ROUNDING);
                 assert!(
-                    !slower_hz.is_finite() || !witness.proves_none_faster(&parts, slower_hz),
+                    !slower_hz.is_finite() || !boxes.proves_none_faster(&parts, slower_hz),
                     "mode: {what}"
                 );
                 members += 1;
@@ -268,18 +300,18 @@ fn the_ceiling_of_a_single_design_is_close_to_it() {
         }
         let study = read(&text, &catalogs);
         let problem = ArmProblem::new(&study.space, &catalogs);
-        let witness = Witness::new(&study.space, &catalogs);
+        let boxes = Boxes::new(&question(&study.space), &catalogs);
         let dice = &mut Dice(seed);
         for _ in 0..15 {
-            let Some(parts) = random_design(&witness, dice) else { break };
-            let number = random_member(&witness, &parts, problem.level_sizes(), dice);
+            let Some(parts) = random_design(&boxes, dice) else { break };
+            let number = random_member(&boxes, &parts, problem.level_sizes(), dice);
             let Some(found) = judged(&study, &problem, number) else { continue };
-            let [mass_kg, tip_m] = witness.least_mass_and_deflection(&parts).expect("it holds");
+            let [mass_kg, tip_m] = boxes.least_mass_and_deflection(&parts).expect("it holds");
             let what = format!("seed {seed}, design {number}: {found:?}, {mass_kg} kg, {tip_m} m");
             assert!((mass_kg / found.mass_kg - 1.0).abs() < 1e-9, "{what}");
             assert!((tip_m - found.tip_deflection_m).abs() <= 1e-7 * found.tip_deflection_m, "{what}");
             let above_hz = found.lowest_mode_hz * 1.01;
-            assert!(!above_hz.is_finite() || witness.proves_none_faster(&parts, above_hz), "mode: {what}");
+            assert!(!above_hz.is_finite() || boxes.proves_none_faster(&parts, above_hz), "mode: {what}");
             singles += 1;
         }
     }
@@ -294,18 +326,18 @@ fn a_design_is_cut_exactly_if_it_is_too_weak() {
         let mut study = read(&random_study(seed), &catalogs);
         study.space.constraints = Constraints::default();
         let dice = &mut Dice(seed);
-        let drawn = random_design(&Witness::new(&study.space, &catalogs), dice);
+        let drawn = random_design(&Boxes::new(&question(&study.space), &catalogs), dice);
         let problem = ArmProblem::new(&study.space, &catalogs);
         let safety = drawn.and_then(|parts| {
-            let witness = Witness::new(&study.space, &catalogs);
-            let options: Vec<u32> = witness.options(&parts).into_iter().map(|options| options[0]).collect();
+            let boxes = Boxes::new(&question(&study.space), &catalogs);
+            let options: Vec<u32> = boxes.options(&parts).into_iter().map(|options| options[0]).collect();
             let safety = problem.stress_safety_factor(&problem.walk(&options, |_, _| {}).ok()?)?;
             Some((parts, safety))
         });
         let Some((parts, safety)) = safety else { continue };
         for (asked, holds) in [(safety * (1.0 - 1e-8), true), (safety * 1.001, false)] {
             study.space.constraints.stress_safety_factor_min = Some(asked);
-            let found = Witness::new(&study.space, &catalogs).least_mass_and_deflection(&parts);
+            let found = Boxes::new(&question(&study.space), &catalogs).least_mass_and_deflection(&parts);
             assert_eq!(found.is_some(), holds, "seed {seed}: asked for {asked} of {safety}");
         }
         designs += 1;
@@ -326,13 +358,25 @@ fn true_front(study: &Study, catalogs: &Catalogs) -> Vec<Evaluated> {
     kept.map(|i| judged[i].clone()).collect()
 }
 
-fn look(study: &Study, catalogs: &Catalogs, front: &[&Evaluated], by: By) -> Looked {
+fn look(study: &Study, catalogs: &Catalogs, front: &[&Evaluated], by: Settings) -> Looked {
     let objectives: Vec<Objectives> = front.iter().map(|d| d.objectives).collect();
-    missing(&study.space, catalogs, &objectives, by, &AtomicBool::new(false), None)
+    let question = question(&study.space);
+    let judge = Judge::new(&question, catalogs);
+    judge.missing(&objectives, by, &AtomicBool::new(false), None)
+}
+
+/// Numbers of the designs that were found, by the search's numbering.
+fn numbers(study: &Study, catalogs: &Catalogs, looked: &Looked) -> Vec<u128> {
+    let problem = ArmProblem::new(&study.space, catalogs);
+    let number = |design: &Judged| {
+        number_of_picks(&problem, catalogs, problem.level_sizes(), &design.picks)
+            .expect("a design of the study")
+    };
+    looked.candidates.iter().map(number).collect()
 }
 
 /// Region by region, however small the space.
-const BY_REGIONS: By = By { regions_from: 1, boxes_to: 60.0, apart: 0.0 };
+const BY_REGIONS: Settings = Settings { regions_from: 1, boxes_to: 60.0, apart: 0.0 };
 
 /// Largest space that is searched region by region here: where nearly every design is on the front regions gain little.
 const MOST_BY_REGIONS: u128 = 2_500;
@@ -347,7 +391,7 @@ fn nearly_covers(a: &Evaluated, b: &Evaluated) -> bool {
 
 /// Asserts of the random studies of no more designs that nothing is missing beside their fronts, and that what is dropped
 /// from one is found; at least one study in so many is to have a front.
-fn finds_what_is_dropped(by: By, most_designs: u128, one_in: u64) {
+fn finds_what_is_dropped(by: Settings, most_designs: u128, one_in: u64) {
     let catalogs = Catalogs::builtin();
     let (mut fronts, mut dropped, mut boxes) = (0, 0, 0);
     for seed in 0..studies() {
@@ -355,13 +399,13 @@ fn finds_what_is_dropped(by: By, most_designs: u128, one_in: u64) {
         if study.space.designs(&catalogs).is_none_or(|designs| designs > most_designs) {
             continue;
         }
-        conditions(&study.space).expect("a duty cycle that its bounds know");
+        conditions(&question(&study.space)).expect("a duty cycle that its bounds know");
         let front = true_front(&study, &catalogs);
         let all: Vec<&Evaluated> = front.iter().collect();
         let looked = look(&study, &catalogs, &all, by);
         assert_eq!(looked.open, 0);
-        let added: Vec<_> =
-            looked.candidates.iter().filter(|n| !front.iter().any(|d| d.number == **n)).collect();
+        let numbers_found = numbers(&study, &catalogs, &looked);
+        let added: Vec<_> = numbers_found.iter().filter(|n| !front.iter().any(|d| d.number == **n)).collect();
         assert!(added.is_empty(), "seed {seed}: {added:?} beside {} rows", front.len());
         (fronts, boxes) = (fronts + u64::from(!front.is_empty()), boxes + looked.boxes);
         let step = front.len().div_ceil(6).max(1);
@@ -370,7 +414,7 @@ fn finds_what_is_dropped(by: By, most_designs: u128, one_in: u64) {
             if rest.iter().any(|row| nearly_covers(row, lost)) {
                 continue;
             }
-            let found = look(&study, &catalogs, &rest, by).candidates;
+            let found = numbers(&study, &catalogs, &look(&study, &catalogs, &rest, by));
             assert!(found.contains(&lost.number), "seed {seed}: {lost:?} is not found");
             dropped += 1;
         }
@@ -381,7 +425,7 @@ fn finds_what_is_dropped(by: By, most_designs: u128, one_in: u64) {
 
 #[test]
 fn nothing_is_missing_beside_a_true_front_and_what_is_dropped_is_found() {
-    finds_what_is_dropped(By::default(), MOST_DESIGNS, 3);
+    finds_what_is_dropped(Settings::default(), MOST_DESIGNS, 3);
 }
 
 #[test]
@@ -401,10 +445,11 @@ fn the_answer_is_the_same_with_one_thread_and_says_what_is_left_if_stopped() {
     let front = true_front(&study, &catalogs);
     let some: Vec<&Evaluated> = front.iter().skip(1).collect();
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
-    let one = alone.install(|| look(&study, &catalogs, &some, By::default()));
-    assert_eq!(one, look(&study, &catalogs, &some, By::default()));
-    let stopped =
-        missing(&study.space, &catalogs, &[], By::default(), &AtomicBool::new(false), Some(Instant::now()));
+    let one = alone.install(|| look(&study, &catalogs, &some, Settings::default()));
+    assert_eq!(one, look(&study, &catalogs, &some, Settings::default()));
+    let question = question(&study.space);
+    let judge = Judge::new(&question, &catalogs);
+    let stopped = judge.missing(&[], Settings::default(), &AtomicBool::new(false), Some(Instant::now()));
     assert!(stopped.open > 0 && stopped.candidates.is_empty());
 }
 
@@ -413,6 +458,6 @@ fn what_the_bounds_do_not_see_is_refused_in_words() {
     let catalogs = Catalogs::builtin();
     let mut study = read(&random_study(3), &catalogs);
     study.space.motion.duty_cycle.phases.retain(|phase| phase.kind != PhaseKind::Accelerate);
-    let refused = conditions(&study.space).expect_err("refused");
+    let refused = conditions(&question(&study.space)).expect_err("refused");
     assert!(refused.contains("decelerates longer"), "{refused}");
 }

@@ -1,16 +1,13 @@
-//! Fronts of spaces far too large to visit, checked region by region by bounds that share no code with the search.
+//! Fronts of spaces far too large to visit, checked region by region by the verifier, which shares no code with the search.
 
 use armwright::catalog::Catalogs;
 use armwright::exact::Exact;
 use armwright::input::Document;
 use armwright::pareto::Objectives;
-use armwright::space::ArmProblem;
-use armwright::space::OutwardIn;
-use armwright::space::design::number;
-use armwright::space::evaluate;
 use armwright::study::named;
+use armwright::study::question::question;
 use armwright::study::{Study, read_study};
-use armwright::verify::{By, Looked, missing};
+use armwright::verify::{Judge, Looked, Settings};
 use std::sync::atomic::AtomicBool;
 
 fn full_catalog(catalogs: &Catalogs, up_to_kg: f64) -> Study {
@@ -21,21 +18,11 @@ fn full_catalog(catalogs: &Catalogs, up_to_kg: f64) -> Study {
 }
 
 fn look(study: &Study, catalogs: &Catalogs, rows: &[Objectives], apart: f64) -> Looked {
-    let by = By { apart, ..By::default() };
-    let looked = missing(&study.space, catalogs, rows, by, &AtomicBool::new(false), None);
+    let by = Settings { apart, ..Settings::default() };
+    let question = question(&study.space);
+    let looked = Judge::new(&question, catalogs).missing(rows, by, &AtomicBool::new(false), None);
     assert_eq!(looked.open, 0);
     looked
-}
-
-/// Designs by the full model.
-fn judged(study: &Study, catalogs: &Catalogs, numbers: &[u128]) -> Vec<Objectives> {
-    let Some(space) = study.space.excerpt(catalogs, numbers) else { return Vec::new() };
-    let problem = ArmProblem::new(&space, catalogs);
-    let judge = |whole: &u128| {
-        let options = problem.options_of_whole(*whole)?;
-        Some(evaluate(&problem, number(problem.level_sizes(), &options))?.objectives)
-    };
-    numbers.iter().filter_map(judge).collect()
 }
 
 /// Whether two designs differ by no more than a part in each objective.
@@ -56,8 +43,9 @@ fn of_the_light_arms_of_the_whole_catalog_none_is_missing_and_what_is_dropped_is
     let front = Exact::new(&study.space, &catalogs, &stop, None).with_ties_up_to(0).run(&[]).front;
     let rows: Vec<Objectives> = front.iter().map(|c| c.objectives).collect();
     assert!(rows.len() > 20, "{} rows", rows.len());
-    let found =
-        |rows: &[Objectives]| judged(&study, &catalogs, &look(&study, &catalogs, rows, 0.0).candidates);
+    let found = |rows: &[Objectives]| -> Vec<Objectives> {
+        look(&study, &catalogs, rows, 0.0).candidates.into_iter().map(|design| design.objectives).collect()
+    };
     for design in found(&rows) {
         assert!(rows.iter().any(|row| is_within(SAME, row, &design)), "{design:?} is beside the rows");
     }

@@ -1,30 +1,30 @@
-//! Where to part a zone below a single corner: the options of a level, or a torque.
+//! Where to branch a subproblem below a single upper bound: the options of a level, or a torque.
 //!
-//! The mixture of members that no weights refute says where. A level whose mixed members differ in what they add to the rows is
-//! one: no single option is what the mixture makes of them. A torque is another, if the mixture twists less or is
-//! stiffer than its gears are at the torque that its own weights make.
+//! No weights refute the mixture of the cheapest members, though no single design is such a mixture. So the search branches
+//! where the mixture is furthest from a design: at a level whose mixed options differ most in what they add to the rows, or at a
+//! torque if the mixture twists less, or is stiffer, than its gears are at the torque that its own weights make.
 
 use super::super::bound::{Members, compliances};
 use super::super::span::{Linear, Span};
+use super::parts_table::{Numbers, PartsTable, place};
 use super::rows::Rows;
-use super::stock::{Numbers, Stock, place};
-use super::weigh::{Left, Member};
-use super::zone::{Held, Zone};
+use super::subproblem::{Subproblem, TorqueInterval};
+use super::weights::{Member, Reduced};
 
-/// Gains below this part of what the corner allows are no reason to part: then the most options are.
+/// Gains below this part of what the upper bound allows are no reason to branch: then the most options are.
 const WORTH_IT: f64 = 1e-4;
 /// Rows in which the mixture has less room than this count for this more than their weights.
 const NEAR: f64 = 0.2;
 const SAY: f64 = 0.1;
-/// Members of smaller shares do not say where to part a torque.
+/// Members of smaller shares do not say where to branch a torque.
 const SHARE: f64 = 1e-3;
 /// A torque within this part of itself is known.
 const KNOWN: f64 = 2e-3;
-/// Part of a torque's interval from either end in which it is not parted.
+/// Part of a torque's interval from either end in which it is not branched.
 const EDGE: f64 = 0.1;
 
-/// A way to part a zone.
-pub(super) enum Parting {
+/// A way to branch a subproblem.
+pub(super) enum Branching {
     /// The options of a part, joints before tubes, by the sum of their numbers times factors: up to one and beyond, or in
     /// equal parts.
     Options {
@@ -39,32 +39,32 @@ pub(super) enum Parting {
     },
 }
 
-/// Ways to part a zone, the most promising first, with the numbers of the curves that they are about.
+/// Ways to branch, the most promising first, with the numbers of the torsion curves that they refer to.
 #[derive(Default)]
-pub(super) struct Ways {
-    pub partings: Vec<Parting>,
+pub(super) struct Branchings {
+    pub branchings: Vec<Branching>,
     pub curves: Vec<Numbers>,
 }
 
 impl Rows<'_> {
-    /// Ways to part what is left of a zone, the most promising first.
-    pub fn partings(&self, members: &Members, left: &Left) -> Vec<Parting> {
+    /// Branchings to part what is left of a subproblem, the most promising first.
+    pub fn branchings(&self, members: &Members, left: &Reduced) -> Vec<Branching> {
         let between = self.between(left);
         let mut found = Vec::new();
         // the drive that fits first is no choice
-        let is_choice = |part: &usize| self.stock.joints.get(*part).is_none_or(|j| j.drives.level.is_some());
-        for part in (0..self.columns.joints + self.stock.tubes.len()).filter(is_choice) {
+        let is_choice = |part: &usize| self.table.joints.get(*part).is_none_or(|j| j.drives.level.is_some());
+        for part in (0..self.columns.joints + self.table.tubes.len()).filter(is_choice) {
             found.push(self.by_options(part, &between, members, left));
         }
         for case in 0..self.columns.cases {
             found.extend(self.by_torques(case, &between, left));
         }
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        found.into_iter().map(|(_, parting)| parting).collect()
+        found.into_iter().map(|(_, branching)| branching).collect()
     }
 
     /// The numbers of the arm in between the mixed members.
-    fn between(&self, left: &Left) -> Vec<f64> {
+    fn between(&self, left: &Reduced) -> Vec<f64> {
         let mut between = vec![0.0; self.columns.len()];
         for (share, member) in &left.mixed {
             between.iter_mut().zip(&member.numbers).for_each(|(sum, number)| *sum += share * number);
@@ -72,8 +72,14 @@ impl Rows<'_> {
         between
     }
 
-    /// By how much the mixed members differ in a part, and the row in which they do most.
-    fn by_options(&self, part: usize, between: &[f64], members: &Members, left: &Left) -> (f64, Parting) {
+    /// How much the mixed members differ in a part, and the row in which they differ most.
+    fn by_options(
+        &self,
+        part: usize,
+        between: &[f64],
+        members: &Members,
+        left: &Reduced,
+    ) -> (f64, Branching) {
         let columns = self.columns.of_part(part);
         let adds = |row: usize, numbers: &[f64]| -> f64 {
             let per = &self.rows[row].per_number[columns.clone()];
@@ -96,21 +102,21 @@ impl Rows<'_> {
         if score <= WORTH_IT {
             score = WORTH_IT * (1.0 - 1.0 / self.options(left, part) as f64);
         }
-        (score, Parting::Options { part, per_number, at })
+        (score, Branching::Options { part, per_number, at })
     }
 
-    fn options(&self, left: &Left, part: usize) -> usize {
+    fn options(&self, left: &Reduced, part: usize) -> usize {
         match part.checked_sub(self.columns.joints) {
             None => left.joints[part].len(),
-            Some(tube) => self.stock.tubes[tube].count(&left.tubes[tube]),
+            Some(tube) => self.table.tubes[tube].count(&left.tubes[tube]),
         }
     }
 
     /// What a row counts for: its weight, and something for any that the mixture has little room in. What holds a torque
     /// does not.
-    fn says(&self, row: usize, between: &[f64], left: &Left) -> f64 {
+    fn says(&self, row: usize, between: &[f64], left: &Reduced) -> f64 {
         let near = self.rows[row].value(between) > -NEAR;
-        match (self.first_held..self.first_mode).contains(&row) {
+        match (self.first_interval..self.first_mode).contains(&row) {
             true => 0.0,
             false => left.weights[row] + if near { SAY } else { 0.0 },
         }
@@ -123,7 +129,7 @@ impl Rows<'_> {
             let loads = &members.loads[pose.water];
             let products = pose.works[tube].iter().zip(compliances(members.tubes[tube])).enumerate();
             let left_out = products.map(|(which, (work, compliance))| {
-                let number = self.columns.tubes[tube] + place::compliance(self.arm.waters, which);
+                let number = self.columns.tubes[tube] + place::compliance(self.skeleton.waters.len(), which);
                 let forces = work.along(&direction, loads);
                 let per_load = work.per_load.iter().enumerate();
                 let force = work.fixed.dot(&direction)
@@ -132,13 +138,13 @@ impl Rows<'_> {
                         .sum::<f64>();
                 (force - forces.least) * (between[number] - compliance.least)
             });
-            weights[row] * left_out.sum::<f64>() / self.corner.tip_m
+            weights[row] * left_out.sum::<f64>() / self.upper.tip_m
         };
         self.tips.iter().map(of_tip).sum()
     }
 
-    /// What the mixture gains in a case by gears at other torques than its own weights make: ways to part these torques.
-    fn by_torques(&self, case: usize, between: &[f64], left: &Left) -> Vec<(f64, Parting)> {
+    /// Ways to branch at torques of a case: the mixture gains by gears that are at other torques than its own weights make.
+    fn by_torques(&self, case: usize, between: &[f64], left: &Reduced) -> Vec<(f64, Branching)> {
         let pose = self.pose(case);
         let own_nm = |torque: &Linear| {
             let per_load = torque.per_load.iter().enumerate();
@@ -151,15 +157,15 @@ impl Rows<'_> {
         let mut there = between.to_vec();
         for (joint, torque_nm) in own_nm.iter().enumerate() {
             let slope = |(share, member): &(f64, Member)| {
-                let range = self.stock.joints[joint].range(member.drives[joint]);
+                let range = self.table.joints[joint].range(member.drives[joint]);
                 share * range.largest_slope(torque_nm.abs())
             };
             let slope: f64 = left.mixed.iter().map(slope).sum();
             there[self.columns.slope(joint, case)] = if slope.is_finite() { slope } else { 0.0 };
         }
-        let eigenvalue = self.corner.eigenvalue();
+        let eigenvalue = self.upper.eigenvalue();
         let motion = self.pencil(case, &there).slower_motion(eigenvalue);
-        let ways = own_nm.iter().enumerate().filter_map(|(joint, &torque_nm)| {
+        let branchings = own_nm.iter().enumerate().filter_map(|(joint, &torque_nm)| {
             let slope = self.columns.slope(joint, case);
             let stiffer = between[slope] - there[slope];
             let of_mode = motion.as_ref().map_or(0.0, |x| stiffer * x[joint] * x[joint] / eigenvalue);
@@ -167,36 +173,36 @@ impl Rows<'_> {
             (gain > WORTH_IT).then_some(())?;
             Some((
                 gain,
-                Parting::Torque { case, joint, at_nm: self.parting_nm(case, joint, torque_nm, left)? },
+                Branching::Torque { case, joint, at_nm: self.branching_nm(case, joint, torque_nm, left)? },
             ))
         });
-        ways.collect()
+        branchings.collect()
     }
 
     /// What the mixture twists less than its gears would at a torque, in the weighted row of the tip.
-    fn less_twisted(&self, case: usize, joint: usize, torque_nm: f64, left: &Left) -> f64 {
+    fn less_twisted(&self, case: usize, joint: usize, torque_nm: f64, left: &Reduced) -> f64 {
         let Some(&(row, _, direction)) = self.tips.iter().find(|tip| tip.1 == case) else { return 0.0 };
-        let sense = 1.0f64.copysign(self.pose(case).ways_m[joint].dot(&direction));
+        let sense = 1.0f64.copysign(self.pose(case).tip_m_per_rad[joint].dot(&direction));
         let at = Span { least: torque_nm, most: torque_nm }.times(sense);
         let from = self.torques[case][joint].times(sense);
         let twist = self.columns.twist(joint, case);
         let less = |(share, member): &(f64, Member)| {
             let counted = member.numbers[twist] + self.per_torque[case][joint] * (at.least - from.least);
-            let range = self.stock.joints[joint].range(member.drives[joint]);
+            let range = self.table.joints[joint].range(member.drives[joint]);
             share * (range.least_angle_rad(at) - counted)
         };
         let less: f64 = left.mixed.iter().map(less).sum();
         left.weights[row] * self.rows[row].per_number[twist] * less
     }
 
-    /// Where to part a torque: at the nearest torque beyond the mixture's at which the slope of one of its gears grows, else
+    /// Where to branch a torque: at the nearest torque beyond the mixture's at which the slope of one of its gears grows, else
     /// at the mixture's own or in the middle. `None` if it is known.
-    fn parting_nm(&self, case: usize, joint: usize, torque_nm: f64, left: &Left) -> Option<f64> {
+    fn branching_nm(&self, case: usize, joint: usize, torque_nm: f64, left: &Reduced) -> Option<f64> {
         let Span { least, most } = self.torques[case][joint];
         let edge = EDGE * (most - least);
         (most - least > KNOWN * most.abs().max(least.abs())).then_some(())?;
         let breaks = left.mixed.iter().filter(|(share, _)| *share > SHARE).flat_map(|(_, member)| {
-            let stiff = self.stock.joints[joint].range(member.drives[joint]).stiff;
+            let stiff = self.table.joints[joint].range(member.drives[joint]).stiff;
             [stiff.t1_nm, stiff.t2_nm, -stiff.t1_nm, -stiff.t2_nm]
         });
         let beyond = breaks.filter(|at_nm| at_nm.abs() >= torque_nm.abs() && *at_nm > least && *at_nm < most);
@@ -206,20 +212,20 @@ impl Rows<'_> {
     }
 }
 
-impl Ways {
-    /// The halves of a zone; `None` if it cannot be parted.
-    pub fn halves(&self, stock: &Stock, zone: &Zone) -> Option<[Zone; 2]> {
-        self.partings.iter().find_map(|parting| zone.parted(stock, parting, &self.curves))
+impl Branchings {
+    /// The halves of a subproblem; `None` if it cannot be branched.
+    pub fn halves(&self, table: &PartsTable, subproblem: &Subproblem) -> Option<[Subproblem; 2]> {
+        self.branchings.iter().find_map(|branching| subproblem.branched(table, branching, &self.curves))
     }
 }
 
-impl Zone {
-    fn parted(&self, stock: &Stock, parting: &Parting, curves: &[Numbers]) -> Option<[Self; 2]> {
-        match parting {
-            Parting::Torque { case, joint, at_nm } => Some(self.parted_by_torque(*case, *joint, *at_nm)),
-            Parting::Options { part, per_number, at } => match part.checked_sub(self.joints.len()) {
+impl Subproblem {
+    fn branched(&self, table: &PartsTable, branching: &Branching, curves: &[Numbers]) -> Option<[Self; 2]> {
+        match branching {
+            Branching::Torque { case, joint, at_nm } => Some(self.branched_by_torque(*case, *joint, *at_nm)),
+            Branching::Options { part, per_number, at } => match part.checked_sub(self.joints.len()) {
                 None => {
-                    let joint = &stock.joints[*part];
+                    let joint = &table.joints[*part];
                     let value = |&drive: &u32| {
                         let curve = joint.curve[drive as usize] as usize;
                         let rest = curves[*part][curve].iter().flatten();
@@ -228,39 +234,39 @@ impl Zone {
                     };
                     let halves = halved(&self.joints[*part], value, *at)?;
                     Some(halves.map(|half| {
-                        let mut zone = self.clone();
-                        zone.joints[*part] = half;
-                        zone
+                        let mut subproblem = self.clone();
+                        subproblem.joints[*part] = half;
+                        subproblem
                     }))
                 }
                 Some(tube) => {
                     let value = |&node: &u32| {
-                        let [least, most] = stock.tubes[tube].bounds(node);
+                        let [least, most] = table.tubes[tube].bounds(node);
                         let ends = least.iter().zip(most);
                         ends.zip(per_number).map(|((a, b), per)| 0.5 * (a + b) * per).sum()
                     };
                     let nodes = &self.tubes[tube];
                     let halves = match nodes[..] {
-                        [node] => stock.tubes[tube].tree.halves(node)?.map(|half| vec![half]),
+                        [node] => table.tubes[tube].tree.halves(node)?.map(|half| vec![half]),
                         _ => halved(nodes, value, *at)?,
                     };
                     Some(halves.map(|half| {
-                        let mut zone = self.clone();
-                        zone.tubes[tube] = half;
-                        zone
+                        let mut subproblem = self.clone();
+                        subproblem.tubes[tube] = half;
+                        subproblem
                     }))
                 }
             },
         }
     }
 
-    fn parted_by_torque(&self, case: usize, joint: usize, at_nm: f64) -> [Self; 2] {
+    fn branched_by_torque(&self, case: usize, joint: usize, at_nm: f64) -> [Self; 2] {
         let below = Span { least: f64::NEG_INFINITY, most: at_nm };
         let above = Span { least: at_nm, most: f64::INFINITY };
         [below, above].map(|between| {
-            let mut zone = self.clone();
-            zone.hold_torque(Held { case, joint, between });
-            zone
+            let mut subproblem = self.clone();
+            subproblem.keep_torque(TorqueInterval { case, joint, between });
+            subproblem
         })
     }
 }

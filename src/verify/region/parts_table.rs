@@ -4,8 +4,9 @@
 //! and its compliances. The tubes of a link stand in a tree whose nodes know the least and the most of every number.
 //! A drive is its mass and its torsion curve; many drives have one curve, so that a curve's price is worked out once.
 
-use super::super::arm::Parts;
-use super::super::drives::{DriveOptions, DriveRange};
+use super::super::drive_range::DriveRange;
+use super::super::drives::DriveOptions;
+use super::super::skeleton::Parts;
 use super::super::tree::Tree;
 use super::super::tubes::{
     DENSITIES, STIFFNESSES, STRESSES, TubeAround, TubeNumbers, TubeOptions, TubeRange,
@@ -13,16 +14,16 @@ use super::super::tubes::{
 use rayon::prelude::*;
 
 /// The parts of a space.
-pub(super) struct Stock {
-    pub joints: Vec<JointStock>,
-    pub tubes: Vec<TubeStock>,
+pub(super) struct PartsTable {
+    pub joints: Vec<JointTable>,
+    pub tubes: Vec<TubeTable>,
 }
 
 /// Twists and slopes of each curve of a joint; none of those that do not count.
 pub(super) type Numbers = Vec<Option<Vec<f64>>>;
 
 /// What a joint may have.
-pub(super) struct JointStock {
+pub(super) struct JointTable {
     pub drives: DriveOptions,
     pub masses_kg: Vec<f64>,
     /// Which of the curves each drive has.
@@ -32,7 +33,7 @@ pub(super) struct JointStock {
 }
 
 /// What a link may be.
-pub(super) struct TubeStock {
+pub(super) struct TubeTable {
     pub options: TubeOptions,
     pub tree: Tree,
     /// Least and then most numbers of every node.
@@ -69,16 +70,16 @@ pub(super) mod place {
     }
 }
 
-impl Stock {
+impl PartsTable {
     pub fn new(parts: Parts) -> Self {
         Self {
-            joints: parts.joints.into_iter().map(JointStock::new).collect(),
-            tubes: parts.tubes.into_par_iter().map(TubeStock::new).collect(),
+            joints: parts.joints.into_iter().map(JointTable::new).collect(),
+            tubes: parts.tubes.into_par_iter().map(TubeTable::new).collect(),
         }
     }
 }
 
-impl JointStock {
+impl JointTable {
     fn new(drives: DriveOptions) -> Self {
         let mut curves: Vec<DriveRange> = Vec::new();
         let twists = |a: &DriveRange| (a.stiff, a.soft, a.modal_nm_per_rad);
@@ -95,14 +96,14 @@ impl JointStock {
     }
 }
 
-impl JointStock {
+impl JointTable {
     /// A drive.
     pub fn range(&self, drive: u32) -> &DriveRange {
         &self.drives.options[drive as usize].range
     }
 }
 
-impl TubeStock {
+impl TubeTable {
     fn new(options: TubeOptions) -> Self {
         let tree = options.tree();
         let waters = options.tubes.first().map_or(0, |(_, tube)| tube.around.len());

@@ -1,41 +1,44 @@
-//! The weights under which the least weighted row of a table is greatest, from its middle.
+//! Minimax weights of a matrix: those under which the least weighted row is greatest.
 //!
-//! `max t : A w >= t, Σ w = 1, w >= 0`, by an interior path: Newton's steps on
-//! `t + μ (Σ log(A w - t) + Σ log w)` while `μ` falls. The shares `μ / (A w - t)` of the rows are the other player's.
-//! Weights short of the optimum are as good as optimal ones for a bound, and those from the middle cut deeper.
+//! `max t : A w >= t, Σ w = 1, w >= 0` is a matrix game. It is solved by an interior-point path: Newton's steps on
+//! `t + μ (Σ log(A w - t) + Σ log w)` while `μ` falls. The shares `μ / (A w - t)` of the rows are the dual solution.
+//!
+//! Why not the simplex method: weights short of the optimum are as good for a bound, weights from the centre exclude more
+//! options than those of a vertex, and the search uses the simplex method already.
 
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
-/// Where the path begins, by how much each stage goes on, and where it ends, over the number of rows and columns.
+/// The barrier parameter `μ`: its first value, its factor from stage to stage, and its last value over the number of rows
+/// and columns.
 const FIRST: f64 = 0.3;
 const STAGE: f64 = 0.2;
 const LAST: f64 = 3e-4;
-/// Newton's steps a stage.
+/// Newton's steps at each stage.
 const STEPS: usize = 4;
-/// Largest weight of a condition.
+/// Upper bound of a condition's weight.
 const MOST: f64 = 3.0;
-/// Part of the way to the nearest wall that a step goes at most.
+/// Largest part of the way to the boundary that a step goes.
 const SHORT_OF: f64 = 0.95;
 
-/// Weights of the columns that are stakes, and shares of the rows, each one in sum.
-pub(super) struct Game {
+/// Weights of the columns and shares of the rows. The counted weights have the sum one, and so have the shares.
+pub(super) struct Minimax {
     pub weights: Vec<f64>,
     pub shares: Vec<f64>,
     /// No weights make the least weighted row greater than this.
     pub most: f64,
 }
 
-/// Weights for the columns of a table.
+/// Minimax weights of the columns of a matrix.
 ///
-/// Columns that are conditions are no stakes: their weights do not count in the sum, and the mixture is to keep them from
-/// being positive. Two opposite ones would otherwise be a way to play for nothing.
-pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Game {
+/// Columns that are conditions do not count in the sum of the weights; each weight of theirs is bounded instead. They come in
+/// opposite pairs (a torque is at least, at most), and equal weights on both would share in the sum without any effect.
+pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Minimax {
     let (count, width) = (rows.len(), rows[0].len());
-    let is_stake = |column: &usize| !conditions.contains(column);
-    let stakes = (0..width).filter(is_stake).count() as f64;
-    let mut w: Vec<f64> = vec![1.0 / stakes; width];
-    let counts: Vec<f64> = (0..width).map(|column| if is_stake(&column) { 1.0 } else { 0.0 }).collect();
+    let is_counted = |column: &usize| !conditions.contains(column);
+    let counted = (0..width).filter(is_counted).count() as f64;
+    let mut w: Vec<f64> = vec![1.0 / counted; width];
+    let counts: Vec<f64> = (0..width).map(|column| if is_counted(&column) { 1.0 } else { 0.0 }).collect();
     let sums = |w: &[f64]| -> Vec<f64> { rows.iter().map(|row| dot(row, w)).collect() };
     let least = |sums: &[f64]| sums.iter().copied().fold(f64::INFINITY, f64::min);
     let last = LAST / (count + width) as f64;
@@ -52,8 +55,8 @@ pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Game {
             let falls = falls.map(|(fall, left)| (fall, *left));
             let down = dw.iter().copied().zip(w.iter().copied());
             let conditions = conditions.clone().map(|k| (-dw[k], MOST - w[k]));
-            let walls = falls.chain(down).chain(conditions).filter(|(fall, _)| *fall < 0.0);
-            let room = walls.map(|(fall, left)| -left / fall).fold(f64::INFINITY, f64::min);
+            let bounds = falls.chain(down).chain(conditions).filter(|(fall, _)| *fall < 0.0);
+            let room = bounds.map(|(fall, left)| -left / fall).fold(f64::INFINITY, f64::min);
             let length = (SHORT_OF * room).min(1.0);
             w.iter_mut().zip(dw).for_each(|(w, d)| *w += length * d);
             t += length * dt;
@@ -66,9 +69,9 @@ pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Game {
         shares = inverse.iter().map(|x| x / total).collect();
     }
     let mixed = |column: usize| rows.iter().zip(&shares).map(|(row, share)| row[column] * share).sum::<f64>();
-    let stake = (0..width).filter(is_stake).map(mixed).fold(f64::NEG_INFINITY, f64::max);
-    let most = stake + conditions.clone().map(|column| MOST * mixed(column).max(0.0)).sum::<f64>();
-    Game { weights: w, shares, most }
+    let of_counted = (0..width).filter(is_counted).map(mixed).fold(f64::NEG_INFINITY, f64::max);
+    let most = of_counted + conditions.clone().map(|column| MOST * mixed(column).max(0.0)).sum::<f64>();
+    Minimax { weights: w, shares, most }
 }
 
 /// Newton's step of weights and `t`.
@@ -116,7 +119,7 @@ mod tests {
         fn no_weights_are_better_by_much_and_none_than_what_is_said(
             rows in prop::collection::vec(prop::collection::vec(-1.0f64..1.0, 4), 1..9),
         ) {
-            let Game { weights, shares, most } = solve(&rows, 0..0);
+            let Minimax { weights, shares, most } = solve(&rows, 0..0);
             prop_assert!(weights.iter().chain(&shares).all(|x| *x >= 0.0));
             prop_assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-9);
             prop_assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-9);
@@ -129,8 +132,8 @@ mod tests {
                 let worst = (0..rows.len()).min_by(|&a, &b| counts[a].total_cmp(&counts[b])).unwrap();
                 sums.iter_mut().zip(&rows[worst]).for_each(|(sum, a)| *sum += a);
             }
-            let ceiling = sums.iter().fold(f64::NEG_INFINITY, |most, sum| most.max(sum / 4000.0));
-            prop_assert!(least <= ceiling + 1e-9 && least >= ceiling - 0.15, "{least} {ceiling}");
+            let ideal = sums.iter().fold(f64::NEG_INFINITY, |most, sum| most.max(sum / 4000.0));
+            prop_assert!(least <= ideal + 1e-9 && least >= ideal - 0.15, "{least} {ideal}");
         }
     }
 }

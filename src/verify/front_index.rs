@@ -1,22 +1,22 @@
-//! Which frequency a design needs so that no row of the front is as good.
+//! An index of the rows of a front: which frequency does a design need so that no row is as good?
 
 use crate::pareto::objectives::Objectives;
 
 /// Objectives closer than this count as equal (relative).
 const TIE: f64 = 1e-9;
-/// A row that cuts a box is better by this in one objective (relative).
+/// A row must be better by this in one objective to discard a box (relative).
 const BETTER: f64 = 1e-7;
 
-/// The rows of a front, in the order of mass, for questions after their highest frequency.
+/// The rows of a front in the order of mass. It finds the highest frequency of all rows up to a mass and a deflection.
 ///
 /// Position `i` of `blocks` (from 1, as in a Fenwick tree) stands for the last `i & -i` rows up to the `i`-th:
 /// deflections rising, each with the highest frequency of those that deflect no more.
-pub(super) struct Staircase {
+pub(super) struct FrontIndex {
     masses_kg: Vec<f64>,
     blocks: Vec<Vec<(f64, f64)>>,
 }
 
-impl Staircase {
+impl FrontIndex {
     /// Sorts the rows.
     pub fn new(front: &[Objectives]) -> Self {
         let mut rows = front.to_vec();
@@ -86,11 +86,11 @@ mod tests {
     fn the_highest_frequency_is_that_of_a_look_at_every_row() {
         for count in [0, 1, 2, 7, 8, 30] {
             let rows = rows(count);
-            let staircase = Staircase::new(&rows);
+            let front_index = FrontIndex::new(&rows);
             for (mass_kg, tip_m) in (0..34).flat_map(|m| (0..34).map(move |t| (f64::from(m), f64::from(t)))) {
                 let no_worse = rows.iter().filter(|r| r.mass_kg <= mass_kg && r.tip_deflection_m <= tip_m);
                 let highest = no_worse.map(|r| r.lowest_mode_hz).fold(0.0, f64::max);
-                assert_eq!(staircase.highest_hz(mass_kg, tip_m), highest, "{count} {mass_kg} {tip_m}");
+                assert_eq!(front_index.highest_hz(mass_kg, tip_m), highest, "{count} {mass_kg} {tip_m}");
             }
         }
     }
@@ -98,12 +98,12 @@ mod tests {
     #[test]
     fn a_row_does_not_beat_its_equal_but_what_is_a_little_worse() {
         let row = Objectives { mass_kg: 20.0, tip_deflection_m: 1e-3, lowest_mode_hz: 9.0 };
-        let staircase = Staircase::new(&[row]);
-        assert!(!staircase.beats(&row));
+        let front_index = FrontIndex::new(&[row]);
+        assert!(!front_index.beats(&row));
         let tie = 1.0 - 5e-10;
-        assert!(!staircase.beats(&Objectives { mass_kg: 20.0 * tie, ..row }));
-        assert!(staircase.beats(&Objectives { mass_kg: 20.0 * tie, lowest_mode_hz: 8.99, ..row }));
-        assert!(!staircase.beats(&Objectives { mass_kg: 19.99, lowest_mode_hz: 8.99, ..row }));
-        assert!(staircase.beats(&Objectives { tip_deflection_m: 1.001e-3, ..row }));
+        assert!(!front_index.beats(&Objectives { mass_kg: 20.0 * tie, ..row }));
+        assert!(front_index.beats(&Objectives { mass_kg: 20.0 * tie, lowest_mode_hz: 8.99, ..row }));
+        assert!(!front_index.beats(&Objectives { mass_kg: 19.99, lowest_mode_hz: 8.99, ..row }));
+        assert!(front_index.beats(&Objectives { tip_deflection_m: 1.001e-3, ..row }));
     }
 }
