@@ -1,38 +1,11 @@
 //! The text of one catalog file cut into rows; what is wrong with its form is recorded, not returned.
 
+use super::log::Log;
 use super::row::Row;
 use crate::catalog::schema::CatalogFile;
 use crate::input::csv::{Csv, Record, is_repeated, other_separators};
-use crate::input::json::{Fault, closest};
-use std::cell::RefCell;
+use crate::input::json::closest;
 use std::collections::BTreeMap;
-
-/// What was found wrong (`faults`) or odd (`warnings`) so far.
-#[derive(Debug, Default)]
-pub struct Log {
-    /// Reasons to refuse the file.
-    pub faults: RefCell<Vec<Fault>>,
-    /// Things to look at.
-    pub warnings: RefCell<Vec<Fault>>,
-}
-
-impl Log {
-    /// Records a reason to refuse a file.
-    pub fn fault(&self, file: &str, line: Option<usize>, field: &str, problem: String, hint: String) {
-        self.faults.borrow_mut().push(Fault { file: file.into(), line, field: field.into(), problem, hint });
-    }
-
-    /// Records something to look at.
-    pub fn warn(&self, file: &str, line: Option<usize>, field: &str, problem: String, hint: String) {
-        self.warnings.borrow_mut().push(Fault {
-            file: file.into(),
-            line,
-            field: field.into(),
-            problem,
-            hint,
-        });
-    }
-}
 
 /// The rows of a catalog file that have the right number of fields.
 pub fn rows<'a>(file: CatalogFile, name: &'a str, bytes: &[u8], log: &'a Log) -> Vec<Row<'a>> {
