@@ -20,7 +20,7 @@
 
 pub mod arm;
 pub mod catalog;
-pub mod cli;
+pub(crate) mod cli;
 pub mod exact;
 pub mod input;
 pub mod mechanics;
@@ -34,3 +34,8 @@ pub mod sizing;
 pub mod space;
 pub mod study;
 pub mod verify;
+
+/// The command line, for a program that is one: parse, run, print.
+pub mod command_line {
+    pub use crate::cli::{Cli, Failure, print, run};
+}

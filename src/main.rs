@@ -4,10 +4,10 @@ use clap::Parser;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = armwright::cli::Cli::parse();
-    match armwright::cli::run(cli) {
+    let cli = armwright::command_line::Cli::parse();
+    match armwright::command_line::run(cli) {
         Ok(text) => {
-            armwright::cli::print(&text);
+            armwright::command_line::print(&text);
             ExitCode::SUCCESS
         }
         Err(failure) => {

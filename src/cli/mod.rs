@@ -3,16 +3,16 @@
 
 pub(crate) mod analyze;
 pub(crate) mod asked;
-pub mod catalog;
-pub mod compare;
+pub(crate) mod catalog;
+pub(crate) mod compare;
 pub(crate) mod corrections;
 pub(crate) mod design;
 pub(crate) mod failure;
 pub(crate) mod finished;
 pub(crate) mod front;
-pub mod predict;
+pub(crate) mod predict;
 pub(crate) mod progress;
-pub mod reconcile;
+pub(crate) mod reconcile;
 pub(crate) mod rerun;
 pub(crate) mod run;
 pub(crate) mod search;

@@ -2,7 +2,7 @@
 
 pub(crate) mod csv;
 pub(crate) mod duplicates;
-pub mod json;
+pub(crate) mod json;
 pub(crate) mod lines;
 pub(crate) mod path;
 

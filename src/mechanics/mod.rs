@@ -17,17 +17,17 @@
 //! Twists and wrenches are written about the world origin: twist `(v, ω)` with `v` the velocity of the
 //! body point at the origin, wrench `(F, M)` with `M` the moment about the origin.
 
-pub mod beam;
-pub mod centre_line;
-pub mod chain;
-pub mod condensed;
-pub mod lanes;
-pub mod linkage;
-pub mod lowest;
-pub mod lowest_lanes;
-pub mod modes;
-pub mod response;
-pub mod statics;
+pub(crate) mod beam;
+pub(crate) mod centre_line;
+pub(crate) mod chain;
+pub(crate) mod condensed;
+pub(crate) mod lanes;
+pub(crate) mod linkage;
+pub(crate) mod lowest;
+pub(crate) mod lowest_lanes;
+pub(crate) mod modes;
+pub(crate) mod response;
+pub(crate) mod statics;
 
 pub use centre_line::Station;
 pub use chain::{Chain, Posed};

@@ -2,7 +2,7 @@
 //!
 //! All objectives are made small: mass, tip deflection, and the lowest mode with its sign turned.
 
-pub mod archive;
+pub(crate) mod archive;
 pub mod front;
 pub mod hypervolume;
 pub(crate) mod objectives;

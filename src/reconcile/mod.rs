@@ -12,15 +12,15 @@
 //! - [`analysis`] draws the conclusion from displacements, frequencies and bench readings, [`together`] from
 //!   these and positions. [`predict`] writes the model's values next to readings.
 
-pub mod analysis;
+pub(crate) mod analysis;
 pub mod fit;
 pub mod forward;
 pub mod model;
-pub mod positions;
+pub(crate) mod positions;
 pub mod predict;
 pub mod readings;
-pub mod select;
-pub mod together;
+pub(crate) mod select;
+pub(crate) mod together;
 pub mod verdict;
 
 pub use readings::campaign::Campaign;

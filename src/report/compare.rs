@@ -6,13 +6,13 @@
 //! the winner. Every function here is pure; [`text`] writes the comparison for people, [`thresholds`] chooses
 //! round limits where the user gives none, [`moved`] tells what changed between two runs of a study.
 
-pub mod changes;
-pub mod comparison;
-pub mod contender;
+pub(crate) mod changes;
+pub(crate) mod comparison;
+pub(crate) mod contender;
 pub mod moved;
-pub mod question;
-pub mod text;
-pub mod thresholds;
+pub(crate) mod question;
+pub(crate) mod text;
+pub(crate) mod thresholds;
 
 pub use comparison::{Answer, Comparison, Reach, Row, compare};
 pub use contender::Contender;

@@ -18,14 +18,14 @@
 //! assert!(plot.to_svg().starts_with("<svg"));
 //! ```
 
-pub mod arm;
-pub mod bars;
+pub(crate) mod arm;
+pub(crate) mod bars;
 pub(crate) mod draw;
 pub(crate) mod marker;
-pub mod parallel;
-pub mod plot;
-pub mod rows;
-pub mod scale;
+pub(crate) mod parallel;
+pub(crate) mod plot;
+pub(crate) mod rows;
+pub(crate) mod scale;
 pub(crate) mod sheet;
 pub(crate) mod ticks;
 

@@ -7,8 +7,8 @@
 //! - [`ballast`] finds designs that are on a front only because extra weight loads a gear into a stiffer part of its curve.
 
 pub(crate) mod arms;
-pub mod ballast;
-pub mod finish;
+pub(crate) mod ballast;
+pub(crate) mod finish;
 pub mod near;
 pub(crate) mod row;
 pub(crate) mod row_begun;

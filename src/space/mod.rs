@@ -16,11 +16,11 @@ pub mod design_space;
 pub(crate) mod effects;
 pub(crate) mod excerpt;
 
-pub mod fixed;
-pub mod levels;
-pub mod problem;
+pub(crate) mod fixed;
+pub(crate) mod levels;
+pub(crate) mod problem;
 pub(crate) mod slot;
-pub mod station;
+pub(crate) mod station;
 
 pub use design::{Evaluated, evaluate};
 pub use design_space::DesignSpace;

@@ -1,21 +1,12 @@
 //! `armwright catalog` as a user reads it.
 
 use armwright::catalog::Catalogs;
-use armwright::cli::catalog::{CatalogArgs, check, run};
+use armwright::command_line::{Cli, Failure, run};
 use clap::Parser;
 
-#[derive(clap::Parser)]
-struct Program {
-    #[command(flatten)]
-    catalog: CatalogArgs,
-}
-
-fn said(line: &str) -> Result<String, armwright::cli::Failure> {
-    let words = std::iter::once("armwright").chain(line.split_whitespace());
-    run(
-        &Program::try_parse_from(words).map_err(|e| armwright::cli::Failure::Usage(e.to_string()))?.catalog,
-        None,
-    )
+fn said(line: &str) -> Result<String, Failure> {
+    let words = ["armwright", "catalog"].into_iter().chain(line.split_whitespace());
+    run(Cli::try_parse_from(words).map_err(|e| Failure::Usage(e.to_string()))?)
 }
 
 fn shown(line: &str) -> String {
@@ -86,7 +77,7 @@ fn csv_is_a_file_that_a_catalog_folder_can_hold() {
 
 #[test]
 fn check_counts_rows_trust_blanks_and_warnings() {
-    let text = check(None).expect("sound");
+    let text = said("check").expect("sound");
     for piece in ["built-in gears.csv", "average_input_speed_limit_rpm", "No faults. Warnings (4):"] {
         assert!(text.contains(piece), "{piece} in\n{text}");
     }
@@ -98,7 +89,7 @@ fn faults_of_an_overlay_are_printed_with_file_line_and_column() {
     let text =
         "type,model,mass_kg,source,confidence\nac-servo,M1,-2,own,verified\nac-servo,M2,2 kg,own,verified\n";
     std::fs::write(folder.path().join("motors.csv"), text).expect("writable");
-    let shown = check(Some(folder.path())).expect_err("two faults").to_string();
+    let shown = said(&format!("check --catalogs {}", folder.path().display())).expect_err("two faults").to_string();
     assert!(shown.starts_with("2 faults in the input:"), "{shown}");
     assert!(shown.contains("motors.csv:2: mass_kg: = -2 must be greater than 0"), "{shown}");
     assert!(shown.contains("motors.csv:3: mass_kg: \"2 kg\" is not a number"), "{shown}");
@@ -107,7 +98,8 @@ fn faults_of_an_overlay_are_printed_with_file_line_and_column() {
 #[test]
 fn every_help_says_what_a_flag_does_and_gives_an_example() {
     use clap::CommandFactory;
-    let mut program = Program::command();
+    let mut program = Cli::command();
+    let program = program.find_subcommand_mut("catalog").expect("a verb");
     let show = program.find_subcommand_mut("show").expect("a verb");
     assert!(
         show.get_arguments().all(|a| a.is_global_set() || a.get_id() == "help" || a.get_help().is_some())

@@ -1,6 +1,6 @@
 //! Fronts made by hand, small enough to know the answers by eye.
 
-use armwright::cli::compare::{CompareArgs, run};
+use armwright::command_line::{Cli, run};
 use armwright::report::compare::Thresholds;
 use armwright::report::compare::moved::moved;
 use armwright::report::compare::{Answer, Comparison, Contender, Question, Row, compare};
@@ -199,15 +199,9 @@ fn what_moved_tells_designs_apart_by_their_choices() {
     assert!(m.words.contains("Lightest still 50.00 kg"), "{}", m.words);
 }
 
-#[derive(Parser)]
-struct Line {
-    #[command(flatten)]
-    args: CompareArgs,
-}
-
 fn compare_cli(line: &[&str]) -> Result<String, String> {
-    let line = Line::try_parse_from([&["compare"], line].concat()).map_err(|e| e.to_string())?;
-    run(&line.args).map_err(|e| e.to_string())
+    let cli = Cli::try_parse_from([&["armwright", "compare"], line].concat()).map_err(|e| e.to_string())?;
+    run(cli).map_err(|e| e.to_string())
 }
 
 fn results(dir: &Path, study: &str) {

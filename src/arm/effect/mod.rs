@@ -8,11 +8,11 @@
 
 pub(crate) mod base_compliance;
 pub(crate) mod bearing_tilt;
-pub mod catalogue;
-pub mod channel;
+pub(crate) mod catalogue;
+pub(crate) mod channel;
 pub(crate) mod connection_compliance;
 pub(crate) mod drift;
-pub mod entry;
+pub(crate) mod entry;
 pub(crate) mod extra_mass;
 pub(crate) mod frame_compliance;
 pub(crate) mod harness_mass;
@@ -30,7 +30,7 @@ pub(crate) mod places;
 pub(crate) mod sensor_bias;
 pub(crate) mod sensor_gain;
 pub(crate) mod soft_windup;
-pub mod subject;
+pub(crate) mod subject;
 pub(crate) mod time_shift;
 pub(crate) mod transmission_error;
 pub(crate) mod validate;

@@ -3,12 +3,12 @@
 //! [`table`] cuts the text into rows, [`row`] checks single cells, one module a file knows what must hold
 //! within a row, [`trend`] looks across rows.
 
-pub mod efficiency;
-pub mod gears;
+pub(crate) mod efficiency;
+pub(crate) mod gears;
 pub(crate) mod log;
-pub mod materials;
-pub mod motors;
-pub mod profiles;
-pub mod row;
-pub mod table;
-pub mod trend;
+pub(crate) mod materials;
+pub(crate) mod motors;
+pub(crate) mod profiles;
+pub(crate) mod row;
+pub(crate) mod table;
+pub(crate) mod trend;

@@ -4,10 +4,10 @@
 //! = 7 to 16 cm. What they call specific gravity is q of Eq 6, the weight per length \[N/m\]. Deflection is
 //! computed by Eq 4, and also by the full link model, which includes shear.
 
-pub mod beam;
+pub(crate) mod beam;
 pub mod fig2;
 pub mod fig3;
 pub mod fig4;
-pub mod figure;
+pub(crate) mod figure;
 
 pub use beam::{BeamPoint, FORCE_N, LENGTH_M, SIZES_M, WALL_M, library_deflection_m};

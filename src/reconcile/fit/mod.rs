@@ -1,10 +1,10 @@
 //! Fits a model to readings: its most probable parameters, their intervals, the noise of the readings, and
 //! the prediction of held-out poses.
 
-pub mod curve_interval;
+pub(crate) mod curve_interval;
 pub mod descent;
-pub mod held_out;
-pub mod interval;
+pub(crate) mod held_out;
+pub(crate) mod interval;
 pub mod noise;
-pub mod stats;
-pub mod units;
+pub(crate) mod stats;
+pub(crate) mod units;

@@ -5,12 +5,12 @@
 //! torques of dead weight. A [`Subject`](crate::arm::effect::subject::Subject) then enters through its [`Coefficients`]:
 //! compliances, laws of the joints and masses. The prepared model is linear in all of these but the laws.
 
-pub mod bench;
-pub mod coefficients;
-pub mod datum;
-pub mod modal;
-pub mod prepared;
-pub mod statics;
+pub(crate) mod bench;
+pub(crate) mod coefficients;
+pub(crate) mod datum;
+pub(crate) mod modal;
+pub(crate) mod prepared;
+pub(crate) mod statics;
 
 pub use coefficients::{Coefficients, Layout};
 pub use prepared::Forward;

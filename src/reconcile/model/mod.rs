@@ -2,7 +2,7 @@
 //! readings by mechanics directly.
 
 pub mod candidates;
-pub mod estimate;
+pub(crate) mod estimate;
 pub mod exact;
-pub mod expected;
+pub(crate) mod expected;
 pub mod parameters;

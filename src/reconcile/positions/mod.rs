@@ -11,15 +11,15 @@
 //! - [`predict`] gives positions of several arms whose weights load each other's trunk.
 
 pub(crate) mod align;
-pub mod analysis;
-pub mod fit;
-pub mod kinematics;
-pub mod loads;
+pub(crate) mod analysis;
+pub(crate) mod fit;
+pub(crate) mod kinematics;
+pub(crate) mod loads;
 pub(crate) mod next_test;
 pub(crate) mod normal;
-pub mod outcome;
+pub(crate) mod outcome;
 pub(crate) mod points;
-pub mod predict;
+pub(crate) mod predict;
 pub(crate) mod search;
 pub(crate) mod sessions;
 pub(crate) mod springs;

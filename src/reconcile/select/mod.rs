@@ -1,12 +1,12 @@
 //! Finds which effects are missing: screening of candidates, laws without a name, lack of fit, few readings,
 //! and the quality of the readings.
 
-pub mod few_rows;
-pub mod lack_of_fit;
-pub mod laws;
-pub mod screening;
-pub mod search;
-pub mod settle;
-pub mod structure;
-pub mod unnamed;
-pub mod waves;
+pub(crate) mod few_rows;
+pub(crate) mod lack_of_fit;
+pub(crate) mod laws;
+pub(crate) mod screening;
+pub(crate) mod search;
+pub(crate) mod settle;
+pub(crate) mod structure;
+pub(crate) mod unnamed;
+pub(crate) mod waves;

@@ -1,10 +1,10 @@
 //! The conclusion of a reconciliation, and the files that state it.
 
-pub mod correct;
-pub mod files;
-pub mod locate;
-pub mod next_test;
-pub mod outcome;
+pub(crate) mod correct;
+pub(crate) mod files;
+pub(crate) mod locate;
+pub(crate) mod next_test;
+pub(crate) mod outcome;
 pub mod page;
-pub mod report;
-pub mod stage;
+pub(crate) mod report;
+pub(crate) mod stage;

@@ -6,14 +6,14 @@
 //! with hovering, brushing and filters. [`study`], [`campaign`] and [`comparison`] take plain values and fill
 //! the templates in this folder.
 
-pub mod campaign;
-pub mod comparison;
-pub mod document;
-pub mod front_data;
-pub mod front_views;
-pub mod gallery;
+pub(crate) mod campaign;
+pub(crate) mod comparison;
+pub(crate) mod document;
+pub(crate) mod front_data;
+pub(crate) mod front_views;
+pub(crate) mod gallery;
 pub(crate) mod packed;
-pub mod pick;
-pub mod positions;
-pub mod render;
+pub(crate) mod pick;
+pub(crate) mod positions;
+pub(crate) mod render;
 pub mod study;
