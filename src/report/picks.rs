@@ -178,12 +178,13 @@ pub fn choices(front: &FrontTable, row: usize) -> Vec<String> {
     let piece = |column: &String| {
         if let Some(link) = column.strip_suffix("_material") {
             let is_round = cell(&format!("{link}_shape")).is_some_and(|s| s.starts_with("round"));
-            let size = match ["width_mm", "height_mm", "wall_mm"].map(|s| cell(&format!("{link}_{s}"))) {
-                [Some(width), Some(height), Some(wall)] => {
-                    format!(" {}", tube_size(is_round, [width, height, wall]))
-                }
-                _ => String::new(),
+            let sizes = ["width_mm", "height_mm", "wall_mm"].map(|s| cell(&format!("{link}_{s}")));
+            let size = match sizes {
+                [Some(width), Some(height), Some(wall)] => tube_size(is_round, [width, height, wall]),
+                // a table of another program may lack some of the columns
+                _ => sizes.into_iter().flatten().map(|s| format!("{s} mm")).collect::<Vec<_>>().join(" x "),
             };
+            let size = if size.is_empty() { size } else { format!(" {size}") };
             return cell(column).map(|material| format!("{link}{size} {material}"));
         }
         let joint = column.strip_suffix("_gear")?;
