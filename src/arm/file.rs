@@ -1,6 +1,6 @@
 //! The reader of the arm file.
 
-use super::effect::Effect;
+use super::effect::entry::Effect;
 use super::joint_law::{Curve, Windup};
 use super::load::vector;
 use super::section::{LinkMaterial, Section};

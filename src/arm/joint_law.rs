@@ -18,7 +18,29 @@ pub struct Windup {
     pub t2_nm: f64,
 }
 
+/// One straight segment of a torsion curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// Torque at which the segment begins \[N m\].
+    pub from_nm: f64,
+    /// Torque at which it ends \[N m\]; infinite for the last segment.
+    pub to_nm: f64,
+    /// Stiffness of the segment \[N m/rad\].
+    pub stiffness_nm_per_rad: f64,
+}
+
 impl Windup {
+    /// The three segments in ascending order of torque. A break point belongs to the segment below it.
+    #[inline]
+    pub fn segments(&self) -> [Segment; 3] {
+        let segment = |from_nm, to_nm, stiffness_nm_per_rad| Segment { from_nm, to_nm, stiffness_nm_per_rad };
+        [
+            segment(0.0, self.t1_nm, self.k1_nm_per_rad),
+            segment(self.t1_nm, self.t2_nm, self.k2_nm_per_rad),
+            segment(self.t2_nm, f64::INFINITY, self.k3_nm_per_rad),
+        ]
+    }
+
     /// Twist \[rad\] under the total torque \[N m\].
     #[inline]
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
@@ -130,7 +152,7 @@ impl Curve {
     }
 
     /// The curve as three segments, which are equal if the curve is a line. `None` for a rigid joint.
-    pub fn segments(&self) -> Option<Windup> {
+    pub fn as_windup(&self) -> Option<Windup> {
         match *self {
             Curve::Rigid => None,
             Curve::Linear(k) => Some(Windup {

@@ -18,7 +18,7 @@ pub(crate) mod section;
 pub(crate) mod structure;
 pub(crate) mod write;
 
-pub use effect::Effect;
+pub use effect::entry::Effect;
 pub use file::{read_arm, read_arm_document};
 pub use joint_law::{Curve, JointLaw, LostMotion, Windup};
 pub use linkage::Linkage;

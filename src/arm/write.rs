@@ -1,6 +1,6 @@
 //! Writing the arm file.
 
-use super::effect::Effect;
+use super::effect::entry::Effect;
 use super::joint_law::Curve;
 use super::section::Section;
 use super::{Arm, Element, Joint, Link, LinkBody};

@@ -1,7 +1,8 @@
 //! `armwright analyze`: statics, modes and response of an arm file.
 
-use super::{Failure, choice, number_list, numbers};
-use crate::arm::effect::Effect;
+use super::failure::Failure;
+use super::values::{choice, number_list, numbers};
+use crate::arm::effect::entry::Effect;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
 use crate::arm::{Arm, JointModel, LinkModel};
@@ -11,14 +12,15 @@ use crate::mechanics::chain::Chain;
 use crate::mechanics::modes::Mode;
 use crate::mechanics::response::{Response, frequency_response};
 use crate::mechanics::statics::Statics;
+use crate::report::number::percent;
 use clap::Args;
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Prints joint torques, tip displacement, every element's share of it, natural frequencies and where
-/// each mode's strain energy sits.
+/// Prints the joint torques, the tip displacement with every element's share of it, the natural frequencies,
+/// and where the strain energy of each mode sits.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: armwright analyze arm.json --pose-deg 0,-30,60 --payload-kg 5 --payload-cg-m 0.05,0,0\n\
@@ -52,7 +54,7 @@ pub struct AnalyzeArgs {
     /// How many modes to print
     #[arg(long, default_value_t = 6)]
     modes: usize,
-    /// Take pose, payload and models from a cases file instead of the flags
+    /// Take pose, payload and models from a cases file instead of these options
     #[arg(long, value_name = "FILE", conflicts_with_all = ["pose_deg", "payload_kg", "payload_cg_m", "payload_inertia_kgm2", "force_n", "links", "joints"])]
     cases: Option<PathBuf>,
     /// Amplitude of a harmonic force at the tip, world axes [N]: prints the tip's response (Eq 16)
@@ -108,7 +110,7 @@ fn non_negative(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Part of an arm's length beyond which a displacement is not small.
+/// A displacement larger than this part of the arm's length is not small.
 const LARGE_PART: f64 = 0.1;
 
 /// One case, solved.
@@ -117,11 +119,11 @@ struct Solved {
     statics: Statics,
     modes: Vec<Mode>,
     response: Option<Vec<Response>>,
-    /// Effects on how links bend, where links are held rigid.
+    /// Effects on the bending of links, if the case holds links rigid.
     unbent: Vec<String>,
 }
 
-/// Carries out the verb.
+/// Executes the verb.
 pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let arm = read_arm(&args.arm, catalogs)?;
     let cases = match &args.cases {
@@ -139,12 +141,12 @@ pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Fai
     })
 }
 
-/// Effects of a test rather than of the arm stay out of an analysis; it says so.
+/// Names the effects that an analysis ignores because they describe a test and not the arm.
 fn ignored_text(ignored: &[String]) -> String {
     match ignored {
         [] => String::new(),
         effects => {
-            format!("  left out, because they describe a test and not the arm: {}\n", effects.join(", "))
+            format!("  ignored, because they describe a test and not the arm: {}\n", effects.join(", "))
         }
     }
 }
@@ -249,12 +251,12 @@ impl Solved {
         if tip.norm() > 1e3 * LARGE_PART * arm.length_m() {
             let _ = writeln!(
                 out,
-                "  The tip moves by more than a tenth of the arm's length: the model holds for small displacements.\n  \
+                "  The tip moves by more than a tenth of the arm's length; the model is valid for small displacements only.\n  \
                  Is every number of the file in its unit (Pa, kg/m3, m, kg, N m/rad)?"
             );
         }
         if !self.unbent.is_empty() {
-            let _ = writeln!(out, "  left out, because links are held rigid: {}", self.unbent.join(", "));
+            let _ = writeln!(out, "  ignored, because links are held rigid: {}", self.unbent.join(", "));
         }
         self.shares_text(&mut out);
         self.modes_text(&mut out);
@@ -284,7 +286,8 @@ impl Solved {
             let mut parts: Vec<&(String, f64)> =
                 mode.strain_energy.iter().filter(|(_, e)| *e >= 0.01).collect();
             parts.sort_by(|a, b| b.1.total_cmp(&a.1));
-            let parts: Vec<String> = parts.iter().map(|(n, e)| format!("{n} {:.0} %", 100.0 * e)).collect();
+            let parts: Vec<String> =
+                parts.iter().map(|(n, e)| format!("{n} {}", percent(100.0 * e, 0))).collect();
             let plane = mode.plane.unwrap_or("-");
             let _ = writeln!(
                 out,

@@ -1,8 +1,9 @@
-//! `armwright catalog check` and `armwright catalog show`: what can be bought, and how far it is known.
+//! `armwright catalog check` and `armwright catalog show`: the catalog parts, and how reliable their ratings
+//! are.
 //!
 //! The functions return the text; nothing is printed here.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::catalog::gear::Gear;
 use crate::catalog::load::Loaded;
 use crate::catalog::lookup::PartError;
@@ -30,12 +31,12 @@ pub struct CatalogArgs {
 /// What to do with the catalogs.
 #[derive(Debug, Clone, clap::Subcommand)]
 pub enum CatalogVerb {
-    /// Validate every row; count rows, trust and blank figures; list what is odd.
+    /// Validate every row; count rows, confidence and blank ratings; list what is odd.
     ///
     /// Reports every fault of every file at once, with file, line, column, value and what is allowed.
     #[command(after_help = "Example: armwright catalog check --catalogs my-parts")]
     Check,
-    /// List parts as a table, or one part with every figure and its source.
+    /// List parts as a table, or one part with every rating and its source.
     #[command(after_help = "Examples:\n  armwright catalog show gears --series CSG --size 32\n  \
         armwright catalog show motors --kind electric\n  \
         armwright catalog show materials --class composite\n  \
@@ -87,8 +88,7 @@ pub struct ShowArgs {
     /// Only profiles of this shape: square, rectangular or `--shape round` [default: all].
     #[arg(long)]
     pub shape: Option<String>,
-    /// Print the rows as they stand in their files, as CSV that an own catalog folder can hold
-    /// [default: a table].
+    /// Print the rows as they stand in their files, as CSV for your own catalog folder [default: a table].
     #[arg(long)]
     pub csv: bool,
 }
@@ -104,7 +104,7 @@ pub fn run(args: &CatalogArgs, overlay: Option<&Path>) -> Result<String, Failure
     }
 }
 
-/// Loads the catalogs and tells what is in them: rows, trust, blank figures, warnings.
+/// Loads the catalogs and reports what is in them: rows, confidence, blank ratings, warnings.
 ///
 /// # Errors
 /// Every fault of every file.
@@ -245,7 +245,7 @@ pub fn show(catalogs: &Catalogs, args: &ShowArgs) -> Result<String, Failure> {
     }
 }
 
-/// A filter that belongs to other parts is a slip, not something to pass over.
+/// Refuses a filter that belongs to another kind of part: it is a mistake, and to ignore it would mislead.
 fn refuse_stray_filters(parts: Parts, args: &ShowArgs) -> Result<(), Failure> {
     let given = [
         ("--series", args.series.is_some(), Parts::Gears),
@@ -344,40 +344,40 @@ type Field<T> = (&'static str, fn(&T) -> String);
 
 const GEAR_FIELDS: &[Field<Gear>] = &[
     ("gear|", |g| g.id.clone()),
-    ("rated|Nm", |g| figure(g.rated_torque_nm, 1.0)),
-    ("mean|Nm", |g| figure(g.average_torque_limit_nm, 1.0)),
-    ("peak|Nm", |g| figure(g.repeated_peak_torque_nm, 1.0)),
-    ("moment.|Nm", |g| figure(g.momentary_peak_torque_nm, 1.0)),
-    ("speed|rpm", |g| figure(g.max_input_speed_rpm, 1.0)),
-    ("inertia|kg cm2", |g| figure(g.inertia_input_kgm2, 1e4)),
-    ("K1|kNm/rad", |g| figure(g.k1_nm_per_rad, 1e-3)),
-    ("K2|kNm/rad", |g| figure(g.k2_nm_per_rad, 1e-3)),
-    ("K3|kNm/rad", |g| figure(g.k3_nm_per_rad, 1e-3)),
-    ("set|kg", |g| figure(g.mass_component_set_kg, 1.0)),
-    ("unit|kg", |g| figure(g.mass_housed_unit_kg, 1.0)),
-    ("eff.|", |g| figure(g.efficiency, 1.0)),
+    ("rated|Nm", |g| rating(g.rated_torque_nm, 1.0)),
+    ("mean|Nm", |g| rating(g.average_torque_limit_nm, 1.0)),
+    ("peak|Nm", |g| rating(g.repeated_peak_torque_nm, 1.0)),
+    ("moment.|Nm", |g| rating(g.momentary_peak_torque_nm, 1.0)),
+    ("speed|rpm", |g| rating(g.max_input_speed_rpm, 1.0)),
+    ("inertia|kg cm2", |g| rating(g.inertia_input_kgm2, 1e4)),
+    ("K1|kNm/rad", |g| rating(g.k1_nm_per_rad, 1e-3)),
+    ("K2|kNm/rad", |g| rating(g.k2_nm_per_rad, 1e-3)),
+    ("K3|kNm/rad", |g| rating(g.k3_nm_per_rad, 1e-3)),
+    ("set|kg", |g| rating(g.mass_component_set_kg, 1.0)),
+    ("unit|kg", |g| rating(g.mass_housed_unit_kg, 1.0)),
+    ("eff.|", |g| rating(g.efficiency, 1.0)),
     ("trust|", |g| trust(&g.provenance)),
 ];
 
 const MOTOR_FIELDS: &[Field<Motor>] = &[
     ("motor|", |m| m.id.clone()),
     ("kind|", |m| m.kind.to_string()),
-    ("rated|Nm", |m| figure(m.rated_torque_nm, 1.0)),
-    ("peak|Nm", |m| figure(m.peak_torque_nm, 1.0)),
-    ("rated|rpm", |m| figure(m.rated_speed_rpm, 1.0)),
-    ("max|rpm", |m| figure(m.max_speed_rpm, 1.0)),
-    ("inertia|kg cm2", |m| figure(m.rotor_inertia_kgm2, 1e4)),
-    ("mass|kg", |m| figure(m.mass_kg, 1.0)),
+    ("rated|Nm", |m| rating(m.rated_torque_nm, 1.0)),
+    ("peak|Nm", |m| rating(m.peak_torque_nm, 1.0)),
+    ("rated|rpm", |m| rating(m.rated_speed_rpm, 1.0)),
+    ("max|rpm", |m| rating(m.max_speed_rpm, 1.0)),
+    ("inertia|kg cm2", |m| rating(m.rotor_inertia_kgm2, 1e4)),
+    ("mass|kg", |m| rating(m.mass_kg, 1.0)),
     ("trust|", |m| trust(&m.provenance)),
 ];
 
 const MATERIAL_FIELDS: &[Field<Material>] = &[
     ("material|", |m| m.name.clone()),
-    ("E|GPa", |m| figure(Some(m.youngs_modulus_pa), 1e-9)),
-    ("G|GPa", |m| figure(m.shear_modulus_pa, 1e-9)),
-    ("density|kg/m3", |m| figure(Some(m.density_kg_m3), 1.0)),
-    ("strength|MPa", |m| figure(m.strength_pa, 1e-6)),
-    ("cost|EUR/kg", |m| figure(m.cost_eur_per_kg, 1.0)),
+    ("E|GPa", |m| rating(Some(m.youngs_modulus_pa), 1e-9)),
+    ("G|GPa", |m| rating(m.shear_modulus_pa, 1e-9)),
+    ("density|kg/m3", |m| rating(Some(m.density_kg_m3), 1.0)),
+    ("strength|MPa", |m| rating(m.strength_pa, 1e-6)),
+    ("cost|EUR/kg", |m| rating(m.cost_eur_per_kg, 1.0)),
     ("trust|", |m| trust(&m.provenance)),
 ];
 
@@ -385,12 +385,12 @@ const PROFILE_FIELDS: &[Field<Profile>] = &[
     ("profile|", |p| p.designation.clone()),
     ("shape|", |p| p.shape.to_string()),
     ("family|", |p| p.material_family.clone()),
-    ("width|mm", |p| figure(Some(p.width_m), 1e3)),
-    ("height|mm", |p| figure(Some(p.height_m), 1e3)),
-    ("wall|mm", |p| figure(Some(p.wall_m), 1e3)),
-    ("area|cm2", |p| figure(p.area_m2, 1e4)),
-    ("2nd moment|cm4", |p| figure(p.second_moment_m4, 1e8)),
-    ("mass|kg/m", |p| figure(p.mass_per_length_kg_m, 1.0)),
+    ("width|mm", |p| rating(Some(p.width_m), 1e3)),
+    ("height|mm", |p| rating(Some(p.height_m), 1e3)),
+    ("wall|mm", |p| rating(Some(p.wall_m), 1e3)),
+    ("area|cm2", |p| rating(p.area_m2, 1e4)),
+    ("2nd moment|cm4", |p| rating(p.second_moment_m4, 1e8)),
+    ("mass|kg/m", |p| rating(p.mass_per_length_kg_m, 1.0)),
     ("trust|", |p| trust(&p.provenance)),
 ];
 
@@ -514,8 +514,8 @@ fn wrapped(text: &str) -> String {
     out
 }
 
-/// A known figure times a factor, in four significant digits without trailing zeros; blank if unknown.
-fn figure(x: Option<f64>, factor: f64) -> String {
+/// A rating times a factor, in four significant digits without trailing zeros; blank if unknown.
+fn rating(x: Option<f64>, factor: f64) -> String {
     let Some(x) = x.map(|x| x * factor) else { return String::new() };
     if x == 0.0 {
         return "0".into();
@@ -530,7 +530,7 @@ fn figure(x: Option<f64>, factor: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }
 
-/// A table of text: heads (`name|unit`) over columns, figures to the right.
+/// A table of text: headers (`name|unit`) above columns, numbers aligned to the right.
 struct TextTable {
     head: Vec<String>,
     rows: Vec<Vec<String>>,
@@ -557,7 +557,7 @@ impl TextTable {
         lines.iter().fold(String::new(), |out, line| out + &aligned(line, &columns) + "\n")
     }
 
-    /// Width of a column, and whether it holds figures.
+    /// Width of a column, and whether it holds numbers.
     fn column(&self, i: usize, lines: &[Vec<String>]) -> (usize, bool) {
         let width = lines.iter().map(|line| line[i].chars().count()).max().unwrap_or(0);
         (width, self.rows.iter().all(|row| row[i].is_empty() || row[i].parse::<f64>().is_ok()))
@@ -566,9 +566,9 @@ impl TextTable {
 
 fn aligned(line: &[String], columns: &[(usize, bool)]) -> String {
     let mut out = String::new();
-    for (text, (width, is_figure)) in line.iter().zip(columns) {
+    for (text, (width, is_number)) in line.iter().zip(columns) {
         let padding = " ".repeat(width - text.chars().count());
-        out += &if *is_figure { format!("{padding}{text}  ") } else { format!("{text}{padding}  ") };
+        out += &if *is_number { format!("{padding}{text}  ") } else { format!("{text}{padding}  ") };
     }
     out.trim_end().to_string()
 }
@@ -578,10 +578,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn figures_have_four_digits_and_no_noise() {
+    fn ratings_have_four_digits_and_no_noise() {
         let texts = [3.3e-6 * 1e4, 0.1 + 0.2, 2100000.0, 12345.678, 0.66, 17.0, 0.0, 2.4e-9]
-            .map(|x| figure(Some(x), 1.0));
+            .map(|x| rating(Some(x), 1.0));
         assert_eq!(texts, ["0.033", "0.3", "2100000", "12346", "0.66", "17", "0", "2.400e-9"]);
-        assert_eq!(figure(None, 1.0), "");
+        assert_eq!(rating(None, 1.0), "");
     }
 }

@@ -1,9 +1,12 @@
 //! `armwright compare`: fronts side by side.
 
-use super::{Failure, number_list, write_all};
+use super::failure::Failure;
+use super::values::number_list;
+use super::write::write_all;
+use crate::report::compare::comparison::{Comparison, compare};
+use crate::report::compare::contender::Contender;
 use crate::report::compare::moved::moved;
 use crate::report::compare::thresholds::Thresholds;
-use crate::report::compare::{Comparison, Contender, compare};
 use crate::report::front_svg::{FrontPicture, PlottedFront};
 use crate::report::front_table::{FrontTable, FrontTableError};
 use crate::report::html::comparison::page as comparison_page;
@@ -11,11 +14,12 @@ use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Puts fronts side by side: lightest at a given tip deflection, stiffest and highest mode at a given
-/// mass, lightest for a given lowest mode, and what the material costs.
+/// Compares fronts: which is lightest at a given tip deflection, which is stiffest and has the highest mode
+/// at a given mass, which is lightest for a given lowest mode, and what the material costs.
 ///
-/// One result folder: its materials against each other. Several: their overall fronts, and what moved
-/// if they are runs of one study. Front files (`front.csv`, `front.<material>.csv`) may be given too.
+/// Given one result folder, it compares the materials of that study. Given several, it compares their overall
+/// fronts and, if they are runs of one study, says what changed. Front files (`front.csv`,
+/// `front.<material>.csv`) may be given too.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples: armwright compare results/compare-materials\n          \
                         armwright compare results/compare-materials --deflection-mm 1,2,5 --mass-kg 40,60 \
@@ -25,14 +29,14 @@ pub struct CompareArgs {
     /// Result folders of `armwright run`, or front files
     #[arg(required = true, value_name = "RESULTS")]
     pub results: Vec<PathBuf>,
-    /// Tip deflections to compare masses at (mm), separated by commas; without any limit, round numbers
-    /// are chosen where the fronts overlap, and with one, only what is asked for is compared
+    /// Tip deflections (mm) at which masses are compared, separated by commas. If no limit of any kind is
+    /// given, round numbers are chosen where the fronts overlap; otherwise only what is given is compared
     #[arg(long, value_name = "MM", value_parser = limits)]
     pub deflection_mm: Option<Limits>,
-    /// Masses to compare deflections and modes at (kg)
+    /// Masses (kg) at which deflections and modes are compared
     #[arg(long, value_name = "KG", value_parser = limits)]
     pub mass_kg: Option<Limits>,
-    /// Lowest modes to compare masses at (Hz)
+    /// Lowest modes (Hz) at which masses are compared
     #[arg(long, value_name = "HZ", value_parser = limits)]
     pub mode_hz: Option<Limits>,
     /// Folder for compare.md, compare.csv, compare.svg and report.html, a page for a browser
@@ -56,7 +60,7 @@ fn limits(text: &str) -> Result<Limits, String> {
     }
 }
 
-/// Carries out the verb.
+/// Executes the verb.
 ///
 /// # Errors
 /// A folder or file is missing, is not a result, or cannot be written.
@@ -199,7 +203,7 @@ fn is_one_study(results: &[PathBuf]) -> bool {
     first.is_some() && results.iter().all(|r| study(r) == first)
 }
 
-/// A label for every path: as few of its last parts as tell it from the others.
+/// A label for every path: the fewest last components that distinguish it from the others.
 fn labels(results: &[PathBuf]) -> Vec<String> {
     let most = results.iter().map(|r| r.components().count()).max().unwrap_or(1);
     let at = |parts: usize| results.iter().map(|r| last_parts(r, parts)).collect::<Vec<_>>();
@@ -207,7 +211,7 @@ fn labels(results: &[PathBuf]) -> Vec<String> {
     (1..=most).map(at).find(differ).unwrap_or_else(|| numbered(at(most)))
 }
 
-/// The last parts of a path, `front.` and `.csv` left out of a file's name.
+/// The last components of a path; `front.` and `.csv` are removed from a file name.
 fn last_parts(path: &Path, parts: usize) -> String {
     let full: Vec<String> = path.components().map(|c| c.as_os_str().to_string_lossy().into_owned()).collect();
     let mut kept = full[full.len().saturating_sub(parts)..].to_vec();

@@ -1,7 +1,8 @@
-//! `armwright design`: a design of a result as an arm file and its cases.
+//! `armwright design`: writes a design of a result as an arm file and its cases.
 
+use super::failure::Failure;
 use super::finished::{catalogs_hash, pretty};
-use super::{Failure, write_all};
+use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::space::design::{full_objectives, number_of};
@@ -11,8 +12,8 @@ use clap::Args;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// Takes a design out of a result: its arm with every part resolved to numbers, and the cases it was
-/// judged in, so that `analyze` reproduces its objectives.
+/// Writes a design of a result as an arm file, with every part resolved to numbers, and the cases in which it
+/// was judged. `analyze` reproduces its objectives from both files.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: armwright design results/compare-materials 3k9 --out my-arm\n         \
                         armwright analyze my-arm/arm.json --cases my-arm/cases.json")]
@@ -26,7 +27,7 @@ pub struct DesignArgs {
     out: Option<PathBuf>,
 }
 
-/// Carries out the verb.
+/// Executes the verb.
 pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     check_catalogs(&args.results, catalogs)?;
     let study = read_study(Document::read(&args.results.join("study.json"))?, catalogs)?;
@@ -66,8 +67,8 @@ pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Fail
     ))
 }
 
-/// The facts of a result's run. Refuses catalogs other than those the result was made with: an id would
-/// name another design.
+/// Reads the facts of a result's run. Fails if the result was made with other catalogs, because an id would
+/// then name another design.
 pub(super) fn check_catalogs(results: &Path, catalogs: &Catalogs) -> Result<Value, Failure> {
     let path = results.join("run.json");
     let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;

@@ -1,37 +1,41 @@
-//! What a finished search has to say: its files, its page and its words.
+//! The output of a finished search: files, page and terminal text.
 
-use super::beside::{Beside, BesideArgs, FILES, Found};
-use super::{Failure, carry, write_all};
-use crate::arm::effect::Effect;
+use super::corrections;
+use super::failure::Failure;
+use super::supplements::{FILES, Found, SupplementArgs};
+use super::write::write_all;
+use crate::arm::effect::entry::Effect;
 use crate::catalog::Catalogs;
 use crate::pareto::hypervolume::front_hypervolume;
 use crate::report::budget::{PickBudget, budget_csv};
 use crate::report::certificate::certificate_section;
+use crate::report::facts::{SummaryFacts, constraint_words};
 use crate::report::front_svg::{FrontPicture, PlottedFront, designs_of, mixed_designs};
 use crate::report::front_table::FrontTable;
-use crate::report::html::{Extra, PLOTS, Page, study::StudyPage};
+use crate::report::html::gallery::Page;
+use crate::report::html::render::PLOTS;
+use crate::report::html::study::StudyPage;
 use crate::report::number::significant;
 use crate::report::picks;
-use crate::report::summary::{
-    MaterialFront, SummaryFacts, SummaryInput, constraint_words, single_materials, summary_md,
-    terminal_summary,
-};
+use crate::report::section::PageSection;
+use crate::report::summary::{MaterialFront, SummaryInput, single_materials, summary_md, terminal_summary};
+use crate::report::supplement::Supplement;
 use crate::search::near::NearDesigns;
 use crate::search::sweep::Status;
 use crate::space::design_space::DesignSpace;
 use crate::space::problem::ArmProblem;
 use crate::study::budget::budgets;
-use crate::study::effects::Carried;
+use crate::study::definition::Study;
+use crate::study::effects::Correction;
 use crate::study::outcome::StudyOutcome;
 use crate::study::page::study_page;
-use crate::study::read::Study;
 use crate::study::table::{front_table, slug};
-use crate::study::ties;
+use crate::study::ties::ties;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// What a finished search has to say.
+/// The output of a finished search.
 pub(super) struct Written {
     /// Files by name.
     pub files: Vec<(String, Vec<u8>)>,
@@ -39,7 +43,7 @@ pub(super) struct Written {
     pub terminal: String,
     /// The front of all designs.
     pub front: FrontTable,
-    /// How the search ended, and by how much its front may be bettered if it was stopped.
+    /// How the search ended.
     pub status: Status,
     pub gap: Option<f64>,
     /// Whether no design is missing in it.
@@ -47,8 +51,8 @@ pub(super) struct Written {
 }
 
 impl Written {
-    /// Writes the files. Those of an earlier run that this one does not have go: beside its front they would be
-    /// another's.
+    /// Writes the files, and removes files of an earlier run that this run does not write: they would belong
+    /// to another front.
     ///
     /// # Errors
     /// A file cannot be written or removed.
@@ -82,18 +86,18 @@ fn of_some_runs(dir: &Path) -> Vec<String> {
     out
 }
 
-/// Whether a file has the front of a material.
+/// Whether a file holds the front of one material.
 pub(super) fn is_front_of_material(name: &str) -> bool {
     name.starts_with("front.") && name.ends_with(".csv") && name != "front.csv"
 }
 
-/// What an exact search says of its front.
+/// What an exact search proved about its front.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FoundExactly {
     /// Boxes bounded and left open.
     pub boxes: [u64; 2],
     pub gap: Option<f64>,
-    /// Whether drives of equal mass and curve are rows of their own.
+    /// Whether designs that differ only in drives of equal mass and torsion curve all have rows.
     pub ties_listed: bool,
 }
 
@@ -101,14 +105,14 @@ pub(super) struct FoundExactly {
 pub(super) struct Finished<'a> {
     pub study: &'a Study,
     pub text: &'a str,
-    pub carried: &'a [Carried],
+    pub corrections: &'a [Correction],
     pub problem: &'a ArmProblem<'a>,
     /// The space with all options of the study.
     pub whole: &'a DesignSpace,
     pub outcome: &'a StudyOutcome,
     /// The designs near the front that an exact search found.
     pub near: Option<&'a NearDesigns>,
-    /// What an exact search says of its front.
+    /// What an exact search proved about its front.
     pub exact: Option<FoundExactly>,
     pub elapsed_s: f64,
     pub overlay: Option<&'a Path>,
@@ -117,41 +121,50 @@ pub(super) struct Finished<'a> {
 }
 
 impl Finished<'_> {
-    /// All that is written and said of it, with what was asked for beside the front.
+    /// All that is written and said of it, with the supplements that were asked for.
     ///
     /// # Errors
-    /// What is asked for beside the front cannot be had.
-    pub fn files(&self, asked: &BesideArgs, stop: &AtomicBool) -> Result<Written, Failure> {
+    /// A supplement cannot be worked out.
+    pub fn files(&self, asked: &SupplementArgs, stop: &AtomicBool) -> Result<Written, Failure> {
         let summary = self.summary();
         let Self { problem, catalogs, outcome, near, .. } = *self;
         let (is_exact, ties_listed) = (self.exact.is_some(), self.ties_listed());
         let found = Found { problem, catalogs, outcome, near, is_exact, ties_listed, stop };
-        let beside = asked.work(&found, &summary.overall);
+        let supplements = asked.work_out(&found, &summary.overall);
         // succeeds only on an empty folder: earlier results stay
-        let beside = beside.inspect_err(|_| drop(std::fs::remove_dir(self.dir)))?;
-        let mut files = vec![("front.csv".to_string(), summary.overall.to_csv())];
-        for (material, of) in summary.materials.iter().zip(&outcome.by_material) {
-            let slug = slug(&material.name);
-            files.push((format!("front.{slug}.csv"), material.front.to_csv()));
-            if !of.ties_listed {
-                files.push((format!("ties.{slug}.csv"), ties(problem, &of.front).to_csv()));
-            }
-        }
+        let supplements = supplements.inspect_err(|_| drop(std::fs::remove_dir(self.dir)))?;
+        let mut files = self.tables(&summary);
         let picture = picture(&summary);
         files.push(("front.svg".into(), picture.clone().into_bytes()));
         files.push(("budget.csv".into(), budget_csv(&summary.budgets).into_bytes()));
-        let Beside { files: more, markdown, terminal, sections, run: mut facts } = beside;
-        files.extend(more);
+        let listed = supplements.iter().filter_map(|s| s.file.clone());
+        files.extend(listed.map(|(name, bytes)| (name.to_string(), bytes)));
+        let markdown: String = supplements.iter().map(|s| s.markdown.as_str()).collect();
         files.push(("summary.md".into(), (summary_md(&summary) + &markdown).into_bytes()));
-        let mut run = self.run_json(&summary);
-        run.as_object_mut().into_iter().for_each(|run| run.append(&mut facts));
+        let run = self.run_json(&summary, &supplements);
         files.push(("run.json".into(), pretty(&run)));
+        let sections = supplements.iter().filter_map(|s| s.section.clone()).collect();
         files.extend(self.page(&summary, picture, sections, &run).into_files());
         files.push(("study.json".into(), self.text.as_bytes().to_vec()));
-        let terminal = terminal_summary(&summary) + &terminal;
+        let paragraphs = supplements.iter().map(|s| &s.terminal).filter(|text| !text.is_empty());
+        let paragraphs: String = paragraphs.map(|text| format!("\n{text}")).collect();
+        let terminal = terminal_summary(&summary) + &paragraphs;
         let (status, gap) = (self.outcome.sweep.status, summary.facts.gap);
         let is_whole = summary.facts.is_whole();
         Ok(Written { files, terminal, front: summary.overall, status, gap, is_whole })
+    }
+
+    /// The front, and the front and ties of every material.
+    fn tables(&self, summary: &SummaryInput) -> Vec<(String, Vec<u8>)> {
+        let mut files = vec![("front.csv".to_string(), summary.overall.to_csv())];
+        for (material, of) in summary.materials.iter().zip(&self.outcome.by_material) {
+            let slug = slug(&material.name);
+            files.push((format!("front.{slug}.csv"), material.front.to_csv()));
+            if !of.ties_listed {
+                files.push((format!("ties.{slug}.csv"), ties(self.problem, &of.front).to_csv()));
+            }
+        }
+        files
     }
 
     fn summary(&self) -> SummaryInput {
@@ -192,7 +205,7 @@ impl Finished<'_> {
         }
     }
 
-    /// The study's effects, each with whether it counts: those that describe a test do not.
+    /// The study's effects. An effect that describes a test does not count, and says so.
     fn effects(&self) -> Vec<Value> {
         let counted = |effect: &Effect| {
             let mut value = effect.to_json();
@@ -203,7 +216,7 @@ impl Finished<'_> {
     }
 
     /// The page for a browser.
-    fn page(&self, summary: &SummaryInput, picture: String, sections: Vec<Extra>, run: &Value) -> Page {
+    fn page(&self, summary: &SummaryInput, picture: String, sections: Vec<PageSection>, run: &Value) -> Page {
         let mut page = study_page(self.study, self.problem, self.catalogs, summary);
         page.extras.extend(sections);
         page.extras.push(certificate_section(&summary.facts, self.exact.map(|exact| exact.boxes)));
@@ -219,7 +232,7 @@ impl Finished<'_> {
         space.judged_cases.iter().map(|&i| space.cases[i].name.clone()).collect()
     }
 
-    fn run_json(&self, summary: &SummaryInput) -> Value {
+    fn run_json(&self, summary: &SummaryInput, supplements: &[Supplement]) -> Value {
         let (study, sweep) = (self.study, &self.outcome.sweep);
         let materials: Vec<Value> = summary
             .materials
@@ -232,7 +245,7 @@ impl Finished<'_> {
                 })
             })
             .collect();
-        json!({
+        let mut run = json!({
             "schema_version": 1,
             "study": study.name,
             "question": study.question,
@@ -255,7 +268,7 @@ impl Finished<'_> {
             "not_checked": study.not_checked,
             "effects": self.effects(),
             "effects_mass_kg": study.space.effects_mass_kg(),
-            "carried_over": carry::to_json(self.carried),
+            "carried_over": corrections::to_json(self.corrections),
             "catalogs": self.overlay.map(|p| p.display().to_string()),
             "study_hash": blake3::hash(self.text.as_bytes()).to_hex().to_string(),
             "catalogs_hash": catalogs_hash(self.catalogs),
@@ -264,7 +277,11 @@ impl Finished<'_> {
             "boxes_open": self.exact.map(|exact| exact.boxes[1]),
             "gap": self.exact.and_then(|exact| exact.gap),
             "ties_listed": self.ties_listed(),
-        })
+        });
+        for (key, value) in supplements.iter().filter_map(|s| s.run.as_ref()) {
+            run[*key] = value.clone();
+        }
+        run
     }
 }
 
@@ -313,7 +330,7 @@ fn count(n: u128) -> Value {
     u64::try_from(n).map_or_else(|_| json!(n as f64), |n| json!(n))
 }
 
-/// A hash of every figure of every part: results taken from other catalogs are told apart.
+/// A hash of every rating of every part, to recognize results that were made with other catalogs.
 pub(super) fn catalogs_hash(catalogs: &Catalogs) -> String {
     blake3::hash(format!("{catalogs:?}").as_bytes()).to_hex().to_string()
 }

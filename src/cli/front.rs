@@ -1,16 +1,16 @@
-//! `armwright front check`: is a finished front right, and is it all of it?
+//! `armwright front check`: is a finished front correct and complete?
 
-use super::Failure;
-use super::beside::TIES;
 use super::design::check_catalogs;
+use super::failure::Failure;
 use super::search::stopped_by_signal;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::report::certificate::gap_words;
-use crate::report::compare::text::wrap;
 use crate::report::front_table::FrontTable;
+use crate::report::words::{TERMINAL, wrap};
 use crate::study::check::{Claim, Completeness, check_front};
 use crate::study::read::read_study;
+use crate::study::ties;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
@@ -26,11 +26,12 @@ pub struct FrontArgs {
 
 #[derive(Debug, Subcommand)]
 enum FrontVerb {
-    /// Try to find fault with a front: every row, rows against each other, designs that are missing
+    /// Verify a front: every row, rows against each other, and whether designs are missing
     ///
-    /// Missing designs are looked for by bounds that share no code with the exact search's (docs/exact.md). The
-    /// last line says so, or why the exact search's own had to do. Of a front with a gap that is checked: that
-    /// no design beats every row by more.
+    /// The check works out from the study and the catalogs which drives hold, and looks for missing designs by
+    /// bounds of its own. It shares with the search the reader of studies and catalogs, and the full model that
+    /// judges a single design (docs/exact.md). The last line says whether these bounds sufficed, or why the exact
+    /// search's were used. For a front with a gap the gap is checked: no design may beat every row by more.
     Check(CheckArgs),
 }
 
@@ -38,12 +39,12 @@ enum FrontVerb {
 struct CheckArgs {
     /// Result folder of a study
     results: PathBuf,
-    /// Stop looking for missing designs after so long, and say so
+    /// Stop looking for missing designs after so many seconds, and say so
     #[arg(long, value_name = "SECONDS")]
     time_limit: Option<f64>,
 }
 
-/// Carries out the verb.
+/// Executes the verb.
 pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let FrontVerb::Check(args) = &args.verb;
     if args.time_limit.is_some_and(|s| s.is_nan() || s <= 0.0) {
@@ -74,7 +75,7 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
     let stop = stopped_by_signal();
     let deadline = args.time_limit.map(|s| Instant::now() + Duration::from_secs_f64(s));
     // a file that is not there has none
-    let ties_csv = fs_err::read(args.results.join(TIES)).unwrap_or_default();
+    let ties_csv = fs_err::read(args.results.join(ties::FILE)).unwrap_or_default();
     let claim = Claim { table: &table, gap, ties_listed, ties_csv: &ties_csv };
     let check = check_front(&study, catalogs, &claim, stop, deadline);
     if stop.load(Ordering::Relaxed) {
@@ -90,12 +91,13 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
             };
             format!("{what} ({boxes} boxes, {how})")
         }
-        Err(why) => format!("whether a design is missing was not settled: {why}"),
+        Err(why) => format!("it was not settled whether a design is missing: {why}"),
     };
     if faults.is_empty() {
         let rows = check.rows;
-        let words = format!("{rows} designs are as the model gives them, none beats another; {completeness}");
-        return Ok(wrap(&words, 80, ""));
+        let words =
+            format!("{rows} designs agree with the model, and none dominates another; {completeness}");
+        return Ok(wrap(&words, TERMINAL, ""));
     }
     Err(Failure::Check(format!("{}:\n  {}", args.results.display(), faults.join("\n  "))))
 }

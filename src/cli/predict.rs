@@ -1,12 +1,13 @@
-//! `armwright predict`: the model's value beside every reading.
+//! `armwright predict`: adds the model's value to every reading.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::arm::file::read_arm;
 use crate::catalog::Catalogs;
+use crate::reconcile::predict::predict;
 use crate::reconcile::readings::campaign::{Statement, read_statement};
+use crate::reconcile::readings::placement::Placed;
 use crate::reconcile::readings::placement::Placement;
 use crate::reconcile::readings::table::Table;
-use crate::reconcile::verdict::predict::{Placed, predict};
 use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -43,7 +44,7 @@ fn placed(file: &Path, catalogs: &Catalogs) -> Result<Placed, Failure> {
     Ok(Placed { arm: read_arm(file, catalogs)?, placement: Placement::from_json(&json_of(file)) })
 }
 
-/// The other arms on the trunk: those that a corrected arm names beside itself, else the campaign's.
+/// The other arms on the same trunk: those named in the corrected arm's provenance, or else in the campaign.
 fn other_arms(args: &PredictArgs, statement: &Statement) -> Vec<PathBuf> {
     let folder = |file: &Path| file.parent().map(Path::to_path_buf).unwrap_or_default();
     let corrected = json_of(&args.arm);
@@ -55,7 +56,7 @@ fn other_arms(args: &PredictArgs, statement: &Statement) -> Vec<PathBuf> {
     }
 }
 
-/// The readings with the model's columns, or where they were written.
+/// The readings with the columns of the model, or the name of the file they were written to.
 ///
 /// # Errors
 /// All faults of the input files, or a file that cannot be written.

@@ -48,7 +48,7 @@ fn lines(total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool)
     }
 }
 
-/// Shows that an exact search goes on.
+/// Shows the progress of an exact search.
 pub(super) fn watch_boxes(boxes: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool) {
     let started = Instant::now();
     let bar = std::io::stderr().is_terminal().then(ProgressBar::new_spinner);

@@ -1,14 +1,15 @@
 //! `armwright reconcile`: where model and measurement disagree, what is missing, and what that changes.
 
+use super::failure::Failure;
 use super::rerun::{Rerun, rerun};
 use super::search::SearchArgs;
-use super::{Failure, write_all};
+use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::together::reconcile;
 use crate::reconcile::verdict::outcome::Outcome;
 use crate::reconcile::verdict::page::campaign_page;
-use crate::report::compare::text::wrap;
+use crate::report::words::{TERMINAL, wrap};
 use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -19,9 +20,9 @@ use std::path::{Path, PathBuf};
     armwright reconcile campaigns/may --study compare-materials --out results/may\n  \
     armwright reconcile campaigns/may --study full-catalog --time-limit 60\n\n\
     Writes verdict.json, verdict.txt, arm.corrected.json, residuals.csv, and report.html with its pictures in \
-    plots/. The verdict is one of no_gap, explained, unexplained, insufficient_data; all four are answers, \
-    exit code 0.\n\n\
-    With --study and the verdict explained, the study is run without and with the effects found: \
+    plots/. The verdict is no_gap, explained, unexplained or insufficient_data; the exit code is 0 for all \
+    four.\n\n\
+    With --study and the verdict explained, the study is run without and with the effects that were found: \
     study/nominal and study/corrected are results as `armwright run` writes them, study_changes.csv has \
     every design of either front under both models, and verdict.json says under \"study\" which picks change.")]
 pub struct ReconcileArgs {
@@ -29,11 +30,11 @@ pub struct ReconcileArgs {
     /// positions.csv. Several campaigns of one arm are reconciled together.
     #[arg(required = true, value_name = "CAMPAIGN")]
     pub campaigns: Vec<PathBuf>,
-    /// A built-in study or a study file to run again with the corrected arm: effects carry over to the
-    /// joints and links of the same name.
+    /// A built-in study or a study file to run again with the corrected arm; effects apply to the joints and
+    /// links of the same name.
     #[arg(long, value_name = "STUDY")]
     pub study: Option<String>,
-    /// For each of the study's two runs.
+    /// Applies to each of the study's two runs.
     #[command(flatten)]
     pub how: SearchArgs,
     /// Folder to write into, made with its parents; default: `results/<campaign>`.
@@ -52,7 +53,7 @@ pub fn run(
 ) -> Result<(Outcome, String), Failure> {
     match &args.study {
         // a study that does not read, or a search that does not suit it, fails now and not after the fits
-        Some(study) => drop(args.how.kind(&super::run::load_study(study, catalogs)?.0, catalogs)?),
+        Some(study) => drop(args.how.kind(&super::asked::load_study(study, catalogs)?.0, catalogs)?),
         None if !args.how.is_default() => {
             return Err(Failure::Usage("--search and --time-limit are for the runs of --study".into()));
         }
@@ -81,7 +82,7 @@ pub fn run(
     Ok((outcome, format!("{text}written to {}\n", out.display())))
 }
 
-/// Puts what the study's second run changed into the verdict, and its table beside it.
+/// Adds the result of the second run of the study to the verdict, and its table to the files.
 fn add(files: &mut Vec<(String, Vec<u8>)>, outcome: &Outcome, rerun: Rerun) {
     for (name, bytes) in files.iter_mut() {
         match name.as_str() {
@@ -97,14 +98,14 @@ fn add(files: &mut Vec<(String, Vec<u8>)>, outcome: &Outcome, rerun: Rerun) {
     files.extend(rerun.csv.map(|csv| ("study_changes.csv".to_string(), csv.into_bytes())));
 }
 
-/// Lines of at most 80 columns, those broken indented like what they belong to; tables keep their columns.
+/// Breaks lines at 80 columns; continued lines keep the indent. Tables are not touched.
 fn narrow(text: &str) -> String {
     let line = |line: &str| {
-        if line.chars().count() <= 80 {
+        if line.chars().count() <= TERMINAL {
             return format!("{line}\n");
         }
         let lead: String = line.chars().take_while(|c| *c == ' ').collect();
-        wrap(line, 80, &lead)
+        wrap(line, TERMINAL, &lead)
     };
     text.lines().map(line).collect()
 }

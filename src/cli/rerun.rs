@@ -1,16 +1,17 @@
-//! A study run twice, as it stands and with what a reconciled arm taught, and what that changes.
+//! A study run twice, without and with the corrections of a reconciled arm, and what changes.
 
-use super::beside::BesideArgs;
+use super::asked::{Asked, load_study};
+use super::corrections;
+use super::failure::Failure;
 use super::finished::Written;
-use super::run::load_study;
-use super::search::{Asked, SearchArgs, With, search};
-use super::{Failure, carry};
+use super::search::{SearchArgs, With, search};
+use super::supplements::SupplementArgs;
 use crate::catalog::Catalogs;
 use crate::reconcile::verdict::outcome::{Outcome, Verdict};
 use crate::report::certificate::gap_words;
 use crate::report::compare::changes::{Changes, Model, Values};
-use crate::report::compare::text::wrap;
 use crate::report::picks::designs;
+use crate::report::words::{TERMINAL, wrap};
 use crate::search::sweep::Status;
 use crate::space::design::evaluate;
 use crate::space::design::{number, number_of};
@@ -62,19 +63,19 @@ pub(super) fn rerun(
     let name = nominal.name.clone();
     let calibrated: Vec<(String, f64)> =
         outcome.calibrated.iter().map(|c| (c.name.clone(), c.factor.value)).collect();
-    let corrected = carry::corrected(&nominal, &text, &outcome.corrected, &calibrated, catalogs)?;
+    let corrected = corrections::corrected(&nominal, &text, &outcome.corrected, &calibrated, catalogs)?;
     if corrected.study.space.effects.len() == nominal.space.effects.len() {
-        let mut rerun = Rerun::without(&name, "not_run", "not re-run: no effect carries over to it");
-        rerun.text.push_str(carry::to_text(&corrected.carried).trim_start());
-        rerun.json["carried_over"] = carry::to_json(&corrected.carried);
+        let mut rerun = Rerun::without(&name, "not_run", "not re-run: no effect of the arm applies to it");
+        rerun.text.push_str(corrections::to_text(&corrected.corrections).trim_start());
+        rerun.json["carried_over"] = corrections::to_json(&corrected.corrections);
         return Ok(rerun);
     }
-    let nominal = Asked { study: nominal, text, carried: Vec::new() };
+    let nominal = Asked { study: nominal, text, corrections: Vec::new() };
     let mut found = Vec::new();
     for (asked, folder) in [(&nominal, "nominal"), (&corrected, "corrected")] {
         let results = dir.join("study").join(folder);
-        let beside = BesideArgs::default();
-        match search(asked, &With { catalogs, overlay, dir: &results, how, beside: &beside }) {
+        let supplements = SupplementArgs::default();
+        match search(asked, &With { catalogs, overlay, dir: &results, how, supplements: &supplements }) {
             Ok(written) => {
                 written.write(&results)?;
                 found.push(written);
@@ -117,7 +118,7 @@ fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> 
     let json = json!({
         "study": name,
         "status": if all_whole { Status::Complete } else { Status::Partial }.word(),
-        "carried_over": carry::to_json(&corrected.carried),
+        "carried_over": corrections::to_json(&corrected.corrections),
         "effects_mass_kg": corrected.study.space.effects_mass_kg(),
         "nominal": {"results": "study/nominal", "front_size": sizes[0], "gap": found[0].gap},
         "corrected": {"results": "study/corrected", "front_size": sizes[1], "gap": found[1].gap},
@@ -126,25 +127,25 @@ fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> 
     });
     let text = format!(
         "\nstudy {name}, re-run with the corrected arm\n{}\n{}{}",
-        carry::to_text(&corrected.carried).trim_start(),
+        corrections::to_text(&corrected.corrections).trim_start(),
         changes.to_text(),
         if all_whole { String::new() } else { lacking_words(found) }
     );
     Rerun { text, json, csv: Some(changes.to_csv()) }
 }
 
-/// What to make of fronts that are not whole.
+/// A caution for fronts that are not complete.
 fn lacking_words(found: &[Written]) -> String {
     let lacks = |written: &Written| match (written.status, written.gap) {
         (_, Some(gap)) if gap > 0.0 => gap_words(gap),
-        (Status::Partial, _) => "how much it may lack is not known".into(),
+        (Status::Partial, _) => "it is not known how much is missing".into(),
         _ => "no design is missing".into(),
     };
     let words = format!(
-        "Not all designs are listed: one may also leave or enter because one search found it and the other did not. \
+        "Not all designs are listed, so a design may also leave or enter because only one of the searches found it. \
          Nominal: {}. Corrected: {}.",
         lacks(&found[0]),
         lacks(&found[1])
     );
-    wrap(&words, 80, "")
+    wrap(&words, TERMINAL, "")
 }

@@ -1,26 +1,29 @@
-//! `armwright run`: find a study's front and write it.
+//! `armwright run`: finds the front of a study and writes it.
 
-use super::beside::BesideArgs;
+use super::asked::{Asked, load_study};
+use super::corrections;
+use super::failure::Failure;
 use super::finished::{catalogs_hash, facts_of, is_front_of_material, pretty};
-use super::search::{Asked, SearchArgs, With, search};
-use super::{Failure, carry, write_all};
+use super::search::{SearchArgs, With, search};
+use super::supplements::SupplementArgs;
+use super::write::write_all;
 use crate::catalog::Catalogs;
-use crate::input::json::Document;
-use crate::report::compare::text::wrap;
-use crate::report::html::{Figure, PLOTS, document::DocumentPage};
+use crate::paper::names::{NAMES, question};
+use crate::report::html::document::DocumentPage;
+use crate::report::html::render::PLOTS;
+use crate::report::section::Figure;
 use crate::report::table::Table;
+use crate::report::words::{TERMINAL, wrap};
 use crate::search::sweep::Status;
 use crate::study::effects::left_out;
-use crate::study::read::{Study, read_study};
 use crate::study::table::slug;
-use crate::study::{named, paper_question};
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Runs a study: visits every design in parallel, keeps the Pareto front on tip deflection, mass and
-/// lowest mode, and one front per material.
+/// Runs a study: finds its Pareto front on tip deflection, mass and lowest mode, and one front per material.
+/// Every design is visited in parallel, or the exact search proves the front without visiting every design.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: armwright run compare-materials\n         armwright run my-study.json --out results/mine\n         \
@@ -33,65 +36,43 @@ pub struct RunArgs {
     /// Folder for the results; default results/<study>, or results/<study>-with-effects
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Arm file, such as the arm.corrected.json of `reconcile`, whose effects the study's arm has too, at the
-    /// joints and links of the same name; every effect that does not carry over is listed
+    /// Arm file, such as the arm.corrected.json of `reconcile`: its effects are applied to the study's joints
+    /// and links of the same name; every effect that does not apply is listed
     #[arg(long, value_name = "ARM")]
     effects: Option<PathBuf>,
     #[command(flatten)]
     search: SearchArgs,
     #[command(flatten)]
-    beside: BesideArgs,
+    supplements: SupplementArgs,
 }
 
-/// The text of a study and the name it goes by in messages.
-pub(super) fn study_text(name: &str) -> Result<(String, String), Failure> {
-    if let Some(text) = named(name) {
-        return Ok((format!("{name} (built in)"), text.to_string()));
-    }
-    let path = Path::new(name);
-    match fs_err::read_to_string(path) {
-        Ok(text) => Ok((name.to_string(), text)),
-        Err(_) if !name.contains(['/', '.']) => {
-            let known = crate::study::names();
-            let near = crate::input::json::closest(name, &known)
-                .map_or(String::new(), |n| format!("; did you mean {n}?"));
-            Err(Failure::Usage(format!("no study is called \"{name}\"{near}; known: {}", known.join(", "))))
-        }
-        Err(error) => Err(Failure::File(error.to_string())),
-    }
-}
-
-/// Reads a study by name or file.
-pub(super) fn load_study(name: &str, catalogs: &Catalogs) -> Result<(Study, String), Failure> {
-    let (file, text) = study_text(name)?;
-    Ok((read_study(Document::parse(&file, &text)?, catalogs)?, text))
-}
-
-/// Carries out the verb.
+/// Executes the verb.
 pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -> Result<String, Failure> {
-    if crate::paper::NAMES.contains(&args.study.as_str()) {
+    if NAMES.contains(&args.study.as_str()) {
         return run_paper(args, catalogs);
     }
     let (study, text) = load_study(&args.study, catalogs)?;
     let (asked, suffix) = match &args.effects {
-        None => (Asked { carried: left_out(&study), study, text }, ""),
-        Some(path) => (carry::from_arm_file(path, &study, &text, catalogs)?, "-with-effects"),
+        None => (Asked { corrections: left_out(&study), study, text }, ""),
+        Some(path) => (corrections::from_arm_file(path, &study, &text, catalogs)?, "-with-effects"),
     };
     let name = format!("{}{suffix}", slug(&asked.study.name));
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(name));
-    let written =
-        search(&asked, &With { catalogs, overlay, dir: &dir, how: &args.search, beside: &args.beside })?;
+    let written = search(
+        &asked,
+        &With { catalogs, overlay, dir: &dir, how: &args.search, supplements: &args.supplements },
+    )?;
     written.write(&dir)?;
-    let carried = carry::to_text(&asked.carried);
-    Ok(format!("{}{carried}\n{}", written.terminal, told(&dir, &written.files)))
+    let applied = corrections::to_text(&asked.corrections);
+    Ok(format!("{}{applied}\n{}", written.terminal, told(&dir, &written.files)))
 }
 
-/// Runs one of the paper's studies, which have a course of their own.
+/// Runs one of the paper's studies, which are computed without a search.
 fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(&args.study));
     write_all(&dir, &[])?;
     let started = Instant::now();
-    let output = crate::paper::run(&args.study, catalogs).map_err(|e| Failure::Usage(e.to_string()))?;
+    let output = crate::paper::run::run(&args.study, catalogs).map_err(|e| Failure::Usage(e.to_string()))?;
     let run = json!({
         "schema_version": 1,
         "study": args.study,
@@ -117,7 +98,7 @@ fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> Document
     let ending = |end: &'static str| files.iter().filter_map(move |(n, b)| Some((n.strip_suffix(end)?, b)));
     DocumentPage {
         title: study.to_string(),
-        question: paper_question(study).unwrap_or_default().to_string(),
+        question: question(study).unwrap_or_default().to_string(),
         words: Vec::new(),
         figures: ending(".svg")
             .map(|(name, bytes)| Figure { name: name.into(), svg: text(bytes), ..Figure::default() })
@@ -132,12 +113,12 @@ fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> Document
     }
 }
 
-/// Where the files are, in lines of at most 80 columns.
+/// Says which files were written, in lines of at most 80 columns.
 fn told(dir: &Path, files: &[(String, Vec<u8>)]) -> String {
-    wrap(&format!("written to {}: {}", dir.display(), names(files)), 80, "")
+    wrap(&format!("written to {}: {}", dir.display(), names(files)), TERMINAL, "")
 }
 
-/// The files that were written, those of one kind counted.
+/// Names of the files that were written; fronts by material and plots are only counted.
 fn names(files: &[(String, Vec<u8>)]) -> String {
     let kind = |name: &str| match name {
         n if n.starts_with(PLOTS) => 2,

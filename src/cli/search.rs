@@ -1,17 +1,18 @@
-//! A study's search: which one, and until when.
+//! Searches a study: chooses the method and stops when asked.
 
-use super::beside::BesideArgs;
+use super::asked::Asked;
+use super::failure::Failure;
 use super::finished::{Finished, FoundExactly, Written};
 use super::progress::{watch, watch_boxes};
-use super::{Failure, write_all};
+use super::supplements::SupplementArgs;
+use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::report::certificate::certificate_words;
 use crate::search::sweep::Status;
 use crate::space::problem::ArmProblem;
+use crate::study::definition::Study;
 use crate::study::diagnose::{empty_pieces, why_infeasible};
-use crate::study::effects::Carried;
 use crate::study::outcome::{ExactStudy, Extent, run_exact, run_study};
-use crate::study::read::Study;
 use crate::study::tolerance::part;
 use clap::{Args, ValueEnum};
 use std::path::Path;
@@ -19,35 +20,38 @@ use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How a front is looked for, and for how long.
+/// How the front is searched for, and how long.
 #[derive(Debug, Clone, Copy, Default, Args)]
 pub struct SearchArgs {
-    /// How the front of the study is looked for; default exhaustive up to 1e9 designs, exact beyond
+    /// How the front is searched for; default: exhaustive up to 1e9 designs, exact beyond
     #[arg(long, value_enum)]
     search: Option<SearchKind>,
-    /// Stop the exact search after so long, as Ctrl-C does, and write what it found, with how much it may lack
+    /// Stop the exact search after so many seconds, as Ctrl-C does; write what it found and how much may be
+    /// missing
     #[arg(long, value_name = "SECONDS")]
     time_limit: Option<f64>,
-    /// End the exact search once it is proved that no design beats every listed one by more than this part in tip
-    /// deflection, mass and lowest mode at once, such as 2%; 0% for the whole front, beside which alone there are
-    /// fronts by material and designs near it. Default: the study's gap_percent
+    /// End the exact search once it is proved that no design beats every listed one by more than this
+    /// percentage in tip deflection, mass and lowest mode at once, such as 2%. With 0% the whole front is
+    /// found; only then are per-material fronts and near-front lists written. Default: the study's
+    /// gap_percent
     #[arg(long, value_name = "PERCENT", value_parser = part_or_none)]
     gap: Option<f64>,
 }
 
-/// The two ways in which a front is looked for.
+/// The two methods of searching for a front.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum SearchKind {
     /// Every design is visited
     Exhaustive,
-    /// Boxes of designs that cannot be on the front are cut unvisited: for spaces of any size
+    /// Groups (boxes) of designs that cannot be on the front are discarded without evaluation; for spaces of
+    /// any size
     Exact,
 }
 
 /// Above this many designs the exact search is the default.
 const MOST_VISITED: u128 = 1_000_000_000;
 
-/// Above this many designs nobody lives to see the end of an exhaustive search.
+/// Above this many designs an exhaustive search would take years.
 const MOST_CONCEIVABLE: u128 = 1_000_000_000_000_000;
 
 impl SearchArgs {
@@ -93,17 +97,7 @@ fn part_or_none(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A study to be searched.
-pub(super) struct Asked {
-    /// The study.
-    pub study: Study,
-    /// Its file's text.
-    pub text: String,
-    /// What of a measured arm carries over to it, and what does not.
-    pub carried: Vec<Carried>,
-}
-
-/// What a study is searched with, and how.
+/// The settings and catalogs that a study is searched with.
 pub(super) struct With<'a> {
     pub catalogs: &'a Catalogs,
     /// Folder of the catalogs that are laid over the built-in ones.
@@ -111,8 +105,8 @@ pub(super) struct With<'a> {
     /// Where the results go.
     pub dir: &'a Path,
     pub how: &'a SearchArgs,
-    /// What is asked for beside the front.
-    pub beside: &'a BesideArgs,
+    /// What is asked for in addition to the front.
+    pub supplements: &'a SupplementArgs,
 }
 
 /// Searches a study; nothing is written yet.
@@ -127,8 +121,8 @@ pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
 }
 
 /// Visits every design of a study.
-fn visit_all(Asked { study, text, carried }: &Asked, with: &With) -> Result<Written, Failure> {
-    let With { catalogs, overlay, dir, beside, .. } = *with;
+fn visit_all(Asked { study, text, corrections }: &Asked, with: &With) -> Result<Written, Failure> {
+    let With { catalogs, overlay, dir, supplements, .. } = *with;
     let problem = ArmProblem::new(&study.space, catalogs);
     refuse_empty(study, &problem)?;
     // a folder that cannot be written fails now, not after the search
@@ -155,7 +149,7 @@ fn visit_all(Asked { study, text, carried }: &Asked, with: &With) -> Result<Writ
             let finished = Finished {
                 study,
                 text,
-                carried,
+                corrections,
                 problem: &problem,
                 whole: &study.space,
                 outcome: &outcome,
@@ -166,13 +160,13 @@ fn visit_all(Asked { study, text, carried }: &Asked, with: &With) -> Result<Writ
                 catalogs,
                 dir,
             };
-            finished.files(beside, stop)
+            finished.files(supplements, stop)
         }
     }
 }
 
-/// A flag that is set when the user wants to stop. Whoever has heeded it and goes on clears it; a signal before that
-/// ends the program.
+/// A flag that is set when the user wants to stop. Code that reacts to it and continues must clear it: a
+/// second signal while the flag is set ends the program.
 pub(super) fn stopped_by_signal() -> &'static AtomicBool {
     static STOP: AtomicBool = AtomicBool::new(false);
     static HANDLER: Once = Once::new();
@@ -188,15 +182,15 @@ pub(super) fn stopped_by_signal() -> &'static AtomicBool {
 }
 
 /// Finds the front of a study without visiting every design.
-fn search_exactly(Asked { study, text, carried }: &Asked, with: &With) -> Result<Written, Failure> {
-    let With { catalogs, overlay, dir, how, beside } = *with;
+fn search_exactly(Asked { study, text, corrections }: &Asked, with: &With) -> Result<Written, Failure> {
+    let With { catalogs, overlay, dir, how, supplements } = *with;
     write_all(dir, &[])?;
     let stop = stopped_by_signal();
     let started = Instant::now();
     let extent = Extent {
         deadline: how.time_limit.map(|s| started + Duration::from_secs_f64(s)),
         gap: how.gap.unwrap_or(study.gap),
-        near: beside.slack(),
+        near: supplements.slack(),
     };
     let ExactStudy { study: part, outcome, boxes, gap, near, ties_listed } =
         run_exact(study, catalogs, stop, extent, watch_boxes);
@@ -222,7 +216,7 @@ fn search_exactly(Asked { study, text, carried }: &Asked, with: &With) -> Result
             let finished = Finished {
                 study: &part,
                 text,
-                carried,
+                corrections,
                 problem: &problem,
                 whole: &study.space,
                 outcome: &outcome,
@@ -233,7 +227,7 @@ fn search_exactly(Asked { study, text, carried }: &Asked, with: &With) -> Result
                 catalogs,
                 dir,
             };
-            let mut written = finished.files(beside, stop)?;
+            let mut written = finished.files(supplements, stop)?;
             written.terminal.push_str(&certificate_words(boxes, gap));
             Ok(written)
         }

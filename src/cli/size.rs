@@ -1,8 +1,11 @@
-//! `armwright size`: the drive of every joint, joint 6 to joint 1, and why others were rejected.
+//! `armwright size`: sizes the drive of every joint from the tip inward, and says why other drives were
+//! rejected.
 
-use super::run::load_study;
-use super::{Failure, write_all};
+use super::asked::load_study;
+use super::failure::Failure;
+use super::write::write_all;
 use crate::catalog::Catalogs;
+use crate::report::tube::section_size;
 use crate::sizing::check::checks;
 use crate::sizing::demand::JointDemand;
 use crate::sizing::select::DriveTable;
@@ -11,14 +14,14 @@ use crate::space::design::number_of;
 use crate::space::design_space::SpacePiece;
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::SizedJoint;
-use crate::study::read::Study;
+use crate::study::definition::Study;
 use crate::study::table::sizing_rows;
 use clap::Args;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Sizes every joint of a study's arm from the tip inward: torques (Eqs 7-12), speed, the chosen gear
-/// and motor, what binds, margin, life and the mass passed on inward.
+/// Sizes every joint of a study's arm from the tip inward: torques (Eqs 7-12), speed, the chosen gear and
+/// motor, the binding check, margin, life, and the mass that the next joint inward carries.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: armwright size light-arm\n         armwright size compare-materials --explain j2\n\n\
@@ -30,10 +33,10 @@ pub struct SizeArgs {
     /// Take the links (and chosen drives) of this design_id
     #[arg(long, value_name = "ID")]
     design: Option<String>,
-    /// Say for every part why this joint rejects it
+    /// Say for every part why it was rejected for this joint
     #[arg(long, value_name = "JOINT")]
     explain: Option<String>,
-    /// List every drive that holds at this joint, lightest first, not only the first fit
+    /// List every drive that is strong enough for this joint, lightest first
     #[arg(long, value_name = "JOINT")]
     all_fits: Option<String>,
     /// Folder for sizing.json and sizing.txt
@@ -44,7 +47,7 @@ pub struct SizeArgs {
     json: bool,
 }
 
-/// Carries out the verb.
+/// Executes the verb.
 pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let (study, _) = load_study(&args.study, catalogs)?;
     let named = |id: &String| number_of(id).ok_or_else(|| no_design(args, &study));
@@ -74,7 +77,7 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     Ok(if args.json { json } else { text })
 }
 
-/// Options of a link among which the middle one that holds is looked for.
+/// The most options of a link among which a middle one is looked for.
 const MOST_OPTIONS: u32 = 4096;
 
 fn no_design(args: &SizeArgs, study: &Study) -> Failure {
@@ -82,7 +85,7 @@ fn no_design(args: &SizeArgs, study: &Study) -> Failure {
     Failure::Usage(format!("the study \"{}\" has no design \"{id}\"", study.name))
 }
 
-/// The middle option of every open link; a joint whose drive is a choice takes the first that holds.
+/// Takes the middle option of every open link and the first drive that holds for every joint with `all_fits`.
 fn middle(problem: &ArmProblem) -> Vec<u32> {
     let mut out = Vec::new();
     for (piece, what) in problem.space().pieces.iter().enumerate().rev() {
@@ -135,16 +138,10 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
     let Some(parts) = problem.parts(chosen) else { return out };
     for (piece, part) in study.space.pieces.iter().zip(parts) {
         if let (SpacePiece::Choice(choice), crate::space::design::Part::Link(option)) = (piece, part) {
-            let (width, height) = option.section.outer_m();
-            let _ = writeln!(
-                out,
-                "link {}: {}, {:.0} x {:.0} x {:.1} mm",
-                choice.name,
-                option.material_name,
-                width * 1e3,
-                height * 1e3,
-                option.section.wall_m() * 1e3
-            );
+            let outer_mm = |m: f64| format!("{:.0}", m * 1e3);
+            let wall_mm = |m: f64| format!("{:.1}", m * 1e3);
+            let size = section_size(&option.section, outer_mm, wall_mm);
+            let _ = writeln!(out, "link {}: {}, {size}", choice.name, option.material_name);
         }
     }
     out
@@ -240,7 +237,7 @@ fn fails(problem: &ArmProblem, chosen: &[u32], slot: usize) -> Failure {
     }
 }
 
-/// Why the drive that a design has at a joint does not hold, where others would.
+/// Why the drive of a design is too weak at a joint where another drive would hold.
 fn too_weak(
     problem: &ArmProblem,
     chosen: &[u32],

@@ -1,5 +1,6 @@
 //! Input: the reading of JSON documents and tables. Every fault is recorded with its file, line, field and a hint.
 
+pub(crate) mod csv;
 pub(crate) mod duplicates;
 pub mod json;
 pub(crate) mod lines;

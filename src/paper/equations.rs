@@ -1,4 +1,4 @@
-//! The paper's own equations, written down as they are printed, beside the general mechanics.
+//! The paper's own equations as they are printed, independent of the general mechanics.
 
 use super::arm::{GRAVITY_M_S2, JOINTS, PaperArm};
 use crate::arm::LinkModel;
@@ -17,7 +17,7 @@ pub fn deflection_eq_4_m(
         * (force_n * length_m / 3.0 + line_weight_n_per_m * length_m.powi(2) / 8.0 + torque_nm / 2.0)
 }
 
-/// Eq 13: what a joint's wind-up moves the end of the arm by \[m\].
+/// Eq 13: displacement of the end of the arm by the wind-up of a joint \[m\].
 pub fn deflection_eq_13_m(torque_nm: f64, stiffness_nm_per_rad: f64, length_m: f64) -> f64 {
     (torque_nm / stiffness_nm_per_rad).sin() * length_m
 }

@@ -45,15 +45,7 @@ fn frequencies(arm: &PaperArm, matching: &Reading) -> Vec<PaperRow> {
             })
             .collect::<Vec<_>>()
     };
-    let found = format!(
-        "{} kg at and beyond the wrist (Table 1: {} kg), third spring K4 and K5 in series, \
-         {} kg at {} m: within {} %",
-        significant(matching.outboard_kg(), 4),
-        significant(arm.wrist_kg + arm.load_kg, 4),
-        significant(matching.arm.load_kg, 3),
-        fixed(matching.arm.third_link_m, 4),
-        fixed(100.0 * matching.worst(), 3)
-    );
+    let found = matching_words(arm, matching);
     [
         set(
             ["f1_literal", "f2_literal", "f3_literal"],
@@ -82,6 +74,19 @@ fn frequencies(arm: &PaperArm, matching: &Reading) -> Vec<PaperRow> {
         ),
     ]
     .concat()
+}
+
+/// The masses and the third spring that give the printed frequencies, in words.
+fn matching_words(arm: &PaperArm, matching: &Reading) -> String {
+    format!(
+        "{} kg at and beyond the wrist (Table 1: {} kg), third spring K4 and K5 in series, \
+         {} kg at {} m: within {} %",
+        significant(matching.outboard_kg(), 4),
+        significant(arm.wrist_kg + arm.load_kg, 4),
+        significant(matching.arm.load_kg, 3),
+        fixed(matching.arm.third_link_m, 4),
+        fixed(100.0 * matching.worst(), 3)
+    )
 }
 
 fn four_times(arm: &PaperArm, matching: &Reading) -> Vec<PaperRow> {

@@ -1,6 +1,6 @@
 //! The catalog parts that the paper's studies need.
 
-use super::PaperError;
+use super::output::PaperError;
 use crate::arm::joint_law::Windup;
 use crate::catalog::Catalogs;
 use crate::catalog::gear::Gear;

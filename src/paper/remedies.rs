@@ -1,12 +1,13 @@
-//! What would make the paper's arm more accurate: correcting for the joints, stiffer connections,
-//! stiffer drives first.
+//! Remedies that would make the paper's arm more accurate: correction of the joint deflection, stiffer
+//! connections, stiffer drives.
 
 use super::arm::{JOINTS, LINKS, PaperArm, Solved, connect, stiffen_link};
-use super::{PaperError, parts};
+use super::output::PaperError;
+use super::parts;
 use crate::arm::LinkModel;
 use crate::arm::joint_law::Curve;
 use crate::catalog::Catalogs;
-use crate::report::number::{fixed, percent_change, shortest};
+use crate::report::number::{fixed, percent, percent_change, shortest};
 use crate::report::table::{Column, Table};
 
 /// How well the gear's curve is known, in the conclusions' second remedy.
@@ -41,14 +42,14 @@ impl CatalogGears {
     }
 }
 
-/// What is left of the tip error after a correction.
+/// The tip error that remains after a correction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorLeft {
     /// What is measured or computed.
     pub method: String,
-    /// Left if the gears are springs of stiffness K2 \[m\].
+    /// Remaining error if the gears are springs of stiffness K2 \[m\].
     pub middle_slope_m: f64,
-    /// Left if the gears follow the three-segment curve \[m\].
+    /// Remaining error if the gears follow the three-segment curve \[m\].
     pub curve_m: f64,
 }
 
@@ -65,7 +66,7 @@ pub fn error_left(gears: &CatalogGears) -> Vec<ErrorLeft> {
         row("joint deflection measured at the output: the links are left", &Solved::links_m),
     ];
     for error in CURVE_ERRORS {
-        let method = format!("computed from motor torque, curve known to {} %", fixed(100.0 * error, 0));
+        let method = format!("computed from motor torque, curve known to {}", percent(100.0 * error, 0));
         rows.push(row(&method, &|s| s.links_m() + error * s.joints_m()));
     }
     rows.push(row("computed from motor torque with K2 alone", &|s| s.drop_m() - k2.joints_m()));
@@ -86,9 +87,9 @@ pub fn error_left_table(rows: &[ErrorLeft]) -> Table {
         table.row([
             row.method.clone(),
             millimetres(row.middle_slope_m),
-            percent(row.middle_slope_m / all.middle_slope_m),
+            percent(100.0 * (row.middle_slope_m / all.middle_slope_m), 1),
             millimetres(row.curve_m),
-            percent(row.curve_m / all.curve_m),
+            percent(100.0 * (row.curve_m / all.curve_m), 1),
         ]);
     }
     table
@@ -101,7 +102,7 @@ pub struct Connection {
     pub joint: &'static str,
     /// Stiffness between gear and arm \[N m/rad\].
     pub output_nm_per_rad: f64,
-    /// Stiffness between motor and gear that does the same: N² times smaller \[N m/rad\].
+    /// Stiffness between motor and gear with the same effect: N² times smaller \[N m/rad\].
     pub motor_side_nm_per_rad: f64,
     /// What it adds to the drop of the load \[m\].
     pub added_m: f64,
@@ -205,8 +206,4 @@ pub fn stiffer_table(rows: &[Stiffer]) -> Table {
 
 fn millimetres(metres: f64) -> String {
     fixed(1e3 * metres, 4)
-}
-
-fn percent(ratio: f64) -> String {
-    format!("{} %", fixed(100.0 * ratio, 1))
 }

@@ -1,10 +1,10 @@
-//! One number of the paper beside ours, and how a list of them is written.
+//! A number of the paper next to ours, and tables of such rows.
 
 use crate::report::number::{fixed, shortest};
 use crate::report::table::{Column, Table};
 use serde_json::{Value, json};
 
-/// One of the paper's numbers beside ours.
+/// One of the paper's numbers next to ours.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PaperRow {
     /// Key, stable across versions.
@@ -13,24 +13,24 @@ pub struct PaperRow {
     pub quantity: &'static str,
     /// Its unit; empty for a plain ratio.
     pub unit: &'static str,
-    /// The paper's number, where it prints one.
+    /// The number that the paper prints, if any.
     pub paper: Option<f64>,
     /// The paper's words for it: `less than 3`, `about 70`.
     pub paper_words: &'static str,
-    /// Our number under the reading that gives the paper's.
+    /// Our number, with the reading of the equation that gives the paper's number.
     pub reading_value: Option<f64>,
-    /// The number in an exact frame: all compliances, Table 1 as printed.
+    /// The number of the exact model: all compliances, Table 1 as printed.
     pub exact: Option<f64>,
     /// Digits after the point.
     pub decimals: usize,
     /// The reading.
     pub reading: String,
-    /// Why the numbers differ, where they do.
+    /// Why the numbers differ, if they do.
     pub reason: String,
 }
 
 impl PaperRow {
-    /// A row with the paper's number left open.
+    /// A row without a number of the paper.
     pub fn new(id: &'static str, quantity: &'static str, unit: &'static str, decimals: usize) -> Self {
         Self { id, quantity, unit, decimals, ..Self::default() }
     }
@@ -42,7 +42,7 @@ impl PaperRow {
         self
     }
 
-    /// Ours under the paper's reading, and the reading.
+    /// Sets our number under a reading of the paper, and that reading in words.
     pub fn reading(mut self, value: f64, reading: impl Into<String>) -> Self {
         self.reading_value = Some(value);
         self.reading = reading.into();
@@ -84,7 +84,7 @@ impl PaperRow {
     }
 }
 
-/// Numbers side by side; words are left to [`notes`].
+/// The numbers next to each other; the words are in [`notes`].
 pub fn table(rows: &[PaperRow]) -> Table {
     let mut table = Table::new(vec![
         Column::right("#"),
@@ -107,7 +107,8 @@ pub fn table(rows: &[PaperRow]) -> Table {
     table
 }
 
-/// Reading and reason of each row, numbered as in [`table`]; a reading that goes on is given once.
+/// Reading and reason of each row, numbered as in [`table`]; a reading shared by consecutive rows is given
+/// once.
 pub fn notes(rows: &[PaperRow]) -> String {
     let mut text = String::new();
     let mut before = "";

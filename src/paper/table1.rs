@@ -1,17 +1,19 @@
 //! `paper-table1`: the paper's numbers beside ours.
 
 use super::arm::PaperArm;
+use super::output::{PaperError, PaperStudyOutput};
 use super::remedies::{
     CatalogGears, connection_table, connections, error_left, error_left_table, stiffer, stiffer_table,
 };
 use super::rows::{self, PaperRow};
 use super::third_spring::{self, Reading, closest_reading, readings};
-use super::{PaperError, PaperStudyOutput, modes_rows, parts, statics_rows, torque_rows};
+use super::{modes_rows, parts, statics_rows, torque_rows};
 use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::mechanics::response::frequency_response;
 use crate::report::number::{fixed, shortest};
-use crate::report::svg::{Axis, Guide, Plot, Scale, Series, Stroke};
+use crate::report::svg::plot::{Axis, Guide, Plot, Series, Stroke};
+use crate::report::svg::scale::Scale;
 use crate::report::table::{Column, Table};
 use nalgebra::Vector3;
 
@@ -185,7 +187,7 @@ fn response_csv(rigid: &[(f64, f64)], full: &[(f64, f64)]) -> String {
 
 fn response_plot(rigid: Vec<(f64, f64)>, full: Vec<(f64, f64)>) -> Plot {
     let lowest = PaperArm::table_1().solve(LinkModel::Full).lowest_hz();
-    let bare =
+    let unmarked =
         |name, style, points, stroke| Series { stroke, marker_px: 0.0, ..Series::line(name, style, points) };
     Plot {
         title: "The paper's arm under a harmonic force at the load".into(),
@@ -197,8 +199,8 @@ fn response_plot(rigid: Vec<(f64, f64)>, full: Vec<(f64, f64)>) -> Plot {
         x: Axis::new("frequency [Hz]", Scale::Log),
         y: Axis::new("amplitude at the load [\u{b5}m/N]", Scale::Log),
         series: vec![
-            bare("flexible links", 0, full, Stroke::Solid),
-            bare("rigid links (Eq 16)", 1, rigid, Stroke::Dashed),
+            unmarked("flexible links", 0, full, Stroke::Solid),
+            unmarked("rigid links (Eq 16)", 1, rigid, Stroke::Dashed),
         ],
         guides: vec![Guide {
             vertical: true,

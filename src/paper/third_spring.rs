@@ -1,4 +1,5 @@
-//! Which arms have the paper's three frequencies: more than one, so they cannot tell the third spring.
+//! Arms that have the paper's three frequencies. There is more than one, so the frequencies do not determine
+//! the third spring.
 
 use super::arm::PaperArm;
 use super::coupled::{CoupledArm, masses_that_give};

@@ -2,8 +2,9 @@
 
 use super::arm::PaperArm;
 use super::equations::{DynamicTorque, LOAD_ACCELERATION_M_S2, dynamic_torque_at_joint_2};
+use super::output::PaperError;
+use super::parts;
 use super::rows::PaperRow;
-use super::{PaperError, parts};
 use crate::catalog::Catalogs;
 use crate::report::number::fixed;
 

@@ -1,4 +1,4 @@
-//! A small plot for a terminal: dots in braille characters, two by four a character.
+//! A small plot for a terminal: each braille character holds two by four dots.
 
 use super::number::significant;
 
@@ -7,7 +7,7 @@ const DOTS: [[u8; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
 /// Room for the numbers of the upright axis \[characters\].
 const MARGIN: usize = 7;
 
-/// A plot of points, as wide as asked; the axes count in ratios beyond a decade.
+/// A plot of points, as wide as asked; an axis that spans more than a decade is logarithmic.
 pub fn plot(title: &str, x_label: &str, points: &[(f64, f64)], width: usize, height: usize) -> Vec<String> {
     let (x, y) = (Scale::of(points.iter().map(|p| p.0)), Scale::of(points.iter().map(|p| p.1)));
     let columns = width.saturating_sub(MARGIN + 1).max(8);
@@ -47,7 +47,7 @@ pub fn beside(left: &[String], right: &[String], width: usize) -> String {
     (0..left.len().max(right.len())).map(line).collect()
 }
 
-/// A bar of this share of the width, never nothing.
+/// A bar as long as this share of the width, at least one character.
 pub fn bar(share: f64, width: usize) -> String {
     "\u{2588}".repeat(((share.clamp(0.0, 1.0) * width as f64).round() as usize).max(1))
 }

@@ -1,10 +1,10 @@
 //! The stiffness budget of a front's picks as words, tables and CSV: what one more kilogram buys at each joint
 //! and link, and how far each pick is from the lightest arm that could do as well.
 
-use super::compare::text::wrap;
-use super::html::Extra;
-use super::number::{fixed, shortest, significant};
+use super::number::{fixed, percent, shortest, significant};
+use super::section::PageSection;
 use super::table::{Column, Table, csv_line};
+use super::words::wrap;
 
 /// Change per kilogram added.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,16 +46,17 @@ pub struct BudgetRow {
     pub share: f64,
     /// What a kilogram buys if mass and stiffness of the piece grow in proportion.
     pub in_place: Gain,
-    /// Of the heavier parts that help, the one with the best change of deflection per kilogram.
+    /// The heavier part that lowers the deflection most per kilogram, if any part helps.
     pub next_part: Option<NextPart>,
 }
 
-/// What is known of lighter designs as good as a pick.
+/// Lower bounds on the mass of a design that is as good as a pick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PickBound {
-    /// No design of the study that sags no more and vibrates no lower is lighter \[kg\].
+    /// Lower bound: no design of the study that is at least as stiff and has at least as high a lowest mode
+    /// weighs less \[kg\].
     pub mass_kg: f64,
-    /// About the mass of the lightest mixture of catalog parts that is as good \[kg\]; at most the bound.
+    /// Approximate mass if parts could be blended between catalog options \[kg\]; at most the bound.
     pub mixture_kg: f64,
     /// Whether loads may oppose each other somewhere, which weakens the bound.
     pub loads_oppose: bool,
@@ -70,24 +71,24 @@ pub struct PickBudget {
     pub design_id: String,
     /// Its mass \[kg\].
     pub mass_kg: f64,
-    /// What is known of lighter designs; `None` where only a part of the study's options is at hand.
+    /// Lower bounds on its mass; `None` if they could not be worked out.
     pub bound: Option<PickBound>,
     /// Pieces that weigh, base to tip.
     pub rows: Vec<BudgetRow>,
 }
 
 impl PickBudget {
-    /// How much heavier it is than a mass \[%\].
+    /// How much heavier the pick is than a given mass \[%\].
     fn above_percent(&self, mass_kg: f64) -> f64 {
         100.0 * (self.mass_kg / mass_kg - 1.0)
     }
 
-    /// Part of the tip's deflection that the joints give, 0 to 1.
+    /// The joints' share of the tip deflection, from 0 to 1.
     fn joints_share(&self) -> f64 {
         self.rows.iter().filter(|r| r.is_joint).map(|r| r.share).sum()
     }
 
-    /// The joint or link where a kilogram lowers the tip most.
+    /// The joint (or link) at which an added kilogram reduces the tip deflection most.
     fn best(&self, joint: bool) -> Option<&BudgetRow> {
         let of_kind = self.rows.iter().filter(|r| r.is_joint == joint);
         of_kind.min_by(|a, b| a.in_place.mm_per_kg.total_cmp(&b.in_place.mm_per_kg))
@@ -97,12 +98,12 @@ impl PickBudget {
         format!("{} ({})", self.names.join(", "), self.design_id)
     }
 
-    /// Where effort should go, in a sentence.
+    /// The advice in a sentence: where to add mass first.
     fn advice(&self) -> String {
         let lead = format!(
-            "{}: joints give {} % of the tip's deflection",
+            "{}: joints give {} of the tip's deflection",
             self.title(),
-            fixed(100.0 * self.joints_share(), 0)
+            percent(100.0 * self.joints_share(), 0)
         );
         let (joint, link) = (self.best(true), self.best(false));
         let paying = |row: Option<&BudgetRow>| row.is_some_and(|r| r.in_place.mm_per_kg < 0.0);
@@ -118,24 +119,24 @@ impl PickBudget {
                 });
                 let place = if best.is_joint { "the drive of" } else { "the link" };
                 format!(
-                    "{lead}; effort goes into {place} {} first, where added mass {}{other}.{}",
+                    "{lead}; add mass first to {place} {}, where it {}{other}.{}",
                     best.piece,
                     effect(&best.in_place),
                     self.mode_advice(best)
                 )
             }
-            _ => format!("{lead}; a kilogram more anywhere only weighs: the tip sinks."),
+            _ => format!("{lead}; added mass does not reduce the deflection anywhere."),
         }
     }
 
-    /// Where the mode rises most, if elsewhere.
+    /// Where the lowest mode rises most, if that is another piece.
     fn mode_advice(&self, told: &BudgetRow) -> String {
         let best = self.rows.iter().max_by(|a, b| a.in_place.hz_per_kg.total_cmp(&b.in_place.hz_per_kg));
         best.filter(|b| b.piece != told.piece && b.in_place.hz_per_kg > NOTHING).map_or(
             String::new(),
             |best| {
                 let hz = significant(best.in_place.hz_per_kg, 2);
-                format!(" The mode rises most at {}, by {hz} Hz/kg.", best.piece)
+                format!(" The lowest mode rises most at {}, by {hz} Hz/kg.", best.piece)
             },
         )
     }
@@ -160,25 +161,25 @@ fn kind(row: &BudgetRow) -> &'static str {
 /// Changes smaller than this in a kilogram are rounding errors \[mm or Hz\].
 const NOTHING: f64 = 1e-6;
 
-/// `lowers the sag by 0.021 mm/kg and raises the mode by 0.40 Hz/kg`, its signs in words: rates, for a kilogram may be
-/// more than the piece weighs.
+/// A change in words: `lowers the deflection by 0.021 mm/kg and raises the mode by 0.40 Hz/kg`. The numbers
+/// are rates, because a kilogram may be more than the piece weighs.
 fn effect(gain: &Gain) -> String {
     let part = |change: f64, what: &str, unit: &str| {
         if change.abs() < NOTHING {
-            return format!("leaves the {what} as it is");
+            return format!("does not change the {what}");
         }
         let verb = if change < 0.0 { "lowers" } else { "raises" };
         format!("{verb} the {what} by {} {unit}", significant(change.abs(), 2))
     };
-    format!("{} and {}", part(gain.mm_per_kg, "sag", "mm/kg"), part(gain.hz_per_kg, "mode", "Hz/kg"))
+    format!("{} and {}", part(gain.mm_per_kg, "deflection", "mm/kg"), part(gain.hz_per_kg, "mode", "Hz/kg"))
 }
 
-/// The pick that stands for all: the knee, where there is one.
+/// The pick shown on the terminal: the knee, or the last pick if there is no knee.
 fn shown(budgets: &[PickBudget]) -> Option<&PickBudget> {
     budgets.iter().find(|b| b.names.contains(&"knee")).or(budgets.last())
 }
 
-/// A change with its sign, in at most seven characters where it is below a thousand.
+/// A change with its sign; at most seven characters if it is below 1000.
 fn signed(value: f64) -> String {
     let text = if value.abs() < 0.1 { fixed(value, 4) } else { significant(value, 3) };
     let rises = value > 0.0 && text.bytes().any(|b| (b'1'..=b'9').contains(&b));
@@ -196,8 +197,8 @@ const FULL: [&str; 9] = [
     "with it: tip [mm/kg]",
     "mode [Hz/kg]",
 ];
-const TERMINAL: [&str; 9] =
-    ["piece", "mass kg", "% of sag", "mm/kg", "Hz/kg", "", "next: kg", "mm/kg", "Hz/kg"];
+const NARROW: [&str; 9] =
+    ["piece", "mass kg", "% of tip", "mm/kg", "Hz/kg", "", "next: kg", "mm/kg", "Hz/kg"];
 
 /// The budget of a pick under these headers; an empty header leaves its column out.
 fn budget_table(pick: &PickBudget, headers: [&str; 9]) -> Table {
@@ -230,7 +231,7 @@ fn bounds_table(budgets: &[PickBudget]) -> Option<Table> {
     let mut table = Table::new(vec![
         Column::left("pick"),
         Column::right("mass kg"),
-        Column::right("none below"),
+        Column::right("lower bound"),
         Column::right("above %"),
         Column::right("mixture"),
     ]);
@@ -248,12 +249,12 @@ fn bounds_table(budgets: &[PickBudget]) -> Option<Table> {
     (!table.rows().is_empty()).then_some(table)
 }
 
-const BOUND_WORDS: &str = "None below: no arm of the study that sags no more and vibrates no lower is lighter. Mixture: what \
-                           the convex relaxation gives at first, in which every piece may be a mixture of its catalog options.";
-const OPPOSED_WORDS: &str = "* loads may oppose each other, which weakens the bound.";
-const IN_PLACE_WORDS: &str = "Per kilogram added to a piece, its stiffness growing in proportion; minus lowers the tip's \
-                              deflection. Next part: of the heavier parts that may stand there and lower the deflection or \
-                              raise the mode, the best per kilogram, all others kept.";
+const BOUND_WORDS: &str = "Lower bound: no arm of this study that is as stiff and has as high a lowest mode weighs less. \
+                           Mixture: the mass if parts could be blended between catalog options.";
+const OPPOSED_WORDS: &str = "* Loads may oppose each other, which weakens the bound.";
+const IN_PLACE_WORDS: &str = "Changes per kilogram added to a piece whose stiffness grows in proportion; a negative number \
+                              lowers the tip deflection. Next part: the heavier catalog part that improves deflection or \
+                              mode most per kilogram, with all other parts unchanged.";
 
 fn opposed(budgets: &[PickBudget]) -> bool {
     budgets.iter().any(|b| b.bound.is_some_and(|b| b.loads_oppose))
@@ -263,7 +264,7 @@ fn opposed(budgets: &[PickBudget]) -> bool {
 pub fn budget_text(budgets: &[PickBudget], width: usize) -> String {
     let Some(pick) = shown(budgets) else { return String::new() };
     let mut out = format!("What one more kilogram buys at each joint and link: {}\n", pick.title());
-    out.push_str(&budget_table(pick, TERMINAL).to_text());
+    out.push_str(&budget_table(pick, NARROW).to_text());
     out.push_str(&wrap(&pick.advice(), width, ""));
     if let Some(table) = bounds_table(budgets) {
         out.push_str(&format!("\n{}", table.to_text()));
@@ -296,7 +297,7 @@ pub fn budget_markdown(budgets: &[PickBudget]) -> String {
 }
 
 /// The part of the page; `None` if there is no budget.
-pub fn budget_extra(budgets: &[PickBudget]) -> Option<Extra> {
+pub fn budget_extra(budgets: &[PickBudget]) -> Option<PageSection> {
     let mut tables: Vec<(String, Table)> = budgets
         .iter()
         .map(|pick| (format!("What one more kilogram buys: {}", pick.title()), budget_table(pick, FULL)))
@@ -307,11 +308,11 @@ pub fn budget_extra(budgets: &[PickBudget]) -> Option<Extra> {
         let note = if opposed(budgets) { format!(" {OPPOSED_WORDS}") } else { String::new() };
         tables.push((format!("How light could the picks be? {BOUND_WORDS}{note}"), table));
     }
-    (!budgets.is_empty()).then(|| Extra {
+    (!budgets.is_empty()).then(|| PageSection {
         title: "Stiffness budget".into(),
         words,
         tables,
-        ..Extra::default()
+        ..PageSection::default()
     })
 }
 

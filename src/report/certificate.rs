@@ -1,22 +1,23 @@
-//! How sure a front is: what was visited, what was cut and why, what may be missing.
+//! How sure a front is: what was visited, what was discarded and why, and what may be missing.
 
-use super::compare::text::wrap;
-use super::html::Extra;
-use super::number::significant;
-use super::summary::{SummaryFacts, TERMINAL, large};
+use super::facts::SummaryFacts;
+use super::number::{large, percent_rounded};
+use super::section::PageSection;
+use super::words::{TERMINAL, wrap};
 
-/// The section of a page; `boxes` are those bounded and left open by an exact search.
-pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Extra {
+/// The section of a page. `boxes` holds, for an exact search, how many boxes were bounded and how many were
+/// left open.
+pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> PageSection {
     let words = match (boxes, facts.is_stopped()) {
         (None, false) => vec![format!(
-            "Every design was visited: of {} {} hold and were judged, and {} were excluded because a drive, a link \
-             or a limit does not hold. None is missing.",
+            "Every design was visited, so none is missing: of {} designs {} meet the limits, and {} were excluded \
+             because a drive or a link is too weak or a limit is broken.",
             large(facts.designs_total),
             large(facts.designs_evaluated),
             large(facts.designs_excluded),
         )],
         (None, true) => vec![format!(
-            "The search was stopped after {} of {} designs: any design that was not visited may be missing.",
+            "The search was stopped after {} of {} designs: designs that were not visited may be missing.",
             large(facts.designs_evaluated + facts.designs_excluded),
             large(facts.designs_total),
         )],
@@ -27,52 +28,52 @@ pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Ext
                 large(bounded.into()),
                 gap_words(facts.gap.unwrap_or_default()),
             ),
-            "That is what was asked for. A smaller --gap lists more designs and takes longer; limits on mass, deflection \
-             or mode (constraints) leave a part of the front that can be had whole."
+            "This is the gap that was asked for. A smaller --gap lists more designs and takes longer. With tighter limits on \
+             mass, deflection or mode (constraints) the remaining part of the front can be complete."
                 .into(),
         ],
         (Some([bounded, _]), false) => vec![
             format!(
-                "The front is proved complete without visiting all {} designs: {} boxes of parts cover them. Each was cut \
-                 because not even the best its members could be meets the limits, or because a design listed here is \
-                 better than that.",
+                "The front is proved complete without visiting all {} designs. They are covered by {} boxes (groups of \
+                 designs). Each box was discarded because none of its designs can meet the limits, or because a design \
+                 listed here is better than any of them can be.",
                 large(facts.designs_total),
                 large(bounded.into()),
             ),
-            "Designs that differ by less than a part in 1e9 in every objective count as equal.".into(),
+            "Designs whose objectives all differ by less than one part in 1e9 count as equal.".into(),
         ],
         (Some([bounded, open]), true) => vec![
             format!(
-                "The search was stopped: of the {} boxes of parts that were bounded {} were left open.",
+                "The search was stopped: {} boxes of designs were bounded, and {} were left open.",
                 large(bounded.into()),
                 large(open.into()),
             ),
             match facts.gap {
                 Some(gap) => {
-                    format!("Of what they hold {}. A longer --time-limit narrows this.", gap_words(gap))
+                    format!("What is known of the designs in them: {}. A longer --time-limit narrows this.", gap_words(gap))
                 }
-                None => "Nothing can be said of what they hold. A longer --time-limit helps.".into(),
+                None => "Nothing is known of the designs in them. A longer --time-limit helps.".into(),
             },
         ],
     };
-    let how = "Check it again from this front (the check says by whose bounds): armwright front check";
+    let how = "To verify this front again, run: armwright front check";
     let words = words.into_iter().chain([format!("{how} {}", facts.results)]).collect();
-    Extra { title: "How sure is this front?".into(), words, tables: Vec::new(), figures: Vec::new() }
+    PageSection { title: "How sure is this front?".into(), words, tables: Vec::new(), figures: Vec::new() }
 }
 
-/// How much an exact search may have missed: the words that page, terminal and summary share.
+/// How much an exact search may have missed, in the same words for page, terminal and summary.
 pub fn gap_words(gap: f64) -> String {
     format!(
-        "no design beats every listed one by more than {} % in tip deflection, mass and lowest mode at once",
-        significant(100.0 * gap, 2)
+        "no design beats every listed one by more than {} in tip deflection, mass and lowest mode at once",
+        percent_rounded(100.0 * gap, 2)
     )
 }
 
-/// What an exact search proves, for the terminal; `boxes` as for the page.
+/// What an exact search proved, for the terminal. `boxes` as in [`certificate_section`].
 pub fn certificate_words([boxes, open]: [u64; 2], gap: Option<f64>) -> String {
     match (open, gap) {
         (0, None | Some(0.0)) => {
-            format!("certified: no design that is not listed is on the front ({boxes} boxes)\n")
+            format!("certified: every design of the front is listed ({boxes} boxes)\n")
         }
         (0, Some(gap)) => wrap(&format!("certified: {} ({boxes} boxes)", gap_words(gap)), TERMINAL, ""),
         (_, Some(gap)) => {
@@ -80,7 +81,7 @@ pub fn certificate_words([boxes, open]: [u64; 2], gap: Option<f64>) -> String {
             wrap(&words, TERMINAL, "")
         }
         (_, None) => {
-            format!("partial: nothing can be said of what is missing ({boxes} boxes, {open} open)\n")
+            format!("partial: what is missing is not known ({boxes} boxes, {open} open)\n")
         }
     }
 }

@@ -7,17 +7,20 @@
 use super::front_table::FrontTable;
 use super::number::significant;
 use super::picks::{Design, Objective, Pick, designs, materials};
+use super::svg::draw::{MUTED, PALETTE};
+use super::svg::plot::{Axis, Note, Plot, Series, Side, Stroke};
+use super::svg::scale::Scale;
 use super::svg::sheet::Sheet;
-use super::svg::{Axis, MUTED, Note, PALETTE, Plot, Scale, Series, Side, Stroke};
 use std::collections::HashSet;
 
 const WIDTH_PX: f64 = 900.0;
 const HEIGHT_PX: f64 = 460.0;
-/// Ends of an axis so many times apart count in ratios: light arms crowd at the left of a linear one.
+/// An axis whose ends are further apart than this factor is logarithmic: on a linear one light arms would
+/// crowd at the left.
 pub const WIDE: f64 = 5.0;
-/// Points of one series nearer than this share of an axis are drawn once.
+/// Points of one series that are closer than this share of an axis are drawn once.
 const GRAIN: f64 = 1.0 / 200.0;
-/// Markers on an edge keep so many grains from one another.
+/// Least distance between markers on an edge \[grains\].
 const MARKER_STEPS: f64 = 3.0;
 
 /// A front that is drawn.
@@ -57,7 +60,7 @@ fn designs_where(front: &FrontTable, wanted: impl Fn(&[&str]) -> bool) -> FrontT
     FrontTable { columns: front.columns.clone(), rows: rows.map(|r| front.rows[r].clone()).collect() }
 }
 
-/// A front that is drawn, by its designs.
+/// A front with its designs, ready to be drawn.
 struct Drawn<'a> {
     name: &'a str,
     muted: bool,
@@ -155,7 +158,7 @@ fn axis(objective: Objective, shown: &[&Design]) -> Axis {
     Axis::new(label, scale)
 }
 
-/// What cannot be told apart on a panel.
+/// The resolution of a panel: designs closer than this look like one.
 struct Grain {
     axes: [(Objective, Scale); 2],
     low: [f64; 2],
@@ -172,7 +175,8 @@ impl Grain {
         Self { axes, low: ends.map(|e| e.0), step }
     }
 
-    /// All designs of a front as small dots without a name; of those on one place the first is drawn.
+    /// All designs of a front as small dots without a name. If several fall on one place, only the first is
+    /// drawn.
     fn cloud(&self, front: &Drawn, index: usize) -> Series {
         let mut seen = HashSet::new();
         let cell =

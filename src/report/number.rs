@@ -30,11 +30,65 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     if is_negative_zero { text[1..].to_string() } else { text }
 }
 
+/// A percentage with `decimals` digits after the point: `12.5 %`.
+pub fn percent(value: f64, decimals: usize) -> String {
+    format!("{} %", fixed(value, decimals))
+}
+
+/// A percentage with `digits` significant digits: `2.0 %`.
+pub fn percent_rounded(value: f64, digits: usize) -> String {
+    format!("{} %", significant(value, digits))
+}
+
+/// A share in percent, with one decimal unless that is zero.
+pub fn percent_short(share: f64) -> String {
+    let text = format!("{:.1}", 100.0 * share);
+    format!("{} %", text.strip_suffix(".0").unwrap_or(&text))
+}
+
+/// A share in percent; a part is never rounded to 0 % or to 100 %.
+pub fn percent_of(part: usize, whole: usize) -> String {
+    let share = 100.0 * part as f64 / whole.max(1) as f64;
+    match share {
+        _ if part == 0 => "0 %".into(),
+        s if part > 0 && s < 0.1 => "<0.1 %".into(),
+        s if part < whole && s > 99.9 => ">99.9 %".into(),
+        s if s < 10.0 || (part < whole && s >= 99.0) => format!("{s:.1} %"),
+        s => format!("{s:.0} %"),
+    }
+}
+
 /// A change in percent with `decimals` digits and, unless it rounds to zero, its sign: `+75.2 %`.
 pub fn percent_change(ratio: f64, decimals: usize) -> String {
     let text = fixed(100.0 * (ratio - 1.0), decimals);
     let rises = text.bytes().any(|b| (b'1'..=b'9').contains(&b)) && !text.starts_with('-');
     if rises { format!("+{text} %") } else { format!("{text} %") }
+}
+
+/// A cost with three digits, whole above 100.
+pub fn cost_words(value: f64) -> String {
+    if value.abs() >= 100.0 { format!("{value:.0}") } else { significant(value, 3) }
+}
+
+/// A count in digits, or as a power of ten where nobody counts digits.
+pub fn large(n: u128) -> String {
+    if n < 1_000_000_000_000 { grouped(n) } else { format!("{:.2e}", n as f64) }
+}
+
+/// A whole number with commas; above 1e12 in powers of ten.
+pub fn grouped(n: u128) -> String {
+    if n >= 1_000_000_000_000 {
+        return significant(n as f64, 3);
+    }
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (i, c) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(c);
+    }
+    out
 }
 
 /// The shortest text that reads back as exactly the same `f64`.
@@ -82,5 +136,15 @@ mod tests {
         }
         assert_eq!(shortest(0.7e-6), "7e-7");
         assert_eq!(shortest(210e9), "210000000000");
+    }
+
+    #[test]
+    fn counts_are_grouped_and_shares_never_rounded_to_nothing() {
+        assert_eq!(grouped(10_536_192), "10,536,192");
+        assert_eq!(grouped(999), "999");
+        assert_eq!(grouped(12_300_000_000_000_000_000), "1.23e19");
+        assert_eq!(percent_of(1, 5000), "<0.1 %");
+        assert_eq!(percent_of(4999, 5000), ">99.9 %");
+        assert_eq!(percent_of(0, 0), "0 %");
     }
 }

@@ -1,6 +1,8 @@
 //! The designs of a front that a reader looks for first: lightest, stiffest, highest mode, knee.
 
 use super::front_table::FrontTable;
+use super::number::significant;
+use super::tube::tube_size;
 use std::cmp::Ordering;
 
 /// One design of a front by its objectives.
@@ -57,6 +59,11 @@ impl Objective {
             Self::Mass => "kg",
             Self::Mode => "Hz",
         }
+    }
+
+    /// A value with four digits and its unit.
+    pub fn amount(self, value: f64) -> String {
+        format!("{} {}", significant(value, 4), self.unit())
     }
 }
 
@@ -170,12 +177,14 @@ pub fn choices(front: &FrontTable, row: usize) -> Vec<String> {
     let cell = |name: &str| front.column(name).map(|c| front.rows[row][c].as_str()).filter(|c| !c.is_empty());
     let piece = |column: &String| {
         if let Some(link) = column.strip_suffix("_material") {
-            let sizes = ["width_mm", "height_mm", "wall_mm"].map(|s| cell(&format!("{link}_{s}")));
-            let sizes: Vec<&str> = sizes.into_iter().flatten().collect();
-            let size = if sizes.is_empty() { String::new() } else { format!(" {} mm", sizes.join(" x ")) };
-            let round = cell(&format!("{link}_shape")).is_some_and(|s| s.starts_with("round"));
-            let shape = if round { " round" } else { "" };
-            return cell(column).map(|material| format!("{link}{shape}{size} {material}"));
+            let is_round = cell(&format!("{link}_shape")).is_some_and(|s| s.starts_with("round"));
+            let size = match ["width_mm", "height_mm", "wall_mm"].map(|s| cell(&format!("{link}_{s}"))) {
+                [Some(width), Some(height), Some(wall)] => {
+                    format!(" {}", tube_size(is_round, [width, height, wall]))
+                }
+                _ => String::new(),
+            };
+            return cell(column).map(|material| format!("{link}{size} {material}"));
         }
         let joint = column.strip_suffix("_gear")?;
         let parts: Vec<&str> =

@@ -2,64 +2,16 @@
 
 use super::budget::{PickBudget, budget_markdown, budget_text};
 use super::certificate::gap_words;
-use super::compare::cost_words;
-use super::compare::text::{short_labels, wrap};
+use super::compare::text::short_labels;
+use super::facts::SummaryFacts;
 use super::front_table::FrontTable;
-use super::number::significant;
+use super::number::{cost_words, grouped, large, percent_of, significant};
 use super::picks::{Design, Objective, Pick, best, choices, designs, knee, materials, picks};
 use super::table::{Column, Table};
-use crate::space::constraint::Constraints;
+use super::words::{TERMINAL, and, capital, wrap};
 
 /// Height of a small plot \[characters\].
 const PLOT_ROWS: usize = 8;
-/// Width of a terminal \[characters\].
-pub(super) const TERMINAL: usize = 80;
-
-/// What a run knows besides its fronts.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct SummaryFacts {
-    /// Name of the study.
-    pub study: String,
-    /// Its question in a sentence.
-    pub question: String,
-    /// How the search ended: `complete`, `certified`, `partial`, `infeasible` or `interrupted`.
-    pub status: String,
-    /// Designs in the space.
-    pub designs_total: u128,
-    /// Designs whose three objectives were computed.
-    pub designs_evaluated: u128,
-    /// Designs left out because a limit cannot hold.
-    pub designs_excluded: u128,
-    /// By what part at most a design that is not listed beats every listed one in all three objectives, of a
-    /// search that was stopped.
-    pub gap: Option<f64>,
-    /// Duration of the search \[s\].
-    pub elapsed_s: f64,
-    /// Worker threads; 0 = not known.
-    pub threads: usize,
-    /// Version of the program.
-    pub tool_version: String,
-    /// Constraints in words; see [`constraint_words`].
-    pub constraints: Vec<String>,
-    /// Names of the cases, the worst of which counts.
-    pub cases: Vec<String>,
-    /// Parts and options left out because a figure is unknown, in words.
-    pub not_checked: Vec<String>,
-    /// Result folder as it is typed.
-    pub results: String,
-}
-
-impl SummaryFacts {
-    /// Whether the search did not come to its end.
-    pub fn is_stopped(&self) -> bool {
-        ["partial", "interrupted"].contains(&self.status.as_str())
-    }
-
-    /// Whether no design is missing.
-    pub fn is_whole(&self) -> bool {
-        !self.is_stopped() && self.gap.is_none_or(|gap| gap == 0.0)
-    }
-}
 
 /// The front of one material's designs.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,29 +41,6 @@ pub struct SummaryInput {
     pub budgets: Vec<PickBudget>,
 }
 
-/// Constraints in words, one a line; empty if there are none.
-pub fn constraint_words(constraints: &Constraints) -> Vec<String> {
-    let c = constraints;
-    let plain = super::number::shortest;
-    [
-        c.tip_deflection_max_m.map(|v| format!("tip deflection at most {} mm", significant(v * 1e3, 4))),
-        c.mass_max_kg.map(|v| format!("mass at most {} kg", plain(v))),
-        c.lowest_mode_min_hz.map(|v| format!("lowest mode at least {} Hz", plain(v))),
-        c.servo.map(|s| {
-            let (bandwidth, ratio) = (plain(s.bandwidth_hz), plain(s.ratio));
-            format!("lowest mode at least {ratio} times the servo bandwidth of {bandwidth} Hz")
-        }),
-        c.stress_safety_factor_min
-            .map(|v| format!("strength at least {} times the stress at peak load", plain(v))),
-        c.wall_slenderness_max
-            .map(|v| format!("flat width at most {} times the wall (local buckling)", plain(v))),
-        c.material_cost_max_eur.map(|v| format!("links' material at most {} EUR", plain(v))),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
-}
-
 /// The summary as a Markdown document.
 pub fn summary_md(input: &SummaryInput) -> String {
     let facts = &input.facts;
@@ -137,13 +66,13 @@ pub fn summary_md(input: &SummaryInput) -> String {
                 "\n## Materials\n\n{}",
                 materials_table(input, &names, MARKDOWN_MATERIALS).to_markdown()
             ));
-            out.push_str("\nThe front of a material holds the designs whose links are all of it; its share counts its designs on the front of all.\n");
+            out.push_str("\nThe front of a material holds the designs whose links are all of that material. Its share is the part of the whole front that is made of it alone.\n");
         }
     }
     out.push_str(&budget_markdown(&input.budgets));
     out.push_str(&format!("\n## What was searched\n\n- {}\n", counts(facts)));
     out.push_str(&format!(
-        "- Constraints: {}.\n- Cases, the worst of which counts: {}.\n",
+        "- Constraints: {}.\n- Cases (the worst counts): {}.\n",
         listed(&facts.constraints),
         listed(&facts.cases)
     ));
@@ -160,7 +89,7 @@ pub fn summary_md(input: &SummaryInput) -> String {
     out
 }
 
-const KNEE: &str = "\nThe knee is the design nearest to the ideal point (the best of all three at once), distances in logarithms,\neach objective scaled by its range over the front.\n";
+const KNEE: &str = "\nThe knee is the design nearest to the ideal point, which has the best value of every objective. Distances are\nmeasured in logarithms, each objective scaled by its range over the front.\n";
 
 /// The summary for a terminal of 80 columns.
 pub fn terminal_summary(input: &SummaryInput) -> String {
@@ -182,8 +111,7 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
     }
     out.push_str(&format!("\n{}", wrap(&counts(facts), TERMINAL, "")));
     if !facts.not_checked.is_empty() {
-        let words =
-            format!("Options or parts not checked: {}; summary.md lists them.", facts.not_checked.len());
+        let words = format!("Options or parts not checked: {}; see summary.md.", facts.not_checked.len());
         out.push_str(&wrap(&words, TERMINAL, ""));
     }
     if let Some(pick) = found.default_pick() {
@@ -267,7 +195,7 @@ fn winners(input: &SummaryInput, found: &Found) -> String {
     let mut by_material: Vec<(String, Vec<String>)> = Vec::new();
     for (objective, words) in sought {
         let Some(design) = best(objective, &found.designs) else { continue };
-        let what = format!("{words} ({})", amount(objective, design));
+        let what = format!("{words} ({})", objective.amount(objective.of(design)));
         let material = made_of(&input.overall, design.row);
         match by_material.iter_mut().find(|(m, _)| *m == material) {
             Some((_, list)) => list.push(what),
@@ -281,15 +209,16 @@ fn winners(input: &SummaryInput, found: &Found) -> String {
 
 fn compromise(input: &SummaryInput, found: &Found, knee: &Design) -> String {
     let values: Vec<String> =
-        [Objective::Mass, Objective::Deflection, Objective::Mode].map(|o| amount(o, knee)).into();
+        [Objective::Mass, Objective::Deflection, Objective::Mode].map(|o| o.amount(o.of(knee))).into();
     let mut out = format!(
         "The knee, nearest to the best of all three, is design {} ({}): {}",
         knee.design_id,
         made_of(&input.overall, knee.row),
         values.join(", ")
     );
-    let share =
-        |(name, count): &(String, usize)| format!("{} of them {name}", percent(*count, found.designs.len()));
+    let share = |(name, count): &(String, usize)| {
+        format!("{} of them {name}", percent_of(*count, found.designs.len()))
+    };
     if let Some(most) = owners(input).iter().max_by_key(|(_, count)| *count).filter(|(_, c)| *c > 0) {
         let size = found.designs.len();
         let designs = if size == 1 { "design" } else { "designs" };
@@ -382,11 +311,11 @@ fn materials_table(input: &SummaryInput, names: &[String], headers: [&str; 7]) -
             "partial" => &format!("{name} (stopped)"),
             _ => name,
         };
-        table.row(material_cells(name, &designs(&material.front), percent(*count, total), cost));
+        table.row(material_cells(name, &designs(&material.front), percent_of(*count, total), cost));
     }
     let mixed = designs(&super::front_svg::mixed_designs(&input.overall));
     if !mixed.is_empty() {
-        table.row(material_cells("mixed", &mixed, percent(mixed.len(), total), String::new()));
+        table.row(material_cells("mixed", &mixed, percent_of(mixed.len(), total), String::new()));
     }
     table
 }
@@ -412,7 +341,7 @@ fn ties(pick: &Pick, designs: &[Design]) -> String {
 fn counts(facts: &SummaryFacts) -> String {
     if ["certified", "partial"].contains(&facts.status.as_str()) {
         return format!(
-            "{} designs: {} judged one by one, the others cut in boxes, in {} s; search {}.",
+            "{} designs: {} evaluated one by one, the others discarded in groups, in {} s; search {}.",
             large(facts.designs_total),
             grouped(facts.designs_evaluated),
             significant(facts.elapsed_s, 3),
@@ -440,11 +369,6 @@ fn counts(facts: &SummaryFacts) -> String {
     )
 }
 
-/// A count in digits, or as a power of ten where nobody counts digits.
-pub fn large(n: u128) -> String {
-    if n < 1_000_000_000_000 { grouped(n) } else { format!("{:.2e}", n as f64) }
-}
-
 /// The commands that take a design out and analyse it, one a line.
 fn commands(facts: &SummaryFacts, pick: &Pick) -> String {
     let (results, id) = (&facts.results, &pick.design.design_id);
@@ -456,87 +380,10 @@ fn commands(facts: &SummaryFacts, pick: &Pick) -> String {
     )
 }
 
-/// A whole number with commas; above 1e12 in powers of ten.
-fn grouped(n: u128) -> String {
-    if n >= 1_000_000_000_000 {
-        return significant(n as f64, 3);
-    }
-    let digits = n.to_string();
-    let mut out = String::new();
-    for (i, c) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(c);
-    }
-    out
-}
-
-/// A share that is never rounded to nothing or to all.
-fn percent(part: usize, whole: usize) -> String {
-    let share = 100.0 * part as f64 / whole.max(1) as f64;
-    match share {
-        _ if part == 0 => "0 %".into(),
-        s if part > 0 && s < 0.1 => "<0.1 %".into(),
-        s if part < whole && s > 99.9 => ">99.9 %".into(),
-        s if s < 10.0 || (part < whole && s >= 99.0) => format!("{s:.1} %"),
-        s => format!("{s:.0} %"),
-    }
-}
-
-fn amount(objective: Objective, design: &Design) -> String {
-    format!("{} {}", significant(objective.of(design), 4), objective.unit())
-}
-
 fn known(value: Option<f64>) -> String {
     value.map_or("unknown".into(), cost_words)
 }
 
 fn listed(words: &[String]) -> String {
     if words.is_empty() { "none".into() } else { words.join("; ") }
-}
-
-fn and(words: &[impl AsRef<str>]) -> String {
-    match words {
-        [] => String::new(),
-        [one] => one.as_ref().to_string(),
-        [init @ .., last] => {
-            let init: Vec<&str> = init.iter().map(AsRef::as_ref).collect();
-            format!("{} and {}", init.join(", "), last.as_ref())
-        }
-    }
-}
-
-fn capital(text: &str) -> String {
-    let mut chars = text.chars();
-    chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn counts_are_grouped_and_shares_never_rounded_to_nothing() {
-        assert_eq!(grouped(10_536_192), "10,536,192");
-        assert_eq!(grouped(999), "999");
-        assert_eq!(grouped(12_300_000_000_000_000_000), "1.23e19");
-        assert_eq!(percent(1, 5000), "<0.1 %");
-        assert_eq!(percent(4999, 5000), ">99.9 %");
-        assert_eq!(percent(0, 0), "0 %");
-    }
-
-    #[test]
-    fn constraints_are_said_in_words() {
-        let constraints = Constraints {
-            tip_deflection_max_m: Some(0.002),
-            stress_safety_factor_min: Some(2.0),
-            ..Constraints::default()
-        };
-        assert_eq!(
-            constraint_words(&constraints),
-            ["tip deflection at most 2.000 mm", "strength at least 2 times the stress at peak load"]
-        );
-        assert!(constraint_words(&Constraints::default()).is_empty());
-    }
 }

@@ -1,11 +1,18 @@
-//! What becomes of a front when the catalog figures scatter: how often a design stays on it, how often a
-//! pick stays the pick, and what takes its place.
+//! The front under scatter of the catalog ratings: how often a design stays on the front, how often a pick
+//! stays the pick, and what takes its place.
 
-use super::html::Extra;
-use super::number::{shortest, significant};
+use super::number::{percent_short, shortest, significant};
 use super::picks::{Design, Objective};
+use super::section::PageSection;
+use super::supplement::Supplement;
 use super::table::{Column, Table, csv_line};
+use super::words::{TERMINAL, wrap};
 use serde_json::{Value, json};
+
+/// Name of the file that lists every design.
+pub const FILE: &str = "tolerance.csv";
+/// Key in `run.json`.
+pub const KEY: &str = "tolerance";
 
 /// What a design may be picked for, in the order of [`Fate::picked`].
 pub const PICKS: [&str; 4] = ["lightest", "stiffest", "highest mode", "knee"];
@@ -15,9 +22,9 @@ pub const PERCENTILES: [u32; 3] = [5, 50, 95];
 /// One design of the front over all samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fate {
-    /// The design by its catalog figures.
+    /// The design with its catalog ratings.
     pub design: Design,
-    /// What it is picked for by its catalog figures.
+    /// The picks it is with its catalog ratings.
     pub picks: Vec<&'static str>,
     /// Samples in which it is on the front.
     pub on_front: u32,
@@ -91,8 +98,8 @@ impl Scattered {
             table.row([
                 PICKS[name].to_string(),
                 fate.design.design_id.clone(),
-                percent(self.share(fate.on_front)),
-                percent(self.share(fate.picked[name])),
+                percent_short(self.share(fate.on_front)),
+                percent_short(self.share(fate.picked[name])),
                 band(0),
                 band(2),
             ]);
@@ -103,7 +110,7 @@ impl Scattered {
     /// Sentences: what was sampled, what takes a pick's place, how much of the front stays.
     pub fn sentences(&self) -> Vec<String> {
         let mut out = vec![format!(
-            "{} samples (seed {}) of {}: 95 % of the rows' true figures lie within it.",
+            "{} samples (seed {}) of {}; 95 % of the true ratings of catalog rows are taken to lie within that scatter.",
             self.samples,
             self.seed,
             self.words.join(", ")
@@ -113,26 +120,38 @@ impl Scattered {
         shares.sort_unstable_by(f64::total_cmp);
         let firm = shares.iter().filter(|s| **s >= 0.9).count();
         out.push(format!(
-            "Of the {} designs of the front, {firm} stay on it in at least 90 % of the samples; the least firm stays in {}.",
+            "Of the {} designs of the front, {firm} stay on it in at least 90 % of the samples; the least robust design stays in {}.",
             shares.len(),
-            shares.first().map_or_else(String::new, |&s| percent(s)),
+            shares.first().map_or_else(String::new, |&s| percent_short(s)),
         ));
         let meets = self.fates.iter().filter(|f| f.keeps_limits < self.samples).count();
         if meets > 0 {
-            out.push(format!("{meets} of them break a limit in some sample."));
+            out.push(format!("{meets} of them break a limit in at least one sample."));
         }
         if self.without_design > 0 {
-            let share = percent(self.share(self.without_design));
+            let share = percent_short(self.share(self.without_design));
             out.push(format!("In {share} of the samples no design of the front keeps the limits."));
         }
         out
     }
 
+    /// All that a result says of it.
+    pub fn supplement(&self) -> Supplement {
+        let sentences: String = self.sentences().iter().map(|s| wrap(s, TERMINAL, "")).collect();
+        Supplement {
+            file: Some((FILE, self.to_csv().into_bytes())),
+            markdown: self.to_markdown(),
+            section: Some(self.section()),
+            run: Some((KEY, self.to_json())),
+            terminal: format!("{}\n{sentences}", self.table().to_text()),
+        }
+    }
+
     /// The section of a page.
-    pub fn section(&self) -> Extra {
+    pub fn section(&self) -> PageSection {
         let mut words = self.sentences();
-        words.push("The parts stay as they were sized; only designs of this front compete.".into());
-        Extra {
+        words.push("Parts are not sized again, and only designs of this front are compared.".into());
+        PageSection {
             title: "Under scatter".into(),
             words,
             tables: vec![("Picks under scatter; tolerance.csv has every design".into(), self.table())],
@@ -144,7 +163,7 @@ impl Scattered {
     pub fn to_markdown(&self) -> String {
         let lines: Vec<String> = self.sentences().iter().map(|s| format!("- {s}\n")).collect();
         format!(
-            "\n## Under scatter\n\n{}\n{}- The parts stay as they were sized; only designs of this front compete. Every design: tolerance.csv.\n",
+            "\n## Under scatter\n\n{}\n{}- Parts are not sized again, and only designs of this front are compared. Every design: tolerance.csv.\n",
             self.table().to_markdown(),
             lines.concat()
         )
@@ -167,7 +186,7 @@ impl Scattered {
         json!({"scatter": scatter, "samples": self.samples, "seed": self.seed, "picks": picks})
     }
 
-    /// Every pick by its place in [`PICKS`], with the design that it is by the catalogs' figures.
+    /// Every pick by its index in [`PICKS`], with the design that it is by the catalog ratings.
     fn picks(&self) -> impl Iterator<Item = (usize, &Fate)> {
         PICKS.iter().enumerate().filter_map(|(name, word)| {
             Some((name, self.fates.iter().find(|fate| fate.picks.contains(word))?))
@@ -182,7 +201,7 @@ impl Scattered {
         let most: Vec<String> = others
             .iter()
             .take(3)
-            .map(|f| format!("{} in {}", f.design.design_id, percent(self.share(f.picked[name]))))
+            .map(|f| format!("{} in {}", f.design.design_id, percent_short(self.share(f.picked[name]))))
             .collect();
         let more = match others.len().saturating_sub(3) {
             0 => String::new(),
@@ -196,12 +215,6 @@ impl Scattered {
     fn share(&self, samples: u32) -> f64 {
         f64::from(samples) / f64::from(self.samples)
     }
-}
-
-/// A share in percent, with a tenth where it is neither all nor nothing.
-fn percent(share: f64) -> String {
-    let text = format!("{:.1}", 100.0 * share);
-    format!("{} %", text.strip_suffix(".0").unwrap_or(&text))
 }
 
 /// The value below which a share of sorted values lies, between neighbours in proportion.

@@ -185,7 +185,7 @@ impl<'p, 'c> Weighed<'p, 'c> {
 
 /// Whether curve `a` is at least as stiff as curve `b` at every torque.
 fn never_softer(a: &Curve, b: &Curve) -> bool {
-    match (a.segments(), b.segments()) {
+    match (a.as_windup(), b.as_windup()) {
         (None, _) => true,
         (Some(_), None) => false,
         (Some(a), Some(b)) => a.never_softer(&b, f64::INFINITY),

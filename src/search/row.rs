@@ -162,11 +162,10 @@ pub(crate) struct RowChunk<'a, 'c> {
 impl DriveAttributes {
     /// Adds a drive. A rigid or linear joint becomes a curve whose segments are equal.
     fn push(&mut self, mass_kg: f64, law: &JointLaw) {
-        let (stiffness, ends_nm) = match &law.curve {
-            Curve::Rigid => ([f64::INFINITY; 3], [f64::INFINITY; 2]),
-            Curve::Linear(k) => ([*k; 3], [f64::INFINITY; 2]),
-            Curve::Windup(w) | Curve::WindupK1(w) => {
-                ([w.k1_nm_per_rad, w.k2_nm_per_rad, w.k3_nm_per_rad], [w.t1_nm, w.t2_nm])
+        let (stiffness, ends_nm) = match law.curve.as_windup().map(|windup| windup.segments()) {
+            None => ([f64::INFINITY; 3], [f64::INFINITY; 2]),
+            Some(segments) => {
+                (segments.map(|s| s.stiffness_nm_per_rad), [segments[0].to_nm, segments[1].to_nm])
             }
         };
         self.first_in_modes = matches!(law.curve, Curve::WindupK1(_));

@@ -1,7 +1,7 @@
 //! What there is to choose: an arm with open links and drives, and the task it must do.
 
 use super::constraint::Constraints;
-use crate::arm::effect::Effect;
+use crate::arm::effect::entry::Effect;
 use crate::arm::joint_law::Curve;
 use crate::arm::load::Payload;
 use crate::arm::load::Water;

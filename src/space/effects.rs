@@ -6,7 +6,7 @@
 
 use super::design_space::{DesignSpace, SpaceJoint, SpacePiece};
 use crate::arm::Link;
-use crate::arm::effect::Subject;
+use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::structure::{JointAngle, JointPiece, LinkPiece, Piece, Structure, link_piece};
 use crate::mechanics::chain::across;

@@ -1,4 +1,4 @@
-//! What else may stand in the place of each part of a design: drives that hold there, and tubes.
+//! Alternatives to each part of a design: other drives that are strong enough there, and other tubes.
 
 use crate::arm::file::windup_of;
 use crate::arm::joint_law::Curve;
@@ -6,13 +6,14 @@ use crate::arm::structure::Beam;
 use crate::arm::{Arm, Element, Joint, Link, LinkBody};
 use crate::mechanics::beam::line_stiffnesses;
 use crate::report::number::significant;
+use crate::report::tube::section_size;
 use crate::sizing::drive::Drive;
 use crate::space::constraint::Constraints;
 use crate::space::design_space::DesignSpace;
 use crate::space::design_space::{LinkChoice, LinkOption, SpacePiece};
 use crate::space::problem::ArmProblem;
 
-/// What else of the whole space may stand in each place, by name.
+/// The alternatives of the whole space for each piece, by name.
 pub(super) fn alternatives(
     problem: &ArmProblem,
     whole: &DesignSpace,
@@ -38,7 +39,7 @@ pub(super) fn alternatives(
     Some(others)
 }
 
-/// The drives that hold at a joint, lightest first, each with a gear that no lighter one matches in stiffness.
+/// The drives that hold at a joint, lightest first; each has a gear that is stiffer than all lighter ones.
 fn drives<'c>(joint: &Joint, drives: impl Iterator<Item = (Drive<'c>, f64)>) -> Vec<(String, Element)> {
     let mut out: Vec<(String, Element)> = Vec::new();
     let mut kept: Vec<[f64; 3]> = Vec::new();
@@ -55,8 +56,8 @@ fn drives<'c>(joint: &Joint, drives: impl Iterator<Item = (Drive<'c>, f64)>) -> 
     out
 }
 
-/// The tubes that may stand in place of one, are no softer along either axis of the section, and that no lighter one
-/// matches: along either axis, or along both together.
+/// The tubes that are no softer than the present one along either axis of the section. Each is stiffer than
+/// all lighter ones along one axis or along both together.
 fn tubes(choice: &LinkChoice, limits: &Constraints, now: &Element) -> Vec<(String, Element)> {
     let Element::Link(Link { body: LinkBody::Tube { material, section, .. }, .. }) = now else {
         return Vec::new();
@@ -93,10 +94,14 @@ fn end_compliances(beam: &Beam, length_m: f64) -> [f64; 3] {
     [along_z, along_y, along_z + along_y]
 }
 
+/// Size and material of a tube, sizes to four digits at most: `60 x 40 x 2 mm Aluminium 6061-T6`.
 fn section_words(option: &LinkOption) -> String {
-    let (width, height) = option.section.outer_m();
-    let sizes = [width, height, option.section.wall_m()].map(|m| significant(m * 1e3, 4));
-    let sizes =
-        sizes.map(|s| if s.contains('.') { s.trim_end_matches('0').trim_end_matches('.').into() } else { s });
-    format!("{} mm {}", sizes.join(" x "), option.material_name)
+    let mm = |m: f64| {
+        let digits = significant(m * 1e3, 4);
+        match digits.contains('.') {
+            true => digits.trim_end_matches('0').trim_end_matches('.').to_string(),
+            false => digits,
+        }
+    };
+    format!("{} {}", section_size(&option.section, mm, mm), option.material_name)
 }

@@ -1,11 +1,14 @@
-//! Designs of a front that are there only because ballast preloads a gear, as a table.
+//! Designs that are on a front only because extra weight loads a gear into the stiffer part of its curve, as
+//! a table.
 
 use super::outcome::{Front, Judged};
 use super::table::link_words;
 use crate::pareto::objectives::Objectives;
 use crate::report::front_table::FrontTable;
-use crate::report::html::Extra;
 use crate::report::number::{shortest, significant};
+use crate::report::section::PageSection;
+use crate::report::supplement::Supplement;
+use crate::report::words::{TERMINAL, wrap};
 use crate::search::ballast::Ballast;
 use crate::space::design::evaluate;
 use crate::space::design::{Part, id_of, options};
@@ -13,6 +16,7 @@ use crate::space::design_space::SpacePiece;
 use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
+use serde_json::json;
 
 /// A flagged design of a front.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,12 +26,15 @@ struct Flagged {
     by_segment: bool,
 }
 
-/// The designs of a front that have a part for its weight.
+/// The designs of a front that have a heavy part only for its weight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BallastFlags {
     flagged: Vec<Flagged>,
     front: usize,
 }
+
+/// Name of the file that lists them.
+pub const FILE: &str = "ballast.csv";
 
 const COLUMNS: [&str; 13] = [
     "design_id",
@@ -45,7 +52,7 @@ const COLUMNS: [&str; 13] = [
     "lighter_lowest_mode_hz",
 ];
 
-/// Flags the designs of a front that have a part for its weight.
+/// Flags the designs of a front that have a heavy part only for its weight.
 pub fn ballast_flags(problem: &ArmProblem, front: &Front) -> BallastFlags {
     let flag = |judged: &Judged| flagged(problem, judged, &problem.ballast(judged.design.number)?);
     BallastFlags { flagged: front.par_iter().filter_map(flag).collect(), front: front.len() }
@@ -71,11 +78,11 @@ fn flagged(problem: &ArmProblem, judged: &Judged, ballast: &Ballast) -> Option<F
     let (at, pressed) = (name(ballast.piece), name(ballast.pressed));
     let (kept, lighter) = (part(judged.design.number)?, part(ballast.lighter)?);
     let why = match ballast.by_segment {
-        true => format!("{pressed} falls to a softer segment of its gear"),
+        true => format!("{pressed} moves to a softer segment of its gear's curve"),
         false => format!("the play of {pressed} opens"),
     };
     let words = format!(
-        "{id}: with {lighter} instead of {kept} at {at} it weighs {} kg less, sags no more, and its lowest mode falls from {} to {} Hz, because {why}.",
+        "{id}: with {lighter} instead of {kept} at {at} it weighs {} kg less and deflects no more, but its lowest mode falls from {} to {} Hz, because {why}.",
         significant(heavy.mass_kg - light.mass_kg, 3),
         significant(heavy.lowest_mode_hz, 4),
         significant(light.lowest_mode_hz, 4),
@@ -106,25 +113,45 @@ impl BallastFlags {
         FrontTable { columns: COLUMNS.map(String::from).into(), rows }.to_csv()
     }
 
-    /// How many there are, and what that means, in a sentence.
+    /// How many there are and why, in a sentence.
     pub fn sentence(&self) -> String {
         let are = if self.len() == 1 { "is" } else { "are" };
         let presses = match self.flagged.iter().all(|f| f.by_segment) {
-            true => "a gear into a stiffer segment",
-            false => "a joint to where it is stiffer",
+            true => "a gear into the stiffer part of its curve",
+            false => "a joint into a range where it is stiffer",
         };
         format!(
-            "{} of the front's {} designs {are} there only because ballast presses {presses}: ballast.csv.",
+            "{} of the front's {} designs {are} on it only because extra weight loads {presses}; see ballast.csv.",
             self.len(),
             self.front
         )
     }
 
+    /// Everything that a result reports about them.
+    pub fn supplement(&self) -> Supplement {
+        let run = Some(("ballast_designs", json!(self.len())));
+        if self.is_empty() {
+            return Supplement { run, ..Supplement::default() };
+        }
+        Supplement {
+            file: Some((FILE, self.to_csv())),
+            markdown: self.to_markdown(),
+            section: Some(self.section()),
+            run,
+            terminal: wrap(&self.sentence(), TERMINAL, ""),
+        }
+    }
+
     /// The section of a page.
-    pub fn section(&self) -> Extra {
+    pub fn section(&self) -> PageSection {
         let words =
             std::iter::once(self.sentence()).chain(self.flagged.iter().take(5).map(|f| f.words.clone()));
-        Extra { title: "Ballast".into(), words: words.collect(), tables: Vec::new(), figures: Vec::new() }
+        PageSection {
+            title: "Ballast".into(),
+            words: words.collect(),
+            tables: Vec::new(),
+            figures: Vec::new(),
+        }
     }
 
     /// The section of a summary: the first few in words.

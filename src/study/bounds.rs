@@ -1,22 +1,22 @@
-//! How light a design could be that is as good as a pick.
+//! Lower bounds on the mass of a design that is as good as a pick.
 
 use crate::catalog::Catalogs;
-use crate::exact::reach::Reach;
+use crate::exact::domain_reduction::DomainReduction;
 use crate::pareto::objectives::Objectives;
-use crate::relax::{MassBound, Relaxation};
+use crate::relax::relaxation::{MassBound, Relaxation};
 use crate::space::design_space::DesignSpace;
 use crate::space::problem::ArmProblem;
 
-/// Above this many options of links not each of them is tabulated: a pick's bound is that of the options that reach
-/// as far as it does.
+/// If the links have more options than this, they are not tabulated for the whole space: the bound of each
+/// pick is computed from the options that a design as good as the pick may have.
 const MOST_TABULATED: usize = 10_000;
 
-/// Where bounds on the mass come from.
+/// The source of the bounds.
 pub(super) enum MassBounds<'a> {
     /// From the options of the whole space.
     Tabulated(&'a ArmProblem<'a>, Relaxation<'a>),
-    /// From those that a design may have that is as good as the pick.
-    InReach { space: &'a DesignSpace, catalogs: &'a Catalogs, reach: Option<Reach<'a>> },
+    /// From the options that a design as good as the pick may have.
+    InReach { space: &'a DesignSpace, catalogs: &'a Catalogs, reach: Option<DomainReduction<'a>> },
 }
 
 impl MassBounds<'_> {
@@ -25,8 +25,8 @@ impl MassBounds<'_> {
         space.link_options() <= MOST_TABULATED
     }
 
-    /// Bounds the mass of every design as good as a known one, by its number in the whole space; `None` if it cannot be
-    /// worked out.
+    /// A lower bound on the mass of every design that is as good as a known one, given by its number in the
+    /// whole space. `None` if it cannot be computed.
     pub fn below(&self, known: u128, objectives: &Objectives) -> Option<MassBound> {
         match self {
             Self::Tabulated(problem, relaxation) => bound(problem, relaxation, known, objectives),

@@ -1,10 +1,11 @@
 //! The stiffness budget of a front's picks: what one more kilogram buys at each joint and link, and how far a
 //! pick is from the lightest arm that could do as well.
 //!
-//! Two answers a piece, both by the full model with all other parts kept. *In place*: the piece's mass and
-//! stiffness grow in proportion (a thicker wall, a gear scaled up), a central difference over 0.1 % of its mass.
-//! *Next part*: of the heavier catalog parts that may stand there and better anything, the one with the best change
-//! of deflection per kilogram; a difference between two parts one can buy. Drives further inboard are not sized again.
+//! Each piece has two answers, both by the full model with all other parts unchanged. *In place*: the piece's
+//! mass and stiffness grow in proportion (a thicker wall, a gear scaled up), a central difference over 0.1 %
+//! of its mass. *Next part*: the heavier catalog part that fits there, improves anything, and has the best
+//! change of deflection per kilogram; this is the difference between two parts that one can buy. Drives
+//! further inboard are not sized again.
 
 use super::alternatives::alternatives;
 use super::bounds::MassBounds;
@@ -12,10 +13,10 @@ use crate::arm::load::LoadCase;
 use crate::arm::structure::{Piece, Structure};
 use crate::arm::{Arm, Element};
 use crate::catalog::Catalogs;
-use crate::exact::reach::Reach;
+use crate::exact::domain_reduction::DomainReduction;
 use crate::mechanics::chain::Chain;
 use crate::pareto::objectives::Objectives;
-use crate::relax::Relaxation;
+use crate::relax::relaxation::Relaxation;
 use crate::report::budget::{BudgetRow, Gain, NextPart, PickBound, PickBudget};
 use crate::report::front_table::FrontTable;
 use crate::report::picks::{Pick, designs, picks};
@@ -28,10 +29,10 @@ use rayon::prelude::*;
 
 /// Relative step of the derivative in place.
 const STEP: f64 = 1e-3;
-/// Parts heavier than the one in place by more than this part of the arm are not looked at.
+/// A part that adds more than this fraction of the arm's mass is not considered.
 const MOST_OF_ARM: f64 = 0.25;
 
-/// Budgets of the picks of a front. `problem` has all options of the whole space, or those of an excerpt of it.
+/// Budgets of the picks of a front. `problem` has the options of the whole space or of an excerpt.
 pub fn budgets(
     problem: &ArmProblem,
     whole: &DesignSpace,
@@ -42,7 +43,7 @@ pub fn budgets(
     let tabulated = (is_excerpt && MassBounds::can_tabulate(whole)).then(|| ArmProblem::new(whole, catalogs));
     let bounds = match tabulated.as_ref().or((!is_excerpt).then_some(problem)) {
         Some(all) => MassBounds::Tabulated(all, Relaxation::new(all)),
-        None => MassBounds::InReach { space: whole, catalogs, reach: Reach::new(whole, catalogs) },
+        None => MassBounds::InReach { space: whole, catalogs, reach: DomainReduction::new(whole, catalogs) },
     };
     let picks = picks(&designs(table)).into_par_iter();
     picks.filter_map(|pick| pick_budget(problem, whole, &bounds, pick)).collect()
@@ -124,7 +125,8 @@ fn gain(from: &Objectives, to: &Objectives) -> Gain {
     }
 }
 
-/// Each piece's part of the tip's deflection in the worst case, along it; a bearing's tilt is its joint's.
+/// Each piece's share of the tip deflection in the worst case, along its direction. The tilt of a bearing
+/// counts for its joint.
 fn shares(arm: &Arm, cases: &[LoadCase]) -> Vec<f64> {
     let solve = |case: &LoadCase| Chain::new(&arm.structure_in(case), case.links).pose(case).statics();
     let statics = cases.iter().map(solve);
@@ -138,7 +140,7 @@ fn shares(arm: &Arm, cases: &[LoadCase]) -> Vec<f64> {
     arm.chain.iter().map(|element| of(element.name())).collect()
 }
 
-/// Central difference with a piece's mass and stiffness in proportion.
+/// Change per kilogram by a central difference; mass and stiffness of the piece vary in proportion.
 fn in_place(arm: &Arm, piece: usize, cases: &[LoadCase]) -> Gain {
     let mass_kg = arm.chain[piece].mass_kg();
     let with = |step: f64| Objectives {
@@ -148,7 +150,7 @@ fn in_place(arm: &Arm, piece: usize, cases: &[LoadCase]) -> Gain {
     gain(&with(-STEP), &with(STEP))
 }
 
-/// Lets mass and stiffness of a piece grow by a part of themselves; what effects add to it stays.
+/// Increases mass and stiffness of a piece by the relative step; what effects add stays as it is.
 fn grow(structure: &mut Structure, piece: usize, step: f64, mass_kg: f64) {
     let factor = 1.0 + step;
     match &mut structure.pieces[piece] {

@@ -1,7 +1,7 @@
-//! Why no design meets what is asked, and the smallest relaxation that would help.
+//! Why no design meets the constraints, and the smallest relaxation that would help.
 
+use super::definition::Study;
 use super::outcome::StudyOutcome;
-use super::read::Study;
 use crate::catalog::Catalogs;
 use crate::pareto::objectives::Objectives;
 use crate::search::finish::{FinishRows, finish_one_by_one};
@@ -14,8 +14,8 @@ use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::SizedJoint;
 use std::sync::atomic::AtomicBool;
 
-/// The reason in words: each limit that alone stands in the way with the value that would do, or the
-/// joint that no drive holds.
+/// The reason in words: every limit that alone prevents a design, with the value that would suffice, or the
+/// joint for which no drive is strong enough.
 pub fn why_infeasible(study: &Study, catalogs: &Catalogs, outcome: &StudyOutcome) -> String {
     let head = format!("no design of {} meets the study \"{}\"", outcome.sweep.designs_total, study.name);
     let mut reasons: Vec<String> = limits(&study.space.constraints)
@@ -46,7 +46,7 @@ struct Limit {
     key: &'static str,
     unit: &'static str,
     asked: f64,
-    /// Number in the key per number in the unit: the servo key is a bandwidth, not a mode.
+    /// Factor from the limited quantity to the number in the key: the servo key is a bandwidth, not a mode.
     key_per_unit: f64,
 }
 
@@ -87,13 +87,13 @@ fn limits(constraints: &Constraints) -> Vec<Limit> {
 }
 
 impl Limit {
-    /// Whether the limit is a least value.
+    /// Whether the limit is a minimum.
     fn is_least(&self) -> bool {
         matches!(self.quantity, Quantity::Mode | Quantity::Stress)
     }
 
-    /// What designs reach that meet all other limits, in words; `None` if relaxing this limit alone does
-    /// not help.
+    /// The best value among designs that meet all other limits, in words; `None` if relaxing this limit alone
+    /// does not help.
     fn relaxed(&self, study: &Study, catalogs: &Catalogs, outcome: &StudyOutcome) -> Option<String> {
         let reached = match self.quantity {
             Quantity::Deflection => outcome.sweep.near_misses[0]? * 1e3,
@@ -121,7 +121,7 @@ fn short(x: f64) -> String {
     crate::report::number::significant(x, 4)
 }
 
-/// Five significant digits, rounded up or down: a value that is enough stays enough.
+/// Rounds to five significant digits, up or down, so that a sufficient value stays sufficient.
 fn toward(x: f64, up: bool) -> f64 {
     let scale = 10f64.powi(4 - x.abs().max(f64::MIN_POSITIVE).log10().floor() as i32);
     let scaled = x * scale;
@@ -146,7 +146,7 @@ fn best_without(study: &Study, catalogs: &Catalogs, quantity: Quantity) -> Optio
     Some(if quantity == Quantity::Stress { 1.0 / best } else { best })
 }
 
-/// A problem whose only objective is a limited quantity, to be made small.
+/// A problem whose only objective is the limited quantity, to be minimized.
 struct Relaxed<'p, 'c> {
     problem: &'p ArmProblem<'c>,
     quantity: Quantity,
@@ -217,7 +217,8 @@ impl FinishRows for Relaxed<'_, '_> {
     }
 }
 
-/// Follows the lightest option at every level, with no limit but the drives', until a joint cannot hold.
+/// Takes the lightest option at every level, ignoring all limits but those of the drives, until no drive
+/// holds at a joint.
 fn first_obstacle(study: &Study, catalogs: &Catalogs) -> String {
     let keys: Vec<String> =
         limits(&study.space.constraints).iter().map(|l| format!("\"{}\"", l.key)).collect();
@@ -251,7 +252,7 @@ fn first_obstacle(study: &Study, catalogs: &Catalogs) -> String {
     }
 }
 
-/// A joint that no drive turns fast enough, or whose drives all lack a figure.
+/// The reason if no drive turns a joint fast enough, or all lack a rating.
 fn too_fast(sized: &SizedJoint) -> String {
     let table = &sized.table;
     let needed_rpm = rpm_from_rad_s(table.motion().speed_rad_s);
@@ -279,7 +280,7 @@ fn too_fast(sized: &SizedJoint) -> String {
             )
         }
         _ => format!(
-            "joint {}: every drive that \"drives\" offers is too fast for its average input speed or lacks a figure \
+            "joint {}: every drive that \"drives\" offers is too fast for its average input speed or lacks a rating \
              that a check needs; `armwright size STUDY --explain {}` lists them",
             table.joint(),
             table.joint()
@@ -310,7 +311,7 @@ fn lightest_options(problem: &ArmProblem) -> Vec<u32> {
         .collect()
 }
 
-/// The pieces with nothing to choose from, in words; empty if every piece has something.
+/// The pieces without any option, in words; empty if every piece has one.
 pub fn empty_pieces(problem: &ArmProblem) -> Vec<String> {
     let space = problem.space();
     space

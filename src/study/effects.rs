@@ -1,14 +1,14 @@
-//! The effects of a study: whether they fit its arm, and what of a measured arm's corrections carries
-//! over to it.
+//! The effects of a study: whether they fit its arm, and which corrections of a measured arm apply to it.
 //!
-//! A study asks which arm to build, a campaign measured one that was built. What the measured arm turned
-//! out to have (its effects) the next one has too, at the joints and links of the same name. How far its
-//! parts lay within their tolerance (calibration) belongs to those parts: a joint whose drive the study
-//! gives keeps that drive, so its calibrated value counts; a drive or a tube that the study chooses is
-//! another part, and keeps its catalog figures.
+//! A study asks which arm to build; a campaign measured an arm that was built. The effects that were found in
+//! the measured arm are expected in the next one too, at the joints and links of the same name. Calibrated
+//! values within tolerance belong to the measured parts. They apply only where the study gives the same part,
+//! that is, to a joint with a given drive; a drive or a tube that the study chooses is another part and keeps
+//! its catalog ratings.
 
-use super::read::Study;
-use crate::arm::effect::Effect;
+use super::definition::Study;
+use crate::arm::effect::entry::Effect;
+use crate::arm::effect::kind::Removes;
 use crate::arm::joint_law::Curve;
 use crate::arm::{Arm, LinkModel};
 use crate::input::json::Object;
@@ -17,24 +17,24 @@ use crate::space::design_space::DesignSpace;
 use crate::space::design_space::{DriveChoice, SpaceJoint, SpacePiece};
 use serde_json::{Value, json};
 
-/// One correction of a measured arm, and whether a study takes it.
+/// One correction of a measured arm, and whether it applies to a study.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Carried {
+pub struct Correction {
     /// The correction: `bearing_tilt at j3`, `j2.stiffness x 1.02`.
     pub what: String,
-    /// Whether the study takes it.
-    pub carried: bool,
-    /// What it does there, or why it is left out.
+    /// Whether it applies.
+    pub applied: bool,
+    /// What it changes, or why it does not apply.
     pub words: String,
 }
 
-/// A study with what carries over to it.
+/// A study with corrections applied.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CorrectedStudy {
     /// The study's file with the corrections in it: a study like any other.
     pub file: Value,
-    /// Every correction, taken or not.
-    pub carried: Vec<Carried>,
+    /// Every correction, applied or not.
+    pub corrections: Vec<Correction>,
 }
 
 /// Records what is wrong with each effect of a study.
@@ -50,7 +50,7 @@ pub(super) fn check_effects(space: &DesignSpace, root: &Object) -> Option<()> {
     sound.then_some(())
 }
 
-/// Why an effect does not fit a study's arm: the field, the problem, what to try.
+/// Why an effect does not fit the arm of a study: the field, the problem, a hint.
 fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String)> {
     if let Some(fault) = effect.faults(&space.nominal_structure()).into_iter().next() {
         return Some((fault.field, fault.problem, fault.hint));
@@ -59,8 +59,9 @@ fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String
         SpacePiece::Joint(joint) if joint.name == effect.at => Some(joint),
         _ => None,
     });
-    match (effect.effect.as_str(), at_joint.map(|joint| &joint.drive)) {
-        ("soft_windup", Some(DriveChoice::FirstFit(_) | DriveChoice::AllFits(_))) => Some((
+    let traits = &effect.kind()?.traits;
+    match at_joint.map(|joint| &joint.drive) {
+        Some(DriveChoice::FirstFit(_) | DriveChoice::AllFits(_)) if traits.is_gear_curve => Some((
             "effect".into(),
             format!(
                 "soft_windup is the torsion curve of one drive, and the study chooses the drive of {} from the \
@@ -69,8 +70,8 @@ fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String
             ),
             "give the joint its drive in the study (gear and motor, or windup), or remove the effect".into(),
         )),
-        ("extra_mass", Some(DriveChoice::Given { mass_kg, .. }))
-            if takes_too_much(space, effect, *mass_kg) =>
+        Some(DriveChoice::Given { mass_kg, .. })
+            if traits.removes == Some(Removes::JointMass) && takes_too_much(space, effect, *mass_kg) =>
         {
             Some((
                 "parameters.delta_kg".into(),
@@ -87,7 +88,7 @@ fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String
     }
 }
 
-/// Whether an extra mass is a loss, and all those of its place together lose more than is there.
+/// Whether a negative extra mass, together with all others at its place, removes more mass than is there.
 fn takes_too_much(space: &DesignSpace, effect: &Effect, mass_kg: f64) -> bool {
     let added_kg = |effects: Vec<Effect>| DesignSpace { effects, ..space.clone() }.effects_mass_kg();
     let of_place = |other: &&Effect| other.effect == effect.effect && other.at == effect.at;
@@ -96,25 +97,30 @@ fn takes_too_much(space: &DesignSpace, effect: &Effect, mass_kg: f64) -> bool {
 }
 
 /// The study's own effects that describe a test, which change nothing.
-pub fn left_out(study: &Study) -> Vec<Carried> {
+pub fn left_out(study: &Study) -> Vec<Correction> {
     let of_test = study.space.effects.iter().filter(|effect| effect.is_of_test());
-    of_test.map(|effect| Carried { what: effect.label(), carried: false, words: OF_TEST.into() }).collect()
+    of_test.map(|effect| Correction { what: effect.label(), applied: false, words: OF_TEST.into() }).collect()
 }
 
 const OF_TEST: &str = "it describes how the arm was tested, not the arm";
 
-/// Puts what a measured arm's corrections mean for a study into the study's file: the effects of `arm`,
-/// and the factors within tolerance, `("j2.stiffness", 1.02)`, that it was calibrated with.
-pub fn carry_over(file: &Value, study: &Study, arm: &Arm, calibrated: &[(String, f64)]) -> CorrectedStudy {
-    let mut out = CorrectedStudy { file: file.clone(), carried: Vec::new() };
+/// Applies the corrections of a measured arm to the study's file: the effects of `arm`, and its calibrated
+/// factors such as `("j2.stiffness", 1.02)`.
+pub fn apply_corrections(
+    file: &Value,
+    study: &Study,
+    arm: &Arm,
+    calibrated: &[(String, f64)],
+) -> CorrectedStudy {
+    let mut out = CorrectedStudy { file: file.clone(), corrections: Vec::new() };
     arm.effects.iter().for_each(|effect| out.effect(&study.space, effect));
     calibrated.iter().for_each(|(name, factor)| out.calibration(&study.space, name, *factor));
     out
 }
 
 impl CorrectedStudy {
-    fn say(&mut self, what: String, carried: bool, words: impl Into<String>) {
-        self.carried.push(Carried { what, carried, words: words.into() });
+    fn say(&mut self, what: String, applied: bool, words: impl Into<String>) {
+        self.corrections.push(Correction { what, applied, words: words.into() });
     }
 
     fn effect(&mut self, space: &DesignSpace, effect: &Effect) {
@@ -147,7 +153,7 @@ impl CorrectedStudy {
         match found {
             None => self.say(what, false, format!("the study has no joint {part}")),
             Some((_, SpaceJoint { drive: DriveChoice::FirstFit(_) | DriveChoice::AllFits(_), .. })) => {
-                self.say(what, false, "the study chooses this joint's drive: it keeps its catalog figures");
+                self.say(what, false, "the study chooses this joint's drive: it keeps its catalog ratings");
             }
             Some((index, SpaceJoint { drive: DriveChoice::Given { curve, mass_kg, .. }, .. })) => {
                 let entry = &mut self.file["chain"][index];
@@ -168,7 +174,7 @@ fn parameters(effect: &Effect) -> String {
     each.collect::<Vec<_>>().join("; ")
 }
 
-/// Replaces what a joint's entry says of its stiffness.
+/// Replaces the stiffness in a joint's entry.
 fn write_curve(entry: &mut Value, curve: &Curve) {
     if let Some(entry) = entry.as_object_mut() {
         entry.shift_remove("stiffness_nm_per_rad");

@@ -1,4 +1,4 @@
-//! Designs near a front, as a table: what is in stock is what gets built.
+//! Designs near a front, as a table: useful if a part of the best design is not in stock.
 
 use super::outcome::by_full_model;
 use super::outcome::{Front, Judged, StudyOutcome};
@@ -7,32 +7,40 @@ use crate::catalog::Catalogs;
 use crate::pareto::front::rounded;
 use crate::pareto::objectives::Objectives;
 use crate::report::front_table::FrontTable;
-use crate::report::html::Extra;
 use crate::report::number::{shortest, significant};
 use crate::report::picks::choices;
+use crate::report::section::PageSection;
+use crate::report::supplement::Supplement;
 use crate::report::table::{Column, Table};
+use crate::report::words::{TERMINAL, wrap};
 use crate::search::near::{NearDesigns, Shortfall, Slack, near_designs, worse_by};
 use crate::space::design::Evaluated;
 use crate::space::design::id_of;
 use crate::space::problem::ArmProblem;
+use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
+
+/// Name of the file that lists them.
+pub const FILE: &str = "near.csv";
+/// Key in `run.json`.
+pub const KEY: &str = "within";
 
 /// The designs near a front.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NearFront {
-    /// Largest shortfall asked for, as a part.
+    /// Largest shortfall asked for, as a fraction.
     pub slack: f64,
     /// The nearest of them with every choice, objective and margin, how near each is, and which parts may be
     /// exchanged; nearest first.
     pub table: FrontTable,
-    /// How many there are, those left out by the cap included; `None` if they were not counted.
+    /// How many there are, including those that the cap left out; `None` if they were not counted.
     pub total: Option<u64>,
     /// Whether the cap left some out.
     pub capped: bool,
 }
 
-/// Finds the designs near a front that was found by visiting every design; `None` if it was stopped.
+/// Finds the designs near the front of an exhaustive search; `None` if the user stopped it.
 pub fn near_front(
     problem: &ArmProblem,
     catalogs: &Catalogs,
@@ -49,7 +57,7 @@ pub fn near_front(
 }
 
 impl NearFront {
-    /// Judges the designs that were found near a front by the full model.
+    /// Evaluates the near designs with the full model.
     pub fn of(
         problem: &ArmProblem,
         catalogs: &Catalogs,
@@ -73,12 +81,12 @@ impl NearFront {
     }
 }
 
-/// Three objectives to twelve digits, as words that can be compared.
+/// Three objectives rounded to twelve digits, as bits that can be compared.
 fn key(o: &Objectives) -> [u64; 3] {
     o.minimized().map(|x| rounded(x).to_bits())
 }
 
-/// Designs of equal objectives side by side, the nearest group first.
+/// Groups designs of equal objectives, the nearest group first.
 fn grouped(near: Vec<(f64, Evaluated)>) -> Vec<Vec<(f64, Evaluated)>> {
     let mut groups: BTreeMap<[u64; 3], Vec<(f64, Evaluated)>> = BTreeMap::new();
     for (shortfall, design) in near {
@@ -106,13 +114,13 @@ fn table(
     for group in &groups {
         let rows = first..first + group.len();
         for ((shortfall, design), row) in group.iter().zip(rows.clone()) {
-            let (rival, worse) = nearest(front, &design.objectives);
+            let (neighbour, worse) = nearest(front, &design.objectives);
             let swaps = rows.clone().filter_map(|other| {
                 Some(format!("{} ({})", only_difference(&words[row], &words[other])?, table.rows[other][0]))
             });
             let swaps = swaps.collect::<Vec<_>>().join("; ");
             let [deflection, mass, mode] = worse.map(|part| shortest(100.0 * part));
-            let near_to = id_of(problem.whole_number(rival));
+            let near_to = id_of(problem.whole_number(neighbour));
             table.rows[row].extend([shortest(100.0 * shortfall), near_to, deflection, mass, mode, swaps]);
         }
         first += group.len();
@@ -131,8 +139,8 @@ fn table(
     table
 }
 
-/// The design of the front that a design is near to, and by how much the design is worse than it in each
-/// objective; of several the one that differs least.
+/// The nearest design of the front, and by how much a design is worse than it in each objective. If several
+/// are equally near, the one that differs least.
 fn nearest(front: &Front, design: &Objectives) -> (u128, [f64; 3]) {
     let shortfall = |worse: &[f64; 3]| worse.iter().fold(0.0f64, |most, part| most.max(*part));
     let apart = |worse: &[f64; 3]| worse.iter().fold(0.0f64, |most, part| most.max(part.abs()));
@@ -143,7 +151,7 @@ fn nearest(front: &Front, design: &Objectives) -> (u128, [f64; 3]) {
     .unwrap_or_default()
 }
 
-/// The choice of `other` that differs from `one`, if just one does.
+/// The choice in which `other` differs from `one`, if it is the only one.
 fn only_difference<'w>(one: &[String], other: &'w [String]) -> Option<&'w str> {
     let mut different = one.iter().zip(other).filter(|(a, b)| a != b);
     let (_, word) = different.next()?;
@@ -164,18 +172,18 @@ impl NearFront {
                 "Within {percent} % of the front: {n} designs that are not on it, nearest first in near.csv."
             ),
             None => {
-                format!("Within {percent} % of the front there are more designs off it than near.csv lists.")
+                format!("Within {percent} % of the front there are more designs than near.csv lists.")
             }
         }];
         if self.capped {
             out.push(format!(
-                "Only the nearest {} are listed; --within-most takes more.",
+                "Only the nearest {} are listed; --within-most sets how many.",
                 self.table.rows.len()
             ));
         }
         if groups > 0 {
             out.push(format!(
-                "In {groups} groups of them all objectives are equal: their column interchangeable says which part may be exchanged for which."
+                "{groups} groups of these designs have equal objectives; the column interchangeable lists the parts that may be exchanged."
             ));
         }
         out
@@ -188,8 +196,29 @@ impl NearFront {
         groups.chunk_by(|a, b| a == b).filter(|group| group.len() > 1).count()
     }
 
+    /// Everything that a result reports about them.
+    pub fn supplement(&self) -> Supplement {
+        Supplement {
+            file: Some((FILE, self.table.to_csv())),
+            markdown: self.to_markdown(),
+            section: Some(self.section()),
+            run: Some((KEY, self.to_json())),
+            terminal: self.sentences().iter().map(|s| wrap(s, TERMINAL, "")).collect(),
+        }
+    }
+
+    /// What `run.json` says of them.
+    fn to_json(&self) -> Value {
+        json!({
+            "slack_percent": 100.0 * self.slack,
+            "designs": self.total,
+            "listed": self.table.rows.len(),
+            "capped": self.capped,
+        })
+    }
+
     /// The section of a page: how many there are, and the nearest.
-    pub fn section(&self) -> Extra {
+    pub fn section(&self) -> PageSection {
         let words = [("design_id", "design"), ("near_to", "near to")];
         let numbers = [
             ("shortfall_percent", "worse by at most [%]"),
@@ -209,7 +238,7 @@ impl NearFront {
             nearest.row(named.chain(numbers.map(number)));
         }
         let some = !self.table.rows.is_empty();
-        Extra {
+        PageSection {
             title: "Near the front".into(),
             words: self.sentences(),
             tables: some.then(|| ("The nearest; near.csv has all".into(), nearest)).into_iter().collect(),

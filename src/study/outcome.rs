@@ -1,6 +1,6 @@
-//! Running a study: sweep every design by the fast model, then judge what is left by the full one.
+//! Running a study: the search uses the fast model, and the full model evaluates its candidates.
 
-use super::read::Study;
+use super::definition::Study;
 use crate::catalog::Catalogs;
 use crate::exact::run::{Exact, ExactOutcome};
 use crate::pareto::front::nondominated;
@@ -17,7 +17,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// A design of a front, judged by the full model.
+/// A design of a front, evaluated by the full model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
     /// The design and its objectives.
@@ -40,7 +40,7 @@ pub struct StudyOutcome {
     pub by_material: Vec<OfMaterial>,
 }
 
-/// What was found of the designs whose chosen links are all of one material.
+/// The front of the designs whose chosen links are all of one material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OfMaterial {
     /// Name of the material.
@@ -49,12 +49,13 @@ pub struct OfMaterial {
     pub status: Status,
     /// Their front.
     pub front: Front,
-    /// Whether it has all designs that differ only in drives of equal mass and curve, or one of them each.
+    /// Whether designs that differ only in drives of equal mass and torsion curve are all in it, or only one
+    /// of each.
     pub ties_listed: bool,
 }
 
-/// Sweeps the study's designs. `watch` runs beside it with a function that tells how many designs are
-/// done, and must return when its second argument says so.
+/// Visits every design of the study. `watch` runs on another thread; it gets a function that returns how many
+/// designs are done, and must return when its second argument is set.
 pub fn run_study(
     study: &Study,
     catalogs: &Catalogs,
@@ -80,7 +81,7 @@ pub fn run_study(
     }
 }
 
-/// Works while a thread beside it watches, which is told when the work has ended, be it by a panic.
+/// Does the work while another thread watches. The watcher is told when the work ends, even by a panic.
 fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) -> T {
     struct EndOnDrop<'f>(&'f AtomicBool);
     impl Drop for EndOnDrop<'_> {
@@ -99,32 +100,34 @@ fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) 
 /// What an exact search found.
 #[derive(Debug, Clone)]
 pub struct ExactStudy {
-    /// The study with those link options alone that the designs found are made of.
+    /// The study, reduced to the link options of the designs that were found.
     pub study: Study,
     /// Its fronts; those of the materials only if the front of all designs is whole.
     pub outcome: StudyOutcome,
     /// Boxes bounded for the front of all designs, and how many were left open.
     pub boxes: [u64; 2],
-    /// By how much the front may be bettered; 0 if it is whole.
+    /// The gap: the largest fraction by which a missing design may beat the front; 0 if the front is whole.
     pub gap: Option<f64>,
     /// The designs near the front; `None` if they were not asked for, or time ran out before all were found.
     pub near: Option<NearDesigns>,
-    /// Whether the front has all designs that differ only in drives of equal mass and curve, or one of them each.
+    /// Whether designs that differ only in drives of equal mass and torsion curve are all on the front, or
+    /// only one of each.
     pub ties_listed: bool,
 }
 
 /// How far an exact search goes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Extent {
-    /// Until when; `None` until it comes to its end.
+    /// When to stop; `None` lets the search end by itself.
     pub deadline: Option<Instant>,
-    /// By what part in all three objectives at once a design may beat every one listed when it is content; 0: none.
+    /// The search may end when no design beats every listed one by more than this fraction in all three
+    /// objectives at once; 0 asks for the whole front.
     pub gap: f64,
     /// Which designs near the front are asked for.
     pub near: Option<Slack>,
 }
 
-/// What the searches of a space found, by numbers of the whole space.
+/// What the searches found; designs are numbered in the whole space.
 struct Searched {
     whole: ExactOutcome,
     by_material: Vec<(String, ExactOutcome)>,
@@ -163,8 +166,8 @@ impl Searched {
         fronts.flat_map(|of| of.front.iter().map(|c| c.number)).chain(near).collect()
     }
 
-    /// Their designs as those of an excerpt of the space, judged by the full model: the fronts, and at most so many
-    /// designs near that of all.
+    /// Converts the designs to an excerpt of the space and evaluates them with the full model: the fronts,
+    /// and at most so many designs near the front of all.
     fn judged(&self, problem: &ArmProblem, most: Option<usize>) -> (StudyOutcome, Option<NearDesigns>) {
         let here = |candidate: &Candidate| {
             let options = problem.options_of_whole(candidate.number)?;
@@ -220,9 +223,9 @@ fn status(found: &ExactOutcome) -> Status {
     }
 }
 
-/// Finds the fronts of a space too large to visit, and the designs near the front of all if they are asked for,
-/// as far as is asked or until `stop` is set. `watch` runs beside it with a function that tells how many
-/// boxes are done, and must return when its second argument says so.
+/// Finds the fronts of a space without visiting every design, and the designs near the front if they are
+/// asked for. It ends at the extent that is asked for or when `stop` is set. `watch` runs on another thread;
+/// it gets a function that returns how many boxes are done, and must return when its second argument is set.
 pub fn run_exact(
     study: &Study,
     catalogs: &Catalogs,
@@ -245,12 +248,12 @@ pub fn run_exact(
     ExactStudy { study, outcome, boxes, gap, near, ties_listed }
 }
 
-/// Judges candidates by the full model and keeps what nothing dominates.
+/// Evaluates candidates with the full model and keeps those that are not dominated.
 pub(super) fn judge(problem: &ArmProblem, candidates: &[Candidate]) -> Front {
     front_of(&by_full_model(problem, candidates.iter().map(|c| c.number).collect()), candidates)
 }
 
-/// Numbered designs by the full model, each once; those that cannot hold are left out.
+/// Evaluates numbered designs with the full model, each once; infeasible ones are left out.
 pub(super) fn by_full_model(problem: &ArmProblem, mut numbers: Vec<u128>) -> HashMap<u128, Evaluated> {
     numbers.sort_unstable();
     numbers.dedup();

@@ -1,20 +1,21 @@
 //! The page of a study: picks with their arms, the catalog rows behind them, the materials as beams.
 
-use super::read::Study;
+use super::definition::Study;
 use crate::arm::{Element, LinkBody};
 use crate::catalog::{Catalogs, Provenance};
-use crate::paper::figures::{BeamPoint, deflection_plot, points_csv, sizes};
+use crate::paper::figures::beam::{BeamPoint, points_csv, sizes};
+use crate::paper::figures::figure::deflection_plot;
 use crate::report::budget::budget_extra;
-use crate::report::html::Figure;
 use crate::report::html::pick::PickedArm;
 use crate::report::html::study::{CatalogRow, StudyPage};
 use crate::report::picks;
+use crate::report::section::Figure;
 use crate::report::summary::SummaryInput;
-use crate::report::svg::Series;
+use crate::report::svg::plot::Series;
 use crate::space::design::number_of;
 use crate::space::problem::ArmProblem;
 
-/// Everything on the page of a finished study but the facts of the run.
+/// Everything on the page of a finished study except the facts of the run.
 pub fn study_page<'a>(
     study: &Study,
     problem: &ArmProblem,

@@ -1,8 +1,10 @@
-//! Reading a study file: an arm with open links and drives, the cases it is judged in, what it must do.
+//! Reads a study file: an arm with open links and drives, the cases in which it is judged, and its
+//! requirements.
 //!
 //! Lengths of sections and limits are in millimetres because that is how profiles are sold; everything
 //! else is SI. The resolved [`DesignSpace`] is SI throughout.
 
+use super::definition::Study;
 use super::effects::check_effects;
 use super::sections::{read_materials, read_sections};
 use crate::arm::file::{read_curve, read_effects, read_joint_mass, read_link, read_name};
@@ -18,21 +20,6 @@ use crate::sizing::select::DriveFilter;
 use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{Case, DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 use nalgebra::Vector3;
-
-/// A study: a named question about an arm.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Study {
-    /// Name.
-    pub name: String,
-    /// The question in a sentence.
-    pub question: String,
-    /// What there is to choose and what it is asked to do.
-    pub space: DesignSpace,
-    /// By what part in all three objectives at once a design may beat every one listed when an exact search is content.
-    pub gap: f64,
-    /// Options left out because a figure that a check needs is unknown, in words.
-    pub not_checked: Vec<String>,
-}
 
 const KEYS: [&str; 15] = [
     "name",
@@ -105,7 +92,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked })
 }
 
-/// A part of one, written in percent.
+/// A fraction, written in percent.
 fn read_gap(node: &Node) -> Option<f64> {
     match node.non_negative()? {
         percent if percent < 100.0 => Some(percent / 100.0),
@@ -176,7 +163,7 @@ fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
     Some(Drives { filter })
 }
 
-/// A list of names that must all be known; absent is no restriction.
+/// A list of names that must all be known; without the key there is no restriction.
 fn names(object: &Object, key: &str, known: &[&str]) -> Option<Option<Vec<String>>> {
     object.or(key, None, |node| {
         let read: Vec<Option<String>> = node
@@ -329,7 +316,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
     Some(SpaceJoint { name: name?, axis: axis?, drive: drive?, max_speed_rad_s: max_speed? })
 }
 
-/// Keys that another key makes meaningless are faults: nothing written is ignored.
+/// Reports keys that another key makes meaningless as faults, because nothing in a file is silently ignored.
 fn stray(object: &Object, keys: &[&str], problem: &str, hint: &str) {
     for node in keys.iter().filter_map(|key| object.optional(key)) {
         node.fault::<()>(problem, hint);
@@ -378,7 +365,7 @@ fn read_space_link(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> O
     Some(SpacePiece::Choice(LinkChoice { name: name?, vector_m: vector_m?, options, excerpt: None }))
 }
 
-/// Every case, and which of them are judged and sized in.
+/// All cases, with the indices of those for judging and for sizing.
 #[derive(Default)]
 struct Cases {
     cases: Vec<Case>,

@@ -10,7 +10,7 @@ use crate::space::design_space::LinkOption;
 use std::collections::HashSet;
 
 const DEFAULT_POISSON: f64 = 0.3;
-/// No grid has more points than this; a larger one is a slip in the step.
+/// Most points of a grid; more would be a mistake in the step.
 const MOST_POINTS: usize = 100_000;
 
 /// Sections to choose from.
@@ -70,7 +70,7 @@ pub(super) fn read_sections(node: &Node, catalogs: &Catalogs) -> Option<Sections
     Some(Sections { sections })
 }
 
-/// What tells a section from every other.
+/// The identity of a section, to find duplicates.
 fn identity((section, profile): &Named) -> (bool, [u64; 3], Option<ProfileName>) {
     let is_round = matches!(section, Section::RoundTube { .. });
     let (width_m, height_m) = section.outer_m();
@@ -209,7 +209,7 @@ fn sold_in(family: &str, material: &Material) -> bool {
     }
 }
 
-/// Materials times sections. Options that lack a figure a constraint needs are left out and listed.
+/// Materials times sections. Options that lack a rating that a constraint needs are left out and listed.
 pub(super) fn options(
     materials: &[&Material],
     sections: &Sections,
@@ -220,11 +220,11 @@ pub(super) fn options(
     let mut out = Vec::new();
     for material in materials {
         let Some(shear_modulus_pa) = material.shear_modulus_pa else { continue };
-        if let Some(missing) = missing_figure(material, constraints) {
+        if let Some(missing) = missing_rating(material, constraints) {
             not_checked.push(format!("link {link}: {} has no {missing} in the catalog", material.name));
             continue;
         }
-        let figures = LinkMaterial {
+        let elastic = LinkMaterial {
             youngs_modulus_pa: material.youngs_modulus_pa,
             shear_modulus_pa,
             density_kg_m3: material.density_kg_m3,
@@ -237,7 +237,7 @@ pub(super) fn options(
             out.push(LinkOption {
                 material_index: 0,
                 material_name: material.name.clone(),
-                material: figures,
+                material: elastic,
                 section: *section,
                 profile: profile.as_ref().map(|p| p.designation.clone()),
                 strength_pa: material.strength_pa,
@@ -248,7 +248,7 @@ pub(super) fn options(
     out
 }
 
-fn missing_figure(material: &Material, constraints: &Constraints) -> Option<&'static str> {
+fn missing_rating(material: &Material, constraints: &Constraints) -> Option<&'static str> {
     if constraints.stress_safety_factor_min.is_some() && material.strength_pa.is_none() {
         return Some("strength");
     }

@@ -4,6 +4,7 @@ use super::outcome::Front;
 use crate::arm::section::Section;
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
+use crate::report::tube::tube_size;
 use crate::sizing::demand::JointDemand;
 use crate::sizing::sheet::JointSizingRow;
 use crate::space::design::{Part, id_of, options};
@@ -11,7 +12,7 @@ use crate::space::design_space::{DriveChoice, LinkOption, SpacePiece};
 use crate::space::levels::OutwardIn;
 use crate::space::problem::{ArmProblem, Partial};
 
-/// A name in lower case with runs of anything but letters and digits turned into one `-`.
+/// A name in lower case; every run of other characters than letters and digits becomes one `-`.
 pub fn slug(name: &str) -> String {
     let mut out = String::new();
     for c in name.chars() {
@@ -113,8 +114,7 @@ fn link_cells(option: &LinkOption) -> [String; 6] {
 /// A tube in words: `120 x 100 x 3 mm Aluminium 6061-T6`.
 pub(super) fn link_words(option: &LinkOption) -> String {
     let [material, shape, width, height, wall, _] = link_cells(option);
-    let round = if shape == "round_tube" { "round " } else { "" };
-    format!("{round}{width} x {height} x {wall} mm {material}")
+    format!("{} {material}", tube_size(shape == "round_tube", [&width, &height, &wall]))
 }
 
 /// A length as the millimetres it was given in: the shortest decimal that reads back the same.
@@ -128,8 +128,8 @@ fn number(x: f64) -> String {
     format!("{x}")
 }
 
-/// The sizing of every joint with a drive from the catalogs, chosen or given, tip first; or the slot at
-/// which the design cannot hold.
+/// The sizing of every joint with a drive from the catalogs, chosen or given, tip first; or the slot at which
+/// no drive holds.
 pub(crate) fn sizing_rows(
     problem: &ArmProblem,
     catalogs: &Catalogs,

@@ -1,11 +1,12 @@
-//! Drives that may stand in for those of a design without a change of any objective, where the designs that have them are
-//! too many to be rows of the front.
+//! Drives that can replace those of a design without changing any objective. They are listed separately if
+//! the designs with them are too many to be rows of the front.
 
 use super::outcome::{Front, Judged};
-use crate::report::compare::text::wrap;
 use crate::report::front_table::FrontTable;
-use crate::report::html::Extra;
-use crate::report::summary::large;
+use crate::report::number::large;
+use crate::report::section::PageSection;
+use crate::report::supplement::Supplement;
+use crate::report::words::{TERMINAL, wrap};
 use crate::sizing::demand::JointDemand;
 use crate::space::design::{id_of, options};
 use crate::space::design_space::SpacePiece;
@@ -18,17 +19,20 @@ use std::collections::BTreeSet;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ties {
     rows: Vec<Vec<String>>,
-    /// Rows of the front, and designs that they stand for.
+    /// Number of rows of the front.
     front: usize,
     designs: f64,
 }
 
+/// Name of the file that lists them.
+pub const FILE: &str = "ties.csv";
+
 const COLUMNS: [&str; 4] = ["design_id", "at", "part", "instead"];
 
-/// Between drives that may stand in one place.
+/// Separator between drives that may be exchanged.
 const OR: &str = "; ";
 
-/// Looks for the ties of a front: every joint may have any of its drives, whichever the others have.
+/// Finds the ties of a front. The drives of one joint may be exchanged independently of those of the others.
 pub fn ties(problem: &ArmProblem, front: &Front) -> Ties {
     let of_designs: Vec<(Vec<Vec<String>>, f64)> =
         front.par_iter().filter_map(|judged| ties_of(problem, judged)).collect();
@@ -59,10 +63,10 @@ fn ties_of(problem: &ArmProblem, judged: &Judged) -> Option<(Vec<Vec<String>>, f
             continue;
         };
         let own = of_pieces[*piece] as usize;
-        let alike: Vec<usize> = sized.ties_of(own, demand).collect();
-        designs *= alike.len() as f64;
+        let tied: Vec<usize> = sized.ties_of(own, demand).collect();
+        designs *= tied.len() as f64;
         let name = |drive: usize| sized.table.drive(drive).name();
-        let others: Vec<String> = alike.iter().filter(|&&drive| drive != own).map(|&d| name(d)).collect();
+        let others: Vec<String> = tied.iter().filter(|&&drive| drive != own).map(|&d| name(d)).collect();
         if !others.is_empty() {
             rows.push(vec![id.clone(), joint.name.clone(), name(own), others.join(OR)]);
         }
@@ -71,12 +75,12 @@ fn ties_of(problem: &ArmProblem, judged: &Judged) -> Option<(Vec<Vec<String>>, f
 }
 
 impl Ties {
-    /// One row a joint of a design that may have other drives.
+    /// One row for each joint of a design that may have other drives.
     pub fn to_csv(&self) -> Vec<u8> {
         FrontTable { columns: COLUMNS.map(String::from).into(), rows: self.rows.clone() }.to_csv()
     }
 
-    /// What is wrong with a file that should have these ties, in words.
+    /// Differences between these ties and a file that should list them, in words.
     pub fn faults_of(&self, file: &[u8]) -> Vec<String> {
         let mut reader = csv::Reader::from_reader(file);
         let columns: Vec<String> =
@@ -102,21 +106,27 @@ impl Ties {
     /// How many designs the front stands for, in a sentence.
     pub fn sentence(&self) -> String {
         format!(
-            "The {} rows of the front stand for {} designs with the same objectives: at each joint some drives weigh and \
-             twist alike and hold. ties.csv lists them.",
+            "The {} rows of the front stand for {} designs with the same objectives: at some joints several drives have \
+             equal mass and an equal torsion curve. ties.csv lists them.",
             large(self.front as u128),
             large(self.designs as u128)
         )
     }
 
-    /// The sentence for a terminal.
-    pub fn to_text(&self) -> String {
-        wrap(&self.sentence(), 80, "")
+    /// Everything that a result reports about them.
+    pub fn supplement(&self) -> Supplement {
+        Supplement {
+            file: Some((FILE, self.to_csv())),
+            markdown: self.to_markdown(),
+            section: Some(self.section()),
+            run: None,
+            terminal: wrap(&self.sentence(), TERMINAL, ""),
+        }
     }
 
     /// The section of a page.
-    pub fn section(&self) -> Extra {
-        Extra {
+    pub fn section(&self) -> PageSection {
+        PageSection {
             title: "Drives that may be exchanged".into(),
             words: vec![self.sentence()],
             tables: Vec::new(),

@@ -1,8 +1,8 @@
-//! A front under scatter: catalog figures are averages, and a real part is a little off.
+//! A front under scatter: catalog ratings are averages, and a real part differs from them.
 //!
-//! A stated scatter of `p` is a log-normal factor on a catalog figure, its median 1: 95 % of the factors lie
+//! A stated scatter of `p` is a log-normal factor on a catalog rating, its median 1: 95 % of the factors lie
 //! between `1/(1+p)` and `1+p`, as with the tolerances of a campaign. One factor belongs to one row of a
-//! catalog, and so to every joint and design that uses it. Each figure has a stream of random numbers of its
+//! catalog, and so to every joint and design that uses it. Each rating has a stream of random numbers of its
 //! own, made from the seed and the row's name: its factors do not depend on what else is on the front, on the
 //! number of samples or on threads.
 //!
@@ -31,15 +31,15 @@ use std::f64::consts::TAU;
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Samples that are worked out before their counts are added up.
+/// Number of samples per batch.
 const BATCH: u32 = 256;
-/// Ninety-five percent of a normal distribution lie within so many standard deviations.
+/// 95 % of a normal distribution lie within this many standard deviations.
 const SIGMAS_95: f64 = 1.959_963_984_540_054;
 
 /// Names of what may scatter, with the scatter that a name alone stands for.
 const KINDS: [(&str, f64); 3] = [("gear_stiffness", 0.20), ("modulus", 0.03), ("mass", 0.02)];
 
-/// Scatter of catalog figures, as parts: 0.2 is 20 %.
+/// Scatter of catalog ratings, as fractions: 0.2 is 20 %.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Tolerance {
     /// Of [`KINDS`], in that order; 0 is exact.
@@ -79,7 +79,7 @@ impl FromStr for Tolerance {
     }
 }
 
-/// A percentage or a part between 0 and 1: `20%`, `0.2`.
+/// A percentage or a fraction between 0 and 1: `20%`, `0.2`.
 pub fn part(text: &str) -> Result<f64, String> {
     let (number, scale) = text.strip_suffix('%').map_or((text, 1.0), |n| (n.trim_end(), 0.01));
     match number.parse::<f64>() {
@@ -94,7 +94,7 @@ impl Tolerance {
         KINDS.iter().zip(self.parts).map(|((name, _), part)| (*name, part)).filter(|(_, part)| *part > 0.0)
     }
 
-    /// Scatter of a figure.
+    /// Scatter of a rating.
     fn of(&self, figure: &Rating) -> f64 {
         let [gear_stiffness, modulus, mass] = self.parts;
         match figure {
@@ -105,7 +105,7 @@ impl Tolerance {
     }
 }
 
-/// The stream of random factors of one figure.
+/// The stream of random factors of one rating.
 struct Stream {
     generator: Xoshiro256PlusPlus,
     sigma: f64,
@@ -143,7 +143,7 @@ struct Sample {
 struct Trial<'a> {
     parts: &'a ChosenParts<'a, 'a>,
     constraints: &'a Constraints,
-    /// The front by the catalogs' figures.
+    /// The front with the catalog ratings.
     designs: &'a [Design],
     /// Places of the nominal picks in it.
     picks: &'a [usize],
@@ -196,8 +196,8 @@ pub fn scatter_front(
     let numbers: Vec<u128> = designs.iter().map(|d| front[d.row].design.number).collect();
     let place = |(row, design): (usize, &Design)| Design { row, ..design.clone() };
     let designs: &[Design] = &designs.iter().enumerate().map(place).collect::<Vec<_>>();
-    let bare = without_excerpt(problem);
-    let space = bare.excerpt(catalogs, &numbers)?;
+    let unrestricted = without_excerpt(problem);
+    let space = unrestricted.excerpt(catalogs, &numbers)?;
     let small = ArmProblem::new(&space, catalogs);
     let chosen: Option<Vec<Vec<u32>>> = numbers.iter().map(|&n| small.options_of_whole(n)).collect();
     let parts = ChosenParts::new(&small, &chosen?)?;
@@ -227,7 +227,7 @@ pub fn scatter_front(
     Some(tally.told(designs, &nominal, sampling))
 }
 
-/// The space of a problem as a whole of its own: places in it are those of its designs' numbers.
+/// The problem's space without its excerpt, so that designs are numbered within it.
 fn without_excerpt(problem: &ArmProblem) -> DesignSpace {
     let mut space = problem.space().clone();
     for piece in &mut space.pieces {

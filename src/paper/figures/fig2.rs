@@ -1,11 +1,14 @@
 //! `fig2-metals`: deflection against weight per length of steel, titanium and aluminium.
 
-use super::super::{PaperError, PaperStudyOutput, claim::Claim, parts};
-use super::{BeamPoint, Figure, deflection_plot, sizes};
+use super::beam::{BeamPoint, sizes};
+use super::figure::{Figure, deflection_plot};
 use crate::catalog::Catalogs;
 use crate::catalog::material::Material;
+use crate::paper::claim::Claim;
+use crate::paper::output::{PaperError, PaperStudyOutput};
+use crate::paper::parts;
 use crate::report::number::{fixed, shortest, significant};
-use crate::report::svg::{Note, Plot, Series, Side};
+use crate::report::svg::plot::{Note, Plot, Series, Side};
 use crate::report::table::{Column, Table};
 
 /// The figure's metals in the catalog, as the legend names them.

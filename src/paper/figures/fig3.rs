@@ -1,11 +1,15 @@
 //! `fig3-wall-or-width`: whether weight is better spent on wall thickness or on outer dimensions.
 
-use super::super::{PaperError, PaperStudyOutput, claim::Claim, parts};
-use super::{BeamPoint, Figure, WALL_M, sizes};
+use super::beam::{BeamPoint, WALL_M, sizes};
+use super::figure::Figure;
 use crate::catalog::Catalogs;
 use crate::catalog::material::Material;
+use crate::paper::claim::Claim;
+use crate::paper::output::{PaperError, PaperStudyOutput};
+use crate::paper::parts;
 use crate::report::number::{fixed, percent_change};
-use crate::report::svg::{Axis, Plot, Scale, Series};
+use crate::report::svg::plot::{Axis, Plot, Series};
+use crate::report::svg::scale::Scale;
 use crate::report::table::{Column, Table};
 
 /// The figure's material.

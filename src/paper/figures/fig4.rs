@@ -1,15 +1,18 @@
 //! `fig4-composites`: boron, kevlar and silicon-carbide composites against aluminium.
 //!
-//! Anything that carries torsion needs a quasi-isotropic laminate. Unidirectional rows are drawn dashed
-//! and marked axial: their E along the fibre is that of bending alone, and their small shear modulus
-//! shows in the deflection with shear.
+//! Anything that carries torsion needs a quasi-isotropic laminate. Unidirectional rows are drawn dashed and
+//! marked axial: their modulus along the fibre counts in bending only, and their small shear modulus shows in
+//! the deflection with shear.
 
-use super::super::{PaperError, PaperStudyOutput, claim::Claim, parts};
-use super::{BeamPoint, Figure, WALL_M, deflection_plot, sizes};
+use super::beam::{BeamPoint, WALL_M, sizes};
+use super::figure::{Figure, deflection_plot};
 use crate::catalog::Catalogs;
 use crate::catalog::material::Material;
+use crate::paper::claim::Claim;
+use crate::paper::output::{PaperError, PaperStudyOutput};
+use crate::paper::parts;
 use crate::report::number::{fixed, percent_change};
-use crate::report::svg::{Guide, Plot, Series};
+use crate::report::svg::plot::{Guide, Plot, Series};
 use crate::report::table::{Column, Table};
 
 /// The reference deflection \[m\].
@@ -142,7 +145,7 @@ fn dimensions(curves: &[Curve]) -> Claim {
     )
 }
 
-/// Eq 4 knows no shear; for unidirectional rows that is not a detail.
+/// The effect of shear, which Eq 4 leaves out: it is large for unidirectional laminates.
 fn shear_of_axial_rows(curves: &[Curve]) -> Claim {
     let share = |c: &Curve| {
         let point = c.at_reference.as_ref()?;

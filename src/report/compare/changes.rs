@@ -1,8 +1,8 @@
-//! What another model of the same arm does to a study: the designs of the front before and after, each
-//! judged by both models, and which of the picks change.
+//! How a study's result changes under another model of the same arm: the designs of both fronts, each judged
+//! by both models, and the picks that change.
 //!
-//! Designs are told apart by what the search chose, their `design_id`. Drives that the study sizes are
-//! sized anew under the other model.
+//! A design is identified by its `design_id`, that is, by what the search chose. Drives that the study sizes
+//! are sized again under the other model.
 
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
@@ -10,7 +10,7 @@ use crate::report::picks::{choices, designs, picks};
 use crate::report::table::{Column, Table};
 use serde::Serialize;
 
-/// What a design is worth under one model.
+/// The objectives of a design under one model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Values {
     /// Tip deflection \[mm\].
@@ -37,15 +37,16 @@ pub struct Changed {
     pub design_id: String,
     /// Whether it is on the front of either model, nominal first.
     pub on_front: [bool; 2],
-    /// What each model makes of it; `None`: no drive of the catalogs holds it, or it breaks a limit.
+    /// Its objectives under each model, nominal first. `None` if no catalog drive is strong enough or a limit
+    /// is broken.
     pub values: [Option<Values>; 2],
-    /// What it is picked for under each model.
+    /// The picks it is under each model, nominal first.
     pub picks: [Vec<&'static str>; 2],
     /// Its parts in words.
     pub choices: String,
 }
 
-/// One of the designs a reader looks for first, under both models.
+/// A pick, such as the lightest design, under both models.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PickChange {
     /// `lightest`, `stiffest`, `highest mode` or `knee`.
@@ -54,13 +55,13 @@ pub struct PickChange {
     pub changes: bool,
     /// The pick of the nominal model.
     pub nominal_design_id: String,
-    /// What the nominal model says of it.
+    /// Its objectives under the nominal model.
     pub nominal: Option<Values>,
-    /// What the corrected model says of it; `None`: it no longer holds.
+    /// Its objectives under the corrected model; `None` if it is no longer feasible.
     pub nominal_under_corrected: Option<Values>,
     /// The pick of the corrected model.
     pub corrected_design_id: String,
-    /// What the corrected model says of that.
+    /// The objectives of that design under the corrected model.
     pub corrected: Option<Values>,
 }
 
@@ -74,7 +75,7 @@ pub struct Changes {
 const PICKS: [&str; 4] = ["lightest", "stiffest", "highest mode", "knee"];
 
 impl Changes {
-    /// Compares two fronts of one study; `judge` says what a model makes of a design.
+    /// Compares two fronts of one study; `judge` computes the objectives of a design under a model.
     pub fn new(fronts: [&FrontTable; 2], judge: impl Fn(Model, &str) -> Option<Values>) -> Self {
         let mut out = Self { designs: Vec::new() };
         for (side, front) in fronts.into_iter().enumerate() {
@@ -110,7 +111,7 @@ impl Changes {
         &mut self.designs[index]
     }
 
-    /// Number of designs on both fronts, on the nominal alone and on the corrected alone.
+    /// Numbers of designs: on both fronts, only on the nominal one, only on the corrected one.
     pub fn counts(&self) -> [usize; 3] {
         [[true, true], [true, false], [false, true]]
             .map(|on| self.designs.iter().filter(|d| d.on_front == on).count())

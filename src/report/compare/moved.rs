@@ -1,14 +1,15 @@
-//! What changed between two runs of a study: designs that stayed, came and went, and how far the best
-//! values moved.
+//! What changed between two runs of a study: designs that stayed, entered and left, and how the best values
+//! changed.
 
-use super::{Contender, amount};
+use super::contender::Contender;
 use crate::report::front_table::{FrontTable, OBJECTIVE_COLUMNS};
-use crate::report::number::significant;
+use crate::report::number::percent_rounded;
 use crate::report::picks::{Objective, best, designs};
+use crate::report::words::capital;
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// What moved from one front to another.
+/// The changes from one front to another.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Moved {
     /// Label of the front before.
@@ -46,7 +47,7 @@ pub fn moved(before: &Contender, after: &Contender) -> Moved {
     moved
 }
 
-/// The objectives of every design by its choices. Where the tables have no choices, by its name.
+/// The objectives of every design, keyed by its choices, or by its name if the table has no choices.
 fn by_choice(front: &FrontTable) -> HashMap<Vec<&str>, Vec<&str>> {
     let objectives: Vec<usize> = OBJECTIVE_COLUMNS.iter().filter_map(|c| front.column(c)).collect();
     let first = objectives.iter().copied().min().unwrap_or(0);
@@ -74,19 +75,19 @@ fn words(moved: &Moved, before: &Contender, after: &Contender) -> String {
     .into_iter()
     .filter_map(|(name, o)| Some(change(name, o, o.of(best(o, &old)?), o.of(best(o, &new)?))));
     let changes: Vec<String> = changes.collect();
-    if changes.is_empty() { counts } else { format!("{counts} {}.", super::capital(&changes.join("; "))) }
+    if changes.is_empty() { counts } else { format!("{counts} {}.", capital(&changes.join("; "))) }
 }
 
 fn change(name: &str, objective: Objective, old: f64, new: f64) -> String {
     if old == new {
-        return format!("{name} still {}", amount(objective, new));
+        return format!("{name} still {}", objective.amount(new));
     }
     let percent = 100.0 * (new / old - 1.0);
     let sign = if percent > 0.0 { "+" } else { "" };
     format!(
-        "{name} {} to {} ({sign}{} %)",
-        amount(objective, old),
-        amount(objective, new),
-        significant(percent, 2)
+        "{name} {} to {} ({sign}{})",
+        objective.amount(old),
+        objective.amount(new),
+        percent_rounded(percent, 2)
     )
 }

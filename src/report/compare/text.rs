@@ -1,9 +1,11 @@
 //! A comparison for people and for programs: text tables, Markdown, CSV.
 
-use super::{Answer, Comparison, Question, Reach, Row, cost_words, plain};
-use crate::report::number::{shortest, significant};
+use super::comparison::{Answer, Comparison, Reach, Row};
+use super::question::Question;
+use crate::report::number::{cost_words, shortest, significant};
 use crate::report::picks::{Design, Objective};
 use crate::report::table::{Column, Table, csv_line};
+use crate::report::words::wrap;
 
 /// Width that text tables keep to, if the labels allow it \[characters\].
 const WIDTH: usize = 80;
@@ -52,7 +54,7 @@ impl Comparison {
     /// A Markdown document with full labels.
     pub fn to_markdown(&self) -> String {
         let labels = self.labels();
-        let mut out = format!("# Fronts side by side\n\n{REACH_TITLE}.\n\n");
+        let mut out = format!("# Fronts compared\n\n{REACH_TITLE}.\n\n");
         out.push_str(&reach_table(&self.reach, &labels).to_markdown());
         for question in Question::ALL {
             let rows: Vec<&Row> = self.rows.iter().filter(|r| r.question == question).collect();
@@ -179,7 +181,7 @@ fn reach_table(reach: &[Reach], labels: &[String]) -> Table {
     table
 }
 
-/// The same without counts and cost, for a terminal.
+/// The same table without counts and cost, for a terminal.
 fn short_reach_table(reach: &[Reach], labels: &[String]) -> Table {
     let mut columns = vec![Column::left("front")];
     for unit in ["kg", "mm", "Hz"] {
@@ -204,7 +206,7 @@ fn is_best(objective: Objective, own: &Option<Design>, reach: &[Reach]) -> bool 
     reach.len() > 1 && own.as_ref().is_some_and(|d| objective.minimized(d) == best)
 }
 
-/// Value, name and cost of a design; the best is starred.
+/// Value, name and cost of a design; a star marks the best.
 fn triple(objective: Objective, design: Option<&Design>, starred: bool) -> [String; 3] {
     let Some(d) = design else { return ["none".into(), String::new(), String::new()] };
     let star = if starred { "* " } else { "" };
@@ -232,7 +234,7 @@ fn table(rows: &[&Row], labels: &[String]) -> Table {
 
 fn header(row: &Row) -> String {
     let sign = if row.question.limited() == Objective::Mode { '≥' } else { '≤' };
-    format!("{sign} {} {}", plain(row.limit), row.question.limited().unit())
+    format!("{sign} {} {}", shortest(row.limit), row.question.limited().unit())
 }
 
 fn answer_cells(question: Question, answer: &Answer) -> [String; 3] {
@@ -240,7 +242,7 @@ fn answer_cells(question: Question, answer: &Answer) -> [String; 3] {
     triple(question.sought(), design, answer.winner)
 }
 
-/// Splits the limits of a question over as many tables as keep to the width.
+/// Splits the limits of a question into tables that fit the width.
 fn groups<'a>(rows: &[&'a Row], labels: &[String]) -> Vec<Vec<&'a Row>> {
     let mut out: Vec<Vec<&Row>> = Vec::new();
     for row in rows {
@@ -257,7 +259,7 @@ fn groups<'a>(rows: &[&'a Row], labels: &[String]) -> Vec<Vec<&'a Row>> {
     out
 }
 
-/// Which fronts cannot keep a limit, and the nearest they get.
+/// The fronts that cannot keep a limit, and how near each comes.
 fn out_of_reach(row: &Row, labels: &[String]) -> String {
     let limited = row.question.limited();
     let missed: Vec<String> = row
@@ -283,7 +285,7 @@ fn out_of_reach(row: &Row, labels: &[String]) -> String {
     format!("Cannot reach {}; nearest: {}.", header(row), missed.join(", "))
 }
 
-/// Labels that fit a narrow table and still differ.
+/// Labels short enough for a narrow table, still different from each other.
 pub fn short_labels(labels: &[String]) -> Vec<String> {
     let short: Vec<String> = labels.iter().map(|l| shorten(l)).collect();
     let unique = |i: usize| short.iter().filter(|s| **s == short[i]).count() == 1;
@@ -326,47 +328,9 @@ fn item(sentence: &str) -> String {
     wrap(sentence, WIDTH, "    ").replacen("    ", "  - ", 1)
 }
 
-/// Breaks words into lines of at most `width` characters, each beginning with `lead`; a number and its
-/// unit stay together.
-pub fn wrap(words: &str, width: usize, lead: &str) -> String {
-    let mut lines: Vec<String> = Vec::new();
-    for word in bound(words) {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
-                line.push(' ');
-                line.push_str(&word);
-            }
-            _ => lines.push(format!("{lead}{word}")),
-        }
-    }
-    lines.iter().map(|l| format!("{l}\n")).collect()
-}
-
-/// Words, with units bound to the numbers before them.
-fn bound(words: &str) -> Vec<String> {
-    const UNITS: [&str; 5] = ["%", "mm", "kg", "Hz", "EUR"];
-    let mut out: Vec<String> = Vec::new();
-    for word in words.split_whitespace() {
-        let is_unit = UNITS.contains(&word.trim_end_matches([',', ';', '.', ')', ':']));
-        match out.last_mut() {
-            Some(number) if is_unit && number.ends_with(|c: char| c.is_ascii_digit()) => {
-                number.push(' ');
-                number.push_str(word);
-            }
-            _ => out.push(word.to_string()),
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_number_and_its_unit_stay_on_one_line() {
-        assert_eq!(wrap("it is 28 %, or 12 kg", 8, ""), "it is\n28 %, or\n12 kg\n");
-    }
 
     #[test]
     fn labels_are_shortened_only_where_they_must_and_stay_different() {
@@ -380,7 +344,7 @@ mod tests {
             short_labels(&labels),
             ["Aluminium 6061-T6", "CFRP T300/5208 QI", "SiC p/Al 2124 25 vol% w…"]
         );
-        let alike = [long("Titanium Ti-6Al-4V sheet (annealed)"), long("Titanium Ti-6Al-4V sheet (aged)")];
-        assert_eq!(short_labels(&alike), alike);
+        let similar = [long("Titanium Ti-6Al-4V sheet (annealed)"), long("Titanium Ti-6Al-4V sheet (aged)")];
+        assert_eq!(short_labels(&similar), similar);
     }
 }

@@ -1,13 +1,13 @@
-//! Round limits to compare fronts at, spread over where the fronts overlap.
+//! Round limits at which fronts are compared, spread over the range where the fronts overlap.
 
-use super::Question;
+use super::question::Question;
 use crate::report::picks::{Design, Objective, best};
 use serde::Serialize;
 
 /// How many limits are chosen for a question.
 const CHOSEN: usize = 3;
 
-/// Limits to compare at; what is empty is not asked.
+/// Limits at which fronts are compared. A question whose list is empty is not asked.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Thresholds {
     /// Tip deflections \[mm\].
@@ -33,8 +33,8 @@ impl Thresholds {
         self.deflection_mm.is_empty() && self.mass_kg.is_empty() && self.mode_hz.is_empty()
     }
 
-    /// These limits, or, where none at all is given, limits chosen for these fronts (none of them
-    /// empty): round numbers that most fronts can keep and at which most still have to choose.
+    /// These limits. If none is given at all, chooses round limits for these fronts (none may be empty) that
+    /// most fronts can keep and that still force a trade-off for most of them.
     pub fn or_chosen(&self, fronts: &[&[Design]]) -> Self {
         if !self.is_empty() || fronts.is_empty() {
             return self.clone();
@@ -51,8 +51,8 @@ impl Thresholds {
     }
 }
 
-/// The strictest limit that three of four fronts keep, and the loosest at which half of them still
-/// give something up: beyond it their answers are their best designs of all.
+/// The range of useful limits: the strictest limit that three of four fronts can keep, and the loosest limit
+/// that still constrains half of them. Beyond the latter the answer is simply the best design of the front.
 fn overlap(limited: Objective, fronts: &[&[Design]]) -> (f64, f64) {
     let at_best_of = |o, front: &[Design]| best(o, front).map(|d| limited.minimized(d));
     let strictest = fronts.iter().filter_map(|f| at_best_of(limited, f)).collect();
@@ -65,7 +65,7 @@ fn overlap(limited: Objective, fronts: &[&[Design]]) -> (f64, f64) {
     if limited == Objective::Mode { (-strict, -loose) } else { (strict, loose) }
 }
 
-/// Whether some question seeks the one under a limit on the other.
+/// Whether some question optimizes `sought` under a limit on `limited`.
 fn asked(limited: Objective, sought: Objective) -> bool {
     Question::ALL.into_iter().any(|q| q.limited() == limited && q.sought() == sought)
 }
@@ -77,8 +77,8 @@ fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
     values.get(index.saturating_sub(1)).copied().unwrap_or(f64::NAN)
 }
 
-/// At most `count` round numbers from `low` to `high`, spread over the range, the coarsest that give so
-/// many; the nearest number of two digits that most can keep if the range holds none.
+/// At most `count` round numbers from `low` to `high`, spread over the range, as coarse as possible. If the
+/// range holds no round number, the nearest number of two digits that most fronts can keep.
 fn round_between(low: f64, high: f64, count: usize, limited: Objective) -> Vec<f64> {
     const STOPS: [&[u32]; 4] = [
         &[10, 20, 50],
@@ -118,7 +118,7 @@ fn decimal(digits: u32, power: i32) -> f64 {
     if power < 0 { digits / 10f64.powi(-power) } else { digits * 10f64.powi(power) }
 }
 
-/// Of rising numbers those nearest to evenly spread places (in ratio) inside the range.
+/// Picks, from rising numbers, those nearest to places that are evenly spread (in ratio) over the range.
 fn spread(found: &[f64], low: f64, high: f64, count: usize) -> Vec<f64> {
     let place = |i: usize| low * (high / low).powf((i as f64 + 0.5) / count as f64);
     let mut out: Vec<f64> = (0..count)
@@ -131,7 +131,7 @@ fn spread(found: &[f64], low: f64, high: f64, count: usize) -> Vec<f64> {
     out
 }
 
-/// The next number of two digits on the side that more fronts can keep.
+/// The next number of two digits on the side of the looser limit.
 fn nearest_round(low: f64, high: f64, limited: Objective) -> f64 {
     let (value, up) = if limited == Objective::Mode { (low, false) } else { (high, true) };
     let power = value.log10().floor() as i32 - 1;

@@ -1,19 +1,24 @@
-//! A campaign's page: the verdict in a sentence, the gap before and after, where it sits, what speaks for
-//! each candidate, what is known of its parameters, whether it holds on readings kept out, what to measure.
+//! A campaign's page: the verdict in a sentence, the gap before and after, where it is largest, the evidence
+//! for each candidate, its parameters with intervals, whether it predicts held-out readings, and what to
+//! measure next.
 
+use super::gallery::{Gallery, Page};
 use super::positions::{Position, Step, angles_figure, axes_figure, sizes_figure, steps_figure};
-use super::{Extra, Figure, Gallery, Page};
+use crate::report::braille::bar;
 use crate::report::number::{fixed, significant};
+use crate::report::section::{Figure, PageSection};
+use crate::report::svg::draw::MUTED;
+use crate::report::svg::plot::{Axis, Guide, Plot, Series, Stroke};
 use crate::report::svg::rows::{Mark, Row, RowPlot};
+use crate::report::svg::scale::Scale;
 use crate::report::svg::sheet::Sheet;
-use crate::report::svg::{Axis, Guide, MUTED, Plot, Scale, Series, Stroke};
 use serde_json::{Value, json};
 
 /// Poses and joint ranges listed at most.
 const MOST_ROWS: usize = 26;
 /// Evidence below this is drawn at the edge.
 const LEAST_SCORE: f64 = -30.0;
-/// Parts of each joint's range that are looked at on their own.
+/// Each joint's range is divided into this many parts.
 const THIRDS: usize = 3;
 const BEFORE_AFTER: [&str; 2] = ["before: the model as given, calibrated", "after: with what was found"];
 
@@ -45,7 +50,7 @@ pub struct Reading {
     pub before_sigma: f64,
     /// With what was found.
     pub after_sigma: f64,
-    /// With what was found, this pose kept out of the fit.
+    /// With the effects found, fitted without this pose (held out).
     pub kept_out_sigma: Option<f64>,
     /// Whether it was taken for a gross error.
     pub gross: bool,
@@ -71,7 +76,7 @@ pub struct Found {
     pub label: String,
     /// Its parameters.
     pub parameters: Vec<Ranged>,
-    /// What these readings cannot tell it from.
+    /// Effects that these readings cannot distinguish from it.
     pub like: Vec<String>,
 }
 
@@ -126,14 +131,14 @@ pub struct CampaignPage {
     pub weighed: Vec<Weighed>,
     /// Calibrated factors.
     pub calibrated: Vec<Ranged>,
-    /// On readings of poses kept out: how many, root mean square before and after.
+    /// Held-out readings: how many, and the root mean square before and after.
     pub kept_out: Option<(usize, f64, f64)>,
     /// Gross errors and wrongly declared deviations, in words.
     pub quality: Vec<String>,
     /// Tests worth making, best first.
     pub tests: Vec<Test>,
-    /// What changes in the optimum with the corrected arm.
-    pub optimum: Option<Extra>,
+    /// What the corrected arm changes in the study's optimum.
+    pub optimum: Option<PageSection>,
     /// Facts: names and values.
     pub facts: Vec<(String, String)>,
 }
@@ -142,45 +147,11 @@ impl CampaignPage {
     /// The page and its pictures.
     pub fn page(&self) -> Page {
         let mut gallery = Gallery::default();
-        let (channels, parts): (Vec<Compared>, Vec<Compared>) =
-            self.parts.iter().cloned().partition(|p| !p.part.contains([',', ' ']));
-        let mut parts: Vec<Compared> = parts.into_iter().filter(|p| !p.part.starts_with("pose")).collect();
-        // channel by channel, and in each what is of one kind together
-        parts.sort_by_key(|p| p.part.split(' ').take(2).map(String::from).collect::<Vec<_>>());
-        let gap = |name: &str, title: &str, caption: &str, rows: Vec<Compared>| {
-            (!rows.is_empty()).then(|| gap_figure(name, title, caption, rows))
-        };
-        let located = [
-            gap(
-                "parts",
-                "Where the gap sits: by load, branch, mode and joint on the bench",
-                "Readings split by what was done.",
-                parts,
-            ),
-            gap(
-                "joints",
-                "Where the gap sits: joint by joint",
-                "Each joint's range of angles in three parts: which angle goes with the gap.",
-                self.by_joint(),
-            ),
-            gap(
-                "poses",
-                "Where the gap sits: pose by pose",
-                "The poses with the largest gap.",
-                self.by_pose(),
-            ),
-        ];
         let show = |gallery: &mut Gallery, figure: Option<Figure>| figure.map(|f| gallery.show(&f));
-        let channels = gap(
-            "channels",
-            "The gap by channel",
-            "Root mean square of measured less predicted, in declared standard deviations; 1 is what noise alone leaves.",
-            channels,
-        );
-        let channels = show(&mut gallery, channels);
+        let channels = show(&mut gallery, self.channels_figure());
+        let located = self.located_figures();
         let angles = angles_figure(&self.joints, &self.positions);
-        let located: Vec<Value> =
-            located.into_iter().flatten().chain(angles).map(|f| gallery.show(&f)).collect();
+        let located: Vec<Value> = located.into_iter().chain(angles).map(|f| gallery.show(&f)).collect();
         let residuals = self.residual_figures().into_iter().chain(axes_figure(&self.positions));
         let residuals: Vec<Value> = residuals.map(|f| gallery.show(&f)).collect();
         let steps: Vec<Value> = [steps_figure(&self.steps), sizes_figure(&self.positions)]
@@ -211,25 +182,62 @@ impl CampaignPage {
         gallery.page("campaign.html", &self.name, content, &json!({}))
     }
 
-    /// The gap by channel before and after, as bars for a terminal of 80 columns; bars count in ratios.
+    /// Whether a part of the readings is a whole channel.
+    fn is_channel(part: &Compared) -> bool {
+        !part.part.contains([',', ' '])
+    }
+
+    /// The gap of each channel.
+    fn channels_figure(&self) -> Option<Figure> {
+        let channels: Vec<Compared> = self.parts.iter().filter(|p| Self::is_channel(p)).cloned().collect();
+        (!channels.is_empty()).then(|| {
+            let caption = "Root mean square of measured less predicted, in declared standard deviations; noise alone \
+                           gives 1.";
+            gap_figure("channels", "The gap by channel", caption, channels)
+        })
+    }
+
+    /// Where the gap is largest: by what was done, by joint, by pose.
+    fn located_figures(&self) -> Vec<Figure> {
+        let of_part = |p: &&Compared| !Self::is_channel(p) && !p.part.starts_with("pose");
+        let mut parts: Vec<Compared> = self.parts.iter().filter(of_part).cloned().collect();
+        // channel by channel, and within a channel by kind
+        parts.sort_by_key(|p| p.part.split(' ').take(2).map(String::from).collect::<Vec<_>>());
+        let all = [
+            (
+                "parts",
+                "Where the gap is: by load, branch, mode and joint on the bench",
+                "The readings, divided by load, branch, mode and bench joint.",
+                parts,
+            ),
+            (
+                "joints",
+                "Where the gap is: joint by joint",
+                "Each joint's range of angles in three parts: a gap that depends on an angle shows here.",
+                self.by_joint(),
+            ),
+            ("poses", "Where the gap is: pose by pose", "The poses with the largest gap.", self.by_pose()),
+        ];
+        let filled = all.into_iter().filter(|(.., rows)| !rows.is_empty());
+        filled.map(|(name, title, caption, rows)| gap_figure(name, title, caption, rows)).collect()
+    }
+
+    /// The gap by channel before and after, as bars for a terminal of 80 columns; the lengths of the bars are
+    /// logarithmic.
     pub fn terminal(&self) -> String {
-        let rows = || self.parts.iter().filter(|p| !p.part.contains([',', ' ']));
+        let rows = || self.parts.iter().filter(|p| Self::is_channel(p));
         let values = || rows().flat_map(|c| [c.before, c.after]).filter(|v| *v > 0.0);
         let (low, high) = (values().fold(f64::INFINITY, f64::min).min(0.5), values().fold(1.0, f64::max));
         let share = |v: f64| (v.max(low) / low).ln() / (high / low).ln().max(1e-9);
         let line = |name: &str, when: &str, v: f64| {
-            format!(
-                "  {name:<10} {when:<6} {:>6} {}\n",
-                significant(v, 3),
-                crate::report::braille::bar(share(v), 50)
-            )
+            format!("  {name:<10} {when:<6} {:>6} {}\n", significant(v, 3), bar(share(v), 50))
         };
         let lines: String =
             rows().map(|c| line(&c.part, "before", c.before) + &line("", "after", c.after)).collect();
         if lines.is_empty() {
             lines
         } else {
-            format!("\nGap by channel [declared standard deviations, bars in ratios]\n{lines}\n")
+            format!("\nGap by channel [declared standard deviations, logarithmic bars]\n{lines}\n")
         }
     }
 
@@ -420,7 +428,7 @@ impl CampaignPage {
         })
     }
 
-    /// Residuals of readings whose pose was kept out of the fit, one after another.
+    /// Residuals of held-out readings, one after another.
     fn kept_out_figure(&self) -> Option<Figure> {
         let predicted: Vec<(usize, &Reading, f64)> = self
             .readings
@@ -442,10 +450,10 @@ impl CampaignPage {
                 }),
             }
         }
-        let caption = "Each reading predicted by the model fitted without its pose. Noise alone puts 95 of 100 between the \
+        let caption = "Each reading is predicted by the model fitted without its pose. Noise alone puts 95 of 100 between the \
                        dotted lines.";
         let plot = Plot {
-            title: "Readings kept out of the fit: measured less predicted".into(),
+            title: "Held-out readings: measured less predicted".into(),
             description: caption.into(),
             x: Axis::new("reading", Scale::Linear),
             y: Axis::new("measured less predicted [σ]", Scale::Linear),
@@ -465,7 +473,7 @@ impl CampaignPage {
     fn kept_out_words(&self) -> Option<String> {
         let (count, before, after) = self.kept_out?;
         Some(format!(
-            "On {count} readings of poses kept out of the fit the gap is {} standard deviations before and {} after.",
+            "On {count} held-out readings (their poses were not used in the fit) the gap is {} standard deviations before and {} after.",
             fixed(before, 2),
             fixed(after, 2)
         ))
@@ -515,7 +523,7 @@ fn test(test: &Test) -> Value {
     })
 }
 
-/// An end of an interval, or that there is none.
+/// An end of an interval in words; says so if the readings do not bound it.
 fn end(value: Option<f64>, digits: usize) -> String {
     value.map_or("open".into(), |v| significant(v, digits))
 }

@@ -2,10 +2,13 @@
 
 use super::front_data::{FrontData, Group, MOST_BYTES, Row};
 use super::front_views::FrontViews;
-use super::{Figure, Gallery, Page, table};
-use crate::report::compare::{Comparison, Contender, Question};
+use super::gallery::{Gallery, Page, table};
+use crate::report::compare::comparison::Comparison;
+use crate::report::compare::contender::Contender;
+use crate::report::compare::question::Question;
 use crate::report::picks;
-use crate::report::svg::MUTED;
+use crate::report::section::Figure;
+use crate::report::svg::draw::MUTED;
 use serde_json::{Value, json};
 
 /// The page of a comparison; `picture` is its `compare.svg`.

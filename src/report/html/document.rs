@@ -1,6 +1,7 @@
 //! The page of a study that is a handful of pictures and tables, such as the paper's own.
 
-use super::{Figure, Gallery, Page, table};
+use super::gallery::{Gallery, Page, table};
+use crate::report::section::Figure;
 use crate::report::table::Table;
 use serde_json::{Value, json};
 

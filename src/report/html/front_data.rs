@@ -1,18 +1,19 @@
 //! The designs of fronts as columns: what the linked views draw, filter and name.
 //!
-//! Numbers are rounded to the digits that are shown ([`SHOWN_DIGITS`]), so that what is read on the page
-//! is `front.csv`'s number rounded once. The front of all designs comes first: designs that are only on the
-//! front of their group are sampled before it is. Of what is sampled the picks and the designs at the edge of
-//! each view stay, and the rest is thinned evenly along the mass.
+//! Numbers are rounded to the digits that are shown ([`SHOWN_DIGITS`]), so that a number on the page is the
+//! number of `front.csv` rounded once. If there are too many designs, some are left out: first those that are
+//! only on the front of their own group, then those on the front of all designs. The picks and the designs at
+//! the edge of each view always stay; the others are thinned evenly along the mass.
 
 use super::packed::{self, packed};
 use crate::report::front_svg::WIDE;
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
 use crate::report::picks::Objective;
-use crate::report::svg;
+use crate::report::svg::draw::{MUTED, colour};
+use crate::report::svg::marker::outline;
+use crate::report::svg::scale::Scale;
 use crate::report::svg::ticks::rule;
-use crate::report::svg::{MUTED, Scale};
 use serde_json::{Value, json};
 use std::cmp::Ordering;
 use std::collections::HashSet;
@@ -26,7 +27,7 @@ pub const MOST_BYTES: usize = 1_200_000;
 /// Axes with fewer values than this are labelled value by value.
 const FEW: usize = 18;
 
-/// Designs that are drawn alike.
+/// Designs that are drawn in one style.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group {
     /// Name in the legend.
@@ -137,7 +138,7 @@ impl<'a> FrontData<'a> {
             .groups
             .iter()
             .map(|g| {
-                let (colour, path) = (svg::colour(g.style), svg::outline(g.style, 1.0));
+                let (colour, path) = (colour(g.style), outline(g.style, 1.0));
                 json!({"name": g.name, "colour": colour, "path": path, "muted": u8::from(g.style == MUTED)})
             })
             .collect();
@@ -230,7 +231,7 @@ fn label(column: &str) -> (String, &'static str) {
     (format!("{piece} {what}").trim().to_string(), unit)
 }
 
-/// A height that is everywhere the width is no choice of its own.
+/// A height that equals the width in every row is not a choice: it is said in words.
 fn same_as_width(column: &str, rows: &[Row], cells: &[&str]) -> Option<String> {
     let width = format!("{}_width_mm", column.strip_suffix("_height_mm")?);
     let same = rows.iter().zip(cells).all(|(row, c)| cell(row, &width) == *c);
@@ -313,7 +314,8 @@ fn sampled<'a>(rows: &[Row<'a>], room: usize, kept: &[String]) -> Vec<Row<'a>> {
     by_mass(front.into_iter().chain(own).collect())
 }
 
-/// Of too many rows those kept, those at the edge of a view, and of the rest an even part by mass.
+/// Thins rows to `room`: keeps the named ones and those at the edge of a view, and takes the others at even
+/// steps of mass.
 fn thinned<'a>(rows: Vec<Row<'a>>, room: usize, kept: &[String]) -> Vec<Row<'a>> {
     if rows.len() <= room {
         return rows;
@@ -330,7 +332,7 @@ fn thinned<'a>(rows: Vec<Row<'a>>, room: usize, kept: &[String]) -> Vec<Row<'a>>
     rows.into_iter().enumerate().filter(|(i, _)| chosen.contains(i)).map(|(_, row)| row).collect()
 }
 
-/// The lightest first; rows of equal mass as they came.
+/// Sorts by mass, the lightest first; rows of equal mass keep their order.
 fn by_mass(rows: Vec<Row>) -> Vec<Row> {
     let mass = |r: &Row| cell(r, "mass_kg").parse().unwrap_or(f64::INFINITY);
     let mut weighed: Vec<(f64, Row)> = rows.into_iter().map(|r| (mass(&r), r)).collect();

@@ -1,10 +1,10 @@
-//! The front in linked views, as a study's and a comparison's page show it.
+//! The front in linked views, for the page of a study and that of a comparison.
 
 use super::front_data::{Axis, FrontData, Row};
-use super::{Figure, Gallery};
-use crate::report::number::significant;
+use super::gallery::Gallery;
+use crate::report::number::{large, significant};
 use crate::report::picks::{Design, Pick};
-use crate::report::summary::large;
+use crate::report::section::Figure;
 use crate::report::svg::parallel::{Parallel, ParallelAxis, ParallelLine};
 use serde_json::{Value, json};
 
@@ -43,7 +43,7 @@ impl FrontViews<'_> {
         })
     }
 
-    /// What is not drawn for want of room, in a sentence.
+    /// Says how many designs are not drawn because the page would be too large; `None` if all are drawn.
     fn left_out(&self) -> Option<String> {
         let ([front, own], [all_front, all_own]) = (self.data.rows_drawn(), self.data.rows_total);
         let part = |drawn: usize, all: usize, of: &str| {
@@ -60,8 +60,8 @@ impl FrontViews<'_> {
         }
         (front + own < all_front + all_own).then(|| {
             format!(
-                "To keep the page light it draws {}: of what is thinned out the picks and the best at each mass stay, and \
-                 of the rest an even part by mass. All are in {}.",
+                "To keep the page small it draws {}. The picks and the best designs at each mass are always drawn, the \
+                 others at even steps of mass. All are in {}.",
                 parts.join(" and "),
                 self.all_in
             )
@@ -96,14 +96,14 @@ impl FrontViews<'_> {
         }
         let drawn = lines.iter().filter(|l| l.name.is_none()).count();
         let caption = format!(
-            "Every choice that differs among the designs, and what comes of it: one line a design ({drawn} of {} drawn here), \
+            "Every choice that differs among the designs, and its results: one line per design ({drawn} of {} drawn here), \
              coloured by {}; the picks are drawn on top.",
             large((data.rows_total[0] + data.rows_total[1]) as u128),
             self.coloured_by
         );
         let axes = data.axes.iter().map(|a| ParallelAxis { label: named_axis(a), ticks: a.ticks.clone() });
         let picture = Parallel {
-            title: "Every choice and what comes of it".into(),
+            title: "Every choice and its results".into(),
             description: caption.clone(),
             axes: axes.collect(),
             lines,

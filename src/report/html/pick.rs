@@ -1,17 +1,19 @@
 //! One picked design: its arm drawn to scale, where its deflection comes from, its modes and its drives.
 
-use super::{Figure, Gallery, table};
+use super::gallery::{Gallery, table};
 use crate::arm::load::LoadCase;
 use crate::arm::{Arm, Element, Link, LinkBody};
 use crate::mechanics::centre_line::Station;
 use crate::mechanics::chain::{Chain, Posed};
 use crate::mechanics::modes::Mode;
 use crate::mechanics::statics::Statics;
-use crate::report::number::{shortest, significant};
+use crate::report::number::{cost_words, fixed, percent, shortest, significant};
 use crate::report::picks::Pick;
+use crate::report::section::Figure;
 use crate::report::svg::arm::{ArmSketch, Pivot, Place, Tube};
 use crate::report::svg::bars::{Bar, Part, StackedBars};
 use crate::report::table::{Column, Table};
+use crate::report::tube::section_size;
 use crate::sizing::check::{Check, CheckKind, CheckState};
 use crate::sizing::sheet::JointSizingRow;
 use nalgebra::Vector3;
@@ -19,7 +21,7 @@ use serde_json::{Value, json};
 
 /// Modes drawn.
 const MODES: usize = 3;
-/// Motion below this share of the largest counts as none when a view is chosen.
+/// A sideways motion below this share of the largest motion is ignored when the view is chosen.
 const SIDEWAYS: f64 = 0.5;
 
 /// A picked design with everything its card needs.
@@ -54,9 +56,9 @@ pub struct DeflectionPart {
     pub element: String,
     /// Torque on a joint \[N m\].
     pub torque_nm: Option<f64>,
-    /// What it moves the tip by, world \[mm\].
+    /// By how much it moves the tip, world axes \[mm\].
     pub moved_mm: [f64; 3],
-    /// Its part along the whole deflection \[mm\].
+    /// Component of that along the whole deflection \[mm\].
     pub along_mm: f64,
 }
 
@@ -83,7 +85,7 @@ impl PickedArm {
         self.cases.iter().map(|case| solve(&self.arm, case)).min_by(|a, b| first(a).total_cmp(&first(b)))
     }
 
-    /// What each element adds to the deflection in the worst case.
+    /// What each element adds to the tip deflection in the worst case.
     pub fn deflection_parts(&self) -> Vec<DeflectionPart> {
         self.worst().map_or(Vec::new(), |s| s.parts)
     }
@@ -99,7 +101,7 @@ impl PickedArm {
             "id": self.pick.design.design_id,
             "slug": self.slug(),
             "headline": super::front_views::headline(&self.pick.design),
-            "cost": self.pick.design.material_cost_eur.map(crate::report::compare::cost_words),
+            "cost": self.pick.design.material_cost_eur.map(cost_words),
             "drawing": drawing,
             "modes": modes,
             "worst_case": worst.as_ref().map(|s| s.case.name.clone()),
@@ -202,13 +204,13 @@ impl PickedArm {
             Element::Link(link) => match &link.body {
                 LinkBody::Tube { material_name, material, section } => {
                     let p = section.properties(material.poisson);
-                    let (width, height) = section.outer_m();
-                    let mm = |m: f64| significant(m * 1e3, 3);
+                    let outer_mm = |m: f64| significant(m * 1e3, 3);
+                    let wall_mm = |m: f64| shortest((m * 1e9).round() / 1e6);
                     Some(json!({
                         "name": link.name,
                         "material": material_name,
                         "length_m": significant(link.vector_m.norm(), 3),
-                        "size": format!("{} × {} × {} mm", mm(width), mm(height), shortest((section.wall_m() * 1e9).round() / 1e6)),
+                        "size": section_size(section, outer_mm, wall_mm),
                         "mass_kg": significant(e.mass_kg(), 4),
                         "area_cm2": significant(p.area_m2 * 1e4, 4),
                         "second_moment_cm4": significant(p.second_moment_y_m4 * 1e8, 4),
@@ -249,7 +251,7 @@ pub fn deflection_bars(picks: &[PickedArm]) -> Figure {
             })
             .collect(),
     };
-    let caption = "Joints solid, links hatched; each part is the element's deformation carried to the tip (Eqs 13 to 15), \
+    let caption = "Joints are solid, links are hatched. Each part is what the deformation of one element moves the tip (Eqs 13 to 15), \
                    along the direction of the whole deflection, in the design's worst pose.";
     let csv = bars.to_csv();
     Figure { name: "deflection".into(), caption: caption.into(), svg: bars.readable().to_svg(), csv }
@@ -307,11 +309,11 @@ fn parts_table(parts: &[DeflectionPart]) -> Table {
     ]);
     let whole: f64 = parts.iter().map(|p| p.along_mm).sum();
     for part in parts {
-        let mm = |v: f64| crate::report::number::fixed(v, 4);
+        let mm = |v: f64| fixed(v, 4);
         let [x, y, z] = part.moved_mm.map(mm);
         let torque = part.torque_nm.map_or(String::new(), |t| significant(t, 4));
-        let share = crate::report::number::fixed(100.0 * part.along_mm / whole, 1);
-        table.row([part.element.clone(), torque, x, y, z, mm(part.along_mm), format!("{share} %")]);
+        let share = percent(100.0 * part.along_mm / whole, 1);
+        table.row([part.element.clone(), torque, x, y, z, mm(part.along_mm), share]);
     }
     table
 }
@@ -321,7 +323,7 @@ fn energy_words(mode: &Mode, most: usize) -> String {
     let mut parts: Vec<&(String, f64)> = mode.strain_energy.iter().filter(|(_, e)| *e >= 0.01).collect();
     parts.sort_by(|a, b| b.1.total_cmp(&a.1));
     let words: Vec<String> =
-        parts.iter().take(most).map(|(n, e)| format!("{n} {:.0} %", 100.0 * e)).collect();
+        parts.iter().take(most).map(|(n, e)| format!("{n} {}", percent(100.0 * e, 0))).collect();
     words.join(", ")
 }
 
@@ -343,7 +345,8 @@ struct View {
 }
 
 impl View {
-    /// The upright plane through base and tip; from above, if `moving` moves mostly out of it.
+    /// The vertical plane through base and tip; the view from above, if `moving` moves mostly out of that
+    /// plane.
     fn of(moving: &[Station], arm: &[Station], keep_upright: bool) -> Self {
         let tip = arm.last().map_or(Vector3::zeros(), |s| s.at_m);
         let level = Vector3::new(tip.x, tip.y, 0.0);

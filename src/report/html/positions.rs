@@ -1,20 +1,22 @@
 //! Pictures of absolute positions: how the error falls as each thing is added, how large the errors are,
 //! which way they point, and which angle of which joint goes with them.
 
-use super::Figure;
 use crate::report::number::fixed;
+use crate::report::section::Figure;
+use crate::report::svg::draw::MUTED;
+use crate::report::svg::plot::{Axis, Plot, Series, Stroke};
 use crate::report::svg::rows::{Mark, Row, RowPlot};
+use crate::report::svg::scale::Scale;
 use crate::report::svg::sheet::Sheet;
-use crate::report::svg::{Axis, MUTED, Plot, Scale, Series, Stroke};
 use crate::report::table::csv_line;
 
 /// Parts of each joint's range.
 const BINS: usize = 9;
-/// Fewest positions in a part whose median is drawn.
+/// A part of a joint's range with fewer positions than this has no median.
 const FEWEST: usize = 4;
-/// Joints drawn at most, those first whose angle goes most with the error.
+/// Most joints that are drawn, in order of how strongly the error follows their angle.
 const MOST_JOINTS: usize = 8;
-const NAMES: [&str; 3] = ["before", "after", "after, pose kept out"];
+const NAMES: [&str; 3] = ["before", "after", "after, pose held out"];
 
 /// How large the error is at a stage of the model, \[mm\].
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -23,7 +25,7 @@ pub struct Step {
     pub added: String,
     /// Median over the poses of the fit.
     pub fitted_median: f64,
-    /// Median over poses kept out.
+    /// Median over held-out poses.
     pub median: f64,
     /// Their mean.
     pub mean: f64,
@@ -42,7 +44,7 @@ pub struct Position {
     pub before_mm: [f64; 3],
     /// With what was found.
     pub after_mm: [f64; 3],
-    /// The same, the pose kept out of the fit.
+    /// The same with the pose held out of the fit.
     pub kept_out_mm: [f64; 3],
 }
 
@@ -50,7 +52,7 @@ fn length(v: &[f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// How the error falls as each thing is added.
+/// How the error falls as each effect is added.
 pub fn steps_figure(steps: &[Step]) -> Option<Figure> {
     let row = |s: &Step| Row {
         label: s.added.clone(),
@@ -64,7 +66,7 @@ pub fn steps_figure(steps: &[Step]) -> Option<Figure> {
     let caption = "Distance between measured and predicted position, each pose predicted by the model fitted without \
                    it: median, mean and largest. Every line adds one thing to the model above it.";
     let plot = RowPlot {
-        title: "The error of kept-out poses, step by step".into(),
+        title: "The error of held-out poses, step by step".into(),
         description: caption.into(),
         x: Axis::new("position error [mm]", Scale::Log),
         kinds: ["median", "mean", "largest"].map(String::from).to_vec(),
@@ -85,7 +87,7 @@ pub fn steps_figure(steps: &[Step]) -> Option<Figure> {
     })
 }
 
-/// The part of the positions whose error is at most so large.
+/// The share of positions whose error is at most so large.
 pub fn sizes_figure(positions: &[Position]) -> Option<Figure> {
     let sorted = |of: fn(&Position) -> &[f64; 3]| {
         let mut out: Vec<f64> = positions.iter().map(|p| length(of(p))).collect();
@@ -222,7 +224,7 @@ fn bins(positions: &[Position], joint: usize) -> Vec<Bin> {
         .collect()
 }
 
-/// The median error over the range of each joint, the joints first whose angle goes most with it.
+/// The median error over the range of each joint, joints first whose angle the error follows most.
 pub fn angles_figure(joints: &[String], positions: &[Position]) -> Option<Figure> {
     let swing = |bins: &[Bin]| {
         let (low, high) =

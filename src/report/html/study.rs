@@ -3,11 +3,14 @@
 
 use super::front_data::{FrontData, Group, MOST_BYTES, Row};
 use super::front_views::FrontViews;
+use super::gallery::{Gallery, Page, table};
 use super::pick::{PickedArm, deflection_bars};
-use super::{Extra, Figure, Gallery, Page, table};
+use super::render::anchor;
+use crate::report::number::large;
 use crate::report::picks::{self, materials};
-use crate::report::summary::{SummaryInput, answer_words, large, materials_side_by_side, single_materials};
-use crate::report::svg::MUTED;
+use crate::report::section::{Figure, PageSection};
+use crate::report::summary::{SummaryInput, answer_words, materials_side_by_side, single_materials};
+use crate::report::svg::draw::MUTED;
 use serde_json::{Value, json};
 use std::collections::HashSet;
 
@@ -25,7 +28,7 @@ pub struct CatalogRow {
     pub place: String,
     /// Document the figures come from.
     pub source: String,
-    /// How far it can be trusted, in a word.
+    /// How reliable it is, in a word.
     pub confidence: String,
     /// Columns of the row that no document was seen for.
     pub unverified: Vec<String>,
@@ -48,11 +51,11 @@ pub struct StudyPage<'a> {
     /// Facts of the run: names and values.
     pub run: Vec<(String, String)>,
     /// Further sections: the stiffness budget, the front under scatter, how sure the front is, ...
-    pub extras: Vec<Extra>,
+    pub extras: Vec<PageSection>,
 }
 
 impl StudyPage<'_> {
-    /// The page and its pictures. If the rest of it needs the room, the front has less.
+    /// The page and its pictures. If the page would be too large, fewer designs of the front are drawn.
     pub fn page(&self) -> Page {
         let page = self.page_with(MOST_BYTES);
         match page.html.len().saturating_sub(MOST_PAGE_BYTES) {
@@ -98,11 +101,12 @@ impl StudyPage<'_> {
             ("designs searched", large(facts.designs_total)),
             ("on the front", large(front as u128)),
             ("limits", listed(&facts.constraints)),
-            ("poses, the worst of which counts", listed(&facts.cases)),
+            ("poses (the worst counts)", listed(&facts.cases)),
         ]
     }
 
-    /// The fronts as linked views: the front of all, and what only a material's own front has.
+    /// The fronts as linked views: the front of all designs, and the designs that are only on their
+    /// material's front.
     fn views<'v>(&'v self, chosen: &'v [picks::Pick], front_bytes: usize) -> FrontViews<'v> {
         let summary = self.summary;
         let names = single_materials(summary);
@@ -138,8 +142,8 @@ impl StudyPage<'_> {
             picks: chosen,
             scatter: Figure {
                 name: "front".into(),
-                caption: "Tip deflection and lowest mode over mass. Every dot is a design; a line joins the best of a \
-                          material at each mass; the picks are ringed."
+                caption: "Tip deflection and lowest mode over mass. Every dot is a design. A line joins the best designs \
+                          of a material at each mass. The picks have rings."
                     .into(),
                 svg: self.scatter_svg.clone(),
                 csv: String::new(),
@@ -162,10 +166,4 @@ fn part(row: &CatalogRow) -> Value {
         "unverified": row.unverified,
         "cells": row.cells.iter().filter(|(_, cell)| !cell.is_empty()).collect::<Vec<_>>(),
     })
-}
-
-/// The name a link on the page finds a part by.
-pub(super) fn anchor(name: &str) -> String {
-    let letters = name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' });
-    format!("part-{}", letters.collect::<String>())
 }

@@ -3,7 +3,8 @@
 //! Links have their true length and outer size; joints are symbols: a circle where the axis points out of
 //! the drawing, a bar along the axis where it lies in it.
 
-use super::{FONT_PX, INK, NOTE_PX, head, line, px, text, text_px};
+use super::draw::{FONT_PX, INK, NOTE_PX, escape, head, line, px, text, text_px};
+use crate::report::number::shortest;
 use std::fmt::Write;
 
 /// A place in the plane of the drawing \[m\], x to the right, y up.
@@ -208,13 +209,7 @@ impl ArmSketch {
             px(end)
         );
         let small = format!(" font-size=\"{NOTE_PX}\"");
-        text(
-            out,
-            (end + 8.0, y + 4.0),
-            "start",
-            &small,
-            &format!("{} m", super::super::number::shortest(bar_m)),
-        );
+        text(out, (end + 8.0, y + 4.0), "start", &small, &format!("{} m", shortest(bar_m)));
         if self.upright {
             let x = self.width_px - 22.0;
             let _ = writeln!(
@@ -245,7 +240,7 @@ impl Tube {
             out,
             "<path d=\"M{}z\" {look} stroke-linejoin=\"round\"><title>{}</title></path>",
             corners.join("L"),
-            super::escape(&self.name)
+            escape(&self.name)
         );
     }
 }

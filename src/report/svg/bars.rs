@@ -3,7 +3,9 @@
 //! Two families of parts differ by hue *and* by hatching, parts of a family by lightness; a part that is
 //! wide enough carries its name and share, so that the picture can be read in greyscale.
 
-use super::{FONT_PX, INK, escape, head, line, px, text, text_px};
+use super::draw::{FONT_PX, INK, escape, head, line, px, text, text_px};
+use crate::report::number::{percent, shortest};
+use crate::report::table::csv_line;
 use std::fmt::Write;
 
 const BAR_PX: f64 = 34.0;
@@ -102,11 +104,11 @@ impl StackedBars {
 
     /// The numbers behind the bars, one line a bar and part.
     pub fn to_csv(&self) -> String {
-        let mut out = super::super::table::csv_line(&["case".into(), "part".into(), self.unit.clone()]);
+        let mut out = csv_line(&["case".into(), "part".into(), self.unit.clone()]);
         for bar in &self.bars {
             for (part, value) in self.parts.iter().zip(&bar.values) {
-                let value = super::super::number::shortest(*value);
-                out.push_str(&super::super::table::csv_line(&[bar.label.clone(), part.name.clone(), value]));
+                let value = shortest(*value);
+                out.push_str(&csv_line(&[bar.label.clone(), part.name.clone(), value]));
             }
         }
         out
@@ -129,7 +131,7 @@ impl StackedBars {
             *side = to;
             let (left, right) = (x(from.min(to)), x(from.max(to)));
             self.block(out, part, (left, y), (right - left, BAR_PX));
-            let share = format!("{:.0} %", 100.0 * value / whole);
+            let share = percent(100.0 * value / whole, 0);
             let full = format!("{} {share}", self.parts[part].name);
             let fitting = [full, share].into_iter().find(|w| text_px(w, 12.0) < right - left - 6.0);
             if let Some(words) = fitting {

@@ -1,6 +1,6 @@
 //! Outlines of markers about the origin.
 
-use super::{MUTED, PALETTE, px};
+use super::draw::{MUTED, PALETTE, px};
 
 /// A marker's outline: circle, square, triangle up, diamond, triangle down, plus, cross, star.
 pub fn outline(style: usize, r: f64) -> String {

@@ -1,6 +1,6 @@
 //! Parallel coordinates: one upright axis a choice or result, one line a design.
 
-use super::{INK, colour, head, line, px, text, wrap};
+use super::draw::{INK, colour, head, line, px, text, wrap};
 use std::fmt::Write;
 
 const HEIGHT_PX: f64 = 420.0;

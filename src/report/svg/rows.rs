@@ -1,16 +1,16 @@
 //! Rows of marks along one axis: a value before and after, a value with its interval, a score.
 
+use super::draw::{FAINT, FONT_PX, INK, MUTED, NOTE_PX, colour, dashed, head, line, px, text, text_px};
+use super::plot::{Axis, Series, Stroke, markers};
+use super::scale::Scale;
 use super::ticks::rule;
-use super::{
-    Axis, FONT_PX, INK, MUTED, NOTE_PX, Scale, Series, Stroke, colour, dashed, head, line, markers, px, text,
-    text_px,
-};
+use crate::report::number::shortest;
+use crate::report::table::csv_line;
 use std::fmt::Write;
 
 const ROW_PX: f64 = 26.0;
 const TOP_PX: f64 = 88.0;
 const WIDTH_PX: f64 = 900.0;
-const FAINT: &str = "#E3E3E3";
 
 /// A mark in a row.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,13 +88,13 @@ impl RowPlot {
     /// The numbers behind the rows, one line a mark.
     pub fn to_csv(&self) -> String {
         let cells = ["row", "mark", "value", "low", "high"].map(String::from);
-        let mut out = super::super::table::csv_line(&cells);
-        let number = |x: Option<f64>| x.map_or(String::new(), super::super::number::shortest);
+        let mut out = csv_line(&cells);
+        let number = |x: Option<f64>| x.map_or(String::new(), shortest);
         for row in &self.rows {
             for mark in &row.marks {
                 let (low, high) = mark.interval.unwrap_or_default();
                 let kind = self.kinds.get(mark.kind).cloned().unwrap_or_default();
-                out.push_str(&super::super::table::csv_line(&[
+                out.push_str(&csv_line(&[
                     row.label.clone(),
                     kind,
                     number(Some(mark.value)),

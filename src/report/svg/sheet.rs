@@ -1,11 +1,11 @@
 //! Plots under one another as one picture, their frames in line, with one legend.
 
-use super::{Canvas, INK, Plot, Series, escape, line, px, text, text_px};
+use super::draw::{INK, NOTE_PX, escape, line, px, text, text_px};
+use super::plot::{Canvas, Plot, Series};
 use std::fmt::Write;
 
 /// Radius of the ring around a noted place \[px\].
 const RING_PX: f64 = 7.0;
-const NOTE_PX: f64 = 12.0;
 
 /// Plots that share a picture.
 #[derive(Debug, Clone, PartialEq, Default)]

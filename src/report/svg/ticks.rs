@@ -1,6 +1,6 @@
 //! Where an axis has its ticks and what stands beside them.
 
-use super::Scale;
+use super::scale::Scale;
 
 /// One tick.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,0 +1,86 @@
+//! Why a verb failed, and the exit code of each reason.
+
+use crate::input::json::{Faults, InputError};
+use std::path::Path;
+
+/// Why a verb failed; each reason has an exit code of its own.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// Something that should not happen.
+    #[error("{0}")]
+    Internal(String),
+    /// A word on the command line that is not known.
+    #[error("{0}")]
+    Usage(String),
+    /// An input file is wrong.
+    #[error(transparent)]
+    Input(Faults),
+    /// A catalog is wrong.
+    #[error("in the catalogs, {0}")]
+    Catalog(Faults),
+    /// There is nothing to choose from.
+    #[error("{0}")]
+    EmptySpace(String),
+    /// No design meets what is asked.
+    #[error("{0}")]
+    Infeasible(String),
+    /// A file cannot be read or written.
+    #[error("{0}")]
+    File(String),
+    /// Stopped by the user.
+    #[error("{0}")]
+    Interrupted(String),
+    /// A check found a difference.
+    #[error("{0}")]
+    Check(String),
+}
+
+impl Failure {
+    /// The process exit code.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Failure::Internal(_) => 1,
+            Failure::Usage(_) => 2,
+            Failure::Input(_) => 3,
+            Failure::Catalog(_) => 4,
+            Failure::EmptySpace(_) => 5,
+            Failure::Infeasible(_) => 6,
+            Failure::File(_) => 7,
+            Failure::Interrupted(_) => 8,
+            Failure::Check(_) => 9,
+        }
+    }
+
+    /// Why the catalogs cannot be used.
+    pub(super) fn catalog(error: InputError) -> Self {
+        match error {
+            InputError::Faulty(faults) => Failure::Catalog(faults),
+            unreadable => Failure::File(unreadable.to_string()),
+        }
+    }
+
+    pub(super) fn file(path: &Path, doing: &str, source: &std::io::Error) -> Self {
+        Failure::File(format!("cannot {doing} {}: {source}", path.display()))
+    }
+}
+
+impl From<InputError> for Failure {
+    fn from(error: InputError) -> Self {
+        match error {
+            InputError::Unreadable { .. } => Failure::File(error.to_string()),
+            InputError::Faulty(faults) => Failure::Input(faults),
+        }
+    }
+}
+
+impl From<crate::catalog::lookup::PartError> for Failure {
+    fn from(error: crate::catalog::lookup::PartError) -> Self {
+        Failure::Usage(error.to_string())
+    }
+}
+
+impl From<Faults> for Failure {
+    fn from(faults: Faults) -> Self {
+        Failure::Input(faults)
+    }
+}

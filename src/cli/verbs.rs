@@ -1,0 +1,83 @@
+//! All verbs: their names, and the functions that execute them.
+
+use super::failure::Failure;
+use super::{analyze, catalog, compare, design, front, predict, reconcile, size};
+use crate::catalog::Catalogs;
+use clap::{Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Sizes high-precision robot arms and finds their Pareto-optimal designs.
+#[derive(Debug, Parser)]
+#[command(
+    name = "armwright",
+    version,
+    max_term_width = 100,
+    after_help = "Exit codes: 0 done; 1 internal error; 2 wrong usage; 3 faulty input file; 4 faulty catalog; \
+                  5 empty design space; 6 infeasible; 7 file cannot be read or written; 8 interrupted; \
+                  9 a check failed.\n\nStart with: armwright run compare-materials"
+)]
+pub struct Cli {
+    /// Folder with your own catalog rows (gears.csv, motors.csv, materials.csv, profiles.csv), added to the
+    /// built-in ones; a row of the same name replaces the built-in one.
+    #[arg(long, global = true, value_name = "DIR")]
+    catalogs: Option<PathBuf>,
+    /// Worker threads; the default is one per core. Results do not depend on it.
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// List the built-in studies
+    Studies,
+    /// Run a study: find its Pareto front and write it
+    Run(super::run::RunArgs),
+    /// Size every joint of a study's arm, from the tip inward
+    Size(size::SizeArgs),
+    /// Compute statics, modes and response of an arm file
+    Analyze(analyze::AnalyzeArgs),
+    /// Write a design of a result as an arm file
+    Design(design::DesignArgs),
+    /// Check a finished front
+    Front(front::FrontArgs),
+    /// Compare fronts: the materials of one study, or several studies
+    Compare(compare::CompareArgs),
+    /// Find where an arm and its measurements disagree and which physics is missing
+    Reconcile(reconcile::ReconcileArgs),
+    /// Add the model's value to every reading of a file
+    Predict(predict::PredictArgs),
+    /// Check the catalogs, or list what is in them
+    Catalog(catalog::CatalogArgs),
+}
+
+/// Stack of a worker \[bytes\]: regions of an exact search are nested calls, and a waiting worker runs those
+/// of others on its own stack.
+const STACK: usize = 64 << 20;
+
+/// Executes a command line.
+///
+/// # Errors
+/// See [`Failure`].
+pub fn run(cli: Cli) -> Result<String, Failure> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(cli.threads.map_or(0, Into::into))
+        .stack_size(STACK)
+        .build_global()
+        .map_err(|e| Failure::Internal(e.to_string()))?;
+    let overlay = cli.catalogs.as_deref();
+    let catalogs = Catalogs::load(overlay).map_err(Failure::catalog);
+    match cli.verb {
+        Verb::Catalog(args) => catalog::run(&args, overlay),
+        Verb::Studies => Ok(crate::study::list()),
+        Verb::Run(args) => super::run::run(&args, &catalogs?, overlay),
+        Verb::Size(args) => size::run(&args, &catalogs?),
+        Verb::Compare(args) => compare::run(&args),
+        Verb::Analyze(args) => analyze::run(&args, &catalogs?),
+        Verb::Design(args) => design::run(&args, &catalogs?),
+        Verb::Front(args) => front::run(&args, &catalogs?),
+        Verb::Reconcile(args) => reconcile::run(&args, &catalogs?, overlay).map(|(_, text)| text),
+        Verb::Predict(args) => predict::run(&args, &catalogs?),
+    }
+}

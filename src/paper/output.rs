@@ -1,0 +1,40 @@
+//! What a study of the paper gives, and why one cannot run.
+
+use super::names::NAMES;
+
+/// What a paper study gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PaperStudyOutput {
+    /// Files to write: name and content. `summary.md` is among them.
+    pub files: Vec<(String, Vec<u8>)>,
+    /// What to print.
+    pub terminal: String,
+}
+
+impl PaperStudyOutput {
+    /// Adds a text file.
+    pub(crate) fn file(&mut self, name: &str, content: String) {
+        self.files.push((name.to_string(), content.into_bytes()));
+    }
+}
+
+/// Why a paper study could not run.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum PaperError {
+    /// No paper study has this name.
+    #[error("\"{name}\" is not a study of the paper; choose one of: {}", NAMES.join(", "))]
+    UnknownStudy {
+        /// Name as given.
+        name: String,
+    },
+    /// A part named in the paper is not in the catalogs, or lacks a rating.
+    #[error(
+        "the catalogs have no {kind} \"{name}\", which this study needs; run with the built-in catalogs, or add it"
+    )]
+    Missing {
+        /// What is missing.
+        kind: &'static str,
+        /// Its name.
+        name: String,
+    },
+}

@@ -1,0 +1,203 @@
+//! The answers of all fronts to all questions, and who wins by how much.
+
+use super::contender::Contender;
+use super::moved::Moved;
+use super::question::{Question, comparative, superlative};
+use super::thresholds::Thresholds;
+use crate::report::number::{cost_words, percent_rounded};
+use crate::report::picks::{Design, Objective, best, designs};
+use crate::report::words::capital;
+use serde::Serialize;
+
+/// What one front answers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Answer {
+    /// Label of the front.
+    pub label: String,
+    /// Whether a design of the front keeps the limit.
+    pub reached: bool,
+    /// Whether no other competing front has a better answer.
+    pub winner: bool,
+    /// Whether the front is only a reference and cannot win.
+    pub reference: bool,
+    /// The best design within the limit. If no design keeps the limit, the one nearest to it; `None` if the
+    /// front is empty.
+    pub design: Option<Design>,
+}
+
+/// All answers to one question at one limit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// The question.
+    pub question: Question,
+    /// Its limit \[mm, kg or Hz\].
+    pub limit: f64,
+    /// One answer a front, in the order of the contenders.
+    pub answers: Vec<Answer>,
+    /// Which front wins and by how much, in a sentence.
+    pub sentence: String,
+}
+
+/// The best that one front reaches in each objective, without any limit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Reach {
+    /// Label of the front.
+    pub label: String,
+    /// Whether the front is only a reference and cannot win.
+    pub reference: bool,
+    /// Number of its designs.
+    pub designs: usize,
+    /// The lightest design.
+    pub lightest: Option<Design>,
+    /// The stiffest design.
+    pub stiffest: Option<Design>,
+    /// The design with the highest lowest mode.
+    pub highest_mode: Option<Design>,
+}
+
+/// Fronts side by side.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// The best of each front, in the order of the contenders.
+    pub reach: Vec<Reach>,
+    /// One row a question and limit.
+    pub rows: Vec<Row>,
+    /// Changes from the first result to each other one, if all are runs of one study.
+    pub moved: Vec<Moved>,
+}
+
+/// Puts fronts side by side; limits that are not given are chosen.
+pub fn compare(contenders: &[Contender], thresholds: &Thresholds) -> Comparison {
+    let fronts: Vec<Vec<Design>> = contenders.iter().map(|c| designs(&c.front)).collect();
+    let competing: Vec<&[Design]> = contenders
+        .iter()
+        .zip(&fronts)
+        .filter(|(c, f)| !c.reference && !f.is_empty())
+        .map(|(_, f)| f.as_slice())
+        .collect();
+    let thresholds = thresholds.or_chosen(&competing);
+    let ask = |question: Question| {
+        let limits = thresholds.of(question).to_vec();
+        let (contenders, fronts) = (contenders, &fronts);
+        limits.into_iter().map(move |limit| row(question, limit, contenders, fronts))
+    };
+    Comparison {
+        reach: contenders.iter().zip(&fronts).map(|(c, f)| reach(c, f)).collect(),
+        rows: Question::ALL.into_iter().flat_map(ask).collect(),
+        moved: Vec::new(),
+    }
+}
+
+fn reach(contender: &Contender, front: &[Design]) -> Reach {
+    let of = |objective| best(objective, front).cloned();
+    Reach {
+        label: contender.label.clone(),
+        reference: contender.reference,
+        designs: front.len(),
+        lightest: of(Objective::Mass),
+        stiffest: of(Objective::Deflection),
+        highest_mode: of(Objective::Mode),
+    }
+}
+
+fn row(question: Question, limit: f64, contenders: &[Contender], fronts: &[Vec<Design>]) -> Row {
+    let mut answers: Vec<Answer> =
+        contenders.iter().zip(fronts).map(|(c, f)| answer(question, limit, c, f)).collect();
+    let value = |a: &Answer| a.design.as_ref().map(|d| question.sought().minimized(d));
+    let running = |a: &&Answer| a.reached && !a.reference;
+    let best = answers.iter().filter(running).filter_map(value).fold(f64::INFINITY, f64::min);
+    for a in &mut answers {
+        a.winner = a.reached && !a.reference && value(a) == Some(best);
+    }
+    Row { question, limit, sentence: sentence(question, limit, &answers), answers }
+}
+
+fn answer(question: Question, limit: f64, contender: &Contender, front: &[Design]) -> Answer {
+    let found = best(question.sought(), front.iter().filter(|d| question.holds(limit, d)));
+    let nearest = || best(question.limited(), front);
+    Answer {
+        label: contender.label.clone(),
+        reached: found.is_some(),
+        winner: false,
+        reference: contender.reference,
+        design: found.or_else(nearest).cloned(),
+    }
+}
+
+fn sentence(question: Question, limit: f64, answers: &[Answer]) -> String {
+    let (sought, words) = (question.sought(), question.limit_words(limit));
+    let mut reached: Vec<(&Answer, &Design)> = answers
+        .iter()
+        .filter(|a| a.reached && !a.reference)
+        .filter_map(|a| Some((a, a.design.as_ref()?)))
+        .collect();
+    reached.sort_by(|(_, a), (_, b)| sought.minimized(a).total_cmp(&sought.minimized(b)));
+    let Some((_, best)) = reached.first() else {
+        return capital(&format!("{words}: {}", out_of_reach(question, answers)));
+    };
+    let winners: Vec<&str> =
+        reached.iter().filter(|(a, _)| a.winner).map(|(a, _)| a.label.as_str()).collect();
+    let value = sought.amount(sought.of(best));
+    let cost = best.material_cost_eur.map_or(String::new(), |c| format!(", material {} EUR", cost_words(c)));
+    let lead = match reached.get(winners.len()) {
+        Some((a, second)) => format!(
+            ", {} {} than {} ({})",
+            advantage(sought, best, second),
+            comparative(question),
+            a.label,
+            sought.amount(sought.of(second))
+        ),
+        None if winners.len() == 1 && answers.iter().filter(|a| !a.reference).count() > 1 => {
+            ", the only one that reaches it".to_string()
+        }
+        None => String::new(),
+    };
+    let mut out = format!(
+        "{words}: {} {} with {value} (design {}{cost}){lead}",
+        winners.join(" and "),
+        superlative(question, winners.len() > 1),
+        best.design_id
+    );
+    out.push_str(&mixed(question, best, answers));
+    capital(&(out + "."))
+}
+
+/// What the reference front reaches, if that is better than the winner.
+fn mixed(question: Question, winner: &Design, answers: &[Answer]) -> String {
+    let sought = question.sought();
+    let better = |a: &&Answer| {
+        a.reference
+            && a.reached
+            && a.design.as_ref().is_some_and(|d| sought.minimized(d) < sought.minimized(winner))
+    };
+    match answers.iter().find(better).and_then(|a| a.design.as_ref()) {
+        Some(d) => format!(
+            "; materials mixed reach {}, {} {}",
+            sought.amount(sought.of(d)),
+            advantage(sought, d, winner),
+            comparative(question)
+        ),
+        None => String::new(),
+    }
+}
+
+fn out_of_reach(question: Question, answers: &[Answer]) -> String {
+    let limited = question.limited();
+    let competing = answers.iter().filter(|a| !a.reference);
+    let nearest = competing
+        .filter_map(|a| Some((a, a.design.as_ref()?)))
+        .min_by(|(_, a), (_, b)| limited.minimized(a).total_cmp(&limited.minimized(b)));
+    match nearest {
+        Some((a, d)) => {
+            format!("none reaches it; nearest is {} with {}.", a.label, limited.amount(limited.of(d)))
+        }
+        None => "none reaches it: every front is empty.".into(),
+    }
+}
+
+/// How much better a design is than another, as a share of the other: `12.3 %`.
+fn advantage(sought: Objective, better: &Design, other: &Design) -> String {
+    let (a, b) = (sought.of(better), sought.of(other));
+    let percent = 100.0 * ((a - b) / b).abs();
+    percent_rounded(percent, if percent < 10.0 { 2 } else { 3 })
+}

@@ -1,0 +1,89 @@
+//! What is asked of every front: the best of one objective under a limit on another.
+
+use crate::report::number::shortest;
+use crate::report::picks::{Design, Objective};
+use serde::Serialize;
+
+/// What is asked of every front.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Question {
+    /// The smallest mass, the tip deflection being at most the limit.
+    LightestAtDeflection,
+    /// The smallest tip deflection, the mass being at most the limit.
+    StiffestAtMass,
+    /// The highest lowest mode, the mass being at most the limit.
+    HighestModeAtMass,
+    /// The smallest mass, the lowest mode being at least the limit.
+    LightestAtMode,
+}
+
+impl Question {
+    /// All questions that have a limit.
+    pub const ALL: [Self; 4] =
+        [Self::LightestAtDeflection, Self::StiffestAtMass, Self::HighestModeAtMass, Self::LightestAtMode];
+
+    /// What is made best.
+    pub fn sought(self) -> Objective {
+        match self {
+            Self::LightestAtDeflection | Self::LightestAtMode => Objective::Mass,
+            Self::StiffestAtMass => Objective::Deflection,
+            Self::HighestModeAtMass => Objective::Mode,
+        }
+    }
+
+    /// What is limited.
+    pub fn limited(self) -> Objective {
+        match self {
+            Self::LightestAtDeflection => Objective::Deflection,
+            Self::StiffestAtMass | Self::HighestModeAtMass => Objective::Mass,
+            Self::LightestAtMode => Objective::Mode,
+        }
+    }
+
+    /// The word in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::LightestAtDeflection => "lightest_at_deflection",
+            Self::StiffestAtMass => "stiffest_at_mass",
+            Self::HighestModeAtMass => "highest_mode_at_mass",
+            Self::LightestAtMode => "lightest_at_mode",
+        }
+    }
+
+    /// The limit in words: `tip deflection at most 2 mm`.
+    pub fn limit_words(self, limit: f64) -> String {
+        let limit = shortest(limit);
+        match self.limited() {
+            Objective::Deflection => format!("tip deflection at most {limit} mm"),
+            Objective::Mass => format!("mass at most {limit} kg"),
+            Objective::Mode => format!("lowest mode at least {limit} Hz"),
+        }
+    }
+
+    pub(super) fn holds(self, limit: f64, design: &Design) -> bool {
+        let value = self.limited().of(design);
+        if self.limited() == Objective::Mode { value >= limit } else { value <= limit }
+    }
+}
+
+/// What the winner is: `is lightest`.
+pub(super) fn superlative(question: Question, several: bool) -> &'static str {
+    match (question.sought(), several) {
+        (Objective::Mass, false) => "is lightest",
+        (Objective::Mass, true) => "are lightest",
+        (Objective::Deflection, false) => "is stiffest",
+        (Objective::Deflection, true) => "are stiffest",
+        (Objective::Mode, false) => "has the highest lowest mode",
+        (Objective::Mode, true) => "have the highest lowest mode",
+    }
+}
+
+/// What the winner is more than the others.
+pub(super) fn comparative(question: Question) -> &'static str {
+    match question.sought() {
+        Objective::Mass => "lighter",
+        Objective::Deflection => "less",
+        Objective::Mode => "higher",
+    }
+}

@@ -1,0 +1,104 @@
+//! The pieces that every picture is drawn with: colours, text, lines, the opening of the file.
+
+use crate::report::number::fixed;
+use std::fmt::Write;
+
+/// The palette of Okabe and Ito, ordered so that the first stand out best on white.
+pub const PALETTE: [&str; 8] =
+    ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#B8A90A"];
+
+/// A style that stands back behind all others: grey, round.
+pub const MUTED: usize = 999;
+
+pub(crate) const INK: &str = "#222222";
+pub(crate) const FAINT: &str = "#E3E3E3";
+pub(crate) const FONT_PX: f64 = 13.0;
+pub(crate) const TITLE_PX: f64 = 16.0;
+pub(crate) const NOTE_PX: f64 = 12.0;
+/// Width of an average character over the font size; generous, so that text never leaves its place.
+pub(crate) const CHARACTER: f64 = 0.62;
+
+/// The opening of a picture: size, title and description for those who cannot see it, white paper.
+pub(crate) fn head(title: &str, description: &str, width_px: f64, height_px: f64) -> String {
+    let (w, h, title) = (px(width_px), px(height_px), escape(title));
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
+         role=\"img\" aria-label=\"{title}\" \
+         font-family=\"'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif\" \
+         font-size=\"{FONT_PX}\" fill=\"{INK}\">\n\
+         <title>{title}</title>\n<desc>{}</desc>\n\
+         <rect width=\"{w}\" height=\"{h}\" fill=\"#FFFFFF\"/>\n",
+        escape(description)
+    )
+}
+
+/// Breaks words into rows of at most `most` characters where there are blanks to break at.
+pub(crate) fn wrap(words: &str, most: usize) -> Vec<String> {
+    let mut rows: Vec<String> = Vec::new();
+    for word in words.split_whitespace() {
+        match rows.last_mut() {
+            Some(row) if row.chars().count() + 1 + word.chars().count() <= most => {
+                row.push(' ');
+                row.push_str(word);
+            }
+            _ => rows.push(word.to_string()),
+        }
+    }
+    rows
+}
+
+/// Colour of a style.
+pub(crate) fn colour(style: usize) -> &'static str {
+    if style == MUTED { "#A0A0A0" } else { PALETTE[style % PALETTE.len()] }
+}
+
+/// A straight line.
+pub(crate) fn line(out: &mut String, from: (f64, f64), to: (f64, f64), colour: &str, width: f64) {
+    let _ = writeln!(
+        out,
+        "<path d=\"M{} {}L{} {}\" stroke=\"{colour}\" stroke-width=\"{width}\"/>",
+        px(from.0),
+        px(from.1),
+        px(to.0),
+        px(to.1)
+    );
+}
+
+/// A dotted grey line.
+pub(crate) fn dashed(out: &mut String, from: (f64, f64), to: (f64, f64)) {
+    let _ = writeln!(
+        out,
+        "<path d=\"M{} {}L{} {}\" stroke=\"#777777\" stroke-dasharray=\"2 4\"/>",
+        px(from.0),
+        px(from.1),
+        px(to.0),
+        px(to.1)
+    );
+}
+
+/// Words at a place; `more` holds further attributes of the element.
+pub(crate) fn text(out: &mut String, at: (f64, f64), anchor: &str, more: &str, words: &str) {
+    let _ = writeln!(
+        out,
+        "<text x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\"{more}>{}</text>",
+        px(at.0),
+        px(at.1),
+        escape(words)
+    );
+}
+
+/// Width of a text, estimated on the long side \[px\].
+pub(crate) fn text_px(words: &str, font_px: f64) -> f64 {
+    words.chars().count() as f64 * CHARACTER * font_px
+}
+
+/// A coordinate with two decimals at most.
+pub(crate) fn px(value: f64) -> String {
+    let text = fixed(value, 2);
+    text.trim_end_matches('0').trim_end_matches('.').to_string()
+}
+
+/// Words as they may stand in an SVG file.
+pub(crate) fn escape(words: &str) -> String {
+    words.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
