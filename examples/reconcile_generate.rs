@@ -15,9 +15,9 @@ use armwright::reconcile::Campaign;
 use serde_json::Value;
 use std::path::Path;
 
-#[path = "../tests/reconcile_scoring/detectability.rs"]
+#[path = "../tests/reconcile/scoring/detectability.rs"]
 mod detectability;
-#[path = "../tests/reconcile_generator/mod.rs"]
+#[path = "../tests/reconcile/generator/mod.rs"]
 mod reconcile_generator;
 #[path = "../tests/witness/mod.rs"]
 mod witness;

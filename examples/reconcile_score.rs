@@ -16,9 +16,9 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
-#[path = "../tests/reconcile_scoring/detectability.rs"]
+#[path = "../tests/reconcile/scoring/detectability.rs"]
 mod detectability;
-#[path = "../tests/reconcile_scoring/mod.rs"]
+#[path = "../tests/reconcile/scoring/mod.rs"]
 mod scoring;
 
 /// Processor seconds of this process and its threads so far; 0 where the system does not tell.

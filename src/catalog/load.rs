@@ -1,7 +1,8 @@
 //! The built-in catalogs, and a user's folder laid over them.
 
+use super::read::log::Log;
 use super::read::row::Row;
-use super::read::table::{Log, rows};
+use super::read::table::rows;
 use super::read::{efficiency, gears, materials, motors, profiles, trend};
 use super::schema::CatalogFile;
 use super::{Catalogs, Confidence, Provenance};

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::values::{choice, number_list, numbers};
-use crate::arm::effect::Effect;
+use crate::arm::effect::entry::Effect;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
 use crate::arm::{Arm, JointModel, LinkModel};

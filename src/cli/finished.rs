@@ -4,7 +4,7 @@ use super::corrections;
 use super::failure::Failure;
 use super::supplements::{FILES, Found, SupplementArgs};
 use super::write::write_all;
-use crate::arm::effect::Effect;
+use crate::arm::effect::entry::Effect;
 use crate::catalog::Catalogs;
 use crate::pareto::hypervolume::front_hypervolume;
 use crate::report::budget::{PickBudget, budget_csv};

@@ -28,9 +28,10 @@ pub struct FrontArgs {
 enum FrontVerb {
     /// Verify a front: every row, rows against each other, and whether designs are missing
     ///
-    /// It looks for missing designs with bounds that share no code with those of the exact search
-    /// (docs/exact.md). If the exact search's own bounds had to be used, the last line says why. For a front
-    /// with a gap it is checked that no design beats every row by more than the gap.
+    /// The check works out from the study and the catalogs which drives hold, and looks for missing designs by
+    /// bounds of its own. It shares with the search the reader of studies and catalogs, and the full model that
+    /// judges a single design (docs/exact.md). The last line says whether these bounds sufficed, or why the exact
+    /// search's were used. For a front with a gap the gap is checked: no design may beat every row by more.
     Check(CheckArgs),
 }
 

@@ -3,10 +3,11 @@
 use super::failure::Failure;
 use crate::arm::file::read_arm;
 use crate::catalog::Catalogs;
+use crate::reconcile::predict::predict;
 use crate::reconcile::readings::campaign::{Statement, read_statement};
+use crate::reconcile::readings::placement::Placed;
 use crate::reconcile::readings::placement::Placement;
 use crate::reconcile::readings::table::Table;
-use crate::reconcile::verdict::predict::{Placed, predict};
 use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};

@@ -1,17 +1,21 @@
-//! Better designs from those that the probes found, by exchange of parts.
+//! Better incumbents from those that the probes found, by a genetic algorithm.
 //!
-//! The proof of a front is only as good as its designs: what they leave open has to be taken apart. Probes find some
-//! hundreds one by one. From these come others, as in a genetic algorithm: a child takes some parts of a design close by
-//! in mass, or parts close to its own, and stays if nothing seen before beats it. So that the many that differ by
-//! little do not crowd out the others, one design a cell of a grid is kept ([`thinned`](super::grid::thinned)). What is found proves nothing; it is judged and listed like every other design.
+//! The proof of a front is only as fast as its incumbents are good, for what they leave open has to be
+//! searched. Probes find some hundreds of designs one by one. From these come others: a child takes some
+//! parts from a parent of similar mass, or options close to its own, and is kept if no design seen before
+//! dominates it. Of the many that differ by little, one is kept for each cell of a grid
+//! ([`thinned`](super::grid::thinned)), so that they do not crowd out the others.
+//!
+//! The result proves nothing. Its designs are judged and listed like every other design.
 
-use super::archive::Found;
-use super::bound::{Cell, Verdict, Work};
+use super::bound::{DesignBox, Verdict};
+use super::budget::Budget;
 use super::grid::thinned;
-use super::known::{Finds, Known};
+use super::incumbents::Incumbents;
 use super::problem::Problem;
-use super::run::Exact;
+use super::search_state::{Findings, SearchState};
 use super::shape::Shape;
+use super::work::Work;
 use crate::pareto::objectives::Objectives;
 use crate::search::sweep::Candidate;
 use crate::space::design::number;
@@ -20,129 +24,167 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Generations at most: later ones hardly find better designs.
+/// Greatest number of generations. Later ones hardly find better designs.
 const GENERATIONS: u64 = 20;
-/// Children of a generation at most; a space has no more than the root of its designs.
+/// Greatest number of children in a generation. A small space has fewer: the square root of its number of
+/// designs.
 const MOST_CHILDREN: f64 = 8192.0;
-/// Step of the grid, in logarithms of the objectives.
+/// Width of a grid cell, in logarithms of the objectives.
 const STEP: f64 = 0.02;
-/// Places in the order of mass within which the other parent is.
+/// The second parent stands within this many places of the first in the order of mass.
 const CLOSE: u64 = 12;
 
-/// A design with the shapes that bound its modes, or those of a design like it.
-pub(super) struct Member {
-    pub cell: Cell,
+/// A design, and trial shapes that bound its modes (its own, or those of a similar design).
+pub(super) struct Individual {
+    pub design_box: DesignBox,
     pub objectives: Objectives,
     pub shapes: Arc<Vec<Shape>>,
 }
 
-/// Finds designs that come of some, for generations.
-pub(super) fn evolve<'p>(exact: &Exact<'p>, problem: &Problem<'p>, first: Vec<Member>, known: &mut Known) {
-    let mut seen = Found::default();
+/// The result of one recombination.
+enum Offspring {
+    /// The child has the parts of its parent.
+    Unchanged,
+    /// A design seen before dominates the child, or one of its parts cannot carry its load.
+    Dominated,
+    /// The objectives of the child are known, and it breaks a constraint.
+    Infeasible,
+    /// The child meets every constraint, and no design seen before dominates it.
+    Feasible(Individual),
+}
+
+impl Offspring {
+    /// Whether the three objectives were computed.
+    fn is_evaluated(&self) -> bool {
+        matches!(self, Self::Infeasible | Self::Feasible(_))
+    }
+
+    fn feasible(self) -> Option<Individual> {
+        match self {
+            Self::Feasible(individual) => Some(individual),
+            _ => None,
+        }
+    }
+}
+
+/// Evolves designs from those in `first` and adds what it finds to the state.
+pub(super) fn evolve<'p>(
+    budget: &Budget,
+    problem: &Problem<'p>,
+    first: Vec<Individual>,
+    state: &mut SearchState,
+) {
+    let mut seen = Incumbents::default();
     first.iter().for_each(|member| seen.enter(&member.objectives));
     let mut parents = by_mass(first);
-    let brood = (problem.designs() as f64).sqrt().min(MOST_CHILDREN) as u64;
-    let mut finds = Finds::default();
+    let children_per_generation = (problem.designs() as f64).sqrt().min(MOST_CHILDREN) as u64;
+    let mut findings = Findings::default();
     for generation in 0..GENERATIONS {
-        if parents.is_empty() || exact.stopped() {
+        if parents.is_empty() || budget.stopped() {
             break;
         }
-        let children = (0..brood).into_par_iter().map_init(Work::default, |work, n| {
-            let dice = Xoshiro256PlusPlus::seed_from_u64(generation * brood + n);
-            Mating { exact, problem, parents: &parents, seen: &seen, dice }.child(work)
+        let children = (0..children_per_generation).into_par_iter().map_init(Work::default, |work, n| {
+            let rng = Xoshiro256PlusPlus::seed_from_u64(generation * children_per_generation + n);
+            Recombination { budget, problem, parents: &parents, seen: &seen, rng }.child(work)
         });
-        let judged: Vec<Option<Member>> = children.flatten().collect();
-        finds.evaluated += judged.len() as u64;
-        let children: Vec<Member> = judged.into_iter().flatten().collect();
+        let offspring: Vec<Offspring> = children.collect();
+        findings.evaluated += offspring.iter().filter(|child| child.is_evaluated()).count() as u64;
+        let children: Vec<Individual> = offspring.into_iter().filter_map(Offspring::feasible).collect();
         children.iter().for_each(|member| seen.enter(&member.objectives));
         parents.extend(children);
         parents = by_mass(parents);
     }
-    let candidate = |member: &Member| {
-        let options = problem.options(&member.cell)?;
+    let candidate = |member: &Individual| {
+        let options = problem.options(&member.design_box)?;
         Some(Candidate { number: number(&problem.level_sizes, &options), objectives: member.objectives })
     };
-    finds.kept.extend(parents.iter().filter_map(candidate));
-    known.learn(finds);
+    findings.kept.extend(parents.iter().filter_map(candidate));
+    state.learn(findings);
 }
 
-/// One design a cell, the lightest first.
-fn by_mass(members: Vec<Member>) -> Vec<Member> {
+/// One design for each cell of the grid, the lightest first.
+fn by_mass(members: Vec<Individual>) -> Vec<Individual> {
     let mut kept = thinned(members, STEP, |member| &member.objectives);
     kept.sort_by(|a, b| a.objectives.mass_kg.total_cmp(&b.objectives.mass_kg));
     kept
 }
 
-/// Where one child comes from.
-struct Mating<'a, 'p> {
-    exact: &'a Exact<'p>,
+/// The sources of one child.
+struct Recombination<'a, 'p> {
+    budget: &'a Budget<'p>,
     problem: &'a Problem<'p>,
-    parents: &'a [Member],
-    seen: &'a Found,
-    dice: Xoshiro256PlusPlus,
+    parents: &'a [Individual],
+    seen: &'a Incumbents,
+    rng: Xoshiro256PlusPlus,
 }
 
-impl Mating<'_, '_> {
-    /// A child that nothing seen beats, if it meets the constraints; none at all if something beats it.
-    fn child(mut self, work: &mut Work) -> Option<Option<Member>> {
+impl Recombination<'_, '_> {
+    /// Makes one child, bounds it and checks the constraints.
+    fn child(mut self, work: &mut Work) -> Offspring {
         let first = self.below(self.parents.len() as u64);
         let from = first.saturating_sub(CLOSE);
         let to = (first + CLOSE + 1).min(self.parents.len() as u64);
         let second = from + self.below(to - from);
         let [parent, other] = [first, second].map(|i| &self.parents[i as usize]);
-        let mut cell = parent.cell.clone();
+        let mut design_box = parent.design_box.clone();
         if self.below(2) == 0 {
-            self.exchange(&mut cell, &other.cell);
+            self.exchange(&mut design_box, &other.design_box);
         }
-        let changes = self.below(2) + u64::from(cell == parent.cell);
+        // A child that has only its first parent's parts is changed in any case.
+        let changes = self.below(2) + u64::from(design_box == parent.design_box);
         for _ in 0..changes {
-            let level = self.below(cell.len() as u64) as usize;
-            self.change(&mut cell, level);
+            let level = self.below(design_box.len() as u64) as usize;
+            self.change(&mut design_box, level);
         }
-        if cell == parent.cell {
-            return None;
+        if design_box == parent.design_box {
+            return Offspring::Unchanged;
         }
-        self.exact.count_box();
+        self.budget.count_box();
         let mut shapes = Arc::clone(&parent.shapes);
-        let verdict = self.problem.bound(&mut cell, &mut shapes, work, |c| self.seen.beats(c), |_| true);
-        let Verdict::Open(ceiling) = verdict else { return None };
-        let objectives = self.problem.objectives(&ceiling, work);
-        let holds = work.is_point() && !self.problem.space.constraints.broken(&objectives).contains(&true);
+        let verdict =
+            self.problem.bound(&mut design_box, &mut shapes, work, |c| self.seen.dominates(c), |_| true);
+        let Verdict::Open(box_bound) = verdict else { return Offspring::Dominated };
+        let objectives = self.problem.objectives(&box_bound, work);
+        if !work.is_point() || self.problem.space.constraints.broken(&objectives).contains(&true) {
+            return Offspring::Infeasible;
+        }
         let shapes = Arc::clone(&parent.shapes);
-        Some(holds.then_some(Member { cell, objectives, shapes }))
+        Offspring::Feasible(Individual { design_box, objectives, shapes })
     }
 
-    /// Takes a third of another design's parts.
-    fn exchange(&mut self, cell: &mut Cell, other: &Cell) {
-        for (mine, theirs) in cell.iter_mut().zip(other) {
+    /// Takes about a third of another design's parts.
+    fn exchange(&mut self, design_box: &mut DesignBox, other: &DesignBox) {
+        for (mine, theirs) in design_box.iter_mut().zip(other) {
             if self.below(3) == 0 {
                 *mine = *theirs;
             }
         }
     }
 
-    /// Takes another option of a level: any below a box around the present one, more often a small box.
-    fn change(&mut self, cell: &mut Cell, level: usize) {
+    /// Replaces the option of a level by any option below a box around the present one. Small boxes, and thus
+    /// similar options, are more likely.
+    fn change(&mut self, design_box: &mut DesignBox, level: usize) {
         let problem = self.problem;
-        let option = std::mem::take(&mut cell[level]);
-        let mut around = vec![cell[level]];
-        while let Some([low, high]) = problem.halves(cell, level) {
-            // trees are numbered from the root, the first half before the second
-            cell[level] = if option < high { low } else { high };
-            around.push(cell[level]);
+        let option = std::mem::take(&mut design_box[level]);
+        let mut around = vec![design_box[level]];
+        while let Some([low, high]) = problem.halves(design_box, level) {
+            // Nodes are numbered from the root, the first half before the second.
+            design_box[level] = if option < high { low } else { high };
+            around.push(design_box[level]);
         }
+        // Each further step up the tree is half as likely, which favours similar options.
         let mut up = 1 + self.below(3) as usize;
         while self.below(2) == 0 {
             up += 1;
         }
-        cell[level] = around[around.len().saturating_sub(1 + up)];
-        while let Some(halves) = problem.halves(cell, level) {
-            cell[level] = halves[self.below(2) as usize];
+        design_box[level] = around[around.len().saturating_sub(1 + up)];
+        while let Some(halves) = problem.halves(design_box, level) {
+            design_box[level] = halves[self.below(2) as usize];
         }
     }
 
-    /// A whole number below another.
+    /// A random whole number below `n`.
     fn below(&mut self, n: u64) -> u64 {
-        ((u128::from(self.dice.next_u64()) * u128::from(n)) >> 64) as u64
+        ((u128::from(self.rng.next_u64()) * u128::from(n)) >> 64) as u64
     }
 }

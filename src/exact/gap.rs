@@ -1,20 +1,20 @@
-//! How much a search that was stopped may have missed.
+//! How much better than the front a design may be that a stopped search has missed.
 
-use super::bound::Ceiling;
+use super::bound::BoxBound;
 use crate::search::sweep::Candidate;
 use rayon::prelude::*;
 
-/// The smallest `ε` such that for every open box some design of the front, with its mass and deflection
-/// divided and its mode multiplied by `1 + ε`, is no worse than the box's ceiling. No design that was missed is
-/// better than all of the front by more than that in every objective at once. `None` if a ceiling says
-/// nothing or there is no front to compare with.
-pub(super) fn gap(open: &[Ceiling], front: &[Candidate]) -> Option<f64> {
-    let of = |ceiling: &Ceiling| {
+/// The least `ε` such that for every open box some design of the front, with mass and deflection divided by
+/// `1 + ε` and mode multiplied by it, is no worse than the bound of the box. No missed design is then better
+/// than the whole front by more than `ε` in every objective at once. `None` if a bound says nothing, or if
+/// the front is empty.
+pub(super) fn gap(open: &[BoxBound], front: &[Candidate]) -> Option<f64> {
+    let of = |box_bound: &BoxBound| {
         let factor = |c: &Candidate| {
             let o = &c.objectives;
-            (o.mass_kg / ceiling.mass_kg)
-                .max(o.tip_deflection_m / ceiling.tip_m)
-                .max(ceiling.hz / o.lowest_mode_hz)
+            (o.mass_kg / box_bound.mass_kg)
+                .max(o.tip_deflection_m / box_bound.tip_m)
+                .max(box_bound.hz / o.lowest_mode_hz)
         };
         front.iter().map(factor).fold(f64::INFINITY, f64::min)
     };
@@ -34,12 +34,12 @@ mod tests {
             objectives: Objectives { tip_deflection_m, mass_kg, lowest_mode_hz },
         };
         let front = [at(10.0, 1e-3, 20.0), at(20.0, 5e-4, 30.0)];
-        let ceiling = |mass_kg, tip_m, hz| Ceiling { mass_kg, tip_m, hz };
+        let box_bound = |mass_kg, tip_m, hz| BoxBound { mass_kg, tip_m, hz };
         let near = |a: Option<f64>, b: f64| assert!((a.unwrap() - b).abs() < 1e-12, "{a:?} {b}");
         near(gap(&[], &front), 0.0);
-        near(gap(&[ceiling(10.0, 1e-3, 22.0)], &front), 0.1);
-        near(gap(&[ceiling(16.0, 5e-4, 30.0), ceiling(10.0, 1e-3, 20.2)], &front), 0.25);
-        assert_eq!(gap(&[Ceiling::OPEN], &front), None);
-        assert_eq!(gap(&[ceiling(1.0, 1.0, 1.0)], &[]), None);
+        near(gap(&[box_bound(10.0, 1e-3, 22.0)], &front), 0.1);
+        near(gap(&[box_bound(16.0, 5e-4, 30.0), box_bound(10.0, 1e-3, 20.2)], &front), 0.25);
+        assert_eq!(gap(&[BoxBound::OPEN], &front), None);
+        assert_eq!(gap(&[box_bound(1.0, 1.0, 1.0)], &[]), None);
     }
 }

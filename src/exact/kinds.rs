@@ -1,42 +1,44 @@
-//! Drives that no objective tells apart.
+//! Drives that no objective distinguishes.
 //!
-//! Deflection, mass and modes see a drive's mass and torsion curve and nothing else, and gears of one size have the same
-//! curve for several ratios, and in several series. So the drives of one mass and one curve are a **kind**: one option of
-//! the search, which holds what any of its drives holds. A design of kinds stands for all designs whose joints have drives
-//! of these kinds, each able to hold what its joint is asked for. That depends on the masses outboard alone, which are the
-//! same for all of them: every joint may choose whatever the others choose.
+//! Deflection, mass and modes depend on a drive only through its mass and its torsion curve. Gears of one
+//! size have the same curve for several ratios and in several series. So the drives of one mass and one curve
+//! form a **kind**, which is a single option of the search. A kind can carry a demand if any of its drives
+//! can.
+//!
+//! A design of kinds stands for every design whose joints have drives of these kinds, each able to carry its
+//! joint's demand. The demand depends only on the masses outboard, which are the same for all of them, so
+//! each joint chooses its drive independently of the others.
 
-use super::bound::Work;
-use super::problem::{Part, Problem};
-use crate::search::sweep::Candidate;
-use crate::space::design::{number, options};
 use crate::space::slot::SizedJoint;
-use std::collections::{BTreeSet, HashMap};
 
-/// Whether drives of a kind are one option of a search.
+/// Whether tied drives (those of one kind) are one option of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Alike {
-    Together,
-    Apart,
+pub(super) enum Ties {
+    /// One option for each kind.
+    Merged,
+    /// One option for each drive.
+    Separate,
 }
 
-/// The drives of a joint by kinds, ascending; the first of each is the kind's number.
+/// The drives of a joint by kind, ascending. The first drive of a kind is its number.
 pub(super) struct Kinds(Vec<Vec<u32>>);
 
 impl Kinds {
-    pub fn of(sized: &SizedJoint, alike: Alike) -> Self {
-        Self(match alike {
-            Alike::Together => sized.kinds(),
-            Alike::Apart => (0..sized.table.len() as u32).map(|drive| vec![drive]).collect(),
+    /// The kinds of a joint's drives.
+    pub fn of(sized: &SizedJoint, ties: Ties) -> Self {
+        Self(match ties {
+            Ties::Merged => sized.kinds(),
+            Ties::Separate => (0..sized.table.len() as u32).map(|drive| vec![drive]).collect(),
         })
     }
 
+    /// The drives of each kind.
     pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
         self.0.iter().map(Vec::as_slice)
     }
 
-    /// The drives of a kind.
-    fn drives(&self, first: u32) -> &[u32] {
+    /// The drives of the kind with this number.
+    pub fn drives(&self, first: u32) -> &[u32] {
         self.0.binary_search_by_key(&first, |kind| kind[0]).map_or(&[], |at| &self.0[at])
     }
 
@@ -45,81 +47,5 @@ impl Kinds {
         let mut drives: Vec<u32> = firsts.iter().flat_map(|first| self.drives(*first)).copied().collect();
         drives.sort_unstable();
         drives
-    }
-}
-
-impl Problem<'_> {
-    /// The designs that designs of kinds stand for: all of them if they are no more than `most`, else the first of each;
-    /// and whether they are all.
-    pub fn of_kinds(&self, found: &[Candidate], most: usize) -> (Vec<Candidate>, bool) {
-        let of_kinds: Vec<(&Candidate, Vec<Vec<u32>>)> = self.drives_that_hold(found);
-        let count = |lists: &Vec<Vec<u32>>| lists.iter().map(|list| list.len() as f64).product::<f64>();
-        let all: f64 = of_kinds.iter().map(|(_, lists)| count(lists)).sum();
-        let lists_all = all <= most as f64;
-        let mut designs = Vec::new();
-        for (candidate, lists) in &of_kinds {
-            let mut chosen: Vec<Vec<u32>> = vec![Vec::new()];
-            for list in lists {
-                let choices = if lists_all { &list[..] } else { &list[..1] };
-                let longer = |start: Vec<u32>| choices.iter().map(move |o| [&start[..], &[*o]].concat());
-                chosen = chosen.into_iter().flat_map(longer).collect();
-            }
-            designs.extend(
-                chosen
-                    .into_iter()
-                    .map(|options| Candidate { number: number(&self.level_sizes, &options), ..**candidate }),
-            );
-        }
-        (designs, lists_all)
-    }
-
-    /// What each level of a design of kinds may be, tip first and never empty: the drives of the kind that hold, those
-    /// first that do by more than rounding.
-    fn drives_that_hold<'f>(&self, found: &'f [Candidate]) -> Vec<(&'f Candidate, Vec<Vec<u32>>)> {
-        let chosen: Vec<Option<Vec<u32>>> =
-            found.iter().map(|candidate| options(&self.level_sizes, candidate.number)).collect();
-        let leaves = self.leaves_of(&chosen);
-        let mut work = Work::default();
-        let mut lists_of = |options: &[u32]| -> Option<Vec<Vec<u32>>> {
-            let mut cell: Vec<u32> = options
-                .iter()
-                .zip(&leaves)
-                .map(|(o, leaves)| leaves.get(o).copied())
-                .collect::<Option<_>>()?;
-            self.fill(&mut cell, &mut work)?;
-            let levels = self.level_pieces.iter().zip(options);
-            levels
-                .map(|(&piece, &option)| match (&self.parts[piece], &work.least[piece]) {
-                    (Part::Drives { sized, kinds, .. }, Some(asked)) => {
-                        let holds = |drive: &&u32| sized.table.limits(**drive as usize).hold(&asked.demand);
-                        let mut drives: Vec<u32> =
-                            kinds.drives(option).iter().filter(holds).copied().collect();
-                        // those that hold whatever rounding does come first
-                        let surely = |drive: &u32| {
-                            let limits = sized.table.limits(*drive as usize);
-                            work.demands[piece].as_ref().is_some_and(|most| limits.hold(most))
-                        };
-                        drives.sort_by_key(|drive| !surely(drive));
-                        (!drives.is_empty()).then_some(drives)
-                    }
-                    _ => Some(vec![option]),
-                })
-                .collect()
-        };
-        let pairs = found.iter().zip(&chosen);
-        pairs.filter_map(|(candidate, options)| Some((candidate, lists_of(options.as_ref()?)?))).collect()
-    }
-
-    /// For every level the leaves of the options that some designs have.
-    fn leaves_of(&self, designs: &[Option<Vec<u32>>]) -> Vec<HashMap<u32, u32>> {
-        let of_level = |(level, &piece): (usize, &usize)| {
-            let wanted: BTreeSet<u32> = designs.iter().flatten().map(|options| options[level]).collect();
-            match &self.parts[piece] {
-                Part::Drives { tree, .. } => tree.leaves_of(&wanted),
-                Part::Links { tree, .. } => tree.leaves_of(&wanted),
-                _ => HashMap::new(),
-            }
-        };
-        self.level_pieces.iter().enumerate().map(of_level).collect()
     }
 }

@@ -1,30 +1,31 @@
-//! What the bound sees of a part, and of a box of parts: every number as an interval.
+//! The numbers of a part, and of a box of parts, that bounds depend on. Those of a box are intervals.
 
-use super::torsion::{Breaks, CurveBox};
+use super::torsion::{BreakPoints, CurveBox};
 use super::tree::{Bounds, Key};
 use crate::arm::LinkModel;
 use crate::arm::structure::{Beam, LinkPiece};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
 use crate::sizing::demand::{JointDemand, JointMotion};
 use crate::sizing::limits::DriveLimits;
+use crate::space::attributes::StressCheck;
 use crate::space::design_space::LinkOption;
-use crate::space::figures::StressCheck;
 use std::sync::Arc;
 
-/// Number of [`Line`]'s inertias and of its stiffnesses.
+/// Number of inertias and of stiffnesses of a [`Line`].
 pub(super) const INERTIAS: usize = 5;
 pub(super) const STIFFNESSES: usize = 5;
 
-/// A tube per metre: what moves and what yields.
+/// A tube's inertias and stiffnesses per metre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Line {
-    /// Mass \[kg/m\], outer area \[m²\], rotary inertia about the link, its y and its z \[kg m\].
+    /// Mass \[kg/m\], outer area \[m²\], rotary inertia about the link's axis, its y and its z \[kg m\].
     pub inertias: [f64; INERTIAS],
-    /// `EI` about y, `EI` about z, `κGA`, `GJ`, `EA`; infinite where the link model has no such strain.
+    /// `EI` about y and z \[N m²\], `κGA` \[N\], `GJ` \[N m²\], `EA` \[N\]. Infinite where the link model has
+    /// no such strain.
     pub stiffnesses: [f64; STIFFNESSES],
 }
 
-/// Places in [`Line::inertias`].
+/// Indices into [`Line::inertias`].
 pub(super) mod inertia {
     pub const MASS: usize = 0;
     pub const OUTER_AREA: usize = 1;
@@ -34,7 +35,7 @@ pub(super) mod inertia {
 }
 
 impl Line {
-    /// A tube, and what hangs along it, under a link model.
+    /// A tube with its harness under a link model.
     pub fn new(beam: &Beam, harness_kg_per_m: f64, model: LinkModel) -> Self {
         let tube = tube_inertia(beam, model);
         let yields = |place: usize| match model {
@@ -66,19 +67,20 @@ impl Line {
 pub(super) struct LinkBox {
     pub low: Line,
     pub high: Line,
-    /// Least and greatest of one over each stiffness.
+    /// Least and greatest compliance, the reciprocal of each stiffness.
     pub compliances: [[f64; STIFFNESSES]; 2],
-    /// Least stress over strength per axial force, moments about y and z, and torsion; zero where a
-    /// strength is unknown.
+    /// Least ratio of stress to strength per axial force \[1/N\], per moment about y and z and per torsion
+    /// \[1/(N m)\]. Zero where a strength is unknown.
     pub stress: [f64; 4],
-    /// Whether some member is a round tube, whose bending about two axes adds up as a vector.
+    /// Whether some member is a round tube. Its bending stresses about two axes add as a vector, which is
+    /// less than their sum.
     pub round: bool,
     /// Least cost of the material \[EUR/m\].
     pub cost_eur_per_m: f64,
 }
 
 impl LinkBox {
-    /// The box of one option, which the study's effects make this link.
+    /// The box of one option. `link` is the option with the effects of the study.
     pub fn of(option: &LinkOption, link: &LinkPiece, model: LinkModel) -> Self {
         let nominal = Beam { material: option.material, section: option.section, flexibility: 1.0 };
         let line = Line::new(link.beam.as_ref().unwrap_or(&nominal), link.harness_kg_per_m, model);
@@ -120,30 +122,31 @@ impl Bounds for LinkBox {
         }
     }
 
-    /// Mass counts twice: it is an objective, and it loads everything inboard. Shear and stretch hardly
-    /// move any objective.
+    /// Mass has the double weight, because it is an objective and also loads everything inboard. Shear and
+    /// stretch hardly move any objective.
     fn key(&self) -> Key {
         let s = self.low.stiffnesses.map(|s| if s.is_finite() { s.ln() } else { 0.0 });
         [2.0 * self.low.inertias[inertia::MASS].ln(), s[0], 0.7 * s[1], 0.1 * s[2], 0.3 * s[3]]
     }
 }
 
-/// Torques that differ by less than this part may lie on the same side of a break point or not.
+/// Torques whose relative difference is below this count as equal when compared with a break point.
 pub(super) const SAME_TORQUE: f64 = 1e-12;
 
-/// Proportions of static torque and inertia in which a box of drives knows what it holds.
+/// Number of load proportions for which a box of drives knows its capacity.
 pub(super) const RAYS: usize = 12;
 
-/// Demands in fixed proportions. A drive that holds a demand holds every ray's multiple below it, so a box
-/// none of whose members does holds no demand above, though each single limit may be met by some member.
+/// Demands in fixed proportions of static torque and inertia. A drive that can carry a demand can carry every
+/// smaller multiple of it. So if no member of a box carries the multiple of a ray that lies below a demand,
+/// none carries the demand, even though each single limit may be met by some member.
 pub(super) struct Rays {
-    /// Static torque \[N m\] and inertia \[kg m²\].
+    /// Static torque \[N m\] and inertia \[kg m²\] of each ray.
     loads: [(f64, f64); RAYS],
     demands: [JointDemand; RAYS],
 }
 
 impl Rays {
-    /// Around the proportion that the payload alone asks for.
+    /// Rays around the proportion that the payload alone causes.
     pub fn new(motion: &JointMotion, payload_static_nm: f64, payload_inertia_kgm2: f64) -> Self {
         let loads = std::array::from_fn(|k| match k {
             0 => (0.0, 1.0),
@@ -156,21 +159,21 @@ impl Rays {
         Self { demands: loads.map(|(static_nm, inertia)| motion.demand(static_nm, inertia)), loads }
     }
 
-    /// How many times each ray's demand a drive holds.
-    pub fn held(&self, limits: &DriveLimits) -> [f64; RAYS] {
+    /// The multiple of each ray's demand that a drive can carry.
+    pub fn capacity(&self, limits: &DriveLimits) -> [f64; RAYS] {
         self.demands.each_ref().map(|demand| limits.multiple_of(demand))
     }
 }
 
-/// What a joint is asked for at least.
-pub(super) struct Asked {
+/// The least demand that the members of a box make on a joint.
+pub(super) struct LeastDemand {
     pub demand: JointDemand,
-    /// Multiples of the rays below it.
+    /// The multiple of each ray that lies below the demand.
     multiples: [f64; RAYS],
 }
 
-impl Asked {
-    /// A static torque and an inertia.
+impl LeastDemand {
+    /// The demand of a static torque \[N m\] and an inertia \[kg m²\].
     pub fn new(motion: &JointMotion, rays: &Rays, static_nm: f64, inertia_kgm2: f64) -> Self {
         let times = |asked: f64, unit: f64| if unit > 0.0 { asked / unit } else { f64::INFINITY };
         let multiples =
@@ -182,22 +185,24 @@ impl Asked {
 /// A box of drives.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct DriveBox {
-    /// Least and largest mass \[kg\].
+    /// Least and greatest mass \[kg\].
     pub mass_kg: [f64; 2],
-    /// The largest of each limit.
+    /// The greatest of each limit over the members.
     pub limits: DriveLimits,
-    /// The smallest of each limit.
+    /// The least of each limit over the members.
     pub least_limits: DriveLimits,
-    /// The largest multiple of each ray's demand that a member holds.
+    /// The greatest multiple of each ray's demand that any member carries.
     pub multiples: [f64; RAYS],
+    /// The curves of the members; `None` if one of them is rigid.
     pub curve: Option<CurveBox>,
-    pub breaks: Breaks,
-    /// Of a single kind of several drives, what each of them holds: the kind holds what any of them does.
+    /// Break points of the members' curves.
+    pub breaks: BreakPoints,
+    /// For a single kind of several drives, the limits of each. The kind carries what any of them carries.
     pub each: Option<Arc<[DriveLimits]>>,
 }
 
 impl DriveBox {
-    /// A kind: drives of one mass and curve.
+    /// The box of one kind: drives of one mass and one curve.
     pub fn of_kind(drives: impl Iterator<Item = Self>) -> Option<Self> {
         let drives: Vec<Self> = drives.collect();
         let kind =
@@ -209,18 +214,19 @@ impl DriveBox {
         };
         let each: Vec<DriveLimits> =
             drives.iter().enumerate().filter(|d| !covered(*d)).map(|(_, d)| d.limits).collect();
-        // one that covers the others stands for all
+        // A drive that covers the others stands for all of them.
         Some(Self { each: (each.len() > 1).then(|| Arc::from(each)), ..kind })
     }
 
-    /// Whether a member may hold what is asked.
+    /// Whether some member may carry the demand.
     #[inline]
-    pub fn may_hold(&self, asked: &Asked) -> bool {
+    pub fn may_hold(&self, asked: &LeastDemand) -> bool {
         self.hold(&asked.demand)
-            && self.multiples.iter().zip(&asked.multiples).all(|(held, asked)| held >= asked)
+            && self.multiples.iter().zip(&asked.multiples).all(|(carried, asked)| carried >= asked)
     }
 
-    /// Whether a demand is within the limits; of a single kind whether a drive of it holds.
+    /// Whether the demand is within the greatest limits. For a single kind: whether one of its drives carries
+    /// it.
     #[inline]
     pub fn hold(&self, demand: &JointDemand) -> bool {
         self.limits.hold(demand)
@@ -235,14 +241,14 @@ impl Bounds for DriveBox {
             limits: self.limits.max(&other.limits),
             least_limits: self.least_limits.min(&other.least_limits),
             multiples: pairwise(&self.multiples, &other.multiples, f64::max),
-            // a rigid member makes the stiff side rigid
+            // A rigid member makes the stiff side rigid, so the box has no curve.
             curve: self.curve.zip(other.curve).map(|(a, b)| a.join(&b)),
             breaks: self.breaks.join(&other.breaks),
             each: None,
         }
     }
 
-    /// First by curve: drives with one gear share it. Then by mass.
+    /// First by curve, because drives with the same gear share it; then by mass.
     fn key(&self) -> Key {
         let k = self.curve.map_or([0.0; 3], |c| {
             let w = &c.stiff.windup;
@@ -264,7 +270,7 @@ mod tests {
     use crate::sizing::requirement::MotionRequirement;
     use proptest::prelude::*;
 
-    /// A drive whose limits are multiples of what a joint of 100 N m and 10 kg m² is asked for.
+    /// A drive whose limits are multiples of the demand of 100 N m and 10 kg m².
     fn drive(of: [u32; 5], motion: &JointMotion, rays: &Rays) -> DriveBox {
         let usual = motion.demand(100.0, 10.0);
         let times = |k: usize| 0.2 * f64::from(of[k]);
@@ -279,15 +285,16 @@ mod tests {
             mass_kg: [1.0; 2],
             limits,
             least_limits: limits,
-            multiples: rays.held(&limits),
+            multiples: rays.capacity(&limits),
             curve: None,
-            breaks: Breaks::default(),
+            breaks: BreakPoints::default(),
             each: None,
         }
     }
 
     proptest! {
-        /// Drives of a kind, and a box of kinds, hold what some drive does; a kind by itself no more than that.
+        /// A kind, and a box of kinds, carries whatever one of its drives carries. A kind alone carries no
+        /// more.
         #[test]
         fn a_kind_holds_what_any_of_its_drives_holds(
             kinds in prop::collection::vec(prop::collection::vec(prop::array::uniform5(1u32..12), 1..5), 1..4),
@@ -295,18 +302,18 @@ mod tests {
         ) {
             let motion = MotionRequirement::default().joint_motion(1.35, None);
             let rays = Rays::new(&motion, 50.0, 5.0);
-            let asked = Asked::new(&motion, &rays, static_nm, inertia_kgm2);
-            let mut of_kinds = Vec::new();
+            let asked = LeastDemand::new(&motion, &rays, static_nm, inertia_kgm2);
+            let mut with_ties = Vec::new();
             for kind in &kinds {
                 let drives: Vec<DriveBox> = kind.iter().map(|of| drive(*of, &motion, &rays)).collect();
                 let some_holds = drives.iter().any(|drive| drive.limits.hold(&asked.demand));
                 let together = DriveBox::of_kind(drives.into_iter()).unwrap();
                 prop_assert_eq!(together.hold(&asked.demand), some_holds);
                 prop_assert_eq!(together.may_hold(&asked), some_holds);
-                of_kinds.push((together, some_holds));
+                with_ties.push((together, some_holds));
             }
-            let some_holds = of_kinds.iter().any(|(_, holds)| *holds);
-            let joined = of_kinds.into_iter().map(|(kind, _)| kind).reduce(|a, b| a.join(&b)).unwrap();
+            let some_holds = with_ties.iter().any(|(_, holds)| *holds);
+            let joined = with_ties.into_iter().map(|(kind, _)| kind).reduce(|a, b| a.join(&b)).unwrap();
             prop_assert!(joined.may_hold(&asked) || !some_holds);
         }
     }

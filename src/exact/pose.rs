@@ -1,26 +1,20 @@
-//! One case of a study as rows of numbers: what each weight does to each coordinate.
-//!
-//! A serial chain is statically determinate, so the generalized force on every strain coordinate (a
-//! joint's twist, a link's lowest polynomials) is linear in the weights of the pieces outboard, and the
-//! tip moves by the sum over the coordinates of force times compliance times a constant vector. With
-//! weights and compliances as intervals both become intervals: no condition on the pose is needed.
+//! One case of a study as rows of numbers: the effect of each weight on each strain coordinate.
 
-use super::parts::{INERTIAS, inertia};
-use super::problem::harness_kg;
-use crate::arm::LinkModel;
-use crate::arm::structure::{LinkPiece, Structure, Water};
-use crate::mechanics::beam::{PreparedBeam, section_frame};
-use crate::mechanics::{Twist, Wrench, angular, body_inertia, displacement_at, linear, rotation_twist};
-use crate::space::design_space::{DesignSpace, SpacePiece};
-use crate::space::effects::Layer;
-use crate::space::station::{Walk, payload_in, weight_wrench};
-use nalgebra::{DMatrix, Matrix3, Matrix6, Rotation3, SMatrix, Vector3};
+use super::interval::interval;
+use super::parts::INERTIAS;
+use crate::mechanics::Twist;
+use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
 
-/// Coordinates of a tube: curvatures along z and y (4 each), shears (3 each), twist, stretch (3 each).
+/// Coefficients below this part of the largest are rounding.
+const NOTHING: f64 = 1e-12;
+
+/// Number of strain coordinates of a tube: curvatures along z and y (4 each), shears along z and y (3 each),
+/// twists (3), stretches (3).
 pub(super) const COORDINATES: usize = 20;
-/// The coordinates that move a tube's end.
+/// The coordinates that move the end of a tube.
 pub(super) const ENDS: [usize; 8] = [0, 1, 4, 5, 8, 11, 14, 17];
-/// Which stiffness of a [`Line`](super::parts::Line) resists each coordinate, and its degree.
+/// For each coordinate: the index of the stiffness of a [`Line`](super::parts::Line) that resists it, and the
+/// degree of its polynomial.
 pub(super) const RESISTED: [(usize, u8); COORDINATES] = [
     (0, 0),
     (0, 1),
@@ -44,35 +38,36 @@ pub(super) const RESISTED: [(usize, u8); COORDINATES] = [
     (4, 2),
 ];
 
-/// Compliance of a tube's coordinate times its stiffness and length: `2i + 1`.
+/// `2i + 1` for a polynomial of degree `i`: the compliance of a coordinate times its stiffness and the tube's
+/// length.
 pub(super) fn degree_factor(coordinate: usize) -> f64 {
     f64::from(2 * RESISTED[coordinate].1 + 1)
 }
 
-/// A case compiled for the bound. Pieces are counted from the tip.
+/// A case, compiled for bounds. Pieces are counted from the tip.
 pub(super) struct Pose {
     pub judged: bool,
     pub sizing: bool,
-    /// Whether no two parts move the tip against each other.
-    pub parts_sag_together: bool,
-    /// Weight of the water in a tube's outer area over that of its mass: net weight per length is
-    /// `g (mass - water area)`.
+    /// Whether no two contributions to the tip's displacement oppose each other.
+    pub contributions_align: bool,
+    /// Density of the water around the arm, 0 in air \[kg/m³\]. The net weight per length of a tube is `g
+    /// (mass - water · outer area)`.
     pub water_kg_m3: f64,
     pub pieces: Vec<PosedPiece>,
-    /// What the payload and massive offsets do to a wrench or an inertia before any part is chosen.
+    /// Inertia of the payload, before any part is chosen.
     pub payload_inertia: Matrix6<f64>,
-    /// Every coordinate that any weight or load strains, tip first.
+    /// The rows of all coordinates that a weight or a load strains, tip first.
     pub rows: Vec<Row>,
     pub stress: Vec<StressRow>,
-    /// Inertia about each joint's axis.
+    /// Inertia about each joint's axis; `None` for a piece that is no joint.
     pub inertia_about: Vec<Option<InertiaRow>>,
 }
 
 /// A piece in a pose.
 pub(super) enum PosedPiece {
-    /// A joint: its twist, and where its mass is.
+    /// A joint: its unit twist, and the point of its mass.
     Joint { twist: Twist, at_m: Vector3<f64> },
-    /// A point mass, already counted.
+    /// The inertia of a given body.
     Body(Matrix6<f64>),
     /// A tube.
     Tube(Box<PosedTube>),
@@ -83,18 +78,18 @@ pub(super) struct PosedTube {
     pub length_m: f64,
     pub root_m: Vector3<f64>,
     pub frame: Matrix3<f64>,
-    /// Twist of everything outboard per unit of each of [`ENDS`].
+    /// Twist of everything outboard per unit of each of the coordinates [`ENDS`].
     pub ends: [Twist; 8],
-    /// Inertia over root motion and coordinates per unit of line density.
+    /// Inertia forms over the motion of the root and the coordinates, per unit of each line inertia.
     pub forms: TubeForms,
     /// Added mass across the tube per outer area \[kg/m³\].
     pub added_kg_m3: f64,
-    /// Whether its section is a choice.
+    /// Whether its section is chosen by the search.
     pub chosen: bool,
 }
 
-/// Inertia forms over `(root translation, root rotation, curvatures, shears)` of each plane, and over
-/// `(root rotation, twists)` and `(root translation, stretches)` along the tube.
+/// Quadratic forms of kinetic energy. In each plane they are over `(root translation, root rotation,
+/// curvatures, shears)`; along the tube over `(root rotation, twists)` and `(root translation, stretches)`.
 pub(super) struct TubeForms {
     pub across_z: SMatrix<f64, 9, 9>,
     pub across_y: SMatrix<f64, 9, 9>,
@@ -104,300 +99,84 @@ pub(super) struct TubeForms {
     pub along: SMatrix<f64, 4, 4>,
 }
 
-/// The force on a strain coordinate and what it does to the tip.
+/// The force on a strain coordinate, and the effect of the coordinate on the tip.
 pub(super) struct Row {
     pub piece: usize,
-    /// Coordinate of a tube; 0 for a joint.
+    /// Index of a tube's coordinate; 0 for a joint.
     pub coordinate: usize,
-    /// Force without any weight of parts.
+    /// Force without the weight of any part \[N or N m\].
     pub fixed: f64,
-    /// Force per newton of each piece's weight, up to and including `piece`.
+    /// Force per newton of the weight of each piece, up to and including `piece`.
     pub per_n: Vec<f64>,
-    /// Displacement of the tip per unit of the coordinate, and how far that is.
+    /// Displacement of the tip per unit of the coordinate, and its length.
     pub tip_m: Vector3<f64>,
-    pub way_m: f64,
+    pub tip_m_per_unit: f64,
 }
 
-/// Force and moments at an end of an open tube.
+/// Force and moments on the section at an end of a chosen tube.
 pub(super) struct StressRow {
     pub piece: usize,
-    /// Axial force, moments about y and z, torsion, as `fixed + per_n · weights`.
+    /// Axial force, moments about y and z, and torsion, each as `fixed + per_n · weights`.
     pub loads: [(f64, Vec<f64>); 4],
 }
 
-/// Inertia about a joint's axis: `fixed + Σ per_line · inertias` of the pieces outboard.
+/// Inertia about a joint's axis \[kg m²\]: `fixed + Σ per_line · inertias` of the pieces outboard.
 pub(super) struct InertiaRow {
     pub fixed: f64,
     pub per_line: Vec<[f64; INERTIAS]>,
 }
 
 impl Pose {
-    /// Compiles a case.
-    pub fn new(space: &DesignSpace, index: usize) -> Self {
-        let case = &space.cases[index];
-        let water = case.water.or(space.surroundings().water);
-        let walk = Walk::new(space, case);
-        let (payload_wrench, payload_inertia) = payload_in(space, case, water, &walk);
-        let mut pieces = Vec::new();
-        for (place, layer) in space.layers() {
-            let at = &walk.places[place];
-            pieces.push(posed(space, water, layer, at));
-            if let Layer::Piece(piece) = layer
-                && harness_kg(space, piece).is_some()
-            {
-                pieces.push(PosedPiece::Body(Matrix6::zeros()));
-            }
-        }
-        let mut pose = Self {
-            judged: space.judged_cases.contains(&index),
-            sizing: space.sizing_cases.contains(&index),
-            parts_sag_together: false,
-            water_kg_m3: water.map_or(0.0, |w| w.density_kg_m3),
-            pieces,
-            payload_inertia,
-            rows: Vec::new(),
-            stress: Vec::new(),
-            inertia_about: Vec::new(),
-        };
-        pose.compile(space, payload_wrench, &walk.tip_m);
-        pose.parts_sag_together = pose.parts_sag_together();
-        pose
+    /// Torque on a joint, as an interval \[N m\].
+    pub fn torque(&self, piece: usize, weights: &[[f64; 2]]) -> [f64; 2] {
+        let row = self.rows.iter().find(|row| row.piece == piece);
+        row.map_or([0.0; 2], |row| interval(row.fixed, &row.per_n, weights))
     }
 
-    /// Goes inward with the wrench of everything outboard as a linear function of the weights.
-    fn compile(&mut self, space: &DesignSpace, payload: Wrench, tip_m: &Vector3<f64>) {
-        let mut outboard = Outboard { fixed: payload, per_n: Vec::new(), inertia: Vec::new() };
-        let mut fixed_inertia = self.payload_inertia;
-        for (piece, posed) in self.pieces.iter().enumerate() {
-            match posed {
-                PosedPiece::Joint { twist, at_m } => {
-                    self.rows.push(outboard.row(piece, 0, twist, 0.0, tip_m));
-                    self.inertia_about.push(Some(outboard.inertia_row(&fixed_inertia, twist)));
-                    let mut forms = [Matrix6::zeros(); INERTIAS];
-                    forms[inertia::MASS] = body_inertia(1.0, at_m, &Matrix3::zeros());
-                    outboard.push(weight_wrench(1.0, at_m), forms);
-                }
-                PosedPiece::Body(body) => {
-                    fixed_inertia += body;
-                    let mass_kg = body[(0, 0)];
-                    if mass_kg > 0.0 {
-                        let moment = Vector3::new(body[(5, 1)], body[(3, 2)], body[(4, 0)]) / mass_kg;
-                        outboard.fixed += weight_wrench(mass_kg * space.gravity_m_s2, &moment);
-                    }
-                    self.inertia_about.push(None);
-                    outboard.push(Wrench::zeros(), [Matrix6::zeros(); INERTIAS]);
-                }
-                PosedPiece::Tube(tube) => {
-                    self.inertia_about.push(None);
-                    let end_m = tube.root_m + tube.frame * Vector3::x() * tube.length_m;
-                    if tube.chosen {
-                        self.stress.push(outboard.stress(piece, tube, &end_m));
-                    }
-                    let areas = areas_per_n(tube);
-                    for (end, coordinate) in ENDS.into_iter().enumerate() {
-                        let own = areas[end];
-                        self.rows.push(outboard.row(piece, coordinate, &tube.ends[end], own, tip_m));
-                    }
-                    let middle_m = tube.root_m + tube.frame * Vector3::x() * (tube.length_m / 2.0);
-                    outboard.push(weight_wrench(1.0, &middle_m), tube.rigid_forms());
-                    if tube.chosen {
-                        self.stress.push(outboard.stress(piece, tube, &tube.root_m));
-                    }
-                }
-            }
-        }
-        let scale = self.rows.iter().map(Row::largest).fold(0.0, f64::max);
-        // coordinates that nothing strains, such as those across a vertical plane
-        let strained = |row: &Row| matches!(self.pieces[row.piece], PosedPiece::Joint { .. });
-        self.rows.retain(|row| strained(row) || row.largest() > 1e-13 * scale);
+    /// Torque on a joint without the weight of any part \[N m\].
+    pub fn payload_torque_nm(&self, piece: usize) -> f64 {
+        self.rows.iter().find(|row| row.piece == piece).map_or(0.0, |row| row.fixed)
     }
 }
 
-/// A layer at a place of the chain.
-fn posed(
-    space: &DesignSpace,
-    water: Option<Water>,
-    layer: Layer,
-    (at_m, rotation): &(Vector3<f64>, Rotation3<f64>),
-) -> PosedPiece {
-    let hinge = |axis: &Vector3<f64>| PosedPiece::Joint { twist: rotation_twist(axis, at_m), at_m: *at_m };
-    let body = |mass_kg: f64, centre_m: &Vector3<f64>, inertia_kgm2: Matrix3<f64>| {
-        PosedPiece::Body(body_inertia(mass_kg, centre_m, &inertia_kgm2))
-    };
-    match layer {
-        Layer::Tilt(tilt) => hinge(&tilt.axis(rotation)),
-        Layer::Mass(mass_kg) => body(mass_kg, at_m, Matrix3::zeros()),
-        Layer::Piece(SpacePiece::Joint(joint)) => hinge(&(rotation * joint.axis)),
-        Layer::Piece(SpacePiece::Choice(choice)) => {
-            posed_tube(space, water, &space.link_piece(&choice.first_link()), at_m, rotation.matrix(), true)
-        }
-        Layer::Piece(SpacePiece::Link(link)) => {
-            let link = space.link_piece(link);
-            if link.beam.is_some() && link.vector_m.norm() > 0.0 {
-                return posed_tube(space, water, &link, at_m, rotation.matrix(), false);
-            }
-            // what hangs along a rigid offset is a slender rod
-            let vector_m = rotation * link.vector_m;
-            let along_kg = link.harness_kg_per_m * vector_m.norm();
-            let rod = Matrix3::identity() * vector_m.norm_squared() - vector_m * vector_m.transpose();
-            body(link.point_mass_kg + along_kg, &(at_m + vector_m / 2.0), rod * (along_kg / 12.0))
-        }
+impl Pose {
+    /// Whether every force, and so every demand, grows with every weight.
+    pub fn grows_with_weight(&self) -> bool {
+        let loads = self.stress.iter().flat_map(|row| &row.loads);
+        self.water_kg_m3 == 0.0
+            && self.relevant_rows().all(|row| sign(row.fixed, &row.per_n).is_some())
+            && loads.into_iter().all(|(fixed, per_n)| sign(*fixed, per_n).is_some())
+    }
+
+    /// Whether no two contributions to the tip's displacement oppose each other. Then the tip moves further
+    /// if any part yields more.
+    pub fn contributions_align(&self) -> bool {
+        let rows = self.relevant_rows();
+        let ways: Vec<_> = rows.map(|row| row.tip_m * sign(row.fixed, &row.per_n).unwrap_or(0.0)).collect();
+        // Rounding of right angles must not count as opposition.
+        let agree = |a: &Vector3<f64>, b: &Vector3<f64>| a.dot(b) >= -NOTHING * a.norm() * b.norm();
+        ways.iter().enumerate().all(|(i, a)| ways[..i].iter().all(|b| agree(a, b)))
+    }
+
+    /// The rows of joints, and the rows of coordinates that move the tip.
+    fn relevant_rows(&self) -> impl Iterator<Item = &Row> {
+        let is_joint = |row: &Row| matches!(self.pieces[row.piece], PosedPiece::Joint { .. });
+        self.rows.iter().filter(move |row| is_joint(row) || row.tip_m.norm() > 0.0)
     }
 }
 
-fn posed_tube(
-    space: &DesignSpace,
-    water: Option<Water>,
-    link: &LinkPiece,
-    root_m: &Vector3<f64>,
-    rotation: &Matrix3<f64>,
-    chosen: bool,
-) -> PosedPiece {
-    let structure = Structure::bare(space.gravity_m_s2, Vec::new());
-    let frame = rotation * section_frame(&link.vector_m);
-    // shapes depend on the length alone
-    let Some(beam) = PreparedBeam::new(link, &structure, LinkModel::Full) else {
-        return PosedPiece::Body(Matrix6::zeros());
-    };
-    let end_m = root_m + frame * Vector3::x() * beam.length_m;
-    let ends = ENDS.map(|coordinate| {
-        let local = beam.end_fields.column(coordinate);
-        let rotation = frame * local.fixed_rows::<3>(3);
-        crate::mechanics::stack(&(frame * local.fixed_rows::<3>(0) + end_m.cross(&rotation)), &rotation)
-    });
-    PosedPiece::Tube(Box::new(PosedTube {
-        length_m: beam.length_m,
-        root_m: *root_m,
-        frame,
-        ends,
-        forms: TubeForms::new(&beam),
-        added_kg_m3: water.map_or(0.0, |w| w.added_mass_coefficient * w.density_kg_m3),
-        chosen,
-    }))
-}
-
-impl TubeForms {
-    fn new(beam: &PreparedBeam) -> Self {
-        let n = 6 + COORDINATES;
-        let mut forms = vec![DMatrix::<f64>::zeros(n, n); 6];
-        for (xi, weight) in beam.quadrature() {
-            let fields = beam.fields(xi);
-            for (component, form) in forms.iter_mut().enumerate() {
-                let row = fields.row(component);
-                *form += row.transpose() * row * weight;
-            }
-        }
-        let z = [2, 4, 6, 7, 8, 9, 14, 15, 16];
-        let y = [1, 5, 10, 11, 12, 13, 17, 18, 19];
-        let nine = |form: &DMatrix<f64>, at: [usize; 9]| SMatrix::from_fn(|i, j| form[(at[i], at[j])]);
-        let four = |form: &DMatrix<f64>, at: [usize; 4]| SMatrix::from_fn(|i, j| form[(at[i], at[j])]);
-        Self {
-            across_z: nine(&forms[2], z),
-            across_y: nine(&forms[1], y),
-            rotary_y: nine(&forms[4], z),
-            rotary_z: nine(&forms[5], y),
-            polar: four(&forms[3], [3, 20, 21, 22]),
-            along: four(&forms[0], [0, 23, 24, 25]),
-        }
-    }
-}
-
-impl PosedTube {
-    /// Rigid inertia about the world origin per unit of each line inertia.
-    fn rigid_forms(&self) -> [Matrix6<f64>; INERTIAS] {
-        let to_local = crate::mechanics::condensed::world_to_local(&self.root_m, &self.frame);
-        let f = &self.forms;
-        let planes =
-            |z: Option<&SMatrix<f64, 9, 9>>, y: Option<&SMatrix<f64, 9, 9>>, along: f64, polar: f64| {
-                let mut local = Matrix6::zeros();
-                for (form, at) in [(z, [2, 4]), (y, [1, 5])] {
-                    let Some(form) = form else { continue };
-                    for i in 0..2 {
-                        for j in 0..2 {
-                            local[(at[i], at[j])] += form[(i, j)];
-                        }
-                    }
-                }
-                local[(0, 0)] += along;
-                local[(3, 3)] += polar;
-                to_local.transpose() * local * to_local
-            };
-        let across = planes(Some(&f.across_z), Some(&f.across_y), 0.0, 0.0);
-        let mut forms = [Matrix6::zeros(); INERTIAS];
-        forms[inertia::MASS] = across + planes(None, None, f.along[(0, 0)], 0.0);
-        forms[inertia::OUTER_AREA] = across * self.added_kg_m3;
-        forms[inertia::POLAR] = planes(None, None, 0.0, f.polar[(0, 0)]);
-        forms[inertia::ROTARY_Y] = planes(Some(&f.rotary_y), None, 0.0, 0.0);
-        forms[inertia::ROTARY_Z] = planes(None, Some(&f.rotary_z), 0.0, 0.0);
-        forms
-    }
-}
-
-/// Force on each of [`ENDS`] per newton of the tube's own weight, spread along it.
-fn areas_per_n(tube: &PosedTube) -> [f64; 8] {
-    let down = tube.frame.tr_mul(&-Vector3::z());
-    let f = &tube.forms;
-    // ∫ field · (force per length) = row of the translation in the inertia form, over the length
-    let per = |form: &SMatrix<f64, 9, 9>, place: usize| form[(0, place)] / tube.length_m;
-    ENDS.map(|coordinate| match coordinate {
-        0 | 1 => down.z * per(&f.across_z, 2 + coordinate),
-        4 | 5 => down.y * per(&f.across_y, 2 + coordinate - 4),
-        8 => down.z * per(&f.across_z, 6),
-        11 => down.y * per(&f.across_y, 6),
-        17 => down.x * f.along[(0, 1)] / tube.length_m,
-        _ => 0.0,
-    })
-}
-
-/// The wrench and inertia of everything outboard as linear functions of the parts.
-struct Outboard {
-    fixed: Wrench,
-    per_n: Vec<Wrench>,
-    inertia: Vec<[Matrix6<f64>; INERTIAS]>,
-}
-
-impl Outboard {
-    fn push(&mut self, per_n: Wrench, inertia: [Matrix6<f64>; INERTIAS]) {
-        self.per_n.push(per_n);
-        self.inertia.push(inertia);
-    }
-
-    fn row(
-        &self,
-        piece: usize,
-        coordinate: usize,
-        twist: &Twist,
-        own_per_n: f64,
-        tip_m: &Vector3<f64>,
-    ) -> Row {
-        let mut per_n: Vec<f64> = self.per_n.iter().map(|w| twist.dot(w)).collect();
-        per_n.push(own_per_n);
-        let tip_m = displacement_at(twist, tip_m);
-        Row { piece, coordinate, fixed: twist.dot(&self.fixed), per_n, tip_m, way_m: tip_m.norm() }
-    }
-
-    fn inertia_row(&self, fixed: &Matrix6<f64>, twist: &Twist) -> InertiaRow {
-        let about = |m: &Matrix6<f64>| twist.dot(&(m * twist)).max(0.0);
-        InertiaRow {
-            fixed: about(fixed),
-            per_line: self.inertia.iter().map(|forms| std::array::from_fn(|k| about(&forms[k]))).collect(),
-        }
-    }
-
-    fn stress(&self, piece: usize, tube: &PosedTube, at_m: &Vector3<f64>) -> StressRow {
-        let local = |wrench: &Wrench| {
-            let force = tube.frame.tr_mul(&linear(wrench));
-            let moment = tube.frame.tr_mul(&(angular(wrench) - at_m.cross(&linear(wrench))));
-            [force.x, moment.y, moment.z, moment.x]
-        };
-        let fixed = local(&self.fixed);
-        let per_n: Vec<[f64; 4]> = self.per_n.iter().map(local).collect();
-        StressRow { piece, loads: std::array::from_fn(|k| (fixed[k], per_n.iter().map(|w| w[k]).collect())) }
-    }
-}
-
-impl Row {
-    fn largest(&self) -> f64 {
-        self.per_n.iter().fold(self.fixed.abs(), |most, c| most.max(c.abs()))
+/// The common sign of a force without weights and per weight; 0 if all are zero, `None` if signs differ.
+fn sign(fixed: f64, per_n: &[f64]) -> Option<f64> {
+    let largest = per_n.iter().fold(0.0f64, |most, c| most.max(c.abs()));
+    // The fixed force and the coefficients have different units. They are compared as if every weight were
+    // one newton.
+    let nothing = NOTHING * largest.max(fixed.abs()).max(1.0);
+    let numbers = || per_n.iter().chain([&fixed]);
+    let (rise, fall) = (numbers().any(|c| *c > nothing), numbers().any(|c| *c < -nothing));
+    match (rise, fall) {
+        (true, true) => None,
+        (true, false) => Some(1.0),
+        (false, true) => Some(-1.0),
+        (false, false) => Some(0.0),
     }
 }

@@ -1,33 +1,33 @@
-//! Good designs to start from: what the bounds think best, then each part at its best given the others.
+//! The first incumbents, found by diving.
 //!
-//! A probe minimizes one weighting of the logarithms of mass, deflection and mode. It follows the better
-//! half of every box down to one design, then lets one level at a time go free. What it finds proves
-//! nothing and is not lost: a search that knows good designs cuts early.
+//! A probe minimizes one weighted sum of the logarithms of mass, deflection and mode. It follows the better
+//! half of every box down to one design, and then optimizes one level at a time with the others fixed. Its
+//! result proves nothing, but a search with good incumbents prunes early.
 
-use super::bound::{Ceiling, Cell, Verdict, Work};
-use super::evolve::Member;
-use super::known::{Finds, Known};
+use super::bound::{BoxBound, DesignBox, Verdict};
+use super::budget::Budget;
+use super::evolve::Individual;
 use super::problem::Problem;
-use super::run::Exact;
+use super::search_state::{Findings, SearchState};
 use super::shape::Shape;
+use super::work::Work;
 use crate::pareto::objectives::Objectives;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Boxes that the way down from the box of everything may open.
+/// Greatest number of boxes in the first dive.
 const DIVE_BOXES: usize = 2_000;
-/// Boxes that a level left free may open.
+/// Greatest number of boxes when one level is optimized.
 const LEVEL_BOXES: usize = 300;
-/// Times every level is let go free.
+/// Greatest number of rounds over all levels.
 const ROUNDS: usize = 3;
 
-/// Weights of mass, deflection and mode.
+/// Weights of mass, deflection and mode. They sum to one.
 #[derive(Clone, Copy)]
 struct Merit([f64; 3]);
 
 impl Merit {
-    /// Spread evenly over all proportions: Roberts' sequence with the plastic number, folded into the
-    /// triangle of weights that add up to one.
+    /// The weights of probe `n`, spread evenly over the triangle of all weights by Roberts' sequence.
     fn nth(n: usize) -> Self {
         const PLASTIC: f64 = 1.324_717_957_244_746;
         let at = |step: f64| (0.5 + (n + 1) as f64 / step).fract();
@@ -36,98 +36,102 @@ impl Merit {
         Self([u, v, 1.0 - u - v])
     }
 
-    /// Less is better.
-    fn of(&self, ceiling: &Ceiling) -> f64 {
+    /// The merit of a bound. Less is better.
+    fn of(&self, box_bound: &BoxBound) -> f64 {
         let [mass, tip, mode] = self.0;
-        mass * ceiling.mass_kg.ln() + tip * ceiling.tip_m.max(1e-12).ln() - mode * ceiling.hz.ln()
+        mass * box_bound.mass_kg.ln() + tip * box_bound.tip_m.max(1e-12).ln() - mode * box_bound.hz.ln()
     }
 }
 
-/// The best design so far of one probe.
+/// The best design of one probe so far.
 struct Best {
     merit: f64,
-    cell: Cell,
+    design_box: DesignBox,
     objectives: Objectives,
     shapes: Arc<Vec<Shape>>,
 }
 
-/// Probes the space in so many proportions of the objectives.
+/// Runs this many probes, each with other weights, and adds what they find to the state.
 pub(super) fn probe<'p>(
-    exact: &Exact<'p>,
+    budget: &Budget,
     problem: &Problem<'p>,
     probes: usize,
-    known: &mut Known,
-) -> Vec<Member> {
+    state: &mut SearchState,
+) -> Vec<Individual> {
     let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return Vec::new() };
     let shapes = Arc::new(shapes);
-    let probed: Vec<(Option<Member>, Finds)> = (0..probes)
+    let probed: Vec<(Option<Individual>, Findings)> = (0..probes)
         .into_par_iter()
         .map(|n| {
-            let probe = Probe { exact, problem, merit: Merit::nth(n) };
-            let mut finds = Finds::default();
-            (probe.best(&shapes, &mut finds), finds)
+            let probe = Probe { budget, problem, merit: Merit::nth(n) };
+            let mut findings = Findings::default();
+            (probe.best(&shapes, &mut findings), findings)
         })
         .collect();
-    let (best, finds): (Vec<_>, Vec<_>) = probed.into_iter().unzip();
-    finds.into_iter().for_each(|finds| known.learn(finds));
+    let (best, findings): (Vec<_>, Vec<_>) = probed.into_iter().unzip();
+    findings.into_iter().for_each(|findings| state.learn(findings));
     best.into_iter().flatten().collect()
 }
 
 /// One probe.
 struct Probe<'a, 'p> {
-    exact: &'a Exact<'p>,
+    budget: &'a Budget<'p>,
     problem: &'a Problem<'p>,
     merit: Merit,
 }
 
 impl Probe<'_, '_> {
-    /// The best design that it finds: down from the box of everything, then each level by itself.
-    fn best(&self, shapes: &Arc<Vec<Shape>>, finds: &mut Finds) -> Option<Member> {
+    /// The best design that the probe finds: a dive from the box of all designs, then each level by itself.
+    fn best(&self, shapes: &Arc<Vec<Shape>>, findings: &mut Findings) -> Option<Individual> {
         let mut work = Work::default();
-        let mut best = self.descend(self.problem.root(), shapes, DIVE_BOXES, None, &mut work, finds)?;
+        let mut best = self.descend(self.problem.root(), shapes, DIVE_BOXES, None, &mut work, findings)?;
         for _ in 0..ROUNDS {
             let before = best.merit;
-            for level in 0..best.cell.len() {
-                let mut cell = best.cell.clone();
-                cell[level] = 0;
+            for level in 0..best.design_box.len() {
+                let mut design_box = best.design_box.clone();
+                design_box[level] = 0;
                 let shapes = Arc::clone(&best.shapes);
-                best = self.descend(cell, &shapes, LEVEL_BOXES, Some(best), &mut work, finds)?;
+                best = self.descend(design_box, &shapes, LEVEL_BOXES, Some(best), &mut work, findings)?;
             }
-            if best.merit >= before || self.exact.stopped() {
+            // A round without progress means a local optimum.
+            if best.merit >= before || self.budget.stopped() {
                 break;
             }
         }
-        Some(Member { cell: best.cell, objectives: best.objectives, shapes: best.shapes })
+        Some(Individual { design_box: best.design_box, objectives: best.objectives, shapes: best.shapes })
     }
 
-    /// The design of most merit in a box, or the best known, the better half looked at first.
+    /// The design of least merit value in a box, or `best` if that is better. The better half is opened
+    /// first.
     fn descend(
         &self,
-        cell: Cell,
+        design_box: DesignBox,
         shapes: &Arc<Vec<Shape>>,
         most_boxes: usize,
         mut best: Option<Best>,
         work: &mut Work,
-        finds: &mut Finds,
+        findings: &mut Findings,
     ) -> Option<Best> {
-        let mut stack: Vec<Promising> = self.look(cell, shapes, &mut best, work, finds).into_iter().collect();
+        let mut stack: Vec<Promising> =
+            self.look(design_box, shapes, &mut best, work, findings).into_iter().collect();
         let mut boxes = 1;
         while let Some(next) = stack.pop() {
-            if boxes >= most_boxes || self.exact.stopped() {
+            if boxes >= most_boxes || self.budget.stopped() {
                 break;
             }
+            // The best design may have improved since this box was put on the stack.
             if best.as_ref().is_some_and(|b| next.merit >= b.merit) {
                 continue;
             }
-            let Some(halves) = self.problem.halves(&next.cell, next.level) else { continue };
+            let Some(halves) = self.problem.halves(&next.design_box, next.level) else { continue };
             let half = |node: u32| {
-                let mut cell = next.cell.clone();
-                cell[next.level] = node;
-                cell
+                let mut design_box = next.design_box.clone();
+                design_box[next.level] = node;
+                design_box
             };
             let mut open: Vec<Promising> = halves
                 .iter()
-                .filter_map(|&node| self.look(half(node), &next.shapes, &mut best, work, finds))
+                .filter_map(|&node| self.look(half(node), &next.shapes, &mut best, work, findings))
                 .collect();
             boxes += 2;
             open.sort_by(|a, b| b.merit.total_cmp(&a.merit));
@@ -136,37 +140,37 @@ impl Probe<'_, '_> {
         best
     }
 
-    /// Bounds a box; a box of one design is judged and remembered if it is the best.
+    /// Bounds a box. A box of one design is judged, and remembered if it is the best so far.
     fn look(
         &self,
-        mut cell: Cell,
+        mut design_box: DesignBox,
         shapes: &Arc<Vec<Shape>>,
         best: &mut Option<Best>,
         work: &mut Work,
-        finds: &mut Finds,
+        findings: &mut Findings,
     ) -> Option<Promising> {
         let mut shapes = Arc::clone(shapes);
         let least = best.as_ref().map_or(f64::INFINITY, |b| b.merit);
-        self.exact.count_box();
-        let is_worse = |ceiling: &Ceiling| self.merit.of(ceiling) >= least;
-        let verdict = self.problem.bound(&mut cell, &mut shapes, work, is_worse, |_| true);
-        let Verdict::Open(ceiling) = verdict else { return None };
-        let merit = self.merit.of(&ceiling);
-        match self.problem.widest_level(&cell, &shapes, work) {
-            Some(level) => Some(Promising { merit, cell, shapes, level }),
+        self.budget.count_box();
+        let is_worse = |box_bound: &BoxBound| self.merit.of(box_bound) >= least;
+        let verdict = self.problem.bound(&mut design_box, &mut shapes, work, is_worse, |_| true);
+        let Verdict::Open(box_bound) = verdict else { return None };
+        let merit = self.merit.of(&box_bound);
+        match self.problem.widest_level(&design_box, &shapes, work) {
+            Some(level) => Some(Promising { merit, design_box, shapes, level }),
             None => {
-                let objectives = self.problem.judge(&cell, &ceiling, work, finds)?;
-                *best = Some(Best { merit, cell, objectives, shapes });
+                let objectives = self.problem.judge(&design_box, &box_bound, work, findings)?;
+                *best = Some(Best { merit, design_box, objectives, shapes });
                 None
             }
         }
     }
 }
 
-/// A box that may hold a design of more merit than the best.
+/// A box that may hold a better design than the best so far.
 struct Promising {
     merit: f64,
-    cell: Cell,
+    design_box: DesignBox,
     shapes: Arc<Vec<Shape>>,
     level: usize,
 }

@@ -1,56 +1,52 @@
-//! A design space compiled for the bound: a tree of boxes for every level, rows of numbers for every
+//! A design space as branch and bound sees it: a tree of boxes for every level, and rows of numbers for every
 //! case.
 
-use super::check::Inertia;
-use super::held::Held;
-use super::kinds::{Alike, Kinds};
+// {} => Given parts and first fits have no options of their own.
+use super::force_bound::ForceBound;
+use super::joint_play::JointPlay;
+use super::kinds::Kinds;
+use super::lowest_eigenvalue::CaseInertia;
 use super::parts::{DriveBox, LinkBox, Rays};
-use super::play::Play;
 use super::pose::Pose;
-use super::torsion::{Breaks, CurveBox};
+use super::torsion::CurveBox;
 use super::tree::{Bounds, Tree};
-use crate::arm::LinkBody;
-use crate::arm::joint_law::Curve;
-use crate::catalog::Catalogs;
-use crate::sizing::demand::JointMotion;
-use crate::space::design_space::{DesignSpace, LinkOption, SpacePiece};
-use crate::space::effects::Layer;
-use crate::space::slot::{SizedJoint, Slot, joint_slot};
-use crate::space::station::reaches_m;
+use crate::space::design_space::DesignSpace;
+use crate::space::slot::SizedJoint;
 use std::sync::Arc;
 
-/// A design space as branch and bound sees it. Pieces count from the tip.
+/// A compiled design space. Pieces are counted from the tip.
 #[derive(Clone)]
 pub(super) struct Problem<'c> {
     pub space: &'c DesignSpace,
     pub parts: Vec<Part<'c>>,
     /// The piece of each level, tip first.
     pub level_pieces: Vec<usize>,
-    /// Options of each level.
+    /// Number of options of each level.
     pub level_sizes: Vec<u32>,
     pub poses: Arc<Vec<Pose>>,
     /// Inertia matrices of the judged cases.
-    pub inertias: Arc<Vec<Inertia>>,
-    /// Peak over static stress in sizing cases.
+    pub inertias: Arc<Vec<CaseInertia>>,
+    /// Ratio of peak stress to static stress in sizing cases.
     pub peak_factor: f64,
-    /// Whether a lighter arm that is no softer is no worse.
+    /// Whether a lighter arm of the same stiffness is never worse, which the pruning of dominated drives
+    /// needs.
     pub lighter_is_better: bool,
-    /// Play of each piece.
-    pub plays: Vec<Option<Play>>,
-    /// Forces between bounds that a member must keep.
-    pub held: Arc<[Held]>,
+    /// Play of each piece; `None` if it has none.
+    pub joint_plays: Vec<Option<JointPlay>>,
+    /// Intervals to which a region restricts single forces.
+    pub force_bounds: Arc<[ForceBound]>,
 }
 
-/// What may stand at a place of the chain.
+/// The part, or the choice of parts, at one place of the chain.
 #[derive(Clone)]
 pub(super) enum Part<'c> {
     /// A given joint.
     Given { mass_kg: f64, curve: Option<CurveBox> },
-    /// A joint whose drive is a choice; an option of the tree is the first drive of a kind.
+    /// A joint whose drive is a level of the search. An option of the tree is the first drive of a kind.
     Drives { sized: Arc<SizedJoint<'c>>, kinds: Arc<Kinds>, tree: Arc<Tree<DriveBox>>, rays: Arc<Rays> },
-    /// A joint that takes the lightest drive that holds.
+    /// A joint that takes the lightest drive that carries its demand.
     FirstFit { sized: Arc<SizedJoint<'c>>, ladder: Arc<Ladder> },
-    /// A link to choose.
+    /// A link whose section and material are a level of the search.
     Links { length_m: f64, tree: Arc<Tree<LinkBox>> },
     /// A given tube.
     Tube { length_m: f64, tube: Box<LinkBox> },
@@ -58,14 +54,14 @@ pub(super) enum Part<'c> {
     Offset { mass_kg: f64 },
 }
 
-/// The drives that can be a first fit, and the box around any run of them.
+/// The drives that can be a first fit, by rising mass, with the box around any run of them.
 pub(super) struct Ladder {
-    /// `runs[k][i]`: the box of the drives `i..i + 2^k`.
+    /// `runs[k][i]` is the box of the drives `i..i + 2^k`, so that any run is the union of two of them.
     runs: Vec<Vec<DriveBox>>,
 }
 
 impl Ladder {
-    fn new(steps: Vec<DriveBox>) -> Self {
+    pub fn new(steps: Vec<DriveBox>) -> Self {
         let mut runs = vec![steps];
         let mut width = 1;
         while 2 * width <= runs[0].len() {
@@ -77,12 +73,12 @@ impl Ladder {
         Self { runs }
     }
 
-    /// Number of steps.
+    /// Number of drives.
     pub fn len(&self) -> usize {
         self.runs[0].len()
     }
 
-    /// The box around the steps `first..=last`.
+    /// The box around the drives `first..=last`.
     pub fn run(&self, first: usize, last: usize) -> DriveBox {
         let k = (last - first + 1).ilog2() as usize;
         let run = &self.runs[k];
@@ -91,148 +87,9 @@ impl Ladder {
 }
 
 impl<'c> Problem<'c> {
-    /// Compiles a space with some of its link options only, drives that are alike together or apart; `None` if some level
+    /// The problem restricted to the options below some nodes of each level's base tree. `None` if a level
     /// has none.
-    pub fn new(
-        space: &'c DesignSpace,
-        catalogs: &'c Catalogs,
-        takes: &dyn Fn(&LinkOption) -> bool,
-        alike: Alike,
-    ) -> Option<Self> {
-        let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
-        let mut reaches = reaches_m(space, sizing).into_iter();
-        let of = |piece: &SpacePiece| match piece {
-            SpacePiece::Joint(_) => reaches.next().unwrap_or_default(),
-            _ => 0.0,
-        };
-        let reaches_m: Vec<f64> = space.pieces.iter().map(of).collect();
-        let mut problem = Self {
-            space,
-            parts: Vec::new(),
-            level_pieces: Vec::new(),
-            level_sizes: Vec::new(),
-            poses: Arc::new((0..space.cases.len()).map(|i| Pose::new(space, i)).collect()),
-            inertias: Arc::default(),
-            peak_factor: 1.0
-                + space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE),
-            lighter_is_better: false,
-            plays: Vec::new(),
-            held: Arc::default(),
-        };
-        for (place, layer) in space.layers() {
-            let part = match layer {
-                Layer::Piece(piece) => problem.part(piece, reaches_m[place], catalogs, takes, alike)?,
-                Layer::Tilt(tilt) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&tilt.law()) },
-                // beyond what a design weighs
-                Layer::Mass(_) => Part::Offset { mass_kg: 0.0 },
-            };
-            problem.parts.push(part);
-            // of a joint, whichever drive it has
-            problem.plays.push(match layer {
-                Layer::Piece(SpacePiece::Joint(joint)) => {
-                    Play::of(&space.joint_piece(joint, Curve::Linear(1.0)).law)
-                }
-                _ => None,
-            });
-            // a harness is no part of what a design weighs, but of what its link does
-            if let Layer::Piece(piece) = layer
-                && let Some(harness_kg) = harness_kg(space, piece)
-            {
-                problem.parts.push(Part::Offset { mass_kg: -harness_kg });
-                problem.plays.push(None);
-            }
-        }
-        problem.lighter_is_better = problem.grows_with_weight();
-        Some(problem.with_inertias())
-    }
-
-    fn part(
-        &mut self,
-        piece: &'c SpacePiece,
-        reach_m: f64,
-        catalogs: &'c Catalogs,
-        takes: &dyn Fn(&LinkOption) -> bool,
-        alike: Alike,
-    ) -> Option<Part<'c>> {
-        let space = self.space;
-        Some(match piece {
-            SpacePiece::Joint(joint) => match joint_slot(space, joint, reach_m, catalogs) {
-                Slot::Given { law, mass_kg } => Part::Given { mass_kg, curve: CurveBox::of(&law) },
-                Slot::Sized(sized) if sized.all_fits => {
-                    self.level(sized.table.len());
-                    let rays = self.rays(self.parts.len(), sized.table.motion());
-                    let kinds = Kinds::of(&sized, alike);
-                    let drives =
-                        |kind: &[u32]| DriveBox::of_kind(kind.iter().map(|&i| drive_box(&sized, i, &rays)));
-                    let tree = Tree::build(kinds.iter().filter_map(|kind| Some((kind[0], drives(kind)?))))?;
-                    Part::Drives {
-                        sized: Arc::new(sized),
-                        kinds: Arc::new(kinds),
-                        tree: Arc::new(tree),
-                        rays: Arc::new(rays),
-                    }
-                }
-                Slot::Sized(sized) => {
-                    let rays = self.rays(self.parts.len(), sized.table.motion());
-                    let steps: Vec<DriveBox> = sized
-                        .table
-                        .first_fit_candidates()
-                        .iter()
-                        .map(|&i| drive_box(&sized, i, &rays))
-                        .collect();
-                    (!steps.is_empty()).then(|| Part::FirstFit {
-                        ladder: Arc::new(Ladder::new(steps)),
-                        sized: Arc::new(sized),
-                    })?
-                }
-                Slot::Link { .. } | Slot::Offset { .. } => return None,
-            },
-            SpacePiece::Choice(choice) => {
-                let slender = |option: &LinkOption| {
-                    space.constraints.wall_slenderness_max.is_some_and(|max| option.wall_slenderness() > max)
-                };
-                let options = self.level(choice.options.len());
-                let boxes = options
-                    .map(|i| (i, &choice.options[i as usize]))
-                    .filter(|(_, option)| takes(option) && !slender(option))
-                    .map(|(i, o)| (i, LinkBox::of(o, &space.link_piece(&choice.link(o)), space.links)));
-                Part::Links { length_m: choice.vector_m.norm(), tree: Arc::new(Tree::build(boxes)?) }
-            }
-            SpacePiece::Link(link) => match &link.body {
-                LinkBody::Offset { mass_kg } => Part::Offset { mass_kg: *mass_kg },
-                LinkBody::Tube { material, section, .. } => {
-                    let option = LinkOption::given(*material, *section);
-                    let slender = space.constraints.wall_slenderness_max;
-                    if slender.is_some_and(|max| option.wall_slenderness() > max) {
-                        return None;
-                    }
-                    let tube = Box::new(LinkBox::of(&option, &space.link_piece(link), space.links));
-                    Part::Tube { length_m: link.vector_m.norm(), tube }
-                }
-            },
-        })
-    }
-
-    /// Opens the next level and returns its options.
-    fn level(&mut self, size: usize) -> std::ops::Range<u32> {
-        self.level_pieces.push(self.parts.len());
-        self.level_sizes.push(size as u32);
-        0..size as u32
-    }
-
-    /// Proportions around that of the payload alone.
-    fn rays(&self, piece: usize, motion: &JointMotion) -> Rays {
-        let (mut static_nm, mut inertia_kgm2) = (0.0f64, 0.0f64);
-        for pose in self.poses.iter().filter(|pose| pose.sizing) {
-            let Some(row) = &pose.inertia_about[piece] else { continue };
-            static_nm = static_nm.max(pose.payload_torque_nm(piece).abs());
-            inertia_kgm2 = inertia_kgm2.max(row.fixed);
-        }
-        Rays::new(motion, static_nm, inertia_kgm2)
-    }
-
-    /// The problem with some of the options only: those below nodes of each level's whole tree.
-    pub fn narrowed_to(&self, kept: &[Vec<u32>]) -> Option<Self> {
+    pub fn restricted_to(&self, kept: &[Vec<u32>]) -> Option<Self> {
         let mut narrower = self.clone();
         for (&piece, nodes) in self.level_pieces.iter().zip(kept) {
             match &mut narrower.parts[piece] {
@@ -244,17 +101,17 @@ impl<'c> Problem<'c> {
         Some(narrower)
     }
 
-    /// Designs in a box, drives of a kind as one.
-    pub fn members(&self, cell: &[u32]) -> f64 {
+    /// Number of designs in a box, with the drives of a kind counted once.
+    pub fn members(&self, design_box: &[u32]) -> f64 {
         let of = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
             Part::Drives { tree, .. } => f64::from(tree.node(node).members),
             Part::Links { tree, .. } => f64::from(tree.node(node).members),
             _ => 1.0,
         };
-        self.level_pieces.iter().zip(cell).map(of).product()
+        self.level_pieces.iter().zip(design_box).map(of).product()
     }
 
-    /// Numbers of each level's options below nodes of its whole tree, all drives of a kind.
+    /// The options of each level below some nodes of its base tree, with all drives of a kind.
     pub fn options_below(&self, kept: &[Vec<u32>]) -> Vec<Vec<u32>> {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, kinds, .. } => kinds.drives_of(&tree.options_of(nodes)),
@@ -264,7 +121,7 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(kept).map(of).collect()
     }
 
-    /// Designs below nodes of each level's whole tree, drives of a kind as one.
+    /// Number of designs below some nodes of each level's base tree, with the drives of a kind counted once.
     pub fn designs_below(&self, kept: &[Vec<u32>]) -> f64 {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, .. } => tree.members_of(nodes),
@@ -274,34 +131,8 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(kept).map(of).product()
     }
 
-    /// Designs in the space.
+    /// Number of designs in the space.
     pub fn designs(&self) -> u128 {
         self.level_sizes.iter().map(|&s| u128::from(s)).product()
-    }
-}
-
-/// Mass of what hangs along a tube, if anything does \[kg\].
-pub(super) fn harness_kg(space: &DesignSpace, piece: &SpacePiece) -> Option<f64> {
-    let link = match piece {
-        SpacePiece::Joint(_) => return None,
-        SpacePiece::Link(link) => space.link_piece(link),
-        SpacePiece::Choice(choice) => space.link_piece(&choice.first_link()),
-    };
-    let mass_kg = link.harness_kg_per_m * link.vector_m.norm();
-    (link.beam.is_some() && mass_kg > 0.0).then_some(mass_kg)
-}
-
-fn drive_box(sized: &SizedJoint, index: u32, rays: &Rays) -> DriveBox {
-    let index = index as usize;
-    let mass_kg = sized.table.mass_kg(index);
-    let curve = CurveBox::of(&sized.laws[index]);
-    DriveBox {
-        mass_kg: [mass_kg; 2],
-        limits: *sized.table.limits(index),
-        least_limits: *sized.table.limits(index),
-        multiples: rays.held(sized.table.limits(index)),
-        curve,
-        breaks: curve.map_or_else(Breaks::default, |c| Breaks::of(&c.stiff.windup)),
-        each: None,
     }
 }

@@ -1,241 +1,266 @@
-//! Region by region: what the designs found leave open is taken apart, and for each part of it the options are
-//! narrowed to those that a design there may have at all.
+//! The search region by region.
 //!
-//! A region is all that is below a [`Corner`]. Far fewer options reach into it than there are: a weighting of what a
-//! corner allows excludes every option that costs more than the corner can afford ([`narrow`](super::narrow)), and
-//! with fewer options the bounds are sharper, so more can be excluded. Whole groups of corners are refuted so, under the
-//! corner that bounds them; those that are not are taken apart, then their options or a torque parted
-//! ([`parting`](super::parting)) until few designs are left, which are searched box by box.
+//! A region is the part of the objective space below a [`LocalUpperBound`] of the incumbents. Far fewer
+//! options can reach a region than the space has: a dual point excludes every option whose price the local
+//! upper bound does not allow ([`reduced_cost`](super::reduced_cost)). With fewer options the bounds are
+//! sharper, and more options can be excluded.
+//!
+//! Local upper bounds are refuted in groups, by one that covers them all. A group that is not refuted is
+//! split. A single bound that is not refuted is branched on options or on a torque
+//! ([`branching`](super::branching)) until few designs are left, which are searched box by box.
 
-use super::bound::{Ceiling, Cell, Verdict, Work};
-use super::corners::{Corner, Corners};
+use super::bound::{BoxBound, DesignBox, Verdict};
+use super::boxes::{OpenBox, Search, open_boxes};
+use super::budget::Budget;
 use super::grid::thinned;
-use super::known::{Finds, Known};
-use super::left::Left;
+use super::local_upper_bounds::{LocalUpperBound, LocalUpperBounds};
 use super::problem::Problem;
+use super::region_bound::Survivors;
 use super::rounds::{Done, in_rounds};
-use super::run::{Exact, Opened, Search};
+use super::search_state::{Findings, SearchState};
+use super::work::Work;
+
+use super::rows::{DOMINANCE_MARGIN, WarmStart};
 use super::shape::Shape;
-use super::tradeoff::{BEATEN, Trade};
 use crate::pareto::objectives::Objectives;
 use crate::space::design::number;
 use std::sync::Arc;
 
-/// Part of the designs that must be excluded for the options to be narrowed once more.
+/// Part of the designs that must be excluded for the bound to be computed again.
 const WORTH_IT: f64 = 0.1;
-/// Part of the slack by which corners may be apart.
+/// Width of a grid cell for thinning the incumbents, as a part of the slack.
 const THINNED: f64 = 0.45;
 
-/// Options that may reach into a region, with what the region around it knew.
+/// The options that may reach a region, with what was learned in the region around it.
 #[derive(Clone)]
-pub(super) struct Zone<'p> {
+pub(super) struct Subproblem<'p> {
     problem: Arc<Problem<'p>>,
-    cell: Cell,
+    design_box: DesignBox,
     shapes: Arc<Vec<Shape>>,
-    trade: Arc<Trade>,
-    /// How many of the designs found the region knows of.
-    known: usize,
+    warm_start: Arc<WarmStart>,
+    /// Number of incumbents that the local upper bounds of this region know.
+    incumbents_seen: usize,
 }
 
-/// What is to be searched.
+/// A task of the search.
 enum Task<'p> {
-    /// What is below a node of a tree of corners.
-    Region { corners: Arc<Corners>, at: usize, zone: Zone<'p> },
-    /// Few designs of a region, box by box.
-    Boxes { problem: Arc<Problem<'p>>, corner: Corner, first: Opened },
+    /// The local upper bounds below a node of their tree.
+    Region { upper_bounds: Arc<LocalUpperBounds>, at: usize, subproblem: Subproblem<'p> },
+    /// The few designs of a region, box by box.
+    Boxes { problem: Arc<Problem<'p>>, upper: LocalUpperBound, first: OpenBox },
 }
 
-impl<'p> Exact<'p> {
-    /// One pass over everything that the designs known leave open; returns a ceiling for everything that was left.
-    pub(super) fn pass_by_regions(
-        &self,
-        problem: &Problem<'p>,
-        known: &mut Known,
-        slack: f64,
-    ) -> Vec<Ceiling> {
-        let mut found: Vec<Objectives> = known.found.all().iter().map(|o| tightened(o, slack)).collect();
-        // fewer designs leave more open, by less than the slack
-        found = thinned(found, THINNED * slack, |o| o);
-        let corners = Arc::new(Corners::new(&mut found, problem.limits()));
-        let zone = Zone::whole(problem, known.found.all().len(), &mut Work::default());
-        let first = zone.map(|zone| Task::Region { corners, at: 0, zone });
-        let task = |known: &Known, task: Task<'p>| match task {
-            Task::Region { corners, at, zone } => {
-                let mut finds = Finds::default();
-                let search = Search { exact: self, problem, known, slack, below: None };
-                let tasks = search.region(corners, at, zone, &mut finds);
-                Done { tasks, finds }
-            }
-            Task::Boxes { problem, corner, first } => {
-                let search = Search { exact: self, problem: &problem, known, slack, below: Some(corner) };
-                let Done { tasks, finds } =
-                    self.some_boxes(first, |next, work, finds| search.open(next, work, finds));
-                let boxes = |first: Opened| Task::Boxes { problem: Arc::clone(&problem), corner, first };
-                Done { tasks: tasks.into_iter().map(boxes).collect(), finds }
-            }
-        };
-        let left = in_rounds(known, first.into_iter().collect(), || self.stopped(), task, Known::learn);
-        left.iter().map(|_| Ceiling::OPEN).collect()
-    }
+/// One pass over the whole search region. Returns one bound for each task that is left when the search is
+/// stopped.
+pub(super) fn pass_by_regions<'p>(
+    budget: &Budget<'p>,
+    problem: &Problem<'p>,
+    state: &mut SearchState,
+    slack: f64,
+    regions_to: f64,
+) -> Vec<BoxBound> {
+    let mut found: Vec<Objectives> =
+        state.incumbents.all().iter().map(|o| improved_by_slack(o, slack)).collect();
+    // Fewer incumbents leave more open, so nothing is missed; the regions stay within the slack.
+    found = thinned(found, THINNED * slack, |o| o);
+    let upper_bounds = Arc::new(LocalUpperBounds::new(&mut found, problem.limits()));
+    let subproblem = Subproblem::whole(problem, state.incumbents.all().len(), &mut Work::default());
+    let first = subproblem.map(|subproblem| Task::Region { upper_bounds, at: 0, subproblem });
+    let task = |state: &SearchState, task: Task<'p>| match task {
+        Task::Region { upper_bounds, at, subproblem } => {
+            let mut findings = Findings::default();
+            let search = Search { budget, problem, state, slack, below: None };
+            let tasks = search.region(upper_bounds, at, subproblem, regions_to, &mut findings);
+            Done { tasks, findings }
+        }
+        Task::Boxes { problem, upper, first } => {
+            let search = Search { budget, problem: &problem, state, slack, below: Some(upper) };
+            let Done { tasks, findings } =
+                open_boxes(budget, first, |next, work, findings| search.open(next, work, findings));
+            let boxes = |first: OpenBox| Task::Boxes { problem: Arc::clone(&problem), upper, first };
+            Done { tasks: tasks.into_iter().map(boxes).collect(), findings }
+        }
+    };
+    let remaining =
+        in_rounds(state, first.into_iter().collect(), || budget.stopped(), task, SearchState::learn);
+    remaining.iter().map(|_| BoxBound::OPEN).collect()
 }
 
 impl<'p> Search<'_, 'p> {
-    /// Searches what is below a node of a tree of corners; returns what is left to be searched.
+    /// Searches the regions below a node of the tree of local upper bounds. Returns the tasks that remain.
     fn region(
         &self,
-        corners: Arc<Corners>,
+        upper_bounds: Arc<LocalUpperBounds>,
         at: usize,
-        mut zone: Zone<'p>,
-        finds: &mut Finds,
+        mut subproblem: Subproblem<'p>,
+        regions_to: f64,
+        findings: &mut Findings,
     ) -> Vec<Task<'p>> {
-        let Some((corner, halves)) = corners.node(at) else { return Vec::new() };
+        let Some((upper, halves)) = upper_bounds.node(at) else { return Vec::new() };
+        // A single local upper bound may be out of date, because incumbents were found since it was made.
         if halves.is_none()
-            && let Some(clipped) = self.clipped(&corner, &mut zone.known)
+            && let Some(clipped) = self.clipped(&upper, &mut subproblem.incumbents_seen)
         {
-            return self.region(Arc::new(clipped), 0, zone, finds);
+            return self.region(Arc::new(clipped), 0, subproblem, regions_to, findings);
         }
         let mut work = Work::default();
-        let Some(left) = self.narrow(&mut zone, &corner, &mut work, finds) else { return Vec::new() };
-        if zone.designs_of(&left) <= self.exact.regions_to {
-            return vec![zone.in_boxes(corner)];
-        }
-        let zones = match halves {
-            Some(_) => Some([zone.clone(), zone.clone()]),
-            None => zone.parted(&left, &mut work),
+        let Some(survivors) = self.reduce(&mut subproblem, &upper, &mut work, findings) else {
+            return Vec::new();
         };
-        let Some([a, b]) = zones else { return vec![zone.in_boxes(corner)] };
+        // A box costs microseconds and a region milliseconds, so few designs are faster box by box.
+        if subproblem.designs_of(&survivors) <= regions_to {
+            return vec![subproblem.in_boxes(upper)];
+        }
+        let subproblems = match halves {
+            Some(_) => Some([subproblem.clone(), subproblem.clone()]),
+            None => subproblem.branch(&survivors, &mut work),
+        };
+        let Some([a, b]) = subproblems else { return vec![subproblem.in_boxes(upper)] };
         let [first, second] = halves.unwrap_or([at; 2]);
-        // the first is searched first
+        // Tasks are taken from the end, so the first half is searched first.
         [(second, b), (first, a)]
-            .map(|(at, zone)| Task::Region { corners: Arc::clone(&corners), at, zone })
+            .map(|(at, subproblem)| Task::Region { upper_bounds: Arc::clone(&upper_bounds), at, subproblem })
             .into()
     }
 
-    /// Narrows the options as long as that is worth it; `None` if no design is below the corner.
-    fn narrow(
+    /// Reduces the options as long as that is worth its time. `None` if the region is empty.
+    fn reduce(
         &self,
-        zone: &mut Zone<'p>,
-        corner: &Corner,
+        subproblem: &mut Subproblem<'p>,
+        upper: &LocalUpperBound,
         work: &mut Work,
-        finds: &mut Finds,
-    ) -> Option<Left> {
+        findings: &mut Findings,
+    ) -> Option<Survivors> {
         loop {
-            self.exact.count_box();
-            let (left, narrowed) = zone.narrow(corner, work, |ceiling| self.beats(ceiling, finds))?;
-            if !narrowed {
-                left.likely.iter().for_each(|cell| self.try_design(zone, cell.clone(), finds));
-                return Some(left);
+            self.budget.count_box();
+            let (survivors, reduced) =
+                subproblem.reduce(upper, work, |box_bound| self.dominates(box_bound, findings))?;
+            if !reduced {
+                survivors
+                    .candidates
+                    .iter()
+                    .for_each(|design_box| self.try_design(subproblem, design_box.clone(), findings));
+                return Some(survivors);
             }
         }
     }
 
-    /// Judges what may be a good design, once.
-    fn try_design(&self, zone: &Zone<'p>, mut cell: Cell, finds: &mut Finds) {
-        let problem = &zone.problem;
-        let Some(options) = problem.options(&cell) else { return };
+    /// Judges a design that may be a good incumbent, once.
+    fn try_design(&self, subproblem: &Subproblem<'p>, mut design_box: DesignBox, findings: &mut Findings) {
+        let problem = &subproblem.problem;
+        let Some(options) = problem.options(&design_box) else { return };
         let number = number(&problem.level_sizes, &options);
-        if self.known.tried.contains(&number) || finds.tried.contains(&number) {
+        // The same design comes up in many neighbouring regions.
+        if self.state.tried.contains(&number) || findings.tried.contains(&number) {
             return;
         }
-        finds.tried.push(number);
-        let (mut shapes, mut work) = (Arc::clone(&zone.shapes), Work::default());
-        self.exact.count_box();
-        let beaten = |ceiling: &Ceiling| self.known.found.beats(ceiling) || finds.beats(ceiling);
-        if let Verdict::Open(ceiling) = problem.bound(&mut cell, &mut shapes, &mut work, beaten, |_| true) {
-            problem.judge(&cell, &ceiling, &work, finds);
+        findings.tried.push(number);
+        let (mut shapes, mut work) = (Arc::clone(&subproblem.shapes), Work::default());
+        self.budget.count_box();
+        let is_dominated = |box_bound: &BoxBound| {
+            self.state.incumbents.dominates(box_bound) || findings.dominates(box_bound)
+        };
+        if let Verdict::Open(box_bound) =
+            problem.bound(&mut design_box, &mut shapes, &mut work, is_dominated, |_| true)
+        {
+            problem.judge(&design_box, &box_bound, &work, findings);
         }
     }
 
-    /// The corners that designs found since leave of a region; `None` if none of them is in it.
-    fn clipped(&self, corner: &Corner, known: &mut usize) -> Option<Corners> {
+    /// The local upper bounds that newer incumbents leave of a region. `None` if no newer incumbent lies in
+    /// it.
+    fn clipped(&self, upper: &LocalUpperBound, incumbents_seen: &mut usize) -> Option<LocalUpperBounds> {
         let is_inside = |o: &Objectives| {
-            o.mass_kg < corner.mass_kg && o.tip_deflection_m < corner.tip_m && o.lowest_mode_hz > corner.hz
+            o.mass_kg < upper.mass_kg && o.tip_deflection_m < upper.tip_m && o.lowest_mode_hz > upper.hz
         };
-        let all = self.known.found.all();
-        let since = all[*known..].iter().map(|o| tightened(o, self.slack));
+        let all = self.state.incumbents.all();
+        let since = all[*incumbents_seen..].iter().map(|o| improved_by_slack(o, self.slack));
         let mut inside: Vec<Objectives> = since.filter(is_inside).collect();
-        *known = all.len();
-        (!inside.is_empty()).then(|| Corners::new(&mut inside, *corner))
+        *incumbents_seen = all.len();
+        (!inside.is_empty()).then(|| LocalUpperBounds::new(&mut inside, *upper))
     }
 }
 
-/// A design taken for better than it is by the slack, so that what is left is missed by more.
-fn tightened(found: &Objectives, slack: f64) -> Objectives {
-    found.better_by(1.0 + slack - BEATEN)
+/// An incumbent improved by the slack, so that only designs better by more than the slack are sought.
+fn improved_by_slack(found: &Objectives, slack: f64) -> Objectives {
+    found.better_by(1.0 + slack - DOMINANCE_MARGIN)
 }
 
-impl<'p> Zone<'p> {
-    /// Everything, to begin with.
-    pub fn whole(problem: &Problem<'p>, known: usize, work: &mut Work) -> Option<Self> {
+impl<'p> Subproblem<'p> {
+    /// The subproblem of the whole space. `None` if no design meets the constraints.
+    pub fn whole(problem: &Problem<'p>, incumbents_seen: usize, work: &mut Work) -> Option<Self> {
         let shapes = problem.first_shapes(work)?;
         Some(Self {
             problem: Arc::new(problem.clone()),
-            cell: problem.root(),
-            trade: Arc::new(Trade::new(&shapes)),
+            design_box: problem.root(),
+            warm_start: Arc::new(WarmStart::new(&shapes)),
             shapes: Arc::new(shapes),
-            known,
+            incumbents_seen,
         })
     }
 
-    /// What is left of the zone below a corner, and whether its options were narrowed to it: if enough designs went.
-    /// `None` if none is left.
-    pub fn narrow(
+    /// Bounds the subproblem below a local upper bound. Returns the survivors, and whether the subproblem was
+    /// restricted to them, which is done if enough designs were excluded. `None` if the region is empty.
+    pub fn reduce(
         &mut self,
-        corner: &Corner,
+        upper: &LocalUpperBound,
         work: &mut Work,
-        is_beaten: impl Fn(&Ceiling) -> bool,
-    ) -> Option<(Left, bool)> {
-        let before = self.problem.members(&self.cell);
+        is_beaten: impl Fn(&BoxBound) -> bool,
+    ) -> Option<(Survivors, bool)> {
+        let before = self.problem.members(&self.design_box);
         let verdict = self.problem.bound(
-            &mut self.cell,
+            &mut self.design_box,
             &mut self.shapes,
             work,
-            |ceiling| !corner.is_in_reach_of(ceiling) || is_beaten(ceiling),
+            |box_bound| !upper.admits(box_bound) || is_beaten(box_bound),
             |_| true,
         );
-        let Verdict::Open(ceiling) = verdict else { return None };
-        let trade = Arc::make_mut(&mut self.trade);
-        let left = self.problem.left_below(&self.cell, &ceiling, trade, work, corner)?;
-        let narrowed = self.designs_of(&left) <= (1.0 - WORTH_IT) * before;
-        if narrowed {
-            self.problem = Arc::new(self.problem.narrowed_to(&left.kept)?);
-            self.cell = self.problem.root();
+        let Verdict::Open(box_bound) = verdict else { return None };
+        let warm_start = Arc::make_mut(&mut self.warm_start);
+        let survivors = self.problem.bound_below(&self.design_box, &box_bound, warm_start, work, upper)?;
+        let reduced = self.designs_of(&survivors) <= (1.0 - WORTH_IT) * before;
+        if reduced {
+            self.problem = Arc::new(self.problem.restricted_to(&survivors.options)?);
+            self.design_box = self.problem.root();
         }
-        Some((left, narrowed))
+        Some((survivors, reduced))
     }
 
-    /// The zone box by box, whatever the forces: that is quick where designs are few.
-    fn in_boxes(self, corner: Corner) -> Task<'p> {
-        let problem = Arc::new(self.problem.holding_nothing());
+    /// The subproblem as a search box by box. Force bounds are dropped, because they cost time and gain
+    /// little where designs are few.
+    fn in_boxes(self, upper: LocalUpperBound) -> Task<'p> {
+        let problem = Arc::new(self.problem.without_force_bounds());
         Task::Boxes {
             problem,
-            corner,
-            first: Opened { cell: self.cell, shapes: self.shapes, ceiling: Ceiling::OPEN },
+            upper,
+            first: OpenBox { design_box: self.design_box, shapes: self.shapes, box_bound: BoxBound::OPEN },
         }
     }
 
-    /// Designs of what is left.
-    pub fn designs_of(&self, left: &Left) -> f64 {
-        self.problem.designs_below(&left.kept)
+    /// Number of surviving designs.
+    pub fn designs_of(&self, survivors: &Survivors) -> f64 {
+        self.problem.designs_below(&survivors.options)
     }
 
-    /// Two zones with half the options of a level each, the level that should gain most; `None` if a single design is
-    /// left.
-    pub fn parted(&self, left: &Left, work: &mut Work) -> Option<[Self; 2]> {
-        let parted = left.partings.iter().find_map(|parting| self.problem.parted(&left.kept, parting));
-        if let Some(halves) = parted {
+    /// Two halves of the subproblem, by the most promising branching. `None` if a single design is left.
+    pub fn branch(&self, survivors: &Survivors, work: &mut Work) -> Option<[Self; 2]> {
+        let branch = survivors
+            .branchings
+            .iter()
+            .find_map(|branching| self.problem.branch(&survivors.options, branching));
+        if let Some(halves) = branch {
             return Some(halves.map(|half| Self {
-                cell: half.root(),
+                design_box: half.root(),
                 problem: Arc::new(half),
                 ..self.clone()
             }));
         }
-        let level = self.problem.widest_level(&self.cell, &self.shapes, work)?;
-        let halves = self.problem.halves(&self.cell, level)?;
+        let level = self.problem.widest_level(&self.design_box, &self.shapes, work)?;
+        let halves = self.problem.halves(&self.design_box, level)?;
         Some(halves.map(|half| {
-            let mut zone = self.clone();
-            zone.cell[level] = half;
-            zone
+            let mut subproblem = self.clone();
+            subproblem.design_box[level] = half;
+            subproblem
         }))
     }
 }

@@ -1,21 +1,23 @@
-//! Work in rounds, so that what comes of it does not depend on who is quicker.
+//! Tasks in rounds, so that the result does not depend on the number of threads.
 //!
-//! A search cuts by what it has found. Were a find told to all workers at once, what they cut would depend on when it
-//! came, and so on their number. So tasks are done in rounds: each sees what was known when its round began and what it
-//! finds itself, and once all of a round are done what they found is learned, in the order of the tasks.
+//! A search prunes by what it has found. If a design found were told to all workers at once, what they prune
+//! would depend on when it was found. Therefore tasks are done in rounds. Each task sees what was known when
+//! its round began, and what it finds itself. When all tasks of a round are done, their findings are learned
+//! in the order of the tasks.
 
 use rayon::prelude::*;
 
-/// Tasks of a round. More of them keep more workers busy and learn later.
+/// Number of tasks in a round. More tasks keep more threads busy, but their findings are learned later.
 const TASKS: usize = 32;
 
-/// What a task leaves: tasks that come of it, the first to be done last, and what it found.
+/// The result of a task: new tasks, of which the last is done first, and its findings.
 pub(super) struct Done<T, F> {
     pub tasks: Vec<T>,
-    pub finds: F,
+    pub findings: F,
 }
 
-/// Does tasks and those that come of them, the last first; returns those that are left when the search is stopped.
+/// Does the tasks and those that come of them, the last first. Returns the tasks that remain when the search
+/// is stopped.
 pub(super) fn in_rounds<K: Sync, T: Send, F: Send>(
     known: &mut K,
     first: Vec<T>,
@@ -29,7 +31,7 @@ pub(super) fn in_rounds<K: Sync, T: Send, F: Send>(
         let done: Vec<Done<T, F>> = round.into_par_iter().map(|one| task(known, one)).collect();
         for one in done {
             tasks.extend(one.tasks);
-            learn(known, one.finds);
+            learn(known, one.findings);
         }
     }
     tasks

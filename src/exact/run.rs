@@ -1,127 +1,99 @@
-//! Branch and bound: cut, halve, judge. First with slack, so that little is left open if time runs out; in rounds, so
-//! that it does not matter who is quicker.
+//! The exact search: probes, passes with less and less slack, and the listing of the front.
 
-use super::bound::{Ceiling, Cell, Verdict, Work};
-use super::corners::Corner;
+use super::boxes::pass_by_boxes;
+use super::budget::Budget;
 use super::evolve::evolve;
 use super::gap::gap;
-use super::kinds::Alike;
-use super::known::{Finds, Known};
+use super::kinds::Ties;
 use super::probe::probe;
 use super::problem::Problem;
-use super::rounds::{Done, in_rounds};
-use super::shape::Shape;
+use super::regions::pass_by_regions;
+use super::search_state::SearchState;
 use crate::catalog::Catalogs;
 use crate::pareto::objectives::Objectives;
 use crate::search::sweep::Candidate;
-use crate::space::design::number;
 use crate::space::design_space::{DesignSpace, LinkOption};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Boxes that a task opens.
-const BOXES: usize = 32;
-/// Slacks of the passes over a large space: with slack a box is also cut if a design found comes that close
-/// to its ceiling, so a pass that comes to its end proves that nothing is missing by more.
+/// Slacks of the passes over a large space. With slack a box is also pruned if an incumbent comes that close
+/// to its bound. A completed pass therefore proves that nothing is missed by more than its slack.
 const SLACKS: [f64; 25] = [
     1.0, 0.7, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.16, 0.12, 0.09, 0.075, 0.06, 0.05, 0.04, 0.035, 0.03, 0.025,
     0.02, 0.015, 0.01, 0.007, 0.005, 0.0035, 0.0025,
 ];
-/// Slacks below this are for regions alone: boxes find as much on the way.
+/// Slacks below this are used only in searches by regions. A search by boxes finds as much without them.
 const FINE: f64 = 0.02;
-/// Slacks are passed over, at most so many at once, where a pass should take less than this part of the time left; if a gap
-/// was asked for so many whatever it takes.
+/// A pass may be skipped if a finer one should take less than `QUICK` of the time left. At most this many are
+/// skipped at once; with a target gap more may be skipped, whatever time they take.
 const MOST_PASSED_OVER: usize = 4;
 const PASSED_OVER_TO_A_GAP: usize = 8;
 const QUICK: f64 = 0.65;
-/// The time of a pass goes as this power of one over the slack, about.
+/// The time of a pass grows about as this power of the reciprocal of its slack.
 const GROWTH: f64 = 2.5;
-/// Designs above which a space is large.
+/// Number of designs above which a space is searched in passes.
 const LARGE: f64 = 1e9;
-/// Designs above which a space is searched region by region.
+/// Number of designs above which a space is searched region by region.
 pub const VAST: f64 = 1e14;
-/// Designs that are sooner searched box by box than narrowed to regions.
+/// Number of designs below which a region is searched box by box.
 const FEW: f64 = 1e6;
-/// Probes by the square of the powers of ten of designs: a large space repays many, a small one none.
+/// Number of probes per square of the decades of designs. A large space repays many probes, a small one none.
 const PROBES: f64 = 0.12;
-/// The same where others evolve from what they find.
+/// The same where the genetic algorithm follows.
 const PROBES_TO_EVOLVE: f64 = 0.04;
-/// Designs that are listed with all their ties at the most, unless it is said otherwise.
+/// Default for the greatest number of designs that are listed with all their ties.
 const MOST_WITH_TIES: usize = 20_000;
 
-/// A search for the exact front that others can watch and stop.
+/// A search for the exact front. Other threads can watch and stop it.
 pub struct Exact<'p> {
     space: &'p DesignSpace,
     catalogs: &'p Catalogs,
-    stop: &'p AtomicBool,
-    deadline: Option<Instant>,
-    boxes: AtomicU64,
-    /// The slack with which the search is content: that of the last pass, or of a search from known designs.
+    pub(super) budget: Budget<'p>,
+    /// The slack at which the search is complete: that of the last pass.
     gap: f64,
-    /// Designs above which a space is searched region by region, and down to how many.
+    /// Number of designs above which the space is searched by regions, and below which a region is searched
+    /// by boxes.
     regions_from: f64,
-    pub(super) regions_to: f64,
-    /// Designs that are listed with all their ties at the most.
+    regions_to: f64,
+    /// Greatest number of designs that are listed with all their ties.
     most_with_ties: usize,
 }
 
-/// What the search found.
+/// The result of the search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExactOutcome {
-    /// Designs in the space.
+    /// Number of designs in the space.
     pub designs_total: u128,
-    /// Designs whose three objectives were computed.
+    /// Number of designs whose three objectives were computed.
     pub designs_evaluated: u64,
-    /// Boxes bounded.
+    /// Number of boxes bounded.
     pub boxes: u64,
-    /// Boxes left unopened because the search was stopped; none if the front is certified.
+    /// Number of boxes or regions that were still open when the search was stopped. It is 0 if the front is
+    /// certified.
     pub boxes_open: u64,
-    /// By what factor, at most, a design in an open box may be better than a design of the front in every
-    /// objective at once; if no box is open what was asked for, 0 for the whole front; `None` if nothing can be
-    /// said.
+    /// The factor, less one, by which an undiscovered design may at most be better than the whole front in
+    /// every objective at once. After a complete search it is the gap that was asked for, 0 for the whole
+    /// front. `None` if nothing is known.
     pub gap: Option<f64>,
-    /// Designs that no other one found beats.
+    /// The designs found that no other dominates.
     pub front: Vec<Candidate>,
-    /// Whether designs that differ only in drives of equal mass and curve are all in it; if they would be too many, one of
-    /// them is.
+    /// Whether the front lists every design that differs only in drives of equal mass and curve. If these
+    /// would be too many, one of each is listed.
     pub ties_listed: bool,
 }
 
-/// A box on its way, with what its parent knew.
-pub(super) struct Opened {
-    pub cell: Cell,
-    pub shapes: Arc<Vec<Shape>>,
-    pub ceiling: Ceiling,
-}
-
-impl Opened {
-    /// The halves of a level, the first last: it is opened first.
-    pub fn halves(&self, problem: &Problem, level: usize, ceiling: Ceiling) -> Vec<Self> {
-        let half = |node: u32| {
-            let mut cell = self.cell.clone();
-            cell[level] = node;
-            Self { cell, shapes: Arc::clone(&self.shapes), ceiling }
-        };
-        problem.halves(&self.cell, level).map_or_else(Vec::new, |[a, b]| vec![half(b), half(a)])
-    }
-}
-
 impl<'p> Exact<'p> {
-    /// A search of a space; it ends early when `stop` is set or the deadline has passed.
+    /// A search of a space. It ends early when `stop` is set or the deadline has passed.
     pub fn new(
         space: &'p DesignSpace,
         catalogs: &'p Catalogs,
         stop: &'p AtomicBool,
         deadline: Option<Instant>,
     ) -> Self {
-        let boxes = AtomicU64::new(0);
         Self {
             space,
             catalogs,
-            stop,
-            deadline,
-            boxes,
+            budget: Budget::new(stop, deadline),
             gap: 0.0,
             regions_from: VAST,
             regions_to: FEW,
@@ -129,44 +101,37 @@ impl<'p> Exact<'p> {
         }
     }
 
-    /// Searches a space of more designs than this, instead of 1e14, region by region down to so few. It changes how
-    /// long the search takes, not what it finds.
+    /// Searches a space of more designs than this region by region, instead of one of more than 1e14. It
+    /// changes the time of the search, not its result.
     #[must_use]
     pub fn by_regions_from(self, designs: f64) -> Self {
         Self { regions_from: designs, regions_to: designs.min(FEW), ..self }
     }
 
-    /// Lists designs that differ in drives of equal mass and curve only up to so many, instead of 20,000; beyond that one
-    /// of them each.
+    /// Lists designs that differ only in drives of equal mass and curve if they are at most this many,
+    /// instead of 20,000. Otherwise one of each is listed.
     #[must_use]
     pub fn with_ties_up_to(self, designs: usize) -> Self {
         Self { most_with_ties: designs, ..self }
     }
 
-    /// Is content once no design beats every one that is known or found by more than this part in all three objectives
-    /// at once.
+    /// Completes the search once no design is better than every known or found one by more than this part in
+    /// all three objectives at once.
     #[must_use]
     pub fn to_gap(self, gap: f64) -> Self {
         Self { gap, ..self }
     }
 
-    /// Boxes bounded so far.
+    /// Number of boxes bounded so far.
     pub fn boxes(&self) -> u64 {
-        self.boxes.load(Ordering::Relaxed)
+        self.budget.boxes()
     }
 
-    pub(super) fn count_box(&self) {
-        self.boxes.fetch_add(1, Ordering::Relaxed);
-    }
-
-    pub(super) fn stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
-    }
-
-    /// The pass after one that began then and has just ended: the one with the least slack that there should be time
-    /// for. A front with a gap depends on the passes before it, so these then do not ask for the time.
+    /// The index of the next pass: the one with the least slack for which there should be time. With a target
+    /// gap the choice does not depend on the time, because a front with a gap depends on the passes before it
+    /// and must be the same on every machine.
     fn next_pass(&self, passes: &[f64], last: usize, started: Instant) -> usize {
-        let left = self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
+        let left = self.budget.deadline().map(|deadline| deadline.saturating_duration_since(Instant::now()));
         let took_s = started.elapsed().as_secs_f64();
         let has_gap = self.gap > 0.0;
         let most = if has_gap { PASSED_OVER_TO_A_GAP } else { MOST_PASSED_OVER };
@@ -175,75 +140,46 @@ impl<'p> Exact<'p> {
             has_gap || left.is_none_or(|left| should_take_s < QUICK * left.as_secs_f64())
         };
         let ahead = last + 2..(last + 2 + most).min(passes.len());
-        // one without any slack comes after all
+        // The pass without slack is never skipped to; it comes last in any case.
         ahead.take_while(|pass| passes[*pass] > 0.0 && is_quick(pass)).last().unwrap_or(last + 1)
     }
 
-    /// Finds the front, starting from designs that are known already.
+    /// Finds the front. `known` are the objectives of designs that are known already; they prune, but they
+    /// are not listed.
     pub fn run(&self, known: &[Objectives]) -> ExactOutcome {
-        self.run_of(self.problem(&|_| true, Alike::Together), known)
+        self.run_of(self.problem(&|_| true, Ties::Merged), known)
     }
 
-    /// Finds the front of the designs whose chosen links are all of one material, by its index in the study.
+    /// Finds the front of the designs whose chosen links are all of one material, given by its index in the
+    /// study.
     pub fn run_of_material(&self, material_index: usize) -> ExactOutcome {
         let is_of_it = |option: &LinkOption| option.material_index == material_index;
-        self.run_of(self.problem(&is_of_it, Alike::Together), &[])
+        self.run_of(self.problem(&is_of_it, Ties::Merged), &[])
     }
 
-    /// The space with some of its link options; `None` if a level has none.
-    pub(super) fn problem(&self, takes: &dyn Fn(&LinkOption) -> bool, alike: Alike) -> Option<Problem<'p>> {
-        Problem::new(self.space, self.catalogs, takes, alike)
-    }
-
-    /// Opens the box of everything and all that comes of it, and learns what is found; returns the boxes that are left
-    /// when the search is stopped.
-    pub(super) fn every_box<K: Sync, F: Send + Default>(
-        &self,
-        problem: &Problem,
-        known: &mut K,
-        open: impl Fn(&K, Opened, &mut Work, &mut F) -> Vec<Opened> + Sync,
-        learn: impl Fn(&mut K, F),
-    ) -> Vec<Opened> {
-        let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return Vec::new() };
-        let root = Opened { cell: problem.root(), shapes: Arc::new(shapes), ceiling: Ceiling::OPEN };
-        let task = |known: &K, root: Opened| {
-            self.some_boxes(root, |next, work, finds| open(known, next, work, finds))
-        };
-        in_rounds(known, vec![root], || self.stopped(), task, learn)
-    }
-
-    /// Opens a box and some of those that come of it.
-    pub(super) fn some_boxes<F: Default>(
-        &self,
-        first: Opened,
-        open: impl Fn(Opened, &mut Work, &mut F) -> Vec<Opened>,
-    ) -> Done<Opened, F> {
-        let (mut work, mut finds, mut stack) = (Work::default(), F::default(), vec![first]);
-        for _ in 0..BOXES {
-            if self.stopped() {
-                break;
-            }
-            let Some(next) = stack.pop() else { break };
-            stack.extend(open(next, &mut work, &mut finds));
-        }
-        Done { tasks: stack, finds }
+    /// The space with the link options that `takes` admits. `None` if a level has none.
+    pub(super) fn problem(&self, takes: &dyn Fn(&LinkOption) -> bool, ties: Ties) -> Option<Problem<'p>> {
+        Problem::new(self.space, self.catalogs, takes, ties)
     }
 
     fn run_of(&self, whole: Option<Problem<'p>>, given: &[Objectives]) -> ExactOutcome {
-        let mut known = Known::default();
-        given.iter().for_each(|objectives| known.enter(objectives));
+        let mut state = SearchState::default();
+        given.iter().for_each(|objectives| state.enter(objectives));
         let (mut proven, mut last_slack, mut open) = (None, 0.0, Vec::new());
         if let Some(whole) = &whole {
             let designs = whole.designs() as f64;
             let by_regions = designs > self.regions_from;
             let is_large = by_regions || designs > LARGE;
+            // With given designs there is something to prune with from the start.
             if given.is_empty() {
                 let probes = if by_regions { PROBES_TO_EVOLVE } else { PROBES };
-                let probed = probe(self, whole, (probes * designs.log10().powi(2)) as usize, &mut known);
+                let probed =
+                    probe(&self.budget, whole, (probes * designs.log10().powi(2)) as usize, &mut state);
                 if by_regions {
-                    evolve(self, whole, probed, &mut known);
+                    evolve(&self.budget, whole, probed, &mut state);
                 }
             }
+            // Small spaces, and searches with given designs, need no passes with slack.
             let helps = |slack: &f64| is_large && given.is_empty() && (by_regions || *slack >= FINE);
             let coarser = SLACKS.into_iter().filter(|slack| helps(slack) && *slack > self.gap);
             let passes: Vec<f64> = coarser.chain([self.gap]).collect();
@@ -251,8 +187,8 @@ impl<'p> Exact<'p> {
             while let Some(&slack) = passes.get(next) {
                 let started = Instant::now();
                 open = match by_regions {
-                    true => self.pass_by_regions(whole, &mut known, slack),
-                    false => self.pass_by_boxes(whole, &mut known, slack),
+                    true => pass_by_regions(&self.budget, whole, &mut state, slack, self.regions_to),
+                    false => pass_by_boxes(&self.budget, whole, &mut state, slack),
                 };
                 if !open.is_empty() {
                     last_slack = slack;
@@ -262,13 +198,14 @@ impl<'p> Exact<'p> {
                 next = self.next_pass(&passes, next, started);
             }
         }
-        let designs_evaluated = known.evaluated;
-        let front = known.into_front();
+        let designs_evaluated = state.evaluated;
+        let front = state.into_front();
         let (mut front, ties_listed) = match &whole {
-            Some(whole) => whole.of_kinds(&front, self.most_with_ties),
+            Some(whole) => whole.with_ties(&front, self.most_with_ties),
             None => (front, true),
         };
         front.sort_unstable_by_key(|c| c.number);
+        // Tied kinds may stand for the same design.
         front.dedup_by_key(|c| c.number);
         ExactOutcome {
             designs_total: whole.as_ref().map_or(0, Problem::designs),
@@ -283,102 +220,9 @@ impl<'p> Exact<'p> {
             ties_listed,
         }
     }
-
-    /// One pass over all boxes; returns the ceilings of those that were left.
-    fn pass_by_boxes(&self, problem: &Problem<'p>, known: &mut Known, slack: f64) -> Vec<Ceiling> {
-        let left = self.every_box(
-            problem,
-            known,
-            |known, next, work, finds| {
-                Search { exact: self, problem, known, slack, below: None }.open(next, work, finds)
-            },
-            Known::learn,
-        );
-        left.iter().map(|opened| opened.ceiling).collect()
-    }
 }
 
-/// The smaller of two bounds that may be unknown.
+/// The smaller of two bounds, either of which may be unknown.
 fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::min)
-}
-
-/// A search of a problem, or of a part of it, as far as it goes with what is known.
-pub(super) struct Search<'s, 'p> {
-    pub exact: &'s Exact<'p>,
-    pub problem: &'s Problem<'p>,
-    pub known: &'s Known,
-    /// How close a design found must come to a box's ceiling to cut it.
-    pub slack: f64,
-    /// The corner below which designs are looked for.
-    pub below: Option<Corner>,
-}
-
-impl Search<'_, '_> {
-    /// Bounds a box and halves it, or judges it if it is one design.
-    pub fn open(&self, mut here: Opened, work: &mut Work, finds: &mut Finds) -> Vec<Opened> {
-        self.exact.count_box();
-        let verdict = self.problem.bound(
-            &mut here.cell,
-            &mut here.shapes,
-            work,
-            |ceiling| {
-                self.below.is_some_and(|corner| !corner.is_in_reach_of(ceiling)) || self.beats(ceiling, finds)
-            },
-            |ceiling| self.below.is_some() || self.known.found.nearly_beats(&ceiling.slackened(self.slack)),
-        );
-        let Verdict::Open(ceiling) = verdict else { return Vec::new() };
-        match self.problem.without_pointless(&mut here.cell, ceiling.tip_m, work) {
-            None => return Vec::new(),
-            Some(true) => return vec![here],
-            Some(false) => {}
-        }
-        let Some(level) = self.problem.widest_level(&here.cell, &here.shapes, work) else {
-            self.problem.judge(&here.cell, &ceiling, work, finds);
-            return Vec::new();
-        };
-        here.halves(self.problem, level, ceiling)
-    }
-
-    /// Whether a design that is known or was found since comes within the slack of a ceiling.
-    pub fn beats(&self, ceiling: &Ceiling, finds: &Finds) -> bool {
-        let slackened = ceiling.slackened(self.slack);
-        self.known.found.beats(&slackened) || finds.beats(&slackened)
-    }
-}
-
-impl Problem<'_> {
-    /// What every design on the front keeps.
-    pub fn limits(&self) -> Corner {
-        let limits = &self.space.constraints;
-        Corner {
-            mass_kg: limits.mass_max_kg.unwrap_or(f64::INFINITY),
-            tip_m: limits.tip_deflection_max_m.unwrap_or(f64::INFINITY),
-            hz: limits.required_mode_hz(),
-        }
-    }
-
-    /// One design: its ceiling is its objectives once its mode is made sure of; `None` if it is not known that it meets
-    /// the constraints.
-    pub fn judge(
-        &self,
-        cell: &[u32],
-        ceiling: &Ceiling,
-        work: &Work,
-        finds: &mut Finds,
-    ) -> Option<Objectives> {
-        let options = self.options(cell)?;
-        let number = number(&self.level_sizes, &options);
-        finds.evaluated += 1;
-        let objectives = self.objectives(ceiling, work);
-        if !work.is_point() {
-            finds.unsure.push(Candidate { number, objectives });
-            return None;
-        }
-        if self.space.constraints.broken(&objectives).contains(&true) {
-            return None;
-        }
-        finds.kept.push(Candidate { number, objectives });
-        Some(objectives)
-    }
 }

@@ -1,38 +1,42 @@
-//! Trial shapes: an upper bound of the lowest mode of every arm in a box.
+//! Trial shapes, which give an upper bound of the lowest mode of every arm in a box.
 //!
-//! For any motion `x` of an arm, `λ₁ ≤ xᵀKx / xᵀMx` (Rayleigh). `K` is diagonal in the strain
-//! coordinates, so `xᵀKx` is a sum over the stiffnesses of the parts; the inertia of the arm does not
-//! depend on its stiffness, so `xᵀMx` is a sum over the masses and line inertias, none of whose factors
-//! is negative. A shape is thus two rows of numbers, and with every stiffness at its greatest and every
-//! inertia at its least the quotient bounds the lowest mode of each member of a box, whatever the shape.
-//! A good shape is the box's own mode: one step of inverse iteration from the shape of the box above.
+//! For any motion `x` of an arm, `λ₁ ≤ xᵀKx / xᵀMx` (Rayleigh). In strain coordinates `K` is diagonal, so
+//! `xᵀKx` is a sum over the stiffnesses of the parts. The inertia of the arm does not depend on its
+//! stiffness, so `xᵀMx` is a sum over the masses and line inertias, and no factor is negative. A shape is
+//! thus two lists of numbers. With every stiffness at its greatest and every inertia at its least, the
+//! quotient bounds the lowest mode of every member of the box, whatever the shape is.
+//!
+//! The bound is sharp if the shape is close to the box's own mode. One step of inverse iteration from the
+//! shape of the parent box is enough.
 
 use super::parts::{INERTIAS, STIFFNESSES, inertia};
 use super::pose::{COORDINATES, ENDS, Pose, PosedPiece, PosedTube, RESISTED, degree_factor};
 use crate::mechanics::{Twist, Wrench, angular, linear, stack};
 use nalgebra::{SMatrix, SVector, Vector3};
 
-/// A motion and what it strains and moves, pieces from the tip.
+/// A motion of the arm, with the strain and kinetic energy of each piece. Pieces are counted from the tip.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Shape {
-    /// Strain coordinates: one a joint, [`COORDINATES`] a tube.
+    /// Strain coordinates: [`COORDINATES`] places for each piece, of which a joint uses the first.
     x: Vec<f64>,
     /// `xᵀKx` per unit of each stiffness of each piece.
     pub strain: Vec<[f64; STIFFNESSES]>,
     /// `xᵀMx` per unit of each inertia of each piece.
     pub kinetic: Vec<[f64; INERTIAS]>,
-    /// `xᵀMx` of what is not chosen.
+    /// `xᵀMx` of the payload and of given bodies.
     pub kinetic_fixed: f64,
 }
 
-/// The stiffnesses and inertias of an arm, or the best of a box, pieces from the tip.
+/// The stiffnesses and inertias of an arm, or the best of a box, for each piece from the tip. The best of a
+/// box is an ideal arm that need not be a member.
 pub(super) struct Ideal<'a> {
     pub stiffness: &'a [[f64; STIFFNESSES]],
     pub inertia: &'a [[f64; INERTIAS]],
 }
 
 impl Shape {
-    /// The lowest shapes of an ideal arm: started by a vertical and by two lateral accelerations.
+    /// A low mode shape of an ideal arm, started by an acceleration of the base and kept orthogonal to
+    /// others.
     pub fn start(pose: &Pose, ideal: &Ideal, direction: Vector3<f64>, others: &[Self], steps: usize) -> Self {
         let mut shape = Self {
             x: vec![0.0; pose.pieces.len() * COORDINATES],
@@ -51,14 +55,14 @@ impl Shape {
         shape
     }
 
-    /// One step of inverse iteration towards the ideal arm's lowest mode.
+    /// One step of inverse iteration towards the lowest mode of an ideal arm.
     pub fn improve(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self], work: &mut Work) {
         self.iterate(pose, ideal, &Twist::zeros(), work);
         self.clear_of(pose, ideal, others);
         self.energies(pose);
     }
 
-    /// `xᵀKx / xᵀMx` \[1/s²\]; infinite if the shape moves nothing.
+    /// The Rayleigh quotient `xᵀKx / xᵀMx` \[1/s²\]. Infinite if the shape moves nothing.
     #[inline]
     pub fn quotient(&self, ideal: &Ideal) -> f64 {
         let mut strain = 0.0;
@@ -83,7 +87,7 @@ impl Shape {
         kinetic
     }
 
-    /// `x ← C M x`, with the base moving by `base` in the right-hand side.
+    /// Inverse iteration: `x ← C M x`, where the base moves by `base` on the right-hand side.
     fn iterate(&mut self, pose: &Pose, ideal: &Ideal, base: &Twist, work: &mut Work) {
         inertia_forces(pose, ideal.inertia, base, &self.x, work);
         let mut largest = 0.0f64;
@@ -93,17 +97,18 @@ impl Shape {
             let stiffness = &ideal.stiffness[piece];
             for (c, (x, force)) in x.iter_mut().zip(forces).enumerate().take(posed.coordinates()) {
                 let stiffness = posed.coordinate_stiffness(c, stiffness);
+                // A stiffness of 0 stands for a coordinate that does not yield.
                 *x = if stiffness > 0.0 { force / stiffness } else { 0.0 };
                 largest = largest.max(x.abs());
             }
         }
+        // The scale of a shape is free. Scaling prevents overflow over many steps.
         if largest > 0.0 {
             self.x.iter_mut().for_each(|x| *x /= largest);
         }
     }
 
-    /// Takes out what it has in common with other shapes, so that it goes towards a mode of its own: modes strain
-    /// an arm in ways that do no work on each other.
+    /// Makes the shape orthogonal to others in the sense of `K`, so that it converges to another mode.
     fn clear_of(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self]) {
         for other in others {
             let (mut common, mut own) = (0.0, 0.0);
@@ -121,7 +126,7 @@ impl Shape {
         }
     }
 
-    /// The rows of the quotient.
+    /// Computes the strain and kinetic energy of each piece.
     fn energies(&mut self, pose: &Pose) {
         let mut twist = Twist::zeros();
         self.kinetic_fixed = 0.0;
@@ -132,6 +137,7 @@ impl Shape {
                 PosedPiece::Joint { twist: axis, at_m } => {
                     kinetic[inertia::MASS] = displacement(&twist, at_m).norm_squared();
                     strain[0] = x[0] * x[0];
+                    // A joint's mass is inboard of its spring, so it moves before the twist is added.
                     twist += axis * x[0];
                 }
                 PosedPiece::Body(body) => self.kinetic_fixed += twist.dot(&(body * twist)),
@@ -149,18 +155,18 @@ impl Shape {
     }
 }
 
-/// The sum of the products.
+/// The dot product of two arrays.
 pub(super) fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The sum of all products.
+/// The sum of the dot products of two lists of arrays.
 pub(super) fn products<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
     a.iter().zip(b).map(|(a, b)| dot(a, b)).sum()
 }
 
-/// `M x` into `work.forces`: the inertia forces on every coordinate when the arm moves by `x` and its base
-/// by `base`.
+/// Computes `M x` into `work.forces`: the inertia forces on every coordinate when the arm moves by `x` and
+/// its base by `base`. One pass goes outward for the motion and one inward for the forces, without a matrix.
 pub(super) fn inertia_forces(
     pose: &Pose,
     inertia: &[[f64; INERTIAS]],
@@ -232,14 +238,15 @@ impl PosedPiece {
     }
 }
 
-/// Room for a step.
+/// Buffers of one step.
 #[derive(Default)]
 pub(super) struct Work {
     momenta: Vec<Momentum>,
-    /// Force on each coordinate, [`COORDINATES`] a piece.
+    /// Force on each coordinate, [`COORDINATES`] places for each piece.
     pub forces: Vec<f64>,
 }
 
+/// The momentum of a piece on the way inward.
 enum Momentum {
     Body(Wrench),
     Tube(TubeMomentum),
@@ -257,7 +264,7 @@ fn displacement(twist: &Twist, at_m: &Vector3<f64>) -> Vector3<f64> {
 }
 
 impl PosedTube {
-    /// Adds what the tube's own coordinates do to everything outboard.
+    /// Adds the motion of the tube's own coordinates to that of everything outboard.
     #[inline]
     fn carry(&self, twist: &mut Twist, x: &[f64]) {
         for (end, coordinate) in ENDS.into_iter().enumerate() {
@@ -266,7 +273,7 @@ impl PosedTube {
     }
 }
 
-/// A tube's motion in its own planes.
+/// The motion of a tube in its own planes.
 struct Local {
     z: SVector<f64, 9>,
     y: SVector<f64, 9>,

@@ -1,25 +1,27 @@
-//! Torsion curves of gears, and boxes of them.
+//! Torsion curves of gears, and boxes of curves.
 
-use super::play::Play;
-use crate::arm::joint_law::{Curve, JointLaw, Windup};
+use super::joint_play::JointPlay;
+use crate::arm::joint_law::{Curve, JointLaw, Segment, Windup};
 
-/// Stiffness of a rigid gear beside lost motion: to any that yields it adds a part in 1e9 at the most \[N m/rad\].
+/// Stiffness that stands for a rigid gear where lost motion is in series \[N m/rad\]. It adds at most a part
+/// in 1e9 to any compliance.
 const RIGID_NM_PER_RAD: f64 = 1e18;
 
-/// A torsion curve that is asked often: nothing is divided then.
+/// A torsion curve prepared for many evaluations, without divisions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Torsion {
     pub windup: Windup,
-    /// Twist per torque in each segment \[rad/(N m)\], and the twist where the second and the third begin \[rad\].
+    /// Compliance of each segment \[rad/(N m)\], and the twist where the second and third segment begin
+    /// \[rad\].
     compliance: [f64; 3],
     begins_rad: [f64; 2],
 }
 
 impl Torsion {
     fn new(windup: Windup) -> Self {
-        let compliance = segments(&windup).map(|(slope, ..)| 1.0 / slope);
+        let compliance = windup.segments().map(|s| 1.0 / s.stiffness_nm_per_rad);
         let second = windup.t1_nm * compliance[0];
-        // a segment that never begins has no length
+        // A segment that never begins has no length.
         let third = second + (windup.t2_nm - windup.t1_nm).max(0.0) * compliance[1];
         Self { windup, compliance, begins_rad: [second, third] }
     }
@@ -32,7 +34,7 @@ impl Torsion {
         self.angle_in(segment, t).copysign(torque_nm)
     }
 
-    /// The same in a segment, where the torque is not negative.
+    /// Twist under a torque that is not negative, in a given segment \[rad\].
     #[inline]
     pub fn angle_in(&self, segment: usize, t_nm: f64) -> f64 {
         let Windup { t1_nm, t2_nm, .. } = self.windup;
@@ -44,34 +46,35 @@ impl Torsion {
     }
 }
 
-/// A torsion curve between two: stiffest and softest slope at every torque.
+/// A box of torsion curves, between its stiffest and its softest envelope.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct CurveBox {
-    /// Nowhere softer than a member; of one curve, the curve.
+    /// A curve that is nowhere softer than a member. For a single curve it is that curve.
     pub stiff: Torsion,
-    /// Nowhere stiffer than a member; of one curve, the curve.
+    /// A curve that is nowhere stiffer than a member. For a single curve it is that curve.
     pub soft: Torsion,
-    /// Whether modes see the first slope under any torque.
+    /// Whether modes use the first slope under any torque.
     pub k1_in_modes: bool,
 }
 
 impl CurveBox {
-    /// The box of one joint's law without its play; a joint that does not twist has none.
+    /// The box of one joint's law without its play. `None` for a joint that does not twist.
     pub fn of(law: &JointLaw) -> Option<Self> {
         let curve = match law.without_play() {
             Curve::Rigid if law.lost_motion.is_some() => Curve::Linear(RIGID_NM_PER_RAD),
             curve => curve,
         };
-        let torsion = Torsion::new(curve.segments()?);
+        let torsion = Torsion::new(curve.as_windup()?);
         Some(Self { stiff: torsion, soft: torsion, k1_in_modes: !matches!(curve, Curve::Windup(_)) })
     }
 
-    /// Whether modes see one slope under all torques of these sizes, whichever gear it is, and its play does not change.
+    /// Whether modes see the same slope, and play the same, under all torques with magnitudes in an interval
+    /// \[N m\], for each gear of the box.
     pub fn keeps_its_slope(
         &self,
-        play: Option<&Play>,
+        play: Option<&JointPlay>,
         [least_nm, most_nm]: [f64; 2],
-        breaks: Breaks,
+        breaks: BreakPoints,
     ) -> bool {
         let between = |t_nm: f64| least_nm <= t_nm && t_nm <= most_nm;
         let keeps_its_segment = self.k1_in_modes
@@ -82,36 +85,37 @@ impl CurveBox {
         keeps_its_segment && play.is_none_or(|play| play.stays(most_nm))
     }
 
-    /// The greatest slope at torques of these sizes \[N m\].
+    /// Greatest slope that modes may see at torque magnitudes in an interval \[N m/rad\].
     pub fn stiffest(&self, least_nm: f64, most_nm: f64) -> f64 {
         self.slopes(&self.stiff.windup, least_nm, most_nm).fold(0.0, f64::max)
     }
 
-    /// The least slope at torques of these sizes \[N m\].
+    /// Least slope that modes may see at torque magnitudes in an interval \[N m/rad\].
     pub fn softest(&self, least_nm: f64, most_nm: f64) -> f64 {
         self.slopes(&self.soft.windup, least_nm, most_nm).fold(f64::INFINITY, f64::min)
     }
 
-    /// The greatest slope of the twist at torques of these sizes \[N m\], whatever modes see.
+    /// Greatest slope of the static twist at torque magnitudes in an interval, even if modes use the first
+    /// slope \[N m/rad\].
     pub fn steepest(&self, least_nm: f64, most_nm: f64) -> f64 {
         slopes(&self.stiff.windup, least_nm, most_nm).fold(0.0, f64::max)
     }
 
-    /// Least and most twist between two torques, with the play beside it \[rad\].
-    pub fn twist(&self, play: Option<&Play>, [low, high]: [f64; 2]) -> [f64; 2] {
+    /// Least and greatest twist for torques in an interval, with play \[rad\].
+    pub fn twist(&self, play: Option<&JointPlay>, [low, high]: [f64; 2]) -> [f64; 2] {
         let least = if low >= 0.0 { &self.stiff } else { &self.soft }.angle_rad(low);
         let most = if high >= 0.0 { &self.soft } else { &self.stiff }.angle_rad(high);
         let [less, more] = self.twist_of_play(play, [low, high]);
         [least + less, most + more]
     }
 
-    /// What play adds to it.
-    pub fn twist_of_play(&self, play: Option<&Play>, between_nm: [f64; 2]) -> [f64; 2] {
+    /// The part of the twist that comes from play \[rad\].
+    pub fn twist_of_play(&self, play: Option<&JointPlay>, between_nm: [f64; 2]) -> [f64; 2] {
         let middle = [&self.stiff, &self.soft].map(|torsion| torsion.compliance[1]);
         play.map_or([0.0; 2], |play| play.twist(middle, between_nm))
     }
 
-    /// The slopes that modes may see.
+    /// The slopes that modes may see at torque magnitudes in an interval.
     fn slopes(&self, w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
         let (least_nm, most_nm) = if self.k1_in_modes { (0.0, 0.0) } else { (least_nm, most_nm) };
         slopes(w, least_nm, most_nm)
@@ -126,7 +130,8 @@ impl CurveBox {
     }
 }
 
-/// A curve on one side of two, by the extremes of their slopes and break points once slopes do not fall with torque.
+/// A curve on one side of two: the extremes of their slopes and break points, after the slopes of each were
+/// made to rise with torque.
 fn join(
     lifted: fn(&Windup) -> Windup,
     both: [&Torsion; 2],
@@ -143,45 +148,36 @@ fn join(
     })
 }
 
-/// The lowest curve of slopes that do not fall with torque and are nowhere below these: of such curves the
-/// largest slopes and the smallest break points make one that is nowhere below either.
+/// The lowest curve with slopes that do not fall with torque, and are nowhere below those of `w`. For such
+/// curves the greatest slopes and the least break points make a curve that is nowhere softer than any.
 fn rising(w: &Windup) -> Windup {
     let k2 = w.k1_nm_per_rad.max(w.k2_nm_per_rad);
     Windup { k2_nm_per_rad: k2, k3_nm_per_rad: k2.max(w.k3_nm_per_rad), ..*w }
 }
 
-/// The highest curve of slopes that do not fall with torque and are nowhere above these.
+/// The highest curve with slopes that do not fall with torque, and are nowhere above those of `w`.
 fn rising_below(w: &Windup) -> Windup {
     let k2 = w.k2_nm_per_rad.min(w.k3_nm_per_rad);
     Windup { k1_nm_per_rad: k2.min(w.k1_nm_per_rad), k2_nm_per_rad: k2, ..*w }
 }
 
-/// Slope and ends of each segment of a curve.
-pub(super) fn segments(w: &Windup) -> [(f64, f64, f64); 3] {
-    [
-        (w.k1_nm_per_rad, 0.0, w.t1_nm),
-        (w.k2_nm_per_rad, w.t1_nm, w.t2_nm),
-        (w.k3_nm_per_rad, w.t2_nm, f64::INFINITY),
-    ]
-}
-
-/// The slopes of the segments that torques of these sizes lie in.
+/// The slopes of the segments that torques touch, given by magnitudes.
 fn slopes(w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
-    // a break point belongs to the segment below it
-    let touched = move |&(_, from, to): &(f64, f64, f64)| least_nm <= to && (most_nm > from || from == 0.0);
-    segments(w).into_iter().filter(touched).map(|(slope, ..)| slope)
+    // A break point belongs to the segment below it
+    let touched = move |s: &Segment| least_nm <= s.to_nm && (most_nm > s.from_nm || s.from_nm == 0.0);
+    w.segments().into_iter().filter(touched).map(|s| s.stiffness_nm_per_rad)
 }
 
-/// The break points of a set of curves, on a grid of about 5 %.
+/// The break points of a set of curves, as bits on a logarithmic grid of about 5 %.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Breaks([u64; 4]);
+pub(super) struct BreakPoints([u64; 4]);
 
-impl Breaks {
+impl BreakPoints {
     const CELLS: f64 = 256.0;
     const OCTAVES: f64 = 18.0;
     const LEAST_LOG2: f64 = -4.0;
 
-    /// Those of one curve.
+    /// The break points of one curve.
     pub fn of(w: &Windup) -> Self {
         [w.t1_nm, w.t2_nm].into_iter().filter(|t| t.is_finite()).fold(Self::default(), |mut set, t_nm| {
             let cell = Self::cell(t_nm);
@@ -199,7 +195,7 @@ impl Breaks {
         (Self::cell(least_nm)..=Self::cell(most_nm)).any(|cell| self.0[cell / 64] >> (cell % 64) & 1 == 1)
     }
 
-    /// Torques beyond the grid count to its ends.
+    /// The grid cell of a torque. Torques beyond the grid count to its ends.
     fn cell(t_nm: f64) -> usize {
         let at = (t_nm.log2() - Self::LEAST_LOG2) * (Self::CELLS / Self::OCTAVES);
         at.clamp(0.0, Self::CELLS - 1.0) as usize
@@ -212,7 +208,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The curve without divisions is the curve, and a box of curves lies around its members.
+        /// The prepared curve equals the curve, and a box of curves encloses its members.
         #[test]
         fn twists_are_those_of_the_curve_and_inside_every_box(
             slopes in prop::array::uniform6(0.1f64..3.0), ends in prop::array::uniform2((0.1f64..3.0, 0.0f64..3.0)),

@@ -1,55 +1,58 @@
-//! A binary tree over the options of one level, each node a box that holds its members.
+//! A binary tree over the options of one level. Each node is a box that encloses its members.
+//!
+//! A tree may also stand over some nodes of a base tree: the options that survived in a region. Such a tree
+//! shares the nodes of the base tree instead of copying them.
 
 use std::collections::{BTreeSet, BinaryHeap, HashMap};
 use std::sync::Arc;
 
-/// What a node knows of all its members.
+/// What a node knows about all of its members.
 pub(super) trait Bounds: Clone {
     /// The box around two boxes.
     fn join(&self, other: &Self) -> Self;
 
-    /// Coordinates by which options are told apart, scaled so that a larger spread matters more.
+    /// Coordinates by which options are separated, scaled so that a greater spread matters more.
     fn key(&self) -> Key;
 }
 
 /// Coordinates of an option.
 pub(super) type Key = [f64; 5];
 
-/// The whole tree of a level, or one over some of its nodes.
+/// The base tree of a level, or a tree over some nodes of it.
 pub(super) struct Tree<B> {
     nodes: Vec<Node<B>>,
-    /// The tree whose nodes it stands on; they count from [`WHOLE`].
+    /// The base tree, whose nodes are numbered from [`WHOLE`] on; `None` if this is the base tree.
     whole: Option<Arc<Tree<B>>>,
-    /// The nodes that it stands on.
+    /// The nodes of the base tree over which this tree stands.
     stands_on: Vec<u32>,
 }
 
-/// The number of the first node of the tree that another stands on.
+/// Number of the first node of the base tree, as seen from a tree over it.
 const WHOLE: u32 = 1 << 31;
 
 /// One node of a [`Tree`].
 pub(super) struct Node<B> {
     pub bounds: B,
-    /// Where it is among others.
+    /// The coordinates by which it is separated.
     pub key: Key,
-    /// Options below it.
+    /// Number of options below it.
     pub members: u32,
-    /// The two halves of a box of several, or the option of a box of one.
+    /// The two halves of the node, or its single option.
     pub kind: NodeKind,
 }
 
 /// What is below a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NodeKind {
-    /// Two boxes.
+    /// Two halves.
     Split([u32; 2]),
     /// One option.
     Option(u32),
 }
 
 impl<B: Bounds> Tree<B> {
-    /// Halves the options at the median of the coordinate with the largest spread, down to single ones.
-    /// `None` without options.
+    /// Builds a tree: halves the options at the median of the coordinate with the greatest spread, down to
+    /// single ones. `None` without options.
     pub fn build(options: impl Iterator<Item = (u32, B)>) -> Option<Self> {
         let options: Vec<(u32, B)> = options.collect();
         let item =
@@ -67,8 +70,9 @@ impl<B: Bounds> Tree<B> {
         Some(Self { nodes, whole: None, stands_on: vec![0] })
     }
 
-    /// A tree over some nodes of a tree, none of which is below another.
+    /// A tree over some nodes of the base tree, none of which is below another. `None` if there are none.
     pub fn over(tree: &Arc<Self>, kept: &[u32]) -> Option<Arc<Self>> {
+        // Nothing was excluded, so the same tree serves.
         if tree.whole.is_some() && tree.stands_on == kept {
             return Some(Arc::clone(tree));
         }
@@ -96,7 +100,8 @@ impl<B: Bounds> Tree<B> {
         Some(Arc::new(Self { nodes, whole: Some(Arc::clone(whole)), stands_on: kept.to_vec() }))
     }
 
-    /// Nodes of the whole tree that may do below a node, in about so many boxes: the largest are opened first.
+    /// The nodes of the base tree, about `most` of them, that cover the admitted options below a node. The
+    /// node with the most options is opened first.
     pub fn kept(&self, node: u32, most: usize, may: impl Fn(&B) -> bool) -> Vec<u32> {
         let mut heap = BinaryHeap::new();
         let mut enter = |at: u32| {
@@ -106,6 +111,7 @@ impl<B: Bounds> Tree<B> {
             }
         };
         match &self.whole {
+            // => The root covers every node over which the tree stands.
             Some(_) if node == 0 => self.stands_on.iter().for_each(|&at| enter(at + WHOLE)),
             Some(_) => {
                 let mut open = vec![node];
@@ -135,13 +141,13 @@ impl<B: Bounds> Tree<B> {
         kept
     }
 
-    /// Options below some nodes of the whole tree.
+    /// Number of options below some nodes of the base tree.
     pub fn members_of(&self, kept: &[u32]) -> f64 {
         let whole = self.whole.as_deref().unwrap_or(self);
         kept.iter().map(|&at| f64::from(whole.node(at).members)).sum()
     }
 
-    /// Numbers of the options below some nodes of the whole tree, ascending.
+    /// The options below some nodes of the base tree, ascending.
     pub fn options_of(&self, kept: &[u32]) -> Vec<u32> {
         let whole = self.whole.as_deref().unwrap_or(self);
         let (mut options, mut open) = (Vec::new(), kept.to_vec());
@@ -166,12 +172,12 @@ impl<B: Bounds> Tree<B> {
             .collect()
     }
 
-    /// A node of the whole tree.
+    /// A node of the base tree.
     pub fn whole_node(&self, index: u32) -> &Node<B> {
         &self.whole.as_deref().unwrap_or(self).nodes[index as usize]
     }
 
-    /// A node; the root is node 0.
+    /// A node. The root is node 0.
     #[inline]
     pub fn node(&self, index: u32) -> &Node<B> {
         match &self.whole {
@@ -180,8 +186,8 @@ impl<B: Bounds> Tree<B> {
         }
     }
 
-    /// The smallest box with all the options below a node that may hold; `None` if there are none.
-    pub fn narrowed(&self, mut node: u32, holds: impl Fn(&B) -> bool) -> Option<u32> {
+    /// The smallest node with all the admitted options below a node. `None` if there are none.
+    pub fn smallest_node(&self, mut node: u32, holds: impl Fn(&B) -> bool) -> Option<u32> {
         if !holds(&self.node(node).bounds) {
             return None;
         }
@@ -196,7 +202,7 @@ impl<B: Bounds> Tree<B> {
         Some(node)
     }
 
-    /// The children of a node.
+    /// The two halves of a node. `None` for a leaf.
     #[inline]
     pub fn children(&self, index: u32) -> Option<[u32; 2]> {
         match self.node(index).kind {
@@ -206,7 +212,7 @@ impl<B: Bounds> Tree<B> {
         }
     }
 
-    /// The option of a box of one.
+    /// The option of a leaf. `None` for a node of several options.
     #[inline]
     pub fn option(&self, index: u32) -> Option<u32> {
         match self.node(index).kind {
@@ -216,16 +222,16 @@ impl<B: Bounds> Tree<B> {
     }
 }
 
-/// What a tree grows over; its box is elsewhere, so that items are quick to sort.
+/// An item of a growing tree. Its box is stored elsewhere, so that items are quick to sort.
 struct Item {
-    /// Place among the options, or the node that it stands for.
+    /// Index among the options, or the node for which it stands.
     at: u32,
     members: u32,
     key: Key,
 }
 
-/// Grows the tree over some items and returns its root; `leaf` says what a node of one item is, unless it has a node
-/// already, and its box.
+/// Grows the tree over some items and returns its root. For an item, `leaf` returns its box and the kind of
+/// its node; the kind is `None` if the item is a node already.
 fn grow<'b, B: Bounds + 'b>(
     items: &mut [Item],
     nodes: &mut Vec<Node<B>>,
@@ -238,14 +244,15 @@ fn grow<'b, B: Bounds + 'b>(
         nodes.push(Node { bounds: bounds.clone(), key, members, kind });
         return here as u32;
     }
-    // its place; the root is the first
+    // The root is the first node, so its place is taken before its halves grow.
     nodes.push(Node { bounds: bounds.clone(), key: items[0].key, members: 0, kind: NodeKind::Option(0) });
+    // Halving the widest coordinate keeps the boxes narrow, and so their bounds sharp.
     let axis = widest(items);
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| a.key[axis].total_cmp(&b.key[axis]).then(a.at.cmp(&b.at)));
     let (low, high) = items.split_at_mut(middle);
     let halves = [grow(low, nodes, leaf), grow(high, nodes, leaf)];
-    // a half that has a node elsewhere is a single item
+    // A half whose node is elsewhere is a single item.
     let of =
         |half: &[Item], at: u32| nodes.get(at as usize).map_or_else(|| leaf(&half[0]).1, |node| &node.bounds);
     let bounds = of(low, halves[0]).join(of(high, halves[1]));
@@ -255,7 +262,7 @@ fn grow<'b, B: Bounds + 'b>(
     here as u32
 }
 
-/// The coordinate with the largest spread.
+/// The coordinate with the greatest spread.
 fn widest(items: &[Item]) -> usize {
     let spread = |axis: usize| {
         let (low, high) = items.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), item| {

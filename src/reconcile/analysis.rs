@@ -1,32 +1,36 @@
-//! The workflow: is there a gap, what is missing, how sure is that, does it hold on kept-out poses.
+//! Runs the whole analysis: whether there is a gap, what is missing, how sure that is, and whether it holds
+//! on held-out poses.
 
 use super::fit::descent::{Effort, Fit, Weights};
-use super::fit::interval::{Interval, deviations, intervals};
-use super::fit::kept_out;
-use super::fit::kept_out::{KeptOut, rms};
+use super::fit::held_out;
+use super::fit::held_out::{HeldOut, rms};
+use super::fit::interval::{deviations, intervals};
 use super::fit::noise::Noise;
-use super::forward::{Datum, Forward};
+use super::fit::units;
+use super::forward::datum::Datum;
+use super::forward::prepared::Forward;
 use super::model::candidates::candidates;
+use super::model::estimate::Interval;
+use super::model::estimate::{Estimate, Finding};
 use super::model::parameters::{Calibration, Candidate, Model, Nuisance};
 use super::readings::campaign::Campaign;
-use super::readings::units;
+use super::select::few_rows;
 use super::select::lack_of_fit::{LackOfFit, lack_of_fit};
-use super::select::screening::{Scored, Search, Selection};
+use super::select::screening::Selection;
+use super::select::search::{Scored, Search};
 use super::select::settle::Settled;
 use super::select::unnamed;
 use super::select::unnamed::Better;
-use super::select::{few_rows, next_test};
-use super::verdict::outcome::{
-    Calibrated, Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict,
-};
+use super::verdict::next_test;
+use super::verdict::outcome::{Calibrated, Evidence, Located, Outcome, ReadingResidual, Verdict};
 use super::verdict::{correct, locate};
-use crate::arm::effect::Channel;
+use crate::arm::effect::channel::Channel;
 
-/// Most alternatives an effect may have and still be named.
+/// Largest number of alternatives with which an effect is still named.
 const MOST_ALTERNATIVES: usize = 3;
-/// Rise of the evidence below which it is not yet strong (Kass and Raftery 1995, their table of Bayes factors).
+/// A rise of ln of the evidence below this is not yet strong (Kass and Raftery 1995, table of Bayes factors).
 const WEAK: f64 = 3.0;
-/// Fewest poses that can speak.
+/// Smallest number of poses that can tell effects at different places apart.
 const FEWEST_POSES: usize = 3;
 
 /// Reconciles the displacements, frequencies and bench readings of a campaign with its arm.
@@ -39,24 +43,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     if few {
         candidates = candidates.into_iter().map(Candidate::from_corners).collect();
     }
-    let mut found = match few {
-        true => Settled::of_few(campaign, &forward, &nuisance, &candidates),
-        false => Settled::of_many(campaign, &mut forward, &nuisance, &candidates),
-    };
-    let best = &found.selection.best;
-    let coefficients = Model::of(&nuisance, &candidates, &best.effects).coefficients(&forward, &best.u);
-    let stretches = units::stretches(&forward, &coefficients);
-    if !few && !stretches.is_empty() {
-        let mut stretched = Forward::new(campaign);
-        units::stretch(&mut stretched, &stretches);
-        let again = Settled::of_many(campaign, &mut stretched, &nuisance, &candidates);
-        let named: Vec<&Candidate> = again.selection.best.effects.iter().map(|&i| &candidates[i]).collect();
-        // larger deviations would hide other physics
-        if stretches.iter().all(|stretch| stretch.is_among(&named)) {
-            (forward, found) = (stretched, again);
-            found.remarks.extend(stretches.iter().map(units::Stretch::sentence));
-        }
-    }
+    let found = settled(campaign, &mut forward, &nuisance, &candidates, few);
     let weights = found.noise.weights(&forward);
     let chosen = &found.selection.best;
     let coefficients = Model::of(&nuisance, &candidates, &chosen.effects).coefficients(&forward, &chosen.u);
@@ -73,17 +60,17 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         true => search.fit(&chosen.effects, &chosen.u, Effort::default()),
         false => search.polish(&chosen.effects, &chosen.u),
     };
-    let bare = search.fit(&[], &found.selection.bare.u, Effort::default());
+    let baseline = search.fit(&[], &found.selection.baseline.u, Effort::default());
     let fit_test = lack_of_fit(campaign, &forward, &best, &weights);
     let alternatives = search.alternatives(chosen, &found.selection.others);
     let explaining = few.then(|| found.selection.others.clone());
     let unnamed = match () {
         () if few => None,
-        () if fit_test.fails => unnamed::beside_calibration(&search, &bare),
+        () if fit_test.fails => unnamed::better_than_calibration(&search, &baseline),
         () if best.model.effects.is_empty() => None,
-        () => unnamed::instead(&search, &search.scored(&chosen.effects, &best), &bare),
+        () => unnamed::instead(&search, &search.scored(&chosen.effects, &best), &baseline),
     };
-    let left_out = [&bare, &best].map(|f| kept_out::residuals(&forward, &f.model, &f.point.u, &weights));
+    let left_out = [&baseline, &best].map(|f| held_out::residuals(&forward, &f.model, &f.point.u, &weights));
     let analysis = Analysis {
         campaign,
         forward: &forward,
@@ -93,7 +80,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         remarks: &found.remarks,
         weights: &weights,
         best,
-        bare,
+        baseline,
         lack_of_fit: fit_test,
         unnamed,
         alternatives,
@@ -101,6 +88,38 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         left_out,
     };
     analysis.conclude()
+}
+
+/// Finds the effects and the noise. Where the noise of a channel shows a unit slip, the search is repeated with the
+/// standard deviations of that channel enlarged, and `forward` has them from then on.
+fn settled(
+    campaign: &Campaign,
+    forward: &mut Forward,
+    nuisance: &Nuisance,
+    candidates: &[Candidate],
+    few: bool,
+) -> Settled {
+    if few {
+        return Settled::of_few(campaign, forward, nuisance, candidates);
+    }
+    let found = Settled::of_many(campaign, forward, nuisance, candidates);
+    let best = &found.selection.best;
+    let coefficients = Model::of(nuisance, candidates, &best.effects).coefficients(forward, &best.u);
+    let stretches = units::stretches(forward, &coefficients);
+    if stretches.is_empty() {
+        return found;
+    }
+    let mut stretched = Forward::new(campaign);
+    units::stretch(&mut stretched, &stretches);
+    let mut again = Settled::of_many(campaign, &mut stretched, nuisance, candidates);
+    let named: Vec<&Candidate> = again.selection.best.effects.iter().map(|&i| &candidates[i]).collect();
+    // larger standard deviations would hide other physics
+    if !stretches.iter().all(|stretch| stretch.is_among(&named)) {
+        return found;
+    }
+    *forward = stretched;
+    again.remarks.extend(stretches.iter().map(units::Stretch::sentence));
+    again
 }
 
 struct Analysis<'a> {
@@ -112,21 +131,21 @@ struct Analysis<'a> {
     remarks: &'a [String],
     weights: &'a Weights,
     best: Fit<'a>,
-    bare: Fit<'a>,
+    baseline: Fit<'a>,
     lack_of_fit: LackOfFit,
-    /// A law that no effect of the library has and that is better than what was named, or, where the model
-    /// fails, than calibration alone.
+    /// A law without a name that explains the readings better than the named effects, or, where the model
+    /// fails, better than calibration alone.
     unnamed: Option<Better>,
     alternatives: Vec<Vec<Scored>>,
-    /// With few rows: every set of effects that explains them.
+    /// Every set of effects that explains the readings, if there are few rows.
     explaining: Option<Vec<Scored>>,
     left_out: [Vec<Option<f64>>; 2],
 }
 
 impl Analysis<'_> {
     fn conclude(self) -> Outcome {
-        let kept_out = self.kept_out();
-        let (verdict, mut reasons) = self.verdict(&kept_out);
+        let held_out = self.held_out();
+        let (verdict, mut reasons) = self.verdict(&held_out);
         if matches!(verdict, Verdict::Explained | Verdict::Unexplained) {
             reasons.extend(self.at_a_limit());
         }
@@ -139,7 +158,7 @@ impl Analysis<'_> {
             Verdict::Explained => (findings, Vec::new()),
             _ => (Vec::new(), findings),
         };
-        let shown = if verdict == Verdict::Unexplained { &self.bare } else { &self.best };
+        let shown = if verdict == Verdict::Unexplained { &self.baseline } else { &self.best };
         let calibrated = self.calibrated(shown);
         let (corrected, provenance) = correct::corrected(
             self.campaign,
@@ -157,7 +176,7 @@ impl Analysis<'_> {
             next_tests: next_test::propose(&self.next_question(verdict)),
             effects,
             suspects,
-            kept_out,
+            held_out,
             located: self.located(),
             noise: self.noise.clone(),
             lack_of_fit: Some(self.lack_of_fit.clone()),
@@ -171,11 +190,11 @@ impl Analysis<'_> {
         }
     }
 
-    fn verdict(&self, kept_out: &Option<KeptOut>) -> (Verdict, Vec<String>) {
+    fn verdict(&self, held_out: &Option<HeldOut>) -> (Verdict, Vec<String>) {
         let mut reasons = too_little(self.campaign, self.forward);
         if !reasons.is_empty() {
             if let Some(explaining) = self.explaining.as_ref().filter(|_| !self.forward.data.is_empty()) {
-                reasons.extend(few_rows::sentences(self.search, self.campaign, &self.bare, explaining));
+                reasons.extend(few_rows::sentences(self.search, self.campaign, &self.baseline, explaining));
             }
             reasons.extend(self.unidentified());
             return (Verdict::InsufficientData, reasons);
@@ -190,13 +209,13 @@ impl Analysis<'_> {
         if let Some(better) = &self.unnamed {
             return (Verdict::Unexplained, vec![self.beaten(better)]);
         }
-        for (effect, rivals) in self.best.model.effects.iter().zip(&self.alternatives) {
-            if rivals.len() > MOST_ALTERNATIVES {
-                let text = format!("{} other effects fit as well as {}", rivals.len(), effect.label());
+        for (effect, competitors) in self.best.model.effects.iter().zip(&self.alternatives) {
+            if competitors.len() > MOST_ALTERNATIVES {
+                let text = format!("{} other effects fit as well as {}", competitors.len(), effect.label());
                 return (Verdict::InsufficientData, vec![text]);
             }
         }
-        if let Some(k) = kept_out.filter(|k| k.rms_after > k.rms_before + 0.02) {
+        if let Some(k) = held_out.filter(|k| k.rms_after > k.rms_before + 0.02) {
             let text = format!(
                 "{} does not predict poses it was not fitted to ({:.2} sigma after, {:.2} before)",
                 self.best.model.label(),
@@ -209,60 +228,61 @@ impl Analysis<'_> {
     }
 
     fn gap_sentences(&self) -> Vec<String> {
-        let gain = self.selection.best.score - self.selection.bare.score;
+        let gain = self.selection.best.score - self.selection.baseline.score;
         let mut out = vec![format!(
-            "with {} the evidence rises by {gain:.1} (chi-squared {:.0} to {:.0} on {} readings)",
+            "with {} ln of the evidence rises by {gain:.1} (chi-squared {:.0} to {:.0} on {} readings)",
             self.best.model.label(),
-            self.bare.point.objective,
+            self.baseline.point.objective,
             self.best.point.objective,
             self.forward.data.len()
         )];
         if gain < WEAK {
             let odds = gain.exp();
             out.push(format!(
-                "that is weak, odds of {odds:.0} to 1: take the next test before you rely on it"
+                "that is weak evidence, with odds of {odds:.0} to 1: take the next test before relying on it"
             ));
         }
         out
     }
 
-    /// That a size stands at the limit of what is looked for; no effect is named, for it may not be the right one.
+    /// Says that an effect has reached the largest size that is searched for. It names no effect, because it
+    /// may not be the right one.
     fn at_a_limit(&self) -> Option<String> {
-        let text = "a size of the best effects is the largest that is looked for: is arm.json the arm that was measured?";
+        let text = "the size of one of the best effects is the largest that is looked for: is arm.json the arm that was measured?";
         self.best.model.is_at_a_limit(&self.best.point.u).then(|| text.to_string())
     }
 
-    /// What structure is left, naming no effect.
+    /// Says which structure the residuals keep, without naming an effect.
     fn left_over(&self) -> Vec<String> {
         let mut out = self.lack_of_fit.sentences();
         out.push(format!(
-            "the best model leaves {:.2} times the declared variance; no effect of the library accounts for it",
+            "the best model leaves {:.2} times the declared variance; no effect of the library explains the rest",
             self.lack_of_fit.chi2_per_dof
         ));
         out.extend(self.unnamed.as_ref().map(|law| {
             format!(
-                "of laws without a name {} does best: beside calibration alone it takes chi-squared from {:.0} to {:.0}",
-                law.what, self.bare.point.objective, law.objective
+                "the best law without a name is {}: added to calibration alone it lowers chi-squared from {:.0} to {:.0}",
+                law.what, self.baseline.point.objective, law.objective
             )
         }));
         out
     }
 
-    /// That a law without a name is better than the effects of the library, naming none of them.
+    /// Says that a law without a name is better than the effects of the library, without naming any of these.
     fn beaten(&self, law: &Better) -> String {
         format!(
-            "{}, which no effect of the library is, accounts for the readings better than any that is \
-             (chi-squared {:.0} with {} number(s) of it, {:.0} with {} of the best effects; the evidence rises by {:.1})",
+            "the library lacks this law, and it explains the readings better than any effect of the library: {} \
+             (chi-squared {:.0} with its {} parameter(s), {:.0} with {} of the best effects; ln of the evidence rises by {:.1})",
             law.what,
             law.objective,
             law.numbers,
             self.best.point.objective,
-            self.best.model.knobs().count(),
+            self.best.model.free_parameters().count(),
             law.gain
         )
     }
 
-    /// Calibrated values of which the readings say nothing.
+    /// Names stiffnesses about which the readings say nothing.
     fn unidentified(&self) -> Vec<String> {
         let blind: Vec<String> = self
             .calibrated(&self.best)
@@ -270,19 +290,19 @@ impl Analysis<'_> {
             .filter(|c| c.learnt > 0.9 && c.name.ends_with("stiffness"))
             .map(|c| c.name)
             .collect();
-        let text = format!("the readings say nothing of {}", blind.join(", "));
+        let text = format!("the readings say nothing about {}", blind.join(", "));
         if blind.is_empty() { Vec::new() } else { vec![text] }
     }
 
-    fn kept_out(&self) -> Option<KeptOut> {
+    fn held_out(&self) -> Option<HeldOut> {
         let [before, after] = &self.left_out;
         let count = after.iter().flatten().count();
         let scaled = |list: &[Option<f64>]| {
             let each = list.iter().zip(&self.forward.data);
             rms(each.filter_map(|(r, d)| Some((*r)? / self.noise.scale[d.channel as usize])))
         };
-        // the readings of a single pose would be predicted from nothing
-        (count > 0 && self.forward.groups.len() > 1).then(|| KeptOut {
+        // with a single pose nothing would be left to predict its readings from
+        (count > 0 && self.forward.groups.len() > 1).then(|| HeldOut {
             rms_before: scaled(before),
             rms_after: scaled(after),
             rms_declared_after: rms(after.iter().flatten().copied()),
@@ -295,25 +315,25 @@ impl Analysis<'_> {
             return few_rows::suspects(self.search, explaining, self.weights);
         }
         let ends = intervals(self.forward, &self.best, self.weights);
-        let mut knob = 0;
+        let mut parameter = 0;
         let effects = self.best.model.effects.iter().enumerate();
         effects
             .map(|(i, effect)| {
-                let first = self.best.model.first_knob(i);
-                let own = first..first + effect.knobs.len();
+                let first = self.best.model.first_parameter(i);
+                let own = first..first + effect.free_parameters.len();
                 let finding = Finding {
                     effect: effect.kind.name.into(),
                     at: effect.at.clone(),
-                    parameters: parameters(effect, &self.best.point.u[own], &ends[knob..]),
-                    indistinguishable_from: self.rivals(i),
+                    parameters: parameters(effect, &self.best.point.u[own], &ends[parameter..]),
+                    indistinguishable_from: self.competitors(i),
                 };
-                knob += effect.knobs.len();
+                parameter += effect.free_parameters.len();
                 finding
             })
             .collect()
     }
 
-    fn rivals(&self, effect: usize) -> Vec<(String, String)> {
+    fn competitors(&self, effect: usize) -> Vec<(String, String)> {
         let own: Vec<usize> = self.selection.best.effects.clone();
         let twins = self.best.model.effects[effect].twins.iter().cloned();
         let others = self.alternatives[effect]
@@ -349,7 +369,7 @@ impl Analysis<'_> {
     }
 
     fn located(&self) -> Vec<Located> {
-        locate::located(self.campaign, self.forward, &self.bare, &self.best, self.weights)
+        locate::located(self.campaign, self.forward, &self.baseline, &self.best, self.weights)
     }
 
     fn evidence(&self) -> Vec<Evidence> {
@@ -360,7 +380,7 @@ impl Analysis<'_> {
             score: s.score - best,
             objective: s.objective,
         };
-        let mut out = vec![named(&self.selection.best), named(&self.selection.bare)];
+        let mut out = vec![named(&self.selection.best), named(&self.selection.baseline)];
         out.extend(self.selection.others.iter().map(named));
         let mut seen: Vec<String> = Vec::new();
         out.retain(|e| {
@@ -390,9 +410,9 @@ impl Analysis<'_> {
                     quantity: quantity(i),
                     measured: datum.value,
                     sigma: datum.sigma,
-                    before: self.bare.point.predicted[i],
+                    before: self.baseline.point.predicted[i],
                     after: self.best.point.predicted[i],
-                    kept_out: self.left_out[1][i],
+                    held_out: self.left_out[1][i],
                     gross: self.weights.inverse[i] == 0.0,
                 }
             })
@@ -406,7 +426,7 @@ impl Analysis<'_> {
             Some(sets) => sets.iter().skip(1).collect(),
             None => self.alternatives.iter().flatten().collect(),
         };
-        let mut rivals: Vec<(String, crate::arm::effect::Subject)> = others
+        let mut competitors: Vec<(String, crate::arm::effect::subject::Subject)> = others
             .into_iter()
             .take(4)
             .map(|s| {
@@ -414,21 +434,28 @@ impl Analysis<'_> {
                 (model.label(), subject(&model, &s.u))
             })
             .collect();
-        if rivals.is_empty() {
-            rivals = self.without_each();
+        if competitors.is_empty() {
+            competitors = self.without_each();
         }
-        next_test::Question { campaign: self.campaign, best, rivals, residuals: self.worst_pose(), verdict }
+        next_test::Question {
+            campaign: self.campaign,
+            best,
+            competitors,
+            residuals: self.worst_pose(),
+            verdict,
+        }
     }
 
-    /// The same arm without each of the named effects: what shows one that nothing else could be confirms it. A refit
-    /// would not do: it bends stiffnesses that are not in question.
-    fn without_each(&self) -> Vec<(String, crate::arm::effect::Subject)> {
+    /// The same arm without each of the named effects in turn. A test that shows an effect confirms it, if
+    /// nothing else could be the cause. The model without it is not refitted, because a refit would change
+    /// stiffnesses that are not in question.
+    fn without_each(&self) -> Vec<(String, crate::arm::effect::subject::Subject)> {
         let best = &self.best;
         (0..best.model.effects.len())
             .map(|i| {
-                let first = best.model.first_knob(i);
+                let first = best.model.first_parameter(i);
                 let mut u = best.point.u.clone();
-                u.drain(first..first + best.model.effects[i].knobs.len());
+                u.drain(first..first + best.model.effects[i].free_parameters.len());
                 let name = format!("the same arm without {}", best.model.effects[i].label());
                 (name, best.model.without(i).subject(self.forward, &u))
             })
@@ -450,12 +477,12 @@ impl Analysis<'_> {
     }
 }
 
-/// Rows other than absolute positions.
+/// Number of rows that are not absolute positions.
 pub fn rows(campaign: &Campaign) -> usize {
     campaign.statics.len() + campaign.modal.len() + campaign.windup.len()
 }
 
-/// Why the readings cannot speak at all.
+/// Reasons why the readings cannot settle anything.
 fn too_little(campaign: &Campaign, forward: &Forward) -> Vec<String> {
     let mut reasons = Vec::new();
     let rows = rows(campaign);
@@ -472,7 +499,7 @@ fn too_little(campaign: &Campaign, forward: &Forward) -> Vec<String> {
     poses.dedup();
     if poses.len() < FEWEST_POSES && !(poses.is_empty() && rows >= few_rows::FEWEST_ROWS) {
         reasons.push(format!(
-            "{} distinct pose(s): effects at different places look alike; measure at least {FEWEST_POSES}",
+            "{} distinct pose(s): effects at different places look the same; measure at least {FEWEST_POSES}",
             poses.len()
         ));
     }
@@ -483,17 +510,17 @@ fn too_little(campaign: &Campaign, forward: &Forward) -> Vec<String> {
     reasons.extend(dead_instruments(forward));
     if first.is_some() && campaign.statics.iter().all(same_load) {
         reasons.push(
-            "every static reading has the same load: what grows with it cannot be told from what does not"
+            "every static reading has the same load: an effect that grows with load cannot be told from one that does not"
                 .into(),
         );
     }
     reasons
 }
 
-/// Fewest rows of a channel that being all the same says something of.
+/// Equal readings are suspicious from this many rows of a channel on.
 const FEWEST_ALIKE: usize = 4;
 
-/// Channels whose readings are all the same, and whether no reading of any is more than noise.
+/// Names channels whose readings are all equal, and says if no reading exceeds the noise.
 fn dead_instruments(forward: &Forward) -> Vec<String> {
     let mut out = Vec::new();
     for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
@@ -515,14 +542,14 @@ fn dead_instruments(forward: &Forward) -> Vec<String> {
 /// A fitted effect's parameters with their intervals.
 fn parameters(effect: &Candidate, u: &[f64], ends: &[Interval]) -> Vec<(String, Vec<Estimate>)> {
     let mut out: Vec<(String, Vec<Estimate>)> = Vec::new();
-    for ((knob, value), interval) in effect.knobs.iter().zip(effect.numbers(u)).zip(ends) {
-        let estimate = knob.estimate(value, interval);
-        match out.iter_mut().find(|(name, _)| name == knob.name) {
+    for ((parameter, value), interval) in effect.free_parameters.iter().zip(effect.numbers(u)).zip(ends) {
+        let estimate = parameter.estimate(value, interval);
+        match out.iter_mut().find(|(name, _)| name == parameter.name) {
             Some((_, list)) => list.push(estimate),
-            None => out.push((knob.name.to_string(), vec![estimate])),
+            None => out.push((parameter.name.to_string(), vec![estimate])),
         }
     }
-    if effect.knobs.is_empty() {
+    if effect.free_parameters.is_empty() {
         let stated = |value: f64| Estimate { value, low: Some(value), high: Some(value) };
         out.push(("factor".into(), effect.numbers(&[]).into_iter().map(stated).collect()));
     }

@@ -1,18 +1,22 @@
-//! Every kind of reading together. Absolute positions know the geometry, which displacements, frequencies
-//! and bench readings take as given; those know what yields under loads of their own, which positions see
-//! under gravity alone. So each is reconciled with what the other has found.
+//! Reconciles all kinds of readings together.
+//!
+//! Absolute positions determine the geometry, which displacements, frequencies and bench readings take as
+//! given. These in turn determine what yields under loads of their own, while positions are loaded by gravity
+//! alone. So each kind is reconciled with the findings of the other.
 
 use super::analysis;
-use super::fit::kept_out::KeptOut;
+use super::fit::held_out::HeldOut;
 use super::fit::noise::Noise;
+use super::model::estimate::Finding;
 use super::positions;
+use super::positions::analysis::Calibrated;
 use super::positions::outcome::FEWEST;
-use super::positions::{Calibrated, Stage};
+use super::predict::subject;
 use super::readings::campaign::Campaign;
 use super::select::few_rows::FEWEST_ROWS;
 use super::select::lack_of_fit::LackOfFit;
-use super::verdict::outcome::{Finding, Outcome, Verdict};
-use super::verdict::predict::subject;
+use super::verdict::outcome::{Outcome, Verdict};
+use super::verdict::stage::Stage;
 use crate::arm::{Arm, Element};
 use serde_json::json;
 
@@ -24,7 +28,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         return analysis::reconcile(campaign);
     }
     if rows == 0 {
-        return positions::reconcile(campaign);
+        return positions::outcome::reconcile(campaign);
     }
     let left_out = |mut outcome: Outcome, what: String| {
         outcome.reasons.push(format!("{what}: they are left out"));
@@ -35,24 +39,24 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         return left_out(analysis::reconcile(&loaded), what);
     }
     if rows < FEWEST_ROWS {
-        let what = format!("{rows} rows beside the positions are too few, give at least {FEWEST_ROWS}");
-        return left_out(positions::reconcile(&placed), what);
+        let what = format!("{rows} rows other than positions are too few, give at least {FEWEST_ROWS}");
+        return left_out(positions::outcome::reconcile(&placed), what);
     }
     of_both(campaign, loaded, placed)
 }
 
-/// What yields is asked of the loaded arm on calibrated geometry, then the positions are asked what is
-/// still missing. Where the loaded arm does not settle it, what the positions find is tried on it.
+/// Finds what yields from the loaded arm on calibrated geometry, and then what the positions still lack.
+/// Where the loaded arm does not settle it, the findings of the positions are tried on it.
 fn of_both(campaign: &Campaign, mut loaded: Campaign, placed: Campaign) -> Outcome {
-    let calibrated = positions::calibrated(&placed);
+    let calibrated = positions::analysis::calibrated(&placed);
     loaded.arm = calibrated.arms[0].clone();
     let first = analysis::reconcile(&loaded);
     if settled(first.verdict) {
-        let second = positions::reconcile(&with_what_yields(&placed, &first));
+        let second = positions::outcome::reconcile(&with_what_yields(&placed, &first));
         let corrected = second.corrected.clone();
         return Both { campaign, calibrated, loaded: first, placed: second, told: true, corrected }.outcome();
     }
-    let second = positions::reconcile(&placed);
+    let second = positions::outcome::reconcile(&placed);
     loaded.arm = second.corrected.clone();
     let again = if second.effects.is_empty() { first } else { analysis::reconcile(&loaded) };
     let corrected = again.corrected.clone();
@@ -68,8 +72,8 @@ fn settled(verdict: Verdict) -> bool {
     matches!(verdict, Verdict::Explained | Verdict::NoGap)
 }
 
-/// The positions of arms that have the stiffnesses, masses and effects that the loaded arm showed, their
-/// geometry as it was; payloads as heavy as that arm felt them.
+/// The positions campaign with the stiffnesses, masses and effects that the loaded arm showed. The geometry
+/// stays nominal, and payloads weigh what that arm felt.
 fn with_what_yields(placed: &Campaign, found: &Outcome) -> Campaign {
     let mut out = placed.clone();
     let known = out.arm.effects.len();
@@ -102,22 +106,22 @@ fn with_what_yields(placed: &Campaign, found: &Outcome) -> Campaign {
     out
 }
 
-/// What both kinds of readings say.
+/// The conclusion from both kinds of readings.
 struct Both<'a> {
     campaign: &'a Campaign,
     calibrated: Calibrated,
     loaded: Outcome,
     placed: Outcome,
-    /// Whether the positions were told what the loaded arm showed, or asked first.
+    /// Whether the positions were given the findings of the loaded arm, or analysed first.
     told: bool,
-    /// The arm with what both have found.
+    /// The arm with the findings of both.
     corrected: Arm,
 }
 
 impl Both<'_> {
     fn outcome(self) -> Outcome {
         let verdict = self.verdict();
-        let (stages, kept_out, reasons) = (self.stages(), self.kept_out(), self.reasons(verdict));
+        let (stages, held_out, reasons) = (self.stages(), self.held_out(), self.reasons(verdict));
         let Self { campaign, calibrated, loaded, mut placed, corrected, .. } = self;
         let mut next_tests = [loaded.next_tests, placed.next_tests].concat();
         next_tests.sort_by(|a, b| b.expected_sigmas.total_cmp(&a.expected_sigmas));
@@ -151,8 +155,8 @@ impl Both<'_> {
             reasons,
             effects,
             suspects,
-            kept_out,
-            located: [loaded.located, positions::located(campaign, &placed.residuals)].concat(),
+            held_out,
+            located: [loaded.located, positions::outcome::located(campaign, &placed.residuals)].concat(),
             next_tests,
             noise: Noise {
                 outliers: [loaded.noise.outliers, placed.noise.outliers].concat(),
@@ -171,7 +175,7 @@ impl Both<'_> {
         }
     }
 
-    /// What one kind of readings leaves open or unexplained, the arm as a whole does.
+    /// The verdict on the arm as a whole: what one kind of readings leaves open or unexplained, remains so.
     fn verdict(&self) -> Verdict {
         let order = [Verdict::Unexplained, Verdict::InsufficientData, Verdict::Explained];
         let said = [self.loaded.verdict, self.placed.verdict];
@@ -186,15 +190,16 @@ impl Both<'_> {
             }
             out
         };
-        [of(&self.loaded, "the readings beside the positions"), of(&self.placed, "the positions")].concat()
+        [of(&self.loaded, "the readings other than positions"), of(&self.placed, "the positions")].concat()
     }
 
-    /// The positions' last stage before an effect was looked for.
+    /// The last stage of the positions before an effect was searched for.
     fn last_calibration(&self) -> Option<usize> {
         self.placed.stages.iter().rposition(|s| !s.added.contains('@'))
     }
 
-    /// The positions' table of errors: calibration alone, what they were told, what they found.
+    /// The table of position errors: calibration alone, the effects that were given, and those that were
+    /// found.
     fn stages(&self) -> Vec<Stage> {
         let Some(last) = self.last_calibration() else { return Vec::new() };
         let mut out = self.calibrated.stages.clone();
@@ -206,10 +211,10 @@ impl Both<'_> {
         out
     }
 
-    /// Both kinds of readings kept out; before: by calibration alone.
-    fn kept_out(&self) -> Option<KeptOut> {
-        let (Some(loaded), Some(placed)) = (self.loaded.kept_out, self.placed.kept_out) else {
-            return self.loaded.kept_out.or(self.placed.kept_out);
+    /// Held-out residuals of both kinds of readings. Those before are by calibration alone.
+    fn held_out(&self) -> Option<HeldOut> {
+        let (Some(loaded), Some(placed)) = (self.loaded.held_out, self.placed.held_out) else {
+            return self.loaded.held_out.or(self.placed.held_out);
         };
         let median_mm = |s: Option<&Stage>| s.map_or(1.0, |s| s.median_mm);
         let told = median_mm(self.last_calibration().map(|i| &self.placed.stages[i]));
@@ -218,7 +223,7 @@ impl Both<'_> {
         let mean = |a: f64, b: f64| {
             ((loaded.count as f64 * a.powi(2) + placed.count as f64 * b.powi(2)) / count as f64).sqrt()
         };
-        Some(KeptOut {
+        Some(HeldOut {
             rms_before: mean(loaded.rms_before, placed.rms_before * rigid / told),
             rms_after: mean(loaded.rms_after, placed.rms_after),
             rms_declared_after: mean(loaded.rms_declared_after, placed.rms_declared_after),

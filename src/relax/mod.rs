@@ -1,214 +1,29 @@
-//! A lower bound on the mass of every design that deflects no more and vibrates no lower than is asked.
+//! A lower bound on the mass of every design that deflects no more and vibrates no lower than required.
 //!
-//! Each piece of the arm is allowed to be a mixture of its catalog options (weights that sum to one). In the
-//! weights, mass is linear; tip deflection has linear lower bounds (`statics`: loads at their least, plus
-//! McCormick's envelope of load times compliance); what a drive must hold is linear; and a required lowest
-//! mode is `K - ω² M ⪰ 0` with `K` and `M` linear, of which each trial shape `x` gives one linear
-//! inequality (`shapes`). The lightest mixture is a linear program; it is solved by Clarabel
-//! (`program`), and the bound that is returned is the Lagrangian one at the solver's multipliers, which is
-//! valid for any multipliers, so that nothing rests on the solver's tolerance. Options that cannot belong
-//! to a design as good and as light as the one at hand are dropped, which narrows the loads and tightens
-//! the bound, until nothing changes. Every step is proved in `docs/relaxation.md`.
+//! Each piece of the arm may be a mixture of its catalog options, with weights that sum to one. Then
+//!
+//! - mass is linear in the weights;
+//! - tip deflection has lower bounds that are linear (`statics`: loads at an end of their range, plus
+//!   McCormick's envelope of load times compliance);
+//! - what a drive must carry is linear;
+//! - a required lowest mode is `K - ω² M ⪰ 0` with `K` and `M` linear, and each trial shape `x` gives one
+//!   linear inequality (`shapes`).
+//!
+//! The lightest mixture is a linear program, which Clarabel solves (`program`). The bound that is returned is
+//! the Lagrangian bound at the solver's multipliers. It is valid for any multipliers, so it does not depend
+//! on the solver's tolerance.
+//!
+//! Options that cannot belong to a design as good and as light as the known one are dropped. This shrinks the
+//! ranges of the loads and tightens the bound; it is repeated until nothing changes. Every step is proved in
+//! `docs/relaxation.md`.
 
+pub(crate) mod drives;
 pub(crate) mod parts;
 pub(crate) mod program;
+pub(crate) mod relaxation;
+pub(crate) mod row;
 pub(crate) mod shapes;
 pub(crate) mod slopes;
 pub(crate) mod statics;
 
-use crate::pareto::objectives::Objectives;
-use crate::space::problem::ArmProblem;
-use parts::Parts;
-use program::{Program, Row};
-use shapes::ShapeModel;
-use statics::CaseLoads;
-
-/// Rounds of solving and dropping options.
-const ROUNDS: usize = 4;
-/// Solutions of the program in a round: each adds shapes or options.
-const STEPS: usize = 40;
-/// What rounding may do to an objective, relative.
-const ROUNDING: f64 = 1e-9;
-
-/// What is known of the designs that are good enough.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MassBound {
-    /// No design with at most the deflection and at least the lowest mode is lighter \[kg\].
-    pub mass_lower_bound_kg: f64,
-    /// What the program gave at first, before options were dropped by it: about the mass of the lightest
-    /// mixture of catalog parts \[kg\].
-    pub mixture_kg: f64,
-    /// Options of each piece, tilting bearings and added masses included, base to tip, that such a design of
-    /// at most the known one's mass may have.
-    pub options_left: Vec<usize>,
-    /// Whether a load changes sign within what is left somewhere, so that the bound had to take the better sign.
-    pub loads_oppose: bool,
-}
-
-/// A design space compiled for bounds.
-pub struct Relaxation<'a> {
-    problem: &'a ArmProblem<'a>,
-    cases: Vec<CaseLoads>,
-    /// One for each judged case.
-    models: Vec<ShapeModel>,
-}
-
-impl<'a> Relaxation<'a> {
-    /// Compiles every case.
-    pub fn new(problem: &'a ArmProblem<'a>) -> Self {
-        Self {
-            problem,
-            cases: (0..problem.stations().len()).map(|c| CaseLoads::new(problem, c)).collect(),
-            models: problem.space().judged_cases.iter().map(|&c| ShapeModel::new(problem, c)).collect(),
-        }
-    }
-
-    /// Bounds the mass of every design that deflects no more and vibrates no lower than is asked, by means
-    /// of a known one (one option a level) that does, of at most the mass asked; `None` if the known design
-    /// does not hold.
-    pub fn mass_lower_bound(&self, known: &[u32], asked: &Objectives) -> Option<MassBound> {
-        let arm = self.problem.walk(known, |_, _| {}).ok()?;
-        let mut search = Search {
-            problem: self.problem,
-            asked,
-            cases: &self.cases,
-            directions: self.problem.judged_directions(&arm),
-            models: &self.models,
-            parts: Parts::new(self.problem, &arm.options),
-            shapes: Vec::new(),
-            best_kg: 0.0,
-            first_kg: 0.0,
-        };
-        search.run();
-        // nothing else is left: the known design is the lightest
-        let alone = search.parts.alive.iter().all(|options| options.len() == 1);
-        Some(MassBound {
-            mass_lower_bound_kg: if alone { self.problem.mass_kg(&arm) } else { search.best_kg }
-                .min(asked.mass_kg),
-            mixture_kg: search.first_kg.min(asked.mass_kg),
-            options_left: search.parts.alive.iter().rev().map(Vec::len).collect(),
-            loads_oppose: self.cases.iter().any(|case| case.opposes(self.problem, &search.parts)),
-        })
-    }
-}
-
-struct Search<'a> {
-    problem: &'a ArmProblem<'a>,
-    asked: &'a Objectives,
-    cases: &'a [CaseLoads],
-    /// For each judged case, the direction in which the known design's tip moves.
-    directions: Vec<(usize, nalgebra::Vector3<f64>)>,
-    models: &'a [ShapeModel],
-    parts: Parts,
-    /// Trial shapes: judged case and strain coordinates.
-    shapes: Vec<(usize, nalgebra::DVector<f64>)>,
-    best_kg: f64,
-    /// The best after the first round of solving.
-    first_kg: f64,
-}
-
-impl Search<'_> {
-    fn run(&mut self) {
-        for round in 0..ROUNDS {
-            self.narrow();
-            let before: usize = self.parts.alive.iter().map(Vec::len).sum();
-            self.solve();
-            if round == 0 {
-                self.first_kg = self.best_kg;
-            }
-            self.narrow();
-            let after: usize = self.parts.alive.iter().map(Vec::len).sum();
-            if after == before || self.best_kg >= self.asked.mass_kg * (1.0 - 1e-6) {
-                return;
-            }
-        }
-    }
-
-    /// Drops options that no row of inequalities admits, whatever the other pieces are.
-    fn narrow(&mut self) {
-        loop {
-            let mut dropped = self.parts.drop_drives(self.problem, self.cases);
-            let mass =
-                Row { coefficients: self.parts.masses(), limit: self.asked.mass_kg * (1.0 + ROUNDING) };
-            for row in self.rows().iter().chain([&mass]) {
-                dropped |= self.parts.drop_by(row);
-            }
-            if !dropped {
-                return;
-            }
-        }
-    }
-
-    /// Every inequality that a design as good as the known one fulfils.
-    fn rows(&self) -> Vec<Row> {
-        let mut rows = Vec::new();
-        for (case, direction) in &self.directions {
-            let limit_m = self.asked.tip_deflection_m;
-            rows.extend(self.cases[*case].deflection_rows(self.problem, &self.parts, direction, limit_m));
-        }
-        for &case in &self.problem.space().sizing_cases {
-            rows.extend(self.cases[case].torque_rows(self.problem, &self.parts));
-        }
-        let stiffness = self.stiffness();
-        rows.extend(self.shapes.iter().map(|(model, shape)| self.shape_row(&stiffness, *model, shape)));
-        rows
-    }
-
-    fn eigenvalue(&self) -> f64 {
-        let omega = std::f64::consts::TAU * self.asked.lowest_mode_hz;
-        omega * omega * (1.0 - ROUNDING)
-    }
-
-    /// Largest stiffness of every joint's options, by slot, for each model.
-    fn stiffness(&self) -> Vec<Vec<Vec<f64>>> {
-        self.models.iter().map(|m| self.cases[m.case].stiffest(self.problem, &self.parts)).collect()
-    }
-
-    fn shape_row(&self, stiffness: &[Vec<Vec<f64>>], model: usize, shape: &nalgebra::DVector<f64>) -> Row {
-        self.models[model].row(&self.parts, &stiffness[model], shape, self.eigenvalue())
-    }
-
-    /// Solves the program, adding shapes that the mixture violates and options that it lacks.
-    fn solve(&mut self) {
-        let stiffness = self.stiffness();
-        let mut program = Program::new(&self.parts, self.rows());
-        for _ in 0..STEPS {
-            let Some(solution) = program.solve() else { return };
-            self.best_kg = self.best_kg.max(solution.bound_kg);
-            let found = self.violated(&stiffness, &solution.weights);
-            for (model, shape) in &found {
-                program.add(self.shape_row(&stiffness, *model, shape));
-            }
-            self.shapes.extend(found.iter().cloned());
-            if found.is_empty() && !solution.grew {
-                break;
-            }
-        }
-        program.drop_options(&mut self.parts, self.asked.mass_kg * (1.0 + ROUNDING));
-    }
-
-    fn violated(
-        &self,
-        stiffness: &[Vec<Vec<f64>>],
-        weights: &[Vec<f64>],
-    ) -> Vec<(usize, nalgebra::DVector<f64>)> {
-        let mut found = Vec::new();
-        for (index, model) in self.models.iter().enumerate() {
-            let shapes = model.violated(&self.parts, &stiffness[index], weights, self.eigenvalue());
-            found.extend(shapes.into_iter().map(|shape| (index, shape)));
-        }
-        found
-    }
-}
-
-impl ArmProblem<'_> {
-    /// The unit vector along which the tip of an arm moves in each judged case; where it does not, down.
-    fn judged_directions(
-        &self,
-        arm: &crate::space::problem::Partial,
-    ) -> Vec<(usize, nalgebra::Vector3<f64>)> {
-        let down = -nalgebra::Vector3::z();
-        let judged = self.space().judged_cases.iter();
-        judged.map(|&c| (c, arm.stations[c].tip_m.try_normalize(0.0).unwrap_or(down))).collect()
-    }
-}
+pub use relaxation::{MassBound, Relaxation};

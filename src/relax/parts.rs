@@ -1,13 +1,12 @@
 //! The options that each piece may still have, tip first.
 
-use super::program::Row;
-use super::statics::CaseLoads;
+use super::row::Row;
 use crate::space::problem::ArmProblem;
 use crate::space::slot::Slot;
 
-/// Options and masses of every slot.
+/// Remaining options and masses of every slot.
 pub(super) struct Parts {
-    /// Options, ascending, that are left of each slot.
+    /// Remaining options of each slot, ascending.
     pub alive: Vec<Vec<u32>>,
     /// The known design's option of each slot.
     pub known: Vec<u32>,
@@ -39,25 +38,27 @@ impl Parts {
         self.mass_kg[slot][option as usize]
     }
 
-    /// Masses of what is left.
+    /// Masses of the remaining options \[kg\].
     pub fn masses(&self) -> Vec<Vec<f64>> {
         self.each(|slot, option| self.mass_kg(slot, option))
     }
 
-    /// A number for every option that is left.
+    /// One number for each remaining option.
     pub fn each(&self, number: impl Fn(usize, u32) -> f64) -> Vec<Vec<f64>> {
         let slots = self.alive.iter().enumerate();
         slots.map(|(slot, alive)| alive.iter().map(|&o| number(slot, o)).collect()).collect()
     }
 
-    /// Drops options with which a row exceeds its limit whatever the others are. Says whether any went.
+    /// Drops the options with which a row exceeds its limit whatever the other pieces are. Returns whether
+    /// any was dropped.
     pub fn drop_by(&mut self, row: &Row) -> bool {
         let least = row.least();
         let total: f64 = least.iter().sum();
         let mut dropped = false;
         for (slot, coefficients) in row.coefficients.iter().enumerate() {
             if coefficients.len() != self.alive[slot].len() {
-                // an earlier row has dropped options here: the next round sees this one again
+                // An earlier row has dropped options here, so the coefficients no longer match. The next
+                // round builds this row again.
                 continue;
             }
             let room = row.limit - (total - least[slot]) + 1e-12 * row.limit.abs();
@@ -66,8 +67,8 @@ impl Parts {
         dropped
     }
 
-    /// Keeps the options of a slot that pass, given their place and number, and the known one always.
-    /// Says whether any went.
+    /// Keeps the options of a slot that pass, given their index and number, and always the known one. Returns
+    /// whether any was dropped.
     pub fn keep(&mut self, slot: usize, passes: impl Fn(usize, u32) -> bool) -> bool {
         let known = self.known[slot];
         let before = self.alive[slot].len();
@@ -77,38 +78,6 @@ impl Parts {
             option == known || passes(at - 1, option)
         });
         self.alive[slot].len() < before
-    }
-
-    /// Drops drives that the loads left do not allow: those that cannot hold the least demand and, where the
-    /// lightest that holds is taken, those heavier than the lightest that holds the greatest demand.
-    pub fn drop_drives(&mut self, problem: &ArmProblem, cases: &[CaseLoads]) -> bool {
-        let mut dropped = false;
-        for (slot, piece) in problem.slots().iter().enumerate() {
-            let Slot::Sized(sized) = piece else { continue };
-            let motion = sized.table.motion();
-            // otherwise the mean torque may fall while a load rises
-            if motion.mean_torque.sum < motion.mean_torque.difference {
-                continue;
-            }
-            let (mut static_nm, mut inertia_kgm2) = ([0.0f64; 2], [0.0f64; 2]);
-            for &case in &problem.space().sizing_cases {
-                let torque = cases[case].torque_size(problem, self, slot);
-                let inertia = cases[case].inertia_range(problem, self, slot);
-                for end in 0..2 {
-                    static_nm[end] = static_nm[end].max(torque[end]);
-                    inertia_kgm2[end] = inertia_kgm2[end].max(inertia[end]);
-                }
-            }
-            let relaxed = [1.0 - 1e-12, 1.0 + 1e-12];
-            let [least, most] = [0, 1]
-                .map(|end| motion.demand(static_nm[end] * relaxed[end], inertia_kgm2[end] * relaxed[end]));
-            let heaviest = if sized.all_fits { None } else { sized.table.first_fit(&most) };
-            dropped |= self.keep(slot, |_, option| {
-                sized.table.limits(option as usize).hold(&least)
-                    && heaviest.is_none_or(|heaviest| option as usize <= heaviest)
-            });
-        }
-        dropped
     }
 }
 

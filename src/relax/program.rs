@@ -1,79 +1,46 @@
-//! The lightest mixture: a linear program by Clarabel, its bound by Lagrange.
+//! The lightest mixture: a linear program solved by Clarabel, and its Lagrangian bound.
 //!
-//! Minimise `Σ m_so w_so` with `Σ_o w_so = 1`, `w ≥ 0` and the rows `Σ c_rso w_so ≤ b_r`. The solver sees a few
-//! options of each piece; for its multipliers `y ≥ 0`
+//! Minimize `Σ m_so w_so` subject to `Σ_o w_so = 1`, `w ≥ 0` and the rows `Σ c_rso w_so ≤ b_r`. The solver
+//! sees only a few options of each piece. For its multipliers `y ≥ 0`
 //!
 //! ```text
 //! L(y) = Σ_s min_o (m_so + Σ_r y_r c_rso) - Σ_r y_r b_r
 //! ```
 //!
-//! over *all* options left is a lower bound for any `y`, and the options that set the minima are those the
-//! solver lacks.
+//! over *all* remaining options is a lower bound, for any `y`. The options that attain the minima are those
+//! that the solver lacks (column generation).
 
 use super::parts::Parts;
+use super::row::Row;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
 
-/// What rounding may do to an inequality, relative to its largest terms.
-const ROUNDING: f64 = 1e-9;
-/// Options a slot that are added at a time.
+/// Number of options that are added to a slot at a time.
 const ADDED: usize = 3;
 
-/// `Σ coefficient × weight ≤ limit`, coefficients by slot and by option left.
-#[derive(Clone)]
-pub(super) struct Row {
-    pub coefficients: Vec<Vec<f64>>,
-    pub limit: f64,
-}
-
-impl Row {
-    /// Smallest coefficient of each slot.
-    pub fn least(&self) -> Vec<f64> {
-        self.coefficients.iter().map(|c| c.iter().copied().fold(f64::INFINITY, f64::min)).collect()
-    }
-
-    /// Whether some choice of options exceeds the limit.
-    pub fn can_bind(&self) -> bool {
-        let most: f64 =
-            self.coefficients.iter().map(|c| c.iter().copied().fold(f64::NEG_INFINITY, f64::max)).sum();
-        most > self.limit
-    }
-
-    /// The same inequality, its limit raised by what rounding may do to it, with no number larger than 1.
-    pub fn ready(mut self) -> Self {
-        let largest_of = |c: &Vec<f64>| c.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
-        let terms: Vec<f64> = self.coefficients.iter().map(largest_of).collect();
-        self.limit += ROUNDING * (self.limit.abs() + terms.iter().sum::<f64>());
-        let largest = terms.iter().fold(self.limit.abs(), |largest, x| largest.max(*x));
-        if largest > 0.0 {
-            self.coefficients.iter_mut().flatten().for_each(|c| *c /= largest);
-            self.limit /= largest;
-        }
-        self
-    }
-}
-
-/// The program and the options it is solved over.
+/// The program, and the options over which it is solved.
 pub(super) struct Program {
     masses: Vec<Vec<f64>>,
     rows: Vec<Row>,
-    /// Places, among the options left, that the solver sees.
+    /// Indices, among the remaining options, that the solver sees.
     seen: Vec<Vec<usize>>,
+    /// The best bound so far \[kg\], and its multipliers.
     best: (f64, Vec<f64>),
 }
 
-/// What one solution says.
+/// One solution of the program.
 pub(super) struct Solution {
     /// Lower bound on the mass \[kg\].
     pub bound_kg: f64,
-    /// Weight of every option left.
+    /// Weight of every remaining option.
     pub weights: Vec<Vec<f64>>,
     /// Whether options were added that may make the mixture lighter.
     pub grew: bool,
 }
 
 impl Program {
-    /// Starts from the known design, the lightest options and those that ease each row most.
+    /// A program that starts with the known design, the lightest options and those with the least coefficient
+    /// in each row.
     pub fn new(parts: &Parts, rows: Vec<Row>) -> Self {
         let masses = parts.masses();
         let seen = (0..masses.len())
@@ -97,7 +64,7 @@ impl Program {
         self.rows.push(row);
     }
 
-    /// Solves; `None` if the solver finds no solution.
+    /// Solves the program. `None` if the solver finds no solution.
     pub fn solve(&mut self) -> Option<Solution> {
         let (flat, multipliers) = self.solver()?;
         let mut weights: Vec<Vec<f64>> = self.masses.iter().map(|m| vec![0.0; m.len()]).collect();
@@ -113,11 +80,12 @@ impl Program {
         if bound_kg > self.best.0 {
             self.best = (bound_kg, multipliers);
         }
+        // If the bound has reached the value of the mixture, no further option can improve it.
         let grew = bound_kg < value_kg * (1.0 - 1e-5) && self.see_more(&reduced);
         Some(Solution { bound_kg, weights, grew })
     }
 
-    /// Drops options with which no design is as light as `mass_kg`.
+    /// Drops the options with which no design is as light as `mass_kg`.
     pub fn drop_options(&self, parts: &mut Parts, mass_kg: f64) {
         let (bound_kg, multipliers) = &self.best;
         let reduced = self.reduced(multipliers);
@@ -127,7 +95,8 @@ impl Program {
         }
     }
 
-    /// Mass plus what each option costs in the rows; rows beyond the multipliers cost nothing.
+    /// Reduced costs: mass plus the price of each option in the rows. Rows that were added after the
+    /// multipliers cost nothing.
     fn reduced(&self, multipliers: &[f64]) -> Vec<Vec<f64>> {
         let mut out = self.masses.clone();
         for (row, y) in self.rows.iter().zip(multipliers).filter(|(_, y)| **y > 0.0) {
@@ -138,16 +107,19 @@ impl Program {
         out
     }
 
+    /// The Lagrangian bound \[kg\].
     fn bound(&self, reduced: &[Vec<f64>], multipliers: &[f64]) -> f64 {
         let least: f64 = reduced.iter().map(|r| r.iter().copied().fold(f64::INFINITY, f64::min)).sum();
         least - self.rows.iter().zip(multipliers).map(|(row, y)| y * row.limit).sum::<f64>()
     }
 
+    /// Adds the options of least reduced cost. Returns whether any was new.
     fn see_more(&mut self, reduced: &[Vec<f64>]) -> bool {
         let mut grew = false;
         for (seen, reduced) in self.seen.iter_mut().zip(reduced) {
             let mut order: Vec<usize> = (0..reduced.len()).collect();
             let most = ADDED.min(order.len());
+            // Only the least are needed; a full sort would cost more.
             if most < order.len() {
                 order.select_nth_unstable_by(most, |&a, &b| reduced[a].total_cmp(&reduced[b]));
             }
@@ -158,7 +130,8 @@ impl Program {
         grew
     }
 
-    /// Weights of the options seen, slot by slot, and the rows' multipliers, none negative.
+    /// Weights of the options seen, slot by slot, and the multipliers of the rows. None is negative. `None`
+    /// if the solver fails.
     fn solver(&self) -> Option<(Vec<f64>, Vec<f64>)> {
         let (slots, rows) = (self.seen.len(), self.rows.len());
         let columns: usize = self.seen.iter().map(Vec::len).sum();
@@ -201,7 +174,7 @@ fn place_of_least(numbers: &[f64]) -> usize {
     (0..numbers.len()).min_by(|&a, &b| numbers[a].total_cmp(&numbers[b])).unwrap_or_default()
 }
 
-/// Adds a place to a sorted list; says whether it was new.
+/// Adds an index to a sorted list. Returns whether it was new.
 fn see(seen: &mut Vec<usize>, at: usize) -> bool {
     match seen.binary_search(&at) {
         Ok(_) => false,

@@ -1,13 +1,13 @@
 //! Trial shapes: linear inequalities that follow from a required lowest mode, in one case.
 //!
-//! `λ₁ = min_x xᵀK x / xᵀM x`, so a design whose `λ₁` is at least `ω²` has `ω² xᵀM x - xᵀK x ≤ 0` for every
-//! shape `x` of strain coordinates (joint angles and the polynomials of [`beam`](crate::mechanics::beam)). `M` is
-//! linear in the pieces' masses and `K` in their stiffnesses, and neither depends on the other, so for a
-//! fixed `x` the left side is a sum of one number a piece. The shapes are the modes of mixtures that are
-//! too slow, found one after the other.
+//! `λ₁ = min_x xᵀK x / xᵀM x`. So a design whose `λ₁` is at least `ω²` satisfies `ω² xᵀM x - xᵀK x ≤ 0` for
+//! every shape `x` of strain coordinates (joint angles and the polynomials of
+//! [`beam`](crate::mechanics::beam)). `M` is linear in the masses of the pieces and `K` in their stiffnesses.
+//! For a fixed `x` the left side is therefore a sum of one number for each piece. The shapes that matter are
+//! the modes of mixtures that are too soft; they are found one after the other.
 
 use super::parts::Parts;
-use super::program::Row;
+use super::row::Row;
 use crate::arm::structure::{LinkPiece, Structure};
 use crate::mechanics::beam::{PreparedBeam, compliances, line_densities};
 use crate::mechanics::{displacement_at, stack};
@@ -17,32 +17,32 @@ use crate::space::problem::ArmProblem;
 use crate::space::station::{StationSlot, Walk};
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, SymmetricEigen, Vector3};
 
-/// Shapes taken from one mixture.
+/// Greatest number of shapes taken from one mixture.
 const MOST_SHAPES: usize = 3;
 
-/// Masses and stiffnesses of one case by strain coordinates.
+/// Masses and stiffnesses of one case over the strain coordinates.
 pub(super) struct ShapeModel {
-    /// Case of the study.
+    /// Index of the case in the study.
     pub case: usize,
-    /// Inertia of what is given: payload and rigid offsets.
+    /// Inertia of what is given: the payload and rigid offsets.
     given: DMatrix<f64>,
     joints: Vec<JointShape>,
     links: Vec<LinkShape>,
 }
 
-/// A joint: its coordinate and how its mass moves.
+/// A joint: its coordinate, and the motion of its mass.
 struct JointShape {
     slot: usize,
     column: usize,
-    /// Velocity of the joint per coordinate.
+    /// Velocity of the joint per unit of each coordinate.
     motion: DMatrix<f64>,
 }
 
-/// A tube: its coordinates, how it moves, and what its options weigh and resist.
+/// A tube: its coordinates, its motion, and the inertia and stiffness of its options.
 struct LinkShape {
     slot: usize,
     first: usize,
-    /// Weighted displacement and rotation at each Gauss point per coordinate.
+    /// Weighted displacement and rotation at each Gauss point, per unit of each coordinate.
     fields: Vec<Matrix6xX<f64>>,
     /// Inertia per length of each option.
     densities: Vec<[f64; 6]>,
@@ -69,7 +69,7 @@ impl ShapeModel {
         let count: usize = sizes.sum();
         let mut model =
             Self { case, given: DMatrix::zeros(count, count), joints: Vec::new(), links: Vec::new() };
-        // twist of everything so far per coordinate, base to tip
+        // The twist of everything so far per unit of each coordinate, from base to tip.
         let mut twist = DMatrix::<f64>::zeros(6, count);
         let mut column = 0;
         for (slot, placed) in station.slots.iter().enumerate().rev() {
@@ -109,7 +109,8 @@ impl ShapeModel {
         model
     }
 
-    /// The inequality of a shape at an eigenvalue; `stiffness` of the joints' options left.
+    /// The inequality of a shape at a required eigenvalue \[1/s²\]. `stiffness` holds the stiffnesses of the
+    /// joints' remaining options, by slot.
     pub fn row(&self, parts: &Parts, stiffness: &[Vec<f64>], x: &DVector<f64>, eigenvalue: f64) -> Row {
         let mut row =
             Row { coefficients: parts.each(|_, _| 0.0), limit: -eigenvalue * x.dot(&(&self.given * x)) };
@@ -137,7 +138,7 @@ impl ShapeModel {
         row.ready()
     }
 
-    /// Modes of a mixture that lie below an eigenvalue, as shapes, the slowest first.
+    /// The modes of a mixture that lie below an eigenvalue \[1/s²\], as shapes, the lowest first.
     pub fn violated(
         &self,
         parts: &Parts,
@@ -156,7 +157,8 @@ impl ShapeModel {
             let mass: f64 =
                 mix.clone().map(|(at, w)| w * parts.mass_kg(joint.slot, parts.alive[joint.slot][at])).sum();
             inertia += joint.motion.transpose() * &joint.motion * mass;
-            // a joint that may be rigid gives no inequality a finite right side
+            // A joint that may be rigid would make the coefficient infinite, so it does not take part in a
+            // shape.
             let rigid = stiffness[joint.slot].iter().any(|k| k.is_infinite());
             resistance[joint.column] =
                 if rigid { f64::INFINITY } else { mix.map(|(at, w)| w * stiffness[joint.slot][at]).sum() };
@@ -178,10 +180,12 @@ impl ShapeModel {
                 inertia += field.transpose() * weighted;
             }
         }
+        // Scaled by `K^-½`, so that a rigid coordinate has weight 0 and the matrix stays symmetric.
         let soft = DVector::from_iterator(count, resistance.iter().map(|k| 1.0 / k.sqrt()));
         let scaled = DMatrix::from_fn(count, count, |i, j| soft[i] * inertia[(i, j)] * soft[j]);
         let modes = SymmetricEigen::new(scaled);
         let mut slow: Vec<usize> =
+            // The eigenvalues of the scaled matrix are reciprocals, so a low mode is a large one.
             (0..count).filter(|&i| modes.eigenvalues[i] * eigenvalue > 1.0 + 1e-7).collect();
         slow.sort_by(|&a, &b| modes.eigenvalues[b].total_cmp(&modes.eigenvalues[a]));
         slow.truncate(MOST_SHAPES);
@@ -190,7 +194,7 @@ impl ShapeModel {
 }
 
 impl LinkShape {
-    /// Integral of each squared component of the motion of a shape along the link.
+    /// For each component of motion: the integral of its square along the link.
     fn moved(&self, x: &DVector<f64>) -> [f64; 6] {
         let mut out = [0.0; 6];
         for field in &self.fields {
@@ -201,7 +205,7 @@ impl LinkShape {
     }
 }
 
-/// The options of a link, with the effects at it; none if the layer is no link.
+/// The options of a link, with the effects of the study; none if the layer is no link.
 fn tubes(space: &DesignSpace, layer: &Layer) -> Vec<LinkPiece> {
     match layer {
         Layer::Piece(SpacePiece::Choice(choice)) => {
@@ -212,19 +216,19 @@ fn tubes(space: &DesignSpace, layer: &Layer) -> Vec<LinkPiece> {
     }
 }
 
-/// Places and weights of the options that take part.
+/// Indices and weights of the options that take part in a mixture.
 fn mixture(weights: &[f64]) -> impl Iterator<Item = (usize, f64)> + Clone + '_ {
     weights.iter().copied().enumerate().filter(|(_, w)| *w > 0.0)
 }
 
-/// Velocity of a point that moves with everything so far.
+/// Velocity of a point per unit of each coordinate so far.
 fn point_motion(twist: &DMatrix<f64>, at_m: &Vector3<f64>) -> DMatrix<f64> {
     let columns: Vec<Vector3<f64>> =
         twist.column_iter().map(|t| displacement_at(&t.fixed_rows::<6>(0).into_owned(), at_m)).collect();
     DMatrix::from_fn(3, columns.len(), |i, j| columns[j][i])
 }
 
-/// Displacement and rotation in the section frame at each Gauss point, times the root of its weight.
+/// Displacement and rotation in the section frame at each Gauss point, times the square root of its weight.
 fn link_fields(
     beam: &PreparedBeam,
     frame: &Matrix3<f64>,

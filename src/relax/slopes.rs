@@ -1,52 +1,50 @@
-//! How steep a joint's law can be between two torques.
+//! Bounds on the slope of a joint's law between two torques.
 
 use crate::arm::joint_law::{Curve, JointLaw};
 
-/// Rounding may put a torque on either side of a break point.
+/// Relative rounding of a torque, which may put it on either side of a break point.
 const NEAR: f64 = 1e-12;
 
-/// Least and greatest compliance of a joint to small oscillations about any torque between two
-/// \[rad/(N m)\].
+/// Least and greatest compliance to small oscillations about any torque in an interval \[rad/(N m)\].
 pub(super) fn tangent_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     let size = size_range(torque_nm);
     let curve = curve_range(&law.curve, size);
-    // its slope falls as the torque grows
+    // The slope of lost motion falls as the torque grows.
     let play = law
         .lost_motion
         .map_or([0.0; 2], |lost| [size[1], size[0]].map(|t| lost.tangent_compliance_rad_per_nm(t)));
     [0, 1].map(|end| curve[end] + law.connection_rad_per_nm + play[end])
 }
 
-/// Bounds of the mean slope, between any two torques of a range, of the twist when torque has risen from
-/// rest \[rad/(N m)\]. Friction holds the spring it drags until the play's half width is used up.
+/// Least and greatest mean slope of the twist between any two torques of an interval, after the torque has
+/// risen from rest \[rad/(N m)\]. Friction holds back the gear's spring until its half width is used up.
 pub(super) fn rising_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     let [least, most] = tangent_range(law, torque_nm);
     let Some(stiffness) = law.play_stiffness_nm_per_rad() else { return [least, most] };
     let [near, far] = size_range(torque_nm);
     let reach = stiffness * law.hysteresis_rad;
-    let held = if near <= reach { 1.0 / stiffness } else { 0.0 };
+    let held_back = if near <= reach { 1.0 / stiffness } else { 0.0 };
     let freed = if far < reach { 1.0 / stiffness } else { 0.0 };
-    [least - held, most - freed]
+    [least - held_back, most - freed]
 }
 
-/// Least and greatest size of a torque between two \[N m\].
+/// Least and greatest magnitude of a torque in an interval \[N m\].
 fn size_range([low, high]: [f64; 2]) -> [f64; 2] {
     [low.max(-high).max(0.0) * (1.0 - NEAR), high.max(-low) * (1.0 + NEAR)]
 }
 
+/// Least and greatest compliance of a curve at torque magnitudes in an interval \[rad/(N m)\].
 fn curve_range(curve: &Curve, [near, far]: [f64; 2]) -> [f64; 2] {
     match curve {
         Curve::Rigid => [0.0; 2],
         Curve::Linear(stiffness) => [1.0 / stiffness; 2],
         Curve::WindupK1(w) => [1.0 / w.k1_nm_per_rad; 2],
         Curve::Windup(w) => {
-            let segments = [
-                (0.0, w.t1_nm, w.k1_nm_per_rad),
-                (w.t1_nm, w.t2_nm, w.k2_nm_per_rad),
-                (w.t2_nm, f64::INFINITY, w.k3_nm_per_rad),
-            ];
-            let met = segments.iter().filter(|(from, to, _)| near <= *to && far >= *from);
-            met.fold([f64::INFINITY, 0.0], |[least, most], (_, _, k)| [least.min(1.0 / k), most.max(1.0 / k)])
+            let met = w.segments().into_iter().filter(|s| near <= s.to_nm && far >= s.from_nm);
+            met.fold([f64::INFINITY, 0.0], |[least, most], s| {
+                let compliance = 1.0 / s.stiffness_nm_per_rad;
+                [least.min(compliance), most.max(compliance)]
+            })
         }
     }
 }

@@ -1,43 +1,45 @@
-//! Linear lower bounds of the tip's deflection and of what the joints carry, in one case.
+//! Linear lower bounds of the tip's deflection and of the joints' loads, in one case.
 //!
-//! Everything outboard loads a piece by `W = W₀ + Σ_j q_j û_j`, with `û_j` the wrench of one unit of what slot
-//! `j` weighs and `q_j` how much the chosen option weighs. The tip's displacement along a direction `d` is a
-//! sum over the pieces; with `q` between `q⁻` and `q⁺` each term is at least its value at one of these corners
-//! plus the least slope times the way from the corner, per load. Both corners give a row.
+//! Everything outboard loads a piece by the wrench `W = W₀ + Σ_j q_j û_j`. Here `û_j` is the wrench of one
+//! unit of the load of slot `j`, and `q_j` is the load of its chosen option. The tip's displacement along a
+//! direction `d` is a sum over the pieces. With `q` between `q⁻` and `q⁺`, each term is at least its value at
+//! one end plus, for each load, the least slope times the distance from that end. Both ends give a row.
 
 use super::parts::Parts;
-use super::program::Row;
+use super::row::Row;
 use super::slopes::{rising_range, tangent_range};
 use crate::arm::joint_law::JointLaw;
 use crate::mechanics::Wrench;
-use crate::sizing::requirement::LinearReading;
+use crate::sizing::demand::LinearReading;
 use crate::space::problem::ArmProblem;
 use crate::space::slot::Slot;
 use crate::space::station::{Station, StationJoint, StationSlot};
 use nalgebra::{Matrix6, Vector3};
 
-/// One case: where each slot's weight acts, and how much of it each option has.
+/// The loads of one case: where each slot's weight acts, and how much each option weighs.
 pub(super) struct CaseLoads {
     case: usize,
+    /// Wrench per unit of each slot's load.
     unit: Vec<Wrench>,
+    /// Load of each slot's options: kilograms for joints, newtons for links, 1 for a body.
     amount: Vec<Vec<f64>>,
-    /// Inertia about each joint's axis of every option of every slot outboard of it \[kg m²\]; nothing
-    /// where a slot is no joint.
+    /// Inertia about each joint's axis of every option of every slot outboard of it \[kg m²\]. Empty if a
+    /// slot is no joint.
     inertia: Vec<Vec<Vec<f64>>>,
 }
 
-/// A corner of the box of loads.
+/// The end of the loads' ranges from which a bound starts.
 #[derive(Clone, Copy, PartialEq)]
-enum Corner {
+enum LoadEnd {
     Low,
     High,
 }
 
 /// A lower bound of one piece's part of the deflection.
 struct Term {
-    /// At the corner, for each option left \[m\].
-    at_corner: Vec<f64>,
-    /// Per unit of each load outboard on the way from the corner \[m\].
+    /// The part at that end, for each remaining option \[m\].
+    at_end: Vec<f64>,
+    /// Slope per unit of each load outboard, from that end \[m\].
     slopes: Vec<f64>,
 }
 
@@ -58,6 +60,7 @@ impl CaseLoads {
                 }
                 StationSlot::Link { options, .. } => {
                     let weights: Vec<f64> = options.iter().map(|o| -o.weight[2]).collect();
+                    // All options of a link weigh along the same line, so one of them gives the direction.
                     let weighing = options.iter().zip(&weights).find(|(_, w)| **w != 0.0);
                     unit.push(weighing.map_or(Wrench::zeros(), |(o, w)| o.weight / *w));
                     amount.push(weights);
@@ -68,20 +71,20 @@ impl CaseLoads {
         Self { case, unit, amount, inertia }
     }
 
-    /// Least and greatest amount of what is left of a slot.
+    /// Least and greatest load of a slot's remaining options.
     fn range(&self, parts: &Parts, slot: usize) -> [f64; 2] {
         let amounts = parts.alive[slot].iter().map(|&o| self.amount[slot][o as usize]);
         amounts.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q), high.max(q)])
     }
 
-    fn corner(&self, parts: &Parts, slot: usize, corner: Corner) -> f64 {
-        self.range(parts, slot)[usize::from(corner == Corner::High)]
+    fn end_load(&self, parts: &Parts, slot: usize, end: LoadEnd) -> f64 {
+        self.range(parts, slot)[usize::from(end == LoadEnd::High)]
     }
 
-    /// Outboard wrench of a slot at a corner.
-    fn wrench(&self, problem: &ArmProblem, parts: &Parts, slot: usize, corner: Corner) -> Wrench {
+    /// The wrench of everything outboard of a slot, with all loads at one end.
+    fn wrench(&self, problem: &ArmProblem, parts: &Parts, slot: usize, end: LoadEnd) -> Wrench {
         let start = problem.stations()[self.case].start_wrench;
-        (0..slot).fold(start, |sum, j| sum + self.unit[j] * self.corner(parts, j, corner))
+        (0..slot).fold(start, |sum, j| sum + self.unit[j] * self.end_load(parts, j, end))
     }
 
     fn joint<'p>(&self, problem: &'p ArmProblem, slot: usize) -> Option<&'p StationJoint> {
@@ -102,13 +105,13 @@ impl CaseLoads {
         })
     }
 
-    /// Least and greatest size of the torque on a joint \[N m\].
+    /// Least and greatest magnitude of the torque on a joint \[N m\].
     pub fn torque_size(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let [low, high] = self.torque_range(problem, parts, slot);
         [low.max(-high).max(0.0), high.max(-low)]
     }
 
-    /// Whether some joint's torque may have either sign.
+    /// Whether the torque of some joint may have either sign.
     pub fn opposes(&self, problem: &ArmProblem, parts: &Parts) -> bool {
         (0..self.unit.len()).any(|slot| {
             let [low, high] = self.torque_range(problem, parts, slot);
@@ -127,8 +130,8 @@ impl CaseLoads {
         })
     }
 
-    /// Largest tangent stiffness of every joint's options under the torques left \[N m/rad\]; infinite for a
-    /// rigid joint, empty for what is no joint.
+    /// Greatest tangent stiffness of every joint's options under the remaining torques \[N m/rad\]. Infinite
+    /// for a rigid joint, empty for a slot that is no joint.
     pub fn stiffest(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Vec<f64>> {
         let slots = problem.slots().iter().enumerate();
         slots
@@ -145,7 +148,7 @@ impl CaseLoads {
             .collect()
     }
 
-    /// Two rows that every design whose tip moves at most `limit_m` along a direction fulfils.
+    /// Two rows that every design satisfies whose tip moves at most `limit_m` along a direction.
     pub fn deflection_rows(
         &self,
         problem: &ArmProblem,
@@ -153,33 +156,34 @@ impl CaseLoads {
         direction: &Vector3<f64>,
         limit_m: f64,
     ) -> [Row; 2] {
-        [Corner::Low, Corner::High].map(|corner| {
+        [LoadEnd::Low, LoadEnd::High].map(|end| {
             let mut coefficients = parts.each(|_, _| 0.0);
             for slot in 0..self.unit.len() {
-                let Some(term) = self.term(problem, parts, slot, direction, corner) else { continue };
-                add(&mut coefficients[slot], &term.at_corner);
+                let Some(term) = self.term(problem, parts, slot, direction, end) else { continue };
+                add(&mut coefficients[slot], &term.at_end);
                 for (outboard, slope) in term.slopes.iter().enumerate() {
-                    let from = self.corner(parts, outboard, corner);
+                    let from = self.end_load(parts, outboard, end);
                     let amounts = parts.alive[outboard].iter().map(|&o| self.amount[outboard][o as usize]);
-                    let way: Vec<f64> = amounts.map(|q| slope * (q - from)).collect();
-                    add(&mut coefficients[outboard], &way);
+                    let added: Vec<f64> = amounts.map(|q| slope * (q - from)).collect();
+                    add(&mut coefficients[outboard], &added);
                 }
             }
             Row { coefficients, limit: limit_m }.ready()
         })
     }
 
+    /// The lower bound of one slot's part of the deflection; `None` for a body.
     fn term(
         &self,
         problem: &ArmProblem,
         parts: &Parts,
         slot: usize,
         direction: &Vector3<f64>,
-        corner: Corner,
+        end: LoadEnd,
     ) -> Option<Term> {
-        let wrench = self.wrench(problem, parts, slot, corner);
-        // on the way from the low corner loads rise, from the high corner they fall
-        let least = |a: f64, b: f64| if corner == Corner::Low { a.min(b) } else { a.max(b) };
+        let wrench = self.wrench(problem, parts, slot, end);
+        // From the low end the loads rise, from the high end they fall.
+        let least = |a: f64, b: f64| if end == LoadEnd::Low { a.min(b) } else { a.max(b) };
         match &problem.stations()[self.case].slots[slot] {
             StationSlot::Joint(joint) => {
                 let lever = direction.dot(&joint.tip_m_per_rad);
@@ -199,19 +203,19 @@ impl CaseLoads {
                     least(per_unit * flattest, per_unit * steepest)
                 };
                 Some(Term {
-                    at_corner: laws.iter().map(|law| lever * law.rising_angle_rad(at)).collect(),
+                    at_end: laws.iter().map(|law| lever * law.rising_angle_rad(at)).collect(),
                     slopes: (0..slot).map(slope).collect(),
                 })
             }
             StationSlot::Link { options, .. } => {
                 let left: Vec<_> = parts.alive[slot].iter().map(|&o| &options[o as usize]).collect();
                 let arms: Vec<Wrench> = left.iter().map(|o| o.end * o.tip.tr_mul(direction)).collect();
-                let sags = left.iter().map(|o| direction.dot(&(o.tip * o.sag)));
+                let sags = left.iter().map(|o| direction.dot(&(o.tip * o.own_weight_end)));
                 let slope = |j: usize| {
                     arms.iter().map(|arm| arm.dot(&self.unit[j])).reduce(least).unwrap_or_default()
                 };
                 Some(Term {
-                    at_corner: arms.iter().zip(sags).map(|(arm, sag)| arm.dot(&wrench) + sag).collect(),
+                    at_end: arms.iter().zip(sags).map(|(arm, sag)| arm.dot(&wrench) + sag).collect(),
                     slopes: (0..slot).map(slope).collect(),
                 })
             }
@@ -219,13 +223,16 @@ impl CaseLoads {
         }
     }
 
-    /// Rows that hold if every sized joint's drive holds its static, peak and emergency torque in this case.
+    /// Rows that hold if the drive of every sized joint carries its static, peak and emergency torque in this
+    /// case.
     pub fn torque_rows(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Row> {
         let mut rows = Vec::new();
         for (slot, piece) in problem.slots().iter().enumerate() {
             let (Slot::Sized(sized), Some(joint)) = (piece, self.joint(problem, slot)) else { continue };
             let motion = sized.table.motion();
             let [low, high] = self.torque_range(problem, parts, slot);
+            // The rows bound the torque on the side where it can be larger. Its other side is not used, which
+            // only weakens the bound.
             let sign = if high >= -low { 1.0 } else { -1.0 };
             let ramp = |factor: f64| match motion.linear_reading {
                 LinearReading::Exact => [1.0, factor * motion.acceleration_rad_s2],

@@ -1,9 +1,11 @@
-//! Parts that a design has only for their weight.
+//! Ballast: parts that a design has only for their weight.
 //!
-//! A gear's torsion curve grows steeper with torque: something heavy outboard presses it past a break point, its
-//! tangent stiffness rises a segment, and with it the lowest mode. A design can be on a front for that alone: with
-//! a lighter part that is at least as stiff in everything it would weigh less and sag no more, and only its lowest
-//! mode would fall, because an inboard gear falls to a softer segment or the play of a joint opens.
+//! The torsion curve of a gear becomes steeper with torque. Weight outboard loads the gear past a break point of its
+//! curve. Its tangent stiffness then rises, and the lowest mode with it. A design can be on a front for that reason alone.
+//!
+//! The sign of ballast is this: with a lighter part that is at least as stiff in every way, the design would weigh less
+//! and deflect no more. Only its lowest mode would fall, because a gear inboard would get into a softer segment, or
+//! because the play of a joint would open.
 
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::mechanics::Wrench;
@@ -16,43 +18,43 @@ use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::Slot;
 use crate::space::station::{Station, StationSlot};
 
-/// Objectives that differ by less than this part are equal.
+/// Relative difference below which two objectives count as equal.
 const ROUNDING: f64 = 1e-9;
 
 /// A part that a design has for its weight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ballast {
-    /// Where it is: a piece of the chain, base to tip.
+    /// Number of the part's piece, base to tip.
     pub piece: usize,
-    /// Number of the design with a lighter part instead.
+    /// Number of the design with a lighter part in its place.
     pub lighter: u128,
-    /// The joint that is softer then: a piece of the chain.
+    /// Number of the joint's piece (base to tip) that is softer in the lighter design.
     pub pressed: usize,
-    /// Whether its gear falls to a softer segment; if not, its play opens.
+    /// Whether the gear of this joint gets into a softer segment; if not, the play of the joint opens.
     pub by_segment: bool,
-    /// The case in which it does.
+    /// The case in which this happens.
     pub case: usize,
 }
 
-/// A joint that is softer under less torque.
+/// A joint that becomes softer when the torque on it falls.
 struct Relieved {
     slot: usize,
     case: usize,
     by_segment: bool,
 }
 
-/// A design at work.
+/// The design that is examined.
 struct Weighed<'p, 'c> {
     problem: &'p ArmProblem<'c>,
     options: Vec<u32>,
     arm: Partial,
     objectives: Objectives,
-    /// Torque on every joint in every case \[N m\], by slot.
+    /// Torque on every joint \[N m\], by slot and case.
     torques_nm: Vec<Vec<f64>>,
 }
 
 impl ArmProblem<'_> {
-    /// The part that a design has for its weight; of several, the one whose replacement is the lightest design.
+    /// The ballast of a design, if it has any. Of several parts it is the one whose replacement gives the lightest design.
     pub fn ballast(&self, design: u128) -> Option<Ballast> {
         let weighed = Weighed::new(self, options(self.level_sizes(), design)?)?;
         let found = (0..weighed.options.len()).flat_map(|level| weighed.at(level));
@@ -80,7 +82,7 @@ impl<'p, 'c> Weighed<'p, 'c> {
         Some(Self { problem, options, arm, objectives, torques_nm })
     }
 
-    /// Replacements of one level's part that show it to be ballast, each with its design's mass \[kg\].
+    /// Replacements for the part of one level that show this part to be ballast, each with the mass of its design \[kg\].
     fn at(&self, level: usize) -> Vec<(f64, Ballast)> {
         let slot = self.problem.level_slots()[level];
         let now = self.options[level];
@@ -90,6 +92,7 @@ impl<'p, 'c> Weighed<'p, 'c> {
         better.filter_map(|option| self.without_weight(level, slot, option)).collect()
     }
 
+    /// Whether an option weighs less than the present one and is at least as stiff in every way.
     fn lighter_and_as_stiff(&self, slot: usize, option: u32, now: u32) -> bool {
         match (&self.problem.slots()[slot], self.problem.piece_in_slot(slot)) {
             (Slot::Sized(sized), _) => {
@@ -106,13 +109,14 @@ impl<'p, 'c> Weighed<'p, 'c> {
         }
     }
 
-    /// The design with a lighter part, if only its lowest mode is worse and a joint inboard that is softer is
-    /// why.
+    /// The design with a lighter part, with its mass \[kg\], if only its lowest mode is worse and a softer joint inboard
+    /// is the reason.
     fn without_weight(&self, level: usize, slot: usize, option: u32) -> Option<(f64, Ballast)> {
         let relieved = self.relieved(slot, option)?;
         let mut options = self.options.clone();
         options[level] = option;
         let lighter = self.problem.walk(&options, |_, _| {}).ok()?;
+        // less weight outboard may let first fit choose another drive inboard; then the part alone is not the reason
         let others_stay =
             (0..lighter.options.len()).all(|s| s == slot || lighter.options[s] == self.arm.options[s]);
         let o = self.problem.objectives(&lighter)?;
@@ -129,7 +133,7 @@ impl<'p, 'c> Weighed<'p, 'c> {
         })
     }
 
-    /// The first joint inboard, and the case, that is softer when a part's weight changes.
+    /// The first joint inboard, with its case, that becomes softer when the weight of a part changes.
     fn relieved(&self, slot: usize, option: u32) -> Option<Relieved> {
         let cases = &self.problem.space().judged_cases;
         let inboard = slot + 1..self.problem.slots().len();
@@ -141,6 +145,7 @@ impl<'p, 'c> Weighed<'p, 'c> {
             let torque_nm = self.torques_nm[joint][case];
             let change_nm = place.twist.dot(&self.change_of_weight(station, slot, option));
             let [now, then] = [torque_nm, torque_nm + change_nm];
+            // the curve without effects tells a segment from play
             let softer = |of: &dyn Fn(f64) -> f64| of(then) > of(now);
             let by_segment = softer(&|t| law.curve.tangent_compliance_rad_per_nm(t));
             let is_softer = by_segment || softer(&|t| law.tangent_compliance_rad_per_nm(t));
@@ -148,12 +153,12 @@ impl<'p, 'c> Weighed<'p, 'c> {
         })
     }
 
-    /// How a joint twists in this design.
+    /// Law of a joint in this design.
     fn law(&self, slot: usize) -> Option<&JointLaw> {
         self.problem.slots()[slot].law(self.arm.options[slot] as usize)
     }
 
-    /// What another option weighs more, as a wrench.
+    /// Change of weight if another option is taken, as a wrench.
     fn change_of_weight(&self, station: &Station, slot: usize, option: u32) -> Wrench {
         let now = self.arm.options[slot] as usize;
         match (&station.slots[slot], &self.problem.slots()[slot]) {
@@ -165,7 +170,7 @@ impl<'p, 'c> Weighed<'p, 'c> {
         }
     }
 
-    /// Whether the lighter design's lowest mode would be no worse if no joint inboard were softer.
+    /// Whether the lighter design would have as high a lowest mode if no joint inboard had become softer.
     fn joints_are_why(&self, lighter: &Partial, slot: usize) -> bool {
         let mut held = lighter.clone();
         for (state, before) in held.stations.iter_mut().zip(&self.arm.stations) {
@@ -178,9 +183,9 @@ impl<'p, 'c> Weighed<'p, 'c> {
     }
 }
 
-/// Whether a curve is at least as stiff as another under every torque.
+/// Whether curve `a` is at least as stiff as curve `b` at every torque.
 fn never_softer(a: &Curve, b: &Curve) -> bool {
-    match (a.segments(), b.segments()) {
+    match (a.as_windup(), b.as_windup()) {
         (None, _) => true,
         (Some(_), None) => false,
         (Some(a), Some(b)) => a.never_softer(&b, f64::INFINITY),

@@ -1,29 +1,35 @@
-//! Designs that are nearly on the front.
+//! Near designs: designs that are nearly on the front.
 //!
-//! The *shortfall* of a design is the smallest `s` for which some design of the front is better by at most the
-//! part `s` in every objective (the multiplicative epsilon of multi-objective search):
+//! The *shortfall* `s` of a design says how near it is. Some design of the front is better than it by at most the
+//! fraction `s` in every objective, and `s` is the smallest such number. It is the multiplicative epsilon of
+//! multi-objective optimization. With mass m, deflection u and lowest mode f (f_d, f_f: of the design and of the front):
 //!
 //! ```text
 //! s(d) = min over f of the front of max(m_d/m_f, u_d/u_f, f_f/f_d) - 1
 //! ```
 //!
-//! Designs of the front have none. All designs are visited a second time, with the front known: a table of the
-//! front, worsened by the slack, rejects most of them at once ([`Archive`]: what a worsened design of the front beats
-//! has none near it, for designs of the front do not beat each other); what it lets through is compared
-//! with every design of the front. Memory follows the number of designs that are asked for.
+//! The shortfall of a design of the front is zero.
+//!
+//! All designs are visited a second time, now that the front is known. The designs of the front, each worsened by the
+//! slack, fill a table ([`Archive`]) that rejects most designs at once. The table rejects no near design: a design that a
+//! worsened design of the front dominates lies beyond the slack of every design of the front, because these do not
+//! dominate each other. The rest are compared with the front one by one. Memory grows with the number of designs asked
+//! for.
 
+use super::finish::FinishRows;
 use super::sweep::Candidate;
 use super::visit::Visit;
 use crate::pareto::archive::Archive;
 use crate::pareto::objectives::Objectives;
 use crate::space::constraint::Constraints;
-use crate::space::levels::{Finished, Keep, OutwardIn};
+use crate::space::levels::{Finished, Keep};
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// The fast model and the full one differ by less than this part: no near design is lost to rounding.
+/// Relative difference between the fast model and the full one, at most. The slack is widened by it, so that no near design
+/// is lost to rounding.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
 /// A front that designs are compared with.
@@ -33,17 +39,18 @@ pub struct Shortfall {
 }
 
 impl Shortfall {
-    /// Takes the designs of a front.
+    /// Takes the designs of a front, in any order.
     pub fn of(front: impl IntoIterator<Item = Objectives>) -> Self {
         let mut front: Vec<Objectives> = front.into_iter().collect();
         front.sort_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
         Self { front }
     }
 
-    /// The shortfall of a design; `None` if it is more than `most`.
+    /// The shortfall of a design, as a fraction; `None` if it is more than `most`.
     pub fn within(&self, most: f64, design: &Objectives) -> Option<f64> {
+        // skip the lightest designs of the front: they are lighter by more than `most`
         let first = self.front.partition_point(|f| design.mass_kg > f.mass_kg * (1.0 + most));
-        let worst = |rival: &Objectives| worse_by(design, rival).into_iter().fold(0.0, f64::max);
+        let worst = |other: &Objectives| worse_by(design, other).into_iter().fold(0.0, f64::max);
         self.front[first..].iter().map(worst).reduce(f64::min).filter(|shortfall| *shortfall <= most)
     }
 
@@ -58,14 +65,14 @@ impl Shortfall {
     }
 }
 
-/// By how much a design is worse than another in deflection, mass and lowest mode, as parts; negative where it
-/// is better.
-pub fn worse_by(design: &Objectives, rival: &Objectives) -> [f64; 3] {
+/// By what fraction a design is worse than another in deflection, mass and lowest mode. A fraction is negative where the
+/// design is better.
+pub fn worse_by(design: &Objectives, other: &Objectives) -> [f64; 3] {
     let over = |a: f64, b: f64| if a == b { 0.0 } else { a / b - 1.0 };
     [
-        over(design.tip_deflection_m, rival.tip_deflection_m),
-        over(design.mass_kg, rival.mass_kg),
-        over(rival.lowest_mode_hz, design.lowest_mode_hz),
+        over(design.tip_deflection_m, other.tip_deflection_m),
+        over(design.mass_kg, other.mass_kg),
+        over(other.lowest_mode_hz, design.lowest_mode_hz),
     ]
 }
 
@@ -74,31 +81,31 @@ pub fn worse_by(design: &Objectives, rival: &Objectives) -> [f64; 3] {
 pub struct NearDesign {
     /// The design and its objectives by the fast model.
     pub candidate: Candidate,
-    /// Its shortfall.
+    /// Shortfall of the design, as a fraction.
     pub shortfall: f64,
 }
 
 /// Designs near a front.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NearDesigns {
-    /// Nearest first; of equals the one with the smaller number.
+    /// The nearest come first; among equals, the one with the smaller number.
     pub nearest: Vec<NearDesign>,
-    /// How many there are; `None` if the search stopped counting because there are more than are kept.
+    /// Number of near designs; `None` if the search stopped counting because there are more than it keeps.
     pub total: Option<u64>,
 }
 
-/// Which designs are looked for.
+/// Which near designs are looked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slack {
-    /// Largest shortfall.
+    /// Largest shortfall, as a fraction.
     pub part: f64,
-    /// How many designs are kept at most.
+    /// Largest number of designs to keep.
     pub most: usize,
 }
 
-/// Finds the designs that are not among `front`, keep the constraints and whose shortfall is at most the slack;
-/// `None` if it was stopped.
-pub fn near_designs<P: OutwardIn>(
+/// Finds the designs that are not on `front`, meet the constraints and have a shortfall of at most the slack. Returns
+/// `None` if `stop` was set before the end.
+pub fn near_designs<P: FinishRows>(
     problem: &P,
     constraints: &Constraints,
     front: &[Candidate],
@@ -124,7 +131,7 @@ pub fn near_designs<P: OutwardIn>(
     };
     let visited = AtomicU64::new(0);
     let total = problem.root().map_or(0, |root| {
-        Visit { problem, visited: &visited, stop }
+        Visit { problem, compiled: problem.compile(), visited: &visited, stop }
             .every_design(&root, || Worker { seeker: &seeker, found: 0, buffer: Vec::new() })
             .map(Worker::finish)
             .sum()
@@ -134,7 +141,7 @@ pub fn near_designs<P: OutwardIn>(
     (!stop.load(Ordering::Relaxed)).then_some(NearDesigns { nearest, total: Some(total) })
 }
 
-/// What all tasks share.
+/// The state that all tasks share.
 struct Seeker<'s> {
     constraints: &'s Constraints,
     archive: Archive,
@@ -144,9 +151,10 @@ struct Seeker<'s> {
     nearest: Mutex<Vec<NearDesign>>,
 }
 
-/// Designs that a task keeps for itself before it hands them over.
+/// Number of designs that a task collects before it adds them to the shared list.
 pub(crate) const BUFFER: usize = 1 << 12;
 
+/// The keeper of one task.
 struct Worker<'s> {
     seeker: &'s Seeker<'s>,
     found: u64,
@@ -156,6 +164,7 @@ struct Worker<'s> {
 impl Keep for Worker<'_> {
     fn complete(&mut self, number: u128, Finished { objectives, .. }: Finished) {
         let Seeker { constraints, archive, on_front, shortfall, slack, .. } = self.seeker;
+        // the cheapest test comes first; it rejects most designs
         if archive.rejects(&objectives) || constraints.broken(&objectives).contains(&true) {
             return;
         }
@@ -178,6 +187,7 @@ impl Keep for Worker<'_> {
 }
 
 impl Worker<'_> {
+    /// Adds the collected designs to the shared list.
     fn hand_over(&mut self) {
         let most = self.seeker.slack.most;
         let mut all = self.seeker.nearest.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -193,6 +203,7 @@ impl Worker<'_> {
     }
 }
 
+/// Sorts near designs and keeps the nearest.
 pub(crate) fn keep_nearest(designs: &mut Vec<NearDesign>, most: usize) {
     designs.sort_unstable_by(|a, b| {
         a.shortfall.total_cmp(&b.shortfall).then(a.candidate.number.cmp(&b.candidate.number))

@@ -1,118 +1,124 @@
-//! The innermost level, compiled for eight options at a time.
+//! Rows: the innermost level, compiled for eight options at a time.
 //!
-//! All options of the innermost level share everything outboard of it, so a sweep finishes them as a
-//! row. What a row needs of each option stands here side by side in groups of eight ([`Chunk`]); what
-//! follows from the outboard arm is worked out once a row ([`Begun`]); the kernel that joins the
-//! two is [`row_lanes`](super::row_lanes). A chunk is some tens of kilobytes: rows come in batches, so that it is
-//! read once from the nearest cache for all of them.
+//! All options of the innermost level share everything outboard of it, so a sweep finishes them together, as a row. Three
+//! things meet in a row:
+//!
+//! - [`Chunk`] has the data of eight options, side by side in memory. It is compiled once.
+//! - [`Begun`](super::row_begun::Begun) has what depends on the outboard arm. It is worked out once for each row.
+//! - [`row_lanes`](super::row_lanes) is the kernel that joins the two.
+//!
+//! A chunk takes some tens of kilobytes. Rows are finished in batches, so that a chunk stays in the nearest cache while
+//! it is used for all rows of a batch.
+//!
+//! An *inner* slot is one from the innermost level to the base. Inner slots are numbered from 0.
 
-use super::row_lanes::EightArms;
+use super::arms::MOST_SLOTS;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::mechanics::Wrench;
 use crate::mechanics::lanes::{Eight, LANES};
-use crate::mechanics::lowest_lanes::{LaneLink, Outboard};
-use crate::space::figures::OptionFigures;
-use crate::space::problem::{ArmProblem, Partial, block_steps};
+use crate::mechanics::lowest_lanes::LaneLink;
+use crate::space::attributes::OptionAttributes;
+use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::Slot;
 use crate::space::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot};
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 use std::ops::Range;
 
-/// Most cases that a row handles.
+/// Largest number of cases that a row handles. With more cases, designs are finished one by one.
 pub(crate) const MOST_CASES: usize = 8;
-/// Most pieces from the innermost level to the base that a row handles; beyond, designs are finished
-/// one by one.
-pub(crate) const MOST_SLOTS: usize = 12;
 
-/// The pieces from the innermost level to the base.
+/// The inner slots of a problem, compiled.
 pub(crate) struct Row {
     /// Slot of the innermost level.
     pub first: usize,
-    /// Eight options each; none if the level is a joint's drive.
+    /// The link options, eight in a chunk; empty if the level is the drive of a joint.
     pub chunks: Vec<Chunk>,
     pub cases: Vec<RowCase>,
-    /// Drives by inner slot; empty for links.
-    pub drives: Vec<DriveFigures>,
+    /// Drives of each inner slot; empty for links.
+    pub drives: Vec<DriveAttributes>,
     /// Inner slots that are joints.
     pub joints: Vec<usize>,
-    /// Mass of all that is not chosen.
+    /// Mass of the given drives and offsets among the inner slots.
     pub fixed_kg: f64,
-    /// How a joint's drives twist, by inner slot.
+    /// How the drives of each inner slot twist.
     pub twisting: Vec<Twisting>,
 }
 
-/// How a joint's drives twist in the judged cases.
+/// How the drives of a joint twist in the judged cases. The simpler kinds save work in the kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Twisting {
-    /// No load turns them: their first slopes are all there is to know.
+    /// No load turns the joint. The joint does not twist, and modes see the first slope of its curve.
     AtRest,
-    /// By one slope each.
+    /// Every drive has a single slope.
     Line,
-    /// By three segments.
+    /// The drives have three segments.
     Segments,
-    /// With play or friction.
+    /// The joint has play or friction. Each drive is computed by itself.
     Play,
 }
 
-/// What something outboard of a joint does at its axis.
+/// Torque and inertia that something outboard of a joint has about its axis.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct AtJoint {
     pub torque_nm: f64,
     pub inertia_kgm2: f64,
 }
 
-/// The same at each inner joint, by inner slot.
-type AtJoints = [AtJoint; MOST_SLOTS];
+/// Torque and inertia at each inner joint, by inner slot.
+pub(crate) type AtJoints = [AtJoint; MOST_SLOTS];
 
 /// What depends on the pose but not on the option.
 pub(crate) struct RowCase {
-    /// Inner joints that some load or weight turns; in every arm the torque on the others is zero.
+    /// Inner joints that some load or weight turns. In every arm the torque on the other joints is zero.
     pub turned: [bool; MOST_SLOTS],
-    /// What a kilogram of each inner drive does.
+    /// Torque and inertia that one kilogram of each inner drive adds to the joints inboard of it.
     pub per_kg: [AtJoints; MOST_SLOTS],
-    /// What all inner pieces do that are not chosen.
+    /// Torque and inertia of all inner pieces that are not chosen.
     pub fixed: AtJoints,
-    /// Torque on each inner joint per newton of a link's weight, and what it makes at the link's root.
+    /// Torque on each inner joint per newton of a link's weight. All options of a link have the same centre of mass.
     pub link_torque: [f64; MOST_SLOTS],
+    /// Axial force, torsion and both bending moments at the link's root per newton of its weight.
     pub link_weight_at_root: [f64; 4],
-    /// Directions in which the links of the row move the tip.
+    /// Whether the links of the row move the tip in x, y and z.
     pub bends: [bool; 3],
-    /// Block, row and column of the outboard inertia that link ends carry, and which of them belong to each block.
+    /// Block, row and column of the entries of the outboard inertia that the ends of the links move.
     pub spread_entries: Vec<(usize, usize, usize)>,
+    /// The range of these entries that belongs to each block.
     pub spread_of: [Range<usize>; 2],
-    /// Inner pieces up to the last that yields in each block.
+    /// Number of inner slots up to the last that yields, in each block. Those beyond it cannot change a mode.
     pub ends: [usize; 2],
     pub links_yield: bool,
     pub judged: bool,
     pub sizing: bool,
 }
 
-/// The drives of a joint by index, each with its mass and its torsion curve of three segments, the connection in series.
+/// The drives of a joint by index. Each has its mass and its torsion curve of three segments, with the connection in
+/// series. The numbers of one kind stand together, so that a lane can gather them.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct DriveFigures {
+pub(crate) struct DriveAttributes {
     pub mass_kg: Vec<f64>,
     /// Twist per torque \[rad/(N m)\] in each segment.
     pub compliance: [Vec<f64>; 3],
-    /// Whether modes see the first segment alone, whatever the torque.
+    /// Whether modes see the first segment alone, at every torque.
     pub first_in_modes: bool,
     /// Ends of the first two segments \[N m\].
     pub ends_nm: [Vec<f64>; 2],
 }
 
-/// Eight link options. The last chunk is filled up with its last option.
+/// Eight link options. The last chunk is filled up with copies of the last option.
 pub(crate) struct Chunk {
     pub mass_kg: Eight,
     pub cost_eur: Eight,
     pub materials: [Option<usize>; LANES],
-    /// Whether these are all the same.
+    /// Whether the eight materials are the same.
     pub of_one_material: bool,
-    /// Bits of the options whose walls are too slender.
+    /// One bit for each option whose wall is too slender.
     pub slender: u8,
     pub stress: StressEight,
     pub cases: Vec<CaseChunk>,
 }
 
-/// Stress over strength per force and moment.
+/// Ratio of stress to strength per unit of force and moment.
 #[derive(Default)]
 pub(crate) struct StressEight {
     pub per_axial_n: Eight,
@@ -125,61 +131,41 @@ pub(crate) struct StressEight {
 /// Eight link options in one pose.
 pub(crate) struct CaseChunk {
     pub weight_n: Eight,
-    /// Displacement of the tip by the wrench on the link's end.
+    /// Displacement of the tip per unit of the wrench on the link's end.
     pub flexibility: [[Eight; 6]; 3],
     /// Displacement of the tip by the link's own weight.
-    pub sag_m: [Eight; 3],
-    /// Inertia about each inner joint.
+    pub own_weight_deflection_m: [Eight; 3],
+    /// Inertia of the link about each inner joint.
     pub inertia_at: [Eight; MOST_SLOTS],
-    /// Of the outboard inertia, what each entry adds to the sum of `1/λ`.
+    /// Contribution to the sum of `1/λ` per unit of each entry of the outboard inertia ([`RowCase::spread_entries`]).
     pub spread: Vec<Eight>,
-    /// Sum of `1/λ` of the link by itself.
+    /// Contribution of the link by itself to the sum of `1/λ`, by block \[s²\].
     pub trace_s2: [Eight; 2],
     pub modal: ChunkModal,
 }
 
+/// Eight link options as the pass for the lowest mode sees them.
 pub(crate) enum ChunkModal {
     Planar(Box<[LaneLink<3>; 2]>),
     Spatial(Box<LaneLink<6>>),
 }
 
-/// Room in which rows are finished.
-pub struct RowScratch {
-    pub(crate) rows: Vec<Begun>,
-    pub(crate) arms: EightArms,
-    /// An arm for designs finished one by one.
-    pub(crate) spare: Partial,
+/// Eight options of a row.
+#[derive(Clone, Copy)]
+pub(crate) struct RowChunk<'a, 'c> {
+    pub problem: &'a ArmProblem<'c>,
+    pub row: &'a Row,
+    pub from: &'a Partial,
+    pub chunk: usize,
 }
 
-/// What follows from the arm outboard of a row.
-pub(crate) struct Begun {
-    pub cases: Vec<CaseBegun>,
-    /// Step of each inner joint's ladder of drives at which the last design's was looked for.
-    pub steps: [usize; MOST_SLOTS],
-}
-
-pub(crate) struct CaseBegun {
-    pub outboard: CaseOutboard,
-    /// What is outboard of the row, and what is inboard and not chosen, does at each inner joint.
-    pub at: AtJoints,
-    pub spread: Vec<f64>,
-    /// Axial force, torsion and both bending moments of what is outboard at the link's end and root.
-    pub at_end: [f64; 4],
-    pub at_root: [f64; 4],
-}
-
-pub(crate) enum CaseOutboard {
-    Planar(Box<[Outboard<3>; 2]>),
-    Spatial(Box<Outboard<6>>),
-}
-
-impl DriveFigures {
+impl DriveAttributes {
+    /// Adds a drive. A rigid or linear joint becomes a curve whose segments are equal.
     fn push(&mut self, mass_kg: f64, law: &JointLaw) {
-        let (stiffness, ends_nm) = match &law.curve {
-            Curve::Rigid => ([f64::INFINITY; 3], [f64::INFINITY; 2]),
-            Curve::Linear(k) => ([*k; 3], [f64::INFINITY; 2]),
-            Curve::Windup(w) | Curve::WindupK1(w) => {
-                ([w.k1_nm_per_rad, w.k2_nm_per_rad, w.k3_nm_per_rad], [w.t1_nm, w.t2_nm])
+        let (stiffness, ends_nm) = match law.curve.as_windup().map(|windup| windup.segments()) {
+            None => ([f64::INFINITY; 3], [f64::INFINITY; 2]),
+            Some(segments) => {
+                (segments.map(|s| s.stiffness_nm_per_rad), [segments[0].to_nm, segments[1].to_nm])
             }
         };
         self.first_in_modes = matches!(law.curve, Curve::WindupK1(_));
@@ -194,8 +180,8 @@ impl DriveFigures {
 }
 
 impl Row {
-    /// Compiles the innermost level; `None` if there is none, or the pieces inboard of it are of kinds
-    /// that are finished one by one: a given tube, or very many.
+    /// Compiles the innermost level. Returns `None` if designs must be finished one by one: if there is no level, if a
+    /// given tube is inboard of it, or if there are too many slots or cases.
     pub fn new(problem: &ArmProblem) -> Option<Self> {
         let first = *problem.level_slots().last()?;
         let slots = &problem.slots()[first..];
@@ -222,7 +208,7 @@ impl Row {
                 .collect(),
             _ => Vec::new(),
         };
-        let drives: Vec<DriveFigures> = slots.iter().map(drive_figures).collect();
+        let drives: Vec<DriveAttributes> = slots.iter().map(drive_attributes).collect();
         let is_joint = |k: &usize| matches!(slots[*k], Slot::Given { .. } | Slot::Sized(_));
         Some(Self {
             first,
@@ -236,19 +222,21 @@ impl Row {
     }
 }
 
-fn drive_figures(slot: &Slot) -> DriveFigures {
-    let mut figures = DriveFigures::default();
+/// The drives that can be in a slot.
+fn drive_attributes(slot: &Slot) -> DriveAttributes {
+    let mut drives = DriveAttributes::default();
     match slot {
-        Slot::Given { law, mass_kg } => figures.push(*mass_kg, law),
+        Slot::Given { law, mass_kg } => drives.push(*mass_kg, law),
         Slot::Sized(sized) => {
-            sized.laws.iter().enumerate().for_each(|(i, law)| figures.push(sized.table.mass_kg(i), law));
+            sized.laws.iter().enumerate().for_each(|(i, law)| drives.push(sized.table.mass_kg(i), law));
         }
         _ => {}
     }
-    figures
+    drives
 }
 
-fn twisting(slot: &Slot, drives: &DriveFigures, k: usize, cases: &[RowCase]) -> Twisting {
+/// How the drives of inner slot `k` twist.
+fn twisting(slot: &Slot, drives: &DriveAttributes, k: usize, cases: &[RowCase]) -> Twisting {
     let has_play = match slot {
         Slot::Given { law, .. } => law.has_play(),
         Slot::Sized(sized) => sized.laws.iter().any(JointLaw::has_play),
@@ -265,6 +253,7 @@ fn twisting(slot: &Slot, drives: &DriveFigures, k: usize, cases: &[RowCase]) -> 
 }
 
 impl RowCase {
+    /// Compiles a case. `pieces` are the inner slots, `first` is the slot of the innermost level.
     fn new(station: &Station, pieces: &[Slot], first: usize, judged: bool, sizing: bool) -> Self {
         let slots = &station.slots[first..];
         let mut per_kg = [AtJoints::default(); MOST_SLOTS];
@@ -288,6 +277,7 @@ impl RowCase {
             StationSlot::Link { options, .. } => options,
             _ => &[],
         };
+        // the options of a link differ in weight but not in its line of action, so any of them gives the unit wrench
         let link_weight =
             links.iter().find(|l| l.weight[2] != 0.0).map_or(Vector6::zeros(), |l| -l.weight / l.weight[2]);
         let links_yield = links.iter().any(|l| l.end.amax() > 0.0);
@@ -320,18 +310,20 @@ impl RowCase {
 }
 
 impl AtJoint {
-    fn new(joint: &StationJoint, inertia: &Matrix6<f64>, wrench: &Wrench) -> Self {
+    /// Torque and inertia about the axis of a joint.
+    pub(super) fn new(joint: &StationJoint, inertia: &Matrix6<f64>, wrench: &Wrench) -> Self {
         let twist = &joint.twist;
         Self { torque_nm: twist.dot(wrench), inertia_kgm2: twist.dot(&(inertia * twist)) }
     }
 
-    fn add(&mut self, other: Self, times: f64) {
+    /// Adds another, so many times.
+    pub(super) fn add(&mut self, other: Self, times: f64) {
         self.torque_nm += times * other.torque_nm;
         self.inertia_kgm2 += times * other.inertia_kgm2;
     }
 }
 
-/// Whether loads turn each inner joint, and its torque per newton of a link's weight.
+/// Whether some load turns each inner joint, and its torque per newton of a link's weight.
 fn turning(
     station: &Station,
     slots: &[StationSlot],
@@ -348,15 +340,15 @@ fn turning(
     (turned, link_torque)
 }
 
-/// Directions in which some link moves the tip.
+/// Whether some option of a link moves the tip in x, y and z.
 fn bends(links: &[StationLink]) -> [bool; 3] {
     links.iter().fold([false; 3], |bends, link| {
-        let (flexibility, sag_m) = (link.flexibility(), link.sag_m());
-        std::array::from_fn(|i| bends[i] || sag_m[i] != 0.0 || flexibility.row(i).amax() > 0.0)
+        let (flexibility, own_m) = (link.flexibility(), link.own_weight_deflection_m());
+        std::array::from_fn(|i| bends[i] || own_m[i] != 0.0 || flexibility.row(i).amax() > 0.0)
     })
 }
 
-/// Components of a wrench that some load or weight of a case has.
+/// The components of a wrench in which some load or weight of a case is not zero.
 fn loaded(station: &Station) -> [bool; 6] {
     let weights = station.slots.iter().flat_map(|slot| match slot {
         StationSlot::Joint(joint) => vec![&joint.weight_per_kg],
@@ -370,7 +362,7 @@ fn loaded(station: &Station) -> [bool; 6] {
     loaded
 }
 
-/// Inner pieces up to the last that can yield.
+/// Number of inner slots up to the last that can yield.
 fn last_yielding<const N: usize>(block: &Block<N>, first: usize, links_yield: bool) -> usize {
     let yields = |slot: &BlockSlot<N>| match slot {
         BlockSlot::Joint { twist, .. } => twist.amax() > 0.0,
@@ -380,7 +372,8 @@ fn last_yielding<const N: usize>(block: &Block<N>, first: usize, links_yield: bo
     block.slots[first..].iter().rposition(yields).map_or(0, |last| last + 1)
 }
 
-/// Entries of the lower part of the inertia that the ends of a block's links can carry.
+/// Entries of the lower triangle of the outboard inertia, by block. The ends of the links in a block move these entries
+/// and no other.
 fn spread_entries(modal: &Modal) -> Vec<(usize, usize, usize)> {
     let lower = |block: usize, motions: &[usize]| -> Vec<(usize, usize, usize)> {
         let pairs = motions.iter().flat_map(|&i| motions.iter().map(move |&j| (i, j)));
@@ -393,19 +386,21 @@ fn spread_entries(modal: &Modal) -> Vec<(usize, usize, usize)> {
 }
 
 impl Chunk {
+    /// Compiles chunk number `c` of the options of a link.
     fn new(
         problem: &ArmProblem,
         cases: &[RowCase],
-        options: &[OptionFigures],
+        options: &[OptionAttributes],
         first: usize,
         c: usize,
     ) -> Self {
         let at = |lane: usize| (LANES * c + lane).min(options.len() - 1);
-        let lanes = |of: &dyn Fn(&OptionFigures) -> f64| std::array::from_fn(|lane| of(&options[at(lane)]));
-        let bits = |of: &dyn Fn(&OptionFigures) -> bool| {
+        let lanes =
+            |of: &dyn Fn(&OptionAttributes) -> f64| std::array::from_fn(|lane| of(&options[at(lane)]));
+        let bits = |of: &dyn Fn(&OptionAttributes) -> bool| {
             (0..LANES).fold(0, |bits, lane| bits | u8::from(of(&options[at(lane)])) << lane)
         };
-        let stress = |of: &dyn Fn(&crate::space::figures::StressCheck) -> f64| {
+        let stress = |of: &dyn Fn(&crate::space::attributes::StressCheck) -> f64| {
             lanes(&|o| o.stress.as_ref().map_or(0.0, |s| of(s) / s.strength_pa))
         };
         let materials: [Option<usize>; LANES] = std::array::from_fn(|lane| options[at(lane)].material);
@@ -433,11 +428,13 @@ impl Chunk {
 }
 
 impl CaseChunk {
+    /// The options of a chunk in one case; `at` gives the option in each lane.
     fn new(station: &Station, case: &RowCase, first: usize, at: &dyn Fn(usize) -> usize) -> Option<Self> {
         let StationSlot::Link { options, .. } = &station.slots[first] else { return None };
         let links: [&StationLink; LANES] = std::array::from_fn(|lane| &options[at(lane)]);
         let lanes = |of: &dyn Fn(&StationLink) -> f64| links.map(of);
-        let (flexibility, sag) = (links.map(StationLink::flexibility), links.map(StationLink::sag_m));
+        let (flexibility, own_m) =
+            (links.map(StationLink::flexibility), links.map(StationLink::own_weight_deflection_m));
         let joints: Vec<_> = station.slots[first..]
             .iter()
             .map(|slot| match slot {
@@ -457,7 +454,7 @@ impl CaseChunk {
             flexibility: std::array::from_fn(|i| {
                 std::array::from_fn(|j| flexibility.map(|f: Matrix3x6<f64>| f[(i, j)]))
             }),
-            sag_m: std::array::from_fn(|i| sag.map(|s: Vector3<f64>| s[i])),
+            own_weight_deflection_m: std::array::from_fn(|i| own_m.map(|s: Vector3<f64>| s[i])),
             inertia_at: std::array::from_fn(|j| lanes(&|l| joint(j).dot(&(l.inertia * joint(j))))),
             spread: case.spread_entries.iter().map(|entry| lanes(&|l| spread_of(l, *entry))).collect(),
             trace_s2: [trace(0), trace(1)],
@@ -466,10 +463,12 @@ impl CaseChunk {
     }
 }
 
+/// Contribution of a link's end to the sum of `1/λ` per unit of one entry of the outboard inertia.
 fn spread_of(link: &StationLink, (block, i, j): (usize, usize, usize)) -> f64 {
     (0..6).filter(|&g| link.block[g] == block).map(|g| link.end[(i, g)] * link.end[(j, g)]).sum()
 }
 
+/// The options of a chunk as the pass for the lowest mode sees them.
 fn chunk_modal(modal: &Modal, first: usize, at: &dyn Fn(usize) -> usize) -> ChunkModal {
     match modal {
         Modal::Planar(blocks) => {
@@ -480,80 +479,10 @@ fn chunk_modal(modal: &Modal, first: usize, at: &dyn Fn(usize) -> usize) -> Chun
     }
 }
 
+/// The options of a chunk in one block.
 fn lane_link<const N: usize>(block: &Block<N>, first: usize, at: &dyn Fn(usize) -> usize) -> LaneLink<N> {
     match &block.slots[first] {
         BlockSlot::Links(options) => LaneLink::new(std::array::from_fn(|lane| &options[at(lane)])),
         _ => unreachable!("a chunk is made of a slot of links"),
-    }
-}
-
-impl RowScratch {
-    /// Room for the rows of a problem.
-    pub(crate) fn new(problem: &ArmProblem) -> Self {
-        Self { rows: Vec::new(), arms: EightArms::new(problem), spare: problem.empty() }
-    }
-
-    /// Works out what each row shares.
-    pub(crate) fn begin<'p>(
-        &mut self,
-        problem: &ArmProblem,
-        row: &Row,
-        from: impl ExactSizeIterator<Item = &'p Partial>,
-    ) {
-        self.rows.resize_with(from.len().max(self.rows.len()), || Begun::new(problem));
-        for (begun, from) in self.rows.iter_mut().zip(from) {
-            begun.refill(problem, row, from);
-        }
-    }
-}
-
-impl Begun {
-    fn new(problem: &ArmProblem) -> Self {
-        let cases = problem.stations().iter().map(|station| CaseBegun {
-            outboard: match &station.modal {
-                Modal::Planar(_) => CaseOutboard::Planar(Box::default()),
-                Modal::Spatial(_) => CaseOutboard::Spatial(Box::default()),
-            },
-            at: AtJoints::default(),
-            spread: Vec::new(),
-            at_end: [0.0; 4],
-            at_root: [0.0; 4],
-        });
-        Self { cases: cases.collect(), steps: [0; MOST_SLOTS] }
-    }
-
-    fn refill(&mut self, problem: &ArmProblem, row: &Row, from: &Partial) {
-        for (k, begun) in self.cases.iter_mut().enumerate() {
-            let (station, state, case) = (&problem.stations()[k], &from.stations[k], &row.cases[k]);
-            for (j, slot) in station.slots[row.first..].iter().enumerate() {
-                if let StationSlot::Joint(joint) = slot {
-                    begun.at[j] = AtJoint::new(joint, &state.inertia, &state.wrench);
-                    begun.at[j].add(case.fixed[j], 1.0);
-                }
-            }
-            if let StationSlot::Link { place, .. } = &station.slots[row.first] {
-                begun.at_end = place.local(&state.wrench, &place.end_m);
-                begun.at_root = place.local(&state.wrench, &place.root_m);
-            }
-            begun.spread.clear();
-            begun.spread.extend(case.spread_entries.iter().map(|&(_, i, j)| {
-                let both = if i == j { 1.0 } else { 2.0 };
-                both * state.inertia[(i, j)]
-            }));
-            if !case.judged {
-                continue;
-            }
-            match (&mut begun.outboard, &station.modal) {
-                (CaseOutboard::Planar(mine), Modal::Planar(blocks)) => {
-                    for (mine, block) in mine.iter_mut().zip(blocks.iter()) {
-                        mine.refill(block_steps(block, from, state, row.first));
-                    }
-                }
-                (CaseOutboard::Spatial(mine), Modal::Spatial(block)) => {
-                    mine.refill(block_steps(block, from, state, row.first));
-                }
-                _ => unreachable!("a case keeps its kind"),
-            }
-        }
     }
 }

@@ -1,13 +1,19 @@
-//! Eight designs finished at once: the pieces from the innermost level to the base added in lanes, then
-//! [their lowest modes](super::row_modes).
+//! The kernel of the sweep: eight designs of a row, finished at once.
+//!
+//! The slots from the innermost level to the base are added in lanes, one design in each lane. Then follow
+//! [the lowest modes](super::row_modes). Designs that cannot hold, or that are surely dominated, are only counted.
+//!
+//! The functions are `#[inline(always)]` because the lanes are compiled for the instructions of one processor, and a call
+//! out of that code would be compiled for the common ones.
 
 // matrices by row and column read better than iterators over them
 #![allow(clippy::needless_range_loop)]
 
-use super::row::{AtJoint, Begun, Chunk, DriveFigures, MOST_SLOTS, Row, RowScratch, StressEight, Twisting};
+use super::arms::EightArms;
+use super::row::{AtJoint, Chunk, DriveAttributes, Row, RowChunk, StressEight, Twisting};
+use super::row_begun::{Begun, RowScratch};
 use super::row_modes::Question;
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, splat_all};
-use crate::pareto::objectives::Objectives;
 use crate::sizing::eight::EightDemands;
 use crate::space::levels::{Finished, Keep, OutwardIn};
 use crate::space::problem::{ArmProblem, Partial};
@@ -15,100 +21,26 @@ use crate::space::slot::{SizedJoint, Slot};
 use crate::space::station::{Station, StationJoint, StationSlot};
 use std::f64::consts::TAU;
 
-/// Eight options of a row.
-#[derive(Clone, Copy)]
-pub(crate) struct RowChunk<'a, 'c> {
-    pub problem: &'a ArmProblem<'c>,
-    pub row: &'a Row,
-    pub from: &'a Partial,
-    pub chunk: usize,
-}
-
-/// Rows to be finished, each with the number of its first design.
+/// Rows to be finished, each an outboard arm with the number of the row's first design.
 pub(crate) struct RowsWork<'a, 'c, K> {
     pub problem: &'a ArmProblem<'c>,
     pub row: &'a Row,
     pub rows: &'a [(u128, Partial)],
-    /// Designs in each.
+    /// Number of designs in each row.
     pub options: u32,
     pub scratch: &'a mut RowScratch,
     pub keep: &'a mut K,
 }
 
-/// What became of eight designs; what they come to is in their [`EightArms`].
+/// The outcome of eight designs, one bit for each. Their objectives are in the [`EightArms`].
 #[derive(Clone, Copy, Default)]
 struct FinishedEight {
-    /// Bits of the designs that hold.
+    /// The designs that hold.
     held: u8,
-    /// Bits of those whose lowest mode is below the bar, wherever it is.
+    /// The designs that hold and whose lowest mode is below the bar, so that its value does not matter.
     below_bar: u8,
-    /// Bits of those whose lowest mode was not found.
+    /// The designs that hold and whose lowest mode was not found.
     unsure: u8,
-}
-
-/// Eight arms as they grow inward. What is loaded as eight numbers must be stored as eight: a processor waits where it
-/// finds parts of them on the way to memory.
-pub(crate) struct EightArms {
-    /// Bits of those that hold so far.
-    held: u8,
-    pub mass_kg: Eight,
-    /// Mass of the drive in each inner slot; those of given drives stand from the beginning.
-    pub masses_kg: [Eight; MOST_SLOTS],
-    /// The largest of what single joints add to Dunkerley's sums: no lowest eigenvalue is above one over that.
-    pub largest_s2: Eight,
-    pub cases: Vec<CaseArms>,
-    /// What they come to, once finished.
-    pub tip_deflection_m: Eight,
-    lowest_mode_hz: Eight,
-}
-
-/// Eight arms in one case.
-#[derive(Clone)]
-pub(crate) struct CaseArms {
-    tip_m: [Eight; 3],
-    /// Torque on each inner joint that is turned, and inertia about it.
-    torque_at: [Eight; MOST_SLOTS],
-    inertia_at: [Eight; MOST_SLOTS],
-    pub compliance: [Eight; MOST_SLOTS],
-    /// Dunkerley's sum of each block.
-    pub trace_s2: [Eight; 2],
-}
-
-impl EightArms {
-    /// Room for eight arms.
-    pub fn new(problem: &ArmProblem) -> Self {
-        let zeros = [0.0; LANES];
-        let nothing = CaseArms {
-            tip_m: [zeros; 3],
-            torque_at: [zeros; MOST_SLOTS],
-            inertia_at: [zeros; MOST_SLOTS],
-            compliance: [zeros; MOST_SLOTS],
-            trace_s2: [zeros; 2],
-        };
-        let inner = &problem.slots()[problem.level_slots().last().copied().unwrap_or(0)..];
-        let mut masses_kg = [zeros; MOST_SLOTS];
-        for (mass_kg, slot) in masses_kg.iter_mut().zip(inner) {
-            *mass_kg = [slot.fixed_kg().unwrap_or(0.0); LANES];
-        }
-        Self {
-            held: 0,
-            mass_kg: zeros,
-            masses_kg,
-            largest_s2: zeros,
-            cases: vec![nothing; problem.stations().len()],
-            tip_deflection_m: zeros,
-            lowest_mode_hz: zeros,
-        }
-    }
-
-    /// Objectives of one of the eight.
-    pub fn objectives(&self, lane: usize) -> Objectives {
-        Objectives {
-            tip_deflection_m: self.tip_deflection_m[lane],
-            mass_kg: self.mass_kg[lane],
-            lowest_mode_hz: self.lowest_mode_hz[lane],
-        }
-    }
 }
 
 impl<K: Keep> LaneWork for RowsWork<'_, '_, K> {
@@ -118,6 +50,7 @@ impl<K: Keep> LaneWork for RowsWork<'_, '_, K> {
     fn run<V: Lanes>(self) {
         let RowsWork { problem, row, rows, options, scratch, keep } = self;
         let (mut excluded, mut below_bar) = (0, 0);
+        // chunks outside, rows inside: a chunk is read from memory once for all rows
         for chunk in 0..(options as usize).div_ceil(LANES) {
             let lanes = LANES.min(options as usize - chunk * LANES);
             let valid = u8::MAX >> (LANES - lanes);
@@ -137,6 +70,8 @@ impl<K: Keep> LaneWork for RowsWork<'_, '_, K> {
 }
 
 impl RowChunk<'_, '_> {
+    /// Finishes eight designs, `valid` of which exist. Tests go from the cheapest to the dearest, and the function returns
+    /// as soon as nothing is left to decide.
     #[inline(always)]
     fn finish<V: Lanes>(
         &self,
@@ -175,7 +110,7 @@ impl RowChunk<'_, '_> {
         FinishedEight { held, below_bar, unsure }
     }
 
-    /// Shows those that are of interest.
+    /// Shows the designs that are of interest to `keep`. It is rarely called, so it is kept out of the kernel.
     #[inline(never)]
     fn hand_over(
         &self,
@@ -187,6 +122,7 @@ impl RowChunk<'_, '_> {
     ) {
         for lane in (0..LANES).filter(|lane| (done.held & !done.below_bar) >> lane & 1 == 1) {
             let option = (self.chunk * LANES + lane) as u32;
+            // the iteration in lanes may fail to converge; the search by itself does not
             if done.unsure >> lane & 1 == 1 {
                 let level = self.problem.level_sizes_slice().len() - 1;
                 self.problem.finish_one(level, option, self.from, first, spare, keep);
@@ -197,12 +133,12 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// Adds piece after piece.
+    /// Adds piece after piece, until every arm is complete or none holds.
     #[inline(always)]
     fn grow<V: Lanes>(&self, begun: &mut Begun, arms: &mut EightArms) {
         let slots = &self.problem.slots()[self.row.first..];
         let mut largest_s2 = V::zero();
-        // a link comes first or not at all
+        // the innermost level is a link or a drive, and no other inner slot is a link
         match self.row.chunks.get(self.chunk) {
             Some(chunk) => self.start_with_link::<V>(chunk, begun, arms),
             None => self.start::<V>(begun, arms),
@@ -222,7 +158,7 @@ impl RowChunk<'_, '_> {
         arms.largest_s2 = largest_s2.store();
     }
 
-    /// The arm outboard of the row, eight times.
+    /// Starts with the arm outboard of the row, the same in every lane.
     #[inline(always)]
     fn start<V: Lanes>(&self, begun: &Begun, arms: &mut EightArms) {
         arms.mass_kg = V::splat(self.from.mass_kg + self.row.fixed_kg).store();
@@ -237,7 +173,7 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// The same with a link on it.
+    /// Starts with the arm outboard of the row and one link option in each lane.
     #[inline(always)]
     fn start_with_link<V: Lanes>(&self, chunk: &Chunk, begun: &Begun, arms: &mut EightArms) {
         let constraints = &self.problem.space().constraints;
@@ -265,7 +201,7 @@ impl RowChunk<'_, '_> {
             for i in 0..3 {
                 let mut tip = V::splat(state.tip_m[i]);
                 if case.bends[i] {
-                    tip = tip + V::load(&own.sag_m[i]);
+                    tip = tip + V::load(&own.own_weight_deflection_m[i]);
                     for j in (0..6).filter(|&j| state.wrench[j] != 0.0) {
                         tip = tip + V::load(&own.flexibility[i][j]) * V::splat(state.wrench[j]);
                     }
@@ -279,7 +215,7 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// The largest stress at the ends of the links so far at peak load, over the strength.
+    /// Largest ratio of stress to strength at peak load, over the ends of all links so far.
     #[inline(always)]
     fn stress<V: Lanes>(&self, chunk: &Chunk, begun: &Begun) -> V {
         let (mut standing, mut moving) = (V::zero(), V::zero());
@@ -291,7 +227,7 @@ impl RowChunk<'_, '_> {
             }
             let at_end: V = stress_squared(&chunk.stress, splat_all(begun.cases[k].at_end));
             let largest = at_end.max(stress_squared(&chunk.stress, at_root));
-            // where joints are sized the arm also accelerates; elsewhere it only stands
+            // in a sizing case the arm accelerates; in the other cases it stands still
             match case.sizing {
                 true => moving = moving.max(largest),
                 false => standing = standing.max(largest),
@@ -301,7 +237,7 @@ impl RowChunk<'_, '_> {
         own.max(V::splat(self.from.stress_ratio))
     }
 
-    /// The drive of each arm; an arm without one is no longer held.
+    /// The drive of each arm. An arm for which no drive holds is no longer `held`.
     #[inline(always)]
     fn pick<V: Lanes>(
         &self,
@@ -335,10 +271,10 @@ impl RowChunk<'_, '_> {
         indices
     }
 
-    /// Mass of each arm's drive, and what it does at the joints inboard.
+    /// Adds the mass of each arm's drive, with its torque and inertia at the joints inboard.
     #[inline(always)]
     fn add_drive<V: Lanes>(&self, k: usize, indices: &[usize; LANES], arms: &mut EightArms) {
-        let mass: V = at_places(&self.row.drives[k].mass_kg, indices, all_alike(indices));
+        let mass: V = at_places(&self.row.drives[k].mass_kg, indices, all_equal(indices));
         add(&mut arms.mass_kg, mass);
         arms.masses_kg[k] = mass.store();
         for (case, lanes) in self.row.cases.iter().zip(&mut arms.cases) {
@@ -354,15 +290,15 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// How each arm's drive yields; the largest of what the joint adds to Dunkerley's sums.
+    /// Adds the twist of each arm's drive. Returns the largest part that this joint adds to Dunkerley's sums \[s²\].
     #[inline(always)]
     fn add_joint<V: Lanes>(&self, k: usize, indices: [usize; LANES], arms: &mut EightArms) -> V {
         let drives = &self.row.drives[k];
-        let alike = all_alike(&indices);
-        let first: V = at_places(&drives.compliance[0], &indices, alike);
+        let all_same = all_equal(&indices);
+        let first: V = at_places(&drives.compliance[0], &indices, all_same);
         let twisting = self.row.twisting[k];
         let curves = match twisting {
-            Twisting::Segments => Curves::<V>::gather(drives, &indices, alike),
+            Twisting::Segments => Curves::<V>::gather(drives, &indices, all_same),
             _ => Curves::line(first),
         };
         let mut largest = V::zero();
@@ -387,7 +323,7 @@ impl RowChunk<'_, '_> {
         largest
     }
 
-    /// Dunkerley's sums.
+    /// Dunkerley's sum of each case and block: the trace of flexibility times mass.
     #[inline(always)]
     fn sum_traces<V: Lanes>(&self, begun: &Begun, arms: &mut EightArms) {
         for (c, case) in self.row.cases.iter().enumerate().filter(|(_, case)| case.judged) {
@@ -411,7 +347,7 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// Twist under a torque and twist per further torque of joints with play or friction.
+    /// Twist and tangent compliance of joints with play or friction, lane by lane: their laws have no form in lanes.
     #[inline(always)]
     fn each_by_itself<V: Lanes>(&self, k: usize, indices: [usize; LANES], torque_nm: V) -> (V, V) {
         let slot = &self.problem.slots()[self.row.first + k];
@@ -430,6 +366,7 @@ impl RowChunk<'_, '_> {
         &self.problem.stations()[case]
     }
 
+    /// The joint in inner slot `k`, if there is one.
     #[inline(always)]
     fn joint(&self, case: usize, k: usize) -> Option<&StationJoint> {
         match &self.station(case).slots[self.row.first + k] {
@@ -439,13 +376,13 @@ impl RowChunk<'_, '_> {
     }
 }
 
-/// Adds to eight numbers.
+/// Adds to eight numbers in memory.
 #[inline(always)]
 fn add<V: Lanes>(to: &mut Eight, more: V) {
     *to = (V::load(to) + more).store();
 }
 
-/// Eights from memory.
+/// Loads several eights from memory.
 #[inline(always)]
 fn load_all<V: Lanes, const K: usize>(from: &[Eight; K]) -> [V; K] {
     let mut out = [V::zero(); K];
@@ -455,19 +392,19 @@ fn load_all<V: Lanes, const K: usize>(from: &[Eight; K]) -> [V; K] {
     out
 }
 
-/// Eight arms much alike often have the same drive.
+/// Whether all eight have the same drive. Neighbouring options often do, and one load is cheaper than a gather.
 #[inline(always)]
-fn all_alike(indices: &[usize; LANES]) -> bool {
+fn all_equal(indices: &[usize; LANES]) -> bool {
     indices.iter().all(|index| *index == indices[0])
 }
 
-/// Numbers of a list at eight places, or at one that all share.
+/// The numbers of a list at eight places; `all_same` says that the places are equal.
 #[inline(always)]
-fn at_places<V: Lanes>(list: &[f64], at: &[usize; LANES], alike: bool) -> V {
-    if alike { V::splat(list[at[0]]) } else { V::gather(list, at) }
+fn at_places<V: Lanes>(list: &[f64], at: &[usize; LANES], all_same: bool) -> V {
+    if all_same { V::splat(list[at[0]]) } else { V::gather(list, at) }
 }
 
-/// Square of the von Mises stress of bending, axial force and torsion, over the strength.
+/// Square of the ratio of von Mises stress (bending, axial force and torsion) to strength.
 #[inline(always)]
 fn stress_squared<V: Lanes>(per: &StressEight, [axial, torsion, y, z]: [V; 4]) -> V {
     let y = y.abs() * V::load(&per.per_moment_y);
@@ -489,27 +426,28 @@ struct Curves<V> {
 }
 
 impl<V: Lanes> Curves<V> {
-    /// Those of one slope.
+    /// Curves with a single slope each.
     #[inline(always)]
     fn line(compliance: V) -> Self {
         Self { compliance: [compliance; 3], ends_nm: [V::zero(); 2], first_in_modes: true }
     }
 
+    /// The curves of eight drives of a joint.
     #[inline(always)]
-    fn gather(of: &DriveFigures, at: &[usize; LANES], alike: bool) -> Self {
+    fn gather(of: &DriveAttributes, at: &[usize; LANES], all_same: bool) -> Self {
         let zero = V::zero();
         let mut curves =
             Self { compliance: [zero; 3], ends_nm: [zero; 2], first_in_modes: of.first_in_modes };
         for segment in 0..3 {
-            curves.compliance[segment] = at_places(&of.compliance[segment], at, alike);
+            curves.compliance[segment] = at_places(&of.compliance[segment], at, all_same);
         }
         for end in 0..2 {
-            curves.ends_nm[end] = at_places(&of.ends_nm[end], at, alike);
+            curves.ends_nm[end] = at_places(&of.ends_nm[end], at, all_same);
         }
         curves
     }
 
-    /// Twist under a torque, and compliance in modes.
+    /// Twist under a torque, and compliance in modes. Every segment is computed and masked, because lanes cannot branch.
     #[inline(always)]
     fn windup(&self, torque_nm: V) -> (V, V) {
         let Self { compliance, ends_nm, first_in_modes } = self;

@@ -1,23 +1,29 @@
 //! The lowest modes of eight designs at once.
 //!
-//! Few eigenproblems are solved to the end. A design whose mass and deflection are known need not be looked at further
-//! if its lowest mode is below a bar, that of a design no worse in both. Most often what one joint yields tells by
-//! itself, and one bar serves all eight; else one pass a block tells. Of the others the block whose Dunkerley sum is
-//! largest is solved first; any other block whose lower bound lies below that root gets one pass at it, and only if a
-//! pivot is negative there, a root of its own.
+//! Few eigenproblems are solved to the end. When mass and deflection of a design are known, the *bar* is the lowest mode of
+//! some known design that is no worse in both. A design below its bar is dominated and its mode need not be computed. The
+//! tests, from the cheapest to the dearest:
+//!
+//! 1. The compliance of a single joint bounds the lowest mode from above. Most often this decides, and a single bar serves
+//!    all eight designs.
+//! 2. Otherwise one pass over a block at the bar shows whether an eigenvalue is below it.
+//! 3. For designs above the bar, the block with the largest Dunkerley sum is solved first. Another block can only matter
+//!    if its lower bound is below the root just found. It then gets one pass at this root, and is solved only if a pivot is
+//!    negative there.
 
-use super::row::{Begun, CaseOutboard, ChunkModal, MOST_CASES, RowCase};
-use super::row_lanes::{EightArms, RowChunk};
+use super::arms::EightArms;
+use super::row::{ChunkModal, MOST_CASES, RowCase, RowChunk};
+use super::row_begun::{Begun, CaseOutboard};
 use crate::mechanics::lanes::{Eight, LANES, Lanes};
 use crate::mechanics::lowest_lanes::{Inner, LaneLink, Outboard, Walk, pass, roots};
 use crate::space::levels::Keep;
 use crate::space::station::{Block, BlockSlot, Modal};
 use std::f64::consts::TAU;
 
-/// Cases and their blocks.
+/// Pairs of a case and one of its blocks.
 type Blocks = [Option<(usize, usize)>; 2 * MOST_CASES];
 
-/// Eight complete arms, asked for their lowest modes.
+/// A question about the lowest modes of eight complete arms.
 #[derive(Clone, Copy)]
 pub(crate) struct Question<'a, 'c> {
     at: RowChunk<'a, 'c>,
@@ -25,19 +31,19 @@ pub(crate) struct Question<'a, 'c> {
     arms: &'a EightArms,
 }
 
-/// What is asked of a block.
+/// A question about the lowest eigenvalues of one block.
 #[derive(Clone, Copy)]
 struct Ask<V> {
-    /// In which lanes.
+    /// The lanes in question, one bit for each.
     open: u8,
-    /// Which of their lowest eigenvalues are below these?
+    /// Eigenvalues that are not below this number are of no interest.
     below: V,
-    /// And what are they? Where to look for them first.
+    /// Where to start to look for the eigenvalues; `None` if only the lanes below are asked for.
     guess: Option<V>,
 }
 
 impl RowChunk<'_, '_> {
-    /// The group of a design.
+    /// The group (material) of the design in a lane.
     #[inline(always)]
     pub fn group(&self, lane: usize) -> Option<usize> {
         let material = self.row.chunks.get(self.chunk).and_then(|chunk| chunk.materials[lane]);
@@ -56,8 +62,8 @@ impl<'a, 'c> Question<'a, 'c> {
         Self { at, begun, arms }
     }
 
-    /// Designs that one bar for all eight shows to be of no interest, that of the least mass and the least deflection
-    /// among them; `tip_m2` are the squares of their deflections.
+    /// The designs that a single bar for all eight shows to be of no interest. It is the bar of a design with the least
+    /// mass and the least deflection of the eight, and so no bar of the eight is lower. `tip_m2` has the squares of the deflections.
     #[inline(always)]
     pub fn below_one_bar<V: Lanes>(&self, keep: &impl Keep, tip_m2: &Eight, held: u8) -> u8 {
         if !self.at.of_one_group() {
@@ -67,7 +73,7 @@ impl<'a, 'c> Question<'a, 'c> {
         held & self.sluggish(V::splat(eigenvalue(bar_hz)))
     }
 
-    /// Designs whose lowest mode is below the bar of what is of interest.
+    /// The designs whose lowest mode is below their own bars.
     #[inline(always)]
     pub fn below_bar<V: Lanes>(&self, keep: &impl Keep, held: u8) -> u8 {
         let (mass_kg, tip_deflection_m) = (&self.arms.mass_kg, &self.arms.tip_deflection_m);
@@ -78,7 +84,7 @@ impl<'a, 'c> Question<'a, 'c> {
         self.below::<V>(&bars, held)
     }
 
-    /// Lanes whose lowest eigenvalue is below a bar.
+    /// The lanes whose lowest eigenvalue is below a bar.
     #[inline(always)]
     fn below<V: Lanes>(&self, bars: &Eight, held: u8) -> u8 {
         let below = V::load(bars);
@@ -96,7 +102,7 @@ impl<'a, 'c> Question<'a, 'c> {
         asked & !above
     }
 
-    /// Lowest eigenvalue over all judged cases, and the lanes in which it was not found.
+    /// The lowest eigenvalue over all judged cases, and the lanes in which it was not found.
     #[inline(always)]
     pub fn lowest<V: Lanes>(&self, held: u8) -> (V, u8) {
         let (mut lowest, mut unsure) = (V::splat(f64::INFINITY), 0);
@@ -104,6 +110,7 @@ impl<'a, 'c> Question<'a, 'c> {
             let least = self.least::<V>(block);
             let open = held & least.less(lowest);
             if open != 0 {
+                // blocks that still matter have roots close to the one known so far: start just below it
                 let guess = V::choose(lowest.less(V::splat(f64::INFINITY)), V::splat(0.97) * lowest, least);
                 let ask = Ask { open, below: lowest, guess: Some(guess.max(least)) };
                 let (root, lost) = self.answer(block, ask);
@@ -114,20 +121,22 @@ impl<'a, 'c> Question<'a, 'c> {
         (lowest, unsure)
     }
 
-    /// Lanes in which a single joint yields so much that the lowest eigenvalue is below a bar. One over it is the largest
-    /// eigenvalue of flexibility times mass, and nothing on the diagonal of a symmetric matrix is larger than that.
+    /// The lanes in which a single joint yields so much that the lowest eigenvalue is below a bar. The reciprocal of the
+    /// lowest eigenvalue is the largest eigenvalue of flexibility times mass (in its symmetric form), and no diagonal entry
+    /// of a symmetric matrix exceeds its largest eigenvalue.
     #[inline(always)]
     fn sluggish<V: Lanes>(&self, below: V) -> u8 {
         V::splat(1.0).less(V::load(&self.arms.largest_s2) * below)
     }
 
-    /// Dunkerley's lower bound of a block's lowest eigenvalue.
+    /// Dunkerley's lower bound of the lowest eigenvalue of a block.
     #[inline(always)]
     fn least<V: Lanes>(&self, (case, block): (usize, usize)) -> V {
         V::splat(1.0) / V::load(&self.arms.cases[case].trace_s2[block])
     }
 
-    /// Blocks of the judged cases, that of the largest Dunkerley sum first.
+    /// The blocks of the judged cases. The one with the largest Dunkerley sum comes first, since it most likely has the
+    /// lowest eigenvalue.
     fn blocks(&self, of: u8) -> Blocks {
         let mut blocks = [None; 2 * MOST_CASES];
         let (mut largest, mut count) = (0.0, 0);
@@ -148,7 +157,8 @@ impl<'a, 'c> Question<'a, 'c> {
         blocks
     }
 
-    /// The eigenvalues, and the lanes in which none was found; without a guess the lanes in which they are below.
+    /// The eigenvalues of a block, and the lanes in which none was found. Without a guess: the lanes in which an eigenvalue
+    /// is below.
     #[inline(always)]
     fn answer<V: Lanes>(&self, (case, block): (usize, usize), ask: Ask<V>) -> (V, u8) {
         let chunk = self.at.row.chunks.get(self.at.chunk).map(|chunk| &chunk.cases[case].modal);
@@ -171,6 +181,7 @@ impl<'a, 'c> Question<'a, 'c> {
         }
     }
 
+    /// The inner pieces of the eight arms in a block.
     #[inline(always)]
     fn pieces<'s, const N: usize>(
         &'s self,
@@ -189,6 +200,7 @@ impl<'a, 'c> Question<'a, 'c> {
         }
     }
 
+    /// Answers for a block of `N` motions.
     #[inline(always)]
     fn solve<V: Lanes, const N: usize>(
         &self,
@@ -199,6 +211,7 @@ impl<'a, 'c> Question<'a, 'c> {
         let Ask { mut open, below, guess } = ask;
         let known = open & below.less(V::splat(f64::INFINITY));
         if known != 0 {
+            // no pivot is negative at `below`: the lowest eigenvalue is above it, and the lane is done
             let here = pass(outboard, inner, V::choose(known, below, guess.unwrap_or(below)));
             open &= !(known & here.sound & V::zero().less(here.last));
         }
@@ -222,7 +235,7 @@ fn eigenvalue(hz: f64) -> f64 {
     (TAU * hz) * (TAU * hz)
 }
 
-/// The inner pieces of eight arms in a block, up to the last that yields.
+/// The inner pieces of eight arms in one block, up to the last that yields.
 struct Pieces<'a, const N: usize> {
     slots: &'a [BlockSlot<N>],
     end: usize,
@@ -234,7 +247,7 @@ struct Pieces<'a, const N: usize> {
 
 impl<V: Lanes, const N: usize> Inner<V, N> for Pieces<'_, N> {
     #[inline(always)]
-    fn carry(&self, walk: &mut Walk<V, N>) {
+    fn add_to(&self, walk: &mut Walk<V, N>) {
         for (k, slot) in self.slots[..self.end].iter().enumerate() {
             match slot {
                 BlockSlot::Joint { twist, inertia_per_kg } => {

@@ -1,9 +1,11 @@
-//! Designs as they might be built: the parts that were chosen, each a little off its catalog figures.
+//! Scatter: designs as they might be built, with parts that differ a little from their catalog ratings.
 //!
-//! Sizing is not done again: drives and sections stay, whatever their figures turn out to be. A gear's
-//! stiffness is one factor on its whole torsion curve (K1, K2 and K3; the break points T1 and T2 stay), a
-//! material's modulus one factor on E and G, a gear's or motor's mass one factor. A factor belongs to a
-//! catalog row: wherever the row is used, in whichever design, it is the same.
+//! Each rating has one factor. The factor of a gear's stiffness applies to its whole torsion curve (K1, K2 and K3; the
+//! break points T1 and T2 stay). The factor of a material's modulus applies to E and to G. Masses of gears and motors have
+//! factors of their own. A factor belongs to a row of a catalog, so it is the same in every joint and every design
+//! that uses the row.
+//!
+//! The designs are not sized again: they keep their drives and sections whatever the true ratings are.
 
 use crate::arm::joint_law::JointLaw;
 use crate::arm::{Link, LinkBody};
@@ -15,9 +17,9 @@ use crate::space::slot::Slot;
 use crate::space::station::{Station, StationSlot};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A catalog figure that is not quite what it says, by the row it stands in.
+/// A catalog rating that scatters, with the name of its row.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Figure {
+pub enum Rating {
     /// The torsion curve of a gear.
     GearStiffness(String),
     /// E and G of a material.
@@ -28,15 +30,15 @@ pub enum Figure {
     MotorMass(String),
 }
 
-/// True value over the catalog's, by figure; a figure that is not listed is exact.
-pub type Factors = BTreeMap<Figure, f64>;
+/// Ratio of the true value to the catalog's, for each rating. A rating that is not listed is exact.
+pub type Factors = BTreeMap<Rating, f64>;
 
-/// Designs of a problem whose parts are to be scattered.
+/// Designs of a problem whose parts are to scatter.
 pub struct ChosenParts<'p, 'c> {
     problem: &'p ArmProblem<'c>,
-    /// Option of every slot of every design.
+    /// Option of every slot, design by design.
     designs: Vec<Vec<u32>>,
-    /// Options that some design has, slot by slot.
+    /// Options that the designs use, slot by slot. Only these are built.
     used: Vec<BTreeSet<u32>>,
 }
 
@@ -49,13 +51,13 @@ struct BuiltJoint {
 /// The parts of [`ChosenParts`] with one set of factors.
 pub struct BuiltParts<'p, 'c> {
     chosen: &'p ChosenParts<'p, 'c>,
-    /// Cases with links of other moduli; `None`: the problem's own.
+    /// The cases with links of other moduli; `None` if no modulus scatters.
     stations: Option<Vec<Station>>,
     joints: Vec<BTreeMap<u32, BuiltJoint>>,
 }
 
 impl<'p, 'c> ChosenParts<'p, 'c> {
-    /// The parts of designs, given by their options, one a level; a design that cannot hold is refused.
+    /// The parts of designs, each given by its options, one for each level. Returns `None` if a design cannot hold.
     pub fn new(problem: &'p ArmProblem<'c>, designs: &[Vec<u32>]) -> Option<Self> {
         let complete =
             designs.iter().map(|options| problem.walk(options, |_, _| {}).ok().map(|arm| arm.options));
@@ -74,25 +76,25 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         self.designs.is_empty()
     }
 
-    /// Every catalog figure that the designs depend on.
-    pub fn figures(&self) -> BTreeSet<Figure> {
+    /// All catalog ratings on which the designs depend.
+    pub fn ratings(&self) -> BTreeSet<Rating> {
         let used = self.used.iter().enumerate().flat_map(|(slot, used)| used.iter().map(move |&o| (slot, o)));
         used.flat_map(|(slot, option)| {
             let drive = self.drive(slot, option);
             [
-                self.gear(slot, option).map(Figure::GearStiffness),
-                self.material(slot, option).map(Figure::Modulus),
-                drive.map(|d| Figure::GearMass(d.gear.id.clone())),
-                drive.map(|d| Figure::MotorMass(d.motor.id.clone())),
+                self.gear(slot, option).map(Rating::GearStiffness),
+                self.material(slot, option).map(Rating::Modulus),
+                drive.map(|d| Rating::GearMass(d.gear.id.clone())),
+                drive.map(|d| Rating::MotorMass(d.motor.id.clone())),
             ]
         })
         .flatten()
         .collect()
     }
 
-    /// The parts with their true figures.
+    /// The parts with the true values of their ratings.
     pub fn built(&self, factors: &Factors) -> BuiltParts<'_, 'c> {
-        let bends = factors.keys().any(|figure| matches!(figure, Figure::Modulus(_)));
+        let bends = factors.keys().any(|rating| matches!(rating, Rating::Modulus(_)));
         let stations = bends.then(|| {
             let space = with_moduli(self.problem.space(), factors);
             Station::all(&space)
@@ -108,17 +110,18 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
     }
 
     fn built_joint(&self, slot: usize, option: u32, factors: &Factors) -> Option<BuiltJoint> {
-        let factor = |figure: Figure| factors.get(&figure).copied().unwrap_or(1.0);
+        let factor = |rating: Rating| factors.get(&rating).copied().unwrap_or(1.0);
         let law = *self.problem.slots()[slot].law(option as usize)?;
-        let stiffness = self.gear(slot, option).map_or(1.0, |gear| factor(Figure::GearStiffness(gear)));
+        let stiffness = self.gear(slot, option).map_or(1.0, |gear| factor(Rating::GearStiffness(gear)));
         let mass_kg = match &self.problem.slots()[slot] {
             Slot::Given { mass_kg, .. } => *mass_kg,
             Slot::Sized(sized) => {
                 let (drive, mass_kg) =
                     (sized.table.drive(option as usize), sized.table.mass_kg(option as usize));
+                // as deviations from the mass in the table, so that factors of 1 give this mass exactly
                 let motor_kg = drive.motor.mass_kg.unwrap_or(0.0);
-                let gear_off = factor(Figure::GearMass(drive.gear.id.clone())) - 1.0;
-                let motor_off = factor(Figure::MotorMass(drive.motor.id.clone())) - 1.0;
+                let gear_off = factor(Rating::GearMass(drive.gear.id.clone())) - 1.0;
+                let motor_off = factor(Rating::MotorMass(drive.motor.id.clone())) - 1.0;
                 mass_kg + (mass_kg - motor_kg) * gear_off + motor_kg * motor_off
             }
             _ => 0.0,
@@ -126,7 +129,7 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         Some(BuiltJoint { law: JointLaw { curve: law.curve.stiffened(stiffness), ..law }, mass_kg })
     }
 
-    /// The catalog gear of a joint, chosen or given by name.
+    /// Name of the catalog gear of a joint, whether chosen or given.
     fn gear(&self, slot: usize, option: u32) -> Option<String> {
         match (self.drive(slot, option), self.problem.piece_in_slot(slot)) {
             (Some(drive), _) => Some(drive.gear.id.clone()),
@@ -138,8 +141,7 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         }
     }
 
-    /// The drive of a joint that the study leaves open. That of a given joint has the mass that the study
-    /// gives it.
+    /// The drive of a joint that is sized. The drive of a given joint has the mass that the study gives; it does not scatter.
     fn drive(&self, slot: usize, option: u32) -> Option<Drive<'c>> {
         match &self.problem.slots()[slot] {
             Slot::Sized(sized) => Some(sized.table.drive(option as usize)),
@@ -147,6 +149,7 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         }
     }
 
+    /// Name of the material of a link, whether chosen or given.
     fn material(&self, slot: usize, option: u32) -> Option<String> {
         match self.problem.piece_in_slot(slot)? {
             SpacePiece::Choice(choice) => Some(choice.options[option as usize].material_name.clone()),
@@ -159,7 +162,7 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
 }
 
 impl BuiltParts<'_, '_> {
-    /// Objectives of a design by its place in the list that the parts were taken from.
+    /// Objectives of a design. `design` is its place in the list from which the parts were taken.
     pub fn objectives(&self, design: usize) -> Objectives {
         let problem = self.chosen.problem;
         let stations = self.stations.as_deref().unwrap_or(problem.stations());
@@ -167,7 +170,7 @@ impl BuiltParts<'_, '_> {
         objectives_over(problem.space().judged_cases.iter().map(|&i| (&stations[i], &arm.stations[i])), &arm)
     }
 
-    /// The arm of a design in its judged cases.
+    /// The arm of a design, with its states in the judged cases.
     fn arm(&self, stations: &[Station], options: &[u32]) -> Partial {
         let problem = self.chosen.problem;
         let mut arm = problem.empty();
@@ -197,9 +200,9 @@ impl BuiltParts<'_, '_> {
     }
 }
 
-/// The space with every tube's material as it is.
+/// The space with the true moduli of its materials.
 fn with_moduli(space: &DesignSpace, factors: &Factors) -> DesignSpace {
-    let factor = |name: &str| factors.get(&Figure::Modulus(name.to_string())).copied().unwrap_or(1.0);
+    let factor = |name: &str| factors.get(&Rating::Modulus(name.to_string())).copied().unwrap_or(1.0);
     let mut out = space.clone();
     for piece in &mut out.pieces {
         match piece {

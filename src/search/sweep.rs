@@ -1,41 +1,43 @@
-//! Visiting every design, in parallel and in constant memory.
+//! The sweep: it visits every design, in parallel and in constant memory.
 //!
-//! `Visit` walks the tree in tasks. Designs that something else clearly beats are dropped at once ([`Archive`]); the rest
-//! are filtered exactly now and then, so that memory follows the front and not the space. What is kept
-//! at the end does not depend on the order of visits or the number of threads.
+//! `Visit` walks the tree in tasks. A design that another clearly dominates is dropped at once ([`Archive`]). The
+//! others are filtered exactly from time to time, so that memory grows with the front and not with the space. The result
+//! does not depend on the order of visits or on the number of threads.
 
+use super::finish::FinishRows;
 use super::visit::Visit;
 use crate::pareto::archive::Archive;
 use crate::pareto::front::not_clearly_beaten;
 use crate::pareto::objectives::Objectives;
 use crate::space::constraint::Constraints;
-use crate::space::levels::{Finished, Keep, OutwardIn};
+use crate::space::levels::{Finished, Keep};
 use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Two designs closer than this in an objective are told apart by the full model, not by the sweep.
+/// Relative difference in an objective up to which the sweep does not decide between two designs. It keeps both, and the
+/// full model decides.
 pub const SLACK: f64 = 1e-7;
-/// Candidates are filtered whenever there are this many more than after the last filtering.
+/// Candidates are filtered when this many have been added since the last filtering.
 const BUFFER: usize = 1 << 15;
 
 /// How a search ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// No design outside the front can be on it: proved without visiting every one.
+    /// The front is proved to be complete, without a visit to every design.
     Certified,
     /// Every design was visited.
     Complete,
-    /// Stopped early: what was found, and how much it may lack.
+    /// The search stopped early; the result states how much it may lack.
     Partial,
     /// Every design was visited and none meets the constraints.
     Infeasible,
-    /// Stopped before every design was visited.
+    /// The sweep was stopped before every design was visited.
     Interrupted,
 }
 
 impl Status {
-    /// The word in files.
+    /// The word for the status in files.
     pub fn word(self) -> &'static str {
         match self {
             Status::Certified => "certified",
@@ -47,38 +49,87 @@ impl Status {
     }
 }
 
-/// A design that no other clearly beats.
+/// A design that no other clearly dominates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
     /// Number of the design in its space.
     pub number: u128,
-    /// Its objectives by the fast model.
+    /// Objectives of the design by the fast model.
     pub objectives: Objectives,
 }
 
-/// What a sweep found.
+/// The result of a sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepOutcome {
-    /// How it ended.
+    /// How the sweep ended.
     pub status: Status,
-    /// Designs in the space.
+    /// Number of designs in the space.
     pub designs_total: u128,
-    /// Designs that hold and were judged: by their three objectives, or by mass, deflection and a lowest mode
-    /// that is below that of a design no worse in both.
+    /// Number of designs that hold and were judged. Most are judged by mass, deflection and a bound of the lowest mode,
+    /// which shows that another design is no worse in anything; the rest by all three objectives.
     pub designs_evaluated: u64,
-    /// Designs left out because their outboard part, or a drive, stress, mass or cost limit, cannot hold.
+    /// Number of designs that cannot hold, because a drive, stress, slenderness, mass or cost limit excludes them.
     pub designs_excluded: u128,
     /// Candidates of the front of all designs.
     pub front: Vec<Candidate>,
-    /// Candidates of each group's own front.
+    /// Candidates of the front of each group (material).
     pub groups: Vec<Vec<Candidate>>,
-    /// The best of each objective among the designs that break only that objective's constraint:
-    /// the smallest relaxation that would help.
+    /// Near misses: the best value of each objective (deflection \[m\], mass \[kg\], negative mode \[Hz\]) among the designs
+    /// that break only the limit on it. A limit relaxed to this value would let the first design in.
     pub near_misses: [Option<f64>; 3],
 }
 
-/// A sweep that others can watch and stop.
-pub struct Sweep<'p, P: OutwardIn> {
+/// A sweep that other threads can watch and stop.
+///
+/// The problem is any tree that can finish rows of designs; [`ArmProblem`](crate::space::ArmProblem) is the one for arms.
+/// The example is an arm whose only drive is found by first fit, so that the space has one design.
+///
+/// ```
+/// use armwright::arm::{JointModel, Link, LinkBody, LinkModel, Payload};
+/// use armwright::catalog::{Catalogs, GearMass};
+/// use armwright::search::{Status, Sweep};
+/// use armwright::sizing::DriveFilter;
+/// use armwright::space::design_space::{Case, DriveChoice, SpaceJoint, SpacePiece};
+/// use armwright::space::{ArmProblem, DesignSpace};
+/// use nalgebra::Vector3;
+/// use std::sync::atomic::AtomicBool;
+///
+/// let joint = SpaceJoint {
+///     name: "j2".into(),
+///     axis: Vector3::y_axis(),
+///     drive: DriveChoice::FirstFit(DriveFilter::everything(GearMass::HousedUnit)),
+///     max_speed_rad_s: None,
+/// };
+/// let body = LinkBody::Offset { mass_kg: 4.0 };
+/// let link = Link { name: "fore_arm".into(), vector_m: Vector3::new(0.5, 0.0, 0.0), body };
+/// let space = DesignSpace {
+///     name: "one joint".into(),
+///     gravity_m_s2: 9.81,
+///     pieces: vec![SpacePiece::Joint(joint), SpacePiece::Link(link)],
+///     cases: vec![Case {
+///         name: "stretched".into(),
+///         pose_deg: vec![0.0],
+///         payload: Payload { mass_kg: 5.0, ..Payload::default() },
+///         tip_force_n: Vector3::zeros(),
+///         water: None,
+///     }],
+///     judged_cases: vec![0],
+///     sizing_cases: vec![0],
+///     motion: Default::default(),
+///     links: LinkModel::Full,
+///     joints: JointModel::ThreeSegment,
+///     constraints: Default::default(),
+///     effects: Vec::new(),
+/// };
+/// let catalogs = Catalogs::builtin();
+/// let problem = ArmProblem::new(&space, &catalogs);
+/// let stop = AtomicBool::new(false);
+/// let outcome = Sweep::new(&problem, space.constraints, &stop).run();
+/// assert_eq!(outcome.status, Status::Complete);
+/// assert_eq!((outcome.designs_total, outcome.front.len()), (1, 1));
+/// assert!(outcome.front[0].objectives.lowest_mode_hz > 1.0);
+/// ```
+pub struct Sweep<'p, P: FinishRows> {
     problem: &'p P,
     constraints: Constraints,
     visited: AtomicU64,
@@ -96,7 +147,7 @@ impl Pool {
         Self { archive: Archive::new(bits), candidates: Mutex::new((Vec::new(), 0)) }
     }
 
-    /// Takes a candidate unless one before it surely beats it.
+    /// Takes a candidate, unless one that was taken before surely dominates it. Returns whether it was taken.
     fn offer(&self, candidate: Candidate, buffer: &mut Vec<Candidate>) -> bool {
         if self.archive.rejects(&candidate.objectives) {
             return false;
@@ -109,32 +160,36 @@ impl Pool {
         true
     }
 
+    /// Moves the candidates of a task into the pool.
     fn empty(&self, buffer: &mut Vec<Candidate>) {
-        clear_beaten(buffer);
+        // a task filters its own candidates first, so that the lock is held for few of them
+        clear_dominated(buffer);
         let mut pool = self.candidates.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let (all, settled) = &mut *pool;
         all.append(buffer);
         if all.len() > *settled + BUFFER {
-            clear_beaten(all);
+            clear_dominated(all);
             *settled = all.len();
         }
     }
 
     fn finish(self) -> Vec<Candidate> {
         let mut all = self.candidates.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).0;
-        clear_beaten(&mut all);
+        clear_dominated(&mut all);
+        // tasks end in any order; the result must not depend on it
         all.sort_unstable_by_key(|c| c.number);
         all
     }
 }
 
-fn clear_beaten(candidates: &mut Vec<Candidate>) {
+/// Drops the candidates that another clearly dominates.
+fn clear_dominated(candidates: &mut Vec<Candidate>) {
     let points: Vec<[f64; 3]> = candidates.iter().map(|c| c.objectives.minimized()).collect();
     let kept = not_clearly_beaten(&points, SLACK);
     *candidates = kept.into_iter().map(|i| candidates[i]).collect();
 }
 
-/// What one task counts.
+/// The counts of one task.
 #[derive(Default)]
 struct Tally {
     evaluated: u64,
@@ -154,7 +209,7 @@ impl Tally {
         self
     }
 
-    /// Whether the design meets every constraint; if it breaks just one, how nearly.
+    /// Whether a design meets every constraint. A design that breaks exactly one is noted as a near miss.
     fn meets(&mut self, constraints: &Constraints, o: &Objectives) -> bool {
         let broken = constraints.broken(o);
         if broken.iter().filter(|b| **b).count() == 1 {
@@ -167,17 +222,18 @@ impl Tally {
     }
 }
 
+/// Keeps the smaller of two values.
 fn note(best: &mut Option<f64>, x: f64) {
     *best = Some(best.map_or(x, |b| b.min(x)));
 }
 
-impl<'p, P: OutwardIn> Sweep<'p, P> {
-    /// A sweep of a problem's designs; it ends early when `stop` is set.
+impl<'p, P: FinishRows> Sweep<'p, P> {
+    /// A sweep of all designs of a problem. It ends early when `stop` is set.
     pub fn new(problem: &'p P, constraints: Constraints, stop: &'p AtomicBool) -> Self {
         Self { problem, constraints, visited: AtomicU64::new(0), stop }
     }
 
-    /// Designs visited or excluded so far.
+    /// Number of designs visited or excluded so far.
     pub fn visited(&self) -> u64 {
         self.visited.load(Ordering::Relaxed)
     }
@@ -187,24 +243,30 @@ impl<'p, P: OutwardIn> Sweep<'p, P> {
         self.problem.level_sizes().iter().map(|&s| u128::from(s)).product()
     }
 
-    /// Visits every design.
+    /// Visits every design and returns the candidates of the fronts. The full model must still evaluate them
+    /// ([`evaluate`](crate::space::evaluate)) and decide between those closer than [`SLACK`].
     pub fn run(&self) -> SweepOutcome {
         let sizes = self.problem.level_sizes();
         let overall = Pool::new(6);
         let groups: Vec<Pool> = (0..self.problem.groups()).map(|_| Pool::new(5)).collect();
         let tally = match self.problem.root() {
             None => Tally { excluded: self.total(), ..Tally::default() },
-            Some(root) => Visit { problem: self.problem, visited: &self.visited, stop: self.stop }
-                .every_design(&root, || Worker {
-                    constraints: &self.constraints,
-                    overall: &overall,
-                    groups: &groups,
-                    tally: Tally::default(),
-                    buffer: Vec::new(),
-                    group_buffers: vec![Vec::new(); groups.len()],
-                })
-                .map(Worker::finish)
-                .reduce(Tally::default, Tally::merge),
+            Some(root) => Visit {
+                problem: self.problem,
+                compiled: self.problem.compile(),
+                visited: &self.visited,
+                stop: self.stop,
+            }
+            .every_design(&root, || Worker {
+                constraints: &self.constraints,
+                overall: &overall,
+                groups: &groups,
+                tally: Tally::default(),
+                buffer: Vec::new(),
+                group_buffers: vec![Vec::new(); groups.len()],
+            })
+            .map(Worker::finish)
+            .reduce(Tally::default, Tally::merge),
         };
         let front = overall.finish();
         let status = match (self.stop.load(Ordering::Relaxed), front.is_empty() || sizes.contains(&0)) {
@@ -224,7 +286,7 @@ impl<'p, P: OutwardIn> Sweep<'p, P> {
     }
 }
 
-/// What one task keeps.
+/// The keeper of one task.
 struct Worker<'s> {
     constraints: &'s Constraints,
     overall: &'s Pool,
@@ -241,10 +303,10 @@ impl Keep for Worker<'_> {
             return;
         }
         let candidate = Candidate { number, objectives };
-        // what one of its own group beats, one of all designs beats
-        let beaten =
+        // a design that one of its own group dominates is dominated in the whole front too
+        let dominated =
             group.is_some_and(|group| !self.groups[group].offer(candidate, &mut self.group_buffers[group]));
-        if !beaten {
+        if !dominated {
             self.overall.offer(candidate, &mut self.buffer);
         }
     }
@@ -253,11 +315,12 @@ impl Keep for Worker<'_> {
         self.tally.excluded += designs;
     }
 
-    // what one of its own group beats, one of all designs beats; those entered keep the constraints, so that near
-    // misses no longer matter once there is a bar
+    // A design of a group is of interest for two fronts. One that its own group dominates is dominated in both, so the
+    // bar of the group is the one to use. The bar comes from designs that meet the constraints. Once there is one, near
+    // misses no longer matter, and designs below the bar need not be examined for them.
     fn bar_hz(&self, group: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
-        let rivals = group.map_or(self.overall, |group| &self.groups[group]);
-        rivals.archive.bar_hz(mass_kg, tip_deflection_m)
+        let pool = group.map_or(self.overall, |group| &self.groups[group]);
+        pool.archive.bar_hz(mass_kg, tip_deflection_m)
     }
 
     fn below_bar(&mut self, designs: u64) {

@@ -1,33 +1,38 @@
-//! Walking through every design of a tree, in parallel.
+//! A walk through every design of a tree, in parallel.
 //!
-//! A *row* is all designs that differ in the innermost level alone. Tasks take ranges of rows; each builds the arms
-//! outboard of its rows one level after the other, keeps those it shares with the row before, and finishes rows in
-//! batches. It keeps what it finds for itself.
+//! A *row* is the set of designs that differ in the innermost level alone. Each task takes a range of rows. It builds the
+//! arm outboard of a row level by level and reuses the levels that the row shares with the one before. Rows are finished
+//! in batches. A task keeps its finds to itself until it ends, so tasks do not wait for each other.
 
+use super::finish::FinishRows;
 use crate::space::design::options;
-use crate::space::levels::{Finished, Keep, OutwardIn};
+use crate::space::levels::{Finished, Keep};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Tasks to aim for: enough for balance and for a progress report.
+/// Number of tasks to aim for: enough to balance the load and to report progress.
 const TASKS: u128 = 512;
-/// Tasks that there should be before rows are finished in batches.
+/// Smallest number of tasks when a task gets a whole batch of rows. A smaller space is divided into smaller tasks, because
+/// idle threads cost more than incomplete batches.
 const LEAST_TASKS: u128 = 64;
-/// Rows finished together, and designs in them.
+/// Largest number of rows that are finished together, and of designs in them. A batch reads each chunk of the innermost
+/// level from memory once for all its rows.
 const BATCH: usize = 16;
 const BATCH_DESIGNS: usize = 1 << 18;
 
-/// A walk that others can watch and stop.
-pub(crate) struct Visit<'p, P: OutwardIn> {
+/// A walk that other threads can watch and stop.
+pub(crate) struct Visit<'p, P: FinishRows> {
     pub problem: &'p P,
+    /// The innermost level, compiled.
+    pub compiled: P::Compiled,
     /// Designs visited or excluded so far.
     pub visited: &'p AtomicU64,
     pub stop: &'p AtomicBool,
 }
 
-impl<P: OutwardIn> Visit<'_, P> {
-    /// Visits every design beyond the empty arm; what the tasks kept comes in the order of the tasks.
+impl<P: FinishRows> Visit<'_, P> {
+    /// Visits every design. Each task has a keeper of its own; the keepers come back in the order of the tasks.
     pub fn every_design<'v, K: Keep + Send + 'v>(
         &'v self,
         root: &'v P::Partial,
@@ -46,19 +51,20 @@ impl<P: OutwardIn> Visit<'_, P> {
     }
 }
 
-/// One task at work.
-struct Walker<'v, 'p, P: OutwardIn, K> {
+/// The state of one task.
+struct Walker<'v, 'p, P: FinishRows, K> {
     visit: &'v Visit<'p, P>,
     keeper: K,
-    /// The arms that the last row began with: the empty one, with one level, ...
+    /// The partial arms of the last row: the empty arm, then the arm with one level, with two levels, and so on.
     begun: Vec<P::Partial>,
+    /// The options of these arms.
     options: Vec<u32>,
-    /// Rows to be finished together, with the number of each one's first design.
+    /// Rows to be finished together, each with the number of its first design.
     batch: Vec<(u128, P::Partial)>,
     scratch: P::Scratch,
 }
 
-impl<'v, 'p, P: OutwardIn, K: Keep> Walker<'v, 'p, P, K> {
+impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
     fn new(visit: &'v Visit<'p, P>, root: &P::Partial, keeper: K) -> Self {
         let levels = visit.problem.level_sizes().len();
         Self {
@@ -71,7 +77,7 @@ impl<'v, 'p, P: OutwardIn, K: Keep> Walker<'v, 'p, P, K> {
         }
     }
 
-    /// Every design of some rows. A space without levels is one design.
+    /// Visits every design of some rows. A space without levels has one design.
     fn walk(&mut self, rows: Range<u128>) {
         let problem = self.visit.problem;
         let Some((&last, outer)) = problem.level_sizes().split_last() else {
@@ -90,9 +96,10 @@ impl<'v, 'p, P: OutwardIn, K: Keep> Walker<'v, 'p, P, K> {
                     row + 1
                 }
                 Err(level) => {
-                    // every row with the same options up to this level
-                    let alike: u128 = outer[level + 1..].iter().map(|&size| u128::from(size)).product();
-                    let next = ((row / alike + 1) * alike).min(rows.end);
+                    // every row with the same options up to this level fails with it: skip to the next that differs
+                    let rows_of_level: u128 =
+                        outer[level + 1..].iter().map(|&size| u128::from(size)).product();
+                    let next = ((row / rows_of_level + 1) * rows_of_level).min(rows.end);
                     let designs = (next - row) * u128::from(last);
                     self.keeper.exclude(designs);
                     self.count(designs);
@@ -107,7 +114,10 @@ impl<'v, 'p, P: OutwardIn, K: Keep> Walker<'v, 'p, P, K> {
         self.finish(last);
     }
 
-    /// Builds the arm outboard of a row; the level at which it fails if no design beyond it can hold.
+    /// Builds the arm outboard of a row.
+    ///
+    /// # Errors
+    /// The level at which no design with this beginning can hold.
     fn begin(&mut self, outer: &[u32], row: u128) -> Result<(), usize> {
         let wanted = options(outer, row).unwrap_or_default();
         let shared = self.options.iter().zip(&wanted).take_while(|(a, b)| a == b).count();
@@ -122,12 +132,15 @@ impl<'v, 'p, P: OutwardIn, K: Keep> Walker<'v, 'p, P, K> {
         Ok(())
     }
 
+    /// Finishes the rows of the batch.
     fn finish(&mut self, row_length: u32) {
-        self.visit.problem.finish(&self.batch, &mut self.scratch, &mut self.keeper);
+        let Visit { problem, compiled, .. } = self.visit;
+        problem.finish(compiled, &self.batch, &mut self.scratch, &mut self.keeper);
         self.count(self.batch.len() as u128 * u128::from(row_length));
         self.batch.clear();
     }
 
+    /// Counts designs for whoever watches the progress.
     fn count(&self, designs: u128) {
         self.visit.visited.fetch_add(u64::try_from(designs).unwrap_or(u64::MAX), Ordering::Relaxed);
     }

@@ -1,7 +1,7 @@
-//! The checks of a drive, one by one, for people: needed, allowed, margin, and what cannot be checked.
+//! The checks of a drive, one by one, for people: needed, allowed, margin, and whether a check could be made at all.
 
 use super::demand::{JointDemand, JointMotion};
-use super::drive::{Drive, Figure, MissingFigure};
+use super::drive::{Drive, MissingRating, Rating};
 use super::limits as limit;
 use crate::catalog::gear::{Gear, GearMass};
 use std::fmt;
@@ -9,32 +9,32 @@ use std::fmt;
 /// One limit of a gear or a motor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum CheckKind {
-    /// Static plus linear torque below the gear's limit for repeated peaks.
+    /// Static plus linear torque is below the gear's limit for repeated peaks.
     GearPeak,
-    /// Cubic mean torque below the gear's limit for average torque.
+    /// Cubic mean torque is below the gear's limit for average torque.
     GearMean,
-    /// Emergency stop below the gear's limit for momentary peaks.
+    /// Torque in an emergency stop is below the gear's limit for momentary peaks.
     GearStop,
-    /// Moment across the axis below what the gear's output bearing permits.
+    /// Moment across the axis is below the permissible moment of the gear's output bearing.
     GearTilt,
-    /// N times speed below the gear's largest input speed.
+    /// N times speed is below the gear's largest input speed.
     GearSpeed,
-    /// N times mean speed below the gear's limit for average input speed.
+    /// N times mean speed is below the gear's limit for average input speed.
     GearMeanSpeed,
-    /// L10 of the wave-generator bearing above the life required.
+    /// L10 life of the wave-generator bearing is above the required life.
     GearLife,
-    /// Static torque held by the motor continuously.
+    /// The motor can hold the static torque continuously.
     MotorHold,
-    /// Static, linear and rotary torque given by the motor for the ramp.
+    /// The motor can give static, linear and rotary torque for the duration of the ramp.
     MotorPeak,
-    /// N times speed below the motor's largest speed.
+    /// N times speed is below the motor's largest speed.
     MotorSpeed,
-    /// The mass of the drive is known. Listed only if it is not.
+    /// The mass of the drive is known. This check is listed only if it is not.
     Mass,
 }
 
 impl CheckKind {
-    /// Name in messages after the part's name.
+    /// Name in messages, where it follows the name of the part.
     pub fn name(self) -> &'static str {
         match self {
             CheckKind::GearPeak | CheckKind::MotorPeak => "peak",
@@ -50,7 +50,7 @@ impl CheckKind {
         }
     }
 
-    /// Name with the part it is about, for tables.
+    /// Name with the kind of part, for tables.
     pub fn label(self) -> &'static str {
         match self {
             CheckKind::GearPeak => "gear peak",
@@ -90,18 +90,18 @@ pub enum CheckState {
     Holds,
     /// The limit is exceeded.
     Fails,
-    /// A figure is blank.
-    NotChecked(MissingFigure),
+    /// A rating that the check needs is blank.
+    NotChecked(MissingRating),
 }
 
 /// One limit of one part against one demand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Check {
-    /// Which limit.
+    /// Which limit is checked.
     pub kind: CheckKind,
-    /// What is needed, where it can be computed, in [`CheckKind::unit`].
+    /// The needed value in [`CheckKind::unit`]; `None` if it cannot be computed.
     pub needed: Option<f64>,
-    /// What the part allows (for life: what it gives), where known.
+    /// The value that the part allows (or, for life, that it reaches); `None` if it is unknown.
     pub allowed: Option<f64>,
     /// Outcome.
     pub state: CheckState,
@@ -116,13 +116,14 @@ impl Check {
         }
     }
 
-    /// The margin as a factor on torque, to compare checks by: the life goes with the cube of the torque.
+    /// The margin as a factor on torque, which makes checks comparable. Life goes with the cube of the torque, so its
+    /// margin becomes the cube root.
     pub fn torque_margin(&self) -> Option<f64> {
         let margin = self.margin()?;
         Some(if self.kind == CheckKind::GearLife { margin.cbrt() } else { margin })
     }
 
-    /// Needed minus allowed, where both are known; positive when the check fails.
+    /// Needed minus allowed; positive if the check fails, `None` if one of the two is unknown.
     pub fn shortfall(&self) -> Option<f64> {
         Some(self.needed? - self.allowed?)
     }
@@ -138,7 +139,7 @@ impl fmt::Display for Check {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = self.kind.name();
         match (self.state, self.needed, self.allowed) {
-            (CheckState::NotChecked(figure), _, _) => write!(f, "{name} not checked: lacks {figure}"),
+            (CheckState::NotChecked(rating), _, _) => write!(f, "{name} not checked: lacks {rating}"),
             (_, Some(needed), Some(allowed)) => {
                 let digits = digits_that_differ(needed, allowed);
                 let unit = self.kind.unit();
@@ -149,7 +150,7 @@ impl fmt::Display for Check {
     }
 }
 
-/// Decimals that show about three digits of a number.
+/// Number of decimals that shows about three digits of a number.
 pub(super) fn digits_of(x: f64) -> usize {
     match x.abs() {
         x if x >= 100.0 => 0,
@@ -159,28 +160,29 @@ pub(super) fn digits_of(x: f64) -> usize {
     }
 }
 
-/// Decimals that show about three digits of the larger number, and the difference between the two.
+/// Number of decimals that shows about three digits of the larger number, or more if the two would look equal.
 fn digits_that_differ(a: f64, b: f64) -> usize {
     let least = digits_of(a.abs().max(b.abs()));
     (least..12).find(|&n| format!("{a:.n$}") != format!("{b:.n$}")).unwrap_or(least)
 }
 
-/// Compares `load` with `threshold`; needed and allowed are the same comparison in natural units.
-fn check(kind: CheckKind, needed: Figure, allowed: Figure, load: f64, threshold: Figure) -> Check {
+/// Compares `load` with `threshold`. `needed` and `allowed` say the same thing in the units that people use, but they are
+/// not compared: rounding could decide otherwise than the search did.
+fn check(kind: CheckKind, needed: Rating, allowed: Rating, load: f64, threshold: Rating) -> Check {
     let state = match threshold {
         Ok(threshold) if load <= threshold => CheckState::Holds,
         Ok(_) => CheckState::Fails,
-        Err(figure) => CheckState::NotChecked(figure),
+        Err(rating) => CheckState::NotChecked(rating),
     };
     Check { kind, needed: needed.ok(), allowed: allowed.ok(), state }
 }
 
-/// A check whose thresholds are its natural numbers.
-fn plain(kind: CheckKind, needed: f64, allowed: Figure) -> Check {
+/// A check that compares the printed numbers themselves.
+fn plain(kind: CheckKind, needed: f64, allowed: Rating) -> Check {
     check(kind, Ok(needed), allowed, needed, allowed)
 }
 
-/// The checks of a gear, whatever the motor is. The tilting moment is checked if one is asked for.
+/// The checks of a gear, which do not depend on the motor. The tilting moment is checked if the demand has one.
 pub fn gear_checks(
     gear: &Gear,
     gear_mass: GearMass,
@@ -216,7 +218,7 @@ fn gear_mean(gear: &Gear, demand: &JointDemand) -> Check {
     )
 }
 
-/// L10 = L_ref (T_rated / T_mean)³ (2000 rpm / n_mean), against the life required.
+/// L10 = L_ref (T_rated / T_mean)³ (2000 rpm / n_mean), compared with the required life.
 fn gear_life(gear: &Gear, motion: &JointMotion, demand: &JointDemand) -> Check {
     let life_h = limit::life_product(gear, motion).map(|product| product / demand.mean_torque_cubed_nm3);
     check(
@@ -228,7 +230,7 @@ fn gear_life(gear: &Gear, motion: &JointMotion, demand: &JointDemand) -> Check {
     )
 }
 
-/// The checks of a motor behind its gear, and of the pair's mass if it is not known.
+/// The checks of a motor behind its gear. An unknown mass of the pair is listed too.
 pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
     let mut checks = vec![
         motor_hold(drive, demand),
@@ -239,14 +241,14 @@ pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -
             limit::motor_max_speed_rpm(drive.motor),
         ),
     ];
-    if let Err(figure) = drive.mass_kg() {
-        let state = CheckState::NotChecked(figure);
+    if let Err(rating) = drive.mass_kg() {
+        let state = CheckState::NotChecked(rating);
         checks.push(Check { kind: CheckKind::Mass, needed: None, allowed: None, state });
     }
     checks
 }
 
-/// T / (N η) against the continuous torque.
+/// T / (N η), compared with the continuous torque.
 fn motor_hold(drive: &Drive, demand: &JointDemand) -> Check {
     check(
         CheckKind::MotorHold,
@@ -257,7 +259,7 @@ fn motor_hold(drive: &Drive, demand: &JointDemand) -> Check {
     )
 }
 
-/// (T + T_lin) / (N η) + J_in N α against the peak torque.
+/// (T + T_lin) / (N η) + J_in N α, compared with the peak torque.
 fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
     let peak_nm = demand.peak_torque_nm();
     check(
@@ -269,19 +271,19 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
     )
 }
 
-/// All checks of a drive: gear first, then motor.
+/// All checks of a drive: first those of the gear, then those of the motor.
 pub fn checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
     let mut all = gear_checks(drive.gear, drive.gear_mass, motion, demand);
     all.extend(motor_checks(drive, motion, demand));
     all
 }
 
-/// Whether every check holds; one that could not be made does not.
+/// Whether every check holds. A check that could not be made does not hold.
 pub fn all_hold(checks: &[Check]) -> bool {
     checks.iter().all(Check::holds)
 }
 
-/// The check with the smallest torque margin among those that could be made: what binds.
+/// The check that binds: the one with the smallest torque margin among those that could be made.
 pub fn binding(checks: &[Check]) -> Option<&Check> {
     let made = checks.iter().filter_map(|c| Some((c.torque_margin()?, c)));
     made.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, check)| check)
@@ -390,13 +392,13 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_round_alike_are_printed_until_they_differ() {
+    fn numbers_that_round_to_the_same_are_printed_until_they_differ() {
         let near = plain(CheckKind::GearPeak, 523.04, Ok(522.96));
         assert_eq!(near.to_string(), "peak 523.04 N m needed, 522.96 allowed");
     }
 
     #[test]
-    fn a_blank_figure_is_named_and_nothing_else_is_left_unchecked() {
+    fn a_blank_rating_is_named_and_nothing_else_is_left_unchecked() {
         let (gear, _) = ample();
         let motor = char_lynn_j_8_2();
         let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
@@ -405,7 +407,7 @@ mod tests {
         assert_eq!(blank, ["peak not checked: lacks rotor_inertia_kgm2"]);
         assert_eq!(
             DriveLimits::of(&drive, &motion()),
-            Err(Obstacle::Lacks(MissingFigure("rotor_inertia_kgm2")))
+            Err(Obstacle::Lacks(MissingRating("rotor_inertia_kgm2")))
         );
     }
 

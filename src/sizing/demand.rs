@@ -1,9 +1,20 @@
-//! What one joint is asked for: its motion, fixed by the study, and its torques, which follow from the
-//! masses outboard (Eqs 8 and 12, cubic mean of the duty cycle).
+//! The demand on one joint: its motion, which the study fixes, and its torques, which follow from the masses outboard (Eqs
+//! 8 and 12, cubic mean over the duty cycle).
 
-use super::requirement::{LinearReading, MeanTorqueWeights};
+use super::duty::MeanTorqueWeights;
 
-/// The motion of one joint. Fixed by study and geometry, whatever masses the arm has.
+/// The reading of Eq 8, which gives the torque of linear acceleration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LinearReading {
+    /// The sum of m a ρ² / r over the outboard bodies, which is the inertia about the axis times a / r.
+    Exact,
+    /// The paper's (a / g) T. It is zero for a vertical axis, because such an axis has no static torque.
+    Paper,
+}
+
+/// The motion of one joint. It follows from the study and the geometry; masses do not change it.
+///
+/// [`MotionRequirement::joint_motion`](super::MotionRequirement::joint_motion) is the usual source.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointMotion {
     /// Largest speed ω, output side \[rad/s\].
@@ -12,13 +23,13 @@ pub struct JointMotion {
     pub acceleration_rad_s2: f64,
     /// Ramp time t_a \[s\].
     pub ramp_time_s: f64,
-    /// Tip acceleration over gravity, a / g, for the paper's reading of Eq 8.
+    /// Ratio of tip acceleration to gravity, a / g, for the paper's reading of Eq 8.
     pub acceleration_over_gravity: f64,
     /// Reading of Eq 8.
     pub linear_reading: LinearReading,
-    /// Emergency deceleration over acceleration.
+    /// Ratio of emergency deceleration to acceleration.
     pub stop_factor: f64,
-    /// Mean speed over ω.
+    /// Ratio of mean speed to ω.
     pub mean_speed_fraction: f64,
     /// Weights of the cubic mean torque.
     pub mean_torque: MeanTorqueWeights,
@@ -32,12 +43,12 @@ impl JointMotion {
         self.speed_rad_s * self.mean_speed_fraction
     }
 
-    /// The same motion with another reading of Eq 8 (a vertical axis needs the exact one).
+    /// The same motion with another reading of Eq 8. A vertical axis needs the exact one.
     pub fn with_linear_reading(self, linear_reading: LinearReading) -> Self {
         Self { linear_reading, ..self }
     }
 
-    /// The same motion with speed, acceleration and emergency deceleration times `factor`, same ramp time.
+    /// The same motion with speed, acceleration and emergency deceleration times `factor`. The ramp time stays.
     pub fn slowed(self, factor: f64) -> Self {
         Self {
             speed_rad_s: self.speed_rad_s * factor,
@@ -47,16 +58,28 @@ impl JointMotion {
         }
     }
 
-    /// The demand on a joint with this motion.
+    /// The demand on a joint with this motion (Eq 8).
     ///
-    /// **Units:** static torque \[N m\], inertia of all that is outboard about the axis \[kg m²\].
+    /// `static_torque_nm` is the static torque of Eq 7 \[N m\]; its sign does not matter. `outboard_inertia_kgm2` is the
+    /// inertia of everything outboard about the axis \[kg m²\].
+    ///
+    /// ```
+    /// use armwright::sizing::MotionRequirement;
+    ///
+    /// // a joint whose tip is 1.35 m away, under the default motion: 1 m/s within 0.20 s
+    /// let motion = MotionRequirement::default().joint_motion(1.35, None);
+    /// let demand = motion.demand(100.0, 12.0);
+    /// assert!((demand.linear_torque_nm - 12.0 * 5.0 / 1.35).abs() < 1e-9, "inertia times acceleration");
+    /// assert!((demand.peak_torque_nm() - (100.0 + demand.linear_torque_nm)).abs() < 1e-9);
+    /// assert!((demand.stop_torque_nm - (100.0 + 2.0 * demand.linear_torque_nm)).abs() < 1e-9);
+    /// ```
     #[inline]
     pub fn demand(&self, static_torque_nm: f64, outboard_inertia_kgm2: f64) -> JointDemand {
         let linear_torque_nm = linear_torque_nm(self, static_torque_nm, outboard_inertia_kgm2);
         self.demand_of_torques(static_torque_nm, linear_torque_nm)
     }
 
-    /// The demand on a joint whose linear torque is known \[N m\].
+    /// The demand on a joint whose static and linear torques are known \[N m\].
     #[inline]
     pub fn demand_of_torques(&self, static_torque_nm: f64, linear_torque_nm: f64) -> JointDemand {
         let static_torque_nm = static_torque_nm.abs();
@@ -71,24 +94,24 @@ impl JointMotion {
     }
 }
 
-/// The torques on one joint, output side, none negative.
+/// The torques on one joint, on the output side. None is negative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointDemand {
-    /// Worst static torque over the sizing poses, Eq 7 \[N m\].
+    /// Largest static torque over the sizing cases, Eq 7 \[N m\].
     pub static_torque_nm: f64,
     /// Torque of linear acceleration, Eq 8 \[N m\].
     pub linear_torque_nm: f64,
-    /// Static torque plus that of the emergency stop \[N m\].
+    /// Static torque plus the torque of the emergency stop \[N m\].
     pub stop_torque_nm: f64,
-    /// Cube of the cubic mean torque over the duty cycle \[(N m)³\]; kept as a cube so that a search
-    /// needs no cube root.
+    /// Cube of the cubic mean torque over the duty cycle \[(N m)³\]. It is kept as a cube, so that a search needs no cube
+    /// root.
     pub mean_torque_cubed_nm3: f64,
-    /// Moment across the axis, on the output bearing \[N m\]; 0 asks for no check.
+    /// Moment across the axis, on the output bearing \[N m\]; 0 if it is not to be checked.
     pub tilting_moment_nm: f64,
 }
 
 impl JointDemand {
-    /// Torque the gear carries while accelerating: T + T_lin \[N m\].
+    /// Torque that the gear transmits while the joint accelerates: T + T_lin \[N m\].
     #[inline]
     pub fn peak_torque_nm(&self) -> f64 {
         self.static_torque_nm + self.linear_torque_nm
@@ -104,7 +127,7 @@ impl JointDemand {
         Self { tilting_moment_nm: moment_nm.abs(), ..self }
     }
 
-    /// Every torque and moment times `factor`.
+    /// The same demand with every torque and moment times `factor`.
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm * factor,
@@ -118,8 +141,8 @@ impl JointDemand {
 
 /// Eq 8, torque of linear acceleration \[N m\].
 ///
-/// Exact: T_lin = Σ m a ρ² / r = I α, with I the inertia of all that is outboard about the axis.
-/// Paper: T_lin = (a / g) T, which takes every mass to accelerate like the tip; 0.5097 T, printed as T / 2.
+/// - Exact reading: T_lin = Σ m a ρ² / r = I α, where I is the inertia of everything outboard about the axis.
+/// - The paper's reading: T_lin = (a / g) T, as if every mass accelerated like the tip. It is 0.5097 T, printed as T / 2.
 #[inline]
 pub fn linear_torque_nm(motion: &JointMotion, static_torque_nm: f64, outboard_inertia_kgm2: f64) -> f64 {
     match motion.linear_reading {
@@ -134,7 +157,7 @@ pub fn stop_torque_nm(static_torque_nm: f64, linear_torque_nm: f64, stop_factor:
     static_torque_nm + stop_factor * linear_torque_nm
 }
 
-/// Cube of the cubic mean torque \[(N m)³\]: T_mean³ = Σ |T_i|³ n_i t_i / Σ n_i t_i (vendor's Eq 18.2).
+/// Cube of the cubic mean torque \[(N m)³\]: T_mean³ = Σ |T_i|³ n_i t_i / Σ n_i t_i (Eq 18.2 of the vendor).
 #[inline]
 pub fn cubic_mean_cubed_nm3(weights: MeanTorqueWeights, static_torque_nm: f64, linear_torque_nm: f64) -> f64 {
     let cube = |x: f64| x * x * x;

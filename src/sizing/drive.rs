@@ -1,31 +1,47 @@
-//! A drive: a gear and a motor, seen from either side of the gear (Eqs 9-12).
+//! A drive: a gear and a motor, with torques on either side of the gear (Eqs 9-12).
 
 use super::demand::JointMotion;
 use crate::catalog::gear::{Gear, GearMass};
 use crate::catalog::motor::Motor;
 
-/// A figure that the catalog leaves blank, by its column name.
+/// A rating that the catalog leaves blank.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct MissingFigure(
-    /// Name of the figure.
+pub struct MissingRating(
+    /// Name of the rating, as its column is called.
     pub &'static str,
 );
 
-impl std::fmt::Display for MissingFigure {
+impl std::fmt::Display for MissingRating {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.0)
     }
 }
 
-/// A figure that may be blank.
-pub(super) type Figure = Result<f64, MissingFigure>;
+/// A rating that may be blank.
+pub(super) type Rating = Result<f64, MissingRating>;
 
-/// The figure, or its name if it is blank.
-pub(super) fn known(figure: Option<f64>, name: &'static str) -> Figure {
-    figure.ok_or(MissingFigure(name))
+/// The rating, or its name if it is blank.
+pub(super) fn known(rating: Option<f64>, name: &'static str) -> Rating {
+    rating.ok_or(MissingRating(name))
 }
 
 /// A gear and a motor.
+///
+/// ```
+/// use armwright::catalog::Catalogs;
+/// use armwright::catalog::GearMass;
+/// use armwright::sizing::{Drive, MotionRequirement};
+///
+/// let catalogs = Catalogs::builtin();
+/// let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
+/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet };
+/// assert_eq!(drive.name(), "HFUC-58-100 + F11-10");
+/// assert_eq!(drive.mass_kg().unwrap(), 12.2);
+/// // Eq 11: the torque that accelerates rotor and wave generator, on the motor's side [N m]
+/// let motion = MotionRequirement::default().joint_motion(1.35, None);
+/// let rotary_nm = drive.rotary_torque_motor_nm(&motion).expect("all ratings are known");
+/// assert!((rotary_nm - 1.156).abs() < 1e-3);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive<'c> {
     /// The gear.
@@ -47,11 +63,11 @@ impl Drive<'_> {
         f64::from(self.gear.ratio)
     }
 
-    /// Mass of gear and motor \[kg\], to the microgram: sums of catalog figures that are equal are equal here.
+    /// Mass of gear and motor \[kg\], rounded to the microgram, so that equal sums of catalog masses are equal numbers.
     ///
     /// # Errors
     /// The mass that the catalog leaves blank.
-    pub fn mass_kg(&self) -> Result<f64, MissingFigure> {
+    pub fn mass_kg(&self) -> Result<f64, MissingRating> {
         const PER_KG: f64 = 1e9;
         let name = match self.gear_mass {
             GearMass::ComponentSet => "gear mass_component_set_kg",
@@ -66,7 +82,7 @@ impl Drive<'_> {
     ///
     /// # Errors
     /// The inertia that the catalog leaves blank.
-    pub fn input_inertia_kgm2(&self) -> Result<f64, MissingFigure> {
+    pub fn input_inertia_kgm2(&self) -> Result<f64, MissingRating> {
         Ok(known(self.motor.rotor_inertia_kgm2, "rotor_inertia_kgm2")?
             + known(self.gear.inertia_input_kgm2, "inertia_input_kgm2")?)
     }
@@ -75,57 +91,57 @@ impl Drive<'_> {
     ///
     /// # Errors
     /// Its name if the catalog leaves it blank.
-    pub fn efficiency(&self) -> Result<f64, MissingFigure> {
+    pub fn efficiency(&self) -> Result<f64, MissingRating> {
         known(self.gear.efficiency, "efficiency")
     }
 
-    /// Output torque for one newton metre at the motor: N η.
-    pub(super) fn gain(&self) -> Figure {
+    /// Output torque per newton metre at the motor: N η.
+    pub(super) fn gain(&self) -> Rating {
         Ok(self.ratio() * self.efficiency()?)
     }
 
-    /// Eq 11 for this drive, motor side \[N m\].
+    /// Eq 11 for this drive, on the motor's side \[N m\].
     ///
     /// # Errors
     /// The inertia that the catalog leaves blank.
-    pub fn rotary_torque_motor_nm(&self, motion: &JointMotion) -> Result<f64, MissingFigure> {
+    pub fn rotary_torque_motor_nm(&self, motion: &JointMotion) -> Result<f64, MissingRating> {
         let inertia = self.input_inertia_kgm2()?;
         Ok(rotary_torque_motor_nm(inertia, self.ratio(), motion.acceleration_rad_s2))
     }
 
-    /// Eq 12 on the motor's side \[N m\]: what the motor gives while the joint accelerates against
+    /// Eq 12 on the motor's side \[N m\]: torque of the motor while the joint accelerates and the gear transmits
     /// `peak_torque_nm`.
     ///
     /// # Errors
-    /// The figure that the catalog leaves blank.
+    /// The rating that the catalog leaves blank.
     pub fn peak_motor_torque_nm(
         &self,
         motion: &JointMotion,
         peak_torque_nm: f64,
-    ) -> Result<f64, MissingFigure> {
+    ) -> Result<f64, MissingRating> {
         Ok(motor_torque_nm(peak_torque_nm, self.gain()?, self.rotary_torque_motor_nm(motion)?))
     }
 }
 
-/// Eqs 10-11, motor side \[N m\]: T_rot = J_in N α.
+/// Eqs 10-11 on the motor's side \[N m\]: T_rot = J_in N α.
 ///
-/// The paper's n_j is the motor's speed, so its θ̈ is N α. **Units:** kg m², -, rad/s² of the joint.
+/// The paper's n_j is the speed of the motor, so its θ̈ is N α. `acceleration_rad_s2` is that of the joint.
 pub fn rotary_torque_motor_nm(input_inertia_kgm2: f64, ratio: f64, acceleration_rad_s2: f64) -> f64 {
     input_inertia_kgm2 * ratio * acceleration_rad_s2
 }
 
-/// Eqs 10-11 referred to the joint \[N m\]: N times the motor's side, J_in N² α.
+/// Eqs 10-11 referred to the joint \[N m\]: J_in N² α, which is N times the torque on the motor's side.
 pub fn rotary_torque_output_nm(input_inertia_kgm2: f64, ratio: f64, acceleration_rad_s2: f64) -> f64 {
     ratio * rotary_torque_motor_nm(input_inertia_kgm2, ratio, acceleration_rad_s2)
 }
 
-/// Eq 12, motor side \[N m\]: T / (N η) + T_rot, `gain` being N η.
+/// Eq 12 on the motor's side \[N m\]: T / (N η) + T_rot, where `gain` is N η.
 pub fn motor_torque_nm(output_torque_nm: f64, gain: f64, rotary_torque_motor_nm: f64) -> f64 {
     output_torque_nm / gain + rotary_torque_motor_nm
 }
 
-/// L10 of a wave-generator bearing at rated torque and 2000 rpm, by series \[h\]; `None` for a series
-/// that is not known.
+/// L10 life of a wave-generator bearing at rated torque and 2000 rpm \[h\], by series of gears; `None` for an unknown
+/// series.
 ///
 /// Source: Harmonic Drive LLC, CSF/CSG catalog, Eq 8 (L10: CSF 7000, CSG 10000) and Harmonic Drive SE,
 /// engineering data 1019659, table 20.1 (L50: CSG, SHG, CobaltLine 50000; HFUC, HFUS, CSD, CPU, CSF, SHD
@@ -181,6 +197,6 @@ mod tests {
         assert!((mass(GearMass::ComponentSet, &motor).unwrap() - 12.2).abs() < 1e-12, "Table 1");
         assert!((mass(GearMass::HousedUnit, &motor).unwrap() - 22.1).abs() < 1e-12);
         motor.mass_kg = None;
-        assert_eq!(mass(GearMass::HousedUnit, &motor), Err(MissingFigure("motor mass_kg")));
+        assert_eq!(mass(GearMass::HousedUnit, &motor), Err(MissingRating("motor mass_kg")));
     }
 }

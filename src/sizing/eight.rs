@@ -1,15 +1,15 @@
-//! What a joint of eight arms at once is asked for, and the lightest drives that hold it.
+//! The demands on one joint of eight arms at once, and the lightest drives that hold them.
 //!
-//! The same operations in the same order as [`JointMotion::demand`] and [`DriveTable::first_fit`], so that an arm
-//! gets the same drive by itself and among eight.
+//! The operations and their order are those of [`JointMotion::demand`] and [`DriveTable::first_fit`], so that an arm gets
+//! the same drive by itself and among eight.
 
 use super::demand::JointMotion;
+use super::demand::LinearReading;
 use super::limits::DriveLimits;
-use super::requirement::LinearReading;
 use super::select::DriveTable;
 use crate::mechanics::lanes::{LANES, Lanes};
 
-/// The torques on one joint of eight arms, output side, none negative; no moment across the axis.
+/// The torques on one joint of eight arms, on the output side. None is negative. There is no moment across the axis.
 #[derive(Clone, Copy)]
 pub(crate) struct EightDemands<V> {
     static_torque_nm: V,
@@ -19,7 +19,7 @@ pub(crate) struct EightDemands<V> {
 }
 
 impl<V: Lanes> EightDemands<V> {
-    /// The demands on a joint with this motion: static torques \[N m\], inertia outboard \[kg m²\].
+    /// The demands on a joint with this motion, from static torques \[N m\] and outboard inertias \[kg m²\].
     #[inline(always)]
     pub fn new(motion: &JointMotion, static_torque_nm: V, outboard_inertia_kgm2: V) -> Self {
         let statically = static_torque_nm.abs();
@@ -40,7 +40,7 @@ impl<V: Lanes> EightDemands<V> {
         }
     }
 
-    /// Those of some lanes whose demand a drive holds.
+    /// Those of the lanes `of` whose demand a drive holds.
     #[inline(always)]
     fn held_by(&self, limits: &DriveLimits, of: u8) -> u8 {
         of & !(V::splat(limits.static_torque_nm).less(self.static_torque_nm)
@@ -51,8 +51,10 @@ impl<V: Lanes> EightDemands<V> {
 }
 
 impl DriveTable<'_> {
-    /// The lightest drive that holds in each wanted lane, and the lanes that have one. The search for the first step of
-    /// the ladder within reach begins at `step`, that of demands like these, and leaves its own there.
+    /// The lightest drive that holds in each wanted lane, and the lanes that have one.
+    ///
+    /// The search for the first step of the ladder that is within reach begins at `step` and stores there what it found.
+    /// The next search is for a similar demand and will be short.
     #[inline(always)]
     pub(crate) fn first_fits<V: Lanes>(
         &self,
@@ -63,6 +65,7 @@ impl DriveTable<'_> {
         let ladder = self.ladder();
         let reach = ladder.reach;
         let mut start = (*step).min(reach.len());
+        // `reach` only grows along the ladder, so the first step at which some lane may hold is found from either side
         while start > 0 && demands.held_by(&reach[start - 1], wanted) != 0 {
             start -= 1;
         }
@@ -78,6 +81,7 @@ impl DriveTable<'_> {
             for step in steps {
                 let mut held = demands.held_by(&ladder.limits[step], open);
                 open &= !held;
+                // one pass for each bit that is set
                 while held != 0 {
                     fits[held.trailing_zeros() as usize] = ladder.indices[step] as usize;
                     held &= held - 1;

@@ -1,4 +1,4 @@
-//! Why a part was not chosen, and what to give way in when nothing holds.
+//! Explanations: why a part was rejected, and which relaxation helps if no drive holds.
 
 use super::check::{Check, CheckState};
 use super::check::{binding, checks, digits_of, gear_checks, motor_checks};
@@ -8,31 +8,31 @@ use super::limits::DriveLimits;
 use super::select::DriveTable;
 use std::fmt;
 
-/// Which part a rejection is about.
+/// The part that a rejection is about.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RejectedPart {
-    /// A gear that no motor could save.
+    /// A gear that fails with any motor.
     Gear {
         /// The gear.
         gear: String,
     },
-    /// A gear that holds but finds no motor; the checks are those with the motor that comes nearest.
+    /// A gear that holds but for which no motor holds. The checks are those with the motor that comes nearest.
     GearWithoutMotor {
         /// The gear.
         gear: String,
         /// The motor that comes nearest.
         nearest_motor: String,
     },
-    /// A motor that fails behind some of the gears that hold; the checks are those with the gear with
-    /// which it comes nearest among them.
+    /// A motor that fails behind some of the gears that hold. The checks are those with the gear behind which it comes
+    /// nearest.
     Motor {
         /// The motor.
         motor: String,
-        /// The gear of these checks.
+        /// The gear with which the checks were made.
         nearest_gear: String,
-        /// All gears that hold but not with this motor.
+        /// All gears that hold and behind which this motor does not.
         rejected_with: Vec<String>,
-        /// Gears with which the motor holds.
+        /// All gears behind which this motor holds.
         fits_with: Vec<String>,
     },
 }
@@ -44,12 +44,12 @@ pub struct Rejection {
     pub joint: String,
     /// The part.
     pub part: RejectedPart,
-    /// Every check that does not hold, worst first, those that could not be made last; never empty.
+    /// Every check that does not hold, at least one. The worst comes first; checks that could not be made come last.
     pub checks: Vec<Check>,
 }
 
 impl Rejection {
-    /// Whether the part fails nothing but could not be checked, for want of figures.
+    /// Whether the part fails no check, but ratings are missing for some.
     pub fn is_not_checked(&self) -> bool {
         self.checks.iter().all(|c| matches!(c.state, CheckState::NotChecked(_)))
     }
@@ -76,29 +76,29 @@ impl fmt::Display for Rejection {
     }
 }
 
-/// What could be relaxed.
+/// What can be relaxed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RelaxationKind {
-    /// Every torque on the joint: payload, outboard masses, levers.
+    /// Every torque on the joint, by less payload, outboard mass or reach.
     Torque,
-    /// Speed and acceleration, same ramp time.
+    /// Speed and acceleration, with the same ramp time.
     Speed,
 }
 
-/// A relaxation that lets some drive hold.
+/// A relaxation with which some drive holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Relaxation {
     /// What is relaxed.
     pub kind: RelaxationKind,
-    /// Factor on it, in whole percents below 1.
+    /// Factor on torque or speed, below 1 and in whole percents.
     pub factor: f64,
-    /// The lightest drive that then holds.
+    /// The lightest drive that holds then.
     pub drive: String,
 }
 
 impl Relaxation {
-    /// The factor on the payload alone, if `payload_share` of the joint's torques come from it; `None` if
-    /// even no payload at all is not enough.
+    /// The factor on the payload alone, if the fraction `payload_share` of the torque comes from the payload. `None` if
+    /// not even an arm without payload would do.
     pub fn payload_factor(&self, payload_share: f64) -> Option<f64> {
         let factor = 1.0 - (1.0 - self.factor) / payload_share;
         (self.kind == RelaxationKind::Torque && factor >= 0.0).then_some(factor)
@@ -118,16 +118,16 @@ impl fmt::Display for Relaxation {
     }
 }
 
-/// What is missing when no drive holds.
+/// What is missing if no drive holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shortfall {
     /// Name of the joint.
     pub joint: String,
-    /// The drive whose worst margin is largest.
+    /// The nearest drive: its worst margin is the largest.
     pub drive: String,
-    /// Its worst check.
+    /// The worst check of this drive.
     pub check: Check,
-    /// What helps, smallest step first; empty if neither torque nor speed alone does.
+    /// Relaxations that help, the smallest first; empty if neither torque nor speed alone helps.
     pub relaxations: Vec<Relaxation>,
 }
 
@@ -146,7 +146,7 @@ impl fmt::Display for Shortfall {
     }
 }
 
-/// A gear that holds, a motor, and their checks that do not hold.
+/// A gear that holds with a motor, and the checks of the motor that do not hold.
 struct Trial<'c> {
     drive: Drive<'c>,
     worst_margin: f64,
@@ -154,8 +154,8 @@ struct Trial<'c> {
 }
 
 impl<'c> DriveTable<'c> {
-    /// Why parts were rejected: every gear that fails alone, every gear that holds but finds no motor,
-    /// every motor that fails behind some gear that holds. Gears first, each kind in catalog order.
+    /// Why parts were rejected. The list has every gear that fails by itself, every gear that holds but finds no motor, and
+    /// every motor that fails behind some gear that holds. Gears come first, and each kind is in catalog order.
     pub fn explain(&self, demand: &JointDemand) -> Vec<Rejection> {
         let (mut rejections, trials) = (Vec::new(), self.trials(demand));
         for gear in self.gears() {
@@ -173,8 +173,8 @@ impl<'c> DriveTable<'c> {
         rejections
     }
 
-    /// When no drive holds: the nearest one, what it lacks, and what helps. `None` if one holds or if
-    /// no drive has all the figures that the checks need.
+    /// The nearest drive if none holds, with what it lacks and what would help. `None` if a drive holds, or if no drive has
+    /// all ratings that the checks need.
     pub fn smallest_shortfall(&self, demand: &JointDemand) -> Option<Shortfall> {
         if self.first_fit(demand).is_some() {
             return None;
@@ -188,7 +188,7 @@ impl<'c> DriveTable<'c> {
         Some(Shortfall { joint: self.joint().to_string(), drive: drive.name(), check, relaxations })
     }
 
-    /// Each gear that holds with each motor.
+    /// Every gear that holds, with every motor.
     fn trials(&self, demand: &JointDemand) -> Vec<Trial<'c>> {
         let mut trials = Vec::new();
         for gear in self.gears() {
@@ -241,7 +241,7 @@ impl<'c> DriveTable<'c> {
         Rejection { joint: self.joint().to_string(), part, checks }
     }
 
-    /// The drive, fully checked, whose worst margin is largest.
+    /// The drive whose worst margin is the largest, among those for which every check could be made.
     fn nearest(&self, demand: &JointDemand) -> Option<(Drive<'c>, Check)> {
         let mut best: Option<(f64, Drive<'c>, Check)> = None;
         for drive in self.all_drives() {
@@ -270,6 +270,7 @@ impl<'c> DriveTable<'c> {
         })
     }
 
+    /// The lightest drive that holds when the motion is slowed. Its speeds hold again, so drives outside of the table count.
     fn lightest_when_slowed(&self, factor: f64, demand: &JointDemand) -> Option<Drive<'c>> {
         let motion = self.motion().slowed(factor);
         let slower = motion
@@ -290,7 +291,7 @@ fn nearest_trial<'t, 'c: 't>(trials: impl Iterator<Item = &'t Trial<'c>>) -> Opt
     trials.reduce(|best, t| if nearness(t) > nearness(best) { t } else { best })
 }
 
-/// The checks that do not hold, worst first, those that could not be made last.
+/// The checks that do not hold. The worst comes first; checks that could not be made come last.
 fn not_holding(checks: Vec<Check>) -> Vec<Check> {
     let mut failed: Vec<_> = checks.into_iter().filter(|c| !c.holds()).collect();
     let key = |c: &Check| c.torque_margin().unwrap_or(f64::INFINITY);
@@ -379,7 +380,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_with_blank_figures_is_listed_as_not_checked() {
+    fn a_part_with_blank_ratings_is_listed_as_not_checked() {
         let (gears, motors) = ([hfuc_40_100()], [char_lynn_j_8_2()]);
         let rejections = table(&gears, &motors).explain(&motion().demand_of_torques(100.0, 50.0));
         assert!(rejections.iter().all(Rejection::is_not_checked));

@@ -1,11 +1,11 @@
-//! A drive under a fixed motion, reduced to thresholds on the torques asked of it.
+//! Limits: a drive under a fixed motion, reduced to thresholds of torque.
 //!
-//! Speed, acceleration and duty cycle of a joint are fixed by the study, so every check of a drive is a
-//! comparison of one torque with one number. [`DriveLimits`] holds those numbers; a search compares five
-//! pairs and nothing else. The checks printed for people are decided by the same thresholds.
+//! The study fixes speed, acceleration and duty cycle of a joint, so every check of a drive compares one torque with one
+//! number. [`DriveLimits`] has these numbers. A search compares five pairs of numbers and nothing else. The printed checks
+//! ([`check`](super::check)) are decided by the same thresholds.
 
 use super::demand::{JointDemand, JointMotion};
-use super::drive::{Drive, Figure, MissingFigure, known, reference_life_h};
+use super::drive::{Drive, MissingRating, Rating, known, reference_life_h};
 use super::rpm_from_rad_s;
 use crate::catalog::gear::{Gear, GearMass};
 use crate::catalog::motor::Motor;
@@ -13,7 +13,22 @@ use crate::catalog::motor::Motor;
 /// Input speed at which a gear's rated torque holds \[rpm\].
 pub(super) const RATED_INPUT_SPEED_RPM: f64 = 2000.0;
 
-/// What a drive holds under a fixed motion, output side. It holds a demand exactly if none is exceeded.
+/// Thresholds of a drive under a fixed motion, on the output side. The drive holds a demand exactly if no threshold is
+/// exceeded.
+///
+/// ```
+/// use armwright::catalog::Catalogs;
+/// use armwright::catalog::GearMass;
+/// use armwright::sizing::{Drive, DriveLimits, MotionRequirement};
+///
+/// let catalogs = Catalogs::builtin();
+/// let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
+/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet };
+/// let motion = MotionRequirement::default().joint_motion(1.35, None);
+/// let limits = DriveLimits::of(&drive, &motion).expect("nothing excludes this drive");
+/// assert!(limits.hold(&motion.demand_of_torques(500.0, 250.0)));
+/// assert!(!limits.hold(&motion.demand_of_torques(1200.0, 600.0)), "1800 N m are more than the gear's peak");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DriveLimits {
     /// Largest static torque (motor, continuously) \[N m\].
@@ -28,18 +43,18 @@ pub struct DriveLimits {
     pub tilting_moment_nm: f64,
 }
 
-/// Why a drive is out of question whatever the torques are.
+/// Why a drive is excluded at every torque.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Obstacle {
-    /// The joint turns faster than gear or motor may.
+    /// The joint turns faster than the gear or the motor may.
     TooFast,
-    /// A figure that a check needs is blank.
-    Lacks(MissingFigure),
+    /// A rating that a check needs is blank.
+    Lacks(MissingRating),
 }
 
-impl From<MissingFigure> for Obstacle {
-    fn from(figure: MissingFigure) -> Self {
-        Obstacle::Lacks(figure)
+impl From<MissingRating> for Obstacle {
+    fn from(rating: MissingRating) -> Self {
+        Obstacle::Lacks(rating)
     }
 }
 
@@ -47,8 +62,8 @@ impl DriveLimits {
     /// The thresholds of a drive.
     ///
     /// # Errors
-    /// [`Obstacle`] if the drive cannot be chosen whatever the torques are. A blank tilting moment is not
-    /// one: its threshold is 0, which holds as long as no moment is asked for.
+    /// [`Obstacle`] if the drive is excluded at every torque. A blank tilting moment does not exclude it; its threshold is
+    /// then 0, which holds as long as no moment is asked for.
     pub fn of(drive: &Drive, motion: &JointMotion) -> Result<Self, Obstacle> {
         drive.mass_kg()?;
         if !speeds_hold(drive, motion)? {
@@ -74,7 +89,7 @@ impl DriveLimits {
             & (demand.tilting_moment_nm <= self.tilting_moment_nm)
     }
 
-    /// The larger of each limit of two drives.
+    /// The larger of two drives' limits, one by one.
     pub(crate) fn max(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.max(other.static_torque_nm),
@@ -85,7 +100,7 @@ impl DriveLimits {
         }
     }
 
-    /// The smaller of each limit of two drives.
+    /// The smaller of two drives' limits, one by one.
     pub(crate) fn min(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.min(other.static_torque_nm),
@@ -96,7 +111,7 @@ impl DriveLimits {
         }
     }
 
-    /// How many times a demand the drive holds; infinite if nothing is asked for.
+    /// The largest factor on a demand that the drive still holds; infinite if the demand is zero.
     pub(crate) fn multiple_of(&self, demand: &JointDemand) -> f64 {
         let times = |limit: f64, asked: f64| if asked > 0.0 { limit / asked } else { f64::INFINITY };
         times(self.static_torque_nm, demand.static_torque_nm)
@@ -105,7 +120,7 @@ impl DriveLimits {
             .min(times(self.mean_torque_cubed_nm3, demand.mean_torque_cubed_nm3).cbrt())
     }
 
-    /// Whether every limit is at least that of `other`.
+    /// Whether every limit is at least as large as the limit of `other`.
     #[inline]
     pub fn cover(&self, other: &Self) -> bool {
         (self.static_torque_nm >= other.static_torque_nm)
@@ -116,7 +131,7 @@ impl DriveLimits {
     }
 }
 
-fn speeds_hold(drive: &Drive, motion: &JointMotion) -> Result<bool, MissingFigure> {
+fn speeds_hold(drive: &Drive, motion: &JointMotion) -> Result<bool, MissingRating> {
     let input_rpm = input_speed_rpm(drive.gear, motion);
     let gear_max = input_rpm <= gear_max_speed_rpm(drive.gear)?;
     let gear_mean = mean_input_speed_rpm(drive.gear, motion) <= gear_average_speed_rpm(drive.gear)?;
@@ -133,60 +148,60 @@ pub(super) fn mean_input_speed_rpm(gear: &Gear, motion: &JointMotion) -> f64 {
     f64::from(gear.ratio) * rpm_from_rad_s(motion.mean_speed_rad_s())
 }
 
-pub(super) fn gear_max_speed_rpm(gear: &Gear) -> Figure {
+pub(super) fn gear_max_speed_rpm(gear: &Gear) -> Rating {
     known(gear.max_input_speed_rpm, "max_input_speed_rpm")
 }
 
-pub(super) fn gear_average_speed_rpm(gear: &Gear) -> Figure {
+pub(super) fn gear_average_speed_rpm(gear: &Gear) -> Rating {
     known(gear.average_input_speed_limit_rpm, "average_input_speed_limit_rpm")
 }
 
-/// The speed a motor may reach at the end of a ramp: its largest, or the rated one if that alone is known.
-pub(super) fn motor_max_speed_rpm(motor: &Motor) -> Figure {
+/// Speed that a motor may reach at the end of a ramp: its largest speed, or the rated one if only that is known.
+pub(super) fn motor_max_speed_rpm(motor: &Motor) -> Rating {
     known(motor.max_speed_rpm.or(motor.rated_speed_rpm), "max_speed_rpm")
 }
 
-/// Static torque at which the motor is at its continuous torque: T_rated N η.
-pub(super) fn motor_continuous_nm(drive: &Drive) -> Figure {
+/// Static torque at which the motor gives its continuous torque: T_rated N η.
+pub(super) fn motor_continuous_nm(drive: &Drive) -> Rating {
     Ok(known(drive.motor.rated_torque_nm, "motor rated_torque_nm")? * drive.gain()?)
 }
 
-/// Output torque at which the motor is at its peak while accelerating: (T_peak - J_in N α) N η.
-pub(super) fn motor_peak_nm(drive: &Drive, motion: &JointMotion) -> Figure {
+/// Output torque at which the accelerating motor gives its peak torque: (T_peak - J_in N α) N η.
+pub(super) fn motor_peak_nm(drive: &Drive, motion: &JointMotion) -> Rating {
     let peak = known(drive.motor.peak_torque_nm, "peak_torque_nm")?;
     Ok((peak - drive.rotary_torque_motor_nm(motion)?) * drive.gain()?)
 }
 
-pub(super) fn gear_peak_nm(gear: &Gear) -> Figure {
+pub(super) fn gear_peak_nm(gear: &Gear) -> Rating {
     known(gear.repeated_peak_torque_nm, "repeated_peak_torque_nm")
 }
 
-pub(super) fn gear_average_nm(gear: &Gear) -> Figure {
+pub(super) fn gear_average_nm(gear: &Gear) -> Rating {
     known(gear.average_torque_limit_nm, "average_torque_limit_nm")
 }
 
-pub(super) fn gear_average_cubed_nm3(gear: &Gear) -> Figure {
+pub(super) fn gear_average_cubed_nm3(gear: &Gear) -> Rating {
     Ok(gear_average_nm(gear)?.powi(3))
 }
 
-pub(super) fn gear_momentary_nm(gear: &Gear) -> Figure {
+pub(super) fn gear_momentary_nm(gear: &Gear) -> Rating {
     known(gear.momentary_peak_torque_nm, "momentary_peak_torque_nm")
 }
 
-/// Life at a mean torque of 1 N m, in h (N m)³: L_ref T_rated³ (2000 rpm / n_mean).
-pub(super) fn life_product(gear: &Gear, motion: &JointMotion) -> Figure {
+/// Life at a mean torque of 1 N m \[h (N m)³\]: L_ref T_rated³ (2000 rpm / n_mean).
+pub(super) fn life_product(gear: &Gear, motion: &JointMotion) -> Rating {
     let reference_h = known(reference_life_h(&gear.series), "reference life of its series")?;
     let rated_nm = known(gear.rated_torque_nm, "gear rated_torque_nm")?;
     Ok(reference_h * rated_nm.powi(3) * (RATED_INPUT_SPEED_RPM / mean_input_speed_rpm(gear, motion)))
 }
 
-/// Cube of the mean torque at which the gear lasts just as long as required.
-pub(super) fn gear_life_cubed_nm3(gear: &Gear, motion: &JointMotion) -> Figure {
+/// Cube of the mean torque at which the life of the gear is just the required one.
+pub(super) fn gear_life_cubed_nm3(gear: &Gear, motion: &JointMotion) -> Rating {
     Ok(life_product(gear, motion)? / motion.life_h)
 }
 
-/// Permissible tilting moment; without limit for a component set, which has no bearing.
-pub(super) fn tilting_moment_nm(gear: &Gear, gear_mass: GearMass) -> Figure {
+/// Permissible tilting moment. A component set has no bearing, and so no limit.
+pub(super) fn tilting_moment_nm(gear: &Gear, gear_mass: GearMass) -> Rating {
     match gear_mass {
         GearMass::ComponentSet => Ok(f64::INFINITY),
         GearMass::HousedUnit => known(gear.permissible_tilting_moment_nm, "permissible_tilting_moment_nm"),

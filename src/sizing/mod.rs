@@ -1,14 +1,15 @@
-//! Which drive each joint needs (Eqs 7-12).
+//! Sizing: which drive each joint needs (Eqs 7-12).
 //!
-//! This layer knows nothing of arms: given what a joint is asked for, it says which pairs of gear and
-//! motor hold. The walk over an arm from its tip inward stands on top of it.
+//! This room knows nothing of arms. From the demand on a joint it finds the pairs of gear and motor that hold. The walk
+//! over an arm from tip to base is in [`space`](crate::space), which uses this room.
 //!
-//! - [`MotionRequirement`]: what the study asks of the tip; [`JointMotion`]: what that asks of a joint.
-//! - [`JointDemand`]: the torques on the joint, from static torque and outboard inertia.
-//! - [`Drive`]: a gear and a motor; [`Check`]: one limit of one part against one demand.
-//! - [`DriveLimits`]: all checks of a drive under a fixed motion, reduced to five thresholds.
-//! - [`DriveTable`]: every legal drive of a joint, sorted by mass; first fit, all fits, reasons.
-//! - [`JointSizingRow`]: the numbers of one joint for the table on paper.
+//! - [`MotionRequirement`] is the motion that a study asks of the tip, [`JointMotion`] the motion that follows for a joint.
+//! - [`JointDemand`] has the torques on the joint, which follow from static torque and outboard inertia.
+//! - [`Drive`] is a gear and a motor, [`Check`] compares one limit of one part with one demand.
+//! - [`DriveLimits`] has all checks of a drive under a fixed motion, reduced to five thresholds.
+//! - [`DriveTable`] has every drive of a joint that the study allows, sorted by mass. It finds first fits and all fits, and
+//!   says why a part was rejected.
+//! - [`JointSizingRow`] has the numbers of one joint for the sizing table.
 //!
 //! | symbol | meaning | unit |
 //! |---|---|---|
@@ -18,17 +19,18 @@
 //! | N, η | reduction ratio; efficiency of the gear | - |
 //! | J_in | rotor and wave generator, motor side (9) | kg m² |
 //!
-//! *Sides.* The paper's n_j is the motor's speed, so its J θ̈ is a motor-side torque; referred to the
-//! joint it is N times as large. Every name here says which side it is on: `input` and `motor` for the
-//! fast side, `output` or nothing for the joint.
+//! *Sides.* The paper's n_j is the speed of the motor, so its J θ̈ is a torque on the motor's side. Referred to the joint it
+//! is N times as large. Every name states its side: `input` and `motor` for the fast side, `output` or nothing for the
+//! joint.
 //!
-//! *Validity.* Efficiency is the catalog's single figure (rated torque, 2000 rpm input), used for holding
-//! too, where friction would in truth help the motor. Motors have no torque-speed curve in the catalog:
-//! the peak is taken as available up to the largest speed.
+//! *Validity.* Efficiency is a single number of the catalog, for rated torque and 2000 rpm at the input. It is also used
+//! for holding, where friction in truth helps the motor. The catalog has no torque-speed curves of motors, so the peak
+//! torque is taken as available up to the largest speed.
 
 pub(crate) mod check;
 pub(crate) mod demand;
 pub(crate) mod drive;
+pub(crate) mod duty;
 pub(crate) mod eight;
 pub(crate) mod explain;
 pub(crate) mod limits;
@@ -39,22 +41,23 @@ pub(crate) mod sheet;
 pub(crate) mod testing;
 
 pub use check::{Check, CheckKind, CheckState, all_hold, binding, checks, gear_checks, motor_checks};
-pub use demand::{JointDemand, JointMotion, cubic_mean_cubed_nm3, linear_torque_nm, stop_torque_nm};
-pub use drive::{
-    Drive, MissingFigure, motor_torque_nm, reference_life_h, rotary_torque_motor_nm, rotary_torque_output_nm,
+pub use demand::{
+    JointDemand, JointMotion, LinearReading, cubic_mean_cubed_nm3, linear_torque_nm, stop_torque_nm,
 };
+pub use drive::{
+    Drive, MissingRating, motor_torque_nm, reference_life_h, rotary_torque_motor_nm, rotary_torque_output_nm,
+};
+pub use duty::{DutyCycle, MeanTorqueWeights, Phase, PhaseKind};
 pub use explain::{RejectedPart, Rejection, Relaxation, RelaxationKind, Shortfall};
 pub use limits::{DriveLimits, Obstacle};
-pub use requirement::{
-    DutyCycle, LinearReading, MeanTorqueWeights, MotionRequirement, Phase, PhaseKind, RequirementError,
-};
+pub use requirement::{MotionRequirement, RequirementError};
 pub use select::{DriveFilter, DriveTable};
 pub use sheet::{JointSizingRow, render_rows};
 
 /// One revolution a minute in rad/s.
 const RAD_S_PER_RPM: f64 = std::f64::consts::PI / 30.0;
 
-/// Speed in rpm, the vendors' unit.
+/// Speed in rpm, the unit of the vendors.
 pub fn rpm_from_rad_s(speed_rad_s: f64) -> f64 {
     speed_rad_s / RAD_S_PER_RPM
 }

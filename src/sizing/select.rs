@@ -1,4 +1,7 @@
-//! Selection of a drive for one joint: every legal pair of gear and motor, sorted by mass.
+//! Selection of a drive for one joint. A drive table has every legal pair of gear and motor, sorted by mass.
+//!
+//! A pair is *legal* if the study allows both parts, every rating that a check needs is known, and the speeds hold. Whether
+//! it holds a demand is then a question of torques alone.
 
 use super::demand::{JointDemand, JointMotion};
 use super::drive::Drive;
@@ -7,12 +10,12 @@ use crate::catalog::gear::{Gear, GearMass};
 use crate::catalog::motor::{Motor, MotorKind};
 use std::ops::Range;
 
-/// Which parts of the catalogs a joint may use; `None` allows all.
+/// Which parts of the catalogs a joint may use. `None` allows all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriveFilter {
     /// Which mass of a gear counts.
     pub gear_mass: GearMass,
-    /// Series of gears, e.g. `CSG`.
+    /// Series of gears, such as `CSG`.
     pub gear_series: Option<Vec<String>>,
     /// Reduction ratios.
     pub ratios: Option<Vec<u32>>,
@@ -25,7 +28,7 @@ pub struct DriveFilter {
 }
 
 impl DriveFilter {
-    /// Everything in the catalogs.
+    /// Allows everything in the catalogs.
     pub fn everything(gear_mass: GearMass) -> Self {
         Self {
             gear_mass,
@@ -54,17 +57,18 @@ fn allows<T: PartialEq>(list: &Option<Vec<T>>, item: &T) -> bool {
     list.as_ref().is_none_or(|list| list.contains(item))
 }
 
-/// A pair of parts by their places in the table's lists.
+/// A pair of parts, by their places in the lists of the table.
 #[derive(Debug, Clone, Copy)]
 struct Pair {
     gear: u32,
     motor: u32,
 }
 
-/// Every drive that one joint may have under its motion, lightest first; ties by gear, then motor name.
+/// Every legal drive of one joint under its motion, lightest first. Drives of equal mass are sorted by the names of gear
+/// and motor.
 ///
-/// A drive that may not turn so fast, or that lacks a figure a check needs, has no index; it is found by
-/// [`DriveTable::explain`].
+/// A drive that may not turn so fast, or that lacks a rating that a check needs, has no index.
+/// [`DriveTable::explain`] says why.
 #[derive(Debug, Clone)]
 pub struct DriveTable<'c> {
     joint: String,
@@ -75,19 +79,20 @@ pub struct DriveTable<'c> {
     pairs: Vec<Pair>,
     masses_kg: Vec<f64>,
     limits: Vec<DriveLimits>,
-    /// Indices that no earlier (lighter) drive covers in all limits: only these can be a first fit.
+    /// Indices of the drives that can be a first fit: no lighter drive has all limits as large.
     ladder: Vec<u32>,
     ladder_limits: Vec<DriveLimits>,
-    /// Largest limits up to each step: nothing before the first of these that holds can be a fit.
+    /// Largest limits of all steps up to each step. The first of these that holds a demand is the earliest step that can
+    /// be the first fit, so a search starts there.
     ladder_reach: Vec<DriveLimits>,
     /// Largest limits of each flight of [`FLIGHT`] steps.
     ladder_flights: Vec<DriveLimits>,
 }
 
-/// Steps of the ladder that are passed by at once where none of them can hold.
+/// Number of steps of the ladder that are skipped together if their largest limits do not hold.
 const FLIGHT: usize = 8;
 
-/// The drives that can be a first fit, lightest first, as a search climbs them.
+/// The ladder: the drives that can be a first fit, lightest first.
 #[derive(Clone, Copy)]
 pub(super) struct Ladder<'t> {
     pub indices: &'t [u32],
@@ -97,7 +102,7 @@ pub(super) struct Ladder<'t> {
 }
 
 impl<'t> Ladder<'t> {
-    /// Steps from one on, a flight at a time, with the largest limits of each.
+    /// The steps from `start` on, flight by flight, with the largest limits of each flight.
     #[inline(always)]
     pub fn flights_from(self, start: usize) -> impl Iterator<Item = (&'t DriveLimits, Range<usize>)> {
         let flights = self.flights.iter().enumerate().skip(start / FLIGHT);
@@ -107,7 +112,25 @@ impl<'t> Ladder<'t> {
 }
 
 impl<'c> DriveTable<'c> {
-    /// Builds the table of the joint named `joint`.
+    /// Builds the table of the joint named `joint` from the gears and motors that `filter` allows.
+    ///
+    /// ```
+    /// use armwright::catalog::Catalogs;
+    /// use armwright::catalog::GearMass;
+    /// use armwright::sizing::{DriveFilter, DriveTable, MotionRequirement};
+    ///
+    /// let catalogs = Catalogs::builtin();
+    /// let motion = MotionRequirement::default().joint_motion(1.35, None);
+    /// let mut filter = DriveFilter::everything(GearMass::ComponentSet);
+    /// filter.gear_series = Some(vec!["HFUC".into()]);
+    /// let table = DriveTable::build("j2", motion, &filter, &catalogs.gears, &catalogs.motors);
+    /// // the lightest drive for 568 N m static torque and 290 N m more while accelerating
+    /// let demand = motion.demand_of_torques(568.3, 289.7);
+    /// let lightest = table.first_fit(&demand).expect("some drive holds");
+    /// assert!(table.limits(lightest).hold(&demand));
+    /// assert_eq!(table.all_fits(&demand).next(), Some(lightest));
+    /// assert_eq!(table.first_fit(&demand.scaled(1000.0)), None);
+    /// ```
     pub fn build(
         joint: &str,
         motion: JointMotion,
@@ -134,6 +157,7 @@ impl<'c> DriveTable<'c> {
         table
     }
 
+    /// Tabulates the legal pairs.
     fn fill(&mut self) {
         let mut legal = Vec::new();
         for (drive, pair) in self.all_pairs() {
@@ -149,6 +173,7 @@ impl<'c> DriveTable<'c> {
         }
     }
 
+    /// Builds the ladder.
     fn raise_ladder(&mut self) {
         for (index, limits) in self.limits.iter().enumerate() {
             if !self.ladder_limits.iter().any(|lighter| lighter.cover(limits)) {
@@ -234,13 +259,12 @@ impl<'c> DriveTable<'c> {
         (0..self.len()).find(|&i| parts(&self.drive(i)) == (gear_id, motor_id))
     }
 
-    /// Indices of the drives that can be a first fit: no lighter one holds all they hold.
+    /// Indices of the drives that can be a first fit. No lighter drive holds everything that one of these holds.
     pub fn first_fit_candidates(&self) -> &[u32] {
         &self.ladder
     }
 
-    /// The lightest drive that holds (the paper's way): a search for the first step within reach,
-    /// then a scan.
+    /// Index of the lightest drive that holds a demand, which is the paper's choice; `None` if none holds.
     #[inline]
     pub fn first_fit(&self, demand: &JointDemand) -> Option<usize> {
         let start = self.first_step_within_reach(demand);
@@ -258,7 +282,8 @@ impl<'c> DriveTable<'c> {
         }
     }
 
-    /// Doubling strides, then bisection: a light demand is answered at the first steps.
+    /// The earliest step of the ladder that can hold a demand. Strides are doubled and then bisected, since most demands
+    /// are met near the beginning.
     #[inline]
     fn first_step_within_reach(&self, demand: &JointDemand) -> usize {
         let reach = &self.ladder_reach;
@@ -269,7 +294,7 @@ impl<'c> DriveTable<'c> {
         low + reach[low..high.min(reach.len())].partition_point(|reach| !reach.hold(demand))
     }
 
-    /// Every drive that holds, lightest first.
+    /// Indices of all drives that hold a demand, lightest first.
     #[inline]
     pub fn all_fits<'t>(&'t self, demand: &'t JointDemand) -> impl Iterator<Item = usize> + 't {
         let holding = self.limits.iter().enumerate().filter(|(_, limits)| limits.hold(demand));
@@ -317,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_that_lacks_a_figure_has_no_index() {
+    fn a_part_that_lacks_a_rating_has_no_index() {
         let (gears, motors) = ([hfuc_40_100()], [char_lynn_j_8_2()]);
         let table = DriveTable::build("j4", motion(), &everything(), &gears, &motors);
         assert!(table.is_empty());

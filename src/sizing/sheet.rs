@@ -1,4 +1,4 @@
-//! The numbers of one joint for the table that a designer reads, joint 6 to joint 1.
+//! The sizing table: the numbers of one joint in a row, from the tip to the base.
 
 use super::check::{Check, CheckKind, CheckState, binding, checks};
 use super::demand::{JointDemand, JointMotion};
@@ -7,7 +7,7 @@ use super::limits::input_speed_rpm;
 use super::rpm_from_rad_s;
 use serde::Serialize;
 
-/// One joint, sized. `None` is a number that a blank figure of the catalog leaves open.
+/// One joint, sized. A number is `None` if a blank rating of the catalog leaves it unknown.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JointSizingRow {
     /// Name of the joint.
@@ -16,13 +16,13 @@ pub struct JointSizingRow {
     pub static_torque_nm: f64,
     /// Torque of linear acceleration, Eq 8 \[N m\].
     pub linear_torque_nm: f64,
-    /// Rotary torque as printed in Eq 11, motor side \[N m\].
+    /// Rotary torque as printed in Eq 11, on the motor's side \[N m\].
     pub rotary_torque_motor_nm: Option<f64>,
-    /// The same referred to the joint, N times as large \[N m\].
+    /// Rotary torque referred to the joint, N times as large \[N m\].
     pub rotary_torque_output_nm: Option<f64>,
-    /// Eq 12 on one side: static, linear and rotary torque at the joint \[N m\].
+    /// Eq 12 on one side: the sum of static, linear and rotary torque at the joint \[N m\].
     pub total_torque_nm: Option<f64>,
-    /// What the motor gives at the peak, the gear's losses included \[N m\].
+    /// Torque of the motor at the peak, with the losses of the gear \[N m\].
     pub motor_peak_torque_nm: Option<f64>,
     /// Torque in an emergency stop \[N m\].
     pub stop_torque_nm: f64,
@@ -38,15 +38,15 @@ pub struct JointSizingRow {
     pub motor: String,
     /// The check with the smallest torque margin.
     pub binds: Option<&'static str>,
-    /// Its allowed over needed, of the life the cube root; `None` also if nothing is needed of it.
+    /// Torque margin of this check: allowed over needed, for life the cube root of it. Also `None` if nothing is needed.
     pub margin: Option<f64>,
     /// L10 of the wave-generator bearing \[h\].
     pub life_h: Option<f64>,
     /// Mass of the drive \[kg\].
     pub mass_kg: Option<f64>,
-    /// Mass that the next joint inward carries beyond this one: everything outboard and this drive \[kg\].
+    /// Mass outboard of the next joint inward, as far as this joint: everything outboard, and this drive \[kg\].
     pub mass_passed_inward_kg: f64,
-    /// Every check that was made or could not be.
+    /// Every check, whether it could be made or not.
     #[serde(skip)]
     pub checks: Vec<Check>,
     /// Checks that fail, in words; a fixed selection may have some.
@@ -105,10 +105,10 @@ fn remarks(checks: &[Check], wanted: impl Fn(CheckState) -> bool) -> Vec<String>
     checks.iter().filter(|c| wanted(c.state)).map(|c| format!("{} {c}", part(c))).collect()
 }
 
-/// Longest name of a motor printed in full.
+/// Largest number of characters of a motor's name in the table.
 const MOTOR_WIDTH: usize = 14;
 
-/// Headers over their units; the columns of numbers are aligned to the right.
+/// Header and unit of each column, and whether it is aligned to the right.
 const HEADERS: [(&str, &str, bool); 15] = [
     ("joint", "", false),
     ("static", "N m", true),
@@ -127,7 +127,7 @@ const HEADERS: [(&str, &str, bool); 15] = [
     ("inward", "kg", true),
 ];
 
-/// The rows as a text table of about 120 columns, with remarks on failed and open checks below it.
+/// The rows as a text table of about 120 characters a line. Remarks on checks that failed or could not be made follow it.
 pub fn render_rows(rows: &[JointSizingRow]) -> String {
     let mut lines = vec![HEADERS.map(|h| h.0.to_string()), HEADERS.map(|h| h.1.to_string())];
     lines.extend(rows.iter().map(cells));
@@ -175,7 +175,7 @@ fn cells(row: &JointSizingRow) -> [String; 15] {
     ]
 }
 
-/// Hours, in scientific notation beyond a million.
+/// A life in hours, in scientific notation from a million on.
 fn life_text(life_h: f64) -> String {
     if life_h < 1e6 { format!("{life_h:.0}") } else { format!("{life_h:.1e}") }
 }
@@ -194,7 +194,8 @@ mod tests {
     use super::*;
     use crate::catalog::gear::GearMass;
     use crate::catalog::motor::Motor;
-    use crate::sizing::requirement::{LinearReading, MotionRequirement};
+    use crate::sizing::demand::LinearReading;
+    use crate::sizing::requirement::MotionRequirement;
 
     fn paper_joint_2(motor: &Motor) -> JointSizingRow {
         let study = MotionRequirement { linear_reading: LinearReading::Paper, ..Default::default() };

@@ -1,4 +1,4 @@
-//! Parts for tests: rows of the catalog written out, and a drive that holds with room to spare.
+//! Parts for tests: some rows of the catalogs written out, and random parts.
 
 use super::demand::JointMotion;
 use super::requirement::MotionRequirement;
@@ -17,7 +17,7 @@ fn provenance() -> Provenance {
     }
 }
 
-/// A gear with every figure a check needs, in the order of `gears.csv`.
+/// A gear with every rating that a check needs, in the order of `gears.csv`.
 pub fn gear(id: &str, torques_nm: [f64; 4], input_rpm: [f64; 2], inertia: f64, masses_kg: [f64; 2]) -> Gear {
     let mut parts = id.split('-');
     let mut next = || parts.next().expect("series-size-ratio");
@@ -49,7 +49,7 @@ pub fn gear(id: &str, torques_nm: [f64; 4], input_rpm: [f64; 2], inertia: f64, m
     }
 }
 
-/// A motor with every figure: torques \[N m\], speeds \[rpm\], inertia \[kg m²\], mass \[kg\].
+/// A motor with every rating: torques \[N m\], speeds \[rpm\], inertia \[kg m²\], mass \[kg\].
 pub fn motor(id: &str, torques_nm: [f64; 2], speeds_rpm: [f64; 2], inertia: f64, mass_kg: f64) -> Motor {
     Motor {
         id: id.to_string(),
@@ -96,22 +96,22 @@ pub fn char_lynn_j_8_2() -> Motor {
     motor
 }
 
-/// A figure in a range, blank now and then.
-fn figure(range: std::ops::Range<f64>) -> impl Strategy<Value = Option<f64>> {
+/// A rating in a range; one in twenty is blank.
+fn rating_in(range: std::ops::Range<f64>) -> impl Strategy<Value = Option<f64>> {
     prop_oneof![19 => range.prop_map(Some), 1 => Just(None)]
 }
 
 prop_compose! {
-    /// A gear of random figures.
+    /// A gear of random ratings.
     pub fn any_gear()(
         series in prop_oneof![9 => Just("CSG"), 9 => Just("HFUC"), 1 => Just("HOMEMADE")],
         ratio in prop_oneof![Just(30u32), Just(50), Just(100), Just(160)],
-        torques in prop::array::uniform4(figure(50.0..2000.0)),
-        speeds in prop::array::uniform2(figure(300.0..6000.0)),
-        inertia in figure(0.0..0.003),
-        masses in prop::array::uniform2(figure(0.1..15.0)),
-        tilt in figure(50.0..1000.0),
-        efficiency in figure(0.5..0.9),
+        torques in prop::array::uniform4(rating_in(50.0..2000.0)),
+        speeds in prop::array::uniform2(rating_in(300.0..6000.0)),
+        inertia in rating_in(0.0..0.003),
+        masses in prop::array::uniform2(rating_in(0.1..15.0)),
+        tilt in rating_in(50.0..1000.0),
+        efficiency in rating_in(0.5..0.9),
     ) -> Gear {
         let mut gear = gear(&format!("{series}-32-{ratio}"), [0.0; 4], [0.0; 2], 0.0, [0.0; 2]);
         [gear.rated_torque_nm, gear.repeated_peak_torque_nm, gear.average_torque_limit_nm,
@@ -125,12 +125,12 @@ prop_compose! {
 }
 
 prop_compose! {
-    /// A motor of random figures.
+    /// A motor of random ratings.
     pub fn any_motor()(
-        torques in prop::array::uniform2(figure(1.0..60.0)),
-        speeds in prop::array::uniform2(figure(300.0..6000.0)),
-        inertia in figure(0.0..0.003),
-        mass in figure(0.1..15.0),
+        torques in prop::array::uniform2(rating_in(1.0..60.0)),
+        speeds in prop::array::uniform2(rating_in(300.0..6000.0)),
+        inertia in rating_in(0.0..0.003),
+        mass in rating_in(0.1..15.0),
     ) -> Motor {
         let mut motor = motor("M", [0.0; 2], [0.0; 2], 0.0, 0.0);
         [motor.rated_torque_nm, motor.peak_torque_nm] = torques;
@@ -148,7 +148,7 @@ prop_compose! {
     }
 }
 
-/// Static, linear torque and tilting moment, each zero now and then.
+/// Static torque, linear torque and tilting moment; one in ten is zero.
 pub fn any_torques() -> impl Strategy<Value = [f64; 3]> {
     let torque = || prop_oneof![1 => Just(0.0), 9 => 0.0..800.0f64];
     (torque(), torque(), torque()).prop_map(|(a, b, c)| [a, b, c])

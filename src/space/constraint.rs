@@ -11,27 +11,27 @@ pub struct Constraints {
     pub mass_max_kg: Option<f64>,
     /// Smallest lowest mode \[Hz\].
     pub lowest_mode_min_hz: Option<f64>,
-    /// Servo bandwidth that the lowest mode must stay above, and by what ratio.
+    /// Servo loop: the lowest mode must stay above its bandwidth by a ratio.
     pub servo: Option<Servo>,
-    /// Smallest strength over stress at peak load.
+    /// Smallest ratio of strength to stress at peak load.
     pub stress_safety_factor_min: Option<f64>,
-    /// Largest flat width (or diameter) over wall thickness: local buckling.
+    /// Largest ratio of flat width (or diameter) to wall thickness, against local buckling.
     pub wall_slenderness_max: Option<f64>,
-    /// Largest cost of the links' material \[EUR\]; a material of unknown cost is refused then.
+    /// Largest cost of the links' material \[EUR\]. With this limit a material of unknown cost is refused.
     pub material_cost_max_eur: Option<f64>,
 }
 
-/// A servo loop below the lowest mode.
+/// A servo loop whose bandwidth must be below the lowest mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Servo {
     /// Bandwidth \[Hz\].
     pub bandwidth_hz: f64,
-    /// Least ratio of the lowest mode to it.
+    /// Smallest ratio of the lowest mode to the bandwidth.
     pub ratio: f64,
 }
 
 impl Constraints {
-    /// Whether a design breaks the limit on its deflection, its mass, its lowest mode.
+    /// Whether a design breaks the limit on deflection, on mass and on the lowest mode, in this order.
     pub fn broken(&self, o: &Objectives) -> [bool; 3] {
         [
             self.tip_deflection_max_m.is_some_and(|max| o.tip_deflection_m > max),
@@ -40,7 +40,7 @@ impl Constraints {
         ]
     }
 
-    /// The lowest mode that is asked for \[Hz\].
+    /// The smallest lowest mode that a design may have \[Hz\]: the stricter of the limit itself and the servo's.
     pub fn required_mode_hz(&self) -> f64 {
         let servo = self.servo.map_or(0.0, |s| s.bandwidth_hz * s.ratio);
         self.lowest_mode_min_hz.unwrap_or(0.0).max(servo)

@@ -1,4 +1,4 @@
-//! One complete design: its parts, its arm, and its objectives by the full model.
+//! One complete design: its number, its parts, its arm, and its objectives by the full model.
 
 use super::design_space::{DriveChoice, LinkOption, SpacePiece};
 use super::levels::OutwardIn;
@@ -19,7 +19,7 @@ pub enum Part<'a> {
     Drive(Drive<'a>),
     /// A material and section.
     Link(&'a LinkOption),
-    /// Nothing was chosen here.
+    /// The study gives this piece; nothing was chosen.
     Given,
 }
 
@@ -30,17 +30,17 @@ pub struct Evaluated {
     pub number: u128,
     /// Objectives by the full model.
     pub objectives: Objectives,
-    /// Group (material) if all its links are of one.
+    /// Group (material) of the design; `None` if its links are of several materials.
     pub group: Option<usize>,
 }
 
-/// Number of the design with these options, one a level: a mixed-radix number, the tip's level the
-/// most significant.
+/// Number of the design with these options, one for each level. It is a mixed-radix number with the level of the tip as
+/// the most significant digit.
 pub fn number(level_sizes: &[u32], options: &[u32]) -> u128 {
     level_sizes.iter().zip(options).fold(0, |n, (&size, &option)| n * u128::from(size) + u128::from(option))
 }
 
-/// Options, one a level, of a numbered design; `None` if there is no such design.
+/// Options of a numbered design, one for each level; `None` if no design has this number.
 pub fn options(level_sizes: &[u32], mut number: u128) -> Option<Vec<u32>> {
     let mut out = vec![0; level_sizes.len()];
     for (slot, &size) in out.iter_mut().zip(level_sizes).rev() {
@@ -50,7 +50,7 @@ pub fn options(level_sizes: &[u32], mut number: u128) -> Option<Vec<u32>> {
     (number == 0).then_some(out)
 }
 
-/// A design's name in files: its number in base 36.
+/// Name of a design in files: its number in base 36.
 pub fn id_of(mut number: u128) -> String {
     let mut digits = Vec::new();
     while digits.is_empty() || number > 0 {
@@ -60,7 +60,7 @@ pub fn id_of(mut number: u128) -> String {
     digits.iter().rev().collect()
 }
 
-/// The number behind a design's name.
+/// Number of the design with this name; `None` if the name is not a number in base 36.
 pub fn number_of(id: &str) -> Option<u128> {
     if id.is_empty() {
         return None;
@@ -69,7 +69,7 @@ pub fn number_of(id: &str) -> Option<u128> {
 }
 
 impl<'c> ArmProblem<'c> {
-    /// The parts of a design, base to tip; `None` if the design cannot hold.
+    /// The parts of the design with these options, base to tip; `None` if the design cannot hold.
     pub fn parts(&self, options: &[u32]) -> Option<Vec<Part<'c>>> {
         let complete = self.walk(options, |_, _| {}).ok()?;
         let parts = self
@@ -89,7 +89,7 @@ impl<'c> ArmProblem<'c> {
         Some(parts)
     }
 
-    /// The arm of a design with every part resolved to numbers.
+    /// The arm of a design, with every part resolved to numbers; `None` if the design cannot hold.
     pub fn arm(&self, options: &[u32]) -> Option<Arm> {
         let parts = self.parts(options)?;
         let space = self.space();
@@ -123,7 +123,7 @@ impl<'c> ArmProblem<'c> {
         })
     }
 
-    /// The cases that objectives are taken over, as load cases.
+    /// The judged cases, as load cases of the full model.
     pub fn load_cases(&self) -> Vec<LoadCase> {
         let space = self.space();
         space
@@ -143,7 +143,7 @@ impl<'c> ArmProblem<'c> {
     }
 }
 
-/// Curve, mass \[kg\], names of gear and motor.
+/// Torsion curve, mass \[kg\], and the names of gear and motor of a joint.
 fn drive_of(choice: &DriveChoice, part: &Part) -> Option<(Curve, f64, [Option<String>; 2])> {
     match (choice, part) {
         (DriveChoice::Given { curve, mass_kg, gear, motor }, _) => {
@@ -158,12 +158,14 @@ fn drive_of(choice: &DriveChoice, part: &Part) -> Option<(Curve, f64, [Option<St
     }
 }
 
-/// Objectives of an arm over load cases by the full model: what `analyze` prints.
+/// Objectives of an arm over load cases by the full model, which `armwright analyze` uses too: the largest tip
+/// deflection \[m\], the mass \[kg\] and the smallest lowest mode \[Hz\].
 pub fn full_objectives(arm: &Arm, cases: &[LoadCase]) -> Objectives {
     objectives_with(arm, cases, |_| ())
 }
 
-/// The same of an arm whose structure, effects applied, is changed; the mass is that of the arm as it was.
+/// Objectives of an arm whose structure `change` alters after the effects were applied. The mass remains that of the arm
+/// before the change.
 pub fn objectives_with(arm: &Arm, cases: &[LoadCase], change: impl Fn(&mut Structure)) -> Objectives {
     let mut out = Objectives { tip_deflection_m: 0.0, mass_kg: arm.mass_kg(), lowest_mode_hz: f64::INFINITY };
     for case in cases {
@@ -178,7 +180,9 @@ pub fn objectives_with(arm: &Arm, cases: &[LoadCase], change: impl Fn(&mut Struc
     out
 }
 
-/// Judges a numbered design by the full model.
+/// Evaluates a numbered design by the full model. Returns `None` if there is no such design or if it cannot hold.
+///
+/// [`DesignSpace`](super::design_space::DesignSpace) has an example.
 pub fn evaluate(problem: &ArmProblem, number: u128) -> Option<Evaluated> {
     let options = options(problem.level_sizes(), number)?;
     let complete = problem.walk(&options, |_, _| {}).ok()?;

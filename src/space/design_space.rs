@@ -1,17 +1,80 @@
-//! What there is to choose: the arm with its open links and drives, and what it is asked to do.
+//! What there is to choose: an arm with open links and drives, and the task it must do.
 
 use super::constraint::Constraints;
-use crate::arm::effect::Effect;
+use crate::arm::effect::entry::Effect;
 use crate::arm::joint_law::Curve;
 use crate::arm::load::Payload;
+use crate::arm::load::Water;
 use crate::arm::section::{LinkMaterial, Section};
-use crate::arm::structure::{Beam, Water};
+use crate::arm::structure::Beam;
 use crate::arm::{JointModel, Link, LinkModel};
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
 use nalgebra::{Unit, Vector3};
 
-/// An arm with choices, and the cases it is judged in.
+/// An arm with open choices, the cases in which it is judged, and the limits that every design must keep.
+///
+/// A study file is the usual source: `read_study` and `resolve` of [`study`](crate::study) make a design space of it. A
+/// program can also fill in the fields itself, as below: a steel upper arm of two possible walls on one given joint.
+///
+/// ```
+/// use armwright::arm::{Curve, JointModel, LinkMaterial, LinkModel, Payload, Section};
+/// use armwright::catalog::Catalogs;
+/// use armwright::sizing::MotionRequirement;
+/// use armwright::space::constraint::Constraints;
+/// use armwright::space::design_space::{Case, DriveChoice, LinkChoice, LinkOption, SpaceJoint, SpacePiece};
+/// use armwright::space::{ArmProblem, DesignSpace, evaluate};
+/// use nalgebra::Vector3;
+///
+/// let steel = LinkMaterial {
+///     youngs_modulus_pa: 2.1e11,
+///     shear_modulus_pa: 8.1e10,
+///     density_kg_m3: 7850.0,
+///     poisson: 0.3,
+/// };
+/// let tube = |wall_m: f64| LinkOption {
+///     material_index: 0,
+///     material_name: "steel".into(),
+///     material: steel,
+///     section: Section::RectangularTube { width_m: 0.12, height_m: 0.12, wall_m },
+///     profile: None,
+///     strength_pa: Some(355e6),
+///     cost_eur_per_kg: None,
+/// };
+/// let drive = DriveChoice::Given { curve: Curve::Linear(405e3), mass_kg: 8.2, gear: None, motor: None };
+/// let space = DesignSpace {
+///     name: "one link".into(),
+///     gravity_m_s2: 9.81,
+///     pieces: vec![
+///         SpacePiece::Joint(SpaceJoint { name: "j2".into(), axis: Vector3::y_axis(), drive, max_speed_rad_s: None }),
+///         SpacePiece::Choice(LinkChoice {
+///             name: "upper_arm".into(),
+///             vector_m: Vector3::new(0.8, 0.0, 0.0),
+///             options: vec![tube(0.005), tube(0.010)],
+///             excerpt: None,
+///         }),
+///     ],
+///     cases: vec![Case {
+///         name: "stretched".into(),
+///         pose_deg: vec![0.0],
+///         payload: Payload { mass_kg: 5.0, ..Payload::default() },
+///         tip_force_n: Vector3::zeros(),
+///         water: None,
+///     }],
+///     judged_cases: vec![0],
+///     sizing_cases: vec![0],
+///     motion: MotionRequirement::default(),
+///     links: LinkModel::Full,
+///     joints: JointModel::ThreeSegment,
+///     constraints: Constraints::default(),
+///     effects: Vec::new(),
+/// };
+/// assert_eq!(space.link_options(), 2);
+/// let catalogs = Catalogs::builtin();
+/// let problem = ArmProblem::new(&space, &catalogs);
+/// let [thin, thick] = [0, 1].map(|number| evaluate(&problem, number).expect("this design holds").objectives);
+/// assert!(thin.mass_kg < thick.mass_kg && thin.tip_deflection_m > thick.tip_deflection_m);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct DesignSpace {
     /// Name of the arm.
@@ -22,11 +85,11 @@ pub struct DesignSpace {
     pub pieces: Vec<SpacePiece>,
     /// Every case in which the arm is judged or sized.
     pub cases: Vec<Case>,
-    /// Indices of the cases that objectives are taken over, the worst of them.
+    /// Indices of the cases over which the objectives are taken. The worst of these cases counts.
     pub judged_cases: Vec<usize>,
     /// Indices of the cases in which joints are sized and stress is checked.
     pub sizing_cases: Vec<usize>,
-    /// What the tip must do.
+    /// The motion that the tip must do; joints are sized for it.
     pub motion: MotionRequirement,
     /// Physics of the links.
     pub links: LinkModel,
@@ -34,7 +97,7 @@ pub struct DesignSpace {
     pub joints: JointModel,
     /// What every design must meet.
     pub constraints: Constraints,
-    /// Physics beyond the nominal model; effects that describe a test are left out of every calculation.
+    /// Physics beyond the nominal model. Effects that describe a test are left out of every calculation.
     pub effects: Vec<Effect>,
 }
 
@@ -69,18 +132,18 @@ pub enum SpacePiece {
 pub struct SpaceJoint {
     /// Name.
     pub name: String,
-    /// Axis in the carried frame.
+    /// Axis, in the frame that the joints before it carry.
     pub axis: Unit<Vector3<f64>>,
-    /// How its drive is found.
+    /// How the drive of the joint is found.
     pub drive: DriveChoice,
-    /// Largest speed asked for, if the study gives one \[rad/s\].
+    /// Largest speed that the study asks for \[rad/s\]; `None`: the speed that follows from the tip's.
     pub max_speed_rad_s: Option<f64>,
 }
 
 /// How a joint's drive is found.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DriveChoice {
-    /// Given: numbers, with the part names if they are a catalog's.
+    /// The study gives the drive in numbers, with the names of its parts if they are in a catalog.
     Given {
         /// Torsion curve.
         curve: Curve,
@@ -104,29 +167,29 @@ pub struct LinkChoice {
     pub name: String,
     /// From root to end \[m\].
     pub vector_m: Vector3<f64>,
-    /// What it can be made of.
+    /// The materials and sections to choose from.
     pub options: Vec<LinkOption>,
-    /// Where the options stand in the whole list, if this is only a part of it.
+    /// The places of these options in the whole list; `None` if this is the whole list.
     pub excerpt: Option<Excerpt>,
 }
 
-/// Part of a list of options.
+/// Which options of a longer list were kept.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Excerpt {
     /// Place of each option in the whole list, ascending.
     pub places: Vec<u32>,
-    /// Options in the whole list.
+    /// Number of options in the whole list.
     pub of: u32,
 }
 
 /// One material and section.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinkOption {
-    /// Number of the material in the study: the same on every link.
+    /// Number of the material in the study. A material has the same number on every link.
     pub material_index: usize,
     /// Name of the material.
     pub material_name: String,
-    /// Its elastic properties.
+    /// Elastic properties and density of the material.
     pub material: LinkMaterial,
     /// Cross-section.
     pub section: Section,
@@ -139,19 +202,19 @@ pub struct LinkOption {
 }
 
 impl DriveChoice {
-    /// Whether the drive is a choice of the search.
+    /// Whether the search chooses the drive.
     pub fn is_open(&self) -> bool {
         matches!(self, DriveChoice::AllFits(_))
     }
 }
 
 impl LinkOption {
-    /// The tube as mechanics sees it, as it is built.
+    /// The tube as the mechanics sees it, without any effect.
     pub fn beam(&self) -> Beam {
         Beam { material: self.material, section: self.section, flexibility: 1.0 }
     }
 
-    /// A tube that is given: no choice, no strength, no cost.
+    /// The option of a tube that the study gives: it has no strength and no cost.
     pub(crate) fn given(material: LinkMaterial, section: Section) -> Self {
         Self {
             material_index: 0,
@@ -169,7 +232,7 @@ impl LinkOption {
         self.material.density_kg_m3 * self.section.properties(self.material.poisson).area_m2
     }
 
-    /// Flat width (or diameter) over wall thickness.
+    /// Wall slenderness: the larger flat width (or the diameter) over the wall thickness.
     pub fn wall_slenderness(&self) -> f64 {
         let (width, height) = self.section.outer_m();
         let wall = self.section.wall_m();
@@ -181,7 +244,7 @@ impl LinkOption {
 }
 
 impl DesignSpace {
-    /// Options of all links, together.
+    /// Number of options of all open links together.
     pub fn link_options(&self) -> usize {
         let options = |piece: &SpacePiece| match piece {
             SpacePiece::Choice(choice) => choice.options.len(),

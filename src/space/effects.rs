@@ -1,13 +1,12 @@
-//! The effects of a study on its arm as the search builds it.
+//! The effects of a study, as pieces that the search adds to the arm.
 //!
-//! An effect is a piece of the arm: it changes a joint's law or a link's tube, or stands in the chain as a
-//! piece of its own, a spring that tilts or a mass that weighs. Each is applied by the same code that
-//! applies it to an arm file, so that the search, `analyze` and `reconcile` see it alike; stations, rows and
-//! lanes only ever see pieces.
+//! An effect changes the law of a joint or the tube of a link, or it adds a piece of its own to the chain: a spring that
+//! tilts, or a mass. The code that applies an effect to an arm file applies it here too, so the search, `analyze` and
+//! `reconcile` compute the same thing. Stations, rows and lanes know pieces only; they know nothing of effects.
 
 use super::design_space::{DesignSpace, SpaceJoint, SpacePiece};
 use crate::arm::Link;
-use crate::arm::effect::Subject;
+use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::structure::{JointAngle, JointPiece, LinkPiece, Piece, Structure, link_piece};
 use crate::mechanics::chain::across;
@@ -18,16 +17,16 @@ use nalgebra::{Rotation3, Vector3};
 pub(crate) enum Layer<'s> {
     /// A piece of the chain.
     Piece(&'s SpacePiece),
-    /// A spring about an axis across a joint's.
+    /// A spring about an axis across the axis of a joint.
     Tilt(Tilt<'s>),
-    /// A point mass at a joint beyond its drive's \[kg\].
+    /// A point mass at a joint, in addition to its drive \[kg\].
     Mass(f64),
 }
 
-/// About what a spring turns.
+/// The axis about which a spring turns.
 #[derive(Debug, Clone, Copy)]
 enum About<'s> {
-    /// One of the two axes across a joint's.
+    /// One of the two axes across the axis of a joint.
     Across(&'s SpaceJoint, usize),
     /// An axis of the frame that the spring stands in.
     Fixed(Vector3<f64>),
@@ -35,7 +34,7 @@ enum About<'s> {
     World(Vector3<f64>),
 }
 
-/// One of the springs of a bearing that tilts, of a frame that yields, or of the base.
+/// A spring of a bearing that tilts, of a frame that yields, or of the base.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tilt<'s> {
     about: About<'s>,
@@ -44,7 +43,7 @@ pub(crate) struct Tilt<'s> {
 }
 
 impl Tilt<'_> {
-    /// The spring's axis where the frame it stands in is turned by `rotation`.
+    /// Axis of the spring in the world. `rotation` is the attitude of the frame that the spring stands in.
     pub fn axis(&self, rotation: &Rotation3<f64>) -> Vector3<f64> {
         match self.about {
             About::Across(joint, which) => across(&(rotation * joint.axis))[which],
@@ -53,17 +52,17 @@ impl Tilt<'_> {
         }
     }
 
-    /// Twist under a moment.
+    /// Twist of the spring under a moment.
     pub fn law(&self) -> JointLaw {
         JointLaw { connection_rad_per_nm: self.rad_per_nm, ..JointLaw::from(Curve::Rigid) }
     }
 }
 
 impl DesignSpace {
-    /// Everything the search adds, tip first, each with the piece (base to tip) it stands at.
+    /// Everything that the search adds, tip first, each with the number of the piece (base to tip) at which it stands.
     ///
-    /// The springs of a bearing turn about the joint's own place: they may come before the joint, where
-    /// everything outboard of an open drive is worked out once.
+    /// The springs of a bearing come before the torsion of their joint. All three turn about the same point, so their
+    /// order does not matter; this way the springs are computed once and not once for each drive of the joint.
     pub(crate) fn layers(&self) -> Vec<(usize, Layer<'_>)> {
         let mut out = Vec::with_capacity(self.pieces.len());
         for (index, piece) in self.pieces.iter().enumerate().rev() {
@@ -98,14 +97,14 @@ impl DesignSpace {
         out
     }
 
-    /// The springs of the frame at a link's root.
+    /// The springs of the frame at the root of a link.
     fn root_springs(&self, link: &Link) -> impl Iterator<Item = Layer<'_>> + use<'_> {
         let springs = self.link_piece(link).root_frame.springs().into_iter();
         springs.map(|(axis, c)| Layer::Tilt(Tilt { about: About::Fixed(axis), rad_per_nm: c }))
     }
 
-    /// A joint with this torsion curve under the study's joint model and with the effects at it; the mass
-    /// is what the effects add.
+    /// A joint with this torsion curve, under the joint model of the study and with the effects at the joint. The mass of
+    /// the piece is what the effects add.
     pub(crate) fn joint_piece(&self, joint: &SpaceJoint, curve: Curve) -> JointPiece {
         let nominal = nominal_joint(joint, self.curve(curve));
         let mut affected = match self.affected(Piece::Joint(nominal.clone())) {
@@ -117,7 +116,7 @@ impl DesignSpace {
         affected
     }
 
-    /// A link with the effects at it.
+    /// A link with the effects at this link.
     pub(crate) fn link_piece(&self, link: &Link) -> LinkPiece {
         let nominal = link_piece(link);
         match self.affected(Piece::Link(nominal.clone())) {
@@ -126,12 +125,12 @@ impl DesignSpace {
         }
     }
 
-    /// The arm's surroundings: gravity, the base, water.
+    /// The surroundings of the arm: gravity, the base and water, as a structure without pieces.
     pub(crate) fn surroundings(&self) -> Structure {
         self.with_effects(Vec::new())
     }
 
-    /// Mass that the effects add to the arm \[kg\]: on top of links and drives, the same for every design.
+    /// Mass that the effects add to the links and drives of the arm \[kg\]. It is the same for every design.
     pub fn effects_mass_kg(&self) -> f64 {
         self.nominal_structure()
             .pieces
@@ -144,15 +143,15 @@ impl DesignSpace {
             .sum()
     }
 
-    /// Names and kinds of all pieces without any effect, for checking where effects can sit: joints are
-    /// rigid and massless, open links have their first option.
+    /// Names and kinds of all pieces without any effect, to check where effects can sit. Joints are rigid and have no
+    /// mass; open links have their first option.
     pub fn nominal_structure(&self) -> Structure {
         let piece = |piece: &SpacePiece| match piece {
             SpacePiece::Joint(joint) => Piece::Joint(nominal_joint(joint, Curve::Rigid)),
             SpacePiece::Link(link) => Piece::Link(link_piece(link)),
             SpacePiece::Choice(choice) => Piece::Link(link_piece(&choice.first_link())),
         };
-        Structure::bare(self.gravity_m_s2, self.pieces.iter().map(piece).collect())
+        Structure::nominal(self.gravity_m_s2, self.pieces.iter().map(piece).collect())
     }
 
     fn affected(&self, piece: Piece) -> Option<Piece> {
@@ -160,7 +159,7 @@ impl DesignSpace {
     }
 
     fn with_effects(&self, pieces: Vec<Piece>) -> Structure {
-        let mut subject = Subject::new(Structure::bare(self.gravity_m_s2, pieces));
+        let mut subject = Subject::new(Structure::nominal(self.gravity_m_s2, pieces));
         self.effects.iter().filter(|effect| !effect.is_of_test()).for_each(|effect| subject.apply(effect));
         subject.structure
     }
@@ -177,7 +176,7 @@ fn nominal_joint(joint: &SpaceJoint, curve: Curve) -> JointPiece {
     }
 }
 
-/// The two springs of a bearing or base that tilts; none if it does not.
+/// The two springs of a bearing or base that tilts; none if it is rigid.
 fn tilts(axes: [About<'_>; 2], rad_per_nm: f64) -> impl Iterator<Item = Layer<'_>> {
     let present = axes.into_iter().filter(move |_| rad_per_nm > 0.0);
     present.map(move |about| Layer::Tilt(Tilt { about, rad_per_nm }))

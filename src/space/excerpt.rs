@@ -1,8 +1,8 @@
-//! A design space cut down to what some of its designs are made of.
+//! Excerpts: a design space reduced to the options that some of its designs use.
 //!
-//! Of a space with a hundred thousand sections a link, a front has a few thousand designs. What an
-//! [`ArmProblem`] tabulates for every option of every pose is then worked out for the options of those
-//! designs alone. A design keeps its number in the whole space, and so its name.
+//! A space may have a hundred thousand sections for each link, while its front has a few thousand designs. An
+//! [`ArmProblem`] tabulates every option in every pose, so one of the excerpt is much smaller than one of the whole
+//! space. A design keeps its number in the whole space, and with it its name.
 
 use super::design::{number, options};
 use super::design_space::{DesignSpace, Excerpt, LinkChoice, LinkOption, SpacePiece};
@@ -13,7 +13,7 @@ use crate::catalog::Catalogs;
 use std::collections::BTreeSet;
 
 impl DesignSpace {
-    /// Options of each level, tip first, without tabulating anything else.
+    /// Number of options of each level, tip first. It is found without tabulating the options of links.
     pub fn level_sizes(&self, catalogs: &Catalogs) -> Vec<u32> {
         let sizing = self.sizing_cases.iter().map(|&i| &self.cases[i]);
         let mut reaches = reaches_m(self, sizing).into_iter();
@@ -33,13 +33,13 @@ impl DesignSpace {
         sizes
     }
 
-    /// Number of designs; `None` beyond what 128 bits hold.
+    /// Number of designs; `None` if it does not fit into 128 bits.
     pub fn designs(&self, catalogs: &Catalogs) -> Option<u128> {
         self.level_sizes(catalogs).into_iter().try_fold(1u128, |n, size| n.checked_mul(u128::from(size)))
     }
 
-    /// The space with only those link options that the designs with these numbers are made of; `None` if
-    /// one of them is not in the space.
+    /// The space reduced to the link options that the designs with these numbers use; `None` if one of the designs is
+    /// not in the space.
     pub fn excerpt(&self, catalogs: &Catalogs, designs: &[u128]) -> Option<DesignSpace> {
         let sizes = self.level_sizes(catalogs);
         let mut used: Vec<BTreeSet<u32>> = vec![BTreeSet::new(); sizes.len()];
@@ -52,8 +52,8 @@ impl DesignSpace {
         self.of_options(&lists)
     }
 
-    /// The space with only those link options whose numbers a level has, ascending, tip first; `None` if a level has no
-    /// list.
+    /// The space reduced to the link options listed for each level. Levels are in order from the tip, and the numbers of a
+    /// level are ascending. Returns `None` if a level has no list.
     pub fn of_options(&self, lists: &[Vec<u32>]) -> Option<DesignSpace> {
         let mut out = self.clone();
         let mut levels = lists.iter();
@@ -70,7 +70,7 @@ impl DesignSpace {
         Some(out)
     }
 
-    /// The space with at most so many options of every open link, those in the middle of its list.
+    /// The space with at most `most` options for every open link, taken from the middle of its list.
     pub fn middle(&self, most: u32) -> DesignSpace {
         let mut out = self.clone();
         for piece in &mut out.pieces {
@@ -85,7 +85,7 @@ impl DesignSpace {
         out
     }
 
-    /// Materials are numbered without gaps, in the study's order.
+    /// Numbers the materials that are left without gaps, in the order of the study.
     fn renumber_materials(&mut self) {
         let options = |piece: &mut SpacePiece| match piece {
             SpacePiece::Choice(choice) => std::mem::take(&mut choice.options),
@@ -115,16 +115,17 @@ impl LinkChoice {
 }
 
 impl ArmProblem<'_> {
-    /// Whether two designs, by their options in the whole space, differ only in drives that weigh and twist alike.
-    pub fn are_alike(&self, a: &[u32], b: &[u32]) -> bool {
+    /// Whether two designs are ties: they differ in drives of equal mass and equal torsion curve alone. Both are given by
+    /// their options in the whole space.
+    pub fn are_ties(&self, a: &[u32], b: &[u32]) -> bool {
         let pairs = self.level_slots().iter().zip(a.iter().zip(b));
         pairs.into_iter().all(|(&slot, (a, b))| match &self.slots()[slot] {
-            Slot::Sized(sized) => sized.are_alike(*a as usize, *b as usize),
+            Slot::Sized(sized) => sized.are_ties(*a as usize, *b as usize),
             _ => a == b,
         })
     }
 
-    /// Number in the whole space of a design of this one.
+    /// Number in the whole space of a design of this space.
     pub fn whole_number(&self, design: u128) -> u128 {
         let here = options(self.level_sizes_slice(), design).unwrap_or_default();
         let (sizes, places): (Vec<u32>, Vec<u32>) = self
@@ -137,7 +138,8 @@ impl ArmProblem<'_> {
         number(&sizes, &places)
     }
 
-    /// Options here, one a level, of a design of the whole space; `None` if it is not among those kept.
+    /// Options in this space of a design of the whole space, one for each level; `None` if the design needs an option that
+    /// was not kept.
     pub fn options_of_whole(&self, design: u128) -> Option<Vec<u32>> {
         let excerpts: Vec<Option<&Excerpt>> = self.excerpts().collect();
         let sizes: Vec<u32> = excerpts
@@ -155,7 +157,7 @@ impl ArmProblem<'_> {
             .collect()
     }
 
-    /// What each level keeps of its whole list, tip first.
+    /// The excerpt of each level, tip first; `None` for a level with its whole list.
     fn excerpts(&self) -> impl Iterator<Item = Option<&Excerpt>> {
         self.level_slots().iter().map(|&slot| match &self.space().pieces[self.piece_of_slot(slot)] {
             SpacePiece::Choice(choice) => choice.excerpt.as_ref(),

@@ -1,5 +1,7 @@
-//! A drive that the study gives instead of choosing: the same checks, for information. A part with blank
-//! figures may be used here; what could not be checked is said.
+//! Checks of a drive that the study gives instead of choosing.
+//!
+//! The checks are for information and exclude no design. A part with blank ratings may be given; the checks that lack a
+//! rating are reported as not checked.
 
 use super::design_space::{DriveChoice, SpacePiece};
 use super::problem::{ArmProblem, Partial};
@@ -9,14 +11,14 @@ use crate::catalog::gear::GearMass;
 use crate::sizing::demand::{JointDemand, JointMotion};
 use crate::sizing::drive::Drive;
 
-/// A given drive whose parts are a catalog's.
+/// A given drive whose gear and motor are catalog parts.
 #[derive(Debug, Clone, Copy)]
 pub struct FixedDrive<'c> {
-    /// Its parts.
+    /// Gear and motor.
     pub drive: Drive<'c>,
-    /// Its mass as the study gives it \[kg\].
+    /// Mass of the drive as the study gives it \[kg\].
     pub mass_kg: f64,
-    /// What the study's motion asks of its joint.
+    /// The motion that the study asks of the joint.
     pub motion: JointMotion,
 }
 
@@ -33,7 +35,7 @@ impl ArmProblem<'_> {
             space.pieces[..piece].iter().filter(|p| matches!(p, SpacePiece::Joint(_))).count();
         let reach_m = reaches_m(space, sizing)[joints_before];
         let (gear, motor) = (catalogs.gear(gear).ok()?, catalogs.motor(motor).ok()?);
-        // which of the gear's masses the study took follows from the mass it gives
+        // the study states one mass for the drive; it shows which of the gear's two masses is in it
         let set_mass_kg = gear.mass_component_set_kg.zip(motor.mass_kg).map(|(g, m)| g + m);
         let gear_mass = match set_mass_kg.is_some_and(|m| (m - mass_kg).abs() < 1e-9) {
             true => GearMass::ComponentSet,
@@ -46,7 +48,7 @@ impl ArmProblem<'_> {
         })
     }
 
-    /// What a joint with a given drive is asked for when everything outboard is known.
+    /// Demand on a joint with a given drive, when everything outboard is known.
     pub fn fixed_demand(&self, outboard: &Partial, slot: usize, motion: &JointMotion) -> JointDemand {
         self.demand(&outboard.stations, slot, Some(motion))
     }

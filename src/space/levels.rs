@@ -1,43 +1,42 @@
-//! A design space as a tree: levels from the tip inward, one option at each.
+//! A design space as a tree: one level for each choice, from the tip to the base.
 
 use crate::pareto::objectives::Objectives;
 
-/// A design finished.
+/// A complete design with what a walk keeps of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finished {
-    /// Its objectives.
+    /// The objectives of the design.
     pub objectives: Objectives,
-    /// The group it belongs to, if it belongs to one.
+    /// The group (material) of the design; `None` if its links are of several.
     pub group: Option<usize>,
 }
 
-/// What becomes of the designs that a walk comes to.
+/// Takes the designs that a walk through the tree comes to.
 pub trait Keep {
-    /// A design that holds.
+    /// Takes a design that holds.
     fn complete(&mut self, number: u128, finished: Finished);
 
-    /// So many designs cannot hold.
+    /// Counts designs that cannot hold.
     fn exclude(&mut self, designs: u128);
 
-    /// The lowest mode \[Hz\] below which a design of a group, with this mass and tip deflection, need not be
-    /// finished; 0 if every design is of interest. It serves for heavier and softer ones too.
+    /// The bar \[Hz\]: a design of this group, mass \[kg\] and tip deflection \[m\] with a lowest mode below it is of no
+    /// interest and need not be finished. The bar also holds for heavier and softer designs. 0 means that every design
+    /// is of interest.
     fn bar_hz(&self, group: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
         let _ = (group, mass_kg, tip_deflection_m);
         0.0
     }
 
-    /// So many designs hold, and their lowest modes are below the bar.
+    /// Counts designs that hold and have their lowest modes below the bar.
     fn below_bar(&mut self, designs: u64) {
         let _ = designs;
     }
 }
 
-/// A tree of designs whose levels go from the tip of the arm inward.
+/// A tree of designs whose levels go from the tip of the arm to the base.
 pub trait OutwardIn: Sync {
     /// A partial arm: everything outboard of the next level.
     type Partial: Clone + Send + Sync;
-    /// What a worker keeps from one row of innermost options to the next.
-    type Scratch: Send;
 
     /// Number of options at each level, tip first.
     fn level_sizes(&self) -> &[u32];
@@ -45,24 +44,12 @@ pub trait OutwardIn: Sync {
     /// The empty arm; `None` if no design can hold.
     fn root(&self) -> Option<Self::Partial>;
 
-    /// Extends `from` by an option of a level and by all that follows without a choice, into `to`.
-    /// `false` if no design with this beginning meets the constraints.
+    /// Writes into `to` the arm `from` with one more option, and with all pieces that follow it without a choice.
+    /// Returns `false` if no design with this beginning meets the constraints.
     fn extend(&self, level: usize, option: u32, from: &Self::Partial, to: &mut Self::Partial) -> bool;
 
-    /// Finishes rows of designs: each an arm that lacks only the innermost level, with the number of its first
-    /// design, by every option of that level.
-    fn finish<K: Keep>(&self, rows: &[(u128, Self::Partial)], scratch: &mut Self::Scratch, keep: &mut K) {
-        let Some((&options, outer)) = self.level_sizes().split_last() else { return };
-        for (first, from) in rows {
-            let mut complete = from.clone();
-            for option in 0..options {
-                self.finish_one(outer.len(), option, from, *first, &mut complete, keep);
-            }
-        }
-        let _ = scratch;
-    }
-
-    /// Finishes one design by itself, in `complete`.
+    /// Finishes one design by itself and shows it to `keep`. `first` is the number of the design with option 0;
+    /// `complete` is working space.
     fn finish_one(
         &self,
         level: usize,
@@ -82,15 +69,12 @@ pub trait OutwardIn: Sync {
         }
     }
 
-    /// Room for a worker's rows.
-    fn scratch(&self) -> Self::Scratch;
-
-    /// Objectives of a complete arm; `None` if it breaks a constraint.
+    /// Objectives of a complete arm; `None` if the arm breaks a constraint.
     fn objectives(&self, complete: &Self::Partial) -> Option<Objectives>;
 
     /// Number of groups that get a front of their own (materials).
     fn groups(&self) -> usize;
 
-    /// The group a complete arm belongs to, if it belongs to one.
+    /// The group of a complete arm; `None` if it belongs to none.
     fn group(&self, complete: &Self::Partial) -> Option<usize>;
 }

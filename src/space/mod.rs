@@ -1,16 +1,21 @@
 //! The design space, compiled for speed.
 //!
-//! A design is one option at each level of a tree; levels go from the tip inward, because the outward
-//! pass of the mechanics is also the order in which joints are sized. [`design_space`] says what there is to
-//! choose, [`problem`] puts the arm behind the trait [`levels::OutwardIn`]: extend a partial arm by an option, or
-//! find that no design beyond it can hold; evaluate a complete one. [`design`] judges one design by the full model.
+//! A design is one option at each level of a tree. The levels go from the tip to the base, because a joint can be sized
+//! only when everything outboard of it is known.
+//!
+//! - [`design_space`] says what there is to choose.
+//! - [`problem`] puts the arm behind the trait [`levels::OutwardIn`]. The trait extends a partial arm by an option, finds
+//!   that no design with this beginning can hold, and evaluates a complete arm.
+//! - [`station`] compiles one case: everything about a pose that does not depend on the design.
+//! - [`design`] judges one design by the full model.
 
+pub(crate) mod attributes;
 pub mod constraint;
 pub mod design;
 pub mod design_space;
 pub(crate) mod effects;
 pub(crate) mod excerpt;
-pub(crate) mod figures;
+
 pub mod fixed;
 pub mod levels;
 pub mod problem;

@@ -1,10 +1,13 @@
-//! The arm behind the search's trait: built from the tip inward, each joint sized when everything
-//! outboard of it is known (Eqs 7-12), deflection and inertia carried along (Eqs 13-16).
+//! The arm as a tree of designs.
+//!
+//! The arm is built from the tip to the base. Each joint is sized when everything outboard of it is known (Eqs 7-12).
+//! With every piece the wrench, the inertia and the displacement of the tip are updated (Eqs 13-16), so that a partial
+//! arm has all that its extensions need.
 
+use super::attributes::OptionAttributes;
 use super::design_space::{DesignSpace, SpacePiece};
 use super::effects::Layer;
-use super::figures::OptionFigures;
-use super::levels::{Keep, OutwardIn};
+use super::levels::OutwardIn;
 pub use super::slot::SizedJoint;
 pub(crate) use super::slot::Slot;
 use super::slot::{choice_slot, joint_slot, link_slot};
@@ -12,44 +15,49 @@ use super::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink
 use crate::arm::joint_law::JointLaw;
 use crate::catalog::Catalogs;
 use crate::mechanics::Wrench;
-use crate::mechanics::lanes::in_lanes;
 use crate::mechanics::lowest::{Step, frequency_hz, lowest_eigenvalue};
 use crate::pareto::objectives::Objectives;
-use crate::search::row::{Row, RowScratch};
-use crate::search::row_lanes::RowsWork;
 use crate::sizing::demand::{JointDemand, JointMotion};
 use nalgebra::{Matrix6, Vector3};
 
-/// The search's view of a design space: drives tabulated, poses compiled.
+/// A design space as the search sees it: the drives are tabulated and the poses are compiled.
+///
+/// `ArmProblem` implements [`OutwardIn`], the tree that a search walks. It can also give the [parts](ArmProblem::parts)
+/// and the [arm](ArmProblem::arm) of one design. [`DesignSpace`] has an example.
 pub struct ArmProblem<'c> {
     space: &'c DesignSpace,
+    /// What is added in each step, tip first.
     slots: Vec<Slot<'c>>,
-    /// Slot of each piece, base to tip; effects may have slots of their own beside them.
+    /// Slot of each piece, base to tip. Effects may have slots of their own in addition to these.
     piece_slots: Vec<usize>,
+    /// Slot of each level, tip first.
     level_slots: Vec<usize>,
     level_sizes: Vec<u32>,
+    /// The cases, in the order of the design space.
     stations: Vec<Station>,
+    /// Number of materials, each of which has a front of its own.
     materials: usize,
+    /// Stress at peak load over stress at rest.
     peak_factor: f64,
-    row: Option<Row>,
 }
 
-/// An arm from the tip to some level.
+/// A partial arm: everything from the tip to some level.
 #[derive(Debug, Clone, Default)]
 pub struct Partial {
     next_slot: usize,
     pub(crate) mass_kg: f64,
     pub(crate) cost_eur: f64,
     pub(crate) group: Group,
-    /// Largest stress over strength at peak load, where strengths are known.
+    /// Largest ratio of stress to strength at peak load, over the links of known strength.
     pub(crate) stress_ratio: f64,
-    /// Option per slot.
+    /// Option of each slot.
     pub(crate) options: Vec<u32>,
-    /// Drive or point mass per slot \[kg\].
+    /// Mass of the drive in each slot \[kg\].
     pub(crate) masses_kg: Vec<f64>,
     pub(crate) stations: Vec<StationState>,
 }
 
+/// The material of the links so far.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) enum Group {
     #[default]
@@ -58,20 +66,25 @@ pub(crate) enum Group {
     Mixed,
 }
 
-/// What everything outboard does in one case.
+/// What everything outboard does in one case. Wrench and inertia are taken about the world's origin.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct StationState {
     pub wrench: Wrench,
     pub inertia: Matrix6<f64>,
+    /// Displacement of the tip \[m\].
     pub tip_m: Vector3<f64>,
-    /// Dunkerley's sum per block \[s²\].
+    /// Dunkerley's sum of each block \[s²\]: the trace of flexibility times mass, which is the sum of `1/λ` over all modes.
+    /// Its reciprocal is a lower bound of the lowest eigenvalue.
     pub trace_s2: [f64; 2],
-    /// Tangent compliance per slot \[rad/(N m)\].
+    /// Tangent compliance of each slot \[rad/(N m)\].
     pub compliances: Vec<f64>,
 }
 
 impl<'c> ArmProblem<'c> {
-    /// Tabulates drives and compiles poses.
+    /// Tabulates the drives of the catalogs and compiles the cases.
+    ///
+    /// The work grows with the number of link options and of cases; a space may be reduced first
+    /// ([`DesignSpace::excerpt`]).
     pub fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Self {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let mut reaches = reaches_m(space, sizing);
@@ -88,14 +101,16 @@ impl<'c> ArmProblem<'c> {
                 Layer::Piece(SpacePiece::Link(link)) => link_slot(space, link),
                 Layer::Piece(SpacePiece::Choice(choice)) => choice_slot(space, choice),
                 Layer::Tilt(tilt) => Slot::Given { law: tilt.law(), mass_kg: 0.0 },
-                // it weighs, but is none of the links and drives whose mass counts
+                // the station has its weight and inertia; the mass of a design is that of its links and drives alone
                 Layer::Mass(_) => Slot::Offset { mass_kg: 0.0 },
             });
         }
         let level_slots: Vec<usize> = (0..slots.len()).filter(|&i| slots[i].is_level()).collect();
         let level_sizes = level_slots.iter().map(|&i| slots[i].options()).collect();
+        // by the paper's reading the acceleration a adds a/g times the static load; without gravity nothing is loaded,
+        // and a tiny divisor does no harm
         let a_over_g = space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE);
-        let mut problem = Self {
+        Self {
             space,
             level_slots,
             level_sizes,
@@ -104,10 +119,7 @@ impl<'c> ArmProblem<'c> {
             peak_factor: 1.0 + a_over_g,
             slots,
             piece_slots,
-            row: None,
-        };
-        problem.row = Row::new(&problem);
-        problem
+        }
     }
 
     /// The design space.
@@ -115,7 +127,7 @@ impl<'c> ArmProblem<'c> {
         self.space
     }
 
-    /// The table of a sized joint by its place among the pieces, base to tip.
+    /// The sized joint that is piece number `piece`, base to tip; `None` if the piece is a link or a given joint.
     pub fn sized_joint(&self, piece: usize) -> Option<&SizedJoint<'c>> {
         match &self.slots[self.piece_slots[piece]] {
             Slot::Sized(sized) => Some(sized),
@@ -123,12 +135,12 @@ impl<'c> ArmProblem<'c> {
         }
     }
 
-    /// Smallest strength over stress of an arm at peak load; `None` if no strength is known.
+    /// Smallest ratio of strength to stress of an arm at peak load; `None` if no strength is known.
     pub fn stress_safety_factor(&self, partial: &Partial) -> Option<f64> {
         (partial.stress_ratio > 0.0).then(|| 1.0 / partial.stress_ratio)
     }
 
-    /// Cost of the chosen links' material \[EUR\]; `None` if a cost is unknown.
+    /// Cost of the material of the chosen links \[EUR\]; `None` if a cost is unknown.
     pub fn material_cost_eur(&self, partial: &Partial) -> Option<f64> {
         let known = self.slots.iter().zip(&partial.options).all(|(slot, &option)| match slot {
             Slot::Link { options, open: true } => options[option as usize].cost_eur.is_some(),
@@ -137,7 +149,7 @@ impl<'c> ArmProblem<'c> {
         known.then_some(partial.cost_eur)
     }
 
-    /// Largest wall slenderness of a complete arm's chosen links.
+    /// Largest wall slenderness of the chosen links of a complete arm.
     pub fn wall_slenderness(&self, complete: &Partial) -> f64 {
         let chosen = self.space.pieces.iter().zip(self.options(complete));
         chosen
@@ -148,7 +160,7 @@ impl<'c> ArmProblem<'c> {
             .fold(0.0, f64::max)
     }
 
-    /// Mass of an arm so far \[kg\].
+    /// Mass of a partial arm \[kg\].
     pub fn mass_kg(&self, partial: &Partial) -> f64 {
         partial.mass_kg
     }
@@ -158,14 +170,16 @@ impl<'c> ArmProblem<'c> {
         self.piece_slots.iter().map(|&slot| complete.options[slot])
     }
 
-    /// What each sized joint of an arm is asked for, base to tip, as pairs of piece and demand; and the mass
-    /// outboard of each.
+    /// Demand on the joint in a slot, when the partial arm is everything outboard of it.
     pub fn demand_at(&self, partial: &Partial, slot: usize) -> JointDemand {
         self.demand(&partial.stations, slot, self.slots[slot].motion())
     }
 
-    /// Walks a complete choice (one option a level) and shows the arm outboard of every piece on the way,
-    /// tip first. Returns the arm, or the slot at which it fails.
+    /// Builds the design with these options, one for each level. Before each piece is added, `see` is called with its slot
+    /// and the arm outboard of it, tip first.
+    ///
+    /// # Errors
+    /// The slot at which the design fails, if it cannot hold.
     pub fn walk(&self, options: &[u32], mut see: impl FnMut(usize, &Partial)) -> Result<Partial, usize> {
         let mut partial = self.empty();
         let mut levels = options.iter();
@@ -187,7 +201,7 @@ impl<'c> ArmProblem<'c> {
         self.piece_slots.iter().position(|&s| s == slot).unwrap_or_default()
     }
 
-    /// The piece of the chain that stands in a slot; none in a slot of an effect.
+    /// The piece of the chain that stands in a slot; `None` if the slot belongs to an effect.
     pub(crate) fn piece_in_slot(&self, slot: usize) -> Option<&'c SpacePiece> {
         self.piece_slots.iter().position(|&s| s == slot).map(|piece| &self.space.pieces[piece])
     }
@@ -231,7 +245,7 @@ impl<'c> ArmProblem<'c> {
         }
     }
 
-    /// Adds pieces without a choice until the next level.
+    /// Adds the pieces without a choice up to the next level. Returns `false` if the arm cannot hold with one of them.
     fn advance(&self, partial: &mut Partial) -> bool {
         while partial.next_slot < self.slots.len() && !self.slots[partial.next_slot].is_level() {
             if !self.add(partial.next_slot, 0, partial) {
@@ -241,7 +255,7 @@ impl<'c> ArmProblem<'c> {
         true
     }
 
-    /// Adds one piece inboard; `false` if the arm cannot hold with it.
+    /// Adds one piece inboard. Returns `false` if the arm cannot hold with it.
     fn add(&self, slot: usize, option: u32, to: &mut Partial) -> bool {
         to.next_slot = slot + 1;
         to.options[slot] = option;
@@ -265,7 +279,9 @@ impl<'c> ArmProblem<'c> {
         self.add_joint(slot, &sized.laws[index], sized.table.mass_kg(index), to)
     }
 
-    /// What a joint is asked for: worst static torque and worst outboard inertia over the sizing cases.
+    /// Demand on a joint: the largest static torque (Eq 7) and the largest outboard inertia over the sizing cases, which
+    /// the motion turns into torques (Eqs 8-12). The two may come from different cases; their combination is on the safe
+    /// side.
     pub(crate) fn demand(
         &self,
         states: &[StationState],
@@ -285,6 +301,7 @@ impl<'c> ArmProblem<'c> {
         )
     }
 
+    /// Adds a joint to every case. It always holds: a sized drive was checked before, and a given one excludes nothing.
     fn add_joint(&self, slot: usize, law: &JointLaw, mass_kg: f64, to: &mut Partial) -> bool {
         to.mass_kg += mass_kg;
         to.masses_kg[slot] = mass_kg;
@@ -306,13 +323,13 @@ impl<'c> ArmProblem<'c> {
         true
     }
 
-    fn add_link(&self, slot: usize, option: u32, figures: &OptionFigures, to: &mut Partial) -> bool {
-        if figures.slender {
+    fn add_link(&self, slot: usize, option: u32, link: &OptionAttributes, to: &mut Partial) -> bool {
+        if link.slender {
             return false;
         }
-        to.mass_kg += figures.mass_kg;
-        to.cost_eur += figures.cost_eur.unwrap_or(0.0);
-        to.group = to.group.with(figures.material);
+        to.mass_kg += link.mass_kg;
+        to.cost_eur += link.cost_eur.unwrap_or(0.0);
+        to.group = to.group.with(link.material);
         if self.space.constraints.material_cost_max_eur.is_some_and(|max| to.cost_eur > max) {
             return false;
         }
@@ -320,8 +337,8 @@ impl<'c> ArmProblem<'c> {
             let StationSlot::Link { options, place } = &station.slots[slot] else { continue };
             let outboard = state.wrench;
             state.add_link(&options[option as usize]);
-            let Some(stress) = &figures.stress else { continue };
-            // where joints are sized the arm also accelerates; elsewhere it only stands
+            let Some(stress) = &link.stress else { continue };
+            // in a sizing case the arm accelerates; in the other cases it stands still
             let factor = if self.space.sizing_cases.contains(&case) { self.peak_factor } else { 1.0 };
             for (wrench, at_m) in [(&outboard, &place.end_m), (&state.wrench, &place.root_m)] {
                 to.stress_ratio = to.stress_ratio.max(stress.ratio(wrench, at_m, place) * factor);
@@ -330,7 +347,7 @@ impl<'c> ArmProblem<'c> {
         self.space.constraints.stress_safety_factor_min.is_none_or(|least| to.stress_ratio * least <= 1.0)
     }
 
-    /// The cases that objectives are taken over.
+    /// The judged cases, each with what the complete arm does in it.
     fn judged<'s>(
         &'s self,
         complete: &'s Partial,
@@ -339,7 +356,7 @@ impl<'c> ArmProblem<'c> {
     }
 }
 
-/// Objectives of a complete arm from what it does in each judged case.
+/// Objectives of a complete arm from its states in the judged cases.
 pub(crate) fn objectives_over<'s>(
     judged: impl Iterator<Item = (&'s Station, &'s StationState)> + Clone,
     complete: &Partial,
@@ -381,7 +398,8 @@ fn block_eigenvalue<const N: usize>(
     lowest_eigenvalue(&steps, trace_s2)
 }
 
-/// What the pass for the lowest mode sees of an arm's first `slots` slots, tip first.
+/// The steps of the pass for the lowest mode over the first `slots` slots of an arm, tip first. The payload comes first.
+/// Pieces that neither yield nor weigh are left out.
 pub(crate) fn block_steps<'a, const N: usize>(
     block: &'a Block<N>,
     arm: &'a Partial,
@@ -404,6 +422,8 @@ pub(crate) fn block_steps<'a, const N: usize>(
 }
 
 impl StationState {
+    /// Adds a joint with its drive. The drive's mass is inboard of the joint, so the joint's own torque and inertia are
+    /// taken before it is added.
     pub(crate) fn add_joint(&mut self, slot: usize, joint: &StationJoint, law: &JointLaw, mass_kg: f64) {
         let torque_nm = joint.twist.dot(&self.wrench);
         let compliance = law.tangent_compliance_rad_per_nm(torque_nm);
@@ -414,17 +434,20 @@ impl StationState {
         self.wrench += joint.weight_per_kg * mass_kg;
     }
 
+    /// Adds a rigid body.
     pub(crate) fn add_body(&mut self, inertia: &Matrix6<f64>, weight: &Wrench) {
         self.inertia += inertia;
         self.wrench += weight;
     }
 
+    /// Adds a tube: its end yields under the wrench of everything outboard and under its own weight.
     pub(crate) fn add_link(&mut self, link: &StationLink) {
-        let end = link.end.tr_mul(&self.wrench) + link.sag;
+        let end = link.end.tr_mul(&self.wrench) + link.own_weight_end;
         self.tip_m += link.tip * end;
-        let carried = self.inertia * link.end;
+        let momentum = self.inertia * link.end;
         for g in 0..6 {
-            let own: f64 = link.end.column(g).dot(&carried.column(g)) + link.end_inertia[g];
+            // the end coordinates have unit stiffness, so their diagonal inertias are their part of the trace
+            let own: f64 = link.end.column(g).dot(&momentum.column(g)) + link.end_inertia[g];
             self.trace_s2[link.block[g]] += own;
         }
         self.trace_s2.iter_mut().for_each(|t| *t += link.inner_trace_s2);
@@ -461,29 +484,10 @@ impl OutwardIn for ArmProblem<'_> {
     fn group(&self, complete: &Partial) -> Option<usize> {
         complete.group.material()
     }
-
-    type Scratch = RowScratch;
-
-    fn scratch(&self) -> RowScratch {
-        RowScratch::new(self)
-    }
-
-    fn finish<K: Keep>(&self, rows: &[(u128, Partial)], scratch: &mut RowScratch, keep: &mut K) {
-        let Some((&options, outer)) = self.level_sizes.split_last() else { return };
-        let Some(row) = &self.row else {
-            for (first, from) in rows {
-                for option in 0..options {
-                    self.finish_one(outer.len(), option, from, *first, &mut scratch.spare, keep);
-                }
-            }
-            return;
-        };
-        scratch.begin(self, row, rows.iter().map(|(_, from)| from));
-        in_lanes(RowsWork { problem: self, row, rows, options, scratch, keep });
-    }
 }
 
 impl Group {
+    /// The material, if all links so far are of one.
     pub(crate) fn material(self) -> Option<usize> {
         match self {
             Group::One(material) => Some(material),
@@ -491,6 +495,7 @@ impl Group {
         }
     }
 
+    /// The group with one more link. A given tube has no material here and changes nothing.
     pub(crate) fn with(self, material: Option<usize>) -> Self {
         match (self, material) {
             (group, None) => group,

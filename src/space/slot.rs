@@ -1,7 +1,7 @@
-//! The pieces of an arm as the search builds it: what is given, what is sized, what is chosen.
+//! Slots: the pieces of an arm as the search adds them, tip first. A piece is given, sized or chosen.
 
+use super::attributes::{OptionAttributes, attributes_of};
 use super::design_space::{DesignSpace, DriveChoice, LinkChoice, LinkOption, SpaceJoint};
-use super::figures::{OptionFigures, figures};
 use crate::arm::file::windup_of;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::{Link, LinkBody};
@@ -9,36 +9,43 @@ use crate::catalog::Catalogs;
 use crate::sizing::demand::{JointDemand, JointMotion};
 use crate::sizing::select::{DriveFilter, DriveTable};
 
-/// What the search adds in one step, tip first.
+/// What the search adds in one step.
 pub(crate) enum Slot<'c> {
+    /// A joint with a given drive, or a spring that an effect adds.
     Given { law: JointLaw, mass_kg: f64 },
+    /// A joint whose drive comes from the catalogs.
     Sized(SizedJoint<'c>),
-    Link { options: Vec<OptionFigures>, open: bool },
+    /// A tube. It is a choice of the search if it is `open`; a given tube has one option.
+    Link { options: Vec<OptionAttributes>, open: bool },
+    /// A rigid offset with its point mass.
     Offset { mass_kg: f64 },
 }
 
-/// A joint whose drive the catalogs give.
+/// A joint whose drive comes from the catalogs.
 pub struct SizedJoint<'c> {
-    /// Every legal drive, lightest first.
+    /// Every drive that the study allows, lightest first.
     pub table: DriveTable<'c>,
+    /// Joint law with each drive of the table, effects included.
     pub(crate) laws: Vec<JointLaw>,
+    /// Whether every drive that holds is an option of the search; if not, the lightest one that holds is taken.
     pub(crate) all_fits: bool,
 }
 
 impl SizedJoint<'_> {
-    /// Whether its drive is a choice of the search.
+    /// Whether the search chooses the drive.
     pub fn is_level(&self) -> bool {
         self.all_fits
     }
 
-    /// Its drives by kinds: those of a kind weigh and twist alike, so that no objective tells them apart, but each holds
-    /// torques of its own. Kinds in the order of their first drives, drives ascending.
+    /// The drives of the joint, sorted into kinds. The drives of a kind have equal mass and an equal torsion curve, so no
+    /// objective tells them apart; each has its own torque limits. Kinds are in the order of their first drives, and the
+    /// drives of a kind are in ascending order.
     pub(crate) fn kinds(&self) -> Vec<Vec<u32>> {
         let mut kinds: Vec<Vec<u32>> = Vec::new();
-        // equal masses stand side by side: only the kinds of the last mass may have one more
+        // the table is sorted by mass, so only kinds of the present mass can get another drive
         let mut first_of_mass = 0;
         for index in 0..self.table.len() {
-            let of_kind = |kind: &&mut Vec<u32>| self.are_alike(kind[0] as usize, index);
+            let of_kind = |kind: &&mut Vec<u32>| self.are_ties(kind[0] as usize, index);
             if index > 0 && self.table.mass_kg(index) != self.table.mass_kg(index - 1) {
                 first_of_mass = kinds.len();
             }
@@ -50,26 +57,28 @@ impl SizedJoint<'_> {
         kinds
     }
 
-    /// The drives of a drive's kind that hold a demand.
-    pub(crate) fn alike<'t>(
+    /// The ties of the drive `index` that hold a demand: the drives of its kind, itself among them.
+    pub(crate) fn ties_of<'t>(
         &'t self,
         index: usize,
         demand: &'t JointDemand,
     ) -> impl Iterator<Item = usize> + 't {
-        self.table.all_fits(demand).filter(move |other| self.are_alike(*other, index))
+        self.table.all_fits(demand).filter(move |other| self.are_ties(*other, index))
     }
 
-    /// Whether two drives weigh and twist alike.
-    pub(crate) fn are_alike(&self, a: usize, b: usize) -> bool {
+    /// Whether two drives are ties: equal in mass and in torsion curve.
+    pub(crate) fn are_ties(&self, a: usize, b: usize) -> bool {
         self.table.mass_kg(a) == self.table.mass_kg(b) && self.laws[a] == self.laws[b]
     }
 }
 
 impl Slot<'_> {
+    /// Whether the search chooses here.
     pub fn is_level(&self) -> bool {
         matches!(self, Slot::Link { open: true, .. } | Slot::Sized(SizedJoint { all_fits: true, .. }))
     }
 
+    /// Number of options.
     pub fn options(&self) -> u32 {
         match self {
             Slot::Link { options, .. } => options.len() as u32,
@@ -78,7 +87,7 @@ impl Slot<'_> {
         }
     }
 
-    /// Mass of a piece that is not chosen \[kg\].
+    /// Mass of a given joint or offset \[kg\]; `None` for joints that are sized and for tubes.
     pub fn fixed_kg(&self) -> Option<f64> {
         match self {
             Slot::Given { mass_kg, .. } | Slot::Offset { mass_kg } => Some(*mass_kg),
@@ -86,7 +95,7 @@ impl Slot<'_> {
         }
     }
 
-    /// How the joint twists with one of its drives.
+    /// Joint law with one of the drives; `None` if the piece is no joint.
     pub fn law(&self, option: usize) -> Option<&JointLaw> {
         match self {
             Slot::Given { law, .. } => Some(law),
@@ -95,6 +104,7 @@ impl Slot<'_> {
         }
     }
 
+    /// The motion that a sized joint must do.
     pub fn motion(&self) -> Option<&JointMotion> {
         match self {
             Slot::Sized(sized) => Some(sized.table.motion()),
@@ -103,6 +113,7 @@ impl Slot<'_> {
     }
 }
 
+/// The slot of a joint whose tip is at most `reach_m` away from its axis.
 pub(crate) fn joint_slot<'c>(
     space: &DesignSpace,
     joint: &SpaceJoint,
@@ -131,27 +142,32 @@ pub(crate) fn joint_slot<'c>(
     Slot::Sized(SizedJoint { table, laws, all_fits })
 }
 
-/// Leaves out gears without a complete torsion curve: what they would deflect cannot be said.
+/// Leaves out gears without a complete torsion curve, because their deflection cannot be computed.
 fn with_curve(filter: &DriveFilter, catalogs: &Catalogs) -> DriveFilter {
     let known = catalogs.gears.iter().filter(|g| filter.allows_gear(g) && windup_of(g).is_some());
     DriveFilter { gear_ids: Some(known.map(|g| g.id.clone()).collect()), ..filter.clone() }
 }
 
+/// The slot of a link that the study gives.
 pub(crate) fn link_slot<'c>(space: &DesignSpace, link: &Link) -> Slot<'c> {
     match &link.body {
         LinkBody::Offset { mass_kg } => Slot::Offset { mass_kg: *mass_kg },
         LinkBody::Tube { material, section, .. } => {
             let option = LinkOption::given(*material, *section);
-            let mut figures = figures(space, &option, link.vector_m.norm());
-            figures.material = None;
-            Slot::Link { options: vec![figures], open: false }
+            let mut attributes = attributes_of(space, &option, link.vector_m.norm());
+            attributes.material = None;
+            Slot::Link { options: vec![attributes], open: false }
         }
     }
 }
 
+/// The slot of a link whose material and section are chosen.
 pub(crate) fn choice_slot<'c>(space: &DesignSpace, choice: &LinkChoice) -> Slot<'c> {
     let length_m = choice.vector_m.norm();
-    Slot::Link { options: choice.options.iter().map(|o| figures(space, o, length_m)).collect(), open: true }
+    Slot::Link {
+        options: choice.options.iter().map(|o| attributes_of(space, o, length_m)).collect(),
+        open: true,
+    }
 }
 
 impl DesignSpace {

@@ -1,12 +1,16 @@
-//! One case of a study, compiled: everything about a pose that does not depend on the design.
+//! Stations: the cases of a study, compiled. A station has everything about a pose that does not depend on the design.
 //!
-//! Where every joint axis, link and load of a pose is symmetric about the x-z plane the motions within
-//! the plane (x, z, rotation about y) and across it (y, rotations about x and z) do not couple, and the
-//! lowest mode is found in two blocks of three motions instead of one of six.
+//! Twists and wrenches are taken about the world's origin, so that what an option does can be tabulated once and then
+//! added for every design that has it.
+//!
+//! A pose is *planar* if every joint axis, link and load in it is symmetric about the x-z plane. Then the motions within
+//! the plane (x, z, rotation about y) and those across it (y, rotations about x and z) do not couple. The lowest mode is
+//! then found in two blocks of three motions instead of one block of six, which is less work.
 
 use super::design_space::{Case, DesignSpace, SpacePiece};
 use super::effects::Layer;
-use crate::arm::structure::{LinkPiece, Structure, Water};
+use crate::arm::load::Water;
+use crate::arm::structure::{LinkPiece, Structure};
 use crate::arm::{Link, LinkModel};
 use crate::mechanics::beam::{PreparedBeam, section_frame};
 use crate::mechanics::condensed::{CondensedLink, PlacedLink};
@@ -17,15 +21,15 @@ use crate::mechanics::{
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Rotation3, SMatrix, SVector, Vector3, Vector6};
 use rayon::prelude::*;
 
-/// A pose with its load, compiled for a list of slots from tip to base.
+/// A pose with its load, compiled for the slots of an arm.
 pub(crate) struct Station {
-    /// Each piece of the chain, tip first.
+    /// Each slot in this pose, tip first.
     pub slots: Vec<StationSlot>,
-    /// The same for the lowest mode.
+    /// The same slots as the pass for the lowest mode needs them.
     pub modal: Modal,
-    /// Payload and tip force as a wrench.
+    /// Payload and tip force, as a wrench.
     pub start_wrench: Wrench,
-    /// Payload's inertia.
+    /// Inertia of the payload.
     pub start_inertia: Matrix6<f64>,
 }
 
@@ -33,21 +37,22 @@ pub(crate) struct Station {
 pub(crate) enum StationSlot {
     /// A joint.
     Joint(StationJoint),
-    /// A rigid body: a point mass, or a rigid offset with what is along it.
+    /// A rigid body: a point mass, or a rigid offset with the harness along it.
     Body { inertia: Matrix6<f64>, weight: Wrench },
-    /// A tube: one entry per option.
+    /// A tube, with one entry for each option.
     Link { options: Vec<StationLink>, place: Place },
 }
 
 /// A joint in a pose.
 pub(crate) struct StationJoint {
+    /// Motion of everything outboard per radian of the joint's rotation.
     pub twist: Twist,
-    /// Displacement of the tip per rad.
+    /// Displacement of the tip per radian.
     pub tip_m_per_rad: Vector3<f64>,
     /// Inertia and weight of one kilogram at the joint.
     pub inertia_per_kg: Matrix6<f64>,
     pub weight_per_kg: Wrench,
-    /// Which block the axis lies in.
+    /// The block in which the joint moves the arm: 0 within the plane, 1 across it.
     pub block: usize,
 }
 
@@ -55,11 +60,12 @@ pub(crate) struct StationJoint {
 pub(crate) struct Place {
     pub root_m: Vector3<f64>,
     pub end_m: Vector3<f64>,
+    /// Section frame in the world: columns x (along the link), y and z.
     pub frame: Matrix3<f64>,
 }
 
 impl Place {
-    /// Axial force, torsion and both bending moments of a wrench at a point of the link.
+    /// Axial force \[N\], torsion and both bending moments \[N m\] of a wrench at a point of the link.
     pub fn local(&self, wrench: &Wrench, at_m: &Vector3<f64>) -> [f64; 4] {
         let force = self.frame.tr_mul(&linear(wrench));
         let moment = self.frame.tr_mul(&(angular(wrench) - at_m.cross(&linear(wrench))));
@@ -68,73 +74,82 @@ impl Place {
 }
 
 /// One option of a link in a pose.
+///
+/// The end coordinates are the six motions of the condensed link's end, scaled to unit stiffness
+/// ([`condensed`](crate::mechanics::condensed)).
 pub(crate) struct StationLink {
+    /// Inertia of the link as a rigid body.
     pub inertia: Matrix6<f64>,
     pub weight: Wrench,
     /// Twist of everything outboard per end coordinate.
     pub end: Matrix6<f64>,
     /// End coordinates under the link's own weight.
-    pub sag: Vector6<f64>,
+    pub own_weight_end: Vector6<f64>,
     /// Displacement of the tip per end coordinate.
     pub tip: Matrix3x6<f64>,
-    /// Own inertia of each end coordinate.
+    /// Inertia of the link itself in each end coordinate.
     pub end_inertia: Vector6<f64>,
-    /// Which block each end coordinate lies in.
+    /// Block of each end coordinate.
     pub block: [usize; 6],
-    /// Sum of `1/λ` over the inner modes.
+    /// Sum of `1/λ` over the inner modes \[s²\].
     pub inner_trace_s2: f64,
 }
 
 impl StationLink {
-    /// Displacement of the tip by the wrench on the link's end.
+    /// Displacement of the tip per unit of the wrench on the link's end.
     pub fn flexibility(&self) -> Matrix3x6<f64> {
+        // the end coordinates have unit stiffness: a wrench w deflects them by endᵀ w
         self.tip * self.end.transpose()
     }
 
     /// Displacement of the tip by the link's own weight \[m\].
-    pub fn sag_m(&self) -> Vector3<f64> {
-        self.tip * self.sag
+    pub fn own_weight_deflection_m(&self) -> Vector3<f64> {
+        self.tip * self.own_weight_end
     }
 }
 
-/// The pieces as the pass for the lowest mode sees them.
+/// The slots as the pass for the lowest mode sees them: in two blocks if the pose is planar, else in one.
 pub(crate) enum Modal {
     Planar(Box<[Block<3>; 2]>),
     Spatial(Box<Block<6>>),
 }
 
-/// The pieces restricted to `N` of the six motions.
+/// The slots restricted to `N` of the six motions.
 pub(crate) struct Block<const N: usize> {
+    /// Inertia of the payload.
     pub payload: SMatrix<f64, N, N>,
     pub slots: Vec<BlockSlot<N>>,
 }
 
-/// One piece restricted to `N` motions.
+/// One slot restricted to `N` motions.
 pub(crate) enum BlockSlot<const N: usize> {
     Joint { twist: SVector<f64, N>, inertia_per_kg: SMatrix<f64, N, N> },
     Body(SMatrix<f64, N, N>),
     Links(Vec<BlockLink<N>>),
 }
 
-/// Motions within the x-z plane and across it.
+/// Motions within the x-z plane (x, z, rotation about y) and across it (y, rotations about x and z).
 const PLANES: [[usize; 3]; 2] = [[0, 2, 4], [1, 3, 5]];
+/// All six motions: three displacements and three rotations.
 const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
 
-/// A tube or a harness, whatever the pose.
+/// A tube or a harness, independent of the pose.
 struct Tube {
     condensed: CondensedLink,
     length_m: f64,
+    /// Net weight: buoyancy is subtracted.
     weight_n_per_m: f64,
 }
 
-/// The tubes of each layer; cases in the same water share them.
+/// The tubes of each layer. Condensing a tube is the costly part and does not depend on the pose, so all cases with the
+/// same surroundings share them.
 struct Tubes {
     structure: Structure,
     layers: Vec<Vec<Tube>>,
 }
 
 impl Tube {
-    /// `None` for a massless rigid offset or one without length.
+    /// Condenses a link; `None` for a rigid offset without mass along it, or without length.
     fn new(link: &LinkPiece, structure: &Structure, model: LinkModel) -> Option<Self> {
         let beam = PreparedBeam::new(link, structure, model)?;
         let condensed = CondensedLink::new(&beam);
@@ -143,6 +158,7 @@ impl Tube {
 }
 
 impl Tubes {
+    /// The tubes of a space in the surroundings that `structure` gives.
     fn new(space: &DesignSpace, structure: Structure) -> Self {
         let tube = |link: &Link| Tube::new(&space.link_piece(link), &structure, space.links);
         let of = |layer| match layer {
@@ -174,6 +190,7 @@ impl Station {
         stations
     }
 
+    /// Compiles one case.
     fn new(space: &DesignSpace, case: &Case, Tubes { structure, layers: tubes }: &Tubes) -> Self {
         let walk = Walk::new(space, case);
         let (start_wrench, start_inertia) = payload_in(space, case, structure.water, &walk);
@@ -196,7 +213,9 @@ impl Station {
     }
 }
 
-/// Payload and tip force as a wrench, and the payload's inertia, both about the world origin.
+/// Payload and tip force as a wrench, and the inertia of the payload, both about the world's origin.
+///
+/// Water takes buoyancy from the weight of the payload. Its inertia stays, and no added mass is counted.
 pub(crate) fn payload_in(
     space: &DesignSpace,
     case: &Case,
@@ -214,18 +233,21 @@ pub(crate) fn payload_in(
     (wrench, body_inertia(payload.mass_kg, &cg_m, &inertia_kgm2))
 }
 
+/// The wrench of a weight \[N\] at a point.
 pub(crate) fn weight_wrench(weight_n: f64, at_m: &Vector3<f64>) -> Wrench {
     force_wrench(&Vector3::new(0.0, 0.0, -weight_n), at_m)
 }
 
 /// Where each piece is in a pose.
 pub(crate) struct Walk {
+    /// Start and attitude of each piece, base to tip. A joint has the attitude before its own rotation.
     pub(crate) places: Vec<(Vector3<f64>, Rotation3<f64>)>,
     pub(crate) tip_m: Vector3<f64>,
     pub(crate) tip_rotation: Rotation3<f64>,
 }
 
 impl Walk {
+    /// Forward kinematics of a case, base to tip.
     pub(crate) fn new(space: &DesignSpace, case: &Case) -> Self {
         let mut angles = case.pose_deg.iter().map(|a| a.to_radians());
         let (mut at_m, mut rotation) = (Vector3::zeros(), Rotation3::identity());
@@ -244,7 +266,7 @@ impl Walk {
     }
 }
 
-/// Largest distance of the tip from each joint's axis over some cases \[m\], base to tip.
+/// Reach of each joint \[m\], base to tip: the largest distance of the tip from its axis over some cases.
 pub(crate) fn reaches_m<'a>(space: &DesignSpace, cases: impl Iterator<Item = &'a Case>) -> Vec<f64> {
     let joints: Vec<(usize, Vector3<f64>)> = space
         .pieces
@@ -273,7 +295,7 @@ enum Built {
     Link { options: Vec<(PlacedLink, StationLink)>, place: Place },
 }
 
-/// Builds what stands at one place of a pose.
+/// Builds the slot at one place of a pose.
 struct Builder<'a> {
     space: &'a DesignSpace,
     structure: &'a Structure,
@@ -294,6 +316,7 @@ impl Builder<'_> {
         }
     }
 
+    /// A joint or a spring that turns about an axis of the world through this place.
     fn hinge(&self, axis: &Vector3<f64>) -> Built {
         let (at_m, _) = self.place;
         let twist = rotation_twist(axis, at_m);
@@ -302,10 +325,12 @@ impl Builder<'_> {
             tip_m_per_rad: displacement_at(&twist, self.tip_m),
             inertia_per_kg: body_inertia(1.0, at_m, &Matrix3::zeros()),
             weight_per_kg: weight_wrench(self.structure.gravity_m_s2, at_m),
+            // rounding leaves traces of the other plane in an axis that was turned
             block: usize::from(PLANES[1].iter().any(|&i| twist[i].abs() > 1e-12 * twist.amax())),
         })
     }
 
+    /// A point mass.
     fn body(&self, mass_kg: f64, centre_m: &Vector3<f64>) -> Built {
         Built::Body {
             inertia: body_inertia(mass_kg, centre_m, &Matrix3::zeros()),
@@ -313,7 +338,7 @@ impl Builder<'_> {
         }
     }
 
-    /// A tube, or a rigid offset with its point mass and what a harness along it weighs.
+    /// A given tube, or a rigid offset with its point mass and the harness along it.
     fn link(&self, link: &Link) -> Built {
         let (at_m, rotation) = self.place;
         let piece = self.space.link_piece(link);
@@ -323,6 +348,7 @@ impl Builder<'_> {
         }
         match (point, self.tube(&link.vector_m)) {
             (_, tube) if piece.beam.is_some() => tube,
+            // a harness on a rigid offset has mass and no compliance, so both together are one rigid body
             (Built::Body { inertia, weight }, Built::Link { options, .. }) => {
                 let along = &options[0].1;
                 Built::Body { inertia: inertia + along.inertia, weight: weight + along.weight }
@@ -331,6 +357,7 @@ impl Builder<'_> {
         }
     }
 
+    /// A tube with all its options.
     fn tube(&self, vector_m: &Vector3<f64>) -> Built {
         let (root_m, rotation) = *self.place;
         let vector = rotation * vector_m;
@@ -342,6 +369,7 @@ impl Builder<'_> {
     }
 }
 
+/// Puts one option of a link into the pose.
 fn place_option(
     tube: &Tube,
     place: &Place,
@@ -355,7 +383,7 @@ fn place_option(
         inertia: placed.inertia[0].fixed_view::<6, 6>(0, 0).into_owned(),
         weight: weight_wrench(tube.weight_n_per_m * tube.length_m, &(place.root_m + vector / 2.0)),
         end: placed.end,
-        sag: placed.sag_per_weight * tube.weight_n_per_m,
+        own_weight_end: placed.end_per_weight * tube.weight_n_per_m,
         tip: Matrix3x6::from_columns(&tips),
         end_inertia: placed.inertia[0].diagonal().fixed_rows::<6>(6).into_owned(),
         block: ends_by_block(&placed).unwrap_or_default(),
@@ -365,6 +393,7 @@ fn place_option(
 }
 
 impl Built {
+    /// The slot, with every block number 0 if the pose was not `split` into two blocks.
     fn into_slot(self, split: bool) -> StationSlot {
         match self {
             Built::Joint(mut joint) => {
@@ -386,27 +415,28 @@ impl Built {
     }
 }
 
-/// Whether motions within the x-z plane and across it do not couple anywhere.
+/// Whether the motions within the x-z plane and those across it are coupled nowhere: by no inertia, no joint axis and no
+/// link.
 fn planar(built: &[Built], payload: &Matrix6<f64>) -> bool {
-    let sound = |m: &Matrix6<f64>| {
+    let uncoupled = |m: &Matrix6<f64>| {
         let largest = m.amax();
         PLANES[0].iter().all(|&i| PLANES[1].iter().all(|&j| m[(i, j)].abs() <= 1e-12 * largest))
     };
-    sound(payload)
+    uncoupled(payload)
         && built.iter().all(|b| match b {
             Built::Joint(joint) => {
                 let across = PLANES[1].iter().any(|&i| joint.twist[i].abs() > 1e-12);
                 let within = PLANES[0].iter().any(|&i| joint.twist[i].abs() > 1e-12);
-                !(across && within) && sound(&joint.inertia_per_kg)
+                !(across && within) && uncoupled(&joint.inertia_per_kg)
             }
-            Built::Body { inertia, .. } => sound(inertia),
+            Built::Body { inertia, .. } => uncoupled(inertia),
             Built::Link { options, .. } => options
                 .iter()
-                .all(|(placed, option)| sound(&option.inertia) && ends_by_block(placed).is_some()),
+                .all(|(placed, option)| uncoupled(&option.inertia) && ends_by_block(placed).is_some()),
         })
 }
 
-/// The block of each end coordinate if each lies in one and they are three and three.
+/// The block of each end coordinate; `None` unless each coordinate lies in one block and each block gets three.
 fn ends_by_block(placed: &PlacedLink) -> Option<[usize; 6]> {
     let mut blocks = [2; 6];
     for (g, column) in placed.end.column_iter().enumerate() {
@@ -419,6 +449,8 @@ fn ends_by_block(placed: &PlacedLink) -> Option<[usize; 6]> {
             (false, false) => {}
         }
     }
+    // a coordinate that moves nothing (a direction without compliance) can stand in either block: it fills up the one
+    // that has fewer than three
     for plane in 0..2 {
         while blocks.iter().filter(|&&b| b == plane).count() < 3 {
             *blocks.iter_mut().find(|b| **b == 2)? = plane;
@@ -427,6 +459,7 @@ fn ends_by_block(placed: &PlacedLink) -> Option<[usize; 6]> {
     (blocks.iter().filter(|&&b| b == 0).count() == 3).then_some(blocks)
 }
 
+/// The slots restricted to the given motions.
 fn block<const N: usize>(built: &[Built], payload: &Matrix6<f64>, motions: [usize; N]) -> Block<N> {
     let select = |m: &Matrix6<f64>| SMatrix::<f64, N, N>::from_fn(|i, j| m[(motions[i], motions[j])]);
     let slots = built
@@ -445,6 +478,7 @@ fn block<const N: usize>(built: &[Built], payload: &Matrix6<f64>, motions: [usiz
     Block { payload: select(payload), slots }
 }
 
+/// One option of a link restricted to the given motions, with the end coordinates that belong to them.
 fn block_link<const N: usize>(placed: &PlacedLink, motions: [usize; N]) -> BlockLink<N> {
     let mut ends = [0; N];
     if N == 6 {

@@ -1,9 +1,9 @@
 //! Lower bounds on the mass of a design that is as good as a pick.
 
 use crate::catalog::Catalogs;
-use crate::exact::reach::Reach;
+use crate::exact::domain_reduction::DomainReduction;
 use crate::pareto::objectives::Objectives;
-use crate::relax::{MassBound, Relaxation};
+use crate::relax::relaxation::{MassBound, Relaxation};
 use crate::space::design_space::DesignSpace;
 use crate::space::problem::ArmProblem;
 
@@ -16,7 +16,7 @@ pub(super) enum MassBounds<'a> {
     /// From the options of the whole space.
     Tabulated(&'a ArmProblem<'a>, Relaxation<'a>),
     /// From the options that a design as good as the pick may have.
-    InReach { space: &'a DesignSpace, catalogs: &'a Catalogs, reach: Option<Reach<'a>> },
+    InReach { space: &'a DesignSpace, catalogs: &'a Catalogs, reach: Option<DomainReduction<'a>> },
 }
 
 impl MassBounds<'_> {

@@ -13,10 +13,10 @@ use crate::arm::load::LoadCase;
 use crate::arm::structure::{Piece, Structure};
 use crate::arm::{Arm, Element};
 use crate::catalog::Catalogs;
-use crate::exact::reach::Reach;
+use crate::exact::domain_reduction::DomainReduction;
 use crate::mechanics::chain::Chain;
 use crate::pareto::objectives::Objectives;
-use crate::relax::Relaxation;
+use crate::relax::relaxation::Relaxation;
 use crate::report::budget::{BudgetRow, Gain, NextPart, PickBound, PickBudget};
 use crate::report::front_table::FrontTable;
 use crate::report::picks::{Pick, designs, picks};
@@ -43,7 +43,7 @@ pub fn budgets(
     let tabulated = (is_excerpt && MassBounds::can_tabulate(whole)).then(|| ArmProblem::new(whole, catalogs));
     let bounds = match tabulated.as_ref().or((!is_excerpt).then_some(problem)) {
         Some(all) => MassBounds::Tabulated(all, Relaxation::new(all)),
-        None => MassBounds::InReach { space: whole, catalogs, reach: Reach::new(whole, catalogs) },
+        None => MassBounds::InReach { space: whole, catalogs, reach: DomainReduction::new(whole, catalogs) },
     };
     let picks = picks(&designs(table)).into_par_iter();
     picks.filter_map(|pick| pick_budget(problem, whole, &bounds, pick)).collect()

@@ -2,6 +2,7 @@
 
 use super::definition::Study;
 use super::outcome::{Front, judge};
+use super::question::{number_of_picks, picks, question, words};
 use super::table::front_table;
 use super::ties::ties;
 use crate::catalog::Catalogs;
@@ -11,11 +12,13 @@ use crate::pareto::objectives::Objectives;
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
 use crate::search::sweep::Candidate;
-use crate::space::design::evaluate;
-use crate::space::design::{Evaluated, id_of, number, number_of, options};
+use crate::space::design::{id_of, number, number_of, options};
 use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
-use crate::verify;
+use crate::verify::judge::{Judge, Judged, Pick};
+use crate::verify::missing::conditions;
+use crate::verify::settings::Settings;
+use rayon::prelude::*;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -93,18 +96,22 @@ pub fn check_front(
     let front = judge(&problem, &candidates);
     compare_rows(&front_table(&problem, catalogs, &front), table, &front, &problem, &mut faults);
     broken_limits(study, &front, &problem, &mut faults);
+    let question = question(&study.space);
+    let judge = Judge::new(&question, catalogs);
+    let rows: Vec<Row> = front
+        .iter()
+        .filter_map(|design| Some(Row { design, picks: picks(&problem, catalogs, design.design.number)? }))
+        .collect();
+    judge_rows(&judge, &rows, &problem, &mut faults);
     if !ties_listed {
         list(&mut faults, ties(&problem, &front).faults_of(ties_csv), "ties are wrong");
     }
     let completeness = match gap {
         Some(gap) => {
             let front = Claimed { front: &front, gap: *gap, ties_listed: *ties_listed };
-            let look = look_for_missing(study, catalogs, &front, stop, deadline);
-            list(
-                &mut faults,
-                missing(study, catalogs, &front, &problem, &look.numbers),
-                "designs are missing",
-            );
+            let look = look_for_missing(study, &judge, catalogs, &front, (stop, deadline));
+            let missing = missing(study, &judge, catalogs, &front, (&problem, &rows), &look.designs);
+            list(&mut faults, missing, "designs are missing");
             if *ties_listed && look.lacks_ties {
                 faults.push("it says that all ties are rows of it, and they are more than its rows".into());
             }
@@ -113,6 +120,12 @@ pub fn check_front(
         None => Err("the run was stopped early and claims no more than its rows".into()),
     };
     FrontCheck { faults, rows: table.rows.len(), completeness }
+}
+
+/// A row of a front, and its parts as the verifier names them.
+struct Row<'f> {
+    design: &'f super::outcome::Judged,
+    picks: Vec<Pick>,
 }
 
 /// A front with its claimed gap.
@@ -132,8 +145,8 @@ impl Claimed<'_> {
 
 /// The result of looking for missing designs.
 struct Look {
-    /// Numbers of designs that may be missing.
-    numbers: Vec<u128>,
+    /// Designs that may be missing.
+    designs: Vec<Judged>,
     /// Whether it came to its end.
     completeness: Result<Completeness, String>,
     /// Whether ties were left out because they are too many.
@@ -143,16 +156,17 @@ struct Look {
 /// Looks for missing designs, with the independent bounds of `verify` if they can handle the study.
 fn look_for_missing(
     study: &Study,
+    judge: &Judge,
     catalogs: &Catalogs,
     front: &Claimed,
-    stop: &AtomicBool,
-    deadline: Option<Instant>,
+    until: (&AtomicBool, Option<Instant>),
 ) -> Look {
-    let unseen = verify::conditions(&study.space).err();
-    let (numbers, boxes, open, lacks_ties) = match unseen {
+    let (stop, deadline) = until;
+    let unseen = conditions(judge.question()).err();
+    let (designs, boxes, open, lacks_ties) = match unseen {
         None => {
-            let by = verify::By { apart: APART * front.gap, ..Default::default() };
-            let looked = verify::missing(&study.space, catalogs, &front.objectives(), by, stop, deadline);
+            let settings = Settings { apart: APART * front.gap, ..Default::default() };
+            let looked = judge.missing(&front.objectives(), settings, stop, deadline);
             let lacks_ties = front.gap == 0.0 && !looked.ties_listed;
             (looked.candidates, looked.boxes, looked.open, lacks_ties)
         }
@@ -160,15 +174,39 @@ fn look_for_missing(
             let rows: Vec<Objectives> = front.front.iter().map(|d| d.design.objectives).collect();
             let search = Exact::new(&study.space, catalogs, stop, deadline).to_gap(front.gap);
             let found = search.run(&rows);
-            let numbers = found.front.iter().map(|c| c.number).collect();
-            (numbers, found.boxes, found.boxes_open, front.gap == 0.0 && !found.ties_listed)
+            let numbers: Vec<u128> = found.front.iter().map(|c| c.number).collect();
+            let designs = judged(study, judge, catalogs, &numbers);
+            (designs, found.boxes, found.boxes_open, front.gap == 0.0 && !found.ties_listed)
         }
     };
     let completeness = match open {
         0 => Ok(Completeness { boxes, gap: front.gap, by_exact_search: unseen }),
         open => Err(format!("stopped with {open} boxes or regions unopened")),
     };
-    Look { numbers, completeness, lacks_ties }
+    Look { designs, completeness, lacks_ties }
+}
+
+/// Numbered designs of the whole study by the verifier's judge.
+fn judged(study: &Study, judge: &Judge, catalogs: &Catalogs, numbers: &[u128]) -> Vec<Judged> {
+    let Some(space) = study.space.excerpt(catalogs, numbers) else { return Vec::new() };
+    let problem = ArmProblem::new(&space, catalogs);
+    let design = |&whole: &u128| judge.judge(&picks(&problem, catalogs, candidate(&problem, whole)?.number)?);
+    numbers.iter().filter_map(design).collect()
+}
+
+/// Every row by the verifier's own drives and thresholds: does it hold, and has it the objectives that it should?
+fn judge_rows(judge: &Judge, rows: &[Row], problem: &ArmProblem, faults: &mut Vec<String>) {
+    let fault = |row: &Row| {
+        let id = id_of(problem.whole_number(row.design.design.number));
+        let Some(Judged { objectives, .. }) = judge.judge(&row.picks) else {
+            return Some(format!("design {id}: by the check's own drives and thresholds it does not hold"));
+        };
+        let told = row.design.design.objectives.minimized();
+        let differs = told.iter().zip(objectives.minimized()).any(|(a, b)| (a - b).abs() > AGREE * b.abs());
+        differs.then(|| format!("design {id}: the check's own arm gives {objectives:?}"))
+    };
+    let found: Vec<String> = rows.par_iter().filter_map(fault).collect();
+    list(faults, found, "rows do not hold, or have other objectives");
 }
 
 fn candidate(problem: &ArmProblem, whole: u128) -> Option<Candidate> {
@@ -230,43 +268,48 @@ fn broken_limits(study: &Study, front: &Front, problem: &ArmProblem, faults: &mu
 /// rows.
 fn missing(
     study: &Study,
+    judge: &Judge,
     catalogs: &Catalogs,
     claimed: &Claimed,
-    problem: &ArmProblem,
-    found: &[u128],
+    (problem, rows): (&ArmProblem, &[Row]),
+    found: &[Judged],
 ) -> Vec<String> {
-    let Claimed { front, gap, ties_listed } = claimed;
-    let listed: BTreeSet<u128> = front.iter().map(|d| problem.whole_number(d.design.number)).collect();
-    let others: Vec<u128> = found.iter().copied().filter(|n| !listed.contains(n)).collect();
-    let Some(space) = study.space.excerpt(catalogs, &others) else { return Vec::new() };
-    let beyond = ArmProblem::new(&space, catalogs);
-    let judged: Vec<(u128, Evaluated)> = others
-        .iter()
-        .filter_map(|&whole| Some((whole, evaluate(&beyond, candidate(&beyond, whole)?.number)?)))
-        .collect();
+    let listed: HashSet<&[Pick]> = rows.iter().map(|row| &row.picks[..]).collect();
+    let others: Vec<&Judged> = found.iter().filter(|d| !listed.contains(&d.picks[..])).collect();
     let own = claimed.objectives().into_iter().map(|o| o.minimized());
-    let points: Vec<[f64; 3]> = own.chain(judged.iter().map(|(_, d)| d.objectives.minimized())).collect();
-    let sizes = study.space.level_sizes(catalogs);
-    let rows: Vec<Vec<u32>> = listed.iter().filter_map(|&whole| options(&sizes, whole)).collect();
+    let points: Vec<[f64; 3]> = own.chain(others.iter().map(|d| d.objectives.minimized())).collect();
     // a tie that is not listed stands behind a row
-    let stands_behind_a_row = |whole: u128| {
-        !ties_listed
-            && options(&sizes, whole).is_some_and(|own| rows.iter().any(|row| beyond.are_alike(&own, row)))
+    let behind: HashSet<Vec<Pick>> = match claimed.ties_listed {
+        true => HashSet::new(),
+        false => rows.iter().map(|row| judge.first_tie(&row.picks)).collect(),
     };
-    let mut ids: Vec<u128> = nondominated(&points)
+    let sizes = study.space.level_sizes(catalogs);
+    let name = |design: &Judged| {
+        let number = number_of_picks(problem, catalogs, &sizes, &design.picks);
+        let words = || words(&study.space, catalogs, &design.picks);
+        (number.is_none(), number, number.map_or_else(words, id_of))
+    };
+    let mut names: Vec<(bool, Option<u128>, String)> = nondominated(&points)
         .expect("objectives are numbers")
         .into_iter()
         .flatten()
-        .filter_map(|i| i.checked_sub(front.len()))
-        .map(|i| judged[i].0)
-        .filter(|&whole| !stands_behind_a_row(whole))
+        .filter_map(|i| i.checked_sub(claimed.front.len()))
+        .map(|i| others[i])
+        .filter(|design| behind.is_empty() || !behind.contains(&judge.first_tie(&design.picks)))
+        .map(name)
         .collect();
-    ids.sort_unstable();
-    let what = match *gap > 0.0 {
-        true => format!("is not there, and no row comes within {} % of it", significant(1e2 * gap, 3)),
+    names.sort_unstable();
+    let what = match claimed.gap > 0.0 {
+        true => {
+            format!("is not there, and no row comes within {} % of it", significant(1e2 * claimed.gap, 3))
+        }
         false => "belongs on the front and is not there".into(),
     };
-    ids.into_iter().map(|n| format!("design {} {what}", id_of(n))).collect()
+    let sentence = |(is_unknown, _, name): (bool, Option<u128>, String)| match is_unknown {
+        true => format!("a design that the search's tables lack ({name}) {what}"),
+        false => format!("design {name} {what}"),
+    };
+    names.into_iter().map(sentence).collect()
 }
 
 /// Lists the first few of many faults, and their number.

@@ -4,11 +4,12 @@ use super::definition::Study;
 use super::outcome::StudyOutcome;
 use crate::catalog::Catalogs;
 use crate::pareto::objectives::Objectives;
+use crate::search::finish::{FinishRows, finish_one_by_one};
 use crate::search::sweep::Sweep;
 use crate::sizing::rpm_from_rad_s;
 use crate::space::constraint::Constraints;
 use crate::space::design_space::SpacePiece;
-use crate::space::levels::OutwardIn;
+use crate::space::levels::{Keep, OutwardIn};
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::SizedJoint;
 use std::sync::atomic::AtomicBool;
@@ -164,9 +165,6 @@ impl Relaxed<'_, '_> {
 
 impl OutwardIn for Relaxed<'_, '_> {
     type Partial = Partial;
-    type Scratch = ();
-
-    fn scratch(&self) {}
 
     fn level_sizes(&self) -> &[u32] {
         self.problem.level_sizes()
@@ -201,6 +199,21 @@ impl OutwardIn for Relaxed<'_, '_> {
 
     fn group(&self, _: &Partial) -> Option<usize> {
         None
+    }
+}
+
+impl FinishRows for Relaxed<'_, '_> {
+    type Compiled = ();
+    type Scratch = Partial;
+
+    fn compile(&self) {}
+
+    fn scratch(&self) -> Partial {
+        Partial::default()
+    }
+
+    fn finish<K: Keep>(&self, (): &(), rows: &[(u128, Partial)], spare: &mut Partial, keep: &mut K) {
+        finish_one_by_one(self, rows, spare, keep);
     }
 }
 

@@ -7,7 +7,8 @@
 //! its catalog ratings.
 
 use super::definition::Study;
-use crate::arm::effect::Effect;
+use crate::arm::effect::entry::Effect;
+use crate::arm::effect::kind::Removes;
 use crate::arm::joint_law::Curve;
 use crate::arm::{Arm, LinkModel};
 use crate::input::json::Object;
@@ -58,8 +59,9 @@ fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String
         SpacePiece::Joint(joint) if joint.name == effect.at => Some(joint),
         _ => None,
     });
-    match (effect.effect.as_str(), at_joint.map(|joint| &joint.drive)) {
-        ("soft_windup", Some(DriveChoice::FirstFit(_) | DriveChoice::AllFits(_))) => Some((
+    let traits = &effect.kind()?.traits;
+    match at_joint.map(|joint| &joint.drive) {
+        Some(DriveChoice::FirstFit(_) | DriveChoice::AllFits(_)) if traits.is_gear_curve => Some((
             "effect".into(),
             format!(
                 "soft_windup is the torsion curve of one drive, and the study chooses the drive of {} from the \
@@ -68,8 +70,8 @@ fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String
             ),
             "give the joint its drive in the study (gear and motor, or windup), or remove the effect".into(),
         )),
-        ("extra_mass", Some(DriveChoice::Given { mass_kg, .. }))
-            if takes_too_much(space, effect, *mass_kg) =>
+        Some(DriveChoice::Given { mass_kg, .. })
+            if traits.removes == Some(Removes::JointMass) && takes_too_much(space, effect, *mass_kg) =>
         {
             Some((
                 "parameters.delta_kg".into(),

@@ -12,6 +12,7 @@ pub(crate) mod named;
 pub(crate) mod near;
 pub(crate) mod outcome;
 pub(crate) mod page;
+pub mod question;
 pub(crate) mod read;
 pub(crate) mod sections;
 pub(crate) mod table;

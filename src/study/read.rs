@@ -424,7 +424,7 @@ fn read_cases(root: &Object, joints: &[String]) -> Option<Cases> {
 #[derive(Debug, Clone, Default)]
 struct Environment {
     name: String,
-    water: Option<crate::arm::structure::Water>,
+    water: Option<crate::arm::load::Water>,
 }
 
 fn read_environments(node: &Node) -> Option<Vec<Environment>> {
@@ -437,7 +437,7 @@ fn read_environments(node: &Node) -> Option<Vec<Environment>> {
         .map(|n| {
             let object = n.object(&["name", "water"])?;
             let name = object.required("name").and_then(|n| n.string().map(String::from));
-            let water = object.or("water", None, |n| crate::arm::structure::Water::read(n).map(Some));
+            let water = object.or("water", None, |n| crate::arm::load::Water::read(n).map(Some));
             Some(Environment { name: name?, water: water? })
         })
         .collect();
@@ -477,7 +477,7 @@ fn read_motion(node: &Node) -> Option<MotionRequirement> {
         emergency_deceleration_m_s2: stop?,
         min_lever_m: lever?,
         life_h: life?,
-        duty_cycle: crate::sizing::requirement::DutyCycle::move_and_rest(ramp?),
+        duty_cycle: crate::sizing::duty::DutyCycle::move_and_rest(ramp?),
         ..default
     })
 }

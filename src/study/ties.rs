@@ -63,7 +63,7 @@ fn ties_of(problem: &ArmProblem, judged: &Judged) -> Option<(Vec<Vec<String>>, f
             continue;
         };
         let own = of_pieces[*piece] as usize;
-        let tied: Vec<usize> = sized.alike(own, demand).collect();
+        let tied: Vec<usize> = sized.ties_of(own, demand).collect();
         designs *= tied.len() as f64;
         let name = |drive: usize| sized.table.drive(drive).name();
         let others: Vec<String> = tied.iter().filter(|&&drive| drive != own).map(|&d| name(d)).collect();

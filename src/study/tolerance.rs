@@ -18,7 +18,7 @@ use crate::pareto::front::nondominated;
 use crate::pareto::objectives::Objectives;
 use crate::report::picks::{self, Design};
 use crate::report::tolerance::{Fate, PICKS, Scattered, percentiles};
-use crate::search::scatter::{ChosenParts, Factors, Figure};
+use crate::search::scatter::{ChosenParts, Factors, Rating};
 use crate::space::constraint::Constraints;
 use crate::space::design_space::DesignSpace;
 use crate::space::design_space::SpacePiece;
@@ -95,12 +95,12 @@ impl Tolerance {
     }
 
     /// Scatter of a rating.
-    fn of(&self, figure: &Figure) -> f64 {
+    fn of(&self, figure: &Rating) -> f64 {
         let [gear_stiffness, modulus, mass] = self.parts;
         match figure {
-            Figure::GearStiffness(_) => gear_stiffness,
-            Figure::Modulus(_) => modulus,
-            Figure::GearMass(_) | Figure::MotorMass(_) => mass,
+            Rating::GearStiffness(_) => gear_stiffness,
+            Rating::Modulus(_) => modulus,
+            Rating::GearMass(_) | Rating::MotorMass(_) => mass,
         }
     }
 }
@@ -112,7 +112,7 @@ struct Stream {
 }
 
 impl Stream {
-    fn new(seed: u64, figure: &Figure, part: f64) -> Self {
+    fn new(seed: u64, figure: &Rating, part: f64) -> Self {
         let named = blake3::hash(format!("{seed} {figure:?}").as_bytes());
         Self { generator: Xoshiro256PlusPlus::from_seed(*named.as_bytes()), sigma: part.ln_1p() / SIGMAS_95 }
     }
@@ -202,8 +202,8 @@ pub fn scatter_front(
     let chosen: Option<Vec<Vec<u32>>> = numbers.iter().map(|&n| small.options_of_whole(n)).collect();
     let parts = ChosenParts::new(&small, &chosen?)?;
     let tolerance = &sampling.tolerance;
-    let mut streams: BTreeMap<Figure, Stream> = parts
-        .figures()
+    let mut streams: BTreeMap<Rating, Stream> = parts
+        .ratings()
         .into_iter()
         .filter(|figure| tolerance.of(figure) > 0.0)
         .map(|figure| (figure.clone(), Stream::new(sampling.seed, &figure, tolerance.of(&figure))))
@@ -319,7 +319,7 @@ mod tests {
 
     #[test]
     fn ninety_five_percent_of_the_factors_lie_within_the_stated_scatter_and_half_below_one() {
-        let figure = Figure::GearStiffness("CSG-25-100".into());
+        let figure = Rating::GearStiffness("CSG-25-100".into());
         let mut stream = Stream::new(1, &figure, 0.2);
         let factors: Vec<f64> = (0..40_000).map(|_| stream.factor()).collect();
         let share = |within: &dyn Fn(f64) -> bool| {
@@ -333,7 +333,7 @@ mod tests {
 
     #[test]
     fn a_row_has_a_stream_of_its_own() {
-        let first = |seed, name: &str| Stream::new(seed, &Figure::GearMass(name.into()), 0.1).factor();
+        let first = |seed, name: &str| Stream::new(seed, &Rating::GearMass(name.into()), 0.1).factor();
         assert_eq!(first(1, "a"), first(1, "a"));
         assert_ne!(first(1, "a"), first(1, "b"));
         assert_ne!(first(1, "a"), first(2, "a"));

@@ -1,14 +1,14 @@
-//! What no member of a box betters: mass and deflection, and whether one may be as fast as some frequency.
+//! Bounds of the members of a box: least mass, least deflection, and the stiffest and lightest arm.
 
-use super::arm::Arm;
-use super::drives::{DriveRange, Drives};
+use super::demand::Demand;
+use super::drive_range::DriveRange;
+use super::duty::Duty;
 use super::layout::Coordinate;
 use super::pencil::Pencil;
 use super::pose::Pose;
+use super::skeleton::Skeleton;
 use super::span::Span;
 use super::tubes::{DENSITIES, STIFFNESSES, TubeRange};
-use super::{PartsBox, Witness};
-use crate::sizing::demand::{JointDemand, JointMotion};
 use nalgebra::Vector3;
 
 /// Room for rounding where a limit decides (relative).
@@ -25,7 +25,7 @@ pub(super) struct Members<'w> {
 
 /// A mass and a deflection that no member betters.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Ceiling {
+pub(super) struct IdealPoint {
     pub mass_kg: f64,
     pub tip_m: f64,
     /// The judged case that bounds the deflection, and the direction in which it does.
@@ -40,44 +40,6 @@ struct Asked {
     inertia_kgm2: Span,
 }
 
-impl Witness {
-    /// The parts of a box, joint by joint from the tip; `None` if no member holds.
-    pub(super) fn members(&self, nodes: &PartsBox) -> Option<Members<'_>> {
-        let tubes: Vec<&TubeRange> =
-            self.tubes.iter().map(|tube| &tube.nodes[self.node(tube.level, nodes)]).collect();
-        let drives = self.joints.iter().map(|joint| *joint.range(0)).collect();
-        let mut members = Members::new(drives, tubes, self.arm.waters);
-        for joint in (0..self.joints.len()).rev() {
-            let drives = &self.joints[joint];
-            let range = match &drives.motion {
-                Some(motion) => self.drives_that_hold(drives, joint, motion, nodes, &members)?,
-                None => *drives.range(0),
-            };
-            members.set_drive(joint, range);
-        }
-        self.arm.strong_enough(&members).then_some(members)
-    }
-
-    fn node(&self, level: Option<usize>, nodes: &PartsBox) -> usize {
-        level.map_or(0, |level| nodes.0[level] as usize)
-    }
-
-    fn drives_that_hold(
-        &self,
-        drives: &Drives,
-        joint: usize,
-        motion: &JointMotion,
-        nodes: &PartsBox,
-        members: &Members,
-    ) -> Option<DriveRange> {
-        let [least, most] = self.arm.demands(joint, motion, members);
-        match drives.level {
-            Some(level) => drives.holding(nodes.0[level], &least),
-            None => drives.first_fits(&least, &most),
-        }
-    }
-}
-
 impl<'w> Members<'w> {
     /// Tubes, and drives of which nothing is known yet: their masses are zero.
     pub fn new(drives: Vec<DriveRange>, tubes: Vec<&'w TubeRange>, waters: usize) -> Self {
@@ -88,7 +50,7 @@ impl<'w> Members<'w> {
         Self { loads: (0..waters).map(loads).collect(), drives, tubes }
     }
 
-    /// Says what drives a joint may have.
+    /// Sets the range of drives of a joint.
     pub fn set_drive(&mut self, joint: usize, range: DriveRange) {
         self.drives[joint] = range;
         let mass = Span { least: range.least_kg, most: range.most_kg };
@@ -96,15 +58,15 @@ impl<'w> Members<'w> {
     }
 }
 
-impl Arm {
+impl Skeleton {
     /// What a joint is asked for at least and at most, with room for rounding.
-    pub fn demands(&self, joint: usize, motion: &JointMotion, members: &Members) -> [JointDemand; 2] {
+    pub fn demands(&self, joint: usize, duty: &Duty, members: &Members) -> [Demand; 2] {
         let asked = self.asked(joint, members);
         let (statics, inertia) = (asked.static_nm, asked.inertia_kgm2);
         let (less, more) = (1.0 - ROUNDING, 1.0 + ROUNDING);
         [
-            motion.demand(statics.least * less, inertia.least * less),
-            motion.demand(statics.most * more, inertia.most * more),
+            duty.demand(statics.least * less, inertia.least * less),
+            duty.demand(statics.most * more, inertia.most * more),
         ]
     }
 
@@ -142,7 +104,7 @@ impl Arm {
 
     /// Whether the least stress at both ends of every tube leaves the safety that is asked for.
     pub fn strong_enough(&self, members: &Members) -> bool {
-        let Some(safety) = self.constraints.stress_safety_factor_min else { return true };
+        let Some(safety) = self.limits.stress_safety_factor_min else { return true };
         self.poses.iter().all(|pose| {
             let loads = &members.loads[pose.water];
             members.tubes.iter().zip(&pose.ends).all(|(tube, ends)| {
@@ -160,10 +122,10 @@ impl Arm {
     }
 
     /// Mass and deflection that no member betters; `None` if they break a limit.
-    pub fn ceiling(&self, members: &Members) -> Option<Ceiling> {
+    pub fn ideal_point(&self, members: &Members) -> Option<IdealPoint> {
         let drives: f64 = members.drives.iter().map(|drive| drive.least_kg).sum();
         let tubes: f64 = members.tubes.iter().map(|tube| tube.least.mass_kg).sum();
-        let mut ceiling = Ceiling {
+        let mut ideal = IdealPoint {
             mass_kg: self.offsets_kg + drives + tubes,
             tip_m: 0.0,
             worst: 0,
@@ -172,14 +134,14 @@ impl Arm {
         for (place, pose) in self.poses.iter().enumerate().filter(|(_, pose)| pose.judged) {
             let Some(direction) = direction(pose, members) else { continue };
             let tip_m = tip_along(pose, members, &direction);
-            if tip_m > ceiling.tip_m {
-                (ceiling.tip_m, ceiling.worst, ceiling.direction) = (tip_m, place, direction);
+            if tip_m > ideal.tip_m {
+                (ideal.tip_m, ideal.worst, ideal.direction) = (tip_m, place, direction);
             }
         }
         let within = |value: f64, most: Option<f64>| most.is_none_or(|most| value <= most * (1.0 + ROUNDING));
-        let limits = &self.constraints;
-        (within(ceiling.mass_kg, limits.mass_max_kg) && within(ceiling.tip_m, limits.tip_deflection_max_m))
-            .then_some(ceiling)
+        let limits = &self.limits;
+        (within(ideal.mass_kg, limits.mass_max_kg) && within(ideal.tip_m, limits.tip_deflection_max_m))
+            .then_some(ideal)
     }
 
     /// The largest stiffness of each coordinate in a pose.
@@ -222,37 +184,39 @@ pub(super) fn compliances(tube: &TubeRange) -> [Span; STIFFNESSES] {
     })
 }
 
-/// Where about the tip of a box's stiffest arm goes; `None` if nowhere. Any direction gives a bound.
+/// About the direction in which the tip of a box's stiffest arm moves; `None` if it does not. Any direction gives a bound.
 pub(super) fn direction(pose: &Pose, members: &Members) -> Option<Vector3<f64>> {
     let loads = &members.loads[pose.water];
-    let joints =
-        members.drives.iter().zip(&pose.torques).zip(&pose.ways_m).map(|((drive, torque), way_m)| {
+    let joints = members.drives.iter().zip(&pose.torques).zip(&pose.tip_m_per_rad).map(
+        |((drive, torque), tip_m_per_rad)| {
             let torque_nm = torque.over(loads).middle();
-            way_m * drive.least_angle_rad(Span { least: torque_nm, most: torque_nm })
-        });
+            tip_m_per_rad * drive.least_angle_rad(Span { least: torque_nm, most: torque_nm })
+        },
+    );
     let tubes = members.tubes.iter().zip(&pose.works).flat_map(|(tube, works)| {
         works.iter().zip(compliances(tube)).map(|(work, compliance)| work.middle(loads) * compliance.least)
     });
-    let tilts = pose.tilts_m.iter().map(|tilt_m| tilt_m.middle(loads));
+    let tilts = pose.by_springs_m.iter().map(|by_spring_m| by_spring_m.middle(loads));
     joints.chain(tubes).chain(tilts).sum::<Vector3<f64>>().try_normalize(0.0)
 }
 
 /// The least that the tip moves in a direction.
 fn tip_along(pose: &Pose, members: &Members, direction: &Vector3<f64>) -> f64 {
     let loads = &members.loads[pose.water];
-    let joints =
-        members.drives.iter().zip(&pose.torques).zip(&pose.ways_m).map(|((drive, torque), way_m)| {
-            let way_m = way_m.dot(direction);
+    let joints = members.drives.iter().zip(&pose.torques).zip(&pose.tip_m_per_rad).map(
+        |((drive, torque), tip_m_per_rad)| {
+            let tip_m_per_rad = tip_m_per_rad.dot(direction);
             // a twist that moves the tip back counts with its sign turned
-            let torque = torque.over(loads).times(1.0f64.copysign(way_m));
-            if way_m == 0.0 { 0.0 } else { drive.least_angle_rad(torque) * way_m.abs() }
-        });
+            let torque = torque.over(loads).times(1.0f64.copysign(tip_m_per_rad));
+            if tip_m_per_rad == 0.0 { 0.0 } else { drive.least_angle_rad(torque) * tip_m_per_rad.abs() }
+        },
+    );
     let tubes = members.tubes.iter().zip(&pose.works).flat_map(|(tube, works)| {
         works
             .iter()
             .zip(compliances(tube))
             .map(|(work, compliance)| work.along(direction, loads).least_product(compliance))
     });
-    let tilts = pose.tilts_m.iter().map(|tilt_m| tilt_m.along(direction, loads).least);
+    let tilts = pose.by_springs_m.iter().map(|by_spring_m| by_spring_m.along(direction, loads).least);
     joints.chain(tubes).chain(tilts).sum()
 }

@@ -1,13 +1,14 @@
 //! Where joints, tubes and masses are in a pose, and how every coordinate moves a point.
 //!
-//! The coordinates are a joint's twist, the tilt of an effect's spring and, for each tube, curvature constant and linear along it in both
-//! planes, and constant shear, twist and stretch. The full model has these among its own and more; a body
-//! that can move in fewer ways is stiffer, so its lowest mode is at least that of the full model.
+//! The coordinates are the twist of a joint, the tilt of an effect's spring and, for each tube, constant and linear curvature in
+//! both planes, and constant shear, twist and stretch. The full model has all of these, and more. A body that can move in
+//! fewer ways is stiffer, so its lowest mode is no lower than that of the full model.
 
-use crate::arm::{Link, LinkBody, LinkModel};
+use crate::arm::LinkModel;
+use crate::arm::load::LoadCase;
+use crate::arm::structure::{LinkPiece, Piece, Structure};
 use crate::mechanics::beam::section_frame;
-use crate::space::design_space::{Case, DesignSpace, SpacePiece};
-use crate::space::effects::Layer;
+use crate::mechanics::chain::across;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 /// Place of a piece's springs in the order from base to tip.
@@ -61,8 +62,8 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Puts a space's arm into the pose of a case.
-    pub fn new(space: &DesignSpace, case: &Case) -> Self {
+    /// Puts an arm into the pose of a case.
+    pub fn new(structure: &Structure, case: &LoadCase) -> Self {
         let mut angles = case.pose_deg.iter();
         let mut rotation = Rotation3::identity();
         let mut layout = Self {
@@ -73,75 +74,74 @@ impl Layout {
             tip_m: Vector3::zeros(),
             tip_rotation: Matrix3::identity(),
         };
-        for (piece, what) in space.pieces.iter().enumerate() {
-            layout.add_effects(space, piece, &rotation);
-            match what {
-                SpacePiece::Joint(joint) => {
+        for (place, piece) in structure.pieces.iter().enumerate() {
+            match piece {
+                Piece::Joint(joint) => {
                     let axis = rotation * joint.axis.into_inner();
-                    layout.joints.push(PlacedJoint { rank: piece_rank(piece), at_m: layout.tip_m, axis });
+                    layout.add_springs(place, &across(&axis).map(|axis| (axis, joint.tilt_rad_per_nm)));
+                    layout.add_mass(place, layout.tip_m, joint.mass_kg);
+                    layout.joints.push(PlacedJoint { rank: piece_rank(place), at_m: layout.tip_m, axis });
                     let angle = angles.next().copied().unwrap_or_default().to_radians();
                     rotation *= Rotation3::from_axis_angle(&joint.axis, angle);
                 }
-                SpacePiece::Link(link) => layout.add_link(space, piece, link, &rotation),
-                SpacePiece::Choice(choice) => layout.add_tube(piece, &choice.vector_m, &rotation),
+                Piece::Link(link) => layout.add_link(place, link, &rotation),
+            }
+            if place == 0 {
+                layout.add_base(structure);
             }
         }
         layout.tip_rotation = *rotation.matrix();
         layout
     }
 
-    /// What effects put before a piece where the arm has come to: springs and masses.
-    fn add_effects(&mut self, space: &DesignSpace, piece: usize, rotation: &Rotation3<f64>) {
-        for (_, layer) in space.layers().into_iter().filter(|(at, _)| *at == piece) {
-            match layer {
-                Layer::Tilt(tilt) => self.springs.push(PlacedSpring {
-                    rank: spring_rank(piece),
-                    at_m: self.tip_m,
-                    axis: tilt.axis(rotation),
-                    rad_per_nm: tilt.rad_per_nm,
-                }),
-                Layer::Mass(mass_kg) => {
-                    self.masses.push(PlacedMass { rank: piece_rank(piece), at_m: self.tip_m, mass_kg });
-                }
-                Layer::Piece(_) => {}
+    /// The springs that the arm stands on; they are inboard of the first piece, whose springs come first in the list.
+    fn add_base(&mut self, structure: &Structure) {
+        let fixed = structure.base_frame.springs();
+        let level = [Vector3::x(), Vector3::y()].map(|axis| (axis, structure.base_tilt_rad_per_nm));
+        for (axis, rad_per_nm) in fixed.into_iter().chain(level) {
+            if rad_per_nm > 0.0 {
+                let at_m = Vector3::zeros();
+                self.springs.push(PlacedSpring { rank: spring_rank(0), at_m, axis, rad_per_nm });
             }
         }
     }
 
-    fn add_link(&mut self, space: &DesignSpace, piece: usize, link: &Link, rotation: &Rotation3<f64>) {
-        if let Some(mass_kg) = offset_mass_kg(link) {
-            let at_m = self.tip_m + rotation * link.vector_m / 2.0;
-            self.masses.push(PlacedMass { rank: piece_rank(piece), at_m, mass_kg });
-        }
-        match has_line(space, link) {
-            true => self.add_tube(piece, &link.vector_m, rotation),
-            false => self.tip_m += rotation * link.vector_m,
+    /// Springs where the arm has come to, about axes of the world; those that do not yield are left out.
+    fn add_springs(&mut self, place: usize, springs: &[(Vector3<f64>, f64)]) {
+        for &(axis, rad_per_nm) in springs.iter().filter(|(_, rad_per_nm)| *rad_per_nm > 0.0) {
+            let (rank, at_m) = (spring_rank(place), self.tip_m);
+            self.springs.push(PlacedSpring { rank, at_m, axis, rad_per_nm });
         }
     }
 
-    fn add_tube(&mut self, piece: usize, vector_m: &Vector3<f64>, rotation: &Rotation3<f64>) {
-        self.tubes.push(PlacedTube {
-            rank: piece_rank(piece),
-            root_m: self.tip_m,
-            frame: rotation.matrix() * section_frame(vector_m),
-            length_m: vector_m.norm(),
-        });
-        self.tip_m += rotation * vector_m;
+    fn add_mass(&mut self, place: usize, at_m: Vector3<f64>, mass_kg: f64) {
+        if mass_kg != 0.0 {
+            self.masses.push(PlacedMass { rank: piece_rank(place), at_m, mass_kg });
+        }
+    }
+
+    fn add_link(&mut self, place: usize, link: &LinkPiece, rotation: &Rotation3<f64>) {
+        let springs = link.root_frame.springs();
+        let turned: Vec<_> = springs.into_iter().map(|(axis, c)| (rotation * axis, c)).collect();
+        self.add_springs(place, &turned);
+        let vector_m = rotation * link.vector_m;
+        self.add_mass(place, self.tip_m + vector_m / 2.0, link.point_mass_kg);
+        if has_line(link) {
+            self.tubes.push(PlacedTube {
+                rank: piece_rank(place),
+                root_m: self.tip_m,
+                frame: rotation.matrix() * section_frame(&link.vector_m),
+                length_m: link.vector_m.norm(),
+            });
+        }
+        self.tip_m += vector_m;
     }
 }
 
 /// Whether something weighs along a link: it is a tube, or cables run along it.
-pub(super) fn has_line(space: &DesignSpace, link: &Link) -> bool {
-    let cables = space.link_piece(link).harness_kg_per_m != 0.0 && link.vector_m.norm() > 0.0;
-    offset_mass_kg(link).is_none() || cables
-}
-
-/// Mass of a rigid offset; a tube is none.
-pub(super) fn offset_mass_kg(link: &Link) -> Option<f64> {
-    match link.body {
-        LinkBody::Offset { mass_kg } => Some(mass_kg),
-        LinkBody::Tube { .. } => None,
-    }
+pub(super) fn has_line(link: &LinkPiece) -> bool {
+    let has_cables = link.harness_kg_per_m != 0.0 && link.vector_m.norm() > 0.0;
+    link.beam.is_some() || has_cables
 }
 
 /// A point of the arm: beyond everything of a lower rank, and maybe inside the tube of this rank.
@@ -153,7 +153,7 @@ pub(super) struct Point {
     pub inside_m: Option<f64>,
 }
 
-/// In which ways a tube yields.
+/// A way in which a tube yields.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Shape {
     /// Curvature that moves the tube along z, constant or from 1 at the root to -1 at the end.

@@ -12,10 +12,11 @@
 //! and the inertias of tubes per length.
 
 use super::layout::{Coordinate, Layout, Point};
+use super::question::Question;
 use super::span::{Linear, LinearVector};
 use super::tubes::{DENSITIES, STIFFNESSES};
-use crate::arm::structure::Water;
-use crate::space::design_space::{Case, DesignSpace};
+use crate::arm::load::{LoadCase, Water};
+use crate::arm::structure::Structure;
 use nalgebra::{Matrix3, Vector3};
 
 /// Gauss-Legendre points and weights on 0..1, exact to degree 7.
@@ -37,9 +38,9 @@ pub(super) struct Pose {
     /// Torque on each joint.
     pub torques: Vec<Linear>,
     /// Displacement of the tip per twist of each joint \[m/rad\].
-    pub ways_m: Vec<Vector3<f64>>,
+    pub tip_m_per_rad: Vec<Vector3<f64>>,
     /// Displacement of the tip by each spring of an effect.
-    pub tilts_m: Vec<LinearVector>,
+    pub by_springs_m: Vec<LinearVector>,
     /// Displacement of the tip times each stiffness of each tube.
     pub works: Vec<[LinearVector; STIFFNESSES]>,
     /// Force and moment at root and end of each tube, in its frame.
@@ -63,7 +64,7 @@ struct Carried {
     per_load: Vec<Wrench>,
 }
 
-/// A case before it is summed.
+/// What is needed to work out the sums of a case.
 struct Builder<'a> {
     layout: &'a Layout,
     gravity_m_s2: f64,
@@ -75,29 +76,32 @@ struct Builder<'a> {
 impl Pose {
     /// Works out a case; `waters` are the study's surroundings.
     pub fn new(
-        space: &DesignSpace,
+        question: &Question,
+        structure: &Structure,
         index: usize,
         waters: &[Option<Water>],
         coordinates: &[Coordinate],
     ) -> Self {
-        let case = &space.cases[index];
-        let water = water_of(space, case);
-        let layout = Layout::new(space, case);
+        let case = &question.cases[index];
+        let water = water_of(structure, case);
+        let layout = Layout::new(structure, case);
         let tip_loads = [
-            (payload_weight(space, case, water), payload_at(&layout, case)),
+            (payload_weight(question.gravity_m_s2, case, water), payload_at(&layout, case)),
             (case.tip_force_n, layout.tip_m),
         ];
-        let builder = Builder { layout: &layout, gravity_m_s2: space.gravity_m_s2, tip_loads, coordinates };
-        let sizing = space.sizing_cases.contains(&index);
-        let acceleration = space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE);
+        let builder =
+            Builder { layout: &layout, gravity_m_s2: question.gravity_m_s2, tip_loads, coordinates };
+        let sizing = question.sizing_cases.contains(&index);
+        let gravity_m_s2 = question.gravity_m_s2.max(f64::MIN_POSITIVE);
+        let acceleration = question.motion.tip_acceleration_m_s2() / gravity_m_s2;
         Self {
-            judged: space.judged_cases.contains(&index),
+            judged: question.judged_cases.contains(&index),
             sizing,
             water: waters.iter().position(|other| *other == water).unwrap_or_default(),
             stress_factor: if sizing { 1.0 + acceleration } else { 1.0 },
             torques: (0..layout.joints.len()).map(|joint| builder.torque(joint)).collect(),
-            ways_m: layout.joints.iter().map(|j| j.axis.cross(&(layout.tip_m - j.at_m))).collect(),
-            tilts_m: (0..layout.springs.len()).map(|spring| builder.tilt(spring)).collect(),
+            tip_m_per_rad: layout.joints.iter().map(|j| j.axis.cross(&(layout.tip_m - j.at_m))).collect(),
+            by_springs_m: (0..layout.springs.len()).map(|spring| builder.tilt(spring)).collect(),
             works: (0..layout.tubes.len()).map(|tube| builder.works(tube)).collect(),
             ends: (0..layout.tubes.len()).map(|tube| builder.ends(tube)).collect(),
             inertia: builder.fixed_inertia(case),
@@ -107,16 +111,16 @@ impl Pose {
 }
 
 /// The water of a case, or that of an effect.
-pub(super) fn water_of(space: &DesignSpace, case: &Case) -> Option<Water> {
-    case.water.or(space.surroundings().water)
+pub(super) fn water_of(structure: &Structure, case: &LoadCase) -> Option<Water> {
+    case.water.or(structure.water)
 }
 
-fn payload_weight(space: &DesignSpace, case: &Case, water: Option<Water>) -> Vector3<f64> {
+fn payload_weight(gravity_m_s2: f64, case: &LoadCase, water: Option<Water>) -> Vector3<f64> {
     let lifted = water.map_or(0.0, |water| water.density_kg_m3 / water.payload_density_kg_m3);
-    Vector3::new(0.0, 0.0, -case.payload.mass_kg * space.gravity_m_s2 * (1.0 - lifted))
+    Vector3::new(0.0, 0.0, -case.payload.mass_kg * gravity_m_s2 * (1.0 - lifted))
 }
 
-fn payload_at(layout: &Layout, case: &Case) -> Vector3<f64> {
+fn payload_at(layout: &Layout, case: &LoadCase) -> Vector3<f64> {
     layout.tip_m + layout.tip_rotation * case.payload.cg_m
 }
 
@@ -174,10 +178,10 @@ impl Builder<'_> {
     fn tilt(&self, spring: usize) -> LinearVector {
         let spring = &self.layout.springs[spring];
         let carried = self.carried(&Point { at_m: spring.at_m, rank: spring.rank, inside_m: None });
-        let way_m = spring.axis.cross(&(self.layout.tip_m - spring.at_m)) * spring.rad_per_nm;
+        let along_m = spring.axis.cross(&(self.layout.tip_m - spring.at_m)) * spring.rad_per_nm;
         LinearVector {
-            fixed: way_m * spring.axis.dot(&carried.fixed.moment),
-            per_load: carried.per_load.iter().map(|w| way_m * spring.axis.dot(&w.moment)).collect(),
+            fixed: along_m * spring.axis.dot(&carried.fixed.moment),
+            per_load: carried.per_load.iter().map(|w| along_m * spring.axis.dot(&w.moment)).collect(),
         }
     }
 
@@ -228,7 +232,7 @@ impl Builder<'_> {
     }
 
     /// Inertia of payload and masses without a choice.
-    fn fixed_inertia(&self, case: &Case) -> Vec<f64> {
+    fn fixed_inertia(&self, case: &LoadCase) -> Vec<f64> {
         let mut out = self.no_inertia();
         let rotation = &self.layout.tip_rotation;
         let payload = Point { at_m: payload_at(self.layout, case), rank: usize::MAX, inside_m: None };

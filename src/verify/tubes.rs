@@ -1,12 +1,13 @@
-//! What a link's tubes are in numbers, and the least and the most of each over a set of tubes.
+//! The numbers of a tube that mass, torques, deflection, stress and modes depend on, and their ranges over a set of tubes.
 
+use super::layout::has_line;
+use super::question::{AskedLink, AskedTube, Question};
 use super::tree::Tree;
-use crate::arm::structure::{LinkPiece, Structure, Water};
-use crate::arm::{Link, LinkModel};
+use crate::arm::load::Water;
+use crate::arm::section::Section;
+use crate::arm::structure::{LinkPiece, Structure};
+use crate::arm::{Link, LinkBody, LinkModel};
 use crate::mechanics::beam::{line_densities, line_stiffnesses};
-use crate::space::design_space::{DesignSpace, LinkChoice};
-use crate::space::figures::{OptionFigures, StressCheck};
-use crate::space::slot::{Slot, choice_slot, link_slot};
 
 /// Stiffnesses of a tube: `E I` about y and z, `κ G A`, `G J`, `E A`.
 pub(super) const STIFFNESSES: usize = 5;
@@ -41,7 +42,6 @@ pub(super) struct TubeAround {
 
 /// The tubes that a link may be.
 pub(super) struct TubeOptions {
-    pub length_m: f64,
     /// Place among the levels of the space, if there is a choice.
     pub level: Option<usize>,
     /// Each with its number; none that is too slender.
@@ -68,30 +68,31 @@ pub(super) struct TubeRange {
 impl TubeOptions {
     /// The tubes of a link with a choice.
     pub fn of_choice(
-        space: &DesignSpace,
-        choice: &LinkChoice,
+        question: &Question,
+        choice: &AskedLink,
         level: usize,
         waters: &[Option<Water>],
     ) -> Self {
-        let figures = figures(choice_slot(space, choice));
-        let sound = (0u32..).zip(choice.options.iter().zip(&figures)).filter(|(_, (_, f))| !f.slender);
-        let tubes = sound.map(|(i, (option, figures))| {
-            let piece = space.link_piece(&choice.link(option));
-            (i, numbers(space, &piece, figures.mass_kg, figures.stress.as_ref(), waters))
-        });
-        Self { length_m: choice.vector_m.norm(), level: Some(level), tubes: tubes.collect() }
+        let tubes = (0u32..).zip(&choice.tubes).filter(|(_, tube)| !is_too_slender(question, &tube.section));
+        let tubes = tubes.map(|(i, tube)| (i, TubeNumbers::of_choice(question, choice, tube, waters)));
+        Self { level: Some(level), tubes: tubes.collect() }
     }
 
-    /// The tube of a link without one; cables along a rigid offset count as a tube that does not yield.
-    pub fn of_link(space: &DesignSpace, link: &Link, waters: &[Option<Water>]) -> Self {
-        let figures = figures(link_slot(space, link));
-        let tube = figures.first();
-        let mass_kg = tube.map_or(0.0, |tube| tube.mass_kg);
-        let stress = tube.and_then(|tube| tube.stress.as_ref());
-        let numbers = numbers(space, &space.link_piece(link), mass_kg, stress, waters);
-        let slender = tube.is_some_and(|tube| tube.slender);
-        let tubes = if slender { Vec::new() } else { vec![(0, numbers)] };
-        Self { length_m: link.vector_m.norm(), level: None, tubes }
+    /// The tube of a link without a choice; cables along a rigid offset count as a tube that does not yield. `None` if
+    /// nothing weighs along the link.
+    pub fn of_link(question: &Question, link: &Link, waters: &[Option<Water>]) -> Option<Self> {
+        let piece = question.link_piece(link.clone());
+        has_line(&piece).then(|| {
+            let slender = match &link.body {
+                LinkBody::Tube { section, .. } => is_too_slender(question, section),
+                LinkBody::Offset { .. } => false,
+            };
+            // what cables weigh is no mass of a design, and the strength of a given tube is not known
+            let mass_kg = piece.beam.map_or(0.0, |_| piece.tube_kg_per_m() * piece.vector_m.norm());
+            let numbers = TubeNumbers::new(question, &piece, mass_kg, waters);
+            let tubes = if slender { Vec::new() } else { vec![(0, numbers)] };
+            Self { level: None, tubes }
+        })
     }
 
     /// Some of the options, ascending.
@@ -117,35 +118,42 @@ impl Tubes {
     }
 }
 
-fn figures(slot: Slot) -> Vec<OptionFigures> {
-    match slot {
-        Slot::Link { options, .. } => options,
-        _ => Vec::new(),
-    }
+/// Whether a wall may buckle by the limit of the question.
+pub(super) fn is_too_slender(question: &Question, section: &Section) -> bool {
+    let (width_m, height_m) = section.outer_m();
+    let wall_m = section.wall_m();
+    // catalog sizes often lie exactly on the limit, so the quotient is taken as the glossary defines it: flat over wall
+    let slenderness = match section {
+        Section::RectangularTube { .. } => (width_m.max(height_m) - 2.0 * wall_m) / wall_m,
+        Section::RoundTube { .. } => width_m / wall_m,
+    };
+    question.limits.wall_slenderness_max.is_some_and(|most| slenderness > most)
 }
 
-/// What tubes are told apart by.
+/// The numbers by which the tree separates tubes.
 fn keys(tube: &TubeNumbers) -> Vec<f64> {
     let [bending_y, bending_z, _, torsion, _] = tube.stiffnesses.map(f64::ln);
     vec![1.5 * tube.mass_kg.ln(), bending_y, bending_z, 0.3 * torsion]
 }
 
-fn numbers(
-    space: &DesignSpace,
-    piece: &LinkPiece,
-    mass_kg: f64,
-    stress: Option<&StressCheck>,
-    waters: &[Option<Water>],
-) -> TubeNumbers {
-    TubeNumbers {
-        mass_kg,
-        stiffnesses: stiffnesses(piece, space.links),
-        stresses: stress.map_or([0.0; STRESSES], |s| {
-            [s.per_axial_n, s.per_moment_y, s.per_moment_z, s.per_torsion].map(|per| per / s.strength_pa)
-        }),
-        round: f64::from(u8::from(stress.is_some_and(|s| s.round))),
-        around: waters.iter().map(|water| around(space, piece, *water)).collect(),
-    }
+/// Stress per axial force, moment about y, moment about z and torque, over a strength. Bending and torsion are largest on
+/// the outside of a round tube; torsion of a rectangular one is Bredt's, by the area within the middle of its wall.
+fn stresses(tube: &AskedTube) -> [f64; STRESSES] {
+    let Some(strength_pa) = tube.strength_pa else { return [0.0; STRESSES] };
+    let section = tube.section.properties(tube.material.poisson);
+    let (width_m, height_m) = tube.section.outer_m();
+    let wall_m = tube.section.wall_m();
+    let per_torque = match tube.section {
+        Section::RoundTube { .. } => width_m / (2.0 * section.torsion_constant_m4),
+        Section::RectangularTube { .. } => 0.5 / ((width_m - wall_m) * (height_m - wall_m) * wall_m),
+    };
+    let per_load = [
+        1.0 / section.area_m2,
+        height_m / (2.0 * section.second_moment_y_m4),
+        width_m / (2.0 * section.second_moment_z_m4),
+        per_torque,
+    ];
+    per_load.map(|per| per / strength_pa)
 }
 
 /// Stiffnesses that the model knows; the others are infinite.
@@ -160,18 +168,23 @@ fn stiffnesses(piece: &LinkPiece, model: LinkModel) -> [f64; STIFFNESSES] {
     std::array::from_fn(|i| if i < known { bare[i] / beam.flexibility } else { f64::INFINITY })
 }
 
-fn around(space: &DesignSpace, piece: &LinkPiece, water: Option<Water>) -> TubeAround {
-    let structure = Structure { water, ..Structure::bare(space.gravity_m_s2, Vec::new()) };
-    let [along, across, _, polar, about_y, about_z] = line_densities(piece, &structure, space.links);
+fn around(question: &Question, piece: &LinkPiece, water: Option<Water>) -> TubeAround {
+    let structure = Structure { water, ..Structure::nominal(question.gravity_m_s2, Vec::new()) };
+    let [along, across, _, polar, about_y, about_z] = line_densities(piece, &structure, question.links);
     let outer_m2 = piece.beam.map_or(0.0, |b| b.section.properties(b.material.poisson).outer_area_m2);
     let displaced = water.map_or(0.0, |water| water.density_kg_m3 * outer_m2);
     TubeAround {
-        weight_n_per_m: space.gravity_m_s2 * (piece.tube_kg_per_m() + piece.harness_kg_per_m - displaced),
+        weight_n_per_m: question.gravity_m_s2 * (piece.tube_kg_per_m() + piece.harness_kg_per_m - displaced),
         densities: [along, across, polar, about_y, about_z],
     }
 }
 
 impl TubeRange {
+    /// One tube.
+    pub fn one(tube: &TubeNumbers) -> Self {
+        Self { least: tube.clone(), most: tube.clone(), middle: tube.clone() }
+    }
+
     fn over<'t>(tubes: impl Iterator<Item = &'t TubeNumbers> + Clone) -> Self {
         let fold = |combine: fn(f64, f64) -> f64| {
             tubes.clone().cloned().reduce(|a, b| a.with(&b, combine)).expect("a node has options")
@@ -186,6 +199,31 @@ impl TubeRange {
 }
 
 impl TubeNumbers {
+    /// A tube of a link with a choice.
+    pub fn of_choice(
+        question: &Question,
+        choice: &AskedLink,
+        tube: &AskedTube,
+        waters: &[Option<Water>],
+    ) -> Self {
+        let kg_per_m = tube.material.density_kg_m3 * tube.section.properties(tube.material.poisson).area_m2;
+        let piece = question.link_piece(choice.with_tube(tube));
+        let numbers = Self::new(question, &piece, kg_per_m * choice.vector_m.norm(), waters);
+        let is_round = tube.strength_pa.is_some() && matches!(tube.section, Section::RoundTube { .. });
+        Self { stresses: stresses(tube), round: f64::from(u8::from(is_round)), ..numbers }
+    }
+
+    /// A tube of unknown strength.
+    fn new(question: &Question, piece: &LinkPiece, mass_kg: f64, waters: &[Option<Water>]) -> Self {
+        Self {
+            mass_kg,
+            stiffnesses: stiffnesses(piece, question.links),
+            stresses: [0.0; STRESSES],
+            round: 0.0,
+            around: waters.iter().map(|water| around(question, piece, *water)).collect(),
+        }
+    }
+
     fn with(&self, other: &Self, combine: impl Fn(f64, f64) -> f64) -> Self {
         let around = |(a, b): (&TubeAround, &TubeAround)| TubeAround {
             weight_n_per_m: combine(a.weight_n_per_m, b.weight_n_per_m),

@@ -15,7 +15,7 @@
 //! stiffness and consistent mass); G. R. Cowper, J. Appl. Mech. 33 (1966) 335 (shear factors); K.-J. Bathe, Finite
 //! Element Procedures (1996), section 11.6 (subspace iteration).
 
-// Every test file compiles this module for itself and none uses all of it.
+// Test targets and examples compile this module for themselves, and none uses all of it.
 #![allow(dead_code, unused_imports)]
 
 mod arm;

@@ -1,6 +1,8 @@
-//! What the arm stands on: tilt about world x and y at the chain's origin.
+//! `base_compliance`: what the arm stands on tilts about world x and y at the chain's origin.
 
-use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+use super::bearing_tilt;
+use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits, Yields};
+use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 5e5, Scale::Stiffness).expected(0.0, 6.0)];
@@ -13,6 +15,12 @@ pub const KIND: Kind = Kind {
     places: &[Place::Base],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits {
+        yields: Some(Yields::Tilt),
+        same_at_vertical_first_joint: Some(bearing_tilt::KIND.name),
+        starts: |_| vec![vec![0.1], vec![0.5]],
+        ..Traits::USUAL
+    },
 };
 
 fn apply(numbers: &[f64], _at: &str, subject: &mut Subject) {

@@ -1,6 +1,8 @@
-//! The output bearing: equal rotational springs about the two axes across the joint's.
+//! `bearing_tilt`: the output bearing yields like equal rotational springs about the two axes across the
+//! joint's.
 
-use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits, Yields};
+use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.0, 6.0)];
@@ -13,6 +15,7 @@ pub const KIND: Kind = Kind {
     places: &[Place::Joint],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits { yields: Some(Yields::Tilt), starts: |_| vec![vec![0.1], vec![0.5]], ..Traits::USUAL },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

@@ -1,6 +1,7 @@
-//! Flange, shaft or bolts that twist in series with the gear: `1/k = 1/k_gear + 1/c`.
+//! `connection_compliance`: flange, shaft or bolts twist in series with the gear: `1/k = 1/k_gear + 1/c`.
 
-use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits, Yields};
+use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 1e6, Scale::Stiffness).expected(0.0, 4.0)];
@@ -13,6 +14,12 @@ pub const KIND: Kind = Kind {
     places: &[Place::Joint],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits {
+        needs: Needs::TwistingJoint,
+        yields: Some(Yields::AboutAxis),
+        starts: |_| vec![vec![0.1], vec![0.5]],
+        ..Traits::USUAL
+    },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

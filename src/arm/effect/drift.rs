@@ -1,9 +1,13 @@
-//! A sensor or mounting that creeps with time: reading = truth + rate x (row - 1) over the file.
+//! `drift`: the zero of a sensor or of its mounting creeps. The reading is truth + rate x (row - 1) over the
+//! file.
 
-use super::{Channel, Kind, Parameter, Place, Scope, Subject};
+use super::channel::Channel;
+use super::kind::{Kind, Measure, Parameter, Place, Scope, Traits};
+use super::subject::Subject;
 
-const PARAMETERS: &[Parameter] =
-    &[Parameter::vector("rate_mm_per_row", -0.1, 0.1, 2e-4).expected(-0.01, 0.01)];
+const PARAMETERS: &[Parameter] = &[Parameter::vector("rate_mm_per_row", -0.1, 0.1, 2e-4)
+    .expected(-0.01, 0.01)
+    .growing_with(Measure::DisplacementPerRow, 1.0 / 4.0)];
 
 /// The effect.
 pub const KIND: Kind = Kind {
@@ -13,6 +17,7 @@ pub const KIND: Kind = Kind {
     places: &[Place::Channel(Channel::Static), Place::Channel(Channel::Positions)],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits { starts: |setting| vec![vec![0.0; setting.values_at_one.len()]], ..Traits::USUAL },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

@@ -1,9 +1,11 @@
-//! A point mass at a joint beyond tolerance.
+//! `extra_mass`: a point mass at a joint that its mass tolerance does not cover.
 
-use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+use super::kind::{Kind, Measure, Parameter, Place, Removes, Scale, Scope, Traits};
+use super::subject::Subject;
 
-const PARAMETERS: &[Parameter] =
-    &[Parameter::number("delta_kg", -10.0, 50.0, 1.0, Scale::Linear).expected(-3.0, 12.0)];
+const PARAMETERS: &[Parameter] = &[Parameter::number("delta_kg", -10.0, 50.0, 1.0, Scale::Linear)
+    .expected(-3.0, 12.0)
+    .growing_with(Measure::ArmMass, 1.0 / 8.0)];
 
 /// The effect.
 pub const KIND: Kind = Kind {
@@ -13,6 +15,11 @@ pub const KIND: Kind = Kind {
     places: &[Place::Joint],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits {
+        removes: Some(Removes::JointMass),
+        starts: |_| vec![vec![0.5], vec![2.0]],
+        ..Traits::USUAL
+    },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

@@ -1,9 +1,11 @@
-//! Cables and hoses along a link: mass and weight on its axis, no stiffness.
+//! `harness_mass`: cables and hoses along a link add mass and weight on its axis, and no stiffness.
 
-use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+use super::kind::{Kind, Measure, Parameter, Place, Scale, Scope, Traits};
+use super::subject::Subject;
 
-const PARAMETERS: &[Parameter] =
-    &[Parameter::number("kg_per_m", 0.0, 100.0, 2.0, Scale::Linear).expected(0.0, 15.0)];
+const PARAMETERS: &[Parameter] = &[Parameter::number("kg_per_m", 0.0, 100.0, 2.0, Scale::Linear)
+    .expected(0.0, 15.0)
+    .growing_with(Measure::ArmMassPerLength, 1.0 / 4.0)];
 
 /// The effect.
 pub const KIND: Kind = Kind {
@@ -13,6 +15,7 @@ pub const KIND: Kind = Kind {
     places: &[Place::Link],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits::USUAL,
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

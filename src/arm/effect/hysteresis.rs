@@ -1,6 +1,7 @@
-//! Friction play: the twist lags a torque reversal by up to the half width.
+//! `hysteresis`: by friction play the twist lags a reversal of torque by up to the half width.
 
-use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Setting, Traits};
+use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("half_width_rad", 0.0, 5e-3, 1e-4, Scale::Linear).expected(0.0, 2e-3)];
@@ -13,7 +14,17 @@ pub const KIND: Kind = Kind {
     places: &[Place::Joint],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits { needs: Needs::TwistingJoint, starts, ..Traits::USUAL },
 };
+
+/// Half widths to start from. A joint whose play is as wide as its largest twist does not move, and a descent
+/// sees no slope. So no start is wider than 0.3 of that twist.
+fn starts(setting: &Setting) -> Vec<Vec<f64>> {
+    const WIDEST: f64 = 0.3;
+    let usual_rad = [0.25e-4, 1e-4, 3e-4].into_iter().filter(|h| *h < WIDEST * setting.twist_rad);
+    let parts_rad = [0.01, 0.06].into_iter().map(|part| part * setting.twist_rad);
+    parts_rad.chain(usual_rad).map(|h| vec![h / setting.values_at_one[0]]).collect()
+}
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     if let Some(joint) = subject.structure.joint_mut(at) {

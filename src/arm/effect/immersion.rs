@@ -1,14 +1,21 @@
-//! Water around the arm: links are sealed tubes that displace it and carry some of it along.
+//! `immersion`: the arm is in water. Its links are sealed tubes, which lose weight by buoyancy and accelerate
+//! some water with them (added mass).
 
-use super::{Kind, Parameter, Place, Scale, Scope, Subject};
-use crate::arm::structure::Water;
+use super::kind::{Absent, Kind, Parameter, Place, Scale, Scope, Traits};
+use super::subject::Subject;
+use crate::arm::load::Water;
+
+/// Name of the parameter for the payload's density, which a campaign may state.
+pub const PAYLOAD_DENSITY: &str = "payload_density_kg_m3";
 
 const PARAMETERS: &[Parameter] = &[
     Parameter::number("water_density_kg_m3", 0.0, 2000.0, 1000.0, Scale::Linear).expected(0.0, 1500.0),
-    Parameter::number("added_mass_coefficient", 0.0, 4.0, 1.0, Scale::Linear).expected(0.0, 2.5),
+    Parameter::number("added_mass_coefficient", 0.0, 4.0, 1.0, Scale::Linear)
+        .expected(0.0, 2.5)
+        .absent(Absent::Never),
     Parameter {
         default: Some(7850.0),
-        ..Parameter::number("payload_density_kg_m3", 1.0, 30000.0, 7850.0, Scale::Linear)
+        ..Parameter::number(PAYLOAD_DENSITY, 1.0, 30000.0, 7850.0, Scale::Linear)
     },
 ];
 
@@ -20,6 +27,7 @@ pub const KIND: Kind = Kind {
     places: &[Place::Arm],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits { is_nonlinear: true, starts: |_| vec![vec![1.0, 1.0]], ..Traits::USUAL },
 };
 
 fn apply(numbers: &[f64], _at: &str, subject: &mut Subject) {

@@ -1,6 +1,7 @@
-//! The twist of a joint whose nominal model is rigid.
+//! `joint_compliance`: a joint that the nominal model holds rigid twists.
 
-use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits, Yields};
+use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.0, 20.0)];
@@ -13,6 +14,12 @@ pub const KIND: Kind = Kind {
     places: &[Place::Joint],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits {
+        needs: Needs::RigidJoint,
+        yields: Some(Yields::AboutAxis),
+        starts: |_| vec![vec![0.5], vec![2.0]],
+        ..Traits::USUAL
+    },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

@@ -1,6 +1,8 @@
-//! The bending, shear, torsion and stretch of a link that the nominal model holds rigid, as a factor on its own compliance.
+//! `link_flexibility`: a link that the nominal model holds rigid bends, shears, twists and stretches. The
+//! parameter is a factor on the compliance of its section.
 
-use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits};
+use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("factor", 0.0, 20.0, 1.0, Scale::Linear).expected(0.0, 5.0)];
@@ -13,6 +15,7 @@ pub const KIND: Kind = Kind {
     places: &[Place::Tube],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits { needs: Needs::RigidLink, changes_bending: true, ..Traits::USUAL },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

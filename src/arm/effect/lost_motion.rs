@@ -1,11 +1,14 @@
-//! Play that closes smoothly: `theta += h tanh(T/T_c)`.
+//! `lost_motion`: play closes smoothly as the torque grows: `theta += h tanh(T/T_c)`.
 
-use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Setting, Traits};
+use super::subject::Subject;
 use crate::arm::joint_law::LostMotion;
 
 const PARAMETERS: &[Parameter] = &[
     Parameter::number("half_width_rad", 0.0, 5e-3, 1.5e-4, Scale::Linear).expected(0.0, 2e-3),
-    Parameter::number("torque_nm", 0.05, 1e4, 10.0, Scale::Log).expected(0.3, 500.0),
+    Parameter::number("torque_nm", 0.05, 1e4, 10.0, Scale::Log)
+        .expected(0.3, 500.0)
+        .within_torque(0.003, 1.0),
 ];
 
 /// The effect.
@@ -16,7 +19,12 @@ pub const KIND: Kind = Kind {
     places: &[Place::Joint],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits { needs: Needs::TwistingJoint, is_nonlinear: true, starts, ..Traits::USUAL },
 };
+
+fn starts(setting: &Setting) -> Vec<Vec<f64>> {
+    [0.03, 0.1, 0.3].iter().map(|part| vec![1.0, (part * setting.torque_nm).ln()]).collect()
+}
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     if let Some(joint) = subject.structure.joint_mut(at) {

@@ -1,6 +1,8 @@
-//! A factor on Young's modulus of one link: layup, bond lines. G and density unchanged.
+//! `modulus_error`: a factor on Young's modulus of one link, by its layup or bond lines. G and density are
+//! unchanged.
 
-use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits};
+use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("factor", 0.05, 5.0, 0.85, Scale::Reciprocal).expected(0.5, 3.0)];
@@ -13,6 +15,12 @@ pub const KIND: Kind = Kind {
     places: &[Place::Tube],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits {
+        needs: Needs::BendingLink,
+        changes_bending: true,
+        starts: |_| vec![vec![1.1], vec![1.4]],
+        ..Traits::USUAL
+    },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

@@ -1,8 +1,10 @@
-//! Single rows that are gross errors: a slipped reflector, a typing error.
+//! `outlier`: single rows are gross errors, by a slipped reflector or a typing error.
 
-use super::{Channel, Kind, Parameter, Place, Scale, Scope, Subject};
+use super::channel::Channel;
+use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
+use super::subject::Subject;
 
-/// As many rows as there are.
+/// The rows, as many as there are.
 const ROWS: &[Parameter] =
     &[Parameter { count: 0, ..Parameter::number("rows", 1.0, 1e9, 1.0, Scale::Linear) }];
 
@@ -19,6 +21,7 @@ pub const KIND: Kind = Kind {
     ],
     parameters: |_| ROWS,
     apply,
+    traits: Traits { is_sought: false, ..Traits::USUAL },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

@@ -1,6 +1,7 @@
-//! The payload's centre of gravity is not where it is stated, last frame.
+//! `payload_cg_error`: the payload's centre of gravity is off the stated one, in the last frame.
 
-use super::{Kind, Parameter, Place, Scope, Subject};
+use super::kind::{Kind, Parameter, Place, Scope, Traits};
+use super::subject::Subject;
 use nalgebra::Vector3;
 
 const PARAMETERS: &[Parameter] = &[Parameter::vector("offset_m", -0.5, 0.5, 0.01).expected(-0.1, 0.1)];
@@ -13,6 +14,7 @@ pub const KIND: Kind = Kind {
     places: &[Place::Payload],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits { starts: |_| vec![vec![0.0; 3]], ..Traits::USUAL },
 };
 
 fn apply(numbers: &[f64], _at: &str, subject: &mut Subject) {

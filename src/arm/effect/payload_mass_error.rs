@@ -1,9 +1,11 @@
-//! The payload weighs more or less than stated, wherever one is stated.
+//! `payload_mass_error`: the payload weighs more or less than stated, wherever one is stated.
 
-use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+use super::kind::{Kind, Measure, Parameter, Place, Removes, Scale, Scope, Traits};
+use super::subject::Subject;
 
-const PARAMETERS: &[Parameter] =
-    &[Parameter::number("delta_kg", -20.0, 20.0, 0.2, Scale::Linear).expected(-3.0, 3.0)];
+const PARAMETERS: &[Parameter] = &[Parameter::number("delta_kg", -20.0, 20.0, 0.2, Scale::Linear)
+    .expected(-3.0, 3.0)
+    .growing_with(Measure::PayloadMass, 1.0 / 4.0)];
 
 /// The effect.
 pub const KIND: Kind = Kind {
@@ -13,6 +15,7 @@ pub const KIND: Kind = Kind {
     places: &[Place::Payload],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits { removes: Some(Removes::PayloadMass), ..Traits::USUAL },
 };
 
 fn apply(numbers: &[f64], _at: &str, subject: &mut Subject) {

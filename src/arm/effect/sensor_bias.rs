@@ -1,10 +1,15 @@
-//! A sensor whose reading is the truth plus a constant.
+//! `sensor_bias`: the reading is the truth plus a constant.
 
-use super::{Channel, Kind, Parameter, Place, Scale, Scope, Subject};
+use super::channel::Channel;
+use super::kind::{Kind, Measure, Parameter, Place, Scale, Scope, Traits};
+use super::subject::Subject;
 
-const DISPLACEMENT: &[Parameter] = &[Parameter::vector("bias_mm", -10.0, 10.0, 0.02).expected(-0.5, 0.5)];
-const TWIST: &[Parameter] =
-    &[Parameter::number("bias_arcmin", -60.0, 60.0, 0.1, Scale::Linear).expected(-3.0, 3.0)];
+const DISPLACEMENT: &[Parameter] = &[Parameter::vector("bias_mm", -10.0, 10.0, 0.02)
+    .expected(-0.5, 0.5)
+    .growing_with(Measure::Displacement, 1.0 / 4.0)];
+const TWIST: &[Parameter] = &[Parameter::number("bias_arcmin", -60.0, 60.0, 0.1, Scale::Linear)
+    .expected(-3.0, 3.0)
+    .growing_with(Measure::Twist, 1.0 / 4.0)];
 
 fn parameters(place: Place) -> &'static [Parameter] {
     match place {
@@ -25,6 +30,7 @@ pub const KIND: Kind = Kind {
     ],
     parameters,
     apply,
+    traits: Traits { starts: |setting| vec![vec![0.0; setting.values_at_one.len()]], ..Traits::USUAL },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

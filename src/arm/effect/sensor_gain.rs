@@ -1,9 +1,11 @@
-//! A sensor whose reading is a factor times the truth.
+//! `sensor_gain`: the reading is a factor times the truth.
 
-use super::{Channel, Kind, Parameter, Place, Scale, Scope, Subject};
+use super::channel::Channel;
+use super::kind::{Absent, Kind, Parameter, Place, Scale, Scope, Traits};
+use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] =
-    &[Parameter::number("gain", 0.2, 5.0, 1.03, Scale::Linear).expected(0.6, 1.6)];
+    &[Parameter::number("gain", 0.2, 5.0, 1.03, Scale::Linear).expected(0.6, 1.6).absent(Absent::AtOne)];
 
 /// The effect.
 pub const KIND: Kind = Kind {
@@ -18,6 +20,7 @@ pub const KIND: Kind = Kind {
     ],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits { starts: |setting| vec![vec![1.0 / setting.values_at_one[0]]], ..Traits::USUAL },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

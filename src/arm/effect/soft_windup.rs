@@ -1,15 +1,39 @@
-//! The gear's three-segment torsion curve in place of the joint's single number.
+//! `soft_windup`: the gear's three-segment torsion curve replaces the joint's single stiffness.
 
-use super::{Kind, Parameter, Place, Scale, Scope, Subject};
+use super::kind::{Absent, Kind, Needs, Parameter, Place, Scale, Scope, Setting, Traits};
+use super::subject::Subject;
 use crate::arm::joint_law::{Curve, Windup};
 
-/// A joint's single number is its gear's middle slope K2, so K2 is expected near it, K1 below, K3 above.
+/// The nominal stiffness of a joint is usually the middle slope K2 of its gear. So K2 is expected near it, K1
+/// below and K3 above.
 const PARAMETERS: &[Parameter] = &[
-    Parameter::number("k1_nm_per_rad", 1.0, 1e10, 1e5, Scale::Stiffness).expected(1.02, 4.0),
-    Parameter::number("k2_nm_per_rad", 1.0, 1e10, 1.5e5, Scale::Stiffness).expected(0.9, 1.1),
-    Parameter::number("k3_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.25, 0.98),
-    Parameter::number("t1_nm", 0.01, 1e5, 50.0, Scale::Log).expected(0.5, 5e3),
-    Parameter::number("t2_nm", 0.01, 1e5, 150.0, Scale::Log).expected(0.5, 5e3).at_least("t1_nm"),
+    Parameter::number("k1_nm_per_rad", 1.0, 1e10, 1e5, Scale::Stiffness)
+        .expected(1.02, 4.0)
+        .absent(Absent::Never),
+    Parameter::number("k2_nm_per_rad", 1.0, 1e10, 1.5e5, Scale::Stiffness)
+        .expected(0.9, 1.1)
+        .absent(Absent::Never),
+    Parameter::number("k3_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness)
+        .expected(0.25, 0.98)
+        .absent(Absent::Never),
+    Parameter::number("t1_nm", 0.01, 1e5, 50.0, Scale::Log).expected(0.5, 5e3).within_torque(0.02, 1.0),
+    Parameter::number("t2_nm", 0.01, 1e5, 150.0, Scale::Log)
+        .expected(0.5, 5e3)
+        .within_torque(0.05, 1.5)
+        .at_least("t1_nm"),
+];
+
+/// Break points to start from, as parts of the largest torque. A fit finds only break points near its start,
+/// so the pairs cover the range.
+const BREAKS: [(f64, f64); 8] = [
+    (0.08, 0.25),
+    (0.08, 0.6),
+    (0.15, 0.4),
+    (0.15, 0.75),
+    (0.25, 0.5),
+    (0.25, 0.85),
+    (0.4, 0.65),
+    (0.5, 0.85),
 ];
 
 /// The effect.
@@ -20,7 +44,13 @@ pub const KIND: Kind = Kind {
     places: &[Place::Joint],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits { needs: Needs::TwistingJoint, is_gear_curve: true, starts, ..Traits::USUAL },
 };
+
+fn starts(setting: &Setting) -> Vec<Vec<f64>> {
+    let ln_torque = |part: &f64| (part * setting.torque_nm).ln();
+    BREAKS.iter().map(|(a, b)| vec![1.4, 1.0, 0.85, ln_torque(a), ln_torque(b)]).collect()
+}
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     if let Some(joint) = subject.structure.joint_mut(at) {

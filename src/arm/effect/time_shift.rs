@@ -1,6 +1,8 @@
-//! A channel whose clock runs ahead or behind. It has a meaning for time records only.
+//! `time_shift`: the clock of a channel runs ahead or behind. This matters for time records only.
 
-use super::{Channel, Kind, Parameter, Place, Scale, Scope, Subject};
+use super::channel::Channel;
+use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
+use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] = &[Parameter::number("seconds", -3600.0, 3600.0, 0.01, Scale::Linear)];
 
@@ -17,6 +19,7 @@ pub const KIND: Kind = Kind {
     ],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits { is_sought: false, ..Traits::USUAL },
 };
 
 fn apply(_numbers: &[f64], _at: &str, _subject: &mut Subject) {

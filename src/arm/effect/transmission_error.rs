@@ -1,6 +1,7 @@
-//! A gear or its sensor that turns unevenly, once and twice a turn of the joint.
+//! `transmission_error`: a joint turns unevenly by an error of its gear or its sensor, once and twice a turn.
 
-use super::{Kind, Parameter, Place, Scope, Subject};
+use super::kind::{Kind, Parameter, Place, Scope, Traits};
+use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] = &[Parameter {
     count: 4,
@@ -15,24 +16,13 @@ pub const KIND: Kind = Kind {
     places: &[Place::Joint],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits { is_sought: false, ..Traits::USUAL },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     if let [a, b, c, d] = *numbers {
         subject.transmissions_rad.push((at.into(), [a, b, c, d]));
     }
-}
-
-/// Sine and cosine of a joint's angle, once and twice a turn.
-pub fn transmission_waves(angle_rad: f64) -> [f64; 4] {
-    let (sin, cos) = angle_rad.sin_cos();
-    let (sin2, cos2) = (2.0 * angle_rad).sin_cos();
-    [sin, cos, sin2, cos2]
-}
-
-/// By how much a joint turns too far at an angle \[rad\].
-pub fn transmission_rad(waves_rad: &[f64; 4], angle_rad: f64) -> f64 {
-    transmission_waves(angle_rad).iter().zip(waves_rad).map(|(wave, size)| wave * size).sum()
 }
 
 #[cfg(test)]

@@ -1,12 +1,14 @@
-//! What can be wrong with an effect in a file, and the effects a calculation leaves out.
+//! Checks the effects of a file, and names those that a calculation leaves out.
 
-use super::{Effect, KINDS, Kind, Parameter, Place, Subject, frame_compliance, kind};
-use crate::arm::load::Payload;
+use super::catalogue::{KINDS, kind};
+use super::entry::Effect;
+use super::kind::{Kind, Needs, Parameter};
+use super::subject::Subject;
 use crate::arm::structure::{Piece, Structure};
 use crate::arm::{Arm, JointModel};
 use crate::input::json::closest;
 
-/// One thing wrong with an effect: the key it concerns, the problem, and what to try.
+/// One thing that is wrong with an effect: the key, the problem, and what to try.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectFault {
     /// `effect`, `at` or `parameters.NAME`, relative to the effect.
@@ -23,7 +25,7 @@ impl Effect {
         let Some(kind) = kind(&self.effect) else { return vec![self.unknown_kind()] };
         match structure.place(&self.at, kind.places) {
             None => vec![self.wrong_place(kind, structure)],
-            Some(place) => self.parameter_faults((kind.parameters)(place)),
+            Some(place) => self.parameter_faults(kind, (kind.parameters)(place)),
         }
     }
 
@@ -49,7 +51,7 @@ impl Effect {
         }
     }
 
-    fn parameter_faults(&self, parameters: &[Parameter]) -> Vec<EffectFault> {
+    fn parameter_faults(&self, kind: &Kind, parameters: &[Parameter]) -> Vec<EffectFault> {
         let mut faults = Vec::new();
         let names: Vec<&str> = parameters.iter().map(|p| p.name).collect();
         for (name, _) in self.parameters.iter().filter(|(n, _)| !names.contains(&n.as_str())) {
@@ -60,13 +62,11 @@ impl Effect {
             });
         }
         faults.extend(parameters.iter().filter_map(|p| self.parameter_fault(p)));
-        let is_frame = self.effect == frame_compliance::KIND.name;
-        if faults.is_empty() && is_frame && !frame_compliance::is_spring(&self.numbers(parameters)) {
-            faults.push(EffectFault {
-                field: "parameters".into(),
-                problem: "some moment would turn the frame against itself".into(),
-                hint: "each coupling squared is at most the product of its two diagonal numbers".into(),
-            });
+        if faults.is_empty()
+            && let Some((problem, hint)) = (kind.traits.contradiction)(&self.numbers(parameters))
+        {
+            let field = "parameters".into();
+            faults.push(EffectFault { field, problem: problem.into(), hint: hint.into() });
         }
         faults
     }
@@ -94,7 +94,7 @@ impl Effect {
         Some(EffectFault { field: format!("parameters.{}", parameter.name), problem, hint })
     }
 
-    /// The parameter, with its value, that this one must not be below and is.
+    /// The parameter, with its value, that this one must not be below but is.
     fn is_below_another(&self, parameter: &Parameter, value: f64) -> Option<(&str, f64)> {
         let (name, numbers) =
             self.parameters.iter().find(|(name, _)| Some(name.as_str()) == parameter.not_below)?;
@@ -108,8 +108,8 @@ impl Arm {
         self.effects.iter().filter(|e| e.is_of_test()).collect()
     }
 
-    /// The arm with all of its effects, those of the payload and of the channels included; a curve that
-    /// an effect brings is reduced as the model asks, like the arm's own.
+    /// The arm with all of its effects, including those of the payload and of the channels. A curve that an
+    /// effect brings is reduced as the joint model asks, like the arm's own.
     pub fn subject(&self, joints: JointModel) -> Subject {
         let mut subject = Subject::new(self.nominal_structure(joints));
         self.effects.iter().for_each(|effect| subject.apply(effect));
@@ -122,33 +122,17 @@ impl Arm {
     }
 }
 
-impl Subject {
-    /// The true payload where `stated` is stated.
-    pub fn payload(&self, stated: &Payload) -> Payload {
-        if stated.mass_kg == 0.0 {
-            return *stated;
-        }
-        Payload {
-            mass_kg: stated.mass_kg + self.payload_delta_kg,
-            cg_m: stated.cg_m + self.payload_offset_m,
-            ..*stated
-        }
-    }
-}
-
-/// Whether an effect may sit at a kind of place in this arm as it is: what a rigid model lacks is
-/// offered only where the model is rigid, and what twists in series only where something twists.
-pub fn fits_nominal(kind: &Kind, place: Place, at: &str, structure: &Structure) -> bool {
+/// Whether an effect may sit at a place of this arm as it is. What a rigid model lacks is offered only where
+/// the model is rigid, and what twists in series only where something twists.
+pub fn fits_nominal(kind: &Kind, at: &str, structure: &Structure) -> bool {
     let rigid_joint = structure.joints().any(|j| j.name == at && j.law.is_rigid());
     let rigid_link = structure.links().any(|l| l.name == at && l.beam.is_some_and(|b| b.flexibility == 0.0));
-    match (kind.name, place) {
-        ("joint_compliance", Place::Joint) => rigid_joint,
-        ("connection_compliance" | "soft_windup" | "lost_motion" | "hysteresis", Place::Joint) => {
-            !rigid_joint
-        }
-        ("link_flexibility", _) => rigid_link,
-        ("modulus_error", _) => !rigid_link,
-        _ => true,
+    match kind.traits.needs {
+        Needs::Nothing => true,
+        Needs::RigidJoint => rigid_joint,
+        Needs::TwistingJoint => !rigid_joint,
+        Needs::RigidLink => rigid_link,
+        Needs::BendingLink => !rigid_link,
     }
 }
 

@@ -1,6 +1,8 @@
-//! A channel written in another unit than its column says: inches, metres, degrees.
+//! `wrong_unit`: a channel is written in another unit than its column says: inches, metres, degrees.
 
-use super::{Channel, Kind, Parameter, Place, Scale, Scope, Subject};
+use super::channel::Channel;
+use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
+use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] = &[Parameter::number("factor", 1e-7, 1e7, 25.4, Scale::Log)];
 
@@ -17,6 +19,7 @@ pub const KIND: Kind = Kind {
     ],
     parameters: |_| PARAMETERS,
     apply,
+    traits: Traits { is_sought: false, ..Traits::USUAL },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
@@ -25,7 +28,7 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     }
 }
 
-/// Factors that unit slips leave in a column, with what happened.
+/// The factors that unit slips leave in a column, each with its cause.
 pub const SLIPS: &[(f64, &str)] = &[
     (25.4, "a value in mm stands 25.4 times too large: converted from inches twice"),
     (1.0 / 25.4, "inches in a column of mm"),

@@ -5,6 +5,7 @@
 
 pub mod efficiency;
 pub mod gears;
+pub(crate) mod log;
 pub mod materials;
 pub mod motors;
 pub mod profiles;

@@ -1,7 +1,7 @@
 //! One row of a catalog file. Every cell is checked once, by its column's kind; afterwards a cell that was
 //! refused reads as unknown, so that one bad cell makes one fault.
 
-use super::table::Log;
+use super::log::Log;
 use crate::catalog::schema::{CatalogFile, Cell};
 use crate::catalog::{Confidence, Provenance};
 use crate::input::json::closest;

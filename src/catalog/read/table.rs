@@ -1,45 +1,16 @@
 //! The text of one catalog file cut into rows; what is wrong with its form is recorded, not returned.
 
+use super::log::Log;
 use super::row::Row;
 use crate::catalog::schema::CatalogFile;
-use crate::input::json::{Fault, closest};
-use crate::input::lines::LineCounter;
-use csv::{ByteRecord, ReaderBuilder, StringRecord, Trim};
-use std::cell::RefCell;
+use crate::input::csv::{Csv, Record, is_repeated, other_separators};
+use crate::input::json::closest;
 use std::collections::BTreeMap;
-
-/// What was found wrong (`faults`) or odd (`warnings`) so far.
-#[derive(Debug, Default)]
-pub struct Log {
-    /// Reasons to refuse the file.
-    pub faults: RefCell<Vec<Fault>>,
-    /// Things to look at.
-    pub warnings: RefCell<Vec<Fault>>,
-}
-
-impl Log {
-    /// Records a reason to refuse a file.
-    pub fn fault(&self, file: &str, line: Option<usize>, field: &str, problem: String, hint: String) {
-        self.faults.borrow_mut().push(Fault { file: file.into(), line, field: field.into(), problem, hint });
-    }
-
-    /// Records something to look at.
-    pub fn warn(&self, file: &str, line: Option<usize>, field: &str, problem: String, hint: String) {
-        self.warnings.borrow_mut().push(Fault {
-            file: file.into(),
-            line,
-            field: field.into(),
-            problem,
-            hint,
-        });
-    }
-}
 
 /// The rows of a catalog file that have the right number of fields.
 pub fn rows<'a>(file: CatalogFile, name: &'a str, bytes: &[u8], log: &'a Log) -> Vec<Row<'a>> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut records = records(name, bytes, log).into_iter();
-    let Some((line, header)) = records.next() else {
+    let Some(Record { line, cells: header }) = records.next() else {
         log.fault(name, None, "", "is empty".into(), format!("begin with the header {}", required(file)));
         return Vec::new();
     };
@@ -47,9 +18,9 @@ pub fn rows<'a>(file: CatalogFile, name: &'a str, bytes: &[u8], log: &'a Log) ->
         return Vec::new();
     };
     let mut out = Vec::new();
-    for (line, record) in records.filter(|(_, record)| record.iter().any(|cell| !cell.is_empty())) {
-        if record.len() == header.len() {
-            let cells = places.iter().map(|place| place.map(|i| record[i].to_string())).collect();
+    for Record { line, cells } in records.filter(|r| r.cells.iter().any(|cell| !cell.is_empty())) {
+        if cells.len() == header.len() {
+            let cells = places.iter().map(|place| place.map(|i| cells[i].clone())).collect();
             let row = Row::new(file, name, line, cells, log);
             row.check_cells();
             out.push(row);
@@ -58,7 +29,7 @@ pub fn rows<'a>(file: CatalogFile, name: &'a str, bytes: &[u8], log: &'a Log) ->
                 name,
                 Some(line),
                 "",
-                format!("has {} fields, not the {} of the header", record.len(), header.len()),
+                format!("has {} fields, not the {} of the header", cells.len(), header.len()),
                 "put text that contains a comma in \"quotes\"; the decimal sign is a point".into(),
             );
         }
@@ -67,29 +38,14 @@ pub fn rows<'a>(file: CatalogFile, name: &'a str, bytes: &[u8], log: &'a Log) ->
     out
 }
 
-/// The records of a CSV text with the line each begins on.
-fn records(name: &str, bytes: &[u8], log: &Log) -> Vec<(usize, StringRecord)> {
-    let mut reader =
-        ReaderBuilder::new().has_headers(false).flexible(true).trim(Trim::All).from_reader(bytes);
-    let mut out = Vec::new();
-    let mut lines = LineCounter::new(bytes);
-    for record in reader.byte_records() {
-        match record.map_err(|e| e.to_string()).and_then(|r| Ok((lines.of(r.position()), utf8(r)?))) {
-            Ok(numbered) => out.push(numbered),
-            Err(problem) => log.fault(
-                name,
-                Some(lines.line()),
-                "",
-                format!("cannot be read: {problem}"),
-                "save the file as UTF-8 text".into(),
-            ),
-        }
+/// The records of a CSV text.
+fn records(name: &str, bytes: &[u8], log: &Log) -> Vec<Record> {
+    let csv = Csv::parse(bytes, None);
+    for (line, problem) in csv.unreadable {
+        let problem = format!("cannot be read: {problem}");
+        log.fault(name, Some(line), "", problem, "save the file as UTF-8 text".into());
     }
-    out
-}
-
-fn utf8(record: ByteRecord) -> Result<StringRecord, String> {
-    StringRecord::from_byte_record(record).map_err(|e| e.utf8_error().to_string())
+    csv.records
 }
 
 fn required(file: CatalogFile) -> String {
@@ -102,10 +58,11 @@ fn header_places(
     file: CatalogFile,
     name: &str,
     line: usize,
-    header: &StringRecord,
+    header: &[String],
     log: &Log,
 ) -> Option<Vec<Option<usize>>> {
-    if let Some(separator) = other_separator(header) {
+    let joined = if header.len() == 1 { header } else { &[] };
+    if let Some(separator) = other_separators(joined, 1).next() {
         let problem = format!("the columns are separated by {separator}");
         log.fault(
             name,
@@ -129,29 +86,20 @@ fn header_places(
     Some(places)
 }
 
-fn other_separator(header: &StringRecord) -> Option<&'static str> {
-    let only = header.get(0).filter(|_| header.len() == 1)?;
-    match () {
-        () if only.contains(';') => Some("semicolons"),
-        () if only.contains('\t') => Some("tabs"),
-        () => None,
-    }
-}
-
 /// Reports columns that are unknown or there twice; returns the known names nearest to the unknown ones.
 fn unknown_columns(
     file: CatalogFile,
     name: &str,
     line: usize,
-    header: &StringRecord,
+    header: &[String],
     log: &Log,
 ) -> Vec<Option<&'static str>> {
     let known: Vec<_> = file.columns().iter().map(|c| c.name).collect();
     let mut nearest = Vec::new();
     for (i, column) in header.iter().enumerate() {
-        if header.iter().take(i).any(|earlier| earlier == column) {
+        if is_repeated(header, i) {
             log.fault(name, Some(line), column, "this column is there twice".into(), "keep one".into());
-        } else if !known.contains(&column) {
+        } else if !known.contains(&column.as_str()) {
             let absent: Vec<_> = known.iter().copied().filter(|k| !header.iter().any(|h| h == *k)).collect();
             let near = closest(column, &absent);
             let hint = match near {

@@ -1,7 +1,7 @@
 //! What holds across the rows of a catalog: ratings grow with size and with ratio, other names of series
 //! are unique, curves meet the rated point. Exceptions are warnings: vendors print some.
 
-use super::table::Log;
+use super::log::Log;
 use crate::catalog::efficiency::EfficiencyKind;
 use crate::catalog::gear::Gear;
 use crate::catalog::{Catalogs, Provenance};

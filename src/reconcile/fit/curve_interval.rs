@@ -1,55 +1,59 @@
-//! 95 % intervals of a gear's curve, from the posterior of its numbers.
+//! Computes 95 % intervals of the parameters of a gear's curve from their posterior distribution.
 //!
-//! A break point means nothing where the slopes on its two sides are alike, and among many places for it one
-//! always suits the noise. The objective along a break point is therefore the largest of many chance
-//! gains, no parabola, and its rise by 3.84 holds the true value too seldom. Instead every place counts by its
-//! probability: with both break points held the readings are nearly linear in everything else, so a fit
-//! gives the likelihood of the place and how far the slopes may vary there (Laplace). The places are
-//! nodes about the best fit, close together near it; from nodes that are not ruled out their neighbours
-//! are looked at.
+//! A break point has no meaning where the slopes on its two sides are equal. Of the many places where it
+//! could be, one always suits the noise. The objective along a break point is therefore the largest of many
+//! chance gains, not a parabola, and the usual rise of 3.84 contains the true value too seldom.
+//!
+//! So every place counts by its probability. With both break points held, the readings are nearly linear in
+//! all other parameters. A fit then gives the likelihood of the place, and the range of the slopes there
+//! (Laplace's approximation). The places are nodes around the best fit, close together near it. The search
+//! visits the neighbours of every node that the readings do not rule out.
 
+use super::descent::data_curvature;
 use super::descent::{Effort, Fit, Weights, fit_below};
-use super::interval::{Interval, data_curvature};
 use super::stats::normal_below;
-use crate::reconcile::forward::Forward;
+use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::model::estimate::Interval;
 use nalgebra::{Cholesky, DMatrix};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Probability beyond each end.
+/// Probability beyond each end of an interval.
 const TAIL: f64 = 0.025;
-/// Part of the largest density above which an end of the range is not ruled out: a rise of 3.84.
+/// The end of a range is ruled out where the density is below this part of its maximum. It equals a rise of
+/// the objective by 3.84.
 const OPEN: f64 = 0.146;
-/// Rise of the objective beyond which a node is ruled out.
+/// A node is ruled out where the objective is higher than the best by more than this.
 const RULED_OUT: f64 = 14.0;
-/// First step between nodes over the standard deviation of the break point.
+/// First step between nodes, in standard deviations of the break point.
 const STEP: f64 = 0.5;
-/// Smallest and largest first step, in ln of the torque.
+/// Smallest and largest first step \[ln of the torque\].
 const STEPS: (f64, f64) = (0.004, 0.08);
-/// Each step over the one before it, going out.
+/// Ratio of each step to the one before it, going outwards.
 const GROWTH: f64 = 1.4;
-/// Of so many neighbouring nodes one is looked at in any case.
+/// Every third node is always visited, so that no separate peak is missed.
 const COARSE: usize = 3;
-/// How hard a fit with both break points held tries.
+/// Effort of a fit with both break points held.
 const HELD: Effort = Effort { steps: 4, tolerance: 0.05 };
 
-/// Nodes of a break point, rising.
+/// The nodes of one break point, in ascending order.
 struct Axis {
     parameter: usize,
     nodes: Vec<f64>,
 }
 
-/// What the readings say with both break points held at nodes.
+/// The fit with both break points held at a pair of nodes.
 struct Cell {
     u: Vec<f64>,
-    /// Standard deviations of all parameters but the two.
+    /// Standard deviations of all parameters except the two break points.
     deviations: Vec<f64>,
     objective: f64,
-    /// ln of the probability density at the nodes.
+    /// Natural logarithm of the probability density at the nodes.
     ln_density: f64,
 }
 
-/// Intervals of the knobs `own` of a gear's curve, in their order; `pair` are its break points.
+/// Intervals of the parameters `own` of a gear's curve, in their order. `pair` holds the indices of its break
+/// points.
 pub fn curve_intervals(
     forward: &Forward,
     best: &Fit,
@@ -87,7 +91,7 @@ impl Axis {
         Self { parameter, nodes }
     }
 
-    /// What of the axis a node stands for: halfway to its neighbours.
+    /// The part of the axis that a node represents: it reaches halfway to both neighbours.
     fn span(&self, node: usize) -> (f64, f64) {
         let middle = |a: usize, b: usize| 0.5 * (self.nodes[a] + self.nodes[b]);
         let last = self.nodes.len() - 1;
@@ -95,10 +99,10 @@ impl Axis {
     }
 }
 
-/// Nodes of the two axes.
+/// Index of the node on each of the two axes.
 type Nodes = [usize; 2];
 
-/// Every cell that matters: those of a coarse grid and, from where the readings allow, their neighbours.
+/// All cells that matter: those of a coarse grid, and the neighbours of every cell that is not ruled out.
 fn explore(forward: &Forward, best: &Fit, weights: &Weights, axes: &[Axis; 2]) -> BTreeMap<Nodes, Cell> {
     let centre = [0, 1].map(|k| {
         let (axis, at) = (&axes[k], best.point.u[axes[k].parameter]);
@@ -106,6 +110,7 @@ fn explore(forward: &Forward, best: &Fit, weights: &Weights, axes: &[Axis; 2]) -
             .min_by(|a, b| (axis.nodes[*a] - at).abs().total_cmp(&(axis.nodes[*b] - at).abs()))
     });
     let centre = centre.map(|c| c.unwrap_or(0));
+    // the second break point is above the first
     let ordered = |n: &Nodes| axes[0].nodes[n[0]] < axes[1].nodes[n[1]];
     let coarse = |k: usize| (0..axes[k].nodes.len()).filter(move |n| n.abs_diff(centre[k]) % COARSE == 0);
     let all = coarse(0).flat_map(|a| coarse(1).map(move |b| [a, b]));
@@ -156,8 +161,10 @@ impl Cell {
         let fitted = fit_below(forward, &model, start, weights, HELD, limit);
         let held = axes.each_ref().map(|a| a.parameter);
         let of_rest = without(&fitted.curvature, held);
+        // the density at the nodes is the evidence divided by the width of the two break points
         let ln_density =
             fitted.evidence + 0.5 * (ln_determinant(fitted.curvature.clone()) - ln_determinant(of_rest));
+        // the two held parameters are not part of the covariance
         let covariance = without(&data_curvature(&fitted), held).try_inverse();
         let mut deviations = vec![f64::INFINITY; fitted.point.u.len()];
         let rest = (0..deviations.len()).filter(|p| !held.contains(p)).collect::<Vec<_>>();
@@ -168,7 +175,7 @@ impl Cell {
     }
 }
 
-/// A matrix without two rows and columns.
+/// Removes two rows and the same two columns from a matrix.
 fn without(matrix: &DMatrix<f64>, mut held: [usize; 2]) -> DMatrix<f64> {
     held.sort_unstable();
     matrix.clone().remove_rows_at(&held).remove_columns_at(&held)
@@ -179,14 +186,14 @@ fn ln_determinant(matrix: DMatrix<f64>) -> f64 {
         .map_or(f64::INFINITY, |c| 2.0 * c.l().diagonal().iter().map(|d| d.ln()).sum::<f64>())
 }
 
-/// The posterior over the nodes.
+/// The posterior distribution over the nodes.
 struct Posterior {
     axes: [Axis; 2],
     cells: BTreeMap<Nodes, Cell>,
 }
 
 impl Posterior {
-    /// Probability of each cell, up to a factor.
+    /// Probability of each cell, up to a common factor.
     fn masses(&self) -> impl Iterator<Item = (&Nodes, &Cell, f64)> {
         let top = self.cells.values().map(|c| c.ln_density).fold(f64::NEG_INFINITY, f64::max);
         let width = |axis: usize, node: usize| {
@@ -194,6 +201,7 @@ impl Posterior {
             to - from
         };
         self.cells.iter().map(move |(nodes, cell)| {
+            // a node stands for its area, because nodes are not equally spaced
             let area = width(0, nodes[0]) * width(1, nodes[1]);
             (nodes, cell, (cell.ln_density - top).exp() * area)
         })
@@ -224,7 +232,8 @@ impl Posterior {
         }
     }
 
-    /// A mixture of normal distributions, each cut off at the ends of the range.
+    /// The interval of a slope. Its distribution is a mixture of normal distributions, one per cell, each cut
+    /// off at the ends of the range.
     fn slope(&self, p: usize, (low, high): (f64, f64)) -> Interval {
         let parts: Vec<(f64, f64, f64)> = self
             .masses()
@@ -247,6 +256,7 @@ impl Posterior {
         let all = below(high);
         let quantile = |part: f64| {
             let (mut from, mut to) = (low, high);
+            // bisection: sixty halvings reach the precision of the numbers
             for _ in 0..60 {
                 let middle = 0.5 * (from + to);
                 if below(middle) < part * all { from = middle } else { to = middle }

@@ -1,33 +1,36 @@
-//! Fitting a model: the most probable parameters, bounded, with Huber's loss.
+//! Fits a model: finds its most probable parameters within bounds, with Huber's loss.
 //!
-//! Residuals `r` are in standard deviations. The objective is `Σ ρ(r) + Σ u²` over data and calibrated
-//! numbers (each `u` a standard normal deviate by tolerance); effects' knobs are free within bounds.
-//! Levenberg-Marquardt steps with an active set at the bounds; frequencies enter with their exact
-//! sensitivities, statics and bench, which cost little, by differences.
+//! Residuals `r` are in standard deviations. The objective is `Σ ρ(r) + Σ u²`, where `ρ` is Huber's loss. The
+//! first sum is over the data. The second is over the calibrated parameters, where each `u` is a standard
+//! normal deviate by its tolerance. The parameters of effects are free within bounds.
+//!
+//! Steps are Levenberg-Marquardt steps with an active set at the bounds. Frequencies enter with their exact
+//! sensitivities, because solving for them costs most. Statics and bench readings are cheap and are
+//! differentiated numerically.
 
-use crate::reconcile::forward::Forward;
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::modal::Solved;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Model;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// Where Huber's loss turns from square to straight \[standard deviations\].
+/// Residual at which Huber's loss turns from a square into a straight line \[standard deviations\].
 const HUBER: f64 = 4.0;
-/// Step of differences in `u`.
+/// Step of numerical derivatives, in `u`.
 const STEP: f64 = 1e-4;
 
-/// Which data count and how their standard deviations are scaled.
+/// Weights of the data: which of them count, and how their standard deviations are scaled.
 #[derive(Debug, Clone)]
 pub struct Weights {
-    /// 1 / (scale x sigma) of each datum; 0 = left out.
+    /// Reciprocal of the scaled standard deviation of each datum; 0 where the datum is left out.
     pub inverse: Vec<f64>,
-    /// Whether the frequencies need not be known.
+    /// Whether the modes may remain unsolved, because no frequency counts.
     pub smooth_only: bool,
 }
 
 impl Weights {
-    /// The same without the frequencies.
+    /// The same weights with all frequencies left out.
     pub fn without_modes(&self, forward: &Forward) -> Self {
         let mut out = self.clone();
         out.inverse[forward.starts[1]..forward.starts[2]].fill(0.0);
@@ -36,15 +39,15 @@ impl Weights {
     }
 }
 
-/// A model at one parameter vector.
+/// A model evaluated at one parameter vector.
 pub struct Point {
     /// Parameters.
     pub u: Vec<f64>,
-    /// Numbers on the coordinates.
+    /// Compliances, joint laws and masses that the parameters lead to.
     pub coefficients: Coefficients,
-    /// True values.
+    /// True value of each datum, in the unit of its file.
     pub truth: Vec<f64>,
-    /// Predicted readings.
+    /// Predicted reading of each datum, in the unit of its file.
     pub predicted: Vec<f64>,
     /// Solved modes of each modal test.
     pub solved: Vec<Vec<Solved>>,
@@ -56,17 +59,17 @@ pub struct Point {
 pub struct Fit<'a> {
     /// The model.
     pub model: Model<'a>,
-    /// Where it is best.
+    /// The point where the objective is smallest.
     pub point: Point,
-    /// Derivative of every prediction by every parameter.
+    /// Derivative of every prediction (rows) by every parameter (columns).
     pub jacobian: DMatrix<f64>,
-    /// Curvature: `JᵀWJ`, priors included.
+    /// Curvature of half the objective, `JᵀWJ` plus the priors.
     pub curvature: DMatrix<f64>,
-    /// ln of the evidence.
+    /// Natural logarithm of the evidence (Laplace's approximation).
     pub evidence: f64,
 }
 
-/// Evaluates a model.
+/// Evaluates a model at `u`.
 pub fn evaluate(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Point {
     let coefficients = model.coefficients(forward, u);
     let mut truth = vec![0.0; forward.data.len()];
@@ -101,7 +104,7 @@ fn point(
     Point { u, coefficients, truth, predicted, solved, objective }
 }
 
-/// `Σ ρ(r) + Σ u²`.
+/// The objective `Σ ρ(r) + Σ u²`.
 pub fn objective(forward: &Forward, model: &Model, u: &[f64], predicted: &[f64], weights: &Weights) -> f64 {
     let data: f64 = forward
         .data
@@ -118,7 +121,7 @@ fn loss(r: f64) -> f64 {
     if size <= HUBER { r * r } else { 2.0 * HUBER * size - HUBER * HUBER }
 }
 
-/// Derivatives of all predictions at a point.
+/// Derivatives of all predictions at a point, data by parameters.
 pub fn jacobian(forward: &Forward, model: &Model, at: &Point) -> DMatrix<f64> {
     let mut out = DMatrix::zeros(forward.data.len(), model.len());
     for p in 0..model.len() {
@@ -132,12 +135,12 @@ pub fn jacobian(forward: &Forward, model: &Model, at: &Point) -> DMatrix<f64> {
     out
 }
 
-/// Change of the predictions from a point to other parameters, frequencies to first order.
+/// Change of the predictions from a point to other parameters. Frequencies change to first order.
 pub fn change(forward: &Forward, model: &Model, at: &Point, u: &[f64]) -> Vec<f64> {
     change_to(forward, at, &model.coefficients(forward, u))
 }
 
-/// Change of the predictions from a point to other coefficients, frequencies to first order.
+/// Change of the predictions from a point to other coefficients. Frequencies change to first order.
 pub fn change_to(forward: &Forward, at: &Point, moved: &Coefficients) -> Vec<f64> {
     let mut truth = at.truth.clone();
     if !same_smooth(&at.coefficients, moved) {
@@ -156,7 +159,7 @@ pub fn change_to(forward: &Forward, at: &Point, moved: &Coefficients) -> Vec<f64
     truth.iter().zip(&at.predicted).map(|(a, b)| a - b).collect()
 }
 
-/// Whether statics and bench of two subjects are the same.
+/// Whether two sets of coefficients give the same static and bench readings.
 fn same_smooth(a: &Coefficients, b: &Coefficients) -> bool {
     let plain = |c: &Coefficients| {
         c.laws.iter().all(|l| {
@@ -181,7 +184,7 @@ pub struct Normal {
     pub curvature: DMatrix<f64>,
 }
 
-/// Normal equations of residuals `r` (predicted less measured, in the unit of the file).
+/// Builds the normal equations. Residuals are predicted minus measured, in the unit of the file.
 pub fn normal(
     forward: &Forward,
     calibrated: usize,
@@ -194,6 +197,7 @@ pub fn normal(
         forward.data.len(),
         forward.data.iter().zip(predicted).zip(&weights.inverse).map(|((d, p), w)| (p - d.value) * w),
     );
+    // iteratively reweighted least squares: the weight of a residual beyond the turn is HUBER / |r|
     let robust = residual.map(|r| if r.abs() <= HUBER { 1.0 } else { (HUBER / r.abs()).sqrt() });
     let row_factors =
         DVector::from_iterator(robust.len(), robust.iter().zip(&weights.inverse).map(|(r, w)| r * w));
@@ -210,7 +214,7 @@ pub fn normal(
     Normal { gradient, curvature }
 }
 
-/// One damped step within bounds.
+/// Takes one damped step and keeps it within the bounds.
 pub fn bounded_step(model: &Model, u: &[f64], normal: &Normal, damping: f64) -> Vec<f64> {
     let n = u.len();
     let mut free: Vec<usize> = (0..n).collect();
@@ -235,6 +239,7 @@ pub fn bounded_step(model: &Model, u: &[f64], normal: &Normal, damping: f64) -> 
             model.put_in_order(&mut out);
             return out;
         }
+        // a parameter that would leave its bounds stays there, and the rest is solved again
         free.retain(|p| !blocked.contains(p));
     }
 }
@@ -244,6 +249,7 @@ fn damped(normal: &Normal, free: &[usize], damping: f64) -> DVector<f64> {
     let largest = normal.curvature.diagonal().iter().copied().fold(0.0, f64::max);
     let mut a = DMatrix::from_fn(n, n, |i, j| normal.curvature[(free[i], free[j])]);
     for i in 0..n {
+        // the last terms keep the matrix regular where no datum depends on a parameter
         a[(i, i)] += damping * a[(i, i)] + 1e-12 * largest + 1e-30;
     }
     let b = DVector::from_fn(n, |i, _| -normal.gradient[free[i]]);
@@ -253,12 +259,12 @@ fn damped(normal: &Normal, free: &[usize], damping: f64) -> DVector<f64> {
     }
 }
 
-/// How hard a fit tries.
+/// The effort that a fit spends.
 #[derive(Debug, Clone, Copy)]
 pub struct Effort {
-    /// Most steps.
+    /// Largest number of steps.
     pub steps: usize,
-    /// Smallest worthwhile fall of the objective.
+    /// The fit ends when a step lowers the objective by less than this.
     pub tolerance: f64,
 }
 
@@ -279,7 +285,7 @@ pub fn fit<'a>(
     fit_below(forward, model, start, weights, effort, f64::INFINITY)
 }
 
-/// The same, given up where the objective will not come below a limit.
+/// Fits a model from `start`, and gives up where the objective cannot come below `limit`.
 pub fn fit_below<'a>(
     forward: &Forward,
     model: &Model<'a>,
@@ -293,7 +299,7 @@ pub fn fit_below<'a>(
     finish(forward, model, point, slopes, weights)
 }
 
-/// Where a fit that is given up like that ends: all that is needed to go on from there.
+/// The end point of a descent from `start`, without the slopes and the evidence of a full fit.
 pub fn descent(
     forward: &Forward,
     model: &Model,
@@ -305,7 +311,7 @@ pub fn descent(
     descended(forward, model, start, weights, effort, limit).0
 }
 
-/// Where a descent ends, and the slopes there if they are known.
+/// The end point of a descent, and the slopes there if they are known.
 fn descended(
     forward: &Forward,
     model: &Model,
@@ -333,7 +339,8 @@ fn descended(
         };
         let fall = here.objective - next.objective;
         here = next;
-        // falls grow smaller: one more as large as this would not do
+        // each step lowers the objective by less than the one before, so one more step like this is the most
+        // to hope for
         let hopeless = here.objective - fall > limit;
         if fall < effort.tolerance || hopeless {
             break;
@@ -358,15 +365,17 @@ fn descend(
         }
         let next = evaluate(forward, model, &u, weights);
         if next.objective < here.objective {
+            // a good step: trust the parabola more
             *damping = (*damping * 0.2).max(1e-9);
             return Some(next);
         }
+        // a bad step: move closer to steepest descent
         *damping = (*damping * 10.0).max(1e-5);
     }
     None
 }
 
-/// Evidence and curvature at the end of a fit.
+/// Completes a fit: computes its curvature and its evidence.
 pub fn finish<'a>(
     forward: &Forward,
     model: &Model<'a>,
@@ -380,9 +389,11 @@ pub fn finish<'a>(
     let normal = normal(forward, model.calibrated(), &point.u, &point.predicted, &jacobian, weights);
     let mut curvature = normal.curvature;
     let mut evidence = -0.5 * point.objective;
-    for (i, knob) in model.knobs().enumerate() {
+    for (i, parameter) in model.free_parameters().enumerate() {
         let p = model.calibrated() + i;
-        let width = knob.width(point.u[p]);
+        let width = parameter.width(point.u[p]);
+        // a uniform prior of this width has the variance width² / 12; adding it keeps the evidence finite
+        // where the data say nothing
         curvature[(p, p)] += 12.0 / (width * width);
         evidence += 0.5 * TAU.ln() - width.ln();
     }
@@ -393,8 +404,8 @@ pub fn finish<'a>(
 }
 
 impl Fit<'_> {
-    /// Part of each datum's variance that the parameters take up, `wJᵢC(wJᵢ)ᵀ` with the covariance `C`; 0 where
-    /// a datum is left out.
+    /// Leverage of each datum: the part of its variance that the parameters take up, `wJᵢC(wJᵢ)ᵀ` with the
+    /// covariance `C`. It is 0 where a datum is left out.
     pub fn leverages(&self, weights: &Weights) -> Vec<f64> {
         let n = self.curvature.nrows();
         let Some(cholesky) = Cholesky::new(self.curvature.clone()) else {
@@ -407,7 +418,7 @@ impl Fit<'_> {
         rows.map(|(row, w)| (row.norm_squared() * w * w).min(1.0)).collect()
     }
 
-    /// Residuals, measured less predicted, in scaled standard deviations.
+    /// Residuals, measured minus predicted, in scaled standard deviations.
     pub fn residuals(&self, forward: &Forward, weights: &Weights) -> Vec<f64> {
         forward
             .data
@@ -417,4 +428,15 @@ impl Fit<'_> {
             .map(|((d, p), w)| (d.value - p) * w)
             .collect()
     }
+}
+
+/// The curvature without most of the prior of the effects' parameters. The width of a prior belongs to the
+/// evidence, not to what the data say.
+pub fn data_curvature(fit: &Fit) -> DMatrix<f64> {
+    let mut curvature = fit.curvature.clone();
+    for (i, parameter) in fit.model.free_parameters().enumerate() {
+        let p = fit.model.calibrated() + i;
+        curvature[(p, p)] -= 11.9 / parameter.width(fit.point.u[p]).powi(2);
+    }
+    curvature
 }

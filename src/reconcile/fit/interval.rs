@@ -1,29 +1,23 @@
-//! 95 % intervals of fitted parameters.
+//! Computes 95 % intervals of fitted parameters.
 //!
-//! From the curvature where the objective is a parabola; a gear's curve has a posterior of its own
-//! (`curve_interval`); where else the objective may be no parabola (torque scales, ends of a range) by its profile: the parameter is held, everything else refitted, until the
-//! objective has risen by 3.84.
+//! Where the objective is a parabola, its curvature gives the interval. A gear's curve has a posterior
+//! distribution of its own ([`curve_interval`](super::curve_interval)). Elsewhere the objective may not be a
+//! parabola: a torque scale, or a value near the end of its range. There the interval follows the profile
+//! likelihood: the parameter is held, everything else is refitted, and the end is where the objective has
+//! risen by 3.84.
 
 use super::curve_interval::curve_intervals;
-use super::descent::{Effort, Fit, Weights, descent};
-use crate::reconcile::forward::Forward;
+use super::descent::{Effort, Fit, Weights, data_curvature, descent};
+use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::model::estimate::Interval;
 use crate::reconcile::model::parameters::{Calibration, Model};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-/// Normal deviate of a two-sided 95 %.
+/// Standard normal deviate of a two-sided probability of 95 %.
 const Z95: f64 = 1.959_964;
 /// Rise of the objective at the ends of a 95 % interval.
 const RISE: f64 = 3.841_459;
-
-/// An interval in `u`; an end the data do not bound is `None`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Interval {
-    /// Lower end.
-    pub low: Option<f64>,
-    /// Upper end.
-    pub high: Option<f64>,
-}
 
 /// Standard deviation of every parameter from the curvature.
 pub fn deviations(fit: &Fit) -> Vec<f64> {
@@ -33,29 +27,19 @@ pub fn deviations(fit: &Fit) -> Vec<f64> {
     (0..n).map(|p| covariance[(p, p)].abs().sqrt()).collect()
 }
 
-/// The curvature without most of the prior's width of the knobs: that belongs to the evidence, not to what the
-/// data say.
-pub fn data_curvature(fit: &Fit) -> DMatrix<f64> {
-    let mut curvature = fit.curvature.clone();
-    for (i, knob) in fit.model.knobs().enumerate() {
-        let p = fit.model.calibrated() + i;
-        curvature[(p, p)] -= 11.9 / knob.width(fit.point.u[p]).powi(2);
-    }
-    curvature
-}
-
-/// Intervals of the effects' knobs, in their order.
+/// Intervals of the parameters of all effects, in their order.
 pub fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec<Interval> {
     let deviations = deviations(best);
     let breaks = best.model.break_points();
     let of_effect = |effect: usize| {
-        let first = best.model.first_knob(effect);
-        let own = first..first + best.model.effects[effect].knobs.len();
+        let first = best.model.first_parameter(effect);
+        let own = first..first + best.model.effects[effect].free_parameters.len();
         let pair: Vec<usize> = breaks.iter().copied().filter(|p| own.contains(p)).collect();
         match pair.as_slice() {
             [a, b] => {
                 let ends = curve_intervals(forward, best, weights, own.clone(), [*a, *b], &deviations);
-                let slack = |p| if pair.contains(&p) { Z95 * torque_doubt(best) } else { 0.0 };
+                // the posterior does not know by how much the masses shift the torques
+                let slack = |p| if pair.contains(&p) { Z95 * torque_deviation(best) } else { 0.0 };
                 let widened = |(p, ends): (usize, Interval)| {
                     ends.with(best.point.u[p]).wider(slack(p), best.model.bounds(p))
                 };
@@ -70,9 +54,9 @@ pub fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec<Interv
         .collect()
 }
 
-/// The interval of one number of an effect.
+/// The interval of one parameter of an effect.
 fn interval(forward: &Forward, best: &Fit, weights: &Weights, effect: usize, p: usize, sd: f64) -> Interval {
-    let crooked = matches!(best.model.effects[effect].kind.name, "lost_motion" | "immersion");
+    let crooked = best.model.effects[effect].kind.traits.is_nonlinear;
     let (low, high) = best.model.bounds(p);
     let end = |side: f64| {
         let straight = best.point.u[p] + side * Z95 * sd;
@@ -85,35 +69,23 @@ fn interval(forward: &Forward, best: &Fit, weights: &Weights, effect: usize, p: 
     Interval { low: end(-1.0), high: end(1.0) }
 }
 
-impl Interval {
-    /// So wide that it holds the best value.
-    fn with(self, u: f64) -> Self {
-        Self { low: self.low.map(|v| v.min(u)), high: self.high.map(|v| v.max(u)) }
-    }
-
-    /// With ends moved out, but not beyond bounds.
-    fn wider(self, by: f64, (low, high): (f64, f64)) -> Self {
-        Self {
-            low: self.low.map(|v| v - by).filter(|v| *v > low),
-            high: self.high.map(|v| v + by).filter(|v| *v < high),
-        }
-    }
-}
-
-/// Standard deviation of ln of the torques that calibrated masses leave: a step of the frequencies at a
-/// break point is placed no better, and a refit cannot carry a test across the step to find that out.
-fn torque_doubt(best: &Fit) -> f64 {
+/// Standard deviation of ln of the torque that the tolerance of masses leaves. A step of the frequencies at a
+/// break point cannot be placed more closely than this. A refit does not reveal it, because it cannot move a
+/// test across the step.
+fn torque_deviation(best: &Fit) -> f64 {
     let numbers = best.model.nuisance.numbers.iter();
     let masses = numbers.filter(|(calibration, _)| matches!(calibration, Calibration::Mass(_)));
     masses.map(|(_, sd)| *sd).fold(0.0, f64::max)
 }
 
-/// The lowest objective that is found from `u` on. Break points of a gear's curve make the frequencies
-/// step, and steps stop a descent: unless that is low `enough`, it is tried again from a smoothed curve.
+/// The lowest objective that a descent from `u` finds. Break points of a gear's curve make the frequencies
+/// step, and steps stop a descent. Unless the first result is below `enough`, a second descent starts from a
+/// smoothed curve.
 fn refit(forward: &Forward, mut model: Model, u: &[f64], weights: &Weights, enough: f64) -> f64 {
     let effort = Effort { steps: 5, tolerance: 0.02 };
     let end = |model: &Model, u: &[f64], effort| descent(forward, model, u, weights, effort, f64::INFINITY);
     let straight = end(&model, u, effort).objective;
+    // without frequencies there are no steps to stop a descent
     if straight < enough || model.break_points().is_empty() || forward.modal.is_empty() {
         return straight;
     }
@@ -123,7 +95,7 @@ fn refit(forward: &Forward, mut model: Model, u: &[f64], weights: &Weights, enou
     straight.min(end(&model, &start, effort).objective)
 }
 
-/// Where the profile has risen enough on one side; `None` if it does not within the prior.
+/// The end of the profile interval on one side; `None` if the profile does not rise enough within the range.
 fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64, sd: f64) -> Option<f64> {
     let (low, high) = best.model.bounds(p);
     let u = best.point.u[p];
@@ -135,6 +107,7 @@ fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64
         refit(forward, model, &best.point.u, weights, objective + RISE) - objective
     };
     let clamp = |value: f64| value.clamp(low, high);
+    // the profile starts at the best value, where the rise is zero
     let mut near = (u, 0.0);
     let mut value = clamp(u + side * Z95 * sd.clamp(1e-6, 10.0));
     for _ in 0..6 {
@@ -145,7 +118,7 @@ fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64
         if here < RISE && value == limit {
             return None;
         }
-        // the square root of the rise is nearly straight
+        // the secant method on the square root of the rise, which is nearly straight
         let (a, b) = (near.1, here.max(1e-3).sqrt());
         let slope = (value - near.0) / (b - a);
         if here < RISE {

@@ -1,8 +1,10 @@
-//! Fitting a model to readings: the most probable parameters, their intervals, the noise, and what held-out poses say.
+//! Fits a model to readings: its most probable parameters, their intervals, the noise of the readings, and
+//! the prediction of held-out poses.
 
 pub mod curve_interval;
 pub mod descent;
+pub mod held_out;
 pub mod interval;
-pub mod kept_out;
 pub mod noise;
 pub mod stats;
+pub mod units;

@@ -1,13 +1,13 @@
-//! Gross errors and wrongly declared standard deviations, found from the residuals of a model.
+//! Finds gross errors and wrongly declared standard deviations from the residuals of a model.
 
 use super::descent::{Fit, Weights};
 use super::stats::median;
-use crate::arm::effect::Channel;
-use crate::reconcile::forward::Forward;
+use crate::arm::effect::channel::Channel;
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::modal::ModalTest;
+use crate::reconcile::forward::prepared::Forward;
 
-/// What the residuals say of the readings' quality.
+/// The quality of the readings, as the residuals show it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Noise {
     /// Factor on the declared standard deviations of static, modal and windup readings.
@@ -16,28 +16,31 @@ pub struct Noise {
     pub outliers: Vec<(Channel, usize, f64)>,
 }
 
-/// Standard deviations from which a reading is a gross error.
+/// A reading is a gross error from this many standard deviations on.
 const GROSS: f64 = 5.5;
-/// The same before any effect is looked for: play or a break point can put a single reading ten off.
+/// The same before any effect is searched for. Play or a break point can put a single reading ten standard
+/// deviations off.
 const UNMISTAKABLE: f64 = 16.0;
-/// Part of a channel's rows that can be gross errors; more are structure.
+/// Largest part of a channel's rows that can be gross errors. More are a structure that the model lacks.
 const FEW: f64 = 0.10;
-/// The same before any effect is looked for: the few frequencies that an effect moves must not be taken away.
+/// The same before any effect is searched for. It is smaller, because an effect may move only a few
+/// frequencies, and these must stay.
 const FEW_UNSEEN: f64 = 0.05;
-/// Part of the lists of frequencies that can have been numbered wrongly.
+/// Largest part of the frequency lists that can have been numbered wrongly.
 const FEW_LISTS: f64 = 0.34;
-/// Most gross errors that stand for an effect or a structure; more have a cause.
+/// Largest number of gross errors that may replace an effect. More of them have a common cause.
 const MOST_SLIPS: usize = 2;
-/// Channels whose readings are judged.
+/// The channels whose readings are judged.
 const CHANNELS: [Channel; 3] = [Channel::Static, Channel::Modal, Channel::Windup];
-/// Largest factor on declared deviations that is put down to the declaration.
+/// Largest factor on the declared standard deviations that is ascribed to the declaration.
 const LARGEST_SCALE: f64 = 1.4;
-/// Excess of the residuals' spread, in declared standard deviations, up to which a model fits most readings.
+/// A model fits most readings if the spread of its residuals exceeds the declared one by no more than this
+/// \[declared standard deviations\].
 const CLOSE: f64 = 0.5;
-/// Three standard deviations of the spread of one honest reading, over the root of their number: that of a median of
-/// absolute values is 1.17 of the spread.
+/// Three standard deviations of the spread, times the root of the number of readings. The standard deviation
+/// of the median of absolute values is 1.17 times the spread over that root.
 const BY_CHANCE: f64 = 3.5;
-/// Weight of the declaration, in readings.
+/// Weight of the declared standard deviation, as a number of readings.
 const TRUST: f64 = 15.0;
 
 impl Default for Noise {
@@ -56,7 +59,7 @@ impl Noise {
         Weights { inverse: inverse.collect(), smooth_only: false }
     }
 
-    /// Whether a model comes close to most readings of every channel.
+    /// Whether a model fits most readings of every channel.
     pub fn is_close(forward: &Forward, fit: &Fit) -> bool {
         let residuals = declared_residuals(forward, &fit.point.predicted);
         CHANNELS.into_iter().all(|channel| {
@@ -65,8 +68,8 @@ impl Noise {
         })
     }
 
-    /// The readings without the few of each channel that a fit with these weights misses most, if it does by far: one
-    /// slip among ten frequencies spoils a calibration.
+    /// Leaves out at most a few extreme outliers of each channel, by their misfit in a fit with these
+    /// weights. One slip among ten frequencies would spoil a calibration.
     pub fn without_worst(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
         let mut outliers = misses(forward, fit, weights);
         outliers.retain(|(_, _, size)| *size > UNMISTAKABLE);
@@ -80,8 +83,8 @@ impl Noise {
         Self { outliers, ..Self::default() }
     }
 
-    /// The same readings without one or two more, of which a fit says that they could be gross errors; `None` if it
-    /// says so of no row or of many.
+    /// Leaves out one or two further rows that a fit shows as possible gross errors; `None` if there are none
+    /// or more than that.
     pub fn with_slips(&self, forward: &Forward, fit: &Fit) -> Option<Self> {
         let mut slips = misses(forward, fit, &self.weights(forward));
         slips.retain(|(_, _, size)| *size > GROSS);
@@ -94,21 +97,21 @@ impl Noise {
         Some(Self { outliers, ..self.clone() })
     }
 
-    /// The same with all frequencies; `None` if none is left out.
+    /// The same with all frequencies included; `None` if none is left out.
     pub fn with_frequencies(&self) -> Option<Self> {
         let mut with = self.clone();
         with.outliers.retain(|(channel, _, _)| *channel != Channel::Modal);
         (with.outliers.len() < self.outliers.len()).then_some(with)
     }
 
-    /// Gross errors that show before any effect is looked for: only where calibration alone comes close
-    /// to most readings, because what an effect does must not be taken for an error.
-    pub fn first_look(forward: &Forward, bare: &Fit, weights: &Weights) -> Self {
-        if !Self::is_close(forward, bare) {
+    /// Gross errors that show before any effect is searched for. They are sought only where calibration alone
+    /// fits most readings, because the trace of an effect must not be taken for an error.
+    pub fn first_look(forward: &Forward, baseline: &Fit, weights: &Weights) -> Self {
+        if !Self::is_close(forward, baseline) {
             return Self::default();
         }
-        let residuals = declared_residuals(forward, &bare.point.predicted);
-        let mut outliers = Self::from_fit(forward, bare, weights).outliers;
+        let residuals = declared_residuals(forward, &baseline.point.predicted);
+        let mut outliers = Self::from_fit(forward, baseline, weights).outliers;
         outliers.retain(|(_, _, size)| *size > UNMISTAKABLE);
         let in_channel = |channel| outliers.iter().filter(|(c, _, _)| *c == channel).count();
         let few: Vec<Channel> = CHANNELS
@@ -119,7 +122,7 @@ impl Noise {
         Self { outliers, ..Self::default() }.with_whole_lists(forward, &residuals)
     }
 
-    /// Judges the readings by the residuals of a fit, which had these weights.
+    /// Judges the readings by the residuals of a fit that had these weights.
     pub fn from_fit(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
         let mut noise = Self::default();
         let residuals = declared_residuals(forward, &fit.point.predicted);
@@ -127,6 +130,7 @@ impl Noise {
         for channel in CHANNELS {
             let range = forward.range(channel);
             let own = &residuals[range.clone()];
+            // where the model fits badly, only rows that stand out from the rest are gross
             let limit = GROSS * spread(own).clamp(1.0, 3.0);
             let mut gross: Vec<(usize, f64)> = Vec::new();
             for (r, datum) in own.iter().zip(&forward.data[range.clone()]) {
@@ -137,6 +141,7 @@ impl Noise {
                     }
                 }
             }
+            // many large residuals are a structure and not errors
             if gross.len() > at_most(FEW, rows(forward, channel)) {
                 continue;
             }
@@ -147,8 +152,8 @@ impl Noise {
         noise.with_whole_lists(forward, &residuals)
     }
 
-    /// The readings without the few lists of frequencies that these coefficients miss by far; `None` if there are
-    /// none or many.
+    /// Leaves out the few frequency lists that these coefficients miss by far; `None` if there are none or
+    /// many.
     pub fn doubtful_lists(forward: &Forward, coefficients: &Coefficients) -> Option<Self> {
         let residuals = declared_residuals(forward, &forward.predict(coefficients));
         let far = |datum: usize| residuals[datum].abs() > UNMISTAKABLE;
@@ -163,8 +168,8 @@ impl Noise {
         Some(Self { outliers, ..Self::default() })
     }
 
-    /// With all rows of a list of frequencies that has several gross errors: its pose, its payload or its numbering
-    /// is wrong, and what is left of it would mislead.
+    /// Leaves out every row of a frequency list that has several gross errors. Its pose, its payload or its
+    /// numbering is wrong, and the remaining rows would mislead.
     fn with_whole_lists(mut self, forward: &Forward, residuals: &[f64]) -> Self {
         for list in gross_lists(forward, &self.weights(forward)) {
             for &(datum, _) in &forward.modal[list].modes {
@@ -184,13 +189,13 @@ impl Noise {
         rows(self) == rows(other)
     }
 
-    /// Whether two judgements lead to the same weights, nearly.
+    /// Whether two judgements lead to nearly the same weights.
     pub fn agrees(&self, other: &Self) -> bool {
         self.same_rows(other) && self.scale.iter().zip(&other.scale).all(|(a, b)| (a / b - 1.0).abs() < 0.03)
     }
 }
 
-/// Lists of frequencies, by their number from 0, of which several rows are left out.
+/// The frequency lists, numbered from 0, of which several rows are left out.
 pub fn gross_lists(forward: &Forward, weights: &Weights) -> Vec<usize> {
     let left_out = |list: usize| {
         let modes = forward.modal[list].modes.iter();
@@ -199,9 +204,10 @@ pub fn gross_lists(forward: &Forward, weights: &Weights) -> Vec<usize> {
     (0..forward.modal.len()).filter(|list| left_out(*list) > 1).collect()
 }
 
-/// How far a fit with these weights would be off each row if it did not follow the row, in declared standard
-/// deviations, the largest first.
+/// The misfit of each row if the fit did not follow that row \[declared standard deviations\], the largest
+/// first.
 fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<(Channel, usize, f64)> {
+    // a row that the fit follows completely would otherwise divide by zero
     const LARGEST_LEVERAGE: f64 = 0.9;
     let residuals = declared_residuals(forward, &fit.point.predicted);
     let sizes = residuals.iter().zip(fit.leverages(weights));
@@ -217,30 +223,30 @@ fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<(Channel, usiz
     out
 }
 
-/// Rows of a channel's file.
+/// Number of rows of a channel's file.
 fn rows(forward: &Forward, channel: Channel) -> usize {
     forward.data[forward.range(channel)].iter().map(|d| d.row).max().map_or(0, |r| r + 1)
 }
 
-/// A part of the rows of a file, one at least.
+/// A part of the rows of a file, at least one.
 fn at_most(part: f64, rows: usize) -> usize {
     ((part * rows as f64) as usize).max(1)
 }
 
-/// Measured less predicted, in declared standard deviations.
+/// Residuals, measured minus predicted, in declared standard deviations.
 fn declared_residuals(forward: &Forward, predicted: &[f64]) -> Vec<f64> {
     forward.data.iter().zip(predicted).map(|(d, p)| (d.value - p) / d.sigma).collect()
 }
 
-/// Standard deviation of most residuals, whatever the few largest are.
+/// Robust standard deviation of the residuals: the few largest do not change it.
 fn spread(residuals: &[f64]) -> f64 {
     1.4826 * median(residuals.iter().map(|r| r.abs()).collect())
 }
 
-/// Factor on declared deviations from residuals and their leverages. The square of a residual is expected to be
-/// `1 - leverage`, for the rest of it the parameters have taken up. A factor within what chance does to honest
-/// declarations counts too: to wait until it is significant would leave intervals too narrow wherever a channel
-/// has few readings.
+/// The factor on declared standard deviations that residuals and their leverages suggest. The square of a
+/// residual has the expectation `1 - leverage`, because the parameters take up the rest. A factor that could
+/// be chance counts too. To wait for significance would leave intervals too narrow wherever a channel has few
+/// readings.
 fn scale(kept: impl Iterator<Item = (f64, f64)>) -> f64 {
     let (sum, count) =
         kept.fold((TRUST, TRUST), |(sum, count), (r, leverage)| (sum + r * r, count + 1.0 - leverage));

@@ -1,4 +1,4 @@
-//! Tail probabilities.
+//! Tail probabilities and medians.
 
 /// Probability that a chi-squared variable of `dof` degrees exceeds `x`, as its natural logarithm.
 pub fn ln_chi_squared_tail(x: f64, dof: f64) -> f64 {
@@ -74,7 +74,7 @@ fn ln_gamma(x: f64) -> f64 {
     0.5 * std::f64::consts::TAU.ln() + (x + 0.5) * t.ln() - t + sum.ln()
 }
 
-/// The median; 0 of nothing.
+/// The median; 0 for an empty list.
 pub fn median(mut values: Vec<f64>) -> f64 {
     if values.is_empty() {
         return 0.0;

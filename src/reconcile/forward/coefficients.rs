@@ -1,9 +1,11 @@
-//! Which coordinates an arm can have, and a subject as numbers on them.
+//! Lists the coordinates that an arm can have, and expresses a subject as numbers on these coordinates.
 
 use crate::arm::LinkModel;
-use crate::arm::effect::{Reading, Subject};
+use crate::arm::effect::channel::Reading;
+use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::JointLaw;
-use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure, Water};
+use crate::arm::load::Water;
+use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure};
 use crate::mechanics::beam::{Strain, compliances, strains};
 use crate::mechanics::chain::Chain;
 use nalgebra::Vector3;
@@ -13,7 +15,7 @@ use nalgebra::Vector3;
 pub struct JointSlot {
     /// Name.
     pub name: String,
-    /// Its twist's coordinate; its tilts are the two before it.
+    /// Coordinate of its twist. Its two tilts are the two coordinates before it.
     pub twist: usize,
 }
 
@@ -22,14 +24,15 @@ pub struct JointSlot {
 pub struct LinkSlot {
     /// Name.
     pub name: String,
-    /// Its first coordinate.
+    /// Index of its first coordinate.
     pub first: usize,
-    /// What each of its coordinates strains, and the degree of its polynomial.
+    /// The strain that each of its coordinates produces, and the degree of its polynomial along the link.
     pub strains: Vec<(Strain, usize)>,
 }
 
-/// The coordinates of every elastic thing an arm can have, base to tip: the base's tilts (0 and 1),
-/// each joint's two tilts and its twist, each link's strains; where the arm has frames that yield, theirs.
+/// The coordinates of every elastic thing that an arm can have, base to tip. They are the base's tilts (0 and
+/// 1), each joint's two tilts and its twist, and each link's strains. An arm with yielding frames also has
+/// theirs.
 pub struct Layout {
     /// Number of coordinates.
     pub n: usize,
@@ -37,39 +40,40 @@ pub struct Layout {
     pub joints: Vec<JointSlot>,
     /// Links, base to tip.
     pub links: Vec<LinkSlot>,
-    /// Coordinates of frames that yield, which no fit changes, with their compliance.
+    /// Coordinates of yielding frames with their compliance. No fit changes them.
     frames: Vec<(usize, f64)>,
-    /// Compliance of the coordinates that a nominal arm may lack altogether: of links as they are drawn; 0 for others.
+    /// Compliance of coordinates that a nominal arm may lack: of links as they are drawn. It is 0 for all
+    /// other coordinates.
     pub lacking: Vec<f64>,
     /// The arm with every elastic thing present, so that mechanics lists all coordinates.
     pub template: Chain,
-    /// The template with one mass added, for each of the masses.
+    /// The template with a unit of one mass added, for each of the masses.
     pub with_mass: Vec<Chain>,
-    /// Gravity \[m/s²\].
+    /// Acceleration of gravity \[m/s²\].
     pub gravity_m_s2: f64,
 }
 
-/// A subject as numbers on the coordinates.
+/// A subject, expressed as numbers on the coordinates.
 #[derive(Debug, Clone)]
 pub struct Coefficients {
-    /// Compliance of each coordinate; a joint's twist has 0 here and its law below.
+    /// Compliance of each coordinate. That of a joint's twist is 0 here, because its law is in `laws`.
     pub linear: Vec<f64>,
     /// Laws of the joints, base to tip.
     pub laws: Vec<JointLaw>,
-    /// Mass beyond the template: each joint \[kg\], each link's harness \[kg/m\], water density times
-    /// added-mass coefficient \[kg/m³\].
+    /// Mass beyond the template: of each joint \[kg\], of each link's harness \[kg/m\], and water density
+    /// times added-mass coefficient \[kg/m³\].
     pub masses: Vec<f64>,
-    /// Weight beyond the template: the same, but for water its density.
+    /// Weight beyond the template in the same units, except that water has its density alone.
     pub weights: Vec<f64>,
-    /// True less stated payload mass \[kg\].
+    /// True minus stated payload mass \[kg\].
     pub payload_delta_kg: f64,
-    /// True less stated centre \[m\].
+    /// True minus stated centre of gravity of the payload, in the last frame \[m\].
     pub payload_offset_m: Vector3<f64>,
-    /// Part of the payload's weight that remains in the water.
+    /// Part of the payload's weight that buoyancy leaves.
     pub payload_weight: f64,
     /// How the channels read.
     pub channels: [Reading; 4],
-    /// Width, in ln of the torque, over which the slope of a gear's curve changes at a break point.
+    /// Width over which the slope of a gear's curve changes at a break point \[ln of the torque\].
     pub smoothing: f64,
 }
 
@@ -120,7 +124,7 @@ impl Layout {
     }
 }
 
-/// Every elastic thing present, whatever its size; nothing else changed.
+/// The structure with every elastic thing present, whatever its size, and nothing else changed.
 fn with_everything(structure: &Structure) -> Structure {
     let mut full = structure.clone();
     full.base_tilt_rad_per_nm = 1.0;
@@ -138,7 +142,7 @@ fn with_everything(structure: &Structure) -> Structure {
     full
 }
 
-/// The structure with one unit of each mass added: joints, harnesses, water.
+/// The structure with one unit of each mass added, one at a time: joints, harnesses, water.
 fn unit_masses(full: &Structure) -> Vec<Structure> {
     let joints = full.joints().map(|joint| {
         let mut with = full.clone();
@@ -161,7 +165,7 @@ fn unit_masses(full: &Structure) -> Vec<Structure> {
 }
 
 impl Coefficients {
-    /// The subject as numbers on the coordinates of `layout`; masses are counted from `nominal`.
+    /// Expresses a subject on the coordinates of `layout`. Masses count from those of `nominal`.
     pub fn new(layout: &Layout, nominal: &Subject, subject: &Subject) -> Self {
         let structure = &subject.structure;
         let mut linear = vec![0.0; layout.n];
@@ -202,7 +206,7 @@ impl Coefficients {
         }
     }
 
-    /// Whether two subjects have the same frequencies and modal channel.
+    /// Whether two subjects have the same frequencies and the same modal channel.
     pub fn same_modes(&self, other: &Self) -> bool {
         self.linear == other.linear
             && self.masses == other.masses

@@ -1,15 +1,15 @@
-//! Natural frequencies by a reduced flexibility form, with exact sensitivities.
+//! Predicts natural frequencies by a reduced flexibility form, with exact sensitivities.
 //!
-//! Let `F` hold the inertia forces of the nominal arm's lowest modes, all coordinates included, those
-//! without compliance too. The trial shapes `C F` are then right to first order in every compliance
-//! and mass, and with `B = C F` the reduced problem is `BᵀM B z = μ FᵀB z`, `μ = 1/ω²`. From one
-//! solution `x = B z` (scaled to `xᵀK x = 1`, `y = M x`) every parameter's effect follows:
-//! `dμ = yᵀ dC y / μ + xᵀ dM x`.
+//! Let `F` hold the inertia forces of the nominal arm's lowest modes, with all coordinates included, even
+//! those without compliance. The trial shapes `C F` are then right to first order in every compliance and
+//! mass. With `B = C F` the reduced problem is `BᵀM B z = μ FᵀB z`, where `μ = 1/ω²`. One solution `x = B z`,
+//! scaled to `xᵀK x = 1`, with `y = M x`, gives the effect of every parameter: `dμ = yᵀ dC y / μ + xᵀ dM x`.
 
 use super::coefficients::{Coefficients, Layout};
+use super::datum::{Datum, group_of};
 use super::statics::PoseGeometry;
-use super::{Datum, group_of};
-use crate::arm::effect::{Channel, Subject};
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::load::Payload;
 use crate::mechanics::chain::Chain;
@@ -19,27 +19,28 @@ use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3xX, SymmetricEigen, Vector3};
 use std::f64::consts::TAU;
 
-/// Trial shapes beyond the modes that are compared.
+/// Number of trial shapes beyond the modes that are compared.
 const SPARE_SHAPES: usize = 12;
 
-/// Most that one frequency can cost when lists are compared \[squared standard deviations\].
+/// Largest cost of one frequency when two lists are compared \[squared standard deviations\].
 const MISS: f64 = 400.0;
 
-/// Most that one frequency can cost when its number is in question \[ln\]: what tolerance does to frequencies, and more.
+/// Largest distance that one frequency can add when its mode number is in question \[ln\]. It is more than
+/// tolerance does to frequencies.
 const OFF: f64 = 0.05;
 
-/// Fall from a mode to a higher one that noise does not make \[standard deviations of the difference\].
+/// A fall from a mode to a higher one that noise does not produce \[standard deviations of the difference\].
 const UNMISTAKABLE: f64 = 5.0;
 
 /// One pose and payload whose modes were listed.
 pub struct ModalTest {
     geometry: PoseGeometry,
     payload: Payload,
-    /// Datum and mode index (from 0) it is compared with.
+    /// Index of each datum, and index of the mode it is compared with, from 0.
     pub modes: Vec<(usize, usize)>,
     mass: DMatrix<f64>,
-    /// Factors `L` of the matrices of a unit of each added mass, `L Lᵀ`: few columns, and only the rows of the
-    /// coordinates that move it, those inboard of it.
+    /// Factors `L` of the matrix `L Lᵀ` that a unit of each added mass contributes. They have few columns,
+    /// and only the rows of coordinates inboard of the mass.
     factors: Vec<DMatrix<f64>>,
     tip: Matrix3xX<f64>,
     spin: Matrix3xX<f64>,
@@ -50,9 +51,9 @@ pub struct ModalTest {
 pub struct Solved {
     /// `1/ω²`.
     pub mu: f64,
-    /// Shape, strain energy ½ J.
+    /// Mode shape with a strain energy of ½ J.
     pub x: DVector<f64>,
-    /// Its inertia forces.
+    /// Inertia forces of the shape.
     pub y: DVector<f64>,
 }
 
@@ -69,7 +70,7 @@ pub fn prepare(
     for row in &campaign.modal {
         let group = group_of(&row.pose_deg, groups);
         let key = (row.pose_deg.clone(), row.payload);
-        // a repeated test starts a list of its own when a mode number comes again
+        // A mode number that comes again starts a list of its own: the test was repeated.
         let found = keys
             .iter()
             .rposition(|k| *k == key)
@@ -121,9 +122,10 @@ impl ModalTest {
         self.modes.iter().map(|(_, mode)| mode + 1).max().unwrap_or(0)
     }
 
-    /// Takes the trial forces from the full solution for these coefficients; where so little yields that there are not
-    /// enough, as in an arm whose links are taken for rigid, from the arm with links that yield as they are drawn and
-    /// joints without a stiffness that yield like the softest.
+    /// Takes the trial forces from the full solution for these coefficients.
+    ///
+    /// Where little yields, as in an arm with rigid links, there may be too few of them. The rest then come
+    /// from an arm whose links yield as they are drawn, and whose rigid joints yield like the softest joint.
     pub fn refresh(&mut self, layout: &Layout, coefficients: &Coefficients) {
         let mut compliances = self.compliances(layout, coefficients);
         let forces = self.trial_forces(layout, coefficients, &compliances);
@@ -131,6 +133,7 @@ impl ModalTest {
             self.forces = forces;
             return;
         }
+        // a rigid joint that an effect may free needs a trial shape too, although it does not move now
         let softest = layout.joints.iter().map(|joint| compliances[joint.twist]).fold(0.0, f64::max);
         for (own, drawn) in compliances.iter_mut().zip(&layout.lacking) {
             *own = if *own == 0.0 { *drawn } else { *own };
@@ -142,7 +145,7 @@ impl ModalTest {
         self.forces = self.trial_forces(layout, coefficients, &compliances);
     }
 
-    /// Trial shapes at the most.
+    /// Largest number of trial shapes.
     fn wanted(&self) -> usize {
         self.mode_count() + SPARE_SHAPES
     }
@@ -154,6 +157,7 @@ impl ModalTest {
         coefficients: &Coefficients,
         compliances: &[f64],
     ) -> DMatrix<f64> {
+        // C^½ M C^½ has the eigenvalues 1/ω² and stays symmetric where some compliances are zero
         let roots = DVector::from_iterator(layout.n, compliances.iter().map(|c| c.sqrt()));
         let mass = self.momenta(coefficients, &DMatrix::identity(layout.n, layout.n));
         let mut a = mass.clone();
@@ -164,6 +168,7 @@ impl ModalTest {
         let eigen = SymmetricEigen::new(a);
         let mut order: Vec<usize> = (0..layout.n).collect();
         order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]).then(i.cmp(&j)));
+        // smaller eigenvalues are rounding error and would give meaningless shapes
         let floor = 1e-12 * eigen.eigenvalues[order[0]];
         let columns: Vec<DVector<f64>> = order
             .iter()
@@ -177,8 +182,8 @@ impl ModalTest {
         }
     }
 
-    /// The mass matrix times shapes: the parts that parameters change are of low rank, so that the matrix itself
-    /// need not be put together.
+    /// The mass matrix times shapes. The parts that parameters change have a low rank, so the matrix itself
+    /// need not be assembled.
     fn momenta(&self, coefficients: &Coefficients, shapes: &DMatrix<f64>) -> DMatrix<f64> {
         let mut out = &self.mass * shapes;
         for (factor, amount) in self.factors.iter().zip(&coefficients.masses) {
@@ -202,7 +207,7 @@ impl ModalTest {
         out
     }
 
-    /// Payload mass \[kg\] and the motion of its centre per coordinate.
+    /// Payload mass \[kg\], and the motion of its centre of gravity per unit of each coordinate.
     fn payload_jacobian(&self, coefficients: &Coefficients) -> (f64, Matrix3xX<f64>) {
         if self.payload.mass_kg == 0.0 {
             return (0.0, Matrix3xX::zeros(0));
@@ -211,7 +216,7 @@ impl ModalTest {
         (self.payload.mass_kg + coefficients.payload_delta_kg, &self.tip - arm.cross_matrix() * &self.spin)
     }
 
-    /// Compliance of every coordinate, the joints' by the slope of their law at this test's torque.
+    /// Compliance of every coordinate. That of a joint is the slope of its law at the torque of this test.
     fn compliances(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<f64> {
         let mut out = coefficients.linear.clone();
         let dead = self.geometry.dead_torques_nm(coefficients);
@@ -247,6 +252,7 @@ impl ModalTest {
         let reduced_mass = shapes.transpose() * &momenta;
         let strain = self.forces.transpose() * &shapes;
         let Some((amounts, a)) = unit_strains(strain, &reduced_mass) else { return Vec::new() };
+        // symmetric but for rounding: the mean with the transpose makes it exactly so
         let eigen = SymmetricEigen::new((&a + a.transpose()) * 0.5);
         let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
         order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]).then(i.cmp(&j)));
@@ -270,8 +276,8 @@ impl ModalTest {
         })
     }
 
-    /// Numbers the modes anew if the list falls by more than noise, unless these coefficients have it that one wrong
-    /// frequency is the simpler cause; whether it did.
+    /// Renumbers the modes if the list falls by more than noise, and returns whether it did. It does not
+    /// where one wrong frequency would be the simpler cause by these coefficients.
     pub fn put_in_order(&mut self, layout: &Layout, coefficients: &Coefficients, data: &[Datum]) -> bool {
         if !self.falls(data) {
             return false;
@@ -295,13 +301,13 @@ impl ModalTest {
         is_simpler
     }
 
-    /// The lowest frequencies, as many \[Hz\].
+    /// The `count` lowest frequencies \[Hz\].
     fn spectrum(&self, layout: &Layout, coefficients: &Coefficients, count: usize) -> Vec<f64> {
         self.solve(layout, coefficients, count).iter().map(|s| 1.0 / (TAU * s.mu.sqrt())).collect()
     }
 
-    /// Whether one mode is missing from the measured list: if counting those above it one higher fits
-    /// far better, they are counted so. Returns the number of the missed mode, from 1.
+    /// Finds a mode that is missing from the measured list. If a list with all later modes numbered one
+    /// higher fits far better, they are renumbered. Returns the number of the missing mode, from 1.
     pub fn find_missed_mode(
         &mut self,
         layout: &Layout,
@@ -317,9 +323,11 @@ impl ModalTest {
             };
             self.modes.iter().map(miss).sum()
         };
+        // the cost of the list as it is numbered
         let none = cost(usize::MAX);
         let (best, missed) =
             (0..self.mode_count()).map(|m| (cost(m), m)).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        // renumbering must remove one whole miss and most of the misfit, else noise could cause it
         if none < best + MISS || best > 0.2 * none {
             return None;
         }
@@ -333,20 +341,20 @@ impl ModalTest {
         self.write(&solved, out);
     }
 
-    /// Writes the frequencies of solved modes; a mode the arm does not have is 0.
+    /// Writes the frequencies of solved modes. A mode that the arm does not have becomes 0.
     pub fn write(&self, solved: &[Solved], out: &mut [f64]) {
         for &(datum, mode) in &self.modes {
             out[datum] = solved.get(mode).map_or(0.0, |s| 1.0 / (TAU * s.mu.sqrt()));
         }
     }
 
-    /// `xᵀ M x` of a unit of an added mass.
+    /// The product `xᵀ M x` for a unit of an added mass.
     fn energy(&self, mass: usize, shape: &DVector<f64>) -> f64 {
         let factor = &self.factors[mass];
         factor.tr_mul(&shape.rows(0, factor.nrows())).norm_squared()
     }
 
-    /// Change of the frequencies \[Hz\] from `from` to the near `to`, to first order.
+    /// Change of the frequencies \[Hz\] between two neighbouring sets of coefficients, to first order.
     pub fn change(
         &self,
         layout: &Layout,
@@ -369,6 +377,7 @@ impl ModalTest {
         let payloads = payload_moves.then(|| (self.payload_jacobian(from), self.payload_jacobian(to)));
         for &(datum, mode) in &self.modes {
             let Some(s) = solved.get(mode) else { continue };
+            // first-order perturbation of the eigenvalue; the shape itself need not be solved again
             let mut d_mu = 0.0;
             for (i, (a, b)) in before.iter().zip(&after).enumerate() {
                 if a != b {
@@ -386,21 +395,22 @@ impl ModalTest {
     }
 }
 
-/// How much of each trial shape makes combinations of unit strain energy that are free of each other.
+/// A basis of the trial shapes in which the strain energy is the identity.
 enum UnitStrains {
-    /// By the Cholesky factor of the strain energy.
+    /// The Cholesky factor of the strain energy.
     Factor(DMatrix<f64>),
-    /// By columns, fewer than shapes: some shapes are others' combinations, where little yields.
+    /// The basis itself, with fewer columns than shapes. Where little yields, some shapes are combinations of
+    /// others.
     Columns(DMatrix<f64>),
 }
 
-/// Part of the largest strain energy below which a combination is rounding.
+/// A combination with less than this part of the largest strain energy is rounding error.
 const RANK: f64 = 1e-10;
 
-/// Pivots of a strain energy's factor further apart than this are rounding.
+/// A Cholesky factor whose pivots differ by more than this ratio is singular but for rounding.
 const SINGULAR: f64 = 1e-6;
 
-/// Those combinations, and the reduced mass matrix in them.
+/// The basis of unit strain energy, and the reduced mass matrix in it.
 fn unit_strains(strain: DMatrix<f64>, reduced_mass: &DMatrix<f64>) -> Option<(UnitStrains, DMatrix<f64>)> {
     if let Some(cholesky) = Cholesky::new(strain.clone()) {
         let l = cholesky.l();
@@ -425,7 +435,7 @@ fn unit_strains(strain: DMatrix<f64>, reduced_mass: &DMatrix<f64>) -> Option<(Un
 }
 
 impl UnitStrains {
-    /// A combination of them in the shapes.
+    /// Expresses a vector of that basis in the trial shapes.
     fn of(&self, combined: &DVector<f64>) -> Option<DVector<f64>> {
         match self {
             UnitStrains::Factor(l) => l.tr_solve_lower_triangular(combined),
@@ -434,16 +444,17 @@ impl UnitStrains {
     }
 }
 
-/// Number of leading coordinates beyond which a symmetric matrix is zero.
+/// Number of leading coordinates; beyond them the symmetric matrix is zero.
 fn leading(matrix: &DMatrix<f64>) -> usize {
     let floor = 1e-14 * matrix.amax();
     (0..matrix.nrows()).rev().find(|&i| matrix.row(i).amax() > floor).map_or(0, |i| i + 1)
 }
 
-/// Pivoted Cholesky factor of a positive semidefinite matrix: as many columns as its rank, and the leading rows
-/// that are not zero.
+/// Pivoted Cholesky factor of a positive semidefinite matrix. It has as many columns as the matrix has rank,
+/// and only the leading rows that are not zero.
 fn factor(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let mut rest = matrix.clone();
+    // the matrix is semidefinite, so smaller pivots are rounding error
     let floor = 1e-13 * matrix.diagonal().max();
     let mut columns = Vec::new();
     while columns.len() < matrix.nrows() {
@@ -462,20 +473,22 @@ fn factor(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     }
 }
 
-/// Slope of a joint's law, the steps of a gear's curve smoothed over `width` in ln of the torque.
+/// Slope of a joint's law \[rad/(N m)\]. The steps of a gear's curve are smoothed over `width` \[ln of the
+/// torque\].
 fn tangent(law: &JointLaw, torque_nm: f64, width: f64) -> f64 {
     let Curve::Windup(w) = law.curve else { return law.tangent_compliance_rad_per_nm(torque_nm) };
     if width == 0.0 {
         return law.tangent_compliance_rad_per_nm(torque_nm);
     }
     let beyond = |t: f64| 0.5 * (1.0 + (((torque_nm.abs().max(1e-12)) / t).ln() / width).tanh());
-    let (c1, c2, c3) = (1.0 / w.k1_nm_per_rad, 1.0 / w.k2_nm_per_rad, 1.0 / w.k3_nm_per_rad);
-    let smooth = c1 + (c2 - c1) * beyond(w.t1_nm) + (c3 - c2) * beyond(w.t2_nm);
+    let segments = w.segments();
+    let [c1, c2, c3] = segments.map(|s| 1.0 / s.stiffness_nm_per_rad);
+    let smooth = c1 + (c2 - c1) * beyond(segments[0].to_nm) + (c3 - c2) * beyond(segments[1].to_nm);
     let sharp = law.curve.tangent_compliance_rad_per_nm(torque_nm);
     law.tangent_compliance_rad_per_nm(torque_nm) - sharp + smooth
 }
 
-/// Motion of the tip and rotation of the last frame per coordinate.
+/// Displacement of the tip and rotation of the last frame per unit of each coordinate.
 fn tip_jacobians(posed: &Posed) -> (Matrix3xX<f64>, Matrix3xX<f64>) {
     let twists = posed.tip_twists();
     let tip: Vec<Vector3<f64>> = twists.iter().map(|t| displacement_at(t, &posed.tip_m)).collect();

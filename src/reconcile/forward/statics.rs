@@ -1,43 +1,44 @@
-//! Static readings: the displacement of the tip from its reference state.
+//! Predicts static readings: the displacement of the tip from its reference state.
 //!
-//! The chain is statically determinate, so torques depend on masses only. What yields in proportion
-//! moves the tip by `A w`, `A` a 3x6 matrix a pose; a joint by `θ(T) - θ(T0)`, with the friction play
-//! following the order of the rows.
+//! The chain is statically determinate, so torques depend on masses only. All linear compliances together
+//! move the tip by `A w`, where `A` is a 3x6 matrix per pose and `w` the wrench of the load. A joint moves it
+//! by `θ(T) - θ(T0)` times its lever. Friction play follows the order of the rows.
 
 use super::coefficients::{Coefficients, Layout};
-use super::{Datum, group_of};
-use crate::arm::effect::{Channel, Subject};
+use super::datum::{Datum, group_of};
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::subject::Subject;
 use crate::arm::load::Payload;
 use crate::mechanics::chain::{Item, Posed};
 use crate::mechanics::{Twist, Wrench, displacement_at, force_wrench};
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{Matrix3x6, Rotation3, Vector3};
 
-/// A coordinate's twist and what it moves the tip by.
+/// A coordinate and how it moves the tip.
 #[derive(Debug, Clone)]
 pub struct Mover {
-    /// Coordinate.
+    /// Index of the coordinate.
     pub index: usize,
-    /// Motion of everything outboard.
+    /// Twist of everything outboard per unit of the coordinate.
     pub twist: Twist,
     /// Displacement of the tip per unit.
     pub tip: Vector3<f64>,
 }
 
-/// What of a pose does not depend on any parameter.
+/// Everything about a pose that no parameter changes.
 #[derive(Debug, Clone)]
 pub struct PoseGeometry {
-    /// Tip, world \[m\].
+    /// Position of the tip, world frame \[m\].
     pub tip_m: Vector3<f64>,
-    /// Last frame.
+    /// Rotation of the last frame.
     pub rotation: Rotation3<f64>,
-    /// Coordinates in proportion that move the tip.
+    /// Linear coordinates that move the tip.
     pub linear: Vec<Mover>,
-    /// Twists of the joints.
+    /// Twists of the joints, base to tip.
     pub joints: Vec<Mover>,
     /// Torque of the template's dead weight on each joint \[N m\].
     pub dead_nm: Vec<f64>,
-    /// The same for a unit of each mass.
+    /// The same torques for a unit of each mass.
     pub dead_per_mass_nm: Vec<Vec<f64>>,
 }
 
@@ -69,6 +70,7 @@ pub fn prepare(
     let mut last: Option<&[f64]> = None;
     for row in &campaign.statics {
         let group = group_of(&row.pose_deg, groups);
+        // loads in one pose share a history, so only a change of pose starts a new one
         if last != Some(&row.pose_deg) {
             let geometry = PoseGeometry::new(layout, nominal, &row.pose_deg);
             poses.push(StaticPose { geometry, loads: Vec::new() });
@@ -89,7 +91,7 @@ pub fn prepare(
 }
 
 impl PoseGeometry {
-    /// Asks mechanics for a pose.
+    /// Computes the geometry of a pose by mechanics.
     pub fn new(layout: &Layout, _nominal: &Subject, pose_deg: &[f64]) -> Self {
         let pose_rad: Vec<f64> = pose_deg.iter().map(|a| a.to_radians()).collect();
         let empty = Payload::default();
@@ -102,6 +104,7 @@ impl PoseGeometry {
         };
         let is_joint = |i: usize| layout.joints.iter().any(|j| j.twist == i);
         let dead_nm = dead_torques(&posed);
+        // torques are linear in the masses, so one unit of each is enough
         let dead_per_mass_nm = layout
             .with_mass
             .iter()
@@ -156,7 +159,7 @@ impl PoseGeometry {
 fn dead_torques(posed: &Posed) -> Vec<f64> {
     let mut wrench = Wrench::zeros();
     let mut torques = Vec::new();
-    let carried = posed.carried();
+    let carried = posed.transferred();
     for item in posed.items.iter().rev() {
         match item {
             Item::Body(body) => wrench += body.weight(),
@@ -187,6 +190,7 @@ impl StaticPose {
             .filter(|m| coefficients.linear[m.index] != 0.0)
             .map(|m| m.tip * (coefficients.linear[m.index] * m.twist.transpose()))
             .sum();
+        // the unloaded arm comes to rest before each pose, and its reading is the reference
         let mut play: Vec<f64> =
             coefficients.laws.iter().zip(&dead).map(|(law, t)| law.play_at_rest_nm(*t)).collect();
         let reference: Vec<f64> = coefficients
@@ -210,7 +214,7 @@ impl StaticPose {
         }
     }
 
-    /// Adds what further compliances of coordinates (number and compliance) move the tip by \[mm\].
+    /// Adds the displacement of the tip \[mm\] by further compliances, given as coordinate and compliance.
     pub fn add_yielding(
         &self,
         layout: &Layout,
@@ -232,7 +236,7 @@ impl StaticPose {
         }
     }
 
-    /// Torque on each joint in every load, and of the dead weight alone \[N m\].
+    /// Torque on each joint \[N m\]: first under the dead weight alone, then in every load.
     pub fn torques_nm(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<Vec<f64>> {
         let dead = self.geometry.dead_torques_nm(coefficients);
         let mut out = vec![dead.clone()];

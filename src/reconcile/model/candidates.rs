@@ -1,44 +1,50 @@
-//! What is looked for: every effect at every place that a campaign could show, how large it may be and where fits start.
+//! Lists what a search looks for: every effect at every place that a campaign could show, how large it may be
+//! and where fits start.
 
 use super::expected::Sizes;
-use super::parameters::{Candidate, Knob};
+use super::parameters::{Candidate, FreeParameter};
+use crate::arm::effect::catalogue::KINDS;
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::immersion::PAYLOAD_DENSITY;
+use crate::arm::effect::kind::{Kind, Parameter, Place, Removes, Setting};
 use crate::arm::effect::validate::fits_nominal;
-use crate::arm::effect::{Channel, KINDS, Kind, Parameter, Place};
+use crate::arm::effect::wrong_unit;
 use crate::arm::joint_law::Curve;
 use crate::arm::structure::Piece;
-use crate::reconcile::forward::Forward;
+use crate::reconcile::forward::prepared::Forward;
 
 /// Every effect at every place of this arm that the campaign's channels could show.
 pub fn candidates(forward: &Forward) -> Vec<Candidate> {
     let structure = &forward.nominal.structure;
     let sizes = Sizes::of(forward);
     let mut out = Vec::new();
-    for kind in KINDS.iter().filter(|k| {
-        !matches!(k.name, "outlier" | "time_shift" | "wrong_unit" | "frame_compliance" | "transmission_error")
-    }) {
+    for kind in KINDS.iter().filter(|kind| kind.traits.is_sought) {
         for place in kind.places {
             for at in structure.places(*place) {
-                if fits_nominal(kind, *place, &at, structure) && channel_is_read(forward, *place) {
+                if fits_nominal(kind, &at, structure) && channel_is_read(forward, *place) {
                     out.push(candidate(forward, &sizes, kind, *place, at));
                 }
             }
         }
     }
+    // two names for the same thing would count as two places and as an alternative
     merge_twins(forward, &mut out);
     out.extend(unit_slips(forward));
     out
 }
 
-/// The tilt of a vertical first joint at the origin is the tilt of the base: one candidate for both.
+/// Merges two candidates that are the same thing in this arm. Where the first joint is vertical and at the
+/// origin, the tilt of its bearing is the tilt of the base.
 fn merge_twins(forward: &Forward, candidates: &mut Vec<Candidate>) {
     let Some(Piece::Joint(first)) = forward.nominal.structure.pieces.first() else { return };
     if first.axis.z.abs() < 1.0 - 1e-12 {
         return;
     }
-    let name = first.name.clone();
-    candidates.retain(|c| !(c.kind.name == "bearing_tilt" && c.at == name));
-    if let Some(base) = candidates.iter_mut().find(|c| c.kind.name == "base_compliance") {
-        base.twins.push(("bearing_tilt".into(), name));
+    let twin_of = |c: &Candidate| c.kind.traits.same_at_vertical_first_joint;
+    let twins: Vec<&str> = candidates.iter().filter_map(twin_of).collect();
+    candidates.retain(|c| !(twins.contains(&c.kind.name) && c.at == first.name));
+    for candidate in candidates {
+        candidate.twins.extend(twin_of(candidate).map(|twin| (twin.to_string(), first.name.clone())));
     }
 }
 
@@ -50,61 +56,65 @@ fn channel_is_read(forward: &Forward, place: Place) -> bool {
 }
 
 fn candidate(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place, at: String) -> Candidate {
-    let reference = match kind.name {
-        "soft_windup" => middle_stiffness(forward, &at),
-        _ => reference_stiffness(forward, &at),
+    let reference = match kind.traits.is_gear_curve {
+        true => middle_stiffness(forward, &at),
+        false => reference_stiffness(forward, &at),
     };
-    let mut knobs = Vec::new();
+    // at least 1 N m, so that logarithms exist for a joint without torque
+    let torque_nm = largest_torque_nm(forward, &at).max(1.0);
+    let mut free_parameters = Vec::new();
     let mut fixed = Vec::new();
     for parameter in (kind.parameters)(place) {
         match parameter.default {
             None => {
-                let parameter = &of_size(kind, parameter, sizes);
-                knobs.extend((0..parameter.count).map(|c| Knob::new(parameter, c, reference)));
+                let sized = &of_size(parameter, sizes);
+                let free = (0..sized.count).map(|component| FreeParameter::new(sized, component, reference));
+                free_parameters.extend(free.map(|free| within_torque(free, parameter, torque_nm)));
             }
-            Some(default) if parameter.name == "payload_density_kg_m3" && default > 0.0 => {
-                fixed.push(forward.payload_density_kg_m3)
-            }
+            Some(_) if parameter.name == PAYLOAD_DENSITY => fixed.push(forward.payload_density_kg_m3),
             Some(default) => fixed.push(default),
         }
     }
-    let torque = largest_torque_nm(forward, &at).max(1.0);
-    for knob in &mut knobs {
-        let parts = match knob.name {
-            "t1_nm" => (0.02, 1.0),
-            "t2_nm" => (0.05, 1.5),
-            "torque_nm" => (0.003, 1.0),
-            _ => continue,
-        };
-        // a law that changes where no torque of the campaign reaches cannot be told from another
-        *knob = knob.clone().within((parts.0 * torque).ln(), (parts.1 * torque).ln());
-    }
     if let Some(least_kg) = lightest_kg(forward, kind, &at) {
-        // a share is left, for nothing swings without a mass
-        knobs[0].low = knobs[0].low.max(-0.999 * least_kg / knobs[0].value(1.0));
+        // a small mass remains, because nothing oscillates without mass
+        free_parameters[0].low =
+            free_parameters[0].low.max(-0.999 * least_kg / free_parameters[0].value(1.0));
     }
-    let starts = starts(kind, torque, torque / reference, &knobs);
-    Candidate { kind, at, knobs, fixed, starts, twins: Vec::new() }
+    let values_at_one: Vec<f64> = free_parameters.iter().map(|free| free.value(1.0)).collect();
+    let setting = Setting { torque_nm, twist_rad: torque_nm / reference, values_at_one: &values_at_one };
+    let starts = (kind.traits.starts)(&setting);
+    Candidate { kind, at, free_parameters, fixed, starts, twins: Vec::new() }
 }
 
-/// The mass that an effect takes from, if it can take mass away: a joint's own, the lightest payload's \[kg\].
+/// Limits a torque to parts of the largest torque of the campaign. A law that changes where no torque reaches
+/// cannot be told from another.
+fn within_torque(free: FreeParameter, parameter: &Parameter, torque_nm: f64) -> FreeParameter {
+    match parameter.torque_parts {
+        Some((low, high)) => free.within((low * torque_nm).ln(), (high * torque_nm).ln()),
+        None => free,
+    }
+}
+
+/// The mass that an effect reduces, if it can reduce one: that of the joint, or of the lightest payload
+/// \[kg\].
 fn lightest_kg(forward: &Forward, kind: &Kind, at: &str) -> Option<f64> {
-    match kind.name {
-        "extra_mass" => forward.nominal.structure.joints().find(|j| j.name == at).map(|j| j.mass_kg),
-        "payload_mass_error" => Some(forward.lightest_payload_kg),
-        _ => None,
+    match kind.traits.removes? {
+        Removes::JointMass => forward.nominal.structure.joints().find(|j| j.name == at).map(|j| j.mass_kg),
+        Removes::PayloadMass => Some(forward.lightest_payload_kg),
     }
 }
 
-/// The parameter over a wider range where the arm or its readings are large.
-fn of_size(kind: &Kind, parameter: &Parameter, sizes: &Sizes) -> Parameter {
-    let Some(size) = sizes.expected(kind.name, parameter.name) else { return *parameter };
+/// Widens the range of a parameter where the arm or its readings are large.
+fn of_size(parameter: &Parameter, sizes: &Sizes) -> Parameter {
+    let Some((measure, part)) = parameter.grows_with else { return *parameter };
+    let size = sizes.expected(measure, part);
     let wider = (size / parameter.prior.1).max(1.0);
     let prior = (parameter.prior.0 * wider, parameter.prior.1 * wider);
     Parameter { prior, low: parameter.low * wider, high: parameter.high * wider, ..*parameter }
 }
 
-/// Stiffness that compliances are measured by: the joint's own, else the first joint's.
+/// The stiffness in which compliances are expressed: that of the joint itself, or of the first joint that
+/// twists \[N m/rad\].
 fn reference_stiffness(forward: &Forward, at: &str) -> f64 {
     let joints: Vec<_> = forward.nominal.structure.joints().collect();
     let own = joints.iter().find(|j| j.name == at);
@@ -114,7 +124,7 @@ fn reference_stiffness(forward: &Forward, at: &str) -> f64 {
         .map_or(1e5, |j| 1.0 / j.law.tangent_compliance_rad_per_nm(0.0))
 }
 
-/// The middle slope of a joint's curve, which is what a gear is known by \[N m/rad\].
+/// The middle slope of a joint's curve, by which a gear is usually rated \[N m/rad\].
 fn middle_stiffness(forward: &Forward, at: &str) -> f64 {
     let own = forward.nominal.structure.joints().find(|j| j.name == at);
     match own.map(|joint| joint.law.curve) {
@@ -123,46 +133,7 @@ fn middle_stiffness(forward: &Forward, at: &str) -> f64 {
     }
 }
 
-/// Break points of a gear's curve to start from, as parts of the largest torque.
-const BREAKS: [(f64, f64); 8] = [
-    (0.08, 0.25),
-    (0.08, 0.6),
-    (0.15, 0.4),
-    (0.15, 0.75),
-    (0.25, 0.5),
-    (0.25, 0.85),
-    (0.4, 0.65),
-    (0.5, 0.85),
-];
-
-/// Half widths of friction play to start from, by the largest twist of the joint \[rad\]: where the play is as wide as the
-/// twist the joint does not move, and a descent sees no slope.
-fn friction_starts_rad(twist_rad: f64) -> impl Iterator<Item = f64> {
-    const WIDEST: f64 = 0.3;
-    let usual = [0.25e-4, 1e-4, 3e-4].into_iter().filter(move |h| *h < WIDEST * twist_rad);
-    [0.01, 0.06].into_iter().map(move |part| part * twist_rad).chain(usual)
-}
-
-fn starts(kind: &Kind, torque: f64, twist_rad: f64, knobs: &[Knob]) -> Vec<Vec<f64>> {
-    match kind.name {
-        "connection_compliance" | "bearing_tilt" | "base_compliance" => vec![vec![0.1], vec![0.5]],
-        "joint_compliance" => vec![vec![0.5], vec![2.0]],
-        "modulus_error" => vec![vec![1.1], vec![1.4]],
-        "soft_windup" => {
-            BREAKS.iter().map(|(a, b)| vec![1.4, 1.0, 0.85, (a * torque).ln(), (b * torque).ln()]).collect()
-        }
-        "lost_motion" => [0.03, 0.1, 0.3].iter().map(|part| vec![1.0, (part * torque).ln()]).collect(),
-        "sensor_gain" => vec![vec![1.0 / knobs[0].value(1.0)]],
-        "hysteresis" => friction_starts_rad(twist_rad).map(|h| vec![knobs[0].u(h)]).collect(),
-        "extra_mass" => vec![vec![0.5], vec![2.0]],
-        "immersion" => vec![vec![1.0, 1.0]],
-        "payload_cg_error" => vec![vec![0.0; 3]],
-        "sensor_bias" | "drift" => vec![vec![0.0; knobs.len()]],
-        _ => vec![vec![1.0; knobs.len()]],
-    }
-}
-
-/// Largest torque a joint sees in the campaign, bench included \[N m\].
+/// Largest torque on a joint in the campaign, including the bench \[N m\].
 fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
     let Some(j) = forward.layout.joints.iter().position(|s| s.name == at) else { return 0.0 };
     let nominal = forward.coefficients(&forward.nominal);
@@ -172,20 +143,18 @@ fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
     statics.chain(modal).map(|t| t[j].abs()).chain(bench).fold(0.0, f64::max)
 }
 
-/// A unit slip is a gain that is known exactly: no number to fit.
+/// Candidates for unit slips. A slip has an exactly known factor and therefore no free parameter.
 fn unit_slips(forward: &Forward) -> Vec<Candidate> {
-    let kind = crate::arm::effect::kind("wrong_unit").expect("registered");
     let channels = Channel::ALL.into_iter().filter(|c| !forward.range(*c).is_empty());
+    let slip = |channel: Channel, factor: f64| Candidate {
+        kind: &wrong_unit::KIND,
+        at: channel.word().into(),
+        free_parameters: Vec::new(),
+        fixed: vec![factor],
+        starts: vec![Vec::new()],
+        twins: Vec::new(),
+    };
     channels
-        .flat_map(|channel| {
-            crate::arm::effect::wrong_unit::SLIPS.iter().map(move |(factor, _)| Candidate {
-                kind,
-                at: channel.word().into(),
-                knobs: Vec::new(),
-                fixed: vec![*factor],
-                starts: vec![Vec::new()],
-                twins: Vec::new(),
-            })
-        })
+        .flat_map(|channel| wrong_unit::SLIPS.iter().map(move |(factor, _)| slip(channel, *factor)))
         .collect()
 }

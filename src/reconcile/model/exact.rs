@@ -1,20 +1,21 @@
-//! Readings predicted by mechanics directly, one row at a time: what `predict` writes, and the check
-//! on the prepared model that fits use.
+//! Predicts readings by [`mechanics`](crate::mechanics) directly, one row at a time. `predict` writes these
+//! values, and tests check the prepared model of the fits against them.
 
 use crate::arm::LinkModel;
-use crate::arm::effect::{Channel, Subject};
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::JointLaw;
 use crate::arm::load::Payload;
 use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure};
 use crate::mechanics::chain::Chain;
 use crate::mechanics::chain::{Posed, Yielding};
 use crate::mechanics::{Twist, displacement_at};
-use crate::reconcile::forward::{ARCMIN_PER_RAD, bench_twists_rad};
+use crate::reconcile::forward::bench::{ARCMIN_PER_RAD, bench_twists_rad};
 use crate::reconcile::readings::placement::Placement;
 use crate::reconcile::readings::rows::{ModalRow, PositionRow, StaticRow, WindupRow};
 use nalgebra::Vector3;
 
-/// A subject ready to be asked.
+/// A subject prepared for prediction.
 pub struct Exact<'a> {
     subject: &'a Subject,
     chain: Chain,
@@ -26,7 +27,7 @@ impl<'a> Exact<'a> {
         Self { subject, chain: Chain::new(&subject.structure, LinkModel::Full) }
     }
 
-    /// Displacement readings \[mm\], the rows in the order of their file.
+    /// Displacement readings \[mm\], with the rows in the order of their file.
     pub fn statics_mm(&self, rows: &[StaticRow]) -> Vec<[f64; 3]> {
         let reading = &self.subject.channels[Channel::Static as usize];
         let mut out = Vec::with_capacity(rows.len());
@@ -105,7 +106,7 @@ impl<'a> Exact<'a> {
         out
     }
 
-    /// Torque on every joint by name \[N m\].
+    /// Torque on every joint, with the joint's name \[N m\].
     pub fn torques_nm(&self, row: &StaticRow) -> Vec<(String, f64)> {
         let posed = self.posed(&row.pose_deg, &row.payload, row.force_n);
         let torques = posed.statics().joint_torques_nm;
@@ -118,7 +119,7 @@ impl<'a> Exact<'a> {
     }
 }
 
-/// The structure with its tip moved to a point of the last frame.
+/// The structure with its tip moved to a point in the last frame.
 pub fn with_tool(structure: &Structure, tool_m: Vector3<f64>) -> Structure {
     let mut out = structure.clone();
     out.pieces.push(Piece::Link(LinkPiece {
@@ -132,12 +133,12 @@ pub fn with_tool(structure: &Structure, tool_m: Vector3<f64>) -> Structure {
     out
 }
 
-/// A payload stated from the tip, as seen from a point of the last frame.
+/// A payload that is stated from the tip, as seen from a point in the last frame.
 pub fn seen_from_tool(payload: &Payload, tool_m: &Vector3<f64>) -> Payload {
     Payload { cg_m: payload.cg_m - tool_m, ..*payload }
 }
 
-/// Each joint's law, twist and torque, base to tip.
+/// Law, twist and torque of each joint, base to tip.
 fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
     let torques = posed.statics().joint_torques_nm;
     let mut twists = posed.tip_twists().into_iter();
@@ -152,12 +153,12 @@ fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
     laws.zip(torques).map(|((law, twist), (_, torque))| (law, twist, torque)).collect()
 }
 
-/// Where each joint's friction play stands when the arm has come to rest.
+/// State of each joint's friction play when the arm has come to rest \[N m\].
 fn rest(posed: &Posed) -> Vec<f64> {
     joints(posed).iter().map(|(law, _, torque)| law.play_at_rest_nm(*torque)).collect()
 }
 
-/// Displacement of the tip from the weightless arm \[m\], the friction play following.
+/// Displacement of the tip from that of the weightless arm \[m\]. The friction play moves along.
 fn tip_m(posed: &Posed, play: &mut [f64]) -> Vector3<f64> {
     let joints = joints(posed);
     let statics = posed.statics();

@@ -1,19 +1,11 @@
-//! How large an effect is expected to be in an arm and a campaign of this size: kilograms that are a surprise on
-//! a small arm are none on a large one.
+//! The size that an effect is expected to have in an arm and a campaign of this size. A few kilograms are a
+//! surprise on a small arm and nothing special on a large one.
 
-use crate::arm::effect::Channel;
-use crate::reconcile::forward::Forward;
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::kind::Measure;
+use crate::reconcile::forward::prepared::Forward;
 
-/// Part of the arm's mass that a joint's housing may add.
-const ARM_PART: f64 = 1.0 / 8.0;
-/// Part of the arm's mass per length that cables may add.
-const CABLE_PART: f64 = 1.0 / 4.0;
-/// Part of the largest payload that a statement may be wrong by.
-const PAYLOAD_PART: f64 = 1.0 / 4.0;
-/// Part of a channel's largest reading that its zero may be off by.
-const ZERO_PART: f64 = 1.0 / 4.0;
-
-/// Sizes of an arm and its campaign.
+/// Measures of an arm and of its campaign.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sizes {
     arm_kg: f64,
@@ -25,7 +17,7 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// Of the nominal arm and the readings.
+    /// Measures the nominal arm and the readings.
     pub fn of(forward: &Forward) -> Self {
         let structure = &forward.nominal.structure;
         let largest = |channel| {
@@ -43,16 +35,16 @@ impl Sizes {
         }
     }
 
-    /// Largest size expected of a parameter in its own unit, if it goes with the size of the arm or the readings.
-    pub fn expected(&self, effect: &str, parameter: &str) -> Option<f64> {
-        match (effect, parameter) {
-            ("extra_mass", "delta_kg") => Some(ARM_PART * self.arm_kg),
-            ("payload_mass_error", "delta_kg") => Some(PAYLOAD_PART * self.payload_kg),
-            ("harness_mass", "kg_per_m") => Some(CABLE_PART * self.arm_kg / self.arm_m),
-            ("sensor_bias", "bias_mm") => Some(ZERO_PART * self.displacement_mm),
-            ("sensor_bias", "bias_arcmin") => Some(ZERO_PART * self.twist_arcmin),
-            ("drift", "rate_mm_per_row") => Some(ZERO_PART * self.displacement_mm / self.static_rows),
-            _ => None,
+    /// The largest size expected of a parameter that grows with a measure: this part of it, in the
+    /// parameter's unit.
+    pub fn expected(&self, measure: Measure, part: f64) -> f64 {
+        match measure {
+            Measure::ArmMass => part * self.arm_kg,
+            Measure::PayloadMass => part * self.payload_kg,
+            Measure::ArmMassPerLength => part * self.arm_kg / self.arm_m,
+            Measure::Displacement => part * self.displacement_mm,
+            Measure::Twist => part * self.twist_arcmin,
+            Measure::DisplacementPerRow => part * self.displacement_mm / self.static_rows,
         }
     }
 }
@@ -60,6 +52,8 @@ impl Sizes {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arm::effect::kind::Kind;
+    use crate::arm::effect::{extra_mass, payload_mass_error};
     use crate::catalog::Catalogs;
     use crate::reconcile::readings::campaign::Campaign;
     use std::path::Path;
@@ -77,8 +71,13 @@ mod tests {
         }
         campaign.statics.iter_mut().for_each(|row| row.payload.mass_kg *= 20.0);
         let large = sizes(&campaign);
-        let of = |sizes: &Sizes, effect| sizes.expected(effect, "delta_kg").expect("goes with the size");
-        assert!(of(&small, "extra_mass") < 12.0 && of(&large, "extra_mass") > 100.0, "{small:?} {large:?}");
-        assert_eq!(of(&large, "payload_mass_error"), 50.0);
+        let of = |sizes: &Sizes, kind: &Kind| {
+            let (measure, part) =
+                (kind.parameters)(kind.places[0])[0].grows_with.expect("grows with the arm");
+            sizes.expected(measure, part)
+        };
+        let extra = |sizes: &Sizes| of(sizes, &extra_mass::KIND);
+        assert!(extra(&small) < 12.0 && extra(&large) > 100.0, "{small:?} {large:?}");
+        assert_eq!(of(&large, &payload_mass_error::KIND), 50.0);
     }
 }

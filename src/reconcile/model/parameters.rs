@@ -1,67 +1,70 @@
-//! A model to fit: the calibration that tolerance allows, always free, and a list of effects.
+//! A model to fit: the calibration within tolerance, which is always free, and a list of effects.
 
-use crate::arm::effect::{Effect, Kind, Parameter, Place, Scale, Subject};
+use super::estimate::Estimate;
+use super::estimate::Interval;
+use crate::arm::effect::entry::Effect;
+use crate::arm::effect::kind::{Absent, Kind, Parameter, Place, Scale};
+use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::Curve;
 use crate::arm::structure::Piece;
 use crate::arm::{Arm, Element, LinkBody};
-use crate::reconcile::fit::interval::Interval;
-use crate::reconcile::forward::Forward;
 use crate::reconcile::forward::coefficients::Coefficients;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Tolerance;
-use crate::reconcile::verdict::outcome::Estimate;
 
-/// One fitted number of an effect: `u` is what the fit moves, near 1 in size.
+/// One fitted parameter of an effect. A fit moves `u`, which is of the order of 1.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Knob {
+pub struct FreeParameter {
     /// Name of the parameter.
     pub name: &'static str,
-    /// Component of a vector parameter.
+    /// Which component, for a vector parameter.
     pub component: usize,
     scale: Scale,
-    /// Value of `u = 1` for linear scales; the stiffness whose compliance is 1 for stiffnesses.
+    /// For linear scales the value at `u = 1`. For stiffnesses the stiffness whose compliance is `u = 1`.
     reference: f64,
     /// Smallest `u`.
     pub low: f64,
     /// Largest `u`.
     pub high: f64,
-    /// Another number of the effect that this one is not below.
+    /// Another parameter of the effect that this one is not below.
     not_below: Option<&'static str>,
-    /// The `u` at which the effect is absent; `None` where the number says how and not how much.
+    /// The `u` at which the effect is absent; `None` where the parameter says how the effect acts and not how
+    /// large it is.
     absent: Option<f64>,
-    /// Within what `u` is expected.
+    /// The range in which `u` is expected.
     expected: (f64, f64),
 }
 
-/// Part of the prior's width below which sizes of an effect are equally likely.
+/// Sizes below this part of the prior's width are equally likely.
 const SMALL: f64 = 0.01;
 
-/// Compliance of a connection, bearing or base up to which one is looked for, in that of the joint.
+/// Largest compliance that is searched for in a connection, bearing or base, as a multiple of the joint's.
 const SOFTEST: f64 = 100.0;
 
-/// A stiffness no reading can tell from rigid \[N m/rad\].
+/// A stiffness that no reading can tell from rigid \[N m/rad\].
 const RIGID_NM_PER_RAD: f64 = 1e15;
 
-impl Knob {
-    /// A component of a parameter; compliances are measured by that of a joint \[N m/rad\].
+impl FreeParameter {
+    /// A component of a parameter. Compliances are expressed in that of a joint of this stiffness \[N
+    /// m/rad\].
     pub(crate) fn new(parameter: &Parameter, component: usize, joint_stiffness: f64) -> Self {
         let expected = parameter.prior;
         let (low, high) = (parameter.low, parameter.high);
-        let absent_is_zero = !matches!(parameter.name, "k1_nm_per_rad" | "k2_nm_per_rad" | "k3_nm_per_rad");
         let (reference, (low, high), expected, absent) = match parameter.scale {
             Scale::Linear => {
                 let size = parameter.typical.abs().max(1e-12);
                 let by_size = |(a, b): (f64, f64)| (a / size, b / size);
-                let absent = match parameter.name {
-                    "added_mass_coefficient" => None,
-                    "gain" => Some(1.0 / size),
-                    _ => Some(0.0),
+                let absent = match parameter.absent {
+                    Absent::AtZero => Some(0.0),
+                    Absent::AtOne => Some(1.0 / size),
+                    Absent::Never => None,
                 };
                 (size, by_size((low, high)), by_size(expected), absent)
             }
-            Scale::Stiffness if absent_is_zero => {
-                (joint_stiffness, (expected.0, expected.1.max(SOFTEST)), expected, Some(0.0))
+            Scale::Stiffness if parameter.absent == Absent::Never => {
+                (joint_stiffness, expected, expected, None)
             }
-            Scale::Stiffness => (joint_stiffness, expected, expected, None),
+            Scale::Stiffness => (joint_stiffness, (expected.0, expected.1.max(SOFTEST)), expected, Some(0.0)),
             Scale::Reciprocal => (1.0, (1.0 / high, 1.0 / low), expected, Some(1.0)),
             Scale::Log => (1.0, (low.ln(), high.ln()), (expected.0.ln(), expected.1.ln()), None),
         };
@@ -69,12 +72,12 @@ impl Knob {
         Self { name: parameter.name, component, scale, reference, low, high, not_below, absent, expected }
     }
 
-    /// The same number within these limits of `u`, all of which is expected.
+    /// The same parameter within these limits of `u`, all of which are expected.
     pub(crate) fn within(self, low: f64, high: f64) -> Self {
         Self { low, high, expected: (low, high), ..self }
     }
 
-    /// How far a number is beyond what is expected, in the width of that.
+    /// Distance of `u` from the expected range, as a multiple of the range's width.
     pub fn beyond_expected(&self, u: f64) -> f64 {
         let (low, high) = self.expected;
         (u - high).max(low - u).max(0.0) / (high - low)
@@ -115,13 +118,14 @@ impl Knob {
         matches!(self.scale, Scale::Stiffness | Scale::Reciprocal)
     }
 
-    /// Whether `u` stands for an absent effect or no bound at all at this end.
+    /// Whether `u` means an absent effect, so that this end of an interval is no bound.
     pub fn unbounded(&self, u: f64) -> bool {
         self.scale == Scale::Stiffness && u <= 1e-6
     }
 
-    /// Whether the effect is as large as is looked for.
+    /// Whether the effect has reached the largest size that is searched for.
     fn is_at_its_limit(&self, u: f64) -> bool {
+        // the end where the effect is absent is no limit
         let near = 1e-6 * (self.high - self.low);
         let ends = [self.low, self.high]
             .into_iter()
@@ -129,12 +133,15 @@ impl Knob {
         ends.into_iter().any(|end| (u - end).abs() <= near)
     }
 
-    /// Width of the prior about a value: one over its density there. The size of an effect may be of any
-    /// order of magnitude, so small sizes are as likely as large ones, decade by decade up to what a part can be;
-    /// what only says how it acts is equally likely anywhere within what is expected.
+    /// Width of the prior at a value: the reciprocal of its density there.
+    ///
+    /// The size of an effect may be of any order of magnitude. So each decade of sizes is equally likely, up
+    /// to the largest a part can have. A parameter that only says how an effect acts is equally likely
+    /// anywhere in its expected range.
     pub fn width(&self, u: f64) -> f64 {
         let range = self.expected.1 - self.expected.0;
         let Some(absent) = self.absent else { return range };
+        // a density that falls as 1/size, cut off near zero where it would diverge
         let small = SMALL * range;
         let decades = |end: f64| ((end - absent).abs() / small).ln_1p();
         (decades(self.low) + decades(self.high)) * ((u - absent).abs() + small)
@@ -144,37 +151,39 @@ impl Knob {
 /// An effect at a place, as a candidate.
 #[derive(Clone)]
 pub struct Candidate {
-    /// Its kind.
+    /// The kind of effect.
     pub kind: &'static Kind,
-    /// Its place.
+    /// The place where it sits.
     pub at: String,
-    /// Its fitted numbers.
-    pub knobs: Vec<Knob>,
-    /// Numbers that are stated and not fitted, after the fitted ones.
+    /// Its fitted parameters.
+    pub free_parameters: Vec<FreeParameter>,
+    /// Parameters that are stated and not fitted. They follow the fitted ones.
     pub(crate) fixed: Vec<f64>,
-    /// Where fits start.
+    /// Starting points of fits, each a list of `u`.
     pub starts: Vec<Vec<f64>>,
-    /// Effects that are the same thing in this arm by construction: name and place.
+    /// Name and place of effects that are the same thing in this arm by construction.
     pub twins: Vec<(String, String)>,
 }
 
 impl Candidate {
-    /// What it is called in reports.
+    /// Its label in reports.
     pub fn label(&self) -> String {
         format!("{}@{}", self.kind.name, self.at)
     }
 
-    /// The same effect with starts in every corner of what a vector can be, for few readings.
+    /// Adds starting points in every corner of a vector's range, for campaigns with few readings.
     pub fn from_corners(mut self) -> Self {
-        self.starts.extend(corners(&self.knobs));
+        self.starts.extend(corners(&self.free_parameters));
         self
     }
 
-    /// Numbers of all parameters in the kind's order, those that keep an order in it.
+    /// Values of all parameters in the order of the kind. A parameter that must not be below another is
+    /// raised to it.
     pub fn numbers(&self, u: &[f64]) -> Vec<f64> {
-        let mut out: Vec<f64> = self.knobs.iter().zip(u).map(|(k, u)| k.value(*u)).collect();
-        for (i, knob) in self.knobs.iter().enumerate() {
-            if let Some(least) = self.knobs.iter().position(|k| Some(k.name) == knob.not_below) {
+        let mut out: Vec<f64> = self.free_parameters.iter().zip(u).map(|(k, u)| k.value(*u)).collect();
+        for (i, parameter) in self.free_parameters.iter().enumerate() {
+            if let Some(least) = self.free_parameters.iter().position(|k| Some(k.name) == parameter.not_below)
+            {
                 out[i] = out[i].max(out[least]);
             }
         }
@@ -198,37 +207,38 @@ impl Candidate {
     }
 }
 
-/// Starts for the components of a vector, a fifth of the way from nothing to each corner of their range:
-/// with nothing everywhere a descent may see no slope.
-fn corners(knobs: &[Knob]) -> Vec<Vec<f64>> {
-    if knobs.len() < 2 || knobs.iter().any(|k| k.name != knobs[0].name) {
+/// Starting points for the components of a vector: a fifth of the way from zero to each corner of their
+/// range. With zero everywhere a descent may see no slope.
+fn corners(free_parameters: &[FreeParameter]) -> Vec<Vec<f64>> {
+    if free_parameters.len() < 2 || free_parameters.iter().any(|k| k.name != free_parameters[0].name) {
         return Vec::new();
     }
-    let end = |k: &Knob, up: bool| 0.2 * if up { k.high } else { k.low };
-    let corner = |bits: usize| knobs.iter().enumerate().map(|(i, k)| end(k, bits >> i & 1 == 1)).collect();
-    (0..1 << knobs.len()).map(corner).collect()
+    let end = |k: &FreeParameter, up: bool| 0.2 * if up { k.high } else { k.low };
+    let corner =
+        |bits: usize| free_parameters.iter().enumerate().map(|(i, k)| end(k, bits >> i & 1 == 1)).collect();
+    (0..1 << free_parameters.len()).map(corner).collect()
 }
 
-/// One calibrated number.
+/// A property that calibration adjusts within tolerance.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Calibration {
-    /// Stiffness of a joint: a factor.
+    /// Factor on the stiffness of a joint.
     Stiffness(String),
-    /// E and G of a material: a factor, with the links that have it.
+    /// Factor on E and G of a material, and the links made of it.
     Modulus(String, Vec<String>),
-    /// Mass of a joint: a factor.
+    /// Factor on the mass of a joint.
     Mass(String),
 }
 
-/// Calibrated numbers with the standard deviation of ln of each factor.
+/// The calibrated parameters, each with the standard deviation of ln of its factor.
 #[derive(Debug, Clone)]
 pub struct Nuisance {
-    /// The numbers.
+    /// Each parameter and its standard deviation.
     pub numbers: Vec<(Calibration, f64)>,
 }
 
 impl Nuisance {
-    /// What tolerance leaves open: half the 95 % limit is one standard deviation.
+    /// The parameters that the tolerance leaves open. Half of a 95 % limit is one standard deviation.
     pub fn new(arm: &Arm, tolerance: &Tolerance) -> Self {
         let mut numbers = Vec::new();
         let joints = || arm.joints();
@@ -254,7 +264,7 @@ impl Nuisance {
         Self { numbers }
     }
 
-    /// Factor of a calibrated number.
+    /// The factor that a calibrated parameter has at `u`.
     pub fn factor(&self, index: usize, u: f64) -> f64 {
         (u * self.numbers[index].1).exp()
     }
@@ -303,29 +313,29 @@ fn materials(arm: &Arm) -> Vec<(String, Vec<String>)> {
     out
 }
 
-/// A model: calibration and effects. Its parameter vector is the calibration first, then each
-/// effect's knobs.
+/// A model: calibration and effects. Its parameter vector holds the calibration first, then the parameters of
+/// each effect.
 #[derive(Clone)]
 pub struct Model<'a> {
     /// Calibration.
     pub nuisance: &'a Nuisance,
     /// Effects.
     pub effects: Vec<&'a Candidate>,
-    /// Smoothing of break points in the frequencies.
+    /// Width over which break points are smoothed in the frequencies \[ln of the torque\].
     pub smoothing: f64,
-    /// Parameters that are held.
+    /// Indices and values of the parameters that are held.
     pub held: Vec<(usize, f64)>,
 }
 
 impl<'a> Model<'a> {
-    /// Calibration only.
-    pub fn bare(nuisance: &'a Nuisance) -> Self {
+    /// The baseline: calibration and no effect.
+    pub fn baseline(nuisance: &'a Nuisance) -> Self {
         Self { nuisance, effects: Vec::new(), smoothing: 0.0, held: Vec::new() }
     }
 
-    /// A model of some of the candidates, by their indices.
+    /// A model of the candidates with these indices.
     pub fn of(nuisance: &'a Nuisance, candidates: &'a [Candidate], effects: &[usize]) -> Self {
-        Self { effects: effects.iter().map(|&i| &candidates[i]).collect(), ..Self::bare(nuisance) }
+        Self { effects: effects.iter().map(|&i| &candidates[i]).collect(), ..Self::baseline(nuisance) }
     }
 
     /// The same model with one more effect.
@@ -335,39 +345,46 @@ impl<'a> Model<'a> {
         out
     }
 
-    /// The same model without an effect.
+    /// The same model without one effect.
     pub fn without(&self, index: usize) -> Self {
         let mut out = self.clone();
         out.effects.remove(index);
         out
     }
 
-    /// Where in the parameter vector the break points of gear curves are.
+    /// Indices of the break points of gear curves in the parameter vector.
     pub fn break_points(&self) -> Vec<usize> {
         let first = self.calibrated();
-        let knobs = self.knobs().enumerate();
-        knobs.filter(|(_, k)| k.name == "t1_nm" || k.name == "t2_nm").map(|(i, _)| first + i).collect()
+        let free_parameters = self.free_parameters().enumerate();
+        free_parameters
+            .filter(|(_, k)| k.name == "t1_nm" || k.name == "t2_nm")
+            .map(|(i, _)| first + i)
+            .collect()
     }
 
-    /// The parameter that a parameter is not below, if there is one.
+    /// Index of the parameter that a parameter must not be below, if there is one.
     fn floor(&self, index: usize) -> Option<usize> {
         let mut first = self.calibrated();
         for effect in &self.effects {
-            if let Some(knob) = index.checked_sub(first).and_then(|i| effect.knobs.get(i)) {
-                return Some(first + effect.knobs.iter().position(|k| Some(k.name) == knob.not_below)?);
+            if let Some(parameter) = index.checked_sub(first).and_then(|i| effect.free_parameters.get(i)) {
+                return Some(
+                    first
+                        + effect.free_parameters.iter().position(|k| Some(k.name) == parameter.not_below)?,
+                );
             }
-            first += effect.knobs.len();
+            first += effect.free_parameters.len();
         }
         None
     }
 
-    /// Whether a parameter is no higher than the one that it is not below: as far down as it acts.
+    /// Whether a parameter has reached the one that it must not be below. Further down it would have no
+    /// effect.
     pub fn rests(&self, index: usize, u: &[f64]) -> bool {
         self.floor(index).is_some_and(|least| u[index] <= u[least])
     }
 
-    /// Brings parameters into the order they keep. Out of it a number acts on nothing, and a descent that has let
-    /// it go there never finds it again.
+    /// Puts ordered parameters in order. A parameter below its limit acts on nothing, and a descent that left
+    /// it there would never find it again.
     pub fn put_in_order(&self, u: &mut [f64]) {
         for index in self.calibrated()..u.len() {
             let Some(least) = self.floor(index).filter(|least| u[index] < u[*least]) else { continue };
@@ -385,10 +402,10 @@ impl<'a> Model<'a> {
 
     /// Number of parameters.
     pub fn len(&self) -> usize {
-        self.calibrated() + self.knobs().count()
+        self.calibrated() + self.free_parameters().count()
     }
 
-    /// Whether nothing is free.
+    /// Whether no parameter is free.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -398,19 +415,21 @@ impl<'a> Model<'a> {
         self.nuisance.numbers.len()
     }
 
-    /// The knobs of all effects.
-    pub fn knobs(&self) -> impl Iterator<Item = &'a Knob> + '_ {
-        self.effects.iter().flat_map(|e| e.knobs.iter())
+    /// The parameters of all effects, in order.
+    pub fn free_parameters(&self) -> impl Iterator<Item = &'a FreeParameter> + '_ {
+        self.effects.iter().flat_map(|e| e.free_parameters.iter())
     }
 
-    /// Where an effect's knobs begin in the parameter vector.
-    pub fn first_knob(&self, effect: usize) -> usize {
-        self.calibrated() + self.effects[..effect].iter().map(|e| e.knobs.len()).sum::<usize>()
+    /// Index of an effect's first parameter in the parameter vector.
+    pub fn first_parameter(&self, effect: usize) -> usize {
+        self.calibrated() + self.effects[..effect].iter().map(|e| e.free_parameters.len()).sum::<usize>()
     }
 
-    /// Whether a size of an effect is as large as is looked for.
+    /// Whether an effect has reached the largest size that is searched for.
     pub fn is_at_a_limit(&self, u: &[f64]) -> bool {
-        self.knobs().zip(&u[self.calibrated()..]).any(|(knob, u)| knob.is_at_its_limit(*u))
+        self.free_parameters()
+            .zip(&u[self.calibrated()..])
+            .any(|(parameter, u)| parameter.is_at_its_limit(*u))
     }
 
     /// Smallest and largest value of a parameter.
@@ -419,8 +438,9 @@ impl<'a> Model<'a> {
             return (*value, *value);
         }
         match index.checked_sub(self.calibrated()) {
+            // eight standard deviations of tolerance: beyond what any honest part has
             None => (-8.0, 8.0),
-            Some(i) => self.knobs().nth(i).map_or((0.0, 0.0), |k| (k.low, k.high)),
+            Some(i) => self.free_parameters().nth(i).map_or((0.0, 0.0), |k| (k.low, k.high)),
         }
     }
 
@@ -430,21 +450,21 @@ impl<'a> Model<'a> {
         self.nuisance.apply(u, &mut subject);
         let mut at = self.calibrated();
         for effect in &self.effects {
-            let own = &u[at..at + effect.knobs.len()];
+            let own = &u[at..at + effect.free_parameters.len()];
             (effect.kind.apply)(&effect.numbers(own), &effect.at, &mut subject);
-            at += effect.knobs.len();
+            at += effect.free_parameters.len();
         }
         subject
     }
 
-    /// The same, as numbers on the coordinates.
+    /// The compliances, joint laws and masses of the arm with these parameters.
     pub fn coefficients(&self, forward: &Forward, u: &[f64]) -> Coefficients {
         let mut out = forward.coefficients(&self.subject(forward, u));
         out.smoothing = self.smoothing;
         out
     }
 
-    /// What the model is called.
+    /// The model's label: those of its effects joined by `+`.
     pub fn label(&self) -> String {
         self.effects.iter().map(|e| e.label()).collect::<Vec<_>>().join(" + ")
     }

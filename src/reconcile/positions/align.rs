@@ -1,5 +1,5 @@
-//! Where the arm stands in the instrument's frame, and how what is mounted anyhow is mounted, found from
-//! nothing.
+//! Finds from nothing where the arm stands in the instrument's frame, and how parts of unknown mounting are
+//! mounted.
 
 use super::fit::{Fitted, Sample, fit};
 use super::kinematics::{Geometry, Number, mount_numbers};
@@ -8,11 +8,11 @@ use crate::reconcile::readings::campaign::PositionsSpec;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use rayon::prelude::*;
 
-/// Size of errors that a wrong attitude leaves \[m\].
+/// Size of the errors that a wrong attitude leaves \[m\].
 const ROUGH_M: f64 = 0.3;
 
-/// Places the arm: attitudes behind unknown mountings from the 24 of a cube, arm by arm, each settled by
-/// a fit; without mountings the nearest rigid motion.
+/// Places the arms, one by one. Behind an unknown mounting the 24 attitudes of a cube are tried, and a fit
+/// settles each. Without unknown mountings the nearest rigid motion is used.
 pub fn align(tree: &Tree, spec: &PositionsSpec, samples: &[Sample], geometry: &mut Geometry) {
     let mounts = mount_numbers(tree, spec);
     let mut placed = false;
@@ -38,7 +38,7 @@ pub fn align(tree: &Tree, spec: &PositionsSpec, samples: &[Sample], geometry: &m
     }
 }
 
-/// The best of the cube's attitudes behind one mounting; `placed`: the base is known.
+/// Finds the best of the cube's attitudes behind one mounting. `placed` says whether the base is known.
 fn settle_mount(
     own: &[&Sample],
     geometry: &Geometry,
@@ -70,7 +70,7 @@ fn settle_mount(
     best.expect("24 attitudes").geometry
 }
 
-/// The 24 attitudes that carry a cube onto itself.
+/// The 24 rotations that map a cube onto itself.
 fn cube() -> Vec<Rotation3<f64>> {
     let axes: Vec<Vector3<f64>> =
         (0..3).flat_map(|c| [Vector3::ith(c, 1.0), Vector3::ith(c, -1.0)]).collect();
@@ -83,8 +83,8 @@ fn cube() -> Vec<Rotation3<f64>> {
     out
 }
 
-/// The rotation and origin that carry nominal points onto measured ones (Kabsch), refined on the nearest
-/// 90 %.
+/// Finds the rotation and the origin that move nominal points onto measured ones (Kabsch), refined on the
+/// nearest 90 %.
 fn nearest_motion(samples: &[&Sample], geometry: &mut Geometry) {
     (geometry.base, geometry.origin_m) = (Rotation3::identity(), Vector3::zeros());
     let nominal: Vec<Vector3<f64>> = samples.iter().map(|s| geometry.place(s.placing(), &[]).at_m).collect();
@@ -98,6 +98,7 @@ fn nearest_motion(samples: &[&Sample], geometry: &mut Geometry) {
         let svd = h.svd(true, true);
         let (Some(u), Some(vt)) = (svd.u, svd.v_t) else { return };
         let mut flip = Matrix3::identity();
+        // the determinant decides between a rotation and a reflection
         flip[(2, 2)] = (vt.transpose() * u.transpose()).determinant().signum();
         let rotation = Rotation3::from_matrix_unchecked(vt.transpose() * flip * u.transpose());
         let origin = to - rotation * from;
@@ -106,6 +107,7 @@ fn nearest_motion(samples: &[&Sample], geometry: &mut Geometry) {
         let error = |i: usize| (samples[i].measured_m - origin - rotation * nominal[i]).norm();
         let mut order: Vec<usize> = (0..samples.len()).collect();
         order.sort_by(|&i, &j| error(i).total_cmp(&error(j)));
+        // gross errors must not turn the arm
         order.truncate((samples.len() * 9).div_ceil(10).max(4));
         kept = order;
     }

@@ -1,22 +1,24 @@
-//! A robust fit of geometry and compliances to absolute positions.
+//! Fits geometry and compliances to absolute positions, robustly.
 //!
-//! The tracker's deviation is far below what any model of an arm leaves, so the scale of the errors is
-//! fitted too: each position's error is a three-dimensional Student variable (4 degrees of freedom), whose
-//! weights `(ν+3)/(ν + |r|²/s²)` let gross errors fade. What yields moves the point by `c P ĝ`, `P` its
-//! displacement at unit compliance per direction of gravity ([`super::loads`]).
+//! The standard deviation of a laser tracker is far below the errors that any model of an arm leaves. So the
+//! scale of the errors is fitted too. The error of each position is a three-dimensional Student variable with
+//! ν = 4 degrees of freedom. Its weight `(ν+3)/(ν + |r|²/s²)` lets gross errors fade. A compliance `c` moves
+//! the point by `c P ĝ`, where `P` is its displacement at unit compliance per direction of gravity
+//! ([`loads`](super::loads)).
 
 use super::kinematics::{Geometry, Number, Placing};
-use super::loads::Sag;
+use super::loads::Deflection;
+use super::normal::Normal;
 use super::springs::{Best, best_springs};
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-/// Degrees of freedom of the errors.
+/// Degrees of freedom of the Student distribution.
 const NU: f64 = 4.0;
 const MOST_STEPS: usize = 40;
-/// Times a step is halved at the most until it makes the fit no worse.
+/// Largest number of times that a step is halved until it makes the fit no worse.
 const MOST_HALVINGS: i32 = 10;
-/// Standard deviation of a compliance before anything is measured, far beyond any part: what no weight turns is not
-/// known, but no number either that no part could have \[rad/(N m)\].
+/// Prior standard deviation of a compliance \[rad/(N m)\]. It is far above that of any part. Without it, a
+/// compliance that no weight loads could take any value.
 const PRIOR_RAD_PER_NM: f64 = 0.1;
 /// Largest turn of a frame in one step \[rad\].
 const MOST_TURN_RAD: f64 = 0.3;
@@ -26,24 +28,24 @@ const MOST_TURN_RAD: f64 = 0.3;
 pub struct Sample {
     /// Joint angles \[rad\].
     pub pose_rad: Vec<f64>,
-    /// Which arm.
+    /// Index of its arm.
     pub arm: usize,
-    /// Point on the tool.
+    /// Index of its point on the tool.
     pub point: usize,
-    /// Session of the instrument.
+    /// Index of the instrument's session.
     pub station: usize,
-    /// Place among the samples.
+    /// Its index among the samples.
     pub index: usize,
-    /// Which pose: samples of one pose are kept out together.
+    /// Index of its pose. Samples of one pose are held out together.
     pub group: usize,
-    /// Position \[m\].
+    /// Measured position in the instrument's frame \[m\].
     pub measured_m: Vector3<f64>,
-    /// What gravity does to it.
-    pub sag: Sag,
+    /// The effect of gravity on it.
+    pub deflection: Deflection,
 }
 
 impl Sample {
-    /// What is asked of the geometry.
+    /// The arguments that the geometry needs.
     pub fn placing(&self) -> Placing<'_> {
         Placing { arm: self.arm, pose_rad: &self.pose_rad, point: self.point, station: self.station }
     }
@@ -54,13 +56,13 @@ impl Sample {
 pub struct Fitted {
     /// Geometry.
     pub geometry: Geometry,
-    /// By how much each number has moved from nominal.
+    /// Change of each number from its nominal value.
     pub moved: Vec<f64>,
     /// Standard deviations of the numbers.
     pub number_deviations: Vec<f64>,
     /// Indices of the candidates in it.
     pub effects: Vec<usize>,
-    /// The compliances of each \[rad/(N m)\].
+    /// The compliances of each effect \[rad/(N m)\].
     pub compliances: Vec<Vec<f64>>,
     /// Their standard deviations.
     pub deviations: Vec<Vec<f64>>,
@@ -71,7 +73,7 @@ pub struct Fitted {
 }
 
 impl Fitted {
-    /// A geometry without effects.
+    /// A model of a geometry without effects.
     pub fn rigid(geometry: Geometry, scale_m: f64) -> Self {
         Self {
             geometry,
@@ -85,27 +87,28 @@ impl Fitted {
         }
     }
 
-    /// Where the model has the point \[m\].
+    /// Predicted position \[m\].
     pub fn predicted_m(&self, sample: &Sample) -> Vector3<f64> {
         let rigid = self.geometry.place(sample.placing(), &[]).at_m;
         rigid + self.geometry.level_to_instrument() * self.displacement(sample)
     }
 
-    /// Error of a sample \[m\].
+    /// Error of a sample, measured minus predicted \[m\].
     pub fn error(&self, sample: &Sample) -> Vector3<f64> {
         sample.measured_m - self.predicted_m(sample)
     }
 
-    /// By how much a sample's point is moved by all that yields, level frame \[m\].
+    /// Displacement of a sample's point by all that yields, in the level frame \[m\].
     pub fn displacement(&self, sample: &Sample) -> Vector3<f64> {
         let effects = self.effects.iter().zip(&self.compliances);
         let gravity = &self.geometry.gravity;
         let pulled = effects.map(|(&e, c)| pull(sample, e, c) * gravity);
-        let leaning = sample.sag.known_slopes_m[0] * gravity.x + sample.sag.known_slopes_m[1] * gravity.y;
-        sample.sag.known_m + leaning + pulled.sum::<Vector3<f64>>()
+        let leaning =
+            sample.deflection.known_slopes_m[0] * gravity.x + sample.deflection.known_slopes_m[1] * gravity.y;
+        sample.deflection.known_m + leaning + pulled.sum::<Vector3<f64>>()
     }
 
-    /// The model a part of the way to where a step of the numbers leads.
+    /// The model that is reached by a part of a step.
     fn towards(&self, goal: &Self, part: f64, numbers: &[Number], step: &[f64], samples: &[&Sample]) -> Self {
         let mut out = goal.clone();
         let step: Vec<f64> = step.iter().map(|s| part * s).collect();
@@ -116,7 +119,7 @@ impl Fitted {
         out.judged(samples)
     }
 
-    /// The same with the scale that its errors have, and its likelihood.
+    /// The same model with the scale of its errors and its likelihood computed.
     fn judged(mut self, samples: &[&Sample]) -> Self {
         let errors = errors(samples, &self);
         self.scale_m = scale(&errors, self.scale_m);
@@ -124,7 +127,7 @@ impl Fitted {
         self
     }
 
-    /// ln of the likelihood and of the prior of the numbers.
+    /// ln of the likelihood and of the prior of the numbers together.
     fn merit(&self, numbers: &[Number]) -> f64 {
         let prior = numbers.iter().zip(&self.moved).map(|(n, moved)| 0.5 * (moved / n.prior()).powi(2));
         self.ln_likelihood - prior.sum::<f64>()
@@ -136,27 +139,28 @@ impl Fitted {
     }
 }
 
-/// What the compliances of an effect move the point by, per direction of gravity.
+/// The displacement of the point by the compliances of an effect, per direction of gravity.
 fn pull(sample: &Sample, effect: usize, compliances: &[f64]) -> Matrix3<f64> {
-    sample.sag.per_compliance[effect].iter().zip(compliances).map(|(p, c)| p * *c).sum()
+    sample.deflection.per_compliance[effect].iter().zip(compliances).map(|(p, c)| p * *c).sum()
 }
 
-/// Fits geometry and the named compliances to the samples, from a model.
+/// Fits geometry and the named compliances to the samples, starting from a model.
 pub fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &Fitted) -> Fitted {
     let mut here = start.clone();
     here.compliances = effects
         .iter()
         .map(|&e| {
             let known = start.effects.iter().position(|s| *s == e);
-            let none = || vec![0.0; samples.first().map_or(1, |s| s.sag.per_compliance[e].len())];
+            let none = || vec![0.0; samples.first().map_or(1, |s| s.deflection.per_compliance[e].len())];
             known.map_or_else(none, |i| start.compliances[i].clone())
         })
         .collect();
     here.deviations = here.compliances.iter().map(|own| vec![f64::INFINITY; own.len()]).collect();
     here.effects = effects.to_vec();
     here.moved.resize(numbers.len(), 0.0);
+    // kept for comparison: the start can be better than where a first bad step leads
     let begin = here.clone().judged(samples);
-    // the first step may go through what is worse: far from the best the parabola is none
+    // The first step may make the fit worse, because the parabola is a poor model far from the best fit.
     let mut merit = f64::NEG_INFINITY;
     for _ in 0..MOST_STEPS {
         let before = here.clone();
@@ -181,15 +185,20 @@ pub fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &F
     }
     let errors = errors(samples, &here);
     let free = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
-    let doubt = doubt(&errors, here.scale_m, free);
-    here.deviations.iter_mut().flatten().chain(&mut here.number_deviations).for_each(|d| *d *= doubt);
+    let sandwich_factor = sandwich_factor(&errors, here.scale_m, free);
+    here.deviations
+        .iter_mut()
+        .flatten()
+        .chain(&mut here.number_deviations)
+        .for_each(|d| *d *= sandwich_factor);
     here
 }
 
-/// By how much deviations are larger than the weighted curvature says, which takes the weights for known: that of an
-/// M-estimator (Huber, Robust Statistics, ch. 7), mean square of the weighted errors over the square of their mean
-/// slope, with what so many free numbers take from the errors.
-fn doubt(errors: &[Vector3<f64>], scale_m: f64, free: usize) -> f64 {
+/// Variance factor of the M-estimator (sandwich; Huber, Robust Statistics, ch. 7). Standard deviations from
+/// the weighted curvature take the weights as known and are too small by its root, which is returned. It is
+/// the root mean square of the weighted errors over their mean slope, corrected for the number of free
+/// parameters.
+fn sandwich_factor(errors: &[Vector3<f64>], scale_m: f64, free: usize) -> f64 {
     let count = errors.len() as f64;
     let (mut weights, mut squares, mut slopes) = (0.0, 0.0, 0.0);
     for error in errors {
@@ -202,7 +211,7 @@ fn doubt(errors: &[Vector3<f64>], scale_m: f64, free: usize) -> f64 {
     (weights * squares * 3.0 * count / left).sqrt() / slopes
 }
 
-/// A step that turns no frame too far for a straight line.
+/// Shortens a step that would turn a frame too far for a linearization.
 fn shortened(numbers: &[Number], step: Vec<f64>) -> Vec<f64> {
     let turns = numbers.iter().zip(&step).filter(|(n, _)| n.turns()).map(|(_, s)| s.abs());
     let part = (MOST_TURN_RAD / turns.fold(0.0, f64::max)).min(1.0);
@@ -217,7 +226,7 @@ fn errors(samples: &[&Sample], fitted: &Fitted) -> Vec<Vector3<f64>> {
     samples.iter().map(|s| fitted.error(s)).collect()
 }
 
-/// The scale of errors, from one nearby.
+/// The scale of errors, by fixed-point iteration from a value nearby \[m\].
 pub fn scale(errors: &[Vector3<f64>], near_m: f64) -> f64 {
     let mut scale_m = near_m;
     for _ in 0..8 {
@@ -227,7 +236,7 @@ pub fn scale(errors: &[Vector3<f64>], near_m: f64) -> f64 {
     scale_m
 }
 
-/// ln of the likelihood of errors of a scale.
+/// ln of the likelihood of errors with this scale.
 pub fn ln_likelihood(errors: &[Vector3<f64>], scale_m: f64) -> f64 {
     let s2 = scale_m * scale_m;
     let one =
@@ -235,17 +244,7 @@ pub fn ln_likelihood(errors: &[Vector3<f64>], scale_m: f64) -> f64 {
     errors.iter().map(one).sum()
 }
 
-/// Weighted normal equations of a model: its numbers, its effects, and further columns.
-pub struct Normal {
-    /// Curvature, priors included.
-    pub curvature: DMatrix<f64>,
-    /// Gradient towards the readings.
-    pub gradient: DVector<f64>,
-    /// How many of the columns belong to the model.
-    pub own: usize,
-}
-
-/// The normal equations at a model; `further` gives a sample's further columns \[m per unit\].
+/// Builds the normal equations at a model. `further` gives further columns of a sample \[m per unit\].
 pub fn normal(
     samples: &[&Sample],
     numbers: &[Number],
@@ -260,6 +259,7 @@ pub fn normal(
     for (i, sample) in samples.iter().enumerate() {
         let placed = here.geometry.place(sample.placing(), numbers);
         let error = sample.measured_m - placed.at_m - from_level * here.displacement(sample);
+        // rows are scaled by the root of the weight, so their product has the weight
         let root = here.weight(&error).sqrt();
         let mut columns = placed.slopes;
         let gravity = numbers.iter().enumerate().filter_map(|(n, number)| match number {
@@ -270,9 +270,9 @@ pub fn normal(
             let effects = here.effects.iter().zip(&here.compliances);
             let pulled: Vector3<f64> =
                 effects.map(|(&e, own)| pull(sample, e, own).column(c).into_owned()).sum();
-            columns[n] = from_level * (pulled + sample.sag.known_slopes_m[c]);
+            columns[n] = from_level * (pulled + sample.deflection.known_slopes_m[c]);
         }
-        let pulls = here.effects.iter().flat_map(|&e| &sample.sag.per_compliance[e]);
+        let pulls = here.effects.iter().flat_map(|&e| &sample.deflection.per_compliance[e]);
         columns.extend(pulls.map(|p| from_level * p * here.geometry.gravity));
         columns.extend(further(sample));
         for (j, column) in columns.iter().enumerate() {
@@ -290,6 +290,7 @@ pub fn normal(
     }
     let compliances = here.compliances.iter().flatten();
     for (i, compliance) in (numbers.len()..).zip(compliances) {
+        // a weak prior keeps the equations regular for a compliance that no weight loads
         let precision = PRIOR_RAD_PER_NM.powi(-2);
         curvature[(i, i)] += precision;
         gradient[i] -= precision * compliance;
@@ -297,30 +298,8 @@ pub fn normal(
     Normal { curvature, gradient, own }
 }
 
-/// A factorized curvature, scaled to a unit diagonal.
-pub struct Factor {
-    cholesky: Cholesky<f64, Dyn>,
-    diagonal: DVector<f64>,
-}
-
-impl Factor {
-    /// Of the rows and columns that are free.
-    pub fn new(curvature: &DMatrix<f64>, free: &[usize]) -> Option<Self> {
-        let sub = DMatrix::from_fn(free.len(), free.len(), |i, j| curvature[(free[i], free[j])]);
-        let diagonal = sub.diagonal().map(|d| 1.0 / d.max(1e-300).sqrt());
-        let scaled = DMatrix::from_fn(free.len(), free.len(), |i, j| {
-            diagonal[i] * sub[(i, j)] * diagonal[j] + if i == j { 1e-12 } else { 0.0 }
-        });
-        Some(Self { cholesky: Cholesky::new(scaled)?, diagonal })
-    }
-
-    /// Solves for one right side.
-    pub fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
-        self.cholesky.solve(&right.component_mul(&self.diagonal)).component_mul(&self.diagonal)
-    }
-}
-
-/// One weighted Gauss-Newton step of the geometry; the compliances are set to their best that are springs.
+/// Takes one weighted Gauss-Newton step. The geometry's step is returned; the compliances are set to the best
+/// that are springs.
 fn step(samples: &[&Sample], numbers: &[Number], here: &mut Fitted) -> Vec<f64> {
     let normal = normal(samples, numbers, here, &|_| Vec::new());
     let n = numbers.len();

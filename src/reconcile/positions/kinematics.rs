@@ -1,7 +1,8 @@
-//! Where a point on the tool is, for any calibrated geometry, and how it moves with each number of it.
+//! Computes where a point on the tool is for any calibrated geometry, and how it moves with each number of
+//! the geometry.
 
 use super::tree::Tree;
-use crate::arm::effect::transmission_error::{transmission_rad, transmission_waves};
+use crate::arm::effect::waves::{transmission_rad, transmission_waves};
 use crate::arm::structure::{JointAngle, Piece};
 use crate::arm::{Arm, Element};
 use crate::reconcile::readings::campaign::PositionsSpec;
@@ -16,7 +17,8 @@ pub enum Number {
     BasePosition(usize),
     /// Offset of a point on the last frame \[m\].
     Tool(usize, usize),
-    /// Attitude behind a link of unknown mounting \[rad\]: piece, and axis of the frame before it.
+    /// Attitude behind a link of unknown mounting \[rad\]: index of the piece, and axis of the frame before
+    /// it.
     Mount(usize, usize),
     /// Vector of a link of unknown mounting \[m\]: piece, component.
     MountVector(usize, usize),
@@ -26,8 +28,8 @@ pub enum Number {
     Axis(usize, usize),
     /// Component of a link's vector \[m\]: piece, component.
     Vector(usize, usize),
-    /// Sine or cosine, once or twice a turn, of a driven joint's transmission error \[rad\]: index in the
-    /// pose, which.
+    /// Amplitude of sine or cosine, once or twice a turn, of a driven joint's transmission error \[rad\]:
+    /// index in the pose, and which wave.
     Transmission(usize, usize),
     /// Factor by which a passive joint follows another: piece, term.
     Ratio(usize, usize),
@@ -40,7 +42,7 @@ pub enum Number {
 }
 
 impl Number {
-    /// Standard deviation before anything is measured.
+    /// Prior standard deviation, in the unit of the number.
     pub fn prior(&self) -> f64 {
         match self {
             Number::BaseRotation(_) | Number::Mount(..) => 10.0,
@@ -54,14 +56,14 @@ impl Number {
         }
     }
 
-    /// Whether it turns a frame by any angle.
+    /// Whether it turns a frame, by an angle of any size.
     pub fn turns(&self) -> bool {
         matches!(self, Number::BaseRotation(_) | Number::Mount(..))
     }
 }
 
-/// The numbers a campaign leaves free, in the groups in which they are let free: where arm and points
-/// are, the joints' zeros, the geometry, the direction of gravity.
+/// The numbers that a campaign leaves free, in the groups in which they are freed: place of arm and points,
+/// joint zeros, geometry, direction of gravity.
 pub fn number_groups(tree: &Tree, spec: &PositionsSpec, points: usize) -> Vec<(&'static str, Vec<Number>)> {
     let mut placement = Vec::new();
     if spec.base_placement {
@@ -99,8 +101,8 @@ fn is_mount(piece: &Piece, spec: &PositionsSpec) -> bool {
     matches!(piece, Piece::Link(link) if spec.mounts.contains(&link.name))
 }
 
-/// Of links in a row the last one's vector stands for all; those before the first joint and after the
-/// last are the base placement and the tool offsets.
+/// Of consecutive links only the last vector is free, because only their sum shows. Links before the first
+/// joint and after the last are covered by base placement and tool offsets.
 fn geometry_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
     let is_joint = |i: usize| matches!(tree.pieces[i], Piece::Joint(_));
     let between = |i: usize| {
@@ -127,7 +129,7 @@ fn geometry_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
     out
 }
 
-/// A calibrated geometry: the nominal one and the numbers' values.
+/// A calibrated geometry: the nominal one with the values of the numbers.
 #[derive(Debug, Clone)]
 pub struct Geometry {
     /// Base frame in the instrument's.
@@ -136,9 +138,10 @@ pub struct Geometry {
     pub origin_m: Vector3<f64>,
     /// Points on the last frame of their arm \[m\].
     pub tools_m: Vec<Vector3<f64>>,
-    /// Rotation about the base's origin and shift \[m\] of everything in each session; the first is none.
+    /// Rotation about the base's origin, and shift \[m\], of everything in each session. The first session
+    /// has none.
     pub stations: Vec<(Rotation3<f64>, Vector3<f64>)>,
-    /// Carries the base frame to the level one, whose z is up.
+    /// Rotation from the base frame to the level frame, whose z points up.
     pub level: Rotation3<f64>,
     /// Direction of gravity in the level frame; -z unless it has moved since the frame was levelled.
     pub gravity: Vector3<f64>,
@@ -152,24 +155,24 @@ pub struct Geometry {
     arms: Vec<Vec<usize>>,
 }
 
-/// Which point of which arm is asked for, in which pose and session.
+/// The point that is asked for: its arm, pose and session.
 #[derive(Debug, Clone, Copy)]
 pub struct Placing<'a> {
-    /// Arm.
+    /// Index of the arm.
     pub arm: usize,
     /// Joint angles \[rad\].
     pub pose_rad: &'a [f64],
-    /// Point on the tool.
+    /// Index of the point.
     pub point: usize,
-    /// Session of the instrument.
+    /// Index of the session.
     pub station: usize,
 }
 
-/// A point and its motion with each number, instrument's frame.
+/// A point and its derivatives by the numbers, in the instrument's frame.
 pub struct Placed {
     /// Position \[m\].
     pub at_m: Vector3<f64>,
-    /// Its derivatives.
+    /// Its derivative by each number \[m per unit\].
     pub slopes: Vec<Vector3<f64>>,
 }
 
@@ -179,7 +182,7 @@ struct Frame {
     at_m: Vector3<f64>,
 }
 
-/// The frames before and behind each piece of an arm; none for pieces of other arms.
+/// The frames before and behind each piece of an arm; `None` for pieces of other arms.
 type Frames = Vec<Option<(Frame, Frame)>>;
 
 impl Geometry {
@@ -219,7 +222,7 @@ impl Geometry {
         self.mounts[piece] = rotation;
     }
 
-    /// Moves the numbers by a step.
+    /// Changes the numbers by a step.
     pub fn step(&mut self, numbers: &[Number], step: &[f64]) {
         let about =
             |c: usize, by: f64| Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::ith(c, 1.0)), by);
@@ -259,14 +262,15 @@ impl Geometry {
         }
     }
 
-    /// Turns the level frame's vectors into the instrument's.
+    /// Rotation from the level frame to the instrument's.
     pub fn level_to_instrument(&self) -> Rotation3<f64> {
         self.base * self.level.inverse()
     }
 
-    /// Writes the calibrated axes and vectors into one of the arms, in the level frame. A joint's zero and
-    /// a mounting turn everything outboard, so later axes and vectors are turned with them; returns by
-    /// how much the last frame is turned.
+    /// Writes the calibrated axes and vectors into one of the arms, in the level frame.
+    ///
+    /// A joint's zero and a mounting turn everything outboard, so later axes and vectors turn with them.
+    /// Returns the rotation of the last frame.
     pub fn write_into(&self, index: usize, arm: &mut Arm) -> Rotation3<f64> {
         let mut turned = self.level;
         for (&i, element) in self.arms[index].iter().zip(&mut arm.chain) {
@@ -292,7 +296,7 @@ impl Geometry {
         turned
     }
 
-    /// A point of an arm in a pose with its derivatives.
+    /// Places a point of an arm, with its derivatives.
     pub fn place(&self, asked: Placing, numbers: &[Number]) -> Placed {
         let pose = self.turned_rad(asked.pose_rad);
         let mut frames: Frames = vec![None; self.axes.len()];
@@ -310,7 +314,7 @@ impl Geometry {
         }
         let at_m = last.at_m + last.rotation * self.tools_m[asked.point];
         let slope = |n: &Number| self.slope(n, &frames, &last, &at_m, asked);
-        // a session's turn is small: the slopes are as in the first
+        // the rotation of a session is small, so its derivatives are those of the first session
         let slopes = numbers.iter().map(slope).collect();
         let (turn, shift_m) = &self.stations[asked.station];
         Placed { at_m: self.origin_m + turn * (at_m - self.origin_m) + shift_m, slopes }
@@ -367,7 +371,7 @@ impl Geometry {
 }
 
 impl Geometry {
-    /// Motion of a point with a driven joint's angle.
+    /// Derivative of a point by the angle of a driven joint.
     fn turning(&self, driven: usize, frames: &Frames, at_m: &Vector3<f64>) -> Vector3<f64> {
         (0..self.axes.len())
             .filter_map(|i| Some((i, frames[i]?.0, rate(self.angles[i].as_ref()?, driven))))
@@ -375,13 +379,13 @@ impl Geometry {
             .sum()
     }
 
-    /// Motion of a point with the angle of the joint at a piece.
+    /// Derivative of a point by the angle of the joint at a piece.
     fn lever(&self, piece: usize, before: &Frame, at_m: &Vector3<f64>) -> Vector3<f64> {
         (before.rotation * self.axes[piece].into_inner()).cross(&(at_m - before.at_m))
     }
 }
 
-/// How a joint's angle follows an entry of the pose.
+/// Derivative of a joint's angle by an entry of the pose.
 fn rate(angle: &JointAngle, driven: usize) -> f64 {
     match angle {
         JointAngle::Driven(index) => f64::from(u8::from(*index == driven)),
@@ -389,7 +393,7 @@ fn rate(angle: &JointAngle, driven: usize) -> f64 {
     }
 }
 
-/// Two axes across a third and each other.
+/// Two unit axes across a third one and each other.
 fn across(axis: &Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
     let least = Vector3::ith(axis.iamin(), 1.0);
     let first = Unit::new_normalize(axis.cross(&least));

@@ -1,12 +1,16 @@
-//! What gravity does to the arm in each measured pose: the displacement of the point that the model
-//! already has, and that of each candidate per unit of its compliance, from mechanics.
+//! Computes what gravity does to the arm in each measured pose, by mechanics: the displacement that the model
+//! already has, and that of each candidate per unit of its compliance.
 //!
-//! A joint that yields by `c` about an axis `u` through `p` moves a point `x` by
-//! `c g (u x (x - p)) (u x (S - m p))ᵀ ĝ`: `m` and `S` are mass and first moment of everything outboard, `g` the
-//! strength and `ĝ` the direction of gravity. What hangs on the trunk beside the measured arm counts too.
+//! A joint that yields by `c` about an axis `u` through `p` moves a point `x` by `c g (u x (x - p)) (u x (S -
+//! m p))ᵀ ĝ`. Here `m` and `S` are mass and first moment of everything outboard, `g` the strength and `ĝ` the
+//! direction of gravity. Other arms on the same trunk count too.
 
 use super::kinematics::Geometry;
 use super::tree::Tree;
+use crate::arm::effect::kind::{Kind, Yields};
+use crate::arm::effect::{
+    base_compliance, bearing_tilt, connection_compliance, frame_compliance, joint_compliance,
+};
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::load::Payload;
 use crate::arm::structure::{FrameCompliance, Piece, Structure};
@@ -20,29 +24,32 @@ use crate::reconcile::readings::rows::PositionRow;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-/// Entries of a frame's compliance in the order of its numbers.
+/// Row and column of each entry of a frame's compliance, in the order of its numbers.
 pub const FRAME_ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (0, 1), (0, 2), (1, 2), (2, 2)];
 
-/// What yields, as a candidate.
+/// A candidate: something that yields.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Yielding {
-    /// Effect.
+    /// Name of the effect.
     pub effect: &'static str,
-    /// Place.
+    /// What turns.
+    pub yields: Yields,
+    /// The place where it sits.
     pub at: String,
 }
 
-/// Gravity's effect on one measured position, level frame.
+/// The effect of gravity on one measured position, in the level frame.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Sag {
+pub struct Deflection {
     /// Displacement that the model already has \[m\].
     pub known_m: Vector3<f64>,
-    /// Its change with gravity's components across the vertical \[m\].
+    /// Its derivatives by the two components of gravity across the vertical \[m\].
     pub known_slopes_m: [Vector3<f64>; 2],
-    /// Displacement at unit of each compliance of each candidate, per direction of gravity.
+    /// Displacement at unit of each compliance of each candidate, per direction of gravity \[m per rad/(N
+    /// m)\].
     pub per_compliance: Vec<Vec<Matrix3<f64>>>,
-    /// Twist of each candidate's first axis at the point, and the torque about it under gravity along -z:
-    /// where a joint's own errors would show.
+    /// For each candidate the motion of the point per rotation about its first axis \[m\], and the torque
+    /// about that axis under gravity along -z \[N m\]. Errors of a joint itself would show there.
     pub levers: Vec<(Vector3<f64>, f64)>,
 }
 
@@ -52,50 +59,66 @@ pub fn candidates(tree: &Tree) -> Vec<Yielding> {
     let mut out = Vec::new();
     for piece in &tree.pieces {
         if let Piece::Joint(joint) = piece {
-            let effect = if joint.law.is_rigid() { "joint_compliance" } else { "connection_compliance" };
-            out.push(Yielding { effect, at: joint.name.clone() });
-            out.push(Yielding { effect: "bearing_tilt", at: joint.name.clone() });
+            let rigid = joint.law.is_rigid();
+            let about_axis = if rigid { &joint_compliance::KIND } else { &connection_compliance::KIND };
+            out.extend(Yielding::new(about_axis, &joint.name));
+            out.extend(Yielding::new(&bearing_tilt::KIND, &joint.name));
         }
     }
-    out.push(Yielding { effect: "base_compliance", at: "base".into() });
-    out.push(Yielding { effect: "frame_compliance", at: "base".into() });
+    out.extend(Yielding::new(&base_compliance::KIND, "base"));
+    out.extend(Yielding::new(&frame_compliance::KIND, "base"));
     let behind = tree.arms.iter().flat_map(|chain| chain.windows(2));
     for (joint, link) in behind.map(|pair| (&tree.pieces[pair[0]], &tree.pieces[pair[1]])) {
         if let (Piece::Joint(_), Piece::Link(link)) = (joint, link)
-            && !out.iter().any(|c| c.effect == "frame_compliance" && c.at == link.name)
+            && !out.iter().any(|c| c.yields == Yields::Frame && c.at == link.name)
         {
-            out.push(Yielding { effect: "frame_compliance", at: link.name.clone() });
+            out.extend(Yielding::new(&frame_compliance::KIND, &link.name));
         }
     }
     out
 }
 
 impl Tree {
-    /// Whether a frame can do what another candidate does: base and frame of the base, a joint about and across its axis and
-    /// the structure behind it.
+    /// Whether a frame can imitate another candidate: the frame of the base the tilt of the base, and the
+    /// structure behind a joint that joint's own compliance.
     pub fn contains(&self, frame: &Yielding, other: &Yielding) -> bool {
         let is_behind = |pair: &[usize]| match (&self.pieces[pair[0]], &self.pieces[pair[1]]) {
             (Piece::Joint(joint), Piece::Link(link)) => joint.name == other.at && link.name == frame.at,
             _ => false,
         };
-        frame.effect == "frame_compliance"
-            && other.effect != "frame_compliance"
+        frame.yields == Yields::Frame
+            && other.yields != Yields::Frame
             && (frame.at == other.at || self.arms.iter().any(|chain| chain.windows(2).any(is_behind)))
     }
 }
 
 impl Yielding {
-    /// How many compliances it has: of a frame xx, yy, xy, xz, yz, and zz where weights can turn it so.
+    /// A kind at a place; `None` if positions do not show that it yields.
+    fn new(kind: &'static Kind, at: &str) -> Option<Self> {
+        kind.traits.yields.map(|yields| Self { effect: kind.name, yields, at: at.into() })
+    }
+
+    /// Number of its compliances. A frame has xx, yy, xy, xz, yz, and zz where weights can turn it so.
     pub fn count(&self) -> usize {
-        match (self.effect, self.at.as_str()) {
-            ("frame_compliance", "base") => 5,
-            ("frame_compliance", _) => 6,
+        match (self.yields, self.at.as_str()) {
+            (Yields::Frame, "base") => 5,
+            (Yields::Frame, _) => 6,
             _ => 1,
+        }
+    }
+
+    /// The name of its element in the chain.
+    fn element(&self) -> String {
+        let is_base_tilt = self.effect == base_compliance::KIND.name;
+        match self.yields {
+            Yields::AboutAxis => self.at.clone(),
+            Yields::Tilt if is_base_tilt => self.at.clone(),
+            Yields::Tilt | Yields::Frame => format!("{}.{}", self.at, self.effect),
         }
     }
 }
 
-/// One arm in the level frame with its calibrated geometry, ready to be posed.
+/// One arm in the level frame with calibrated geometry, ready to be posed.
 struct Ready {
     gravity_m_s2: f64,
     known: Chain,
@@ -105,14 +128,14 @@ struct Ready {
     point_m: Vector3<f64>,
 }
 
-/// The sag at every row; `points`: the point of each.
-pub fn sags(
+/// The deflection at every row. `points` holds the index of each row's point.
+pub fn deflections(
     campaign: &Campaign,
     tree: &Tree,
     geometry: &Geometry,
     candidates: &[Yielding],
     points: &[usize],
-) -> Vec<Sag> {
+) -> Vec<Deflection> {
     let ready: Vec<Vec<Ready>> = campaign
         .arms()
         .iter()
@@ -128,7 +151,7 @@ pub fn sags(
         .positions
         .par_iter()
         .zip(points)
-        .map(|(row, &point)| sag(tree, &ready, trunk, candidates, row, point))
+        .map(|(row, &point)| deflection(tree, &ready, trunk, candidates, row, point))
         .collect()
 }
 
@@ -160,7 +183,7 @@ impl Ready {
     }
 }
 
-/// The structure with unit compliances about and across every joint and of the base.
+/// The structure with unit compliances about and across every joint, of the base, and of every frame.
 fn yielding_everywhere(structure: &Structure) -> Structure {
     let mut unit = structure.clone();
     unit.base_tilt_rad_per_nm = 1.0;
@@ -177,7 +200,7 @@ fn yielding_everywhere(structure: &Structure) -> Structure {
     unit
 }
 
-/// How many items of a posed arm belong to the trunk: with unit compliances, and as the arm is.
+/// Number of items of a posed arm that belong to the trunk: with unit compliances, and as the arm is.
 fn trunk_items(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> [usize; 2] {
     let rest = vec![0.0; tree.driven.len()];
     let first = &ready[0][0];
@@ -195,29 +218,30 @@ fn trunk_items(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> [usize
     [of(&first.unit_structure), of(&first.structure)]
 }
 
-fn sag(
+fn deflection(
     tree: &Tree,
     ready: &[Vec<Ready>],
     [unit_trunk, known_trunk]: [usize; 2],
     candidates: &[Yielding],
     row: &PositionRow,
     point: usize,
-) -> Sag {
+) -> Deflection {
     let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
     let own = &ready[row.arm][point];
     let own_pose = tree.pose_of(row.arm, &pose_rad);
     let mut known = own.pose(&own.known, &own_pose, &row.payload);
     let mut unit = own.pose(&own.unit, &own_pose, &row.payload);
     let empty = Payload::default();
+    // the weight of other arms loads the trunk, and so moves the point
     for other in (0..ready.len()).filter(|&other| other != row.arm) {
-        let beside = &ready[other][0];
-        let posed = beside.pose(&beside.unit, &tree.pose_of(other, &pose_rad), &empty);
-        let hanging = || bodies(&posed.items[unit_trunk..], &beside.unit_structure);
+        let neighbour = &ready[other][0];
+        let posed = neighbour.pose(&neighbour.unit, &tree.pose_of(other, &pose_rad), &empty);
+        let hanging = || bodies(&posed.items[unit_trunk..], &neighbour.unit_structure);
         known.items.splice(known_trunk..known_trunk, hanging().map(Item::Body));
         unit.items.splice(unit_trunk..unit_trunk, hanging().map(Item::Body));
     }
     let (per_compliance, levers) = signatures(&unit, own, candidates);
-    Sag {
+    Deflection {
         known_m: known.statics().tip_displacement_m,
         known_slopes_m: [Vector3::zeros(); 2],
         per_compliance,
@@ -225,7 +249,7 @@ fn sag(
     }
 }
 
-/// Everything that weighs, as points.
+/// All bodies, as points.
 fn bodies<'a>(items: &'a [Item], structure: &'a Structure) -> impl Iterator<Item = Body> + 'a {
     items.iter().filter_map(|item| match item {
         Item::Body(body) => Some(body.clone()),
@@ -249,7 +273,7 @@ fn own_body(element: &ElasticElement, structure: &Structure) -> Option<Body> {
 /// A joint's lever to the tip \[m\] and the torque on it \[N m\].
 type Lever = (Vector3<f64>, f64);
 
-/// Every candidate's displacement at unit compliance per direction of gravity, and its lever and torque.
+/// The displacement of every candidate at unit compliance per direction of gravity, and its lever and torque.
 fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Vec<Matrix3<f64>>>, Vec<Lever>) {
     let answers = answers(unit, own);
     let of =
@@ -257,8 +281,9 @@ fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Vec<Ma
     candidates
         .iter()
         .map(|candidate| {
-            let mut list = of(&share_name(candidate));
-            for linkage in unit.chain.linkages().iter().filter(|l| l.driver == share_name(candidate)) {
+            let mut list = of(&candidate.element());
+            // a passive joint turns with its driver, so its compliance acts through the driver
+            for linkage in unit.chain.linkages().iter().filter(|l| l.driver == candidate.element()) {
                 for (driver, passive) in list.iter_mut().zip(of(&linkage.passive)) {
                     driver.0 += passive.0 * linkage.factor;
                     driver.1 += passive.1 * linkage.factor;
@@ -270,9 +295,9 @@ fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Vec<Ma
         .unzip()
 }
 
-/// Displacement per unit of each of so many compliances about the twists' axes.
+/// Displacement per unit of each of `count` compliances about the twists' axes.
 fn per_compliance(count: usize, list: &[Answer]) -> Vec<Matrix3<f64>> {
-    // what belongs to another arm has no twists here
+    // a candidate on another arm has no twists here
     let along = |(i, j): (usize, usize)| match (list.get(i), list.get(j)) {
         (Some((motion, _)), Some((_, pull))) => motion * pull.transpose(),
         _ => Matrix3::zeros(),
@@ -286,14 +311,15 @@ fn per_compliance(count: usize, list: &[Answer]) -> Vec<Matrix3<f64>> {
     }
 }
 
-/// What a twist moves the point by, and the force of gravity on it per direction.
+/// Displacement of the point by a unit twist, and the generalized force of gravity on it per direction.
 type Answer = (Vector3<f64>, Vector3<f64>);
 
-/// The answers of every element's twists.
+/// The answer of every element's twists, by the element's name.
 fn answers<'a>(unit: &'a Posed, own: &Ready) -> Vec<(&'a str, Vec<Answer>)> {
     let mut out = Vec::new();
-    // weight and its first moment of everything outboard
+    // weight and its first moment of everything outboard so far
     let (mut weight_n, mut moment_nm) = (0.0, Vector3::zeros());
+    // from the tip to the base: what has been passed is outboard
     for item in unit.items.iter().rev() {
         let body = match item {
             Item::Body(body) => Some(body.clone()),
@@ -314,11 +340,4 @@ fn answers<'a>(unit: &'a Posed, own: &Ready) -> Vec<(&'a str, Vec<Answer>)> {
 /// Generalized force of gravity on a twist, per direction of gravity.
 fn pull(twist: &Twist, weight_n: f64, moment_nm: &Vector3<f64>) -> Vector3<f64> {
     linear(twist) * weight_n + angular(twist).cross(moment_nm)
-}
-
-fn share_name(candidate: &Yielding) -> String {
-    match candidate.effect {
-        "bearing_tilt" | "frame_compliance" => format!("{}.{}", candidate.at, candidate.effect),
-        _ => candidate.at.clone(),
-    }
 }

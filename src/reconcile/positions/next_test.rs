@@ -1,33 +1,35 @@
-//! What to measure next: the pose in which the model differs most from what it is to be told from; where no
-//! pose tells them apart, or nothing in the library fits, another kind of test.
+//! Proposes what to measure next: the pose in which the model differs most from the models it competes with.
+//! Where no pose tells them apart, or nothing in the library fits, it proposes another kind of test.
 
+use super::analysis::{Positions, samples};
 use super::fit::Fitted;
-use super::{Point, Positions, samples};
+use super::points::Point;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
-use crate::reconcile::select::next_test::{ENOUGH, spread_pose};
+use crate::reconcile::verdict::next_test::{ENOUGH, spread_pose};
 use crate::reconcile::verdict::outcome::{NextTest, Verdict};
 
-/// Standard deviations that one reading must tell: of less a hundred readings would not tell enough.
+/// Separation that one reading must reach \[standard deviations\]. With less, a hundred readings would not be
+/// enough.
 const WORTHLESS_SIGMAS: f64 = 0.1 * ENOUGH;
 
-/// Poses among which the next test is chosen.
+/// Number of poses among which the next test is chosen.
 const PROPOSED_POSES: usize = 60;
 
 impl Positions {
-    /// One test for each model that fits as well, the most telling first.
+    /// One test for each competing model, the best first.
     pub(crate) fn next_tests(
         &self,
         campaign: &Campaign,
         verdict: Verdict,
         left: &LackOfFit,
-        rivals: &[Vec<(usize, Fitted)>],
+        competitors: &[Vec<(usize, Fitted)>],
     ) -> Vec<NextTest> {
         if verdict == Verdict::Unexplained {
             return self.after_unexplained(campaign, left).into_iter().collect();
         }
         let proposed = self.proposals(campaign);
-        let known = || rivals.iter().enumerate().flat_map(|(i, list)| list.iter().map(move |r| (i, r)));
+        let known = || competitors.iter().enumerate().flat_map(|(i, list)| list.iter().map(move |r| (i, r)));
         let mut out: Vec<NextTest> = known()
             .filter_map(|(i, (candidate, fitted))| {
                 let names = [self.label(self.fitted.effects[i]), self.label(*candidate)];
@@ -43,13 +45,14 @@ impl Positions {
         out
     }
 
-    /// The pose among the proposed that best tells the model from a rival, or that none does.
-    fn telling_pose(&self, proposed: &Campaign, rival: &Fitted, names: [String; 2]) -> Option<NextTest> {
+    /// The proposed pose that best tells the model from a competing one, or a sentence that none does.
+    fn telling_pose(&self, proposed: &Campaign, competitor: &Fitted, names: [String; 2]) -> Option<NextTest> {
         let own = samples(proposed, &self.tree, &self.fitted.geometry, &self.candidates, &self.points);
         let sigma_mm =
             proposed.positions.iter().map(|r| r.sigma_mm).fold(1e3 * self.fitted.scale_m, f64::max);
-        let gap =
-            own.iter().map(|s| 1e3 * (self.fitted.predicted_m(s) - rival.predicted_m(s)).norm() / sigma_mm);
+        let gap = own
+            .iter()
+            .map(|s| 1e3 * (self.fitted.predicted_m(s) - competitor.predicted_m(s)).norm() / sigma_mm);
         let (best, sigmas) = gap.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let row = &proposed.positions[best];
         let [a, b] = &names;
@@ -73,8 +76,8 @@ impl Positions {
         })
     }
 
-    /// The campaign with proposed poses in place of its own, within the ranges of its own, each with the
-    /// largest payload it used.
+    /// The campaign with proposed poses in place of its own. They lie within the range of its own and have
+    /// its largest payload.
     fn proposals(&self, campaign: &Campaign) -> Campaign {
         let mut out = campaign.clone();
         let range = |j: usize| {
@@ -97,8 +100,8 @@ impl Positions {
         out
     }
 
-    /// Nothing that the library knows fits, so no pose separates anything; what the errors follow says
-    /// which other test is worth making, in the pose that the best model misses most.
+    /// Proposes a test where nothing in the library fits, so that no pose separates anything. What the errors
+    /// follow says which other test is worth making, in the pose that the best model misses most.
     fn after_unexplained(&self, campaign: &Campaign, left: &LackOfFit) -> Option<NextTest> {
         let gross = |i: usize| self.gross.iter().any(|(row, _)| *row == i);
         let errors = self.samples.iter().map(|s| self.fitted.error(s).norm()).enumerate();
@@ -118,7 +121,7 @@ impl Positions {
             }
             _ => "repeat this pose, which the best model misses most, from both sides, on another day".into(),
         };
-        let description = format!("no further pose of its own separates anything, for no model fits: {what}");
+        let description = format!("no further pose alone separates anything, because no model fits: {what}");
         Some(NextTest {
             pose_deg: Some(row.pose_deg.clone()),
             payload_kg: row.payload.mass_kg,

@@ -1,58 +1,61 @@
-//! What a campaign of absolute positions concludes.
+//! Draws the conclusion from a campaign of absolute positions.
 
+use super::analysis::{Positions, analyze};
 use super::fit::Fitted;
 use super::kinematics::Number;
 use super::loads::FRAME_ENTRIES;
 use super::springs::frame_matrix;
 use super::structure::{MATERIAL_VARIANCE, MEDIAN_LENGTH};
-use super::{Positions, Stage, analyze, transmission};
+use super::transmission;
 use crate::arm::Arm;
-use crate::arm::effect::{Channel, Effect};
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::entry::Effect;
+use crate::arm::effect::kind::Yields;
 use crate::arm::structure::Piece;
-use crate::reconcile::fit::kept_out::{KeptOut, rms};
+use crate::reconcile::fit::held_out::{HeldOut, rms};
 use crate::reconcile::fit::noise::Noise;
+use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
 use crate::reconcile::verdict::correct;
-use crate::reconcile::verdict::outcome::{
-    Estimate, Evidence, Finding, Located, Outcome, ReadingResidual, Verdict,
-};
-use crate::reconcile::verdict::report::CORRECTED_FILE;
+use crate::reconcile::verdict::files::CORRECTED_FILE;
+use crate::reconcile::verdict::outcome::{Evidence, Located, Outcome, ReadingResidual, Verdict};
+use crate::reconcile::verdict::stage::Stage;
 use serde_json::{Value, json};
 
-/// Fewest positions that can speak.
+/// Smallest number of positions that can settle anything.
 pub const FEWEST: usize = 20;
-/// Variance over the declared one beyond which nothing is explained, whatever the rest follows: what is left is five times
-/// what the instrument may be off.
+/// With a variance above this multiple of the declared one, nothing is explained, whatever else holds. Errors
+/// are then five times those of the instrument.
 const HOPELESS_VARIANCE: f64 = 25.0;
-/// How much further poses kept out of a fit may be missed than those in it.
+/// Largest ratio of the errors of held-out poses to those in the fit.
 const UNSTABLE: f64 = 8.0;
-/// Most alternatives an effect may have and still be named.
+/// Largest number of alternatives with which an effect is still named.
 const MOST_ALTERNATIVES: usize = 3;
-/// Part of the error of kept-out poses down to which effects must take it to be written without explaining all.
+/// Effects that lower the error of held-out poses to this part are written into the arm even if they do not
+/// explain everything.
 const HELPFUL: f64 = 0.8;
-/// Poses listed where the gap sits.
+/// Number of poses that are listed.
 const WORST_POSES: usize = 3;
 
 /// Reconciles a campaign of absolute positions.
 pub fn reconcile(campaign: &Campaign) -> Outcome {
     let found = analyze(campaign);
     let lack_of_fit = found.lack_of_fit(campaign);
-    let rivals: Vec<Vec<(usize, Fitted)>> =
-        (0..found.fitted.effects.len()).map(|i| found.rivals(i)).collect();
-    let yielding = (0..found.fitted.effects.len()).map(|i| found.finding(i, &rivals[i]));
+    let competitors: Vec<Vec<(usize, Fitted)>> =
+        (0..found.fitted.effects.len()).map(|i| found.competitors(i)).collect();
+    let yielding = (0..found.fitted.effects.len()).map(|i| found.finding(i, &competitors[i]));
     let uneven = found.transmissions.iter().map(|&joint| found.transmission_finding(joint));
     let findings: Vec<Finding> = yielding.chain(uneven).collect();
     let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings);
     reasons.extend(found.sessions.iter().cloned());
-    let next_tests = found.next_tests(campaign, verdict, &lack_of_fit, &rivals);
-    // what predicts kept-out poses far better serves a user, even if something else is missing too
+    let next_tests = found.next_tests(campaign, verdict, &lack_of_fit, &competitors);
+    // a model that predicts held-out poses far better serves a user even if something else is missing
     let [before, after] = found.before_and_after();
     let helps = verdict == Verdict::Unexplained && after.median_mm < HELPFUL * before.median_mm;
     if helps {
         reasons.push(format!(
-            "{CORRECTED_FILE} has what predicts best, not all that is missing: on poses kept out of the fit the \
-             median error falls from {:.3} to {:.3} mm",
+            "{CORRECTED_FILE} has what predicts best, but not all that is missing: on poses held out of the fit the median error falls from {:.3} to {:.3} mm",
             before.median_mm, after.median_mm
         ));
     }
@@ -77,7 +80,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
         verdict,
         reasons,
         suspects,
-        kept_out: Some(found.confirmation(campaign)),
+        held_out: Some(found.confirmation(campaign)),
         located: located(campaign, &residuals),
         next_tests,
         noise: Noise {
@@ -96,16 +99,6 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     }
 }
 
-impl Stage {
-    /// As in `verdict.json`.
-    pub fn json(&self) -> Value {
-        json!({
-            "added": self.added, "dropped": self.dropped, "fitted_median_mm": self.fitted_median_mm, "kept_out_median_mm": self.median_mm,
-            "kept_out_mean_mm": self.mean_mm, "kept_out_largest_mm": self.max_mm,
-        })
-    }
-}
-
 impl Positions {
     fn verdict(&self, campaign: &Campaign, left: &LackOfFit, findings: &[Finding]) -> (Verdict, Vec<String>) {
         let count = campaign.positions.len();
@@ -120,14 +113,14 @@ impl Positions {
         let last = &self.stages[self.stages.len() - 1];
         if last.median_mm > UNSTABLE * last.fitted_median_mm.max(campaign.positions[0].sigma_mm) {
             let text = format!(
-                "poses kept out of the fit are missed by {:.3} mm, those in it by {:.3} mm: they are too alike to \
-                 calibrate all that is free; turn every joint through more of its range, or free less",
+                "the median error is {:.3} mm for poses held out of the fit and {:.3} mm for those in it: the poses are too \
+                 similar to calibrate everything that is free; turn every joint through more of its range, or free less",
                 last.median_mm, last.fitted_median_mm
             );
             return (Verdict::InsufficientData, vec![text]);
         }
         if findings.is_empty() {
-            let text = "noise and calibration of what is free explain every position";
+            let text = "noise and the calibration of everything that is free explain every position";
             return (Verdict::NoGap, vec![text.into()]);
         }
         if let Some(f) = findings.iter().find(|f| f.indistinguishable_from.len() > MOST_ALTERNATIVES) {
@@ -141,7 +134,7 @@ impl Positions {
             return (Verdict::InsufficientData, vec![text]);
         }
         let mut reasons = vec![format!(
-            "on poses kept out of the fit the median error falls from {:.3} to {:.3} mm",
+            "on poses held out of the fit the median error falls from {:.3} to {:.3} mm",
             before.median_mm, after.median_mm
         )];
         if excess {
@@ -150,33 +143,33 @@ impl Positions {
         (Verdict::Explained, reasons)
     }
 
-    /// What is left, naming no effect.
+    /// Says which structure is left, without naming an effect.
     fn left_over(&self, left: &LackOfFit) -> Vec<String> {
         let mut out = vec![format!(
             "the best model leaves {:.2} times the declared standard deviation",
             left.chi2_per_dof.sqrt()
         )];
         let telling = left.structures.iter().filter(|s| s.ln_p < (1e-6f64).ln()).take(3);
-        out.extend(
-            telling.map(|s| format!("{}: {:.0} % of what is left", s.sentence(), 100.0 * self.part(s))),
-        );
+        out.extend(telling.map(|s| {
+            format!("{}: {:.0} % of the remaining sum of squares", s.sentence(), 100.0 * self.part(s))
+        }));
         if out.len() == 1 {
-            out.push("what is left follows neither order, angles, torques nor payload".into());
+            out.push("the remaining errors follow neither order, angles, torques nor payload".into());
         }
         out
     }
 
-    /// The stages without effects and with all of them.
+    /// The stage without effects, and the one with all of them.
     fn before_and_after(&self) -> [&Stage; 2] {
         let calibration = self.stages.iter().rposition(|s| !s.added.contains('@')).unwrap_or_default();
         [&self.stages[calibration], &self.stages[self.stages.len() - 1]]
     }
 
-    fn confirmation(&self, campaign: &Campaign) -> KeptOut {
+    fn confirmation(&self, campaign: &Campaign) -> HeldOut {
         let scale_mm = 1e3 * self.fitted.scale_m;
         let sigma_mm = campaign.positions.first().map_or(1.0, |r| r.sigma_mm);
         let [before, after] = self.before_and_after();
-        KeptOut {
+        HeldOut {
             rms_before: before.median_mm / scale_mm / MEDIAN_LENGTH,
             rms_after: after.median_mm / scale_mm / MEDIAN_LENGTH,
             rms_declared_after: after.median_mm / sigma_mm / MEDIAN_LENGTH,
@@ -184,14 +177,16 @@ impl Positions {
         }
     }
 
-    fn finding(&self, i: usize, rivals: &[(usize, Fitted)]) -> Finding {
+    fn finding(&self, i: usize, competitors: &[(usize, Fitted)]) -> Finding {
         let candidate = &self.candidates[self.fitted.effects[i]];
         let (c, sd) = (&self.fitted.compliances[i], &self.fitted.deviations[i]);
-        let parameters = match candidate.effect {
-            "frame_compliance" => frame_parameters(c, sd),
-            _ => vec![("stiffness_nm_per_rad".into(), vec![stiffness(c[0], sd[0])])],
+        let parameters = match candidate.yields {
+            Yields::Frame => frame_parameters(c, sd),
+            Yields::AboutAxis | Yields::Tilt => {
+                vec![("stiffness_nm_per_rad".into(), vec![stiffness(c[0], sd[0])])]
+            }
         };
-        let names = rivals.iter().map(|(r, _)| &self.candidates[*r]);
+        let names = competitors.iter().map(|(r, _)| &self.candidates[*r]);
         Finding {
             effect: candidate.effect.into(),
             at: candidate.at.clone(),
@@ -212,11 +207,11 @@ impl Positions {
                 "sin_cos_sin2_cos2_rad".into(),
                 own.map(|(_, (value, sd))| within(*value, *sd)).collect(),
             )],
-            indistinguishable_from: self.transmission_rivals(joint).into_iter().map(named).collect(),
+            indistinguishable_from: self.transmission_competitors(joint).into_iter().map(named).collect(),
         }
     }
 
-    /// One arm with its calibrated geometry and its effects; notes in the provenance where it stands.
+    /// One arm with its calibrated geometry and its effects. Notes its placement in the provenance.
     pub(crate) fn corrected(
         &self,
         campaign: &Campaign,
@@ -240,7 +235,7 @@ impl Positions {
         out
     }
 
-    /// By how much every calibrated number has moved from nominal.
+    /// Change of every calibrated number from its nominal value, as JSON.
     fn calibrated(&self, shown: &Fitted) -> Vec<Value> {
         let numbers = self.numbers.iter().zip(&shown.moved);
         let inside = numbers.filter(|(n, _)| {
@@ -292,7 +287,7 @@ impl Positions {
         rows.flat_map(|(i, (row, sample))| {
             let [before, after] = [&self.rigid, &self.fitted].map(|f| 1e3 * f.predicted_m(sample));
             let gross = self.gross.iter().any(|(g, _)| *g == i);
-            let left_out = 1e3 * self.kept_out[i] / row.sigma_mm;
+            let left_out = 1e3 * self.held_out[i] / row.sigma_mm;
             (0..3).map(move |c| ReadingResidual {
                 channel: Channel::Positions,
                 row: row.row + 1,
@@ -301,7 +296,7 @@ impl Positions {
                 sigma: row.sigma_mm,
                 before: before[c],
                 after: after[c],
-                kept_out: Some(left_out[c]),
+                held_out: Some(left_out[c]),
                 gross,
             })
         })
@@ -309,8 +304,8 @@ impl Positions {
     }
 }
 
-/// Root mean squares of every part of the positions in declared standard deviations, gross errors left
-/// out; `residuals`: those of the positions, row by row.
+/// Root mean squares of every part of the positions \[declared standard deviations\], without gross errors.
+/// `residuals` holds those of the positions, row by row.
 pub fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec<Located> {
     let mut parts: Vec<(String, Vec<&ReadingResidual>)> = Vec::new();
     for (row, own) in campaign.positions.iter().zip(residuals.chunks_exact(3)).filter(|(_, r)| !r[0].gross) {
@@ -346,7 +341,7 @@ fn within(value: f64, deviation: f64) -> Estimate {
     Estimate { value, low: end(-1.96), high: end(1.96) }
 }
 
-/// A stiffness by its compliance.
+/// A stiffness, estimated from its compliance.
 fn stiffness(compliance: f64, deviation: f64) -> Estimate {
     let end = |c: f64| (c > 0.0).then(|| 1.0 / c);
     Estimate {
@@ -356,7 +351,7 @@ fn stiffness(compliance: f64, deviation: f64) -> Estimate {
     }
 }
 
-/// The compliances of a frame as the effect's parameters; what no weight turns is open.
+/// The compliances of a frame as parameters of the effect. One that no weight loads has no bounds.
 fn frame_parameters(compliances: &[f64], deviations: &[f64]) -> Vec<(String, Vec<Estimate>)> {
     let matrix = frame_matrix(compliances);
     let entry = |at: (usize, usize)| {

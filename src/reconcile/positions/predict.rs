@@ -1,15 +1,17 @@
-//! Positions of points on several arms of one trunk, each loaded by the weight of all.
+//! Predicts positions of points on several arms of one trunk, which carries the weight of all.
 
 use super::kinematics::{Geometry, Placing};
-use super::loads::sags;
+use super::loads::deflections;
 use super::tree::Tree;
-use crate::arm::effect::{Channel, Subject};
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::subject::Subject;
 use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::readings::placement::Placed;
 use crate::reconcile::readings::placement::Stand;
-use crate::reconcile::verdict::predict::Placed;
 use nalgebra::Rotation3;
 
-/// The positions that the campaign's arms would show \[mm\]; `subjects`: each arm with all of its effects.
+/// The positions that the campaign's arms would show \[mm\]. `subjects` holds each arm with all of its
+/// effects.
 pub fn predicted_mm(mut campaign: Campaign, arms: &[Placed], subjects: &[Subject]) -> Vec<[f64; 3]> {
     for row in &mut campaign.positions {
         row.payload = subjects[row.arm].payload(&row.payload);
@@ -27,10 +29,10 @@ pub fn predicted_mm(mut campaign: Campaign, arms: &[Placed], subjects: &[Subject
             geometry.tools_m.push(tool_m);
         }
     }
-    let sags = sags(&campaign, &tree, &geometry, &[], &points);
-    let rows = campaign.positions.iter().zip(&points).zip(sags);
+    let deflections = deflections(&campaign, &tree, &geometry, &[], &points);
+    let rows = campaign.positions.iter().zip(&points).zip(deflections);
     rows.enumerate()
-        .map(|(i, ((row, &point), sag))| {
+        .map(|(i, ((row, &point), deflection))| {
             let stand = stands[row.arm][i];
             let asked_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
             let own_rad = subjects[row.arm].turned_rad(&tree.pose_of(row.arm, &asked_rad));
@@ -38,7 +40,7 @@ pub fn predicted_mm(mut campaign: Campaign, arms: &[Placed], subjects: &[Subject
             geometry.base = Rotation3::from_matrix_unchecked(stand.rotation);
             geometry.origin_m = stand.origin_m;
             let placing = Placing { arm: row.arm, pose_rad: &pose_rad, point, station: 0 };
-            let at_m = geometry.place(placing, &[]).at_m + stand.rotation * sag.known_m;
+            let at_m = geometry.place(placing, &[]).at_m + stand.rotation * deflection.known_m;
             let reading = &subjects[row.arm].channels[Channel::Positions as usize];
             std::array::from_fn(|c| reading.of(1e3 * at_m[c], c, row.row))
         })

@@ -1,24 +1,26 @@
-//! Which candidates yield: each is screened by the model made linear, the most promising are fitted in full,
-//! and what is worth its price stays if poses kept out of the fit confirm it.
+//! Finds which candidates yield. Each is screened with the linearized model, and the most promising are
+//! fitted in full. A candidate that is worth its price stays if held-out poses confirm it.
 
-use super::Positions;
-use super::fit::{Factor, Fitted, Sample, fit, ln_likelihood, normal, scale};
+use super::analysis::Positions;
+use super::fit::{Fitted, Sample, fit, ln_likelihood, normal, scale};
+use super::normal::Factor;
 use super::structure::squares;
+use crate::arm::effect::kind::Yields;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{DMatrix, Vector3};
 use rayon::prelude::*;
 
-/// Candidates that are fitted in full at each stage.
+/// Number of candidates fitted in full at each stage.
 pub const FULL_FITS: usize = 4;
-/// Models within this ln of the likelihood cannot be told apart.
+/// Models whose ln of the likelihood differs by less than this cannot be told apart.
 pub const TIE: f64 = 3.0;
 
 impl Positions {
-    /// Adds the effect of a class that raises the likelihood most, if it is worth its price and poses kept
-    /// out confirm it; drops what it makes needless.
-    pub(crate) fn add(&mut self, campaign: &Campaign, class: &[&str]) -> bool {
+    /// Adds the effect of a class that raises the likelihood most, if it is worth its price and held-out
+    /// poses confirm it. Drops the effects that it makes unnecessary.
+    pub(crate) fn add(&mut self, campaign: &Campaign, class: Yields) -> bool {
         let base = &self.fitted;
-        let tried = self.best_additions(base, |c| class.contains(&self.candidates[c].effect));
+        let tried = self.best_additions(base, |c| self.candidates[c].yields == class);
         let gain = |(_, f): &(usize, Fitted)| {
             f.ln_likelihood - self.prices(&f.effects) - (base.ln_likelihood - self.prices(&base.effects))
         };
@@ -28,7 +30,8 @@ impl Positions {
         self.take_if_confirmed(campaign, next, self.label(added))
     }
 
-    /// Becomes the next model, without what it makes needless, if that is worth its price and predicts poses kept out better.
+    /// Replaces this model by the next one, without what that makes unnecessary, if it is worth its price and
+    /// predicts held-out poses better.
     pub(crate) fn take_if_confirmed(&mut self, campaign: &Campaign, mut next: Self, added: String) -> bool {
         next.settle(campaign);
         if next.score() <= self.score() {
@@ -38,18 +41,18 @@ impl Positions {
         let dropped: Vec<String> =
             self.fitted.effects.iter().filter(dropped).map(|e| self.label(*e)).collect();
         next.stage(added, dropped);
-        let confirmed = next.kept_out_ln_likelihood() > self.kept_out_ln_likelihood();
+        let confirmed = next.held_out_ln_likelihood() > self.held_out_ln_likelihood();
         if confirmed {
             *self = next;
         }
         confirmed
     }
 
-    fn kept_out_ln_likelihood(&self) -> f64 {
-        ln_likelihood(&self.kept_out, scale(&self.kept_out, self.fitted.scale_m))
+    fn held_out_ln_likelihood(&self) -> f64 {
+        ln_likelihood(&self.held_out, scale(&self.held_out, self.fitted.scale_m))
     }
 
-    /// Fits anew, with what gravity does to the geometry as fitted, until nothing is needless.
+    /// Fits again with the effect of gravity on the fitted geometry, until no effect is unnecessary.
     fn settle(&mut self, campaign: &Campaign) {
         loop {
             self.refresh(campaign);
@@ -62,7 +65,7 @@ impl Positions {
         }
     }
 
-    /// Drops effects, the most needless first, that are no longer worth their price.
+    /// Drops effects that are no longer worth their price, the least useful first.
     fn drop_needless(&mut self) {
         let all: Vec<&Sample> = self.samples.iter().collect();
         loop {
@@ -81,13 +84,15 @@ impl Positions {
         }
     }
 
-    /// Whether an effect may not be worth its price: by its compliances over their deviations, generously.
+    /// Whether an effect may not be worth its price, judged generously by its compliances over their standard
+    /// deviations.
     fn is_doubtful(&self, position: usize) -> bool {
         let price = self.price_of(self.fitted.effects[position]);
         let numbers = self.fitted.compliances[position].iter().zip(&self.fitted.deviations[position]);
-        // an effect that can stand for another has large deviations
+        // an effect that others can replace has large standard deviations
         let is_small = |(c, deviation): (&f64, &f64)| 0.5 * (c / deviation).powi(2) < 2.0 * price;
-        // beside what is held at the edge of being a spring the deviations are too small
+        // the standard deviations are too small next to a compliance that is held at the limit of being a
+        // spring
         let is_held = self.fitted.deviations.iter().flatten().any(|d| !d.is_finite());
         is_held || numbers.into_iter().all(is_small)
     }
@@ -96,32 +101,32 @@ impl Positions {
         format!("{}@{}", self.candidates[candidate].effect, self.candidates[candidate].at)
     }
 
-    /// ln of the likelihood less the price of all that yields or turns unevenly.
+    /// ln of the likelihood minus the price of all effects.
     fn score(&self) -> f64 {
         let uneven = self.transmissions.len() as f64 * self.transmission_price();
         self.fitted.ln_likelihood - self.prices(&self.fitted.effects) - uneven
     }
 
-    /// What effects must bring together.
+    /// Price of several effects together, in ln of the likelihood.
     fn prices(&self, effects: &[usize]) -> f64 {
         effects.iter().map(|effect| self.price_of(*effect)).sum()
     }
 
-    /// What a candidate must bring.
+    /// Price of one candidate, in ln of the likelihood.
     fn price_of(&self, candidate: usize) -> f64 {
         let places = self.considered.iter().filter(|considered| **considered).count();
         self.price(self.candidates[candidate].count(), places)
     }
 
-    /// What so many numbers must bring in ln of the likelihood: for themselves, and for having looked at so
+    /// Price of `count` parameters in ln of the likelihood: for the parameters, and for having looked at so
     /// many places.
     pub(crate) fn price(&self, numbers: usize, places: usize) -> f64 {
         let readings = 3.0 * self.samples.len() as f64;
         0.5 * numbers as f64 * readings.ln() + (places as f64).ln() + 3.0
     }
 
-    /// Models with one more effect: all allowed ones screened by the model made linear, the most promising
-    /// fitted in full.
+    /// Models with one more effect. All allowed candidates are screened with the linearized model, and the
+    /// most promising are fitted in full.
     fn best_additions(&self, base: &Fitted, allowed: impl Fn(usize) -> bool) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let mut gains = self.gains(base);
@@ -134,28 +139,33 @@ impl Positions {
         models.into_par_iter().map(|(c, effects)| (c, fit(&all, &self.numbers, &effects, base))).collect()
     }
 
-    /// The effects of a model and one more; and the same without those that it can do alone, beside which it has hardly a
-    /// size.
+    /// Sets of effects to fit: the model's and the added one, and the same without those that the added one
+    /// can imitate. Next to these it would have hardly any size.
     fn with(&self, base: &Fitted, added: usize) -> Vec<Vec<usize>> {
         let contains =
             |effect: &usize| self.tree.contains(&self.candidates[added], &self.candidates[*effect]);
-        let beside = [base.effects.as_slice(), &[added]].concat();
-        let instead: Vec<usize> = beside.iter().copied().filter(|effect| !contains(effect)).collect();
-        if instead.len() < beside.len() { vec![beside, instead] } else { vec![beside] }
+        let both = [base.effects.as_slice(), &[added]].concat();
+        let instead: Vec<usize> = both.iter().copied().filter(|effect| !contains(effect)).collect();
+        if instead.len() < both.len() { vec![both, instead] } else { vec![both] }
     }
 
-    /// By how much the model made linear says each candidate would raise the ln of the likelihood.
+    /// Rise of ln of the likelihood that the linearized model expects of each candidate.
     fn gains(&self, base: &Fitted) -> Vec<(usize, f64)> {
         let from_level = base.geometry.level_to_instrument();
         let columns = |s: &Sample| -> Vec<Vector3<f64>> {
-            s.sag.per_compliance.iter().flatten().map(|p| from_level * p * base.geometry.gravity).collect()
+            s.deflection
+                .per_compliance
+                .iter()
+                .flatten()
+                .map(|p| from_level * p * base.geometry.gravity)
+                .collect()
         };
         let counts: Vec<usize> = self.candidates.iter().map(|c| c.count()).collect();
         self.linear_gains(base, &columns, &counts).into_iter().enumerate().collect()
     }
 
-    /// Gain in ln of the likelihood of each block of `counts` further columns. A single number is a
-    /// compliance: it does not gain where it would be negative.
+    /// Gain in ln of the likelihood of each block of `counts` further columns. A single column is a
+    /// compliance and gains nothing where it would be negative.
     pub(crate) fn linear_gains(
         &self,
         base: &Fitted,
@@ -186,8 +196,9 @@ impl Positions {
         counts.iter().map(gain).collect()
     }
 
-    /// Candidates of as many numbers that could stand in the place of one of the effects and fit as well.
-    pub(crate) fn rivals(&self, position: usize) -> Vec<(usize, Fitted)> {
+    /// Competing candidates with the same number of parameters that fit as well in place of one of the
+    /// effects.
+    pub(crate) fn competitors(&self, position: usize) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let own = self.fitted.effects[position];
         let count = self.candidates[own].count();

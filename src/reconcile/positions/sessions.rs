@@ -1,28 +1,30 @@
-//! A point that sat elsewhere on the tool, or an instrument that stood elsewhere, until some row of the
-//! file.
+//! Tells sessions apart: until some row of the file a point sat elsewhere on the tool, or the instrument
+//! stood elsewhere.
 //!
-//! Between two sessions a reflector is put back a little differently, or instrument or base are moved. Every
-//! row is tried as the first of a new session, by the gain of the model made linear; the earlier rows then
-//! have an offset or a placement of their own.
+//! Between two sessions a reflector is put back slightly differently, or the instrument or the base is moved.
+//! Every row is tried as the first of a new session, by the gain of the linearized model. The earlier rows
+//! then have an offset or a placement of their own.
 
-use super::fit::{Factor, Fitted, Sample, fit, normal};
+use super::analysis::Positions;
+use super::fit::{Fitted, Sample, fit, normal};
 use super::kinematics::Number;
-use super::{Point, Positions};
+use super::normal::Factor;
+use super::points::Point;
 use nalgebra::{DMatrix, Vector3};
 
-/// Fewest positions of a session.
+/// Smallest number of positions in a session.
 const FEWEST: usize = 5;
-/// Rows tried at first as the first of a session; those about the best of them next.
+/// Number of rows that are tried at first as the first of a session. Those around the best are tried next.
 const TRIED: usize = 40;
-/// Most sessions beyond the first.
+/// Largest number of sessions beyond the first.
 const MOST: usize = 6;
 
-/// What is another in another session.
+/// What differs between sessions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Moved {
-    /// Where a point sits on the tool.
+    /// The place of a point on the tool.
     Point(usize),
-    /// Where the instrument stands.
+    /// The place of the instrument.
     Station(usize),
 }
 
@@ -56,7 +58,7 @@ struct Split {
 }
 
 impl Positions {
-    /// Tells sessions apart while that is worth its price; says where.
+    /// Adds sessions while one is worth its price, and returns a sentence for each.
     pub(crate) fn find_sessions(&mut self, tools_free: bool, base_free: bool) -> Vec<String> {
         let mut out = Vec::new();
         while out.len() < MOST {
@@ -75,7 +77,7 @@ impl Positions {
         out
     }
 
-    /// The row that would best be the first of a new session.
+    /// The row that is best as the first of a new session.
     fn best_first(&self, moved: Moved) -> Option<usize> {
         let rows: Vec<usize> = (0..self.samples.len()).filter(|&i| moved.has(&self.samples[i])).collect();
         let inside = FEWEST..rows.len().saturating_sub(FEWEST);
@@ -117,8 +119,8 @@ impl Positions {
         firsts.iter().enumerate().map(|(k, first)| (*first, gain(k))).collect()
     }
 
-    /// The model in which the rows before `first` have numbers of their own, less the price of these and
-    /// of having looked at every row.
+    /// The model in which the rows before `first` have numbers of their own. Its likelihood is charged for
+    /// these numbers and for having looked at every row.
     fn split(&self, moved: Moved, first: usize, kinds: usize) -> Split {
         let mut samples = self.samples.clone();
         let mut start = self.fitted.clone();
@@ -164,7 +166,7 @@ impl Positions {
                 let (own_turn, own_shift_m) = geometry.stations[s];
                 let (mm, mrad) = (1e3 * (shift_m - own_shift_m).norm(), 1e3 * turn.angle_to(&own_turn));
                 format!(
-                    "before row {row} instrument or base stood {mm:.2} mm and {mrad:.2} mrad elsewhere: a session of its own"
+                    "before row {row} the instrument or the base stood {mm:.2} mm and {mrad:.2} mrad elsewhere: a session of its own"
                 )
             }
         }

@@ -1,44 +1,45 @@
-//! Compliances that are springs: none is negative, and no moment turns a frame against itself.
+//! Finds the best compliances that are springs: none is negative, and no moment turns a frame against itself.
 //!
-//! The normal equations of a fit are a parabola; its best among springs is looked for. A compliance that would be none is held
-//! at zero. The matrix of a frame is written as `L Lᵀ`, which is a spring whatever `L` is, and
-//! the parabola made as small as it gets over the entries of `L` and all other numbers.
+//! The normal equations of a fit describe a parabola, which is minimized over springs. A compliance that
+//! would be negative is held at zero. The matrix of a frame is written as `L Lᵀ`, which is a spring for every
+//! `L`, and the parabola is minimized over the entries of `L` and all other numbers.
 
-use super::fit::{Factor, Normal};
 use super::loads::FRAME_ENTRIES;
+use super::normal::{Factor, Normal};
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix2, Matrix3, Vector2};
 use std::ops::Range;
 
-/// Steps over the entries of `L` at the most, and times one is halved.
+/// Largest number of steps over the entries of `L`, and of halvings of one step.
 const MOST_STEPS: usize = 30;
 const MOST_HALVINGS: i32 = 8;
-/// A step that promises less than this in half the chi-squared is the last.
+/// The steps end when one promises to lower half of chi-squared by less than this.
 const SETTLED: f64 = 1e-6;
-/// Part of a frame's largest compliance that `L` starts with in every direction.
+/// `L` starts with this part of the frame's largest compliance in every direction. At zero the parabola would
+/// have no slope there.
 const ROOM: f64 = 1e-3;
-/// Entries of `L`: row and column. Without the last zz is what the couplings need.
+/// Row and column of each entry of `L`. A base has no last entry: its zz is what the couplings need.
 const LOWER: [(usize, usize); FRAME_ENTRIES.len()] = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)];
 
-/// Where the parabola is best.
+/// The minimum of the parabola.
 pub struct Best {
-    /// By how much each number moves, those of the geometry first.
+    /// Change of each number, with those of the geometry first.
     pub step: Vec<f64>,
-    /// Standard deviations; infinite of what is held.
+    /// Standard deviations; infinite for numbers that are held.
     pub deviations: Vec<f64>,
 }
 
-/// What the compliances of an effect may do.
+/// What the compliances of an effect are free to do.
 #[derive(Clone)]
 enum Block {
     Free,
-    /// They move by so much.
+    /// They change by these amounts.
     Held(Vec<f64>),
-    /// They are `L Lᵀ`.
+    /// They are the entries of `L Lᵀ`.
     Frame(Matrix3<f64>),
 }
 
-/// The best step among springs; the compliances, now `now`, come after `numbers` others. `None` if the equations have no
-/// answer.
+/// The best step among springs. The compliances, at present `now`, come after `numbers` other numbers. `None`
+/// if the equations are singular.
 pub fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) -> Option<Best> {
     let mut first = numbers;
     let ranges: Vec<Range<usize>> = (now.iter())
@@ -55,7 +56,8 @@ pub fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) -> Option
     let mut parabola = Parabola { curvature, gradient, numbers, now, ranges, blocks };
     loop {
         let mut best = parabola.best()?;
-        // from the nearest springs it may end where it is worse than to begin with
+        // from the nearest springs the descent may end above its start
+        // zero is the value at the start, so a positive one is worse than no step
         if parabola.value(&best.step) > 0.0 {
             parabola.frames_from_now();
             best = parabola.best()?;
@@ -68,6 +70,7 @@ pub fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) -> Option
             let step = &best.step[parabola.ranges[k].clone()];
             let wanted: Vec<f64> = own.iter().zip(step).map(|(c, by)| c + by).collect();
             let spring = nearest_spring(&wanted);
+            // this block leaves the springs: hold it there and solve the rest again
             if spring != wanted {
                 is_settled = false;
                 parabola.blocks[k] = match own.len() {
@@ -82,26 +85,26 @@ pub fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) -> Option
     }
 }
 
-/// `L` of a frame, with room in every direction.
+/// The Cholesky factor `L` of a frame, with room in every direction.
 fn factor_of(compliances: &[f64]) -> Matrix3<f64> {
     let matrix = frame_matrix(compliances);
     let room = (ROOM * matrix.diagonal().max()).max(f64::MIN_POSITIVE);
     Cholesky::new(matrix + Matrix3::identity() * room).map_or_else(Matrix3::zeros, |c| c.l())
 }
 
-/// The normal equations and what each effect may do.
+/// The normal equations, and what each effect is free to do.
 struct Parabola<'a> {
     curvature: DMatrix<f64>,
     gradient: DVector<f64>,
     numbers: usize,
     now: &'a [Vec<f64>],
-    /// Where the compliances of each effect are.
+    /// Range of the compliances of each effect.
     ranges: Vec<Range<usize>>,
     blocks: Vec<Block>,
 }
 
 impl Parabola<'_> {
-    /// The best step: of what is linear at once, of the entries of `L` step by step.
+    /// The best step. Linear numbers are solved at once, and the entries of `L` step by step.
     fn best(&mut self) -> Option<Best> {
         let mut linear = vec![0.0; self.gradient.len()];
         let mut step = self.step(&linear);
@@ -121,6 +124,7 @@ impl Parabola<'_> {
                 (linear, self.blocks) = (from, blocks);
                 step = self.step(&linear);
             }
+            // without frames the parabola is solved in one step
             let is_linear = !self.blocks.iter().any(|block| matches!(block, Block::Frame(_)));
             if is_linear || !is_better || right.dot(&move_by) < SETTLED {
                 break;
@@ -137,7 +141,7 @@ impl Parabola<'_> {
         Some(Best { deviations: (0..step.len()).map(deviation).collect(), step })
     }
 
-    /// Lets every frame start from what it is now.
+    /// Restarts every frame from its present compliance.
     fn frames_from_now(&mut self) {
         for (block, now) in self.blocks.iter_mut().zip(self.now) {
             if let Block::Frame(l) = block {
@@ -158,7 +162,7 @@ impl Parabola<'_> {
         0.5 * step.dot(&(&self.curvature * &step)) - step.dot(&self.gradient)
     }
 
-    /// The curvature over what is free.
+    /// The factorized curvature over what is free.
     fn factor(&self, slopes: &DMatrix<f64>) -> Option<Factor> {
         let all_free = self.blocks.iter().all(|block| matches!(block, Block::Free));
         let curvature = match all_free {
@@ -168,7 +172,7 @@ impl Parabola<'_> {
         Factor::new(&curvature, &(0..curvature.nrows()).collect::<Vec<_>>())
     }
 
-    /// The step of every number: those that are linear move by so much.
+    /// The step of every number; `linear` is that of the linear ones.
     fn step(&self, linear: &[f64]) -> Vec<f64> {
         let mut step = linear.to_vec();
         for ((block, range), now) in self.blocks.iter().zip(&self.ranges).zip(self.now) {
@@ -188,7 +192,7 @@ impl Parabola<'_> {
         step
     }
 
-    /// How each number moves with what is free: itself, or the entries of `L`.
+    /// Derivatives of every number (rows) by what is free (columns): itself, or the entries of `L`.
     fn slopes(&self) -> DMatrix<f64> {
         let mut columns: Vec<DVector<f64>> = Vec::new();
         let unit = |at: usize| {
@@ -214,7 +218,7 @@ impl Parabola<'_> {
         DMatrix::from_columns(&columns)
     }
 
-    /// Moves what is free.
+    /// Moves what is free by a step.
     fn advance(&mut self, linear: &mut [f64], by: &DVector<f64>) {
         let mut by = by.iter();
         let mut next = || by.next().copied().unwrap_or_default();
@@ -229,8 +233,7 @@ impl Parabola<'_> {
     }
 }
 
-/// The compliances themselves if they are a spring, else the nearest that are: none is negative, and no
-/// moment turns a frame against itself.
+/// Projects compliances onto springs: none is negative, and no moment turns a frame against itself.
 fn nearest_spring(compliances: &[f64]) -> Vec<f64> {
     match compliances.len() {
         1 => vec![compliances[0].max(0.0)],
@@ -239,7 +242,8 @@ fn nearest_spring(compliances: &[f64]) -> Vec<f64> {
     }
 }
 
-/// Of a base: zz is nowhere seen and as large as the couplings need, which there are none without tilts.
+/// Projects the compliance of a base onto the positive semidefinite cone. Rotation about z cannot be
+/// observed: zz is as large as the couplings need, and without tilts there are no couplings.
 fn nearest_base(compliances: &[f64]) -> Vec<f64> {
     let level: Matrix2<f64> = frame_matrix(compliances).fixed_view::<2, 2>(0, 0).into_owned();
     let mut eigen = level.symmetric_eigen();
@@ -256,14 +260,14 @@ fn nearest_frame(compliances: &[f64]) -> Vec<f64> {
     if eigen.eigenvalues.min() >= 0.0 {
         return compliances.to_vec();
     }
-    // above zero, so that rounding does not take it below
+    // slightly above zero, so that rounding does not make it negative
     let least = 1e-9 * eigen.eigenvalues.max().max(0.0);
     eigen.eigenvalues.apply(|e| *e = e.max(least));
     let c = eigen.recompose();
     FRAME_ENTRIES.iter().map(|&at| c[at]).collect()
 }
 
-/// The compliance matrix of a frame: zz, where it is not among the numbers, as large as the couplings need.
+/// The compliance matrix of a frame. If zz is not among the numbers, it is as large as the couplings need.
 pub fn frame_matrix(compliances: &[f64]) -> Matrix3<f64> {
     let mut out = Matrix3::zeros();
     for (&(i, j), c) in FRAME_ENTRIES.iter().zip(compliances) {

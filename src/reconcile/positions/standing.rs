@@ -1,14 +1,15 @@
-//! Where the calibrated arms stand: session by session, and the place that suits all sessions best.
+//! Finds where the calibrated arms stand: in each session, and the place that suits all sessions best.
 
+use super::analysis::Positions;
 use super::fit::{Fitted, Sample, fit};
 use super::kinematics::{Geometry, Number};
-use super::{Point, Positions, points};
+use super::points::{Point, points};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::placement::{Placement, Session, Stand, pose_mark, test_numbers};
 use nalgebra::Rotation3;
 
 impl Positions {
-    /// The places of one of the arms, whose last frame is turned so.
+    /// The placement of one of the arms. `turned` is the rotation of its last frame.
     pub(crate) fn placement(
         &self,
         campaign: &Campaign,
@@ -40,7 +41,7 @@ impl Positions {
         let number_of = |i: usize| own.iter().position(|&o| o == i).map_or(f64::INFINITY, |k| numbers[k]);
         let ends = runs.iter().skip(1).map(|next| Some(next[0])).chain([None]);
         let sessions = runs.iter().zip(ends).map(|(run, next)| Session {
-            // a test in between may be of either
+            // a test between two sessions may belong to either
             before_test: next.map_or(f64::INFINITY, |next| {
                 0.5 * (number_of(next) + number_of(*run.last().unwrap_or(&next)))
             }),
@@ -53,7 +54,7 @@ impl Positions {
         }
     }
 
-    /// An arm's samples in runs within which nothing is put elsewhere.
+    /// The samples of an arm, split into runs within which nothing is moved.
     fn runs(&self, campaign: &Campaign, own: &[usize]) -> Vec<Vec<usize>> {
         let mut out: Vec<Vec<usize>> = Vec::new();
         for &i in own {
@@ -70,7 +71,7 @@ impl Positions {
         out
     }
 
-    /// The place of the arm and of its points in a run.
+    /// The place of the arm and of its points during a run.
     fn stand(
         &self,
         geometry: &Geometry,
@@ -92,7 +93,7 @@ impl Positions {
         }
     }
 
-    /// The geometry with base and points placed to suit all sessions, all else held.
+    /// The geometry with base and points placed to suit all sessions. All else is held.
     fn merged(&self, campaign: &Campaign, shown: &Fitted) -> Geometry {
         let named = points(campaign);
         let together: Vec<Sample> = self
@@ -101,7 +102,7 @@ impl Positions {
             .zip(&campaign.positions)
             .map(|(sample, row)| {
                 let mut out = sample.clone();
-                out.sag.known_m = shown.displacement(sample);
+                out.deflection.known_m = shown.displacement(sample);
                 out.point = named.iter().position(|p| *p == Point::of(row)).unwrap_or_default();
                 out.station = 0;
                 out

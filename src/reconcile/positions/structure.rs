@@ -1,27 +1,32 @@
-//! Whether the errors that the best model leaves follow anything.
+//! Tests whether the errors of the best model follow anything.
 //!
-//! Each question is a few columns `X` that the errors could be made of; with the part that the model could
-//! still fit taken out, the sum of squares they explain is chi-squared if there is nothing, in units of the
-//! fitted scale of the errors. It is a tenth of what is left, or more, that makes a structure material.
+//! Each question is a few columns `X` that the errors could consist of. The part that the model could still
+//! fit is removed. The sum of squares that the columns explain, in units of the fitted scale, is then
+//! chi-squared if there is no structure. A structure is material if it explains at least a tenth of the sum
+//! of squares.
 
-use super::Positions;
-use super::fit::{Factor, Sample, normal};
-use crate::arm::effect::Channel;
+use super::analysis::Positions;
+use super::fit::{Sample, normal};
+use super::normal::Factor;
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::kind::Yields;
 use crate::reconcile::fit::stats::{ln_chi_squared_tail, median};
 use crate::reconcile::readings::campaign::Campaign;
-use crate::reconcile::select::lack_of_fit::{LackOfFit, Structure, order_functions, waves};
+use crate::reconcile::select::lack_of_fit::LackOfFit;
+use crate::reconcile::select::structure::Structure;
+use crate::reconcile::select::waves::{order_functions, waves};
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 
-/// Part of the errors' sum of squares that a structure must account for to matter.
+/// A structure is material from this part of the errors' sum of squares on.
 pub const MATERIAL_PART: f64 = 0.1;
-/// Variance over the declared one that is put down to the declaration.
+/// A variance below this multiple of the declared one is ascribed to the declaration.
 pub const MATERIAL_VARIANCE: f64 = 1.75;
-/// Probability from which a structure is taken for real.
+/// A structure less probable than this is real.
 const IMPROBABLE: f64 = 1e-6;
-/// Median length of a vector of three normal deviates.
+/// Median length of a vector of three standard normal deviates.
 pub const MEDIAN_LENGTH: f64 = 1.538;
 
-/// One question: what the errors would follow, and how many columns it has.
+/// One question: what the errors would follow, and its number of columns.
 type Question = (String, usize);
 
 impl Positions {
@@ -39,6 +44,7 @@ impl Positions {
             at += count;
             let Some(factor) = &factor else { break };
             let cross = normal.curvature.view((0, block[0]), (normal.own, *count)).into_owned();
+            // the part of the columns that the model could still fit
             let answered = DMatrix::from_columns(
                 &(0..*count).map(|k| factor.solve(&cross.column(k).into_owned())).collect::<Vec<_>>(),
             );
@@ -58,6 +64,7 @@ impl Positions {
                 });
             }
         }
+        // Bonferroni, as in the test of the other readings
         let asked = (structures.len() as f64).max(1.0).ln();
         structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
         structures.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
@@ -75,7 +82,7 @@ impl Positions {
         structure.ln_p < IMPROBABLE.ln() && self.part(structure) > MATERIAL_PART
     }
 
-    /// Variance of the errors over the declared one, by their median.
+    /// Variance of the errors over the declared one, estimated by the median.
     fn variance_ratio(&self, campaign: &Campaign) -> f64 {
         let rows = campaign.positions.iter().zip(&self.samples);
         let lengths = rows.map(|(row, s)| 1e3 * self.fitted.error(s).norm() / row.sigma_mm).collect();
@@ -85,11 +92,13 @@ impl Positions {
     }
 }
 
-/// `zᵀ S⁻¹ z` over the directions in which `S` is not singular, and how many they are.
+/// The statistic `zᵀ S⁻¹ z` over the directions in which `S` is not singular, and the number of these
+/// directions.
 pub fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64) {
     let eigen = SymmetricEigen::new((s + s.transpose()) * 0.5);
     let largest = eigen.eigenvalues.max();
     let (mut statistic, mut dof) = (0.0, 0.0);
+    // directions that the model has absorbed carry no information
     for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
         if *value > 1e-6 * largest && *value > 1e-9 {
             statistic += vector.dot(z).powi(2) / value;
@@ -103,9 +112,9 @@ pub fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64) {
 struct Asker<'a> {
     found: &'a Positions,
     questions: Vec<Question>,
-    /// For each joint its candidate, and its largest torque \[N m\].
+    /// For each joint the index of its candidate, and its largest torque \[N m\].
     joints: Vec<(usize, f64)>,
-    /// For each driven joint the candidate at it.
+    /// For each driven joint the index of the candidate at it.
     driven: Vec<usize>,
     largest_payload_kg: f64,
     payloads_kg: Vec<f64>,
@@ -113,10 +122,9 @@ struct Asker<'a> {
 
 impl<'a> Asker<'a> {
     fn new(found: &'a Positions, campaign: &Campaign) -> Self {
-        let joint = |c: &usize| {
-            !matches!(found.candidates[*c].effect, "bearing_tilt" | "base_compliance" | "frame_compliance")
-        };
-        let torque = |c: usize| found.samples.iter().map(|s| s.sag.levers[c].1.abs()).fold(1e-9, f64::max);
+        let joint = |c: &usize| found.candidates[*c].yields == Yields::AboutAxis;
+        let torque =
+            |c: usize| found.samples.iter().map(|s| s.deflection.levers[c].1.abs()).fold(1e-9, f64::max);
         let joints: Vec<(usize, f64)> =
             (0..found.candidates.len()).filter(joint).map(|c| (c, torque(c))).collect();
         let at = |name: &String| joints.iter().find(|(c, _)| found.candidates[*c].at == *name).map(|j| j.0);
@@ -141,14 +149,14 @@ impl<'a> Asker<'a> {
         out.extend(order.into_iter().flat_map(along));
         let from_level = self.found.fitted.geometry.level_to_instrument();
         for (j, &candidate) in self.driven.iter().enumerate() {
-            let lever = from_level * sample.sag.levers[candidate].0;
+            let lever = from_level * sample.deflection.levers[candidate].0;
             for wave in waves(sample.pose_rad[j].to_degrees()) {
                 out.extend(along(wave));
                 out.push(lever * wave);
             }
         }
         for (candidate, largest_nm) in &self.joints {
-            let (lever, torque_nm) = sample.sag.levers[*candidate];
+            let (lever, torque_nm) = sample.deflection.levers[*candidate];
             let part = torque_nm / largest_nm;
             out.extend([(8.0 * part).tanh(), part.powi(3)].map(|size| from_level * lever * size));
         }

@@ -1,25 +1,26 @@
-//! Joints that turn unevenly: the error of a gear or its sensor, once and twice a turn.
+//! Finds joints that turn unevenly: the error of a gear or of its sensor, once and twice a turn.
 
-use super::Positions;
+use super::analysis::Positions;
 use super::fit::{Fitted, Sample, fit};
 use super::kinematics::Number;
 use super::search::{FULL_FITS, TIE};
-use crate::arm::effect::transmission_error::transmission_waves;
+use crate::arm::effect::transmission_error;
+use crate::arm::effect::waves::transmission_waves;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
 /// Name of the effect.
-pub const EFFECT: &str = "transmission_error";
+pub const EFFECT: &str = transmission_error::KIND.name;
 
-/// The numbers of a driven joint's error.
+/// The numbers of a driven joint's transmission error.
 pub fn numbers(joint: usize) -> impl Iterator<Item = Number> {
     (0..transmission_waves(0.0).len()).map(move |k| Number::Transmission(joint, k))
 }
 
 impl Positions {
-    /// Lets the joint turn unevenly whose error raises the likelihood most, if it is worth its price and
-    /// poses kept out confirm it.
+    /// Lets that joint turn unevenly which raises the likelihood most, if it is worth its price and held-out
+    /// poses confirm it.
     pub(crate) fn add_transmission(&mut self, campaign: &Campaign) -> bool {
         if !campaign.statement.considers(EFFECT) {
             return false;
@@ -35,12 +36,12 @@ impl Positions {
         self.take_if_confirmed(campaign, next, format!("{EFFECT}@{}", self.tree.driven[joint]))
     }
 
-    /// What the uneven turning of a joint must bring.
+    /// Price of one uneven joint, in ln of the likelihood.
     pub(crate) fn transmission_price(&self) -> f64 {
         self.price(numbers(0).count(), self.tree.driven.len())
     }
 
-    /// Models in which one more joint turns unevenly, the most promising fitted in full.
+    /// Models in which one more joint turns unevenly. The most promising are fitted in full.
     fn best_transmissions(&self) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let open: Vec<usize> =
@@ -60,8 +61,8 @@ impl Positions {
         order.into_par_iter().map(with).collect()
     }
 
-    /// Joints whose uneven turning would fit as well as that of one.
-    pub(crate) fn transmission_rivals(&self, joint: usize) -> Vec<usize> {
+    /// Competing joints whose uneven turning would fit as well as that of `joint`.
+    pub(crate) fn transmission_competitors(&self, joint: usize) -> Vec<usize> {
         let mut without = self.clone();
         let kept = |n: &Number| !matches!(n, Number::Transmission(j, _) if *j == joint);
         without.fitted.moved =

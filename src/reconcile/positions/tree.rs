@@ -4,18 +4,18 @@ use crate::arm::structure::{JointAngle, Piece};
 use crate::arm::{Arm, JointModel};
 use crate::reconcile::readings::campaign::Campaign;
 
-/// The pieces of all arms of a campaign, those of the trunk once.
+/// The pieces of all arms of a campaign, with those of the trunk once.
 #[derive(Debug, Clone)]
 pub struct Tree {
-    /// Joints and links; a joint's angle is read from the campaign's pose.
+    /// Joints and links. The angle of a joint is taken from the campaign's pose.
     pub pieces: Vec<Piece>,
-    /// The pieces of each arm, base to tip.
+    /// Indices of the pieces of each arm, base to tip.
     pub arms: Vec<Vec<usize>>,
-    /// How many pieces all arms begin with.
+    /// Number of pieces that all arms have in common from the base.
     pub trunk: usize,
     /// Joints that have an entry in a pose.
     pub driven: Vec<String>,
-    /// For each arm, where the angles of its own driven joints are in a pose.
+    /// For each arm, the indices of its driven joints in a pose.
     poses: Vec<Vec<usize>>,
 }
 
@@ -56,14 +56,14 @@ impl Tree {
         self.poses.push(own);
     }
 
-    /// The pose of all with that of one arm in it.
+    /// The pose of all arms, with the angles of one arm replaced.
     pub fn with_pose_of(&self, arm: usize, own: &[f64], pose: &[f64]) -> Vec<f64> {
         let mut out = pose.to_vec();
         self.poses[arm].iter().zip(own).for_each(|(&i, angle)| out[i] = *angle);
         out
     }
 
-    /// The pose of one arm out of that of all.
+    /// The pose of one arm, taken from that of all.
     pub fn pose_of(&self, arm: usize, pose: &[f64]) -> Vec<f64> {
         self.poses[arm].iter().map(|&i| pose[i]).collect()
     }

@@ -1,47 +1,48 @@
-//! A campaign: an arm file, what is stated about it, and the readings.
+//! Reads a campaign: an arm file, what is stated about it, and the readings.
 
 use super::rows::{
     ModalRow, PositionRow, StaticRow, WindupRow, modal_rows, position_rows, static_rows, windup_rows,
 };
 use super::table::Table;
-use crate::arm::effect::{Channel, KINDS};
+use crate::arm::effect::catalogue::KINDS;
+use crate::arm::effect::channel::Channel;
 use crate::arm::file::read_arm;
 use crate::arm::{Arm, Element};
 use crate::catalog::Catalogs;
 use crate::input::json::{Document, Fault, Faults, InputError, Node, Object};
 use std::path::{Path, PathBuf};
 
-/// Within what honest parts lie: 95 % limits, as parts of the nominal value.
+/// The tolerance of parts: 95 % limits as fractions of the nominal value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
-    /// Stiffness of each joint on its own.
+    /// Limit of the stiffness of each joint, independently.
     pub joint_stiffness: f64,
-    /// One factor a material on E and G together.
+    /// Limit of the common factor on E and G of a material.
     pub modulus: f64,
-    /// Mass of each joint on its own.
+    /// Limit of the mass of each joint, independently.
     pub joint_mass: f64,
 }
 
 /// What `campaign.json` says about absolute positions.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PositionsSpec {
-    /// The arm stands anywhere in the instrument's frame.
+    /// Whether the arm's place in the instrument's frame is unknown.
     pub base_placement: bool,
-    /// Each point sits anywhere on the last frame.
+    /// Whether the place of each point on the last frame is unknown.
     pub tool_offset: bool,
-    /// Each joint's zero is off.
+    /// Whether each joint's zero may be off.
     pub joint_offsets: bool,
-    /// Each link's vector and each joint's axis is off.
+    /// Whether each link's vector and each joint's axis may be off.
     pub geometry: bool,
-    /// Gravity need not point along the arm's -z.
+    /// Whether gravity may deviate from the arm's -z.
     pub gravity_direction: bool,
-    /// Links behind which place and attitude are unknown, as of an arm mounted anyhow on a trunk.
+    /// Links behind which place and attitude are unknown, as of an arm that is mounted anyhow on a trunk.
     pub mounts: Vec<String>,
 }
 
 impl PositionsSpec {
-    /// Whether gravity has a direction to be found: as stated, or because base and first axis are both free, so that
-    /// positions alone cannot say which of them is off the vertical.
+    /// Whether the direction of gravity must be found. It must where this is stated. It also must where base
+    /// and first axis are both free, because positions alone cannot tell which of them is off the vertical.
     pub fn frees_gravity(&self) -> bool {
         self.gravity_direction || (self.geometry && self.base_placement)
     }
@@ -58,12 +59,12 @@ pub struct Statement {
     pub payload_density_kg_m3: f64,
     /// Whether the nominal model holds the links rigid.
     pub rigid_links: bool,
-    /// The effects that come into question; all without a list.
+    /// The effects that may be named; `None` for all of them.
     pub effects: Option<Vec<String>>,
-    /// What is free in absolute positions.
+    /// What is unknown in absolute positions.
     pub positions: PositionsSpec,
     arm_file: String,
-    /// Files of further arms on the same trunk, beside `campaign.json`.
+    /// Files of further arms on the same trunk, next to `campaign.json`.
     pub other_arm_files: Vec<String>,
     files: [Option<String>; 4],
 }
@@ -153,7 +154,7 @@ fn statement(node: &Node) -> Option<Statement> {
     })
 }
 
-/// Parts of the nominal value that are taken for honest where a campaign says nothing.
+/// Tolerance as a fraction of the nominal value where a campaign states none.
 const DEFAULT_TOLERANCE: Tolerance = Tolerance { joint_stiffness: 0.10, modulus: 0.03, joint_mass: 0.02 };
 
 fn read_tolerance(node: &Node) -> Option<Tolerance> {
@@ -211,7 +212,7 @@ fn file_of(root: &Object, channel: Channel) -> Option<String> {
 }
 
 impl Statement {
-    /// Whether an effect comes into question.
+    /// Whether an effect may be named.
     pub fn considers(&self, effect: &str) -> bool {
         self.effects.as_ref().is_none_or(|list| list.iter().any(|name| name == effect))
     }
@@ -270,12 +271,12 @@ impl Campaign {
         }
     }
 
-    /// The arm and the others on its trunk.
+    /// All arms on the trunk, the campaign's own first.
     pub fn arms(&self) -> Vec<&Arm> {
         std::iter::once(&self.arm).chain(&self.other_arms).collect()
     }
 
-    /// Joints that have an entry in a pose: the arm's, then those that only other arms have.
+    /// Joints that have an entry in a pose: those of the first arm, then those that only other arms have.
     pub fn driven_joint_names(&self) -> Vec<String> {
         driven_joint_names(&self.arms())
     }
@@ -304,14 +305,14 @@ impl Campaign {
         if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults)) }
     }
 
-    /// How many elements all arms begin with: the trunk.
+    /// How many elements all arms have in common from the base: the trunk.
     pub fn trunk(&self) -> usize {
         let shared =
             |other: &Arm| self.arm.chain.iter().zip(&other.chain).take_while(|(a, b)| a == b).count();
         self.other_arms.iter().map(shared).min().unwrap_or(self.arm.chain.len())
     }
 
-    /// What is wrong with the arms together and with the names in `campaign.json`.
+    /// Checks the arms together, and the names in `campaign.json`.
     fn faults(&self) -> Vec<Fault> {
         let mut out = Vec::new();
         let trunk: Vec<&str> = self.arm.chain[..self.trunk()].iter().map(Element::name).collect();
@@ -333,7 +334,7 @@ impl Campaign {
                     out.push(self.fault(
                         "other_arms",
                         problem,
-                        "elements of the trunk are alike in all arms; others have names of their own",
+                        "elements of the trunk are the same in all arms; others have names of their own",
                     ));
                 }
                 taken.push(name);
@@ -347,7 +348,7 @@ impl Campaign {
         out
     }
 
-    /// The readings other than absolute positions, and those, as campaigns of their own.
+    /// Splits the campaign in two: the readings other than absolute positions, and the positions.
     pub fn parted(&self) -> (Self, Self) {
         let loaded = Self { positions: Vec::new(), other_arms: Vec::new(), ..self.clone() };
         let placed = Self { statics: Vec::new(), modal: Vec::new(), windup: Vec::new(), ..self.clone() };
@@ -364,7 +365,7 @@ impl Campaign {
         Fault { file, line: None, field: field.into(), problem, hint: hint.into() }
     }
 
-    /// The file of a channel: the one named in `campaign.json`, else the usual one if it is there.
+    /// The file of a channel: the one named in `campaign.json`, or else the usual one if it exists.
     fn file(&self, channel: Channel) -> Option<PathBuf> {
         let usual = self.folder.join(DEFAULT_FILES[channel as usize]);
         match &self.statement.files[channel as usize] {
@@ -391,8 +392,8 @@ impl Campaign {
     /// The arms or what is stated of them differ.
     pub fn join(mut self, others: Vec<Campaign>) -> Result<Self, String> {
         for other in others {
-            let alike = other.arm == self.arm && other.other_arms == self.other_arms;
-            if !alike || other.statement.tolerance != self.statement.tolerance {
+            let is_same = other.arm == self.arm && other.other_arms == self.other_arms;
+            if !is_same || other.statement.tolerance != self.statement.tolerance {
                 return Err(format!(
                     "{} and {} measure different arms or state different tolerances: reconcile them one by one",
                     self.folder.display(),
@@ -410,7 +411,8 @@ impl Campaign {
     }
 }
 
-/// Joints of several arms that have an entry in a pose: the first arm's, then those that only others have.
+/// Joints of several arms that have an entry in a pose: those of the first arm, then those that only others
+/// have.
 pub fn driven_joint_names(arms: &[&Arm]) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
     for name in arms.iter().flat_map(|arm| arm.driven_joint_names()) {

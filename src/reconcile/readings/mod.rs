@@ -1,7 +1,6 @@
-//! The readings of a campaign: files, rows, units, what stands where.
+//! Reads the files of a campaign: its statement, its rows, and where the arm and the points stand.
 
 pub mod campaign;
 pub mod placement;
 pub mod rows;
 pub mod table;
-pub mod units;

@@ -1,31 +1,32 @@
 //! Where an arm stands in the frame of an instrument, session by session.
 //!
-//! Between two sessions a reflector is put back a little differently, or instrument or base are moved. Which
-//! session a row belongs to is told by the number of its test, as long as the rows are numbered as those of
-//! the campaign were; any other row has the place that suits all sessions best.
+//! Between two sessions a reflector is put back slightly differently, or the instrument or the base is moved.
+//! The number of its test tells which session a row belongs to. This holds as long as the rows are numbered
+//! as those of the campaign were. Any other row gets the place that suits all sessions best.
 
 use super::rows::PositionRow;
+use crate::arm::Arm;
 use nalgebra::{Matrix3, Vector3};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
-/// One place of the arm and of the points on it.
+/// One place of the arm, and of the points on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stand {
-    /// The arm's base frame in the instrument's.
+    /// Rotation of the arm's base frame in the instrument's frame.
     pub rotation: Matrix3<f64>,
-    /// Its origin \[m\].
+    /// Origin of the base frame in the instrument's frame \[m\].
     pub origin_m: Vector3<f64>,
-    /// Points by name, last frame \[m\].
+    /// Points by name, in the last frame \[m\].
     pub points_m: Vec<(String, Vector3<f64>)>,
 }
 
 /// A session.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Session {
-    /// The first test number that is not in it any more; infinite for the last.
+    /// The first test number after the session; infinite for the last session.
     pub before_test: f64,
-    /// Its place.
+    /// The place during the session.
     pub stand: Stand,
 }
 
@@ -34,9 +35,9 @@ pub struct Session {
 pub struct Placement {
     /// The place that suits all sessions best.
     pub usual: Stand,
-    /// The sessions in the order of their tests; none if they are all one.
+    /// The sessions in the order of their tests; empty if there is only one.
     pub sessions: Vec<Session>,
-    /// The poses of the tests that the sessions are known from, as [`pose_mark`] has them.
+    /// Marks of the poses of the tests that define the sessions, as [`pose_mark`] gives them.
     pub tests: BTreeMap<String, String>,
 }
 
@@ -47,7 +48,7 @@ impl Default for Stand {
 }
 
 impl Stand {
-    /// Where a point sits on the last frame \[m\]; the tip if it is not known.
+    /// The point in the last frame \[m\]; the tip if the point is not known.
     pub fn point_m(&self, name: &str) -> Vector3<f64> {
         self.points_m.iter().find(|(n, _)| n == name).map_or(Vector3::zeros(), |(_, at)| *at)
     }
@@ -71,7 +72,7 @@ impl Stand {
 }
 
 impl Placement {
-    /// Reads the `placement` of a corrected arm's provenance; the identity if there is none.
+    /// Reads the `placement` in the provenance of a corrected arm; the identity if there is none.
     pub fn from_json(arm_file: &Value) -> Self {
         let placement = &arm_file["provenance"]["placement"];
         let session = |s: &Value| {
@@ -86,7 +87,7 @@ impl Placement {
         }
     }
 
-    /// As in the provenance of a corrected arm.
+    /// As JSON for the provenance of a corrected arm.
     pub fn to_json(&self) -> Value {
         let mut out = self.usual.to_json();
         if !self.sessions.is_empty() {
@@ -109,22 +110,31 @@ impl Placement {
         numbers.into_iter().map(|number| of(number).unwrap_or(&self.usual)).collect()
     }
 
-    /// Whether a row's test is not another than the one of the same name that the sessions are known from.
+    /// Whether a row can be the test of the same name that defined the sessions: the poses must agree.
     fn agrees(&self, row: &PositionRow) -> bool {
         self.tests.get(&row.test).is_none_or(|mark| *mark == pose_mark(&row.pose_deg))
     }
 }
 
-/// The tests' numbers, if they are numbers.
+/// The numbers of the tests, where their names are numbers.
 pub fn test_numbers(rows: &[PositionRow]) -> Option<Vec<f64>> {
     rows.iter().map(|row| row.test.trim().parse().ok().filter(|n: &f64| n.is_finite())).collect()
 }
 
-/// A short mark of a pose: equal for equal angles.
+/// A short text for a pose. Equal angles give equal texts.
 pub fn pose_mark(pose_deg: &[f64]) -> String {
-    // angles that differ by rounding on the way through a file are the same
+    // rounded, because a file may change the last digits of an angle
     let angles: String = pose_deg.iter().map(|angle| format!("{angle:.6},")).collect();
     blake3::hash(angles.as_bytes()).to_hex()[..8].to_string()
+}
+
+/// An arm and its placement.
+#[derive(Debug, Clone)]
+pub struct Placed {
+    /// The arm.
+    pub arm: Arm,
+    /// Its placement, for absolute positions.
+    pub placement: Placement,
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The rows of `static.csv`, `modal.csv`, `windup.csv` and `positions.csv`.
+//! Reads the rows of `static.csv`, `modal.csv`, `windup.csv` and `positions.csv`.
 
 use super::table::Table;
 use crate::arm::Arm;
@@ -17,7 +17,7 @@ pub struct StaticRow {
     pub payload: Payload,
     /// Tip force, world \[N\].
     pub force_n: Vector3<f64>,
-    /// The operator's label.
+    /// Branch of the loading cycle, as the operator labelled it.
     pub branch: String,
     /// Displacement from the reference state \[mm\].
     pub d_mm: [f64; 3],
@@ -47,11 +47,11 @@ pub struct ModalRow {
 pub struct WindupRow {
     /// Row of the file, from 0.
     pub row: usize,
-    /// Joint.
+    /// Name of the joint.
     pub joint: String,
     /// Torque \[N m\].
     pub torque_nm: f64,
-    /// Label.
+    /// Branch of the cycle, as the operator labelled it.
     pub branch: String,
     /// Twist \[arcmin\].
     pub windup_arcmin: f64,
@@ -70,7 +70,7 @@ pub struct PositionRow {
     pub pose_deg: Vec<f64>,
     /// Stated payload.
     pub payload: Payload,
-    /// Which arm the point is on: index among the campaign's.
+    /// Index of the arm that the point is on, in the order of the campaign.
     pub arm: usize,
     /// Name of the point.
     pub point: String,
@@ -80,7 +80,7 @@ pub struct PositionRow {
     pub sigma_mm: f64,
 }
 
-/// The columns that say in which state the arm was.
+/// The columns that state pose and payload.
 struct StateColumns {
     pose: Vec<usize>,
     payload: Option<[usize; 4]>,
@@ -137,7 +137,7 @@ impl StateColumns {
 
 const SIGMA: &str = "a standard deviation is greater than 0";
 
-/// Numbers beyond this, or standard deviations below its reciprocal, are no measurement in any unit.
+/// No measurement in any unit is larger than this, and no standard deviation smaller than its reciprocal.
 const ABSURD: f64 = 1e9;
 
 fn sigma(table: &Table, row: usize, column: usize) -> Option<f64> {
@@ -150,7 +150,7 @@ fn sigma(table: &Table, row: usize, column: usize) -> Option<f64> {
     None
 }
 
-/// A cell as a number that something can have been measured or applied at.
+/// Reads a cell as a number of a size that can be measured or applied.
 fn measured(table: &Table, row: usize, column: usize) -> Option<f64> {
     table.number_that(row, column, |x| x.abs() < ABSURD, "too large for any unit: is it a slip?")
 }
@@ -248,9 +248,7 @@ pub fn windup_rows(table: &Table, arm: &Arm) -> Vec<WindupRow> {
     })
 }
 
-/// Reads absolute positions.
-///
-/// `arms`: names of the arms; `driven`: the joints that have a column.
+/// Reads absolute positions. `arms` holds the names of the arms, `driven` the joints that have a column.
 pub fn position_rows(table: &Table, arms: &[&str], driven: &[String]) -> Vec<PositionRow> {
     let joints: Vec<&str> = driven.iter().map(String::as_str).collect();
     let state = StateColumns::find(table, &joints, false);
@@ -304,8 +302,8 @@ fn each_row<T>(table: &Table, read: impl Fn(usize) -> Option<T>) -> Vec<T> {
     rows.into_iter().flatten().collect()
 }
 
-/// Rows that repeat an earlier one in everything but the test's label: a copying error, and the noise
-/// of the two would not be independent.
+/// Reports rows that repeat an earlier one in everything but the test's label. Such a row is a copying error,
+/// and its noise is not independent.
 fn check_duplicates(table: &Table) {
     let label = table.optional("test");
     let mut seen: HashMap<Vec<&str>, usize> = HashMap::new();
@@ -321,7 +319,7 @@ fn check_duplicates(table: &Table) {
     }
 }
 
-/// Angles that are all within half a turn in radians, in several poses, are radians.
+/// Reports angles that are probably radians: those that lie within half a turn in radians in several poses.
 fn check_angles<'a>(table: &Table, poses: impl Iterator<Item = &'a [f64]>) {
     let mut distinct: Vec<&[f64]> = Vec::new();
     for pose in poses {

@@ -1,11 +1,11 @@
-//! A CSV file as named columns, every fault kept with file, line, column, value and hint.
+//! A CSV file as named columns. Every fault is recorded with file, line, column, value and hint.
 
+use crate::input::csv::{Csv, Record, is_repeated, other_separators};
 use crate::input::json::{Fault, InputError, closest};
-use crate::input::lines::LineCounter;
 use std::cell::RefCell;
 use std::path::Path;
 
-/// What a line that is a comment begins with.
+/// First character of a comment line.
 const COMMENT: u8 = b'#';
 
 /// A CSV file whose first row names the columns.
@@ -34,7 +34,7 @@ impl Table {
         Ok(Self::parse(&file, &text))
     }
 
-    /// Parses CSV text.
+    /// Parses CSV text. Rows of the wrong length are faults.
     pub fn parse(file: &str, text: &str) -> Self {
         let mut table = Self {
             file: file.to_string(),
@@ -43,19 +43,11 @@ impl Table {
             lines: Vec::new(),
             faults: RefCell::default(),
         };
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .trim(csv::Trim::All)
-            .comment(Some(COMMENT))
-            .from_reader(text.as_bytes());
-        let mut lines = LineCounter::with_comments(text.as_bytes(), COMMENT);
-        for record in reader.records() {
-            match record {
-                Ok(record) => table.push(&record, lines.of(record.position())),
-                Err(e) => table.fault(None, "", format!("not valid CSV: {e}"), "save the table as plain CSV"),
-            }
+        let csv = Csv::parse(text.as_bytes(), Some(COMMENT));
+        for (_, problem) in &csv.unreadable {
+            table.fault(None, "", format!("not valid CSV: {problem}"), "save the table as plain CSV");
         }
+        csv.records.into_iter().for_each(|record| table.push(record));
         table.check_header();
         if table.columns.is_empty() {
             table.fault(None, "", "is empty".into(), "the first row names the columns");
@@ -63,31 +55,27 @@ impl Table {
         table
     }
 
-    /// Columns that are separated by something else than commas, or named twice.
+    /// Reports columns that are separated by something other than commas, or named twice.
     fn check_header(&self) {
-        for (separator, word) in [(';', "semicolons"), ('\t', "tabs")] {
-            if self.columns.first().is_some_and(|c| c.matches(separator).count() > 1) {
-                let hint = "separate columns with commas and write decimals with a point";
-                self.fault(Some(1), "", format!("its columns are separated by {word}"), hint);
-            }
+        for word in other_separators(&self.columns, 2) {
+            let hint = "separate columns with commas and write decimals with a point";
+            self.fault(Some(1), "", format!("its columns are separated by {word}"), hint);
         }
         for (i, name) in self.columns.iter().enumerate() {
-            if !name.is_empty() && self.columns[..i].contains(name) {
+            if !name.is_empty() && is_repeated(&self.columns, i) {
                 self.fault(Some(1), name, "the column is there twice".into(), "keep the one that holds");
             }
         }
     }
 
-    /// Whether the first row names columns at all: of one that does not, nothing more need be said.
+    /// Whether the first row names columns. If it does not, further faults would only confuse.
     fn has_header(&self) -> bool {
         self.columns.len() > 1
     }
 
-    fn push(&mut self, record: &csv::StringRecord, line: usize) {
-        let cells: Vec<String> = record.iter().map(String::from).collect();
+    fn push(&mut self, Record { line, cells }: Record) {
         if self.columns.is_empty() {
             self.columns = cells;
-            self.columns[0] = self.columns[0].trim_start_matches('\u{feff}').to_string();
         } else if !self.has_header() || cells.len() == self.columns.len() {
             self.rows.push(cells);
             self.lines.push(line);
@@ -113,12 +101,12 @@ impl Table {
         self.fault(self.lines.get(row).copied(), column, problem, hint);
     }
 
-    /// The faults found so far.
+    /// All faults found.
     pub fn into_faults(self) -> Vec<Fault> {
         self.faults.into_inner()
     }
 
-    /// Index of a column that must be there.
+    /// Index of a column that must exist; its absence is a fault.
     pub fn required(&self, name: &str) -> Option<usize> {
         self.optional(name).or_else(|| {
             if !self.has_header() && !self.faults.borrow().is_empty() {
@@ -134,7 +122,7 @@ impl Table {
         })
     }
 
-    /// Index of a column if it is there.
+    /// Index of a column, if it exists.
     pub fn optional(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|c| c == name)
     }
@@ -144,7 +132,7 @@ impl Table {
         &self.rows[row][column]
     }
 
-    /// A cell as a finite number; anything else is a fault.
+    /// Reads a cell as a finite number; anything else is a fault.
     pub fn number(&self, row: usize, column: usize) -> Option<f64> {
         let text = self.text(row, column);
         match text.parse::<f64>() {
@@ -160,7 +148,7 @@ impl Table {
         }
     }
 
-    /// A cell as a number that satisfies a condition.
+    /// Reads a cell as a number that satisfies a condition; anything else is a fault.
     pub fn number_that(
         &self,
         row: usize,

@@ -1,47 +1,50 @@
-//! What a handful of readings can say: every small set of effects that explains them is listed, because
-//! with few rows several always do.
+//! Lists what a handful of readings can say: every small set of effects that explains them. With few rows
+//! there are always several.
 //!
-//! Sets of one, two and three effects are fitted, up to one effect more than the smallest set that explains
-//! the readings has. Those that explain every reading within its standard deviation, and that would not
-//! without any one of their effects, are kept, unless the evidence is far behind the best. What all of them
-//! share, masses and stiffnesses included, is what the readings say; a number on which they differ is one
-//! that the readings cannot give.
+//! Sets of one, two and three effects are fitted, up to one effect more than the smallest explaining set has.
+//! A set is kept if it explains every reading within its standard deviation, and would not without any one of
+//! its effects. A set whose evidence is far behind the best is dropped.
+//!
+//! What all kept sets share, masses and stiffnesses included, is what the readings say. A number on which
+//! they differ is one that the readings cannot give.
 
-use super::screening::{MOST_EFFECTS, Scored, Search, Selection};
-use crate::arm::effect::Subject;
+use super::screening::{MOST_EFFECTS, Selection};
+use super::search::{Scored, Search};
+use crate::arm::effect::subject::Subject;
 use crate::arm::structure::Piece;
 use crate::reconcile::fit::descent::{Effort, Fit, Weights, fit};
 use crate::reconcile::fit::interval::intervals;
 use crate::reconcile::fit::stats::ln_chi_squared_tail;
-use crate::reconcile::model::parameters::{Calibration, Knob, Model};
+use crate::reconcile::model::estimate::{Estimate, Finding};
+use crate::reconcile::model::parameters::{Calibration, FreeParameter, Model};
 use crate::reconcile::readings::campaign::Campaign;
-use crate::reconcile::verdict::outcome::{Estimate, Finding};
 use rayon::prelude::*;
 
-/// Fewest rows from which one model can be chosen.
+/// Smallest number of rows from which one model can be chosen.
 pub const FEWEST_ROWS: usize = 11;
-/// Most fits for sets of one size; beyond it only the most promising smaller sets are extended.
+/// Largest number of fits for sets of one size. Beyond it only the most promising smaller sets are extended.
 const MOST_FITS: usize = 6000;
-/// Probability below which a set does not explain the readings.
+/// A set whose misfit is less probable than this does not explain the readings.
 const IMPROBABLE: f64 = 0.01;
-/// Explaining sets this far behind the best in evidence are not listed; with few readings the evidence is
-/// little more than what was expected before, so this is wide.
+/// Explaining sets whose ln of the evidence is this far behind the best are not listed. The limit is wide,
+/// because with few readings the evidence mostly repeats the prior.
 const IMPLAUSIBLE: f64 = 15.0;
-/// Part of a mass by which every set must differ from the arm file to be told.
+/// A missing mass is reported if every set differs from the arm file by more than this part.
 const MATERIAL: f64 = 0.02;
-/// Largest over smallest stiffness from which it is not identified.
+/// A stiffness whose largest and smallest value have a ratio above this is not identified.
 const WIDE: f64 = 1.2;
 /// Factors on a stiffness that are tried in turn, and their reciprocals.
 const FACTORS: [f64; 9] = [1.1, 1.2, 1.4, 1.7, 2.0, 3.0, 4.0, 6.0, 10.0];
-/// Sets whose stiffnesses are tried.
+/// Number of sets whose stiffnesses are varied.
 const MOST_PROFILES: usize = 6;
 
-/// Weighs every small set of effects; `others` are those that explain the readings, best first.
+/// Weighs every small set of effects. `others` holds those that explain the readings, best first.
 pub fn weigh(search: &Search) -> Selection {
-    let bare = scored(search, &[], &[]);
-    let mut tried = vec![bare.clone()];
+    let baseline = scored(search, &[], &[]);
+    let mut tried = vec![baseline.clone()];
     let mut level = tried.clone();
-    // one effect more than the smallest set that explains needs: as many numbers can sit in other effects
+    // one effect more than the smallest explaining set, because the same number of parameters can belong to
+    // other effects
     let mut beyond = false;
     for _ in 0..MOST_EFFECTS.min(search.forward.data.len()) {
         if beyond {
@@ -52,11 +55,11 @@ pub fn weigh(search: &Search) -> Selection {
         tried.extend(level.iter().cloned());
     }
     let others = explaining(search, tried);
-    let best = others.first().cloned().unwrap_or_else(|| bare.clone());
-    Selection { best, bare, others, given_up: false }
+    let best = others.first().cloned().unwrap_or_else(|| baseline.clone());
+    Selection { best, baseline, others, given_up: false }
 }
 
-/// The sets that explain the readings, no smaller part of which does, best first.
+/// The sets that explain the readings and have no smaller part that does, best first.
 fn explaining(search: &Search, tried: Vec<Scored>) -> Vec<Scored> {
     let all: Vec<Scored> = tried.into_iter().filter(|s| explains(search, s)).collect();
     let within = |a: &Scored, b: &Scored| {
@@ -69,28 +72,29 @@ fn explaining(search: &Search, tried: Vec<Scored>) -> Vec<Scored> {
     out
 }
 
-/// Whether the readings are as near to the set's predictions as their standard deviations say.
+/// Whether the readings are as close to the set's predictions as their standard deviations say.
 fn explains(search: &Search, scored: &Scored) -> bool {
     is_probable(search, scored, scored.objective)
 }
 
-/// Whether chance leaves such a misfit to a set.
+/// Whether chance can leave such a misfit.
 fn is_probable(search: &Search, set: &Scored, misfit: f64) -> bool {
     let readings = search.forward.data.len();
-    let free = knobs(search, &set.effects);
+    let free = free_parameters(search, &set.effects);
     let dof = readings.saturating_sub(free).max(1) as f64;
     ln_chi_squared_tail(misfit, dof) > IMPROBABLE.ln()
 }
 
-fn knobs(search: &Search, effects: &[usize]) -> usize {
-    effects.iter().map(|&e| search.candidates[e].knobs.len()).sum()
+fn free_parameters(search: &Search, effects: &[usize]) -> usize {
+    effects.iter().map(|&e| search.candidates[e].free_parameters.len()).sum()
 }
 
-/// Every set of `level` with one more effect, fitted; no set twice.
+/// Fits every set of `level` with one more effect, no set twice.
 fn extend(search: &Search, level: &[Scored]) -> Vec<Scored> {
     let candidates = 0..search.candidates.len();
     let mut from: Vec<&Scored> = level.iter().collect();
     from.sort_by(|a, b| a.objective.total_cmp(&b.objective).then(a.effects.cmp(&b.effects)));
+    // the number of fits is limited, and sets that fit badly seldom lead to one that explains
     from.truncate((MOST_FITS / candidates.len().max(1)).max(1));
     let mut sets: Vec<(Vec<usize>, &Scored, usize)> = from
         .into_iter()
@@ -104,6 +108,7 @@ fn extend(search: &Search, level: &[Scored]) -> Vec<Scored> {
         .filter(|(sorted, ..)| sorted.len() <= search.forward.data.len())
         .collect();
     sets.sort_by(|a, b| a.0.cmp(&b.0));
+    // the same set is reached from several smaller ones
     sets.dedup_by(|a, b| a.0 == b.0);
     sets.into_par_iter()
         .map(|(_, base, c)| {
@@ -122,30 +127,35 @@ fn scored(search: &Search, effects: &[usize], starts: &[Vec<f64>]) -> Scored {
     let fits = starts.iter().map(|u| search.fit(effects, u, Effort::default()));
     let best =
         fits.min_by(|a, b| a.point.objective.total_cmp(&b.point.objective)).expect("at least one start");
-    let strange: f64 =
-        best.model.knobs().zip(&best.point.u[best.model.calibrated()..]).map(|(k, u)| surprise(k, *u)).sum();
+    // with few readings a size beyond the expected would otherwise cost nothing
+    let strange: f64 = best
+        .model
+        .free_parameters()
+        .zip(&best.point.u[best.model.calibrated()..])
+        .map(|(k, u)| surprise(k, *u))
+        .sum();
     let scored = search.scored(effects, &best);
     Scored { score: scored.score - strange, ..scored }
 }
 
-/// What a number beyond the expected costs, in ln of the evidence: as much as a normal deviate whose
-/// standard deviation is a quarter of the expected width.
-fn surprise(knob: &Knob, u: f64) -> f64 {
-    0.5 * (knob.beyond_expected(u) / 0.25).powi(2)
+/// Cost of a parameter beyond its expected range, in ln of the evidence. It is that of a normal deviate whose
+/// standard deviation is a quarter of the range's width.
+fn surprise(parameter: &FreeParameter, u: f64) -> f64 {
+    0.5 * (parameter.beyond_expected(u) / 0.25).powi(2)
 }
 
 /// What the sets that explain the readings have in common, and what they do not.
-pub fn sentences(search: &Search, campaign: &Campaign, bare: &Fit, explaining: &[Scored]) -> Vec<String> {
+pub fn sentences(search: &Search, campaign: &Campaign, baseline: &Fit, explaining: &[Scored]) -> Vec<String> {
     let Some(first) = explaining.first() else {
         return vec![
-            gap(search, bare),
+            gap(search, baseline),
             format!("no {MOST_EFFECTS} effects of the library explain every reading"),
         ];
     };
     if first.effects.is_empty() {
         return vec!["noise and calibration within tolerance explain every reading".into()];
     }
-    let mut out = vec![gap(search, bare)];
+    let mut out = vec![gap(search, baseline)];
     out.push(match explaining.len() {
         1 => format!("one set of effects explains every reading: {}", search.model(&first.effects).label()),
         n => format!(
@@ -160,11 +170,11 @@ pub fn sentences(search: &Search, campaign: &Campaign, bare: &Fit, explaining: &
     out
 }
 
-/// The worst reading of the arm as given.
-fn gap(search: &Search, bare: &Fit) -> String {
+/// Describes the worst reading of the arm as given.
+fn gap(search: &Search, baseline: &Fit) -> String {
     let sigmas = |i: usize| {
         let datum = &search.forward.data[i];
-        ((datum.value - bare.point.predicted[i]) / datum.sigma).abs()
+        ((datum.value - baseline.point.predicted[i]) / datum.sigma).abs()
     };
     let worst = (0..search.forward.data.len()).max_by(|&a, &b| sigmas(a).total_cmp(&sigmas(b)));
     let Some(i) = worst else { return "there is no reading".into() };
@@ -174,12 +184,12 @@ fn gap(search: &Search, bare: &Fit) -> String {
         datum.channel.word(),
         datum.row + 1,
         datum.value,
-        bare.point.predicted[i]
+        baseline.point.predicted[i]
     )
 }
 
-/// The outermost joint at and beyond which every set that leaves the stiffnesses as they are wants more mass
-/// than the arm file has, or less.
+/// Finds the outermost joint from which outwards mass is missing, or too much: by every set that leaves the
+/// stiffnesses as they are.
 fn missing_mass(
     search: &Search,
     campaign: &Campaign,
@@ -197,6 +207,7 @@ fn missing_mass(
     names.iter().rev().find_map(|joint| {
         let outboard = |s: &Subject| s.payload(&stated).mass_kg + outboard_kg(s, joint);
         let known_kg = outboard(nominal);
+        // only mass outboard of a joint loads it, so the outermost joint is named
         let missing_kg = |i: &usize| outboard(&subjects[*i]) - known_kg;
         let (low, high) = span(as_stiff.iter().map(missing_kg));
         let (word, low, high) = if high < 0.0 { ("too much", -high, -low) } else { ("missing", low, high) };
@@ -213,16 +224,16 @@ fn missing_mass(
     })
 }
 
-/// Whether the joints, the bearings, the links and the base yield as in the arm file.
+/// Whether the joints, bearings, links and base yield exactly as in the arm file.
 fn is_as_stiff(subject: &Subject, nominal: &Subject) -> bool {
     let pieces = subject.structure.pieces.iter().zip(&nominal.structure.pieces);
-    let alike = |(a, b): (&Piece, &Piece)| match (a, b) {
+    let same = |(a, b): (&Piece, &Piece)| match (a, b) {
         (Piece::Joint(a), Piece::Joint(b)) => a.law == b.law && a.tilt_rad_per_nm == b.tilt_rad_per_nm,
         (Piece::Link(a), Piece::Link(b)) => a.beam == b.beam,
         _ => false,
     };
     subject.structure.base_tilt_rad_per_nm == nominal.structure.base_tilt_rad_per_nm
-        && pieces.into_iter().all(alike)
+        && pieces.into_iter().all(same)
 }
 
 /// Mass of everything from a joint outward, without the payload \[kg\].
@@ -237,7 +248,8 @@ fn outboard_kg(subject: &Subject, joint: &str) -> f64 {
         .sum()
 }
 
-/// Joints whose stiffness may have very different values with every reading explained, the widest first.
+/// Names joints whose stiffness may have very different values while every reading is explained, the widest
+/// range first.
 fn unidentified_stiffnesses(search: &Search, explaining: &[Scored], subjects: &[Subject]) -> Vec<String> {
     let joints = search.forward.nominal.structure.joints().filter(|j| !j.law.is_rigid());
     let mut ranges: Vec<(String, f64, f64)> = joints
@@ -270,8 +282,8 @@ fn stiffness_nm_per_rad(subject: &Subject, joint: &str) -> f64 {
     joint.map_or(f64::INFINITY, |j| 1.0 / j.law.tangent_compliance_rad_per_nm(0.0))
 }
 
-/// The least and the largest factor on a joint's stiffness with which a set, its other numbers refitted,
-/// still explains the readings.
+/// The smallest and the largest factor on a joint's stiffness with which a set, refitted, still explains the
+/// readings.
 fn free_factors(search: &Search, set: &Scored, joint: &str) -> (f64, f64) {
     let mut nuisance = search.nuisance.clone();
     let index = nuisance.numbers.len();
@@ -279,12 +291,13 @@ fn free_factors(search: &Search, set: &Scored, joint: &str) -> (f64, f64) {
     let mut model = Model { nuisance: &nuisance, ..search.model(&set.effects) };
     let mut reach = |factors: &[f64]| {
         let mut u = set.u.clone();
+        // the factor is a further calibrated parameter with a prior of its own
         u.insert(index, 0.0);
         let mut reached = 1.0;
         for factor in factors {
             model.held = vec![(index, factor.ln())];
             let fitted = fit(search.forward, &model, &u, search.weights, Effort::default());
-            // what holding the factor costs is no misfit
+            // the prior of the held factor is no misfit
             let misfit = fitted.point.objective - factor.ln().powi(2);
             if !is_probable(search, set, misfit) {
                 break;
@@ -300,8 +313,8 @@ fn span(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }
 
-/// Every effect of the sets, with the range of its numbers over the sets that have it and what stands in
-/// its place in the others. A stiffness that some set does without has no upper end.
+/// Every effect of the sets: the range of its parameters over the sets that have it, and what replaces it in
+/// the others. A stiffness that some set does without has no upper end.
 pub fn suspects(search: &Search, explaining: &[Scored], weights: &Weights) -> Vec<Finding> {
     let mut effects: Vec<usize> = Vec::new();
     for &e in explaining.iter().flat_map(|s| &s.effects) {
@@ -314,16 +327,16 @@ pub fn suspects(search: &Search, explaining: &[Scored], weights: &Weights) -> Ve
     effects.iter().map(|&e| suspect(search, explaining, &fits, e)).collect()
 }
 
-/// The numbers of every effect of a set with their intervals.
+/// The parameters of every effect of a set, with their intervals.
 fn estimates(search: &Search, set: &Scored, weights: &Weights) -> Vec<(usize, Vec<Estimate>)> {
     let fit = search.fit(&set.effects, &set.u, Effort { steps: 0, tolerance: 0.0 });
     let mut ends = intervals(search.forward, &fit, weights).into_iter();
     let of = |(position, &e): (usize, &usize)| {
         let candidate = &search.candidates[e];
-        let first = fit.model.first_knob(position);
-        let values = candidate.numbers(&fit.point.u[first..first + candidate.knobs.len()]);
-        let knobs = candidate.knobs.iter().zip(values).zip(ends.by_ref());
-        (e, knobs.map(|((knob, value), end)| knob.estimate(value, &end)).collect())
+        let first = fit.model.first_parameter(position);
+        let values = candidate.numbers(&fit.point.u[first..first + candidate.free_parameters.len()]);
+        let free_parameters = candidate.free_parameters.iter().zip(values).zip(ends.by_ref());
+        (e, free_parameters.map(|((parameter, value), end)| parameter.estimate(value, &end)).collect())
     };
     set.effects.iter().enumerate().map(of).collect()
 }
@@ -339,15 +352,15 @@ fn suspect(
         fits.iter().flatten().filter(|(e, _)| *e == effect).map(|(_, list)| list).collect();
     let absent = own.len() < explaining.len();
     let mut parameters: Vec<(String, Vec<Estimate>)> = Vec::new();
-    for (k, knob) in candidate.knobs.iter().enumerate() {
+    for (k, parameter) in candidate.free_parameters.iter().enumerate() {
         let end = |of: fn(&Estimate) -> Option<f64>, pick: fn(f64, f64) -> f64| {
             own.iter().map(|list| of(&list[k])).reduce(|a, b| Some(pick(a?, b?))).flatten()
         };
-        let high = end(|e| e.high, f64::max).filter(|_| !(absent && knob.reversed()));
+        let high = end(|e| e.high, f64::max).filter(|_| !(absent && parameter.reversed()));
         let estimate = Estimate { value: own[0][k].value, low: end(|e| e.low, f64::min), high };
-        match parameters.iter_mut().find(|(name, _)| name == knob.name) {
+        match parameters.iter_mut().find(|(name, _)| name == parameter.name) {
             Some((_, list)) => list.push(estimate),
-            None => parameters.push((knob.name.to_string(), vec![estimate])),
+            None => parameters.push((parameter.name.to_string(), vec![estimate])),
         }
     }
     let mut others: Vec<(String, String)> = Vec::new();

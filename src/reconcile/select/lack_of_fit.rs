@@ -1,59 +1,47 @@
-//! Whether the best model leaves a structure that it should not.
+//! Tests whether the best model leaves a structure in the residuals (lack of fit).
 //!
-//! The residuals of a right model are noise: they do not follow the order of the tests, a joint's angle,
-//! the load, the branch, the torque. Each such question is a few regressors `X`; with the part that the
-//! model could still fit removed, `zᵀ S⁻¹ z` with `z = Xᵀr`, `S = XᵀX - XᵀJ (JᵀWJ)⁻¹ JᵀX` is
-//! chi-squared if there is nothing. The smooth laws of `unnamed` are asked beside these.
+//! The residuals of a right model are noise. They do not follow the order of the tests, a joint's angle, the
+//! load, the branch or the torque. Each such question is a few regressors `X`. With the part removed that the
+//! model could still fit, the statistic is `zᵀ S⁻¹ z` with `z = Xᵀr` and `S = XᵀX - XᵀJ (JᵀWJ)⁻¹ JᵀX`. It is
+//! chi-squared if there is no structure. The smooth laws of [`unnamed`](super::unnamed) are further
+//! questions.
 
+use super::structure::Structure;
 use super::unnamed;
-use crate::arm::effect::Channel;
+use super::waves::{order_functions, waves};
+use crate::arm::effect::channel::Channel;
 use crate::reconcile::fit::descent::{Fit, Weights};
 use crate::reconcile::fit::stats::ln_chi_squared_tail;
-use crate::reconcile::forward::Forward;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Calibration;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
-use std::f64::consts::TAU;
 
-/// One question put to the residuals.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Structure {
-    /// Channel; all of them together if none.
-    pub channel: Option<Channel>,
-    /// What the residuals would follow, in words.
-    pub follows: String,
-    /// Test statistic.
-    pub statistic: f64,
-    /// Its degrees of freedom.
-    pub dof: f64,
-    /// ln of the probability of so large a statistic, times the number of questions.
-    pub ln_p: f64,
-}
-
-/// The answer to all questions.
+/// The answers to all questions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LackOfFit {
-    /// Every question, the most telling first.
+    /// The structure of every question, the most improbable first.
     pub structures: Vec<Structure>,
-    /// Sum of squares over degrees of freedom of all data, in declared standard deviations.
+    /// Chi-squared over degrees of freedom of all data, by declared standard deviations.
     pub chi2_per_dof: f64,
-    /// Whether the model fails.
+    /// Whether the model fails the test.
     pub fails: bool,
 }
 
-/// Sum of squares over degrees of freedom that wrong declared deviations could hardly leave.
+/// The model fails above this chi-squared per degree of freedom. Wrongly declared standard deviations hardly
+/// explain more.
 const MATERIAL: f64 = 2.5;
 /// The same where a structure is suspected.
 const SUSPICIOUS: f64 = 1.8;
-/// Probability, all questions together, below which a structure is no chance.
+/// A structure less probable than this, with all questions counted, is not chance.
 const CHANCE: f64 = 1e-3;
-/// Probability below which a structure is suspected.
+/// A structure less probable than this is suspected.
 const SUSPECTED: f64 = 0.02;
-/// Structures that are put into words.
+/// Number of structures that are put into words.
 const TOLD: usize = 3;
 
 impl LackOfFit {
-    /// The most telling structures that are no chance, in words, each said once.
+    /// Sentences on the most improbable structures, each said once.
     pub fn sentences(&self) -> Vec<String> {
         let mut told: Vec<&Structure> = Vec::new();
         for structure in self.structures.iter().filter(|s| s.ln_p < CHANCE.ln()) {
@@ -65,7 +53,7 @@ impl LackOfFit {
     }
 }
 
-/// Asks all questions.
+/// Tests a fitted model.
 pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> LackOfFit {
     let tester = Tester::new(forward, fit, weights);
     let mut structures = Vec::new();
@@ -79,22 +67,24 @@ pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &
             );
         }
     }
+    // Bonferroni: with many questions one of them looks improbable by chance
     let asked = (structures.len() as f64).max(1.0).ln();
     structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
-    structures.extend(unnamed::beside(campaign, forward, fit, weights));
+    structures.extend(unnamed::law_questions(campaign, forward, fit, weights));
     structures.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
     let chi2_per_dof = tester.chi2_per_dof(forward, fit);
     let ln_p = structures.first().map_or(0.0, |s| s.ln_p);
+    // a structure alone fails only if chance is excluded; a large chi-squared fails by itself
     let fails =
         ln_p < CHANCE.ln() || chi2_per_dof > MATERIAL || (ln_p < SUSPECTED.ln() && chi2_per_dof > SUSPICIOUS);
     LackOfFit { structures, chi2_per_dof, fails }
 }
 
-/// Part of a regressor's square that the model leaves below which it counts as the model's own: what is left of
-/// it then tells how well the fit converged.
+/// A regressor of which the model leaves less than this part of its square counts as the model's own. The
+/// rest would only show how well the fit converged.
 const ABSORBED: f64 = 1e-3;
 
-/// Columns of length 1.
+/// Scales columns to length 1.
 fn unit_columns(mut x: DMatrix<f64>) -> DMatrix<f64> {
     for mut column in x.column_iter_mut() {
         let length = column.norm();
@@ -114,6 +104,7 @@ struct Tester {
 
 impl Tester {
     fn new(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
+        // clamped, so that a gross error does not make up a structure
         let residual = DVector::from_vec(fit.residuals(forward, weights)).map(|r| r.clamp(-5.0, 5.0));
         let mut jacobian = fit.jacobian.clone();
         for (mut row, w) in jacobian.row_iter_mut().zip(&weights.inverse) {
@@ -134,6 +125,7 @@ impl Tester {
                     if self.weight[i] > 0.0 { regressors[k][i] } else { 0.0 }
                 },
             );
+        // one scale for all regressors, so that small eigenvalues mean dependence and not units
         let x = unit_columns(x);
         let z = x.tr_mul(&self.residual);
         let xj = x.tr_mul(&self.jacobian);
@@ -168,7 +160,8 @@ impl Tester {
     }
 }
 
-/// Functions of what a datum belongs to, each zero outside its channel.
+/// The questions about a channel: what the residuals would follow, and the regressors, which are zero outside
+/// the channel.
 fn questions(
     campaign: &Campaign,
     forward: &Forward,
@@ -186,8 +179,8 @@ fn questions(
     out
 }
 
-/// Whether what an effect is, or a material's modulus, changes in the course of the tests: what a small change of it does
-/// to each reading, times functions of the order.
+/// Asks whether the size of an effect, or a material's modulus, changes in the course of the tests. The
+/// regressors are the sensitivities of the readings times functions of the order.
 fn change_questions(
     forward: &Forward,
     fit: &Fit,
@@ -211,17 +204,17 @@ fn change_questions(
         let Calibration::Modulus(material, _) = calibration else { return None };
         Some(question(format!("a modulus of {material}"), p..p + 1))
     });
-    // an effect may have no size to be fitted: a wrong unit
-    let sized = fit.model.effects.iter().enumerate().filter(|(_, of)| !of.knobs.is_empty());
+    // a wrong unit has no parameter
+    let sized = fit.model.effects.iter().enumerate().filter(|(_, of)| !of.free_parameters.is_empty());
     let effects = sized.map(|(effect, of)| {
-        let first = fit.model.first_knob(effect);
-        question(format!("a size of {}", of.label()), first..first + of.knobs.len())
+        let first = fit.model.first_parameter(effect);
+        question(format!("a size of {}", of.label()), first..first + of.free_parameters.len())
     });
     moduli.chain(effects).collect()
 }
 
-/// Whether a joint's stiffness changes with its angle, its torque or the order of the tests: what a
-/// small change of it does to each reading, times functions of these.
+/// Asks whether a joint's stiffness changes with its angle, its torque or the order of the tests. The
+/// regressors are the sensitivities of the readings times functions of these.
 fn stiffness_questions(
     campaign: &Campaign,
     forward: &Forward,
@@ -264,7 +257,7 @@ fn stiffness_questions(
     out
 }
 
-/// Values at the data of a channel, zero elsewhere.
+/// Values at the data of a channel, and zero elsewhere.
 fn spread(forward: &Forward, channel: Channel, value: impl Fn(usize, usize) -> f64) -> Vec<f64> {
     let mut out = vec![0.0; forward.data.len()];
     for i in forward.range(channel) {
@@ -273,24 +266,12 @@ fn spread(forward: &Forward, channel: Channel, value: impl Fn(usize, usize) -> f
     out
 }
 
-/// Sine and cosine of an angle, once and twice a turn.
-pub fn waves(angle_deg: f64) -> [f64; 4] {
-    let a = angle_deg.to_radians();
-    [a.sin(), a.cos(), (2.0 * a).sin(), (2.0 * a).cos()]
-}
-
-/// Slow and fast waves and a line over the order of the rows.
-pub fn order_functions(part: f64) -> [f64; 6] {
-    let (a, b) = (TAU * part, 2.0 * TAU * part);
-    [part - 0.5, (part - 0.5).powi(2), a.sin(), a.cos(), b.sin(), b.cos()]
-}
-
 fn static_questions(campaign: &Campaign, forward: &Forward, fit: &Fit) -> Vec<(String, Vec<Vec<f64>>)> {
     let rows = &campaign.statics;
     let row = |i: usize| i / 3;
     let count = rows.len() as f64;
     let channel = Channel::Static;
-    // each component on its own, and along the predicted displacement (a stiffness that changes)
+    // each component on its own, and along the predicted displacement as a changing stiffness would show
     let vary = |f: &dyn Fn(usize) -> f64| -> Vec<Vec<f64>> {
         let mut out: Vec<Vec<f64>> = (0..3)
             .map(|c| spread(forward, channel, |i, component| if component == c { f(row(i)) } else { 0.0 }))
@@ -363,15 +344,4 @@ fn windup_questions(campaign: &Campaign, forward: &Forward) -> Vec<(String, Vec<
             (format!("the torque on {name}"), regressors)
         })
         .collect()
-}
-
-impl Structure {
-    /// The structure in one line.
-    pub fn sentence(&self) -> String {
-        let of = self.channel.map_or(String::new(), |c| format!(" of {}", c.word()));
-        format!(
-            "the residuals{of} follow {} (chi-squared {:.0} on {} degrees of freedom)",
-            self.follows, self.statistic, self.dof
-        )
-    }
 }

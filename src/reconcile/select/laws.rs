@@ -1,27 +1,31 @@
-//! Laws that no effect of the library has: the twist of a joint as a smooth function of its torque, odd or even, of
-//! its angle or of the order of the tests; a base, a bearing or a link that yields in one direction only; a link with
-//! another mass or wall than drawn; a reading as a smooth function of the true value, of the direction, of the kind of
-//! load or of the time in a pose. A law is a few columns of changes of the readings, made linear about a fit.
+//! Laws that no effect of the library has. They are smooth and general, so that physics without a name shows.
+//!
+//! A law may concern the twist of a joint as a function of its torque, odd or even, of its angle, or of the
+//! order of the tests. It may concern a base, a bearing or a link that yields in one direction only, or a
+//! link with another mass or wall than drawn. It may also concern a reading as a function of the true value,
+//! the direction, the kind of load, or the time in a pose. A law is a few columns of changes of the readings,
+//! linearized about a fit.
 
-use super::lack_of_fit::waves;
-use crate::arm::effect::Channel;
+use super::waves::waves;
+use crate::arm::effect::channel::Channel;
 use crate::mechanics::beam::Strain;
 use crate::reconcile::fit::descent::{Fit, change_to};
+use crate::reconcile::forward::bench::ARCMIN_PER_RAD;
 use crate::reconcile::forward::coefficients::Coefficients;
-use crate::reconcile::forward::{ARCMIN_PER_RAD, Forward};
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::DVector;
 use std::f64::consts::TAU;
 
 /// A law without a name.
 pub struct Law {
-    /// What it says, in words.
+    /// The law in words.
     pub what: String,
-    /// Change of each prediction per unit of each of its numbers, in the unit of the file.
+    /// Change of each prediction per unit of each of the law's parameters, in the unit of the file.
     pub columns: Vec<Vec<f64>>,
 }
 
-/// Every law at every place, made linear about a fit.
+/// Every law at every place, linearized about a fit.
 pub fn laws(campaign: &Campaign, forward: &Forward, fit: &Fit) -> Vec<Law> {
     let builder = Builder { campaign, forward, fit, torques_nm: forward.torques_nm(&fit.point.coefficients) };
     let joints = (0..forward.layout.joints.len()).flat_map(|j| builder.joint_laws(j));
@@ -30,11 +34,12 @@ pub fn laws(campaign: &Campaign, forward: &Forward, fit: &Fit) -> Vec<Law> {
         .chain(builder.link_laws())
         .chain(builder.reading_laws())
         .collect();
+    // a law that changes no reading cannot be tested
     out.retain(|law| law.columns.iter().all(|c| c.iter().any(|x| *x != 0.0)));
     out
 }
 
-/// Where and when a joint carries a torque.
+/// The state of a joint when a reading is taken.
 struct State {
     torque_nm: f64,
     angle_deg: f64,
@@ -43,10 +48,10 @@ struct State {
     channel: Channel,
 }
 
-/// A twist beyond torque over stiffness and its slope, each in torque over stiffness.
+/// A further twist and its slope at a state, both as multiples of torque over stiffness.
 type Shape<'a> = &'a dyn Fn(&State) -> (f64, f64);
 
-/// A column of a channel from a function of the datum and its predicted reading.
+/// Makes a column of a channel from a function of the datum and its predicted reading.
 type ColumnOf<'a> = &'a dyn Fn(&dyn Fn(usize, f64) -> f64) -> Vec<f64>;
 
 struct Builder<'a> {
@@ -76,7 +81,7 @@ impl Builder<'_> {
             column(&|s| (s.torque_nm.abs(), s.torque_nm.signum())),
             column(&|s| (s.torque_nm * part(s), 2.0 * part(s))),
         ];
-        // at which angle the joint stood on the bench is not known
+        // the angle of the joint on the bench is not known
         let wave = |k: usize| {
             column(&|s| {
                 let factor = if s.channel == Channel::Windup { 0.0 } else { waves(s.angle_deg)[k] };
@@ -108,7 +113,7 @@ impl Builder<'_> {
         out
     }
 
-    /// What a further twist of a joint does to every reading.
+    /// The change of every reading by a further twist of a joint.
     fn joint_column(&self, joint: usize, compliance: f64, shape: Shape) -> Vec<f64> {
         let forward = self.forward;
         let driven = self.campaign.arm.driven_joint_names();
@@ -154,7 +159,7 @@ impl Builder<'_> {
         self.read(&truth)
     }
 
-    /// The base, bearings and links that yield more than they should, each in one direction or in part.
+    /// A base, bearings and links that yield further, each in one direction or in part.
     fn yielding_laws(&self) -> Vec<Law> {
         let layout = &self.forward.layout;
         let own = &self.fit.point.coefficients;
@@ -192,7 +197,8 @@ impl Builder<'_> {
         out
     }
 
-    /// Links that are lighter or heavier than drawn, and tubes with another wall: mass and stiffness in proportion.
+    /// Links that are lighter or heavier than drawn, and tubes with another wall, whose mass and stiffness
+    /// change in proportion.
     fn link_laws(&self) -> Vec<Law> {
         let links = self.forward.nominal.structure.links().enumerate();
         let laws = links.filter(|(_, link)| link.tube_kg_per_m() > 0.0).flat_map(|(l, link)| {
@@ -213,14 +219,14 @@ impl Builder<'_> {
         laws.collect()
     }
 
-    /// Takes mass from a link, along its axis \[kg/m\].
+    /// Removes mass from a link along its axis \[kg/m\].
     fn lighten(&self, coefficients: &mut Coefficients, link: usize, kg_per_m: f64) {
         let index = self.forward.layout.joints.len() + link;
         coefficients.masses[index] -= kg_per_m;
         coefficients.weights[index] -= kg_per_m;
     }
 
-    /// What a change of the coefficients, given by its size, does to every reading.
+    /// The change of every reading by a change of the coefficients, as a function of the change's size.
     fn changed_column(&self, changed: &dyn Fn(&mut Coefficients, f64)) -> Vec<f64> {
         const PART: f64 = 1e-4;
         let mut moved = self.fit.point.coefficients.clone();
@@ -228,7 +234,7 @@ impl Builder<'_> {
         change_to(self.forward, &self.fit.point, &moved).into_iter().map(|d| d / PART).collect()
     }
 
-    /// What further compliances of coordinates do to every reading.
+    /// The change of every reading by further compliances of coordinates.
     fn yielding_column(&self, further: &[(usize, f64)]) -> Vec<f64> {
         let forward = self.forward;
         let mut truth = vec![0.0; forward.data.len()];
@@ -239,7 +245,8 @@ impl Builder<'_> {
         self.read(&truth)
     }
 
-    /// The frequencies' change from that of the compliances: `yᵀ dC y` is given of the datum and `y`.
+    /// The change of the frequencies by a change of the compliances. The function gives `yᵀ dC y` for a datum
+    /// and its `y`.
     fn add_modal(&self, truth: &mut [f64], energy: impl Fn(usize, &DVector<f64>) -> f64) {
         for (test, solved) in self.forward.modal.iter().zip(&self.fit.point.solved) {
             for &(datum, mode) in &test.modes {
@@ -250,7 +257,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Changes of the true values as changes of the readings.
+    /// Turns changes of true values into changes of readings.
     fn read(&self, truth: &[f64]) -> Vec<f64> {
         let channels = &self.fit.point.coefficients.channels;
         truth.iter().zip(&self.forward.data).map(|(t, d)| t * channels[d.channel as usize].factor).collect()
@@ -282,8 +289,8 @@ impl Builder<'_> {
         out
     }
 
-    /// Loads that are not as stated, whatever their size; a support that gives way along the load; readings
-    /// that grow while a pose is kept.
+    /// Loads that differ from those stated, a support that gives way along the load, and readings that grow
+    /// while a pose is kept.
     fn load_laws(&self, column: ColumnOf) -> Vec<Law> {
         let rows = &self.campaign.statics;
         let gravity = self.forward.layout.gravity_m_s2;
@@ -325,7 +332,8 @@ impl Builder<'_> {
         out
     }
 
-    /// A column of the static readings with that of the frequencies under payloads that are heavier in proportion.
+    /// A column of the static readings, joined with that of the frequencies under payloads that are heavier
+    /// in proportion.
     fn heavier_payloads(&self, mut column: Vec<f64>) -> Vec<f64> {
         const PART: f64 = 1e-4;
         let forward = self.forward;
@@ -343,7 +351,7 @@ impl Builder<'_> {
         column
     }
 
-    /// A gain of its own for each direction; a turned frame.
+    /// A separate gain for each direction, and a turned frame.
     fn direction_laws(&self, column: ColumnOf) -> Vec<Law> {
         let data = &self.forward.data;
         let gain = |c: usize| column(&|i, d| if data[i].component == c { d } else { 0.0 });
@@ -372,7 +380,7 @@ impl Builder<'_> {
     }
 }
 
-/// How many rows of the same pose came right before each row.
+/// How many rows of the same pose came directly before each row.
 fn rows_in_pose<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
     let mut last: Option<(&[f64], usize)> = None;
     poses
@@ -384,7 +392,7 @@ fn rows_in_pose<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
         .collect()
 }
 
-/// The laws of the first column, the second, and both.
+/// Three laws: of the first column, of the second, and of both.
 fn one_or_both(what: &str, columns: [Vec<f64>; 2]) -> Vec<Law> {
     let [a, b] = columns;
     let law = |columns| Law { what: what.to_string(), columns };
@@ -400,16 +408,16 @@ mod tests {
     use crate::reconcile::model::parameters::{Calibration, Model, Nuisance};
     use std::path::Path;
 
-    /// Checks laws about the model as it is, against what the calibration's numbers do.
+    /// Checks the laws about the model as it is against the sensitivities of the calibration.
     fn about_the_bare_model(check: impl FnOnce(&Builder, &Nuisance)) {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e");
         let campaign = Campaign::read(&folder, &Catalogs::default()).expect("sound");
         let forward = Forward::new(&campaign);
         let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
-        let bare = Model::bare(&nuisance);
+        let baseline = Model::baseline(&nuisance);
         let weights = Noise::default().weights(&forward);
         let effort = Effort { steps: 0, tolerance: 0.0 };
-        let fit = fit(&forward, &bare, &vec![0.0; bare.len()], &weights, effort);
+        let fit = fit(&forward, &baseline, &vec![0.0; baseline.len()], &weights, effort);
         let torques_nm = forward.torques_nm(&fit.point.coefficients);
         check(&Builder { campaign: &campaign, forward: &forward, fit: &fit, torques_nm }, &nuisance);
     }

@@ -1,250 +1,86 @@
-//! Which effects are missing: every candidate at every place, judged by evidence that pays for each
-//! parameter and for having looked in many places.
+//! Finds which effects are missing. Every candidate at every place is judged by evidence, which charges for
+//! each parameter and for having looked in many places.
 //!
-//! One stage adds one effect: all candidates are screened with the model made linear about the fit so
-//! far, the best are fitted in full. From two effects on each is dropped and swapped against all others
-//! until nothing improves, which repairs greedy mistakes.
+//! One stage adds one effect. All candidates are screened with the model linearized about the fit so far, and
+//! the best are fitted in full. From two effects on, each effect is dropped and exchanged for all others
+//! until nothing improves. This repairs mistakes of the greedy search.
 
+use super::search::{Scored, Search};
 use super::unnamed::{self, Better};
 use crate::reconcile::fit::descent::{
-    Effort, Fit, Normal, Point, Weights, bounded_step, change, descent, evaluate, fit, jacobian, normal,
-    objective,
+    Effort, Fit, Normal, Point, bounded_step, change, descent, evaluate, fit, jacobian, normal, objective,
 };
-use crate::reconcile::forward::Forward;
-use crate::reconcile::model::parameters::{Candidate, Model, Nuisance};
-use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::model::parameters::Model;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::cell::OnceCell;
 
-/// Rise of the score that a further effect must bring: two things missing at once are rarer than one.
+/// A further effect must raise the score by this much, because two missing things at once are rarer than one.
 const WORTH: f64 = 3.0;
-/// Rise of the score that the first effect must bring: that something is missing is as likely as not.
+/// The first effect must raise the score by this much. It is 0, because something missing is as likely as
+/// nothing missing.
 const FIRST_WORTH: f64 = 0.0;
-/// Part of the probability that an effect and its alternatives must hold together.
+/// Probability that an effect and its alternatives must have together.
 const CREDIBLE: f64 = 0.95;
-/// Models this far behind after a few steps are not fitted further.
+/// Models whose score is this far behind after a few steps are not fitted further.
 const HOPELESS: f64 = 40.0;
-/// Smoothing of a gear's curve, in ln of the torque: so that a descent sees past the frequencies' steps, and so
-/// that they are nearly sharp.
-const WIDE: f64 = 0.1;
-const NARROW: f64 = 0.01;
-/// Rise of the objective beyond which a break point is not followed further.
-const RULED_OUT: f64 = 14.0;
-/// Models within this score of a stage's best are worth a closer look.
+/// Models within this score of the best of a stage are examined further.
 const PROMISING: f64 = 12.0;
-/// Most effects.
+/// Largest number of effects in a model.
 pub const MOST_EFFECTS: usize = 3;
-/// Objective per datum above which a model cannot become the explanation, whatever the declared deviations.
-const BEYOND_HOPE: f64 = 3.0;
-/// Rise of the evidence over the best effects by which a law without a name settles that they are not it.
+/// A law without a name whose ln of the evidence is higher by this much settles that the effects found are
+/// not the cause.
 const SETTLES: f64 = 12.0;
-/// Candidates fitted in full at each stage.
+/// Number of candidates fitted in full at each stage.
 const FULL_FITS: usize = 7;
-
-/// All that a search needs.
-pub struct Search<'a> {
-    /// Campaign.
-    pub campaign: &'a Campaign,
-    /// Prepared campaign.
-    pub forward: &'a Forward,
-    /// Calibration.
-    pub nuisance: &'a Nuisance,
-    /// Candidates.
-    pub candidates: &'a [Candidate],
-    /// Weights of the data.
-    pub weights: &'a Weights,
-}
-
-/// A model with its score.
-#[derive(Clone)]
-pub struct Scored {
-    /// Indices of the candidates in it.
-    pub effects: Vec<usize>,
-    /// Its parameters.
-    pub u: Vec<f64>,
-    /// Evidence less ln of the number of candidates for each effect.
-    pub score: f64,
-    /// `Σ ρ(r) + Σ u²`.
-    pub objective: f64,
-}
 
 /// What a search found.
 pub struct Selection {
     /// The best model.
     pub best: Scored,
-    /// Calibration only.
-    pub bare: Scored,
+    /// The baseline: calibration and no effect.
+    pub baseline: Scored,
     /// Every other model that was fitted, best first.
     pub others: Vec<Scored>,
-    /// Whether a law without a name is so much better that the search was given up.
+    /// Whether the search was given up, because a law without a name is far better.
     pub given_up: bool,
 }
 
 impl<'a> Search<'a> {
-    /// A model of the named candidates.
-    pub fn model(&self, effects: &[usize]) -> Model<'a> {
-        Model::of(self.nuisance, self.candidates, effects)
-    }
-
-    /// Fits the model of the named candidates from `u`.
-    pub fn fit(&self, effects: &[usize], u: &[f64], effort: Effort) -> Fit<'a> {
-        self.fit_model(self.model(effects), u, effort)
-    }
-
-    /// Fits a model from `u`; where the last effect is a gear's curve, its break points' steps in the
-    /// frequencies are first smoothed, then sharpened.
-    fn fit_model(&self, mut model: Model<'a>, u: &[f64], effort: Effort) -> Fit<'a> {
-        let mut start = u.to_vec();
-        if !self.forward.modal.is_empty()
-            && model.effects.last().is_some_and(|e| e.kind.name == "soft_windup")
-        {
-            for smoothing in [WIDE, 0.03, NARROW] {
-                model.smoothing = smoothing;
-                let steps = Effort { steps: 8, tolerance: 0.05 };
-                start = self.descent(&model, &start, steps).u;
-            }
-            model.smoothing = 0.0;
-        }
-        fit(self.forward, &model, &start, self.weights, effort)
-    }
-
-    fn descent(&self, model: &Model, u: &[f64], effort: Effort) -> Point {
-        descent(self.forward, model, u, self.weights, effort, f64::INFINITY)
-    }
-
-    /// A few steps, enough to see whether a model is near; where its last effect is a gear's curve, after a few
-    /// with the frequencies' steps smoothed widely.
-    fn rough(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
-        let mut model = self.model(effects);
-        let mut start = u.to_vec();
-        let few = Effort { steps: 4, tolerance: 0.02 };
-        if model.effects.last().is_some_and(|e| e.kind.name == "soft_windup") {
-            let smoothed = Effort { steps: 6, tolerance: 0.05 };
-            model.smoothing = WIDE;
-            start = self.descent(&model, &start, smoothed).u;
-            model.smoothing = NARROW;
-        }
-        fit(self.forward, &model, &start, self.weights, few)
-    }
-
-    /// Fits a model to the end: the break points of a gear's curve are moved in steps, because the
-    /// frequencies' steps at them hide lower ground from a descent.
-    pub fn polish(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
-        let model = self.model(effects);
-        let breaks = model.break_points();
-        if breaks.is_empty() {
-            return fit(self.forward, &model, u, self.weights, Effort::default());
-        }
-        let mut best = self.descent(&model, u, Effort::default());
-        for reach in [0.3, 0.12, 0.04] {
-            for &p in &breaks {
-                let moves = [-1.0, -0.5, 0.5, 1.0].map(|m| best.u[p] + m * reach);
-                let tried: Vec<Point> =
-                    moves.into_par_iter().filter_map(|v| self.held_then_free(&model, &best, p, v)).collect();
-                for point in tried {
-                    if point.objective < best.objective - 1e-6 {
-                        best = point;
-                    }
-                }
-            }
-        }
-        self.centre_breaks(model, best)
-    }
-
-    /// A model that may be the explanation, fitted to the end if it has break points: else a further effect is
-    /// found that only makes good what the descent left.
-    fn settled(&self, scored: Scored) -> Scored {
-        if self.model(&scored.effects).break_points().is_empty() || !self.may_explain(&scored) {
-            return scored;
-        }
-        let polished = self.scored(&scored.effects, &self.polish(&scored.effects, &scored.u));
-        if polished.score > scored.score { polished } else { scored }
-    }
-
-    /// Moves break points from the brink of a frequency's step into the middle of where the objective is
-    /// flat, so that a small change of the torques does not carry a test across.
-    fn centre_breaks(&self, model: Model<'a>, best: Point) -> Fit<'a> {
-        const STEP: f64 = 0.002;
-        let mut u = best.u.clone();
-        for p in model.break_points() {
-            let flat = |side: f64| {
-                let rises = (1..=10).map(|i| {
-                    let mut moved = u.clone();
-                    moved[p] += side * STEP * i as f64;
-                    evaluate(self.forward, &model, &moved, self.weights).objective
-                });
-                rises.take_while(|o| *o < best.objective + 1.0).count() as f64
-            };
-            let middle = 0.5 * STEP * (flat(1.0) - flat(-1.0));
-            u[p] += middle;
-        }
-        let mut held = model.clone();
-        held.held = model.break_points().into_iter().map(|p| (p, u[p])).collect();
-        let centred = self.descent(&held, &u, Effort { steps: 4, tolerance: 0.02 });
-        let end = if centred.objective > best.objective + 4.0 { best } else { centred };
-        fit(self.forward, &model, &end.u, self.weights, Effort { steps: 0, tolerance: 0.0 })
-    }
-
-    /// Descends with a parameter held at a value, then lets it go, unless the readings rule the value out.
-    fn held_then_free(&self, model: &Model, from: &Point, parameter: usize, value: f64) -> Option<Point> {
-        let effort = Effort { steps: 5, tolerance: 0.02 };
-        let mut held = model.clone();
-        held.held = vec![(parameter, value)];
-        let limit = from.objective + RULED_OUT;
-        let end = descent(self.forward, &held, &from.u, self.weights, effort, limit);
-        (end.objective <= limit).then(|| self.descent(model, &end.u, effort))
-    }
-
-    /// The score of a fit.
-    pub fn scored(&self, effects: &[usize], fit: &Fit) -> Scored {
-        let penalty = effects.len() as f64 * (self.places() as f64).ln();
-        Scored {
-            effects: effects.to_vec(),
-            u: fit.point.u.clone(),
-            score: fit.evidence - penalty,
-            objective: fit.point.objective,
-        }
-    }
-
-    /// Whether a model comes near enough to the readings to be worth refining.
-    pub fn may_explain(&self, scored: &Scored) -> bool {
-        scored.objective < BEYOND_HOPE * self.forward.data.len() as f64
-    }
-
-    /// In how many ways an effect could be named; a unit slip counts once a channel.
-    pub fn places(&self) -> usize {
-        let mut labels: Vec<String> = self.candidates.iter().map(|c| c.label()).collect();
-        labels.dedup();
-        labels.len()
-    }
-
-    /// Looks for the effects; from two effects on a model found before is a better start than nothing.
+    /// Searches for the effects. With two effects or more, a model from an earlier search is a better start
+    /// than none.
     pub fn run(&self, before: Option<&Scored>) -> Selection {
-        let bare_model = self.model(&[]);
-        let bare_fit =
-            fit(self.forward, &bare_model, &vec![0.0; bare_model.len()], self.weights, Effort::default());
-        let bare = self.scored(&[], &bare_fit);
+        let baseline_model = self.model(&[]);
+        let baseline_fit = fit(
+            self.forward,
+            &baseline_model,
+            &vec![0.0; baseline_model.len()],
+            self.weights,
+            Effort::default(),
+        );
+        let baseline = self.scored(&[], &baseline_fit);
         let mut seen: Vec<Scored> = Vec::new();
-        let mut best = bare.clone();
+        let mut best = baseline.clone();
         if let Some(known) = before.filter(|b| b.effects.len() > 1) {
             let effort = Effort { steps: 12, tolerance: 0.02 };
             let again = fit(self.forward, &self.model(&known.effects), &known.u, self.weights, effort);
             best = self.repair(self.scored(&known.effects, &again), &mut seen);
-            if best.score < bare.score + FIRST_WORTH {
-                best = bare.clone();
+            if best.score < baseline.score + FIRST_WORTH {
+                best = baseline.clone();
             }
         }
+        // the law is computed only if a first effect is found
         let law = OnceCell::new();
         let mut given_up = false;
         while best.effects.len() < MOST_EFFECTS {
-            let law = || law.get_or_init(|| unnamed::beside_calibration(self, &bare_fit));
+            let law = || law.get_or_init(|| unnamed::better_than_calibration(self, &baseline_fit));
             let tried = self.extend(&best, &seen);
             seen.extend(tried.iter().cloned());
+            // several missing effects are less probable than one
             let worth = if best.effects.is_empty() { FIRST_WORTH } else { WORTH };
             let Some(next) = better(&tried, best.score + worth) else { break };
             best = self.settled(next);
-            given_up = self.is_settled_by(law(), &bare, &best);
+            given_up = self.is_settled_by(law(), &baseline, &best);
             if given_up {
                 break;
             }
@@ -253,23 +89,26 @@ impl<'a> Search<'a> {
             }
         }
         seen.sort_by(|a, b| b.score.total_cmp(&a.score));
-        Selection { best, bare, others: seen, given_up }
+        Selection { best, baseline, others: seen, given_up }
     }
 
-    /// Whether further effects are not worth looking for, because a law without a name is far better than the best
-    /// so far: than one effect where the law leaves no more than noise, for two could be better still.
-    fn is_settled_by(&self, law: &Option<Better>, bare: &Scored, best: &Scored) -> bool {
+    /// Whether a law without a name is so much better than the best model that further effects are not worth
+    /// a search. With one effect so far it must also leave no more than noise, because two effects could
+    /// still be better.
+    fn is_settled_by(&self, law: &Option<Better>, baseline: &Scored, best: &Scored) -> bool {
         let readings = self.forward.data.len() as f64;
         let noise = readings + 2.0 * (2.0 * readings).sqrt();
         law.as_ref().is_some_and(|law| {
-            bare.score + law.gain > best.score + SETTLES && (best.effects.len() > 1 || law.objective < noise)
+            baseline.score + law.gain > best.score + SETTLES
+                && (best.effects.len() > 1 || law.objective < noise)
         })
     }
 
-    /// Fits the promising models of a selection again, with other weights, and chooses among them; those with some of the
-    /// best one's effects too, for what the other weights were to blame for may have been named.
+    /// Fits the promising models of a selection again with other weights, and chooses among them. It includes
+    /// models with only some of the best model's effects, because the others may have been named for the
+    /// faults of the old weights.
     pub fn weigh_again(&self, before: &Selection) -> Selection {
-        let mut promising: Vec<Scored> = vec![before.bare.clone()];
+        let mut promising: Vec<Scored> = vec![before.baseline.clone()];
         let near = before.others.iter().filter(|s| s.score > before.best.score - PROMISING).cloned();
         let parts = self.parts(&before.best);
         for scored in [before.best.clone()].into_iter().chain(parts).chain(near) {
@@ -279,25 +118,25 @@ impl<'a> Search<'a> {
         }
         let effort = Effort { steps: 12, tolerance: 0.02 };
         let again = |s: &Scored| {
-            // about the middle of where the objective is flat all are judged alike
+            // at the middle of the flat part of the objective, so that all models are judged equally
             let model = self.model(&s.effects);
             let end = self.descent(&model, &s.u, effort);
             self.scored(&s.effects, &self.centre_breaks(model, end))
         };
         let mut seen: Vec<Scored> = promising.par_iter().map(again).collect();
-        let bare = seen.remove(0);
+        let baseline = seen.remove(0);
         let worth = |s: &Scored| match s.effects.len() {
             0 => 0.0,
             n => FIRST_WORTH + (n - 1) as f64 * WORTH,
         };
         let net = |s: &&Scored| s.score - worth(s);
-        let best = seen.iter().chain([&bare]).max_by(|a, b| net(a).total_cmp(&net(b)));
-        let best = best.cloned().unwrap_or_else(|| bare.clone());
+        let best = seen.iter().chain([&baseline]).max_by(|a, b| net(a).total_cmp(&net(b)));
+        let best = best.cloned().unwrap_or_else(|| baseline.clone());
         seen.sort_by(|a, b| b.score.total_cmp(&a.score));
-        Selection { best, bare, others: seen, given_up: before.given_up }
+        Selection { best, baseline, others: seen, given_up: before.given_up }
     }
 
-    /// Drops and swaps effects until nothing improves.
+    /// Drops and exchanges effects until nothing improves.
     fn repair(&self, mut best: Scored, seen: &mut Vec<Scored>) -> Scored {
         for _ in 0..4 {
             let mut improved = false;
@@ -322,7 +161,7 @@ impl<'a> Search<'a> {
         best
     }
 
-    /// The models with some of a model's effects, started from it.
+    /// The models with some of a model's effects, each with a start from that model.
     fn parts(&self, scored: &Scored) -> Vec<Scored> {
         let mut parts: Vec<Scored> = Vec::new();
         let mut open = vec![scored.clone()];
@@ -338,17 +177,7 @@ impl<'a> Search<'a> {
         parts
     }
 
-    /// A model without one of its effects, and where to start it from.
-    pub fn without(&self, scored: &Scored, effect: usize) -> (Vec<usize>, Vec<f64>) {
-        let model = self.model(&scored.effects);
-        let first = model.first_knob(effect);
-        let (mut effects, mut u) = (scored.effects.clone(), scored.u.clone());
-        effects.remove(effect);
-        u.drain(first..first + model.effects[effect].knobs.len());
-        (effects, u)
-    }
-
-    /// The best models with one more effect; those that were fitted before are not fitted again.
+    /// The best models with one more effect. Models that were fitted before are taken from `seen`.
     fn extend(&self, base: &Scored, seen: &[Scored]) -> Vec<Scored> {
         let screened = self.screen(base);
         let starts = screened.into_iter().map(|(c, u, _)| ([base.effects.as_slice(), &[c]].concat(), u));
@@ -363,6 +192,7 @@ impl<'a> Search<'a> {
         let rough = |(effects, u): (Vec<usize>, Vec<f64>)| self.scored(&effects, &self.rough(&effects, &u));
         let first: Vec<Scored> = fresh.into_par_iter().map(rough).collect();
         let top = first.iter().chain(&known).map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
+        // a few steps show which models are hopeless; only the others are worth a full fit
         let (near, far): (Vec<Scored>, Vec<Scored>) =
             first.into_iter().partition(|s| s.score > top - HOPELESS);
         let effort = Effort { steps: 14, tolerance: 0.02 };
@@ -375,12 +205,13 @@ impl<'a> Search<'a> {
         fits
     }
 
-    /// Break points of the promising gear curves found over a grid, with the frequencies left out at first: where
-    /// the model may be the explanation, for as long as more is missing they are not to be found that closely; in
-    /// threes only those of a curve that is new, for the others have been found in pairs.
+    /// Searches the break points of promising gear curves over a grid, at first without the frequencies. This
+    /// is done only where the model may be the explanation, because a model that still lacks something does
+    /// not need break points that exact. With three effects only a new curve is searched, because the others
+    /// were found in pairs.
     fn regrid(&self, fits: &mut [Scored], least: f64) {
         for scored in fits.iter_mut().filter(|s| s.score > least && self.may_explain(s)) {
-            let curve = scored.effects.iter().rposition(|&e| self.candidates[e].kind.name == "soft_windup");
+            let curve = scored.effects.iter().rposition(|&e| self.candidates[e].kind.traits.is_gear_curve);
             let Some(position) = curve else { continue };
             if position + 1 < scored.effects.len() && scored.effects.len() > 2 {
                 continue;
@@ -393,10 +224,10 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The best fit from the grid of break points of one effect.
+    /// The best fit over the grid of break points of one effect.
     fn over_breaks(&self, from: &Scored, position: usize) -> Fit<'a> {
         let model = self.model(&from.effects);
-        let first = model.first_knob(position);
+        let first = model.first_parameter(position);
         let smooth = self.weights.without_modes(self.forward);
         let effort = Effort { steps: 8, tolerance: 0.05 };
         let starts = &model.effects[position].starts;
@@ -419,8 +250,8 @@ impl<'a> Search<'a> {
             .expect("at least one start")
     }
 
-    /// The most promising candidates with a start for each: candidate, parameters, score of the model
-    /// made linear about the base.
+    /// The most promising candidates, each with a start: index, parameters, and score of the linearized
+    /// model.
     fn screen(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
         let model = self.model(&base.effects);
         let here = evaluate(self.forward, &model, &base.u, self.weights);
@@ -438,14 +269,15 @@ impl<'a> Search<'a> {
     fn best_start(
         &self,
         base: &Model<'a>,
-        here: &crate::reconcile::fit::descent::Point,
+        here: &Point,
         slopes: &DMatrix<f64>,
         index: usize,
     ) -> Option<(usize, Vec<f64>, f64)> {
         let candidate = &self.candidates[index];
         let mut model = base.with(candidate);
         model.smoothing = 0.1;
-        // a straight line knows nothing of the frequencies' steps at them
+        // the linearized model does not contain the steps of the frequencies at break points, so they are
+        // held
         model.held =
             model.break_points().into_iter().filter(|p| *p < base.len()).map(|p| (p, here.u[p])).collect();
         candidate
@@ -456,20 +288,15 @@ impl<'a> Search<'a> {
             .map(|(u, score)| (index, u, score))
     }
 
-    /// Best parameters and score of a model made linear about `here` plus the candidate's start.
-    fn linear(
-        &self,
-        model: &Model,
-        here: &crate::reconcile::fit::descent::Point,
-        slopes: &DMatrix<f64>,
-        start: &[f64],
-    ) -> (Vec<f64>, f64) {
+    /// Best parameters and score of a model, linearized about `here` plus the candidate's start.
+    fn linear(&self, model: &Model, here: &Point, slopes: &DMatrix<f64>, start: &[f64]) -> (Vec<f64>, f64) {
         let mut u = here.u.clone();
         u.extend_from_slice(start);
         let base = change(self.forward, model, here, &u);
         let mut columns = slopes.clone().resize_horizontally(u.len(), 0.0);
         for p in here.u.len()..u.len() {
             let (_, high) = model.bounds(p);
+            // a difference must stay within the bounds
             let step = if u[p] + 1e-3 > high { -1e-3 } else { 1e-3 };
             let mut moved = u.clone();
             moved[p] += step;
@@ -494,18 +321,21 @@ impl<'a> Search<'a> {
         }
         let objective = objective(self.forward, model, &u, &predicted, self.weights);
         let mut score = -0.5 * objective;
-        for (i, knob) in model.knobs().enumerate() {
+        for (i, parameter) in model.free_parameters().enumerate() {
             let p = model.calibrated() + i;
-            let prior = knob.width(u[p]);
+            let prior = parameter.width(u[p]);
             let width = 1.0 / (curvature[(p, p)] + 12.0 / prior.powi(2)).sqrt();
+            // the Occam factor of the parameter; 0.9 is ln of the root of 2 pi
             score += (width / prior).ln() + 0.9;
         }
         (u, score)
     }
 
-    /// Models with as many effects as the best, one of them another, that the data cannot tell from it:
-    /// for each effect of the best the candidates that could stand in its place, the likeliest first, as
-    /// many as make the right one be among them with 95 %.
+    /// For each effect of the best model, the models with another effect in its place that the data cannot
+    /// tell from it.
+    ///
+    /// The likeliest come first. There are as many as needed for the right one to be among them with a
+    /// probability of 95 %.
     pub fn alternatives(&self, best: &Scored, seen: &[Scored]) -> Vec<Vec<Scored>> {
         (0..best.effects.len())
             .map(|i| {
@@ -516,21 +346,22 @@ impl<'a> Search<'a> {
                         && !s.effects.contains(&own)
                         && rest.iter().all(|e| s.effects.contains(e))
                 };
-                let mut rivals: Vec<Scored> = Vec::new();
-                for rival in seen.iter().filter(in_its_place) {
-                    if rivals.iter().all(|r| r.effects != rival.effects) {
-                        rivals.push(rival.clone());
+                let mut competitors: Vec<Scored> = Vec::new();
+                for competitor in seen.iter().filter(in_its_place) {
+                    if competitors.iter().all(|r| r.effects != competitor.effects) {
+                        competitors.push(competitor.clone());
                     }
                 }
+                // the score is a logarithm of probability, so its difference gives the odds
                 let odds = |s: &Scored| (s.score - best.score).exp();
-                let all = 1.0 + rivals.iter().map(odds).sum::<f64>();
+                let all = 1.0 + competitors.iter().map(odds).sum::<f64>();
                 let mut held = 1.0;
-                rivals.retain(|s| {
+                competitors.retain(|s| {
                     let needed = held < CREDIBLE * all;
                     held += odds(s);
                     needed
                 });
-                rivals
+                competitors
             })
             .collect()
     }

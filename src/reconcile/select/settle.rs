@@ -1,40 +1,44 @@
-//! The effects and the quality of the readings, which depend on each other: which rows are gross errors, how large
-//! the noise is and which modes are missing from a list shows only beside the right effects, and these only
-//! without the wrong rows.
+//! Finds the effects and the quality of the readings together, because they depend on each other.
+//!
+//! Gross errors, the size of the noise and modes missing from a list show only with the right effects in the
+//! model. The right effects show only without the wrong rows.
 
 use super::few_rows;
-use super::screening::{Scored, Search, Selection};
+use super::screening::Selection;
+use super::search::{Scored, Search};
 use crate::reconcile::fit::descent::{Effort, Fit, Weights, fit};
 use crate::reconcile::fit::noise::{Noise, gross_lists};
-use crate::reconcile::forward::Forward;
 use crate::reconcile::forward::coefficients::Coefficients;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::{Candidate, Model, Nuisance};
 use crate::reconcile::readings::campaign::Campaign;
 
-/// What a gross error costs, in ln of the evidence, where it stands for an effect: about one row in a thousand is one.
+/// Cost of a gross error in ln of the evidence, where it replaces an effect. About one row in a thousand is
+/// one.
 const SLIP: f64 = 7.0;
 
-/// Error of a frequency by its trial shapes that is too much \[standard deviations\].
+/// Largest tolerable error of a frequency from its trial shapes \[standard deviations\].
 const INEXACT: f64 = 0.5;
 
-/// How often trial shapes are taken from the best model at most.
+/// Largest number of times that trial shapes are taken from the best model.
 const SHAPES: usize = 2;
 
-/// How often the worst readings are left out to see whether calibration alone comes close to the others.
+/// Largest number of times that the worst readings are left out to see whether calibration alone fits the
+/// others.
 const LOOKS: usize = 4;
 
-/// The effects and the quality of the readings, which depend on each other.
+/// The effects, and the quality of the readings.
 pub struct Settled {
-    /// The models.
+    /// The models that were weighed.
     pub selection: Selection,
     /// Quality of the readings.
     pub noise: Noise,
-    /// Modes missing from lists or numbered out of order, in words.
+    /// Sentences on modes that are missing from lists or numbered out of order.
     pub remarks: Vec<String>,
 }
 
 impl Settled {
-    /// A handful of readings: taken as declared, every small set of effects weighed.
+    /// Handles few readings: they are taken as declared, and every small set of effects is weighed.
     pub fn of_few(
         campaign: &Campaign,
         forward: &Forward,
@@ -47,9 +51,12 @@ impl Settled {
         Self { selection: few_rows::weigh(&search), noise, remarks: Vec::new() }
     }
 
-    /// Counts missed modes and searches with the deviations as declared, without the gross errors that show at once;
-    /// takes out further gross errors and searches again; and lets the best model say whether the declaration was
-    /// right: if it was not, weighs the models again with what it says.
+    /// Handles many readings, in this order.
+    ///
+    /// It finds missing modes, and searches with the declared standard deviations and without obvious gross
+    /// errors. It then removes further gross errors and searches again. At last the best model shows whether
+    /// the declared standard deviations were right. If not, the models are weighed again with those it
+    /// suggests.
     pub fn of_many(
         campaign: &Campaign,
         forward: &mut Forward,
@@ -76,7 +83,7 @@ impl Settled {
     }
 }
 
-/// A campaign on the way.
+/// A campaign while its effects and its noise are being settled.
 struct Settling<'a> {
     campaign: &'a Campaign,
     forward: &'a mut Forward,
@@ -86,18 +93,18 @@ struct Settling<'a> {
 
 /// One search.
 struct Round {
-    /// What it took the readings for.
+    /// The noise that the search assumed.
     noise: Noise,
     selection: Selection,
     coefficients: Coefficients,
-    /// What its best model says of the readings.
+    /// The noise that its best model shows.
     judged: Noise,
     /// Whether its best model may become the explanation.
     hopeful: bool,
 }
 
 impl Round {
-    /// The score of the best model, which pays for each row that it leaves out.
+    /// The score of the best model, which is charged for each row that it leaves out.
     fn score(&self) -> f64 {
         self.selection.best.score - SLIP * self.noise.outliers.len() as f64
     }
@@ -123,13 +130,13 @@ impl Settling<'_> {
         Round { noise, selection, coefficients: best.point.coefficients, judged, hopeful }
     }
 
-    /// Calibration alone, with the deviations as declared, and its weights: where it comes close to most readings but
-    /// for the few that are worst, without these.
-    fn bare(&self) -> (Fit<'_>, Weights) {
+    /// Fits calibration alone with the declared standard deviations, and returns its weights. Where it fits
+    /// most readings, the few worst ones are left out.
+    fn baseline(&self) -> (Fit<'_>, Weights) {
         let calibrated = |noise: Noise| {
-            let bare = Model::bare(self.nuisance);
+            let baseline = Model::baseline(self.nuisance);
             let weights = noise.weights(self.forward);
-            (fit(self.forward, &bare, &vec![0.0; bare.len()], &weights, Effort::default()), weights)
+            (fit(self.forward, &baseline, &vec![0.0; baseline.len()], &weights, Effort::default()), weights)
         };
         let (with_all, declared) = calibrated(Noise::default());
         if Noise::is_close(self.forward, &with_all) {
@@ -137,33 +144,32 @@ impl Settling<'_> {
         }
         let mut without = Noise::without_worst(self.forward, &with_all, &declared);
         for _ in 0..LOOKS {
-            let (bare, weights) = calibrated(without);
-            if Noise::is_close(self.forward, &bare) {
-                return (bare, weights);
+            let (baseline, weights) = calibrated(without);
+            if Noise::is_close(self.forward, &baseline) {
+                return (baseline, weights);
             }
-            without = Noise::without_worst(self.forward, &bare, &weights);
+            without = Noise::without_worst(self.forward, &baseline, &weights);
         }
         (with_all, declared)
     }
 
-    /// A search without the gross errors that show before any effect is looked for. An effect may show in a single
-    /// frequency: one with such frequencies stands where it is the more probable.
+    /// Searches without the gross errors that show before any effect is known. An effect may show in a single
+    /// frequency, so a search with those frequencies replaces it if it is more probable.
     fn first(&self) -> Round {
-        let (bare, weights) = self.bare();
-        let noise = Noise::first_look(self.forward, &bare, &weights);
+        let (baseline, weights) = self.baseline();
+        let noise = Noise::first_look(self.forward, &baseline, &weights);
         let frequencies = noise.with_frequencies();
         let without = self.run(noise, Before::Nothing);
         let with = frequencies.map(|noise| self.run(noise, Before::Nothing));
         with.filter(|with| with.hopeful && with.score() > without.score()).unwrap_or(without)
     }
 
-    /// Counts lists from which a mode is missing one higher: as calibration alone has them where it comes close to
-    /// most readings, as the first effects have them, and as effects have them that were found without the lists in
-    /// doubt.
+    /// Renumbers lists from which a mode is missing. Lists are judged by calibration alone where it fits most
+    /// readings, then by the first effects, and last by effects that were found without the suspect lists.
     fn count_missed_modes(&mut self, remarks: &mut Vec<String>) -> Round {
-        let (bare, _) = self.bare();
-        if Noise::is_close(self.forward, &bare) {
-            let coefficients = bare.point.coefficients;
+        let (baseline, _) = self.baseline();
+        if Noise::is_close(self.forward, &baseline) {
+            let coefficients = baseline.point.coefficients;
             remarks.extend(self.forward.find_missed_modes(&coefficients));
         }
         let round = self.first();
@@ -171,7 +177,7 @@ impl Settling<'_> {
         if let Some(without) = Noise::doubtful_lists(self.forward, &round.coefficients)
             && missed.is_empty()
         {
-            // what the doubtful lists themselves have made of the model says nothing of them
+            // a model that the suspect lists have shaped says nothing about them
             let coefficients = self.run(without, Before::Nothing).coefficients;
             missed = self.forward.find_missed_modes(&coefficients);
         }
@@ -180,9 +186,9 @@ impl Settling<'_> {
         round
     }
 
-    /// Weighs again with the trial shapes of the model found: those of the nominal arm are not exact far from it,
-    /// and a further effect, or a law without a name, would make that good. Where that can be seen in the readings all is
-    /// looked for again.
+    /// Weighs again with the trial shapes of the model that was found. Those of the nominal arm are not exact
+    /// far from it, and a further effect or a law without a name would make up for it. Where the difference
+    /// shows in the readings, the whole search is repeated.
     fn with_exact_modes(&mut self, mut round: Round) -> Round {
         for _ in 0..SHAPES {
             if round.selection.best.effects.is_empty() {
@@ -194,6 +200,7 @@ impl Settling<'_> {
             let pairs = self.forward.data.iter().zip(before.iter().zip(&after));
             let moved =
                 pairs.map(|(d, (before, after))| ((after - before) / d.sigma).abs()).fold(0.0, f64::max);
+            // the trial shapes were good enough: only the weighing is repeated
             if moved < INEXACT {
                 if round.hopeful {
                     round = self.run(round.noise, Before::Weights(&round.selection));
@@ -205,8 +212,9 @@ impl Settling<'_> {
         round
     }
 
-    /// A search without one or two rows that the best model, or the best of those without one of its effects, would
-    /// call gross errors, if the slips are more probable than what they stand for.
+    /// Searches without one or two rows that could be gross errors by the best model, or by the best of the
+    /// models with one effect fewer. That search counts if such slips are more probable than the effects they
+    /// replace.
     fn with_slips(&self, round: Round) -> Round {
         let best = &round.selection.best;
         if !round.hopeful {
@@ -214,6 +222,7 @@ impl Settling<'_> {
         }
         let weights = round.noise.weights(self.forward);
         let search = self.search(&weights);
+        // an effect may stand for a slip, so the model without it judges the rows too
         let fewer = (0..best.effects.len()).map(|effect| {
             let (effects, u) = search.without(best, effect);
             search.fit(&effects, &u, Effort::default())
@@ -243,10 +252,10 @@ impl Settling<'_> {
         round
     }
 
-    /// Searches again with the deviations that the best model leaves.
+    /// Searches again with the standard deviations that the best model suggests.
     fn with_scaled_deviations(&self, mut round: Round) -> Round {
         for _ in 0..2 {
-            // no scale of the noise makes a hopeless model right
+            // no scale of the noise makes a model right that is far off
             if round.judged.agrees(&round.noise) || !round.hopeful {
                 break;
             }
@@ -259,11 +268,11 @@ impl Settling<'_> {
     }
 }
 
-/// What a search can start from.
+/// The result that a search can start from.
 enum Before<'a> {
     Nothing,
-    /// The best model so far; other rows count now.
+    /// The best model so far, if other rows count now.
     Best(&'a Scored),
-    /// A selection; only the scale of the deviations is another.
+    /// A whole selection, if only the scale of the standard deviations has changed.
     Weights(&'a Selection),
 }

@@ -1,34 +1,34 @@
-//! Smooth laws that no effect of the library has, as rivals of the effects that were named.
+//! Competing models: smooth laws that no effect of the library has.
 //!
-//! An effect of the library can imitate physics that the library lacks: a joint that stiffens as it is
-//! loaded looks like lost motion, a sensor that is not straight like a gain. So every named effect must stand
-//! against general [`laws`](super::laws), fitted jointly with the calibration, beside the named effects or
-//! instead of them.
+//! An effect of the library can imitate physics that the library lacks. A joint that stiffens under load
+//! looks like lost motion, and a non-linear sensor looks like a gain. So every named effect must compete with
+//! general [`laws`](super::laws), which are fitted together with the calibration. A law is added to the named
+//! effects, or replaces them.
 
-use super::lack_of_fit::Structure;
 use super::laws::{Law, laws};
-use super::screening::{Scored, Search};
+use super::search::{Scored, Search};
+use super::structure::Structure;
 use crate::reconcile::fit::descent::{Effort, Fit, Weights, normal, objective};
 use crate::reconcile::fit::stats::ln_chi_squared_tail;
-use crate::reconcile::forward::Forward;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Part of a law's full size, at which a stiffness or a reading changes by all of itself, below which
-/// sizes are equally likely.
+/// Sizes below this part of a law's full size are equally likely. At full size a stiffness or a reading
+/// changes by all of itself.
 const SMALL: f64 = 0.02;
-/// Most reweighted steps of the linear fit.
+/// Largest number of reweighted steps of the linear fit.
 const STEPS: usize = 6;
-/// Fall of the objective at which the linear fit is at its end.
+/// The linear fit ends when a step lowers the objective by less than this.
 const SETTLED: f64 = 0.01;
-/// Rise of the evidence from which a law without a name is believed rather than effects with one, and
-/// from which it is mentioned where no effect is named.
+/// A law without a name is preferred to named effects if ln of the evidence is higher by this much. Where no
+/// effect is named, it is mentioned from there on.
 const BETTER: f64 = 2.0;
 
-/// A model with a law in it.
-struct Rival {
+/// A competing model: one with a law in it.
+struct Competitor {
     what: String,
     numbers: usize,
     objective: f64,
@@ -36,43 +36,44 @@ struct Rival {
     evidence: f64,
 }
 
-/// A law that explains the readings better than what it stands for.
+/// A law that explains the readings better than the model it competes with.
 pub struct Better {
-    /// What it says, in words.
+    /// The law in words.
     pub what: String,
-    /// How many numbers it has.
+    /// Number of its parameters.
     pub numbers: usize,
-    /// `Σ ρ(r) + Σ u²` with it.
+    /// The objective `Σ ρ(r) + Σ u²` with it.
     pub objective: f64,
-    /// By how much the evidence rises.
+    /// Rise of ln of the evidence.
     pub gain: f64,
 }
 
-/// What each law would take from the residuals of a model, as questions put to them.
-pub fn beside(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<Structure> {
-    let rivals = rivals(forward, fit, &laws(campaign, forward, fit), weights);
-    let asked = (rivals.len() as f64).max(1.0).ln();
-    rivals
+/// The misfit that each law would remove from a model's residuals, as questions for the lack-of-fit test.
+pub fn law_questions(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<Structure> {
+    let competitors = competitors(forward, fit, &laws(campaign, forward, fit), weights);
+    // Bonferroni: one of many laws fits better by chance
+    let asked = (competitors.len() as f64).max(1.0).ln();
+    competitors
         .into_iter()
-        .map(|rival| {
-            let (statistic, dof) = (fit.point.objective - rival.objective, rival.numbers as f64);
+        .map(|competitor| {
+            let (statistic, dof) = (fit.point.objective - competitor.objective, competitor.numbers as f64);
             let ln_p = (ln_chi_squared_tail(statistic, dof) + asked).min(0.0);
-            Structure { channel: None, follows: rival.what, statistic, dof, ln_p }
+            Structure { channel: None, follows: competitor.what, statistic, dof, ln_p }
         })
         .collect()
 }
 
-/// The law that explains the readings better, beside calibration alone, than calibration does.
-pub fn beside_calibration(search: &Search, bare: &Fit) -> Option<Better> {
+/// The law that, added to calibration alone, explains the readings better than calibration does.
+pub fn better_than_calibration(search: &Search, baseline: &Fit) -> Option<Better> {
     let places = search.places() as f64;
-    let laws = laws(search.campaign, search.forward, bare);
-    best_of(rivals(search.forward, bare, &laws, search.weights), bare.evidence, places)
+    let laws = laws(search.campaign, search.forward, baseline);
+    best_of(competitors(search.forward, baseline, &laws, search.weights), baseline.evidence, places)
 }
 
-/// The law that explains the readings better, in place of one of the named effects or of all of them, than
-/// they do.
-pub fn instead(search: &Search, best: &Scored, bare: &Fit) -> Option<Better> {
+/// The law that explains the readings better in place of one named effect, or of all of them.
+pub fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<Better> {
     let (named, places) = (best.effects.len(), search.places() as f64);
+    // with one effect, the model without it is the baseline, which is tried anyway
     let single = (0..named).filter(|_| named > 1).map(|i| {
         let (effects, u) = search.without(best, i);
         search.fit(&effects, &u, Effort::default())
@@ -81,28 +82,28 @@ pub fn instead(search: &Search, best: &Scored, bare: &Fit) -> Option<Better> {
     let better = |fit: &Fit| {
         let laws = laws(search.campaign, search.forward, fit);
         let evidence = best.score + fit.model.effects.len() as f64 * places.ln();
-        best_of(rivals(search.forward, fit, &laws, search.weights), evidence, places)
+        best_of(competitors(search.forward, fit, &laws, search.weights), evidence, places)
     };
-    fits.iter().chain([bare]).filter_map(better).max_by(|a, b| a.gain.total_cmp(&b.gain))
+    fits.iter().chain([baseline]).filter_map(better).max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
 
-/// The best of the rivals if it is better than an evidence that does not pay for the places of effects
-/// that stay.
-fn best_of(rivals: Vec<Rival>, evidence: f64, places: f64) -> Option<Better> {
-    let gain = |r: &Rival| r.evidence - places.ln() - evidence;
-    let best = rivals.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
+/// The best competing model, if it is better than a model of this evidence. That evidence is not charged for
+/// the places of effects that stay.
+fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<Better> {
+    let gain = |r: &Competitor| r.evidence - places.ln() - evidence;
+    let best = competitors.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
     let better =
         Better { gain: gain(&best), what: best.what, numbers: best.numbers, objective: best.objective };
     (better.gain > BETTER).then_some(better)
 }
 
 /// Fits each law together with the parameters of a fit.
-fn rivals(forward: &Forward, fit: &Fit, laws: &[Law], weights: &Weights) -> Vec<Rival> {
-    laws.par_iter().map(|law| rival(forward, fit, law, weights)).collect()
+fn competitors(forward: &Forward, fit: &Fit, laws: &[Law], weights: &Weights) -> Vec<Competitor> {
+    laws.par_iter().map(|law| competitor(forward, fit, law, weights)).collect()
 }
 
-/// The linear fit of a model and a law.
-fn rival(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Rival {
+/// Fits a model and a law, linearized.
+fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Competitor {
     let own = fit.point.u.len();
     let n = own + law.columns.len();
     let mut columns = fit.jacobian.clone().resize_horizontally(n, 0.0);
@@ -124,6 +125,7 @@ fn rival(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Rival {
         curvature = equations.curvature;
         let mut damped = curvature.clone();
         for p in fit.model.calibrated()..n {
+            // the prior of an effect or a law: variance of a uniform distribution of this width
             damped[(p, p)] += 12.0 / width(fit, own, p, u[p]).powi(2);
         }
         let Some(cholesky) = Cholesky::new(damped) else { break };
@@ -145,14 +147,14 @@ fn rival(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Rival {
     let determinant = Cholesky::new(curvature)
         .map_or(f64::INFINITY, |c| 2.0 * c.l().diagonal().iter().map(|d| d.ln()).sum::<f64>());
     evidence -= 0.5 * determinant;
-    Rival { what: law.what.clone(), numbers: law.columns.len(), objective, evidence }
+    Competitor { what: law.what.clone(), numbers: law.columns.len(), objective, evidence }
 }
 
-/// Width of the prior of a parameter: that of an effect's knob, or of a law's number, whose size may be of
-/// any order of magnitude.
+/// Width of the prior of a parameter. It is that of an effect's parameter, or of a law's, whose size may be
+/// of any order of magnitude.
 fn width(fit: &Fit, own: usize, p: usize, u: f64) -> f64 {
     match p < own {
-        true => fit.model.knobs().nth(p - fit.model.calibrated()).map_or(1.0, |k| k.width(u)),
+        true => fit.model.free_parameters().nth(p - fit.model.calibrated()).map_or(1.0, |k| k.width(u)),
         false => 2.0 * (1.0 / SMALL).ln_1p() * (u.abs() + SMALL),
     }
 }

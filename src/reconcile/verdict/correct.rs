@@ -1,16 +1,18 @@
-//! The corrected arm: calibrated values in place of nominal ones, effects added, each with its source.
+//! Writes the corrected arm: calibrated values replace nominal ones and effects are added, each with its
+//! source.
 
-use super::outcome::{Calibrated, Finding, Verdict};
-use crate::arm::effect::Place;
+use super::outcome::{Calibrated, Verdict};
+use crate::arm::effect::kind::Place;
 use crate::arm::{Arm, Element, LinkBody};
 use crate::reconcile::fit::descent::Fit;
-use crate::reconcile::forward::Forward;
+use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::model::estimate::Finding;
 use crate::reconcile::model::parameters::Calibration;
 use crate::reconcile::readings::campaign::Campaign;
 use serde_json::{Value, json};
 
-/// The corrected arm and the provenance of its values. Where nothing explains the gap the arm is
-/// returned as it was: calibration against missing physics would be wrong.
+/// The corrected arm, and the provenance of its values. Where nothing explains the gap, the arm stays as it
+/// was. A calibration that makes up for missing physics would be wrong.
 pub fn corrected(
     campaign: &Campaign,
     forward: &Forward,
@@ -20,6 +22,7 @@ pub fn corrected(
     verdict: Verdict,
 ) -> (Arm, Value) {
     let mut arm = campaign.arm.clone();
+    // an arm that is not explained must not be changed by calibration
     let keep = matches!(verdict, Verdict::Explained | Verdict::NoGap);
     let mut values = Vec::new();
     if keep {
@@ -36,7 +39,7 @@ pub fn corrected(
     (arm, provenance)
 }
 
-/// Where the values of a corrected arm come from.
+/// The provenance of a corrected arm's values, as JSON.
 pub fn provenance(campaign: &Campaign, verdict: Verdict, calibrated: Vec<Value>) -> Value {
     json!({
         "campaign": campaign.statement.name, "campaign_blake3": campaign.hash,
@@ -47,8 +50,8 @@ pub fn provenance(campaign: &Campaign, verdict: Verdict, calibrated: Vec<Value>)
 
 fn add_effects(campaign: &Campaign, forward: &Forward, fit: &Fit, findings: &[Finding], arm: &mut Arm) {
     for (i, (candidate, finding)) in fit.model.effects.iter().zip(findings).enumerate() {
-        let first = fit.model.first_knob(i);
-        let u = &fit.point.u[first..first + candidate.knobs.len()];
+        let first = fit.model.first_parameter(i);
+        let u = &fit.point.u[first..first + candidate.free_parameters.len()];
         let place = forward.nominal.structure.place(&candidate.at, candidate.kind.places);
         let mut effect = candidate.effect(u, place.unwrap_or(Place::Arm));
         let intervals: Vec<Value> = finding

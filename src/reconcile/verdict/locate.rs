@@ -1,20 +1,20 @@
-//! Where the gap sits: the readings split by channel, branch, load, mode, joint and pose.
+//! Locates the gap: splits the readings by channel, branch, load, mode, joint and pose.
 
 use super::outcome::Located;
-use crate::arm::effect::Channel;
+use crate::arm::effect::channel::Channel;
 use crate::reconcile::fit::descent::{Fit, Weights};
-use crate::reconcile::fit::kept_out::rms;
-use crate::reconcile::forward::Forward;
+use crate::reconcile::fit::held_out::rms;
+use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
 
-/// Poses listed.
+/// Number of poses that are listed.
 const WORST_POSES: usize = 3;
 
-/// Root mean squares of every part of the readings \[declared standard deviations\], gross errors left out.
+/// Root mean squares of every part of the readings \[declared standard deviations\], without gross errors.
 pub fn located(
     campaign: &Campaign,
     forward: &Forward,
-    bare: &Fit,
+    baseline: &Fit,
     best: &Fit,
     weights: &Weights,
 ) -> Vec<Located> {
@@ -36,7 +36,7 @@ pub fn located(
         .into_iter()
         .map(|(part, list)| Located {
             count: list.len(),
-            rms_before: rms(list.iter().map(|&i| residual(bare, i))),
+            rms_before: rms(list.iter().map(|&i| residual(baseline, i))),
             rms_after: rms(list.iter().map(|&i| residual(best, i))),
             part,
         })

@@ -1,24 +1,25 @@
-//! What `reconcile` concludes.
+//! The outcome of a reconciliation.
 
-use super::report::{CORRECTED_FILE, corrected_file};
+use super::files::{CORRECTED_FILE, corrected_file};
+use super::stage::Stage;
 use crate::arm::Arm;
-use crate::arm::effect::Channel;
-use crate::reconcile::fit::kept_out::KeptOut;
+use crate::arm::effect::channel::Channel;
+use crate::reconcile::fit::held_out::HeldOut;
 use crate::reconcile::fit::noise::Noise;
-use crate::reconcile::positions::Stage;
+use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::select::lack_of_fit::LackOfFit;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
-/// The four answers.
+/// The verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// Noise and tolerance explain all.
+    /// Noise and calibration within tolerance explain all readings.
     NoGap,
-    /// The effects found explain it.
+    /// The effects that were found explain the readings.
     Explained,
-    /// No effect of the library does.
+    /// No effect of the library explains the readings.
     Unexplained,
-    /// The readings cannot tell.
+    /// The readings are insufficient to tell.
     InsufficientData,
 }
 
@@ -34,51 +35,28 @@ impl Verdict {
     }
 }
 
-/// A value with its 95 % interval; an end that the data do not bound is `None`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
-    /// Best value.
-    pub value: f64,
-    /// Lower end.
-    pub low: Option<f64>,
-    /// Upper end.
-    pub high: Option<f64>,
-}
-
-/// An effect found.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Finding {
-    /// Name.
-    pub effect: String,
-    /// Place.
-    pub at: String,
-    /// Parameters; a vector parameter has several estimates.
-    pub parameters: Vec<(String, Vec<Estimate>)>,
-    /// Effects that these readings cannot tell from it.
-    pub indistinguishable_from: Vec<(String, String)>,
-}
-
 /// A calibrated value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibrated {
-    /// What: `j2.stiffness`, `steel.modulus`, `j2.mass`.
+    /// What was calibrated: `j2.stiffness`, `steel.modulus`, `j2.mass`.
     pub name: String,
     /// Factor on the nominal value.
     pub factor: Estimate,
-    /// Standard deviation of ln of the factor over what tolerance alone leaves; 1 = nothing learnt.
+    /// Standard deviation of ln of the factor, over the one that the tolerance allows; 1 means that nothing
+    /// was learnt.
     pub learnt: f64,
 }
 
-/// Root mean squares before and after, of one part of the readings.
+/// Root mean squares of one part of the readings, before and after.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Located {
     /// Which part: `static`, `static, unloading`, `modal, mode 2`, `windup, j3`.
     pub part: String,
-    /// Numbers in it.
+    /// How many numbers it has.
     pub count: usize,
-    /// With the nominal model, calibrated.
+    /// Root mean square with the calibrated nominal model \[standard deviations\].
     pub rms_before: f64,
-    /// With the effects.
+    /// Value with the effects.
     pub rms_after: f64,
 }
 
@@ -95,17 +73,17 @@ pub struct NextTest {
     pub payload_kg: f64,
     /// Tip force \[N\].
     pub force_n: [f64; 3],
-    /// Joint on the bench.
+    /// The joint, for a test on the bench.
     pub joint: Option<String>,
-    /// What it tells apart.
+    /// The models that it tells apart.
     pub separates: Vec<String>,
     /// Expected difference \[standard deviations\].
     pub expected_sigmas: f64,
-    /// How many such readings reach four standard deviations.
+    /// Number of such readings that reach four standard deviations.
     pub readings_needed: usize,
 }
 
-/// One reading with both models' values.
+/// One reading, and the values of the models before and after.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadingResidual {
     /// Channel.
@@ -118,12 +96,12 @@ pub struct ReadingResidual {
     pub measured: f64,
     /// Declared standard deviation.
     pub sigma: f64,
-    /// Model as given, calibrated within tolerance.
+    /// Value of the model as given, calibrated within tolerance.
     pub before: f64,
-    /// With the effects.
+    /// Value with the effects.
     pub after: f64,
-    /// Predicted with the pose kept out of the fit.
-    pub kept_out: Option<f64>,
+    /// Residual with the pose held out of the fit \[declared standard deviations\].
+    pub held_out: Option<f64>,
     /// Whether the row was taken for a gross error.
     pub gross: bool,
 }
@@ -133,9 +111,9 @@ pub struct ReadingResidual {
 pub struct Evidence {
     /// The model: effects joined by `+`.
     pub model: String,
-    /// Its score less that of the best.
+    /// Its score minus that of the best model.
     pub score: f64,
-    /// Chi-squared-like objective.
+    /// Its objective, which behaves like chi-squared.
     pub objective: f64,
 }
 
@@ -146,17 +124,17 @@ pub struct Outcome {
     pub campaign: String,
     /// blake3 of its files.
     pub hash: String,
-    /// The answer.
+    /// The verdict.
     pub verdict: Verdict,
-    /// Why, one sentence each.
+    /// The reasons, one sentence each.
     pub reasons: Vec<String>,
-    /// Effects, if explained.
+    /// The effects, if they explain the readings.
     pub effects: Vec<Finding>,
-    /// What could be behind it when the readings cannot tell.
+    /// Suspected effects, if the readings cannot tell.
     pub suspects: Vec<Finding>,
-    /// Confirmation.
-    pub kept_out: Option<KeptOut>,
-    /// Where the gap sits.
+    /// The confirmation on held-out poses.
+    pub held_out: Option<HeldOut>,
+    /// The location of the gap.
     pub located: Vec<Located>,
     /// What to measure next, best first.
     pub next_tests: Vec<NextTest>,
@@ -166,7 +144,7 @@ pub struct Outcome {
     pub lack_of_fit: Option<LackOfFit>,
     /// Calibrated values.
     pub calibrated: Vec<Calibrated>,
-    /// Models that were weighed.
+    /// The models that were weighed.
     pub evidence: Vec<Evidence>,
     /// Absolute positions: how the error falls as each effect is added.
     pub stages: Vec<Stage>,
@@ -180,44 +158,8 @@ pub struct Outcome {
     pub provenance: Value,
 }
 
-impl Estimate {
-    fn json(&self) -> Value {
-        json!({"value": self.value, "low": self.low, "high": self.high})
-    }
-}
-
-impl Finding {
-    /// `effect@place`.
-    pub fn label(&self) -> String {
-        format!("{}@{}", self.effect, self.at)
-    }
-
-    fn json(&self) -> Value {
-        let parameters: Map<String, Value> = self
-            .parameters
-            .iter()
-            .map(|(name, estimates)| {
-                let value = match estimates.as_slice() {
-                    [one] => one.json(),
-                    many => {
-                        let part = |f: fn(&Estimate) -> Option<f64>| many.iter().map(f).collect::<Vec<_>>();
-                        json!({"value": part(|e| Some(e.value)), "low": part(|e| e.low), "high": part(|e| e.high)})
-                    }
-                };
-                (name.clone(), value)
-            })
-            .collect();
-        let others: Vec<Value> = self
-            .indistinguishable_from
-            .iter()
-            .map(|(effect, at)| json!({"effect": effect, "at": at}))
-            .collect();
-        json!({"effect": self.effect, "at": self.at, "parameters": parameters, "indistinguishable_from": others})
-    }
-}
-
 impl NextTest {
-    /// A test of another kind, whose worth these readings do not tell.
+    /// A test of another kind. These readings do not tell what it is worth.
     pub fn of_another_kind(description: String) -> Self {
         Self {
             kind: "another kind".into(),
@@ -245,7 +187,7 @@ impl NextTest {
 impl Outcome {
     /// `verdict.json`.
     pub fn to_json(&self) -> Value {
-        let kept_out = self.kept_out.map(|k| {
+        let held_out = self.held_out.map(|k| {
             json!({"rms_sigma_before": k.rms_before, "rms_sigma_after": k.rms_after, "rms_declared_sigma_after": k.rms_declared_after, "readings": k.count})
         });
         let located: Vec<Value> = self
@@ -265,7 +207,7 @@ impl Outcome {
             "reasons": self.reasons,
             "effects": self.effects.iter().map(Finding::json).collect::<Vec<_>>(),
             "suspects": self.suspects.iter().map(Finding::json).collect::<Vec<_>>(),
-            "kept_out": kept_out.unwrap_or(json!({})),
+            "kept_out": held_out.unwrap_or(json!({})),
             "located": {"parts": located},
             "next_test": next,
             "further_tests": self.next_tests.iter().skip(1).map(NextTest::json).collect::<Vec<_>>(),
@@ -312,7 +254,7 @@ impl Outcome {
             "channel,row,quantity,measured,sigma,model_before,model_after,kept_out_residual_sigma,gross_error\n",
         );
         for r in &self.residuals {
-            let kept_out = r.kept_out.map_or(String::new(), |k| format!("{k:.4}"));
+            let held_out = r.held_out.map_or(String::new(), |k| format!("{k:.4}"));
             out.push_str(&format!(
                 "{},{},{},{},{},{:.6},{:.6},{},{}\n",
                 r.channel.word(),
@@ -322,7 +264,7 @@ impl Outcome {
                 r.sigma,
                 r.before,
                 r.after,
-                kept_out,
+                held_out,
                 r.gross
             ));
         }
@@ -334,9 +276,9 @@ impl Outcome {
         let mut out = arm.to_json();
         out["provenance"] = self.provenance.clone();
         out["provenance"]["placement"] = self.provenance["other_placements"][&arm.name].clone();
-        let beside = self.other_corrected.iter().filter(|o| o.name != arm.name).map(corrected_file);
+        let others = self.other_corrected.iter().filter(|o| o.name != arm.name).map(corrected_file);
         out["provenance"]["other_arms"] =
-            json!([vec![CORRECTED_FILE.to_string()], beside.collect()].concat());
+            json!([vec![CORRECTED_FILE.to_string()], others.collect()].concat());
         out
     }
 
@@ -345,8 +287,8 @@ impl Outcome {
         let mut arm = self.corrected.to_json();
         arm["provenance"] = self.provenance.clone();
         if !self.other_corrected.is_empty() {
-            let beside: Vec<String> = self.other_corrected.iter().map(corrected_file).collect();
-            arm["provenance"]["other_arms"] = json!(beside);
+            let others: Vec<String> = self.other_corrected.iter().map(corrected_file).collect();
+            arm["provenance"]["other_arms"] = json!(others);
         }
         arm
     }

@@ -1,8 +1,9 @@
-//! What `reconcile` found, as the values of its page.
+//! The values of a campaign's page.
 
-use super::outcome::{Estimate, Finding, NextTest, Outcome, ReadingResidual, Verdict};
-use crate::arm::effect::Channel;
-use crate::reconcile::positions::Stage;
+use super::outcome::{NextTest, Outcome, ReadingResidual, Verdict};
+use super::stage::Stage;
+use crate::arm::effect::channel::Channel;
+use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::report::html::campaign::{CampaignPage, Compared, Found, Ranged, Reading, Test, Weighed};
 use crate::report::html::pick::degrees;
@@ -32,7 +33,7 @@ pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
         steps: outcome.stages.iter().map(step).collect(),
         positions: positions(campaign, outcome),
         found: outcome.effects.iter().chain(&outcome.suspects).map(found).collect(),
-        // positions are weighed by the error of kept-out poses: that is what `steps` shows
+        // positions are judged by the error of held-out poses, which `steps` shows
         weighed: outcome
             .evidence
             .iter()
@@ -40,7 +41,7 @@ pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
             .map(|e| Weighed { model: e.model.clone(), score: e.score, chi_squared: e.objective })
             .collect(),
         calibrated: outcome.calibrated.iter().map(|c| ranged(c.name.clone(), &c.factor)).collect(),
-        kept_out: outcome.kept_out.map(|k| (k.count, k.rms_before, k.rms_after)),
+        kept_out: outcome.held_out.map(|k| (k.count, k.rms_before, k.rms_after)),
         quality: text.lines().filter(|l| is_quality(l)).map(|l| l.trim().to_string()).collect(),
         tests: outcome.next_tests.iter().map(test).collect(),
         optimum: None,
@@ -48,7 +49,7 @@ pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
     }
 }
 
-/// The verdict as a sentence that can be read aloud.
+/// The verdict as a spoken sentence.
 fn sentence(outcome: &Outcome) -> String {
     let place = |f: &Finding| match f.at.as_str() {
         "" => f.effect.replace('_', " "),
@@ -69,10 +70,10 @@ fn sentence(outcome: &Outcome) -> String {
 
 /// Lines of the verdict about the readings themselves.
 fn is_quality(line: &str) -> bool {
-    line.trim_start().starts_with("gross error") || line.trim_start().starts_with("the sigma declared")
+    line.trim_start().starts_with("gross error") || line.ends_with("times as much as declared")
 }
 
-/// The residuals with the poses they were taken in: rows come channel by channel, in the files' order.
+/// The residuals, each with its pose. Rows come channel by channel, in the order of the files.
 fn readings(campaign: &Campaign, outcome: &Outcome) -> Vec<Reading> {
     let mut seen = [0usize; 2];
     let own = outcome.residuals.iter().filter(|r| r.channel != Channel::Positions);
@@ -95,14 +96,14 @@ fn readings(campaign: &Campaign, outcome: &Outcome) -> Vec<Reading> {
             pose_deg: pose,
             before_sigma: (r.measured - r.before) / r.sigma,
             after_sigma: (r.measured - r.after) / r.sigma,
-            kept_out_sigma: r.kept_out,
+            kept_out_sigma: r.held_out,
             gross: r.gross,
         }
     })
     .collect()
 }
 
-/// The errors of absolute positions, their three coordinates together.
+/// The errors of absolute positions, with their three coordinates combined.
 fn positions(campaign: &Campaign, outcome: &Outcome) -> Vec<Position> {
     let own: Vec<&ReadingResidual> =
         outcome.residuals.iter().filter(|r| r.channel == Channel::Positions).collect();
@@ -114,7 +115,7 @@ fn positions(campaign: &Campaign, outcome: &Outcome) -> Vec<Position> {
             pose_deg: row.pose_deg.clone(),
             before_mm: along(|r| r.measured - r.before),
             after_mm: along(|r| r.measured - r.after),
-            kept_out_mm: along(|r| r.kept_out.unwrap_or_default() * r.sigma),
+            kept_out_mm: along(|r| r.held_out.unwrap_or_default() * r.sigma),
         }
     })
     .collect()

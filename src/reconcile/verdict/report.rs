@@ -1,20 +1,13 @@
-//! The verdict in words that can be read aloud, and the files.
+//! Writes the verdict in words, and the files of the outcome.
 
-use super::outcome::{Estimate, Finding, Outcome, Verdict};
-use crate::arm::Arm;
+use super::files::{CORRECTED_FILE, corrected_file};
+use super::outcome::{Outcome, Verdict};
+use crate::reconcile::model::estimate::{Estimate, Finding};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Factor on declared standard deviations from which it is put into words: less is within what chance does.
+/// A factor on declared standard deviations below this is not mentioned, because chance produces as much.
 const WORTH_SAYING: f64 = 1.05;
-
-/// File of the first corrected arm.
-pub const CORRECTED_FILE: &str = "arm.corrected.json";
-
-/// File of a further corrected arm.
-pub fn corrected_file(arm: &Arm) -> String {
-    format!("{}.corrected.json", arm.name)
-}
 
 impl Outcome {
     /// A short verdict for the terminal.
@@ -27,10 +20,10 @@ impl Outcome {
         for finding in self.effects.iter().chain(&self.suspects) {
             out.push_str(&describe(finding, self.verdict));
         }
-        if let Some(k) = &self.kept_out {
+        if let Some(k) = &self.held_out {
             let _ = writeln!(
                 out,
-                "  on {} readings of poses kept out of the fit: {:.2} sigma before, {:.2} after",
+                "  on {} readings of poses held out of the fit: {:.2} sigma before, {:.2} after",
                 k.count, k.rms_before, k.rms_after
             );
         }
@@ -42,8 +35,14 @@ impl Outcome {
             let joint = test.joint.as_ref().map_or(String::new(), |j| format!(" of {j}"));
             let expect = match test.expected_sigmas {
                 0.0 => String::new(),
-                s if s > 100.0 => format!(": expect more than 100 sigma, {} needed", test.readings_needed),
-                s => format!(": expect {s:.1} sigma, {} needed", test.readings_needed),
+                s if s > 100.0 => format!(
+                    ": the models differ by more than 100 sigma there, readings needed: {}",
+                    test.readings_needed
+                ),
+                s => format!(
+                    ": the models differ by {s:.1} sigma there, readings needed: {}",
+                    test.readings_needed
+                ),
             };
             let load = match test.kind.as_str() {
                 "windup" | "another kind" => String::new(),
@@ -61,7 +60,7 @@ impl Outcome {
             Verdict::NoGap => "no gap between model and measurement".into(),
             Verdict::Explained => format!("explained by {}", names(&self.effects)),
             Verdict::Unexplained => {
-                "UNEXPLAINED: the model is wrong in a way the library does not know".into()
+                "UNEXPLAINED: no effect of the library explains where the model is wrong".into()
             }
             Verdict::InsufficientData => "the readings are insufficient to tell".into(),
         }
@@ -74,7 +73,7 @@ impl Outcome {
         let _ = writeln!(
             out,
             "  {:<41} {:>8} {:>26}",
-            "position error [mm], each line adds", "fitted", "kept out"
+            "position error [mm], each line adds", "fitted", "held out"
         );
         let _ = writeln!(out, "  {:<41} {:>8} {:>8} {:>8} {:>8}", "", "median", "median", "mean", "largest");
         for s in &self.stages {
@@ -83,7 +82,7 @@ impl Outcome {
                 "  {:<41} {:>8.3} {:>8.3} {:>8.3} {:>8.3}",
                 s.added, s.fitted_median_mm, s.median_mm, s.mean_mm, s.max_mm
             );
-            s.dropped.iter().for_each(|name| out.push_str(&format!("    in place of {name}\n")));
+            s.dropped.iter().for_each(|name| out.push_str(&format!("    replaces {name}\n")));
         }
     }
 
@@ -98,7 +97,7 @@ impl Outcome {
         }
         for (word, scale) in ["static", "modal", "windup"].iter().zip(self.noise.scale) {
             if scale > WORTH_SAYING {
-                let _ = writeln!(out, "  the sigma declared for {word} appears {scale:.2} times too small");
+                let _ = writeln!(out, "  {word} readings scatter {scale:.2} times as much as declared");
             }
         }
     }
@@ -148,7 +147,7 @@ fn value(e: &Estimate) -> String {
     format!("{} ({} to {})", number(e.value), end(e.low), end(e.high))
 }
 
-/// Four figures.
+/// A number with four significant figures.
 fn number(x: f64) -> String {
     match x.abs() {
         0.0 => "0".into(),

@@ -1,6 +1,6 @@
 //! The cheapest part when every number of it has a price, and the parts that a sum can afford.
 
-use super::stock::TubeStock;
+use super::parts_table::TubeTable;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -45,15 +45,15 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// The node of the cheapest tube below some nodes, or one of no more than its price if that takes too long.
-pub(super) fn cheapest(stock: &TubeStock, nodes: &[u32], prices: &Prices) -> (f64, u32) {
-    let price = |node: u32| prices.of(stock.bounds(node));
+pub(super) fn cheapest(table: &TubeTable, nodes: &[u32], prices: &Prices) -> (f64, u32) {
+    let price = |node: u32| prices.of(table.bounds(node));
     // the cheapest first, of equals the first node
     let offer = |node: u32| Reverse((rank(price(node)), node));
     let mut open: BinaryHeap<Reverse<(i64, u32)>> = nodes.iter().map(|&node| offer(node)).collect();
     let mut looks = 0;
     loop {
-        let Reverse((_, best)) = open.pop().expect("a zone has tubes");
-        match stock.tree.halves(best).filter(|_| looks < MOST_LOOKS) {
+        let Reverse((_, best)) = open.pop().expect("a subproblem has tubes");
+        match table.tree.halves(best).filter(|_| looks < MOST_LOOKS) {
             Some(halves) => open.extend(halves.map(offer)),
             None => return (price(best), best),
         }
@@ -63,16 +63,16 @@ pub(super) fn cheapest(stock: &TubeStock, nodes: &[u32], prices: &Prices) -> (f6
 
 /// The nodes below some that can be afforded, about so many: the largest are taken apart first.
 pub(super) fn affordable(
-    stock: &TubeStock,
+    table: &TubeTable,
     nodes: &[u32],
     limits: &[(Prices, f64)],
     about: usize,
 ) -> Vec<u32> {
-    let can = |node: &u32| limits.iter().all(|(prices, most)| prices.of(stock.bounds(*node)) <= *most);
-    let sized = |node: u32| (stock.tree.options(node).len(), node);
+    let can = |node: &u32| limits.iter().all(|(prices, most)| prices.of(table.bounds(*node)) <= *most);
+    let sized = |node: u32| (table.tree.options(node).len(), node);
     let mut open: BinaryHeap<(usize, u32)> = nodes.iter().copied().filter(can).map(sized).collect();
     while open.len() < about {
-        let Some(halves) = open.peek().and_then(|&(_, node)| stock.tree.halves(node)) else { break };
+        let Some(halves) = open.peek().and_then(|&(_, node)| table.tree.halves(node)) else { break };
         open.pop();
         open.extend(halves.into_iter().filter(can).map(sized));
     }

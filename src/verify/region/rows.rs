@@ -1,35 +1,35 @@
-//! What every member of a zone below a corner keeps to, as sums over the parts.
+//! What every member of a subproblem below an upper bound keeps to, as sums over the parts.
 //!
 //! | row | at most |
 //! |---|---|
-//! | mass: the sum of the parts' masses | that of the corner |
-//! | in a judged case, way of the tip along a direction `e` | deflection of the corner |
-//! | in a judged case, for a shape `x`: `λ xᵀMx - xᵀKx`, `λ` of the corner | 0 |
-//! | a torque that is held, and its negative | its bound |
+//! | mass: the sum of the parts' masses | that of the upper bound |
+//! | in a judged case, way of the tip along a direction `e` | deflection of the upper bound |
+//! | in a judged case, for a shape `x`: `λ xᵀMx - xᵀKx`, `λ` of the upper bound | 0 |
+//! | a torque that has an interval, and its negative | the end of the interval |
 //!
 //! *Way of the tip.* With force `F`, a sum over the loads, and compliance `c` of a tube, `(F - F₀)(c - c₀) >= 0` gives
 //! `F c >= F₀ c + c₀ (F - F₀)`. A gear twists under a torque `T`, in the sense that moves the tip along `e`, by at least
-//! `φ(T₀) + c₀ (T - T₀)`: `φ(T₀)` is the part's own, `c₀` the least twist per torque that a gear of the zone adds beyond `T₀`.
+//! `φ(T₀) + c₀ (T - T₀)`: `φ(T₀)` is the part's own, `c₀` the least twist per torque that a gear of the subproblem adds beyond `T₀`.
 //!
 //! *Modes.* `M` is linear in masses and inertias per length, `K` diagonal; the slope of a gear is the largest it has
-//! under the torques of the zone.
+//! under the torques of the subproblem.
 //!
-//! Every row is divided by about what the corner allows, and that is taken from it: it is at most zero.
+//! Every row is divided by about what the upper bound allows, and that is taken from it: it is at most zero.
 
-use super::super::arm::Arm;
 use super::super::bound::{Members, compliances, direction};
-use super::super::drives::{DriveRange, angle_rad};
+use super::super::drive_range::{DriveRange, angle_rad};
 use super::super::layout::Coordinate;
 use super::super::pencil::{Pencil, square};
 use super::super::pose::Pose;
+use super::super::skeleton::Skeleton;
 use super::super::span::{Linear, Span};
 use super::super::tubes::{DENSITIES, STIFFNESSES};
-use super::corners::Corner;
-use super::stock::{Numbers, Stock, place};
-use super::zone::{Held, Zone};
+use super::super::upper_bound::UpperBound;
+use super::parts_table::{Numbers, PartsTable, place};
+use super::subproblem::{Subproblem, TorqueInterval};
 use nalgebra::Vector3;
 
-/// A torque that is held is a row in its own right.
+/// Room for rounding in rows of torque intervals (relative).
 const ROUNDING: f64 = 1e-9;
 
 /// A row: a sum over the numbers of all parts that is not positive.
@@ -39,7 +39,7 @@ pub(super) struct Row {
 }
 
 /// Where the numbers of each part stand among those of all: of joints a mass, twists and slopes by judged case; of tubes
-/// those of the stock.
+/// those of the table.
 #[derive(Clone)]
 pub(super) struct Columns {
     pub cases: usize,
@@ -48,34 +48,34 @@ pub(super) struct Columns {
     pub tubes: Vec<usize>,
 }
 
-/// The rows of a zone.
+/// The rows of a subproblem.
 pub(super) struct Rows<'a> {
-    pub arm: &'a Arm,
-    pub stock: &'a Stock,
+    pub skeleton: &'a Skeleton,
+    pub table: &'a PartsTable,
     pub columns: Columns,
-    pub corner: Corner,
+    pub upper: UpperBound,
     pub rows: Vec<Row>,
-    /// Place of the first row of a torque that is held.
-    pub first_held: usize,
+    /// Place of the first row of a torque interval.
+    pub first_interval: usize,
     /// Place of the first row of a mode, and the case and shape of each.
     pub first_mode: usize,
     pub modes: Vec<(usize, Vec<f64>)>,
-    /// For every joint twists and slopes by judged case of each curve that the zone has; none of others.
+    /// For every joint twists and slopes by judged case of each curve that the subproblem has; none of others.
     pub curves: Vec<Numbers>,
     /// Torques of each judged case, and the least twist per torque beyond the least \[rad/(N m)\].
     pub torques: Vec<Vec<Span>>,
     pub per_torque: Vec<Vec<f64>>,
     /// Row, case and direction of each way of the tip.
     pub tips: Vec<(usize, usize, Vector3<f64>)>,
-    /// Whether a coordinate of the zone may be rigid, by judged case.
+    /// Whether a coordinate of the subproblem may be rigid, by judged case.
     rigid: Vec<Vec<bool>>,
 }
 
 impl Columns {
-    pub fn new(stock: &Stock, cases: usize) -> Self {
-        let joints = stock.joints.len();
+    pub fn new(table: &PartsTable, cases: usize) -> Self {
+        let joints = table.joints.len();
         let mut tubes = vec![joints * (1 + 2 * cases)];
-        for tube in &stock.tubes {
+        for tube in &table.tubes {
             tubes.push(tubes[tubes.len() - 1] + tube.priced());
         }
         Self { cases, joints, tubes }
@@ -138,33 +138,39 @@ impl Row {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows of a zone whose members are known, with the shapes that the zone came with.
-    pub fn new(arm: &'a Arm, stock: &'a Stock, zone: &Zone, members: &Members, corner: Corner) -> Self {
-        let judged: Vec<&Pose> = arm.poses.iter().filter(|pose| pose.judged).collect();
-        let columns = Columns::new(stock, judged.len());
+    /// The rows of a subproblem whose members are known, with the shapes that the subproblem came with.
+    pub fn new(
+        skeleton: &'a Skeleton,
+        table: &'a PartsTable,
+        subproblem: &Subproblem,
+        members: &Members,
+        upper: UpperBound,
+    ) -> Self {
+        let judged: Vec<&Pose> = skeleton.poses.iter().filter(|pose| pose.judged).collect();
+        let columns = Columns::new(table, judged.len());
         let torques =
-            judged.iter().enumerate().map(|(case, pose)| zone.torques(case, pose, members)).collect();
+            judged.iter().enumerate().map(|(case, pose)| subproblem.torques(case, pose, members)).collect();
         let rigid = |pose: &&Pose| -> Vec<bool> {
-            arm.stiffnesses(pose, members).iter().map(|stiffness| stiffness.is_infinite()).collect()
+            skeleton.stiffnesses(pose, members).iter().map(|stiffness| stiffness.is_infinite()).collect()
         };
         let mut rows = Self {
-            arm,
-            stock,
-            corner,
+            skeleton,
+            table,
+            upper,
             rows: Vec::new(),
-            first_held: 0,
+            first_interval: 0,
             first_mode: 0,
             modes: Vec::new(),
-            curves: stock.joints.iter().map(|joint| vec![None; joint.curves.len()]).collect(),
-            per_torque: vec![vec![0.0; stock.joints.len()]; judged.len()],
+            curves: table.joints.iter().map(|joint| vec![None; joint.curves.len()]).collect(),
+            per_torque: vec![vec![0.0; table.joints.len()]; judged.len()],
             tips: Vec::new(),
             torques,
             rigid: judged.iter().map(rigid).collect(),
             columns,
         };
-        for (joint, kept) in zone.joints.iter().enumerate() {
+        for (joint, kept) in subproblem.joints.iter().enumerate() {
             for &drive in kept {
-                let curve = stock.joints[joint].curve[drive as usize] as usize;
+                let curve = table.joints[joint].curve[drive as usize] as usize;
                 if rows.curves[joint][curve].is_none() {
                     rows.curves[joint][curve] = Some(vec![0.0; 2 * rows.columns.cases]);
                 }
@@ -175,25 +181,25 @@ impl<'a> Rows<'a> {
             rows.add_tip(case, pose, members);
         }
         rows.add_slopes();
-        rows.first_held = rows.rows.len();
-        for held in &zone.held {
-            rows.add_held(held, judged[held.case], members);
+        rows.first_interval = rows.rows.len();
+        for interval in &subproblem.torque_intervals {
+            rows.add_interval(interval, judged[interval.case], members);
         }
         rows.first_mode = rows.rows.len();
-        for shape in &zone.shapes {
+        for shape in &subproblem.shapes {
             rows.add_mode(shape.case, shape.motion.clone());
         }
         rows
     }
 
     fn add_mass(&mut self) {
-        if self.corner.mass_kg.is_finite() {
+        if self.upper.mass_kg.is_finite() {
             let mut row = Row::new(&self.columns);
-            row.fixed = self.arm.offsets_kg;
+            row.fixed = self.skeleton.offsets_kg;
             (0..self.columns.joints).for_each(|joint| row.per_number[self.columns.mass(joint)] = 1.0);
             let tubes = self.columns.tubes.len() - 1;
             (0..tubes).for_each(|tube| row.per_number[self.columns.tubes[tube] + place::MASS] = 1.0);
-            self.rows.push(row.less(self.corner.mass_kg, self.corner.mass_kg));
+            self.rows.push(row.less(self.upper.mass_kg, self.upper.mass_kg));
         }
     }
 
@@ -203,28 +209,28 @@ impl<'a> Rows<'a> {
         let loads = &members.loads[pose.water];
         let mut row = Row::new(&self.columns);
         for joint in 0..self.columns.joints {
-            let way_m = pose.ways_m[joint].dot(&direction);
-            if way_m != 0.0 {
-                self.add_twist(&mut row, case, joint, &pose.torques[joint], pose.water, way_m);
+            let along_m = pose.tip_m_per_rad[joint].dot(&direction);
+            if along_m != 0.0 {
+                self.add_twist(&mut row, case, joint, &pose.torques[joint], pose.water, along_m);
             }
         }
         for (tube, works) in pose.works.iter().enumerate() {
             let compliances = compliances(members.tubes[tube]);
             for (which, (work, compliance)) in works.iter().zip(compliances).enumerate() {
                 let (force, least) = (work.along(&direction, loads).least, compliance.least);
-                let number = self.columns.tubes[tube] + place::compliance(self.arm.waters, which);
+                let number = self.columns.tubes[tube] + place::compliance(self.skeleton.waters.len(), which);
                 row.per_number[number] += force;
                 let per_load = work.per_load.iter().map(|per| least * per.dot(&direction));
                 row.add(&self.columns, pose.water, least * (work.fixed.dot(&direction) - force), per_load);
             }
         }
-        for tilt_m in &pose.tilts_m {
-            let per_load = tilt_m.per_load.iter().map(|per| per.dot(&direction));
-            row.add(&self.columns, pose.water, tilt_m.fixed.dot(&direction), per_load);
+        for by_spring_m in &pose.by_springs_m {
+            let per_load = by_spring_m.per_load.iter().map(|per| per.dot(&direction));
+            row.add(&self.columns, pose.water, by_spring_m.fixed.dot(&direction), per_load);
         }
-        if self.corner.tip_m.is_finite() {
+        if self.upper.tip_m.is_finite() {
             self.tips.push((self.rows.len(), case, direction));
-            self.rows.push(row.less(self.corner.tip_m, self.corner.tip_m));
+            self.rows.push(row.less(self.upper.tip_m, self.upper.tip_m));
         }
     }
 
@@ -236,20 +242,20 @@ impl<'a> Rows<'a> {
         joint: usize,
         torque: &Linear,
         water: usize,
-        way_m: f64,
+        along_m: f64,
     ) {
-        let sense = 1.0f64.copysign(way_m);
+        let sense = 1.0f64.copysign(along_m);
         let span = self.torques[case][joint].times(sense);
         let mut per_torque = f64::INFINITY;
-        for (numbers, range) in self.curves[joint].iter_mut().zip(&self.stock.joints[joint].curves) {
+        for (numbers, range) in self.curves[joint].iter_mut().zip(&self.table.joints[joint].curves) {
             if let Some(numbers) = numbers {
                 numbers[case] = range.least_angle_rad(span);
                 per_torque = per_torque.min(least_twist_per_nm(range, span));
             }
         }
-        row.per_number[self.columns.twist(joint, case)] += way_m.abs();
+        row.per_number[self.columns.twist(joint, case)] += along_m.abs();
         self.per_torque[case][joint] = per_torque;
-        let by = way_m.abs() * per_torque;
+        let by = along_m.abs() * per_torque;
         let per_load = torque.per_load.iter().map(|per| by * sense * per);
         row.add(&self.columns, water, by * (sense * torque.fixed - span.least), per_load);
     }
@@ -258,7 +264,7 @@ impl<'a> Rows<'a> {
     fn add_slopes(&mut self) {
         let cases = self.columns.cases;
         for (joint, curves) in self.curves.iter_mut().enumerate() {
-            for (numbers, range) in curves.iter_mut().zip(&self.stock.joints[joint].curves) {
+            for (numbers, range) in curves.iter_mut().zip(&self.table.joints[joint].curves) {
                 let Some(numbers) = numbers else { continue };
                 for case in 0..cases {
                     let slope = range.largest_slope(self.torques[case][joint].largest_size());
@@ -268,11 +274,11 @@ impl<'a> Rows<'a> {
         }
     }
 
-    fn add_held(&mut self, held: &Held, pose: &Pose, members: &Members) {
-        let torque = &pose.torques[held.joint];
+    fn add_interval(&mut self, interval: &TorqueInterval, pose: &Pose, members: &Members) {
+        let torque = &pose.torques[interval.joint];
         let own = torque.over(&members.loads[pose.water]);
         let scale = (own.most - own.least).max(0.01 * own.largest_size()).max(f64::MIN_POSITIVE);
-        for (sense, bound) in [(1.0, held.between.most), (-1.0, -held.between.least)] {
+        for (sense, bound) in [(1.0, interval.between.most), (-1.0, -interval.between.least)] {
             if bound.is_finite() {
                 let mut row = Row::new(&self.columns);
                 let per_load = torque.per_load.iter().map(|per| sense * per);
@@ -285,7 +291,7 @@ impl<'a> Rows<'a> {
 
     /// Adds the row of a shape; what may be rigid stands still in it.
     pub fn add_mode(&mut self, case: usize, mut shape: Vec<f64>) {
-        let eigenvalue = self.corner.eigenvalue();
+        let eigenvalue = self.upper.eigenvalue();
         if eigenvalue == 0.0 {
             return;
         }
@@ -297,7 +303,7 @@ impl<'a> Rows<'a> {
         for (number, per) in self.inertias(pose.water).zip(&pose.inertia_per) {
             row.per_number[number] += eigenvalue * square(per, &shape);
         }
-        for (coordinate, x) in self.arm.coordinates.iter().zip(&shape) {
+        for (coordinate, x) in self.skeleton.coordinates.iter().zip(&shape) {
             match self.stiffness(case, coordinate) {
                 Ok((number, times)) => row.per_number[number] -= times * x * x,
                 Err(nm_per_rad) => row.fixed -= nm_per_rad * x * x,
@@ -309,7 +315,7 @@ impl<'a> Rows<'a> {
 
     /// A judged case.
     pub fn pose(&self, case: usize) -> &'a Pose {
-        self.arm.poses.iter().filter(|pose| pose.judged).nth(case).expect("a judged case")
+        self.skeleton.poses.iter().filter(|pose| pose.judged).nth(case).expect("a judged case")
     }
 
     /// The numbers that inertia is in proportion to.
@@ -327,18 +333,21 @@ impl<'a> Rows<'a> {
         match *coordinate {
             Coordinate::Joint(joint) => Ok((self.columns.slope(joint, case), 1.0)),
             Coordinate::Tube(tube, shape) => {
-                let (which, integral_m) = shape.stiffness(self.arm.lengths_m[tube]);
+                let (which, integral_m) = shape.stiffness(self.skeleton.lengths_m[tube]);
                 debug_assert!(which < STIFFNESSES);
-                Ok((self.columns.tubes[tube] + place::stiffness(self.arm.waters, which), integral_m))
+                Ok((
+                    self.columns.tubes[tube] + place::stiffness(self.skeleton.waters.len(), which),
+                    integral_m,
+                ))
             }
-            Coordinate::Spring(spring) => Err(self.arm.spring_stiffnesses[spring]),
+            Coordinate::Spring(spring) => Err(self.skeleton.spring_stiffnesses[spring]),
         }
     }
 
     /// The arm whose parts have some numbers, in a case.
     pub fn pencil(&self, case: usize, numbers: &[f64]) -> Pencil {
         let pose = self.pose(case);
-        let stiffness = self.arm.coordinates.iter().zip(&self.rigid[case]);
+        let stiffness = self.skeleton.coordinates.iter().zip(&self.rigid[case]);
         let stiffness = stiffness.map(|(coordinate, rigid)| match self.stiffness(case, coordinate) {
             _ if *rigid => f64::INFINITY,
             Ok((number, times)) => times * numbers[number],

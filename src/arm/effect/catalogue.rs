@@ -1,0 +1,61 @@
+//! The list of every effect. A new effect needs one file in this folder, one line here and a page in
+//! `docs/effects`.
+
+use super::kind::Kind;
+use super::{
+    base_compliance, bearing_tilt, connection_compliance, drift, extra_mass, frame_compliance, harness_mass,
+    hysteresis, immersion, joint_compliance, link_flexibility, lost_motion, modulus_error, outlier,
+    payload_cg_error, payload_mass_error, sensor_bias, sensor_gain, soft_windup, time_shift,
+    transmission_error, wrong_unit,
+};
+
+/// Every effect, in the order of the documentation.
+pub static KINDS: [&Kind; 22] = [
+    &connection_compliance::KIND,
+    &soft_windup::KIND,
+    &lost_motion::KIND,
+    &hysteresis::KIND,
+    &bearing_tilt::KIND,
+    &base_compliance::KIND,
+    &frame_compliance::KIND,
+    &payload_mass_error::KIND,
+    &payload_cg_error::KIND,
+    &extra_mass::KIND,
+    &harness_mass::KIND,
+    &modulus_error::KIND,
+    &immersion::KIND,
+    &joint_compliance::KIND,
+    &link_flexibility::KIND,
+    &transmission_error::KIND,
+    &sensor_gain::KIND,
+    &sensor_bias::KIND,
+    &drift::KIND,
+    &outlier::KIND,
+    &wrong_unit::KIND,
+    &time_shift::KIND,
+];
+
+/// The kind of an effect by its name.
+pub fn kind(name: &str) -> Option<&'static Kind> {
+    KINDS.iter().copied().find(|k| k.name == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_has_a_name_of_its_own_a_place_and_a_page() {
+        for (i, kind) in KINDS.iter().enumerate() {
+            assert!(KINDS[..i].iter().all(|k| k.name != kind.name));
+            assert!(!kind.places.is_empty() && !kind.summary.is_empty());
+            let page = format!("{}/docs/effects/{}.md", env!("CARGO_MANIFEST_DIR"), kind.name);
+            assert!(std::path::Path::new(&page).exists(), "{page} is missing");
+            for place in kind.places {
+                for p in (kind.parameters)(*place) {
+                    assert!(p.low <= p.typical && p.typical <= p.high, "{} {}", kind.name, p.name);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Measuring channels: the kinds of reading a campaign has, and how an instrument turns truth into a reading.
+
+/// A kind of reading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Channel {
+    /// Displacement of the tip under load \[mm\].
+    Static,
+    /// Natural frequencies \[Hz\].
+    Modal,
+    /// Torsion of one joint on a bench \[arcmin\].
+    Windup,
+    /// Absolute positions of points on the tool \[mm\].
+    Positions,
+}
+
+impl Channel {
+    /// Every channel.
+    pub const ALL: [Channel; 4] = [Channel::Static, Channel::Modal, Channel::Windup, Channel::Positions];
+
+    /// The word for the channel in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Channel::Static => "static",
+            Channel::Modal => "modal",
+            Channel::Windup => "windup",
+            Channel::Positions => "positions",
+        }
+    }
+
+    /// The channel that a word in a file names.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|c| c.word() == word)
+    }
+
+    /// How many numbers one reading of the channel has.
+    pub fn components(self) -> usize {
+        match self {
+            Channel::Static | Channel::Positions => 3,
+            Channel::Modal | Channel::Windup => 1,
+        }
+    }
+}
+
+/// How a channel turns truth into a reading: `factor x truth + bias + drift x (row - 1)`, in the unit of the
+/// channel's file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// Factor on the truth.
+    pub factor: f64,
+    /// Constant that is added; scalar channels use the first number only.
+    pub bias: [f64; 3],
+    /// Change of the constant from each row of the file to the next.
+    pub drift_per_row: [f64; 3],
+    /// Rows that are gross errors, counted from 1.
+    pub outlier_rows: Vec<usize>,
+}
+
+impl Default for Reading {
+    fn default() -> Self {
+        Self { factor: 1.0, bias: [0.0; 3], drift_per_row: [0.0; 3], outlier_rows: Vec::new() }
+    }
+}
+
+impl Reading {
+    /// The reading for a true value. `component` is 0 to 2, `row` counts from 0.
+    pub fn of(&self, truth: f64, component: usize, row: usize) -> f64 {
+        self.factor * truth + self.bias[component] + self.drift_per_row[component] * row as f64
+    }
+}

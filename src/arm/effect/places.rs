@@ -1,0 +1,64 @@
+//! Finds the pieces of an arm by name, and the places where an effect can sit.
+
+use super::kind::Place;
+use crate::arm::structure::{JointPiece, LinkPiece, Piece, Structure};
+
+impl Structure {
+    /// The kind of place that a name denotes in this arm, out of those allowed.
+    pub fn place(&self, at: &str, allowed: &[Place]) -> Option<Place> {
+        allowed.iter().copied().find(|place| match place {
+            Place::Joint => self.joints().any(|j| j.name == at),
+            Place::Link => self.links().any(|l| l.name == at),
+            Place::Tube => self.links().any(|l| l.name == at && l.beam.is_some()),
+            Place::Base => at == "base",
+            Place::Payload => at == "payload",
+            Place::Arm => at == "arm",
+            Place::Channel(channel) => at == channel.word(),
+        })
+    }
+
+    /// The names of all places of a kind in this arm.
+    pub fn places(&self, place: Place) -> Vec<String> {
+        match place {
+            Place::Joint => self.joints().map(|j| j.name.clone()).collect(),
+            Place::Link => self.links().map(|l| l.name.clone()).collect(),
+            Place::Tube => self.links().filter(|l| l.beam.is_some()).map(|l| l.name.clone()).collect(),
+            Place::Base => vec!["base".into()],
+            Place::Payload => vec!["payload".into()],
+            Place::Arm => vec!["arm".into()],
+            Place::Channel(channel) => vec![channel.word().into()],
+        }
+    }
+
+    /// The joints, base to tip.
+    pub fn joints(&self) -> impl Iterator<Item = &JointPiece> {
+        self.pieces.iter().filter_map(|p| match p {
+            Piece::Joint(joint) => Some(joint),
+            Piece::Link(_) => None,
+        })
+    }
+
+    /// The links, base to tip.
+    pub fn links(&self) -> impl Iterator<Item = &LinkPiece> {
+        self.pieces.iter().filter_map(|p| match p {
+            Piece::Link(link) => Some(link),
+            Piece::Joint(_) => None,
+        })
+    }
+
+    /// The joint of a name.
+    pub fn joint_mut(&mut self, name: &str) -> Option<&mut JointPiece> {
+        self.pieces.iter_mut().find_map(|p| match p {
+            Piece::Joint(joint) if joint.name == name => Some(joint),
+            _ => None,
+        })
+    }
+
+    /// The link of a name.
+    pub fn link_mut(&mut self, name: &str) -> Option<&mut LinkPiece> {
+        self.pieces.iter_mut().find_map(|p| match p {
+            Piece::Link(link) if link.name == name => Some(link),
+            _ => None,
+        })
+    }
+}

@@ -1,0 +1,136 @@
+//! Branch and bound box by box.
+
+use super::bound::{BoxBound, DesignBox, Verdict};
+use super::budget::Budget;
+use super::local_upper_bounds::LocalUpperBound;
+use super::problem::Problem;
+use super::rounds::{Done, in_rounds};
+use super::search_state::{Findings, SearchState};
+use super::shape::Shape;
+use super::work::Work;
+use std::sync::Arc;
+
+/// Number of boxes that one task opens.
+const BOXES: usize = 32;
+
+/// A box that waits to be bounded, with what its parent box knew.
+pub(super) struct OpenBox {
+    pub design_box: DesignBox,
+    pub shapes: Arc<Vec<Shape>>,
+    pub box_bound: BoxBound,
+}
+
+impl OpenBox {
+    /// The two halves along a level. The first half stands last, because the stack is opened from its end.
+    pub fn halves(&self, problem: &Problem, level: usize, box_bound: BoxBound) -> Vec<Self> {
+        let half = |node: u32| {
+            let mut design_box = self.design_box.clone();
+            design_box[level] = node;
+            Self { design_box, shapes: Arc::clone(&self.shapes), box_bound }
+        };
+        problem.halves(&self.design_box, level).map_or_else(Vec::new, |[a, b]| vec![half(b), half(a)])
+    }
+}
+
+/// Opens the box of all designs and every box that comes of it. Findings are learned at the end of each
+/// round. Returns the boxes that are still open when the search is stopped.
+pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
+    budget: &Budget,
+    problem: &Problem,
+    state: &mut K,
+    open: impl Fn(&K, OpenBox, &mut Work, &mut F) -> Vec<OpenBox> + Sync,
+    learn: impl Fn(&mut K, F),
+) -> Vec<OpenBox> {
+    let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return Vec::new() };
+    let root = OpenBox { design_box: problem.root(), shapes: Arc::new(shapes), box_bound: BoxBound::OPEN };
+    let task = |state: &K, root: OpenBox| {
+        open_boxes(budget, root, |next, work, findings| open(state, next, work, findings))
+    };
+    in_rounds(state, vec![root], || budget.stopped(), task, learn)
+}
+
+/// Opens a box and then some of the boxes that come of it, depth first. Returns the open boxes and the
+/// findings.
+pub(super) fn open_boxes<F: Default>(
+    budget: &Budget,
+    first: OpenBox,
+    open: impl Fn(OpenBox, &mut Work, &mut F) -> Vec<OpenBox>,
+) -> Done<OpenBox, F> {
+    let (mut work, mut findings, mut stack) = (Work::default(), F::default(), vec![first]);
+    for _ in 0..BOXES {
+        if budget.stopped() {
+            break;
+        }
+        let Some(next) = stack.pop() else { break };
+        stack.extend(open(next, &mut work, &mut findings));
+    }
+    Done { tasks: stack, findings }
+}
+
+/// One pass over all boxes. Returns the bounds of the boxes that are still open when the search is stopped.
+pub(super) fn pass_by_boxes(
+    budget: &Budget,
+    problem: &Problem,
+    state: &mut SearchState,
+    slack: f64,
+) -> Vec<BoxBound> {
+    let left = open_all_boxes(
+        budget,
+        problem,
+        state,
+        |state, next, work, findings| {
+            Search { budget, problem, state, slack, below: None }.open(next, work, findings)
+        },
+        SearchState::learn,
+    );
+    left.iter().map(|opened| opened.box_bound).collect()
+}
+
+/// A search of a problem, with the state that was shared when its round began.
+pub(super) struct Search<'s, 'p> {
+    pub budget: &'s Budget<'p>,
+    pub problem: &'s Problem<'p>,
+    pub state: &'s SearchState,
+    /// A box is pruned if an incumbent dominates its bound made worse by this slack (relative, 0 for none).
+    pub slack: f64,
+    /// The local upper bound below which designs are sought; `None` for the whole space.
+    pub below: Option<LocalUpperBound>,
+}
+
+impl Search<'_, '_> {
+    /// Bounds a box and returns its halves. A box of one design is judged and returns nothing.
+    pub fn open(&self, mut here: OpenBox, work: &mut Work, findings: &mut Findings) -> Vec<OpenBox> {
+        self.budget.count_box();
+        let verdict = self.problem.bound(
+            &mut here.design_box,
+            &mut here.shapes,
+            work,
+            |box_bound| {
+                self.below.is_some_and(|upper| !upper.admits(box_bound))
+                    || self.dominates(box_bound, findings)
+            },
+            |box_bound| {
+                self.below.is_some()
+                    || self.state.incumbents.nearly_dominates(&box_bound.slackened(self.slack))
+            },
+        );
+        let Verdict::Open(box_bound) = verdict else { return Vec::new() };
+        // The box may have lost drives. Then its numbers in `work` are out of date, and it is bounded anew.
+        match self.problem.prune_dominated_drives(&mut here.design_box, box_bound.tip_m, work) {
+            None => return Vec::new(),
+            Some(true) => return vec![here],
+            Some(false) => {}
+        }
+        let Some(level) = self.problem.widest_level(&here.design_box, &here.shapes, work) else {
+            self.problem.judge(&here.design_box, &box_bound, work, findings);
+            return Vec::new();
+        };
+        here.halves(self.problem, level, box_bound)
+    }
+
+    /// Whether a design of the shared state or of the findings dominates the bound made worse by the slack.
+    pub fn dominates(&self, box_bound: &BoxBound, findings: &Findings) -> bool {
+        let slackened = box_bound.slackened(self.slack);
+        self.state.incumbents.dominates(&slackened) || findings.dominates(&slackened)
+    }
+}

@@ -1,0 +1,129 @@
+//! Which level of a box to halve.
+//!
+//! The bound of a box takes every part at its lightest and at its stiffest. The score of a level is how much
+//! the bound would worsen if the level's part had middling numbers instead: the geometric mean of the
+//! lightest and the heaviest, and of the stiffest and the softest. The level with the greatest score is
+//! halved.
+//!
+//! The bounds of the two halves would be a worse guide, because a box has to be halved several times before
+//! its bound moves at all.
+
+use super::bound::{STARTS, tube_strain};
+use super::parts::{INERTIAS, STIFFNESSES};
+use super::pose::RESISTED;
+use super::problem::{Part, Problem};
+use super::shape::{Shape, products};
+use super::torsion::Torsion;
+use super::work::Work;
+
+/// Ratio of the geometric mean of a range to its lower end, less one. Zero for an empty range.
+fn middling(low: f64, high: f64) -> f64 {
+    if low > 0.0 && high > low { (high / low).sqrt() - 1.0 } else { 0.0 }
+}
+
+impl Problem<'_> {
+    /// The level whose halving should sharpen the bound most. `None` if every level has a single option.
+    pub fn widest_level(&self, design_box: &[u32], shapes: &[Shape], work: &mut Work) -> Option<usize> {
+        self.weigh_tip(work);
+        let (judged, start) = work.worst;
+        let shape = &shapes[judged * STARTS.len() + start];
+        let case = self.judged_cases().nth(judged)?;
+        let strain = products(&shape.strain, &work.stiff_in[case]);
+        let kinetic = shape.kinetic_energy(&work.light);
+        let mass_kg: f64 = work.masses.iter().map(|m| m[0]).sum();
+        let softened = self.softened_by_torque(case, shape, strain, work);
+        let mut best: Option<(f64, usize)> = None;
+        for (level, &piece) in self.level_pieces.iter().enumerate() {
+            if self.halves(design_box, level).is_none() {
+                continue;
+            }
+            let (mut softer, mut heavier) = (softened[piece], 0.0);
+            for k in 0..STIFFNESSES {
+                let (soft, stiff) = match &work.curves[piece] {
+                    Some(curve) if k == 0 => {
+                        let most_nm = work.torques[case][piece][1];
+                        (curve.softest(most_nm, most_nm), curve.stiffest(most_nm, most_nm))
+                    }
+                    _ => (work.soft[piece][k], work.stiff[piece][k]),
+                };
+                softer += shape.strain[piece][k] * stiff / strain * middling(soft, stiff);
+            }
+            for k in 0..INERTIAS {
+                let (light, heavy) = (work.light[piece][k], work.heavy[piece][k]);
+                heavier += shape.kinetic[piece][k] * light / kinetic * middling(light, heavy);
+            }
+            let [light, heavy] = work.masses[piece];
+            let mass = light * middling(light, heavy) / mass_kg.max(f64::MIN_POSITIVE);
+            // Frequency is the square root of the quotient, hence the half.
+            let score = f64::ln_1p(mass)
+                + f64::ln_1p(work.tip_growth[piece])
+                + 0.5 * (f64::ln_1p(softer) + f64::ln_1p(heavier));
+            if best.is_none_or(|(most, _)| score > most) {
+                best = Some((score, level));
+            }
+        }
+        best.map(|(_, level)| level)
+    }
+
+    /// The relative fall of a shape's quotient if the torques, which each piece's weight makes uncertain, had
+    /// middling values. Such a fall occurs because a heavier part may press a gear inboard into a stiffer
+    /// segment of its curve. One number for each piece.
+    fn softened_by_torque(&self, case: usize, shape: &Shape, strain: f64, work: &Work) -> Vec<f64> {
+        let mut softened = vec![0.0; self.parts.len()];
+        let pose = &self.poses[case];
+        for row in &pose.rows {
+            let Some(curve) = &work.curves[row.piece] else { continue };
+            let [least_nm, most_nm] = work.torques[case][row.piece];
+            let (soft, stiff) = (curve.stiffest(least_nm, least_nm), curve.stiffest(least_nm, most_nm));
+            if stiff <= soft {
+                continue;
+            }
+            let part = shape.strain[row.piece][0] * stiff / strain * middling(soft, stiff);
+            for (piece, (per_n, weight)) in row.per_n.iter().zip(&work.weights[case]).enumerate() {
+                softened[piece] += part * (per_n * (weight[1] - weight[0])).abs() / (most_nm - least_nm);
+            }
+        }
+        softened
+    }
+
+    /// The relative growth of the least deflection if a piece had middling numbers, one number for each
+    /// piece.
+    fn weigh_tip(&self, work: &mut Work) {
+        work.tip_growth.clear();
+        work.tip_growth.resize(self.parts.len(), 0.0);
+        let Some((case, direction)) = work.worst_tip else { return };
+        let pose = &self.poses[case];
+        let mut total = 0.0;
+        for (row, &force) in pose.rows.iter().zip(&work.forces[case]) {
+            let (moved, softer) = match &work.curves[row.piece] {
+                Some(curve) => {
+                    let play = self.joint_plays[row.piece].as_ref();
+                    let middle = |torsion: &Torsion| torsion.windup.k2_nm_per_rad;
+                    (curve.twist(play, force), middling(middle(&curve.soft), middle(&curve.stiff)))
+                }
+                None => {
+                    let (resisted, _) = RESISTED[row.coordinate];
+                    let (soft, stiff) = (work.soft[row.piece][resisted], work.stiff[row.piece][resisted]);
+                    (tube_strain(row.coordinate, pose, row.piece, force, work), middling(soft, stiff))
+                }
+            };
+            // A coordinate whose interval contains zero need not move the tip at all.
+            let least = if moved[0] >= 0.0 { moved[0] } else { moved[1].min(0.0) };
+            let part_m = direction.dot(&row.tip_m) * least;
+            total += part_m;
+            work.tip_growth[row.piece] += part_m.abs() * softer;
+        }
+        if total > 0.0 {
+            work.tip_growth.iter_mut().for_each(|yields| *yields /= total);
+        }
+    }
+
+    /// The two halves of a box along a level. `None` if the level has a single option.
+    pub fn halves(&self, design_box: &[u32], level: usize) -> Option<[u32; 2]> {
+        match &self.parts[self.level_pieces[level]] {
+            Part::Drives { tree, .. } => tree.children(design_box[level]),
+            Part::Links { tree, .. } => tree.children(design_box[level]),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! Where to branch when a region may still have a member below a local upper bound.
+//!
+//! The Lagrangian bound (`lagrangian.rs`) ends with a mixture: several relaxed designs with shares that sum
+//! to one. The bound is loose where these designs differ, and where the product of a force and a compliance
+//! is replaced by its McCormick underestimate. There are two ways to branch:
+//!
+//! - on the options of a level, where the mixed designs differ or a product is underestimated;
+//! - on a joint torque. A force is uncertain because of all the weights outboard, not because of one level,
+//!   so halving the torque's interval helps where halving a level does not. It also separates the states of a
+//!   gear that is mixed of a soft and a stiff one.
+
+use super::parts::{STIFFNESSES, inertia};
+use super::pose::Row;
+use super::problem::{Part, Problem};
+use super::rows::{RelaxedDesign, Rows};
+use super::tree::Key;
+
+/// Coordinates of mass and stiffness in the key of a drive and of a tube, and the factors of their logarithms
+/// there.
+const DRIVE: [(usize, f64); 2] = [(3, 1.0), (0, 4.0)];
+const TUBE: [(usize, f64); 2] = [(0, 2.0), (1, 1.0)];
+/// Gains below this are rounding.
+const NOTHING: f64 = 1e-9;
+/// A force is known well enough if its interval is narrower than this part of its size.
+const KNOWN: f64 = 0.1;
+/// Least distance of a branching point from the ends of the interval, as a part of the interval.
+const SAME: f64 = 1e-3;
+
+/// What to branch on, and at which value.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Branching {
+    /// The gain that is expected, in units of a scaled row.
+    gain: f64,
+    by: BranchOn,
+    at: f64,
+}
+
+/// What the two halves differ in.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum BranchOn {
+    /// The options of a level, along a coordinate of their key.
+    Options { level: usize, axis: usize },
+    /// The force of a row of a case.
+    Force { case: usize, row: usize },
+}
+
+/// Relaxed designs that together may lie below a local upper bound, and their shares.
+type Mixed<'a> = [(&'a RelaxedDesign, f64)];
+
+fn mean(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
+    mixed.iter().map(|(member, share)| share * of(member)).sum()
+}
+
+/// Mean distance of a number of the mixed designs from its mean.
+fn spread(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
+    let middle = mean(mixed, &of);
+    mean(mixed, |member| (of(member) - middle).abs())
+}
+
+impl Rows<'_> {
+    /// Where to branch, the most promising first.
+    pub fn branchings(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
+        let mut branchings = Vec::new();
+        let left_out = self.left_out(mixed, multipliers);
+        for (level, &piece) in self.problem.level_pieces.iter().enumerate() {
+            let key = |member: &RelaxedDesign| self.problem.key(level, member.design_box[level]);
+            let rows = multipliers.iter().enumerate().filter(|(_, multiplier)| **multiplier > 0.0);
+            let gain = rows.map(|(row, w)| w * spread(mixed, |member| self.added(member, piece, row))).sum();
+            let spreads = [0, 1, 2, 3, 4].map(|axis| spread(mixed, |member| key(member)[axis]));
+            // The coordinate in which the mixed designs differ most separates them best.
+            let axis = (0..spreads.len()).max_by(|&a, &b| spreads[a].total_cmp(&spreads[b])).unwrap_or(0);
+            if spreads[axis] > NOTHING {
+                let at = mean(mixed, |member| key(member)[axis]);
+                branchings.push(Branching { gain, by: BranchOn::Options { level, axis }, at });
+            }
+            // Halfway between the best value and the mean: one half then excludes the best value, and with it
+            // the underestimate.
+            for ((axis, best), gain) in self.best_of(piece).into_iter().zip(left_out[piece]) {
+                let at = 0.5 * (best + mean(mixed, |member| key(member)[axis]));
+                branchings.push(Branching { gain, by: BranchOn::Options { level, axis }, at });
+            }
+        }
+        branchings.extend(self.by_torque(mixed, multipliers));
+        branchings.retain(|branching| branching.gain > NOTHING);
+        branchings.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        branchings
+    }
+
+    /// The key coordinates of a piece's mass and stiffness, and the best value that the box has of each.
+    fn best_of(&self, piece: usize) -> [(usize, f64); 2] {
+        let (light, stiff) = (self.work.light[piece][inertia::MASS], self.work.stiff[piece][0]);
+        let (places, stiff) = match &self.work.curves[piece] {
+            Some(curve) => (DRIVE, curve.stiff.windup.k1_nm_per_rad),
+            None => (TUBE, stiff),
+        };
+        let number = |(axis, times): (usize, f64), x: f64| (axis, times * x.max(f64::MIN_POSITIVE).ln());
+        [number(places[0], light), number(places[1], stiff)]
+    }
+
+    /// How much the McCormick underestimates leave out, in units of a scaled row. For each piece: what its
+    /// weight contributes, and what its compliance contributes.
+    fn left_out(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<[f64; 2]> {
+        let mut left_out = vec![[0.0; 2]; self.problem.parts.len()];
+        for (judged, tip) in self.tips.iter().enumerate() {
+            let multiplier = multipliers[1 + judged] / self.scale[1 + judged];
+            for row in &self.problem.poses[tip.case].rows {
+                let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
+                let heavier = self.heavier(mixed, judged, row, tip_per_unit);
+                let more: f64 = heavier.iter().sum();
+                let left = multiplier * self.product(mixed, judged, row, more);
+                if left > 0.0 {
+                    left_out[row.piece][1] += left;
+                    let pieces = left_out.iter_mut().zip(&heavier);
+                    pieces.for_each(|(piece, heavier)| piece[0] += left * (heavier / more).abs());
+                }
+            }
+        }
+        left_out
+    }
+
+    /// Branchings on the torque of a joint whose interval is wide. The gain is what the products leave out in
+    /// the joint's own twist and in the tubes between it and the next joint outboard, plus the spread of the
+    /// states of its gear.
+    fn by_torque(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
+        let mut branchings = Vec::new();
+        for (judged, tip) in self.tips.iter().enumerate() {
+            let (case, multiplier) = (tip.case, multipliers[1 + judged] / self.scale[1 + judged]);
+            // What the tubes further inboard leave out is due to the next joint's torque.
+            let mut left_out = 0.0;
+            for (at, row) in self.problem.poses[case].rows.iter().enumerate() {
+                let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
+                let [low, high] = self.work.forces[case][at];
+                // The underestimate takes the force at the end of its interval that moves the tip least.
+                let least = if tip_per_unit > 0.0 { low } else { high };
+                let made = |member: &RelaxedDesign| -> f64 {
+                    row.per_n.iter().zip(&member.weights_n[judged]).map(|(c, w)| c * w).sum()
+                };
+                let acting = row.fixed + mean(mixed, made);
+                left_out += multiplier * self.product(mixed, judged, row, acting - least);
+                if self.work.curves[row.piece].is_none() {
+                    continue;
+                }
+                let apart = self.free_gear(judged, row.piece).map_or(0.0, |next| {
+                    (multipliers[next] + multipliers[next + 1]) * spread(mixed, |member| member.values[next])
+                });
+                let gain = left_out + apart;
+                // To separate two states of a gear the mean torque is best. To shrink a product, the middle
+                // between the least torque and the acting one.
+                let at_nm = if apart > left_out { acting } else { 0.5 * (least + acting) };
+                let margin = SAME * (high - low);
+                if high - low > KNOWN * low.abs().max(high.abs())
+                    && low + margin < at_nm
+                    && at_nm < high - margin
+                {
+                    branchings.push(Branching { gain, by: BranchOn::Force { case, row: at }, at: at_nm });
+                }
+                left_out = 0.0;
+            }
+        }
+        branchings
+    }
+
+    /// Tip displacement that the underestimate of one product leaves out \[m\]: the excess of the force over
+    /// its least, times the excess of the compliance over its least.
+    fn product(&self, mixed: &Mixed, judged: usize, row: &Row, more: f64) -> f64 {
+        let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
+        (tip_per_unit * more * self.softer(mixed, judged, row)).abs()
+    }
+
+    /// The excess of a force over its least that the weight of each piece contributes.
+    fn heavier(&self, mixed: &Mixed, judged: usize, row: &Row, tip_per_unit: f64) -> Vec<f64> {
+        let multipliers = row.per_n.iter().zip(&self.work.weights[self.tips[judged].case]).enumerate();
+        multipliers
+            .map(|(piece, (per_n, [light, heavy]))| {
+                let least = if tip_per_unit * per_n > 0.0 { light } else { heavy };
+                per_n * (mean(mixed, |member| member.weights_n[judged][piece]) - least)
+            })
+            .collect()
+    }
+
+    /// The excess of a coordinate's compliance over its least.
+    fn softer(&self, mixed: &Mixed, judged: usize, row: &Row) -> f64 {
+        let case = self.tips[judged].case;
+        let posed = &self.problem.poses[case].pieces[row.piece];
+        let yields = |stiffness: &[f64; STIFFNESSES]| {
+            let stiffness = posed.coordinate_stiffness(row.coordinate, stiffness);
+            if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
+        };
+        let mut stiffest = self.work.stiff[row.piece];
+        if let Some(curve) = &self.work.curves[row.piece] {
+            let [least_nm, most_nm] = self.work.torques[case][row.piece];
+            stiffest[0] = curve.steepest(least_nm, most_nm);
+        }
+        mean(mixed, |member| yields(&member.stiffness[judged][row.piece])) - yields(&stiffest)
+    }
+}
+
+impl Problem<'_> {
+    /// The key of a node of a level's tree.
+    fn key(&self, level: usize, node: u32) -> Key {
+        match &self.parts[self.level_pieces[level]] {
+            Part::Drives { tree, .. } => tree.node(node).key,
+            Part::Links { tree, .. } => tree.node(node).key,
+            _ => Key::default(),
+        }
+    }
+
+    /// The problem restricted to each side of a branching. `None` if all options lie on one side.
+    pub fn branch(&self, kept: &[Vec<u32>], branching: &Branching) -> Option<[Self; 2]> {
+        match branching.by {
+            BranchOn::Options { level, axis } => {
+                let [low, high] = self.branch_on_options(kept, level, axis, branching.at)?;
+                Some([self.restricted_to(&low)?, self.restricted_to(&high)?])
+            }
+            BranchOn::Force { case, row } => {
+                let narrower = self.restricted_to(kept)?;
+                let halves = [[f64::NEG_INFINITY, branching.at], [branching.at, f64::INFINITY]];
+                Some(halves.map(|half| narrower.with_force_bound(case, row, half)))
+            }
+        }
+    }
+
+    /// For both sides of a branching on options: the nodes of each level's base tree that remain.
+    fn branch_on_options(
+        &self,
+        kept: &[Vec<u32>],
+        level: usize,
+        axis: usize,
+        at: f64,
+    ) -> Option<[Vec<Vec<u32>>; 2]> {
+        let part = &self.parts[self.level_pieces[level]];
+        let is_low = |node: &&u32| {
+            let key = match part {
+                Part::Drives { tree, .. } => tree.whole_node(**node).key,
+                Part::Links { tree, .. } => tree.whole_node(**node).key,
+                _ => Key::default(),
+            };
+            key[axis] <= at
+        };
+        let (low, high): (Vec<u32>, Vec<u32>) = kept[level].iter().partition(is_low);
+        (!low.is_empty() && !high.is_empty()).then(|| {
+            [low, high].map(|nodes| {
+                let mut kept = kept.to_vec();
+                kept[level] = nodes;
+                kept
+            })
+        })
+    }
+}

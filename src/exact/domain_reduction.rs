@@ -1,0 +1,87 @@
+//! The parts of which a design as good as a known one can be made.
+//!
+//! In a space too large to tabulate these are few, and the relaxation (`src/relax`) can be solved over them
+//! alone.
+
+use super::kinds::Ties;
+use super::local_upper_bounds::LocalUpperBound;
+use super::problem::Problem;
+use super::region_bound::Survivors;
+use super::regions::Subproblem;
+use super::work::Work;
+use crate::catalog::Catalogs;
+use crate::pareto::objectives::Objectives;
+use crate::space::design_space::DesignSpace;
+use std::collections::BTreeSet;
+
+/// Relative room between an objective of the known design and the local upper bound made of it, so that
+/// rounding excludes no part.
+const ROOM: f64 = 1e-6;
+/// Greatest number of subproblems that are branched, and the number of designs below which branching is not
+/// worth its time.
+const MOST_BRANCHED: usize = 50;
+const FEW: f64 = 1e6;
+
+/// A design space compiled to ask which parts can belong to a design as good as a known one.
+pub struct DomainReduction<'p> {
+    problem: Problem<'p>,
+}
+
+impl<'p> DomainReduction<'p> {
+    /// Compiles a space. `None` if some level has no option.
+    pub fn new(space: &'p DesignSpace, catalogs: &'p Catalogs) -> Option<Self> {
+        Some(Self { problem: Problem::new(space, catalogs, &|_| true, Ties::Merged)? })
+    }
+
+    /// The options of each level, tip first and ascending, that a design may have that is no worse than a
+    /// known one in all three objectives. `None` if there is no such design, not even the known one.
+    pub fn options_as_good(&self, known: &Objectives) -> Option<Vec<Vec<u32>>> {
+        let upper = LocalUpperBound {
+            mass_kg: known.mass_kg * (1.0 + ROOM),
+            tip_m: known.tip_deflection_m * (1.0 + ROOM),
+            hz: known.lowest_mode_hz * (1.0 - ROOM),
+        };
+        let mut work = Work::default();
+        let whole = Subproblem::whole(&self.problem, 0, &mut work)?;
+        let mut open = Vec::from_iter(Reduced::new(whole, &upper, &mut work));
+        let mut closed = Vec::new();
+        for _ in 0..MOST_BRANCHED {
+            let largest = (0..open.len()).max_by(|&a, &b| open[a].designs.total_cmp(&open[b].designs));
+            // The largest subproblem contributes most options, so branching it helps most.
+            let Some(at) = largest.filter(|&at| open[at].designs > FEW) else { break };
+            let next = open.swap_remove(at);
+            match next.subproblem.branch(&next.survivors, &mut work) {
+                Some(halves) => {
+                    open.extend(halves.into_iter().filter_map(|half| Reduced::new(half, &upper, &mut work)));
+                }
+                None => closed.push(next),
+            }
+        }
+        open.append(&mut closed);
+        let mut options = vec![BTreeSet::new(); self.problem.level_sizes.len()];
+        for reduced in &open {
+            let below = self.problem.options_below(&reduced.survivors.options);
+            options.iter_mut().zip(below).for_each(|(all, some)| all.extend(some));
+        }
+        (!open.is_empty()).then(|| options.into_iter().map(Vec::from_iter).collect())
+    }
+}
+
+/// A subproblem whose options are reduced as far as that is worth its time.
+struct Reduced<'p> {
+    subproblem: Subproblem<'p>,
+    survivors: Survivors,
+    designs: f64,
+}
+
+impl<'p> Reduced<'p> {
+    fn new(mut subproblem: Subproblem<'p>, upper: &LocalUpperBound, work: &mut Work) -> Option<Self> {
+        loop {
+            let (survivors, reduced) = subproblem.reduce(upper, work, |_| false)?;
+            if !reduced {
+                let designs = subproblem.designs_of(&survivors);
+                return Some(Self { subproblem, survivors, designs });
+            }
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Drives that a lighter drive dominates within a box.
+//!
+//! Let a design have drive B at a joint. Let drive A be lighter, at least as stiff up to the torque that the
+//! joint carries, and able to carry the joint's demand. The demand depends only on the arm outboard, so it is
+//! the same for both. Now put A in the place of B:
+//!
+//! - Every force of the study grows with every weight, so no torque, stress or demand inboard grows and the
+//!   tip does not deflect further.
+//! - No inertia grows. No stiffness falls if every gear inboard stays in its segment of the torsion curve.
+//!   Then no mode falls.
+//!
+//! So the design with A dominates the design with B, whatever its other parts are. A gear inboard may leave
+//! its segment when a part becomes lighter; therefore the step is valid only within a box, in which the
+//! torques inboard are known as intervals.
+
+use super::joint_play::JointPlay;
+use super::parts::{DriveBox, SAME_TORQUE};
+use super::pose::Pose;
+use super::problem::{Part, Problem};
+use super::torsion::CurveBox;
+use super::tree::Tree;
+use super::work::Work;
+use crate::sizing::demand::JointDemand;
+
+/// Part of the arm's mass by which the dominating drive must be lighter, so that rounding cannot decide.
+const LIGHTER: f64 = 1e-6;
+
+/// Number of tree nodes that may be visited in the search for a dominating drive.
+const BOXES: usize = 64;
+
+/// What a dominating drive has to be.
+struct DominatingDrive<'a> {
+    lighter_than_kg: f64,
+    demand: &'a JointDemand,
+    curve: Option<CurveBox>,
+    most_torque_nm: f64,
+}
+
+impl DominatingDrive<'_> {
+    /// Whether a box of drives may have such a drive. For a box of one drive: whether it is one.
+    fn may_be_in(&self, drives: &DriveBox) -> bool {
+        drives.mass_kg[0] < self.lighter_than_kg
+            && drives.hold(self.demand)
+            && match (&drives.curve, &self.curve) {
+                (None, _) => true,
+                (Some(_), None) => false,
+                (Some(a), Some(b)) => a.stiff.windup.never_softer(&b.stiff.windup, self.most_torque_nm),
+            }
+    }
+
+    /// The mass of such a drive below a node \[kg\], if one is found before the visits are used up.
+    fn find(&self, tree: &Tree<DriveBox>, node: u32, boxes_left: &mut usize) -> Option<f64> {
+        let drives = &tree.node(node).bounds;
+        if *boxes_left == 0 || !self.may_be_in(drives) {
+            return None;
+        }
+        *boxes_left -= 1;
+        match tree.children(node) {
+            None => Some(drives.mass_kg[0]),
+            Some([a, b]) => self.find(tree, a, boxes_left).or_else(|| self.find(tree, b, boxes_left)),
+        }
+    }
+}
+
+impl Problem<'_> {
+    /// Whether every load of the arm, and every displacement that it causes, grows with every weight. Then a
+    /// lighter arm of the same stiffness is no worse. It is not so with friction, because what friction holds
+    /// back grows with the weights too, nor with drives that fit first, because a lighter arm would get
+    /// softer drives.
+    pub fn grows_with_weight(&self) -> bool {
+        let fits_first = self.parts.iter().any(|part| matches!(part, Part::FirstFit { .. }));
+        let friction = self.joint_plays.iter().flatten().any(JointPlay::has_friction);
+        !fits_first && !friction && self.poses.iter().all(Pose::grows_with_weight)
+    }
+
+    /// Removes dominated drives from a box whose numbers are in `work`. `None` if no design is left;
+    /// otherwise whether the box became smaller.
+    pub fn prune_dominated_drives(&self, design_box: &mut [u32], tip_m: f64, work: &Work) -> Option<bool> {
+        let mut shrunk = false;
+        // The argument needs contributions to the tip that do not oppose each other. A pose where they may
+        // oppose does no harm if it cannot be the worst pose of the box.
+        if !self.lighter_is_better || work.greatest_tip_m.iter().any(|most_m| *most_m > tip_m) {
+            return Some(false);
+        }
+        for (level, &piece) in self.level_pieces.iter().enumerate() {
+            let Part::Drives { tree, .. } = &self.parts[piece] else { continue };
+            let Some(demand) = &work.greatest_demands[piece] else { continue };
+            let is_dominated = |drives: &DriveBox| self.is_dominated(piece, tree, drives, demand, work);
+            let node = tree.smallest_node(design_box[level], |drives| !is_dominated(drives))?;
+            shrunk |= node != design_box[level];
+            design_box[level] = node;
+        }
+        Some(shrunk)
+    }
+
+    /// Whether a lighter drive dominates every drive of a box.
+    fn is_dominated(
+        &self,
+        piece: usize,
+        tree: &Tree<DriveBox>,
+        drives: &DriveBox,
+        demand: &JointDemand,
+        work: &Work,
+    ) -> bool {
+        let arm_kg: f64 = work.masses.iter().map(|m| m[1]).sum();
+        let wanted = DominatingDrive {
+            lighter_than_kg: drives.mass_kg[0] - LIGHTER * arm_kg,
+            demand,
+            curve: drives.curve,
+            most_torque_nm: work.torques.iter().map(|torques| torques[piece][1]).fold(0.0, f64::max),
+        };
+        // The search starts at the root, for the dominating drive need not be in the box.
+        wanted.find(tree, 0, &mut BOXES.clone()).is_some_and(|mass_kg| {
+            self.slopes_stay(piece, (drives.mass_kg[1] - mass_kg) * self.space.gravity_m_s2, work)
+        })
+    }
+
+    /// Whether every gear inboard stays in its segment, and its play unchanged, if a piece loses this much
+    /// weight \[N\].
+    fn slopes_stay(&self, piece: usize, lost_n: f64, work: &Work) -> bool {
+        self.judged_cases().all(|case| {
+            self.poses[case].rows.iter().filter(|row| row.piece > piece && row.coordinate == 0).all(|row| {
+                let Some(curve) = &work.curves[row.piece] else { return true };
+                let [least_nm, most_nm] = work.torques[case][row.piece];
+                let drop_nm = row.per_n.get(piece).map_or(0.0, |c| c.abs() * lost_n);
+                let from_nm = (least_nm * (1.0 - SAME_TORQUE) - drop_nm).max(0.0);
+                let between_nm = [from_nm, most_nm * (1.0 + SAME_TORQUE)];
+                curve.keeps_its_slope(
+                    self.joint_plays[row.piece].as_ref(),
+                    between_nm,
+                    work.breaks[row.piece],
+                )
+            })
+        })
+    }
+}

@@ -1,0 +1,144 @@
+//! The feasible drives below a node, grouped by torsion curve.
+//!
+//! A joint has hundreds of drives but only some dozens of curves. The price of a drive is the price of its
+//! mass plus the price of its curve. Among the drives of one curve only the lightest or the heaviest can
+//! therefore be the cheapest, whatever the prices are.
+
+use super::dual_price::DualPrice;
+use super::parts::{DriveBox, LeastDemand};
+use super::torsion::CurveBox;
+use super::tree::Tree;
+
+/// The drives of one curve: mass \[kg\] and node of the lightest and of the heaviest.
+struct CurveGroup {
+    curve: Option<CurveBox>,
+    lightest: (f64, u32),
+    heaviest: (f64, u32),
+}
+
+impl CurveGroup {
+    /// Adds a drive. Among equal masses the first node counts, so that the result does not depend on the
+    /// order.
+    fn add(&mut self, drive: (f64, u32)) {
+        if drive < self.lightest {
+            self.lightest = drive;
+        }
+        if drive.0 > self.heaviest.0 || (drive.0 == self.heaviest.0 && drive.1 < self.heaviest.1) {
+            self.heaviest = drive;
+        }
+    }
+}
+
+/// The feasible drives, one group for each curve.
+#[derive(Default)]
+pub(super) struct DrivesByCurve(Vec<CurveGroup>);
+
+impl DrivesByCurve {
+    /// The drives below a node that can carry the least demand.
+    pub fn new(tree: &Tree<DriveBox>, node: u32, asked: Option<&LeastDemand>) -> Self {
+        let mut curves: Vec<CurveGroup> = Vec::new();
+        let (mut open, mut last) = (vec![node], 0);
+        while let Some(at) = open.pop() {
+            let drives = &tree.node(at).bounds;
+            if asked.is_some_and(|asked| !drives.may_hold(asked)) {
+                continue;
+            }
+            if let Some(halves) = tree.children(at) {
+                open.extend(halves);
+                continue;
+            }
+            let drive = (drives.mass_kg[0], at);
+            // Neighbours in the tree mostly have the same curve, so the last group is tried first.
+            let is_of = |at: &usize| curves.get(*at).is_some_and(|of| of.curve == drives.curve);
+            match Some(last).filter(is_of).or_else(|| (0..curves.len()).find(|at| is_of(at))) {
+                Some(place) => {
+                    curves[place].add(drive);
+                    last = place;
+                }
+                None => {
+                    last = curves.len();
+                    curves.push(CurveGroup { curve: drives.curve, lightest: drive, heaviest: drive });
+                }
+            }
+        }
+        Self(curves)
+    }
+
+    /// The least price of a drive and its node. `None` if no drive is feasible.
+    pub fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
+        let of = |of: &CurveGroup| {
+            let (mass_kg, node) = if price.of_mass([0.0, 1.0]) < 0.0 { of.heaviest } else { of.lightest };
+            (price.of_joint([mass_kg; 2], of.curve.as_ref()), node)
+        };
+        self.0.iter().map(of).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::joint_law::{Curve, JointLaw, Windup};
+    use crate::exact::dual_price::JointPrice;
+    use crate::exact::parts::Rays;
+    use crate::exact::torsion::BreakPoints;
+    use crate::sizing::limits::DriveLimits;
+    use crate::sizing::requirement::MotionRequirement;
+    use proptest::prelude::*;
+
+    fn drive(mass_kg: f64, k1: f64, torque_nm: f64, rays: &Rays) -> DriveBox {
+        let windup = Windup {
+            k1_nm_per_rad: k1,
+            k2_nm_per_rad: 1.5 * k1,
+            k3_nm_per_rad: 2.0 * k1,
+            t1_nm: 1.0,
+            t2_nm: 2.0,
+        };
+        let limits = DriveLimits {
+            static_torque_nm: torque_nm,
+            peak_torque_nm: torque_nm,
+            stop_torque_nm: torque_nm,
+            mean_torque_cubed_nm3: torque_nm.powi(3),
+            tilting_moment_nm: 0.0,
+        };
+        DriveBox {
+            mass_kg: [mass_kg; 2],
+            limits,
+            least_limits: limits,
+            multiples: rays.capacity(&limits),
+            curve: CurveBox::of(&JointLaw::from(Curve::Windup(windup))),
+            breaks: BreakPoints::of(&windup),
+            each: None,
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_drive_that_holds_is_cheaper_whatever_the_prices_are(
+            drives in prop::collection::vec((1u32..20, 1u32..5, 1u32..20), 1..60), asked_nm in 0.0f64..15.0, per_kg in -2.0f64..2.0,
+            twist in -2.0f64..2.0, torque in -1.0f64..1.0, slope in 0.0f64..1.0, from_nm in -3.0f64..3.0, wide_nm in 0.0f64..3.0,
+        ) {
+            let motion = MotionRequirement::default().joint_motion(1.35, None);
+            let rays = Rays::new(&motion, 5.0, 1.0);
+            let asked = LeastDemand::new(&motion, &rays, asked_nm, 0.1 * asked_nm);
+            let drives: Vec<DriveBox> = drives
+                .into_iter()
+                .map(|(kg, k, nm)| drive(f64::from(kg), f64::from(k), f64::from(nm), &rays))
+                .collect();
+            let joint = JointPrice { twist, torque, slope, torques_nm: [from_nm, from_nm + wide_nm], play: None };
+            let mut price = DualPrice { joint: vec![joint], ..DualPrice::default() };
+            price.inertia[0] = per_kg;
+            let options = drives.iter().cloned().enumerate().map(|(i, drive)| (i as u32, drive));
+            let tree = Tree::build(options).unwrap();
+            let cost = |drive: &DriveBox| price.of_joint(drive.mass_kg, drive.curve.as_ref());
+            let holding: Vec<&DriveBox> = drives.iter().filter(|drive| drive.hold(&asked.demand)).collect();
+            let least = holding.iter().map(|drive| cost(drive)).fold(f64::INFINITY, f64::min);
+            let found = DrivesByCurve::new(&tree, 0, Some(&asked)).cheapest(&price);
+            prop_assert_eq!(found.is_none(), holding.is_empty());
+            if let Some((found, node)) = found {
+                let drive = &drives[tree.option(node).unwrap() as usize];
+                prop_assert!(drive.hold(&asked.demand));
+                prop_assert_eq!([found, cost(drive)], [least; 2]);
+            }
+        }
+    }
+}

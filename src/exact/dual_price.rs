@@ -1,0 +1,299 @@
+//! The price of a part under Lagrange multipliers, and the cheapest part below a node of a tree.
+//!
+//! Every number of a part (mass, inertia, compliance, stiffness) has a dual price. The price of the part is
+//! what it adds to the weighted sum of the rows in [`rows`](super::rows).
+
+use super::joint_play::JointPlay;
+use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::torsion::CurveBox;
+use super::tree::{Bounds, Tree};
+use crate::arm::joint_law::Segment;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Greatest number of boxes that are priced in the search for the cheapest part. With fewer, the price of a
+/// box stands for that of its parts, and the last local upper bounds are never refuted.
+const MOST_LOOKS: usize = 200;
+/// Relative rounding of a torque.
+const ROUNDING: f64 = 1e-12;
+
+/// The gear of a joint in a judged case.
+pub(super) struct Gear {
+    pub piece: usize,
+    pub judged: usize,
+    /// Interval of its torque \[N m\].
+    pub torques_nm: [f64; 2],
+    /// For a gear whose slope may change within the interval: the first of two rows that hold its own torque
+    /// equal to the torque that the weights make, one for each direction. `None` for a gear of a single
+    /// slope: its twist is taken at the torque `torques_nm[0]` and grows linearly from there with the
+    /// weights.
+    pub row: Option<usize>,
+    /// Least compliance of any gear of the box \[rad/(N m)\].
+    pub least_compliance: f64,
+}
+
+impl Gear {
+    /// A gear whose torque may lie in several segments. `next` is the first of its two rows.
+    pub fn free(
+        piece: usize,
+        judged: usize,
+        [low, high]: [f64; 2],
+        next: usize,
+        least_compliance: f64,
+    ) -> Self {
+        let room = ROUNDING * low.abs().max(high.abs());
+        let torques_nm = [low - room, high + room];
+        Self { piece, judged, torques_nm, row: Some(next), least_compliance }
+    }
+
+    /// A gear that stays in one segment of its curve.
+    pub fn at(piece: usize, judged: usize, torque_nm: f64) -> Self {
+        let torques_nm = [torque_nm; 2];
+        Self { piece, judged, torques_nm, row: None, least_compliance: 0.0 }
+    }
+}
+
+/// The dual prices of a piece, one for each of its numbers.
+#[derive(Default)]
+pub(super) struct DualPrice {
+    /// Price per line inertia of a tube. For any other piece the first entry is the price per kilogram.
+    pub inertia: [f64; INERTIAS],
+    /// Price per compliance of a tube, and the credit per stiffness.
+    pub compliance: [f64; STIFFNESSES],
+    pub stiffness: [f64; STIFFNESSES],
+    /// Prices of a joint, one for each judged case.
+    pub joint: Vec<JointPrice>,
+}
+
+/// The dual prices of a gear's state in a case.
+pub(super) struct JointPrice {
+    /// Price per twist \[1/rad\], per torque \[1/(N m)\], and the credit per slope \[rad/(N m)\].
+    pub twist: f64,
+    pub torque: f64,
+    pub slope: f64,
+    pub torques_nm: [f64; 2],
+    pub play: Option<JointPlay>,
+}
+
+/// The state of a gear: its torque, twist and slope.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct JointState {
+    pub torque_nm: f64,
+    pub twist_rad: f64,
+    pub slope: f64,
+}
+
+/// A state of a gear that can be the cheapest. Twist is linear in the torque within a segment, so the ends of
+/// the segments are enough. For a box of gears the state has the least and the greatest twist (without play),
+/// and the greatest slope (with play).
+#[derive(Clone, Copy, Default)]
+pub(super) struct GearState {
+    pub torque_nm: f64,
+    pub twist_rad: [f64; 2],
+    pub slope: f64,
+}
+
+/// The candidate states of a gear: at most two ends of three segments, for torques of both signs.
+#[derive(Default)]
+pub(super) struct GearStates {
+    all: [GearState; 12],
+    count: usize,
+}
+
+impl GearStates {
+    #[inline]
+    pub fn as_slice(&self) -> &[GearState] {
+        &self.all[..self.count]
+    }
+}
+
+/// Calls `see` for every candidate state of a curve under torques in an interval \[N m\].
+#[inline(always)]
+fn each_state(
+    curve: &CurveBox,
+    play: Option<&JointPlay>,
+    [low_nm, high_nm]: [f64; 2],
+    see: &mut impl FnMut(GearState),
+) {
+    if high_nm >= 0.0 {
+        each_state_of_sign(curve, play, 1.0, [low_nm.max(0.0), high_nm], see);
+    }
+    if low_nm < 0.0 {
+        each_state_of_sign(curve, play, -1.0, [(-high_nm).max(0.0), -low_nm], see);
+    }
+}
+
+/// The same for torques of one sign, given by their magnitudes \[N m\].
+#[inline(always)]
+fn each_state_of_sign(
+    curve: &CurveBox,
+    play: Option<&JointPlay>,
+    sign: f64,
+    [low, high]: [f64; 2],
+    see: &mut impl FnMut(GearState),
+) {
+    let w = &curve.stiff.windup;
+    for (segment, part) in w.segments().into_iter().enumerate() {
+        let Segment { from_nm: start, to_nm: end, stiffness_nm_per_rad: slope } = part;
+        let (from, to) = (low.max(start), high.min(end));
+        // A break point belongs to the segment below it.
+        if from <= to && (to > start || start == 0.0) {
+            // With K1 in the modes the segment of the torque does not matter to the slope.
+            let seen = if curve.k1_in_modes { w.k1_nm_per_rad } else { slope };
+            let slope = play.map_or(seen, |play| play.in_series(seen, to));
+            // The soft envelope is taken at the end of the segment: one value is valid for both ends.
+            let most = sign * curve.soft.angle_rad(to);
+            for torque in [from, to].into_iter().take(if from < to { 2 } else { 1 }) {
+                let least = sign * curve.stiff.angle_in(segment, torque);
+                see(GearState { torque_nm: sign * torque, twist_rad: [least, most], slope });
+            }
+        }
+        if high <= end {
+            return;
+        }
+    }
+}
+
+impl JointPrice {
+    /// The price and the state of the cheapest state of a joint with this curve. For a box of joints the
+    /// price is a lower bound over its members.
+    pub fn best_of(&self, curve: Option<&CurveBox>) -> (f64, JointState) {
+        let Some(curve) = curve else { return self.rigid() };
+        let mut best = (f64::INFINITY, JointState::default());
+        each_state(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
+            let price = self.of_state(&end);
+            if price < best.0 {
+                let [least, most] = end.twist_rad;
+                let twist_rad = if self.twist * most < self.twist * least { most } else { least };
+                best = (price, JointState { torque_nm: end.torque_nm, twist_rad, slope: end.slope });
+            }
+        });
+        best
+    }
+
+    /// The price of the cheapest state alone.
+    #[inline]
+    pub fn least_of(&self, curve: Option<&CurveBox>) -> f64 {
+        let Some(curve) = curve else { return self.rigid().0 };
+        let mut least = f64::INFINITY;
+        each_state(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
+            least = least.min(self.of_state(&end));
+        });
+        least
+    }
+
+    #[inline]
+    fn of_state(&self, end: &GearState) -> f64 {
+        let [least, most] = end.twist_rad.map(|twist| self.twist * twist);
+        least.min(most) + self.torque * end.torque_nm - self.slope * end.slope
+    }
+
+    /// Collects the candidate states of a joint with this curve.
+    #[inline]
+    pub fn ends(&self, curve: &CurveBox, ends: &mut GearStates) {
+        ends.count = 0;
+        each_state(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
+            ends.all[ends.count] = end;
+            ends.count += 1;
+        });
+    }
+
+    /// The price of a rigid joint. A box with `None` for its curve has a rigid member and members about which
+    /// nothing is known, so the price must be a lower bound for those too.
+    fn rigid(&self) -> (f64, JointState) {
+        let [low, high] = self.torques_nm.map(|t| self.torque * t);
+        // Other members of the box may twist by any angle. If a twist may earn something, no finite lower
+        // bound exists.
+        let opposed = self.torques_nm.iter().any(|t| t * self.twist < 0.0);
+        match opposed || self.slope > 0.0 {
+            true => (f64::NEG_INFINITY, JointState::default()),
+            false => (low.min(high), JointState::default()),
+        }
+    }
+}
+
+impl DualPrice {
+    /// Price of a joint's drive. For a box of drives: a lower bound over its members.
+    pub fn of_joint(&self, mass_kg: [f64; 2], curve: Option<&CurveBox>) -> f64 {
+        self.of_mass(mass_kg) + self.joint.iter().map(|price| price.least_of(curve)).sum::<f64>()
+    }
+
+    /// Price of a drive's mass.
+    #[inline]
+    pub fn of_mass(&self, mass_kg: [f64; 2]) -> f64 {
+        let per_kg = self.inertia[inertia::MASS];
+        per_kg * if per_kg >= 0.0 { mass_kg[0] } else { mass_kg[1] }
+    }
+
+    /// Price of a tube. For a box of tubes: a lower bound over its members.
+    #[inline]
+    pub fn of_tube(&self, tube: &LinkBox) -> f64 {
+        let least = |price: f64, [a, b]: [f64; 2]| price * if price >= 0.0 { a } else { b };
+        let mut sum = 0.0;
+        for (i, &price) in self.inertia.iter().enumerate() {
+            sum += least(price, [tube.low.inertias[i], tube.high.inertias[i]]);
+        }
+        for k in 0..STIFFNESSES {
+            sum += least(self.compliance[k], [tube.compliances[0][k], tube.compliances[1][k]]);
+            if self.stiffness[k] > 0.0 {
+                sum -= self.stiffness[k] * tube.high.stiffnesses[k];
+            }
+        }
+        sum
+    }
+}
+
+/// The least price of an option below a node, and its node. If the search ends early the node is a box of
+/// several options, and the price is a lower bound.
+pub(super) fn cheapest<B: Bounds>(tree: &Tree<B>, node: u32, price: impl Fn(&B) -> f64) -> (f64, u32) {
+    let offer = |node: u32| Offer { price: price(&tree.node(node).bounds), node };
+    let mut open = BinaryHeap::with_capacity(2 + MOST_LOOKS / 2);
+    let (mut cheapest, mut looks) = (offer(node), 0);
+    while let Some(halves) = tree.children(cheapest.node).filter(|_| looks < MOST_LOOKS) {
+        // Best-first search: the cheapest open box is opened next.
+        looks += 2;
+        let [cheaper, dearer] = order(halves.map(offer));
+        open.push(dearer);
+        // Most often the cheapest option is in the box that was just opened. Replacing the top of the heap is
+        // cheaper than a push and a pop.
+        cheapest = match open.peek_mut() {
+            Some(mut first) if *first > cheaper => std::mem::replace(&mut *first, cheaper),
+            _ => cheaper,
+        };
+    }
+    (cheapest.price, cheapest.node)
+}
+
+/// Orders two offers, the cheaper first.
+fn order([a, b]: [Offer; 2]) -> [Offer; 2] {
+    if a > b { [a, b] } else { [b, a] }
+}
+
+/// A box of parts and a lower bound of their prices.
+#[derive(Clone, Copy)]
+struct Offer {
+    price: f64,
+    node: u32,
+}
+
+impl Ord for Offer {
+    /// The cheapest offer is the greatest, because [`BinaryHeap`] pops the greatest; among equals the lower
+    /// node comes first.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.price.total_cmp(&self.price).then(other.node.cmp(&self.node))
+    }
+}
+
+impl PartialOrd for Offer {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Offer {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Offer {}

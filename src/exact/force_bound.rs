@@ -1,0 +1,57 @@
+//! Bounds on a force, which define a region beside its options.
+//!
+//! The torque on a gear is a sum over the weights outboard. Where its interval is wide, the products of force
+//! and compliance are bounded badly, and no single level is the cause. So a region may be halved by the
+//! torque itself ([`branching`](super::branching)). A bound on one force then tightens every other force that
+//! the same weights make.
+
+use super::pose::Row;
+
+/// Relative rounding of a force.
+const ROUNDING: f64 = 1e-12;
+
+/// The force of one row of a judged case, and the interval to which the region restricts it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ForceBound {
+    pub case: usize,
+    /// Index of the row in the case.
+    pub row: usize,
+    pub between: [f64; 2],
+}
+
+impl ForceBound {
+    /// Tightens the interval of another force that the same weights make.
+    ///
+    /// For any `a`, the other force `of` is `a` times the bounded force `by` plus a remainder, which is a sum
+    /// over the weights. The bound is piecewise linear in `a`, and it is best where a weight drops out of the
+    /// remainder; those values of `a` are tried.
+    pub fn tighten(&self, of: &Row, by: &Row, weights: &[[f64; 2]], force: &mut [f64; 2]) {
+        for (weight, per_n) in by.per_n.iter().enumerate().filter(|(_, c)| **c != 0.0) {
+            let a = of.per_n.get(weight).copied().unwrap_or(0.0) / per_n;
+            if a == 0.0 {
+                continue;
+            }
+            let [x, y] = self.between.map(|f| a * (f - by.fixed));
+            let (mut low, mut high) = (of.fixed + x.min(y), of.fixed + x.max(y));
+            // Where a coefficient is little more than rounding, `a` is large and the remainder is the
+            // difference of large numbers. The margin grows with their size.
+            let (mut low_size, mut high_size) =
+                (of.fixed.abs() + x.min(y).abs(), of.fixed.abs() + x.max(y).abs());
+            for (k, w) in weights.iter().enumerate() {
+                let at = |per_n: &[f64]| per_n.get(k).copied().unwrap_or(0.0);
+                let left = at(&of.per_n) - a * at(&by.per_n);
+                let (x, y) = (left * w[0], left * w[1]);
+                low += x.min(y);
+                high += x.max(y);
+                low_size += x.min(y).abs();
+                high_size += x.max(y).abs();
+            }
+            force[0] = force[0].max(low - ROUNDING * low_size);
+            force[1] = force[1].min(high + ROUNDING * high_size);
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "force_bound_tests.rs"]
+mod tests;

@@ -1,0 +1,45 @@
+//! The forces of a case as intervals, within the force bounds of the region.
+
+use super::force_bound::ForceBound;
+use super::interval::interval;
+use super::problem::Problem;
+use std::sync::Arc;
+
+impl Problem<'_> {
+    /// The interval of each row's force in a case. `None` if the force bounds leave an empty interval.
+    pub fn forces(&self, case: usize, weights: &[Vec<[f64; 2]>], forces: &mut Vec<[f64; 2]>) -> Option<()> {
+        let rows = &self.poses[case].rows;
+        forces.clear();
+        for row in rows {
+            let mut force = interval(row.fixed, &row.per_n, &weights[case]);
+            for bound in self.force_bounds.iter() {
+                // In water of another density the same parts have other weights, so the bound says nothing
+                // there.
+                if self.poses[bound.case].water_kg_m3 == self.poses[case].water_kg_m3 {
+                    let by = &self.poses[bound.case].rows[bound.row];
+                    bound.tighten(row, by, &weights[case], &mut force);
+                }
+            }
+            if force[0] > force[1] {
+                return None;
+            }
+            forces.push(force);
+        }
+        Some(())
+    }
+
+    /// The problem with one more force bound. A bound that exists already is intersected.
+    pub fn with_force_bound(&self, case: usize, row: usize, [low, high]: [f64; 2]) -> Self {
+        let mut bounds = self.force_bounds.to_vec();
+        match bounds.iter_mut().find(|bound| bound.case == case && bound.row == row) {
+            Some(ForceBound { between, .. }) => *between = [between[0].max(low), between[1].min(high)],
+            None => bounds.push(ForceBound { case, row, between: [low, high] }),
+        }
+        Self { force_bounds: Arc::from(bounds), ..self.clone() }
+    }
+
+    /// The problem without force bounds.
+    pub fn without_force_bounds(&self) -> Self {
+        Self { force_bounds: Arc::default(), ..self.clone() }
+    }
+}

@@ -1,0 +1,93 @@
+//! The incumbents: the designs found so far, and whether one of them dominates the bound of a box.
+//!
+//! A table ([`Archive`]) answers for incumbents that are better by at least one grid cell in mass and in
+//! deflection. Lists for each row and each column of cells hold the incumbents that share a cell with the
+//! bound in one of these objectives.
+
+use super::bound::BoxBound;
+use crate::pareto::archive::Archive;
+use crate::pareto::objectives::Objectives;
+use std::collections::HashMap;
+
+/// Two objectives that differ by less than this (relative) count as equal.
+const EQUAL: f64 = 1e-9;
+/// The dominating design must be better by this (relative) in at least one objective.
+const BETTER: f64 = 1e-7;
+/// A better trial shape may lower the frequency of a bound to this part of it.
+const NEAR: f64 = 0.4;
+/// Number of grid steps in a factor of two.
+const STEPS: f64 = 64.0;
+
+/// Designs that meet every constraint.
+pub(super) struct Incumbents {
+    table: Archive,
+    rows: HashMap<i32, Vec<Objectives>>,
+    columns: HashMap<i32, Vec<Objectives>>,
+    all: Vec<Objectives>,
+}
+
+impl Default for Incumbents {
+    fn default() -> Self {
+        Self { table: Archive::new(6), rows: HashMap::new(), columns: HashMap::new(), all: Vec::new() }
+    }
+}
+
+impl Incumbents {
+    /// Adds a design that meets every constraint.
+    pub fn enter(&mut self, found: &Objectives) {
+        self.table.enter(found);
+        self.all.push(*found);
+        let keys = [step(found.mass_kg), step(found.tip_deflection_m)];
+        for (lists, key) in [&mut self.rows, &mut self.columns].into_iter().zip(keys) {
+            let list = lists.entry(key).or_default();
+            let is_beaten = |by: &Objectives, o: &Objectives| {
+                by.mass_kg <= o.mass_kg
+                    && by.tip_deflection_m <= o.tip_deflection_m
+                    && by.lowest_mode_hz >= o.lowest_mode_hz
+            };
+            // Only designs that others do not dominate are kept in the lists, so that they stay short.
+            if !list.iter().any(|o| is_beaten(o, found)) {
+                list.retain(|o| !is_beaten(found, o));
+                list.push(*found);
+            }
+        }
+    }
+
+    /// All designs, in the order in which they were added.
+    pub fn all(&self) -> &[Objectives] {
+        &self.all
+    }
+
+    /// Whether an incumbent dominates every member of a box.
+    pub fn dominates(&self, box_bound: &BoxBound) -> bool {
+        let best = Objectives::from(*box_bound);
+        if self.table.rejects(&best) {
+            return true;
+        }
+        let in_list = |list: Option<&Vec<Objectives>>| {
+            list.is_some_and(|list| list.iter().any(|o| is_better(o, &best)))
+        };
+        in_list(self.rows.get(&step(best.mass_kg))) || in_list(self.columns.get(&step(best.tip_deflection_m)))
+    }
+
+    /// Whether an incumbent would dominate the bound if its frequency were lower. Then a better trial shape,
+    /// which lowers it, is worth its time.
+    pub fn nearly_dominates(&self, box_bound: &BoxBound) -> bool {
+        self.dominates(&BoxBound { hz: box_bound.hz * NEAR, ..*box_bound })
+    }
+}
+
+/// The grid step of a positive number on a logarithmic scale.
+fn step(x: f64) -> i32 {
+    (x.max(f64::MIN_POSITIVE).log2() * STEPS).floor() as i32
+}
+
+/// Whether `a` dominates `b`: better in at least one objective, and worse in none by more than rounding.
+pub(super) fn is_better(a: &Objectives, b: &Objectives) -> bool {
+    let pairs = [
+        (a.mass_kg, b.mass_kg),
+        (a.tip_deflection_m, b.tip_deflection_m),
+        (b.lowest_mode_hz, a.lowest_mode_hz),
+    ];
+    pairs.iter().all(|(a, b)| *a <= b * (1.0 + EQUAL)) && pairs.iter().any(|(a, b)| *a < b * (1.0 - BETTER))
+}

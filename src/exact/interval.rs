@@ -1,0 +1,13 @@
+//! Sums of weights that are known as intervals.
+
+/// The interval of `fixed + Σ per_n · weight`. Each weight occurs once, so it is the exact range.
+#[inline]
+pub(super) fn interval(fixed: f64, per_n: &[f64], weights: &[[f64; 2]]) -> [f64; 2] {
+    let (mut low, mut high) = (fixed, fixed);
+    for (c, w) in per_n.iter().zip(weights) {
+        let (a, b) = (c * w[0], c * w[1]);
+        low += a.min(b);
+        high += a.max(b);
+    }
+    [low, high]
+}

@@ -1,0 +1,179 @@
+//! Fills in the numbers of a box as intervals, part by part from the tip inward.
+
+use super::interval::interval;
+use super::parts::{DriveBox, LeastDemand, LinkBox, Rays};
+use super::problem::{Ladder, Part, Problem};
+use super::tree::{Bounds, Tree};
+use super::work::Work;
+use crate::sizing::demand::JointDemand;
+use crate::space::attributes::von_mises;
+use crate::space::slot::SizedJoint;
+
+/// Relative rounding of a sum of a few dozen terms, with a margin.
+pub(super) const ROUNDING: f64 = 1e-12;
+/// Levels of a tree that are descended in the search for infeasible drives.
+const DEPTH: usize = 6;
+
+impl Problem<'_> {
+    /// Fills in every interval from the tip inward, and shrinks the nodes of the box to the options that can
+    /// carry the least load. `None` if some part cannot carry it.
+    pub fn fill(&self, design_box: &mut [u32], work: &mut Work) -> Option<()> {
+        work.clear(self.parts.len(), self.poses.len());
+        let mut level = 0;
+        let mut cost_eur = 0.0;
+        for (piece, part) in self.parts.iter().enumerate() {
+            match part {
+                Part::Given { mass_kg, curve } => work.joint(self, piece, [*mass_kg; 2], *curve),
+                Part::Drives { sized, tree, rays, .. } => {
+                    self.fill_drives(piece, sized, tree, rays, &mut design_box[level], work)?;
+                    level += 1;
+                }
+                Part::FirstFit { sized, ladder } => self.fill_first_fit(piece, sized, ladder, work)?,
+                Part::Links { length_m, tree } => {
+                    let node = &mut design_box[level];
+                    level += 1;
+                    self.fill_links(piece, *length_m, tree, node, work)?;
+                    cost_eur += tree.node(*node).bounds.cost_eur_per_m * length_m;
+                    let max = self.space.constraints.material_cost_max_eur;
+                    if max.is_some_and(|max| cost_eur * (1.0 - ROUNDING) > max) {
+                        return None;
+                    }
+                }
+                Part::Tube { length_m, tube } => work.tube(self, piece, *length_m, tube),
+                Part::Offset { mass_kg } => {
+                    work.masses[piece] = [*mass_kg; 2];
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// Shrinks a box of drives to those that may carry the least demand, and fills in their numbers.
+    fn fill_drives(
+        &self,
+        piece: usize,
+        sized: &SizedJoint,
+        tree: &Tree<DriveBox>,
+        rays: &Rays,
+        node: &mut u32,
+        work: &mut Work,
+    ) -> Option<()> {
+        let (static_nm, inertia_kgm2) = self.loads(piece, work);
+        let least = LeastDemand::new(sized.table.motion(), rays, static_nm[0], inertia_kgm2[0]);
+        *node = tree.smallest_node(*node, |drives| drives.may_hold(&least))?;
+        let drives = feasible_drives(tree, *node, &least, DEPTH)?;
+        work.joint(self, piece, drives.mass_kg, drives.curve);
+        work.breaks[piece] = drives.breaks;
+        work.least_demands[piece] = Some(least);
+        work.greatest_demands[piece] = Some(sized.table.motion().demand(static_nm[1], inertia_kgm2[1]));
+        Some(())
+    }
+
+    /// Fills in the drives from the first fit of the least demand to the first fit of the greatest.
+    fn fill_first_fit(
+        &self,
+        piece: usize,
+        sized: &SizedJoint,
+        ladder: &Ladder,
+        work: &mut Work,
+    ) -> Option<()> {
+        let (static_nm, inertia_kgm2) = self.loads(piece, work);
+        let demand = |i: usize| sized.table.motion().demand(static_nm[i], inertia_kgm2[i]);
+        let (least, most) = (demand(0), demand(1));
+        let step = |demand: &JointDemand| {
+            let fit = sized.table.first_fit(demand)? as u32;
+            sized.table.first_fit_candidates().binary_search(&fit).ok()
+        };
+        let first = step(&least)?;
+        // If no drive carries the greatest demand, the heaviest may still be the fit of some member.
+        let last = step(&most).unwrap_or(ladder.len() - 1);
+        let DriveBox { mass_kg, curve, .. } = ladder.run(first, last);
+        work.joint(self, piece, mass_kg, curve);
+        Some(())
+    }
+
+    /// Shrinks a box of link options to those that may carry the least stress, and fills in their numbers.
+    fn fill_links(
+        &self,
+        piece: usize,
+        length_m: f64,
+        tree: &Tree<LinkBox>,
+        node: &mut u32,
+        work: &mut Work,
+    ) -> Option<()> {
+        work.tube(self, piece, length_m, &tree.node(*node).bounds);
+        while let Some(safety) = self.space.constraints.stress_safety_factor_min {
+            let loads = self.least_loads(piece, safety, work);
+            let smaller = tree.smallest_node(*node, |links| loads.iter().all(|l| stress_holds(links, l)))?;
+            if smaller == *node {
+                break;
+            }
+            // The remaining options are heavier, and a link carries its own weight, so the loads are computed
+            // again.
+            *node = smaller;
+            work.tube(self, piece, length_m, &tree.node(smaller).bounds);
+        }
+        Some(())
+    }
+
+    /// Least and greatest static torque on a joint \[N m\], and inertia about it \[kg m²\].
+    fn loads(&self, piece: usize, work: &Work) -> ([f64; 2], [f64; 2]) {
+        let (mut static_nm, mut inertia_kgm2) = ([0.0f64; 2], [0.0f64; 2]);
+        for (pose, weights) in self.poses.iter().zip(&work.weights).filter(|(p, _)| p.sizing) {
+            let Some(row) = &pose.inertia_about[piece] else { continue };
+            let [low, high] = pose.torque(piece, weights);
+            static_nm[0] = static_nm[0].max(low.max(-high).max(0.0));
+            static_nm[1] = static_nm[1].max(high.max(-low));
+            for (bound, lines) in inertia_kgm2.iter_mut().zip([&work.light, &work.heavy]) {
+                let of = row.per_line.iter().zip(lines);
+                let chosen: f64 = of.map(|(c, l)| c.iter().zip(l).map(|(c, l)| c * l).sum::<f64>()).sum();
+                *bound = bound.max(row.fixed + chosen);
+            }
+        }
+        let rounded = |[least, most]: [f64; 2]| [least * (1.0 - ROUNDING), most * (1.0 + ROUNDING)];
+        (rounded(static_nm), rounded(inertia_kgm2))
+    }
+
+    /// The least axial force \[N\], moments about y and z and torsion \[N m\] at the ends of a tube in every
+    /// case, times the factors that are applied before the comparison with the strength.
+    fn least_loads(&self, piece: usize, safety: f64, work: &Work) -> Vec<[f64; 4]> {
+        let cases = self.poses.iter().zip(&work.weights);
+        cases
+            .flat_map(|(pose, weights)| {
+                let peak = if pose.sizing { self.peak_factor } else { 1.0 };
+                let factor = peak * safety * (1.0 - ROUNDING);
+                pose.stress.iter().filter(|s| s.piece == piece).map(move |row| {
+                    row.loads.each_ref().map(|(fixed, per_n)| {
+                        let [low, high] = interval(*fixed, per_n, weights);
+                        low.max(-high).max(0.0) * factor
+                    })
+                })
+            })
+            .collect()
+    }
+}
+
+/// The box around the drives below a node that may carry a demand. It descends a few levels, so that
+/// infeasible drives do not widen the box. `None` if no drive may carry it.
+fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth: usize) -> Option<DriveBox> {
+    let drives = &tree.node(node).bounds;
+    if !drives.may_hold(asked) {
+        return None;
+    }
+    let (Some([a, b]), false) = (tree.children(node), depth == 0 || drives.least_limits.hold(&asked.demand))
+    else {
+        return Some(drives.clone());
+    };
+    match (feasible_drives(tree, a, asked, depth - 1), feasible_drives(tree, b, asked, depth - 1)) {
+        (Some(a), Some(b)) => Some(a.join(&b)),
+        (one, other) => one.or(other),
+    }
+}
+
+/// Whether some option of a box may carry a load.
+fn stress_holds(links: &LinkBox, load: &[f64; 4]) -> bool {
+    let [axial, y, z, torsion]: [f64; 4] = std::array::from_fn(|k| load[k] * links.stress[k]);
+    // For other sections the two bending stresses add up at one edge of the section.
+    let bending = if links.round { y.hypot(z) } else { y + z };
+    von_mises(axial + bending, torsion) <= 1.0
+}

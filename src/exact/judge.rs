@@ -1,0 +1,46 @@
+//! The limits that every design keeps, and the judgement of a single design.
+
+use super::bound::BoxBound;
+use super::local_upper_bounds::LocalUpperBound;
+use super::problem::Problem;
+use super::search_state::Findings;
+use super::work::Work;
+use crate::pareto::objectives::Objectives;
+use crate::search::sweep::Candidate;
+use crate::space::design::number;
+
+impl Problem<'_> {
+    /// The limits of mass, deflection and mode, as the upper bound of the whole front.
+    pub fn limits(&self) -> LocalUpperBound {
+        let limits = &self.space.constraints;
+        LocalUpperBound {
+            mass_kg: limits.mass_max_kg.unwrap_or(f64::INFINITY),
+            tip_m: limits.tip_deflection_max_m.unwrap_or(f64::INFINITY),
+            hz: limits.required_mode_hz(),
+        }
+    }
+
+    /// Judges a box of one design. Its objectives are those of the bound, with the mode computed exactly.
+    /// `None` if it breaks a constraint, or if rounding leaves open whether it meets one.
+    pub fn judge(
+        &self,
+        design_box: &[u32],
+        box_bound: &BoxBound,
+        work: &Work,
+        findings: &mut Findings,
+    ) -> Option<Objectives> {
+        let options = self.options(design_box)?;
+        let number = number(&self.level_sizes, &options);
+        findings.evaluated += 1;
+        let objectives = self.objectives(box_bound, work);
+        if !work.is_point() {
+            findings.undecided.push(Candidate { number, objectives });
+            return None;
+        }
+        if self.space.constraints.broken(&objectives).contains(&true) {
+            return None;
+        }
+        findings.kept.push(Candidate { number, objectives });
+        Some(objectives)
+    }
+}

@@ -1,0 +1,301 @@
+//! The Lagrangian bound of a box, part by part, and the multipliers that improve it.
+//!
+//! For multipliers `y ≥ 0` the weighted sum of the rows ([`rows`](super::rows)) is a sum of one number for
+//! each part, its price. The least sum over all members of the box is therefore the sum of the least prices,
+//! which are found level by level. It is the value of the dual function at `y`. If it exceeds the weighted
+//! limits of a local upper bound, no member lies below that bound.
+//!
+//! The next multipliers are the solution of a matrix game against the relaxed designs found so far (Kelley's
+//! cutting-plane method). If none refutes the bound, the modes of the mixed arm give new rows.
+
+use super::bound::STARTS;
+use super::dual_price::{DualPrice, JointPrice, cheapest};
+use super::local_upper_bounds::LocalUpperBound;
+use super::matrix_game::{Game, solve};
+use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::problem::{Part, Problem};
+use super::rows::{DualPoint, Force, Mode, RelaxedDesign, Rows};
+use super::shape::{Ideal, Shape, Work as ShapeWork, dot, products};
+use super::torsion::CurveBox;
+
+/// Steps of inverse iteration towards a mode of the mixed arm.
+const STEPS: usize = 3;
+
+/// Stiffnesses and inertias of each piece.
+type Arm = (Vec<[f64; STIFFNESSES]>, Vec<[f64; INERTIAS]>);
+
+impl Problem<'_> {
+    /// Mass of a piece per unit of its first line inertia: the length of a tube \[m\], and 1 for any other
+    /// piece.
+    fn length_m(&self, piece: usize) -> f64 {
+        match &self.parts[piece] {
+            Part::Links { length_m, .. } | Part::Tube { length_m, .. } => *length_m,
+            _ => 1.0,
+        }
+    }
+}
+
+impl Rows<'_> {
+    /// The multipliers that raise the lowest of some relaxed designs as far as possible above the limits of a
+    /// local upper bound.
+    pub fn best_multipliers(&self, members: &[RelaxedDesign], upper: &LocalUpperBound) -> Game {
+        /// A row this far below its limit (scaled) has no influence.
+        const NO_SAY: f64 = -10.0;
+        let row_limits: Vec<f64> = self.row_limits(upper).collect();
+        let above = |member: &RelaxedDesign| -> Vec<f64> {
+            member.values.iter().zip(&row_limits).map(|(v, a)| (v - a).max(NO_SAY)).collect()
+        };
+        // The rows of a force are equalities on the mixture and not numbers to be kept low.
+        let balanced = 1 + self.tips.len()..self.first_mode;
+        solve(&members.iter().flat_map(above).collect::<Vec<f64>>(), row_limits.len(), balanced)
+    }
+
+    /// Adds the modes of the mixed arm that lie below the required frequency, as new rows. Returns whether
+    /// there were any.
+    pub fn add_violated_modes(
+        &mut self,
+        members: &mut [RelaxedDesign],
+        mix: &[f64],
+        upper: &LocalUpperBound,
+    ) -> bool {
+        let lambda = upper.lambda();
+        let before = self.modes.len();
+        for (judged, case) in self.problem.judged_cases().enumerate() {
+            let (stiffness, inertia) = self.mixed_arm(members, mix, judged);
+            let ideal = Ideal { stiffness: &stiffness, inertia: &inertia };
+            let mut room = ShapeWork::default();
+            let mut shapes: Vec<Shape> = Vec::new();
+            for start in 0..STARTS.len() {
+                let last = self.modes.iter().rfind(|m| m.judged == judged && m.start == start);
+                let Some(mut shape) = last.map(|mode| mode.shape.clone()) else { continue };
+                for _ in 0..STEPS {
+                    shape.improve(&self.problem.poses[case], &ideal, &shapes, &mut room);
+                }
+                shapes.push(shape);
+            }
+            for (start, shape) in shapes.into_iter().enumerate() {
+                // A shape whose quotient is higher would give a row that the mixture satisfies already.
+                if shape.quotient(&ideal) < lambda * (1.0 - 1e-6) {
+                    self.push_mode(judged, start, shape);
+                }
+            }
+        }
+        // The relaxed designs found so far get the values of the new rows too, so that the game may use them.
+        for member in members {
+            for mode in &self.modes[before..] {
+                let row = member.values.len();
+                let value = self.mode_value(mode, member) / self.scale[row] + self.fixed[row];
+                member.values.push(value);
+            }
+        }
+        self.modes.len() > before
+    }
+
+    /// Stiffness and inertia of the mixed arm in a case: the mean of the relaxed designs by their shares.
+    fn mixed_arm(&self, members: &[RelaxedDesign], mix: &[f64], judged: usize) -> Arm {
+        let pieces = self.problem.parts.len();
+        let mut arm = (vec![[0.0; STIFFNESSES]; pieces], vec![[0.0; INERTIAS]; pieces]);
+        for (member, share) in members.iter().zip(mix).filter(|(_, share)| **share > 0.0) {
+            let pairs = arm.0.iter_mut().zip(&member.stiffness[judged]);
+            let pairs = pairs.chain(arm.1.iter_mut().zip(&member.inertia));
+            pairs.for_each(|(sum, x)| sum.iter_mut().zip(x).for_each(|(sum, x)| *sum += share * x));
+        }
+        arm
+    }
+
+    /// The least weighted sum over the members of the box, and the relaxed design that attains it.
+    pub fn minimize(&self, design_box: &[u32], multipliers: Vec<f64>) -> (DualPoint, RelaxedDesign) {
+        let mut total: f64 = multipliers.iter().zip(&self.fixed).map(|(w, f)| w * f).sum();
+        let mut levels = Vec::with_capacity(design_box.len());
+        let mut member = self.empty_design(design_box);
+        for (piece, part) in self.problem.parts.iter().enumerate() {
+            let level = levels.len();
+            let price = || self.price(piece, &multipliers);
+            // What the piece adds to each row is needed to choose a branching.
+            let before = member.values[..self.first_mode].to_vec();
+            total += match part {
+                Part::Drives { tree, .. } => {
+                    let price = price();
+                    let cheapest = self.drives[level].cheapest(&price);
+                    // If no drive is feasible the sum is infinite, and any local upper bound is refuted.
+                    let (least, at) = cheapest.unwrap_or((f64::INFINITY, design_box[level]));
+                    member.design_box[level] = at;
+                    levels.push(least);
+                    let drives = &tree.node(at).bounds;
+                    self.add_joint(piece, drives.mass_kg[0], drives.curve.as_ref(), &price, &mut member);
+                    least
+                }
+                Part::Links { tree, length_m } => {
+                    let price = price();
+                    let (least, at) = cheapest(tree, design_box[level], |links| price.of_tube(links));
+                    member.design_box[level] = at;
+                    levels.push(least);
+                    self.add_tube(piece, *length_m, &tree.node(at).bounds, &mut member);
+                    least
+                }
+                Part::Tube { tube, length_m } => {
+                    self.add_tube(piece, *length_m, tube, &mut member);
+                    // A given part has no choice, so its price is a constant of the sum.
+                    price().of_tube(tube)
+                }
+                Part::Given { .. } | Part::FirstFit { .. } => {
+                    let (price, mass_kg) = (price(), self.work.masses[piece]);
+                    let curve = self.work.curves[piece].as_ref();
+                    self.add_joint(piece, mass_kg[0], curve, &price, &mut member);
+                    price.of_joint(mass_kg, curve)
+                }
+                Part::Offset { mass_kg } => {
+                    member.values[0] += mass_kg;
+                    multipliers[0] / self.scale[0] * mass_kg
+                }
+            };
+            member.adds.push(member.values.iter().zip(&before).map(|(a, b)| a - b).collect());
+        }
+        for (m, mode) in self.modes.iter().enumerate() {
+            member.values[self.first_mode + m] = self.mode_value(mode, &member);
+        }
+        for ((value, scale), fixed) in member.values.iter_mut().zip(&self.scale).zip(&self.fixed) {
+            *value = *value / scale + fixed;
+        }
+        (DualPoint { multipliers, least: total, levels }, member)
+    }
+
+    /// A relaxed design without parts.
+    fn empty_design(&self, design_box: &[u32]) -> RelaxedDesign {
+        let pieces = self.problem.parts.len();
+        RelaxedDesign {
+            design_box: design_box.to_vec(),
+            adds: Vec::with_capacity(pieces),
+            weights_n: vec![vec![0.0; pieces]; self.tips.len()],
+            values: vec![0.0; self.scale.len()],
+            inertia: vec![[0.0; INERTIAS]; pieces],
+            stiffness: vec![vec![[0.0; STIFFNESSES]; pieces]; self.tips.len()],
+        }
+    }
+
+    /// Adds a drive to a relaxed design, in the state that is cheapest for its price.
+    fn add_joint(
+        &self,
+        piece: usize,
+        mass_kg: f64,
+        curve: Option<&CurveBox>,
+        price: &DualPrice,
+        member: &mut RelaxedDesign,
+    ) {
+        member.values[0] += mass_kg;
+        member.inertia[piece][inertia::MASS] = mass_kg;
+        let weight_n = mass_kg * self.problem.space.gravity_m_s2;
+        (0..self.tips.len()).for_each(|judged| self.add_weight(piece, judged, weight_n, member));
+        let gears = self.gears.iter().filter(|gear| gear.piece == piece);
+        for (gear, price) in gears.zip(&price.joint) {
+            let state = price.best_of(curve).1;
+            member.values[1 + gear.judged] += state.twist_rad * self.tips[gear.judged].joints[piece];
+            member.stiffness[gear.judged][piece][0] = state.slope;
+            if let Some(row) = gear.row {
+                member.values[row] += state.torque_nm;
+                member.values[row + 1] -= state.torque_nm;
+            }
+        }
+    }
+
+    /// Adds a tube to a relaxed design. For a box of tubes: the lightest and stiffest numbers.
+    fn add_tube(&self, piece: usize, length_m: f64, links: &LinkBox, member: &mut RelaxedDesign) {
+        let (line, stiffnesses) = (&links.low.inertias, &links.high.stiffnesses);
+        let mass_kg = line[inertia::MASS] * length_m;
+        member.values[0] += mass_kg;
+        member.inertia[piece] = *line;
+        for (judged, tip) in self.tips.iter().enumerate() {
+            let water_kg = self.problem.poses[tip.case].water_kg_m3 * line[inertia::OUTER_AREA] * length_m;
+            self.add_weight(piece, judged, (mass_kg - water_kg) * self.problem.space.gravity_m_s2, member);
+            let yields = tip.tubes[piece].iter().zip(stiffnesses).map(|(c, s)| c / s);
+            member.values[1 + judged] += yields.sum::<f64>();
+            // What does not yield stores no energy.
+            member.stiffness[judged][piece] = stiffnesses.map(|s| if s.is_finite() { s } else { 0.0 });
+        }
+    }
+
+    /// Adds the effect of a piece's weight on the tip and on the torques of the gears inboard.
+    fn add_weight(&self, piece: usize, judged: usize, weight_n: f64, member: &mut RelaxedDesign) {
+        member.values[1 + judged] += weight_n * self.tips[judged].per_n[piece];
+        member.weights_n[judged][piece] = weight_n;
+        for force in self.forces.iter().filter(|force| force.judged == judged) {
+            let Some(per_n) = force.per_n.get(piece) else { continue };
+            // The gear's own torque enters these rows with the opposite sign, in `add_joint`.
+            member.values[force.row] -= weight_n * per_n;
+            member.values[force.row + 1] += weight_n * per_n;
+        }
+    }
+
+    /// The dual prices of a piece under these multipliers.
+    pub fn price(&self, piece: usize, multipliers: &[f64]) -> DualPrice {
+        let multiplier = |row: usize| multipliers[row] / self.scale[row];
+        let (length_m, is_joint) = (self.problem.length_m(piece), self.work.curves[piece].is_some());
+        let mut price = DualPrice::default();
+        price.inertia[inertia::MASS] = multiplier(0) * length_m;
+        let g = self.problem.space.gravity_m_s2 * length_m;
+        for (judged, tip) in self.tips.iter().enumerate() {
+            let mut per_n = multiplier(1 + judged) * tip.per_n[piece];
+            for Force { row, per_n: by, .. } in self.forces.iter().filter(|force| force.judged == judged) {
+                per_n -= by.get(piece).map_or(0.0, |c| c * (multiplier(*row) - multiplier(row + 1)));
+            }
+            price.inertia[inertia::MASS] += g * per_n;
+            // Buoyancy: the net weight falls with the outer area.
+            price.inertia[inertia::OUTER_AREA] -= g * per_n * self.problem.poses[tip.case].water_kg_m3;
+            for (c, tube) in price.compliance.iter_mut().zip(&tip.tubes[piece]) {
+                *c += multiplier(1 + judged) * tube;
+            }
+        }
+        // A drive has no outer area; the weight of water on it is not counted by the model either.
+        if is_joint {
+            price.inertia[inertia::OUTER_AREA] = 0.0;
+        }
+        for gear in self.gears.iter().filter(|gear| gear.piece == piece) {
+            let modes = self.modes.iter().enumerate().filter(|(_, mode)| mode.judged == gear.judged);
+            price.joint.push(JointPrice {
+                twist: multiplier(1 + gear.judged) * self.tips[gear.judged].joints[piece],
+                slope: modes
+                    .map(|(m, mode)| multiplier(self.first_mode + m) * mode.shape.strain[piece][0])
+                    .sum(),
+                torque: gear.row.map_or(0.0, |row| multiplier(row) - multiplier(row + 1)),
+                torques_nm: gear.torques_nm,
+                play: self.problem.joint_plays[piece],
+            });
+        }
+        for (m, mode) in self.modes.iter().enumerate() {
+            let w = multiplier(self.first_mode + m);
+            // Most mode rows have no multiplier; skipping them saves most of the time of this loop.
+            if w == 0.0 {
+                continue;
+            }
+            for (p, kinetic) in price.inertia.iter_mut().zip(&mode.shape.kinetic[piece]) {
+                *p += w * self.lambda * kinetic;
+            }
+            // The slope of a gear depends on its state, so `JointPrice` has its credit instead.
+            if !is_joint {
+                for (p, strain) in price.stiffness.iter_mut().zip(&mode.shape.strain[piece]) {
+                    *p += w * strain;
+                }
+            }
+        }
+        price
+    }
+
+    /// What a piece of a relaxed design adds to a row, scaled.
+    pub fn added(&self, member: &RelaxedDesign, piece: usize, row: usize) -> f64 {
+        let adds = match row.checked_sub(self.first_mode) {
+            None => member.adds[piece][row],
+            Some(m) => {
+                let Mode { shape, judged, .. } = &self.modes[m];
+                let moves = dot(&shape.kinetic[piece], &member.inertia[piece]);
+                self.lambda * moves - dot(&shape.strain[piece], &member.stiffness[*judged][piece])
+            }
+        };
+        adds / self.scale[row]
+    }
+
+    /// `λ xᵀMx - xᵀKx` of a relaxed design, without the part of the payload and given bodies.
+    fn mode_value(&self, mode: &Mode, member: &RelaxedDesign) -> f64 {
+        let moves = products(&mode.shape.kinetic, &member.inertia);
+        self.lambda * moves - products(&mode.shape.strain, &member.stiffness[mode.judged])
+    }
+}

@@ -1,0 +1,133 @@
+//! The exact lowest eigenvalue of one arm, independent of any trial shape.
+//!
+//! With `A = C^½ M C^½`, all eigenvalues of `K φ = λ M φ` lie above `λ` exactly if `1/λ - A` is positive
+//! definite (Sylvester's law of inertia). One Cholesky factorization decides that.
+
+use super::parts::INERTIAS;
+use super::pose::{COORDINATES, Pose};
+use super::shape::{Ideal, Work, inertia_forces};
+use crate::mechanics::Twist;
+
+/// Relative tolerance of the lowest eigenvalue.
+const TOLERANCE: f64 = 1e-9;
+
+/// The inertia matrix of a case as a linear function of the inertias of the parts.
+pub(super) struct CaseInertia {
+    /// Piece and coordinate of each row of the matrix.
+    coordinates: Vec<(usize, usize)>,
+    fixed: Vec<f64>,
+    /// Piece, index among its inertias, and the matrix per unit of that inertia.
+    forms: Vec<(usize, usize, Vec<f64>)>,
+}
+
+impl CaseInertia {
+    /// The matrices of a case, over the coordinates that yield in some arm of the space.
+    pub fn new(pose: &Pose, some_arm: &Ideal) -> Self {
+        let mut coordinates = Vec::new();
+        for (piece, posed) in pose.pieces.iter().enumerate() {
+            for c in 0..posed.coordinates() {
+                if posed.coordinate_stiffness(c, &some_arm.stiffness[piece]) > 0.0 {
+                    coordinates.push((piece, c));
+                }
+            }
+        }
+        let nothing = vec![[0.0; INERTIAS]; pose.pieces.len()];
+        let fixed = matrix(pose, &coordinates, &nothing);
+        let mut forms = Vec::new();
+        for piece in 0..pose.pieces.len() {
+            for k in 0..INERTIAS {
+                let mut unit = nothing.clone();
+                unit[piece][k] = 1.0;
+                let mut form = matrix(pose, &coordinates, &unit);
+                form.iter_mut().zip(&fixed).for_each(|(a, b)| *a -= b);
+                if form.iter().any(|x| x.abs() > 0.0) {
+                    forms.push((piece, k, form));
+                }
+            }
+        }
+        Self { coordinates, fixed, forms }
+    }
+
+    /// The lowest eigenvalue of an arm \[1/s²\], given that it is at most `quotient`. In most cases the
+    /// quotient is it, so that is tested first.
+    pub fn lowest(&self, pose: &Pose, arm: &Ideal, quotient: f64) -> f64 {
+        let scaled = self.scaled(pose, arm);
+        let (mut low, mut high) = (quotient * (1.0 - TOLERANCE), quotient);
+        if self.all_above(&scaled, low) {
+            return quotient;
+        }
+        // Bisection: the trial shapes missed the lowest mode, which is rare.
+        low = 0.0;
+        while high - low > TOLERANCE * high {
+            let middle = 0.5 * (low + high);
+            if self.all_above(&scaled, middle) { low = middle } else { high = middle }
+        }
+        low
+    }
+
+    /// The matrix `C^½ M C^½` of an arm.
+    fn scaled(&self, pose: &Pose, arm: &Ideal) -> Vec<f64> {
+        let n = self.coordinates.len();
+        let mut m = self.fixed.clone();
+        for (piece, k, form) in &self.forms {
+            let amount = arm.inertia[*piece][*k];
+            m.iter_mut().zip(form).for_each(|(m, f)| *m += amount * f);
+        }
+        let root: Vec<f64> = self
+            .coordinates
+            .iter()
+            .map(|&(piece, c)| {
+                pose.pieces[piece].coordinate_stiffness(c, &arm.stiffness[piece]).sqrt().recip()
+            })
+            .collect();
+        for i in 0..n {
+            for j in 0..n {
+                m[i * n + j] *= root[i] * root[j];
+            }
+        }
+        m
+    }
+
+    /// Whether `1/λ - A` is positive definite, by a Cholesky factorization.
+    fn all_above(&self, scaled: &[f64], lambda: f64) -> bool {
+        let n = self.coordinates.len();
+        let mut l: Vec<f64> = scaled.iter().map(|a| -a).collect();
+        for i in 0..n {
+            l[i * n + i] += 1.0 / lambda;
+        }
+        for j in 0..n {
+            let pivot = l[j * n + j];
+            // A pivot that is not positive proves an eigenvalue at or below `lambda`.
+            if pivot <= 0.0 {
+                return false;
+            }
+            let (done, below) = l.split_at_mut((j + 1) * n);
+            let row = &done[j * n..];
+            for i in j + 1..n {
+                let target = &mut below[(i - j - 1) * n..(i - j) * n];
+                let factor = target[j] / pivot;
+                if factor != 0.0 {
+                    target[j + 1..].iter_mut().zip(&row[j + 1..]).for_each(|(t, r)| *t -= factor * r);
+                }
+            }
+        }
+        true
+    }
+}
+
+/// The matrix `M`, column by column: the inertia forces of unit motions.
+fn matrix(pose: &Pose, coordinates: &[(usize, usize)], inertia: &[[f64; INERTIAS]]) -> Vec<f64> {
+    let n = coordinates.len();
+    let mut work = Work::default();
+    let mut out = vec![0.0; n * n];
+    let mut x = vec![0.0; pose.pieces.len() * COORDINATES];
+    for (j, &(piece, c)) in coordinates.iter().enumerate() {
+        x[piece * COORDINATES + c] = 1.0;
+        inertia_forces(pose, inertia, &Twist::zeros(), &x, &mut work);
+        x[piece * COORDINATES + c] = 0.0;
+        for (i, &(piece, c)) in coordinates.iter().enumerate() {
+            out[i * n + j] = work.forces[piece * COORDINATES + c];
+        }
+    }
+    out
+}

@@ -1,0 +1,150 @@
+//! A matrix game: the weights of columns under which the least weighted row is as large as possible.
+
+use std::ops::Range;
+
+/// Greatest number of simplex pivots.
+const MOST_PIVOTS: usize = 200;
+/// Numbers below this are rounding.
+const NOTHING: f64 = 1e-11;
+
+/// Tolerance of the sums over balanced columns. A different value for each column breaks ties between pivots.
+const BALANCED: f64 = 1e-6;
+
+/// The solution of a game.
+pub(super) struct Game {
+    /// Weights of the columns. None is negative, and they sum to one.
+    pub weights: Vec<f64>,
+    /// Shares of the rows in the mixture that keeps every column as low as possible. They sum to one.
+    pub mix: Vec<f64>,
+    /// The least weighted row.
+    pub value: f64,
+}
+
+/// The weights of columns that make the least weighted row as large as possible. Each row has `width`
+/// numbers.
+///
+/// The simplex method solves the other player's linear program: `max Σ z` with `Σ_j (a_ji + c) z_j <= 1` for
+/// every column `i` and `z >= 0`. Its dual values are the weights.
+///
+/// Balanced columns are conditions on the mixture instead: `Σ_j a_ji z_j <= 0`. They come in pairs of
+/// opposite sign, so the sum is zero. As ordinary columns such a pair would guarantee the value zero without
+/// saying anything.
+pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game {
+    let count = rows.len() / width;
+    let least = rows.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = rows.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // All entries become at least 1 after scaling by the spread, so the value of the game is positive and the
+    // program is bounded.
+    let spread = (most - least).max(f64::MIN_POSITIVE);
+    let entry =
+        |i: usize, a: f64| if balanced.contains(&i) { a / spread } else { (a - least) / spread + 1.0 };
+    // The tableau has one line for each column of the game (its slack is basic) and one for the objective.
+    // Each line has z, the slacks and the right side.
+    let line = count + width + 1;
+    let mut table = vec![0.0; (width + 1) * line];
+    let mut basic: Vec<usize> = (count..count + width).collect();
+    for i in 0..width {
+        for j in 0..count {
+            table[i * line + j] = entry(i, rows[j * width + i]);
+        }
+        table[i * line + count + i] = 1.0;
+        table[i * line + line - 1] =
+            if balanced.contains(&i) { BALANCED * (1.0 + i as f64 / width as f64) } else { 1.0 };
+    }
+    table[width * line..width * line + count].fill(-1.0);
+    for _ in 0..MOST_PIVOTS {
+        let objective = &table[width * line..width * line + line - 1];
+        let Some((enter, &cost)) = objective.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else {
+            break;
+        };
+        // No variable improves the objective: the tableau is optimal.
+        if cost > -NOTHING {
+            break;
+        }
+        let ratio = |i: usize| {
+            let a = table[i * line + enter];
+            if a > NOTHING { table[i * line + line - 1] / a } else { f64::INFINITY }
+        };
+        let Some(leave) = (0..width).min_by(|&a, &b| ratio(a).total_cmp(&ratio(b))) else { break };
+        // The program is bounded, so this is rounding; the solution so far is used.
+        if ratio(leave).is_infinite() {
+            break;
+        }
+        basic[leave] = enter;
+        pivot(&mut table, line, leave, enter);
+    }
+    let mut weights: Vec<f64> = (0..width).map(|i| table[width * line + count + i].max(0.0)).collect();
+    let mut mix = vec![0.0; count];
+    for (i, &variable) in basic.iter().enumerate().filter(|(_, variable)| **variable < count) {
+        mix[variable] = table[i * line + line - 1].max(0.0);
+    }
+    for shares in [&mut weights, &mut mix] {
+        let sum: f64 = shares.iter().sum();
+        shares.iter_mut().for_each(|x| *x /= sum);
+    }
+    let weighted = |row: &[f64]| row.iter().zip(&weights).map(|(a, w)| a * w).sum::<f64>();
+    let value = rows.chunks(width).map(weighted).fold(f64::INFINITY, f64::min);
+    Game { weights, mix, value }
+}
+
+fn pivot(work: &mut [f64], line: usize, leave: usize, enter: usize) {
+    let by = 1.0 / work[leave * line + enter];
+    for x in &mut work[leave * line..(leave + 1) * line] {
+        *x *= by;
+    }
+    let (before, rest) = work.split_at_mut(leave * line);
+    let (pivotal, after) = rest.split_at_mut(line);
+    for other in before.chunks_mut(line).chain(after.chunks_mut(line)) {
+        let factor = other[enter];
+        if factor != 0.0 {
+            other.iter_mut().zip(&*pivotal).for_each(|(x, p)| *x -= factor * p);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The mixture satisfies the balanced pair. What it keeps the other columns below equals what the
+        /// weights guarantee, so no weights are better.
+        #[test]
+        fn a_balanced_pair_is_a_condition_and_no_stake(rows in prop::collection::vec(-1.0f64..1.0, 3 * 6)) {
+            let rows: Vec<f64> = rows.chunks(3).flat_map(|r| [r[0], r[1], r[2], -r[2]]).collect();
+            let of_both_signs = [-0.1, 0.1].map(|sign| rows.chunks(4).any(|row| row[2] * sign > 0.01));
+            prop_assume!(of_both_signs == [true; 2]);
+            let Game { weights, mix, value } = solve(&rows, 4, 2..4);
+            let mixed = |i: usize| rows.chunks(4).zip(&mix).map(|(row, z)| row[i] * z).sum::<f64>();
+            prop_assert!(weights.iter().chain(&mix).all(|x| *x >= 0.0));
+            prop_assert!(weights[0] + weights[1] > 1e-3);
+            prop_assert!(mixed(2).abs() < 1e-4, "{}", mixed(2));
+            let stakes = value / (weights[0] + weights[1]);
+            prop_assert!((mixed(0).max(mixed(1)) - stakes).abs() < 1e-3, "{} {stakes}", mixed(0).max(mixed(1)));
+        }
+
+        /// The value lies between what the weights guarantee and what some mixture of rows attains.
+        /// Fictitious play finds such mixtures independently.
+        #[test]
+        fn no_other_weights_are_better(rows in prop::collection::vec(-1.0f64..1.0, 4 * 6)) {
+            let Game { weights, mix, value } = solve(&rows, 4, 0..0);
+            let mixed = |i: usize| rows.chunks(4).zip(&mix).map(|(row, z)| row[i] * z).sum::<f64>();
+            prop_assert!((0..4).all(|i| mixed(i) <= value + 1e-9));
+            prop_assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+            let mut sums = [0.0f64; 4];
+            let mut counts = [0.0f64; 6];
+            for step in 1..=4000 {
+                let best = (0..4).max_by(|&a, &b| sums[a].total_cmp(&sums[b])).unwrap();
+                counts.iter_mut().zip(rows.chunks(4)).for_each(|(c, row)| *c += row[best]);
+                let worst = (0..6).min_by(|&a, &b| counts[a].total_cmp(&counts[b])).unwrap();
+                sums.iter_mut().zip(&rows[worst * 4..]).for_each(|(s, a)| *s += a);
+                if step == 4000 {
+                    let box_bound = sums.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s / 4000.0));
+                    prop_assert!(value <= box_bound + 1e-9, "{value} {box_bound}");
+                    prop_assert!(value >= box_bound - 0.1, "{value} {box_bound}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,300 @@
+//! Reduced-cost fixing: removes the options that no member below a local upper bound can have.
+//!
+//! At a dual point, let every other part be the cheapest. An option whose price exceeds what is then left of
+//! the limits belongs to no member below the local upper bound. All prices of a box of options are compared
+//! eight dual points at a time.
+
+use super::dual_price::{DualPrice, GearStates, JointPrice};
+use super::local_upper_bounds::LocalUpperBound;
+use super::parts::{DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::problem::Part;
+use super::rows::{DualPoint, ROUNDING, Rows};
+use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
+
+/// Approximate number of boxes into which the options of a level are divided.
+const BOXES: usize = 256;
+/// Number of dual points that are used, the strictest first.
+const STRICTEST: usize = 32;
+
+/// The dual prices of a level's options, and the greatest price that the local upper bound allows.
+type PricedLimit = (DualPrice, f64);
+
+impl Rows<'_> {
+    /// The nodes of each level's base tree whose options no dual point excludes. `None` if a level has none.
+    pub fn affordable_options(
+        &self,
+        design_box: &[u32],
+        points: &[DualPoint],
+        upper: &LocalUpperBound,
+    ) -> Option<Vec<Vec<u32>>> {
+        let mut strict: Vec<(f64, Vec<f64>, &[f64])> = points
+            .iter()
+            .map(|point| {
+                let room = self.allowed_sum(&point.multipliers, upper) - point.least + ROUNDING;
+                // The dual points have no multipliers for the modes that were added after them.
+                let mut multipliers = point.multipliers.clone();
+                multipliers.resize(self.scale.len(), 0.0);
+                (room, multipliers, &point.levels[..])
+            })
+            .collect();
+        // The strictest dual points exclude most options. Beyond some dozens, another one hardly excludes
+        // more than it costs.
+        strict.sort_by(|a, b| a.0.total_cmp(&b.0));
+        strict.truncate(STRICTEST);
+        let levels = self.problem.level_pieces.iter().enumerate();
+        levels
+            .map(|(level, &piece)| {
+                let afforded: Vec<PricedLimit> = strict
+                    .iter()
+                    .map(|(room, multipliers, levels)| (self.price(piece, multipliers), levels[level] + room))
+                    .collect();
+                let kept = self.affordable(piece, design_box[level], &afforded);
+                (!kept.is_empty()).then_some(kept)
+            })
+            .collect()
+    }
+
+    fn affordable(&self, piece: usize, node: u32, afforded: &[PricedLimit]) -> Vec<u32> {
+        let prices: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
+        let prices = &prices[..];
+        match &self.problem.parts[piece] {
+            Part::Drives { tree, .. } => {
+                let asked = self.work.least_demands[piece].as_ref();
+                let gears = afforded.first().map_or(&[][..], |(price, _)| &price.joint);
+                tree.kept(node, BOXES, |drives| {
+                    asked.is_none_or(|asked| drives.may_hold(asked))
+                        && !in_lanes(DrivesCost { drives, gears, prices })
+                })
+            }
+            Part::Links { tree, .. } => {
+                tree.kept(node, BOXES, |links| !in_lanes(LinksCost { links, prices }))
+            }
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// The dual prices of a level's options at eight dual points, and the greatest allowed price at each.
+struct EightPrices {
+    most: Eight,
+    inertia: [Eight; INERTIAS],
+    compliance: [Eight; STIFFNESSES],
+    stiffness: [Eight; STIFFNESSES],
+    /// Prices per twist, per torque and of the slope of a joint, for each judged case.
+    joint: Vec<[Eight; 3]>,
+}
+
+impl EightPrices {
+    /// Packs up to eight dual points. In unused lanes any price is allowed.
+    fn new(afforded: &[PricedLimit]) -> Self {
+        let lanes = |of: &dyn Fn(&DualPrice) -> f64| -> Eight {
+            std::array::from_fn(|lane| afforded.get(lane).map_or(0.0, |(price, _)| of(price)))
+        };
+        let joints = afforded.first().map_or(0, |(price, _)| price.joint.len());
+        Self {
+            most: std::array::from_fn(|lane| afforded.get(lane).map_or(f64::INFINITY, |(_, most)| *most)),
+            inertia: std::array::from_fn(|k| lanes(&|price| price.inertia[k])),
+            compliance: std::array::from_fn(|k| lanes(&|price| price.compliance[k])),
+            stiffness: std::array::from_fn(|k| lanes(&|price| price.stiffness[k])),
+            joint: (0..joints)
+                .map(|g| {
+                    [
+                        lanes(&|price| price.joint[g].twist),
+                        lanes(&|price| price.joint[g].torque),
+                        lanes(&|price| price.joint[g].slope),
+                    ]
+                })
+                .collect(),
+        }
+    }
+}
+
+/// Whether at some dual point every drive of a box costs more than allowed. A price that is not a number
+/// excludes nothing.
+struct DrivesCost<'a> {
+    drives: &'a DriveBox,
+    gears: &'a [JointPrice],
+    prices: &'a [EightPrices],
+}
+
+impl LaneWork for DrivesCost<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> bool {
+        let Self { drives, gears, prices } = self;
+        let mut ends = GearStates::default();
+        let mut left = [V::zero(); STRICTEST / LANES];
+        for (left, eight) in left.iter_mut().zip(prices) {
+            *left = V::load(&eight.most) - least::<V>(&eight.inertia[inertia::MASS], drives.mass_kg);
+        }
+        for (g, gear) in gears.iter().enumerate() {
+            // A box with a rigid member has no bound of its price, so it stays.
+            let Some(curve) = &drives.curve else { return false };
+            gear.ends(curve, &mut ends);
+            for (left, eight) in left.iter_mut().zip(prices) {
+                let [twist, torque, slope] = &eight.joint[g];
+                let mut best = V::splat(f64::INFINITY);
+                for end in ends.as_slice() {
+                    let price = least::<V>(twist, end.twist_rad) + V::load(torque) * V::splat(end.torque_nm);
+                    best = best.min(price - V::load(slope) * V::splat(end.slope));
+                }
+                *left = *left - best;
+            }
+        }
+        let mut excluded = 0;
+        for left in left {
+            excluded |= left.less(V::zero());
+        }
+        excluded != 0
+    }
+}
+
+/// The same for every tube of a box.
+struct LinksCost<'a> {
+    links: &'a LinkBox,
+    prices: &'a [EightPrices],
+}
+
+impl LaneWork for LinksCost<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> bool {
+        let LinkBox { low, high, compliances, .. } = self.links;
+        for eight in self.prices {
+            let mut cost = V::zero();
+            for k in 0..INERTIAS {
+                cost = cost + least::<V>(&eight.inertia[k], [low.inertias[k], high.inertias[k]]);
+            }
+            let [stiff, soft] = compliances;
+            for k in 0..STIFFNESSES {
+                cost = cost + least::<V>(&eight.compliance[k], [stiff[k], soft[k]]);
+                // What does not yield earns no credit, and an infinite stiffness times a zero price must not
+                // become NaN.
+                let price = V::load(&eight.stiffness[k]);
+                let earned = price * V::splat(high.stiffnesses[k]);
+                cost = cost - V::choose(V::zero().less(price), earned, V::zero());
+            }
+            if V::load(&eight.most).less(cost) != 0 {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// The least price of a number in an interval, at each of eight dual points.
+#[inline(always)]
+fn least<V: Lanes>(price: &Eight, [low, high]: [f64; 2]) -> V {
+    let price = V::load(price);
+    (price * V::splat(low)).min(price * V::splat(high))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::joint_law::{Curve, JointLaw};
+    use crate::exact::parts::Line;
+    use crate::exact::torsion::CurveBox;
+    use crate::sizing::limits::DriveLimits;
+    use proptest::prelude::*;
+
+    /// Prices with an allowed price that is higher than the cost, except at the index `dear`.
+    fn afforded(prices: Vec<DualPrice>, cost: impl Fn(&DualPrice) -> f64, dear: usize) -> Vec<PricedLimit> {
+        let room = |at: usize| if at == dear { -0.1 } else { 0.1 };
+        let afford = |(at, price): (usize, DualPrice)| {
+            let cost = cost(&price);
+            (price, cost + room(at) * (1.0 + cost.abs()))
+        };
+        prices.into_iter().enumerate().map(afford).collect()
+    }
+
+    fn excluded_one_by_one(afforded: &[PricedLimit], cost: impl Fn(&DualPrice) -> f64) -> bool {
+        afforded.iter().any(|(price, most)| cost(price) > *most)
+    }
+
+    fn price(numbers: &[f64]) -> DualPrice {
+        let mut numbers = numbers.iter().copied();
+        let mut next = || numbers.next().unwrap_or_default();
+        DualPrice {
+            inertia: std::array::from_fn(|_| next()),
+            compliance: std::array::from_fn(|_| next()),
+            stiffness: std::array::from_fn(|_| next().max(0.0)),
+            joint: Vec::new(),
+        }
+    }
+
+    const ANY: DriveLimits = DriveLimits {
+        static_torque_nm: 0.0,
+        peak_torque_nm: 0.0,
+        stop_torque_nm: 0.0,
+        mean_torque_cubed_nm3: 0.0,
+        tilting_moment_nm: 0.0,
+    };
+
+    proptest! {
+        /// Eight prices at once exclude exactly what each excludes alone, for tubes with and without shear.
+        #[test]
+        fn tubes_cost_the_same_side_by_side(
+            prices in prop::collection::vec(prop::collection::vec(-1.0f64..1.0, 15), 1..20),
+            low in prop::array::uniform10(0.1f64..2.0), width in prop::array::uniform10(0.0f64..1.0),
+            rigid in any::<bool>(), dear in 0usize..30,
+        ) {
+            let line = |times: f64| Line {
+                inertias: std::array::from_fn(|k| low[k] + times * width[k]),
+                stiffnesses: std::array::from_fn(|k| match rigid && k == 2 {
+                    true => f64::INFINITY,
+                    false => low[5 + k] + times * width[5 + k],
+                }),
+            };
+            let (low, high) = (line(0.0), line(1.0));
+            let compliances = [high.stiffnesses.map(f64::recip), low.stiffnesses.map(f64::recip)];
+            let links =
+                LinkBox { low, high, compliances, stress: [0.0; 4], round: false, cost_eur_per_m: 0.0 };
+            let prices = prices.iter().map(|numbers| price(numbers)).collect();
+            let cost = |price: &DualPrice| price.of_tube(&links);
+            let afforded = afforded(prices, cost, dear);
+            let eights: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
+            let excluded = in_lanes(LinksCost { links: &links, prices: &eights });
+            prop_assert_eq!(excluded, excluded_one_by_one(&afforded, cost));
+        }
+
+        /// The same for drives, whose gears are in one of three segments under torques of either sign.
+        #[test]
+        fn drives_cost_the_same_side_by_side(
+            prices in prop::collection::vec(prop::array::uniform8(-1.0f64..1.0), 1..20),
+            slopes in prop::array::uniform6(0.1f64..3.0), ends in prop::array::uniform2(0.1f64..3.0),
+            torques in prop::array::uniform2((-5.0f64..5.0, 0.0f64..5.0)),
+            mass_kg in 0.1f64..3.0, more_kg in 0.0f64..1.0, dear in 0usize..30,
+        ) {
+            let curve = |k: &[f64]| {
+                let windup = crate::arm::joint_law::Windup {
+                    k1_nm_per_rad: k[0], k2_nm_per_rad: k[1], k3_nm_per_rad: k[2],
+                    t1_nm: ends[0], t2_nm: ends[0] + ends[1],
+                };
+                CurveBox::of(&JointLaw::from(Curve::Windup(windup))).unwrap()
+            };
+            let curve = curve(&slopes[..3]).join(&curve(&slopes[3..]));
+            let drives = DriveBox {
+                mass_kg: [mass_kg, mass_kg + more_kg],
+                limits: ANY, least_limits: ANY, multiples: Default::default(),
+                curve: Some(curve), breaks: Default::default(), each: None,
+            };
+            let joint = |g: usize, n: &[f64]| JointPrice {
+                twist: n[0], torque: n[1], slope: n[2].max(0.0),
+                torques_nm: [torques[g].0, torques[g].0 + torques[g].1], play: None,
+            };
+            let prices = prices.iter().map(|n| DualPrice {
+                joint: vec![joint(0, &n[2..5]), joint(1, &n[5..8])],
+                ..price(&n[..1])
+            });
+            let cost = |price: &DualPrice| price.of_joint(drives.mass_kg, drives.curve.as_ref());
+            let afforded = afforded(prices.collect(), cost, dear);
+            let eights: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
+            let gears = &afforded[0].0.joint;
+            let excluded = in_lanes(DrivesCost { drives: &drives, gears, prices: &eights });
+            prop_assert_eq!(excluded, excluded_one_by_one(&afforded, cost));
+        }
+    }
+}

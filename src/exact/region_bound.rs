@@ -1,0 +1,90 @@
+//! The result of bounding a region: a refutation, or the surviving options, the branchings and promising
+//! designs.
+
+use super::bound::{BoxBound, DesignBox};
+use super::branching::Branching;
+use super::local_upper_bounds::LocalUpperBound;
+use super::problem::Problem;
+use super::rows::{DualPoint, ROUNDING, RelaxedDesign, Rows, WarmStart};
+use super::work::Work;
+
+/// Greatest number of dual points, and of rounds of new shapes, for one box.
+const MOST_POINTS: usize = 24;
+const MOST_SHAPES: usize = 3;
+/// Greatest number of dual points after the game's value shows that the bound cannot be refuted. They improve
+/// the reduced costs.
+const MOST_TO_REDUCE: usize = 8;
+/// The iteration stops when the game promises at most this much more than the best dual point so far.
+const SETTLED: f64 = 1e-4;
+/// Shares of a mixture below this are rounding.
+const SHARE: f64 = 1e-9;
+
+/// What a region may still contain.
+pub(super) struct Survivors {
+    /// The nodes of each level's base tree that hold every option a member of the region may have.
+    pub options: Vec<Vec<u32>>,
+    /// Where to branch, the most promising first.
+    pub branchings: Vec<Branching>,
+    /// Designs that may lie in the region; they are tried as incumbents.
+    pub candidates: Vec<DesignBox>,
+}
+
+impl Problem<'_> {
+    /// Bounds a box, whose numbers are in `work`, below a local upper bound. `None` if no member lies below
+    /// it.
+    pub fn bound_below(
+        &self,
+        design_box: &[u32],
+        box_bound: &BoxBound,
+        warm_start: &mut WarmStart,
+        work: &Work,
+        upper: &LocalUpperBound,
+    ) -> Option<Survivors> {
+        let mut rows = Rows::new(self, design_box, box_bound, upper, &warm_start.shapes, work);
+        let (mut points, mut members) = (Vec::<DualPoint>::new(), Vec::<RelaxedDesign>::new());
+        let mut starts = rows.single_row_multipliers(upper);
+        let most = starts.len() + MOST_POINTS;
+        starts.push(rows.starting_multipliers(&warm_start.multipliers));
+        let (mut new_shapes, mut to_reduce, mut nearest) = (0, 0, f64::NEG_INFINITY);
+        let game = loop {
+            let multipliers = match starts.pop() {
+                Some(multipliers) => multipliers,
+                None => {
+                    let game = rows.best_multipliers(&members, upper);
+                    // The rows at hand cannot refute the bound. New shapes may.
+                    if game.value <= ROUNDING && new_shapes < MOST_SHAPES {
+                        new_shapes += 1;
+                        if rows.add_violated_modes(&mut members, &game.mix, upper) {
+                            continue;
+                        }
+                    }
+                    // From here on the multipliers serve only to exclude options.
+                    to_reduce += usize::from(game.value <= ROUNDING);
+                    if points.len() >= most || to_reduce > MOST_TO_REDUCE || game.value <= nearest + SETTLED {
+                        break game;
+                    }
+                    game.weights
+                }
+            };
+            let (point, member) = rows.minimize(design_box, multipliers);
+            let above = point.least - rows.allowed_sum(&point.multipliers, upper);
+            // The value of the dual function exceeds the limits: the multipliers are a certificate that the
+            // region is empty.
+            if above > ROUNDING {
+                return None;
+            }
+            nearest = nearest.max(above);
+            points.push(point);
+            members.push(member);
+        };
+        let mixed: Vec<(&RelaxedDesign, f64)> =
+            members.iter().zip(game.mix.iter().copied()).filter(|(_, share)| *share > SHARE).collect();
+        let survivors = Survivors {
+            options: rows.affordable_options(design_box, &points, upper)?,
+            branchings: rows.branchings(&mixed, &game.weights),
+            candidates: mixed.iter().map(|(member, _)| member.design_box.clone()).collect(),
+        };
+        rows.save_warm_start(&game.weights, warm_start);
+        Some(survivors)
+    }
+}

@@ -1,0 +1,81 @@
+//! The state of a search, and what a task adds to it.
+
+use super::bound::BoxBound;
+use super::incumbents::{Incumbents, is_better};
+use crate::pareto::front::not_clearly_beaten;
+use crate::pareto::objectives::Objectives;
+use crate::search::sweep::{Candidate, SLACK};
+use std::collections::HashSet;
+
+/// Above this number, candidates are filtered whenever their number reaches a power of two.
+const BUFFER: usize = 4096;
+
+/// The state that all tasks of a round share.
+#[derive(Default)]
+pub(super) struct SearchState {
+    pub incumbents: Incumbents,
+    /// Numbers of the designs that were tried as incumbents.
+    pub tried: HashSet<u128>,
+    kept: Vec<Candidate>,
+    /// Designs for which rounding leaves open whether a part carries its demand. The full model judges them.
+    undecided: Vec<Candidate>,
+    pub evaluated: u64,
+}
+
+/// What a task found.
+#[derive(Default)]
+pub(super) struct Findings {
+    pub kept: Vec<Candidate>,
+    pub undecided: Vec<Candidate>,
+    pub tried: Vec<u128>,
+    pub evaluated: u64,
+}
+
+impl Findings {
+    /// Whether a design found dominates every member of a box.
+    pub fn dominates(&self, box_bound: &BoxBound) -> bool {
+        let best = Objectives::from(*box_bound);
+        self.kept.iter().any(|c| is_better(&c.objectives, &best))
+    }
+}
+
+impl SearchState {
+    /// Adds the objectives of a known design, from whatever source.
+    pub fn enter(&mut self, objectives: &Objectives) {
+        self.incumbents.enter(objectives);
+    }
+
+    /// Takes in the findings of a task.
+    pub fn learn(&mut self, findings: Findings) {
+        self.evaluated += findings.evaluated;
+        self.tried.extend(findings.tried);
+        self.undecided.extend(findings.undecided);
+        for candidate in findings.kept {
+            self.incumbents.enter(&candidate.objectives);
+            self.kept.push(candidate);
+            if self.kept.len().is_power_of_two() && self.kept.len() > BUFFER {
+                clear(&mut self.kept);
+            }
+        }
+    }
+
+    /// The designs found that no other dominates, in ascending order, followed by the undecided ones.
+    pub fn into_front(self) -> Vec<Candidate> {
+        let mut front = self.kept;
+        clear(&mut front);
+        front.sort_unstable_by_key(|c| c.number);
+        front.dedup_by_key(|c| c.number);
+        // A design that would have been pruned had it come later is removed too, so that the result does not
+        // depend on the order of discovery.
+        let all = front.clone();
+        front.retain(|c| !all.iter().any(|other| is_better(&other.objectives, &c.objectives)));
+        front.extend(self.undecided);
+        front
+    }
+}
+
+/// Removes the candidates that another one dominates.
+fn clear(kept: &mut Vec<Candidate>) {
+    let points: Vec<[f64; 3]> = kept.iter().map(|c| c.objectives.minimized()).collect();
+    *kept = not_clearly_beaten(&points, SLACK).into_iter().map(|i| kept[i]).collect();
+}

@@ -1,0 +1,85 @@
+//! Tied designs: those that differ only in drives of one kind.
+
+use super::problem::{Part, Problem};
+use super::work::Work;
+use crate::search::sweep::Candidate;
+use crate::space::design::{number, options};
+use std::collections::{BTreeSet, HashMap};
+
+impl Problem<'_> {
+    /// The designs that designs of kinds stand for. If they are at most `most` all are returned, otherwise
+    /// the first of each. The flag says whether all are.
+    pub fn with_ties(&self, found: &[Candidate], most: usize) -> (Vec<Candidate>, bool) {
+        let with_ties: Vec<(&Candidate, Vec<Vec<u32>>)> = self.feasible_drives(found);
+        let count = |lists: &Vec<Vec<u32>>| lists.iter().map(|list| list.len() as f64).product::<f64>();
+        let all: f64 = with_ties.iter().map(|(_, lists)| count(lists)).sum();
+        let lists_all = all <= most as f64;
+        let mut designs = Vec::new();
+        for (candidate, lists) in &with_ties {
+            let mut chosen: Vec<Vec<u32>> = vec![Vec::new()];
+            for list in lists {
+                // Listing all ties of some designs and not of others would be arbitrary, so it is all or one
+                // of each.
+                let choices = if lists_all { &list[..] } else { &list[..1] };
+                let longer = |start: Vec<u32>| choices.iter().map(move |o| [&start[..], &[*o]].concat());
+                chosen = chosen.into_iter().flat_map(longer).collect();
+            }
+            designs.extend(
+                chosen
+                    .into_iter()
+                    .map(|options| Candidate { number: number(&self.level_sizes, &options), ..**candidate }),
+            );
+        }
+        (designs, lists_all)
+    }
+
+    /// For each design of kinds, the options of each level, tip first: the drives of its kind that carry the
+    /// demand. Those that carry it by more than rounding come first.
+    fn feasible_drives<'f>(&self, found: &'f [Candidate]) -> Vec<(&'f Candidate, Vec<Vec<u32>>)> {
+        let chosen: Vec<Option<Vec<u32>>> =
+            found.iter().map(|candidate| options(&self.level_sizes, candidate.number)).collect();
+        let leaves = self.leaves_of(&chosen);
+        let mut work = Work::default();
+        let mut lists_of = |options: &[u32]| -> Option<Vec<Vec<u32>>> {
+            let mut design_box: Vec<u32> = options
+                .iter()
+                .zip(&leaves)
+                .map(|(o, leaves)| leaves.get(o).copied())
+                .collect::<Option<_>>()?;
+            self.fill(&mut design_box, &mut work)?;
+            let levels = self.level_pieces.iter().zip(options);
+            levels
+                .map(|(&piece, &option)| match (&self.parts[piece], &work.least_demands[piece]) {
+                    (Part::Drives { sized, kinds, .. }, Some(asked)) => {
+                        let holds = |drive: &&u32| sized.table.limits(**drive as usize).hold(&asked.demand);
+                        let mut drives: Vec<u32> =
+                            kinds.drives(option).iter().filter(holds).copied().collect();
+                        // Drives that carry the demand whatever rounding does come first.
+                        let surely = |drive: &u32| {
+                            let limits = sized.table.limits(*drive as usize);
+                            work.greatest_demands[piece].as_ref().is_some_and(|most| limits.hold(most))
+                        };
+                        drives.sort_by_key(|drive| !surely(drive));
+                        (!drives.is_empty()).then_some(drives)
+                    }
+                    _ => Some(vec![option]),
+                })
+                .collect()
+        };
+        let pairs = found.iter().zip(&chosen);
+        pairs.filter_map(|(candidate, options)| Some((candidate, lists_of(options.as_ref()?)?))).collect()
+    }
+
+    /// For every level, the leaves of the options that some designs have.
+    fn leaves_of(&self, designs: &[Option<Vec<u32>>]) -> Vec<HashMap<u32, u32>> {
+        let of_level = |(level, &piece): (usize, &usize)| {
+            let wanted: BTreeSet<u32> = designs.iter().flatten().map(|options| options[level]).collect();
+            match &self.parts[piece] {
+                Part::Drives { tree, .. } => tree.leaves_of(&wanted),
+                Part::Links { tree, .. } => tree.leaves_of(&wanted),
+                _ => HashMap::new(),
+            }
+        };
+        self.level_pieces.iter().enumerate().map(of_level).collect()
+    }
+}

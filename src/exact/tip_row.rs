@@ -1,0 +1,69 @@
+//! The displacement of the tip along a direction, as a sum over the parts of a box's members.
+
+use super::parts::STIFFNESSES;
+use super::pose::{PosedPiece, RESISTED, degree_factor};
+use super::problem::{Part, Problem};
+use super::work::Work;
+
+/// The displacement of the tip in a judged case, along the direction of its least deflection.
+pub(super) struct TipRow {
+    pub case: usize,
+    /// Displacement per newton of each piece's weight \[m/N\], through tubes and through gears of a single
+    /// slope.
+    pub per_n: Vec<f64>,
+    /// Displacement per twist of each joint \[m/rad\].
+    pub joints: Vec<f64>,
+    /// The torque at which a gear of a single slope twists \[N m\]; `None` if its slope may change.
+    pub torques_nm: Vec<Option<f64>>,
+    /// Displacement per compliance of each tube.
+    pub tubes: Vec<[f64; STIFFNESSES]>,
+}
+
+impl TipRow {
+    /// The tip row of a judged case, and the part of it that no choice changes \[m\].
+    pub fn new(problem: &Problem, judged: usize, case: usize, work: &Work) -> (Self, f64) {
+        let pose = &problem.poses[case];
+        let pieces = problem.parts.len();
+        let mut tip = Self {
+            case,
+            per_n: vec![0.0; pieces],
+            joints: vec![0.0; pieces],
+            torques_nm: vec![None; pieces],
+            tubes: vec![[0.0; STIFFNESSES]; pieces],
+        };
+        let mut fixed_m = 0.0;
+        for (row, &force) in pose.rows.iter().zip(&work.forces[case]) {
+            let tip_per_unit = work.tip_directions[judged].dot(&row.tip_m);
+            let at = if tip_per_unit > 0.0 { force[0] } else { force[1] };
+            let least = if let PosedPiece::Tube(tube) = &pose.pieces[row.piece] {
+                let resisted = RESISTED[row.coordinate].0;
+                let stiffness = work.stiff[row.piece][resisted];
+                if stiffness == 0.0 {
+                    continue;
+                }
+                let factor = degree_factor(row.coordinate) / tube.length_m;
+                tip.tubes[row.piece][resisted] += tip_per_unit * at * factor;
+                tip_per_unit * factor / stiffness
+            } else {
+                tip.joints[row.piece] = tip_per_unit;
+                let [least_nm, most_nm] = work.torques[case][row.piece];
+                let Some(curve) = &work.curves[row.piece] else { continue };
+                let (breaks, play) = (work.breaks[row.piece], problem.joint_plays[row.piece].as_ref());
+                let [less, more] = curve.twist_of_play(play, force);
+                fixed_m += tip_per_unit * if tip_per_unit > 0.0 { less } else { more };
+                let known = matches!(problem.parts[row.piece], Part::Drives { .. } | Part::Given { .. });
+                // A gear whose slope may change gets a torque of its own, with rows that balance it.
+                if !known || !curve.keeps_its_slope(play, [least_nm, most_nm], breaks) {
+                    continue;
+                }
+                tip.torques_nm[row.piece] = Some(at);
+                tip_per_unit / curve.steepest(least_nm, most_nm)
+            };
+            fixed_m += least * (row.fixed - at);
+            for (total, c) in tip.per_n.iter_mut().zip(&row.per_n) {
+                *total += least * c;
+            }
+        }
+        (tip, fixed_m)
+    }
+}

@@ -1,0 +1,120 @@
+//! The numbers of one box, as intervals.
+
+use super::parts::{INERTIAS, LeastDemand, LinkBox, STIFFNESSES, inertia};
+use super::problem::Problem;
+use super::shape::Work as ShapeWork;
+use super::torsion::{BreakPoints, CurveBox};
+use crate::sizing::demand::JointDemand;
+use nalgebra::Vector3;
+
+/// The numbers of one box. A worker keeps them between boxes, so that nothing is allocated.
+#[derive(Default)]
+pub(super) struct Work {
+    /// Greatest stiffnesses of each piece.
+    pub(super) stiff: Vec<[f64; STIFFNESSES]>,
+    /// Least stiffnesses of each piece.
+    pub(super) soft: Vec<[f64; STIFFNESSES]>,
+    /// Least line inertias of each piece; the mass \[kg\] of a joint in the first place.
+    pub(super) light: Vec<[f64; INERTIAS]>,
+    /// Greatest line inertias of each piece.
+    pub(super) heavy: Vec<[f64; INERTIAS]>,
+    /// Weight of each piece in each case, as an interval \[N\].
+    pub(super) weights: Vec<Vec<[f64; 2]>>,
+    /// The force of each row of each case, as an interval.
+    pub(super) forces: Vec<Vec<[f64; 2]>>,
+    /// Torsion curves of each joint; `None` for a rigid joint or another piece.
+    pub(super) curves: Vec<Option<CurveBox>>,
+    /// Greatest stiffnesses of each piece in each case. A gear's slope depends on its torque, so it differs
+    /// between cases.
+    pub(super) stiff_in: Vec<Vec<[f64; STIFFNESSES]>>,
+    /// Mass of each piece, as an interval \[kg\].
+    pub(super) masses: Vec<[f64; 2]>,
+    /// The least demand on each joint whose drive is a level.
+    pub(super) least_demands: Vec<Option<LeastDemand>>,
+    /// The greatest demand on each joint whose drive is a level.
+    pub(super) greatest_demands: Vec<Option<JointDemand>>,
+    /// Break points of the curves of each joint.
+    pub(super) breaks: Vec<BreakPoints>,
+    /// Least and greatest magnitude of the torque on each joint, in each judged case \[N m\].
+    pub(super) torques: Vec<Vec<[f64; 2]>>,
+    /// The case whose tip has the greatest least deflection, and its direction.
+    pub(super) worst_tip: Option<(usize, Vector3<f64>)>,
+    /// Direction of the tip's least deflection in each judged case.
+    pub(super) tip_directions: Vec<Vector3<f64>>,
+    /// Upper bound of the tip's deflection in each judged case in which contributions may oppose each other
+    /// \[m\].
+    pub(super) greatest_tip_m: Vec<f64>,
+    /// The relative growth of the deflection if a piece had middling numbers.
+    pub(super) tip_growth: Vec<f64>,
+    pub(super) shape: ShapeWork,
+    /// Judged case and start of the shape with the least quotient.
+    pub(super) worst: (usize, usize),
+}
+
+impl Work {
+    /// Empties all numbers for a problem of this size.
+    pub fn clear(&mut self, pieces: usize, cases: usize) {
+        fn zero<T: Clone>(items: &mut Vec<T>, n: usize, value: T) {
+            items.clear();
+            items.resize(n, value);
+        }
+        zero(&mut self.stiff, pieces, [0.0; STIFFNESSES]);
+        zero(&mut self.soft, pieces, [0.0; STIFFNESSES]);
+        zero(&mut self.light, pieces, [0.0; INERTIAS]);
+        zero(&mut self.heavy, pieces, [0.0; INERTIAS]);
+        zero(&mut self.curves, pieces, None);
+        zero(&mut self.masses, pieces, [0.0; 2]);
+        zero(&mut self.greatest_demands, pieces, None);
+        self.least_demands.clear();
+        self.least_demands.resize_with(pieces, || None);
+        zero(&mut self.breaks, pieces, BreakPoints::default());
+        self.weights.resize_with(cases, Vec::new);
+        self.stiff_in.resize_with(cases, Vec::new);
+        self.torques.resize_with(cases, Vec::new);
+        self.forces.resize_with(cases, Vec::new);
+        for case in 0..cases {
+            zero(&mut self.weights[case], pieces, [0.0; 2]);
+            zero(&mut self.torques[case], pieces, [0.0; 2]);
+        }
+    }
+
+    /// Fills in the numbers of a joint.
+    pub fn joint(&mut self, problem: &Problem, piece: usize, mass_kg: [f64; 2], curve: Option<CurveBox>) {
+        self.masses[piece] = mass_kg;
+        self.curves[piece] = curve;
+        self.light[piece][inertia::MASS] = mass_kg[0];
+        self.heavy[piece][inertia::MASS] = mass_kg[1];
+        let g = problem.space.gravity_m_s2;
+        for weights in &mut self.weights {
+            weights[piece] = mass_kg.map(|m| m * g);
+        }
+    }
+
+    /// Fills in the numbers of a tube.
+    pub fn tube(&mut self, problem: &Problem, piece: usize, length_m: f64, links: &LinkBox) {
+        // Infinite stiffness becomes 0, which stands for a coordinate that does not yield; infinity times
+        // zero strain would be NaN.
+        let finite = |s: f64| if s.is_finite() { s } else { 0.0 };
+        self.stiff[piece] = links.high.stiffnesses.map(finite);
+        self.soft[piece] = links.low.stiffnesses.map(finite);
+        self.light[piece] = links.low.inertias;
+        self.heavy[piece] = links.high.inertias;
+        let (light, heavy) = (&links.low.inertias, &links.high.inertias);
+        self.masses[piece] = [light[inertia::MASS] * length_m, heavy[inertia::MASS] * length_m];
+        let g = problem.space.gravity_m_s2 * length_m;
+        for (weights, pose) in self.weights.iter_mut().zip(problem.poses.iter()) {
+            weights[piece] = [
+                // The least net weight has the least mass and the greatest buoyancy.
+                g * (light[inertia::MASS] - pose.water_kg_m3 * heavy[inertia::OUTER_AREA]),
+                g * (heavy[inertia::MASS] - pose.water_kg_m3 * light[inertia::OUTER_AREA]),
+            ];
+        }
+    }
+
+    /// Whether the box has no width in any number that a mode depends on.
+    pub fn is_point(&self) -> bool {
+        self.light == self.heavy
+            && self.stiff == self.soft
+            && self.curves.iter().flatten().all(|c| c.stiff == c.soft)
+    }
+}

@@ -1,0 +1,98 @@
+//! CSV text cut into records: the one reader of catalogs and of readings.
+//!
+//! Every record keeps its line, because a fault that names a line is found at once. What the records must hold is for
+//! the caller to say.
+
+use super::lines::LineCounter;
+use csv::{ByteRecord, ReaderBuilder, StringRecord, Trim};
+
+/// Byte order mark that some programs put before UTF-8 text.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// One record of a CSV text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Record {
+    /// Line where it begins, from 1.
+    pub line: usize,
+    /// Its cells without blanks at their ends.
+    pub cells: Vec<String>,
+}
+
+/// A CSV text cut into records; blank lines and comments are no records.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Csv {
+    /// The records in the order of the text, the header among them.
+    pub records: Vec<Record>,
+    /// Line and reason of what cannot be read.
+    pub unreadable: Vec<(usize, String)>,
+}
+
+impl Csv {
+    /// Cuts text into records. Lines that begin with `comment` are left out.
+    pub fn parse(bytes: &[u8], comment: Option<u8>) -> Self {
+        let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
+        let mut reader = ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(Trim::All)
+            .comment(comment)
+            .from_reader(bytes);
+        let mut lines = match comment {
+            Some(comment) => LineCounter::with_comments(bytes, comment),
+            None => LineCounter::new(bytes),
+        };
+        let mut out = Self::default();
+        for record in reader.byte_records() {
+            match record.map_err(|e| e.to_string()).and_then(|r| Ok((lines.of(r.position()), utf8(r)?))) {
+                Ok((line, record)) => {
+                    out.records.push(Record { line, cells: record.iter().map(String::from).collect() });
+                }
+                Err(problem) => out.unreadable.push((lines.line(), problem)),
+            }
+        }
+        out
+    }
+}
+
+fn utf8(record: ByteRecord) -> Result<StringRecord, String> {
+    StringRecord::from_byte_record(record).map_err(|e| e.utf8_error().to_string())
+}
+
+/// The separators other than commas that occur at least so often in the first cell of a header.
+pub fn other_separators(header: &[String], least: usize) -> impl Iterator<Item = &'static str> + '_ {
+    let words = [(';', "semicolons"), ('\t', "tabs")];
+    let occurs = move |separator: char| header.first().is_some_and(|c| c.matches(separator).count() >= least);
+    words.into_iter().filter(move |(separator, _)| occurs(*separator)).map(|(_, word)| word)
+}
+
+/// Whether a column of a header has the name of one before it.
+pub fn is_repeated(header: &[String], column: usize) -> bool {
+    header[..column].contains(&header[column])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn records_keep_the_line_where_they_begin() {
+        let text = "\u{feff}a, b\r\n# drawn by hand\r\n\r\n1,\"two\r\nlines\"\r\n3,4\r\n";
+        let csv = Csv::parse(text.as_bytes(), Some(b'#'));
+        assert_eq!(csv.records.iter().map(|r| r.line).collect::<Vec<_>>(), [1, 4, 6]);
+        assert_eq!(csv.records[0].cells, ["a", "b"]);
+    }
+
+    #[test]
+    fn bytes_that_are_not_text_are_named_by_line() {
+        let csv = Csv::parse(b"a,b\n\xff,1\n2,3\n", None);
+        assert_eq!((csv.records.len(), csv.unreadable[0].0), (2, 2));
+    }
+
+    #[test]
+    fn a_header_says_what_separates_it_and_what_it_names_twice() {
+        let header = |text: &str| Csv::parse(text.as_bytes(), None).records.remove(0).cells;
+        assert_eq!(other_separators(&header("a;b;c"), 2).collect::<Vec<_>>(), ["semicolons"]);
+        assert_eq!(other_separators(&header("a,b"), 1).next(), None);
+        assert!(is_repeated(&header("a,b,a"), 2) && !is_repeated(&header("a,b,a"), 1));
+    }
+}

@@ -1,0 +1,67 @@
+//! Confirms a model on whole poses that are held out of the fit (cross-validation).
+//!
+//! The poses are dealt into four folds. Each fold in turn is held out, the model is refitted to the rest, and
+//! the fold is predicted. The refit keeps the selected effects. It fits their values and the calibration anew
+//! and holds only the break points. Rows of one pose are never split, because they share a history and a
+//! reference reading. Bench rows belong to no pose and stay in every fit.
+
+use super::descent::{Effort, Weights, descent};
+use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::model::parameters::Model;
+use rayon::prelude::*;
+
+/// Number of folds.
+const HANDS: usize = 4;
+
+/// Root mean squares of held-out residuals, in standard deviations. These are the declared ones times the
+/// scale that the readings showed, which is 1 unless the report says otherwise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeldOut {
+    /// Without any effect, with the calibration refitted.
+    pub rms_before: f64,
+    /// With the effects.
+    pub rms_after: f64,
+    /// With the effects, in the standard deviations as declared.
+    pub rms_declared_after: f64,
+    /// How many numbers were predicted.
+    pub count: usize,
+}
+
+/// Residual of every datum with its pose held out \[declared standard deviations\]; `None` for data that are
+/// never held out.
+pub fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Vec<Option<f64>> {
+    // A frequency steps where a torque passes a break point. With the break points free, a held-out test on
+    // the step would be predicted from either side by chance.
+    let mut model = model.clone();
+    model.held = model.break_points().into_iter().map(|p| (p, u[p])).collect();
+    let model = &model;
+    let hands: Vec<Vec<(usize, f64)>> = (0..HANDS)
+        .into_par_iter()
+        .map(|hand| {
+            let out = |i: usize| forward.data[i].group != usize::MAX && forward.data[i].group % HANDS == hand;
+            let mut kept = weights.clone();
+            (0..forward.data.len()).filter(|&i| out(i)).for_each(|i| kept.inverse[i] = 0.0);
+            // the start is close to the minimum, so a few steps are enough
+            let effort = Effort { steps: 6, tolerance: 0.05 };
+            let end = descent(forward, model, u, &kept, effort, f64::INFINITY);
+            (0..forward.data.len())
+                .filter(|&i| out(i) && weights.inverse[i] > 0.0)
+                .map(|i| {
+                    let datum = &forward.data[i];
+                    (i, (datum.value - end.predicted[i]) / datum.sigma)
+                })
+                .collect()
+        })
+        .collect();
+    let mut all = vec![None; forward.data.len()];
+    for (i, r) in hands.into_iter().flatten() {
+        all[i] = Some(r);
+    }
+    all
+}
+
+/// Root mean square; 0 of nothing.
+pub fn rms(residuals: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = residuals.fold((0.0, 0.0), |(s, n), r| (s + r * r, n + 1.0));
+    if count == 0.0 { 0.0 } else { f64::sqrt(sum / count) }
+}

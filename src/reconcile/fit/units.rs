@@ -1,0 +1,75 @@
+//! Finds readings in another unit than the file states, whose standard deviations are in the stated unit.
+//!
+//! A column that was multiplied by 25.4 has 25.4 times the noise. With the declared deviations no model fits
+//! such readings, not even one with the right factor. So the slip shows only after the deviations are
+//! enlarged by the same factor.
+
+use super::stats::median;
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::wrong_unit;
+use crate::reconcile::forward::coefficients::Coefficients;
+use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::model::parameters::Candidate;
+
+/// Largest distance of the readings of a channel from a slip's factor \[ln\]. It leaves room for missing
+/// physics.
+const NEAR: f64 = 0.25;
+
+/// Standard deviations of a channel that are too small by a factor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    channel: Channel,
+    factor: f64,
+}
+
+impl Stretch {
+    /// Whether one of the effects is this slip.
+    pub fn is_among(&self, effects: &[&Candidate]) -> bool {
+        effects
+            .iter()
+            .any(|effect| effect.kind.name == wrong_unit::KIND.name && effect.at == self.channel.word())
+    }
+
+    /// The assumption, in words.
+    pub fn sentence(&self) -> String {
+        let Self { channel, factor } = self;
+        let (channel, factor) = (channel.word(), crate::report::number::significant(*factor, 4));
+        format!(
+            "the noise of the {channel} readings is about {factor} times what is declared, as the readings themselves are: their standard deviations are taken to be {factor} times those of the file"
+        )
+    }
+}
+
+/// The channels whose readings are about a slip's factor times those of the nominal arm, and that the best
+/// model misses by far more than declared: by a ratio nearer to the factor than to one.
+pub fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> {
+    let nominal = forward.predict(&forward.coefficients(&forward.nominal));
+    let predicted = forward.predict(best);
+    let of_channel = |channel: Channel| {
+        let range = forward.range(channel);
+        let own = &forward.data[range.clone()];
+        let (both, square) = own
+            .iter()
+            .zip(&nominal[range.clone()])
+            .fold((0.0, 0.0), |(both, square), (d, model)| (both + d.value * model, square + model * model));
+        // least-squares factor between readings and nominal model
+        let ratio = both / square;
+        let slips = wrong_unit::SLIPS.iter().map(|(factor, _)| *factor).filter(|factor| *factor > 1.0);
+        let factor = slips.min_by(|a, b| {
+            let apart = |factor: &f64| (ratio / factor).ln().abs();
+            apart(a).total_cmp(&apart(b))
+        })?;
+        let misses = own.iter().zip(&predicted[range]).map(|(d, model)| ((d.value - model) / d.sigma).abs());
+        let is_slip = square > 0.0 && ratio > 0.0 && (ratio / factor).ln().abs() < NEAR;
+        (is_slip && median(misses.collect()) > factor.sqrt()).then_some(Stretch { channel, factor })
+    };
+    [Channel::Static, Channel::Modal, Channel::Windup].into_iter().filter_map(of_channel).collect()
+}
+
+/// Multiplies the declared standard deviations of some channels.
+pub fn stretch(forward: &mut Forward, stretches: &[Stretch]) {
+    for Stretch { channel, factor } in stretches {
+        let range = forward.range(*channel);
+        forward.data[range].iter_mut().for_each(|datum| datum.sigma *= factor);
+    }
+}

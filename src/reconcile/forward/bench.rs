@@ -1,0 +1,70 @@
+//! Bench readings: the twist of one joint through a closed cycle of torques.
+
+use super::coefficients::Layout;
+use super::datum::Datum;
+use crate::arm::effect::channel::Channel;
+use crate::arm::joint_law::JointLaw;
+use crate::reconcile::readings::campaign::Campaign;
+
+/// Arc minutes in a radian.
+pub const ARCMIN_PER_RAD: f64 = 10800.0 / std::f64::consts::PI;
+
+/// One joint's rows on the bench, in the order of the file.
+#[derive(Debug, Clone)]
+pub struct Bench {
+    /// Index of the joint in the layout.
+    pub joint: usize,
+    torques_nm: Vec<f64>,
+    rows: Vec<usize>,
+}
+
+/// Gathers the bench rows of each joint and appends their data.
+pub fn prepare(campaign: &Campaign, layout: &Layout, data: &mut Vec<Datum>) -> Vec<Bench> {
+    let mut bench: Vec<Bench> = Vec::new();
+    for row in &campaign.windup {
+        let Some(joint) = layout.joints.iter().position(|j| j.name == row.joint) else { continue };
+        let index = data.len();
+        data.push(Datum {
+            channel: Channel::Windup,
+            row: row.row,
+            component: 0,
+            group: usize::MAX,
+            value: row.windup_arcmin,
+            sigma: row.sigma_arcmin,
+        });
+        match bench.iter_mut().find(|b| b.joint == joint) {
+            Some(b) => {
+                b.torques_nm.push(row.torque_nm);
+                b.rows.push(index);
+            }
+            None => bench.push(Bench { joint, torques_nm: vec![row.torque_nm], rows: vec![index] }),
+        }
+    }
+    bench
+}
+
+impl Bench {
+    /// Sizes of the torques \[N m\].
+    pub fn sizes_nm(&self) -> impl Iterator<Item = f64> + '_ {
+        self.torques_nm.iter().map(|t| t.abs())
+    }
+
+    /// Writes the twist at every row \[arcmin\].
+    pub fn predict(&self, law: &JointLaw, out: &mut [f64]) {
+        let twists = bench_twists_rad(law, &self.torques_nm);
+        for (&index, twist) in self.rows.iter().zip(twists) {
+            out[index] = twist * ARCMIN_PER_RAD;
+        }
+    }
+}
+
+/// Twists of a joint on the bench \[rad\]. The cycle runs once unrecorded, so that the friction play has
+/// settled, and then once recorded.
+pub fn bench_twists_rad(law: &JointLaw, torques_nm: &[f64]) -> Vec<f64> {
+    // the first round only brings the play to where a closed cycle has it
+    let mut state = 0.0;
+    for &torque in torques_nm {
+        law.play_angle_rad(torque, &mut state);
+    }
+    torques_nm.iter().map(|&torque| law.play_angle_rad(torque, &mut state)).collect()
+}

@@ -1,0 +1,185 @@
+//! Prepares a campaign for fitting: its data, and everything about its poses and tests that no parameter
+//! changes.
+
+use super::bench::{self, Bench};
+use super::coefficients::{Coefficients, Layout};
+use super::datum::Datum;
+use super::modal::{self, ModalTest};
+use super::statics::{self, StaticPose};
+use crate::arm::JointModel;
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::subject::Subject;
+use crate::reconcile::readings::campaign::Campaign;
+
+/// A campaign prepared for fitting.
+pub struct Forward {
+    /// The coordinates.
+    pub layout: Layout,
+    /// The nominal arm in a test that goes as described.
+    pub nominal: Subject,
+    /// Every measured number: static, modal, bench.
+    pub data: Vec<Datum>,
+    /// Poses of the static rows, each with its loads.
+    pub statics: Vec<StaticPose>,
+    /// Tests of the modal rows.
+    pub modal: Vec<ModalTest>,
+    bench: Vec<Bench>,
+    /// Index where each channel's data begin: static, modal, windup, and the end.
+    pub starts: [usize; 4],
+    /// Names of the poses that can be held out.
+    pub groups: Vec<String>,
+    /// Density of the payloads \[kg/m³\].
+    pub payload_density_kg_m3: f64,
+    /// The largest payload that was stated \[kg\].
+    pub largest_payload_kg: f64,
+    /// The lightest payload that was stated and is not zero \[kg\].
+    pub lightest_payload_kg: f64,
+}
+
+impl Forward {
+    /// Prepares a campaign.
+    pub fn new(campaign: &Campaign) -> Self {
+        let mut nominal = campaign.arm.subject(JointModel::ThreeSegment);
+        if campaign.statement.rigid_links {
+            make_links_rigid(&mut nominal);
+        }
+        let layout = Layout::new(&nominal.structure);
+        let mut groups: Vec<(Vec<f64>, String)> = Vec::new();
+        let mut data = Vec::new();
+        let statics = statics::prepare(campaign, &layout, &nominal, &mut groups, &mut data);
+        let modal_start = data.len();
+        let modal = modal::prepare(campaign, &layout, &nominal, &mut groups, &mut data);
+        let windup_start = data.len();
+        let bench = bench::prepare(campaign, &layout, &mut data);
+        // the data lie channel by channel, so one index range selects a channel
+        let starts = [0, modal_start, windup_start, data.len()];
+        let payloads_kg = campaign.statics.iter().map(|r| r.payload.mass_kg);
+        let payloads_kg: Vec<f64> =
+            payloads_kg.chain(campaign.modal.iter().map(|r| r.payload.mass_kg)).collect();
+        Self {
+            layout,
+            nominal,
+            data,
+            statics,
+            modal,
+            bench,
+            starts,
+            groups: groups.into_iter().map(|(_, name)| name).collect(),
+            payload_density_kg_m3: campaign.statement.payload_density_kg_m3,
+            largest_payload_kg: payloads_kg.iter().copied().fold(0.0, f64::max),
+            lightest_payload_kg: payloads_kg
+                .iter()
+                .copied()
+                .filter(|kg| *kg > 0.0)
+                .fold(f64::INFINITY, f64::min),
+        }
+    }
+
+    /// Renumbers frequency lists that do not rise with the mode number, unless one wrong frequency is the
+    /// simpler cause. Frequencies are numbered as they rise. Returns a sentence for each list.
+    pub fn put_modes_in_order(&mut self) -> Vec<String> {
+        let nominal = self.coefficients(&self.nominal);
+        let (layout, data) = (&self.layout, &self.data);
+        let lists = self.modal.iter_mut().enumerate();
+        lists
+            .filter_map(|(i, test)| test.put_in_order(layout, &nominal, data).then_some(i + 1))
+            .map(|list| {
+                format!(
+                    "the modes of list {list} of the frequencies are not numbered as they rise: put in order"
+                )
+            })
+            .collect()
+    }
+
+    /// Renumbers frequency lists from which a mode is missing. Returns a sentence for each list.
+    pub fn find_missed_modes(&mut self, coefficients: &Coefficients) -> Vec<String> {
+        let mut out = Vec::new();
+        for (i, test) in self.modal.iter_mut().enumerate() {
+            if let Some(mode) = test.find_missed_mode(&self.layout, coefficients, &self.data) {
+                out.push(format!("mode {mode} appears to be missing from list {} of the frequencies", i + 1));
+            }
+        }
+        out
+    }
+
+    /// Takes the trial shapes of all modal tests from the modes with these coefficients.
+    pub fn refresh(&mut self, coefficients: &Coefficients) {
+        let layout = &self.layout;
+        self.modal.iter_mut().for_each(|test| test.refresh(layout, coefficients));
+    }
+
+    /// Range of the channel's data.
+    pub fn range(&self, channel: Channel) -> std::ops::Range<usize> {
+        match channel {
+            Channel::Static => self.starts[0]..self.starts[1],
+            Channel::Modal => self.starts[1]..self.starts[2],
+            Channel::Windup => self.starts[2]..self.starts[3],
+            Channel::Positions => 0..0,
+        }
+    }
+
+    /// Sizes of a joint's torques on the bench \[N m\].
+    pub fn bench_torques_nm(&self, joint: usize) -> impl Iterator<Item = f64> + '_ {
+        self.bench.iter().filter(move |b| b.joint == joint).flat_map(Bench::sizes_nm)
+    }
+
+    /// Torque on every joint at each static or modal datum \[N m\].
+    pub fn torques_nm(&self, coefficients: &Coefficients) -> Vec<Vec<f64>> {
+        let mut out = vec![Vec::new(); self.starts[2]];
+        let statics = self.statics.iter().flat_map(|pose| {
+            let loads = pose.torques_nm(&self.layout, coefficients);
+            loads.into_iter().skip(1)
+        });
+        for (row, torques) in statics.enumerate() {
+            out[3 * row..3 * row + 3].fill(torques);
+        }
+        for test in &self.modal {
+            let torques = test.torques_nm(&self.layout, coefficients);
+            test.modes.iter().for_each(|(datum, _)| out[*datum] = torques.clone());
+        }
+        out
+    }
+
+    /// Expresses a subject as compliances, joint laws and masses.
+    pub fn coefficients(&self, subject: &Subject) -> Coefficients {
+        Coefficients::new(&self.layout, &self.nominal, subject)
+    }
+
+    /// The model's value for every datum.
+    pub fn predict(&self, coefficients: &Coefficients) -> Vec<f64> {
+        let mut out = vec![0.0; self.data.len()];
+        self.predict_smooth(coefficients, &mut out);
+        for test in &self.modal {
+            test.predict(&self.layout, coefficients, &mut out);
+        }
+        self.read(coefficients, &mut out);
+        out
+    }
+
+    /// Predicts statics and bench only. The modal entries stay as they are.
+    pub fn predict_smooth(&self, coefficients: &Coefficients, out: &mut [f64]) {
+        for pose in &self.statics {
+            pose.predict(&self.layout, coefficients, out);
+        }
+        for bench in &self.bench {
+            bench.predict(&coefficients.laws[bench.joint], out);
+        }
+    }
+
+    /// Turns true values into readings.
+    pub fn read(&self, coefficients: &Coefficients, out: &mut [f64]) {
+        for (value, datum) in out.iter_mut().zip(&self.data) {
+            *value = coefficients.channels[datum.channel as usize].of(*value, datum.component, datum.row);
+        }
+    }
+}
+
+/// Makes all links of a nominal model rigid.
+pub fn make_links_rigid(subject: &mut Subject) {
+    let names: Vec<String> = subject.structure.links().map(|l| l.name.clone()).collect();
+    for name in names {
+        if let Some(beam) = subject.structure.link_mut(&name).and_then(|l| l.beam.as_mut()) {
+            beam.flexibility = 0.0;
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! Values with their 95 % intervals, and effects found with such values.
+
+use serde_json::{Map, Value, json};
+
+/// An interval of a fitted parameter, in `u`. An end is `None` where the data do not bound it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Lower end.
+    pub low: Option<f64>,
+    /// Upper end.
+    pub high: Option<f64>,
+}
+
+impl Interval {
+    /// The interval, widened to contain the best value `u`.
+    pub(crate) fn with(self, u: f64) -> Self {
+        Self { low: self.low.map(|v| v.min(u)), high: self.high.map(|v| v.max(u)) }
+    }
+
+    /// The interval with both ends moved out by `by`. An end that leaves the bounds becomes open.
+    pub(crate) fn wider(self, by: f64, (low, high): (f64, f64)) -> Self {
+        Self {
+            low: self.low.map(|v| v - by).filter(|v| *v > low),
+            high: self.high.map(|v| v + by).filter(|v| *v < high),
+        }
+    }
+}
+
+/// A value with its 95 % interval. An end is `None` where the data do not bound it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// Best value.
+    pub value: f64,
+    /// Lower end.
+    pub low: Option<f64>,
+    /// Upper end.
+    pub high: Option<f64>,
+}
+
+impl Estimate {
+    /// As JSON.
+    pub(crate) fn json(&self) -> Value {
+        json!({"value": self.value, "low": self.low, "high": self.high})
+    }
+}
+
+/// An effect that was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// Name of the effect.
+    pub effect: String,
+    /// The place where it sits.
+    pub at: String,
+    /// Parameters; a vector parameter has several estimates.
+    pub parameters: Vec<(String, Vec<Estimate>)>,
+    /// Name and place of effects that these readings cannot tell from it.
+    pub indistinguishable_from: Vec<(String, String)>,
+}
+
+impl Finding {
+    /// `effect@place`.
+    pub fn label(&self) -> String {
+        format!("{}@{}", self.effect, self.at)
+    }
+
+    /// As JSON of `verdict.json`.
+    pub(crate) fn json(&self) -> Value {
+        let parameters: Map<String, Value> = self
+            .parameters
+            .iter()
+            .map(|(name, estimates)| {
+                let value = match estimates.as_slice() {
+                    [one] => one.json(),
+                    many => {
+                        let part = |f: fn(&Estimate) -> Option<f64>| many.iter().map(f).collect::<Vec<_>>();
+                        json!({"value": part(|e| Some(e.value)), "low": part(|e| e.low), "high": part(|e| e.high)})
+                    }
+                };
+                (name.clone(), value)
+            })
+            .collect();
+        let others: Vec<Value> = self
+            .indistinguishable_from
+            .iter()
+            .map(|(effect, at)| json!({"effect": effect, "at": at}))
+            .collect();
+        json!({"effect": self.effect, "at": self.at, "parameters": parameters, "indistinguishable_from": others})
+    }
+}

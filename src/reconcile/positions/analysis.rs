@@ -1,0 +1,257 @@
+//! Analyses absolute positions: calibrates the geometry stage by stage, and then adds what yields and what
+//! turns unevenly, effect by effect.
+
+use super::align;
+use super::fit::{Fitted, Sample, fit};
+use super::kinematics::{Geometry, Number, number_groups};
+use super::loads::{Yielding, candidates, deflections};
+use super::points::{Point, points};
+use super::tree::Tree;
+use crate::arm::Arm;
+use crate::arm::effect::kind::Yields;
+use crate::reconcile::fit::stats::median;
+use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::verdict::stage::Stage;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+use serde_json::Value;
+
+/// Number of folds that the poses are dealt into. One fold is held out at a time.
+const HANDS: usize = 5;
+/// An error beyond this many scales is gross.
+const GROSS: f64 = 8.0;
+/// Scale of the errors before anything is fitted \[m\].
+const ROUGH_M: f64 = 0.01;
+/// Step of the direction of gravity for numerical derivatives \[rad\].
+const LEAN: f64 = 1e-3;
+
+/// The classes of effects in the order in which they are searched.
+const CLASSES: [Yields; 3] = [Yields::AboutAxis, Yields::Tilt, Yields::Frame];
+
+/// Everything that a campaign of positions shows.
+#[derive(Clone)]
+pub struct Positions {
+    /// The table of position errors, stage by stage.
+    pub stages: Vec<Stage>,
+    /// All candidates.
+    pub candidates: Vec<Yielding>,
+    /// Which of the candidates may be named.
+    pub(super) considered: Vec<bool>,
+    /// The final fit.
+    pub fitted: Fitted,
+    /// A fit of the same geometry without any effect.
+    pub rigid: Fitted,
+    /// Rows that are gross errors, counted from 0, with their error \[mm\].
+    pub gross: Vec<(usize, f64)>,
+    pub(super) samples: Vec<Sample>,
+    pub(super) numbers: Vec<Number>,
+    /// Driven joints that turn unevenly, by their index in a pose.
+    pub(super) transmissions: Vec<usize>,
+    pub(super) tree: Tree,
+    /// The points on the tools, with those of separate sessions apart.
+    pub(super) points: Vec<Point>,
+    /// Sentences on where a session begins.
+    pub(super) sessions: Vec<String>,
+    /// Held-out errors of the last stage, by row \[m\].
+    pub(super) held_out: Vec<Vector3<f64>>,
+}
+
+/// Arms whose geometry alone is calibrated.
+pub struct Calibrated {
+    /// The arms with calibrated geometry. Their effects and all else are unchanged.
+    pub arms: Vec<Arm>,
+    /// The table of position errors.
+    pub stages: Vec<Stage>,
+    /// Predicted positions \[mm\], by row.
+    pub predicted_mm: Vec<[f64; 3]>,
+}
+
+/// Calibrates the geometry without a search for effects.
+pub fn calibrated(campaign: &Campaign) -> Calibrated {
+    let found = Positions::on_its_geometry(campaign);
+    let mut provenance = Value::Null;
+    let arm = |i| found.corrected(campaign, i, &found.rigid, &[], &mut provenance);
+    Calibrated {
+        arms: (0..campaign.arms().len()).map(arm).collect(),
+        predicted_mm: found.samples.iter().map(|s| (1e3 * found.rigid.predicted_m(s)).into()).collect(),
+        stages: found.stages,
+    }
+}
+
+/// Calibrates the geometry, and finds what yields and what turns unevenly.
+pub fn analyze(campaign: &Campaign) -> Positions {
+    let mut found = Positions::on_its_geometry(campaign);
+    // An uneven joint can hide what yields, so the search begins again after each.
+    loop {
+        for class in CLASSES {
+            while found.add(campaign, class) {}
+        }
+        if !found.add_transmission(campaign) {
+            break;
+        }
+    }
+    let errors = found.samples.iter().map(|s| found.fitted.error(s).norm()).enumerate();
+    let gross = errors.filter(|(_, e)| *e > GROSS * found.fitted.scale_m).map(|(i, e)| (i, 1e3 * e));
+    found.gross = gross.collect();
+    found
+}
+
+impl Positions {
+    fn new(campaign: &Campaign) -> Self {
+        let tree = Tree::new(campaign);
+        let points = points(campaign);
+        let geometry = Geometry::nominal(&tree, points.len());
+        let candidates = candidates(&tree);
+        let considered = candidates.iter().map(|c| campaign.statement.considers(c.effect)).collect();
+        let samples = samples(campaign, &tree, &geometry, &candidates, &points);
+        let fitted = Fitted::rigid(geometry, ROUGH_M);
+        Self {
+            stages: Vec::new(),
+            candidates,
+            considered,
+            rigid: fitted.clone(),
+            fitted,
+            gross: Vec::new(),
+            samples,
+            numbers: Vec::new(),
+            transmissions: Vec::new(),
+            tree,
+            points,
+            sessions: Vec::new(),
+            held_out: Vec::new(),
+        }
+    }
+
+    /// Fits all that is unknown in the geometry, and tells sessions apart.
+    fn on_its_geometry(campaign: &Campaign) -> Self {
+        let mut found = Self::new(campaign);
+        found.calibrate(campaign);
+        let spec = &campaign.statement.positions;
+        found.sessions = found.find_sessions(spec.tool_offset, spec.base_placement);
+        if !found.sessions.is_empty() {
+            found.stage("sessions".into(), Vec::new());
+        }
+        found.rigid = found.fitted.clone();
+        found
+    }
+
+    /// Places the arm, and frees one group of numbers after the other.
+    fn calibrate(&mut self, campaign: &Campaign) {
+        let spec = &campaign.statement.positions;
+        align::align(&self.tree, spec, &self.samples, &mut self.fitted.geometry);
+        // one group after the other, because a fit of all numbers from a bad start can end anywhere
+        for (name, group) in number_groups(&self.tree, spec, self.points.len()) {
+            self.numbers.extend(group);
+            // the deflection depends slightly on the geometry, so two rounds are needed
+            for _ in 0..2 {
+                self.refresh(campaign);
+                self.refit();
+            }
+            self.stage(name.into(), Vec::new());
+        }
+    }
+
+    /// Fits the current model again.
+    pub(super) fn refit(&mut self) {
+        let all: Vec<&Sample> = self.samples.iter().collect();
+        self.fitted = fit(&all, &self.numbers, &self.fitted.effects, &self.fitted);
+    }
+
+    /// Computes the effect of gravity again for the fitted geometry.
+    pub(super) fn refresh(&mut self, campaign: &Campaign) {
+        self.fitted.geometry.relevel();
+        let points: Vec<usize> = self.samples.iter().map(|s| s.point).collect();
+        let deflections = deflections(campaign, &self.tree, &self.fitted.geometry, &self.candidates, &points);
+        self.samples
+            .iter_mut()
+            .zip(deflections)
+            .for_each(|(sample, deflection)| sample.deflection = deflection);
+        if campaign.statement.positions.frees_gravity() {
+            (0..2).for_each(|c| self.lean(campaign, &points, c));
+        }
+    }
+
+    /// Computes how the known deflection changes with one component of the direction of gravity.
+    fn lean(&mut self, campaign: &Campaign, points: &[usize], component: usize) {
+        let upright = &self.fitted.geometry;
+        let mut leaning = upright.clone();
+        leaning.step(&[Number::Gravity(component)], &[LEAN]);
+        leaning.relevel();
+        // deflections are compared in the same level frame
+        let back = upright.level * leaning.level.inverse();
+        let deflections = deflections(campaign, &self.tree, &leaning, &self.candidates, points);
+        for (sample, deflection) in self.samples.iter_mut().zip(deflections) {
+            sample.deflection.known_slopes_m[component] =
+                (back * deflection.known_m - sample.deflection.known_m) / LEAN;
+        }
+    }
+
+    /// Adds a row about the current model to the table of position errors.
+    pub(super) fn stage(&mut self, added: String, dropped: Vec<String>) {
+        self.held_out = self.held_out_errors_m(&self.fitted);
+        let mm: Vec<f64> = self.held_out.iter().map(|e| 1e3 * e.norm()).collect();
+        let fitted = self.samples.iter().map(|s| 1e3 * self.fitted.error(s).norm());
+        self.stages.push(Stage {
+            added,
+            dropped,
+            fitted_median_mm: median(fitted.collect()),
+            mean_mm: mm.iter().sum::<f64>() / mm.len().max(1) as f64,
+            max_mm: mm.iter().copied().fold(0.0, f64::max),
+            median_mm: median(mm),
+        });
+    }
+
+    /// Error of every position with the fold of its pose held out \[m\].
+    fn held_out_errors_m(&self, fitted: &Fitted) -> Vec<Vector3<f64>> {
+        let mut out = vec![Vector3::zeros(); self.samples.len()];
+        let hands: Vec<Vec<(usize, Vector3<f64>)>> = (0..HANDS)
+            .into_par_iter()
+            .map(|hand| {
+                let (own, rest): (Vec<(usize, &Sample)>, Vec<_>) =
+                    self.samples.iter().enumerate().partition(|(_, s)| s.group % HANDS == hand);
+                let rest: Vec<&Sample> = rest.into_iter().map(|(_, s)| s).collect();
+                let again = fit(&rest, &self.numbers, &fitted.effects, fitted);
+                own.into_iter().map(|(i, s)| (i, again.error(s))).collect()
+            })
+            .collect();
+        hands.into_iter().flatten().for_each(|(i, error)| out[i] = error);
+        out
+    }
+}
+
+/// The measured positions, each with the effect of gravity on it.
+pub(super) fn samples(
+    campaign: &Campaign,
+    tree: &Tree,
+    geometry: &Geometry,
+    candidates: &[Yielding],
+    points: &[Point],
+) -> Vec<Sample> {
+    let points: Vec<usize> = campaign
+        .positions
+        .iter()
+        .map(|row| points.iter().position(|p| *p == Point::of(row)).unwrap_or_default())
+        .collect();
+    let deflections = deflections(campaign, tree, geometry, candidates, &points);
+    let mut poses: Vec<&Vec<f64>> = Vec::new();
+    let rows = campaign.positions.iter().zip(deflections).zip(points);
+    rows.enumerate()
+        .map(|(index, ((row, deflection), point))| {
+            let known = poses.iter().position(|p| **p == row.pose_deg);
+            let group = known.unwrap_or_else(|| {
+                poses.push(&row.pose_deg);
+                poses.len() - 1
+            });
+            Sample {
+                pose_rad: row.pose_deg.iter().map(|a| a.to_radians()).collect(),
+                arm: row.arm,
+                point,
+                station: 0,
+                index,
+                group,
+                measured_m: Vector3::from(row.position_mm) / 1e3,
+                deflection,
+            }
+        })
+        .collect()
+}

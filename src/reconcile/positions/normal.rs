@@ -1,0 +1,37 @@
+//! Weighted normal equations and their factorization.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+/// Weighted normal equations of a model: of its numbers, its compliances, and further columns.
+pub struct Normal {
+    /// Curvature, with the priors included.
+    pub curvature: DMatrix<f64>,
+    /// Gradient towards the readings; the step is the inverse curvature times it.
+    pub gradient: DVector<f64>,
+    /// Number of columns that belong to the model.
+    pub own: usize,
+}
+
+/// A Cholesky factor of a curvature that is scaled to a unit diagonal. Numbers in different units would
+/// otherwise ruin its condition.
+pub struct Factor {
+    cholesky: Cholesky<f64, Dyn>,
+    diagonal: DVector<f64>,
+}
+
+impl Factor {
+    /// Factorizes the rows and columns that are free; `None` if they are singular.
+    pub fn new(curvature: &DMatrix<f64>, free: &[usize]) -> Option<Self> {
+        let sub = DMatrix::from_fn(free.len(), free.len(), |i, j| curvature[(free[i], free[j])]);
+        let diagonal = sub.diagonal().map(|d| 1.0 / d.max(1e-300).sqrt());
+        let scaled = DMatrix::from_fn(free.len(), free.len(), |i, j| {
+            diagonal[i] * sub[(i, j)] * diagonal[j] + if i == j { 1e-12 } else { 0.0 }
+        });
+        Some(Self { cholesky: Cholesky::new(scaled)?, diagonal })
+    }
+
+    /// Solves for one right side.
+    pub fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
+        self.cholesky.solve(&right.component_mul(&self.diagonal)).component_mul(&self.diagonal)
+    }
+}

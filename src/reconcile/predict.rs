@@ -1,0 +1,116 @@
+//! `predict`: adds the model's values to the readings of a file.
+
+use super::forward::prepared::make_links_rigid;
+use super::model::exact::Exact;
+use super::positions;
+use super::readings::campaign::{Campaign, Statement, driven_joint_names};
+use super::readings::rows::{modal_rows, position_rows, static_rows, windup_rows};
+use super::readings::table::Table;
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::subject::Subject;
+use crate::arm::{Arm, JointModel};
+use crate::input::json::Faults;
+use crate::reconcile::readings::placement::Placed;
+
+/// The channel of a file, by its columns.
+pub fn channel_of(table: &Table) -> Option<Channel> {
+    let has = |name: &str| table.optional(name).is_some();
+    match () {
+        () if has("dx_mm") => Some(Channel::Static),
+        () if has("frequency_hz") => Some(Channel::Modal),
+        () if has("windup_arcmin") => Some(Channel::Windup),
+        () if has("x_mm") => Some(Channel::Positions),
+        () => None,
+    }
+}
+
+/// The file with the model's columns added, by the first of the arms that stand on one trunk; absolute
+/// positions may be of any of them.
+///
+/// # Errors
+/// All faults of the file.
+pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<String, Faults> {
+    let arm = &arms[0].arm;
+    let subject = subject(arm, statement);
+    let exact = Exact::new(&subject);
+    let (names, columns): (&[&str], Vec<Vec<f64>>) = match channel_of(&table) {
+        Some(Channel::Static) => {
+            let rows = exact.statics_mm(&static_rows(&table, arm));
+            (&["model_dx_mm", "model_dy_mm", "model_dz_mm"], rows.iter().map(|r| r.to_vec()).collect())
+        }
+        Some(Channel::Modal) => {
+            let rows = exact.frequencies_hz(&modal_rows(&table, arm));
+            (&["model_frequency_hz"], rows.iter().map(|f| vec![f.unwrap_or(f64::NAN)]).collect())
+        }
+        Some(Channel::Windup) => {
+            let rows = exact.windups_arcmin(&windup_rows(&table, arm));
+            (&["model_windup_arcmin"], rows.iter().map(|w| vec![*w]).collect())
+        }
+        Some(Channel::Positions) => {
+            let rows = positions_mm(arms, statement, &exact, &table)?;
+            (&["model_x_mm", "model_y_mm", "model_z_mm"], rows.iter().map(|r| r.to_vec()).collect())
+        }
+        None => {
+            table.fault(
+                Some(1),
+                "",
+                "none of the columns dx_mm, frequency_hz, windup_arcmin, x_mm is there".into(),
+                "give a file of static, modal, windup or positions readings",
+            );
+            (&[], Vec::new())
+        }
+    };
+    let text = text(&table, names, &columns);
+    let faults = table.into_faults();
+    if faults.is_empty() { Ok(text) } else { Err(Faults(faults)) }
+}
+
+/// The arm under test, with all effects of its file.
+pub(crate) fn subject(arm: &Arm, statement: &Statement) -> Subject {
+    let mut nominal = Arm { effects: Vec::new(), ..arm.clone() }.subject(JointModel::ThreeSegment);
+    if statement.rigid_links {
+        make_links_rigid(&mut nominal);
+    }
+    arm.effects.iter().for_each(|effect| nominal.apply(effect));
+    if let Some(water) = &mut nominal.structure.water {
+        water.payload_density_kg_m3 = statement.payload_density_kg_m3;
+    }
+    nominal
+}
+
+/// Positions on one arm, or on several whose weights load a common trunk \[mm\].
+fn positions_mm(
+    arms: &[Placed],
+    statement: &Statement,
+    exact: &Exact,
+    table: &Table,
+) -> Result<Vec<[f64; 3]>, Faults> {
+    let all: Vec<&Arm> = arms.iter().map(|a| &a.arm).collect();
+    let names: Vec<&str> = all.iter().map(|a| a.name.as_str()).collect();
+    let rows = position_rows(table, &names, &driven_joint_names(&all));
+    match arms {
+        [one] => Ok(exact.positions_mm(&rows, &one.placement)),
+        several => {
+            let subjects: Vec<Subject> = all.iter().map(|arm| subject(arm, statement)).collect();
+            let campaign = Campaign::of_positions(statement, &all, rows)?;
+            Ok(positions::predict::predicted_mm(campaign, several, &subjects))
+        }
+    }
+}
+
+fn text(table: &Table, names: &[&str], columns: &[Vec<f64>]) -> String {
+    let mut out = table.columns.join(",");
+    names.iter().for_each(|name| out.push_str(&format!(",{name}")));
+    out.push('\n');
+    for (cells, values) in table.rows.iter().zip(columns) {
+        out.push_str(&cells.join(","));
+        for value in values {
+            match value.is_nan() {
+                true => out.push(','),
+                false => out.push_str(&format!(",{value:.6}")),
+            }
+        }
+        out.push('\n');
+    }
+    out
+}

@@ -1,0 +1,200 @@
+//! Fitting and scoring one model of the candidates: the tools that every search for effects uses.
+//!
+//! A gear's curve has break points at which frequencies step, and steps stop a descent. Fits of such a model
+//! therefore begin with the steps smoothed, and end with the break points moved by hand.
+
+use crate::reconcile::fit::descent::{Effort, Fit, Point, Weights, descent, evaluate, fit};
+use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::model::parameters::{Candidate, Model, Nuisance};
+use crate::reconcile::readings::campaign::Campaign;
+use rayon::prelude::*;
+
+/// Widths of smoothing of a gear's curve \[ln of the torque\]. The wide one lets a descent see past the steps
+/// of the frequencies. The narrow one leaves the steps nearly sharp.
+const WIDE: f64 = 0.1;
+const NARROW: f64 = 0.01;
+/// A break point is not followed further where the objective has risen by more than this.
+const RULED_OUT: f64 = 14.0;
+/// A model with a larger objective per datum cannot become the explanation, whatever the declared standard
+/// deviations.
+const BEYOND_HOPE: f64 = 3.0;
+
+/// Everything that a search needs.
+pub struct Search<'a> {
+    /// The campaign.
+    pub campaign: &'a Campaign,
+    /// The campaign, prepared for fitting.
+    pub forward: &'a Forward,
+    /// The calibrated parameters.
+    pub nuisance: &'a Nuisance,
+    /// All candidates.
+    pub candidates: &'a [Candidate],
+    /// Weights of the data.
+    pub weights: &'a Weights,
+}
+
+/// A model with its score.
+#[derive(Clone)]
+pub struct Scored {
+    /// Indices of the candidates in it.
+    pub effects: Vec<usize>,
+    /// Its parameters.
+    pub u: Vec<f64>,
+    /// ln of the evidence minus ln of the number of places for each effect.
+    pub score: f64,
+    /// The objective `Σ ρ(r) + Σ u²`.
+    pub objective: f64,
+}
+
+impl<'a> Search<'a> {
+    /// A model of the candidates with these indices.
+    pub fn model(&self, effects: &[usize]) -> Model<'a> {
+        Model::of(self.nuisance, self.candidates, effects)
+    }
+
+    /// Fits that model from `u`.
+    pub fn fit(&self, effects: &[usize], u: &[f64], effort: Effort) -> Fit<'a> {
+        self.fit_model(self.model(effects), u, effort)
+    }
+
+    /// Fits a model from `u`. Where the last effect is a gear's curve, the steps of the frequencies at its
+    /// break points are smoothed at first and then sharpened.
+    fn fit_model(&self, mut model: Model<'a>, u: &[f64], effort: Effort) -> Fit<'a> {
+        let mut start = u.to_vec();
+        if !self.forward.modal.is_empty() && model.effects.last().is_some_and(|e| e.kind.traits.is_gear_curve)
+        {
+            for smoothing in [WIDE, 0.03, NARROW] {
+                model.smoothing = smoothing;
+                let steps = Effort { steps: 8, tolerance: 0.05 };
+                start = self.descent(&model, &start, steps).u;
+            }
+            model.smoothing = 0.0;
+        }
+        fit(self.forward, &model, &start, self.weights, effort)
+    }
+
+    pub(super) fn descent(&self, model: &Model, u: &[f64], effort: Effort) -> Point {
+        descent(self.forward, model, u, self.weights, effort, f64::INFINITY)
+    }
+
+    /// Takes a few steps, enough to see whether a model is close. Where the last effect is a gear's curve,
+    /// the frequencies' steps are smoothed widely at first.
+    pub(super) fn rough(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
+        let mut model = self.model(effects);
+        let mut start = u.to_vec();
+        let few = Effort { steps: 4, tolerance: 0.02 };
+        if model.effects.last().is_some_and(|e| e.kind.traits.is_gear_curve) {
+            let smoothed = Effort { steps: 6, tolerance: 0.05 };
+            model.smoothing = WIDE;
+            start = self.descent(&model, &start, smoothed).u;
+            model.smoothing = NARROW;
+        }
+        fit(self.forward, &model, &start, self.weights, few)
+    }
+
+    /// Fits a model to the end. Break points of a gear's curve are moved by hand, because the frequencies'
+    /// steps hide lower ground from a descent.
+    pub fn polish(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
+        let model = self.model(effects);
+        let breaks = model.break_points();
+        if breaks.is_empty() {
+            return fit(self.forward, &model, u, self.weights, Effort::default());
+        }
+        let mut best = self.descent(&model, u, Effort::default());
+        // large moves first, then finer ones about the best
+        for reach in [0.3, 0.12, 0.04] {
+            for &p in &breaks {
+                let moves = [-1.0, -0.5, 0.5, 1.0].map(|m| best.u[p] + m * reach);
+                let tried: Vec<Point> =
+                    moves.into_par_iter().filter_map(|v| self.held_then_free(&model, &best, p, v)).collect();
+                for point in tried {
+                    if point.objective < best.objective - 1e-6 {
+                        best = point;
+                    }
+                }
+            }
+        }
+        self.centre_breaks(model, best)
+    }
+
+    /// Fits a model with break points to the end if it may be the explanation. Otherwise a further effect
+    /// might be named that only makes up for what the descent missed.
+    pub(super) fn settled(&self, scored: Scored) -> Scored {
+        if self.model(&scored.effects).break_points().is_empty() || !self.may_explain(&scored) {
+            return scored;
+        }
+        let polished = self.scored(&scored.effects, &self.polish(&scored.effects, &scored.u));
+        if polished.score > scored.score { polished } else { scored }
+    }
+
+    /// Moves break points from the edge of a frequency's step to the middle of the flat part of the
+    /// objective. A small change of the torques then does not move a test across the step.
+    pub(super) fn centre_breaks(&self, model: Model<'a>, best: Point) -> Fit<'a> {
+        const STEP: f64 = 0.002;
+        let mut u = best.u.clone();
+        for p in model.break_points() {
+            let flat = |side: f64| {
+                let rises = (1..=10).map(|i| {
+                    let mut moved = u.clone();
+                    moved[p] += side * STEP * i as f64;
+                    evaluate(self.forward, &model, &moved, self.weights).objective
+                });
+                rises.take_while(|o| *o < best.objective + 1.0).count() as f64
+            };
+            let middle = 0.5 * STEP * (flat(1.0) - flat(-1.0));
+            u[p] += middle;
+        }
+        let mut held = model.clone();
+        // the other parameters adapt to the moved break points
+        held.held = model.break_points().into_iter().map(|p| (p, u[p])).collect();
+        let centred = self.descent(&held, &u, Effort { steps: 4, tolerance: 0.02 });
+        let end = if centred.objective > best.objective + 4.0 { best } else { centred };
+        fit(self.forward, &model, &end.u, self.weights, Effort { steps: 0, tolerance: 0.0 })
+    }
+
+    /// Descends with a parameter held at a value, then frees it. Returns `None` if the readings rule the
+    /// value out.
+    fn held_then_free(&self, model: &Model, from: &Point, parameter: usize, value: f64) -> Option<Point> {
+        let effort = Effort { steps: 5, tolerance: 0.02 };
+        let mut held = model.clone();
+        held.held = vec![(parameter, value)];
+        let limit = from.objective + RULED_OUT;
+        let end = descent(self.forward, &held, &from.u, self.weights, effort, limit);
+        (end.objective <= limit).then(|| self.descent(model, &end.u, effort))
+    }
+
+    /// Scores a fit.
+    pub fn scored(&self, effects: &[usize], fit: &Fit) -> Scored {
+        // each effect could have been named at any place, and the price is the logarithm of their number
+        let penalty = effects.len() as f64 * (self.places() as f64).ln();
+        Scored {
+            effects: effects.to_vec(),
+            u: fit.point.u.clone(),
+            score: fit.evidence - penalty,
+            objective: fit.point.objective,
+        }
+    }
+
+    /// Whether a model fits the readings well enough to be worth refining.
+    pub fn may_explain(&self, scored: &Scored) -> bool {
+        scored.objective < BEYOND_HOPE * self.forward.data.len() as f64
+    }
+
+    /// Number of places where an effect could be named. All unit slips of a channel count once.
+    pub fn places(&self) -> usize {
+        let mut labels: Vec<String> = self.candidates.iter().map(|c| c.label()).collect();
+        // all unit slips of a channel have the same label
+        labels.dedup();
+        labels.len()
+    }
+
+    /// A model without one of its effects, and its start.
+    pub fn without(&self, scored: &Scored, effect: usize) -> (Vec<usize>, Vec<f64>) {
+        let model = self.model(&scored.effects);
+        let first = model.first_parameter(effect);
+        let (mut effects, mut u) = (scored.effects.clone(), scored.u.clone());
+        effects.remove(effect);
+        u.drain(first..first + model.effects[effect].free_parameters.len());
+        (effects, u)
+    }
+}

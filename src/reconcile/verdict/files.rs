@@ -1,0 +1,11 @@
+//! Names of the files that hold corrected arms.
+
+use crate::arm::Arm;
+
+/// File of the first corrected arm.
+pub const CORRECTED_FILE: &str = "arm.corrected.json";
+
+/// File of a further corrected arm.
+pub fn corrected_file(arm: &Arm) -> String {
+    format!("{}.corrected.json", arm.name)
+}

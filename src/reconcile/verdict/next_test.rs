@@ -1,0 +1,324 @@
+//! Proposes the test that best separates models that the readings cannot yet tell apart.
+//!
+//! Poses come from a low-discrepancy sequence over the range of the campaign. Each has the largest payload
+//! and tip force that the campaign used, and its frequencies; each joint can also go on the bench. For every
+//! test, the predictions of the competing models are compared, all fitted to the readings so far. The
+//! difference is in expected standard deviations.
+
+use super::outcome::{NextTest, Verdict};
+use crate::arm::effect::subject::Subject;
+use crate::arm::load::Payload;
+use crate::reconcile::model::exact::Exact;
+use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::readings::rows::{ModalRow, StaticRow, WindupRow};
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+/// The models to separate, and what is known so far.
+pub struct Question<'a> {
+    /// The campaign so far.
+    pub campaign: &'a Campaign,
+    /// The best model.
+    pub best: (String, Subject),
+    /// The competing models, with their names.
+    pub competitors: Vec<(String, Subject)>,
+    /// The pose that the best model explains worst \[deg\].
+    pub residuals: Option<Vec<f64>>,
+    /// The verdict so far.
+    pub verdict: Verdict,
+}
+
+const STATIC_POSES: usize = 24;
+const MODAL_POSES: usize = 4;
+const PROPOSALS: usize = 4;
+/// Separation that settles a question \[standard deviations\].
+pub const ENOUGH: f64 = 4.0;
+/// A test that separates by less than this is not worth any number of readings \[standard deviations\].
+pub const WORTHLESS_SIGMAS: f64 = 0.1;
+/// Standard deviations that are assumed where a channel was not measured.
+const DEFAULT_SIGMA_MM: f64 = 0.01;
+const DEFAULT_SIGMA_PART: f64 = 0.003;
+const DEFAULT_SIGMA_ARCMIN: f64 = 0.05;
+const MODES: usize = 4;
+
+/// A test as rows of the three files.
+enum Test {
+    Static(Vec<StaticRow>),
+    Modal(Vec<ModalRow>),
+    Bench(Vec<WindupRow>),
+}
+
+/// The tests worth making, best first.
+pub fn propose(question: &Question) -> Vec<NextTest> {
+    if question.verdict == Verdict::Unexplained {
+        return question.residuals.iter().map(|pose| repeat(question.campaign, pose)).collect();
+    }
+    if question.competitors.is_empty() {
+        return Vec::new();
+    }
+    let best = Exact::new(&question.best.1);
+    let tests = tests(question.campaign, &best);
+    let gaps: Vec<Vec<f64>> = tests
+        .par_iter()
+        .map(|test| {
+            let own = predict(&best, test);
+            let competitors = question.competitors.iter();
+            competitors
+                .map(|(_, competitor)| separation(test, &own, &predict(&Exact::new(competitor), test)))
+                .collect()
+        })
+        .collect();
+    // a competing model that no test separates cannot be decided by measuring more
+    let most = |competitor: usize| gaps.iter().map(|list| list[competitor]).fold(0.0, f64::max);
+    let (open, twins): (Vec<usize>, Vec<usize>) =
+        (0..question.competitors.len()).partition(|&competitor| most(competitor) >= WORTHLESS_SIGMAS);
+    if open.is_empty() {
+        let names: Vec<&str> =
+            twins.iter().map(|&competitor| question.competitors[competitor].0.as_str()).collect();
+        return vec![nothing_tells(&question.best.0, &names)];
+    }
+    let mut out: Vec<NextTest> = tests
+        .iter()
+        .zip(&gaps)
+        .map(|(test, list)| {
+            let worst = open.iter().map(|&competitor| list[competitor]).fold(f64::INFINITY, f64::min);
+            describe(question, test, worst, &open)
+        })
+        .collect();
+    out.sort_by(|a, b| b.expected_sigmas.total_cmp(&a.expected_sigmas));
+    let mut kinds: Vec<(String, usize)> = Vec::new();
+    // at most two of a kind, so that the list offers a choice
+    out.retain(|t| match kinds.iter_mut().find(|(k, _)| *k == t.kind) {
+        Some((_, count)) => {
+            *count += 1;
+            *count <= 2
+        }
+        None => {
+            kinds.push((t.kind.clone(), 1));
+            true
+        }
+    });
+    out.truncate(PROPOSALS);
+    out
+}
+
+/// Says that no reading of the arm tells the models apart.
+fn nothing_tells(best: &str, competitors: &[&str]) -> NextTest {
+    NextTest::of_another_kind(format!(
+        "no displacement, frequency or bench reading separates {best} from {}: weigh the parts in question, or take them apart",
+        competitors.join(" or ")
+    ))
+}
+
+fn repeat(campaign: &Campaign, pose: &[f64]) -> NextTest {
+    NextTest {
+        kind: "static".into(),
+        description:
+            "repeat this pose, which the best model misses most, loading and unloading, on another day".into(),
+        pose_deg: Some(pose.to_vec()),
+        payload_kg: largest_payload(campaign).mass_kg,
+        force_n: [0.0; 3],
+        joint: None,
+        separates: Vec::new(),
+        expected_sigmas: 0.0,
+        readings_needed: 1,
+    }
+}
+
+fn largest_payload(campaign: &Campaign) -> Payload {
+    let statics = campaign.statics.iter().map(|r| r.payload);
+    let modal = campaign.modal.iter().map(|r| r.payload);
+    statics
+        .chain(modal)
+        .max_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg))
+        .filter(|p| p.mass_kg > 0.0)
+        .unwrap_or(Payload { mass_kg: 5.0, cg_m: Vector3::new(0.05, 0.0, 0.0), ..Payload::default() })
+}
+
+/// Smallest and largest angle of each joint in the campaign \[deg\].
+fn ranges(campaign: &Campaign) -> Vec<(f64, f64)> {
+    let joints = campaign.arm.driven_joint_names().len();
+    let poses =
+        || campaign.statics.iter().map(|r| &r.pose_deg).chain(campaign.modal.iter().map(|r| &r.pose_deg));
+    (0..joints)
+        .map(|j| {
+            let low = poses().map(|p| p[j]).fold(f64::INFINITY, f64::min);
+            let high = poses().map(|p| p[j]).fold(f64::NEG_INFINITY, f64::max);
+            if low < high { (low, high) } else { (-90.0, 90.0) }
+        })
+        .collect()
+}
+
+/// A pose of Halton's sequence within ranges of angles, in whole degrees.
+pub fn spread_pose(ranges: &[(f64, f64)], index: usize) -> Vec<f64> {
+    ranges
+        .iter()
+        .enumerate()
+        .map(|(j, (low, high))| (low + (high - low) * halton(index, PRIMES[j % PRIMES.len()])).round())
+        .collect()
+}
+
+/// A number of Halton's low-discrepancy sequence, from 0 to 1.
+fn halton(mut index: usize, base: usize) -> f64 {
+    let (mut f, mut r) = (1.0, 0.0);
+    while index > 0 {
+        f /= base as f64;
+        r += f * (index % base) as f64;
+        index /= base;
+    }
+    r
+}
+
+const PRIMES: [usize; 20] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71];
+
+fn tests(campaign: &Campaign, best: &Exact) -> Vec<Test> {
+    let ranges = ranges(campaign);
+    let pose = |index: usize| spread_pose(&ranges, index);
+    let payload = largest_payload(campaign);
+    let sigma_mm = campaign.statics.first().map_or(DEFAULT_SIGMA_MM, |r| r.sigma_mm);
+    let force = campaign.statics.iter().map(|r| r.force_n.norm()).fold(0.0, f64::max).max(100.0).round();
+    let mut out = Vec::new();
+    for index in 1..=STATIC_POSES {
+        let row = |row: usize, payload: Payload, force_n: Vector3<f64>| StaticRow {
+            row,
+            pose_deg: pose(index),
+            payload,
+            force_n,
+            branch: String::new(),
+            d_mm: [0.0; 3],
+            sigma_mm,
+        };
+        out.push(Test::Static(vec![row(0, payload, Vector3::zeros())]));
+        for axis in 0..3 {
+            out.push(Test::Static(vec![row(0, Payload::default(), Vector3::ith(axis, force))]));
+        }
+        let half = Payload { mass_kg: 0.5 * payload.mass_kg, ..payload };
+        let cycle = [half, payload, half];
+        out.push(Test::Static(cycle.iter().enumerate().map(|(i, p)| row(i, *p, Vector3::zeros())).collect()));
+    }
+    for index in 1..=MODAL_POSES {
+        for payload in [Payload::default(), payload] {
+            let row = |mode| ModalRow {
+                row: mode - 1,
+                pose_deg: pose(index),
+                payload,
+                mode,
+                frequency_hz: 0.0,
+                sigma_hz: 0.0,
+            };
+            out.push(Test::Modal((1..=MODES).map(row).collect()));
+        }
+    }
+    out.extend(benches(campaign, best, &out));
+    out
+}
+
+/// A bench cycle for each joint that has not been on the bench, up to its largest torque in the static tests.
+/// A joint that has been there is known as well as its readings say.
+fn benches(campaign: &Campaign, best: &Exact, statics: &[Test]) -> Vec<Test> {
+    let mut largest: Vec<(String, f64)> = Vec::new();
+    for row in statics.iter().filter_map(|t| if let Test::Static(rows) = t { rows.first() } else { None }) {
+        for (joint, torque_nm) in best.torques_nm(row) {
+            match largest.iter_mut().find(|(name, _)| *name == joint) {
+                Some((_, most)) => *most = most.max(torque_nm.abs()),
+                None => largest.push((joint, torque_nm.abs())),
+            }
+        }
+    }
+    let measured = |joint: &str| campaign.windup.iter().any(|r| r.joint == joint);
+    let fresh = largest.into_iter().filter(|(joint, most)| *most > 0.0 && !measured(joint));
+    fresh.map(|(joint, most)| bench(campaign, &joint, most.ceil())).collect()
+}
+
+fn bench(campaign: &Campaign, joint: &str, largest: f64) -> Test {
+    let sigma_arcmin = campaign.windup.first().map_or(DEFAULT_SIGMA_ARCMIN, |r| r.sigma_arcmin);
+    let up = (-4..=4).map(|k| k as f64 / 4.0 * largest);
+    let torques: Vec<f64> = up.clone().chain(up.rev()).collect();
+    let row = |(row, torque_nm): (usize, f64)| WindupRow {
+        row,
+        joint: joint.to_string(),
+        torque_nm,
+        branch: String::new(),
+        windup_arcmin: 0.0,
+        sigma_arcmin,
+    };
+    Test::Bench(torques.into_iter().enumerate().map(row).collect())
+}
+
+fn predict(exact: &Exact, test: &Test) -> Vec<f64> {
+    match test {
+        Test::Static(rows) => exact.statics_mm(rows).into_iter().flatten().collect(),
+        Test::Modal(rows) => exact.frequencies_hz(rows).into_iter().map(|f| f.unwrap_or(f64::NAN)).collect(),
+        Test::Bench(rows) => exact.windups_arcmin(rows),
+    }
+}
+
+/// Difference of two predictions of a test \[standard deviations\]: the root of the sum of squares, over the
+/// modes that both have.
+fn separation(test: &Test, a: &[f64], b: &[f64]) -> f64 {
+    let sigma = |value: f64| match test {
+        Test::Static(rows) => rows[0].sigma_mm,
+        Test::Modal(_) => DEFAULT_SIGMA_PART * value.abs().max(1e-9),
+        Test::Bench(rows) => rows[0].sigma_arcmin,
+    };
+    let squares = a.iter().zip(b).map(|(a, b)| ((a - b) / sigma(*a)).powi(2));
+    squares.filter(|s| s.is_finite()).sum::<f64>().sqrt()
+}
+
+fn describe(question: &Question, test: &Test, sigmas: f64, open: &[usize]) -> NextTest {
+    let (kind, description, pose_deg, payload_kg, force_n, joint) = match test {
+        Test::Static(rows) if rows.len() > 1 => {
+            let row = &rows[1];
+            (
+                "static",
+                "half load, full load, half load again",
+                Some(row.pose_deg.clone()),
+                row.payload.mass_kg,
+                row.force_n,
+                None,
+            )
+        }
+        Test::Static(rows) => {
+            let row = &rows[0];
+            let what = if row.payload.mass_kg > 0.0 { "payload" } else { "tip force without payload" };
+            ("static", what, Some(row.pose_deg.clone()), row.payload.mass_kg, row.force_n, None)
+        }
+        Test::Modal(rows) => {
+            let row = &rows[0];
+            (
+                "modal",
+                "the four lowest frequencies",
+                Some(row.pose_deg.clone()),
+                row.payload.mass_kg,
+                Vector3::zeros(),
+                None,
+            )
+        }
+        Test::Bench(rows) => (
+            "windup",
+            "a closed cycle on the bench",
+            None,
+            0.0,
+            Vector3::zeros(),
+            Some(rows[0].joint.clone()),
+        ),
+    };
+    NextTest {
+        kind: kind.into(),
+        description: description.into(),
+        pose_deg,
+        payload_kg,
+        force_n: force_n.into(),
+        joint,
+        separates: std::iter::once(question.best.0.clone())
+            .chain(open.iter().map(|&competitor| question.competitors[competitor].0.clone()))
+            .filter(|name| !name.is_empty())
+            .collect(),
+        expected_sigmas: sigmas,
+        readings_needed: if sigmas > 1e-3 {
+            (ENOUGH / sigmas).powi(2).ceil().min(9999.0) as usize
+        } else {
+            9999
+        },
+    }
+}

@@ -1,0 +1,30 @@
+//! One row of the table of position errors.
+
+use serde_json::{Value, json};
+
+/// How well a model predicts positions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stage {
+    /// The effect or the group of numbers that was added to the stage before.
+    pub added: String,
+    /// The effects that it made unnecessary.
+    pub dropped: Vec<String>,
+    /// Median error of the poses in the fit \[mm\].
+    pub fitted_median_mm: f64,
+    /// Median error of held-out poses \[mm\].
+    pub median_mm: f64,
+    /// Their mean error \[mm\].
+    pub mean_mm: f64,
+    /// Their largest error \[mm\].
+    pub max_mm: f64,
+}
+
+impl Stage {
+    /// As JSON for `verdict.json`.
+    pub fn json(&self) -> Value {
+        json!({
+            "added": self.added, "dropped": self.dropped, "fitted_median_mm": self.fitted_median_mm, "kept_out_median_mm": self.median_mm,
+            "kept_out_mean_mm": self.mean_mm, "kept_out_largest_mm": self.max_mm,
+        })
+    }
+}

@@ -1,0 +1,42 @@
+//! Drops the drives that the remaining loads do not allow.
+
+use super::parts::Parts;
+use super::statics::CaseLoads;
+use crate::space::problem::ArmProblem;
+use crate::space::slot::Slot;
+
+impl Parts {
+    /// Drops the drives that cannot carry the least demand. Where the joint takes the lightest drive that
+    /// carries its demand, it also drops those heavier than the lightest that carries the greatest demand.
+    /// Returns whether any was dropped.
+    pub fn drop_drives(&mut self, problem: &ArmProblem, cases: &[CaseLoads]) -> bool {
+        let mut dropped = false;
+        for (slot, piece) in problem.slots().iter().enumerate() {
+            let Slot::Sized(sized) = piece else { continue };
+            let motion = sized.table.motion();
+            // With such a duty cycle the mean torque may fall while a load rises, so the ends of the
+            // intervals prove nothing.
+            if motion.mean_torque.sum < motion.mean_torque.difference {
+                continue;
+            }
+            let (mut static_nm, mut inertia_kgm2) = ([0.0f64; 2], [0.0f64; 2]);
+            for &case in &problem.space().sizing_cases {
+                let torque = cases[case].torque_size(problem, self, slot);
+                let inertia = cases[case].inertia_range(problem, self, slot);
+                for end in 0..2 {
+                    static_nm[end] = static_nm[end].max(torque[end]);
+                    inertia_kgm2[end] = inertia_kgm2[end].max(inertia[end]);
+                }
+            }
+            let relaxed = [1.0 - 1e-12, 1.0 + 1e-12];
+            let [least, most] = [0, 1]
+                .map(|end| motion.demand(static_nm[end] * relaxed[end], inertia_kgm2[end] * relaxed[end]));
+            let heaviest = if sized.all_fits { None } else { sized.table.first_fit(&most) };
+            dropped |= self.keep(slot, |_, option| {
+                sized.table.limits(option as usize).hold(&least)
+                    && heaviest.is_none_or(|heaviest| option as usize <= heaviest)
+            });
+        }
+        dropped
+    }
+}

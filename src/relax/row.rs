@@ -1,0 +1,38 @@
+//! One linear inequality of the program.
+
+/// Rounding of an inequality, relative to its largest terms.
+const ROUNDING: f64 = 1e-9;
+
+/// `Σ coefficient · weight ≤ limit`. Coefficients are by slot and by remaining option.
+#[derive(Clone)]
+pub(super) struct Row {
+    pub coefficients: Vec<Vec<f64>>,
+    pub limit: f64,
+}
+
+impl Row {
+    /// Least coefficient of each slot.
+    pub fn least(&self) -> Vec<f64> {
+        self.coefficients.iter().map(|c| c.iter().copied().fold(f64::INFINITY, f64::min)).collect()
+    }
+
+    /// Whether some choice of options exceeds the limit.
+    pub fn can_bind(&self) -> bool {
+        let most: f64 =
+            self.coefficients.iter().map(|c| c.iter().copied().fold(f64::NEG_INFINITY, f64::max)).sum();
+        most > self.limit
+    }
+
+    /// The same inequality scaled so that no number exceeds 1, with its limit raised by the rounding.
+    pub fn ready(mut self) -> Self {
+        let largest_of = |c: &Vec<f64>| c.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
+        let terms: Vec<f64> = self.coefficients.iter().map(largest_of).collect();
+        self.limit += ROUNDING * (self.limit.abs() + terms.iter().sum::<f64>());
+        let largest = terms.iter().fold(self.limit.abs(), |largest, x| largest.max(*x));
+        if largest > 0.0 {
+            self.coefficients.iter_mut().flatten().for_each(|c| *c /= largest);
+            self.limit /= largest;
+        }
+        self
+    }
+}

@@ -1,0 +1,77 @@
+//! Eight arms side by side, as pieces are added from the innermost level to the base.
+
+use crate::mechanics::lanes::{Eight, LANES};
+use crate::pareto::objectives::Objectives;
+use crate::space::problem::ArmProblem;
+
+/// The largest number of slots from the innermost level to the base that a row handles. With more slots, designs are
+/// finished one by one.
+pub(crate) const MOST_SLOTS: usize = 12;
+
+/// Eight arms as they grow inward.
+///
+/// Eight numbers that are loaded together must also be stored together. Partial stores would defeat store-to-load
+/// forwarding: the processor would wait until they have reached the cache.
+pub(crate) struct EightArms {
+    /// One bit for each arm that holds so far.
+    pub held: u8,
+    pub mass_kg: Eight,
+    /// Mass of the drive in each inner slot. The masses of given drives are set from the beginning.
+    pub masses_kg: [Eight; MOST_SLOTS],
+    /// Largest part of Dunkerley's sums that a single joint adds \[s²\]. The lowest eigenvalue is at most its reciprocal.
+    pub largest_s2: Eight,
+    pub cases: Vec<CaseArms>,
+    /// Objectives of the finished arms.
+    pub tip_deflection_m: Eight,
+    pub lowest_mode_hz: Eight,
+}
+
+/// Eight arms in one case.
+#[derive(Clone)]
+pub(crate) struct CaseArms {
+    pub tip_m: [Eight; 3],
+    /// Torque \[N m\] on each inner joint that some load turns, and outboard inertia \[kg m²\] about it.
+    pub torque_at: [Eight; MOST_SLOTS],
+    pub inertia_at: [Eight; MOST_SLOTS],
+    /// Tangent compliance of each inner joint \[rad/(N m)\].
+    pub compliance: [Eight; MOST_SLOTS],
+    /// Dunkerley's sum of each block \[s²\].
+    pub trace_s2: [Eight; 2],
+}
+
+impl EightArms {
+    /// Working space for eight arms of a problem.
+    pub fn new(problem: &ArmProblem) -> Self {
+        let zeros = [0.0; LANES];
+        let nothing = CaseArms {
+            tip_m: [zeros; 3],
+            torque_at: [zeros; MOST_SLOTS],
+            inertia_at: [zeros; MOST_SLOTS],
+            compliance: [zeros; MOST_SLOTS],
+            trace_s2: [zeros; 2],
+        };
+        let inner = &problem.slots()[problem.level_slots().last().copied().unwrap_or(0)..];
+        let mut masses_kg = [zeros; MOST_SLOTS];
+        for (mass_kg, slot) in masses_kg.iter_mut().zip(inner) {
+            *mass_kg = [slot.fixed_kg().unwrap_or(0.0); LANES];
+        }
+        Self {
+            held: 0,
+            mass_kg: zeros,
+            masses_kg,
+            largest_s2: zeros,
+            cases: vec![nothing; problem.stations().len()],
+            tip_deflection_m: zeros,
+            lowest_mode_hz: zeros,
+        }
+    }
+
+    /// Objectives of one of the eight.
+    pub fn objectives(&self, lane: usize) -> Objectives {
+        Objectives {
+            tip_deflection_m: self.tip_deflection_m[lane],
+            mass_kg: self.mass_kg[lane],
+            lowest_mode_hz: self.lowest_mode_hz[lane],
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! Attributes of a link option that do not depend on the pose: mass, cost, slenderness and stress factors.
+
+use super::design_space::{DesignSpace, LinkOption};
+use super::station::Place;
+use crate::arm::section::Section;
+use nalgebra::{Vector3, Vector6};
+
+/// What the search needs to know of a link option in addition to its mechanics.
+pub(crate) struct OptionAttributes {
+    pub mass_kg: f64,
+    /// Number of the material; `None` for a tube that is not chosen, which belongs to no group.
+    pub material: Option<usize>,
+    /// Cost of the material \[EUR\]; `None` if unknown.
+    pub cost_eur: Option<f64>,
+    /// `None` if the strength of the material is unknown.
+    pub stress: Option<StressCheck>,
+    /// Whether the wall is more slender than the study allows.
+    pub slender: bool,
+}
+
+/// Von Mises stress at the ends of a link, from force and moment in the section frame of the link.
+///
+/// `per_axial_n` is in \[1/m²\], the other factors are in \[1/m³\].
+pub(crate) struct StressCheck {
+    pub per_axial_n: f64,
+    pub per_moment_y: f64,
+    pub per_moment_z: f64,
+    pub per_torsion: f64,
+    pub round: bool,
+    pub strength_pa: f64,
+}
+
+impl StressCheck {
+    pub fn new(option: &LinkOption) -> Option<Self> {
+        let p = option.section.properties(option.material.poisson);
+        let (width, height) = option.section.outer_m();
+        let wall = option.section.wall_m();
+        let round = matches!(option.section, Section::RoundTube { .. });
+        // a round tube has an exact solution, largest on its outside; a rectangular one follows Bredt's formula, in
+        // which the area is the one that the middle line of the wall encloses
+        let per_torsion = match round {
+            true => width / 2.0 / p.torsion_constant_m4,
+            false => 1.0 / (2.0 * (width - wall) * (height - wall) * wall),
+        };
+        Some(Self {
+            per_axial_n: 1.0 / p.area_m2,
+            per_moment_y: height / 2.0 / p.second_moment_y_m4,
+            per_moment_z: width / 2.0 / p.second_moment_z_m4,
+            per_torsion,
+            round,
+            strength_pa: option.strength_pa?,
+        })
+    }
+
+    /// Ratio of the von Mises stress of bending, axial force and torsion to the strength. `wrench` is the load about the
+    /// world's origin, `at_m` the end of the link at which the stress is asked for.
+    pub fn ratio(&self, wrench: &Vector6<f64>, at_m: &Vector3<f64>, place: &Place) -> f64 {
+        let [axial_n, torsion_nm, moment_y_nm, moment_z_nm] = place.local(wrench, at_m);
+        let (y, z) = (moment_y_nm.abs() * self.per_moment_y, moment_z_nm.abs() * self.per_moment_z);
+        // the stresses of both bending moments meet in the corner of a rectangle, but not in one point of a circle
+        let bending = if self.round { y.hypot(z) } else { y + z };
+        let normal = axial_n.abs() * self.per_axial_n + bending;
+        let shear = torsion_nm.abs() * self.per_torsion;
+        von_mises(normal, shear) / self.strength_pa
+    }
+}
+
+/// Von Mises stress of a normal and a shear stress, in their unit.
+pub(crate) fn von_mises(normal: f64, shear: f64) -> f64 {
+    (normal * normal + 3.0 * shear * shear).sqrt()
+}
+
+/// The attributes of an option for a link of this length \[m\].
+pub(crate) fn attributes_of(space: &DesignSpace, option: &LinkOption, length_m: f64) -> OptionAttributes {
+    let mass_kg = option.mass_kg_per_m() * length_m;
+    OptionAttributes {
+        slender: space.constraints.wall_slenderness_max.is_some_and(|max| option.wall_slenderness() > max),
+        mass_kg,
+        material: Some(option.material_index),
+        cost_eur: option.cost_eur_per_kg.map(|cost| cost * mass_kg),
+        stress: StressCheck::new(option),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::section::LinkMaterial;
+
+    /// `τ = T r / J` on the outside of a round tube with a thick wall; Bredt's formula gives a sixth less here.
+    #[test]
+    fn a_round_tube_is_twisted_most_on_its_outside() {
+        let material = LinkMaterial {
+            youngs_modulus_pa: 2.1e11,
+            shear_modulus_pa: 8.1e10,
+            density_kg_m3: 7850.0,
+            poisson: 0.3,
+        };
+        let section = Section::RoundTube { diameter_m: 0.06, wall_m: 0.012 };
+        let option = LinkOption { strength_pa: Some(355e6), ..LinkOption::given(material, section) };
+        let check = StressCheck::new(&option).unwrap();
+        let polar_m4 = std::f64::consts::PI / 32.0 * (0.06f64.powi(4) - 0.036f64.powi(4));
+        let shear_pa = 0.03 / polar_m4;
+        assert!((check.per_torsion / shear_pa - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,146 @@
+//! A question prepared for its boxes: the trees of all levels, and what bounds a box.
+
+use super::bound::Members;
+use super::drive_range::DriveRange;
+use super::drives::{Drives, Ties};
+use super::duty::Duty;
+use super::parts_box::{Choice, Design, PartsBox, Place};
+use super::question::Question;
+use super::skeleton::{Parts, Skeleton, joint_offers};
+use super::tree::Tree;
+use super::tubes::{TubeRange, Tubes};
+use crate::catalog::Catalogs;
+use std::sync::Arc;
+
+/// A question prepared for its boxes.
+pub struct Boxes {
+    pub(super) skeleton: Arc<Skeleton>,
+    pub(super) joints: Vec<Drives>,
+    pub(super) tubes: Vec<Tubes>,
+}
+
+impl Boxes {
+    /// Prepares a question; drives of equal mass and torsion are options of their own.
+    pub fn new(question: &Question, catalogs: &Catalogs) -> Self {
+        let skeleton = Skeleton::new(question);
+        let parts = skeleton.parts(question, &joint_offers(question, catalogs), Ties::Apart);
+        Self::of(Arc::new(skeleton), parts)
+    }
+
+    /// The boxes of some parts.
+    pub(super) fn of(skeleton: Arc<Skeleton>, parts: Parts) -> Self {
+        let joints = parts.joints.into_iter().map(Drives::new).collect();
+        Self { skeleton, joints, tubes: parts.tubes.iter().map(Tubes::new).collect() }
+    }
+
+    /// All designs; `None` if there is none.
+    pub fn root(&self) -> Option<PartsBox> {
+        let some = self.joints.iter().all(|joint| !joint.is_empty())
+            && self.tubes.iter().all(|tube| tube.tree.len() > 0);
+        some.then(|| PartsBox(vec![0; self.skeleton.levels.len()]))
+    }
+
+    /// A box with the options of one level halved; `None` if there is one option.
+    pub fn halves(&self, parts: &PartsBox, level: usize) -> Option<[PartsBox; 2]> {
+        let halves = self.tree(level).halves(parts.0[level])?;
+        Some(halves.map(|node| {
+            let mut half = parts.clone();
+            half.0[level] = node;
+            half
+        }))
+    }
+
+    /// The options that a box has at each level, tip first.
+    pub fn options(&self, parts: &PartsBox) -> Vec<Vec<u32>> {
+        let levels = self.skeleton.levels.iter().zip(&parts.0);
+        levels
+            .map(|(place, &node)| match *place {
+                Place::Joint(joint) => {
+                    self.joints[joint].options(node).flat_map(|o| o.drives.iter().map(|d| d.0)).collect()
+                }
+                Place::Tube(tube) => {
+                    let Tubes { tree, numbers, .. } = &self.tubes[tube];
+                    tree.options(node).iter().map(|&i| numbers[i as usize]).collect()
+                }
+            })
+            .collect()
+    }
+
+    /// A mass \[kg\] and a tip deflection \[m\] that no member of a box betters; `None` if no member holds.
+    pub fn least_mass_and_deflection(&self, parts: &PartsBox) -> Option<[f64; 2]> {
+        let ideal = self.skeleton.ideal_point(&self.members(parts)?)?;
+        Some([ideal.mass_kg, ideal.tip_m])
+    }
+
+    /// Whether it is proved that no member of a box that holds has a lowest mode above `hz`.
+    pub fn proves_none_faster(&self, parts: &PartsBox, hz: f64) -> bool {
+        self.members(parts).is_none_or(|members| self.skeleton.slowest(&members, hz).is_none())
+    }
+
+    /// The parts of a box, joint by joint from the tip; `None` if no member holds.
+    pub(super) fn members(&self, nodes: &PartsBox) -> Option<Members<'_>> {
+        let tubes: Vec<&TubeRange> =
+            self.tubes.iter().map(|tube| &tube.nodes[self.node(tube.level, nodes)]).collect();
+        let drives = self.joints.iter().map(|joint| *joint.range(0)).collect();
+        let mut members = Members::new(drives, tubes, self.skeleton.waters.len());
+        for joint in (0..self.joints.len()).rev() {
+            let drives = &self.joints[joint];
+            let range = match &drives.duty {
+                Some(duty) => self.drives_that_hold(drives, joint, duty, nodes, &members)?,
+                None => *drives.range(0),
+            };
+            members.set_drive(joint, range);
+        }
+        self.skeleton.strong_enough(&members).then_some(members)
+    }
+
+    fn node(&self, level: Option<usize>, nodes: &PartsBox) -> usize {
+        level.map_or(0, |level| nodes.0[level] as usize)
+    }
+
+    fn drives_that_hold(
+        &self,
+        drives: &Drives,
+        joint: usize,
+        duty: &Duty,
+        nodes: &PartsBox,
+        members: &Members,
+    ) -> Option<DriveRange> {
+        let [least, most] = self.skeleton.demands(joint, duty, members);
+        match drives.level {
+            Some(level) => drives.holding(nodes.0[level], &least),
+            None => drives.first_fits(&least, &most),
+        }
+    }
+
+    /// The design of a box of one option a level, with all that tie with it.
+    pub(super) fn design(&self, parts: &PartsBox) -> Option<Design> {
+        let members = self.members(parts)?;
+        let choice = |(place, &node): (&Place, &u32)| match *place {
+            Place::Joint(joint) => {
+                let drives = &self.joints[joint];
+                let demands = self.skeleton.demands(joint, drives.duty.as_ref()?, &members);
+                Some(drives.options(node).next()?.holding(&demands))
+            }
+            Place::Tube(tube) => {
+                let Tubes { tree, numbers, .. } = &self.tubes[tube];
+                let options = tree.options(node).iter().map(|&i| numbers[i as usize]).collect();
+                Some(Choice { options, one_holds: true })
+            }
+        };
+        self.skeleton.levels.iter().zip(&parts.0).map(choice).collect()
+    }
+
+    /// Levels with more than one option left.
+    pub(super) fn open_levels(&self, parts: &PartsBox) -> Vec<usize> {
+        let is_open = |&level: &usize| self.tree(level).halves(parts.0[level]).is_some();
+        (0..self.skeleton.levels.len()).filter(is_open).collect()
+    }
+
+    fn tree(&self, level: usize) -> &Tree {
+        match self.skeleton.levels[level] {
+            Place::Joint(joint) => &self.joints[joint].tree,
+            Place::Tube(tube) => &self.tubes[tube].tree,
+        }
+    }
+}

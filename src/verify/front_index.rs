@@ -1,0 +1,109 @@
+//! An index of the rows of a front: which frequency does a design need so that no row is as good?
+
+use crate::pareto::objectives::Objectives;
+
+/// Objectives closer than this count as equal (relative).
+const TIE: f64 = 1e-9;
+/// A row must be better by this in one objective to discard a box (relative).
+const BETTER: f64 = 1e-7;
+
+/// The rows of a front in the order of mass. It finds the highest frequency of all rows up to a mass and a deflection.
+///
+/// Position `i` of `blocks` (from 1, as in a Fenwick tree) stands for the last `i & -i` rows up to the `i`-th:
+/// deflections rising, each with the highest frequency of those that deflect no more.
+pub(super) struct FrontIndex {
+    masses_kg: Vec<f64>,
+    blocks: Vec<Vec<(f64, f64)>>,
+}
+
+impl FrontIndex {
+    /// Sorts the rows.
+    pub fn new(front: &[Objectives]) -> Self {
+        let mut rows = front.to_vec();
+        rows.sort_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
+        let block = |end: usize| {
+            let size = end & end.wrapping_neg();
+            let mut block: Vec<(f64, f64)> =
+                rows[end - size..end].iter().map(|r| (r.tip_deflection_m, r.lowest_mode_hz)).collect();
+            block.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let mut highest = 0.0f64;
+            for (_, hz) in &mut block {
+                highest = highest.max(*hz);
+                *hz = highest;
+            }
+            block
+        };
+        Self {
+            masses_kg: rows.iter().map(|row| row.mass_kg).collect(),
+            blocks: (1..=rows.len()).map(block).collect(),
+        }
+    }
+
+    /// Highest frequency among rows that weigh and deflect no more \[Hz\]; zero if there is none.
+    fn highest_hz(&self, mass_kg: f64, tip_m: f64) -> f64 {
+        let mut end = self.masses_kg.partition_point(|row| *row <= mass_kg);
+        let mut highest = 0.0f64;
+        while end > 0 {
+            let block = &self.blocks[end - 1];
+            let below = block.partition_point(|(row, _)| *row <= tip_m);
+            highest = highest.max(below.checked_sub(1).map_or(0.0, |last| block[last].1));
+            end &= end - 1;
+        }
+        highest
+    }
+
+    /// The largest frequency at which a design of this mass and deflection is beaten by a row: the row is no
+    /// worse in all three, ties counted for the row, and better in one. Zero if no row beats it at any.
+    pub fn beaten_up_to_hz(&self, mass_kg: f64, tip_m: f64) -> f64 {
+        let lighter = self.highest_hz(mass_kg * (1.0 - BETTER), tip_m * (1.0 + TIE));
+        let stiffer = self.highest_hz(mass_kg * (1.0 + TIE), tip_m * (1.0 - BETTER));
+        let as_good = self.highest_hz(mass_kg * (1.0 + TIE), tip_m * (1.0 + TIE));
+        (lighter.max(stiffer) * (1.0 + TIE)).max(as_good * (1.0 - BETTER))
+    }
+
+    /// Whether a row beats a design.
+    pub fn beats(&self, design: &Objectives) -> bool {
+        design.lowest_mode_hz <= self.beaten_up_to_hz(design.mass_kg, design.tip_deflection_m)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(count: u32) -> Vec<Objectives> {
+        let number = |i: u32, factor: u32| f64::from(i * factor % 31) + 1.0;
+        (0..count)
+            .map(|i| Objectives {
+                mass_kg: number(i, 7),
+                tip_deflection_m: number(i, 11),
+                lowest_mode_hz: number(i, 17),
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_highest_frequency_is_that_of_a_look_at_every_row() {
+        for count in [0, 1, 2, 7, 8, 30] {
+            let rows = rows(count);
+            let front_index = FrontIndex::new(&rows);
+            for (mass_kg, tip_m) in (0..34).flat_map(|m| (0..34).map(move |t| (f64::from(m), f64::from(t)))) {
+                let no_worse = rows.iter().filter(|r| r.mass_kg <= mass_kg && r.tip_deflection_m <= tip_m);
+                let highest = no_worse.map(|r| r.lowest_mode_hz).fold(0.0, f64::max);
+                assert_eq!(front_index.highest_hz(mass_kg, tip_m), highest, "{count} {mass_kg} {tip_m}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_row_does_not_beat_its_equal_but_what_is_a_little_worse() {
+        let row = Objectives { mass_kg: 20.0, tip_deflection_m: 1e-3, lowest_mode_hz: 9.0 };
+        let front_index = FrontIndex::new(&[row]);
+        assert!(!front_index.beats(&row));
+        let tie = 1.0 - 5e-10;
+        assert!(!front_index.beats(&Objectives { mass_kg: 20.0 * tie, ..row }));
+        assert!(front_index.beats(&Objectives { mass_kg: 20.0 * tie, lowest_mode_hz: 8.99, ..row }));
+        assert!(!front_index.beats(&Objectives { mass_kg: 19.99, lowest_mode_hz: 8.99, ..row }));
+        assert!(front_index.beats(&Objectives { tip_deflection_m: 1.001e-3, ..row }));
+    }
+}

@@ -1,0 +1,51 @@
+//! What a search has come to, and what ends it early.
+
+use super::parts_box::Design;
+use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+/// The search stops at more single designs: the rows are then far from a front.
+const MOST_DESIGNS: usize = 200_000;
+
+/// What a search found.
+#[derive(Default)]
+pub(super) struct Found {
+    pub boxes: u64,
+    pub open: u64,
+}
+
+impl Found {
+    pub fn with(self, other: Self) -> Self {
+        Self { boxes: self.boxes + other.boxes, open: self.open + other.open }
+    }
+}
+
+/// The designs that a search has come to, and what ends it early.
+pub(super) struct Halt<'s> {
+    pub stop: &'s AtomicBool,
+    pub deadline: Option<Instant>,
+    /// Single designs that no bound cut, and how many.
+    pub designs: Mutex<BTreeSet<Design>>,
+    pub count: AtomicUsize,
+}
+
+impl Halt<'_> {
+    /// Whether the search is to end early.
+    pub fn stopped(&self) -> bool {
+        self.count.load(Ordering::Relaxed) > MOST_DESIGNS || self.out_of_time()
+    }
+
+    /// Notes a design; it may be known from another region.
+    pub fn note(&self, design: Option<Design>) {
+        let mut designs = self.designs.lock().unwrap_or_else(PoisonError::into_inner);
+        designs.extend(design);
+        self.count.store(designs.len(), Ordering::Relaxed);
+    }
+
+    /// Whether whoever asked wants an end.
+    pub fn out_of_time(&self) -> bool {
+        self.stop.load(Ordering::Relaxed) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+    }
+}

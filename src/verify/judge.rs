@@ -1,0 +1,230 @@
+//! One design by the full model, and whether it holds.
+//!
+//! The arm of a design is built from the question's own numbers and the catalog rows of its drives; statics and modes are
+//! those of `mechanics`, the full model that `armwright analyze` uses. What drives and tubes are asked for comes from
+//! this room's sums, with each weight known.
+
+use super::bound::Members;
+use super::drive_range::DriveRange;
+use super::offers::{CatalogOffers, JointOffers, Offer};
+use super::question::{AskedDrive, AskedJoint, AskedLink, AskedPiece, Question};
+use super::skeleton::{Skeleton, joint_offers};
+use super::tubes::{TubeNumbers, TubeOptions, TubeRange, is_too_slender};
+use crate::arm::joint_law::Curve;
+use crate::arm::load::Water;
+use crate::arm::{Arm, Element};
+use crate::catalog::Catalogs;
+use crate::mechanics::chain::Chain;
+use crate::pareto::objectives::Objectives;
+use std::sync::Arc;
+
+/// What a design has for one piece of the chain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Pick {
+    /// What the question gives, or whatever its rule gives: a drive that fits first.
+    Given,
+    /// A drive of the catalogs, by the places of gear and motor in their lists.
+    Drive {
+        /// Place of the gear.
+        gear: usize,
+        /// Place of the motor.
+        motor: usize,
+    },
+    /// A tube, by its place in the list of its link.
+    Tube(usize),
+}
+
+/// A design that holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// What it has for each piece, base to tip; drives that fit first are named.
+    pub picks: Vec<Pick>,
+    /// Its objectives by the full model.
+    pub objectives: Objectives,
+}
+
+/// Judges designs of a question.
+pub struct Judge<'q> {
+    pub(super) question: &'q Question,
+    pub(super) skeleton: Arc<Skeleton>,
+    pub(super) offers: Vec<JointOffers>,
+}
+
+/// The drive that a design has at a joint.
+struct Fitted {
+    range: DriveRange,
+    pick: Pick,
+}
+
+impl<'q> Judge<'q> {
+    /// Reads the drives that the catalogs offer, and puts the arm into all of its cases.
+    pub fn new(question: &'q Question, catalogs: &Catalogs) -> Self {
+        let skeleton = Arc::new(Skeleton::new(question));
+        Self { question, skeleton, offers: joint_offers(question, catalogs) }
+    }
+
+    /// What is asked.
+    pub fn question(&self) -> &Question {
+        self.question
+    }
+
+    /// Judges a design; `None` if it does not hold, if it is none of the question's, or if it names a drive that does not
+    /// fit first.
+    ///
+    /// A torque within 1e-9 of what a drive holds, and a stress as close to what is allowed, count as held.
+    pub fn judge(&self, picks: &[Pick]) -> Option<Judged> {
+        let tubes = self.tubes(picks)?;
+        let picks = self.with_drives(picks, &tubes)?;
+        let arm = self.arm(&picks)?;
+        let objectives = self.objectives(&arm);
+        let limits = &self.question.limits;
+        let within = |value: f64, most: Option<f64>| most.is_none_or(|most| value <= most);
+        let holds = within(objectives.tip_deflection_m, limits.tip_deflection_max_m)
+            && within(objectives.mass_kg, limits.mass_max_kg)
+            && objectives.lowest_mode_hz >= limits.required_mode_hz()
+            && within(self.material_cost_eur(&picks), limits.material_cost_max_eur);
+        holds.then_some(Judged { picks, objectives })
+    }
+
+    /// A design with the first of every drive's ties in its place: two designs differ in nothing but drives of equal mass and
+    /// torsion if this is the same of both.
+    pub fn first_tie(&self, picks: &[Pick]) -> Vec<Pick> {
+        let mut joints = self.offers.iter();
+        let first = |(piece, pick): (&AskedPiece, &Pick)| {
+            let offers = match piece {
+                AskedPiece::Joint(_) => joints.next().and_then(JointOffers::of_catalog),
+                _ => None,
+            };
+            let first = offers.and_then(|offers| Some(offers.first_tie(offer_of(offers, pick)?)));
+            first.map_or(*pick, |offer| Pick::Drive { gear: offer.gear, motor: offer.motor })
+        };
+        self.question.pieces.iter().zip(picks).map(first).collect()
+    }
+
+    /// The tubes of a design as ranges of one, base to tip; `None` if one is too slender.
+    fn tubes(&self, picks: &[Pick]) -> Option<Vec<TubeRange>> {
+        let (question, waters): (_, &[Option<Water>]) = (self.question, &self.skeleton.waters);
+        let mut tubes = Vec::new();
+        for (piece, pick) in question.pieces.iter().zip(picks) {
+            match piece {
+                AskedPiece::Joint(_) => {}
+                AskedPiece::Link(link) => {
+                    if let Some(options) = TubeOptions::of_link(question, link, waters) {
+                        tubes.push(TubeRange::one(&options.tubes.first()?.1));
+                    }
+                }
+                AskedPiece::Choice(choice) => {
+                    let tube = tube_of(choice, pick)?;
+                    if is_too_slender(question, &tube.section) {
+                        return None;
+                    }
+                    tubes.push(TubeRange::one(&TubeNumbers::of_choice(question, choice, tube, waters)));
+                }
+            }
+        }
+        Some(tubes)
+    }
+
+    /// Goes from the tip inward and sees that every drive holds what is outboard of it; names those that fit first.
+    fn with_drives(&self, picks: &[Pick], tubes: &[TubeRange]) -> Option<Vec<Pick>> {
+        let pieces = self.question.pieces.iter().enumerate();
+        let places: Vec<usize> = pieces
+            .filter(|(_, piece)| matches!(piece, AskedPiece::Joint(_)))
+            .map(|(place, _)| place)
+            .collect();
+        let nothing = DriveRange::of(&Curve::Rigid.into(), 0.0);
+        let mut members =
+            Members::new(vec![nothing; places.len()], tubes.iter().collect(), self.skeleton.waters.len());
+        let mut out = picks.to_vec();
+        for joint in (0..places.len()).rev() {
+            let fitted = self.fitted(joint, &picks[places[joint]], &members)?;
+            members.set_drive(joint, fitted.range);
+            out[places[joint]] = fitted.pick;
+        }
+        self.skeleton.strong_enough(&members).then_some(out)
+    }
+
+    /// The drive of a joint if it holds, everything outboard being known.
+    fn fitted(&self, joint: usize, pick: &Pick, members: &Members) -> Option<Fitted> {
+        let offers = match &self.offers[joint] {
+            JointOffers::Given { law, mass_kg } => {
+                return Some(Fitted { range: DriveRange::of(law, *mass_kg), pick: Pick::Given });
+            }
+            JointOffers::Catalog(offers) => offers,
+        };
+        let [least, most] = self.skeleton.demands(joint, &offers.duty, members);
+        let named = offer_of(offers, pick);
+        let offer = match (offers.is_choice, *pick) {
+            (true, _) | (false, Pick::Drive { .. }) => named.filter(|offer| offer.ratings.hold(&least))?,
+            (false, _) => offers.first_fit(&least)?,
+        };
+        if !offers.is_choice {
+            // none before it may hold for certain
+            let before = offers.offers.iter().take_while(|other| *other != offer);
+            before.into_iter().all(|other| !other.ratings.hold(&most)).then_some(())?;
+        }
+        let pick = Pick::Drive { gear: offer.gear, motor: offer.motor };
+        Some(Fitted { range: DriveRange::of(&offer.law, offer.mass_kg), pick })
+    }
+
+    /// The arm of a design with all of its parts.
+    fn arm(&self, picks: &[Pick]) -> Option<Arm> {
+        let mut joints = self.offers.iter();
+        let element = |(piece, pick): (&AskedPiece, &Pick)| match piece {
+            AskedPiece::Joint(joint) => self.joint(joint, joints.next()?, pick),
+            AskedPiece::Link(link) => Some(Element::Link(link.clone())),
+            AskedPiece::Choice(choice) => Some(Element::Link(choice.with_tube(tube_of(choice, pick)?))),
+        };
+        let chain = self.question.pieces.iter().zip(picks).map(element).collect::<Option<Vec<_>>>()?;
+        Some(self.question.arm(chain))
+    }
+
+    fn joint(&self, joint: &AskedJoint, offers: &JointOffers, pick: &Pick) -> Option<Element> {
+        if let AskedDrive::Given { curve, mass_kg } = joint.drive {
+            return Some(joint.with_drive(curve, mass_kg));
+        }
+        let offer = offer_of(offers.of_catalog()?, pick)?;
+        Some(joint.with_drive(Curve::Windup(offer.windup), offer.mass_kg))
+    }
+
+    fn objectives(&self, arm: &Arm) -> Objectives {
+        let mut worst =
+            Objectives { tip_deflection_m: 0.0, mass_kg: arm.mass_kg(), lowest_mode_hz: f64::INFINITY };
+        for case in self.question.judged_cases.iter().map(|&case| &self.question.cases[case]) {
+            let chain = Chain::new(&arm.structure_in(case), case.links);
+            let posed = chain.pose(case);
+            let statics = posed.statics();
+            worst.tip_deflection_m = worst.tip_deflection_m.max(statics.tip_displacement_m.norm());
+            worst.lowest_mode_hz = worst.lowest_mode_hz.min(posed.lowest_frequency_hz(&statics));
+        }
+        worst
+    }
+
+    /// Cost of the chosen tubes, tip first; material of unknown cost counts for nothing \[EUR\].
+    fn material_cost_eur(&self, picks: &[Pick]) -> f64 {
+        let costs = self.question.pieces.iter().zip(picks).rev().filter_map(|(piece, pick)| match piece {
+            AskedPiece::Choice(choice) => {
+                let tube = tube_of(choice, pick)?;
+                let area_m2 = tube.section.properties(tube.material.poisson).area_m2;
+                let mass_kg = tube.material.density_kg_m3 * area_m2 * choice.vector_m.norm();
+                Some(tube.cost_eur_per_kg? * mass_kg)
+            }
+            _ => None,
+        });
+        costs.sum()
+    }
+}
+
+fn offer_of<'o>(offers: &'o CatalogOffers, pick: &Pick) -> Option<&'o Offer> {
+    match *pick {
+        Pick::Drive { gear, motor } => offers.of(gear, motor),
+        _ => None,
+    }
+}
+
+fn tube_of<'l>(choice: &'l AskedLink, pick: &Pick) -> Option<&'l super::question::AskedTube> {
+    match *pick {
+        Pick::Tube(place) => choice.tubes.get(place),
+        _ => None,
+    }
+}

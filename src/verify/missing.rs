@@ -1,0 +1,148 @@
+//! Looking for designs that belong beside the rows of a front.
+
+use super::boxes::Boxes;
+use super::drives::Ties;
+use super::front_index::FrontIndex;
+use super::halt::{Found, Halt};
+use super::judge::{Judge, Judged, Pick};
+use super::offers::JointOffers;
+use super::parts_box::{Choice, Design};
+use super::question::{AskedPiece, Question};
+use super::region::search::{RegionSearch, Work};
+use super::search::Search;
+use super::settings::Settings;
+use super::upper_bound::UpperBound;
+use crate::pareto::objectives::Objectives;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, PoisonError};
+use std::time::Instant;
+
+/// Single designs judged at a time.
+const BATCH: usize = 4096;
+/// Designs that are listed with all their ties; of more, one of each is.
+const MOST_TIES: f64 = 2e4;
+
+/// What looking for missing designs came to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Looked {
+    /// The designs that hold and that no row beats; those of the rows are among them.
+    pub candidates: Vec<Judged>,
+    /// Boxes bounded.
+    pub boxes: u64,
+    /// Boxes left unopened when it was stopped.
+    pub open: u64,
+    /// Whether no candidate was left out because it ties with another.
+    pub ties_listed: bool,
+}
+
+/// Whether the bounds see all there is in a question.
+///
+/// # Errors
+/// What they do not see, in words.
+pub fn conditions(question: &Question) -> Result<(), String> {
+    match question.motion.grows() {
+        true => Ok(()),
+        false => {
+            Err("its bounds do not know a duty cycle that decelerates longer than it accelerates".into())
+        }
+    }
+}
+
+impl Judge<'_> {
+    /// Looks for designs that belong beside the rows of a front. The question must meet the [`conditions`].
+    ///
+    /// The answer does not depend on the number of threads unless it is stopped.
+    pub fn missing(
+        &self,
+        front: &[Objectives],
+        settings: Settings,
+        stop: &AtomicBool,
+        deadline: Option<Instant>,
+    ) -> Looked {
+        let index = FrontIndex::new(front);
+        let halt = Halt { stop, deadline, designs: Default::default(), count: Default::default() };
+        let found = match self.designs().is_none_or(|designs| designs > settings.regions_from) {
+            false => self.explore_boxes(&index, &halt),
+            true => {
+                let parts = self.skeleton.parts(self.question, &self.offers, Ties::Together);
+                let work = Work { front, index: &index, settings, halt: &halt };
+                RegionSearch::explore_all(Arc::clone(&self.skeleton), parts, &work)
+            }
+        };
+        let designs = halt.designs.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let (designs, ties_listed) = one_by_one(&designs);
+        let mut looked = Looked { candidates: Vec::new(), boxes: found.boxes, open: found.open, ties_listed };
+        for batch in designs.chunks(BATCH) {
+            match halt.out_of_time() {
+                true => looked.open += batch.len() as u64,
+                false => looked.candidates.extend(self.unbeaten(batch, &index)),
+            }
+        }
+        looked
+    }
+
+    fn explore_boxes(&self, front: &FrontIndex, halt: &Halt) -> Found {
+        let parts = self.skeleton.parts(self.question, &self.offers, Ties::Apart);
+        let boxes = Boxes::of(Arc::clone(&self.skeleton), parts);
+        let search = Search { boxes: &boxes, front, upper: UpperBound::OPEN, halt };
+        boxes.root().map_or_else(Found::default, |root| search.explore(&root))
+    }
+
+    /// Number of designs; `None` beyond what 128 bits hold.
+    fn designs(&self) -> Option<u128> {
+        let drives = self.offers.iter().filter_map(JointOffers::of_catalog);
+        let drives = drives.filter(|offers| offers.is_choice).map(|offers| offers.offers.len());
+        let tubes = self.question.pieces.iter().filter_map(|piece| match piece {
+            AskedPiece::Choice(choice) => Some(choice.tubes.len()),
+            _ => None,
+        });
+        drives.chain(tubes).try_fold(1u128, |product, options| product.checked_mul(options as u128))
+    }
+
+    /// Those of some designs that hold and that no row beats.
+    fn unbeaten(&self, designs: &[Vec<u32>], front: &FrontIndex) -> Vec<Judged> {
+        let judged = designs.par_iter().filter_map(|options| self.judge(&self.picks(options)));
+        judged.filter(|design| !front.beats(&design.objectives)).collect()
+    }
+
+    /// What a design has for each piece, from its option of each level, tip first.
+    pub fn picks(&self, options: &[u32]) -> Vec<Pick> {
+        let (mut levels, mut joints) = (options.iter().rev(), self.offers.iter());
+        let mut next = || levels.next().map_or(0, |&option| option as usize);
+        let pick = |piece: &AskedPiece| match piece {
+            AskedPiece::Link(_) => Pick::Given,
+            AskedPiece::Choice(_) => Pick::Tube(next()),
+            AskedPiece::Joint(_) => match joints.next().and_then(JointOffers::of_catalog) {
+                Some(offers) if offers.is_choice => {
+                    let offer = &offers.offers[next()];
+                    Pick::Drive { gear: offer.gear, motor: offer.motor }
+                }
+                _ => Pick::Given,
+            },
+        };
+        self.question.pieces.iter().map(pick).collect()
+    }
+}
+
+/// The options of some designs, ascending, and whether all of their ties are there: if they are too many it is one of
+/// each.
+fn one_by_one(designs: &BTreeSet<Design>) -> (Vec<Vec<u32>>, bool) {
+    let count = |design: &Design| design.iter().map(|choice| choice.options.len() as f64).product::<f64>();
+    let is_one = |design: &Design| count(design) == 1.0;
+    let ties_listed = designs.iter().map(count).sum::<f64>() <= MOST_TIES || designs.iter().all(is_one);
+    let mut all = Vec::new();
+    for design in designs {
+        let mut chosen: Vec<Vec<u32>> = vec![Vec::new()];
+        for Choice { options, one_holds } in design {
+            let options = if ties_listed || !one_holds { &options[..] } else { &options[..1] };
+            let longer = |start: Vec<u32>| options.iter().map(move |&o| [&start[..], &[o]].concat());
+            chosen = chosen.into_iter().flat_map(longer).collect();
+        }
+        all.extend(chosen);
+    }
+    all.sort_unstable();
+    all.dedup();
+    (all, ties_listed)
+}

@@ -1,0 +1,197 @@
+//! What a drive holds, worked out from its catalog rows (Eqs 7-12; docs/sizing.md, "The checks").
+//!
+//! Speed and duty cycle of a joint are fixed, so every check of a drive compares one torque with one number. A torque
+//! that is asked for is a [`Quantity`]; a check is an entry of [`CHECKS`] and says which quantity it limits and to
+//! what. A further check is one more entry; a further torque is one more quantity, and [`Duty::demand`] says how
+//! large it is.
+//!
+//! Nothing of `sizing` is used: a wrong threshold there must not be repeated here.
+
+use super::demand::{Demand, QUANTITIES, Quantity};
+use super::duty::Duty;
+use crate::catalog::gear::Gear;
+use crate::catalog::motor::Motor;
+
+/// The most that a drive holds of each quantity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Ratings([f64; QUANTITIES]);
+
+/// A limit of a drive on one quantity; `None` if the catalog leaves blank what it needs.
+struct Check {
+    on: Quantity,
+    most: fn(&Gear, &Motor, &Duty) -> Option<f64>,
+}
+
+/// All checks of torques. A drive that lacks a number for one of them cannot be chosen.
+const CHECKS: [Check; 6] = [
+    Check { on: Quantity::Static, most: motor_continuous_nm },
+    Check { on: Quantity::Peak, most: |gear, _, _| gear.repeated_peak_torque_nm },
+    Check { on: Quantity::Peak, most: motor_peak_nm },
+    Check { on: Quantity::Stop, most: |gear, _, _| gear.momentary_peak_torque_nm },
+    Check { on: Quantity::MeanCubed, most: |gear, _, _| Some(gear.average_torque_limit_nm?.powi(3)) },
+    Check { on: Quantity::MeanCubed, most: life_nm3 },
+];
+
+/// Input speed that rated torques of gears refer to \[rpm\].
+const RATED_RPM: f64 = 2000.0;
+
+impl Ratings {
+    /// No check fails.
+    pub const UNLIMITED: Self = Self([f64::INFINITY; QUANTITIES]);
+
+    /// The ratings of a drive under a motion; `None` if it turns too fast for it or a number is blank.
+    pub fn of(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<Self> {
+        let mut ratings = Self::UNLIMITED;
+        for check in &CHECKS {
+            let most = (check.most)(gear, motor, duty)?;
+            let rating = &mut ratings.0[check.on as usize];
+            *rating = rating.min(most);
+        }
+        turns_as_fast(gear, motor, duty)?.then_some(ratings)
+    }
+
+    /// Whether every torque that is asked for is held.
+    pub fn hold(&self, demand: &Demand) -> bool {
+        // no branch on the way: nearly every box asks this of many drives
+        self.0.iter().zip(&demand.0).fold(true, |held, (most, asked)| held & (asked <= most))
+    }
+
+    /// Whether a drive with these ratings holds whatever one with the others holds.
+    pub fn cover(&self, other: &Self) -> bool {
+        self.0.iter().zip(&other.0).all(|(a, b)| a >= b)
+    }
+
+    /// The larger of each rating.
+    pub fn max(&self, other: &Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i].max(other.0[i])))
+    }
+
+    /// The rating of one quantity.
+    pub fn on(&self, quantity: Quantity) -> f64 {
+        self.0[quantity as usize]
+    }
+}
+
+/// Whether neither gear nor motor turns faster than it may.
+fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
+    let motor_max_rpm = motor.max_speed_rpm.or(motor.rated_speed_rpm)?;
+    let fastest_rpm = input_rpm(gear, duty.speed_rad_s);
+    let mean_rpm = input_rpm(gear, duty.mean_speed_rad_s);
+    Some(
+        fastest_rpm <= gear.max_input_speed_rpm?
+            && fastest_rpm <= motor_max_rpm
+            && mean_rpm <= gear.average_input_speed_limit_rpm?,
+    )
+}
+
+/// Speed of the motor when the joint turns at a speed \[rpm\].
+fn input_rpm(gear: &Gear, output_rad_s: f64) -> f64 {
+    f64::from(gear.ratio) * (output_rad_s * 30.0 / std::f64::consts::PI)
+}
+
+/// Torque at the joint for one newton metre at the motor.
+fn gain(gear: &Gear) -> Option<f64> {
+    Some(f64::from(gear.ratio) * gear.efficiency?)
+}
+
+/// The static torque at which the motor gives what it can give for ever: `T_rated N η`.
+fn motor_continuous_nm(gear: &Gear, motor: &Motor, _: &Duty) -> Option<f64> {
+    Some(motor.rated_torque_nm? * gain(gear)?)
+}
+
+/// The torque at the joint at which the motor is at its peak: what is left of it once rotor and wave generator are
+/// accelerated (Eqs 9-12), `(T_peak - (J_rotor + J_input) N α) N η`.
+fn motor_peak_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
+    let inertia_kgm2 = motor.rotor_inertia_kgm2? + gear.inertia_input_kgm2?;
+    let own_nm = inertia_kgm2 * f64::from(gear.ratio) * duty.acceleration_rad_s2;
+    Some((motor.peak_torque_nm? - own_nm) * gain(gear)?)
+}
+
+/// The cubed mean torque under which the wave generator's bearing lasts as long as it must, from
+/// `L10 = L_ref (T_rated / T_mean)³ (2000 rpm / n_mean)`.
+fn life_nm3(gear: &Gear, _: &Motor, duty: &Duty) -> Option<f64> {
+    let at_rated_h = rated_life_h(&gear.series)? * (RATED_RPM / input_rpm(gear, duty.mean_speed_rad_s));
+    Some(gear.rated_torque_nm?.powi(3) * at_rated_h / duty.life_h)
+}
+
+/// L10 at rated torque and speed, by series \[h\] (Harmonic Drive SE, engineering data 1019659, table 20.1, and
+/// Harmonic Drive LLC, CSF/CSG catalog).
+fn rated_life_h(series: &str) -> Option<f64> {
+    const LONG: [&str; 3] = ["CSG", "SHG", "CobaltLine"];
+    const SHORT: [&str; 6] = ["HFUC", "HFUS", "CSF", "CSD", "CPU", "SHD"];
+    match series {
+        long if LONG.contains(&long) => Some(10_000.0),
+        short if SHORT.contains(&short) => Some(7_000.0),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::question::{AskedMotion, AskedPhase, AskedPhaseKind, LinearTorque};
+    use super::*;
+    use crate::catalog::Catalogs;
+
+    /// The paper's 1 m/s in 0.2 s; ramps of 0.2 s about 0.6 s of travel, then 1 s of rest.
+    fn duty() -> Duty {
+        let phase = |duration_s, kind| AskedPhase { duration_s, kind };
+        let motion = AskedMotion {
+            tip_speed_m_s: 1.0,
+            ramp_time_s: 0.2,
+            emergency_deceleration_m_s2: None,
+            min_lever_m: 0.3,
+            phases: vec![
+                phase(0.2, AskedPhaseKind::Accelerate),
+                phase(0.6, AskedPhaseKind::Constant),
+                phase(0.2, AskedPhaseKind::Decelerate),
+                phase(1.0, AskedPhaseKind::Rest),
+            ],
+            life_h: 10_000.0,
+            linear_torque: LinearTorque::OfInertia,
+            gravity_m_s2: 9.81,
+        };
+        Duty::new(&motion, 1.35, None)
+    }
+
+    #[test]
+    fn the_ratings_of_a_drive_are_those_worked_out_by_hand() {
+        let catalogs = Catalogs::builtin();
+        let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
+        let ratings = Ratings::of(gear, motor, &duty()).unwrap();
+        let near = |quantity, by_hand: f64| {
+            let rating = ratings.on(quantity);
+            assert!((rating / by_hand - 1.0).abs() < 1e-12, "{quantity:?}: {rating}, by hand {by_hand}");
+        };
+        let gain = 100.0 * gear.efficiency.unwrap();
+        near(Quantity::Static, motor.rated_torque_nm.unwrap() * gain);
+        // 0.00039 kg m² of the rotor and 0.00273 kg m² of the wave generator, α = 5 / 1.35 rad/s²
+        let motor_nm = (motor.peak_torque_nm.unwrap() - 0.00312 * 100.0 * 5.0 / 1.35) * gain;
+        near(Quantity::Peak, motor_nm.min(gear.repeated_peak_torque_nm.unwrap()));
+        near(Quantity::Stop, gear.momentary_peak_torque_nm.unwrap());
+        let mean_rpm = 100.0 * 0.4 / 1.35 * 60.0 / std::f64::consts::TAU;
+        let life_nm3 = 0.7 * gear.rated_torque_nm.unwrap().powi(3) * 2000.0 / mean_rpm;
+        near(Quantity::MeanCubed, life_nm3.min(gear.average_torque_limit_nm.unwrap().powi(3)));
+    }
+
+    #[test]
+    fn the_demand_is_the_one_worked_out_by_hand() {
+        // 40 N m of linear torque on 100 N m of static torque
+        let Demand(demand) = duty().demand(-100.0, 40.0 / (5.0 / 1.35));
+        let mean = (140f64.powi(3) * 0.5 + 100f64.powi(3) * 3.0 + 60f64.powi(3) * 0.5) / 4.0;
+        for (asked, by_hand) in demand.iter().zip([100.0, 140.0, 180.0, mean]) {
+            assert!((asked / by_hand - 1.0).abs() < 1e-12, "{asked}, by hand {by_hand}");
+        }
+    }
+
+    #[test]
+    fn a_drive_with_a_blank_number_or_that_turns_too_slowly_has_no_ratings() {
+        let catalogs = Catalogs::builtin();
+        let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
+        let blank = Gear { momentary_peak_torque_nm: None, ..gear.clone() };
+        let slow = Gear { max_input_speed_rpm: Some(10.0), ..gear.clone() };
+        let unknown = Gear { series: "unheard of".into(), ..gear.clone() };
+        for gear in [blank, slow, unknown] {
+            assert_eq!(Ratings::of(&gear, motor, &duty()), None);
+        }
+    }
+}

@@ -1,0 +1,287 @@
+//! Where to branch a subproblem below a single upper bound: the options of a level, or a torque.
+//!
+//! No weights refute the mixture of the cheapest members, though no single design is such a mixture. So the search branches
+//! where the mixture is furthest from a design: at a level whose mixed options differ most in what they add to the rows, or at a
+//! torque if the mixture twists less, or is stiffer, than its gears are at the torque that its own weights make.
+
+use super::super::bound::{Members, compliances};
+use super::super::span::{Linear, Span};
+use super::parts_table::{Numbers, PartsTable, place};
+use super::rows::Rows;
+use super::subproblem::{Subproblem, TorqueInterval};
+use super::weights::{Member, Reduced};
+
+/// Gains below this part of what the upper bound allows are no reason to branch: then the most options are.
+const WORTH_IT: f64 = 1e-4;
+/// Rows in which the mixture has less room than this count for this more than their weights.
+const NEAR: f64 = 0.2;
+const SAY: f64 = 0.1;
+/// Members of smaller shares do not say where to branch a torque.
+const SHARE: f64 = 1e-3;
+/// A torque within this part of itself is known.
+const KNOWN: f64 = 2e-3;
+/// Part of a torque's interval from either end in which it is not branched.
+const EDGE: f64 = 0.1;
+
+/// A way to branch a subproblem.
+pub(super) enum Branching {
+    /// The options of a part, joints before tubes, by the sum of their numbers times factors: up to one and beyond, or in
+    /// equal parts.
+    Options {
+        part: usize,
+        per_number: Vec<f64>,
+        at: Option<f64>,
+    },
+    Torque {
+        case: usize,
+        joint: usize,
+        at_nm: f64,
+    },
+}
+
+/// Ways to branch, the most promising first, with the numbers of the torsion curves that they refer to.
+#[derive(Default)]
+pub(super) struct Branchings {
+    pub branchings: Vec<Branching>,
+    pub curves: Vec<Numbers>,
+}
+
+impl Rows<'_> {
+    /// Branchings to part what is left of a subproblem, the most promising first.
+    pub fn branchings(&self, members: &Members, left: &Reduced) -> Vec<Branching> {
+        let between = self.between(left);
+        let mut found = Vec::new();
+        // the drive that fits first is no choice
+        let is_choice = |part: &usize| self.table.joints.get(*part).is_none_or(|j| j.drives.level.is_some());
+        for part in (0..self.columns.joints + self.table.tubes.len()).filter(is_choice) {
+            found.push(self.by_options(part, &between, members, left));
+        }
+        for case in 0..self.columns.cases {
+            found.extend(self.by_torques(case, &between, left));
+        }
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found.into_iter().map(|(_, branching)| branching).collect()
+    }
+
+    /// The numbers of the arm in between the mixed members.
+    fn between(&self, left: &Reduced) -> Vec<f64> {
+        let mut between = vec![0.0; self.columns.len()];
+        for (share, member) in &left.mixed {
+            between.iter_mut().zip(&member.numbers).for_each(|(sum, number)| *sum += share * number);
+        }
+        between
+    }
+
+    /// How much the mixed members differ in a part, and the row in which they differ most.
+    fn by_options(
+        &self,
+        part: usize,
+        between: &[f64],
+        members: &Members,
+        left: &Reduced,
+    ) -> (f64, Branching) {
+        let columns = self.columns.of_part(part);
+        let adds = |row: usize, numbers: &[f64]| -> f64 {
+            let per = &self.rows[row].per_number[columns.clone()];
+            per.iter().zip(&numbers[columns.clone()]).map(|(a, b)| a * b).sum()
+        };
+        let spread = |row: usize| {
+            let mean = adds(row, between);
+            let apart =
+                left.mixed.iter().map(|(share, member)| share * (adds(row, &member.numbers) - mean).abs());
+            self.says(row, between, left) * apart.sum::<f64>()
+        };
+        let spreads: Vec<f64> = (0..self.rows.len()).map(spread).collect();
+        let row = (0..spreads.len()).max_by(|&a, &b| spreads[a].total_cmp(&spreads[b])).unwrap_or(0);
+        let mut score: f64 = spreads.iter().sum();
+        let at = (score > WORTH_IT).then(|| adds(row, between));
+        if let Some(tube) = part.checked_sub(self.columns.joints) {
+            score += self.left_out_of(tube, between, members, &left.weights);
+        }
+        let per_number = self.rows[row].per_number[columns.clone()].to_vec();
+        if score <= WORTH_IT {
+            score = WORTH_IT * (1.0 - 1.0 / self.options(left, part) as f64);
+        }
+        (score, Branching::Options { part, per_number, at })
+    }
+
+    fn options(&self, left: &Reduced, part: usize) -> usize {
+        match part.checked_sub(self.columns.joints) {
+            None => left.joints[part].len(),
+            Some(tube) => self.table.tubes[tube].count(&left.tubes[tube]),
+        }
+    }
+
+    /// What a row counts for: its weight, and something for any that the mixture has little room in. What holds a torque
+    /// does not.
+    fn says(&self, row: usize, between: &[f64], left: &Reduced) -> f64 {
+        let near = self.rows[row].value(between) > -NEAR;
+        match (self.first_interval..self.first_mode).contains(&row) {
+            true => 0.0,
+            false => left.weights[row] + if near { SAY } else { 0.0 },
+        }
+    }
+
+    /// What the products of force and compliance of a tube leave out at the mixture.
+    fn left_out_of(&self, tube: usize, between: &[f64], members: &Members, weights: &[f64]) -> f64 {
+        let of_tip = |&(row, case, direction): &(usize, usize, nalgebra::Vector3<f64>)| {
+            let pose = self.pose(case);
+            let loads = &members.loads[pose.water];
+            let products = pose.works[tube].iter().zip(compliances(members.tubes[tube])).enumerate();
+            let left_out = products.map(|(which, (work, compliance))| {
+                let number = self.columns.tubes[tube] + place::compliance(self.skeleton.waters.len(), which);
+                let forces = work.along(&direction, loads);
+                let per_load = work.per_load.iter().enumerate();
+                let force = work.fixed.dot(&direction)
+                    + per_load
+                        .map(|(load, per)| between[self.columns.load(load, pose.water)] * per.dot(&direction))
+                        .sum::<f64>();
+                (force - forces.least) * (between[number] - compliance.least)
+            });
+            weights[row] * left_out.sum::<f64>() / self.upper.tip_m
+        };
+        self.tips.iter().map(of_tip).sum()
+    }
+
+    /// Ways to branch at torques of a case: the mixture gains by gears that are at other torques than its own weights make.
+    fn by_torques(&self, case: usize, between: &[f64], left: &Reduced) -> Vec<(f64, Branching)> {
+        let pose = self.pose(case);
+        let own_nm = |torque: &Linear| {
+            let per_load = torque.per_load.iter().enumerate();
+            let own = per_load.map(|(load, per)| between[self.columns.load(load, pose.water)] * per);
+            torque.fixed + own.sum::<f64>()
+        };
+        let spans = self.torques[case].iter();
+        let own = pose.torques.iter().zip(spans).map(|(t, span)| own_nm(t).clamp(span.least, span.most));
+        let own_nm: Vec<f64> = own.collect();
+        let mut there = between.to_vec();
+        for (joint, torque_nm) in own_nm.iter().enumerate() {
+            let slope = |(share, member): &(f64, Member)| {
+                let range = self.table.joints[joint].range(member.drives[joint]);
+                share * range.largest_slope(torque_nm.abs())
+            };
+            let slope: f64 = left.mixed.iter().map(slope).sum();
+            there[self.columns.slope(joint, case)] = if slope.is_finite() { slope } else { 0.0 };
+        }
+        let eigenvalue = self.upper.eigenvalue();
+        let motion = self.pencil(case, &there).slower_motion(eigenvalue);
+        let branchings = own_nm.iter().enumerate().filter_map(|(joint, &torque_nm)| {
+            let slope = self.columns.slope(joint, case);
+            let stiffer = between[slope] - there[slope];
+            let of_mode = motion.as_ref().map_or(0.0, |x| stiffer * x[joint] * x[joint] / eigenvalue);
+            let gain = of_mode + self.less_twisted(case, joint, torque_nm, left);
+            (gain > WORTH_IT).then_some(())?;
+            Some((
+                gain,
+                Branching::Torque { case, joint, at_nm: self.branching_nm(case, joint, torque_nm, left)? },
+            ))
+        });
+        branchings.collect()
+    }
+
+    /// What the mixture twists less than its gears would at a torque, in the weighted row of the tip.
+    fn less_twisted(&self, case: usize, joint: usize, torque_nm: f64, left: &Reduced) -> f64 {
+        let Some(&(row, _, direction)) = self.tips.iter().find(|tip| tip.1 == case) else { return 0.0 };
+        let sense = 1.0f64.copysign(self.pose(case).tip_m_per_rad[joint].dot(&direction));
+        let at = Span { least: torque_nm, most: torque_nm }.times(sense);
+        let from = self.torques[case][joint].times(sense);
+        let twist = self.columns.twist(joint, case);
+        let less = |(share, member): &(f64, Member)| {
+            let counted = member.numbers[twist] + self.per_torque[case][joint] * (at.least - from.least);
+            let range = self.table.joints[joint].range(member.drives[joint]);
+            share * (range.least_angle_rad(at) - counted)
+        };
+        let less: f64 = left.mixed.iter().map(less).sum();
+        left.weights[row] * self.rows[row].per_number[twist] * less
+    }
+
+    /// Where to branch a torque: at the nearest torque beyond the mixture's at which the slope of one of its gears grows, else
+    /// at the mixture's own or in the middle. `None` if it is known.
+    fn branching_nm(&self, case: usize, joint: usize, torque_nm: f64, left: &Reduced) -> Option<f64> {
+        let Span { least, most } = self.torques[case][joint];
+        let edge = EDGE * (most - least);
+        (most - least > KNOWN * most.abs().max(least.abs())).then_some(())?;
+        let breaks = left.mixed.iter().filter(|(share, _)| *share > SHARE).flat_map(|(_, member)| {
+            let stiff = self.table.joints[joint].range(member.drives[joint]).stiff;
+            [stiff.t1_nm, stiff.t2_nm, -stiff.t1_nm, -stiff.t2_nm]
+        });
+        let beyond = breaks.filter(|at_nm| at_nm.abs() >= torque_nm.abs() && *at_nm > least && *at_nm < most);
+        let nearest = beyond.min_by(|a, b| (a - torque_nm).abs().total_cmp(&(b - torque_nm).abs()));
+        let inside = Some(torque_nm).filter(|nm| *nm > least + edge && *nm < most - edge);
+        Some(nearest.or(inside).unwrap_or(0.5 * (least + most)))
+    }
+}
+
+impl Branchings {
+    /// The halves of a subproblem; `None` if it cannot be branched.
+    pub fn halves(&self, table: &PartsTable, subproblem: &Subproblem) -> Option<[Subproblem; 2]> {
+        self.branchings.iter().find_map(|branching| subproblem.branched(table, branching, &self.curves))
+    }
+}
+
+impl Subproblem {
+    fn branched(&self, table: &PartsTable, branching: &Branching, curves: &[Numbers]) -> Option<[Self; 2]> {
+        match branching {
+            Branching::Torque { case, joint, at_nm } => Some(self.branched_by_torque(*case, *joint, *at_nm)),
+            Branching::Options { part, per_number, at } => match part.checked_sub(self.joints.len()) {
+                None => {
+                    let joint = &table.joints[*part];
+                    let value = |&drive: &u32| {
+                        let curve = joint.curve[drive as usize] as usize;
+                        let rest = curves[*part][curve].iter().flatten();
+                        let numbers = std::iter::once(&joint.masses_kg[drive as usize]).chain(rest);
+                        numbers.zip(per_number).map(|(a, b)| a * b).sum()
+                    };
+                    let halves = halved(&self.joints[*part], value, *at)?;
+                    Some(halves.map(|half| {
+                        let mut subproblem = self.clone();
+                        subproblem.joints[*part] = half;
+                        subproblem
+                    }))
+                }
+                Some(tube) => {
+                    let value = |&node: &u32| {
+                        let [least, most] = table.tubes[tube].bounds(node);
+                        let ends = least.iter().zip(most);
+                        ends.zip(per_number).map(|((a, b), per)| 0.5 * (a + b) * per).sum()
+                    };
+                    let nodes = &self.tubes[tube];
+                    let halves = match nodes[..] {
+                        [node] => table.tubes[tube].tree.halves(node)?.map(|half| vec![half]),
+                        _ => halved(nodes, value, *at)?,
+                    };
+                    Some(halves.map(|half| {
+                        let mut subproblem = self.clone();
+                        subproblem.tubes[tube] = half;
+                        subproblem
+                    }))
+                }
+            },
+        }
+    }
+
+    fn branched_by_torque(&self, case: usize, joint: usize, at_nm: f64) -> [Self; 2] {
+        let below = Span { least: f64::NEG_INFINITY, most: at_nm };
+        let above = Span { least: at_nm, most: f64::INFINITY };
+        [below, above].map(|between| {
+            let mut subproblem = self.clone();
+            subproblem.keep_torque(TorqueInterval { case, joint, between });
+            subproblem
+        })
+    }
+}
+
+/// Options whose value is no more than one, and the others; in equal parts if either has none. `None` if there is one option.
+fn halved(options: &[u32], value: impl Fn(&u32) -> f64, at: Option<f64>) -> Option<[Vec<u32>; 2]> {
+    let (mut low, mut high): (Vec<u32>, Vec<u32>) =
+        options.iter().partition(|option| at.is_some_and(|at| value(option) <= at));
+    if low.is_empty() || high.is_empty() {
+        let mut all = options.to_vec();
+        all.sort_by(|a, b| value(a).total_cmp(&value(b)));
+        high = all.split_off(all.len() / 2);
+        low = all;
+        low.sort_unstable();
+        high.sort_unstable();
+    }
+    (!low.is_empty()).then_some([low, high])
+}

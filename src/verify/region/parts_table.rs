@@ -1,0 +1,205 @@
+//! All parts of a space, as columns of numbers that prices are put on.
+//!
+//! A tube is a line of numbers: its mass; for each of the study's surroundings its weight and its inertias per length; its stiffnesses
+//! and its compliances. The tubes of a link stand in a tree whose nodes know the least and the most of every number.
+//! A drive is its mass and its torsion curve; many drives have one curve, so that a curve's price is worked out once.
+
+use super::super::drive_range::DriveRange;
+use super::super::drives::DriveOptions;
+use super::super::skeleton::Parts;
+use super::super::tree::Tree;
+use super::super::tubes::{
+    DENSITIES, STIFFNESSES, STRESSES, TubeAround, TubeNumbers, TubeOptions, TubeRange,
+};
+use rayon::prelude::*;
+
+/// The parts of a space.
+pub(super) struct PartsTable {
+    pub joints: Vec<JointTable>,
+    pub tubes: Vec<TubeTable>,
+}
+
+/// Twists and slopes of each curve of a joint; none of those that do not count.
+pub(super) type Numbers = Vec<Option<Vec<f64>>>;
+
+/// What a joint may have.
+pub(super) struct JointTable {
+    pub drives: DriveOptions,
+    pub masses_kg: Vec<f64>,
+    /// Which of the curves each drive has.
+    pub curve: Vec<u32>,
+    /// The curves, each as a drive that has it.
+    pub curves: Vec<DriveRange>,
+}
+
+/// What a link may be.
+pub(super) struct TubeTable {
+    pub options: TubeOptions,
+    pub tree: Tree,
+    /// Least and then most numbers of every node.
+    bounds: Vec<f64>,
+    width: usize,
+    priced: usize,
+}
+
+/// Places of a tube's numbers.
+pub(super) mod place {
+    use crate::verify::tubes::{DENSITIES, STIFFNESSES};
+    pub const MASS: usize = 0;
+    const AROUND: usize = 1 + DENSITIES;
+
+    pub fn weight(water: usize) -> usize {
+        1 + water * AROUND
+    }
+
+    pub fn density(water: usize, which: usize) -> usize {
+        2 + water * AROUND + which
+    }
+
+    pub fn stiffness(waters: usize, which: usize) -> usize {
+        1 + waters * AROUND + which
+    }
+
+    pub fn compliance(waters: usize, which: usize) -> usize {
+        stiffness(waters, STIFFNESSES + which)
+    }
+
+    /// How many numbers a price may be put on.
+    pub fn priced(waters: usize) -> usize {
+        stiffness(waters, 2 * STIFFNESSES)
+    }
+}
+
+impl PartsTable {
+    pub fn new(parts: Parts) -> Self {
+        Self {
+            joints: parts.joints.into_iter().map(JointTable::new).collect(),
+            tubes: parts.tubes.into_par_iter().map(TubeTable::new).collect(),
+        }
+    }
+}
+
+impl JointTable {
+    fn new(drives: DriveOptions) -> Self {
+        let mut curves: Vec<DriveRange> = Vec::new();
+        let twists = |a: &DriveRange| (a.stiff, a.soft, a.modal_nm_per_rad);
+        let curve = |range: &DriveRange| {
+            let known = curves.iter().position(|known| twists(known) == twists(range));
+            known.unwrap_or_else(|| {
+                curves.push(*range);
+                curves.len() - 1
+            }) as u32
+        };
+        let curve = drives.options.iter().map(|option| &option.range).map(curve).collect();
+        let masses_kg = drives.options.iter().map(|option| option.range.least_kg).collect();
+        Self { drives, masses_kg, curve, curves }
+    }
+}
+
+impl JointTable {
+    /// A drive.
+    pub fn range(&self, drive: u32) -> &DriveRange {
+        &self.drives.options[drive as usize].range
+    }
+}
+
+impl TubeTable {
+    fn new(options: TubeOptions) -> Self {
+        let tree = options.tree();
+        let waters = options.tubes.first().map_or(0, |(_, tube)| tube.around.len());
+        let priced = place::priced(waters);
+        let width = priced + STRESSES + 1;
+        let mut bounds = vec![0.0; 2 * width * tree.len()];
+        // halves come after their node
+        for node in (0..tree.len() as u32).rev() {
+            let at = 2 * width * node as usize;
+            match tree.halves(node) {
+                None => {
+                    let numbers = numbers(&options.tubes[tree.options(node)[0] as usize].1);
+                    bounds[at..at + width].copy_from_slice(&numbers);
+                    bounds[at + width..at + 2 * width].copy_from_slice(&numbers);
+                }
+                Some(halves) => {
+                    let [a, b] = halves.map(|half| 2 * width * half as usize);
+                    for i in 0..2 * width {
+                        let (x, y) = (bounds[a + i], bounds[b + i]);
+                        bounds[at + i] = if i < width { x.min(y) } else { x.max(y) };
+                    }
+                }
+            }
+        }
+        Self { options, tree, bounds, width, priced }
+    }
+
+    /// Least and most numbers of a node that prices may be put on.
+    pub fn bounds(&self, node: u32) -> [&[f64]; 2] {
+        self.all_bounds(node).map(|bounds| &bounds[..self.priced])
+    }
+
+    fn all_bounds(&self, node: u32) -> [&[f64]; 2] {
+        let at = 2 * self.width * node as usize;
+        let both = &self.bounds[at..at + 2 * self.width];
+        [&both[..self.width], &both[self.width..]]
+    }
+
+    /// How many numbers a price may be put on.
+    pub fn priced(&self) -> usize {
+        self.priced
+    }
+
+    /// Range of some nodes.
+    pub fn range(&self, nodes: &[u32]) -> TubeRange {
+        let [mut least, mut most] = self.all_bounds(nodes[0]).map(<[f64]>::to_vec);
+        for &node in nodes {
+            let [low, high] = self.all_bounds(node);
+            least.iter_mut().zip(low).for_each(|(a, b)| *a = a.min(*b));
+            most.iter_mut().zip(high).for_each(|(a, b)| *a = a.max(*b));
+        }
+        let [least, most] = [least, most].map(|numbers| tube(&numbers));
+        TubeRange { middle: least.clone(), least, most }
+    }
+
+    /// The tubes of some nodes.
+    pub fn only(&self, nodes: &[u32]) -> TubeOptions {
+        let mut options: Vec<u32> = nodes.iter().flat_map(|&node| self.tree.options(node)).copied().collect();
+        options.sort_unstable();
+        self.options.only(&options)
+    }
+
+    /// How many tubes some nodes have.
+    pub fn count(&self, nodes: &[u32]) -> usize {
+        nodes.iter().map(|&node| self.tree.options(node).len()).sum()
+    }
+}
+
+fn numbers(tube: &TubeNumbers) -> Vec<f64> {
+    // what does not yield has neither: nothing is ever paid for its stiffness
+    let stiffness = |k: &f64| if k.is_finite() { *k } else { 0.0 };
+    let mut numbers = vec![tube.mass_kg];
+    for around in &tube.around {
+        numbers.push(around.weight_n_per_m);
+        numbers.extend(around.densities);
+    }
+    numbers.extend(tube.stiffnesses.iter().map(stiffness));
+    numbers.extend(tube.stiffnesses.iter().map(|k| 1.0 / k));
+    numbers.extend(tube.stresses);
+    numbers.push(tube.round);
+    numbers
+}
+
+fn tube(numbers: &[f64]) -> TubeNumbers {
+    let waters = (numbers.len() - 2 - 2 * STIFFNESSES - STRESSES) / (1 + DENSITIES);
+    let stiffness = |k: f64| if k > 0.0 { k } else { f64::INFINITY };
+    let around = |water: usize| TubeAround {
+        weight_n_per_m: numbers[place::weight(water)],
+        densities: std::array::from_fn(|i| numbers[place::density(water, i)]),
+    };
+    let rest = &numbers[place::priced(waters)..];
+    TubeNumbers {
+        mass_kg: numbers[place::MASS],
+        stiffnesses: std::array::from_fn(|i| stiffness(numbers[place::stiffness(waters, i)])),
+        stresses: std::array::from_fn(|i| rest[i]),
+        round: rest[STRESSES],
+        around: (0..waters).map(around).collect(),
+    }
+}

@@ -1,0 +1,157 @@
+//! Going through the local upper bounds that the rows of a front leave.
+
+use super::super::bound::{Members, ROUNDING};
+use super::super::boxes::Boxes;
+use super::super::front_index::FrontIndex;
+use super::super::halt::{Found, Halt};
+use super::super::modes::eigenvalue_of;
+use super::super::search::Search;
+use super::super::settings::Settings;
+use super::super::skeleton::{Parts, Skeleton};
+use super::super::upper_bound::UpperBound;
+use super::branch::Branchings;
+use super::parts_table::PartsTable;
+use super::rows::Rows;
+use super::subproblem::{Shape, Subproblem};
+use super::upper_bounds::UpperBounds;
+use super::weights::Reduced;
+use crate::pareto::objectives::Objectives;
+use std::sync::Arc;
+
+/// Part of the designs that must go for the options to be narrowed once more.
+const WORTH_IT: f64 = 0.3;
+
+/// What a search is given besides the parts.
+pub(in super::super) struct Work<'s> {
+    /// Rows of the front, and the same to ask for the highest frequency.
+    pub front: &'s [Objectives],
+    pub index: &'s FrontIndex,
+    pub settings: Settings,
+    pub halt: &'s Halt<'s>,
+}
+
+/// A search of all regions beside a front.
+pub(in super::super) struct RegionSearch<'s> {
+    skeleton: Arc<Skeleton>,
+    table: PartsTable,
+    work: &'s Work<'s>,
+}
+
+/// What came of narrowing a subproblem.
+enum Narrowed {
+    /// No member is below the upper bound.
+    Refuted,
+    Few,
+    Many(Branchings),
+    Stopped,
+}
+
+impl RegionSearch<'_> {
+    /// Looks for designs beside the rows of a front.
+    pub fn explore_all(skeleton: Arc<Skeleton>, parts: Parts, work: &Work) -> Found {
+        let limits = &skeleton.limits;
+        let room = 1.0 + ROUNDING;
+        let limit = UpperBound {
+            mass_kg: limits.mass_max_kg.map_or(f64::INFINITY, |most| most * room),
+            tip_m: limits.tip_deflection_max_m.map_or(f64::INFINITY, |most| most * room),
+            hz: skeleton.required_hz(),
+        };
+        let uppers = UpperBounds::new(work.front, limit, work.settings.apart);
+        let table = PartsTable::new(parts);
+        let Some(whole) = Subproblem::whole(&table) else { return Found::default() };
+        RegionSearch { skeleton, table, work }.explore(&uppers, 0, whole)
+    }
+
+    /// Looks below a node of the tree of upper bounds.
+    fn explore(&self, uppers: &UpperBounds, at: usize, mut subproblem: Subproblem) -> Found {
+        let Some((upper, halves)) = uppers.node(at) else { return Found::default() };
+        let mut found = Found::default();
+        let branchings = match self.narrow(&mut subproblem, upper, &mut found.boxes) {
+            Narrowed::Refuted => return found,
+            Narrowed::Stopped => return Found { open: 1, ..found },
+            Narrowed::Few => return found.with(self.explore_boxes(&subproblem, upper)),
+            Narrowed::Many(branchings) => branchings,
+        };
+        let subproblems = match halves {
+            Some(_) => Some([subproblem.clone(), subproblem.clone()]),
+            None => branchings.halves(&self.table, &subproblem),
+        };
+        let Some([a, b]) = subproblems else { return found.with(self.explore_boxes(&subproblem, upper)) };
+        let [first, second] = halves.unwrap_or([at; 2]);
+        let (a, b) = rayon::join(|| self.explore(uppers, first, a), || self.explore(uppers, second, b));
+        found.with(a).with(b)
+    }
+
+    /// Narrows the options of a subproblem as long as that pays.
+    fn narrow(&self, subproblem: &mut Subproblem, upper: UpperBound, regions: &mut u64) -> Narrowed {
+        loop {
+            if self.work.halt.stopped() {
+                return Narrowed::Stopped;
+            }
+            *regions += 1;
+            let before = subproblem.designs(&self.table);
+            let Some(branchings) = self.narrow_once(subproblem, upper) else { return Narrowed::Refuted };
+            let left = subproblem.designs(&self.table);
+            if left <= self.work.settings.boxes_to {
+                return Narrowed::Few;
+            }
+            if left > (1.0 - WORTH_IT) * before {
+                return Narrowed::Many(branchings);
+            }
+        }
+    }
+
+    /// Leaves out what no member below an upper bound has, and says where to branch the rest; `None` if no member is left.
+    fn narrow_once(&self, subproblem: &mut Subproblem, upper: UpperBound) -> Option<Branchings> {
+        let tubes = subproblem.tube_ranges(&self.table);
+        let members = subproblem.hold(&self.skeleton, &self.table, &tubes)?;
+        let ideal = self.skeleton.ideal_point(&members)?;
+        if !upper.is_in_reach_of(&ideal) {
+            return None;
+        }
+        let beaten_hz = self.work.index.beaten_up_to_hz(ideal.mass_kg, ideal.tip_m);
+        self.stiffest_shapes(subproblem, &members, upper.hz.max(beaten_hz))?;
+        let mut rows = Rows::new(&self.skeleton, &self.table, subproblem, &members, upper);
+        if rows.rows.is_empty() {
+            return Some(Branchings::default());
+        }
+        let left = rows.reduce(subproblem)?;
+        let branchings = rows.branchings(&members, &left);
+        let Reduced { joints, tubes: kept, weights, .. } = left;
+        let curves = std::mem::take(&mut rows.curves);
+        let (others, of_modes) = weights.split_at(rows.first_mode);
+        subproblem.shapes = rows
+            .modes
+            .into_iter()
+            .zip(of_modes)
+            .map(|((case, motion), &weight)| Shape { case, motion, weight })
+            .collect();
+        subproblem.keep_shapes(rows.columns.cases);
+        subproblem.weights = others[..rows.first_interval].to_vec();
+        (subproblem.joints, subproblem.tubes) = (joints, kept);
+        Some(Branchings { branchings, curves })
+    }
+
+    /// Begins with the lowest mode of the stiffest arm where a subproblem has no shape; `None` if that is too slow.
+    fn stiffest_shapes(&self, subproblem: &mut Subproblem, members: &Members, hz: f64) -> Option<()> {
+        let eigenvalue = eigenvalue_of(hz);
+        if !eigenvalue.is_finite() {
+            return None;
+        }
+        for (case, pose) in self.skeleton.poses.iter().filter(|pose| pose.judged).enumerate() {
+            let pencil = self.skeleton.pencil(pose, members);
+            let factor = pencil.factor(eigenvalue)?;
+            if eigenvalue > 0.0 && subproblem.shapes.iter().all(|shape| shape.case != case) {
+                subproblem.shapes.push(Shape { case, motion: pencil.lowest_mode(&factor), weight: 0.0 });
+            }
+        }
+        Some(())
+    }
+
+    /// Searches the designs left box by box.
+    fn explore_boxes(&self, subproblem: &Subproblem, upper: UpperBound) -> Found {
+        let boxes = Boxes::of(Arc::clone(&self.skeleton), subproblem.parts(&self.table));
+        let search = Search { boxes: &boxes, front: self.work.index, upper, halt: self.work.halt };
+        boxes.root().map_or_else(Found::default, |root| search.explore(&root))
+    }
+}

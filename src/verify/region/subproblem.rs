@@ -1,0 +1,146 @@
+//! The options that may have members below an upper bound.
+
+use super::super::bound::Members;
+use super::super::drive_range::DriveRange;
+use super::super::drives::first_fits;
+use super::super::pose::Pose;
+use super::super::skeleton::{Parts, Skeleton};
+use super::super::span::Span;
+use super::super::tubes::TubeRange;
+use super::parts_table::PartsTable;
+
+/// Shapes whose weights are no larger than this are not handed on.
+const NO_SAY: f64 = 0.01;
+
+/// The torque on a joint in a judged case is between two numbers: a branch of the search.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TorqueInterval {
+    pub case: usize,
+    pub joint: usize,
+    pub between: Span,
+}
+
+/// Options of every joint and link, and what their parent leaves them: torque intervals, weights, shapes.
+#[derive(Clone)]
+pub(super) struct Subproblem {
+    /// Drives of each joint, ascending.
+    pub joints: Vec<Vec<u32>>,
+    /// Nodes of each link's tree of tubes.
+    pub tubes: Vec<Vec<u32>>,
+    pub torque_intervals: Vec<TorqueInterval>,
+    /// Weights to begin with, of all rows but those of torques and modes.
+    pub weights: Vec<f64>,
+    pub shapes: Vec<Shape>,
+}
+
+/// A motion of a judged case and the weight of its row.
+#[derive(Clone)]
+pub(super) struct Shape {
+    pub case: usize,
+    pub motion: Vec<f64>,
+    pub weight: f64,
+}
+
+impl Subproblem {
+    /// All options; `None` if a piece has none.
+    pub fn whole(table: &PartsTable) -> Option<Self> {
+        let joints: Vec<Vec<u32>> =
+            table.joints.iter().map(|joint| (0..joint.masses_kg.len() as u32).collect()).collect();
+        let some = joints.iter().all(|kept| !kept.is_empty()) && table.tubes.iter().all(|t| t.tree.len() > 0);
+        let tubes = vec![vec![0]; table.tubes.len()];
+        some.then_some(Self {
+            joints,
+            tubes,
+            torque_intervals: Vec::new(),
+            weights: Vec::new(),
+            shapes: Vec::new(),
+        })
+    }
+
+    /// Number of designs. The drive that fits first is no choice, so such a joint counts once.
+    pub fn designs(&self, table: &PartsTable) -> f64 {
+        let joints = self.joints.iter().zip(&table.joints);
+        let joints = joints.map(|(kept, joint)| if joint.drives.level.is_some() { kept.len() } else { 1 });
+        let tubes = self.tubes.iter().zip(&table.tubes).map(|(nodes, tubes)| tubes.count(nodes));
+        joints.chain(tubes).map(|count| count as f64).product()
+    }
+
+    /// Narrows the interval of a torque.
+    pub fn keep_torque(&mut self, new: TorqueInterval) {
+        let known =
+            self.torque_intervals.iter_mut().find(|known| known.case == new.case && known.joint == new.joint);
+        match known {
+            Some(TorqueInterval { between, .. }) => {
+                between.least = between.least.max(new.between.least);
+                between.most = between.most.min(new.between.most);
+            }
+            None => self.torque_intervals.push(new),
+        }
+    }
+
+    /// Keeps the shapes that have some weight, and the last one of each case.
+    pub fn keep_shapes(&mut self, cases: usize) {
+        let mut kept = Vec::new();
+        for case in 0..cases {
+            let of_case = self.shapes.iter().filter(|shape| shape.case == case);
+            let count = of_case.clone().count();
+            let has_say = |(at, shape): &(usize, &Shape)| at + 1 == count || shape.weight > NO_SAY;
+            kept.extend(of_case.enumerate().filter(has_say).map(|(_, shape)| shape.clone()));
+        }
+        self.shapes = kept;
+    }
+
+    pub fn tube_ranges(&self, table: &PartsTable) -> Vec<TubeRange> {
+        self.tubes.iter().zip(&table.tubes).map(|(nodes, tubes)| tubes.range(nodes)).collect()
+    }
+
+    /// Removes the drives that cannot hold, and returns the ranges of what is left; `None` if no member holds.
+    pub fn hold<'t>(
+        &mut self,
+        skeleton: &Skeleton,
+        table: &PartsTable,
+        tubes: &'t [TubeRange],
+    ) -> Option<Members<'t>> {
+        let unknown = table.joints.iter().map(|joint| joint.curves[0]).collect();
+        let mut members = Members::new(unknown, tubes.iter().collect(), skeleton.waters.len());
+        for joint in (0..self.joints.len()).rev() {
+            let (table, kept) = (&table.joints[joint], &mut self.joints[joint]);
+            let option = |drive: u32| &table.drives.options[drive as usize];
+            if let Some(duty) = &table.drives.duty {
+                let [least, most] = skeleton.demands(joint, duty, &members);
+                if table.drives.level.is_some() {
+                    kept.retain(|&drive| option(drive).holds(&least));
+                } else {
+                    let fits = first_fits(kept.iter().map(|&drive| (drive, option(drive))), &least, &most);
+                    *kept = fits.map(|(drive, _)| drive).collect();
+                }
+            }
+            let ranges = kept.iter().map(|&drive| option(drive).range);
+            members.set_drive(joint, ranges.reduce(|a: DriveRange, b| a.with(&b))?);
+        }
+        skeleton.strong_enough(&members).then_some(members)
+    }
+
+    /// The options as parts.
+    pub fn parts(&self, table: &PartsTable) -> Parts {
+        let joints = self.joints.iter().zip(&table.joints);
+        let tubes = self.tubes.iter().zip(&table.tubes);
+        Parts {
+            joints: joints.map(|(kept, joint)| joint.drives.only(kept)).collect(),
+            tubes: tubes.map(|(nodes, tubes)| tubes.only(nodes)).collect(),
+        }
+    }
+
+    /// Torque on each joint in a judged case, within its interval if it has one.
+    pub fn torques(&self, case: usize, pose: &Pose, members: &Members) -> Vec<Span> {
+        let torque = |(joint, torque): (usize, &super::super::span::Linear)| {
+            let own = torque.over(&members.loads[pose.water]);
+            let intervals = self.torque_intervals.iter().filter(|i| i.case == case && i.joint == joint);
+            intervals.fold(own, |span, TorqueInterval { between, .. }| Span {
+                least: span.least.max(between.least).min(span.most),
+                most: span.most.min(between.most).max(span.least),
+            })
+        };
+        pose.torques.iter().enumerate().map(torque).collect()
+    }
+}

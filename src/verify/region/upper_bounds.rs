@@ -1,0 +1,158 @@
+//! All local upper bounds of a front, in a tree.
+//!
+//! A design that no row beats lies below some upper bound: it is no heavier, deflects no more and is no slower. The bounds
+//! are made row by row. A bound that the row beats is replaced by three that it does not beat, one for each objective; bounds that
+//! lie within another are removed.
+
+use super::super::upper_bound::UpperBound;
+use crate::pareto::objectives::Objectives;
+use std::collections::HashSet;
+
+/// A row must be better than what it beats by this in one objective (relative), and counts for worse by as much.
+const BETTER: f64 = 2e-7;
+
+/// A binary tree over upper bounds; the root is node 0.
+pub(super) struct UpperBounds(Vec<Node>);
+
+/// The upper bound that bounds those below, and the halves.
+type Node = (UpperBound, Option<[usize; 2]>);
+
+impl UpperBounds {
+    /// The upper bounds that rows leave of what the limits allow. Rows closer to each other than `apart` (relative) may be
+    /// left out: fewer rows leave more open.
+    pub fn new(front: &[Objectives], limits: UpperBound, apart: f64) -> Self {
+        let mut uppers = left_open(&thinned(front, apart), limits);
+        let mut nodes = Vec::new();
+        if !uppers.is_empty() {
+            grow(&mut uppers, &mut nodes);
+        }
+        Self(nodes)
+    }
+
+    /// A node; `None` if nothing is open.
+    pub fn node(&self, at: usize) -> Option<Node> {
+        self.0.get(at).copied()
+    }
+}
+
+/// One row for each cell of a grid whose lines are `apart` (relative) from each other; all rows if that is zero.
+fn thinned(front: &[Objectives], apart: f64) -> Vec<UpperBound> {
+    let mut taken = HashSet::new();
+    let step = apart.ln_1p();
+    let cell = |x: f64| if step > 0.0 { (x.ln() / step).floor() as i64 } else { 0 };
+    let rows = front.iter().filter(|row| {
+        let cells = [row.mass_kg, row.tip_deflection_m, row.lowest_mode_hz].map(cell);
+        step == 0.0 || taken.insert(cells)
+    });
+    let worse = |row: &Objectives| UpperBound {
+        mass_kg: row.mass_kg * (1.0 + BETTER),
+        tip_m: row.tip_deflection_m * (1.0 + BETTER),
+        hz: row.lowest_mode_hz * (1.0 - BETTER),
+    };
+    rows.map(worse).collect()
+}
+
+/// The upper bounds that rows leave, none within another.
+fn left_open(rows: &[UpperBound], limits: UpperBound) -> Vec<UpperBound> {
+    let mut uppers = vec![limits];
+    for row in rows {
+        let (cut, mut kept): (Vec<_>, Vec<_>) = uppers.iter().partition(|upper| upper.is_cut_by(row));
+        let parts: [Vec<UpperBound>; 3] = std::array::from_fn(|axis| {
+            cut.iter().map(|upper: &UpperBound| upper.left_by(row)[axis]).collect()
+        });
+        for parts in parts {
+            let touching: Vec<UpperBound> =
+                kept.iter().copied().filter(|upper| parts.iter().any(|part| part.is_within(upper))).collect();
+            let own = |at: usize, part: &UpperBound| {
+                let earlier = |(i, other): (usize, &UpperBound)| {
+                    i != at && part.is_within(other) && (i < at || part != other)
+                };
+                !parts.iter().enumerate().any(earlier) && !touching.iter().any(|upper| part.is_within(upper))
+            };
+            kept.extend(parts.iter().enumerate().filter(|(at, part)| own(*at, part)).map(|(_, part)| *part));
+        }
+        uppers = kept;
+    }
+    uppers.retain(|upper| upper.tip_m > 0.0 && upper.hz < f64::INFINITY);
+    uppers
+}
+
+/// Halves upper bounds where they are furthest apart.
+fn grow(uppers: &mut [UpperBound], nodes: &mut Vec<Node>) -> usize {
+    let here = nodes.len();
+    nodes.push((uppers[0], None));
+    if uppers.len() > 1 {
+        let width = |axis: usize| {
+            let finite = uppers.iter().map(|c| c.numbers()[axis].max(1e-9)).filter(|x| x.is_finite());
+            let (least, most) =
+                finite.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), x| (a.min(x), b.max(x)));
+            if most > 0.0 { most / least } else { 1.0 }
+        };
+        let widths = [0, 1, 2].map(width);
+        let axis = (0..3).rev().max_by(|&a, &b| widths[a].total_cmp(&widths[b])).unwrap_or(0);
+        let half = uppers.len() / 2;
+        uppers.select_nth_unstable_by(half, |a, b| a.numbers()[axis].total_cmp(&b.numbers()[axis]));
+        let (low, high) = uppers.split_at_mut(half);
+        let halves = [grow(low, nodes), grow(high, nodes)];
+        nodes[here] = (nodes[halves[0]].0.join(&nodes[halves[1]].0), Some(halves));
+    }
+    here
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Whether a design is below some upper bound under a node, asked node by node.
+    fn is_below(uppers: &UpperBounds, at: usize, design: &UpperBound) -> bool {
+        uppers.node(at).is_some_and(|(upper, halves)| {
+            design.is_within(&upper)
+                && halves.is_none_or(|halves| halves.into_iter().any(|half| is_below(uppers, half, design)))
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn a_design_is_below_a_corner_exactly_if_no_row_beats_it(
+            rows in prop::collection::vec((1u32..8, 1u32..8, 1u32..8), 0..30),
+        ) {
+            let rows: Vec<Objectives> = rows
+                .into_iter()
+                .map(|(m, d, f)| Objectives {
+                    mass_kg: m.into(), tip_deflection_m: d.into(), lowest_mode_hz: f.into(),
+                })
+                .collect();
+            let uppers = UpperBounds::new(&rows, UpperBound { mass_kg: 9.0, tip_m: f64::INFINITY, hz: 0.0 }, 0.0);
+            for cell in 0..9 * 9 * 9 {
+                let [mass_kg, tip_m, hz] = [cell % 9, cell / 9 % 9, cell / 81].map(|k| f64::from(k) + 0.5);
+                let design = UpperBound { mass_kg, tip_m, hz };
+                let beaten = rows.iter().any(|row| {
+                    row.mass_kg < mass_kg && row.tip_deflection_m < tip_m && row.lowest_mode_hz > hz
+                });
+                prop_assert_eq!(is_below(&uppers, 0, &design), !beaten);
+            }
+        }
+    }
+
+    #[test]
+    fn fewer_rows_leave_more_open_and_none_less() {
+        let rows: Vec<Objectives> = (0..200)
+            .map(|i| {
+                let part = f64::from(i * 37 % 200) / 200.0;
+                let other = f64::from(i * 71 % 200) / 200.0;
+                Objectives {
+                    mass_kg: 5.0 + part,
+                    tip_deflection_m: 2.0 - part + other,
+                    lowest_mode_hz: 5.0 + other,
+                }
+            })
+            .collect();
+        let limits = UpperBound { mass_kg: 20.0, tip_m: 20.0, hz: 0.0 };
+        let [all, few] = [0.0, 0.1].map(|apart| UpperBounds::new(&rows, limits, apart));
+        assert!(few.0.len() < all.0.len());
+        for (upper, halves) in &all.0 {
+            assert!(halves.is_some() || is_below(&few, 0, upper));
+        }
+    }
+}

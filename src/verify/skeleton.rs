@@ -1,0 +1,152 @@
+//! What all designs of a question have in common, and the parts that each piece of it may be.
+
+use super::drives::{DriveOptions, Ties};
+use super::layout::{Coordinate, Layout, coordinates};
+use super::offers::JointOffers;
+use super::parts_box::Place;
+use super::pose::{Pose, water_of};
+use super::question::{AskedPiece, Limits, Question};
+use super::tubes::TubeOptions;
+use crate::arm::LinkBody;
+use crate::arm::load::Water;
+use crate::arm::structure::{Piece, Structure};
+use crate::catalog::Catalogs;
+
+/// An arm but for its drives and tubes.
+pub(super) struct Skeleton {
+    /// Lengths of the tubes \[m\].
+    pub lengths_m: Vec<f64>,
+    /// Mass of rigid offsets \[kg\].
+    pub offsets_kg: f64,
+    pub poses: Vec<Pose>,
+    /// The different surroundings of the cases: air, or some water.
+    pub waters: Vec<Option<Water>>,
+    pub coordinates: Vec<Coordinate>,
+    /// Stiffnesses of the effects' springs \[N m/rad\].
+    pub spring_stiffnesses: Vec<f64>,
+    pub limits: Limits,
+    /// What each level chooses, tip first.
+    pub levels: Vec<Place>,
+}
+
+/// What each joint and each tube may be, base to tip.
+pub(super) struct Parts {
+    pub joints: Vec<DriveOptions>,
+    pub tubes: Vec<TubeOptions>,
+}
+
+impl Skeleton {
+    /// Puts the arm of a question into all of its cases.
+    pub fn new(question: &Question) -> Self {
+        let structure = question.nominal_structure();
+        let mut waters: Vec<Option<Water>> = Vec::new();
+        for water in question.cases.iter().map(|case| water_of(&structure, case)) {
+            if !waters.contains(&water) {
+                waters.push(water);
+            }
+        }
+        let mut skeleton = Self {
+            lengths_m: tube_lengths_m(&structure),
+            offsets_kg: offsets_kg(question),
+            poses: Vec::new(),
+            waters,
+            coordinates: Vec::new(),
+            spring_stiffnesses: Vec::new(),
+            limits: question.limits,
+            levels: levels(question, &structure),
+        };
+        if let Some(case) = question.cases.first() {
+            let layout = Layout::new(&structure, case);
+            skeleton.coordinates = coordinates(&layout, question.links);
+            skeleton.spring_stiffnesses = layout.springs.iter().map(|s| 1.0 / s.rad_per_nm).collect();
+        }
+        let pose = |case| Pose::new(question, &structure, case, &skeleton.waters, &skeleton.coordinates);
+        skeleton.poses = (0..question.cases.len()).map(pose).collect();
+        skeleton
+    }
+
+    /// The options of every joint and tube.
+    pub fn parts(&self, question: &Question, offers: &[JointOffers], ties: Ties) -> Parts {
+        let level = |place: Place| self.levels.iter().position(|other| *other == place);
+        let joints = offers.iter().enumerate().map(|(joint, offers)| {
+            DriveOptions::new(offers, level(Place::Joint(joint)).unwrap_or_default(), ties)
+        });
+        let mut tubes = Vec::new();
+        for piece in &question.pieces {
+            match piece {
+                AskedPiece::Joint(_) => {}
+                AskedPiece::Choice(choice) => {
+                    let level = level(Place::Tube(tubes.len())).unwrap_or_default();
+                    tubes.push(TubeOptions::of_choice(question, choice, level, &self.waters));
+                }
+                AskedPiece::Link(link) => {
+                    tubes.extend(TubeOptions::of_link(question, link, &self.waters));
+                }
+            }
+        }
+        Parts { joints: joints.collect(), tubes }
+    }
+}
+
+/// The drives of every joint, base to tip.
+pub(super) fn joint_offers(question: &Question, catalogs: &Catalogs) -> Vec<JointOffers> {
+    let reaches_m = reaches_m(question);
+    let joints = question.joints().zip(reaches_m);
+    joints.map(|(joint, reach_m)| JointOffers::new(question, joint, reach_m, catalogs)).collect()
+}
+
+/// Largest distance of the tip from each joint's axis over the cases in which drives must hold \[m\].
+fn reaches_m(question: &Question) -> Vec<f64> {
+    let structure = question.nominal_structure();
+    let mut reaches_m = vec![0.0f64; question.joints().count()];
+    for &case in &question.sizing_cases {
+        let layout = Layout::new(&structure, &question.cases[case]);
+        for (reach_m, joint) in reaches_m.iter_mut().zip(&layout.joints) {
+            *reach_m = reach_m.max(joint.axis.cross(&(layout.tip_m - joint.at_m)).norm());
+        }
+    }
+    reaches_m
+}
+
+fn tube_lengths_m(structure: &Structure) -> Vec<f64> {
+    let lengths = structure.pieces.iter().filter_map(|piece| match piece {
+        Piece::Link(link) if super::layout::has_line(link) => Some(link.vector_m.norm()),
+        _ => None,
+    });
+    lengths.collect()
+}
+
+fn offsets_kg(question: &Question) -> f64 {
+    let masses = question.pieces.iter().map(|piece| match piece {
+        AskedPiece::Link(link) => match link.body {
+            LinkBody::Offset { mass_kg } => mass_kg,
+            LinkBody::Tube { .. } => 0.0,
+        },
+        _ => 0.0,
+    });
+    masses.sum()
+}
+
+/// What each level chooses, tip first.
+fn levels(question: &Question, structure: &Structure) -> Vec<Place> {
+    let (mut joints, mut tubes, mut levels) = (0, 0, Vec::new());
+    for (asked, piece) in question.pieces.iter().zip(&structure.pieces) {
+        let place = match piece {
+            Piece::Joint(_) => {
+                joints += 1;
+                Place::Joint(joints - 1)
+            }
+            Piece::Link(link) => {
+                // an open link without any tube has no line either; it stands for itself
+                let is_tube = matches!(asked, AskedPiece::Choice(_)) || super::layout::has_line(link);
+                tubes += usize::from(is_tube);
+                Place::Tube(tubes.saturating_sub(1))
+            }
+        };
+        if asked.is_choice() {
+            levels.push(place);
+        }
+    }
+    levels.reverse();
+    levels
+}

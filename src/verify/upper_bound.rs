@@ -1,0 +1,60 @@
+//! A local upper bound of a front: every design that no row beats lies below one.
+
+use super::bound::{IdealPoint, ROUNDING};
+use super::modes::eigenvalue_of;
+
+/// A mass, a deflection and a lowest mode that bound designs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct UpperBound {
+    pub mass_kg: f64,
+    pub tip_m: f64,
+    pub hz: f64,
+}
+
+impl UpperBound {
+    /// Everything is below it.
+    pub const OPEN: Self = Self { mass_kg: f64::INFINITY, tip_m: f64::INFINITY, hz: 0.0 };
+
+    /// Whether something of this mass and deflection may be below.
+    pub fn is_in_reach_of(&self, ideal: &IdealPoint) -> bool {
+        let most = 1.0 + ROUNDING;
+        ideal.mass_kg <= self.mass_kg * most && ideal.tip_m <= self.tip_m * most
+    }
+
+    /// `(2 π f)²`.
+    pub fn eigenvalue(&self) -> f64 {
+        eigenvalue_of(self.hz)
+    }
+
+    /// The least bound above two.
+    pub fn join(&self, other: &Self) -> Self {
+        Self {
+            mass_kg: self.mass_kg.max(other.mass_kg),
+            tip_m: self.tip_m.max(other.tip_m),
+            hz: self.hz.min(other.hz),
+        }
+    }
+
+    /// Whether all that is below this upper bound is below another.
+    pub fn is_within(&self, other: &Self) -> bool {
+        self.mass_kg <= other.mass_kg && self.tip_m <= other.tip_m && self.hz >= other.hz
+    }
+
+    /// Whether a row beats some of what is below.
+    pub fn is_cut_by(&self, row: &UpperBound) -> bool {
+        row.mass_kg < self.mass_kg && row.tip_m < self.tip_m && row.hz > self.hz
+    }
+
+    /// What a row leaves of it: no heavier than the row, or deflecting no more, or no slower.
+    pub fn left_by(&self, row: &UpperBound) -> [Self; 3] {
+        [
+            Self { mass_kg: row.mass_kg, ..*self },
+            Self { tip_m: row.tip_m, ..*self },
+            Self { hz: row.hz, ..*self },
+        ]
+    }
+
+    pub fn numbers(&self) -> [f64; 3] {
+        [self.mass_kg, self.tip_m, self.hz]
+    }
+}

@@ -1,0 +1,69 @@
+//! Whether an exact search lists what a visit to every design finds.
+
+use armwright::catalog::Catalogs;
+use armwright::exact::Exact;
+use armwright::input::Document;
+use armwright::pareto::front::nondominated;
+use armwright::search::Sweep;
+use armwright::search::sweep::Candidate;
+use armwright::space::ArmProblem;
+use armwright::space::evaluate;
+use armwright::study::{Study, read_study};
+use serde_json::Value;
+use std::sync::atomic::AtomicBool;
+
+pub fn read(study: &Value, catalogs: &Catalogs) -> Study {
+    let text = study.to_string();
+    let document = Document::parse("random study", &text).unwrap_or_else(|e| panic!("{e}"));
+    read_study(document, catalogs).unwrap_or_else(|e| panic!("{e}\n{text}"))
+}
+
+/// The designs of a front, judged by the full model.
+pub fn judged(problem: &ArmProblem, candidates: &[Candidate]) -> Vec<u128> {
+    let judged: Vec<_> = candidates.iter().filter_map(|c| evaluate(problem, c.number)).collect();
+    let points: Vec<_> = judged.iter().map(|d| d.objectives.minimized()).collect();
+    let mut numbers: Vec<u128> =
+        nondominated(&points).expect("numbers").into_iter().flatten().map(|i| judged[i].number).collect();
+    numbers.sort_unstable();
+    numbers
+}
+
+/// How the fast objectives may differ from the full model's (tests/design/search_fast_vs_full.rs).
+const ROUNDING: f64 = 2e-10;
+
+/// Designs that are better than every other by at least `least` in something, or tie with what beats them.
+pub fn with_merit(problem: &ArmProblem, numbers: &[u128], least: f64) -> Vec<u128> {
+    let objectives =
+        |n: &u128| evaluate(problem, *n).expect("a design of the front").objectives.minimized().map(f64::abs);
+    let all: Vec<[f64; 3]> = numbers.iter().map(objectives).collect();
+    let beats = |a: &[f64; 3], b: &[f64; 3]| {
+        // mass and deflection small, frequency large
+        let excess = [a[0] / b[0] - 1.0, a[1] / b[1] - 1.0, b[2] / a[2] - 1.0];
+        excess.iter().all(|e| *e <= least) && excess.iter().any(|e| *e < -1e-7)
+    };
+    let kept = all.iter().map(|b| !all.iter().any(|a| beats(a, b)));
+    numbers.iter().zip(kept).filter(|(_, kept)| *kept).map(|(n, _)| *n).collect()
+}
+
+/// Asserts that the exact search lists the designs of the sweep whose merit is at least 1e-9 (docs/exact.md),
+/// and returns how many it lists. On that edge rounding decides.
+pub fn agrees(problem: &ArmProblem, exact: &[Candidate], sweep: &[Candidate], what: &str) -> usize {
+    let (exact, swept) = (judged(problem, exact), judged(problem, sweep));
+    let [surely, perhaps] = [1.0, -1.0].map(|side| with_merit(problem, &swept, 1e-9 + side * ROUNDING));
+    let missing: Vec<_> = surely.iter().filter(|n| !exact.contains(n)).collect();
+    let added: Vec<_> = exact.iter().filter(|n| !perhaps.contains(n)).collect();
+    assert!(missing.is_empty() && added.is_empty(), "missing {missing:?}, added {added:?}: {what}");
+    exact.len()
+}
+
+/// Asserts that both searches find the same designs, and returns how many.
+pub fn agree(text: &Value) -> usize {
+    let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
+    let study = read(text, &catalogs);
+    let problem = ArmProblem::new(&study.space, &catalogs);
+    let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
+    let exact = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
+    let by_regions = Exact::new(&study.space, &catalogs, &stop, None).by_regions_from(100.0).run(&[]);
+    agrees(&problem, &by_regions.front, &sweep.front, &text.to_string());
+    agrees(&problem, &exact.front, &sweep.front, &text.to_string())
+}

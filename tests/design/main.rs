@@ -1,0 +1,26 @@
+//! From the model of an arm to the front of its designs, each against a closed form, another program, or a slow
+//! calculation from the definition.
+
+mod beside_the_front;
+mod brute;
+mod brute_force;
+mod budget;
+mod closed_forms;
+mod dice;
+mod exact_front;
+mod exact_support;
+mod exact_threads;
+mod exact_ties;
+mod mechanics_reference;
+mod paper;
+mod paper_support;
+mod reference_arms;
+mod relaxation;
+mod search_fast_vs_full;
+mod study_rerun;
+#[path = "../witness/mod.rs"]
+mod witness;
+mod witness_drives;
+mod witness_effects;
+mod witness_front;
+mod witness_regions;

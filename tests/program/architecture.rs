@@ -1,0 +1,149 @@
+//! The house: a room of the library knows only the rooms below it (docs/architecture.md).
+
+use crate::imports::{Crate, Module, circles};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Rooms from the ground up; rooms of one storey do not know each other.
+const STOREYS: &[&[&str]] = &[
+    &["input", "pareto"],
+    &["catalog"],
+    &["arm"],
+    &["mechanics"],
+    &["sizing"],
+    &["space"],
+    &["search"],
+    &["exact", "verify", "relax"],
+    &["report"],
+    &["reconcile"],
+    &["paper"],
+    &["study"],
+    &["cli"],
+];
+
+fn storey(room: &str) -> Option<usize> {
+    STOREYS.iter().position(|rooms| rooms.contains(&room))
+}
+
+fn source_files(folder: &Path, out: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("a folder of the crate") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            source_files(&path, out);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            out.push(path);
+        }
+    }
+}
+
+/// The room a file belongs to: `src/arm/file.rs` and `src/arm.rs` are in `arm`.
+fn room_of(file: &Path) -> String {
+    let inside = file.strip_prefix(src()).expect("a file of src");
+    let first = inside.components().next().expect("a name").as_os_str().to_string_lossy().into_owned();
+    first.trim_end_matches(".rs").to_string()
+}
+
+fn src() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
+}
+
+/// Code without comments and without the unit tests at its end, which may call a witness from any room.
+fn code(text: &str) -> String {
+    let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+    let lines = text.lines().map(|line| line.split("//").next().unwrap_or_default());
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn no_room_knows_a_room_above_it_or_beside_it() {
+    let house = Crate::read(&src());
+    assert!(house.modules().count() > 200, "the sources are not where this test looks");
+    let mut violations = Vec::new();
+    for (from, to) in house.uses() {
+        let Some(room) = from.first() else { continue };
+        let Some(here) = storey(room) else {
+            violations.push(format!("{}: the room \"{room}\" has no storey", house.path(&from).display()));
+            continue;
+        };
+        for (target, names) in to {
+            let Some(other) = target.first().filter(|other| *other != room) else { continue };
+            if storey(other).is_none_or(|there| there >= here) {
+                violations.push(format!("{} knows {}: {names:?}", from.join("::"), target.join("::")));
+            }
+        }
+    }
+    assert!(violations.is_empty(), "{}", violations.join("\n"));
+}
+
+#[test]
+fn no_files_use_each_other_in_a_circle() {
+    let uses = Crate::read(&src()).uses();
+    let tied = |circle: &Vec<Module>| {
+        let inside = |from: &Module| {
+            let to = uses.get(from).into_iter().flatten().filter(|(to, _)| circle.contains(to));
+            to.map(|(to, names)| format!("  {} -> {}: {names:?}\n", from.join("::"), to.join("::")))
+                .collect::<String>()
+        };
+        format!("{} files:\n{}", circle.len(), circle.iter().map(inside).collect::<String>())
+    };
+    let found = circles(&uses);
+    assert!(
+        found.is_empty(),
+        "circles of files: {}\n{}",
+        found.len(),
+        found.iter().map(tied).collect::<String>()
+    );
+}
+
+#[test]
+fn a_circle_through_a_re_export_is_found() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("written");
+    write("lib.rs", "mod a;\nmod b;\npub use a::One;\n");
+    write(
+        "a.rs",
+        "pub struct One;\nfn f() { crate::b::g(); }\n#[cfg(test)]\nmod tests { use crate::b::h; }\n",
+    );
+    write("b.rs", "pub fn g() {}\npub fn h() {}\n");
+    assert_eq!(circles(&Crate::read(folder.path()).uses()), Vec::<Vec<Module>>::new());
+    write("b.rs", "use crate::One;\npub fn g() {}\npub fn h(_: One) {}\n");
+    let circle = vec![vec!["a".to_string()], vec!["b".to_string()]];
+    assert_eq!(circles(&Crate::read(folder.path()).uses()), vec![circle]);
+}
+
+#[test]
+fn the_ground_floors_print_nothing_and_read_no_files() {
+    // these rooms are mathematics: what they say, others print
+    for room in ["pareto", "mechanics", "sizing", "space", "search", "exact", "verify", "relax"] {
+        let mut files = Vec::new();
+        source_files(&src().join(room), &mut files);
+        for file in files {
+            let text = fs::read_to_string(&file).expect("a source file");
+            let code = code(&text);
+            for io in ["println!", "print!(", "std::fs", "fs_err", "std::io"] {
+                assert!(!code.contains(io), "{} uses {io}", file.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn only_the_command_line_prints() {
+    let mut files = Vec::new();
+    source_files(&src(), &mut files);
+    for file in files.iter().filter(|f| !["cli", "main"].contains(&room_of(f).as_str())) {
+        let text = fs::read_to_string(file).expect("a source file");
+        let code = code(&text);
+        assert!(!code.contains("println!"), "{} prints", file.display());
+    }
+}
+
+#[test]
+fn every_file_says_what_it_is_for() {
+    let mut files = Vec::new();
+    source_files(&src(), &mut files);
+    for file in files {
+        let text = fs::read_to_string(&file).expect("a source file");
+        assert!(text.starts_with("//!"), "{} does not open with a paragraph", file.display());
+    }
+}

@@ -1,0 +1,169 @@
+//! `armwright run --search exact` and `armwright front check` from the command line: a sound front passes, and
+//! a cell changed, a row dropped or a row added is found out, whichever search made the front.
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::Command;
+use tempfile::TempDir;
+
+const STUDY: &str = r#"{"name": "short-arm", "chain": [
+  {"type": "joint", "name": "shoulder", "axis": [0, 1, 0], "drive": "first_fit", "drives": {"motors": ["electric"]}},
+  {"type": "link", "name": "upper", "vector_m": [0.5, 0, 0], "choose": {
+    "materials": ["Structural steel S355", "Aluminium 6061-T6"],
+    "sections": [{"shape": "rectangular_tube", "width_mm": [50, 60, 80], "height_mm": [60, 80, 100], "wall_mm": [2, 3, 5]}]}},
+  {"type": "joint", "name": "elbow", "axis": [0, 1, 0], "drive": "first_fit", "drives": {"motors": ["electric"]}},
+  {"type": "link", "name": "fore", "vector_m": [0.4, 0, 0], "choose": {
+    "materials": ["Aluminium 6061-T6"],
+    "sections": [{"shape": "round_tube", "diameter_mm": [50, 60, 80], "wall_mm": [2, 4]}]}}],
+  "payload": {"mass_kg": 3}, "poses": [{"pose_deg": [0, 0]}, {"pose_deg": [-40, 90]}]}"#;
+
+fn armwright(words: &[&str]) -> (i32, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_armwright")).args(words).output().expect("runs");
+    let text = [output.stdout, output.stderr].concat();
+    (output.status.code().unwrap_or(-1), String::from_utf8_lossy(&text).into_owned())
+}
+
+/// A result of the small study.
+fn result(search: &str) -> TempDir {
+    let dir = tempfile::tempdir().expect("a folder");
+    let study = dir.path().join("study.json");
+    std::fs::write(&study, STUDY).expect("written");
+    let (code, text) = armwright(&["run", path(&study), "--search", search, "--out", path(dir.path())]);
+    assert_eq!(code, 0, "{text}");
+    dir
+}
+
+fn path(path: &Path) -> &str {
+    path.to_str().expect("a name")
+}
+
+/// Exit code and what was said, wherever lines end.
+fn check(dir: &TempDir) -> (i32, String) {
+    let (code, text) = armwright(&["front", "check", path(dir.path())]);
+    (code, text.split_whitespace().collect::<Vec<_>>().join(" "))
+}
+
+fn front(dir: &TempDir) -> Vec<String> {
+    let text = std::fs::read_to_string(dir.path().join("front.csv")).expect("a front");
+    text.lines().map(String::from).collect()
+}
+
+/// Writes a front and makes run.json agree with its number of rows.
+fn replace(dir: &TempDir, lines: &[String]) {
+    std::fs::write(dir.path().join("front.csv"), lines.join("\n") + "\n").expect("written");
+    let file = dir.path().join("run.json");
+    let mut run: Value = serde_json::from_str(&std::fs::read_to_string(&file).expect("a run")).expect("JSON");
+    run["front_size"] = (lines.len() - 1).into();
+    std::fs::write(&file, run.to_string()).expect("written");
+}
+
+#[test]
+fn both_searches_write_the_same_front_and_it_passes() {
+    let (visited, exact) = (result("exhaustive"), result("exact"));
+    assert_eq!(front(&visited), front(&exact));
+    for (dir, status) in [(&visited, "complete"), (&exact, "certified")] {
+        let run = std::fs::read_to_string(dir.path().join("run.json")).expect("a run");
+        let run: Value = serde_json::from_str(&run).expect("JSON");
+        assert_eq!(run["status"], status);
+        let (code, text) = check(dir);
+        assert_eq!(code, 0, "{text}");
+        assert!(text.contains("no design is missing"), "{text}");
+    }
+}
+
+#[test]
+fn a_design_of_an_exact_front_can_be_taken_out_and_analysed() {
+    let dir = result("exact");
+    let lines = front(&dir);
+    let id = lines[1].split(',').next().expect("an id");
+    let (code, text) = armwright(&["design", path(dir.path()), id]);
+    assert_eq!(code, 0, "{text}");
+}
+
+#[test]
+fn a_dropped_design_is_found_to_be_missing() {
+    let dir = result("exhaustive");
+    let mut lines = front(&dir);
+    let dropped = lines.remove(lines.len() / 2);
+    replace(&dir, &lines);
+    let (code, text) = check(&dir);
+    let id = dropped.split(',').next().expect("an id");
+    assert_eq!(code, 9, "{text}");
+    assert!(text.contains(&format!("design {id} belongs on the front")), "{text}");
+}
+
+#[test]
+fn the_gap_that_a_stopped_run_claims_is_checked() {
+    let dir = result("exact");
+    let mut lines = front(&dir);
+    let columns: Vec<&str> = lines[0].split(',').collect();
+    let places = ["mass_kg", "tip_deflection_mm", "lowest_mode_hz"]
+        .map(|name| columns.iter().position(|c| *c == name).expect("an objective"));
+    let numbers = |line: &str| -> [f64; 3] {
+        let cells: Vec<&str> = line.split(',').collect();
+        places.map(|place| cells[place].parse().expect("a number"))
+    };
+    // how much better than a row the dropped one is, in the objective in which it is least so
+    let dropped = lines.remove(lines.len() / 2);
+    let [kg, mm, hz] = numbers(&dropped);
+    let beyond = |line: &String| {
+        let row = numbers(line);
+        (row[0] / kg).max(row[1] / mm).max(hz / row[2]) - 1.0
+    };
+    let gap = lines[1..].iter().map(beyond).fold(f64::INFINITY, f64::min);
+    assert!(gap > 1e-4, "rows are too close to each other: {gap}");
+    replace(&dir, &lines);
+    let id = dropped.split(',').next().expect("an id");
+    for (claimed, code) in [(1.01 * gap, 0), (0.99 * gap, 9)] {
+        let file = dir.path().join("run.json");
+        let mut run: Value =
+            serde_json::from_str(&std::fs::read_to_string(&file).expect("a run")).expect("JSON");
+        run["status"] = "partial".into();
+        run["gap"] = claimed.into();
+        std::fs::write(&file, run.to_string()).expect("written");
+        let (told, text) = check(&dir);
+        assert_eq!(told, code, "{text}");
+        match code {
+            0 => assert!(text.contains("no design beats every listed one by more than"), "{text}"),
+            _ => assert!(
+                text.contains(&format!("design {id} is not there, and no row comes within")),
+                "{text}"
+            ),
+        }
+    }
+}
+
+#[test]
+fn a_changed_cell_and_a_row_that_others_beat_are_found() {
+    let dir = result("exact");
+    let sound = front(&dir);
+    let column = sound[0].split(',').position(|c| c == "mass_kg").expect("a mass");
+    let mut lines = sound.clone();
+    let mut cells: Vec<&str> = sound[1].split(',').collect();
+    cells[column] = "1.5";
+    lines[1] = cells.join(",");
+    replace(&dir, &lines);
+    let (code, text) = check(&dir);
+    assert_eq!(code, 9, "{text}");
+    assert!(text.contains("mass_kg is 1.5, the model gives"), "{text}");
+
+    // a design that is not on the front: the first id that the front does not list
+    let ids: Vec<&str> = sound[1..].iter().map(|l| l.split(',').next().expect("an id")).collect();
+    let strange =
+        ["0", "1", "2", "3", "4", "5", "6", "7"].into_iter().find(|id| !ids.contains(id)).expect("one");
+    let mut lines = sound.clone();
+    lines.push(lines[1].replacen(ids[0], strange, 1));
+    replace(&dir, &lines);
+    let (code, text) = check(&dir);
+    assert_eq!(code, 9, "{text}");
+    assert!(text.contains(&format!("design {strange}: does not hold, or another row beats it")), "{text}");
+}
+
+#[test]
+fn a_search_that_ran_out_of_time_says_so() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (code, text) =
+        armwright(&["run", "full-catalog", "--time-limit", "3", "--out", path(&dir.path().join("out"))]);
+    assert!([0, 8].contains(&code), "{code}: {text}");
+    assert!(text.contains("partial") || text.contains("time limit"), "{text}");
+}

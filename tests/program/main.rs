@@ -1,0 +1,15 @@
+//! The program as a user meets it: its commands, its messages, the files and pages that it writes, the documents; and the
+//! house that the source stands in.
+
+mod architecture;
+mod bad_input;
+mod browser;
+mod catalog;
+mod catalog_cli;
+mod cli;
+mod compare;
+mod docs;
+mod front_check;
+mod imports;
+mod pages;
+mod study_effects;

@@ -1,0 +1,100 @@
+//! The prepared model that fits use against mechanics itself, for every effect at every place.
+
+use armwright::catalog::Catalogs;
+use armwright::reconcile::Campaign;
+use armwright::reconcile::fit::descent::{Weights, evaluate, jacobian};
+use armwright::reconcile::forward::Forward;
+use armwright::reconcile::model::candidates::candidates;
+use armwright::reconcile::model::exact::Exact;
+use armwright::reconcile::model::parameters::{Model, Nuisance};
+use std::path::Path;
+
+fn campaign() -> Campaign {
+    let folder = format!("{}/tests/data/campaigns/plain-0251e", env!("CARGO_MANIFEST_DIR"));
+    let mut campaign = Campaign::read(Path::new(&folder), &Catalogs::default()).expect("sound campaign");
+    campaign.statics.truncate(20);
+    campaign.modal.truncate(16);
+    campaign
+}
+
+#[test]
+fn the_prepared_model_is_mechanics_for_every_effect_at_every_place() {
+    let campaign = campaign();
+    let forward = Forward::new(&campaign);
+    let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
+    let baseline = Model::baseline(&nuisance);
+    let mut u: Vec<f64> = (0..baseline.len()).map(|i| ((i * 7) % 5) as f64 * 0.4 - 0.8).collect();
+    let calibrated = u.len();
+    for candidate in candidates(&forward) {
+        for start in &candidate.starts {
+            let model = baseline.with(&candidate);
+            u.truncate(calibrated);
+            u.extend(start);
+            let coefficients = model.coefficients(&forward, &u);
+            let fast = forward.predict(&coefficients);
+            let subject = model.subject(&forward, &u);
+            let exact = Exact::new(&subject);
+            let mut slow: Vec<f64> = exact.statics_mm(&campaign.statics).into_iter().flatten().collect();
+            slow.extend(exact.frequencies_hz(&campaign.modal).into_iter().map(|f| f.expect("mode")));
+            slow.extend(exact.windups_arcmin(&campaign.windup));
+            for (i, (fast, slow)) in fast.iter().zip(&slow).enumerate() {
+                let datum = &forward.data[i];
+                let allowed = if i >= forward.starts[1] && i < forward.starts[2] {
+                    0.2 * datum.sigma
+                } else {
+                    1e-9 * slow.abs() + 1e-10
+                };
+                assert!(
+                    (fast - slow).abs() < allowed,
+                    "{} {:?} {i}: {fast} {slow}",
+                    candidate.label(),
+                    datum
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn sensitivities_are_differences_of_predictions() {
+    let campaign = campaign();
+    let forward = Forward::new(&campaign);
+    let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
+    let weights =
+        Weights { inverse: forward.data.iter().map(|d| 1.0 / d.sigma).collect(), smooth_only: false };
+    let all = candidates(&forward);
+    for name in [
+        "bearing_tilt@j3",
+        "payload_mass_error@payload",
+        "harness_mass@forearm",
+        "immersion@arm",
+        "modulus_error@forearm",
+        "payload_cg_error@payload",
+        "lost_motion@j3",
+        "sensor_gain@modal",
+    ] {
+        let candidate = all.iter().find(|c| c.label() == name).expect("candidate");
+        let model = Model::baseline(&nuisance).with(candidate);
+        let mut u = vec![0.3; model.calibrated()];
+        u.extend(&candidate.starts[0]);
+        let here = evaluate(&forward, &model, &u, &weights);
+        let slopes = jacobian(&forward, &model, &here);
+        for p in 0..model.len() {
+            let at = |step: f64| {
+                let mut u = u.clone();
+                u[p] += step;
+                evaluate(&forward, &model, &u, &weights).predicted
+            };
+            let (ahead, behind) = (at(1e-3), at(-1e-3));
+            for i in 0..forward.data.len() {
+                let difference = (ahead[i] - behind[i]) / 2e-3;
+                let sigma = forward.data[i].sigma;
+                assert!(
+                    (slopes[(i, p)] - difference).abs() < 0.02 * (sigma + difference.abs()),
+                    "{name} {p} {i}: {} {difference}",
+                    slopes[(i, p)]
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! A model reconciled with measurements: campaigns of the independent witness, of other simulators, of real machines.
+
+mod bad_data;
+mod campaigns;
+#[path = "scoring/detectability.rs"]
+mod detectability;
+mod few_rows;
+mod forward;
+mod generated;
+mod generator;
+#[path = "../../examples/measured/mod.rs"]
+mod measured;
+mod other_simulator;
+mod positions;
+mod positions_maker;
+mod positions_other_simulator;
+mod scoring;
+mod together;
+mod unusual;
+#[path = "../witness/mod.rs"]
+mod witness;
