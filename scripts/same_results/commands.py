@@ -173,7 +173,8 @@ def fronts(sized):
         yield command(f"front/{name}", f"front check {{out:{run}}}")
     light, stiff, sea, bench = (f"{{out:run/{name}}}" for name in ["light-arm", "stiff-arm", "underwater-arm", "bench-arm"])
     yield command("compare/three-arms", f"compare {light} {stiff} {sea} --out {{out}}")
-    yield command("compare/limits", f"compare {light} {stiff} --deflection-mm 1.5,2,3 --mass-kg 20,30,50.5 --mode-hz 4,6 --out {{out}}")
+    limits = "--deflection-mm 1.5,2,3 --mass-kg 20,30,50.5 --mode-hz 4,6"
+    yield command("compare/limits", f"compare {light} {stiff} {limits} --out {{out}}")
     yield command("compare/json", f"compare {light} {stiff} --json")
     yield command("compare/materials-json", "compare {out:run/compare-materials} --mass-kg 10,20 --json")
     yield command("compare/one-study", f"compare {bench} {{out:run/bench-arm-own-parts}} --out {{out}}")
@@ -307,9 +308,11 @@ def write_made(root, folder):
     study = json.loads(bench)
     study.setdefault("constraints", {})["tip_deflection_max_mm"] = 0.001
     (folder / "infeasible-study.json").write_text(json.dumps(study, indent=1))
-    (folder / "faulty-study.json").write_text(re.sub(r'"(mass_kg|tip_speed_m_s)": [\d.]+', r'"\1": -5', bench).replace("[0, 1, 0]", "[0, 0, 0]", 1))
+    negative = re.sub(r'"(mass_kg|tip_speed_m_s)": [\d.]+', r'"\1": -5', bench)
+    (folder / "faulty-study.json").write_text(negative.replace("[0, 1, 0]", "[0, 0, 0]", 1))
     arm = (root / "examples/measured-arm/arm.json").read_text()
-    (folder / "faulty-arm.json").write_text(arm.replace('"youngs_modulus_pa": 2', '"youngs_modulus_pa": -2').replace('"vector_m"', '"vektor_m"', 1))
+    arm = arm.replace('"youngs_modulus_pa": 2', '"youngs_modulus_pa": -2').replace('"vector_m"', '"vektor_m"', 1)
+    (folder / "faulty-arm.json").write_text(arm)
     write_parts(folder)
     again = folder / "measured-again"
     again.mkdir()

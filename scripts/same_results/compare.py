@@ -13,6 +13,9 @@ IGNORED_KEYS = {"elapsed_s", "designs_per_s", "threads", "tool_version", "platfo
 SENTENCE_KEYS = {"question", "notes", "constraints", "reading", "reason", "reasons", "description", "separates", "follows", "why",
                  "words", "what"}
 
+# How a file is compared, by the end of its name.
+KINDS = {".csv": "csv", ".json": "json", ".md": "text", ".html": "text", ".svg": "text", ".txt": "text"}
+
 LONGEST_SHOWN = 300
 FIRST_OF_A_FILE = 40
 
@@ -57,7 +60,7 @@ def compare_all(plan, before, after, allowed):
         Pair(command.name + "/stdout", folders, "stdout", "text" if failed else command.kind, allowed, result).compare()
         for name in sorted(set(written(folders[0])) | set(written(folders[1]))):
             suffix = "." + name.rsplit(".", 1)[-1]
-            kind = {".csv": "csv", ".json": "json", ".md": "text", ".html": "text", ".svg": "text", ".txt": "text"}.get(suffix, "exact")
+            kind = KINDS.get(suffix, "exact")
             result.counts["files"] += 1
             result.counts[suffix] += 1
             Pair(f"{command.name}/{name}", folders, f"out/{name}", kind, allowed, result).compare()

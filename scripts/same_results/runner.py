@@ -127,16 +127,19 @@ def digest_file(path):
 
 
 def digest_folder(folder):
-    """Of the names and contents of the files in a folder."""
+    """Of the names and contents of the data files in a folder."""
     total = hashlib.sha256()
-    for path in sorted(p for p in folder.iterdir() if p.is_file()):
+    for path in sorted(p for p in folder.iterdir() if p.suffix in [".json", ".csv"]):
         total.update(f"{path.name}\0{digest_file(path)}\0".encode())
     return total.hexdigest()
 
 
 @contextmanager
 def sides(root, given):
-    """A side for each name, binary and folder of its store, in temporary folders that go at the end; so does a store without folder."""
+    """A side for each name with a binary and a folder for its store, which may be None.
+
+    Working folders are temporary, and so is a store without a folder of its own.
+    """
     with ExitStack() as stack:
         made = {}
         for name, (binary, cache) in given.items():

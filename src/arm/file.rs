@@ -1,4 +1,4 @@
-//! Reading the arm file.
+//! The reader of the arm file.
 
 use super::effect::entry::Effect;
 use super::joint_law::{Curve, Windup};
@@ -14,18 +14,35 @@ use std::path::Path;
 const DEFAULT_GRAVITY_M_S2: f64 = 9.81;
 const DEFAULT_POISSON: f64 = 0.3;
 
-/// Reads an arm file; gears, motors and materials named in it are looked up in `catalogs`.
+/// Reads an arm file. Gears, motors and materials that it names are looked up in `catalogs`.
 ///
 /// # Errors
-/// The file is missing, or all of its faults.
+/// [`InputError::Unreadable`] if the file cannot be read, [`InputError::Faulty`] with all of its faults.
 pub fn read_arm(path: &Path, catalogs: &Catalogs) -> Result<Arm, InputError> {
     Ok(read_arm_document(Document::read(path)?, catalogs)?)
 }
 
-/// Reads an arm from a parsed document.
+/// Reads an arm from a parsed document. Gears, motors and materials that it names are looked up in `catalogs`.
 ///
 /// # Errors
 /// All faults of the document at once.
+///
+/// ```
+/// use armwright::arm::read_arm_document;
+/// use armwright::catalog::Catalogs;
+/// use armwright::input::json::Document;
+///
+/// let catalogs = Catalogs::builtin();
+/// let text = r#"{"name": "one joint", "chain": [
+///     {"type": "joint", "name": "j2", "axis": [0, 1, 0], "gear": "HFUC-58-100", "motor": "F11-10"},
+///     {"type": "link", "name": "arm", "vector_m": [0.8, 0, 0], "mass_kg": 3}]}"#;
+/// let arm = read_arm_document(Document::parse("arm.json", text).expect("JSON"), &catalogs).expect("a sound arm");
+/// assert_eq!(arm.driven_joint_names(), ["j2"]);
+///
+/// let faulty = text.replace("[0, 1, 0]", "[0, 0, 0]");
+/// let faults = read_arm_document(Document::parse("arm.json", &faulty).expect("JSON"), &catalogs);
+/// assert_eq!(faults.expect_err("the axis has no direction").0[0].field, "chain[0].axis");
+/// ```
 pub fn read_arm_document(document: Document, catalogs: &Catalogs) -> Result<Arm, Faults> {
     let arm = arm(&document.root(), catalogs);
     document.finish(arm)
@@ -45,7 +62,7 @@ pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
     Some(arm)
 }
 
-/// A material of the file; none if it is faulty, which is recorded then.
+/// A material of the file with its name; `None` if it is faulty, in which case the fault is recorded.
 pub(crate) type NamedMaterial = (String, Option<LinkMaterial>);
 
 fn read_materials(node: &Node) -> Option<Vec<NamedMaterial>> {
@@ -131,10 +148,10 @@ pub(crate) fn read_name(object: &Object) -> Option<String> {
 pub(crate) fn read_axis(node: &Node) -> Option<Unit<Vector3<f64>>> {
     let axis = vector(node)?;
     if (axis.norm_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
-        // already of unit length: kept to the last bit, so that a written arm reads back the same
+        // a vector of unit length is kept to the last bit, so that a written arm reads back the same
         return Some(Unit::new_unchecked(axis));
     }
-    // scaled by its largest entry first: very long and very short axes have a direction too
+    // scaled by its largest entry first, since very long and very short vectors have a direction too
     let largest = axis.amax();
     let direction = if largest > 0.0 { Unit::try_new(axis / largest, 0.5) } else { None };
     direction.or_else(|| {
@@ -142,7 +159,7 @@ pub(crate) fn read_axis(node: &Node) -> Option<Unit<Vector3<f64>>> {
     })
 }
 
-/// The torsion curve: explicit numbers first, else the gear's from the catalog.
+/// The torsion curve of a joint: explicit numbers if there are any, else the curve of the gear in the catalog.
 pub(crate) fn read_curve(object: &Object, catalogs: &Catalogs) -> Option<Curve> {
     match (object.optional("stiffness_nm_per_rad"), object.optional("windup"), object.optional("gear")) {
         (Some(stiffness), Some(_), _) => {
@@ -182,7 +199,7 @@ fn find_gear<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<&'c Gear> {
         .ok()
 }
 
-/// The catalog's torsion curve of a gear, if all of it is known.
+/// The torsion curve of a gear in the catalog; `None` if a part of it is unknown.
 pub(crate) fn windup_of(gear: &Gear) -> Option<Windup> {
     Some(Windup {
         k1_nm_per_rad: gear.k1_nm_per_rad?,
@@ -202,7 +219,7 @@ fn gear_windup(gear: &Gear, node: &Node) -> Option<Windup> {
     })
 }
 
-/// The joint's mass: the number given, else gear plus motor from the catalog, else zero.
+/// The mass of a joint: the number if it is given, else gear plus motor from the catalog, else zero.
 pub(crate) fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f64> {
     if let Some(mass) = object.optional("mass_kg") {
         return mass.non_negative();
@@ -265,7 +282,7 @@ fn read_tube(
 ) -> Option<LinkBody> {
     if let Some(mass) = object.optional("mass_kg") {
         mass.fault::<()>(
-            "stands beside a section",
+            "is given together with a section",
             "a tube's mass follows from section and density; remove it",
         );
     }
@@ -341,7 +358,7 @@ pub(crate) fn read_section(node: &Node) -> Option<Section> {
     Some(section)
 }
 
-/// Reads a list of effects; whether each fits its arm is checked apart.
+/// Reads a list of effects. Whether each effect fits its arm is checked later.
 pub(crate) fn read_effects(node: &Node) -> Option<Vec<Effect>> {
     let read: Vec<_> = node.array()?.iter().map(read_effect).collect();
     read.into_iter().collect()
@@ -371,7 +388,7 @@ fn read_parameters(node: &Node) -> Option<Vec<(String, Vec<f64>)>> {
     read.into_iter().collect()
 }
 
-/// Every effect of the arm against what is known of its kind.
+/// Checks every effect of the arm against its kind.
 fn check_effects(arm: &Arm, root: &Object) -> Option<()> {
     let Some(node) = root.optional("effects") else { return Some(()) };
     let structure = arm.nominal_structure(super::JointModel::default());

@@ -1,9 +1,9 @@
-//! How far a joint twists about its axis under a torque.
+//! Joint laws: how far a joint twists about its axis under a torque.
 
 use super::JointModel;
 
-/// The three-segment torsion curve of a harmonic-drive gear: odd in the torque, slope 1/K1 up to T1,
-/// 1/K2 up to T2, 1/K3 beyond.
+/// The three-segment torsion curve of a harmonic-drive gear. It is odd in the torque and has the slope 1/K1 up to T1, 1/K2
+/// up to T2 and 1/K3 beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Windup {
     /// Stiffness up to T1 \[N m/rad\].
@@ -21,16 +21,16 @@ pub struct Windup {
 /// One straight segment of a torsion curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
-    /// Torque where it begins \[N m\].
+    /// Torque at which the segment begins \[N m\].
     pub from_nm: f64,
-    /// Torque where it ends; infinite for the last \[N m\].
+    /// Torque at which it ends \[N m\]; infinite for the last segment.
     pub to_nm: f64,
-    /// Stiffness within it \[N m/rad\].
+    /// Stiffness of the segment \[N m/rad\].
     pub stiffness_nm_per_rad: f64,
 }
 
 impl Windup {
-    /// The three segments, from no torque upward. A break point belongs to the segment below it.
+    /// The three segments in ascending order of torque. A break point belongs to the segment below it.
     #[inline]
     pub fn segments(&self) -> [Segment; 3] {
         let segment = |from_nm, to_nm, stiffness_nm_per_rad| Segment { from_nm, to_nm, stiffness_nm_per_rad };
@@ -41,7 +41,7 @@ impl Windup {
         ]
     }
 
-    /// Twist under the total torque \[rad\].
+    /// Twist \[rad\] under the total torque \[N m\].
     #[inline]
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
         let t = torque_nm.abs();
@@ -51,7 +51,7 @@ impl Windup {
         (first + second + third).copysign(torque_nm)
     }
 
-    /// Stiffness for a small further torque \[N m/rad\]; at a break point that of the segment below.
+    /// Tangent stiffness \[N m/rad\] at a torque. At a break point it is that of the segment below.
     #[inline]
     pub fn tangent_nm_per_rad(&self, torque_nm: f64) -> f64 {
         let t = torque_nm.abs();
@@ -64,13 +64,13 @@ impl Windup {
         }
     }
 
-    /// Whether the slope is at least that of another curve under every torque up to one \[N m\].
+    /// Whether the curve is at least as stiff as another at every torque up to `most_nm`.
     pub fn never_softer(&self, other: &Self, most_nm: f64) -> bool {
         let starts = [0.0, self.t1_nm, self.t2_nm, other.t1_nm, other.t2_nm];
         starts.into_iter().all(|t| t > most_nm || self.slope_beyond(t) >= other.slope_beyond(t))
     }
 
-    /// The slope just beyond a torque.
+    /// Tangent stiffness just beyond a torque.
     fn slope_beyond(&self, torque_nm: f64) -> f64 {
         match torque_nm {
             t if t < self.t1_nm => self.k1_nm_per_rad,
@@ -79,7 +79,7 @@ impl Windup {
         }
     }
 
-    /// The curve of a gear that is stiffer by a factor under every torque; its break points stay.
+    /// The curve with all stiffnesses multiplied by a factor. Its break points stay.
     #[must_use]
     pub fn stiffened(&self, factor: f64) -> Self {
         Self {
@@ -91,21 +91,37 @@ impl Windup {
     }
 }
 
-/// A joint's torsion curve.
+/// The torsion curve of a joint.
+///
+/// ```
+/// use armwright::arm::{Curve, JointModel, Windup};
+///
+/// let curve = Curve::Windup(Windup {
+///     k1_nm_per_rad: 400e3,
+///     k2_nm_per_rad: 610e3,
+///     k3_nm_per_rad: 710e3,
+///     t1_nm: 168.0,
+///     t2_nm: 598.0,
+/// });
+/// // the two first segments under 568.3 N m
+/// assert!((curve.angle_rad(568.3) - (168.0 / 400e3 + 400.3 / 610e3)).abs() < 1e-12);
+/// assert_eq!(curve.tangent_compliance_rad_per_nm(568.3), 1.0 / 610e3);
+/// assert_eq!(curve.reduced(JointModel::K2), Curve::Linear(610e3));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Curve {
     /// No compliance.
     Rigid,
-    /// One stiffness \[N m/rad\].
+    /// A single stiffness \[N m/rad\].
     Linear(f64),
     /// The three-segment curve of a gear.
     Windup(Windup),
-    /// The three-segment curve of a gear that is taken to vibrate with its first slope under any torque.
+    /// The three-segment curve of a gear that vibrates with its first slope at every torque.
     WindupK1(Windup),
 }
 
 impl Curve {
-    /// Twist under the total torque \[rad\].
+    /// Twist \[rad\] under the total torque \[N m\].
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
         match self {
             Curve::Rigid => 0.0,
@@ -114,7 +130,7 @@ impl Curve {
         }
     }
 
-    /// Twist per further torque \[rad/(N m)\].
+    /// Tangent compliance \[rad/(N m)\] at a torque \[N m\]: the twist per small further torque.
     pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
         match self {
             Curve::Rigid => 0.0,
@@ -124,7 +140,7 @@ impl Curve {
         }
     }
 
-    /// The curve of a gear that is stiffer by a factor under every torque; its break points stay.
+    /// The curve with all stiffnesses multiplied by a factor. Its break points stay.
     #[must_use]
     pub fn stiffened(&self, factor: f64) -> Curve {
         match self {
@@ -135,7 +151,7 @@ impl Curve {
         }
     }
 
-    /// The curve as three segments, of one slope if it is a line; `None` if nothing twists.
+    /// The curve as three segments, which are equal if the curve is a line. `None` for a rigid joint.
     pub fn as_windup(&self) -> Option<Windup> {
         match *self {
             Curve::Rigid => None,
@@ -162,7 +178,7 @@ impl Curve {
         }
     }
 
-    /// The single number that stands for the curve in the paper's model: K2 of a gear.
+    /// The curve of the paper's model: the single stiffness K2 of a gear.
     pub fn middle_slope(&self) -> Curve {
         match self {
             Curve::Windup(windup) | Curve::WindupK1(windup) => Curve::Linear(windup.k2_nm_per_rad),
@@ -171,10 +187,10 @@ impl Curve {
     }
 }
 
-/// Torques smaller than this are rounding errors of a joint that carries nothing \[N m\].
+/// Torque below which a joint counts as unloaded \[N m\]: smaller torques are rounding errors.
 const REST_NM: f64 = 1e-9;
 
-/// Play that closes smoothly: `theta += h tanh(T/Tc)`.
+/// Lost motion: play that closes smoothly as the torque grows, `theta += h tanh(T/Tc)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LostMotion {
     /// Half width h \[rad\].
@@ -184,27 +200,38 @@ pub struct LostMotion {
 }
 
 impl LostMotion {
-    /// Twist under the total torque \[rad\].
+    /// Twist \[rad\] under the total torque \[N m\].
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
         self.half_width_rad * (torque_nm / self.torque_nm).tanh()
     }
 
-    /// Twist per further torque \[rad/(N m)\]; it falls as the torque grows.
+    /// Tangent compliance \[rad/(N m)\] at a torque \[N m\]. It falls as the torque grows.
     pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
         self.half_width_rad / self.torque_nm / (torque_nm / self.torque_nm).cosh().powi(2)
     }
 }
 
-/// All that twists about a joint's axis, in series.
+/// The law of a joint: everything that twists about its axis, in series.
+///
+/// ```
+/// use armwright::arm::{Curve, JointLaw};
+///
+/// // a gear of 1e5 N m/rad, and a flange of the same stiffness in series
+/// let law = JointLaw { connection_rad_per_nm: 1e-5, ..JointLaw::from(Curve::Linear(1e5)) };
+/// assert!((law.angle_rad(100.0) - 2e-3).abs() < 1e-15);
+/// assert!((law.tangent_compliance_rad_per_nm(100.0) - 2e-5).abs() < 1e-18);
+/// assert!(!law.is_rigid() && !law.has_play());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointLaw {
-    /// The gear.
+    /// Torsion curve of the gear.
     pub curve: Curve,
     /// Compliance of flange, shaft or bolts \[rad/(N m)\].
     pub connection_rad_per_nm: f64,
     /// Lost motion.
     pub lost_motion: Option<LostMotion>,
-    /// Half width of the friction play \[rad\]; 0 = none. Without history: |T| rising from rest.
+    /// Half width of the friction play (hysteresis) \[rad\]; 0 if there is none. Where no history is known, |T| rises from
+    /// rest.
     pub hysteresis_rad: f64,
 }
 
@@ -215,19 +242,20 @@ impl From<Curve> for JointLaw {
 }
 
 impl JointLaw {
-    /// Twist under the total torque \[rad\] without the friction play.
+    /// Twist \[rad\] under the total torque \[N m\], without the friction play.
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
         let play = self.lost_motion.map_or(0.0, |lost| lost.angle_rad(torque_nm));
         self.curve.angle_rad(torque_nm) + self.connection_rad_per_nm * torque_nm + play
     }
 
-    /// Twist per further torque \[rad/(N m)\]; the friction play does not move in small oscillations.
+    /// Tangent compliance \[rad/(N m)\] at a torque \[N m\]. The friction play does not move in small oscillations and adds
+    /// nothing.
     pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
         let play = self.lost_motion.map_or(0.0, |lost| lost.tangent_compliance_rad_per_nm(torque_nm));
         self.curve.tangent_compliance_rad_per_nm(torque_nm) + self.connection_rad_per_nm + play
     }
 
-    /// Gear and connection as one curve; play is no part of it.
+    /// Gear and connection as one curve, without play and friction.
     pub fn without_play(&self) -> Curve {
         let softened = |k: f64| 1.0 / (1.0 / k + self.connection_rad_per_nm);
         let series = |w: Windup| Windup {
@@ -245,27 +273,27 @@ impl JointLaw {
         }
     }
 
-    /// Whether there is play beside the curve.
+    /// Whether the joint has lost motion or friction play in addition to its curve.
     pub fn has_play(&self) -> bool {
         self.lost_motion.is_some() || self.hysteresis_rad > 0.0
     }
 
-    /// Twist when the torque has risen from rest to `torque_nm` \[rad\]: the friction play, at 0 at rest,
-    /// holds back up to its half width.
+    /// Twist \[rad\] after the torque has risen from rest to `torque_nm`. The friction play starts at 0 and holds the joint
+    /// back by up to its half width.
     pub fn rising_angle_rad(&self, torque_nm: f64) -> f64 {
         self.play_angle_rad(torque_nm, &mut 0.0)
     }
 
-    /// Stiffness of the spring that the friction play drags: the gear's middle slope with the
-    /// connection in series \[N m/rad\]; none without play, or where nothing twists for friction to hold.
+    /// Stiffness of the spring in the friction play \[N m/rad\]: the middle slope of the gear with the connection in series.
+    /// `None` without friction play, or if nothing twists that friction could hold back.
     pub(crate) fn play_stiffness_nm_per_rad(&self) -> Option<f64> {
         let gear = self.curve.middle_slope().tangent_compliance_rad_per_nm(0.0);
         let compliance = gear + self.connection_rad_per_nm;
         (self.hysteresis_rad > 0.0 && compliance > 0.0).then(|| 1.0 / compliance)
     }
 
-    /// Twist at a torque when the friction play stands at `state` (a torque \[N m\], updated): the play
-    /// follows the torque at a distance of at most k h.
+    /// Twist \[rad\] at a torque, given the state of the friction play. The state is a torque \[N m\] that follows the torque
+    /// on the joint at a distance of at most k h; it is updated.
     pub fn play_angle_rad(&self, torque_nm: f64, state: &mut f64) -> f64 {
         let angle = self.angle_rad(torque_nm);
         let Some(stiffness) = self.play_stiffness_nm_per_rad() else { return angle };
@@ -274,13 +302,13 @@ impl JointLaw {
         angle + (*state - torque_nm) / stiffness
     }
 
-    /// Where the play stands after the torque's size has risen from rest to `torque_nm` \[N m\].
+    /// State of the friction play \[N m\] after the torque has risen from rest to `torque_nm`.
     pub fn play_at_rest_nm(&self, torque_nm: f64) -> f64 {
         let sign = if torque_nm.abs() < REST_NM { 0.0 } else { torque_nm.signum() };
         torque_nm - sign * self.play_stiffness_nm_per_rad().unwrap_or_default() * self.hysteresis_rad
     }
 
-    /// Whether nothing twists.
+    /// Whether the joint does not twist under any torque.
     pub fn is_rigid(&self) -> bool {
         self.curve == Curve::Rigid && self.connection_rad_per_nm == 0.0 && self.lost_motion.is_none()
     }

@@ -1,19 +1,19 @@
-//! Passive joints: which joints drive them, and how far each is turned.
+//! Linkages: which joints drive a passive joint, and how far each of them turns it.
 
 use super::structure::{JointAngle, Piece, Structure};
 
 /// One driver of a passive joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linkage {
-    /// The joint that drives.
+    /// Name of the joint that drives.
     pub driver: String,
-    /// The passive joint.
+    /// Name of the passive joint.
     pub passive: String,
-    /// Turn of the passive joint per turn of the driver.
+    /// Rotation of the passive joint per rotation of the driver.
     pub factor: f64,
 }
 
-/// Every driver of every passive joint.
+/// The linkages of an arm: every driver of every passive joint.
 pub fn linkages(structure: &Structure) -> Vec<Linkage> {
     let driver = |index: usize| {
         structure.joints().find(|j| j.angle == JointAngle::Driven(index)).map(|j| j.name.clone())

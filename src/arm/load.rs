@@ -1,11 +1,11 @@
-//! What an arm carries in one case: a pose, a payload, a force at the tip, and the models to use.
+//! Load cases: a pose, a payload, a force at the tip, and the models to use.
 
 use super::{JointModel, LinkModel, Words};
 use crate::input::json::{Document, Faults, Node, Object};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
-/// What the arm holds. Centre and inertia are written in the last frame.
+/// The payload of an arm. Centre and inertia are written in the last frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Payload {
     /// Mass \[kg\].
@@ -16,22 +16,38 @@ pub struct Payload {
     pub inertia_about_cg_kgm2: Vector3<f64>,
 }
 
-/// One case an arm is analysed in.
+/// A case in which an arm is analysed.
+///
+/// ```
+/// use armwright::arm::{JointModel, LinkModel, LoadCase, Payload};
+/// use nalgebra::Vector3;
+///
+/// let case = LoadCase {
+///     name: "stretched, 5 kg".into(),
+///     pose_deg: vec![0.0, -30.0, 60.0],
+///     payload: Payload { mass_kg: 5.0, cg_m: Vector3::new(0.05, 0.0, 0.0), ..Payload::default() },
+///     tip_force_n: Vector3::zeros(),
+///     links: LinkModel::Full,
+///     joints: JointModel::ThreeSegment,
+///     water: None,
+/// };
+/// assert_eq!(case.to_json()["payload"]["mass_kg"], 5.0);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadCase {
     /// Name.
     pub name: String,
-    /// One angle per driven joint, base to tip \[deg\] (as files write it).
+    /// One angle for each driven joint, base to tip \[deg\], as files have it.
     pub pose_deg: Vec<f64>,
-    /// What the arm holds.
+    /// The payload.
     pub payload: Payload,
-    /// Force at the tip, world axes \[N\].
+    /// Force at the tip in world axes \[N\].
     pub tip_force_n: Vector3<f64>,
     /// Physics of the links.
     pub links: LinkModel,
     /// Physics of the joints.
     pub joints: JointModel,
-    /// The water the arm is in, if the case and not the arm says so.
+    /// The water around the arm in this case; `None` leaves it to the effects of the arm.
     pub water: Option<Water>,
 }
 
@@ -78,7 +94,7 @@ impl Payload {
 pub struct Water {
     /// Density of the water \[kg/m³\].
     pub density_kg_m3: f64,
-    /// Added mass across a link over the mass of the water it displaces.
+    /// Ratio of the added mass across a link to the mass of the water that it displaces.
     pub added_mass_coefficient: f64,
     /// Density of the payload, for its buoyancy \[kg/m³\].
     pub payload_density_kg_m3: f64,
@@ -94,7 +110,7 @@ impl Water {
         })
     }
 
-    /// Reads a water object; the payload is steel unless it says otherwise.
+    /// Reads a water object. Where it gives no density of the payload, the payload is of steel.
     pub fn read(node: &Node) -> Option<Self> {
         let object = node.object(&["density_kg_m3", "added_mass_coefficient", "payload_density_kg_m3"])?;
         let density_kg_m3 = object.required("density_kg_m3").and_then(|n| n.positive());
@@ -130,7 +146,7 @@ pub(crate) fn word<T: Words>(node: &Node) -> Option<T> {
         .or_else(|| node.fault(format!("\"{text}\" is not known"), &format!("choose one of: {}", T::words())))
 }
 
-/// Reads a `cases.json` document: an array of load cases for an arm with `driven_joints` angles.
+/// Reads a `cases.json` document: an array of load cases for an arm with these driven joints.
 ///
 /// # Errors
 /// All faults of the document at once.
@@ -172,7 +188,7 @@ fn read_force_and_models(object: &Object) -> (Option<Vector3<f64>>, Option<LinkM
     )
 }
 
-/// Reads a pose: one angle in degrees for each driven joint.
+/// Reads a pose, which is one angle in degrees for each driven joint.
 pub(crate) fn read_pose(node: &Node, driven_joints: &[&str]) -> Option<Vec<f64>> {
     let items = node.array()?;
     if items.len() != driven_joints.len() {

@@ -1,9 +1,13 @@
-//! What an arm is: an ordered chain of joints and links from base to tip, the loads it carries, and
-//! the effects it has beyond its nominal model.
+//! Arms: an ordered chain of joints and links from base to tip, its load cases, and its effects beyond the nominal model.
 //!
-//! World z is up and gravity points along -z. With all joint angles zero every frame on the chain is
-//! parallel to the world's; a joint's axis and a link's vector are written in the frame carried by
-//! the joints before it.
+//! World z is up, and gravity points along -z. With all joint angles zero, every frame of the chain is parallel to the
+//! world's. The axis of a joint and the vector of a link are written in the *carried frame*: the frame that the joints
+//! before it carry along when they turn.
+//!
+//! - [`Arm`] is an arm as its file describes it ([`read_arm`] reads it).
+//! - [`LoadCase`] is a pose with a load and the models to use.
+//! - [`Structure`] is the arm as the mechanics sees it: effects are applied, and names of parts are gone.
+//! - [`effect`] has the effects, one file each.
 
 pub mod effect;
 pub(crate) mod file;
@@ -24,10 +28,10 @@ pub use structure::{Beam, FrameCompliance, JointAngle, JointPiece, LinkPiece, Pi
 
 use nalgebra::{Unit, Vector3};
 
-/// Which physics of the links a calculation uses.
+/// The physics of links that a calculation uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LinkModel {
-    /// No compliance; the tube's full mass and inertia.
+    /// No compliance. Tubes have their full mass and inertia.
     Rigid,
     /// Euler-Bernoulli bending in both planes and nothing else (Eqs 1-6).
     Bending,
@@ -36,25 +40,25 @@ pub enum LinkModel {
     Full,
 }
 
-/// Which torsion curve of a gear a calculation uses.
+/// The torsion curve of gears that a calculation uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum JointModel {
-    /// The middle slope K2 alone: the paper's single number.
+    /// The middle slope K2 alone, which is the paper's single number.
     K2,
-    /// The catalog's three-segment curve, where there is one.
+    /// The three-segment curve, for gears that have one.
     #[default]
     ThreeSegment,
-    /// The three-segment curve for what a load bends, its first slope K1 for what vibrates: the lowest
-    /// frequencies that a gear with rising slopes can have, whatever its torque.
+    /// The three-segment curve for deflections, and its first slope K1 for vibrations. These are the lowest frequencies that
+    /// a gear with rising slopes can have at any torque.
     ThreeSegmentK1,
 }
 
-/// The words of a two-way choice in files and on the command line.
+/// A choice that has a word for each value, in files and on the command line.
 pub trait Words: Sized + Copy + 'static {
-    /// Every value with its word.
+    /// All values with their words.
     const WORDS: &'static [(&'static str, Self)];
 
-    /// The value of a word.
+    /// The value of a word; `None` if no value has this word.
     fn from_word(word: &str) -> Option<Self> {
         Self::WORDS.iter().find(|(w, _)| *w == word).map(|(_, v)| *v)
     }
@@ -101,11 +105,33 @@ impl JointModel {
 }
 
 /// An arm as its file describes it.
+///
+/// ```
+/// use armwright::arm::{Arm, Curve, Element, Joint, Link, LinkBody};
+/// use nalgebra::Vector3;
+///
+/// let joint = Joint {
+///     name: "j2".into(),
+///     axis: Vector3::y_axis(),
+///     curve: Curve::Linear(607e3),
+///     mass_kg: 12.2,
+///     gear: None,
+///     motor: None,
+///     coupled: None,
+/// };
+/// let body = LinkBody::Offset { mass_kg: 5.0 };
+/// let link = Link { name: "upper_arm".into(), vector_m: Vector3::new(0.8, 0.0, 0.0), body };
+/// let chain = vec![Element::Joint(joint), Element::Link(link)];
+/// let arm = Arm { name: "two pieces".into(), gravity_m_s2: 9.81, chain, effects: Vec::new() };
+/// assert_eq!(arm.mass_kg(), 17.2);
+/// assert_eq!(arm.length_m(), 0.8);
+/// assert_eq!(arm.to_json()["chain"][0]["stiffness_nm_per_rad"], 607e3);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arm {
     /// Name.
     pub name: String,
-    /// Gravitational acceleration \[m/s²\], along world -z.
+    /// Gravitational acceleration along world -z \[m/s²\].
     pub gravity_m_s2: f64,
     /// Joints and links from base to tip.
     pub chain: Vec<Element>,
@@ -131,13 +157,13 @@ pub struct Joint {
     pub axis: Unit<Vector3<f64>>,
     /// Torsion curve about the axis.
     pub curve: Curve,
-    /// Mass of the drive \[kg\]: a point on the axis, inboard.
+    /// Mass of the drive \[kg\]. It is a point on the axis, inboard of the torsion.
     pub mass_kg: f64,
-    /// Gear, as a part name kept beside the numbers.
+    /// Name of the gear, for information. The numbers above count.
     pub gear: Option<String>,
-    /// Motor, as a part name kept beside the numbers.
+    /// Name of the motor, for information.
     pub motor: Option<String>,
-    /// For a passive joint: its angle as a sum of factors times other joints' angles.
+    /// The angle of a passive joint: a sum of factors times the angles of driven joints. `None` for a driven joint.
     pub coupled: Option<Vec<(String, f64)>>,
 }
 
@@ -146,22 +172,22 @@ pub struct Joint {
 pub struct Link {
     /// Name, unique in the arm.
     pub name: String,
-    /// From the link's root to its end \[m\], in the carried frame.
+    /// Vector from the root of the link to its end \[m\], in the carried frame.
     pub vector_m: Vector3<f64>,
-    /// What the link is made of.
+    /// The tube or offset.
     pub body: LinkBody,
 }
 
-/// What a link is made of.
+/// The body of a link.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LinkBody {
     /// A straight tube of constant section.
     Tube {
         /// Name of the material.
         material_name: String,
-        /// Its elastic properties.
+        /// Elastic properties and density of the material.
         material: LinkMaterial,
-        /// Its cross-section.
+        /// Cross-section.
         section: Section,
     },
     /// A rigid connection.
@@ -172,7 +198,7 @@ pub enum LinkBody {
 }
 
 impl Element {
-    /// The element's name.
+    /// Name of the element.
     pub fn name(&self) -> &str {
         match self {
             Element::Joint(joint) => &joint.name,
@@ -198,17 +224,17 @@ impl Arm {
         })
     }
 
-    /// Names of the joints that have an angle of their own (passive joints have none), base to tip.
+    /// Names of the driven joints, base to tip. A pose has one angle for each of them; passive joints have none.
     pub fn driven_joint_names(&self) -> Vec<&str> {
         self.joints().filter(|j| j.coupled.is_none()).map(|j| j.name.as_str()).collect()
     }
 
-    /// Mass of all links and drives \[kg\].
+    /// Mass of all links and drives \[kg\], without what effects add.
     pub fn mass_kg(&self) -> f64 {
         self.chain.iter().map(Element::mass_kg).sum()
     }
 
-    /// Length of all links \[m\].
+    /// Sum of the lengths of all links \[m\].
     pub fn length_m(&self) -> f64 {
         let length = |element: &Element| match element {
             Element::Link(link) => link.vector_m.norm(),

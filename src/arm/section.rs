@@ -1,4 +1,4 @@
-//! Cross-sections of links and the material numbers that mechanics needs.
+//! Cross-sections of links, and the numbers of a material that the mechanics needs.
 //!
 //! | symbol | formula | source |
 //! |---|---|---|
@@ -11,7 +11,7 @@
 
 use std::f64::consts::PI;
 
-/// Elastic properties of a link's material.
+/// Elastic properties and density of the material of a link.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkMaterial {
     /// Young's modulus \[Pa\].
@@ -20,12 +20,12 @@ pub struct LinkMaterial {
     pub shear_modulus_pa: f64,
     /// Density \[kg/m³\].
     pub density_kg_m3: f64,
-    /// Poisson's ratio, used in Cowper's factor only.
+    /// Poisson's ratio. It is used in Cowper's shear factor only, and never follows from E and G.
     pub poisson: f64,
 }
 
 impl LinkMaterial {
-    /// The material with E and G both larger by a factor.
+    /// The material with E and G multiplied by a factor.
     #[must_use]
     pub fn stiffened(&self, factor: f64) -> LinkMaterial {
         LinkMaterial {
@@ -36,7 +36,7 @@ impl LinkMaterial {
     }
 }
 
-/// A hollow cross-section. Height is along the section's z axis, width along its y axis.
+/// A hollow cross-section. Height is along the z axis of the section, width along its y axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Section {
     /// Rectangular tube with sharp corners.
@@ -62,20 +62,20 @@ pub enum Section {
 pub struct SectionProperties {
     /// Cross-section area A \[m²\].
     pub area_m2: f64,
-    /// Second moment about the width axis (bending that moves the link along its z) \[m⁴\].
+    /// Second moment of area about y, for bending that moves the link along z \[m⁴\].
     pub second_moment_y_m4: f64,
-    /// Second moment about the height axis (bending along y) \[m⁴\].
+    /// Second moment of area about z, for bending that moves the link along y \[m⁴\].
     pub second_moment_z_m4: f64,
     /// Torsion constant J \[m⁴\].
     pub torsion_constant_m4: f64,
     /// Cowper's shear factor.
     pub shear_factor: f64,
-    /// Area enclosed by the outer contour \[m²\].
+    /// Area within the outer contour, which displaces water \[m²\].
     pub outer_area_m2: f64,
 }
 
 impl Section {
-    /// Outer width and height (diameter twice for a round tube) \[m\].
+    /// Outer width and height \[m\]. For a round tube both are the diameter.
     pub fn outer_m(&self) -> (f64, f64) {
         match *self {
             Section::RectangularTube { width_m, height_m, .. } => (width_m, height_m),
@@ -90,7 +90,16 @@ impl Section {
         }
     }
 
-    /// Area, second moments, torsion constant and shear factor for a material with Poisson's ratio `poisson`.
+    /// Geometric properties of the section. `poisson` is Poisson's ratio of the material; the shear factor depends on it.
+    ///
+    /// ```
+    /// use armwright::arm::Section;
+    ///
+    /// let section = Section::RectangularTube { width_m: 0.16, height_m: 0.16, wall_m: 0.01 };
+    /// let properties = section.properties(0.3);
+    /// assert!((properties.area_m2 - 0.006).abs() < 1e-15);
+    /// assert!((properties.second_moment_y_m4 - 2.26e-5).abs() < 1e-8, "Eq 5");
+    /// ```
     pub fn properties(&self, poisson: f64) -> SectionProperties {
         match *self {
             Section::RectangularTube { width_m: b, height_m: h, wall_m: t } => rectangular(b, h, t, poisson),

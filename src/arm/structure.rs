@@ -1,4 +1,4 @@
-//! The arm as mechanics sees it: pieces with their physics, effects applied, part names gone.
+//! Structures: the arm as the mechanics sees it. Effects are applied to its pieces, and names of parts are gone.
 
 use super::joint_law::JointLaw;
 use super::load::{LoadCase, Water};
@@ -6,27 +6,27 @@ use super::section::{LinkMaterial, Section};
 use super::{Arm, Element, Joint, JointModel, Link, LinkBody};
 use nalgebra::{Matrix3, SymmetricEigen, Unit, Vector3};
 
-/// Everything mechanics needs to know of an arm.
+/// Everything that the mechanics needs to know of an arm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Structure {
     /// Gravitational acceleration \[m/s²\].
     pub gravity_m_s2: f64,
     /// Tilt of the base about world x and y per moment \[rad/(N m)\].
     pub base_tilt_rad_per_nm: f64,
-    /// How what the arm stands on yields besides, about the chain's origin.
+    /// Further compliance of the ground on which the arm stands, about the origin of the chain.
     pub base_frame: FrameCompliance,
-    /// The water the arm is in.
+    /// The water in which the arm is.
     pub water: Option<Water>,
     /// Joints and links from base to tip.
     pub pieces: Vec<Piece>,
 }
 
-/// Rotation per moment about three axes of a frame, coupled \[rad/(N m)\].
+/// Rotation of a frame per moment \[rad/(N m)\], as a symmetric matrix over its three axes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FrameCompliance(pub Matrix3<f64>);
 
 impl FrameCompliance {
-    /// The same as springs in series, each about one of the principal axes: axis in the frame, compliance.
+    /// The compliance as springs in series about the principal axes: each with its axis in the frame and its compliance.
     pub fn springs(&self) -> Vec<(Vector3<f64>, f64)> {
         if self.0 == Matrix3::zeros() {
             return Vec::new();
@@ -54,27 +54,27 @@ pub struct JointPiece {
     pub name: String,
     /// Axis in the carried frame.
     pub axis: Unit<Vector3<f64>>,
-    /// Twist about the axis.
+    /// Law of the twist about the axis.
     pub law: JointLaw,
-    /// Tilt about the two axes across the joint's, per moment \[rad/(N m)\].
+    /// Tilt of the bearing per moment, about both axes across the axis of the joint \[rad/(N m)\].
     pub tilt_rad_per_nm: f64,
     /// Point mass on the axis, inboard \[kg\].
     pub mass_kg: f64,
-    /// Where the joint's angle comes from.
+    /// Source of the joint's angle.
     pub angle: JointAngle,
 }
 
-/// Where a joint's angle comes from.
+/// Source of the angle of a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub enum JointAngle {
-    /// Entry of the pose.
+    /// An entry of the pose, by its number.
     Driven(usize),
-    /// Sum of factors times entries of the pose.
+    /// A sum of factors times entries of the pose.
     Coupled(Vec<(usize, f64)>),
 }
 
 impl JointAngle {
-    /// The joint's angle in a pose, in the pose's unit.
+    /// The angle of the joint in a pose, in the unit of the pose.
     pub fn of(&self, pose: &[f64]) -> f64 {
         match self {
             JointAngle::Driven(index) => pose[*index],
@@ -88,7 +88,7 @@ impl JointAngle {
 pub struct LinkPiece {
     /// Name.
     pub name: String,
-    /// From root to end in the carried frame \[m\].
+    /// Vector from root to end in the carried frame \[m\].
     pub vector_m: Vector3<f64>,
     /// The tube, if the link is one.
     pub beam: Option<Beam>,
@@ -96,12 +96,12 @@ pub struct LinkPiece {
     pub point_mass_kg: f64,
     /// Cables and hoses along the axis \[kg/m\].
     pub harness_kg_per_m: f64,
-    /// How the structure about its root yields, in the carried frame.
+    /// Compliance of the frame at the root of the link, in the carried frame.
     pub root_frame: FrameCompliance,
 }
 
 impl LinkPiece {
-    /// Mass of the tube per length \[kg/m\]; zero without one.
+    /// Mass of the tube per length \[kg/m\]; zero if there is no tube.
     pub fn tube_kg_per_m(&self) -> f64 {
         self.beam.map_or(0.0, |beam| {
             beam.material.density_kg_m3 * beam.section.properties(beam.material.poisson).area_m2
@@ -121,26 +121,26 @@ pub struct Beam {
     pub material: LinkMaterial,
     /// Cross-section.
     pub section: Section,
-    /// Factor on every compliance: 1 as built, 0 rigid.
+    /// Factor on every compliance: 1 for the tube itself, 0 for a rigid link.
     pub flexibility: f64,
 }
 
 impl Arm {
-    /// The arm as mechanics sees it, with the joint curves the model asks for and the effects of the
-    /// product applied. Effects of a test are left out: see [`Arm::ignored_effects`].
+    /// The arm as the mechanics sees it, with the torsion curves of a joint model and with the effects of the product.
+    /// Effects that describe a test are left out ([`Arm::ignored_effects`] lists them).
     pub fn structure(&self, joints: JointModel) -> Structure {
         self.subject(joints).structure
     }
 
-    /// The arm as mechanics sees it in a load case: its joint model, and its water, if it has some, before
-    /// that of an effect.
+    /// The arm as the mechanics sees it in a load case. The case gives the joint model. If the case has water, it replaces the
+    /// water of an effect.
     pub fn structure_in(&self, case: &LoadCase) -> Structure {
         let mut structure = self.structure(case.joints);
         structure.water = case.water.or(structure.water);
         structure
     }
 
-    /// The arm as mechanics sees it without any effect.
+    /// The arm as the mechanics sees it, without any effect.
     pub fn nominal_structure(&self, joints: JointModel) -> Structure {
         let driven = self.driven_joint_names();
         let pieces = self
@@ -156,7 +156,7 @@ impl Arm {
 }
 
 impl Structure {
-    /// Mass of all pieces, with what effects add \[kg\].
+    /// Mass of all pieces \[kg\], with what effects add.
     pub fn mass_kg(&self) -> f64 {
         let mass_kg = |piece: &Piece| match piece {
             Piece::Joint(joint) => joint.mass_kg,
@@ -165,7 +165,7 @@ impl Structure {
         self.pieces.iter().map(mass_kg).sum()
     }
 
-    /// Pieces on a rigid base in air.
+    /// A structure of pieces on a rigid base in air.
     pub(crate) fn nominal(gravity_m_s2: f64, pieces: Vec<Piece>) -> Self {
         Self {
             gravity_m_s2,
@@ -177,6 +177,7 @@ impl Structure {
     }
 }
 
+/// A joint without any effect.
 fn joint_piece(joint: &Joint, driven: &[&str], model: JointModel) -> JointPiece {
     let index = |name: &str| driven.iter().position(|d| *d == name);
     let angle = match &joint.coupled {
@@ -195,6 +196,7 @@ fn joint_piece(joint: &Joint, driven: &[&str], model: JointModel) -> JointPiece 
     }
 }
 
+/// A link without any effect.
 pub(crate) fn link_piece(link: &Link) -> LinkPiece {
     let (beam, point_mass_kg) = match &link.body {
         LinkBody::Tube { material, section, .. } => {

@@ -7,8 +7,8 @@ use super::{Arm, Element, Joint, Link, LinkBody};
 use serde_json::{Map, Value, json};
 
 impl Arm {
-    /// The arm as its file: every part resolved to numbers, part names kept beside them. Reading it
-    /// back gives the same arm to the last digit.
+    /// The arm as its file has it. Every part is resolved to numbers; the names of parts stand next to them. Reading the
+    /// file gives the same arm to the last digit.
     pub fn to_json(&self) -> Value {
         json!({
             "name": self.name,
@@ -70,7 +70,7 @@ impl Joint {
 }
 
 impl Curve {
-    /// The key and the value by which files give the curve.
+    /// The key and the value that files have for the curve.
     pub fn to_json(&self) -> (&'static str, Value) {
         match self {
             Curve::Rigid => ("stiffness_nm_per_rad", Value::Null),

@@ -1,11 +1,10 @@
-//! Keys that a JSON object has twice: a parser keeps the last and says nothing, so they are looked for
-//! in the text.
+//! Duplicate keys in JSON. A parser keeps the last of them without a word, so they are looked for in the text.
 
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::collections::HashSet;
 use std::fmt;
 
-/// Paths of all keys that are there more than once, in the order of the text, which is known to parse.
+/// Paths of all keys that occur more than once in an object, in the order of the text. The text is known to parse.
 pub(crate) fn duplicate_keys(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let walk = Walk { path: String::new(), found: &mut found };
@@ -14,7 +13,7 @@ pub(crate) fn duplicate_keys(text: &str) -> Vec<String> {
     found
 }
 
-/// Walks one value, keeping its path.
+/// Visits one value and knows its path.
 struct Walk<'a> {
     path: String,
     found: &'a mut Vec<String>,

@@ -1,9 +1,8 @@
-//! What is wrong with an input file: every fault at once, with file, line, field, the value seen and
-//! what to try.
+//! JSON documents. A reader finds every fault of a file at once, with file, line, field, the value seen and what to try.
 //!
-//! A [`Document`] is the text of one JSON file. Readers walk it through [`Node`]s; a node never fails,
-//! it records a [`Fault`] and returns `None`, so that one pass over a file finds all of its faults.
-//! [`Document::finish`] turns them into an error.
+//! A [`Document`] is the text of one JSON file. Readers walk it through [`Node`]s. A node never fails: it records a
+//! [`Fault`] and returns `None`, so that one pass over a file finds all of its faults. [`Document::finish`] turns the
+//! faults into an error.
 
 pub use super::lines::LineCounter;
 
@@ -13,12 +12,12 @@ use std::cell::RefCell;
 use std::fmt;
 use std::path::Path;
 
-/// One thing wrong with an input file.
+/// One thing that is wrong with an input file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fault {
     /// File name as the user gave it.
     pub file: String,
-    /// Line in the file, from 1, where known.
+    /// Line in the file, from 1; `None` if unknown.
     pub line: Option<usize>,
     /// Path of the field (`chain[2].section.wall_m`) or column name.
     pub field: String,
@@ -45,7 +44,7 @@ impl fmt::Display for Fault {
     }
 }
 
-/// All faults of one or more input files; never empty.
+/// All faults of one or more input files, at least one.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}", list(.0))]
 pub struct Faults(pub Vec<Fault>);
@@ -70,15 +69,25 @@ pub enum InputError {
     Unreadable {
         /// File name as given.
         file: String,
-        /// The operating system's reason.
+        /// Reason that the operating system gave.
         source: std::io::Error,
     },
-    /// The file was read and is wrong.
+    /// The file was read and has faults.
     #[error(transparent)]
     Faulty(#[from] Faults),
 }
 
-/// The text of one JSON input file, its parsed value, and the faults found in it so far.
+/// The text of one JSON file, its parsed value, and the faults found in it so far.
+///
+/// ```
+/// use armwright::input::json::Document;
+///
+/// let document = Document::parse("x.json", "{\"mass_kg\": -5,\n \"lenght_m\": 1}").expect("JSON");
+/// let mass_kg = document.root().object(&["mass_kg", "length_m"]).and_then(|o| o.required("mass_kg")?.non_negative());
+/// let faults = document.finish(mass_kg).expect_err("two faults").0;
+/// assert_eq!(faults.len(), 2);
+/// assert!(faults[0].to_string().starts_with("x.json:2: lenght_m: unknown key; did you mean \"length_m\"?"));
+/// ```
 pub struct Document {
     file: String,
     text: String,
@@ -98,7 +107,7 @@ impl Document {
         Ok(Self::parse(&file, &text)?)
     }
 
-    /// Parses JSON text; `file` is the name used in messages.
+    /// Parses JSON text. `file` is the name that is used in messages.
     ///
     /// # Errors
     /// [`Faults`] with the line of the first syntax error.
@@ -126,7 +135,7 @@ impl Document {
         Node { document: self, value: &self.value, path: String::new() }
     }
 
-    /// The file name used in messages.
+    /// The file name that is used in messages.
     pub fn file(&self) -> &str {
         &self.file
     }
@@ -141,7 +150,7 @@ impl Document {
             hint: hint.to_string(),
         };
         let mut faults = self.faults.borrow_mut();
-        // two readers may look at one field
+        // two readers may read the same field and find the same fault
         if !faults.contains(&fault) {
             faults.push(fault);
         }
@@ -150,7 +159,7 @@ impl Document {
     /// The value if no fault was found.
     ///
     /// # Errors
-    /// All faults recorded so far. A reader that returns `None` has recorded why.
+    /// All faults recorded so far. A reader that returns `None` has recorded the reason.
     pub fn finish<T>(self, value: Option<T>) -> Result<T, Faults> {
         let faults = self.faults.into_inner();
         match value {
@@ -208,7 +217,7 @@ impl<'a> Node<'a> {
         None
     }
 
-    /// This node as an object whose keys are all among `known`; unknown keys are faults.
+    /// This node as an object. Keys that are not among `known` are faults.
     pub fn object(&self, known: &[&str]) -> Option<Object<'a>> {
         let Value::Object(map) = self.value else {
             return self.fault(format!("is {}, not an object", kind(self.value)), "write { ... }");
@@ -272,7 +281,7 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// This node as a number not less than zero.
+    /// This node as a number that is not negative.
     pub fn non_negative(&self) -> Option<f64> {
         match self.number()? {
             x if x >= 0.0 => Some(x),
@@ -314,12 +323,12 @@ impl<'a> Object<'a> {
         &self.node
     }
 
-    /// Whether the key is there (with any value, `null` included).
+    /// Whether the object has the key, with any value, `null` included.
     pub fn has(&self, key: &str) -> bool {
         self.map.contains_key(key)
     }
 
-    /// The node under `key` if it is there.
+    /// The node under `key`, if the object has it.
     pub fn optional(&self, key: &str) -> Option<Node<'a>> {
         self.map.get(key).map(|v| self.node.child(&join(&self.node.path, key), v))
     }
@@ -336,7 +345,8 @@ impl<'a> Object<'a> {
         })
     }
 
-    /// A value read with `read` if the key is there, else `default`; `None` only if it is there and faulty.
+    /// The value under `key`, read with `read`, or `default` if the object has no such key. `None` means that the value is
+    /// faulty.
     pub fn or<T>(&self, key: &str, default: T, read: impl FnOnce(&Node<'a>) -> Option<T>) -> Option<T> {
         match self.optional(key) {
             Some(node) => read(&node),
@@ -345,7 +355,7 @@ impl<'a> Object<'a> {
     }
 }
 
-/// What a JSON value is, in words, with the value where it is short.
+/// The kind of a JSON value in words, with the value itself if it is short.
 fn kind(value: &Value) -> String {
     match value {
         Value::Null => "null".into(),
@@ -357,7 +367,7 @@ fn kind(value: &Value) -> String {
     }
 }
 
-/// The known name nearest to `word` if it is near enough to be a slip of the hand.
+/// The known name that is nearest to `word`, if it is near enough for a typing error.
 pub fn closest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     known
         .iter()
@@ -367,7 +377,7 @@ pub fn closest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
         .map(|(_, k)| k)
 }
 
-/// Levenshtein distance, bytes.
+/// Levenshtein distance between the bytes of two words.
 fn edit_distance(a: &str, b: &str) -> usize {
     let b = b.as_bytes();
     let mut row: Vec<usize> = (0..=b.len()).collect();
@@ -383,7 +393,7 @@ fn edit_distance(a: &str, b: &str) -> usize {
     row[b.len()]
 }
 
-/// Line (from 1) of the value at `path` in JSON text that is known to parse.
+/// Line, from 1, of the value at `path` in a JSON text that is known to parse.
 fn line_of(text: &str, path: &str) -> Option<usize> {
     let offset = Locator { bytes: text.as_bytes(), at: 0 }.find(&segments(path))?;
     Some(1 + text.as_bytes()[..offset].iter().filter(|&&b| b == b'\n').count())
@@ -455,7 +465,7 @@ impl Locator<'_> {
         }
     }
 
-    /// Passes over one value.
+    /// Moves past one value.
     fn skip(&mut self) {
         let mut depth = 0usize;
         while let Some(&byte) = self.bytes.get(self.at) {

@@ -1,7 +1,7 @@
-//! On which line of a CSV file a record begins.
+//! Line numbers: on which line of a CSV file a record begins.
 
-/// Counts lines up to a record's first byte. (The reader's own line is that of the end of the record
-/// before, which differs after blank lines and with CRLF.)
+/// Counts the lines up to the first byte of a record. The CSV reader's own line number is that of the end of the record
+/// before, which is another one after blank lines and with CRLF.
 pub struct LineCounter<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -10,17 +10,17 @@ pub struct LineCounter<'a> {
 }
 
 impl<'a> LineCounter<'a> {
-    /// Of the text that the reader reads.
+    /// A counter for the text that the reader reads.
     pub fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, at: 0, line: 1, comment: None }
     }
 
-    /// Of a text in which lines that begin so are comments.
+    /// A counter for a text in which lines that begin with `comment` are comments.
     pub fn with_comments(bytes: &'a [u8], comment: u8) -> Self {
         Self { comment: Some(comment), ..Self::new(bytes) }
     }
 
-    /// The line, from 1, of a record at this position; records come in their order.
+    /// The line, from 1, of a record at this position. Records must come in the order of the text.
     pub fn of(&mut self, position: Option<&csv::Position>) -> usize {
         let begin = position.map_or(self.at, |p| p.byte() as usize).min(self.bytes.len());
         let end = self.skipped(begin).max(self.at);
@@ -29,7 +29,7 @@ impl<'a> LineCounter<'a> {
         self.line
     }
 
-    /// Where a record begins that is looked for from here on: after blank lines and comments.
+    /// The first place from here on that is not in a blank line or a comment.
     fn skipped(&self, from: usize) -> usize {
         let mut at = from;
         loop {
@@ -41,7 +41,7 @@ impl<'a> LineCounter<'a> {
         }
     }
 
-    /// The line come to.
+    /// The line of the last record.
     pub fn line(&self) -> usize {
         self.line
     }

@@ -1,4 +1,4 @@
-//! Files as they come in: JSON documents and tables, every fault kept with file, line, field and hint.
+//! Input: the reading of JSON documents and tables. Every fault is recorded with its file, line, field and a hint.
 
 pub(crate) mod csv;
 pub(crate) mod duplicates;

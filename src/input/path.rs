@@ -1,4 +1,4 @@
-//! Where a value stands in a JSON document, as words: `chain[2].section.wall_m`.
+//! Paths of values in a JSON document, such as `chain[2].section.wall_m`.
 
 /// The path of a key inside the object at `path`.
 pub(crate) fn join(path: &str, key: &str) -> String {

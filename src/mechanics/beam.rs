@@ -1,10 +1,9 @@
-//! A link as strain coordinates.
+//! Beams: a link as strain coordinates.
 //!
-//! Along the link, `ξ = x/L` in 0..1, each strain is a sum of Legendre polynomials `P_i(2ξ-1)`:
-//! curvature in both planes, shear in both planes, twist rate and axial strain. Slopes and
-//! displacements are their integrals from the clamped root. Because Legendre polynomials are
-//! orthogonal the stiffness matrix is diagonal, and because of the integrals only the lowest
-//! polynomials move the link's end: curvature `P_0, P_1`, all others `P_0`; the rest are inner shapes.
+//! Let `ξ = x/L` run from 0 to 1 along the link. Each strain is a sum of Legendre polynomials `P_i(2ξ-1)`: curvature in both
+//! planes, shear in both planes, twist rate and axial strain. Slopes and displacements are their integrals from the clamped
+//! root. Legendre polynomials are orthogonal, so the stiffness matrix is diagonal. Only the lowest polynomials move the
+//! end of the link: `P_0` and `P_1` of curvature, and `P_0` of the others. The rest are inner shapes.
 //!
 //! | strain | coordinates | compliance of the i-th | what it moves |
 //! |---|---|---|---|
@@ -13,20 +12,19 @@
 //! | twist | 3 | `(2i+1)/(G J L)` | rotation `L ∫P_i` |
 //! | stretch | 3 | `(2i+1)/(E A L)` | displacement `L ∫P_i` |
 //!
-//! The space holds the exact deflection under end force, end moment and uniform load (Eqs 1-4 and
-//! their Timoshenko counterparts), so statics are exact; it converges on frequencies from above. The
-//! inertia does not depend on the stiffness, so frequencies rise with every stiffness and fall with
-//! every mass, which the exact search relies on.
+//! These shapes contain the exact deflection under an end force, an end moment and a uniform load (Eqs 1-4 and their
+//! Timoshenko counterparts), so statics are exact. Frequencies converge from above. The inertia does not depend on the
+//! stiffness, so frequencies rise with every stiffness and fall with every mass. The exact search relies on this.
 
 use crate::arm::LinkModel;
 use crate::arm::structure::{Beam, LinkPiece, Structure};
 use nalgebra::{DMatrix, Matrix3, Matrix6xX, SMatrix, Vector3};
 
-/// Polynomials of curvature in each plane.
+/// Number of polynomials of curvature in each plane.
 pub const CURVATURES: usize = 4;
-/// Polynomials of shear (each plane), twist and stretch.
+/// Number of polynomials of shear in each plane, of twist and of stretch.
 pub const OTHERS: usize = 3;
-/// Gauss-Legendre points: exact to degree 15, the integrands here end at degree 10.
+/// Gauss-Legendre points and weights. They are exact to degree 15; the integrands here have degree 10 at most.
 const GAUSS: [(f64, f64); 8] = [
     (0.019_855_071_751_231_9, 0.050_614_268_145_188_1),
     (0.101_666_761_293_186_6, 0.111_190_517_226_687_2),
@@ -38,12 +36,12 @@ const GAUSS: [(f64, f64); 8] = [
     (0.980_144_928_248_768_1, 0.050_614_268_145_188_1),
 ];
 
-/// What one coordinate strains.
+/// The kind of strain of one coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Strain {
-    /// Curvature that moves the link along its section's z.
+    /// Curvature that moves the link along the z axis of its section.
     CurvatureZ,
-    /// Curvature that moves the link along its section's y.
+    /// Curvature that moves the link along the y axis of its section.
     CurvatureY,
     /// Shear along z.
     ShearZ,
@@ -60,18 +58,18 @@ pub enum Strain {
 pub struct LineInertia {
     /// Mass per length that moves along the link \[kg/m\].
     pub along_kg_per_m: f64,
-    /// Mass per length that moves across the link, added water included \[kg/m\].
+    /// Mass per length that moves across the link, with the added mass of water \[kg/m\].
     pub across_kg_per_m: f64,
     /// Rotary inertia per length about the link \[kg m\].
     pub polar_kg_m: f64,
-    /// Rotary inertia per length about the section's y \[kg m\].
+    /// Rotary inertia per length about the y axis of the section \[kg m\].
     pub rotary_y_kg_m: f64,
-    /// Rotary inertia per length about the section's z \[kg m\].
+    /// Rotary inertia per length about the z axis of the section \[kg m\].
     pub rotary_z_kg_m: f64,
 }
 
 impl LineInertia {
-    /// Inertia per length of each displacement and rotation component, section frame.
+    /// Inertia per length of each component of displacement and rotation, in the section frame.
     fn densities(&self) -> [f64; 6] {
         [
             self.along_kg_per_m,
@@ -84,29 +82,29 @@ impl LineInertia {
     }
 }
 
-/// A link prepared for any pose: all that does not depend on where it is.
+/// A link prepared for any pose: everything that does not depend on its place.
 #[derive(Debug, Clone)]
 pub struct PreparedBeam {
     /// Length \[m\].
     pub length_m: f64,
-    /// Section frame (columns x, y, z) in the carried frame.
+    /// Section frame (columns x, y, z) in the frame that the joints before the link carry.
     pub frame: Matrix3<f64>,
     /// Compliance of each coordinate.
     pub compliances: Vec<f64>,
-    /// Displacement (rows 0-2) and rotation (rows 3-5) of the end per coordinate, section frame.
+    /// Displacement (rows 0-2) and rotation (rows 3-5) of the end per coordinate, in the section frame.
     pub end_fields: Matrix6xX<f64>,
-    /// Integral of the displacement over the length per coordinate, section frame \[m² per unit\].
+    /// Integral of the displacement over the length per coordinate, in the section frame \[m² per unit\].
     pub area_fields: Matrix6xX<f64>,
-    /// Inertia over (root translation, root rotation, coordinates), section frame.
+    /// Inertia over root translation, root rotation and coordinates, in the section frame.
     pub inertia: DMatrix<f64>,
-    /// Net weight per length \[N/m\], buoyancy taken off.
+    /// Weight minus buoyancy per length \[N/m\].
     pub weight_n_per_m: f64,
     coordinates: Vec<(Strain, usize)>,
     line: LineInertia,
 }
 
 impl PreparedBeam {
-    /// Prepares a link, or `None` for a massless rigid offset or one without length.
+    /// Prepares a link. Returns `None` for a rigid offset without mass along it, or without length.
     pub fn new(link: &LinkPiece, structure: &Structure, model: LinkModel) -> Option<Self> {
         let length_m = link.vector_m.norm();
         if length_m == 0.0 || (link.beam.is_none() && link.harness_kg_per_m == 0.0) {
@@ -130,13 +128,13 @@ impl PreparedBeam {
         Some(beam)
     }
 
-    /// Displacement (rows 0-2) and rotation (rows 3-5) at `xi` per unit of root translation (columns
-    /// 0-2), root rotation (3-5) and each coordinate (6 and on), section frame.
+    /// Displacement (rows 0-2) and rotation (rows 3-5) at the place `xi` (0 to 1), per unit of root translation (columns
+    /// 0-2), root rotation (columns 3-5) and each coordinate (columns from 6), in the section frame.
     pub fn fields(&self, xi: f64) -> Matrix6xX<f64> {
         let mut out = Matrix6xX::zeros(6 + self.coordinates.len());
         out.fill_with_identity();
         let x = xi * self.length_m;
-        // rotation about y lowers the link, about z moves it along y
+        // a rotation of the root about y lowers the link; one about z moves it along y
         out[(2, 4)] = -x;
         out[(1, 5)] = x;
         for (column, &(strain, degree)) in self.coordinates.iter().enumerate() {
@@ -154,16 +152,17 @@ impl PreparedBeam {
         out
     }
 
-    /// Inertia per length of each displacement and rotation component.
+    /// Inertia per length of each component of displacement and rotation, in the section frame.
     pub fn line_densities(&self) -> [f64; 6] {
         self.line.densities()
     }
 
-    /// Gauss points with weights times length.
+    /// Gauss points (0 to 1), each with its weight times the length.
     pub fn quadrature(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         GAUSS.iter().map(|&(xi, weight)| (xi, weight * self.length_m))
     }
 
+    /// Integrates inertia and displacement over the length.
     fn integrate(&mut self) {
         let n = 6 + self.coordinates.len();
         let densities = self.line_densities();
@@ -181,8 +180,8 @@ impl PreparedBeam {
     }
 }
 
-/// Slope `L ∫P_i` and deflection `L² ∬P_i` at `xi`, both zero at the root, from
-/// `(2i+1) ∫P_i = P_(i+1) - P_(i-1)` over `s = 2ξ-1` (dξ = ds/2).
+/// Slope `L ∫P_i` and deflection `L² ∬P_i` at `xi`. Both are zero at the root. They follow from
+/// `(2i+1) ∫P_i = P_(i+1) - P_(i-1)` over `s = 2ξ-1`, with dξ = ds/2.
 fn shape(degree: usize, xi: f64, length_m: f64) -> (f64, f64) {
     let s = 2.0 * xi - 1.0;
     let integral = |i: usize| match i {
@@ -207,9 +206,11 @@ fn legendre(degree: usize, s: f64) -> f64 {
     here
 }
 
-/// The section frame of a link along `vector_m`, in the carried frame.
+/// The section frame (columns x, y, z) of a link along `vector_m`, in the frame of this vector. x is along the link, and z
+/// is as near to the z axis of that frame as it can be.
 pub fn section_frame(vector_m: &Vector3<f64>) -> Matrix3<f64> {
     let x = vector_m.normalize();
+    // a link (nearly) along z leaves no direction for "up"; x takes its place
     let up = if x.z.abs() > 0.99 { Vector3::x() } else { Vector3::z() };
     let z = (up - x * x.dot(&up)).normalize();
     Matrix3::from_columns(&[x, z.cross(&x), z])
@@ -222,19 +223,19 @@ pub fn compliances(link: &LinkPiece, model: LinkModel) -> Vec<f64> {
     coordinates.into_iter().map(|(_, _, compliance)| compliance).collect()
 }
 
-/// What each strain coordinate of a link strains, and the degree of its polynomial, in the same order.
+/// Strain and degree of the polynomial of each coordinate, in the order of [`PreparedBeam::compliances`].
 pub fn strains(link: &LinkPiece, model: LinkModel) -> Vec<(Strain, usize)> {
     let coordinates = link.beam.map_or_else(Vec::new, |beam| coordinates(&beam, 1.0, model));
     coordinates.into_iter().map(|(strain, degree, _)| (strain, degree)).collect()
 }
 
-/// Inertia per length of each displacement and rotation component of a link, as
+/// Inertia per length of each component of displacement and rotation of a link, as in
 /// [`PreparedBeam::line_densities`].
 pub fn line_densities(link: &LinkPiece, structure: &Structure, model: LinkModel) -> [f64; 6] {
     line_inertia(link, structure, model).densities()
 }
 
-/// Stiffnesses of a tube: `E I` about y and about z \[N m²\], `κ G A` \[N\], `G J` \[N m²\], `E A` \[N\].
+/// Stiffnesses of a tube: `E I` about y and about z \[N m²\], `κ G A` \[N\], `G J` \[N m²\] and `E A` \[N\].
 pub fn line_stiffnesses(beam: &Beam) -> [f64; 5] {
     let material = &beam.material;
     let section = beam.section.properties(material.poisson);
@@ -248,7 +249,7 @@ pub fn line_stiffnesses(beam: &Beam) -> [f64; 5] {
     ]
 }
 
-/// The strain coordinates of a tube with their compliances.
+/// The strain coordinates of a tube: strain, degree of the polynomial, and compliance.
 fn coordinates(beam: &Beam, length_m: f64, model: LinkModel) -> Vec<(Strain, usize, f64)> {
     let [bending_y, bending_z, shear, torsion, stretch] = line_stiffnesses(beam);
     let bending = [(Strain::CurvatureZ, CURVATURES, bending_y), (Strain::CurvatureY, CURVATURES, bending_z)];
@@ -272,6 +273,7 @@ fn coordinates(beam: &Beam, length_m: f64, model: LinkModel) -> Vec<(Strain, usi
         .collect()
 }
 
+/// Mass and rotary inertia per length of a link, with its harness and the added mass of water.
 fn line_inertia(link: &LinkPiece, structure: &Structure, model: LinkModel) -> LineInertia {
     let Some(beam) = link.beam else {
         return LineInertia {
@@ -288,12 +290,12 @@ fn line_inertia(link: &LinkPiece, structure: &Structure, model: LinkModel) -> Li
     LineInertia { along_kg_per_m: along, across_kg_per_m: along + added, ..tube }
 }
 
-/// Mass and rotary inertia per length of a bare tube in air.
+/// Mass and rotary inertia per length of a tube in air, without a harness.
 pub fn tube_inertia(beam: &Beam, model: LinkModel) -> LineInertia {
     let section = beam.section.properties(beam.material.poisson);
     let density = beam.material.density_kg_m3;
     let mass = density * section.area_m2;
-    // Euler-Bernoulli has no rotary inertia across the beam; its spin about itself remains
+    // Euler-Bernoulli theory has no rotary inertia across the beam; that about its own axis remains
     let across = if model == LinkModel::Bending { 0.0 } else { density };
     LineInertia {
         along_kg_per_m: mass,
@@ -304,6 +306,7 @@ pub fn tube_inertia(beam: &Beam, model: LinkModel) -> LineInertia {
     }
 }
 
+/// Weight of tube and harness minus the buoyancy of the sealed tube, per length.
 fn weight_n_per_m(link: &LinkPiece, structure: &Structure) -> f64 {
     let water = structure.water.map_or(0.0, |w| w.density_kg_m3);
     let displaced =

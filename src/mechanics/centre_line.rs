@@ -1,8 +1,8 @@
-//! Where the arm's centre line is and how it moves, for drawings.
+//! The centre line of an arm and its motion, for drawings.
 //!
-//! Strain coordinates ([`Statics::deformations`](crate::mechanics::statics::Statics), [`Mode::coordinates`](crate::mechanics::modes::Mode)) move
-//! every point of the chain: each element's twists carry what is outboard of it, and inside a link the
-//! beam's own fields bend it. The walk is the one of [`crate::mechanics::chain::Chain::pose_rad`], element by element.
+//! Strain coordinates ([`Statics::deformations`](super::statics::Statics), [`Mode::coordinates`](super::modes::Mode)) move
+//! every point of the chain. The twists of an element move everything outboard of it; inside a link the fields of its
+//! beam bend it. The walk meets the elements in the same order as [`Chain::pose_rad`](super::chain::Chain::pose_rad).
 
 use super::chain::{ElasticElement, Posed, Prepared};
 use super::{Twist, displacement_at};
@@ -11,22 +11,22 @@ use nalgebra::{DVector, Rotation3, Vector3};
 /// A point of the centre line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Station {
-    /// Joint or link it belongs to.
+    /// Name of the joint or link to which the point belongs.
     pub piece: String,
-    /// Where it is, world \[m\].
+    /// Place of the point in the world \[m\].
     pub at_m: Vector3<f64>,
-    /// By how much it moves, world \[m\].
+    /// Displacement of the point in world axes \[m\].
     pub moved_m: Vector3<f64>,
-    /// Axis of the joint, world; `None` on a link.
+    /// Axis of the joint in the world; `None` on a link.
     pub axis: Option<Vector3<f64>>,
 }
 
-/// Points along a link, its ends included.
+/// Number of points along a link, its ends included.
 const POINTS: usize = 9;
 
 impl Posed<'_> {
-    /// The centre line in a pose and its motion under the coordinates of every element: one station a
-    /// joint, several along a link, base to tip. `pose_rad` is the pose that `self` is in.
+    /// The points of the centre line with their motion under the coordinates of every element, base to tip. A joint has
+    /// one point, a link has several. `pose_rad` is the pose in which the arm is.
     pub fn centre_line(&self, pose_rad: &[f64], coordinates: &[Vec<f64>]) -> Vec<Station> {
         let mut elements = self.elements().zip(coordinates).peekable();
         let mut walk = Walk::default();
@@ -71,7 +71,8 @@ impl Posed<'_> {
         out
     }
 
-    /// Displacement of a link's point by the link's own coordinates, world \[m\].
+    /// Displacement of a point of a link by the coordinates of this link, in world axes \[m\]. `xi` is the place of the
+    /// point along the link, from 0 to 1.
     fn inside(
         &self,
         element: &ElasticElement,
@@ -86,7 +87,7 @@ impl Posed<'_> {
     }
 }
 
-/// The way from base to tip.
+/// The walk from base to tip: place, attitude, and the motion by all elements so far.
 #[derive(Default)]
 struct Walk {
     at_m: Vector3<f64>,
@@ -99,7 +100,7 @@ impl Walk {
         Station { piece: piece.to_string(), at_m, moved_m: displacement_at(&self.motion, &at_m), axis }
     }
 
-    /// An element yields: everything outboard moves by its twists.
+    /// Adds the motion of an element that yields, if there is one.
     fn yields(&mut self, element: Option<(&ElasticElement, &Vec<f64>)>) {
         if let Some((element, q)) = element {
             self.motion += element.twists.iter().zip(q).map(|(twist, q)| twist * *q).sum::<Twist>();

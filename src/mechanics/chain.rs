@@ -1,4 +1,6 @@
-//! The arm put into a pose: elements with their twists, bodies with their inertia, from base to tip.
+//! Chains: an arm prepared for many poses, and put into one.
+//!
+//! A posed arm is a list of elastic elements with their twists and of bodies with their inertia, from base to tip.
 
 use super::beam::PreparedBeam;
 use super::{Twist, Wrench, body_inertia, force_wrench, rotation_twist, stack};
@@ -11,6 +13,33 @@ use crate::arm::structure::{FrameCompliance, JointPiece, LinkPiece, Piece, Struc
 use nalgebra::{DMatrix, Matrix3, Matrix6, Matrix6xX, Rotation3, Vector3};
 
 /// An arm prepared for many poses and loads.
+///
+/// Everything that does not depend on the pose is worked out in [`Chain::new`]. [`Chain::pose`] puts the arm into the pose
+/// and load of a case; [`Posed::statics`] and [`Posed::modes`] then compute how it behaves.
+///
+/// ```
+/// use armwright::arm::{JointModel, LinkModel, Payload, read_arm_document};
+/// use armwright::catalog::Catalogs;
+/// use armwright::input::json::Document;
+/// use armwright::mechanics::Chain;
+/// use nalgebra::Vector3;
+///
+/// let text = r#"{"name": "one joint", "gravity_m_s2": 9.81, "chain": [
+///     {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e5},
+///     {"type": "link", "name": "arm", "vector_m": [1, 0, 0]}]}"#;
+/// let document = Document::parse("arm.json", text).expect("JSON");
+/// let arm = read_arm_document(document, &Catalogs::default()).expect("a sound arm");
+/// let chain = Chain::new(&arm.structure(JointModel::ThreeSegment), LinkModel::Full);
+///
+/// // 10 kg at the end of a lever of 1 m, on a spring of 1e5 N m/rad
+/// let payload = Payload { mass_kg: 10.0, ..Payload::default() };
+/// let posed = chain.pose_rad(&[0.0], &payload, Vector3::zeros());
+/// let statics = posed.statics();
+/// assert!((statics.joint_torques_nm[0].1 - 98.1).abs() < 1e-9);
+/// assert!((statics.tip_displacement_m.z + 98.1 / 1e5).abs() < 1e-12);
+/// let lowest = &posed.modes(&statics, 1)[0];
+/// assert!((lowest.frequency_hz - (1e5_f64 / 10.0).sqrt() / std::f64::consts::TAU).abs() < 1e-9);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Chain {
     gravity_m_s2: f64,
@@ -21,50 +50,51 @@ pub struct Chain {
     linkages: Vec<Linkage>,
 }
 
+/// A piece of the chain with everything that does not depend on the pose.
 #[derive(Debug, Clone)]
 pub(super) enum Prepared {
     Joint(JointPiece),
     Link(LinkPiece, Option<PreparedBeam>),
 }
 
-/// How an element yields to the generalized force on its coordinates.
+/// How an element yields to the generalized forces on its coordinates.
 #[derive(Debug, Clone)]
 pub enum Yielding {
-    /// Compliance of each coordinate.
+    /// In proportion to the force, with one compliance for each coordinate.
     Linear(Vec<f64>),
-    /// One coordinate: a joint about its axis.
+    /// By the law of a joint, which has one coordinate.
     Joint(JointLaw),
 }
 
 /// One elastic element of an arm in a pose.
 #[derive(Debug, Clone)]
 pub struct ElasticElement {
-    /// Name: of a joint or link, `NAME.bearing_tilt`, `NAME.frame_compliance`, or `base`.
+    /// Name: that of the joint or link, `NAME.bearing_tilt`, `NAME.frame_compliance`, or `base`.
     pub name: String,
     /// Motion of everything outboard per unit of each coordinate.
     pub twists: Vec<Twist>,
-    /// Force to deformation.
+    /// How the coordinates follow from the forces on them.
     pub yielding: Yielding,
-    /// The link's own distributed mass, if the element is a link.
+    /// The distributed mass of the element, if it is a link.
     pub own: Option<OwnMass>,
 }
 
-/// A link's distributed mass in a pose.
+/// The distributed mass of a link in a pose.
 #[derive(Debug, Clone)]
 pub struct OwnMass {
-    /// Index of the link among the chain's pieces.
+    /// Number of the link among the pieces of the chain.
     pub piece: usize,
-    /// Root of the link, world \[m\].
+    /// Root of the link in the world \[m\].
     pub root_m: Vector3<f64>,
-    /// Section frame, world.
+    /// Section frame in the world.
     pub frame: Matrix3<f64>,
-    /// Rigid inertia about the world origin.
+    /// Inertia of the undeformed link about the world's origin.
     pub rigid: Matrix6<f64>,
-    /// Momentum about the world origin per unit rate of each coordinate.
+    /// Momentum about the world's origin per unit rate of each coordinate.
     pub coupling: Matrix6xX<f64>,
-    /// Generalized inertia among the coordinates.
+    /// Generalized inertia between the coordinates.
     pub inner: DMatrix<f64>,
-    /// Weight as a wrench about the world origin.
+    /// Weight as a wrench about the world's origin.
     pub weight: Wrench,
     /// Work of the weight per unit of each coordinate.
     pub weight_work: Vec<f64>,
@@ -75,40 +105,41 @@ pub struct OwnMass {
 pub struct Body {
     /// Mass \[kg\].
     pub mass_kg: f64,
-    /// Centre of gravity, world \[m\].
+    /// Centre of gravity in the world \[m\].
     pub cg_m: Vector3<f64>,
-    /// Inertia about the centre of gravity, world axes \[kg m²\].
+    /// Inertia about the centre of gravity in world axes \[kg m²\].
     pub inertia_kgm2: Matrix3<f64>,
-    /// Weight less buoyancy \[N\].
+    /// Weight minus buoyancy \[N\].
     pub weight_n: f64,
 }
 
-/// What stands in the chain, base to tip. A body is moved by every element before it.
+/// An item of a posed arm. A body is moved by every element that comes before it.
 #[derive(Debug, Clone)]
 pub enum Item {
-    /// Something that yields.
+    /// An elastic element.
     Elastic(ElasticElement),
-    /// Something that weighs.
+    /// A rigid body.
     Body(Body),
 }
 
 /// An arm in a pose under a load.
 #[derive(Debug, Clone)]
 pub struct Posed<'a> {
-    /// The arm it was made from.
+    /// The arm that was put into the pose.
     pub chain: &'a Chain,
     /// Elements and bodies, base to tip.
     pub items: Vec<Item>,
-    /// Where the tip is, world \[m\].
+    /// Place of the tip in the world \[m\].
     pub tip_m: Vector3<f64>,
-    /// The last frame, world.
+    /// Attitude of the last frame in the world.
     pub tip_rotation: Rotation3<f64>,
-    /// Force at the tip, world \[N\].
+    /// Force at the tip in world axes \[N\].
     pub tip_force_n: Vector3<f64>,
 }
 
 impl Chain {
-    /// Prepares the arm's pieces with a link model.
+    /// Prepares the pieces of an arm, with a link model. [`Arm::structure`](crate::arm::Arm::structure) gives the
+    /// structure.
     pub fn new(structure: &Structure, links: LinkModel) -> Self {
         let pieces = structure
             .pieces
@@ -128,13 +159,13 @@ impl Chain {
         }
     }
 
-    /// Puts the arm into the pose and load of a case. The pose has one angle per driven joint.
+    /// Puts the arm into the pose and load of a case. The pose has one angle \[deg\] for each driven joint, base to tip.
     pub fn pose(&self, case: &LoadCase) -> Posed<'_> {
         let pose_rad: Vec<f64> = case.pose_deg.iter().map(|a| a.to_radians()).collect();
         self.pose_rad(&pose_rad, &case.payload, case.tip_force_n)
     }
 
-    /// Puts the arm into a pose given in radians.
+    /// Puts the arm into a pose given in radians, with a payload and a force at the tip \[N\].
     pub fn pose_rad(&self, pose_rad: &[f64], payload: &Payload, tip_force_n: Vector3<f64>) -> Posed<'_> {
         let mut walk = Walk { items: Vec::new(), at_m: Vector3::zeros(), rotation: Rotation3::identity() };
         if self.base_tilt_rad_per_nm > 0.0 {
@@ -151,12 +182,12 @@ impl Chain {
         Posed { chain: self, items: walk.items, tip_m: walk.at_m, tip_rotation: walk.rotation, tip_force_n }
     }
 
-    /// What turns the passive joints.
+    /// The linkages, which turn the passive joints.
     pub fn linkages(&self) -> &[Linkage] {
         &self.linkages
     }
 
-    /// The prepared beam of a piece, for interior fields.
+    /// The prepared beam of a piece, for the fields inside a link; `None` if the piece has none.
     pub(crate) fn beam(&self, piece: usize) -> Option<&PreparedBeam> {
         match &self.pieces[piece] {
             Prepared::Link(_, beam) => beam.as_ref(),
@@ -164,6 +195,7 @@ impl Chain {
         }
     }
 
+    /// The payload as a body at the tip. Water takes buoyancy from its weight.
     fn payload_body(&self, payload: &Payload, walk: &Walk) -> Body {
         let rotation = walk.rotation.matrix();
         let buoyancy = self.water.map_or(0.0, |w| w.density_kg_m3 / w.payload_density_kg_m3);
@@ -178,7 +210,7 @@ impl Chain {
     }
 }
 
-/// The walk from base to tip.
+/// The walk from base to tip, which collects the items on its way.
 struct Walk {
     items: Vec<Item>,
     at_m: Vector3<f64>,
@@ -186,6 +218,7 @@ struct Walk {
 }
 
 impl Walk {
+    /// Adds a joint. Its mass is inboard of its springs; the springs of its bearing come before its torsion.
     fn joint(&mut self, joint: &JointPiece, angle_rad: f64, gravity_m_s2: f64) {
         self.point_mass(joint.mass_kg, self.at_m, gravity_m_s2);
         let axis = self.rotation * joint.axis;
@@ -202,6 +235,7 @@ impl Walk {
         self.rotation *= Rotation3::from_axis_angle(&joint.axis, angle_rad);
     }
 
+    /// Adds a link, with the frame at its root.
     fn link(&mut self, piece: usize, link: &LinkPiece, beam: Option<&PreparedBeam>, gravity_m_s2: f64) {
         self.frame(&link.name, &link.root_frame);
         let vector = self.rotation * link.vector_m;
@@ -213,6 +247,7 @@ impl Walk {
         self.at_m = end_m;
     }
 
+    /// The elastic element of a link that ends at `end_m`.
     fn beam_element(
         &self,
         piece: usize,
@@ -237,6 +272,7 @@ impl Walk {
         }
     }
 
+    /// Adds two equal rotational springs about axes through the present place.
     fn tilt(&mut self, name: String, axes: &[Vector3<f64>; 2], compliance: f64) {
         self.items.push(Item::Elastic(ElasticElement {
             name,
@@ -246,6 +282,7 @@ impl Walk {
         }));
     }
 
+    /// Adds the springs of a frame that yields, if it does.
     fn frame(&mut self, name: &str, frame: &FrameCompliance) {
         let (axes, compliances): (Vec<_>, Vec<_>) = frame.springs().into_iter().unzip();
         if axes.is_empty() {
@@ -260,6 +297,7 @@ impl Walk {
         }));
     }
 
+    /// Adds a point mass, if it is not zero.
     fn point_mass(&mut self, mass_kg: f64, cg_m: Vector3<f64>, gravity_m_s2: f64) {
         if mass_kg != 0.0 {
             self.items.push(Item::Body(Body {
@@ -272,16 +310,17 @@ impl Walk {
     }
 }
 
-/// Two unit axes across `axis` and each other.
+/// Two unit vectors at right angles to `axis` and to each other.
 pub(crate) fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
+    // the world axis that `axis` is least parallel to gives the best conditioned cross product
     let least = axis.iamin();
     let first = axis.cross(&Vector3::ith(least, 1.0)).normalize();
     [first, axis.cross(&first)]
 }
 
-/// Carries a link's inertia and weight from its section frame to the world.
+/// Transforms the inertia and weight of a link from its section frame to the world.
 fn own_mass(piece: usize, beam: &PreparedBeam, frame: &Matrix3<f64>, root_m: &Vector3<f64>) -> OwnMass {
-    // twist about the world origin -> translation and rotation of the root in the section frame
+    // from a twist about the world's origin to translation and rotation of the root in the section frame
     let to_local = {
         let mut x = Matrix6::zeros();
         let turn = frame.transpose();
@@ -310,12 +349,12 @@ fn own_mass(piece: usize, beam: &PreparedBeam, frame: &Matrix3<f64>, root_m: &Ve
 }
 
 impl Body {
-    /// Inertia about the world origin.
+    /// Inertia about the world's origin.
     pub fn inertia(&self) -> Matrix6<f64> {
         body_inertia(self.mass_kg, &self.cg_m, &self.inertia_kgm2)
     }
 
-    /// Weight as a wrench about the world origin.
+    /// Weight as a wrench about the world's origin.
     pub fn weight(&self) -> Wrench {
         force_wrench(&Vector3::new(0.0, 0.0, -self.weight_n), &self.cg_m)
     }

@@ -1,40 +1,42 @@
-//! A link reduced to its end, exactly, for slow vibration.
+//! Condensed links: a link reduced to the motion of its end.
 //!
-//! Of the strain coordinates `q` of a link only six combinations `g` move its end; the others only
-//! shake inside it, at frequencies far above the arm's lowest. With `F = E C Eᵀ = L Lᵀ` the end's
-//! compliance (`E`: end motion per coordinate, `C`: diagonal compliance), choose `g` so that the end
-//! moves by `L g` and its stiffness is the unit matrix. What is left, `G = C - C Eᵀ F⁻¹ E C`, is the
-//! compliance of the inner shapes with the end held. Eliminating them from `K - λM` gives
+//! Only six combinations `g` of the strain coordinates `q` of a link move its end. The other shapes vibrate inside the
+//! link, at frequencies far above the lowest of the arm. Let `E` be the motion of the end per coordinate and `C` the
+//! diagonal compliance. The compliance of the end is then `F = E C Eᵀ = L Lᵀ`. The coordinates `g` are chosen such that the
+//! end moves by `L g`; their stiffness is the unit matrix. The rest, `G = C - C Eᵀ F⁻¹ E C`, is the compliance of the
+//! inner shapes while the end is held. Eliminating these shapes from `K - λM` gives
 //!
 //! ```text
 //! M_eff(λ) = M₀ + λ M₁ + λ² M₂ + O(λ³),  M₁ = M_qᵀ G M_q,  M₂ = M_qᵀ G M_qq G M_q
 //! ```
 //!
-//! over root motion and `g`. The neglected term is of the order `(λ/λ_inner)³`: at most 1e-6 of the link's
-//! inertia if its inner modes are ten times as fast as the arm's lowest, 1e-12 at a hundred times. The search uses
-//! this form; every number it reports comes from the full model.
+//! over the motion of the root and `g`.
+//!
+//! *Validity.* The neglected term is of the order `(λ/λ_inner)³`. It is at most 1e-6 of the link's inertia if `λ_inner` is a
+//! hundred times `λ`, that is, if the inner modes have ten times the frequency of the arm's lowest mode. The search uses
+//! this form; every number that it reports is computed by the full model.
 
 use super::beam::PreparedBeam;
 use nalgebra::{DMatrix, Matrix3, Matrix6, SMatrix, Vector3, Vector6};
 
-/// Effective inertia over root motion (0-5) and end coordinates `g` (6-11), order by order in λ.
+/// Inertia over the motion of the root (rows 0-5) and the end coordinates `g` (rows 6-11).
 pub type Inertia12 = SMatrix<f64, 12, 12>;
 
-/// A link reduced to its end, in its section frame.
+/// A condensed link, in its section frame.
 #[derive(Debug, Clone)]
 pub struct CondensedLink {
-    /// `M₀, M₁, M₂`.
+    /// Effective inertia, order by order in λ: `M₀, M₁, M₂`.
     pub inertia: [Inertia12; 3],
     /// Motion of the end (displacement, rotation) per end coordinate: `L`.
     pub end: Matrix6<f64>,
-    /// End coordinates under the link's own weight, per unit of weight along each section axis \[1/N·m⁻¹\].
+    /// End coordinates per uniform load along each axis of the section \[1/(N/m)\].
     pub end_per_line_load: SMatrix<f64, 6, 3>,
-    /// Sum of `1/λ` over the inner modes with root and end held, an upper bound of each.
+    /// Sum of `1/λ` over the inner modes with root and end held \[s²\]. It is an upper bound of each `1/λ`.
     pub inner_trace_s2: f64,
 }
 
 impl CondensedLink {
-    /// Reduces a prepared link.
+    /// Condenses a prepared link.
     pub fn new(beam: &PreparedBeam) -> Self {
         let n = beam.compliances.len();
         let compliance = DMatrix::from_diagonal(&nalgebra::DVector::from_column_slice(&beam.compliances));
@@ -64,7 +66,8 @@ impl CondensedLink {
         }
     }
 
-    /// The reduced link placed in the world: root at `root_m`, section frame `frame`.
+    /// The condensed link in a pose. `root_m` and `end_m` are the places of its root and end, `frame` is its section frame,
+    /// all in the world.
     pub fn place(&self, root_m: &Vector3<f64>, end_m: &Vector3<f64>, frame: &Matrix3<f64>) -> PlacedLink {
         let to_root = world_to_local(root_m, frame);
         let mut to_local = Inertia12::identity();
@@ -86,20 +89,20 @@ impl CondensedLink {
     }
 }
 
-/// A reduced link in a pose; motions are twists about the world origin.
+/// A condensed link in a pose. Motions are twists about the world's origin.
 #[derive(Debug, Clone)]
 pub struct PlacedLink {
     /// `M₀, M₁, M₂` over root twist and end coordinates.
     pub inertia: [Inertia12; 3],
     /// Twist of everything outboard per end coordinate.
     pub end: Matrix6<f64>,
-    /// End coordinates per unit of net weight per length \[1/(N/m)\].
+    /// End coordinates per net weight per length \[1/(N/m)\].
     pub end_per_weight: Vector6<f64>,
-    /// Sum of `1/λ` over the inner modes.
+    /// Sum of `1/λ` over the inner modes \[s²\].
     pub inner_trace_s2: f64,
 }
 
-/// From a twist about the world origin to translation and rotation of a point in a local frame.
+/// The matrix that turns a twist about the world's origin into translation and rotation of a point, in a local frame.
 pub fn world_to_local(point_m: &Vector3<f64>, frame: &Matrix3<f64>) -> Matrix6<f64> {
     let turn = frame.transpose();
     let mut out = Matrix6::zeros();
@@ -109,8 +112,8 @@ pub fn world_to_local(point_m: &Vector3<f64>, frame: &Matrix3<f64>) -> Matrix6<f
     out
 }
 
-/// Lower-triangular `L` with `L Lᵀ = a`; columns of directions without compliance are zero. Keeps the
-/// zero pattern of a block-diagonal matrix, so that planes which do not couple stay apart.
+/// Lower triangular `L` with `L Lᵀ = a`. Columns of directions without compliance are zero. The zeros of a block-diagonal
+/// matrix stay zeros, so planes that do not couple stay uncoupled.
 fn semidefinite_cholesky(a: &Matrix6<f64>) -> Matrix6<f64> {
     let mut lower = Matrix6::zeros();
     for j in 0..6 {
@@ -128,7 +131,7 @@ fn semidefinite_cholesky(a: &Matrix6<f64>) -> Matrix6<f64> {
     lower
 }
 
-/// `L⁻ᵀ`, with zero for the directions without compliance.
+/// `L⁻ᵀ`, with zeros for directions without compliance.
 fn inverse_transpose(lower: &Matrix6<f64>) -> DMatrix<f64> {
     let mut inverse = DMatrix::zeros(6, 6);
     for column in 0..6 {

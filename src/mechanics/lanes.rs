@@ -1,41 +1,41 @@
-//! Eight designs side by side: the arithmetic that a processor does on eight numbers at once.
+//! Lanes: arithmetic on eight numbers at once, for eight designs side by side.
 //!
-//! One kernel is written once over [`Lanes`] and compiled for three instruction sets; [`in_lanes`]
-//! takes the widest that the machine has. Each lane does the same IEEE operations in the same order
-//! whatever the set (no contraction to fused multiply-add), so results are equal to the last bit on
-//! every machine.
+//! A kernel is written once over the trait [`Lanes`] and compiled for three instruction sets. [`in_lanes`] takes the widest
+//! set that the machine has. Every set does the same IEEE operations in the same order, without contraction to fused
+//! multiply-add, so that results are equal to the last bit on every machine. `std::simd` is not stable yet; the few
+//! operations that the kernels need are written out here.
 
 use std::ops::{Add, Div, Mul, Sub};
 
-/// Designs evaluated side by side.
+/// Number of designs that are evaluated side by side.
 pub const LANES: usize = 8;
-/// One number for each of the designs.
+/// One number for each of eight designs.
 pub type Eight = [f64; LANES];
 
-/// Eight numbers in whatever registers the machine has.
+/// Eight numbers in the registers of the machine.
 pub trait Lanes:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// The same number in every lane.
     fn splat(x: f64) -> Self;
-    /// From memory.
+    /// Eight numbers from memory.
     fn load(from: &Eight) -> Self;
-    /// To memory.
+    /// The eight numbers, to memory.
     fn store(self) -> Eight;
-    /// Numbers at eight places of a list.
+    /// The numbers at eight places of a list.
     ///
     /// # Panics
-    /// If the list does not reach to a place.
+    /// If a place is beyond the end of the list.
     fn gather(from: &[f64], at: &[usize; LANES]) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
-    /// The smaller; the second if either is NaN.
+    /// The smaller number; the second if either is NaN.
     fn min(self, other: Self) -> Self;
-    /// The larger; the second if either is NaN.
+    /// The larger number; the second if either is NaN.
     fn max(self, other: Self) -> Self;
-    /// Lanes, as bits, in which the first is less than the second; not where either is NaN.
+    /// One bit for each lane in which the first number is less than the second. A lane with a NaN has no bit.
     fn less(self, other: Self) -> u8;
-    /// The first where a bit is set, else the second.
+    /// In each lane the number of `set` if its bit is set, else that of `clear`.
     fn choose(bits: u8, set: Self, clear: Self) -> Self;
 
     /// Zero in every lane.
@@ -44,14 +44,14 @@ pub trait Lanes:
         Self::splat(0.0)
     }
 
-    /// Without sign.
+    /// The numbers without their signs.
     #[inline(always)]
     fn abs(self) -> Self {
         self.max(Self::zero() - self)
     }
 }
 
-/// Each of some numbers in every lane.
+/// Several numbers, each in every lane.
 #[inline(always)]
 pub fn splat_all<V: Lanes, const K: usize>(numbers: [f64; K]) -> [V; K] {
     let mut out = [V::zero(); K];
@@ -61,26 +61,29 @@ pub fn splat_all<V: Lanes, const K: usize>(numbers: [f64; K]) -> [V; K] {
     out
 }
 
-/// Work written over [`Lanes`]. Everything it calls must be inlined into `run`, so the kernels are
-/// written with plain loops: a closure that handles lanes is compiled for no register set at all.
+/// Work that is written over [`Lanes`].
+///
+/// Everything that handles lanes must be inlined into `run`, because only `run` is compiled for a particular instruction
+/// set. A closure is a function of its own and would be compiled for the common instructions. The kernels are therefore
+/// written with plain loops.
 pub trait LaneWork {
-    /// What the work yields.
+    /// Result of the work.
     type Output;
     /// Does the work.
     fn run<V: Lanes>(self) -> Self::Output;
 }
 
-/// Does the work with the widest registers of the machine.
+/// Does work with the widest registers of the machine.
 #[inline]
 pub fn in_lanes<W: LaneWork>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     {
         if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq") {
-            // SAFETY: the machine has the features the function is compiled for
+            // SAFETY: the machine has the features for which the function is compiled
             return unsafe { x86::with_avx512(work) };
         }
         if is_x86_feature_detected!("avx2") {
-            // SAFETY: as above
+            // SAFETY: the machine has the features for which the function is compiled
             return unsafe { x86::with_avx2(work) };
         }
     }
@@ -156,8 +159,8 @@ impl Lanes for Portable {
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
-    //! Registers of x86-64. Every intrinsic here belongs to a set that [`super::in_lanes`] has found on
-    //! the machine before it lets a kernel be compiled for these types run.
+    //! Registers of x86-64. [`super::in_lanes`] runs a kernel on these types only after it has found their instruction set
+    //! on the machine. Every intrinsic here belongs to that set.
 
     use super::{Add, Div, Eight, LANES, LaneWork, Lanes, Mul, Sub};
     use std::arch::x86_64::*;
@@ -172,11 +175,11 @@ mod x86 {
         work.run::<Halves>()
     }
 
-    /// One register of eight.
+    /// Eight numbers in one register (AVX-512).
     #[derive(Clone, Copy)]
     pub(super) struct Wide(__m512d);
 
-    /// Two registers of four.
+    /// Eight numbers in two registers of four (AVX2).
     #[derive(Clone, Copy)]
     pub(super) struct Halves(__m256d, __m256d);
 
@@ -206,8 +209,8 @@ mod x86 {
     register_operator!(Mul, mul, _mm512_mul_pd, _mm256_mul_pd);
     register_operator!(Div, div, _mm512_div_pd, _mm256_div_pd);
 
-    // SAFETY, for every block below: only run where the set was found; loads and stores are unaligned
-    // and within the array
+    // SAFETY, for every block below: it runs only where its instruction set was found. Loads and stores need no alignment
+    // and stay within the array.
     impl Lanes for Wide {
         #[inline(always)]
         fn splat(x: f64) -> Self {
@@ -262,6 +265,7 @@ mod x86 {
         }
     }
 
+    /// Checks the places of a gather. The hardware does not.
     #[inline(always)]
     fn assert_within(list: &[f64], at: &[usize; LANES]) {
         let mut highest = 0;
@@ -334,6 +338,7 @@ mod x86 {
         #[inline(always)]
         fn choose(bits: u8, set: Self, clear: Self) -> Self {
             unsafe {
+                // AVX2 has no mask registers: each bit is spread over a lane of its own
                 let place = |first: i64| {
                     let own = _mm256_setr_epi64x(first, first << 1, first << 2, first << 3);
                     let all = _mm256_set1_epi64x(i64::from(bits));

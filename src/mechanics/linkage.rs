@@ -1,28 +1,28 @@
-//! Passive joints: a linkage turns them with the joints that drive them, deflections included.
+//! Passive joints: a linkage turns them together with the joints that drive them, deflections included.
 //!
-//! A driver's unit of twist moves what is outboard of it by its own twist, and what is outboard of the
-//! passive joint by that joint's twist times the linkage's factor besides. The force on the driver is the
-//! work of the loads on both: `Tᵀ f`, and the mass matrix `Tᵀ M T`, with `T` the unit matrix and the factor
-//! in the passive joint's row and the driver's column.
+//! One unit of twist of a driver moves everything outboard of the driver. In addition it turns the passive joint, by the
+//! factor of the linkage, and moves everything outboard of that joint. The generalized force on the driver is the work of
+//! the loads on both motions. In matrices: forces become `Tᵀ f` and the mass matrix becomes `Tᵀ M T`. `T` is the unit
+//! matrix with the factor in the row of the passive joint and the column of the driver.
 
 use super::chain::{Item, Posed};
 use super::{Twist, Wrench, force_wrench};
 use nalgebra::{DMatrix, DVector};
 
-/// What a linkage adds to its driver in a pose under a load.
+/// Motion and torque that a linkage transfers to its driver, in a pose under a load.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Carried {
-    /// The joint that drives.
+pub struct Transferred {
+    /// Name of the joint that drives.
     pub driver: String,
-    /// Motion of what is outboard of the passive joint per unit of the driver's twist.
+    /// Motion of everything outboard of the passive joint, per unit of the driver's twist.
     pub twist: Twist,
-    /// Work of the loads on it \[N m\].
+    /// Work of the loads on this motion, which is a torque on the driver \[N m\].
     pub torque_nm: f64,
 }
 
 impl Posed<'_> {
-    /// What the linkages add to their drivers under weight and tip force.
-    pub fn carried(&self) -> Vec<Carried> {
+    /// Motions and torques that the linkages transfer to their drivers, under weight and tip force.
+    pub fn transferred(&self) -> Vec<Transferred> {
         let linkages = self.chain.linkages();
         let mut out = Vec::new();
         if linkages.is_empty() {
@@ -35,7 +35,7 @@ impl Posed<'_> {
                 Item::Elastic(element) => {
                     out.extend(linkages.iter().filter(|l| l.passive == element.name).map(|l| {
                         let twist = element.twists[0] * l.factor;
-                        Carried { driver: l.driver.clone(), twist, torque_nm: twist.dot(&wrench) }
+                        Transferred { driver: l.driver.clone(), twist, torque_nm: twist.dot(&wrench) }
                     }));
                     if let Some(own) = &element.own {
                         wrench += own.weight;
@@ -46,17 +46,17 @@ impl Posed<'_> {
         out
     }
 
-    /// Motion of the tip's frame per unit of every coordinate.
+    /// Motion of the last frame per unit of every coordinate, with the motion of the passive joints.
     pub fn tip_twists(&self) -> Vec<Twist> {
         let mut twists: Vec<Twist> = self.elements().flat_map(|e| e.twists.iter().copied()).collect();
         for (driver, passive, factor) in self.linked_coordinates() {
-            let carried = twists[passive] * factor;
-            twists[driver] += carried;
+            let transferred = twists[passive] * factor;
+            twists[driver] += transferred;
         }
         twists
     }
 
-    /// The shape with the passive joints' turns in it.
+    /// A shape to which the rotations of the passive joints are added.
     pub(crate) fn with_passive(&self, shape: &DVector<f64>) -> DVector<f64> {
         let mut out = shape.clone();
         for (driver, passive, factor) in self.linked_coordinates() {
@@ -65,7 +65,7 @@ impl Posed<'_> {
         out
     }
 
-    /// `Tᵀ M T`.
+    /// The mass matrix with the linkages: `Tᵀ M T`.
     pub(crate) fn with_linkages(&self, mut mass: DMatrix<f64>) -> DMatrix<f64> {
         for (driver, passive, factor) in self.linked_coordinates() {
             let column = mass.column(passive) * factor;
@@ -76,7 +76,7 @@ impl Posed<'_> {
         mass
     }
 
-    /// Coordinates of each driver and its passive joint, with the factor.
+    /// Numbers of the coordinates of each driver and its passive joint, with the factor of the linkage.
     fn linked_coordinates(&self) -> Vec<(usize, usize, f64)> {
         let coordinate = |name: &str| {
             let before = self.elements().take_while(|e| e.name != name);
@@ -113,11 +113,15 @@ mod tests {
         let payload = Payload { mass_kg: 5.0, ..Payload::default() };
         let posed = chain.pose_rad(&[0.0], &payload, Vector3::zeros());
         let statics = posed.statics();
-        // the hand stays level: weight and sag act at the wrist's lever, 0.6 m, not at 0.8 m
+        // the hand stays level: weight and deflection act at the wrist's lever, 0.6 m, not at 0.8 m
         let (weight_n, lever_m) = (5.0 * 9.81, 0.6);
         assert!((statics.joint_torques_nm[0].1 - weight_n * lever_m).abs() < 1e-9);
-        let sag_m = weight_n * lever_m / 1e4 * lever_m;
-        assert!((statics.tip_displacement_m.z + sag_m).abs() < 1e-12, "{}", statics.tip_displacement_m);
+        let deflection_m = weight_n * lever_m / 1e4 * lever_m;
+        assert!(
+            (statics.tip_displacement_m.z + deflection_m).abs() < 1e-12,
+            "{}",
+            statics.tip_displacement_m
+        );
         let frequency_hz = posed.modes(&statics, 1)[0].frequency_hz;
         let by_hand = (1e4 / (5.0 * lever_m * lever_m)).sqrt() / std::f64::consts::TAU;
         assert!((frequency_hz / by_hand - 1.0).abs() < 1e-9, "{frequency_hz} {by_hand}");

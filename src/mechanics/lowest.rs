@@ -1,57 +1,57 @@
-//! The lowest natural frequency of a chain without forming its matrices.
+//! The lowest natural frequency of a chain, without forming its matrices.
 //!
-//! Going from the tip inward, `W(λ)` is the apparent inertia of everything outboard at `λ = ω²`: a
-//! rigid body's inertia plus what its flexibility adds. Through an element with unit stiffness and
-//! end motion `t` (a joint: its axis times the root of its compliance; a link: see
-//! [`condensed`](super::condensed)),
+//! A pass goes from the tip to the base. `W(λ)` is the apparent inertia of everything outboard at `λ = ω²`: the inertia of a
+//! rigid body, plus what its flexibility adds. An element with unit stiffness and end motion `t` changes it from `W` on
+//! its outboard side to `W_in` on its inboard side. For a joint, `t` is its twist times the square root of its compliance;
+//! for a link see [`condensed`](super::condensed). The indices r and g stand for the root and the end coordinates.
 //!
 //! ```text
 //! W_in = W_rr + λ P (1 - λ S)⁻¹ Pᵀ,   P = (M_rg + W t),   S = M_gg + tᵀ W t
 //! ```
 //!
-//! The pivots of all `1 - λ S` are positive exactly below the lowest eigenvalue, so the pass both
-//! counts (Sturm) and, through its last pivot, points to the root. A lower bound to start from is
-//! Dunkerley's: `1/λ₁ ≤ Σ 1/λ_i = tr(C M)`.
+//! Exactly below the lowest eigenvalue, the pivots of all `1 - λ S` are positive. A pass therefore tells on which side of
+//! the lowest eigenvalue `λ` is (Sturm), and its last pivot points to the root. The search starts from Dunkerley's lower
+//! bound: `1/λ₁ ≤ Σ 1/λ_i = tr(C M)`.
 
 use nalgebra::{SMatrix, SVector};
 use std::f64::consts::TAU;
 
-/// What a chain shows the pass: its elements from tip to base, restricted to `N` of the six motions.
+/// One step of a pass, tip first: a body or an element, restricted to `N` of the six motions.
 #[derive(Debug, Clone)]
 pub enum Step<'a, const N: usize> {
-    /// Inertia rigidly attached, times a factor (a mass).
+    /// A body: a factor (such as a mass) and the inertia that it multiplies.
     Body(f64, &'a SMatrix<f64, N, N>),
-    /// A joint: its twist and its compliance \[rad/(N m)\].
+    /// A joint, with its twist and its compliance \[rad/(N m)\].
     Joint(&'a SVector<f64, N>, f64),
     /// A link.
     Link(&'a BlockLink<N>),
 }
 
-/// A placed link restricted to `N` of the six motions.
+/// A condensed link in a pose, restricted to `N` of the six motions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlockLink<const N: usize> {
-    /// Root-root inertia by order in λ.
+    /// Inertia over the motion of the root, by order in λ.
     pub root: [SMatrix<f64, N, N>; 3],
-    /// Root-end inertia by order in λ.
+    /// Inertia between root and end coordinates, by order in λ.
     pub cross: [SMatrix<f64, N, N>; 3],
-    /// End-end inertia by order in λ.
+    /// Inertia over the end coordinates, by order in λ.
     pub end_inertia: [SMatrix<f64, N, N>; 3],
     /// Twist of everything outboard per end coordinate.
     pub end: SMatrix<f64, N, N>,
 }
 
 impl<const N: usize> BlockLink<N> {
-    /// Whether any motion of its end is elastic.
+    /// Whether the link yields in any way.
     pub fn yields(&self) -> bool {
         self.end.amax() > 0.0 || self.end_inertia.iter().any(|m| m.amax() > 0.0)
     }
 }
 
-/// What one pass at `λ` finds.
+/// Result of one pass at `λ`.
 struct Pass {
     /// Whether every pivot before the last is positive.
     inner_sound: bool,
-    /// The last pivot: positive below the lowest eigenvalue, negative just above it.
+    /// The last pivot. It is positive below the lowest eigenvalue and negative just above it.
     last: f64,
     /// Product of all pivots before the last.
     inner_product: f64,
@@ -60,31 +60,35 @@ struct Pass {
 }
 
 impl Pass {
-    /// Whether no eigenvalue lies at or below `λ`.
+    /// Whether no eigenvalue is at or below `λ`.
     fn below_all(&self) -> bool {
         self.inner_sound && self.last > 0.0
     }
 }
 
-/// A secant's error is `C` times the product of the last two steps. `C` is about 1 for most arms and far
-/// more if a pole is near, so what the last three steps show of it is bounded, and the last step itself in
-/// case that another mode lies in between. All relative to `1/λ`.
+/// Largest estimated error of an accepted root, relative to `1/λ`.
+///
+/// The error of a secant is `C` times the product of the last two steps. `C` is about 1 for most arms and far larger if a
+/// pole is near. The last three steps show how large `C` is, so a limit is set on the error that follows from them.
 pub(super) const SHOWN_ERROR: f64 = 1e-13;
-/// See [`SHOWN_ERROR`].
+/// Largest last step of an accepted root, relative to `1/λ`. It guards against another mode between the last two points.
 pub(super) const LAST_STEP: f64 = 5e-8;
-/// What the first steps are taken for, so that nothing is accepted before the steps show `C`.
+/// Stands for the steps before the first, relative to `1/λ`. It is so small that no root is accepted before the steps have
+/// shown `C`, unless a step is practically zero.
 pub(super) const UNKNOWN_STEP: f64 = 1e-9;
-/// The same where one chain is solved by itself and a pass more does not matter.
+/// [`LAST_STEP`] where one chain is solved by itself, so that one more pass does not matter.
 const CAREFUL_LAST_STEP: f64 = 1e-11;
+/// Number of passes after which the quick method gives up.
 const QUICK_PASSES: usize = 12;
+/// Number of passes after which the careful method takes what it has.
 const MOST_PASSES: usize = 300;
 
-/// Lowest eigenvalue `λ₁ = ω₁²` of the chain, given `trace_s2 ≥ tr(C M)`; infinite if nothing yields.
+/// Lowest eigenvalue `λ₁ = ω₁²` of the chain \[1/s²\], given `trace_s2 ≥ tr(C M)` \[s²\]. It is infinite if nothing yields.
 ///
-/// The last pivot is `1 - λ w(λ)` with `w` nearly constant, so secants are drawn for `1/λ - w` over `1/λ`,
-/// which is straight if everything outboard is rigid. That is quick unless the last joint hardly takes
-/// part in the mode: then a pole of `w` lies next to the root, and the product of all pivots, which has
-/// no poles, is searched instead.
+/// The last pivot is `1 - λ w(λ)`, where `w` is nearly constant. The secant method is therefore applied to `1/λ - w` as a
+/// function of `1/λ`, which is a straight line if everything outboard is rigid. It converges quickly unless the last joint
+/// hardly takes part in the mode. In that case a pole of `w` is next to the root. The product of all pivots has no poles,
+/// and its root is searched instead.
 pub fn lowest_eigenvalue<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
     if trace_s2 <= 0.0 {
         return f64::INFINITY;
@@ -92,6 +96,7 @@ pub fn lowest_eigenvalue<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -
     quick_root(steps, trace_s2).unwrap_or_else(|| careful_root(steps, trace_s2))
 }
 
+/// Secants on the last pivot; `None` if they lead beyond a pole or converge too slowly.
 fn quick_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> Option<f64> {
     let mut x = trace_s2;
     let mut before: Option<(f64, f64)> = None;
@@ -118,21 +123,23 @@ fn quick_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> Option<f6
     None
 }
 
-/// Secants on the product of all pivots times a power of `x = 1/λ`: about `Π (x - x_i)`, which from above
-/// the largest `x_i` falls to it without a bend the other way, so that they never overshoot, however near
-/// the next root is. Where rounding or the inner modes of links make one overshoot, the step is halved.
+/// Secants on the product of all pivots times a power of `x = 1/λ`.
+///
+/// This product is about `Π (x - x_i)`. Beyond the largest `x_i` it is convex, so secants from above approach this root
+/// without overshooting, however near the next root is. Rounding, or the inner modes of links, may still make one
+/// overshoot; the interval is then bisected.
 fn careful_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
     let product = |x: f64| {
         let here = pass(steps, 1.0 / x);
         here.below_all().then_some((x, here.last * here.inner_product, here.count))
     };
-    // rounding may put a single spring's root a hair above its bound
+    // the bound is exact for a single spring, and rounding may put its root just above the bound
     let (Some(mut far), Some(mut near)) = (product(2.0 * trace_s2), product((1.0 + 1e-9) * trace_s2)) else {
         return 1.0 / trace_s2;
     };
     let mut beyond = 0.0;
     for _ in 0..MOST_PASSES {
-        // f_far / f_near of the polynomial
+        // ratio of the polynomial at `far` to that at `near`
         let ratio = far.1 / near.1 * (far.0 / near.0).powi(near.2);
         let secant = near.0 - (far.0 - near.0) / (ratio - 1.0);
         let next = if secant > beyond && secant < near.0 { secant } else { 0.5 * (beyond + near.0) };
@@ -150,12 +157,12 @@ fn careful_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
     1.0 / near.0
 }
 
-/// Frequency of an eigenvalue \[Hz\].
+/// Frequency \[Hz\] of an eigenvalue \[1/s²\].
 pub fn frequency_hz(eigenvalue: f64) -> f64 {
     eigenvalue.sqrt() / TAU
 }
 
-/// Carries the apparent inertia from tip to base.
+/// Takes the apparent inertia from the tip to the base.
 #[inline]
 fn pass<const N: usize>(steps: &[Step<'_, N>], lambda: f64) -> Pass {
     let mut apparent = SMatrix::<f64, N, N>::zeros();
@@ -175,6 +182,7 @@ fn pass<const N: usize>(steps: &[Step<'_, N>], lambda: f64) -> Pass {
     out
 }
 
+/// Takes the apparent inertia through a link that yields.
 #[inline]
 fn through_link<const N: usize>(
     link: &BlockLink<N>,
@@ -189,7 +197,7 @@ fn through_link<const N: usize>(
         s[(i, i)] += 1.0;
     }
     let mut p = (at(&link.cross) + moved).transpose();
-    // LDLᵀ of 1 - λS and forward substitution of P together
+    // LDLᵀ of 1 - λS and forward substitution of P in the same loop
     *apparent += at(&link.root);
     for k in 0..N {
         let pivot = s[(k, k)];
@@ -215,6 +223,7 @@ fn through_link<const N: usize>(
 }
 
 impl Pass {
+    /// Notes a pivot; the one before it is no longer the last.
     #[inline]
     fn next(&mut self, pivot: f64) {
         self.inner_sound &= self.last > 0.0;
@@ -258,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn springs_that_carry_nothing_do_not_matter() {
+    fn springs_that_move_no_mass_do_not_matter() {
         let twists = [Vector2::x(), Vector2::y()];
         let inertia = Matrix2::new(0.0, 0.0, 0.0, 2.0);
         let steps = [Step::Body(1.0, &inertia), Step::Joint(&twists[0], 1e-3), Step::Joint(&twists[1], 1e-5)];

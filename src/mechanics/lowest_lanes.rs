@@ -1,7 +1,8 @@
-//! The lowest natural frequency of eight chains at once that share everything outboard of one piece.
+//! The lowest natural frequency of eight chains at once.
 //!
-//! The pass is that of [`lowest`](super::lowest): the apparent inertia carried inward, one pivot per
-//! way of yielding. What the eight share is read once; a pass is made for all, each at its own `λ`.
+//! The eight chains share everything outboard of one piece. The pass is that of [`lowest`](super::lowest): it takes the
+//! apparent inertia from the tip to the base, with one pivot for each way of yielding. One pass serves all eight chains,
+//! each at its own `λ`. What they share is read once.
 
 // matrices by row and column read better than iterators over them
 #![allow(clippy::needless_range_loop)]
@@ -10,14 +11,15 @@ use super::lanes::{Eight, LANES, Lanes};
 use super::lowest::{BlockLink, LAST_STEP, SHOWN_ERROR, Step, UNKNOWN_STEP};
 use nalgebra::{SMatrix, SVector};
 
-/// What eight chains share, from the tip inward.
+/// The part that eight chains share, from the tip inward.
 #[derive(Debug, Clone)]
 pub struct Outboard<const N: usize> {
-    /// Inertia before anything yields.
+    /// Inertia outboard of the first element that yields.
     start: SMatrix<f64, N, N>,
     steps: Vec<Shared<N>>,
 }
 
+/// A step that eight chains share.
 #[derive(Debug, Clone)]
 enum Shared<const N: usize> {
     Body(SMatrix<f64, N, N>),
@@ -25,16 +27,16 @@ enum Shared<const N: usize> {
     Link(Box<BlockLink<N>>),
 }
 
-/// The pieces of eight chains that they do not share, from the tip inward.
+/// The pieces that eight chains do not share, from the tip inward.
 pub trait Inner<V: Lanes, const N: usize> {
-    /// Walks over them. The last must be one that yields if any does.
-    fn carry(&self, walk: &mut Walk<V, N>);
+    /// Adds the pieces to a walk. If any piece yields, the last one must.
+    fn add_to(&self, walk: &mut Walk<V, N>);
 }
 
 /// A matrix for each of eight chains.
 pub type LaneMatrix<const N: usize> = [[Eight; N]; N];
 
-/// A placed link for each of eight chains; of symmetric matrices only the lower part is used.
+/// A link in a pose for each of eight chains. Only the lower triangle of symmetric matrices is used.
 #[derive(Debug, Clone)]
 pub struct LaneLink<const N: usize> {
     root: [LaneMatrix<N>; 3],
@@ -43,24 +45,25 @@ pub struct LaneLink<const N: usize> {
     end: LaneMatrix<N>,
 }
 
-/// What one pass at `λ` finds in each lane.
+/// Result of one pass at `λ`, in each lane.
 #[derive(Clone, Copy)]
 pub struct LanePass<V> {
-    /// Bits of the lanes in which every pivot before the last is positive.
+    /// One bit for each lane in which every pivot before the last is positive.
     pub sound: u8,
     /// The last pivot.
     pub last: V,
 }
 
-/// Roots found.
+/// The roots that were found.
 #[derive(Clone, Copy)]
 pub struct Roots<V> {
     /// Lowest eigenvalue in each wanted lane.
     pub eigenvalue: V,
-    /// Bits of the wanted lanes in which no root was found.
+    /// One bit for each wanted lane in which no root was found.
     pub unsure: u8,
 }
 
+/// Largest number of passes. A lane that needs more is left to [`lowest_eigenvalue`](super::lowest::lowest_eigenvalue).
 const MOST_PASSES: usize = 10;
 
 impl<const N: usize> Default for Outboard<N> {
@@ -70,7 +73,8 @@ impl<const N: usize> Default for Outboard<N> {
 }
 
 impl<const N: usize> Outboard<N> {
-    /// Takes over the steps of a chain, tip first.
+    /// Takes over the steps of a chain, tip first. Bodies between two elements that yield are added up, and links that do
+    /// not yield become bodies, so that a pass has as few steps as possible.
     pub fn refill<'a>(&mut self, steps: impl Iterator<Item = Step<'a, N>>) {
         self.start = SMatrix::zeros();
         self.steps.clear();
@@ -101,20 +105,21 @@ impl<const N: usize> LaneLink<N> {
     }
 }
 
-/// A matrix of each of eight things side by side.
+/// Eight matrices side by side.
 pub fn side_by_side<'a, const N: usize>(of: impl Fn(usize) -> &'a SMatrix<f64, N, N>) -> LaneMatrix<N> {
     std::array::from_fn(|i| std::array::from_fn(|j| std::array::from_fn(|lane| of(lane)[(i, j)])))
 }
 
-/// Lower part of a symmetric matrix per lane.
+/// Lower triangle of a symmetric matrix in each lane.
 type Inertia<V, const N: usize> = [[V; N]; N];
 
+/// An entry of a symmetric matrix.
 #[inline(always)]
 fn entry<V: Copy, const N: usize>(of: &Inertia<V, N>, i: usize, j: usize) -> V {
     if i >= j { of[i][j] } else { of[j][i] }
 }
 
-/// Carries the apparent inertia from tip to base at one `λ` per lane.
+/// Takes the apparent inertia from the tip to the base, with one `λ` in each lane.
 #[inline(always)]
 pub fn pass<V: Lanes, const N: usize>(
     outboard: &Outboard<N>,
@@ -129,11 +134,11 @@ pub fn pass<V: Lanes, const N: usize>(
             Shared::Link(link) => state.yielding_link(&**link),
         }
     }
-    inner.carry(&mut state);
+    inner.add_to(&mut state);
     LanePass { sound: state.sound, last: state.last }
 }
 
-/// A link's numbers in lanes, whether shared or not.
+/// The numbers of a link in lanes, whether the eight chains share the link or not.
 trait LinkNumbers<const N: usize> {
     fn root<V: Lanes>(&self, order: usize, i: usize, j: usize) -> V;
     fn cross<V: Lanes>(&self, order: usize, i: usize, j: usize) -> V;
@@ -185,7 +190,7 @@ impl<const N: usize> LinkNumbers<N> for BlockLink<N> {
     }
 }
 
-/// `$a += $term` for each entry of the lower part.
+/// `$a += $term` for each entry of the lower triangle. It is a macro because a closure would not be compiled for lanes.
 macro_rules! add_lower {
     ($a:expr, |$i:ident, $j:ident| $term:expr) => {
         for $i in 0..N {
@@ -196,7 +201,7 @@ macro_rules! add_lower {
     };
 }
 
-/// An entry of a link's inertia at `λ`.
+/// An entry of a link's effective inertia at `λ`.
 macro_rules! at_lambda {
     ($link:ident.$of:ident($i:expr, $j:expr), $lambda:expr) => {
         $link.$of::<V>(0, $i, $j)
@@ -204,7 +209,7 @@ macro_rules! at_lambda {
     };
 }
 
-/// The walk from tip to base.
+/// The walk from the tip to the base.
 pub struct Walk<V, const N: usize> {
     lambda: V,
     apparent: Inertia<V, N>,
@@ -220,31 +225,33 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         Self { lambda, apparent, sound: u8::MAX, last: V::splat(1.0) }
     }
 
+    /// Notes a pivot; the one before it is no longer the last.
     #[inline(always)]
     fn pivot(&mut self, pivot: V) {
         self.sound &= V::zero().less(self.last);
         self.last = pivot;
     }
 
-    /// A body that all eight have.
+    /// Adds a body that all eight chains have.
     #[inline(always)]
     pub fn body(&mut self, inertia: &SMatrix<f64, N, N>) {
         add_lower!(self.apparent, |i, j| V::splat(inertia[(i, j)]));
     }
 
-    /// A mass times the inertia of one kilogram.
+    /// Adds a mass times the inertia of one kilogram.
     #[inline(always)]
     pub fn mass(&mut self, mass: V, inertia: &SMatrix<f64, N, N>) {
         add_lower!(self.apparent, |i, j| mass * V::splat(inertia[(i, j)]));
     }
 
-    /// A link that does not yield.
+    /// Adds a link that does not yield.
     #[inline(always)]
     pub fn rigid(&mut self, link: &LaneLink<N>) {
         add_lower!(self.apparent, |i, j| V::load(&link.root[0][i][j]));
     }
 
-    /// A pivot and the row it belongs to: everything inboard sees `λ row rowᵀ / pivot` more.
+    /// Eliminates one coordinate with its pivot and row. The apparent inertia for everything inboard grows by
+    /// `λ row rowᵀ / pivot`; `scale` is `λ / pivot`, times the compliance of a joint.
     #[inline(always)]
     fn yield_by(&mut self, pivot: V, row: &[V; N], scale: V) {
         for i in 0..N {
@@ -256,7 +263,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         self.pivot(pivot);
     }
 
-    /// A joint: its twist and compliance.
+    /// Adds a joint, given its twist and its compliance.
     #[inline(always)]
     pub fn joint(&mut self, twist: &SVector<f64, N>, compliance: V) {
         let mut momentum = [V::zero(); N];
@@ -272,12 +279,14 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         self.yield_by(pivot, &momentum, yielding / pivot);
     }
 
-    /// A link that yields.
+    /// Adds a link that yields.
     #[inline(always)]
     pub fn link(&mut self, link: &LaneLink<N>) {
         self.yielding_link(link);
     }
 
+    /// Adds a link that yields, whether the eight chains share it or not: `S` and `P` of the formula in
+    /// [`lowest`](super::lowest), then one elimination for each end coordinate.
     #[inline(always)]
     fn yielding_link<L: LinkNumbers<N>>(&mut self, link: &L) {
         let lambda = self.lambda;
@@ -304,7 +313,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
             }
         }
         add_lower!(self.apparent, |i, j| at_lambda!(link.root(i, j), lambda));
-        // LDLᵀ of 1 - λS and forward substitution of P together
+        // LDLᵀ of 1 - λS and forward substitution of P in the same loop
         for k in 0..N {
             let pivot = s[k][k];
             let inverse = V::splat(1.0) / pivot;
@@ -322,8 +331,8 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
     }
 }
 
-/// Lowest eigenvalue of every wanted lane by secants on `1/λ - w` over `1/λ`, as in
-/// [`lowest_eigenvalue`](super::lowest::lowest_eigenvalue). A guess beyond a pole is drawn back.
+/// Lowest eigenvalue of every wanted lane, by the secant method for `1/λ - w` as a function of `1/λ`. The method is that of
+/// [`lowest_eigenvalue`](super::lowest::lowest_eigenvalue). A guess beyond a pole is moved back.
 #[inline(always)]
 pub fn roots<V: Lanes, const N: usize>(
     outboard: &Outboard<N>,
@@ -355,7 +364,7 @@ pub fn roots<V: Lanes, const N: usize>(
         if open == 0 {
             break;
         }
-        // not beyond a pole, and by no more than a factor of four at once
+        // a step may not lead beyond a pole, and may change x by a factor of four at most
         let in_reach = next.less(V::splat(4.0) * x) & (V::splat(0.25) * x).less(next) & here.sound;
         let drawn_back = V::choose(V::zero().less(y) & here.sound, V::splat(0.5) * x, V::splat(1.5) * x);
         has_before = here.sound;

@@ -1,21 +1,20 @@
-//! How an arm behaves: one formulation for statics, modes and response.
+//! Mechanics: how an arm behaves. One formulation serves statics, modes and response.
 //!
-//! Every elastic thing is a handful of *strain coordinates*, each a scalar spring: a joint has one
-//! (its twist), a tilting bearing two, a link a few polynomials of curvature, shear, twist and
-//! stretch ([`beam`]). A unit of a coordinate moves everything outboard of it as a rigid body, by its
-//! *twist*. Then
+//! Every elastic element has a few *strain coordinates*, each of them a scalar spring. A joint has one (its twist), a
+//! bearing that tilts has two, and a link has some polynomials of curvature, shear, twist and stretch ([`beam`]). One unit
+//! of a coordinate moves everything outboard of it as a rigid body; this motion is the *twist* of the coordinate.
 //!
-//! - statics ([`statics`]): the generalized force on a coordinate is the work of the outboard wrench
-//!   on its twist; the coordinate yields by force times compliance; the tip moves by the sum
-//!   (Eqs 1-4, 7, 13-15);
-//! - modes ([`modes`]): `M` from the outboard composite inertia seen by each pair of twists, the
-//!   compliance matrix diagonal, so that `C^½ M C^½ ψ = ψ/ω²` (Eqs 16-18 are the rigid-link case);
-//! - response ([`response`]): the modes summed under a harmonic force at the tip (F(t) of Eq 16).
+//! - Statics ([`statics`]; Eqs 1-4, 7, 13-15): the generalized force on a coordinate is the work of the outboard wrench on
+//!   its twist. The coordinate yields by force times compliance, and the tip moves by the sum.
+//! - Modes ([`modes`]; Eqs 16-18 are the case of rigid links): the mass matrix `M` follows from the composite outboard
+//!   inertia and each pair of twists. The compliance matrix `C` is diagonal, and `C^½ M C^½ ψ = ψ/ω²`.
+//! - Response ([`response`]; F(t) of Eq 16): the sum of the modes under a harmonic force at the tip.
 //!
-//! [`centre_line`] turns the coordinates of any of them into the places of the arm's points, for drawings.
+//! [`centre_line`] turns strain coordinates into the motion of points of the arm, for drawings. [`condensed`], [`lowest`]
+//! and [`lowest_lanes`] compute the lowest mode in the fast way of the search.
 //!
-//! Twists and wrenches are written about the world origin: twist `(v, ω)` with `v` the velocity of the
-//! body point at the origin, wrench `(F, M)` with `M` the moment about the origin.
+//! Twists and wrenches are taken about the world's origin. A twist is `(v, ω)`, where `v` is the velocity of the point of
+//! the body that is at the origin. A wrench is `(F, M)`, where `M` is the moment about the origin.
 
 pub(crate) mod beam;
 pub(crate) mod centre_line;
@@ -42,34 +41,37 @@ pub type Twist = Vector6<f64>;
 /// Force and moment: `(F, M)` about the world origin.
 pub type Wrench = Vector6<f64>;
 
-/// The twist of a rotation by 1 rad about `axis` through `point`.
+/// Twist of a rotation by 1 rad about a unit vector `axis` through `point` \[m\].
 pub fn rotation_twist(axis: &Vector3<f64>, point: &Vector3<f64>) -> Twist {
     stack(&point.cross(axis), axis)
 }
 
-/// The wrench of a force at a point.
+/// Wrench of a force \[N\] at a point \[m\].
 pub fn force_wrench(force: &Vector3<f64>, point: &Vector3<f64>) -> Wrench {
     stack(force, &point.cross(force))
 }
 
-/// Displacement of the point of a moved body that is at `point`.
+/// Displacement of the point of a body that is at `point`, when the body moves by a twist.
 pub fn displacement_at(twist: &Twist, point: &Vector3<f64>) -> Vector3<f64> {
     linear(twist) + angular(twist).cross(point)
 }
 
+/// Two vectors as one of six components.
 pub(crate) fn stack(first: &Vector3<f64>, second: &Vector3<f64>) -> Vector6<f64> {
     Vector6::new(first.x, first.y, first.z, second.x, second.y, second.z)
 }
 
+/// The first three components: velocity or force.
 pub(crate) fn linear(six: &Vector6<f64>) -> Vector3<f64> {
     six.fixed_rows::<3>(0).into_owned()
 }
 
+/// The last three components: angular velocity or moment.
 pub(crate) fn angular(six: &Vector6<f64>) -> Vector3<f64> {
     six.fixed_rows::<3>(3).into_owned()
 }
 
-/// Inertia of a rigid body about the world origin, as a 6x6 matrix from twist to momentum.
+/// Inertia of a rigid body about the world's origin: the 6x6 matrix that turns its twist into its momentum.
 pub fn body_inertia(
     mass_kg: f64,
     cg_m: &Vector3<f64>,

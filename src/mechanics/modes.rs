@@ -1,8 +1,8 @@
-//! Natural frequencies (Eqs 16-18): motor shafts locked, no damping, no gravity stiffness.
+//! Modes: natural frequencies and shapes (Eqs 16-18), with motor shafts locked, no damping and no gravity stiffness.
 //!
-//! With diagonal compliance `C` of the strain coordinates and their mass matrix `M`, the symmetric
-//! matrix `A = C^½ M C^½` has eigenvalues `1/ω²`. `M` may be singular (a point mass on a roll axis):
-//! those eigenvalues vanish and their modes are not returned.
+//! Let `C` be the diagonal compliance of the strain coordinates and `M` their mass matrix. The symmetric matrix
+//! `A = C^½ M C^½` has the eigenvalues `1/ω²`. `M` may be singular, for example with a point mass on a roll axis. The
+//! eigenvalue is then zero, and its mode is not returned.
 
 use super::chain::{ElasticElement, Item, Posed};
 use super::statics::Statics;
@@ -15,32 +15,34 @@ use std::f64::consts::TAU;
 pub struct Mode {
     /// Natural frequency \[Hz\].
     pub frequency_hz: f64,
-    /// `xz`, `xy` or `yz` if 99 % of the kinetic energy lies in that world plane.
+    /// `xz`, `xy` or `yz` if 99 % of the kinetic energy is of motion in this plane of the world.
     pub plane: Option<&'static str>,
-    /// Each element's part of the strain energy, base to tip; the parts sum to 1.
+    /// The part of the strain energy in each element, base to tip. The parts add up to 1.
     pub strain_energy: Vec<(String, f64)>,
-    /// Displacement of the tip, scaled so that the strain energy of the mode is ½ J \[m\].
+    /// Displacement of the tip when the strain energy of the mode is ½ J \[m\].
     pub tip_shape_m: Vector3<f64>,
-    /// Value of each coordinate in that scale, element by element, base to tip.
+    /// Value of each coordinate in the same scale, element by element, base to tip.
     pub coordinates: Vec<Vec<f64>>,
 }
 
-/// The modal solution of an arm in a pose: every mode of the model, lowest first.
+/// The modal solution of an arm in a pose: all modes of the model, lowest first.
 #[derive(Debug, Clone)]
 pub struct Modes {
-    /// `1/ω²` of each mode, largest first, those without inertia included as zeros.
+    /// `1/ω²` of each mode, largest first. Modes without inertia are included as zeros.
     pub(crate) inverse_squares: Vec<f64>,
-    /// Coordinates of each mode, scaled to a strain energy of ½ J.
+    /// Coordinates of each mode, one mode a column, scaled to a strain energy of ½ J.
     pub(crate) shapes: DMatrix<f64>,
 }
 
-/// Modes slower than this part of the stiffest inertia-carrying mode are numerical zeros.
+/// Ratio to the largest `1/ω²` below which a `1/ω²` is a rounding error of zero.
 const SINGULAR: f64 = 1e-13;
-/// Part of the kinetic energy that must lie in a plane for the mode to be called planar.
+/// Fraction of the kinetic energy in a plane from which a mode is called planar.
 const PLANAR: f64 = 0.99;
 
 impl Posed<'_> {
-    /// The `count` lowest modes about the static state; fewer if the arm has fewer with inertia.
+    /// The `count` lowest modes about a static state, lowest first. There are fewer if the arm has fewer modes with inertia.
+    ///
+    /// The static state decides at which slope the joints vibrate. [`Chain`](super::Chain) has an example.
     pub fn modes(&self, statics: &Statics, count: usize) -> Vec<Mode> {
         let modes = self.solve_modes(statics);
         modes
@@ -52,7 +54,7 @@ impl Posed<'_> {
             .collect()
     }
 
-    /// The lowest frequency \[Hz\]; infinite for an arm in which nothing both yields and weighs.
+    /// The lowest natural frequency \[Hz\]. It is infinite if no compliance moves a mass.
     pub fn lowest_frequency_hz(&self, statics: &Statics) -> f64 {
         let a = self.flexibility_form(statics).0;
         if a.is_empty() {
@@ -100,8 +102,8 @@ impl Posed<'_> {
         })
     }
 
-    /// Mass matrix over all coordinates, base to tip: the composite inertia outboard of each element
-    /// seen by its twists and by the twists inboard of it.
+    /// Mass matrix over all coordinates, base to tip. Its entries are products of the composite inertia outboard of an
+    /// element with the twists of this element and of those inboard of it.
     pub fn mass_matrix(&self) -> DMatrix<f64> {
         let twists: Vec<Twist> = self.elements().flat_map(|e| e.twists.iter().copied()).collect();
         let mut mass = DMatrix::zeros(twists.len(), twists.len());
@@ -123,6 +125,7 @@ impl Posed<'_> {
         self.with_linkages(mass)
     }
 
+    /// The mode of a shape.
     fn describe(&self, statics: &Statics, shape: &DVector<f64>, frequency_hz: f64) -> Mode {
         Mode {
             frequency_hz,
@@ -133,7 +136,7 @@ impl Posed<'_> {
         }
     }
 
-    /// The coordinates of a shape, element by element.
+    /// The coordinates of a shape as one list for each element.
     fn by_element(&self, shape: &DVector<f64>) -> Vec<Vec<f64>> {
         let mut rest = shape.iter().copied();
         self.elements().map(|e| rest.by_ref().take(e.twists.len()).collect()).collect()
@@ -145,7 +148,7 @@ impl Posed<'_> {
         displacement_at(&motion, &self.tip_m)
     }
 
-    /// Each element's part of the strain energy: the sum of `q²/c` over its coordinates.
+    /// The part of the strain energy in each element, which is the sum of `q²/c` over its coordinates.
     fn strain_energy(&self, statics: &Statics, shape: &DVector<f64>) -> Vec<(String, f64)> {
         let mut coordinate = shape.iter();
         let mut parts: Vec<(String, f64)> = self
@@ -166,7 +169,7 @@ impl Posed<'_> {
         parts
     }
 
-    /// The world plane in which the mode moves, if there is one.
+    /// The plane of the world in which the mode moves, if there is one.
     fn plane(&self, shape: &DVector<f64>) -> Option<&'static str> {
         const PLANES: [(&str, usize); 3] = [("xz", 1), ("xy", 2), ("yz", 0)];
         let mut energy = PlaneEnergy::default();
@@ -185,7 +188,7 @@ impl Posed<'_> {
                 }
             }
         }
-        // a motion along one axis lies in two planes: rotation decides which, else the first
+        // a motion along one axis lies in two planes: the energy of rotation decides between them, or else their order
         let fractions = PLANES.map(|(name, normal)| (name, energy.fraction(normal)));
         let most = fractions.iter().map(|(_, f)| *f).fold(0.0, f64::max);
         fractions.iter().find(|(_, f)| *f >= PLANAR && *f >= most - 1e-9).map(|(name, _)| *name)
@@ -193,7 +196,7 @@ impl Posed<'_> {
 }
 
 impl Modes {
-    /// Index and frequency \[Hz\] of each mode that carries inertia, lowest first.
+    /// Number and frequency \[Hz\] of each mode that has inertia, lowest first.
     pub fn finite(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let floor = SINGULAR * self.inverse_squares.first().copied().unwrap_or(0.0);
         self.inverse_squares
@@ -204,6 +207,7 @@ impl Modes {
     }
 }
 
+/// Fills in the rows and columns of an element whose first coordinate is number `start`.
 fn add_element(
     mass: &mut DMatrix<f64>,
     element: &ElasticElement,
@@ -222,6 +226,7 @@ fn add_element(
         mass[(start + i, start + j)] = entry;
         mass[(start + j, start + i)] = entry;
     }
+    // a link's own mass moves with the joints inboard of it as well; among its coordinates it is in `inner`
     if let Some(own) = &element.own {
         momentum += &own.coupling;
     }
@@ -232,7 +237,7 @@ fn add_element(
     }
 }
 
-/// Kinetic energy of a shape, in all and within the plane across each world axis.
+/// Twice the kinetic energy of a shape at unit frequency: in total, and of motion in the plane normal to each world axis.
 #[derive(Default)]
 struct PlaneEnergy {
     total: f64,
@@ -240,6 +245,7 @@ struct PlaneEnergy {
 }
 
 impl PlaneEnergy {
+    /// Adds a rigid body.
     fn add_body(&mut self, body: &super::chain::Body, motion: &Twist) {
         let velocity = displacement_at(motion, &body.cg_m);
         let spin = super::angular(motion);
@@ -252,6 +258,7 @@ impl PlaneEnergy {
         }
     }
 
+    /// Adds a link, integrated over its Gauss points.
     fn add_link(&mut self, posed: &Posed, own: &super::chain::OwnMass, motion: &Twist, rates: &[f64]) {
         let Some(beam) = posed.chain.beam(own.piece) else { return };
         let turn = own.frame.transpose();
@@ -271,7 +278,7 @@ impl PlaneEnergy {
         }
     }
 
-    /// Adds the energy of one Gauss point; rotation lies within a plane if it is about its normal.
+    /// Adds the energy of one Gauss point. A rotation is in a plane if it is about the normal of the plane.
     fn add_line(
         &mut self,
         frame: &nalgebra::Matrix3<f64>,
@@ -289,6 +296,7 @@ impl PlaneEnergy {
         }
     }
 
+    /// The fraction of the energy in the plane with this normal.
     fn fraction(&self, normal: usize) -> f64 {
         self.within[normal] / self.total
     }

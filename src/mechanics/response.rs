@@ -1,20 +1,20 @@
 //! Response of the tip to a harmonic force at the tip: F(t) of Eq 16, with modal damping.
 //!
-//! In the modal coordinates of the flexibility form `u(ω) = Σ u_k (u_k·F) / (1 - (ω/ω_k)² + 2 i ζ ω/ω_k)`,
-//! where `u_k` is the tip's motion in mode k scaled to a strain energy of ½ J. All modes of the model
-//! are summed, so that the static limit is the arm's compliance.
+//! The amplitude is `u(ω) = Σ u_k (u_k·F) / (1 - (ω/ω_k)² + 2 i ζ ω/ω_k)`. Here `u_k` is the motion of the tip in mode k,
+//! scaled to a strain energy of ½ J, and ζ is the damping ratio. The sum goes over all modes of the model, so that its
+//! static limit is the compliance of the arm.
 
 use super::chain::Posed;
 use super::statics::Statics;
 use nalgebra::{Complex, Vector3};
 use std::f64::consts::TAU;
 
-/// Tip motion at one frequency.
+/// Motion of the tip at one frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Response {
     /// Frequency of the force \[Hz\].
     pub frequency_hz: f64,
-    /// Complex amplitude of the tip displacement, world axes \[m\].
+    /// Complex amplitude of the displacement of the tip in world axes \[m\].
     pub tip_m: Vector3<Complex<f64>>,
 }
 
@@ -24,13 +24,14 @@ impl Response {
         self.tip_m.map(Complex::norm)
     }
 
-    /// Phase against the force along each world axis \[rad\].
+    /// Phase of the displacement relative to the force, along each world axis \[rad\].
     pub fn phase_rad(&self) -> Vector3<f64> {
         self.tip_m.map(Complex::arg)
     }
 }
 
-/// Tip motion under a harmonic tip force of amplitude `force_n`, with the same damping ratio in every mode.
+/// Motion of the tip at each frequency \[Hz\] under a harmonic force at the tip. `force_n` is the amplitude of the force in
+/// world axes \[N\]; every mode has the same damping ratio.
 pub fn frequency_response(
     posed: &Posed,
     statics: &Statics,
@@ -60,7 +61,7 @@ pub fn frequency_response(
         .collect()
 }
 
-/// `1 - (ω/ω_k)² + 2 i ζ ω/ω_k`.
+/// The denominator of one mode: `1 - (ω/ω_k)² + 2 i ζ ω/ω_k`, from `1/ω_k²`.
 fn resistance(inverse_square: f64, frequency_hz: f64, damping_ratio: f64) -> Complex<f64> {
     let ratio = TAU * frequency_hz * inverse_square.sqrt();
     Complex::new(1.0 - ratio * ratio, 2.0 * damping_ratio * ratio)

@@ -1,33 +1,36 @@
-//! How far the tip moves under gravity and load (Eqs 4, 7, 13-15).
+//! Statics: joint torques, and how far the tip moves under gravity and load (Eqs 4, 7, 13-15).
+//!
+//! The calculation is linear about the undeformed pose, except for the torsion of joints, which follows their laws. In a
+//! serial chain the loads alone fix every force, so one pass from the tip to the base is enough.
 
 use super::chain::{ElasticElement, Item, Posed, Yielding};
-use super::linkage::Carried;
+use super::linkage::Transferred;
 use super::{Twist, Wrench, angular, displacement_at, force_wrench, linear};
 use nalgebra::Vector3;
 
 /// The static state of an arm in a pose under a load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statics {
-    /// Torque that gravity and load put on each joint about its axis \[N m\] (Eq 7).
+    /// Torque of gravity and load on each joint about its axis \[N m\] (Eq 7), with the name of the joint.
     pub joint_torques_nm: Vec<(String, f64)>,
-    /// Displacement of the tip from where the weightless arm would have it, world \[m\] (Eq 15).
+    /// Displacement of the tip from its place in the weightless arm, in world axes \[m\] (Eq 15).
     pub tip_displacement_m: Vector3<f64>,
-    /// Each element's part of it, base to tip; the parts sum to the whole.
+    /// The part of this displacement that each element causes, base to tip. The parts add up to the whole.
     pub shares_m: Vec<(String, Vector3<f64>)>,
     /// Value of each coordinate, element by element, base to tip.
     pub deformations: Vec<Vec<f64>>,
     /// Forces and moments at the root of each link.
     pub link_roots: Vec<LinkRoot>,
-    /// Compliance of each coordinate to a small further force, element by element, base to tip.
+    /// Tangent compliance of each coordinate, element by element, base to tip.
     pub tangent_compliances: Vec<Vec<f64>>,
-    /// Force and moment on the base about the world origin.
+    /// Force and moment on the base, about the world's origin.
     pub base_wrench: Wrench,
 }
 
-/// What a link's root carries, in the link's section frame.
+/// Force and moment at the root of a link, in its section frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinkRoot {
-    /// Link.
+    /// Name of the link.
     pub name: String,
     /// Force (axial, along y, along z) \[N\].
     pub force_n: Vector3<f64>,
@@ -36,11 +39,13 @@ pub struct LinkRoot {
 }
 
 impl Posed<'_> {
-    /// One pass from the tip inward: the wrench of everything outboard, each element's answer to it,
-    /// and what that answer moves the tip by.
+    /// The static state of the arm.
+    ///
+    /// One pass goes from the tip to the base. It adds up the wrench of everything outboard, lets each element yield to
+    /// it, and sums the displacements of the tip. [`Chain`](super::Chain) has an example.
     pub fn statics(&self) -> Statics {
         let mut wrench = force_wrench(&self.tip_force_n, &self.tip_m);
-        let carried = self.carried();
+        let transferred = self.transferred();
         let mut out = Statics {
             joint_torques_nm: Vec::new(),
             tip_displacement_m: Vector3::zeros(),
@@ -53,7 +58,7 @@ impl Posed<'_> {
         for item in self.items.iter().rev() {
             match item {
                 Item::Body(body) => wrench += body.weight(),
-                Item::Elastic(element) => self.yield_to(element, &carried, &mut wrench, &mut out),
+                Item::Elastic(element) => self.yield_to(element, &transferred, &mut wrench, &mut out),
             }
         }
         out.joint_torques_nm.reverse();
@@ -66,12 +71,12 @@ impl Posed<'_> {
         out
     }
 
-    /// One element under the outboard wrench: its deformation, its tangent, its share; then its own
-    /// weight joins the wrench.
+    /// Lets one element yield to the outboard wrench, and records its deformation, its tangent compliance and its share.
+    /// Then the element's own weight is added to the wrench.
     fn yield_to(
         &self,
         element: &ElasticElement,
-        carried: &[Carried],
+        transferred: &[Transferred],
         wrench: &mut Wrench,
         out: &mut Statics,
     ) {
@@ -80,7 +85,7 @@ impl Posed<'_> {
             Yielding::Joint(law) => {
                 let mut torque_nm = element.twists[0].dot(wrench);
                 let mut passive_twist = Twist::zeros();
-                for passive in carried.iter().filter(|c| c.driver == element.name) {
+                for passive in transferred.iter().filter(|c| c.driver == element.name) {
                     passive_twist += passive.twist;
                     torque_nm += passive.torque_nm;
                 }

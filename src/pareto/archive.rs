@@ -1,32 +1,35 @@
-//! Rejecting dominated designs in a few nanoseconds while millions of them stream by.
+//! Archive: a table that rejects dominated designs within a few nanoseconds.
 //!
-//! A table over mass and deflection, both on a scale that halves each octave into equal steps (the
-//! leading bits of the floating-point number: monotone, exact, and no logarithm), holds the best
-//! frequency found so far at or below each cell. A design is entered at the next corner up and looked up
-//! at the next corner down, its frequency rounded down on entry, so that the table never claims too
-//! much: it only rejects designs that another one beats. What it lets through is filtered exactly later,
-//! so the outcome does not depend on the order of entries.
+//! The table is over mass and deflection. Each cell has the highest lowest mode that was found so far at or below its mass
+//! and deflection. Both scales divide each octave into equal steps, which are the leading bits of a floating-point number.
+//! This is monotone and exact, and needs no logarithm.
+//!
+//! A design is entered at the next corner above it and looked up at the next corner below it, and its frequency is rounded
+//! down on entry. The table therefore rejects a design only if another one dominates it. Designs that it lets through are
+//! filtered exactly later, so the result does not depend on the order of entries.
 
 use super::objectives::Objectives;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Range of the table in powers of two, outside of which nothing is rejected: 8 g to 131 t, 0.1 um to
-/// 16 m.
+/// Range of masses in powers of two: 8 g to 131 t. Nothing outside of the range is rejected.
 const MASS_OCTAVES: (i32, i32) = (-7, 17);
+/// Range of deflections in powers of two: 0.1 um to 16 m.
 const DEFLECTION_OCTAVES: (i32, i32) = (-23, 4);
-/// A rejected design is slower than its rival by at least this part.
+/// Fraction by which the lowest mode of a rejected design is below that of the design that dominates it, at least. It is
+/// far above the rounding errors of the fast model, on which the table works.
 const MARGIN: f64 = 1e-5;
 
-/// The table, shared by all threads.
+/// The table. All threads share it.
 pub struct Archive {
-    /// Leading bits of the fraction that tell cells apart.
+    /// Number of leading bits of the fraction that tell cells apart.
     bits: u32,
     columns: usize,
+    /// Best frequency of each cell, as the bits of an `f32`: positive floats are ordered like their bits.
     best_hz: Vec<AtomicU32>,
 }
 
 impl Archive {
-    /// A table of `2^bits` steps an octave.
+    /// An empty table with `2^bits` steps in each octave.
     pub fn new(bits: u32) -> Self {
         let cells = |(low, high): (i32, i32)| ((high - low) as usize) << bits;
         let columns = cells(DEFLECTION_OCTAVES);
@@ -34,13 +37,14 @@ impl Archive {
         Self { bits, columns, best_hz: (0..all).map(|_| AtomicU32::new(0)).collect() }
     }
 
-    /// Whether some design entered before is surely better.
+    /// Whether some design entered before surely dominates this one.
     #[inline]
     pub fn rejects(&self, o: &Objectives) -> bool {
         self.bar_hz(o.mass_kg, o.tip_deflection_m) > o.lowest_mode_hz
     }
 
-    /// The lowest mode \[Hz\] below which a design of this mass and deflection is surely beaten by one entered before.
+    /// The bar: a design of this mass and deflection with a lowest mode \[Hz\] below it is surely dominated by one entered
+    /// before. It is 0 if no such design was entered.
     #[inline]
     pub fn bar_hz(&self, mass_kg: f64, tip_deflection_m: f64) -> f64 {
         let (row, column) = (
@@ -52,8 +56,8 @@ impl Archive {
         f64::from(best) * (1.0 - MARGIN)
     }
 
-    /// Enters a design. Two threads that write one cell at once may lose the better of the two; the table
-    /// then rejects less than it could, never more.
+    /// Enters a design. If two threads write one cell at the same time, the better entry may be lost. The table then rejects
+    /// fewer designs than it could, but never more.
     pub fn enter(&self, o: &Objectives) {
         let (row, column) = (
             self.corner(o.mass_kg, MASS_OCTAVES, Corner::Above),
@@ -74,7 +78,7 @@ impl Archive {
         }
     }
 
-    /// The step at or below, or at or above, a positive number.
+    /// The step at or below a positive number, or at or above it; `None` outside of the range.
     #[inline]
     fn corner(&self, x: f64, (low, high): (i32, i32), side: Corner) -> Option<usize> {
         let shift = f64::MANTISSA_DIGITS - 1 - self.bits;
@@ -88,14 +92,14 @@ impl Archive {
     }
 }
 
-/// Which corner of a cell.
+/// The corner of a cell at which a design is taken.
 #[derive(Clone, Copy)]
 enum Corner {
     Below,
     Above,
 }
 
-/// The bits of the largest `f32` not above a positive number; their order is that of the numbers.
+/// The bits of the largest `f32` that is not above a positive number. Such bits are ordered like the numbers.
 fn round_down(x: f64) -> u32 {
     let near = x as f32;
     let bits = near.to_bits();

@@ -1,19 +1,19 @@
-//! Pareto fronts of three objectives, all to be made small.
+//! Pareto fronts of three objectives, all to be minimized.
 //!
-//! A sieve drops what is plainly dominated, the rest is swept along the first objective over a staircase of
-//! the other two: O(n log n) whatever the points look like, exact, duplicates kept.
+//! A sieve drops points that are plainly dominated. The rest are swept along the first objective, over a staircase of the
+//! other two. The method is exact, keeps duplicates, and takes O(n log n) for any set of points.
 
 use super::ranking::{Ranked, Ranking};
 use super::sieve::sieve;
 use super::staircase::Staircase;
 use rayon::prelude::*;
 
-/// Decimal digits that count when two objectives are compared: what lies below is rounding.
+/// Number of significant decimal digits that count when two objectives are compared. Differences below are rounding errors.
 const DIGITS: i32 = 12;
-/// Two objectives further apart than this are told apart by twelve digits, relative.
+/// Relative difference from which on twelve digits surely tell two objectives apart.
 const SURELY_APART: f64 = 1e-10;
 
-/// A point with an objective that is not a number: it cannot be compared with others.
+/// The error for a point with an objective that is not a number (NaN), which cannot be compared with others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
     "point {point} has an objective that is not a number: leave the point out, or find out what it should be"
@@ -23,13 +23,13 @@ pub struct NotANumber {
     pub point: usize,
 }
 
-/// A number rounded to `DIGITS` significant decimal digits.
+/// A number rounded to 12 significant decimal digits.
 pub fn rounded(x: f64) -> f64 {
     if x == 0.0 || !x.is_finite() {
         return x;
     }
     let scale = 10f64.powi(DIGITS - 1 - x.abs().log10().floor() as i32);
-    // below 1e-297 there are no twelve digits to speak of
+    // numbers below 1e-297 have no twelve digits that mean anything
     if scale.is_finite() { (x * scale).round() / scale } else { x }
 }
 
@@ -39,8 +39,19 @@ pub(crate) fn all_numbers(points: &[[f64; 3]]) -> Result<(), NotANumber> {
     faulty.map_or(Ok(()), |point| Err(NotANumber { point }))
 }
 
-/// Indices, ascending, of the points that no other point dominates: none is at most equal in all three
-/// objectives and smaller in one. Comparisons are exact; equal points stay together.
+/// The front: indices, ascending, of the points that no other point dominates. A point dominates another if it is nowhere
+/// larger and somewhere smaller. Comparisons are exact, and equal points are all kept.
+///
+/// # Errors
+/// [`NotANumber`] with the first point that has a NaN.
+///
+/// ```
+/// use armwright::pareto::front::exact_front;
+///
+/// let points = [[1.0, 3.0, 0.0], [2.0, 2.0, 0.0], [2.0, 3.0, 0.0], [1.0, 3.0, 0.0]];
+/// assert_eq!(exact_front(&points).unwrap(), [0, 1, 3], "point 2 is dominated, points 0 and 3 are equal");
+/// assert!(exact_front(&[[f64::NAN, 0.0, 0.0]]).is_err());
+/// ```
 pub fn exact_front(points: &[[f64; 3]]) -> Result<Vec<usize>, NotANumber> {
     all_numbers(points)?;
     let sieved = sieve(points, 0.0);
@@ -50,8 +61,11 @@ pub fn exact_front(points: &[[f64; 3]]) -> Result<Vec<usize>, NotANumber> {
     Ok(front)
 }
 
-/// Groups of points that no other point dominates, each group a tie (equal in all three to 12 digits),
-/// sorted by the objectives; indices within a group ascend.
+/// The front by twelve digits, as groups of ties. The points of a group are equal to 12 digits in all three objectives.
+/// Groups are sorted by the objectives, and the indices within a group ascend.
+///
+/// # Errors
+/// [`NotANumber`] with the first point that has a NaN.
 pub fn nondominated(points: &[[f64; 3]]) -> Result<Vec<Vec<usize>>, NotANumber> {
     all_numbers(points)?;
     let sieved = sieve(points, SURELY_APART);
@@ -61,15 +75,15 @@ pub fn nondominated(points: &[[f64; 3]]) -> Result<Vec<Vec<usize>>, NotANumber> 
     Ok(tied.map(|group| group.iter().map(|&i| sieved[i as usize] as usize).collect()).collect())
 }
 
-/// Indices of the points that no other dominates, in the order of the sweep: equal points side by side,
-/// their indices ascending.
+/// Indices of the points that no other point dominates, in the order of the sweep. Equal points follow each other, with
+/// ascending indices.
 fn swept(points: &[[f64; 3]]) -> Vec<u32> {
     let Ranking { order, second } = Ranking::new(points);
     let mut stairs = Staircase::new(second.len());
     let mut kept: Vec<u32> = Vec::new();
     for Ranked { point: i, rank } in order {
         let point = &points[i as usize];
-        // whatever was swept before and differs is no larger in the first objective
+        // a point that was swept before is no larger in the first objective, so the other two decide
         if !stairs.covers(rank, point[2]) {
             stairs.insert(rank, point[2], |_, _| ());
             kept.push(i);
@@ -80,8 +94,7 @@ fn swept(points: &[[f64; 3]]) -> Vec<u32> {
     kept
 }
 
-/// Indices of the points that no other point beats by more than `slack` (relative) in all three
-/// objectives, in the order of `points`.
+/// Indices, ascending, of the points that no other point beats by more than `slack` (relative) in all three objectives.
 pub fn not_clearly_beaten(points: &[[f64; 3]], slack: f64) -> Vec<usize> {
     let lowered = |x: f64| x - slack * x.abs();
     let Ranking { order, second } = Ranking::new(points);
@@ -106,7 +119,7 @@ pub fn not_clearly_beaten(points: &[[f64; 3]], slack: f64) -> Vec<usize> {
     kept
 }
 
-/// For each rank, the largest rank whose objective is not above the lowered objective of the first.
+/// For each rank, the largest rank whose objective is not above the lowered objective of this rank.
 fn reaches(second: &[f64], lowered: impl Fn(f64) -> f64) -> Vec<Option<u32>> {
     let mut below = 0;
     let count = second.iter().map(|&x| {
@@ -119,123 +132,5 @@ fn reaches(second: &[f64], lowered: impl Fn(f64) -> f64) -> Vec<Option<u32>> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn dominates(a: &[f64; 3], b: &[f64; 3]) -> bool {
-        (0..3).all(|k| a[k] <= b[k]) && (0..3).any(|k| a[k] < b[k])
-    }
-
-    /// The front by comparing all pairs.
-    fn all_pairs(points: &[[f64; 3]]) -> Vec<usize> {
-        (0..points.len()).filter(|&i| !points.iter().any(|p| dominates(p, &points[i]))).collect()
-    }
-
-    /// Points of many kinds: small whole numbers (ties, duplicates, collinear ones), both zeros, infinities,
-    /// neighbours in floating point, and spread ones.
-    fn points() -> impl Strategy<Value = Vec<[f64; 3]>> {
-        let near = |k: u8| 1.0 + f64::from(k) * f64::EPSILON;
-        let odd = prop::sample::select(vec![-0.0, 0.0, f64::INFINITY, f64::NEG_INFINITY, 1e-300, -1e300]);
-        let coordinate = prop_oneof![
-            4 => (0u8..6).prop_map(|x| f64::from(x) - 2.0),
-            1 => (0u8..3).prop_map(near),
-            1 => odd,
-            2 => -2.0f64..2.0,
-        ];
-        prop::collection::vec([coordinate.clone(), coordinate.clone(), coordinate], 0..80)
-    }
-
-    proptest! {
-        #[test]
-        fn the_exact_front_is_that_of_all_pairs(points in points()) {
-            prop_assert_eq!(exact_front(&points).unwrap(), all_pairs(&points));
-        }
-
-        #[test]
-        fn the_front_by_twelve_digits_is_that_of_all_pairs_of_rounded_points(points in points()) {
-            let mut ours: Vec<usize> = nondominated(&points).unwrap().into_iter().flatten().collect();
-            ours.sort_unstable();
-            let rounded: Vec<[f64; 3]> = points.iter().map(|p| p.map(rounded)).collect();
-            prop_assert_eq!(ours, all_pairs(&rounded));
-        }
-
-        #[test]
-        fn slack_keeps_every_point_that_is_not_clearly_beaten(
-            points in prop::collection::vec([0.5f64..2.0, 0.5f64..2.0, -2.0f64..-0.5], 0..60)
-        ) {
-            let slack = 0.1;
-            let beaten = |i: usize| points.iter().any(|p| {
-                (0..3).all(|k| p[k] <= points[i][k] - slack * points[i][k].abs())
-            });
-            let brute: Vec<usize> = (0..points.len()).filter(|&i| !beaten(i)).collect();
-            prop_assert_eq!(not_clearly_beaten(&points, slack), brute);
-        }
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(24))]
-
-        /// Large enough for the sieve; `steps` decides how many ties there are, `bulge` how large the front is.
-        #[test]
-        fn the_sieve_drops_no_point_of_the_front(
-            seed in any::<u64>(), steps in 2u32..60, bulge in 0u8..3, digits in any::<bool>()
-        ) {
-            let mut state = seed;
-            let mut random = || {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                f64::from((state >> 33) as u32 % steps) / f64::from(steps)
-            };
-            let points: Vec<[f64; 3]> = (0..6000)
-                .map(|_| {
-                    let [a, b, c] = [random(), random(), random()];
-                    match bulge {
-                        0 => [a, b, c],
-                        1 => [a, b, 0.3 * c - a - b],
-                        _ => [a.exp2().powi(40), 1.0 / (0.01 + a * b), c - b * b],
-                    }
-                })
-                .collect();
-            let (ours, brute) = match digits {
-                true => {
-                    let mut front: Vec<usize> = nondominated(&points).unwrap().concat();
-                    front.sort_unstable();
-                    let rounded: Vec<[f64; 3]> = points.iter().map(|p| p.map(rounded)).collect();
-                    (front, all_pairs(&rounded))
-                }
-                false => (exact_front(&points).unwrap(), all_pairs(&points)),
-            };
-            prop_assert_eq!(ours, brute);
-        }
-    }
-
-    #[test]
-    fn ties_stay_together_and_rounding_does_not_part_them() {
-        let points = [[1.0, 2.0, -3.0], [1.0 + 1e-15, 2.0, -3.0], [2.0, 2.0, -3.0]];
-        assert_eq!(nondominated(&points).unwrap(), vec![vec![0, 1]]);
-        assert_eq!(exact_front(&points).unwrap(), vec![0]);
-    }
-
-    #[test]
-    fn no_point_one_point_and_equal_points() {
-        assert!(exact_front(&[]).unwrap().is_empty());
-        assert!(nondominated(&[]).unwrap().is_empty());
-        assert_eq!(exact_front(&[[1.0, 2.0, 3.0]]).unwrap(), vec![0]);
-        assert_eq!(exact_front(&[[1.0, 2.0, 3.0]; 5000]).unwrap().len(), 5000);
-    }
-
-    #[test]
-    fn collinear_points_all_stay_where_they_trade_and_one_stays_where_they_do_not() {
-        let trade: Vec<[f64; 3]> = (0..5000).map(|i| [1.0, f64::from(i), -f64::from(i)]).collect();
-        assert_eq!(exact_front(&trade).unwrap().len(), 5000);
-        let rise: Vec<[f64; 3]> = (0..5000).map(|i| [f64::from(i); 3]).collect();
-        assert_eq!(exact_front(&rise).unwrap(), vec![0]);
-    }
-
-    #[test]
-    fn what_is_not_a_number_is_refused_by_its_place() {
-        let points = [[1.0, 2.0, 3.0], [1.0, f64::NAN, 3.0]];
-        assert_eq!(exact_front(&points), Err(NotANumber { point: 1 }));
-        assert_eq!(nondominated(&points), Err(NotANumber { point: 1 }));
-    }
-}
+#[path = "front_tests.rs"]
+mod tests;

@@ -1,6 +1,10 @@
-//! Fronts: what no other design beats, and how fronts are compared.
+//! Pareto fronts of three objectives, and the hypervolume that compares them.
 //!
-//! All objectives are made small: mass, tip deflection, and the lowest mode with its sign turned.
+//! All objectives are minimized: mass, tip deflection, and the negative of the lowest mode.
+//!
+//! - [`front`] finds the points that no other point dominates.
+//! - [`hypervolume`] measures how good a front is.
+//! - [`archive`] rejects dominated designs quickly while a search runs.
 
 pub(crate) mod archive;
 pub mod front;

@@ -1,18 +1,18 @@
-//! What a design is judged by.
+//! The three objectives of a design.
 
-/// What a design is judged by.
+/// The three objectives by which a design is judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Objectives {
-    /// Largest displacement of the tip over the study's cases \[m\].
+    /// Tip deflection: the largest displacement of the tip over the judged cases \[m\].
     pub tip_deflection_m: f64,
     /// Mass of all links and drives \[kg\].
     pub mass_kg: f64,
-    /// Smallest first natural frequency over the cases \[Hz\].
+    /// Lowest mode: the smallest natural frequency over the judged cases \[Hz\].
     pub lowest_mode_hz: f64,
 }
 
 impl Objectives {
-    /// Better by a factor in each.
+    /// Objectives that are better by a factor in each.
     pub(crate) fn better_by(&self, factor: f64) -> Self {
         Self {
             tip_deflection_m: self.tip_deflection_m / factor,
@@ -21,7 +21,7 @@ impl Objectives {
         }
     }
 
-    /// As three numbers to be made small.
+    /// The objectives as three numbers to be minimized: mass, deflection, negative mode.
     pub fn minimized(&self) -> [f64; 3] {
         [self.mass_kg, self.tip_deflection_m, -self.lowest_mode_hz]
     }

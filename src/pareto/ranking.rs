@@ -1,13 +1,14 @@
-//! Points in the order of a sweep, by radix sort.
+//! Ranking: points in the order of a sweep, by radix sort.
 //!
-//! A number becomes a whole number that rises with it: the leading 32 of the bits in which the points
-//! differ. Three passes of eleven bits sort those; where two numbers share the 32 bits, a comparison of the
-//! numbers themselves settles the order, so that the sort is exact and never worse than O(n log n).
-//! Points are sorted by the second objective first, which gives its ranks, then, stably, by the first.
+//! A number becomes an integer code that rises with it: the leading 32 of the bits in which the points differ. Three passes
+//! of eleven bits sort the codes. If two numbers share the 32 bits, the numbers themselves are compared. The sort is
+//! therefore exact and takes O(n log n) at most.
+//!
+//! Points are sorted by the second objective first, which gives its ranks. A stable sort by the first objective follows.
 
 use rayon::prelude::*;
 
-/// A point and the rank of its second objective; equal objectives have equal ranks.
+/// A point and the rank of its second objective. Equal objectives have equal ranks.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Ranked {
     pub point: u32,
@@ -16,9 +17,9 @@ pub(crate) struct Ranked {
 
 /// Points in the order of a sweep.
 pub(crate) struct Ranking {
-    /// By first objective, then second, then third, then index.
+    /// The points, sorted by first objective, then second, then third, then index.
     pub order: Vec<Ranked>,
-    /// The second objective of each rank.
+    /// Value of the second objective of each rank.
     pub second: Vec<f64>,
 }
 
@@ -32,7 +33,7 @@ impl Ranking {
         let mut order = by(1, order);
         let mut second = rank(&mut order, points);
         if second.len() < order.len() / 16 {
-            // many ties: radix sort by the third first spares the comparisons that would settle them
+            // with many ties, a radix sort by the third objective is cheaper than the comparisons it saves
             order = by(1, by(2, order));
             second = rank(&mut order, points);
         }
@@ -44,13 +45,13 @@ impl Ranking {
     }
 }
 
-/// A key in the order of the numbers; both zeros are one.
+/// An integer key in the order of the numbers. Both zeros have the same key.
 fn key(x: f64) -> u64 {
     let bits = (x + 0.0).to_bits();
     if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
 }
 
-/// Numbers the values of the second objective in a list sorted by it.
+/// Gives ranks to a list that is sorted by the second objective. Returns the value of each rank.
 fn rank(order: &mut [Ranked], points: &[[f64; 3]]) -> Vec<f64> {
     let mut second: Vec<f64> = Vec::new();
     for ranked in order {
@@ -63,15 +64,14 @@ fn rank(order: &mut [Ranked], points: &[[f64; 3]]) -> Vec<f64> {
     second
 }
 
-/// A point with the leading bits that it is sorted by.
+/// A point with the leading bits of its key.
 #[derive(Clone, Copy, Default)]
 struct Coded {
     code: u32,
     ranked: Ranked,
 }
 
-/// Sorts by the leading bits of a key, stably, and where those are equal by the whole order, unless they
-/// come in that order.
+/// Sorts by the leading bits of a key, stably. Runs of equal bits are then sorted by `whole`, unless they already are.
 fn sorted<O: Ord + Send>(
     order: Vec<Ranked>,
     key: impl Fn(&Ranked) -> u64 + Sync,
@@ -93,7 +93,7 @@ fn sorted<O: Ord + Send>(
 const DIGIT_BITS: u32 = 11;
 const DIGITS: usize = 3;
 
-/// Stable radix sort, least digit first; a digit that all codes share is skipped.
+/// Stable radix sort, least significant digit first. A digit that all codes share is skipped.
 fn by_code(mut items: Vec<Coded>) -> Vec<Coded> {
     let digit = |code: u32, place: usize| (code >> (DIGIT_BITS * place as u32)) as usize % (1 << DIGIT_BITS);
     let mut counts = vec![[0usize; 1 << DIGIT_BITS]; DIGITS];

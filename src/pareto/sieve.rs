@@ -1,23 +1,24 @@
-//! A sieve that drops most dominated points in two passes, before anything is sorted.
+//! Sieve: it drops most dominated points in two passes, before anything is sorted.
 //!
-//! The first two objectives are cut into bins of about equal content (taken from a sample); a table holds
-//! the smallest third objective in each pair of bins, then in all pairs at or below. A point goes if the
-//! pairs of *lower* bins hold a smaller third: whoever set that entry is smaller in all three objectives,
-//! because a number in a lower bin is a smaller number. Poor bins let more points through; they never
-//! drop a point that is not dominated.
+//! The first two objectives are divided into bins of about equal content, which a sample determines. A table has the
+//! smallest third objective of each pair of bins and of all pairs below it. A point is dropped if the pairs of *lower* bins
+//! have a smaller third objective. The point that made this entry is then smaller in all three objectives, because a
+//! number in a lower bin is a smaller number. Bad bins let more points through, but never drop a point that is not
+//! dominated.
 
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
-/// Fewer points than this are sorted as they are.
+/// Number of points from which on the sieve is worth its cost.
 const WORTH_IT: usize = 1 << 12;
+/// Number of points in the sample, at most.
 const SAMPLE: usize = 1 << 12;
-/// Bins of each of the two objectives.
+/// Number of bins of each of the two objectives.
 const BINS: usize = 256;
-/// Equal steps of an objective's range that are gathered into bins.
+/// Number of equal steps of an objective's range, from which bins are put together.
 const STEPS: usize = 1 << 12;
 
-/// Indices, ascending, of the points that may be on the front: all but some that another point beats in all
+/// Indices, ascending, of the points that may be on the front. Every point that is left out is beaten by another in all
 /// three objectives by more than `slack` (relative).
 pub(crate) fn sieve(points: &[[f64; 3]], slack: f64) -> Vec<u32> {
     let index = |i: usize| u32::try_from(i).expect("fewer than 2^32 points fit into memory");
@@ -35,7 +36,7 @@ pub(crate) fn sieve(points: &[[f64; 3]], slack: f64) -> Vec<u32> {
     points.par_iter().enumerate().filter(|(_, p)| stays(p)).map(|(i, _)| index(i)).collect()
 }
 
-/// A map from numbers to bins that never falls.
+/// A monotone map from numbers to bins.
 struct Bins {
     low: f64,
     steps_per_unit: f64,
@@ -43,6 +44,7 @@ struct Bins {
 }
 
 impl Bins {
+    /// The bins of one objective.
     fn new(points: &[[f64; 3]], objective: usize) -> Self {
         let stride = points.len().div_ceil(SAMPLE);
         let mut sample: Vec<f64> =
@@ -61,20 +63,22 @@ impl Bins {
         bins
     }
 
-    /// Converting to a whole number holds what is below or above the range at its ends.
+    /// The step of a number. The conversion to an integer saturates, so numbers outside of the range are at its ends.
     fn step(&self, x: f64) -> usize {
         (((x - self.low) * self.steps_per_unit) as usize).min(STEPS - 1)
     }
 
+    /// The bin of a number.
     fn of(&self, x: f64) -> usize {
         self.bin[self.step(x)].into()
     }
 }
 
-/// Smallest third objective in all pairs of bins at or below each pair.
+/// Smallest third objective of each pair of bins and of all pairs below it.
 struct Table(Vec<f64>);
 
 impl Table {
+    /// Fills the table, each thread with a part of the points.
     fn new(points: &[[f64; 3]], bins: &[Bins; 2]) -> Self {
         let empty = || vec![f64::INFINITY; BINS * BINS];
         let share = points.len().div_ceil(rayon::current_num_threads()).max(WORTH_IT);

@@ -1,36 +1,37 @@
-//! The staircase that a sweep along the first of three objectives leaves behind.
+//! Staircase: the points that still matter while a sweep moves along the first of three objectives.
 //!
-//! Points are taken in order of their first objective; of those taken so far only the ones that no other
-//! beats in second and third matter, and they form a staircase: the larger the second, the smaller the
-//! third. Second objectives are known beforehand, so a step is addressed by the rank of its second
-//! among all, and the set of steps is a set of small whole numbers: 64 ranks a word, 64 words a word of
-//! the level above. Finding a neighbour or changing a step costs one word a level, whatever the points
-//! look like; with the two sorts this makes a sweep O(n log n) (Kung, Luccio & Preparata 1975).
+//! Points are taken in the order of their first objective. Of the points taken so far, only those matter that no other one
+//! dominates in the second and third objective. They form a staircase: the larger the second, the smaller the third.
+//!
+//! All second objectives are known in advance, so a step is addressed by the rank of its second objective. The steps are
+//! then a set of small integers, stored as bits: 64 ranks in a word, and one bit for each word in the level above. To find
+//! a neighbour or to change a step costs one word in each level. With the two sorts, a sweep takes O(n log n) (Kung, Luccio
+//! & Preparata 1975).
 
-/// The steps: ranks of second objectives, each with its third.
+/// The steps: ranks of second objectives, each with its third objective.
 pub(crate) struct Staircase {
     steps: RankSet,
     third: Vec<f64>,
 }
 
 impl Staircase {
-    /// No steps yet, of so many ranks.
+    /// A staircase without steps, for a number of ranks.
     pub fn new(ranks: usize) -> Self {
         Self { steps: RankSet::new(ranks), third: vec![0.0; ranks] }
     }
 
-    /// Smallest third objective among the points whose rank is at most `rank`, if there is one.
+    /// Smallest third objective among the points whose rank is at most `rank`; `None` if there is no such point.
     pub fn best(&self, rank: u32) -> Option<f64> {
         self.steps.at_or_below(rank).map(|step| self.third[step as usize])
     }
 
-    /// Whether a point is no better than one before it.
+    /// Whether some point so far is at least as good as a point in both objectives.
     pub fn covers(&self, rank: u32, third: f64) -> bool {
         self.best(rank).is_some_and(|best| best <= third)
     }
 
-    /// Adds a step that is not covered and takes away those it covers. Shows, one after the other, the rank of
-    /// each step outboard of the new one with its third, up to and with the first that stays.
+    /// Adds a step that is not covered and removes those that it covers. `see` is called with rank and third objective of
+    /// each step above the new one, up to and including the first that stays.
     pub fn insert(&mut self, rank: u32, third: f64, mut see: impl FnMut(u32, f64)) {
         self.steps.insert(rank);
         self.third[rank as usize] = third;
@@ -44,9 +45,9 @@ impl Staircase {
     }
 }
 
-/// A set of whole numbers below a bound, with nearest members.
+/// A set of integers below a bound, which finds the nearest member to a number.
 struct RankSet {
-    /// Bits of the members; then, level by level, bits of the words that are not empty.
+    /// One bit for each member; then, level by level, one bit for each word that is not empty.
     levels: Vec<Vec<u64>>,
 }
 
@@ -79,10 +80,10 @@ impl RankSet {
         }
     }
 
-    /// The largest member not above a number.
+    /// The largest member that is not above a number.
     fn at_or_below(&self, number: u32) -> Option<u32> {
         let mut place = number as usize;
-        // the first level looks at the number itself, the others at words before the one just left
+        // the lowest level includes the number itself; the levels above include only words before it
         let mut kept = u64::MAX >> (63 - place % 64);
         for (height, level) in self.levels.iter().enumerate() {
             let word = level[place / 64] & kept;
@@ -110,7 +111,7 @@ impl RankSet {
         None
     }
 
-    /// From a word that is not empty down to one of its members.
+    /// Goes from a word that is not empty down to one of its members.
     fn descend(&self, height: usize, mut place: usize, bit: impl Fn(u64) -> usize) -> u32 {
         for level in self.levels[..height].iter().rev() {
             place = place * 64 + bit(level[place]);

@@ -253,7 +253,7 @@ const BOUND_WORDS: &str = "Lower bound: no arm of this study that is as stiff an
                            Mixture: the mass if parts could be blended between catalog options.";
 const OPPOSED_WORDS: &str = "* Loads may oppose each other, which weakens the bound.";
 const IN_PLACE_WORDS: &str = "Changes per kilogram added to a piece whose stiffness grows in proportion; a negative number \
-                              lowers the tip deflection. Next part: the heavier catalog part that improves deflection or \
+                              lowers the tip's deflection. Next part: the heavier catalog part that improves deflection or \
                               mode most per kilogram, with all other parts unchanged.";
 
 fn opposed(budgets: &[PickBudget]) -> bool {

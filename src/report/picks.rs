@@ -178,11 +178,15 @@ pub fn choices(front: &FrontTable, row: usize) -> Vec<String> {
     let piece = |column: &String| {
         if let Some(link) = column.strip_suffix("_material") {
             let is_round = cell(&format!("{link}_shape")).is_some_and(|s| s.starts_with("round"));
-            let size = match ["width_mm", "height_mm", "wall_mm"].map(|s| cell(&format!("{link}_{s}"))) {
+            let sizes = ["width_mm", "height_mm", "wall_mm"].map(|s| cell(&format!("{link}_{s}")));
+            let known: Vec<&str> = sizes.into_iter().flatten().collect();
+            let size = match sizes {
                 [Some(width), Some(height), Some(wall)] => {
                     format!(" {}", tube_size(is_round, [width, height, wall]))
                 }
-                _ => String::new(),
+                [None, None, None] => String::new(),
+                // a table of another program may lack some of the columns
+                _ => format!(" {} mm", known.join(" x ")),
             };
             return cell(column).map(|material| format!("{link}{size} {material}"));
         }

@@ -110,7 +110,7 @@ impl Scattered {
     /// Sentences: what was sampled, what takes a pick's place, how much of the front stays.
     pub fn sentences(&self) -> Vec<String> {
         let mut out = vec![format!(
-            "{} samples (seed {}) of {}; 95 % of the true ratings of catalog rows are taken to lie within that scatter.",
+            "{} samples (seed {}) of {}; 95 % of the rows' true ratings are taken to lie within that scatter.",
             self.samples,
             self.seed,
             self.words.join(", ")

@@ -247,7 +247,7 @@ struct Pieces<'a, const N: usize> {
 
 impl<V: Lanes, const N: usize> Inner<V, N> for Pieces<'_, N> {
     #[inline(always)]
-    fn carry(&self, walk: &mut Walk<V, N>) {
+    fn add_to(&self, walk: &mut Walk<V, N>) {
         for (k, slot) in self.slots[..self.end].iter().enumerate() {
             match slot {
                 BlockSlot::Joint { twist, inertia_per_kg } => {

@@ -78,7 +78,7 @@ fn flagged(problem: &ArmProblem, judged: &Judged, ballast: &Ballast) -> Option<F
     let (at, pressed) = (name(ballast.piece), name(ballast.pressed));
     let (kept, lighter) = (part(judged.design.number)?, part(ballast.lighter)?);
     let why = match ballast.by_segment {
-        true => format!("{pressed} moves to a softer segment of its gear's curve"),
+        true => format!("{pressed} moves to a softer segment of its gear"),
         false => format!("the play of {pressed} opens"),
     };
     let words = format!(

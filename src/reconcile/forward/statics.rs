@@ -159,7 +159,7 @@ impl PoseGeometry {
 fn dead_torques(posed: &Posed) -> Vec<f64> {
     let mut wrench = Wrench::zeros();
     let mut torques = Vec::new();
-    let carried = posed.carried();
+    let carried = posed.transferred();
     for item in posed.items.iter().rev() {
         match item {
             Item::Body(body) => wrench += body.weight(),

@@ -251,7 +251,7 @@ pub fn deflection_bars(picks: &[PickedArm]) -> Figure {
             })
             .collect(),
     };
-    let caption = "Joints are solid, links are hatched. Each part is what the deformation of one element moves the tip (Eqs 13 to 15), \
+    let caption = "Joints are solid, links are hatched. Each part is the motion of the tip by the element's deformation (Eqs 13 to 15), \
                    along the direction of the whole deflection, in the design's worst pose.";
     let csv = bars.to_csv();
     Figure { name: "deflection".into(), caption: caption.into(), svg: bars.readable().to_svg(), csv }
