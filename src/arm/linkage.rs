@@ -14,7 +14,7 @@ pub struct Linkage {
 }
 
 /// The linkages of an arm: every driver of every passive joint.
-pub fn linkages(structure: &Structure) -> Vec<Linkage> {
+pub(crate) fn linkages(structure: &Structure) -> Vec<Linkage> {
     let driver = |index: usize| {
         structure.joints().find(|j| j.angle == JointAngle::Driven(index)).map(|j| j.name.clone())
     };

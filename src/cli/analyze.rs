@@ -26,7 +26,7 @@ use std::path::PathBuf;
     after_help = "Example: armwright analyze arm.json --pose-deg 0,-30,60 --payload-kg 5 --payload-cg-m 0.05,0,0\n\
                         Response: armwright analyze arm.json --response-n 0,0,1 --response-hz 1,100,200 --damping 0.02"
 )]
-pub struct AnalyzeArgs {
+pub(crate) struct AnalyzeArgs {
     /// Arm file (JSON)
     arm: PathBuf,
     /// One angle per joint, base to tip [deg]; default all zero

@@ -22,7 +22,7 @@ use std::path::Path;
     about = "Check the catalogs, or show parts of them",
     after_help = "Example: armwright catalog show gears --series CSG --size 32"
 )]
-pub struct CatalogArgs {
+pub(crate) struct CatalogArgs {
     /// What to do with the catalogs.
     #[command(subcommand)]
     pub verb: CatalogVerb,
@@ -30,7 +30,7 @@ pub struct CatalogArgs {
 
 /// What to do with the catalogs.
 #[derive(Debug, Clone, clap::Subcommand)]
-pub enum CatalogVerb {
+pub(crate) enum CatalogVerb {
     /// Validate every row; count rows, confidence and blank ratings; list what is odd.
     ///
     /// Reports every fault of every file at once, with file, line, column, value and what is allowed.
@@ -47,7 +47,7 @@ pub enum CatalogVerb {
 
 /// Parts one can list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Parts {
+pub(crate) enum Parts {
     /// Harmonic-drive gears.
     Gears,
     /// Electric and hydraulic motors.
@@ -60,7 +60,7 @@ pub enum Parts {
 
 /// Which parts to show, and how.
 #[derive(Debug, Clone, Default, clap::Args)]
-pub struct ShowArgs {
+pub(crate) struct ShowArgs {
     /// What to list; may be left out with --part, e.g. `gears`.
     #[arg(value_enum, required_unless_present = "part")]
     pub parts: Option<Parts>,
@@ -97,7 +97,7 @@ pub struct ShowArgs {
 ///
 /// # Errors
 /// The catalogs are faulty, a filter is not known or does not belong to the parts asked for, no such part.
-pub fn run(args: &CatalogArgs, overlay: Option<&Path>) -> Result<String, Failure> {
+pub(crate) fn run(args: &CatalogArgs, overlay: Option<&Path>) -> Result<String, Failure> {
     match &args.verb {
         CatalogVerb::Check => check(overlay).map_err(Failure::catalog),
         CatalogVerb::Show(args) => show(&Catalogs::load(overlay).map_err(Failure::catalog)?, args),
@@ -108,7 +108,7 @@ pub fn run(args: &CatalogArgs, overlay: Option<&Path>) -> Result<String, Failure
 ///
 /// # Errors
 /// Every fault of every file.
-pub fn check(overlay: Option<&Path>) -> Result<String, InputError> {
+pub(crate) fn check(overlay: Option<&Path>) -> Result<String, InputError> {
     let catalogs = Catalogs::load(overlay)?;
     let mut out = files_table(&catalogs.loaded);
     out.push_str("\nFigures that a sizing check needs and rows leave blank:\n");
@@ -206,7 +206,7 @@ fn cell<'r>(row: &'r [(&'static str, String)], column: &str) -> &'r str {
 ///
 /// # Errors
 /// A filter is not known or does not belong to the parts asked for; no such part.
-pub fn show(catalogs: &Catalogs, args: &ShowArgs) -> Result<String, Failure> {
+pub(crate) fn show(catalogs: &Catalogs, args: &ShowArgs) -> Result<String, Failure> {
     if let Some(name) = &args.part {
         return show_part(catalogs, args.parts, name);
     }

@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
                         armwright compare results/compare-materials --deflection-mm 1,2,5 --mass-kg 40,60 \
                         --mode-hz 10,15 --out comparison\n          \
                         armwright compare results/light-arm results/stiff-arm")]
-pub struct CompareArgs {
+pub(crate) struct CompareArgs {
     /// Result folders of `armwright run`, or front files
     #[arg(required = true, value_name = "RESULTS")]
     pub results: Vec<PathBuf>,
@@ -49,7 +49,7 @@ pub struct CompareArgs {
 
 /// Limits as given on the command line.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Limits(pub Vec<f64>);
+pub(crate) struct Limits(pub Vec<f64>);
 
 /// Comma-separated numbers greater than zero.
 fn limits(text: &str) -> Result<Limits, String> {
@@ -64,7 +64,7 @@ fn limits(text: &str) -> Result<Limits, String> {
 ///
 /// # Errors
 /// A folder or file is missing, is not a result, or cannot be written.
-pub fn run(args: &CompareArgs) -> Result<String, Failure> {
+pub(crate) fn run(args: &CompareArgs) -> Result<String, Failure> {
     let loaded = load(&args.results)?;
     let mut comparison = compare(&loaded.contenders, &thresholds(args));
     if loaded.one_study {

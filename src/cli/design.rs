@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 #[command(after_help = "Example: armwright design results/compare-materials 3k9 --out my-arm\n         \
                         armwright analyze my-arm/arm.json --cases my-arm/cases.json")]
-pub struct DesignArgs {
+pub(crate) struct DesignArgs {
     /// Result folder of a study
     results: PathBuf,
     /// design_id from its front.csv

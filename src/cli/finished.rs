@@ -56,7 +56,7 @@ impl Written {
     ///
     /// # Errors
     /// A file cannot be written or removed.
-    pub fn write(&self, dir: &Path) -> Result<(), Failure> {
+    pub(super) fn write(&self, dir: &Path) -> Result<(), Failure> {
         let earlier = match dir.join("run.json").exists() {
             true => of_some_runs(dir),
             false => Vec::new(),
@@ -125,7 +125,7 @@ impl Finished<'_> {
     ///
     /// # Errors
     /// A supplement cannot be worked out.
-    pub fn files(&self, asked: &SupplementArgs, stop: &AtomicBool) -> Result<Written, Failure> {
+    pub(super) fn files(&self, asked: &SupplementArgs, stop: &AtomicBool) -> Result<Written, Failure> {
         let summary = self.summary();
         let Self { problem, catalogs, outcome, near, .. } = *self;
         let (is_exact, ties_listed) = (self.exact.is_some(), self.ties_listed());

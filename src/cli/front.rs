@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 /// Works on a finished front.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: armwright front check results/compare-materials")]
-pub struct FrontArgs {
+pub(crate) struct FrontArgs {
     #[command(subcommand)]
     verb: FrontVerb,
 }

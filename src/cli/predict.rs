@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
     Effects of the payload and of the measuring channels are used here too. A corrected arm finds the other arms \
     on its trunk beside itself; those of a nominal arm are the campaign's `other_arms`."
 )]
-pub struct PredictArgs {
+pub(crate) struct PredictArgs {
     /// Arm file, corrected or not.
     #[arg(value_name = "ARM")]
     pub arm: PathBuf,
@@ -60,7 +60,7 @@ fn other_arms(args: &PredictArgs, statement: &Statement) -> Vec<PathBuf> {
 ///
 /// # Errors
 /// All faults of the input files, or a file that cannot be written.
-pub fn run(args: &PredictArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+pub(crate) fn run(args: &PredictArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let statement = read_statement(&args.campaign)?;
     let mut arms = vec![placed(&args.arm, catalogs)?];
     for file in other_arms(args, &statement) {

@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
     With --study and the verdict explained, the study is run without and with the effects that were found: \
     study/nominal and study/corrected are results as `armwright run` writes them, study_changes.csv has \
     every design of either front under both models, and verdict.json says under \"study\" which picks change.")]
-pub struct ReconcileArgs {
+pub(crate) struct ReconcileArgs {
     /// Folder of a campaign: campaign.json, arm.json and any of static.csv, modal.csv, windup.csv,
     /// positions.csv. Several campaigns of one arm are reconciled together.
     #[arg(required = true, value_name = "CAMPAIGN")]
@@ -46,7 +46,7 @@ pub struct ReconcileArgs {
 ///
 /// # Errors
 /// All faults of the input files, or a file that cannot be written.
-pub fn run(
+pub(crate) fn run(
     args: &ReconcileArgs,
     catalogs: &Catalogs,
     overlay: Option<&Path>,

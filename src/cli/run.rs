@@ -30,7 +30,7 @@ use std::time::Instant;
                   armwright run my-study.json --effects results/may/arm.corrected.json\n         \
                   armwright run my-study.json --within 2% --tolerance gear_stiffness=20%"
 )]
-pub struct RunArgs {
+pub(crate) struct RunArgs {
     /// A built-in study (see `armwright studies`) or a study file
     study: String,
     /// Folder for the results; default results/<study>, or results/<study>-with-effects

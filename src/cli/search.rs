@@ -22,7 +22,7 @@ use std::time::{Duration, Instant};
 
 /// How the front is searched for, and how long.
 #[derive(Debug, Clone, Copy, Default, Args)]
-pub struct SearchArgs {
+pub(crate) struct SearchArgs {
     /// How the front is searched for; default: exhaustive up to 1e9 designs, exact beyond
     #[arg(long, value_enum)]
     search: Option<SearchKind>,
@@ -84,7 +84,7 @@ impl SearchArgs {
     }
 
     /// Whether anything is asked for.
-    pub fn is_default(&self) -> bool {
+    pub(crate) fn is_default(&self) -> bool {
         self.search.is_none() && self.time_limit.is_none() && self.gap.is_none()
     }
 }

@@ -27,7 +27,7 @@ use std::path::PathBuf;
     after_help = "Example: armwright size light-arm\n         armwright size compare-materials --explain j2\n\n\
                         Open links take the section in the middle of their options unless --design names one."
 )]
-pub struct SizeArgs {
+pub(crate) struct SizeArgs {
     /// A built-in study or a study file
     study: String,
     /// Take the links (and chosen drives) of this design_id

@@ -37,10 +37,10 @@ pub(super) struct BoxBound {
 
 impl BoxBound {
     /// The bound of a box about which nothing is known.
-    pub const OPEN: Self = Self { mass_kg: 0.0, tip_m: 0.0, hz: f64::INFINITY };
+    pub(super) const OPEN: Self = Self { mass_kg: 0.0, tip_m: 0.0, hz: f64::INFINITY };
 
     /// The bound with all three objectives made worse by the factor `1 + slack`.
-    pub fn slackened(&self, slack: f64) -> Self {
+    pub(super) fn slackened(&self, slack: f64) -> Self {
         let factor = 1.0 + slack;
         Self { mass_kg: self.mass_kg * factor, tip_m: self.tip_m * factor, hz: self.hz / factor }
     }
@@ -62,13 +62,13 @@ pub(super) enum Verdict {
 
 impl<'c> Problem<'c> {
     /// The box of all designs.
-    pub fn root(&self) -> DesignBox {
+    pub(super) fn root(&self) -> DesignBox {
         vec![0; self.level_pieces.len()]
     }
 
     /// The objectives of a box of one design. Mass and deflection are those of the bound; the mode is
     /// computed exactly, because a trial shape gives only an upper bound of it.
-    pub fn objectives(&self, box_bound: &BoxBound, work: &Work) -> Objectives {
+    pub(super) fn objectives(&self, box_bound: &BoxBound, work: &Work) -> Objectives {
         let quotient = (box_bound.hz * std::f64::consts::TAU).powi(2);
         let lowest =
             self.judged_cases().zip(self.inertias.iter()).fold(quotient, |lowest, (case, inertia)| {
@@ -87,7 +87,7 @@ impl<'c> Problem<'c> {
 
     /// The first trial shapes: those of the box of all designs, one for each start in each judged case.
     /// `None` if no design meets the constraints.
-    pub fn first_shapes(&self, work: &mut Work) -> Option<Vec<Shape>> {
+    pub(super) fn first_shapes(&self, work: &mut Work) -> Option<Vec<Shape>> {
         self.fill(&mut self.root(), work)?;
         self.least_tip_m(work)?;
         let mut shapes = Vec::new();
@@ -106,7 +106,7 @@ impl<'c> Problem<'c> {
     /// Bounds a box. `shapes` are the trial shapes of the parent box; they are replaced by this box's own
     /// where that helps. `is_dominated` tells whether an incumbent dominates a bound, and `worth_refining`
     /// whether a better shape could prune the box.
-    pub fn bound(
+    pub(super) fn bound(
         &self,
         design_box: &mut [u32],
         shapes: &mut Arc<Vec<Shape>>,
@@ -258,7 +258,7 @@ impl<'c> Problem<'c> {
     }
 
     /// The options of a box of one design, tip first. `None` if the box has several designs.
-    pub fn options(&self, design_box: &[u32]) -> Option<Vec<u32>> {
+    pub(super) fn options(&self, design_box: &[u32]) -> Option<Vec<u32>> {
         self.level_pieces
             .iter()
             .zip(design_box)

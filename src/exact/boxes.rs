@@ -22,7 +22,7 @@ pub(super) struct OpenBox {
 
 impl OpenBox {
     /// The two halves along a level. The first half stands last, because the stack is opened from its end.
-    pub fn halves(&self, problem: &Problem, level: usize, box_bound: BoxBound) -> Vec<Self> {
+    pub(super) fn halves(&self, problem: &Problem, level: usize, box_bound: BoxBound) -> Vec<Self> {
         let half = |node: u32| {
             let mut design_box = self.design_box.clone();
             design_box[level] = node;
@@ -99,7 +99,7 @@ pub(super) struct Search<'s, 'p> {
 
 impl Search<'_, '_> {
     /// Bounds a box and returns its halves. A box of one design is judged and returns nothing.
-    pub fn open(&self, mut here: OpenBox, work: &mut Work, findings: &mut Findings) -> Vec<OpenBox> {
+    pub(super) fn open(&self, mut here: OpenBox, work: &mut Work, findings: &mut Findings) -> Vec<OpenBox> {
         self.budget.count_box();
         let verdict = self.problem.bound(
             &mut here.design_box,
@@ -129,7 +129,7 @@ impl Search<'_, '_> {
     }
 
     /// Whether a design of the shared state or of the findings dominates the bound made worse by the slack.
-    pub fn dominates(&self, box_bound: &BoxBound, findings: &Findings) -> bool {
+    pub(super) fn dominates(&self, box_bound: &BoxBound, findings: &Findings) -> bool {
         let slackened = box_bound.slackened(self.slack);
         self.state.incumbents.dominates(&slackened) || findings.dominates(&slackened)
     }

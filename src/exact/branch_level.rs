@@ -23,7 +23,12 @@ fn middling(low: f64, high: f64) -> f64 {
 
 impl Problem<'_> {
     /// The level whose halving should sharpen the bound most. `None` if every level has a single option.
-    pub fn widest_level(&self, design_box: &[u32], shapes: &[Shape], work: &mut Work) -> Option<usize> {
+    pub(super) fn widest_level(
+        &self,
+        design_box: &[u32],
+        shapes: &[Shape],
+        work: &mut Work,
+    ) -> Option<usize> {
         self.weigh_tip(work);
         let (judged, start) = work.worst;
         let shape = &shapes[judged * STARTS.len() + start];
@@ -119,7 +124,7 @@ impl Problem<'_> {
     }
 
     /// The two halves of a box along a level. `None` if the level has a single option.
-    pub fn halves(&self, design_box: &[u32], level: usize) -> Option<[u32; 2]> {
+    pub(super) fn halves(&self, design_box: &[u32], level: usize) -> Option<[u32; 2]> {
         match &self.parts[self.level_pieces[level]] {
             Part::Drives { tree, .. } => tree.children(design_box[level]),
             Part::Links { tree, .. } => tree.children(design_box[level]),

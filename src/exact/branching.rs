@@ -59,7 +59,7 @@ fn spread(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
 
 impl Rows<'_> {
     /// Where to branch, the most promising first.
-    pub fn branchings(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
+    pub(super) fn branchings(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
         let mut branchings = Vec::new();
         let left_out = self.left_out(mixed, multipliers);
         for (level, &piece) in self.problem.level_pieces.iter().enumerate() {
@@ -206,7 +206,7 @@ impl Problem<'_> {
     }
 
     /// The problem restricted to each side of a branching. `None` if all options lie on one side.
-    pub fn branch(&self, kept: &[Vec<u32>], branching: &Branching) -> Option<[Self; 2]> {
+    pub(super) fn branch(&self, kept: &[Vec<u32>], branching: &Branching) -> Option<[Self; 2]> {
         match branching.by {
             BranchOn::Options { level, axis } => {
                 let [low, high] = self.branch_on_options(kept, level, axis, branching.at)?;

@@ -12,27 +12,27 @@ pub(super) struct Budget<'p> {
 
 impl<'p> Budget<'p> {
     /// A search that ends when `stop` is set or the deadline has passed.
-    pub fn new(stop: &'p AtomicBool, deadline: Option<Instant>) -> Self {
+    pub(super) fn new(stop: &'p AtomicBool, deadline: Option<Instant>) -> Self {
         Self { stop, deadline, boxes: AtomicU64::new(0) }
     }
 
     /// The time at which the search ends at the latest.
-    pub fn deadline(&self) -> Option<Instant> {
+    pub(super) fn deadline(&self) -> Option<Instant> {
         self.deadline
     }
 
     /// The number of boxes bounded so far.
-    pub fn boxes(&self) -> u64 {
+    pub(super) fn boxes(&self) -> u64 {
         self.boxes.load(Ordering::Relaxed)
     }
 
     /// Counts one more box.
-    pub fn count_box(&self) {
+    pub(super) fn count_box(&self) {
         self.boxes.fetch_add(1, Ordering::Relaxed);
     }
 
     /// Whether the search has to end now.
-    pub fn stopped(&self) -> bool {
+    pub(super) fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
 }

@@ -24,7 +24,7 @@ use std::sync::Arc;
 impl<'c> Problem<'c> {
     /// Compiles a space with the link options that `takes` admits. `ties` says whether drives of one mass and
     /// one curve are one option. `None` if some level has no option.
-    pub fn new(
+    pub(super) fn new(
         space: &'c DesignSpace,
         catalogs: &'c Catalogs,
         takes: &dyn Fn(&LinkOption) -> bool,

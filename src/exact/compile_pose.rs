@@ -20,7 +20,7 @@ use nalgebra::{DMatrix, Matrix3, Matrix6, Rotation3, SMatrix, Vector3};
 
 impl Pose {
     /// Compiles the case with this index.
-    pub fn new(space: &DesignSpace, index: usize) -> Self {
+    pub(super) fn new(space: &DesignSpace, index: usize) -> Self {
         let case = &space.cases[index];
         let water = case.water.or(space.surroundings().water);
         let walk = Walk::new(space, case);

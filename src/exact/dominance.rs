@@ -67,7 +67,7 @@ impl Problem<'_> {
     /// lighter arm of the same stiffness is no worse. It is not so with friction, because what friction holds
     /// back grows with the weights too, nor with drives that fit first, because a lighter arm would get
     /// softer drives.
-    pub fn grows_with_weight(&self) -> bool {
+    pub(super) fn grows_with_weight(&self) -> bool {
         let fits_first = self.parts.iter().any(|part| matches!(part, Part::FirstFit { .. }));
         let friction = self.joint_plays.iter().flatten().any(JointPlay::has_friction);
         !fits_first && !friction && self.poses.iter().all(Pose::grows_with_weight)
@@ -75,7 +75,12 @@ impl Problem<'_> {
 
     /// Removes dominated drives from a box whose numbers are in `work`. `None` if no design is left;
     /// otherwise whether the box became smaller.
-    pub fn prune_dominated_drives(&self, design_box: &mut [u32], tip_m: f64, work: &Work) -> Option<bool> {
+    pub(super) fn prune_dominated_drives(
+        &self,
+        design_box: &mut [u32],
+        tip_m: f64,
+        work: &Work,
+    ) -> Option<bool> {
         let mut shrunk = false;
         // The argument needs contributions to the tip that do not oppose each other. A pose where they may
         // oppose does no harm if it cannot be the worst pose of the box.

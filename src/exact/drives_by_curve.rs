@@ -35,7 +35,7 @@ pub(super) struct DrivesByCurve(Vec<CurveGroup>);
 
 impl DrivesByCurve {
     /// The drives below a node that can carry the least demand.
-    pub fn new(tree: &Tree<DriveBox>, node: u32, asked: Option<&LeastDemand>) -> Self {
+    pub(super) fn new(tree: &Tree<DriveBox>, node: u32, asked: Option<&LeastDemand>) -> Self {
         let mut curves: Vec<CurveGroup> = Vec::new();
         let (mut open, mut last) = (vec![node], 0);
         while let Some(at) = open.pop() {
@@ -65,7 +65,7 @@ impl DrivesByCurve {
     }
 
     /// The least price of a drive and its node. `None` if no drive is feasible.
-    pub fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
+    pub(super) fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
         let of = |of: &CurveGroup| {
             let (mass_kg, node) = if price.of_mass([0.0, 1.0]) < 0.0 { of.heaviest } else { of.lightest };
             (price.of_joint([mass_kg; 2], of.curve.as_ref()), node)

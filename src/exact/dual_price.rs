@@ -34,7 +34,7 @@ pub(super) struct Gear {
 
 impl Gear {
     /// A gear whose torque may lie in several segments. `next` is the first of its two rows.
-    pub fn free(
+    pub(super) fn free(
         piece: usize,
         judged: usize,
         [low, high]: [f64; 2],
@@ -47,7 +47,7 @@ impl Gear {
     }
 
     /// A gear that stays in one segment of its curve.
-    pub fn at(piece: usize, judged: usize, torque_nm: f64) -> Self {
+    pub(super) fn at(piece: usize, judged: usize, torque_nm: f64) -> Self {
         let torques_nm = [torque_nm; 2];
         Self { piece, judged, torques_nm, row: None, least_compliance: 0.0 }
     }
@@ -102,7 +102,7 @@ pub(super) struct GearStates {
 
 impl GearStates {
     #[inline]
-    pub fn as_slice(&self) -> &[GearState] {
+    pub(super) fn as_slice(&self) -> &[GearState] {
         &self.all[..self.count]
     }
 }
@@ -157,7 +157,7 @@ fn each_state_of_sign(
 impl JointPrice {
     /// The price and the state of the cheapest state of a joint with this curve. For a box of joints the
     /// price is a lower bound over its members.
-    pub fn best_of(&self, curve: Option<&CurveBox>) -> (f64, JointState) {
+    pub(super) fn best_of(&self, curve: Option<&CurveBox>) -> (f64, JointState) {
         let Some(curve) = curve else { return self.rigid() };
         let mut best = (f64::INFINITY, JointState::default());
         each_state(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
@@ -173,7 +173,7 @@ impl JointPrice {
 
     /// The price of the cheapest state alone.
     #[inline]
-    pub fn least_of(&self, curve: Option<&CurveBox>) -> f64 {
+    pub(super) fn least_of(&self, curve: Option<&CurveBox>) -> f64 {
         let Some(curve) = curve else { return self.rigid().0 };
         let mut least = f64::INFINITY;
         each_state(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
@@ -190,7 +190,7 @@ impl JointPrice {
 
     /// Collects the candidate states of a joint with this curve.
     #[inline]
-    pub fn ends(&self, curve: &CurveBox, ends: &mut GearStates) {
+    pub(super) fn ends(&self, curve: &CurveBox, ends: &mut GearStates) {
         ends.count = 0;
         each_state(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
             ends.all[ends.count] = end;
@@ -214,20 +214,20 @@ impl JointPrice {
 
 impl DualPrice {
     /// Price of a joint's drive. For a box of drives: a lower bound over its members.
-    pub fn of_joint(&self, mass_kg: [f64; 2], curve: Option<&CurveBox>) -> f64 {
+    pub(super) fn of_joint(&self, mass_kg: [f64; 2], curve: Option<&CurveBox>) -> f64 {
         self.of_mass(mass_kg) + self.joint.iter().map(|price| price.least_of(curve)).sum::<f64>()
     }
 
     /// Price of a drive's mass.
     #[inline]
-    pub fn of_mass(&self, mass_kg: [f64; 2]) -> f64 {
+    pub(super) fn of_mass(&self, mass_kg: [f64; 2]) -> f64 {
         let per_kg = self.inertia[inertia::MASS];
         per_kg * if per_kg >= 0.0 { mass_kg[0] } else { mass_kg[1] }
     }
 
     /// Price of a tube. For a box of tubes: a lower bound over its members.
     #[inline]
-    pub fn of_tube(&self, tube: &LinkBox) -> f64 {
+    pub(super) fn of_tube(&self, tube: &LinkBox) -> f64 {
         let least = |price: f64, [a, b]: [f64; 2]| price * if price >= 0.0 { a } else { b };
         let mut sum = 0.0;
         for (i, &price) in self.inertia.iter().enumerate() {

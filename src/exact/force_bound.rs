@@ -25,7 +25,7 @@ impl ForceBound {
     /// For any `a`, the other force `of` is `a` times the bounded force `by` plus a remainder, which is a sum
     /// over the weights. The bound is piecewise linear in `a`, and it is best where a weight drops out of the
     /// remainder; those values of `a` are tried.
-    pub fn tighten(&self, of: &Row, by: &Row, weights: &[[f64; 2]], force: &mut [f64; 2]) {
+    pub(super) fn tighten(&self, of: &Row, by: &Row, weights: &[[f64; 2]], force: &mut [f64; 2]) {
         for (weight, per_n) in by.per_n.iter().enumerate().filter(|(_, c)| **c != 0.0) {
             let a = of.per_n.get(weight).copied().unwrap_or(0.0) / per_n;
             if a == 0.0 {

@@ -7,7 +7,12 @@ use std::sync::Arc;
 
 impl Problem<'_> {
     /// The interval of each row's force in a case. `None` if the force bounds leave an empty interval.
-    pub fn forces(&self, case: usize, weights: &[Vec<[f64; 2]>], forces: &mut Vec<[f64; 2]>) -> Option<()> {
+    pub(super) fn forces(
+        &self,
+        case: usize,
+        weights: &[Vec<[f64; 2]>],
+        forces: &mut Vec<[f64; 2]>,
+    ) -> Option<()> {
         let rows = &self.poses[case].rows;
         forces.clear();
         for row in rows {
@@ -29,7 +34,7 @@ impl Problem<'_> {
     }
 
     /// The problem with one more force bound. A bound that exists already is intersected.
-    pub fn with_force_bound(&self, case: usize, row: usize, [low, high]: [f64; 2]) -> Self {
+    pub(super) fn with_force_bound(&self, case: usize, row: usize, [low, high]: [f64; 2]) -> Self {
         let mut bounds = self.force_bounds.to_vec();
         match bounds.iter_mut().find(|bound| bound.case == case && bound.row == row) {
             Some(ForceBound { between, .. }) => *between = [between[0].max(low), between[1].min(high)],
@@ -39,7 +44,7 @@ impl Problem<'_> {
     }
 
     /// The problem without force bounds.
-    pub fn without_force_bounds(&self) -> Self {
+    pub(super) fn without_force_bounds(&self) -> Self {
         Self { force_bounds: Arc::default(), ..self.clone() }
     }
 }

@@ -34,7 +34,7 @@ impl Default for Incumbents {
 
 impl Incumbents {
     /// Adds a design that meets every constraint.
-    pub fn enter(&mut self, found: &Objectives) {
+    pub(super) fn enter(&mut self, found: &Objectives) {
         self.table.enter(found);
         self.all.push(*found);
         let keys = [step(found.mass_kg), step(found.tip_deflection_m)];
@@ -54,12 +54,12 @@ impl Incumbents {
     }
 
     /// All designs, in the order in which they were added.
-    pub fn all(&self) -> &[Objectives] {
+    pub(super) fn all(&self) -> &[Objectives] {
         &self.all
     }
 
     /// Whether an incumbent dominates every member of a box.
-    pub fn dominates(&self, box_bound: &BoxBound) -> bool {
+    pub(super) fn dominates(&self, box_bound: &BoxBound) -> bool {
         let best = Objectives::from(*box_bound);
         if self.table.rejects(&best) {
             return true;
@@ -72,7 +72,7 @@ impl Incumbents {
 
     /// Whether an incumbent would dominate the bound if its frequency were lower. Then a better trial shape,
     /// which lowers it, is worth its time.
-    pub fn nearly_dominates(&self, box_bound: &BoxBound) -> bool {
+    pub(super) fn nearly_dominates(&self, box_bound: &BoxBound) -> bool {
         self.dominates(&BoxBound { hz: box_bound.hz * NEAR, ..*box_bound })
     }
 }

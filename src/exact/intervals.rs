@@ -17,7 +17,7 @@ const DEPTH: usize = 6;
 impl Problem<'_> {
     /// Fills in every interval from the tip inward, and shrinks the nodes of the box to the options that can
     /// carry the least load. `None` if some part cannot carry it.
-    pub fn fill(&self, design_box: &mut [u32], work: &mut Work) -> Option<()> {
+    pub(super) fn fill(&self, design_box: &mut [u32], work: &mut Work) -> Option<()> {
         work.clear(self.parts.len(), self.poses.len());
         let mut level = 0;
         let mut cost_eur = 0.0;

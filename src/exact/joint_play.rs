@@ -20,19 +20,19 @@ pub(super) struct JointPlay {
 
 impl JointPlay {
     /// The play of a joint's law. `None` if it has none.
-    pub fn of(law: &JointLaw) -> Option<Self> {
+    pub(super) fn of(law: &JointLaw) -> Option<Self> {
         let play = Self { lost_motion: law.lost_motion, friction_rad: law.hysteresis_rad };
         law.has_play().then_some(play)
     }
 
     /// Whether friction holds back a twist. Then a smaller torque may twist the joint more.
-    pub fn has_friction(&self) -> bool {
+    pub(super) fn has_friction(&self) -> bool {
         self.friction_rad > 0.0
     }
 
     /// Least and greatest twist that play adds for torques in an interval \[N m\] and springs with
     /// compliances between `stiff` and `soft` \[rad/(N m)\]. The result is in rad.
-    pub fn twist(&self, [stiff, soft]: [f64; 2], [low, high]: [f64; 2]) -> [f64; 2] {
+    pub(super) fn twist(&self, [stiff, soft]: [f64; 2], [low, high]: [f64; 2]) -> [f64; 2] {
         let lost = |torque_nm: f64| self.lost_motion.map_or(0.0, |lost| lost.angle_rad(torque_nm));
         let held_back = |torque_nm: f64, compliance: f64| {
             (torque_nm.abs() * compliance).min(self.friction_rad).copysign(torque_nm)
@@ -44,7 +44,7 @@ impl JointPlay {
 
     /// The stiffness that small oscillations see, in series with lost motion \[N m/rad\]. For all torques of
     /// at most this magnitude it is an upper bound.
-    pub fn in_series(&self, stiffness: f64, most_nm: f64) -> f64 {
+    pub(super) fn in_series(&self, stiffness: f64, most_nm: f64) -> f64 {
         match self.lost_motion {
             None => stiffness,
             Some(lost) => 1.0 / (1.0 / stiffness + lost.tangent_compliance_rad_per_nm(most_nm)),
@@ -52,7 +52,7 @@ impl JointPlay {
     }
 
     /// Whether small oscillations see the same slope of play under all torques up to a magnitude \[N m\].
-    pub fn stays(&self, most_nm: f64) -> bool {
+    pub(super) fn stays(&self, most_nm: f64) -> bool {
         self.lost_motion.is_none_or(|lost| most_nm <= AT_REST * lost.torque_nm)
     }
 }

@@ -11,7 +11,7 @@ use crate::space::design::number;
 
 impl Problem<'_> {
     /// The limits of mass, deflection and mode, as the upper bound of the whole front.
-    pub fn limits(&self) -> LocalUpperBound {
+    pub(super) fn limits(&self) -> LocalUpperBound {
         let limits = &self.space.constraints;
         LocalUpperBound {
             mass_kg: limits.mass_max_kg.unwrap_or(f64::INFINITY),
@@ -22,7 +22,7 @@ impl Problem<'_> {
 
     /// Judges a box of one design. Its objectives are those of the bound, with the mode computed exactly.
     /// `None` if it breaks a constraint, or if rounding leaves open whether it meets one.
-    pub fn judge(
+    pub(super) fn judge(
         &self,
         design_box: &[u32],
         box_bound: &BoxBound,

@@ -25,7 +25,7 @@ pub(super) struct Kinds(Vec<Vec<u32>>);
 
 impl Kinds {
     /// The kinds of a joint's drives.
-    pub fn of(sized: &SizedJoint, ties: Ties) -> Self {
+    pub(super) fn of(sized: &SizedJoint, ties: Ties) -> Self {
         Self(match ties {
             Ties::Merged => sized.kinds(),
             Ties::Separate => (0..sized.table.len() as u32).map(|drive| vec![drive]).collect(),
@@ -33,17 +33,17 @@ impl Kinds {
     }
 
     /// The drives of each kind.
-    pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
+    pub(super) fn iter(&self) -> impl Iterator<Item = &[u32]> {
         self.0.iter().map(Vec::as_slice)
     }
 
     /// The drives of the kind with this number.
-    pub fn drives(&self, first: u32) -> &[u32] {
+    pub(super) fn drives(&self, first: u32) -> &[u32] {
         self.0.binary_search_by_key(&first, |kind| kind[0]).map_or(&[], |at| &self.0[at])
     }
 
     /// The drives of some kinds, ascending.
-    pub fn drives_of(&self, firsts: &[u32]) -> Vec<u32> {
+    pub(super) fn drives_of(&self, firsts: &[u32]) -> Vec<u32> {
         let mut drives: Vec<u32> = firsts.iter().flat_map(|first| self.drives(*first)).copied().collect();
         drives.sort_unstable();
         drives

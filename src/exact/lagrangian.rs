@@ -38,7 +38,7 @@ impl Problem<'_> {
 impl Rows<'_> {
     /// The multipliers that raise the lowest of some relaxed designs as far as possible above the limits of a
     /// local upper bound.
-    pub fn best_multipliers(&self, members: &[RelaxedDesign], upper: &LocalUpperBound) -> Game {
+    pub(super) fn best_multipliers(&self, members: &[RelaxedDesign], upper: &LocalUpperBound) -> Game {
         /// A row this far below its limit (scaled) has no influence.
         const NO_SAY: f64 = -10.0;
         let row_limits: Vec<f64> = self.row_limits(upper).collect();
@@ -52,7 +52,7 @@ impl Rows<'_> {
 
     /// Adds the modes of the mixed arm that lie below the required frequency, as new rows. Returns whether
     /// there were any.
-    pub fn add_violated_modes(
+    pub(super) fn add_violated_modes(
         &mut self,
         members: &mut [RelaxedDesign],
         mix: &[f64],
@@ -104,7 +104,7 @@ impl Rows<'_> {
     }
 
     /// The least weighted sum over the members of the box, and the relaxed design that attains it.
-    pub fn minimize(&self, design_box: &[u32], multipliers: Vec<f64>) -> (DualPoint, RelaxedDesign) {
+    pub(super) fn minimize(&self, design_box: &[u32], multipliers: Vec<f64>) -> (DualPoint, RelaxedDesign) {
         let mut total: f64 = multipliers.iter().zip(&self.fixed).map(|(w, f)| w * f).sum();
         let mut levels = Vec::with_capacity(design_box.len());
         let mut member = self.empty_design(design_box);
@@ -227,7 +227,7 @@ impl Rows<'_> {
     }
 
     /// The dual prices of a piece under these multipliers.
-    pub fn price(&self, piece: usize, multipliers: &[f64]) -> DualPrice {
+    pub(super) fn price(&self, piece: usize, multipliers: &[f64]) -> DualPrice {
         let multiplier = |row: usize| multipliers[row] / self.scale[row];
         let (length_m, is_joint) = (self.problem.length_m(piece), self.work.curves[piece].is_some());
         let mut price = DualPrice::default();
@@ -281,7 +281,7 @@ impl Rows<'_> {
     }
 
     /// What a piece of a relaxed design adds to a row, scaled.
-    pub fn added(&self, member: &RelaxedDesign, piece: usize, row: usize) -> f64 {
+    pub(super) fn added(&self, member: &RelaxedDesign, piece: usize, row: usize) -> f64 {
         let adds = match row.checked_sub(self.first_mode) {
             None => member.adds[piece][row],
             Some(m) => {

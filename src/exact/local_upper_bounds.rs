@@ -32,12 +32,12 @@ impl LocalUpperBound {
 
     /// Whether a box with this bound may have a member below the local upper bound.
     #[inline]
-    pub fn admits(&self, box_bound: &BoxBound) -> bool {
+    pub(super) fn admits(&self, box_bound: &BoxBound) -> bool {
         box_bound.mass_kg <= self.mass_kg && box_bound.tip_m <= self.tip_m && box_bound.hz >= self.hz
     }
 
     /// The eigenvalue of its frequency, `(2πf)²` \[1/s²\].
-    pub fn lambda(&self) -> f64 {
+    pub(super) fn lambda(&self) -> f64 {
         (self.hz * std::f64::consts::TAU).powi(2)
     }
 
@@ -62,7 +62,7 @@ struct Node {
 impl LocalUpperBounds {
     /// The local upper bounds that designs leave open within limits. Dominated designs are removed from the
     /// list.
-    pub fn new(designs: &mut Vec<Objectives>, limits: LocalUpperBound) -> Self {
+    pub(super) fn new(designs: &mut Vec<Objectives>, limits: LocalUpperBound) -> Self {
         designs.sort_unstable_by(|a, b| {
             (a.mass_kg.total_cmp(&b.mass_kg))
                 .then(a.tip_deflection_m.total_cmp(&b.tip_deflection_m))
@@ -83,7 +83,7 @@ impl LocalUpperBounds {
 
     /// The bound of a node and its two halves, if it has any. Node 0 is the root. `None` if there is no such
     /// node.
-    pub fn node(&self, at: usize) -> Option<(LocalUpperBound, Option<[usize; 2]>)> {
+    pub(super) fn node(&self, at: usize) -> Option<(LocalUpperBound, Option<[usize; 2]>)> {
         let node = self.nodes.get(at)?;
         let halves = (node.end > at + 1).then(|| [at + 1, self.nodes[at + 1].end]);
         Some((node.bound, halves))

@@ -22,7 +22,7 @@ pub(super) struct CaseInertia {
 
 impl CaseInertia {
     /// The matrices of a case, over the coordinates that yield in some arm of the space.
-    pub fn new(pose: &Pose, some_arm: &Ideal) -> Self {
+    pub(super) fn new(pose: &Pose, some_arm: &Ideal) -> Self {
         let mut coordinates = Vec::new();
         for (piece, posed) in pose.pieces.iter().enumerate() {
             for c in 0..posed.coordinates() {
@@ -50,7 +50,7 @@ impl CaseInertia {
 
     /// The lowest eigenvalue of an arm \[1/s²\], given that it is at most `quotient`. In most cases the
     /// quotient is it, so that is tested first.
-    pub fn lowest(&self, pose: &Pose, arm: &Ideal, quotient: f64) -> f64 {
+    pub(super) fn lowest(&self, pose: &Pose, arm: &Ideal, quotient: f64) -> f64 {
         let scaled = self.scaled(pose, arm);
         let (mut low, mut high) = (quotient * (1.0 - TOLERANCE), quotient);
         if self.all_above(&scaled, low) {

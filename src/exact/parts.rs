@@ -27,16 +27,16 @@ pub(super) struct Line {
 
 /// Indices into [`Line::inertias`].
 pub(super) mod inertia {
-    pub const MASS: usize = 0;
-    pub const OUTER_AREA: usize = 1;
-    pub const POLAR: usize = 2;
-    pub const ROTARY_Y: usize = 3;
-    pub const ROTARY_Z: usize = 4;
+    pub(crate) const MASS: usize = 0;
+    pub(crate) const OUTER_AREA: usize = 1;
+    pub(crate) const POLAR: usize = 2;
+    pub(crate) const ROTARY_Y: usize = 3;
+    pub(crate) const ROTARY_Z: usize = 4;
 }
 
 impl Line {
     /// A tube with its harness under a link model.
-    pub fn new(beam: &Beam, harness_kg_per_m: f64, model: LinkModel) -> Self {
+    pub(super) fn new(beam: &Beam, harness_kg_per_m: f64, model: LinkModel) -> Self {
         let tube = tube_inertia(beam, model);
         let yields = |place: usize| match model {
             LinkModel::Rigid => false,
@@ -81,7 +81,7 @@ pub(super) struct LinkBox {
 
 impl LinkBox {
     /// The box of one option. `link` is the option with the effects of the study.
-    pub fn of(option: &LinkOption, link: &LinkPiece, model: LinkModel) -> Self {
+    pub(super) fn of(option: &LinkOption, link: &LinkPiece, model: LinkModel) -> Self {
         let nominal = Beam { material: option.material, section: option.section, flexibility: 1.0 };
         let line = Line::new(link.beam.as_ref().unwrap_or(&nominal), link.harness_kg_per_m, model);
         let check = StressCheck::new(option);
@@ -147,7 +147,7 @@ pub(super) struct Rays {
 
 impl Rays {
     /// Rays around the proportion that the payload alone causes.
-    pub fn new(motion: &JointMotion, payload_static_nm: f64, payload_inertia_kgm2: f64) -> Self {
+    pub(super) fn new(motion: &JointMotion, payload_static_nm: f64, payload_inertia_kgm2: f64) -> Self {
         let loads = std::array::from_fn(|k| match k {
             0 => (0.0, 1.0),
             1 => (1.0, 0.0),
@@ -160,7 +160,7 @@ impl Rays {
     }
 
     /// The multiple of each ray's demand that a drive can carry.
-    pub fn capacity(&self, limits: &DriveLimits) -> [f64; RAYS] {
+    pub(super) fn capacity(&self, limits: &DriveLimits) -> [f64; RAYS] {
         self.demands.each_ref().map(|demand| limits.multiple_of(demand))
     }
 }
@@ -174,7 +174,7 @@ pub(super) struct LeastDemand {
 
 impl LeastDemand {
     /// The demand of a static torque \[N m\] and an inertia \[kg m²\].
-    pub fn new(motion: &JointMotion, rays: &Rays, static_nm: f64, inertia_kgm2: f64) -> Self {
+    pub(super) fn new(motion: &JointMotion, rays: &Rays, static_nm: f64, inertia_kgm2: f64) -> Self {
         let times = |asked: f64, unit: f64| if unit > 0.0 { asked / unit } else { f64::INFINITY };
         let multiples =
             rays.loads.map(|(t, i)| times(static_nm, t).min(times(inertia_kgm2, i)) * (1.0 - 1e-12));
@@ -203,7 +203,7 @@ pub(super) struct DriveBox {
 
 impl DriveBox {
     /// The box of one kind: drives of one mass and one curve.
-    pub fn of_kind(drives: impl Iterator<Item = Self>) -> Option<Self> {
+    pub(super) fn of_kind(drives: impl Iterator<Item = Self>) -> Option<Self> {
         let drives: Vec<Self> = drives.collect();
         let kind =
             drives.iter().cloned().reduce(|kind, drive| Self { curve: kind.curve, ..kind.join(&drive) })?;
@@ -220,7 +220,7 @@ impl DriveBox {
 
     /// Whether some member may carry the demand.
     #[inline]
-    pub fn may_hold(&self, asked: &LeastDemand) -> bool {
+    pub(super) fn may_hold(&self, asked: &LeastDemand) -> bool {
         self.hold(&asked.demand)
             && self.multiples.iter().zip(&asked.multiples).all(|(carried, asked)| carried >= asked)
     }
@@ -228,7 +228,7 @@ impl DriveBox {
     /// Whether the demand is within the greatest limits. For a single kind: whether one of its drives carries
     /// it.
     #[inline]
-    pub fn hold(&self, demand: &JointDemand) -> bool {
+    pub(super) fn hold(&self, demand: &JointDemand) -> bool {
         self.limits.hold(demand)
             && self.each.as_ref().is_none_or(|each| each.iter().any(|limits| limits.hold(demand)))
     }

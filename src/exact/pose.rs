@@ -128,20 +128,20 @@ pub(super) struct InertiaRow {
 
 impl Pose {
     /// Torque on a joint, as an interval \[N m\].
-    pub fn torque(&self, piece: usize, weights: &[[f64; 2]]) -> [f64; 2] {
+    pub(super) fn torque(&self, piece: usize, weights: &[[f64; 2]]) -> [f64; 2] {
         let row = self.rows.iter().find(|row| row.piece == piece);
         row.map_or([0.0; 2], |row| interval(row.fixed, &row.per_n, weights))
     }
 
     /// Torque on a joint without the weight of any part \[N m\].
-    pub fn payload_torque_nm(&self, piece: usize) -> f64 {
+    pub(super) fn payload_torque_nm(&self, piece: usize) -> f64 {
         self.rows.iter().find(|row| row.piece == piece).map_or(0.0, |row| row.fixed)
     }
 }
 
 impl Pose {
     /// Whether every force, and so every demand, grows with every weight.
-    pub fn grows_with_weight(&self) -> bool {
+    pub(super) fn grows_with_weight(&self) -> bool {
         let loads = self.stress.iter().flat_map(|row| &row.loads);
         self.water_kg_m3 == 0.0
             && self.relevant_rows().all(|row| sign(row.fixed, &row.per_n).is_some())
@@ -150,7 +150,7 @@ impl Pose {
 
     /// Whether no two contributions to the tip's displacement oppose each other. Then the tip moves further
     /// if any part yields more.
-    pub fn contributions_align(&self) -> bool {
+    pub(super) fn contributions_align(&self) -> bool {
         let rows = self.relevant_rows();
         let ways: Vec<_> = rows.map(|row| row.tip_m * sign(row.fixed, &row.per_n).unwrap_or(0.0)).collect();
         // Rounding of right angles must not count as opposition.

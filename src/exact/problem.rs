@@ -61,7 +61,7 @@ pub(super) struct Ladder {
 }
 
 impl Ladder {
-    pub fn new(steps: Vec<DriveBox>) -> Self {
+    pub(super) fn new(steps: Vec<DriveBox>) -> Self {
         let mut runs = vec![steps];
         let mut width = 1;
         while 2 * width <= runs[0].len() {
@@ -74,12 +74,12 @@ impl Ladder {
     }
 
     /// Number of drives.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.runs[0].len()
     }
 
     /// The box around the drives `first..=last`.
-    pub fn run(&self, first: usize, last: usize) -> DriveBox {
+    pub(super) fn run(&self, first: usize, last: usize) -> DriveBox {
         let k = (last - first + 1).ilog2() as usize;
         let run = &self.runs[k];
         run[first].join(&run[last + 1 - (1 << k)])
@@ -89,7 +89,7 @@ impl Ladder {
 impl<'c> Problem<'c> {
     /// The problem restricted to the options below some nodes of each level's base tree. `None` if a level
     /// has none.
-    pub fn restricted_to(&self, kept: &[Vec<u32>]) -> Option<Self> {
+    pub(super) fn restricted_to(&self, kept: &[Vec<u32>]) -> Option<Self> {
         let mut narrower = self.clone();
         for (&piece, nodes) in self.level_pieces.iter().zip(kept) {
             match &mut narrower.parts[piece] {
@@ -102,7 +102,7 @@ impl<'c> Problem<'c> {
     }
 
     /// Number of designs in a box, with the drives of a kind counted once.
-    pub fn members(&self, design_box: &[u32]) -> f64 {
+    pub(super) fn members(&self, design_box: &[u32]) -> f64 {
         let of = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
             Part::Drives { tree, .. } => f64::from(tree.node(node).members),
             Part::Links { tree, .. } => f64::from(tree.node(node).members),
@@ -112,7 +112,7 @@ impl<'c> Problem<'c> {
     }
 
     /// The options of each level below some nodes of its base tree, with all drives of a kind.
-    pub fn options_below(&self, kept: &[Vec<u32>]) -> Vec<Vec<u32>> {
+    pub(super) fn options_below(&self, kept: &[Vec<u32>]) -> Vec<Vec<u32>> {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, kinds, .. } => kinds.drives_of(&tree.options_of(nodes)),
             Part::Links { tree, .. } => tree.options_of(nodes),
@@ -122,7 +122,7 @@ impl<'c> Problem<'c> {
     }
 
     /// Number of designs below some nodes of each level's base tree, with the drives of a kind counted once.
-    pub fn designs_below(&self, kept: &[Vec<u32>]) -> f64 {
+    pub(super) fn designs_below(&self, kept: &[Vec<u32>]) -> f64 {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, .. } => tree.members_of(nodes),
             Part::Links { tree, .. } => tree.members_of(nodes),
@@ -132,7 +132,7 @@ impl<'c> Problem<'c> {
     }
 
     /// Number of designs in the space.
-    pub fn designs(&self) -> u128 {
+    pub(super) fn designs(&self) -> u128 {
         self.level_sizes.iter().map(|&s| u128::from(s)).product()
     }
 }

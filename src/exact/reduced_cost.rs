@@ -21,7 +21,7 @@ type PricedLimit = (DualPrice, f64);
 
 impl Rows<'_> {
     /// The nodes of each level's base tree whose options no dual point excludes. `None` if a level has none.
-    pub fn affordable_options(
+    pub(super) fn affordable_options(
         &self,
         design_box: &[u32],
         points: &[DualPoint],

@@ -32,7 +32,7 @@ pub(super) struct Survivors {
 impl Problem<'_> {
     /// Bounds a box, whose numbers are in `work`, below a local upper bound. `None` if no member lies below
     /// it.
-    pub fn bound_below(
+    pub(super) fn bound_below(
         &self,
         design_box: &[u32],
         box_bound: &BoxBound,

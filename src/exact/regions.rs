@@ -188,7 +188,7 @@ fn improved_by_slack(found: &Objectives, slack: f64) -> Objectives {
 
 impl<'p> Subproblem<'p> {
     /// The subproblem of the whole space. `None` if no design meets the constraints.
-    pub fn whole(problem: &Problem<'p>, incumbents_seen: usize, work: &mut Work) -> Option<Self> {
+    pub(super) fn whole(problem: &Problem<'p>, incumbents_seen: usize, work: &mut Work) -> Option<Self> {
         let shapes = problem.first_shapes(work)?;
         Some(Self {
             problem: Arc::new(problem.clone()),
@@ -201,7 +201,7 @@ impl<'p> Subproblem<'p> {
 
     /// Bounds the subproblem below a local upper bound. Returns the survivors, and whether the subproblem was
     /// restricted to them, which is done if enough designs were excluded. `None` if the region is empty.
-    pub fn reduce(
+    pub(super) fn reduce(
         &mut self,
         upper: &LocalUpperBound,
         work: &mut Work,
@@ -238,12 +238,12 @@ impl<'p> Subproblem<'p> {
     }
 
     /// Number of surviving designs.
-    pub fn designs_of(&self, survivors: &Survivors) -> f64 {
+    pub(super) fn designs_of(&self, survivors: &Survivors) -> f64 {
         self.problem.designs_below(&survivors.options)
     }
 
     /// Two halves of the subproblem, by the most promising branching. `None` if a single design is left.
-    pub fn branch(&self, survivors: &Survivors, work: &mut Work) -> Option<[Self; 2]> {
+    pub(super) fn branch(&self, survivors: &Survivors, work: &mut Work) -> Option<[Self; 2]> {
         let branch = survivors
             .branchings
             .iter()

@@ -40,7 +40,7 @@ pub(super) struct WarmStart {
 
 impl WarmStart {
     /// For the box of all designs: no multipliers, its own shapes.
-    pub fn new(shapes: &[Shape]) -> Self {
+    pub(super) fn new(shapes: &[Shape]) -> Self {
         Self { multipliers: Vec::new(), shapes: shapes.to_vec() }
     }
 }
@@ -123,7 +123,7 @@ impl Problem<'_> {
 
 impl<'a> Rows<'a> {
     /// The rows of a box whose numbers are in `work`, for a local upper bound.
-    pub fn new(
+    pub(super) fn new(
         problem: &'a Problem,
         design_box: &[u32],
         box_bound: &BoxBound,
@@ -205,7 +205,7 @@ impl<'a> Rows<'a> {
 
     /// The first of the two rows of a gear whose slope may change in a case. `None` if the gear has one
     /// slope.
-    pub fn free_gear(&self, judged: usize, piece: usize) -> Option<usize> {
+    pub(super) fn free_gear(&self, judged: usize, piece: usize) -> Option<usize> {
         self.gears.iter().find(|gear| gear.judged == judged && gear.piece == piece)?.row
     }
 
@@ -226,7 +226,7 @@ impl<'a> Rows<'a> {
         next
     }
 
-    pub fn push_mode(&mut self, judged: usize, start: usize, shape: Shape) {
+    pub(super) fn push_mode(&mut self, judged: usize, start: usize, shape: Shape) {
         let kinetic = [&self.work.light, &self.work.heavy].map(|inertia| shape.kinetic_energy(inertia));
         // A shape that moves nothing bounds nothing.
         let moves = if kinetic[0] > 0.0 { kinetic[0] } else { 1.0 };
@@ -235,7 +235,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Multipliers that start from those of the parent box, or equal ones if there are none.
-    pub fn starting_multipliers(&self, above: &[f64]) -> Vec<f64> {
+    pub(super) fn starting_multipliers(&self, above: &[f64]) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.scale.len()];
         let others: Vec<usize> = (0..=self.tips.len()).chain(self.first_mode..self.scale.len()).collect();
         // New rows have no multiplier from the parent; equal ones are as good a guess as any.
@@ -248,7 +248,7 @@ impl<'a> Rows<'a> {
 
     /// Adds the multipliers that make the twist of a gear grow with the torque of the weights, by the least
     /// compliance of the box (McCormick). Without them a gear could choose its torque at no price.
-    pub fn with_torques(&self, mut multipliers: Vec<f64>) -> Vec<f64> {
+    pub(super) fn with_torques(&self, mut multipliers: Vec<f64>) -> Vec<f64> {
         for gear in &self.gears {
             let Some(row) = gear.row else { continue };
             let tip = 1 + gear.judged;
@@ -261,7 +261,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Saves the multipliers and the last shapes for the halves of the box.
-    pub fn save_warm_start(&mut self, multipliers: &[f64], warm_start: &mut WarmStart) {
+    pub(super) fn save_warm_start(&mut self, multipliers: &[f64], warm_start: &mut WarmStart) {
         let (tips, kept) = (self.tips.len(), warm_start.shapes.len());
         warm_start.multipliers.clear();
         warm_start.multipliers.extend(&multipliers[..=tips]);
@@ -274,7 +274,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The upper limit of each scaled row for members below a local upper bound.
-    pub fn row_limits<'b>(&'b self, upper: &'b LocalUpperBound) -> impl Iterator<Item = f64> + 'b {
+    pub(super) fn row_limits<'b>(&'b self, upper: &'b LocalUpperBound) -> impl Iterator<Item = f64> + 'b {
         // The rows are taken at `lambda`, the bound may ask for another eigenvalue. The difference times
         // `xᵀMx` is bounded by the lightest or the heaviest parts, depending on its sign.
         let below = self.lambda - upper.lambda();
@@ -285,7 +285,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Multipliers that take each limited row by itself.
-    pub fn single_row_multipliers(&self, upper: &LocalUpperBound) -> Vec<Vec<f64>> {
+    pub(super) fn single_row_multipliers(&self, upper: &LocalUpperBound) -> Vec<Vec<f64>> {
         let is_torque = |row: usize| (1 + self.tips.len()..self.first_mode).contains(&row);
         let rows = self.row_limits(upper).enumerate().filter(|(row, a)| a.is_finite() && !is_torque(*row));
         let single = |(row, _)| {
@@ -297,7 +297,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The upper limit of the weighted sum for members below a local upper bound.
-    pub fn allowed_sum(&self, multipliers: &[f64], upper: &LocalUpperBound) -> f64 {
+    pub(super) fn allowed_sum(&self, multipliers: &[f64], upper: &LocalUpperBound) -> f64 {
         let pairs = multipliers.iter().zip(self.row_limits(upper));
         pairs.filter(|(w, _)| **w > 0.0).map(|(w, a)| w * a).sum()
     }

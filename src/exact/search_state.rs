@@ -33,7 +33,7 @@ pub(super) struct Findings {
 
 impl Findings {
     /// Whether a design found dominates every member of a box.
-    pub fn dominates(&self, box_bound: &BoxBound) -> bool {
+    pub(super) fn dominates(&self, box_bound: &BoxBound) -> bool {
         let best = Objectives::from(*box_bound);
         self.kept.iter().any(|c| is_better(&c.objectives, &best))
     }
@@ -41,12 +41,12 @@ impl Findings {
 
 impl SearchState {
     /// Adds the objectives of a known design, from whatever source.
-    pub fn enter(&mut self, objectives: &Objectives) {
+    pub(super) fn enter(&mut self, objectives: &Objectives) {
         self.incumbents.enter(objectives);
     }
 
     /// Takes in the findings of a task.
-    pub fn learn(&mut self, findings: Findings) {
+    pub(super) fn learn(&mut self, findings: Findings) {
         self.evaluated += findings.evaluated;
         self.tried.extend(findings.tried);
         self.undecided.extend(findings.undecided);
@@ -60,7 +60,7 @@ impl SearchState {
     }
 
     /// The designs found that no other dominates, in ascending order, followed by the undecided ones.
-    pub fn into_front(self) -> Vec<Candidate> {
+    pub(super) fn into_front(self) -> Vec<Candidate> {
         let mut front = self.kept;
         clear(&mut front);
         front.sort_unstable_by_key(|c| c.number);

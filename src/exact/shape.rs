@@ -37,7 +37,13 @@ pub(super) struct Ideal<'a> {
 impl Shape {
     /// A low mode shape of an ideal arm, started by an acceleration of the base and kept orthogonal to
     /// others.
-    pub fn start(pose: &Pose, ideal: &Ideal, direction: Vector3<f64>, others: &[Self], steps: usize) -> Self {
+    pub(super) fn start(
+        pose: &Pose,
+        ideal: &Ideal,
+        direction: Vector3<f64>,
+        others: &[Self],
+        steps: usize,
+    ) -> Self {
         let mut shape = Self {
             x: vec![0.0; pose.pieces.len() * COORDINATES],
             strain: vec![[0.0; STIFFNESSES]; pose.pieces.len()],
@@ -56,7 +62,7 @@ impl Shape {
     }
 
     /// One step of inverse iteration towards the lowest mode of an ideal arm.
-    pub fn improve(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self], work: &mut Work) {
+    pub(super) fn improve(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self], work: &mut Work) {
         self.iterate(pose, ideal, &Twist::zeros(), work);
         self.clear_of(pose, ideal, others);
         self.energies(pose);
@@ -64,7 +70,7 @@ impl Shape {
 
     /// The Rayleigh quotient `xᵀKx / xᵀMx` \[1/s²\]. Infinite if the shape moves nothing.
     #[inline]
-    pub fn quotient(&self, ideal: &Ideal) -> f64 {
+    pub(super) fn quotient(&self, ideal: &Ideal) -> f64 {
         let mut strain = 0.0;
         let kinetic = self.kinetic_energy(ideal.inertia);
         for (s, k) in self.strain.iter().zip(ideal.stiffness) {
@@ -77,7 +83,7 @@ impl Shape {
 
     /// `xᵀMx`.
     #[inline]
-    pub fn kinetic_energy(&self, inertia: &[[f64; INERTIAS]]) -> f64 {
+    pub(super) fn kinetic_energy(&self, inertia: &[[f64; INERTIAS]]) -> f64 {
         let mut kinetic = self.kinetic_fixed;
         for (t, m) in self.kinetic.iter().zip(inertia) {
             for i in 0..INERTIAS {
@@ -218,7 +224,7 @@ pub(super) fn inertia_forces(
 
 impl PosedPiece {
     /// Number of strain coordinates.
-    pub fn coordinates(&self) -> usize {
+    pub(super) fn coordinates(&self) -> usize {
         match self {
             PosedPiece::Joint { .. } => 1,
             PosedPiece::Body(_) => 0,
@@ -228,7 +234,7 @@ impl PosedPiece {
 
     /// Stiffness of a coordinate; 0 where nothing yields.
     #[inline]
-    pub fn coordinate_stiffness(&self, coordinate: usize, stiffness: &[f64; STIFFNESSES]) -> f64 {
+    pub(super) fn coordinate_stiffness(&self, coordinate: usize, stiffness: &[f64; STIFFNESSES]) -> f64 {
         match self {
             PosedPiece::Tube(tube) => {
                 stiffness[RESISTED[coordinate].0] * tube.length_m / degree_factor(coordinate)

@@ -9,7 +9,7 @@ use std::collections::{BTreeSet, HashMap};
 impl Problem<'_> {
     /// The designs that designs of kinds stand for. If they are at most `most` all are returned, otherwise
     /// the first of each. The flag says whether all are.
-    pub fn with_ties(&self, found: &[Candidate], most: usize) -> (Vec<Candidate>, bool) {
+    pub(super) fn with_ties(&self, found: &[Candidate], most: usize) -> (Vec<Candidate>, bool) {
         let with_ties: Vec<(&Candidate, Vec<Vec<u32>>)> = self.feasible_drives(found);
         let count = |lists: &Vec<Vec<u32>>| lists.iter().map(|list| list.len() as f64).product::<f64>();
         let all: f64 = with_ties.iter().map(|(_, lists)| count(lists)).sum();

@@ -21,7 +21,7 @@ pub(super) struct TipRow {
 
 impl TipRow {
     /// The tip row of a judged case, and the part of it that no choice changes \[m\].
-    pub fn new(problem: &Problem, judged: usize, case: usize, work: &Work) -> (Self, f64) {
+    pub(super) fn new(problem: &Problem, judged: usize, case: usize, work: &Work) -> (Self, f64) {
         let pose = &problem.poses[case];
         let pieces = problem.parts.len();
         let mut tip = Self {

@@ -28,7 +28,7 @@ impl Torsion {
 
     /// Twist under a torque \[rad\].
     #[inline]
-    pub fn angle_rad(&self, torque_nm: f64) -> f64 {
+    pub(super) fn angle_rad(&self, torque_nm: f64) -> f64 {
         let t = torque_nm.abs();
         let segment = usize::from(t > self.windup.t1_nm) + usize::from(t > self.windup.t2_nm);
         self.angle_in(segment, t).copysign(torque_nm)
@@ -36,7 +36,7 @@ impl Torsion {
 
     /// Twist under a torque that is not negative, in a given segment \[rad\].
     #[inline]
-    pub fn angle_in(&self, segment: usize, t_nm: f64) -> f64 {
+    pub(super) fn angle_in(&self, segment: usize, t_nm: f64) -> f64 {
         let Windup { t1_nm, t2_nm, .. } = self.windup;
         match segment {
             0 => t_nm * self.compliance[0],
@@ -59,7 +59,7 @@ pub(super) struct CurveBox {
 
 impl CurveBox {
     /// The box of one joint's law without its play. `None` for a joint that does not twist.
-    pub fn of(law: &JointLaw) -> Option<Self> {
+    pub(super) fn of(law: &JointLaw) -> Option<Self> {
         let curve = match law.without_play() {
             Curve::Rigid if law.lost_motion.is_some() => Curve::Linear(RIGID_NM_PER_RAD),
             curve => curve,
@@ -70,7 +70,7 @@ impl CurveBox {
 
     /// Whether modes see the same slope, and play the same, under all torques with magnitudes in an interval
     /// \[N m\], for each gear of the box.
-    pub fn keeps_its_slope(
+    pub(super) fn keeps_its_slope(
         &self,
         play: Option<&JointPlay>,
         [least_nm, most_nm]: [f64; 2],
@@ -86,23 +86,23 @@ impl CurveBox {
     }
 
     /// Greatest slope that modes may see at torque magnitudes in an interval \[N m/rad\].
-    pub fn stiffest(&self, least_nm: f64, most_nm: f64) -> f64 {
+    pub(super) fn stiffest(&self, least_nm: f64, most_nm: f64) -> f64 {
         self.slopes(&self.stiff.windup, least_nm, most_nm).fold(0.0, f64::max)
     }
 
     /// Least slope that modes may see at torque magnitudes in an interval \[N m/rad\].
-    pub fn softest(&self, least_nm: f64, most_nm: f64) -> f64 {
+    pub(super) fn softest(&self, least_nm: f64, most_nm: f64) -> f64 {
         self.slopes(&self.soft.windup, least_nm, most_nm).fold(f64::INFINITY, f64::min)
     }
 
     /// Greatest slope of the static twist at torque magnitudes in an interval, even if modes use the first
     /// slope \[N m/rad\].
-    pub fn steepest(&self, least_nm: f64, most_nm: f64) -> f64 {
+    pub(super) fn steepest(&self, least_nm: f64, most_nm: f64) -> f64 {
         slopes(&self.stiff.windup, least_nm, most_nm).fold(0.0, f64::max)
     }
 
     /// Least and greatest twist for torques in an interval, with play \[rad\].
-    pub fn twist(&self, play: Option<&JointPlay>, [low, high]: [f64; 2]) -> [f64; 2] {
+    pub(super) fn twist(&self, play: Option<&JointPlay>, [low, high]: [f64; 2]) -> [f64; 2] {
         let least = if low >= 0.0 { &self.stiff } else { &self.soft }.angle_rad(low);
         let most = if high >= 0.0 { &self.soft } else { &self.stiff }.angle_rad(high);
         let [less, more] = self.twist_of_play(play, [low, high]);
@@ -110,7 +110,7 @@ impl CurveBox {
     }
 
     /// The part of the twist that comes from play \[rad\].
-    pub fn twist_of_play(&self, play: Option<&JointPlay>, between_nm: [f64; 2]) -> [f64; 2] {
+    pub(super) fn twist_of_play(&self, play: Option<&JointPlay>, between_nm: [f64; 2]) -> [f64; 2] {
         let middle = [&self.stiff, &self.soft].map(|torsion| torsion.compliance[1]);
         play.map_or([0.0; 2], |play| play.twist(middle, between_nm))
     }
@@ -121,7 +121,7 @@ impl CurveBox {
         slopes(w, least_nm, most_nm)
     }
 
-    pub fn join(&self, other: &Self) -> Self {
+    pub(super) fn join(&self, other: &Self) -> Self {
         Self {
             stiff: join(rising, [&self.stiff, &other.stiff], f64::max, f64::min),
             soft: join(rising_below, [&self.soft, &other.soft], f64::min, f64::max),
@@ -178,7 +178,7 @@ impl BreakPoints {
     const LEAST_LOG2: f64 = -4.0;
 
     /// The break points of one curve.
-    pub fn of(w: &Windup) -> Self {
+    pub(super) fn of(w: &Windup) -> Self {
         [w.t1_nm, w.t2_nm].into_iter().filter(|t| t.is_finite()).fold(Self::default(), |mut set, t_nm| {
             let cell = Self::cell(t_nm);
             set.0[cell / 64] |= 1 << (cell % 64);
@@ -186,7 +186,7 @@ impl BreakPoints {
         })
     }
 
-    pub fn join(&self, other: &Self) -> Self {
+    pub(super) fn join(&self, other: &Self) -> Self {
         Self(std::array::from_fn(|i| self.0[i] | other.0[i]))
     }
 

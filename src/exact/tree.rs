@@ -53,7 +53,7 @@ pub(super) enum NodeKind {
 impl<B: Bounds> Tree<B> {
     /// Builds a tree: halves the options at the median of the coordinate with the greatest spread, down to
     /// single ones. `None` without options.
-    pub fn build(options: impl Iterator<Item = (u32, B)>) -> Option<Self> {
+    pub(super) fn build(options: impl Iterator<Item = (u32, B)>) -> Option<Self> {
         let options: Vec<(u32, B)> = options.collect();
         let item =
             |(at, (_, bounds)): (usize, &(u32, B))| Item { at: at as u32, members: 1, key: bounds.key() };
@@ -71,7 +71,7 @@ impl<B: Bounds> Tree<B> {
     }
 
     /// A tree over some nodes of the base tree, none of which is below another. `None` if there are none.
-    pub fn over(tree: &Arc<Self>, kept: &[u32]) -> Option<Arc<Self>> {
+    pub(super) fn over(tree: &Arc<Self>, kept: &[u32]) -> Option<Arc<Self>> {
         // Nothing was excluded, so the same tree serves.
         if tree.whole.is_some() && tree.stands_on == kept {
             return Some(Arc::clone(tree));
@@ -102,7 +102,7 @@ impl<B: Bounds> Tree<B> {
 
     /// The nodes of the base tree, about `most` of them, that cover the admitted options below a node. The
     /// node with the most options is opened first.
-    pub fn kept(&self, node: u32, most: usize, may: impl Fn(&B) -> bool) -> Vec<u32> {
+    pub(super) fn kept(&self, node: u32, most: usize, may: impl Fn(&B) -> bool) -> Vec<u32> {
         let mut heap = BinaryHeap::new();
         let mut enter = |at: u32| {
             let node = self.node(at);
@@ -142,13 +142,13 @@ impl<B: Bounds> Tree<B> {
     }
 
     /// Number of options below some nodes of the base tree.
-    pub fn members_of(&self, kept: &[u32]) -> f64 {
+    pub(super) fn members_of(&self, kept: &[u32]) -> f64 {
         let whole = self.whole.as_deref().unwrap_or(self);
         kept.iter().map(|&at| f64::from(whole.node(at).members)).sum()
     }
 
     /// The options below some nodes of the base tree, ascending.
-    pub fn options_of(&self, kept: &[u32]) -> Vec<u32> {
+    pub(super) fn options_of(&self, kept: &[u32]) -> Vec<u32> {
         let whole = self.whole.as_deref().unwrap_or(self);
         let (mut options, mut open) = (Vec::new(), kept.to_vec());
         while let Some(at) = open.pop() {
@@ -162,7 +162,7 @@ impl<B: Bounds> Tree<B> {
     }
 
     /// The leaves of some options.
-    pub fn leaves_of(&self, wanted: &BTreeSet<u32>) -> HashMap<u32, u32> {
+    pub(super) fn leaves_of(&self, wanted: &BTreeSet<u32>) -> HashMap<u32, u32> {
         let nodes = self.nodes.iter().zip(0..);
         nodes
             .filter_map(|(node, at)| match node.kind {
@@ -173,13 +173,13 @@ impl<B: Bounds> Tree<B> {
     }
 
     /// A node of the base tree.
-    pub fn whole_node(&self, index: u32) -> &Node<B> {
+    pub(super) fn whole_node(&self, index: u32) -> &Node<B> {
         &self.whole.as_deref().unwrap_or(self).nodes[index as usize]
     }
 
     /// A node. The root is node 0.
     #[inline]
-    pub fn node(&self, index: u32) -> &Node<B> {
+    pub(super) fn node(&self, index: u32) -> &Node<B> {
         match &self.whole {
             Some(whole) if index >= WHOLE => &whole.nodes[(index - WHOLE) as usize],
             _ => &self.nodes[index as usize],
@@ -187,7 +187,7 @@ impl<B: Bounds> Tree<B> {
     }
 
     /// The smallest node with all the admitted options below a node. `None` if there are none.
-    pub fn smallest_node(&self, mut node: u32, holds: impl Fn(&B) -> bool) -> Option<u32> {
+    pub(super) fn smallest_node(&self, mut node: u32, holds: impl Fn(&B) -> bool) -> Option<u32> {
         if !holds(&self.node(node).bounds) {
             return None;
         }
@@ -204,7 +204,7 @@ impl<B: Bounds> Tree<B> {
 
     /// The two halves of a node. `None` for a leaf.
     #[inline]
-    pub fn children(&self, index: u32) -> Option<[u32; 2]> {
+    pub(super) fn children(&self, index: u32) -> Option<[u32; 2]> {
         match self.node(index).kind {
             NodeKind::Split(halves) if index >= WHOLE => Some(halves.map(|half| half + WHOLE)),
             NodeKind::Split(halves) => Some(halves),
@@ -214,7 +214,7 @@ impl<B: Bounds> Tree<B> {
 
     /// The option of a leaf. `None` for a node of several options.
     #[inline]
-    pub fn option(&self, index: u32) -> Option<u32> {
+    pub(super) fn option(&self, index: u32) -> Option<u32> {
         match self.node(index).kind {
             NodeKind::Split(_) => None,
             NodeKind::Option(option) => Some(option),

@@ -53,7 +53,7 @@ pub(super) struct Work {
 
 impl Work {
     /// Empties all numbers for a problem of this size.
-    pub fn clear(&mut self, pieces: usize, cases: usize) {
+    pub(super) fn clear(&mut self, pieces: usize, cases: usize) {
         fn zero<T: Clone>(items: &mut Vec<T>, n: usize, value: T) {
             items.clear();
             items.resize(n, value);
@@ -79,7 +79,13 @@ impl Work {
     }
 
     /// Fills in the numbers of a joint.
-    pub fn joint(&mut self, problem: &Problem, piece: usize, mass_kg: [f64; 2], curve: Option<CurveBox>) {
+    pub(super) fn joint(
+        &mut self,
+        problem: &Problem,
+        piece: usize,
+        mass_kg: [f64; 2],
+        curve: Option<CurveBox>,
+    ) {
         self.masses[piece] = mass_kg;
         self.curves[piece] = curve;
         self.light[piece][inertia::MASS] = mass_kg[0];
@@ -91,7 +97,7 @@ impl Work {
     }
 
     /// Fills in the numbers of a tube.
-    pub fn tube(&mut self, problem: &Problem, piece: usize, length_m: f64, links: &LinkBox) {
+    pub(super) fn tube(&mut self, problem: &Problem, piece: usize, length_m: f64, links: &LinkBox) {
         // Infinite stiffness becomes 0, which stands for a coordinate that does not yield; infinity times
         // zero strain would be NaN.
         let finite = |s: f64| if s.is_finite() { s } else { 0.0 };
@@ -112,7 +118,7 @@ impl Work {
     }
 
     /// Whether the box has no width in any number that a mode depends on.
-    pub fn is_point(&self) -> bool {
+    pub(super) fn is_point(&self) -> bool {
         self.light == self.heavy
             && self.stiff == self.soft
             && self.curves.iter().flatten().all(|c| c.stiff == c.soft)

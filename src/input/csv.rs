@@ -11,7 +11,7 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// One record of a CSV text.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Record {
+pub(crate) struct Record {
     /// Line where it begins, from 1.
     pub line: usize,
     /// Its cells without blanks at their ends.
@@ -20,7 +20,7 @@ pub struct Record {
 
 /// A CSV text cut into records; blank lines and comments are no records.
 #[derive(Debug, Default, PartialEq, Eq)]
-pub struct Csv {
+pub(crate) struct Csv {
     /// The records in the order of the text, the header among them.
     pub records: Vec<Record>,
     /// Line and reason of what cannot be read.
@@ -29,7 +29,7 @@ pub struct Csv {
 
 impl Csv {
     /// Cuts text into records. Lines that begin with `comment` are left out.
-    pub fn parse(bytes: &[u8], comment: Option<u8>) -> Self {
+    pub(crate) fn parse(bytes: &[u8], comment: Option<u8>) -> Self {
         let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
         let mut reader = ReaderBuilder::new()
             .has_headers(false)
@@ -59,14 +59,14 @@ fn utf8(record: ByteRecord) -> Result<StringRecord, String> {
 }
 
 /// The separators other than commas that occur at least so often in the first cell of a header.
-pub fn other_separators(header: &[String], least: usize) -> impl Iterator<Item = &'static str> + '_ {
+pub(crate) fn other_separators(header: &[String], least: usize) -> impl Iterator<Item = &'static str> + '_ {
     let words = [(';', "semicolons"), ('\t', "tabs")];
     let occurs = move |separator: char| header.first().is_some_and(|c| c.matches(separator).count() >= least);
     words.into_iter().filter(move |(separator, _)| occurs(*separator)).map(|(_, word)| word)
 }
 
 /// Whether a column of a header has the name of one before it.
-pub fn is_repeated(header: &[String], column: usize) -> bool {
+pub(crate) fn is_repeated(header: &[String], column: usize) -> bool {
     header[..column].contains(&header[column])
 }
 

@@ -21,9 +21,9 @@ use crate::arm::structure::{Beam, LinkPiece, Structure};
 use nalgebra::{DMatrix, Matrix3, Matrix6xX, SMatrix, Vector3};
 
 /// Number of polynomials of curvature in each plane.
-pub const CURVATURES: usize = 4;
+pub(crate) const CURVATURES: usize = 4;
 /// Number of polynomials of shear in each plane, of twist and of stretch.
-pub const OTHERS: usize = 3;
+pub(crate) const OTHERS: usize = 3;
 /// Gauss-Legendre points and weights. They are exact to degree 15; the integrands here have degree 10 at most.
 const GAUSS: [(f64, f64); 8] = [
     (0.019_855_071_751_231_9, 0.050_614_268_145_188_1),
@@ -55,7 +55,7 @@ pub enum Strain {
 
 /// Mass and rotary inertia per length.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct LineInertia {
+pub(crate) struct LineInertia {
     /// Mass per length that moves along the link \[kg/m\].
     pub along_kg_per_m: f64,
     /// Mass per length that moves across the link, with the added mass of water \[kg/m\].
@@ -84,7 +84,7 @@ impl LineInertia {
 
 /// A link prepared for any pose: everything that does not depend on its place.
 #[derive(Debug, Clone)]
-pub struct PreparedBeam {
+pub(crate) struct PreparedBeam {
     /// Length \[m\].
     pub length_m: f64,
     /// Section frame (columns x, y, z) in the frame that the joints before the link carry.
@@ -105,7 +105,7 @@ pub struct PreparedBeam {
 
 impl PreparedBeam {
     /// Prepares a link. Returns `None` for a rigid offset without mass along it, or without length.
-    pub fn new(link: &LinkPiece, structure: &Structure, model: LinkModel) -> Option<Self> {
+    pub(crate) fn new(link: &LinkPiece, structure: &Structure, model: LinkModel) -> Option<Self> {
         let length_m = link.vector_m.norm();
         if length_m == 0.0 || (link.beam.is_none() && link.harness_kg_per_m == 0.0) {
             return None;
@@ -130,7 +130,7 @@ impl PreparedBeam {
 
     /// Displacement (rows 0-2) and rotation (rows 3-5) at the place `xi` (0 to 1), per unit of root translation (columns
     /// 0-2), root rotation (columns 3-5) and each coordinate (columns from 6), in the section frame.
-    pub fn fields(&self, xi: f64) -> Matrix6xX<f64> {
+    pub(crate) fn fields(&self, xi: f64) -> Matrix6xX<f64> {
         let mut out = Matrix6xX::zeros(6 + self.coordinates.len());
         out.fill_with_identity();
         let x = xi * self.length_m;
@@ -153,12 +153,12 @@ impl PreparedBeam {
     }
 
     /// Inertia per length of each component of displacement and rotation, in the section frame.
-    pub fn line_densities(&self) -> [f64; 6] {
+    pub(crate) fn line_densities(&self) -> [f64; 6] {
         self.line.densities()
     }
 
     /// Gauss points (0 to 1), each with its weight times the length.
-    pub fn quadrature(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+    pub(crate) fn quadrature(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         GAUSS.iter().map(|&(xi, weight)| (xi, weight * self.length_m))
     }
 
@@ -208,7 +208,7 @@ fn legendre(degree: usize, s: f64) -> f64 {
 
 /// The section frame (columns x, y, z) of a link along `vector_m`, in the frame of this vector. x is along the link, and z
 /// is as near to the z axis of that frame as it can be.
-pub fn section_frame(vector_m: &Vector3<f64>) -> Matrix3<f64> {
+pub(crate) fn section_frame(vector_m: &Vector3<f64>) -> Matrix3<f64> {
     let x = vector_m.normalize();
     // a link (nearly) along z leaves no direction for "up"; x takes its place
     let up = if x.z.abs() > 0.99 { Vector3::x() } else { Vector3::z() };
@@ -217,26 +217,26 @@ pub fn section_frame(vector_m: &Vector3<f64>) -> Matrix3<f64> {
 }
 
 /// Compliance of each strain coordinate of a link, in the order of [`PreparedBeam::compliances`].
-pub fn compliances(link: &LinkPiece, model: LinkModel) -> Vec<f64> {
+pub(crate) fn compliances(link: &LinkPiece, model: LinkModel) -> Vec<f64> {
     let length_m = link.vector_m.norm();
     let coordinates = link.beam.map_or_else(Vec::new, |beam| coordinates(&beam, length_m, model));
     coordinates.into_iter().map(|(_, _, compliance)| compliance).collect()
 }
 
 /// Strain and degree of the polynomial of each coordinate, in the order of [`PreparedBeam::compliances`].
-pub fn strains(link: &LinkPiece, model: LinkModel) -> Vec<(Strain, usize)> {
+pub(crate) fn strains(link: &LinkPiece, model: LinkModel) -> Vec<(Strain, usize)> {
     let coordinates = link.beam.map_or_else(Vec::new, |beam| coordinates(&beam, 1.0, model));
     coordinates.into_iter().map(|(strain, degree, _)| (strain, degree)).collect()
 }
 
 /// Inertia per length of each component of displacement and rotation of a link, as in
 /// [`PreparedBeam::line_densities`].
-pub fn line_densities(link: &LinkPiece, structure: &Structure, model: LinkModel) -> [f64; 6] {
+pub(crate) fn line_densities(link: &LinkPiece, structure: &Structure, model: LinkModel) -> [f64; 6] {
     line_inertia(link, structure, model).densities()
 }
 
 /// Stiffnesses of a tube: `E I` about y and about z \[N m²\], `κ G A` \[N\], `G J` \[N m²\] and `E A` \[N\].
-pub fn line_stiffnesses(beam: &Beam) -> [f64; 5] {
+pub(crate) fn line_stiffnesses(beam: &Beam) -> [f64; 5] {
     let material = &beam.material;
     let section = beam.section.properties(material.poisson);
     let (e, g) = (material.youngs_modulus_pa, material.shear_modulus_pa);
@@ -291,7 +291,7 @@ fn line_inertia(link: &LinkPiece, structure: &Structure, model: LinkModel) -> Li
 }
 
 /// Mass and rotary inertia per length of a tube in air, without a harness.
-pub fn tube_inertia(beam: &Beam, model: LinkModel) -> LineInertia {
+pub(crate) fn tube_inertia(beam: &Beam, model: LinkModel) -> LineInertia {
     let section = beam.section.properties(beam.material.poisson);
     let density = beam.material.density_kg_m3;
     let mass = density * section.area_m2;

@@ -20,11 +20,11 @@ use super::beam::PreparedBeam;
 use nalgebra::{DMatrix, Matrix3, Matrix6, SMatrix, Vector3, Vector6};
 
 /// Inertia over the motion of the root (rows 0-5) and the end coordinates `g` (rows 6-11).
-pub type Inertia12 = SMatrix<f64, 12, 12>;
+pub(crate) type Inertia12 = SMatrix<f64, 12, 12>;
 
 /// A condensed link, in its section frame.
 #[derive(Debug, Clone)]
-pub struct CondensedLink {
+pub(crate) struct CondensedLink {
     /// Effective inertia, order by order in λ: `M₀, M₁, M₂`.
     pub inertia: [Inertia12; 3],
     /// Motion of the end (displacement, rotation) per end coordinate: `L`.
@@ -37,7 +37,7 @@ pub struct CondensedLink {
 
 impl CondensedLink {
     /// Condenses a prepared link.
-    pub fn new(beam: &PreparedBeam) -> Self {
+    pub(crate) fn new(beam: &PreparedBeam) -> Self {
         let n = beam.compliances.len();
         let compliance = DMatrix::from_diagonal(&nalgebra::DVector::from_column_slice(&beam.compliances));
         let end_fields = DMatrix::from_iterator(6, n, beam.end_fields.iter().copied());
@@ -68,7 +68,12 @@ impl CondensedLink {
 
     /// The condensed link in a pose. `root_m` and `end_m` are the places of its root and end, `frame` is its section frame,
     /// all in the world.
-    pub fn place(&self, root_m: &Vector3<f64>, end_m: &Vector3<f64>, frame: &Matrix3<f64>) -> PlacedLink {
+    pub(crate) fn place(
+        &self,
+        root_m: &Vector3<f64>,
+        end_m: &Vector3<f64>,
+        frame: &Matrix3<f64>,
+    ) -> PlacedLink {
         let to_root = world_to_local(root_m, frame);
         let mut to_local = Inertia12::identity();
         to_local.fixed_view_mut::<6, 6>(0, 0).copy_from(&to_root);
@@ -91,7 +96,7 @@ impl CondensedLink {
 
 /// A condensed link in a pose. Motions are twists about the world's origin.
 #[derive(Debug, Clone)]
-pub struct PlacedLink {
+pub(crate) struct PlacedLink {
     /// `M₀, M₁, M₂` over root twist and end coordinates.
     pub inertia: [Inertia12; 3],
     /// Twist of everything outboard per end coordinate.
@@ -103,7 +108,7 @@ pub struct PlacedLink {
 }
 
 /// The matrix that turns a twist about the world's origin into translation and rotation of a point, in a local frame.
-pub fn world_to_local(point_m: &Vector3<f64>, frame: &Matrix3<f64>) -> Matrix6<f64> {
+pub(crate) fn world_to_local(point_m: &Vector3<f64>, frame: &Matrix3<f64>) -> Matrix6<f64> {
     let turn = frame.transpose();
     let mut out = Matrix6::zeros();
     out.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);

@@ -8,12 +8,12 @@
 use std::ops::{Add, Div, Mul, Sub};
 
 /// Number of designs that are evaluated side by side.
-pub const LANES: usize = 8;
+pub(crate) const LANES: usize = 8;
 /// One number for each of eight designs.
-pub type Eight = [f64; LANES];
+pub(crate) type Eight = [f64; LANES];
 
 /// Eight numbers in the registers of the machine.
-pub trait Lanes:
+pub(crate) trait Lanes:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// The same number in every lane.
@@ -53,7 +53,7 @@ pub trait Lanes:
 
 /// Several numbers, each in every lane.
 #[inline(always)]
-pub fn splat_all<V: Lanes, const K: usize>(numbers: [f64; K]) -> [V; K] {
+pub(crate) fn splat_all<V: Lanes, const K: usize>(numbers: [f64; K]) -> [V; K] {
     let mut out = [V::zero(); K];
     for k in 0..K {
         out[k] = V::splat(numbers[k]);
@@ -66,7 +66,7 @@ pub fn splat_all<V: Lanes, const K: usize>(numbers: [f64; K]) -> [V; K] {
 /// Everything that handles lanes must be inlined into `run`, because only `run` is compiled for a particular instruction
 /// set. A closure is a function of its own and would be compiled for the common instructions. The kernels are therefore
 /// written with plain loops.
-pub trait LaneWork {
+pub(crate) trait LaneWork {
     /// Result of the work.
     type Output;
     /// Does the work.
@@ -75,7 +75,7 @@ pub trait LaneWork {
 
 /// Does work with the widest registers of the machine.
 #[inline]
-pub fn in_lanes<W: LaneWork>(work: W) -> W::Output {
+pub(crate) fn in_lanes<W: LaneWork>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     {
         if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq") {
@@ -92,7 +92,7 @@ pub fn in_lanes<W: LaneWork>(work: W) -> W::Output {
 
 /// Lanes as an array, for machines without wide registers.
 #[derive(Debug, Clone, Copy)]
-pub struct Portable(Eight);
+pub(crate) struct Portable(Eight);
 
 macro_rules! array_operator {
     ($trait:ident, $name:ident, $operator:tt) => {

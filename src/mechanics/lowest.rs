@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 
 /// One step of a pass, tip first: a body or an element, restricted to `N` of the six motions.
 #[derive(Debug, Clone)]
-pub enum Step<'a, const N: usize> {
+pub(crate) enum Step<'a, const N: usize> {
     /// A body: a factor (such as a mass) and the inertia that it multiplies.
     Body(f64, &'a SMatrix<f64, N, N>),
     /// A joint, with its twist and its compliance \[rad/(N m)\].
@@ -29,7 +29,7 @@ pub enum Step<'a, const N: usize> {
 
 /// A condensed link in a pose, restricted to `N` of the six motions.
 #[derive(Debug, Clone, PartialEq)]
-pub struct BlockLink<const N: usize> {
+pub(crate) struct BlockLink<const N: usize> {
     /// Inertia over the motion of the root, by order in λ.
     pub root: [SMatrix<f64, N, N>; 3],
     /// Inertia between root and end coordinates, by order in λ.
@@ -42,7 +42,7 @@ pub struct BlockLink<const N: usize> {
 
 impl<const N: usize> BlockLink<N> {
     /// Whether the link yields in any way.
-    pub fn yields(&self) -> bool {
+    pub(crate) fn yields(&self) -> bool {
         self.end.amax() > 0.0 || self.end_inertia.iter().any(|m| m.amax() > 0.0)
     }
 }
@@ -89,7 +89,7 @@ const MOST_PASSES: usize = 300;
 /// function of `1/λ`, which is a straight line if everything outboard is rigid. It converges quickly unless the last joint
 /// hardly takes part in the mode. In that case a pole of `w` is next to the root. The product of all pivots has no poles,
 /// and its root is searched instead.
-pub fn lowest_eigenvalue<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
+pub(crate) fn lowest_eigenvalue<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
     if trace_s2 <= 0.0 {
         return f64::INFINITY;
     }
@@ -158,7 +158,7 @@ fn careful_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
 }
 
 /// Frequency \[Hz\] of an eigenvalue \[1/s²\].
-pub fn frequency_hz(eigenvalue: f64) -> f64 {
+pub(crate) fn frequency_hz(eigenvalue: f64) -> f64 {
     eigenvalue.sqrt() / TAU
 }
 

@@ -13,7 +13,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// The part that eight chains share, from the tip inward.
 #[derive(Debug, Clone)]
-pub struct Outboard<const N: usize> {
+pub(crate) struct Outboard<const N: usize> {
     /// Inertia outboard of the first element that yields.
     start: SMatrix<f64, N, N>,
     steps: Vec<Shared<N>>,
@@ -28,17 +28,17 @@ enum Shared<const N: usize> {
 }
 
 /// The pieces that eight chains do not share, from the tip inward.
-pub trait Inner<V: Lanes, const N: usize> {
+pub(crate) trait Inner<V: Lanes, const N: usize> {
     /// Adds the pieces to a walk. If any piece yields, the last one must.
     fn add_to(&self, walk: &mut Walk<V, N>);
 }
 
 /// A matrix for each of eight chains.
-pub type LaneMatrix<const N: usize> = [[Eight; N]; N];
+pub(crate) type LaneMatrix<const N: usize> = [[Eight; N]; N];
 
 /// A link in a pose for each of eight chains. Only the lower triangle of symmetric matrices is used.
 #[derive(Debug, Clone)]
-pub struct LaneLink<const N: usize> {
+pub(crate) struct LaneLink<const N: usize> {
     root: [LaneMatrix<N>; 3],
     cross: [LaneMatrix<N>; 3],
     end_inertia: [LaneMatrix<N>; 3],
@@ -47,7 +47,7 @@ pub struct LaneLink<const N: usize> {
 
 /// Result of one pass at `λ`, in each lane.
 #[derive(Clone, Copy)]
-pub struct LanePass<V> {
+pub(crate) struct LanePass<V> {
     /// One bit for each lane in which every pivot before the last is positive.
     pub sound: u8,
     /// The last pivot.
@@ -56,7 +56,7 @@ pub struct LanePass<V> {
 
 /// The roots that were found.
 #[derive(Clone, Copy)]
-pub struct Roots<V> {
+pub(crate) struct Roots<V> {
     /// Lowest eigenvalue in each wanted lane.
     pub eigenvalue: V,
     /// One bit for each wanted lane in which no root was found.
@@ -75,7 +75,7 @@ impl<const N: usize> Default for Outboard<N> {
 impl<const N: usize> Outboard<N> {
     /// Takes over the steps of a chain, tip first. Bodies between two elements that yield are added up, and links that do
     /// not yield become bodies, so that a pass has as few steps as possible.
-    pub fn refill<'a>(&mut self, steps: impl Iterator<Item = Step<'a, N>>) {
+    pub(crate) fn refill<'a>(&mut self, steps: impl Iterator<Item = Step<'a, N>>) {
         self.start = SMatrix::zeros();
         self.steps.clear();
         for step in steps {
@@ -95,7 +95,7 @@ impl<const N: usize> Outboard<N> {
 
 impl<const N: usize> LaneLink<N> {
     /// Puts eight links side by side.
-    pub fn new(links: [&BlockLink<N>; LANES]) -> Self {
+    pub(crate) fn new(links: [&BlockLink<N>; LANES]) -> Self {
         Self {
             root: std::array::from_fn(|k| side_by_side(|lane| &links[lane].root[k])),
             cross: std::array::from_fn(|k| side_by_side(|lane| &links[lane].cross[k])),
@@ -106,7 +106,9 @@ impl<const N: usize> LaneLink<N> {
 }
 
 /// Eight matrices side by side.
-pub fn side_by_side<'a, const N: usize>(of: impl Fn(usize) -> &'a SMatrix<f64, N, N>) -> LaneMatrix<N> {
+pub(crate) fn side_by_side<'a, const N: usize>(
+    of: impl Fn(usize) -> &'a SMatrix<f64, N, N>,
+) -> LaneMatrix<N> {
     std::array::from_fn(|i| std::array::from_fn(|j| std::array::from_fn(|lane| of(lane)[(i, j)])))
 }
 
@@ -121,7 +123,7 @@ fn entry<V: Copy, const N: usize>(of: &Inertia<V, N>, i: usize, j: usize) -> V {
 
 /// Takes the apparent inertia from the tip to the base, with one `λ` in each lane.
 #[inline(always)]
-pub fn pass<V: Lanes, const N: usize>(
+pub(crate) fn pass<V: Lanes, const N: usize>(
     outboard: &Outboard<N>,
     inner: &impl Inner<V, N>,
     lambda: V,
@@ -210,7 +212,7 @@ macro_rules! at_lambda {
 }
 
 /// The walk from the tip to the base.
-pub struct Walk<V, const N: usize> {
+pub(crate) struct Walk<V, const N: usize> {
     lambda: V,
     apparent: Inertia<V, N>,
     sound: u8,
@@ -234,19 +236,19 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
 
     /// Adds a body that all eight chains have.
     #[inline(always)]
-    pub fn body(&mut self, inertia: &SMatrix<f64, N, N>) {
+    pub(crate) fn body(&mut self, inertia: &SMatrix<f64, N, N>) {
         add_lower!(self.apparent, |i, j| V::splat(inertia[(i, j)]));
     }
 
     /// Adds a mass times the inertia of one kilogram.
     #[inline(always)]
-    pub fn mass(&mut self, mass: V, inertia: &SMatrix<f64, N, N>) {
+    pub(crate) fn mass(&mut self, mass: V, inertia: &SMatrix<f64, N, N>) {
         add_lower!(self.apparent, |i, j| mass * V::splat(inertia[(i, j)]));
     }
 
     /// Adds a link that does not yield.
     #[inline(always)]
-    pub fn rigid(&mut self, link: &LaneLink<N>) {
+    pub(crate) fn rigid(&mut self, link: &LaneLink<N>) {
         add_lower!(self.apparent, |i, j| V::load(&link.root[0][i][j]));
     }
 
@@ -265,7 +267,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
 
     /// Adds a joint, given its twist and its compliance.
     #[inline(always)]
-    pub fn joint(&mut self, twist: &SVector<f64, N>, compliance: V) {
+    pub(crate) fn joint(&mut self, twist: &SVector<f64, N>, compliance: V) {
         let mut momentum = [V::zero(); N];
         let mut own = V::zero();
         for i in 0..N {
@@ -281,7 +283,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
 
     /// Adds a link that yields.
     #[inline(always)]
-    pub fn link(&mut self, link: &LaneLink<N>) {
+    pub(crate) fn link(&mut self, link: &LaneLink<N>) {
         self.yielding_link(link);
     }
 
@@ -334,7 +336,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
 /// Lowest eigenvalue of every wanted lane, by the secant method for `1/λ - w` as a function of `1/λ`. The method is that of
 /// [`lowest_eigenvalue`](super::lowest::lowest_eigenvalue). A guess beyond a pole is moved back.
 #[inline(always)]
-pub fn roots<V: Lanes, const N: usize>(
+pub(crate) fn roots<V: Lanes, const N: usize>(
     outboard: &Outboard<N>,
     inner: &impl Inner<V, N>,
     guess: V,

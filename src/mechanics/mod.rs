@@ -1,17 +1,17 @@
 //! Mechanics: how an arm behaves. One formulation serves statics, modes and response.
 //!
 //! Every elastic element has a few *strain coordinates*, each of them a scalar spring. A joint has one (its twist), a
-//! bearing that tilts has two, and a link has some polynomials of curvature, shear, twist and stretch ([`beam`]). One unit
+//! bearing that tilts has two, and a link has some polynomials of curvature, shear, twist and stretch (`beam`). One unit
 //! of a coordinate moves everything outboard of it as a rigid body; this motion is the *twist* of the coordinate.
 //!
-//! - Statics ([`statics`]; Eqs 1-4, 7, 13-15): the generalized force on a coordinate is the work of the outboard wrench on
+//! - Statics (`statics`; Eqs 1-4, 7, 13-15): the generalized force on a coordinate is the work of the outboard wrench on
 //!   its twist. The coordinate yields by force times compliance, and the tip moves by the sum.
-//! - Modes ([`modes`]; Eqs 16-18 are the case of rigid links): the mass matrix `M` follows from the composite outboard
+//! - Modes (`modes`; Eqs 16-18 are the case of rigid links): the mass matrix `M` follows from the composite outboard
 //!   inertia and each pair of twists. The compliance matrix `C` is diagonal, and `C^½ M C^½ ψ = ψ/ω²`.
-//! - Response ([`response`]; F(t) of Eq 16): the sum of the modes under a harmonic force at the tip.
+//! - Response (`response`; F(t) of Eq 16): the sum of the modes under a harmonic force at the tip.
 //!
-//! [`centre_line`] turns strain coordinates into the motion of points of the arm, for drawings. [`condensed`], [`lowest`]
-//! and [`lowest_lanes`] compute the lowest mode in the fast way of the search.
+//! `centre_line` turns strain coordinates into the motion of points of the arm, for drawings. `condensed`, `lowest`
+//! and `lowest_lanes` compute the lowest mode in the fast way of the search.
 //!
 //! Twists and wrenches are taken about the world's origin. A twist is `(v, ω)`, where `v` is the velocity of the point of
 //! the body that is at the origin. A wrench is `(F, M)`, where `M` is the moment about the origin.

@@ -9,7 +9,7 @@ use crate::arm::section::{LinkMaterial, Section};
 use crate::report::number::{fixed, percent_change, significant};
 
 /// All dynamic rows, given the reading of the third spring that gives the paper's frequencies.
-pub fn rows(matching: &Reading) -> Vec<PaperRow> {
+pub(crate) fn rows(matching: &Reading) -> Vec<PaperRow> {
     let arm = PaperArm::table_1();
     [
         frequencies(&arm, matching),

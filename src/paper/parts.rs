@@ -13,7 +13,7 @@ use crate::report::table::{Column, Table};
 ///
 /// # Errors
 /// The catalog has no such gear.
-pub fn gear(catalogs: &Catalogs, size: u32) -> Result<&Gear, PaperError> {
+pub(crate) fn gear(catalogs: &Catalogs, size: u32) -> Result<&Gear, PaperError> {
     hfuc(catalogs, size, 100)
 }
 
@@ -26,7 +26,7 @@ fn hfuc(catalogs: &Catalogs, size: u32, ratio: u32) -> Result<&Gear, PaperError>
 ///
 /// # Errors
 /// The catalog has no such gear, or not all of its curve.
-pub fn windup(catalogs: &Catalogs, size: u32) -> Result<Windup, PaperError> {
+pub(crate) fn windup(catalogs: &Catalogs, size: u32) -> Result<Windup, PaperError> {
     let gear = gear(catalogs, size)?;
     complete_curve(gear).ok_or_else(|| missing("complete torsion curve of gear", &gear.id))
 }
@@ -45,7 +45,7 @@ fn complete_curve(gear: &Gear) -> Option<Windup> {
 ///
 /// # Errors
 /// The catalog has no such motor.
-pub fn motor<'c>(catalogs: &'c Catalogs, id: &str) -> Result<&'c Motor, PaperError> {
+pub(crate) fn motor<'c>(catalogs: &'c Catalogs, id: &str) -> Result<&'c Motor, PaperError> {
     catalogs.motors.iter().find(|m| m.id == id).ok_or_else(|| missing("motor", id))
 }
 
@@ -53,12 +53,12 @@ pub fn motor<'c>(catalogs: &'c Catalogs, id: &str) -> Result<&'c Motor, PaperErr
 ///
 /// # Errors
 /// The catalog has no such material.
-pub fn material<'c>(catalogs: &'c Catalogs, name: &str) -> Result<&'c Material, PaperError> {
+pub(crate) fn material<'c>(catalogs: &'c Catalogs, name: &str) -> Result<&'c Material, PaperError> {
     catalogs.materials.iter().find(|m| m.name == name).ok_or_else(|| missing("material", name))
 }
 
 /// What a study needs and the catalog lacks.
-pub fn missing(kind: &'static str, name: &str) -> PaperError {
+pub(crate) fn missing(kind: &'static str, name: &str) -> PaperError {
     PaperError::Missing { kind, name: name.to_string() }
 }
 
@@ -71,7 +71,7 @@ const PRINTED_GEARS: [(u32, u32, f64, f64); 4] =
 ///
 /// # Errors
 /// A gear is missing.
-pub fn gear_table(catalogs: &Catalogs) -> Result<Table, PaperError> {
+pub(crate) fn gear_table(catalogs: &Catalogs) -> Result<Table, PaperError> {
     let mut table = Table::new(vec![
         Column::left("gear"),
         Column::unit("paper K", "N m/rad"),

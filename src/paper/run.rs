@@ -8,7 +8,7 @@ use crate::catalog::Catalogs;
 /// Runs a study of the paper.
 ///
 /// # Errors
-/// The name is not in [`NAMES`], or the catalogs lack a part the paper names.
+/// The name is not in `NAMES`, or the catalogs lack a part the paper names.
 pub fn run(name: &str, catalogs: &Catalogs) -> Result<PaperStudyOutput, PaperError> {
     match name {
         "paper-table1" => table1::run(catalogs),

@@ -8,7 +8,7 @@ use crate::arm::LinkModel;
 use crate::report::number::{fixed, percent_change};
 
 /// All static rows.
-pub fn rows(gears: &CatalogGears) -> Vec<PaperRow> {
+pub(crate) fn rows(gears: &CatalogGears) -> Vec<PaperRow> {
     let arm = PaperArm::table_1();
     [torques(&arm), joints(&arm), links(&arm), total(&arm), catalog_gears(gears)].concat()
 }

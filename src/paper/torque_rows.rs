@@ -15,7 +15,7 @@ const RATIO: f64 = 100.0;
 ///
 /// # Errors
 /// The catalog lacks the paper's motor or gear, or its inertia.
-pub fn rows(catalogs: &Catalogs) -> Result<Vec<PaperRow>, PaperError> {
+pub(crate) fn rows(catalogs: &Catalogs) -> Result<Vec<PaperRow>, PaperError> {
     let arm = PaperArm::table_1();
     let motor = parts::motor(catalogs, "F11-10")?;
     let gear = parts::gear(catalogs, 58)?;

@@ -20,7 +20,7 @@ const DEFLECTION_OCTAVES: (i32, i32) = (-23, 4);
 const MARGIN: f64 = 1e-5;
 
 /// The table. All threads share it.
-pub struct Archive {
+pub(crate) struct Archive {
     /// Number of leading bits of the fraction that tell cells apart.
     bits: u32,
     columns: usize,
@@ -30,7 +30,7 @@ pub struct Archive {
 
 impl Archive {
     /// An empty table with `2^bits` steps in each octave.
-    pub fn new(bits: u32) -> Self {
+    pub(crate) fn new(bits: u32) -> Self {
         let cells = |(low, high): (i32, i32)| ((high - low) as usize) << bits;
         let columns = cells(DEFLECTION_OCTAVES);
         let all = cells(MASS_OCTAVES) * columns;
@@ -39,14 +39,14 @@ impl Archive {
 
     /// Whether some design entered before surely dominates this one.
     #[inline]
-    pub fn rejects(&self, o: &Objectives) -> bool {
+    pub(crate) fn rejects(&self, o: &Objectives) -> bool {
         self.bar_hz(o.mass_kg, o.tip_deflection_m) > o.lowest_mode_hz
     }
 
     /// The bar: a design of this mass and deflection with a lowest mode \[Hz\] below it is surely dominated by one entered
     /// before. It is 0 if no such design was entered.
     #[inline]
-    pub fn bar_hz(&self, mass_kg: f64, tip_deflection_m: f64) -> f64 {
+    pub(crate) fn bar_hz(&self, mass_kg: f64, tip_deflection_m: f64) -> f64 {
         let (row, column) = (
             self.corner(mass_kg, MASS_OCTAVES, Corner::Below),
             self.corner(tip_deflection_m, DEFLECTION_OCTAVES, Corner::Below),
@@ -58,7 +58,7 @@ impl Archive {
 
     /// Enters a design. If two threads write one cell at the same time, the better entry may be lost. The table then rejects
     /// fewer designs than it could, but never more.
-    pub fn enter(&self, o: &Objectives) {
+    pub(crate) fn enter(&self, o: &Objectives) {
         let (row, column) = (
             self.corner(o.mass_kg, MASS_OCTAVES, Corner::Above),
             self.corner(o.tip_deflection_m, DEFLECTION_OCTAVES, Corner::Above),

@@ -4,7 +4,7 @@
 //!
 //! - [`front`] finds the points that no other point dominates.
 //! - [`hypervolume`] measures how good a front is.
-//! - [`archive`] rejects dominated designs quickly while a search runs.
+//! - `archive` rejects dominated designs quickly while a search runs.
 
 pub(crate) mod archive;
 pub mod front;

@@ -25,7 +25,7 @@ pub(crate) struct Ranking {
 
 impl Ranking {
     /// Sorts and ranks points.
-    pub fn new(points: &[[f64; 3]]) -> Self {
+    pub(crate) fn new(points: &[[f64; 3]]) -> Self {
         let count = u32::try_from(points.len()).expect("fewer than 2^32 points fit into memory");
         let order: Vec<Ranked> = (0..count).map(|point| Ranked { point, rank: 0 }).collect();
         let objective = |k: usize| move |r: &Ranked| key(points[r.point as usize][k]);

@@ -16,23 +16,23 @@ pub(crate) struct Staircase {
 
 impl Staircase {
     /// A staircase without steps, for a number of ranks.
-    pub fn new(ranks: usize) -> Self {
+    pub(crate) fn new(ranks: usize) -> Self {
         Self { steps: RankSet::new(ranks), third: vec![0.0; ranks] }
     }
 
     /// Smallest third objective among the points whose rank is at most `rank`; `None` if there is no such point.
-    pub fn best(&self, rank: u32) -> Option<f64> {
+    pub(crate) fn best(&self, rank: u32) -> Option<f64> {
         self.steps.at_or_below(rank).map(|step| self.third[step as usize])
     }
 
     /// Whether some point so far is at least as good as a point in both objectives.
-    pub fn covers(&self, rank: u32, third: f64) -> bool {
+    pub(crate) fn covers(&self, rank: u32, third: f64) -> bool {
         self.best(rank).is_some_and(|best| best <= third)
     }
 
     /// Adds a step that is not covered and removes those that it covers. `see` is called with rank and third objective of
     /// each step above the new one, up to and including the first that stays.
-    pub fn insert(&mut self, rank: u32, third: f64, mut see: impl FnMut(u32, f64)) {
+    pub(crate) fn insert(&mut self, rank: u32, third: f64, mut see: impl FnMut(u32, f64)) {
         self.steps.insert(rank);
         self.third[rank as usize] = third;
         while let Some(next) = self.steps.above(rank) {

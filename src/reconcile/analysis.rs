@@ -34,7 +34,7 @@ const WEAK: f64 = 3.0;
 const FEWEST_POSES: usize = 3;
 
 /// Reconciles the displacements, frequencies and bench readings of a campaign with its arm.
-pub fn reconcile(campaign: &Campaign) -> Outcome {
+pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let mut forward = Forward::new(campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
     let mut candidates = candidates(&forward);
@@ -478,7 +478,7 @@ impl Analysis<'_> {
 }
 
 /// Number of rows that are not absolute positions.
-pub fn rows(campaign: &Campaign) -> usize {
+pub(crate) fn rows(campaign: &Campaign) -> usize {
     campaign.statics.len() + campaign.modal.len() + campaign.windup.len()
 }
 

@@ -6,10 +6,10 @@
 //! - [`forward`] predicts all readings fast, from what is prepared once.
 //! - [`model`] says what is calibrated, which effects are candidates and how large they may be.
 //! - [`fit`] fits a model, gives intervals, judges the noise, and predicts held-out poses.
-//! - [`select`] finds the effects that are missing, and the laws without a name that do better.
+//! - `select` finds the effects that are missing, and the laws without a name that do better.
 //! - [`verdict`] holds the outcome, its files and its page, and says what to measure next.
-//! - [`positions`] does all of it for absolute positions.
-//! - [`analysis`] draws the conclusion from displacements, frequencies and bench readings, [`together`] from
+//! - `positions` does all of it for absolute positions.
+//! - `analysis` draws the conclusion from displacements, frequencies and bench readings, `together` from
 //!   these and positions. [`predict`] writes the model's values next to readings.
 
 pub(crate) mod analysis;

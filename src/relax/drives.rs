@@ -9,7 +9,7 @@ impl Parts {
     /// Drops the drives that cannot carry the least demand. Where the joint takes the lightest drive that
     /// carries its demand, it also drops those heavier than the lightest that carries the greatest demand.
     /// Returns whether any was dropped.
-    pub fn drop_drives(&mut self, problem: &ArmProblem, cases: &[CaseLoads]) -> bool {
+    pub(super) fn drop_drives(&mut self, problem: &ArmProblem, cases: &[CaseLoads]) -> bool {
         let mut dropped = false;
         for (slot, piece) in problem.slots().iter().enumerate() {
             let Slot::Sized(sized) = piece else { continue };

@@ -15,7 +15,7 @@ pub(super) struct Parts {
 
 impl Parts {
     /// Every option of every slot.
-    pub fn new(problem: &ArmProblem, known: &[u32]) -> Self {
+    pub(super) fn new(problem: &ArmProblem, known: &[u32]) -> Self {
         let mass_kg: Vec<Vec<f64>> = problem.slots().iter().map(slot_masses).collect();
         let alive = problem
             .slots()
@@ -34,24 +34,24 @@ impl Parts {
     }
 
     /// Mass of an option \[kg\].
-    pub fn mass_kg(&self, slot: usize, option: u32) -> f64 {
+    pub(super) fn mass_kg(&self, slot: usize, option: u32) -> f64 {
         self.mass_kg[slot][option as usize]
     }
 
     /// Masses of the remaining options \[kg\].
-    pub fn masses(&self) -> Vec<Vec<f64>> {
+    pub(super) fn masses(&self) -> Vec<Vec<f64>> {
         self.each(|slot, option| self.mass_kg(slot, option))
     }
 
     /// One number for each remaining option.
-    pub fn each(&self, number: impl Fn(usize, u32) -> f64) -> Vec<Vec<f64>> {
+    pub(super) fn each(&self, number: impl Fn(usize, u32) -> f64) -> Vec<Vec<f64>> {
         let slots = self.alive.iter().enumerate();
         slots.map(|(slot, alive)| alive.iter().map(|&o| number(slot, o)).collect()).collect()
     }
 
     /// Drops the options with which a row exceeds its limit whatever the other pieces are. Returns whether
     /// any was dropped.
-    pub fn drop_by(&mut self, row: &Row) -> bool {
+    pub(super) fn drop_by(&mut self, row: &Row) -> bool {
         let least = row.least();
         let total: f64 = least.iter().sum();
         let mut dropped = false;
@@ -69,7 +69,7 @@ impl Parts {
 
     /// Keeps the options of a slot that pass, given their index and number, and always the known one. Returns
     /// whether any was dropped.
-    pub fn keep(&mut self, slot: usize, passes: impl Fn(usize, u32) -> bool) -> bool {
+    pub(super) fn keep(&mut self, slot: usize, passes: impl Fn(usize, u32) -> bool) -> bool {
         let known = self.known[slot];
         let before = self.alive[slot].len();
         let mut at = 0;

@@ -41,7 +41,7 @@ pub(super) struct Solution {
 impl Program {
     /// A program that starts with the known design, the lightest options and those with the least coefficient
     /// in each row.
-    pub fn new(parts: &Parts, rows: Vec<Row>) -> Self {
+    pub(super) fn new(parts: &Parts, rows: Vec<Row>) -> Self {
         let masses = parts.masses();
         let seen = (0..masses.len())
             .map(|slot| {
@@ -57,7 +57,7 @@ impl Program {
     }
 
     /// Adds an inequality.
-    pub fn add(&mut self, row: Row) {
+    pub(super) fn add(&mut self, row: Row) {
         for (slot, seen) in self.seen.iter_mut().enumerate() {
             see(seen, place_of_least(&row.coefficients[slot]));
         }
@@ -65,7 +65,7 @@ impl Program {
     }
 
     /// Solves the program. `None` if the solver finds no solution.
-    pub fn solve(&mut self) -> Option<Solution> {
+    pub(super) fn solve(&mut self) -> Option<Solution> {
         let (flat, multipliers) = self.solver()?;
         let mut weights: Vec<Vec<f64>> = self.masses.iter().map(|m| vec![0.0; m.len()]).collect();
         let mut value_kg = 0.0;
@@ -86,7 +86,7 @@ impl Program {
     }
 
     /// Drops the options with which no design is as light as `mass_kg`.
-    pub fn drop_options(&self, parts: &mut Parts, mass_kg: f64) {
+    pub(super) fn drop_options(&self, parts: &mut Parts, mass_kg: f64) {
         let (bound_kg, multipliers) = &self.best;
         let reduced = self.reduced(multipliers);
         for (slot, reduced) in reduced.iter().enumerate() {

@@ -12,19 +12,19 @@ pub(super) struct Row {
 
 impl Row {
     /// Least coefficient of each slot.
-    pub fn least(&self) -> Vec<f64> {
+    pub(super) fn least(&self) -> Vec<f64> {
         self.coefficients.iter().map(|c| c.iter().copied().fold(f64::INFINITY, f64::min)).collect()
     }
 
     /// Whether some choice of options exceeds the limit.
-    pub fn can_bind(&self) -> bool {
+    pub(super) fn can_bind(&self) -> bool {
         let most: f64 =
             self.coefficients.iter().map(|c| c.iter().copied().fold(f64::NEG_INFINITY, f64::max)).sum();
         most > self.limit
     }
 
     /// The same inequality scaled so that no number exceeds 1, with its limit raised by the rounding.
-    pub fn ready(mut self) -> Self {
+    pub(super) fn ready(mut self) -> Self {
         let largest_of = |c: &Vec<f64>| c.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
         let terms: Vec<f64> = self.coefficients.iter().map(largest_of).collect();
         self.limit += ROUNDING * (self.limit.abs() + terms.iter().sum::<f64>());

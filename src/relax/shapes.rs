@@ -52,7 +52,7 @@ struct LinkShape {
 
 impl ShapeModel {
     /// Compiles a case.
-    pub fn new(problem: &ArmProblem, case: usize) -> Self {
+    pub(super) fn new(problem: &ArmProblem, case: usize) -> Self {
         let space = problem.space();
         let around = space.surroundings();
         let structure = Structure { water: space.cases[case].water.or(around.water), ..around };
@@ -111,7 +111,13 @@ impl ShapeModel {
 
     /// The inequality of a shape at a required eigenvalue \[1/s²\]. `stiffness` holds the stiffnesses of the
     /// joints' remaining options, by slot.
-    pub fn row(&self, parts: &Parts, stiffness: &[Vec<f64>], x: &DVector<f64>, eigenvalue: f64) -> Row {
+    pub(super) fn row(
+        &self,
+        parts: &Parts,
+        stiffness: &[Vec<f64>],
+        x: &DVector<f64>,
+        eigenvalue: f64,
+    ) -> Row {
         let mut row =
             Row { coefficients: parts.each(|_, _| 0.0), limit: -eigenvalue * x.dot(&(&self.given * x)) };
         for joint in &self.joints {
@@ -139,7 +145,7 @@ impl ShapeModel {
     }
 
     /// The modes of a mixture that lie below an eigenvalue \[1/s²\], as shapes, the lowest first.
-    pub fn violated(
+    pub(super) fn violated(
         &self,
         parts: &Parts,
         stiffness: &[Vec<f64>],

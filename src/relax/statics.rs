@@ -45,7 +45,7 @@ struct Term {
 
 impl CaseLoads {
     /// Reads the loads of a case.
-    pub fn new(problem: &ArmProblem, case: usize) -> Self {
+    pub(super) fn new(problem: &ArmProblem, case: usize) -> Self {
         let station = &problem.stations()[case];
         let (mut unit, mut amount) = (Vec::new(), Vec::new());
         for (slot, placed) in problem.slots().iter().zip(&station.slots) {
@@ -106,13 +106,13 @@ impl CaseLoads {
     }
 
     /// Least and greatest magnitude of the torque on a joint \[N m\].
-    pub fn torque_size(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
+    pub(super) fn torque_size(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let [low, high] = self.torque_range(problem, parts, slot);
         [low.max(-high).max(0.0), high.max(-low)]
     }
 
     /// Whether the torque of some joint may have either sign.
-    pub fn opposes(&self, problem: &ArmProblem, parts: &Parts) -> bool {
+    pub(super) fn opposes(&self, problem: &ArmProblem, parts: &Parts) -> bool {
         (0..self.unit.len()).any(|slot| {
             let [low, high] = self.torque_range(problem, parts, slot);
             low < -1e-9 && high > 1e-9
@@ -120,7 +120,7 @@ impl CaseLoads {
     }
 
     /// Least and greatest inertia outboard of a joint about its axis \[kg m²\].
-    pub fn inertia_range(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
+    pub(super) fn inertia_range(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let Some(joint) = self.joint(problem, slot) else { return [0.0; 2] };
         let start = joint.twist.dot(&(problem.stations()[self.case].start_inertia * joint.twist));
         (0..slot).fold([start; 2], |[low, high], j| {
@@ -132,7 +132,7 @@ impl CaseLoads {
 
     /// Greatest tangent stiffness of every joint's options under the remaining torques \[N m/rad\]. Infinite
     /// for a rigid joint, empty for a slot that is no joint.
-    pub fn stiffest(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Vec<f64>> {
+    pub(super) fn stiffest(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Vec<f64>> {
         let slots = problem.slots().iter().enumerate();
         slots
             .map(|(slot, piece)| {
@@ -149,7 +149,7 @@ impl CaseLoads {
     }
 
     /// Two rows that every design satisfies whose tip moves at most `limit_m` along a direction.
-    pub fn deflection_rows(
+    pub(super) fn deflection_rows(
         &self,
         problem: &ArmProblem,
         parts: &Parts,
@@ -225,7 +225,7 @@ impl CaseLoads {
 
     /// Rows that hold if the drive of every sized joint carries its static, peak and emergency torque in this
     /// case.
-    pub fn torque_rows(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Row> {
+    pub(super) fn torque_rows(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Row> {
         let mut rows = Vec::new();
         for (slot, piece) in problem.slots().iter().enumerate() {
             let (Slot::Sized(sized), Some(joint)) = (piece, self.joint(problem, slot)) else { continue };

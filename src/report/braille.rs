@@ -8,7 +8,13 @@ const DOTS: [[u8; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
 const MARGIN: usize = 7;
 
 /// A plot of points, as wide as asked; an axis that spans more than a decade is logarithmic.
-pub fn plot(title: &str, x_label: &str, points: &[(f64, f64)], width: usize, height: usize) -> Vec<String> {
+pub(crate) fn plot(
+    title: &str,
+    x_label: &str,
+    points: &[(f64, f64)],
+    width: usize,
+    height: usize,
+) -> Vec<String> {
     let (x, y) = (Scale::of(points.iter().map(|p| p.0)), Scale::of(points.iter().map(|p| p.1)));
     let columns = width.saturating_sub(MARGIN + 1).max(8);
     let mut cells = vec![vec![0u8; columns]; height];
@@ -37,7 +43,7 @@ pub fn plot(title: &str, x_label: &str, points: &[(f64, f64)], width: usize, hei
 }
 
 /// Blocks of lines beside one another.
-pub fn beside(left: &[String], right: &[String], width: usize) -> String {
+pub(crate) fn beside(left: &[String], right: &[String], width: usize) -> String {
     let blank = String::new();
     let line = |i: usize| {
         let (a, b) = (left.get(i).unwrap_or(&blank), right.get(i).unwrap_or(&blank));
@@ -48,7 +54,7 @@ pub fn beside(left: &[String], right: &[String], width: usize) -> String {
 }
 
 /// A bar as long as this share of the width, at least one character.
-pub fn bar(share: f64, width: usize) -> String {
+pub(crate) fn bar(share: f64, width: usize) -> String {
     "\u{2588}".repeat(((share.clamp(0.0, 1.0) * width as f64).round() as usize).max(1))
 }
 

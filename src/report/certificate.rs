@@ -7,7 +7,7 @@ use super::words::{TERMINAL, wrap};
 
 /// The section of a page. `boxes` holds, for an exact search, how many boxes were bounded and how many were
 /// left open.
-pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> PageSection {
+pub(crate) fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> PageSection {
     let words = match (boxes, facts.is_stopped()) {
         (None, false) => vec![format!(
             "Every design was visited, so none is missing: of {} designs {} meet the limits, and {} were excluded \
@@ -62,7 +62,7 @@ pub fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> Pag
 }
 
 /// How much an exact search may have missed, in the same words for page, terminal and summary.
-pub fn gap_words(gap: f64) -> String {
+pub(crate) fn gap_words(gap: f64) -> String {
     format!(
         "no design beats every listed one by more than {} in tip deflection, mass and lowest mode at once",
         percent_rounded(100.0 * gap, 2)
@@ -70,7 +70,7 @@ pub fn gap_words(gap: f64) -> String {
 }
 
 /// What an exact search proved, for the terminal. `boxes` as in [`certificate_section`].
-pub fn certificate_words([boxes, open]: [u64; 2], gap: Option<f64>) -> String {
+pub(crate) fn certificate_words([boxes, open]: [u64; 2], gap: Option<f64>) -> String {
     match (open, gap) {
         (0, None | Some(0.0)) => {
             format!("certified: every design of the front is listed ({boxes} boxes)\n")

@@ -3,7 +3,7 @@
 //!
 //! A *contender* is a front with a label: one material of a study, or one of several results. The front of
 //! all materials mixed is at least as good as each of them, so it is shown as a reference and never counts as
-//! the winner. Every function here is pure; [`text`] writes the comparison for people, [`thresholds`] chooses
+//! the winner. Every function here is pure; `text` writes the comparison for people, `thresholds` chooses
 //! round limits where the user gives none, [`moved`] tells what changed between two runs of a study.
 
 pub(crate) mod changes;

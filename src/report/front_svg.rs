@@ -17,7 +17,7 @@ const WIDTH_PX: f64 = 900.0;
 const HEIGHT_PX: f64 = 460.0;
 /// An axis whose ends are further apart than this factor is logarithmic: on a linear one light arms would
 /// crowd at the left.
-pub const WIDE: f64 = 5.0;
+pub(crate) const WIDE: f64 = 5.0;
 /// Points of one series that are closer than this share of an axis are drawn once.
 const GRAIN: f64 = 1.0 / 200.0;
 /// Least distance between markers on an edge \[grains\].
@@ -25,7 +25,7 @@ const MARKER_STEPS: f64 = 3.0;
 
 /// A front that is drawn.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PlottedFront<'a> {
+pub(crate) struct PlottedFront<'a> {
     /// Name in the legend.
     pub name: String,
     /// Its designs.
@@ -36,7 +36,7 @@ pub struct PlottedFront<'a> {
 
 /// Fronts and picks in one picture.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FrontPicture<'a> {
+pub(crate) struct FrontPicture<'a> {
     /// Title.
     pub title: String,
     /// The fronts, in the order of the legend.
@@ -46,12 +46,12 @@ pub struct FrontPicture<'a> {
 }
 
 /// The designs of a front whose links are of more than one material.
-pub fn mixed_designs(front: &FrontTable) -> FrontTable {
+pub(crate) fn mixed_designs(front: &FrontTable) -> FrontTable {
     designs_where(front, |materials| materials.len() > 1)
 }
 
 /// The designs of a front whose links are all of one material.
-pub fn designs_of(front: &FrontTable, material: &str) -> FrontTable {
+pub(crate) fn designs_of(front: &FrontTable, material: &str) -> FrontTable {
     designs_where(front, |materials| materials == [material])
 }
 
@@ -69,7 +69,7 @@ struct Drawn<'a> {
 
 impl FrontPicture<'_> {
     /// The picture as a self-contained SVG document.
-    pub fn to_svg(&self) -> String {
+    pub(crate) fn to_svg(&self) -> String {
         let drawn: Vec<Drawn> = self
             .fronts
             .iter()

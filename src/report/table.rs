@@ -157,7 +157,7 @@ impl Table {
 }
 
 /// One line of CSV with its line end.
-pub fn csv_line(cells: &[String]) -> String {
+pub(crate) fn csv_line(cells: &[String]) -> String {
     let quoted: Vec<String> = cells.iter().map(|cell| csv_cell(cell)).collect();
     format!("{}\n", quoted.join(","))
 }

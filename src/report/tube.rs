@@ -4,7 +4,7 @@ use crate::arm::section::Section;
 
 /// Outer size and wall of a tube, `60 x 40 x 2 mm` or `Ø60 x 2 mm`; the numbers are written by the caller, in
 /// millimetres: width, height, wall.
-pub fn tube_size(is_round: bool, [width, height, wall]: [&str; 3]) -> String {
+pub(crate) fn tube_size(is_round: bool, [width, height, wall]: [&str; 3]) -> String {
     match is_round {
         true => format!("Ø{width} x {wall} mm"),
         false => format!("{width} x {height} x {wall} mm"),
@@ -12,7 +12,7 @@ pub fn tube_size(is_round: bool, [width, height, wall]: [&str; 3]) -> String {
 }
 
 /// [`tube_size`] of a section; `outer` and `wall` write a length given in metres as millimetres.
-pub fn section_size(
+pub(crate) fn section_size(
     section: &Section,
     outer: impl Fn(f64) -> String,
     wall: impl Fn(f64) -> String,

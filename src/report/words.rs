@@ -1,11 +1,11 @@
 //! Sentences: broken into lines, joined by "and", begun with a capital letter.
 
 /// Width of a terminal \[characters\].
-pub const TERMINAL: usize = 80;
+pub(crate) const TERMINAL: usize = 80;
 
 /// Breaks words into lines of at most `width` characters, each beginning with `lead`; a number and its
 /// unit stay together.
-pub fn wrap(words: &str, width: usize, lead: &str) -> String {
+pub(crate) fn wrap(words: &str, width: usize, lead: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
     for word in bound(words) {
         match lines.last_mut() {
@@ -37,13 +37,13 @@ fn bound(words: &str) -> Vec<String> {
 }
 
 /// The text with a capital first letter.
-pub fn capital(text: &str) -> String {
+pub(crate) fn capital(text: &str) -> String {
     let mut chars = text.chars();
     chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
 }
 
 /// The words as a list: `steel`, `steel and titanium`, `steel, titanium and CFRP`.
-pub fn and(words: &[impl AsRef<str>]) -> String {
+pub(crate) fn and(words: &[impl AsRef<str>]) -> String {
     match words {
         [] => String::new(),
         [one] => one.as_ref().to_string(),

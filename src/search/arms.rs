@@ -41,7 +41,7 @@ pub(crate) struct CaseArms {
 
 impl EightArms {
     /// Working space for eight arms of a problem.
-    pub fn new(problem: &ArmProblem) -> Self {
+    pub(crate) fn new(problem: &ArmProblem) -> Self {
         let zeros = [0.0; LANES];
         let nothing = CaseArms {
             tip_m: [zeros; 3],
@@ -67,7 +67,7 @@ impl EightArms {
     }
 
     /// Objectives of one of the eight.
-    pub fn objectives(&self, lane: usize) -> Objectives {
+    pub(crate) fn objectives(&self, lane: usize) -> Objectives {
         Objectives {
             tip_deflection_m: self.tip_deflection_m[lane],
             mass_kg: self.mass_kg[lane],

@@ -36,7 +36,7 @@ pub trait FinishRows: OutwardIn {
 }
 
 /// Finishes rows design by design. It is slower than rows in lanes and works for every tree.
-pub fn finish_one_by_one<P: OutwardIn>(
+pub(crate) fn finish_one_by_one<P: OutwardIn>(
     problem: &P,
     rows: &[(u128, P::Partial)],
     spare: &mut P::Partial,

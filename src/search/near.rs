@@ -11,7 +11,7 @@
 //! The shortfall of a design of the front is zero.
 //!
 //! All designs are visited a second time, now that the front is known. The designs of the front, each worsened by the
-//! slack, fill a table ([`Archive`]) that rejects most designs at once. The table rejects no near design: a design that a
+//! slack, fill a table (`Archive`) that rejects most designs at once. The table rejects no near design: a design that a
 //! worsened design of the front dominates lies beyond the slack of every design of the front, because these do not
 //! dominate each other. The rest are compared with the front one by one. Memory grows with the number of designs asked
 //! for.

@@ -182,7 +182,7 @@ impl DriveAttributes {
 impl Row {
     /// Compiles the innermost level. Returns `None` if designs must be finished one by one: if there is no level, if a
     /// given tube is inboard of it, or if there are too many slots or cases.
-    pub fn new(problem: &ArmProblem) -> Option<Self> {
+    pub(crate) fn new(problem: &ArmProblem) -> Option<Self> {
         let first = *problem.level_slots().last()?;
         let slots = &problem.slots()[first..];
         if slots.len() > MOST_SLOTS

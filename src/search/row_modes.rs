@@ -45,7 +45,7 @@ struct Ask<V> {
 impl RowChunk<'_, '_> {
     /// The group (material) of the design in a lane.
     #[inline(always)]
-    pub fn group(&self, lane: usize) -> Option<usize> {
+    pub(crate) fn group(&self, lane: usize) -> Option<usize> {
         let material = self.row.chunks.get(self.chunk).and_then(|chunk| chunk.materials[lane]);
         self.from.group.with(material).material()
     }
@@ -58,14 +58,14 @@ impl RowChunk<'_, '_> {
 }
 
 impl<'a, 'c> Question<'a, 'c> {
-    pub fn new(at: RowChunk<'a, 'c>, begun: &'a Begun, arms: &'a EightArms) -> Self {
+    pub(crate) fn new(at: RowChunk<'a, 'c>, begun: &'a Begun, arms: &'a EightArms) -> Self {
         Self { at, begun, arms }
     }
 
     /// The designs that a single bar for all eight shows to be of no interest. It is the bar of a design with the least
     /// mass and the least deflection of the eight, and so no bar of the eight is lower. `tip_m2` has the squares of the deflections.
     #[inline(always)]
-    pub fn below_one_bar<V: Lanes>(&self, keep: &impl Keep, tip_m2: &Eight, held: u8) -> u8 {
+    pub(crate) fn below_one_bar<V: Lanes>(&self, keep: &impl Keep, tip_m2: &Eight, held: u8) -> u8 {
         if !self.at.of_one_group() {
             return 0;
         }
@@ -75,7 +75,7 @@ impl<'a, 'c> Question<'a, 'c> {
 
     /// The designs whose lowest mode is below their own bars.
     #[inline(always)]
-    pub fn below_bar<V: Lanes>(&self, keep: &impl Keep, held: u8) -> u8 {
+    pub(crate) fn below_bar<V: Lanes>(&self, keep: &impl Keep, held: u8) -> u8 {
         let (mass_kg, tip_deflection_m) = (&self.arms.mass_kg, &self.arms.tip_deflection_m);
         let mut bars = [0.0; LANES];
         for lane in (0..LANES).filter(|lane| held >> lane & 1 == 1) {
@@ -104,7 +104,7 @@ impl<'a, 'c> Question<'a, 'c> {
 
     /// The lowest eigenvalue over all judged cases, and the lanes in which it was not found.
     #[inline(always)]
-    pub fn lowest<V: Lanes>(&self, held: u8) -> (V, u8) {
+    pub(crate) fn lowest<V: Lanes>(&self, held: u8) -> (V, u8) {
         let (mut lowest, mut unsure) = (V::splat(f64::INFINITY), 0);
         for &block in self.blocks(held).iter().flatten() {
             let least = self.least::<V>(block);

@@ -1,6 +1,6 @@
 //! The sweep: it visits every design, in parallel and in constant memory.
 //!
-//! `Visit` walks the tree in tasks. A design that another clearly dominates is dropped at once ([`Archive`]). The
+//! `Visit` walks the tree in tasks. A design that another clearly dominates is dropped at once (`Archive`). The
 //! others are filtered exactly from time to time, so that memory grows with the front and not with the space. The result
 //! does not depend on the order of visits or on the number of threads.
 

@@ -33,7 +33,7 @@ pub(crate) struct Visit<'p, P: FinishRows> {
 
 impl<P: FinishRows> Visit<'_, P> {
     /// Visits every design. Each task has a keeper of its own; the keepers come back in the order of the tasks.
-    pub fn every_design<'v, K: Keep + Send + 'v>(
+    pub(crate) fn every_design<'v, K: Keep + Send + 'v>(
         &'v self,
         root: &'v P::Partial,
         keeper: impl Fn() -> K + Send + Sync + 'v,

@@ -21,7 +21,7 @@ pub(crate) struct EightDemands<V> {
 impl<V: Lanes> EightDemands<V> {
     /// The demands on a joint with this motion, from static torques \[N m\] and outboard inertias \[kg m²\].
     #[inline(always)]
-    pub fn new(motion: &JointMotion, static_torque_nm: V, outboard_inertia_kgm2: V) -> Self {
+    pub(crate) fn new(motion: &JointMotion, static_torque_nm: V, outboard_inertia_kgm2: V) -> Self {
         let statically = static_torque_nm.abs();
         let linear = match motion.linear_reading {
             LinearReading::Exact => outboard_inertia_kgm2 * V::splat(motion.acceleration_rad_s2),

@@ -104,7 +104,7 @@ pub(super) struct Ladder<'t> {
 impl<'t> Ladder<'t> {
     /// The steps from `start` on, flight by flight, with the largest limits of each flight.
     #[inline(always)]
-    pub fn flights_from(self, start: usize) -> impl Iterator<Item = (&'t DriveLimits, Range<usize>)> {
+    pub(super) fn flights_from(self, start: usize) -> impl Iterator<Item = (&'t DriveLimits, Range<usize>)> {
         let flights = self.flights.iter().enumerate().skip(start / FLIGHT);
         flights
             .map(move |(k, most)| (most, (k * FLIGHT).max(start)..((k + 1) * FLIGHT).min(self.limits.len())))

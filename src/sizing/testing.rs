@@ -18,7 +18,13 @@ fn provenance() -> Provenance {
 }
 
 /// A gear with every rating that a check needs, in the order of `gears.csv`.
-pub fn gear(id: &str, torques_nm: [f64; 4], input_rpm: [f64; 2], inertia: f64, masses_kg: [f64; 2]) -> Gear {
+pub(crate) fn gear(
+    id: &str,
+    torques_nm: [f64; 4],
+    input_rpm: [f64; 2],
+    inertia: f64,
+    masses_kg: [f64; 2],
+) -> Gear {
     let mut parts = id.split('-');
     let mut next = || parts.next().expect("series-size-ratio");
     Gear {
@@ -50,7 +56,13 @@ pub fn gear(id: &str, torques_nm: [f64; 4], input_rpm: [f64; 2], inertia: f64, m
 }
 
 /// A motor with every rating: torques \[N m\], speeds \[rpm\], inertia \[kg m²\], mass \[kg\].
-pub fn motor(id: &str, torques_nm: [f64; 2], speeds_rpm: [f64; 2], inertia: f64, mass_kg: f64) -> Motor {
+pub(crate) fn motor(
+    id: &str,
+    torques_nm: [f64; 2],
+    speeds_rpm: [f64; 2],
+    inertia: f64,
+    mass_kg: f64,
+) -> Motor {
     Motor {
         id: id.to_string(),
         kind: MotorKind::AcServo,
@@ -67,7 +79,7 @@ pub fn motor(id: &str, torques_nm: [f64; 2], speeds_rpm: [f64; 2], inertia: f64,
 }
 
 /// `catalogs/gears.csv`, row HFUC-58-100.
-pub fn hfuc_58_100() -> Gear {
+pub(crate) fn hfuc_58_100() -> Gear {
     let mut gear =
         gear("HFUC-58-100", [696.0, 1590.0, 1060.0, 3180.0], [3000.0, 2200.0], 0.00273, [4.7, 14.6]);
     gear.permissible_tilting_moment_nm = Some(1180.0);
@@ -75,21 +87,21 @@ pub fn hfuc_58_100() -> Gear {
 }
 
 /// `catalogs/gears.csv`, row HFUC-40-100, with the housed unit's bearing.
-pub fn hfuc_40_100() -> Gear {
+pub(crate) fn hfuc_40_100() -> Gear {
     let mut gear = gear("HFUC-40-100", [265.0, 568.0, 372.0, 1080.0], [4000.0, 3000.0], 0.00045, [1.7, 5.0]);
     gear.permissible_tilting_moment_nm = Some(450.0);
     gear
 }
 
 /// `catalogs/motors.csv`, row F11-10.
-pub fn f11_10() -> Motor {
+pub(crate) fn f11_10() -> Motor {
     let mut motor = motor("F11-10", [31.12, 62.23], [10200.0, 11200.0], 0.00039, 7.5);
     motor.kind = MotorKind::HydraulicPiston;
     motor
 }
 
 /// `catalogs/motors.csv`, row J 8.2 (129-): no rotor inertia.
-pub fn char_lynn_j_8_2() -> Motor {
+pub(crate) fn char_lynn_j_8_2() -> Motor {
     let mut motor = motor("J 8.2 (129-)", [13.7, 16.2], [1992.0, 2390.0], 0.0, 2.0);
     motor.kind = MotorKind::HydraulicOrbital;
     motor.rotor_inertia_kgm2 = None;
@@ -149,7 +161,7 @@ prop_compose! {
 }
 
 /// Static torque, linear torque and tilting moment; one in ten is zero.
-pub fn any_torques() -> impl Strategy<Value = [f64; 3]> {
+pub(crate) fn any_torques() -> impl Strategy<Value = [f64; 3]> {
     let torque = || prop_oneof![1 => Just(0.0), 9 => 0.0..800.0f64];
     (torque(), torque(), torque()).prop_map(|(a, b, c)| [a, b, c])
 }

@@ -31,7 +31,7 @@ pub(crate) struct StressCheck {
 }
 
 impl StressCheck {
-    pub fn new(option: &LinkOption) -> Option<Self> {
+    pub(crate) fn new(option: &LinkOption) -> Option<Self> {
         let p = option.section.properties(option.material.poisson);
         let (width, height) = option.section.outer_m();
         let wall = option.section.wall_m();
@@ -54,7 +54,7 @@ impl StressCheck {
 
     /// Ratio of the von Mises stress of bending, axial force and torsion to the strength. `wrench` is the load about the
     /// world's origin, `at_m` the end of the link at which the stress is asked for.
-    pub fn ratio(&self, wrench: &Vector6<f64>, at_m: &Vector3<f64>, place: &Place) -> f64 {
+    pub(crate) fn ratio(&self, wrench: &Vector6<f64>, at_m: &Vector3<f64>, place: &Place) -> f64 {
         let [axial_n, torsion_nm, moment_y_nm, moment_z_nm] = place.local(wrench, at_m);
         let (y, z) = (moment_y_nm.abs() * self.per_moment_y, moment_z_nm.abs() * self.per_moment_z);
         // the stresses of both bending moments meet in the corner of a rectangle, but not in one point of a circle

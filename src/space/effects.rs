@@ -44,7 +44,7 @@ pub(crate) struct Tilt<'s> {
 
 impl Tilt<'_> {
     /// Axis of the spring in the world. `rotation` is the attitude of the frame that the spring stands in.
-    pub fn axis(&self, rotation: &Rotation3<f64>) -> Vector3<f64> {
+    pub(crate) fn axis(&self, rotation: &Rotation3<f64>) -> Vector3<f64> {
         match self.about {
             About::Across(joint, which) => across(&(rotation * joint.axis))[which],
             About::Fixed(axis) => rotation * axis,
@@ -53,7 +53,7 @@ impl Tilt<'_> {
     }
 
     /// Twist of the spring under a moment.
-    pub fn law(&self) -> JointLaw {
+    pub(crate) fn law(&self) -> JointLaw {
         JointLaw { connection_rad_per_nm: self.rad_per_nm, ..JointLaw::from(Curve::Rigid) }
     }
 }

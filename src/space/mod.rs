@@ -4,9 +4,9 @@
 //! only when everything outboard of it is known.
 //!
 //! - [`design_space`] says what there is to choose.
-//! - [`problem`] puts the arm behind the trait [`levels::OutwardIn`]. The trait extends a partial arm by an option, finds
+//! - `problem` puts the arm behind the trait [`levels::OutwardIn`]. The trait extends a partial arm by an option, finds
 //!   that no design with this beginning can hold, and evaluates a complete arm.
-//! - [`station`] compiles one case: everything about a pose that does not depend on the design.
+//! - `station` compiles one case: everything about a pose that does not depend on the design.
 //! - [`design`] judges one design by the full model.
 
 pub(crate) mod attributes;

@@ -8,7 +8,7 @@ use super::attributes::OptionAttributes;
 use super::design_space::{DesignSpace, SpacePiece};
 use super::effects::Layer;
 use super::levels::OutwardIn;
-pub use super::slot::SizedJoint;
+pub(crate) use super::slot::SizedJoint;
 pub(crate) use super::slot::Slot;
 use super::slot::{choice_slot, joint_slot, link_slot};
 use super::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot, reaches_m};

@@ -74,12 +74,12 @@ impl SizedJoint<'_> {
 
 impl Slot<'_> {
     /// Whether the search chooses here.
-    pub fn is_level(&self) -> bool {
+    pub(crate) fn is_level(&self) -> bool {
         matches!(self, Slot::Link { open: true, .. } | Slot::Sized(SizedJoint { all_fits: true, .. }))
     }
 
     /// Number of options.
-    pub fn options(&self) -> u32 {
+    pub(crate) fn options(&self) -> u32 {
         match self {
             Slot::Link { options, .. } => options.len() as u32,
             Slot::Sized(sized) => sized.table.len() as u32,
@@ -88,7 +88,7 @@ impl Slot<'_> {
     }
 
     /// Mass of a given joint or offset \[kg\]; `None` for joints that are sized and for tubes.
-    pub fn fixed_kg(&self) -> Option<f64> {
+    pub(crate) fn fixed_kg(&self) -> Option<f64> {
         match self {
             Slot::Given { mass_kg, .. } | Slot::Offset { mass_kg } => Some(*mass_kg),
             _ => None,
@@ -96,7 +96,7 @@ impl Slot<'_> {
     }
 
     /// Joint law with one of the drives; `None` if the piece is no joint.
-    pub fn law(&self, option: usize) -> Option<&JointLaw> {
+    pub(crate) fn law(&self, option: usize) -> Option<&JointLaw> {
         match self {
             Slot::Given { law, .. } => Some(law),
             Slot::Sized(sized) => Some(&sized.laws[option]),
@@ -105,7 +105,7 @@ impl Slot<'_> {
     }
 
     /// The motion that a sized joint must do.
-    pub fn motion(&self) -> Option<&JointMotion> {
+    pub(crate) fn motion(&self) -> Option<&JointMotion> {
         match self {
             Slot::Sized(sized) => Some(sized.table.motion()),
             _ => None,

@@ -66,7 +66,7 @@ pub(crate) struct Place {
 
 impl Place {
     /// Axial force \[N\], torsion and both bending moments \[N m\] of a wrench at a point of the link.
-    pub fn local(&self, wrench: &Wrench, at_m: &Vector3<f64>) -> [f64; 4] {
+    pub(crate) fn local(&self, wrench: &Wrench, at_m: &Vector3<f64>) -> [f64; 4] {
         let force = self.frame.tr_mul(&linear(wrench));
         let moment = self.frame.tr_mul(&(angular(wrench) - at_m.cross(&linear(wrench))));
         [force.x, moment.x, moment.y, moment.z]
@@ -97,13 +97,13 @@ pub(crate) struct StationLink {
 
 impl StationLink {
     /// Displacement of the tip per unit of the wrench on the link's end.
-    pub fn flexibility(&self) -> Matrix3x6<f64> {
+    pub(crate) fn flexibility(&self) -> Matrix3x6<f64> {
         // the end coordinates have unit stiffness: a wrench w deflects them by endᵀ w
         self.tip * self.end.transpose()
     }
 
     /// Displacement of the tip by the link's own weight \[m\].
-    pub fn own_weight_deflection_m(&self) -> Vector3<f64> {
+    pub(crate) fn own_weight_deflection_m(&self) -> Vector3<f64> {
         self.tip * self.own_weight_end
     }
 }
@@ -175,7 +175,7 @@ impl Tubes {
 
 impl Station {
     /// Compiles every case of a space.
-    pub fn all(space: &DesignSpace) -> Vec<Self> {
+    pub(crate) fn all(space: &DesignSpace) -> Vec<Self> {
         let around = space.surroundings();
         let mut known: Vec<Tubes> = Vec::new();
         let mut stations = Vec::with_capacity(space.cases.len());

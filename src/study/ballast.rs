@@ -34,7 +34,7 @@ pub struct BallastFlags {
 }
 
 /// Name of the file that lists them.
-pub const FILE: &str = "ballast.csv";
+pub(crate) const FILE: &str = "ballast.csv";
 
 const COLUMNS: [&str; 13] = [
     "design_id",

@@ -21,13 +21,13 @@ pub(super) enum MassBounds<'a> {
 
 impl MassBounds<'_> {
     /// Whether every option of a space can be tabulated.
-    pub fn can_tabulate(space: &DesignSpace) -> bool {
+    pub(super) fn can_tabulate(space: &DesignSpace) -> bool {
         space.link_options() <= MOST_TABULATED
     }
 
     /// A lower bound on the mass of every design that is as good as a known one, given by its number in the
     /// whole space. `None` if it cannot be computed.
-    pub fn below(&self, known: u128, objectives: &Objectives) -> Option<MassBound> {
+    pub(super) fn below(&self, known: u128, objectives: &Objectives) -> Option<MassBound> {
         match self {
             Self::Tabulated(problem, relaxation) => bound(problem, relaxation, known, objectives),
             Self::InReach { space, catalogs, reach } => {

@@ -22,9 +22,9 @@ use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
 
 /// Name of the file that lists them.
-pub const FILE: &str = "near.csv";
+pub(crate) const FILE: &str = "near.csv";
 /// Key in `run.json`.
-pub const KEY: &str = "within";
+pub(crate) const KEY: &str = "within";
 
 /// The designs near a front.
 #[derive(Debug, Clone, PartialEq)]

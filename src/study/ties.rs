@@ -25,7 +25,7 @@ pub struct Ties {
 }
 
 /// Name of the file that lists them.
-pub const FILE: &str = "ties.csv";
+pub(crate) const FILE: &str = "ties.csv";
 
 const COLUMNS: [&str; 4] = ["design_id", "at", "part", "instead"];
 

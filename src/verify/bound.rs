@@ -42,7 +42,7 @@ struct Asked {
 
 impl<'w> Members<'w> {
     /// Tubes, and drives of which nothing is known yet: their masses are zero.
-    pub fn new(drives: Vec<DriveRange>, tubes: Vec<&'w TubeRange>, waters: usize) -> Self {
+    pub(super) fn new(drives: Vec<DriveRange>, tubes: Vec<&'w TubeRange>, waters: usize) -> Self {
         let loads = |water: usize| {
             let drives = drives.iter().map(|_| Span::default());
             drives.chain(tubes.iter().map(|tube| weight(tube, water))).collect()
@@ -51,7 +51,7 @@ impl<'w> Members<'w> {
     }
 
     /// Sets the range of drives of a joint.
-    pub fn set_drive(&mut self, joint: usize, range: DriveRange) {
+    pub(super) fn set_drive(&mut self, joint: usize, range: DriveRange) {
         self.drives[joint] = range;
         let mass = Span { least: range.least_kg, most: range.most_kg };
         self.loads.iter_mut().for_each(|loads| loads[joint] = mass);
@@ -60,7 +60,7 @@ impl<'w> Members<'w> {
 
 impl Skeleton {
     /// What a joint is asked for at least and at most, with room for rounding.
-    pub fn demands(&self, joint: usize, duty: &Duty, members: &Members) -> [Demand; 2] {
+    pub(super) fn demands(&self, joint: usize, duty: &Duty, members: &Members) -> [Demand; 2] {
         let asked = self.asked(joint, members);
         let (statics, inertia) = (asked.static_nm, asked.inertia_kgm2);
         let (less, more) = (1.0 - ROUNDING, 1.0 + ROUNDING);
@@ -103,7 +103,7 @@ impl Skeleton {
     }
 
     /// Whether the least stress at both ends of every tube leaves the safety that is asked for.
-    pub fn strong_enough(&self, members: &Members) -> bool {
+    pub(super) fn strong_enough(&self, members: &Members) -> bool {
         let Some(safety) = self.limits.stress_safety_factor_min else { return true };
         self.poses.iter().all(|pose| {
             let loads = &members.loads[pose.water];
@@ -122,7 +122,7 @@ impl Skeleton {
     }
 
     /// Mass and deflection that no member betters; `None` if they break a limit.
-    pub fn ideal_point(&self, members: &Members) -> Option<IdealPoint> {
+    pub(super) fn ideal_point(&self, members: &Members) -> Option<IdealPoint> {
         let drives: f64 = members.drives.iter().map(|drive| drive.least_kg).sum();
         let tubes: f64 = members.tubes.iter().map(|tube| tube.least.mass_kg).sum();
         let mut ideal = IdealPoint {
@@ -145,7 +145,7 @@ impl Skeleton {
     }
 
     /// The largest stiffness of each coordinate in a pose.
-    pub fn stiffnesses(&self, pose: &Pose, members: &Members) -> Vec<f64> {
+    pub(super) fn stiffnesses(&self, pose: &Pose, members: &Members) -> Vec<f64> {
         let loads = &members.loads[pose.water];
         let stiffness = |coordinate: &Coordinate| match *coordinate {
             Coordinate::Joint(joint) => {
@@ -161,7 +161,7 @@ impl Skeleton {
     }
 
     /// The stiffest and lightest arm of a box in a pose.
-    pub fn pencil(&self, pose: &Pose, members: &Members) -> Pencil {
+    pub(super) fn pencil(&self, pose: &Pose, members: &Members) -> Pencil {
         let mut inertia = pose.inertia.clone();
         let masses = members.drives.iter().map(|drive| drive.least_kg);
         let tubes = members.tubes.iter().flat_map(|tube| tube.least.around[pose.water].densities);

@@ -22,7 +22,7 @@ pub(super) struct BranchScore<'a> {
 
 impl BranchScore<'_> {
     /// How much the ideal point loses by a level.
-    pub fn score_of(&self, level: usize) -> f64 {
+    pub(super) fn score_of(&self, level: usize) -> f64 {
         let node = self.parts.0[level];
         let [mass_kg, tip_m, eigenvalue] = match self.boxes.skeleton.levels[level] {
             Place::Joint(joint) => self.of_joint(joint, node),

@@ -29,7 +29,7 @@ pub(super) struct DriveRange {
 
 impl DriveRange {
     /// One drive.
-    pub fn of(law: &JointLaw, mass_kg: f64) -> Self {
+    pub(super) fn of(law: &JointLaw, mass_kg: f64) -> Self {
         let one_slope = |k: f64| Windup {
             k1_nm_per_rad: k,
             k2_nm_per_rad: k,
@@ -61,7 +61,7 @@ impl DriveRange {
         }
     }
 
-    pub fn with(&self, other: &Self) -> Self {
+    pub(super) fn with(&self, other: &Self) -> Self {
         Self {
             least_kg: self.least_kg.min(other.least_kg),
             most_kg: self.most_kg.max(other.most_kg),
@@ -74,7 +74,7 @@ impl DriveRange {
 
     /// Least twist under any of some torques, with its sign \[rad\]: the gear and what closes with the torque twist least
     /// under the least torque, and friction holds back most under the most.
-    pub fn least_angle_rad(&self, torque_nm: Span) -> f64 {
+    pub(super) fn least_angle_rad(&self, torque_nm: Span) -> f64 {
         let Span { least, most } = torque_nm;
         let gear = if least >= 0.0 { angle_rad(&self.stiff, least) } else { -angle_rad(&self.soft, -least) };
         let closed = self.lost_motion.map_or(0.0, |lost| lost.angle_rad(least));
@@ -90,7 +90,7 @@ impl DriveRange {
     }
 
     /// Largest slope for a small further torque at any torque up to this size \[N m/rad\].
-    pub fn largest_slope(&self, torque_nm: f64) -> f64 {
+    pub(super) fn largest_slope(&self, torque_nm: f64) -> f64 {
         // beyond a break point by less than rounding counts as beyond
         let reach_nm = torque_nm * (1.0 + 1e-9) + 1e-9;
         let gear = self.stiff.tangent_nm_per_rad(reach_nm).min(self.modal_nm_per_rad);

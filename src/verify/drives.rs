@@ -48,7 +48,7 @@ pub(super) struct Drives {
 
 impl DriveOptions {
     /// All drives of a joint; `level` counts if the drive is a choice.
-    pub fn new(offers: &JointOffers, level: usize, ties: Ties) -> Self {
+    pub(super) fn new(offers: &JointOffers, level: usize, ties: Ties) -> Self {
         let offers = match offers {
             JointOffers::Given { law, mass_kg } => {
                 let drives = vec![(0, Ratings::UNLIMITED)];
@@ -68,7 +68,7 @@ impl DriveOptions {
     }
 
     /// Some of the options, ascending.
-    pub fn only(&self, some: &[u32]) -> Self {
+    pub(super) fn only(&self, some: &[u32]) -> Self {
         let options = some.iter().map(|&i| self.options[i as usize].clone()).collect();
         Self { options, ..*self }
     }
@@ -84,12 +84,12 @@ impl DriveOption {
     }
 
     /// Whether a drive of it holds a demand.
-    pub fn holds(&self, asked: &Demand) -> bool {
+    pub(super) fn holds(&self, asked: &Demand) -> bool {
         self.drives.iter().any(|(_, ratings)| ratings.hold(asked))
     }
 
     /// Its drives that may hold a demand between two, and whether the first of them surely does.
-    pub fn holding(&self, [least, most]: &[Demand; 2]) -> Choice {
+    pub(super) fn holding(&self, [least, most]: &[Demand; 2]) -> Choice {
         let may = self.drives.iter().filter(|(_, ratings)| ratings.hold(least));
         let (mut drives, unsure): (Vec<&(u32, Ratings)>, Vec<_>) =
             may.partition(|(_, ratings)| ratings.hold(most));
@@ -107,7 +107,7 @@ impl DriveOption {
 
 impl Drives {
     /// Halves the options.
-    pub fn new(DriveOptions { level, duty, options }: DriveOptions) -> Self {
+    pub(super) fn new(DriveOptions { level, duty, options }: DriveOptions) -> Self {
         let all: Vec<u32> = (0..options.len() as u32).collect();
         let tree = Tree::new(all, &options.iter().map(keys).collect::<Vec<_>>());
         let nodes = (0..tree.len() as u32)
@@ -121,12 +121,12 @@ impl Drives {
     }
 
     /// The options of a node.
-    pub fn options(&self, node: u32) -> impl Iterator<Item = &DriveOption> {
+    pub(super) fn options(&self, node: u32) -> impl Iterator<Item = &DriveOption> {
         self.tree.options(node).iter().map(|&i| &self.options[i as usize])
     }
 
     /// The drives of a node that may hold what is asked at least; `None` if there is none.
-    pub fn holding(&self, node: u32, asked: &Demand) -> Option<DriveRange> {
+    pub(super) fn holding(&self, node: u32, asked: &Demand) -> Option<DriveRange> {
         if self.tree.options(node).len() > FEW {
             let (range, ratings) = &self.nodes[node as usize];
             return ratings.hold(asked).then_some(*range);
@@ -136,18 +136,18 @@ impl Drives {
     }
 
     /// The drives that may be the lightest that holds a demand between two; `None` if none holds the least.
-    pub fn first_fits(&self, least: &Demand, most: &Demand) -> Option<DriveRange> {
+    pub(super) fn first_fits(&self, least: &Demand, most: &Demand) -> Option<DriveRange> {
         let fits = first_fits(self.options.iter().map(|option| ((), option)), least, most);
         fits.map(|(_, option)| option.range).reduce(|a, b| a.with(&b))
     }
 
     /// Range of all drives of a node.
-    pub fn range(&self, node: u32) -> &DriveRange {
+    pub(super) fn range(&self, node: u32) -> &DriveRange {
         &self.nodes[node as usize].0
     }
 
     /// Whether there is no drive at all.
-    pub fn is_empty(&self) -> bool {
+    pub(super) fn is_empty(&self) -> bool {
         self.options.is_empty()
     }
 }

@@ -34,7 +34,7 @@ struct MeanTorque {
 
 impl Duty {
     /// The motion of a joint whose axis the tip is at most `reach_m` away from.
-    pub fn new(motion: &AskedMotion, reach_m: f64, max_speed_rad_s: Option<f64>) -> Self {
+    pub(super) fn new(motion: &AskedMotion, reach_m: f64, max_speed_rad_s: Option<f64>) -> Self {
         // the tip's speed over its lever; a short lever would ask a roll joint for absurd speeds
         let lever_m = reach_m.max(motion.min_lever_m);
         let speed_rad_s = max_speed_rad_s.unwrap_or(motion.tip_speed_m_s / lever_m);
@@ -57,7 +57,7 @@ impl Duty {
     }
 
     /// What a static torque and an inertia outboard ask of the drive; it grows with both (see [`AskedMotion::grows`]).
-    pub fn demand(&self, static_nm: f64, inertia_kgm2: f64) -> Demand {
+    pub(super) fn demand(&self, static_nm: f64, inertia_kgm2: f64) -> Demand {
         let static_nm = static_nm.abs();
         let linear_nm = (self.linear_per_inertia * inertia_kgm2 + self.linear_per_static * static_nm).abs();
         let cube = |nm: f64| nm * nm * nm;

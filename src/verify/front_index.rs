@@ -18,7 +18,7 @@ pub(super) struct FrontIndex {
 
 impl FrontIndex {
     /// Sorts the rows.
-    pub fn new(front: &[Objectives]) -> Self {
+    pub(super) fn new(front: &[Objectives]) -> Self {
         let mut rows = front.to_vec();
         rows.sort_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
         let block = |end: usize| {
@@ -54,7 +54,7 @@ impl FrontIndex {
 
     /// The largest frequency at which a design of this mass and deflection is beaten by a row: the row is no
     /// worse in all three, ties counted for the row, and better in one. Zero if no row beats it at any.
-    pub fn beaten_up_to_hz(&self, mass_kg: f64, tip_m: f64) -> f64 {
+    pub(super) fn beaten_up_to_hz(&self, mass_kg: f64, tip_m: f64) -> f64 {
         let lighter = self.highest_hz(mass_kg * (1.0 - BETTER), tip_m * (1.0 + TIE));
         let stiffer = self.highest_hz(mass_kg * (1.0 + TIE), tip_m * (1.0 - BETTER));
         let as_good = self.highest_hz(mass_kg * (1.0 + TIE), tip_m * (1.0 + TIE));
@@ -62,7 +62,7 @@ impl FrontIndex {
     }
 
     /// Whether a row beats a design.
-    pub fn beats(&self, design: &Objectives) -> bool {
+    pub(super) fn beats(&self, design: &Objectives) -> bool {
         design.lowest_mode_hz <= self.beaten_up_to_hz(design.mass_kg, design.tip_deflection_m)
     }
 }

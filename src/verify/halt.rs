@@ -17,7 +17,7 @@ pub(super) struct Found {
 }
 
 impl Found {
-    pub fn with(self, other: Self) -> Self {
+    pub(super) fn with(self, other: Self) -> Self {
         Self { boxes: self.boxes + other.boxes, open: self.open + other.open }
     }
 }
@@ -33,19 +33,19 @@ pub(super) struct Halt<'s> {
 
 impl Halt<'_> {
     /// Whether the search is to end early.
-    pub fn stopped(&self) -> bool {
+    pub(super) fn stopped(&self) -> bool {
         self.count.load(Ordering::Relaxed) > MOST_DESIGNS || self.out_of_time()
     }
 
     /// Notes a design; it may be known from another region.
-    pub fn note(&self, design: Option<Design>) {
+    pub(super) fn note(&self, design: Option<Design>) {
         let mut designs = self.designs.lock().unwrap_or_else(PoisonError::into_inner);
         designs.extend(design);
         self.count.store(designs.len(), Ordering::Relaxed);
     }
 
     /// Whether whoever asked wants an end.
-    pub fn out_of_time(&self) -> bool {
+    pub(super) fn out_of_time(&self) -> bool {
         self.stop.load(Ordering::Relaxed) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
 }

@@ -63,7 +63,7 @@ pub(super) struct Layout {
 
 impl Layout {
     /// Puts an arm into the pose of a case.
-    pub fn new(structure: &Structure, case: &LoadCase) -> Self {
+    pub(super) fn new(structure: &Structure, case: &LoadCase) -> Self {
         let mut angles = case.pose_deg.iter();
         let mut rotation = Rotation3::identity();
         let mut layout = Self {
@@ -201,7 +201,7 @@ impl Shape {
     }
 
     /// Which of a tube's stiffnesses resists, and the integral of the squared strain \[m\].
-    pub fn stiffness(self, length_m: f64) -> (usize, f64) {
+    pub(super) fn stiffness(self, length_m: f64) -> (usize, f64) {
         let bending = |linear: bool| if linear { length_m / 3.0 } else { length_m };
         match self {
             Shape::BendZ { linear } => (0, bending(linear)),
@@ -240,7 +240,7 @@ pub(super) fn coordinates(layout: &Layout, model: LinkModel) -> Vec<Coordinate> 
 
 impl Layout {
     /// Displacement and rotation of a point per unit of a coordinate, world.
-    pub fn motion(&self, coordinate: Coordinate, point: &Point) -> (Vector3<f64>, Vector3<f64>) {
+    pub(super) fn motion(&self, coordinate: Coordinate, point: &Point) -> (Vector3<f64>, Vector3<f64>) {
         let still = (Vector3::zeros(), Vector3::zeros());
         let turned = |axis: &Vector3<f64>, at_m| (axis.cross(&(point.at_m - at_m)), *axis);
         match coordinate {

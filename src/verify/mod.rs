@@ -5,24 +5,24 @@
 //! searches is the reader of studies and catalogs, `arm`, and the full model of `mechanics`, which judges single
 //! designs.
 //!
-//! A box is, for each level, a node of a binary tree over the level's options ([`tree`]). The members of a
+//! A box is, for each level, a node of a binary tree over the level's options (`tree`). The members of a
 //! box are bounded by
 //!
 //! - *mass*: the sum of the least masses;
-//! - *demand on joints*: torques by lever arms. Every weight is an interval that enters once ([`span`], [`pose`]). A
+//! - *demand on joints*: torques by lever arms. Every weight is an interval that enters once (`span`, `pose`). A
 //!   box is discarded if none of its drives holds the least demand. The drive that fits first holds the least demand,
-//!   and does not come after the fit of the greatest ([`drives`]);
+//!   and does not come after the fit of the greatest (`drives`);
 //! - *deflection*: the method of the unit load along a fixed direction. A displacement is at least as long
-//!   as its component along any direction ([`bound`]);
+//!   as its component along any direction (`bound`);
 //! - *lowest mode*: that of an arm as stiff as the stiffest and as light as the lightest number of the box
-//!   allows. It has fewer ways to move than the full model, so its lowest mode is no lower ([`pencil`], [`layout`]).
+//!   allows. It has fewer ways to move than the full model, so its lowest mode is no lower (`pencil`, `layout`).
 //!
 //! A box is discarded if no member holds, or if a row of the front is no worse in all three objectives and better
-//! in one ([`front_index`]). Otherwise one of its levels is halved ([`search`]). Single designs are left. The full model
-//! judges them: those that hold and that no row beats belong on the front ([`judge`]). So every design of the question is
+//! in one (`front_index`). Otherwise one of its levels is halved (`search`). Single designs are left. The full model
+//! judges them: those that hold and that no row beats belong on the front (`judge`). So every design of the question is
 //! either in a discarded box, and then a row beats it or it does not hold, or it is among those judged.
 //!
-//! Vast spaces are searched region by region ([`region`]).
+//! Vast spaces are searched region by region (`region`).
 
 pub(crate) mod bound;
 pub(crate) mod boxes;

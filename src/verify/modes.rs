@@ -15,7 +15,7 @@ pub(super) struct Slow<'w> {
 
 impl Skeleton {
     /// The slowest case if the stiffest arm is faster than `hz` in every case; `None` if in one it is not.
-    pub fn slowest(&self, members: &Members, hz: f64) -> Option<Slow<'_>> {
+    pub(super) fn slowest(&self, members: &Members, hz: f64) -> Option<Slow<'_>> {
         let eigenvalue = eigenvalue_of(hz);
         if !eigenvalue.is_finite() {
             return None;
@@ -35,7 +35,7 @@ impl Skeleton {
     }
 
     /// The least frequency that the study asks for \[Hz\], less rounding.
-    pub fn required_hz(&self) -> f64 {
+    pub(super) fn required_hz(&self) -> f64 {
         self.limits.required_mode_hz() * (1.0 - ROUNDING)
     }
 }

@@ -44,7 +44,7 @@ pub(super) struct CatalogOffers {
 
 impl JointOffers {
     /// The drives of a joint whose axis the tip is at most `reach_m` away from.
-    pub fn new(question: &Question, joint: &AskedJoint, reach_m: f64, catalogs: &Catalogs) -> Self {
+    pub(super) fn new(question: &Question, joint: &AskedJoint, reach_m: f64, catalogs: &Catalogs) -> Self {
         let law = |curve| question.joint_piece(joint, curve).law;
         let allowed = match &joint.drive {
             AskedDrive::Given { curve, mass_kg } => {
@@ -59,7 +59,7 @@ impl JointOffers {
     }
 
     /// The drives of the catalogs, if they give the drive.
-    pub fn of_catalog(&self) -> Option<&CatalogOffers> {
+    pub(super) fn of_catalog(&self) -> Option<&CatalogOffers> {
         match self {
             Self::Given { .. } => None,
             Self::Catalog(offers) => Some(offers),
@@ -111,7 +111,7 @@ fn torsion_curve(gear: &Gear) -> Option<Windup> {
 
 impl CatalogOffers {
     /// Places of the drives that can be the lightest that holds: those that no lighter one covers in every rating.
-    pub fn first_fits(&self) -> Vec<u32> {
+    pub(super) fn first_fits(&self) -> Vec<u32> {
         let mut kept: Vec<u32> = Vec::new();
         for (place, offer) in self.offers.iter().enumerate() {
             let covers = |&lighter: &u32| self.offers[lighter as usize].ratings.cover(&offer.ratings);
@@ -123,7 +123,7 @@ impl CatalogOffers {
     }
 
     /// Places of the drives in sets of equal mass and torsion, which no objective tells apart.
-    pub fn ties(&self) -> Vec<Vec<u32>> {
+    pub(super) fn ties(&self) -> Vec<Vec<u32>> {
         let mut sets: Vec<Vec<u32>> = Vec::new();
         let mut place = 0;
         for of_mass in self.offers.chunk_by(|a, b| a.mass_kg == b.mass_kg) {
@@ -141,18 +141,18 @@ impl CatalogOffers {
     }
 
     /// The lightest drive that holds a demand.
-    pub fn first_fit(&self, demand: &Demand) -> Option<&Offer> {
+    pub(super) fn first_fit(&self, demand: &Demand) -> Option<&Offer> {
         self.offers.iter().find(|offer| offer.ratings.hold(demand))
     }
 
     /// The first of the drives of a drive's mass and torsion.
-    pub fn first_tie<'o>(&'o self, offer: &'o Offer) -> &'o Offer {
+    pub(super) fn first_tie<'o>(&'o self, offer: &'o Offer) -> &'o Offer {
         let first = self.offers.partition_point(|other| other.mass_kg < offer.mass_kg);
         self.offers[first..].iter().find(|other| other.law == offer.law).unwrap_or(offer)
     }
 
     /// The drive of some gear and motor.
-    pub fn of(&self, gear: usize, motor: usize) -> Option<&Offer> {
+    pub(super) fn of(&self, gear: usize, motor: usize) -> Option<&Offer> {
         self.places.get(&(gear, motor)).map(|&place| &self.offers[place as usize])
     }
 }

@@ -28,7 +28,7 @@ fn row(i: usize) -> usize {
 
 impl Pencil {
     /// The pencil of coordinates with a diagonal stiffness; those that are infinitely stiff stand still.
-    pub fn new(mut stiffness: Vec<f64>, mut inertia: Vec<f64>) -> Self {
+    pub(super) fn new(mut stiffness: Vec<f64>, mut inertia: Vec<f64>) -> Self {
         let size = stiffness.len();
         for i in 0..size {
             if stiffness[i] == f64::INFINITY {
@@ -41,7 +41,7 @@ impl Pencil {
     }
 
     /// The factor of `K - λ M`; `None` if an eigenvalue is `λ` or less.
-    pub fn factor(&self, eigenvalue: f64) -> Option<Factor> {
+    pub(super) fn factor(&self, eigenvalue: f64) -> Option<Factor> {
         self.factor_or_slower(eigenvalue).ok()
     }
 
@@ -72,7 +72,7 @@ impl Pencil {
     }
 
     /// About the lowest mode: a few steps of inverse iteration, scaled to `xᵀ M x = 1`.
-    pub fn lowest_mode(&self, factor: &Factor) -> Vec<f64> {
+    pub(super) fn lowest_mode(&self, factor: &Factor) -> Vec<f64> {
         let mut x = vec![1.0; self.stiffness.len()];
         for _ in 0..3 {
             x = factor.solve(self.momentum(&x));
@@ -87,7 +87,7 @@ impl Pencil {
 
     /// A motion whose quotient is a number or less, made slower by a few steps of inverse iteration; `None` if there is
     /// none.
-    pub fn slower_motion(&self, eigenvalue: f64) -> Option<Vec<f64>> {
+    pub(super) fn slower_motion(&self, eigenvalue: f64) -> Option<Vec<f64>> {
         let mut x = self.factor_or_slower(eigenvalue).err()?;
         for _ in 0..STEPS {
             x = self.momentum(&x);
@@ -108,7 +108,7 @@ impl Pencil {
     }
 
     /// `xᵀ K x`.
-    pub fn strain(&self, x: &[f64]) -> f64 {
+    pub(super) fn strain(&self, x: &[f64]) -> f64 {
         self.stiffness.iter().zip(x).map(|(k, x)| k * x * x).sum()
     }
 }

@@ -75,7 +75,7 @@ struct Builder<'a> {
 
 impl Pose {
     /// Works out a case; `waters` are the study's surroundings.
-    pub fn new(
+    pub(super) fn new(
         question: &Question,
         structure: &Structure,
         index: usize,

@@ -37,10 +37,10 @@ const RATED_RPM: f64 = 2000.0;
 
 impl Ratings {
     /// No check fails.
-    pub const UNLIMITED: Self = Self([f64::INFINITY; QUANTITIES]);
+    pub(super) const UNLIMITED: Self = Self([f64::INFINITY; QUANTITIES]);
 
     /// The ratings of a drive under a motion; `None` if it turns too fast for it or a number is blank.
-    pub fn of(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<Self> {
+    pub(super) fn of(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<Self> {
         let mut ratings = Self::UNLIMITED;
         for check in &CHECKS {
             let most = (check.most)(gear, motor, duty)?;
@@ -51,23 +51,23 @@ impl Ratings {
     }
 
     /// Whether every torque that is asked for is held.
-    pub fn hold(&self, demand: &Demand) -> bool {
+    pub(super) fn hold(&self, demand: &Demand) -> bool {
         // no branch on the way: nearly every box asks this of many drives
         self.0.iter().zip(&demand.0).fold(true, |held, (most, asked)| held & (asked <= most))
     }
 
     /// Whether a drive with these ratings holds whatever one with the others holds.
-    pub fn cover(&self, other: &Self) -> bool {
+    pub(super) fn cover(&self, other: &Self) -> bool {
         self.0.iter().zip(&other.0).all(|(a, b)| a >= b)
     }
 
     /// The larger of each rating.
-    pub fn max(&self, other: &Self) -> Self {
+    pub(super) fn max(&self, other: &Self) -> Self {
         Self(std::array::from_fn(|i| self.0[i].max(other.0[i])))
     }
 
     /// The rating of one quantity.
-    pub fn on(&self, quantity: Quantity) -> f64 {
+    pub(super) fn on(&self, quantity: Quantity) -> f64 {
         self.0[quantity as usize]
     }
 }

@@ -18,7 +18,7 @@ pub(super) struct Search<'s> {
 
 impl Search<'_> {
     /// Looks into a box and, if it is not cut, into its halves.
-    pub fn explore(&self, parts: &PartsBox) -> Found {
+    pub(super) fn explore(&self, parts: &PartsBox) -> Found {
         if self.halt.stopped() {
             return Found { open: 1, ..Found::default() };
         }

@@ -37,7 +37,7 @@ pub(super) struct Parts {
 
 impl Skeleton {
     /// Puts the arm of a question into all of its cases.
-    pub fn new(question: &Question) -> Self {
+    pub(super) fn new(question: &Question) -> Self {
         let structure = question.nominal_structure();
         let mut waters: Vec<Option<Water>> = Vec::new();
         for water in question.cases.iter().map(|case| water_of(&structure, case)) {
@@ -66,7 +66,7 @@ impl Skeleton {
     }
 
     /// The options of every joint and tube.
-    pub fn parts(&self, question: &Question, offers: &[JointOffers], ties: Ties) -> Parts {
+    pub(super) fn parts(&self, question: &Question, offers: &[JointOffers], ties: Ties) -> Parts {
         let level = |place: Place| self.levels.iter().position(|other| *other == place);
         let joints = offers.iter().enumerate().map(|(joint, offers)| {
             DriveOptions::new(offers, level(Place::Joint(joint)).unwrap_or_default(), ties)

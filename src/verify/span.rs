@@ -11,33 +11,33 @@ pub(super) struct Span {
 
 impl Span {
     /// A number times every number of the span.
-    pub fn times(self, factor: f64) -> Self {
+    pub(super) fn times(self, factor: f64) -> Self {
         let (a, b) = (self.least * factor, self.most * factor);
         Self { least: a.min(b), most: a.max(b) }
     }
 
     /// Sums of a number of this span and one of another.
-    pub fn plus(self, other: Self) -> Self {
+    pub(super) fn plus(self, other: Self) -> Self {
         Self { least: self.least + other.least, most: self.most + other.most }
     }
 
     /// The least product of a number of this span and a compliance of another, none negative.
-    pub fn least_product(self, compliance: Self) -> f64 {
+    pub(super) fn least_product(self, compliance: Self) -> f64 {
         let factor = if self.least >= 0.0 { compliance.least } else { compliance.most };
         if self.least == 0.0 { 0.0 } else { self.least * factor }
     }
 
     /// Least size of a number of the span.
-    pub fn least_size(self) -> f64 {
+    pub(super) fn least_size(self) -> f64 {
         self.least.max(-self.most).max(0.0)
     }
 
     /// Largest size of a number of the span.
-    pub fn largest_size(self) -> f64 {
+    pub(super) fn largest_size(self) -> f64 {
         self.most.max(-self.least)
     }
 
-    pub fn middle(self) -> f64 {
+    pub(super) fn middle(self) -> f64 {
         0.5 * (self.least + self.most)
     }
 }
@@ -51,7 +51,7 @@ pub(super) struct Linear {
 
 impl Linear {
     /// All its values: every load enters once, so these are the least and the most it can be.
-    pub fn over(&self, loads: &[Span]) -> Span {
+    pub(super) fn over(&self, loads: &[Span]) -> Span {
         let start = Span { least: self.fixed, most: self.fixed };
         self.per_load.iter().zip(loads).fold(start, |sum, (factor, load)| sum.plus(load.times(*factor)))
     }
@@ -66,7 +66,7 @@ pub(super) struct LinearVector {
 
 impl LinearVector {
     /// All values of its component along a direction.
-    pub fn along(&self, direction: &Vector3<f64>, loads: &[Span]) -> Span {
+    pub(super) fn along(&self, direction: &Vector3<f64>, loads: &[Span]) -> Span {
         let fixed = self.fixed.dot(direction);
         let start = Span { least: fixed, most: fixed };
         self.per_load
@@ -76,7 +76,7 @@ impl LinearVector {
     }
 
     /// Its value where every load is in the middle of its span.
-    pub fn middle(&self, loads: &[Span]) -> Vector3<f64> {
+    pub(super) fn middle(&self, loads: &[Span]) -> Vector3<f64> {
         let sum = |sum, (factor, load): (&Vector3<f64>, &Span)| sum + factor * load.middle();
         self.per_load.iter().zip(loads).fold(self.fixed, sum)
     }

@@ -19,7 +19,7 @@ struct Node {
 
 impl Tree {
     /// Halves options at the median of whichever of their `keys` is spread widest among them.
-    pub fn new(options: Vec<u32>, keys: &[Vec<f64>]) -> Self {
+    pub(super) fn new(options: Vec<u32>, keys: &[Vec<f64>]) -> Self {
         let mut tree = Self { nodes: Vec::new(), order: options };
         if !tree.order.is_empty() {
             tree.grow(0, tree.order.len(), keys);
@@ -44,18 +44,18 @@ impl Tree {
     }
 
     /// Number of nodes; the root is node 0 and there is none if there are no options.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.nodes.len()
     }
 
     /// The options of a node.
-    pub fn options(&self, node: u32) -> &[u32] {
+    pub(super) fn options(&self, node: u32) -> &[u32] {
         let node = &self.nodes[node as usize];
         &self.order[node.first..node.end]
     }
 
     /// The two halves of a node; a single option has none.
-    pub fn halves(&self, node: u32) -> Option<[u32; 2]> {
+    pub(super) fn halves(&self, node: u32) -> Option<[u32; 2]> {
         self.nodes[node as usize].halves
     }
 }

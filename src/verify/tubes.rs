@@ -67,7 +67,7 @@ pub(super) struct TubeRange {
 
 impl TubeOptions {
     /// The tubes of a link with a choice.
-    pub fn of_choice(
+    pub(super) fn of_choice(
         question: &Question,
         choice: &AskedLink,
         level: usize,
@@ -80,7 +80,7 @@ impl TubeOptions {
 
     /// The tube of a link without a choice; cables along a rigid offset count as a tube that does not yield. `None` if
     /// nothing weighs along the link.
-    pub fn of_link(question: &Question, link: &Link, waters: &[Option<Water>]) -> Option<Self> {
+    pub(super) fn of_link(question: &Question, link: &Link, waters: &[Option<Water>]) -> Option<Self> {
         let piece = question.link_piece(link.clone());
         has_line(&piece).then(|| {
             let slender = match &link.body {
@@ -96,12 +96,12 @@ impl TubeOptions {
     }
 
     /// Some of the options, ascending.
-    pub fn only(&self, some: &[u32]) -> Self {
+    pub(super) fn only(&self, some: &[u32]) -> Self {
         Self { tubes: some.iter().map(|&i| self.tubes[i as usize].clone()).collect(), ..*self }
     }
 
     /// The tree of all options.
-    pub fn tree(&self) -> Tree {
+    pub(super) fn tree(&self) -> Tree {
         let all = (0..self.tubes.len() as u32).collect();
         Tree::new(all, &self.tubes.iter().map(|(_, tube)| keys(tube)).collect::<Vec<_>>())
     }
@@ -109,7 +109,7 @@ impl TubeOptions {
 
 impl Tubes {
     /// Halves the options.
-    pub fn new(options: &TubeOptions) -> Self {
+    pub(super) fn new(options: &TubeOptions) -> Self {
         let tree = options.tree();
         let range = |node| TubeRange::over(tree.options(node).iter().map(|&i| &options.tubes[i as usize].1));
         let nodes = (0..tree.len() as u32).map(range).collect();
@@ -181,7 +181,7 @@ fn around(question: &Question, piece: &LinkPiece, water: Option<Water>) -> TubeA
 
 impl TubeRange {
     /// One tube.
-    pub fn one(tube: &TubeNumbers) -> Self {
+    pub(super) fn one(tube: &TubeNumbers) -> Self {
         Self { least: tube.clone(), most: tube.clone(), middle: tube.clone() }
     }
 
@@ -200,7 +200,7 @@ impl TubeRange {
 
 impl TubeNumbers {
     /// A tube of a link with a choice.
-    pub fn of_choice(
+    pub(super) fn of_choice(
         question: &Question,
         choice: &AskedLink,
         tube: &AskedTube,

@@ -13,21 +13,21 @@ pub(super) struct UpperBound {
 
 impl UpperBound {
     /// Everything is below it.
-    pub const OPEN: Self = Self { mass_kg: f64::INFINITY, tip_m: f64::INFINITY, hz: 0.0 };
+    pub(super) const OPEN: Self = Self { mass_kg: f64::INFINITY, tip_m: f64::INFINITY, hz: 0.0 };
 
     /// Whether something of this mass and deflection may be below.
-    pub fn is_in_reach_of(&self, ideal: &IdealPoint) -> bool {
+    pub(super) fn is_in_reach_of(&self, ideal: &IdealPoint) -> bool {
         let most = 1.0 + ROUNDING;
         ideal.mass_kg <= self.mass_kg * most && ideal.tip_m <= self.tip_m * most
     }
 
     /// `(2 π f)²`.
-    pub fn eigenvalue(&self) -> f64 {
+    pub(super) fn eigenvalue(&self) -> f64 {
         eigenvalue_of(self.hz)
     }
 
     /// The least bound above two.
-    pub fn join(&self, other: &Self) -> Self {
+    pub(super) fn join(&self, other: &Self) -> Self {
         Self {
             mass_kg: self.mass_kg.max(other.mass_kg),
             tip_m: self.tip_m.max(other.tip_m),
@@ -36,17 +36,17 @@ impl UpperBound {
     }
 
     /// Whether all that is below this upper bound is below another.
-    pub fn is_within(&self, other: &Self) -> bool {
+    pub(super) fn is_within(&self, other: &Self) -> bool {
         self.mass_kg <= other.mass_kg && self.tip_m <= other.tip_m && self.hz >= other.hz
     }
 
     /// Whether a row beats some of what is below.
-    pub fn is_cut_by(&self, row: &UpperBound) -> bool {
+    pub(super) fn is_cut_by(&self, row: &UpperBound) -> bool {
         row.mass_kg < self.mass_kg && row.tip_m < self.tip_m && row.hz > self.hz
     }
 
     /// What a row leaves of it: no heavier than the row, or deflecting no more, or no slower.
-    pub fn left_by(&self, row: &UpperBound) -> [Self; 3] {
+    pub(super) fn left_by(&self, row: &UpperBound) -> [Self; 3] {
         [
             Self { mass_kg: row.mass_kg, ..*self },
             Self { tip_m: row.tip_m, ..*self },
@@ -54,7 +54,7 @@ impl UpperBound {
         ]
     }
 
-    pub fn numbers(&self) -> [f64; 3] {
+    pub(super) fn numbers(&self) -> [f64; 3] {
         [self.mass_kg, self.tip_m, self.hz]
     }
 }

@@ -89,7 +89,8 @@ fn faults_of_an_overlay_are_printed_with_file_line_and_column() {
     let text =
         "type,model,mass_kg,source,confidence\nac-servo,M1,-2,own,verified\nac-servo,M2,2 kg,own,verified\n";
     std::fs::write(folder.path().join("motors.csv"), text).expect("writable");
-    let shown = said(&format!("check --catalogs {}", folder.path().display())).expect_err("two faults").to_string();
+    let shown =
+        said(&format!("check --catalogs {}", folder.path().display())).expect_err("two faults").to_string();
     assert!(shown.starts_with("2 faults in the input:"), "{shown}");
     assert!(shown.contains("motors.csv:2: mass_kg: = -2 must be greater than 0"), "{shown}");
     assert!(shown.contains("motors.csv:3: mass_kg: \"2 kg\" is not a number"), "{shown}");

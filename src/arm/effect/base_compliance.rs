@@ -8,7 +8,7 @@ const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 5e5, Scale::Stiffness).expected(0.0, 6.0)];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "base_compliance",
     summary: "the base tilts about world x and y",
     scope: Scope::Product,

@@ -8,7 +8,7 @@ const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.0, 6.0)];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "bearing_tilt",
     summary: "the output bearing tilts about the two axes across the joint",
     scope: Scope::Product,

@@ -7,7 +7,7 @@ const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 1e6, Scale::Stiffness).expected(0.0, 4.0)];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "connection_compliance",
     summary: "flange, shaft or bolts twisting in series with the gear",
     scope: Scope::Product,

@@ -10,7 +10,7 @@ const PARAMETERS: &[Parameter] = &[Parameter::vector("rate_mm_per_row", -0.1, 0.
     .growing_with(Measure::DisplacementPerRow, 1.0 / 4.0)];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "drift",
     summary: "the zero of a channel creeps from row to row",
     scope: Scope::Test,

@@ -8,7 +8,7 @@ const PARAMETERS: &[Parameter] = &[Parameter::number("delta_kg", -10.0, 50.0, 1.
     .growing_with(Measure::ArmMass, 1.0 / 8.0)];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "extra_mass",
     summary: "a point mass at a joint beyond tolerance",
     scope: Scope::Product,

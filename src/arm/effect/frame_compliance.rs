@@ -12,7 +12,7 @@ const PARAMETERS: &[Parameter] = &[
 ];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "frame_compliance",
     summary: "the base or the structure behind a joint turns per moment about three axes, coupled",
     scope: Scope::Product,

@@ -8,7 +8,7 @@ const PARAMETERS: &[Parameter] = &[Parameter::number("kg_per_m", 0.0, 100.0, 2.0
     .growing_with(Measure::ArmMassPerLength, 1.0 / 4.0)];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "harness_mass",
     summary: "cables and hoses along a link: mass without stiffness",
     scope: Scope::Product,

@@ -7,7 +7,7 @@ const PARAMETERS: &[Parameter] =
     &[Parameter::number("half_width_rad", 0.0, 5e-3, 1e-4, Scale::Linear).expected(0.0, 2e-3)];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "hysteresis",
     summary: "friction play: the twist lags a reversal of torque",
     scope: Scope::Product,

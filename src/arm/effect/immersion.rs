@@ -6,7 +6,7 @@ use super::subject::Subject;
 use crate::arm::load::Water;
 
 /// Name of the parameter for the payload's density, which a campaign may state.
-pub const PAYLOAD_DENSITY: &str = "payload_density_kg_m3";
+pub(crate) const PAYLOAD_DENSITY: &str = "payload_density_kg_m3";
 
 const PARAMETERS: &[Parameter] = &[
     Parameter::number("water_density_kg_m3", 0.0, 2000.0, 1000.0, Scale::Linear).expected(0.0, 1500.0),
@@ -20,7 +20,7 @@ const PARAMETERS: &[Parameter] = &[
 ];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "immersion",
     summary: "the arm is in water: buoyancy and added mass",
     scope: Scope::Product,

@@ -7,7 +7,7 @@ const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.0, 20.0)];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "joint_compliance",
     summary: "a joint that the model holds rigid twists",
     scope: Scope::Product,

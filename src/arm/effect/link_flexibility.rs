@@ -8,7 +8,7 @@ const PARAMETERS: &[Parameter] =
     &[Parameter::number("factor", 0.0, 20.0, 1.0, Scale::Linear).expected(0.0, 5.0)];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "link_flexibility",
     summary: "a link that the model holds rigid bends; 1 = as its section says",
     scope: Scope::Product,

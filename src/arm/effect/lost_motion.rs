@@ -12,7 +12,7 @@ const PARAMETERS: &[Parameter] = &[
 ];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "lost_motion",
     summary: "play that closes smoothly as the torque grows",
     scope: Scope::Product,

@@ -8,7 +8,7 @@ const PARAMETERS: &[Parameter] =
     &[Parameter::number("factor", 0.05, 5.0, 0.85, Scale::Reciprocal).expected(0.5, 3.0)];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "modulus_error",
     summary: "one link has another modulus of elasticity than its material",
     scope: Scope::Product,

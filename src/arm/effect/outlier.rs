@@ -9,7 +9,7 @@ const ROWS: &[Parameter] =
     &[Parameter { count: 0, ..Parameter::number("rows", 1.0, 1e9, 1.0, Scale::Linear) }];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "outlier",
     summary: "single rows are gross errors",
     scope: Scope::Test,

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 const PARAMETERS: &[Parameter] = &[Parameter::vector("offset_m", -0.5, 0.5, 0.01).expected(-0.1, 0.1)];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "payload_cg_error",
     summary: "the centre of gravity of the payload is not where it is stated",
     scope: Scope::Test,

@@ -8,7 +8,7 @@ const PARAMETERS: &[Parameter] = &[Parameter::number("delta_kg", -20.0, 20.0, 0.
     .growing_with(Measure::PayloadMass, 1.0 / 4.0)];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "payload_mass_error",
     summary: "the payload weighs more or less than stated",
     scope: Scope::Test,

@@ -19,7 +19,7 @@ fn parameters(place: Place) -> &'static [Parameter] {
 }
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "sensor_bias",
     summary: "the sensor of a channel reads the truth plus a constant",
     scope: Scope::Test,

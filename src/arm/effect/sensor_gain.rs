@@ -8,7 +8,7 @@ const PARAMETERS: &[Parameter] =
     &[Parameter::number("gain", 0.2, 5.0, 1.03, Scale::Linear).expected(0.6, 1.6).absent(Absent::AtOne)];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "sensor_gain",
     summary: "the sensor of a channel reads a factor times the truth",
     scope: Scope::Test,

@@ -37,7 +37,7 @@ const BREAKS: [(f64, f64); 8] = [
 ];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "soft_windup",
     summary: "the three-segment torsion curve replaces the single stiffness",
     scope: Scope::Product,

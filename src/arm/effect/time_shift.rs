@@ -7,7 +7,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] = &[Parameter::number("seconds", -3600.0, 3600.0, 0.01, Scale::Linear)];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "time_shift",
     summary: "the clock of a channel runs ahead or behind (time records)",
     scope: Scope::Test,

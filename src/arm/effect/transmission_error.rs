@@ -9,7 +9,7 @@ const PARAMETERS: &[Parameter] = &[Parameter {
 }];
 
 /// The effect.
-pub const KIND: Kind = Kind {
+pub(crate) const KIND: Kind = Kind {
     name: "transmission_error",
     summary: "a joint turns unevenly, once and twice a turn; only absolute positions show it",
     scope: Scope::Test,

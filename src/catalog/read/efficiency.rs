@@ -4,7 +4,7 @@ use super::row::Row;
 use crate::catalog::efficiency::{EfficiencyKind, EfficiencyPoint};
 
 /// The point of a row; `None` if a core cell was refused.
-pub fn point(row: &Row) -> Option<EfficiencyPoint> {
+pub(crate) fn point(row: &Row) -> Option<EfficiencyPoint> {
     let kind = EfficiencyKind::from_word(row.text("kind"));
     if let Some(kind) = kind {
         check(row, kind);

@@ -4,7 +4,7 @@ use super::row::Row;
 use crate::catalog::gear::Gear;
 
 /// The gear of a row; `None` if its name or source was refused.
-pub fn gear(row: &Row) -> Option<Gear> {
+pub(crate) fn gear(row: &Row) -> Option<Gear> {
     check(row);
     let (series, size, ratio) = (row.filled("series")?.to_string(), row.count("size")?, row.count("ratio")?);
     Some(Gear {
@@ -37,7 +37,7 @@ pub fn gear(row: &Row) -> Option<Gear> {
 
 /// The word by which the row's series is also sold. A cell such as `HFUS outline` describes the series and
 /// is no other name of it; a remark in brackets is left away.
-pub fn alias<'r>(row: &'r Row) -> Option<&'r str> {
+pub(crate) fn alias<'r>(row: &'r Row) -> Option<&'r str> {
     let word = row.filled("alias_series")?.split('(').next()?.trim();
     (!word.is_empty() && !word.contains(' ')).then_some(word)
 }

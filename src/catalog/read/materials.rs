@@ -4,7 +4,7 @@ use super::row::Row;
 use crate::catalog::material::{Material, MaterialClass};
 
 /// The material of a row; `None` if its name, class, source or a core figure was refused.
-pub fn material(row: &Row) -> Option<Material> {
+pub(crate) fn material(row: &Row) -> Option<Material> {
     check(row);
     Some(Material {
         name: row.filled("name")?.to_string(),

@@ -5,7 +5,7 @@ use crate::catalog::motor::{Motor, MotorKind};
 use std::f64::consts::PI;
 
 /// The motor of a row; `None` if its name, type or source was refused.
-pub fn motor(row: &Row) -> Option<Motor> {
+pub(crate) fn motor(row: &Row) -> Option<Motor> {
     check(row);
     Some(Motor {
         id: row.filled("model")?.to_string(),

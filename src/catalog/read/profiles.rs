@@ -5,7 +5,7 @@ use crate::catalog::profile::{Profile, ProfileShape};
 use std::f64::consts::PI;
 
 /// The profile of a row; `None` if its name, shape, source or a dimension was refused.
-pub fn profile(row: &Row) -> Option<Profile> {
+pub(crate) fn profile(row: &Row) -> Option<Profile> {
     check(row);
     Some(Profile {
         designation: row.filled("designation")?.to_string(),

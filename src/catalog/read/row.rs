@@ -7,7 +7,7 @@ use crate::catalog::{Confidence, Provenance};
 use crate::input::json::closest;
 
 /// One row: the cells in the order of the file's known columns, `None` where the column is absent.
-pub struct Row<'a> {
+pub(crate) struct Row<'a> {
     file: CatalogFile,
     name: &'a str,
     line: usize,
@@ -17,7 +17,7 @@ pub struct Row<'a> {
 
 impl<'a> Row<'a> {
     /// A row of `name`, a file of kind `file`.
-    pub fn new(
+    pub(crate) fn new(
         file: CatalogFile,
         name: &'a str,
         line: usize,
@@ -28,23 +28,23 @@ impl<'a> Row<'a> {
     }
 
     /// Line in the file, from 1.
-    pub fn line(&self) -> usize {
+    pub(crate) fn line(&self) -> usize {
         self.line
     }
 
     /// All cells with their columns, as they stand in the file; absent columns are blank.
-    pub fn printed(&self) -> Vec<(&'static str, String)> {
+    pub(crate) fn printed(&self) -> Vec<(&'static str, String)> {
         let cells = self.cells.iter().map(|cell| cell.clone().unwrap_or_default());
         self.file.columns().iter().map(|c| c.name).zip(cells).collect()
     }
 
     /// Records a reason to refuse the row.
-    pub fn fault(&self, column: &str, problem: impl Into<String>, hint: &str) {
+    pub(crate) fn fault(&self, column: &str, problem: impl Into<String>, hint: &str) {
         self.log.fault(self.name, Some(self.line), column, problem.into(), hint.into());
     }
 
     /// Records something to look at.
-    pub fn warn(&self, column: &str, problem: impl Into<String>, hint: &str) {
+    pub(crate) fn warn(&self, column: &str, problem: impl Into<String>, hint: &str) {
         self.log.warn(self.name, Some(self.line), column, problem.into(), hint.into());
     }
 
@@ -54,24 +54,24 @@ impl<'a> Row<'a> {
     }
 
     /// The text of a cell; empty if the cell is blank or the column absent.
-    pub fn text(&self, column: &str) -> &str {
+    pub(crate) fn text(&self, column: &str) -> &str {
         self.cell(column).unwrap_or_default()
     }
 
     /// The number in a cell; `None` if it is blank, absent or was refused.
-    pub fn number(&self, column: &str) -> Option<f64> {
+    pub(crate) fn number(&self, column: &str) -> Option<f64> {
         let kind = self.file.columns().iter().find(|c| c.name == column)?.cell;
         read_number(kind, self.text(column)).ok()?
     }
 
     /// The whole number in a cell; `None` if it is blank, absent or was refused.
-    pub fn count(&self, column: &str) -> Option<u32> {
+    pub(crate) fn count(&self, column: &str) -> Option<u32> {
         self.text(column).parse().ok().filter(|&n| n > 0)
     }
 
     /// Records what is wrong with any single cell: blank where it must be filled, not a number, not positive,
     /// not an allowed word. An absent column has been reported with the header.
-    pub fn check_cells(&self) {
+    pub(crate) fn check_cells(&self) {
         for (column, text) in self.file.columns().iter().zip(&self.cells) {
             match text.as_deref() {
                 Some("") if column.required => self.fault(column.name, "is blank", "every row needs it"),
@@ -88,7 +88,7 @@ impl<'a> Row<'a> {
     }
 
     /// Where the row comes from.
-    pub fn provenance(&self) -> Option<Provenance> {
+    pub(crate) fn provenance(&self) -> Option<Provenance> {
         Some(Provenance {
             source: self.filled("source")?.to_string(),
             confidence: Confidence::from_word(self.text("confidence"))?,
@@ -99,7 +99,7 @@ impl<'a> Row<'a> {
     }
 
     /// The text of a cell unless it is blank or absent.
-    pub fn filled(&self, column: &str) -> Option<&str> {
+    pub(crate) fn filled(&self, column: &str) -> Option<&str> {
         self.cell(column).filter(|text| !text.is_empty())
     }
 
@@ -127,7 +127,7 @@ impl<'a> Row<'a> {
 
     /// Refuses figures that do not ascend in the order given; unknown ones are passed over.
     /// `strict` also refuses equal neighbours.
-    pub fn ascending(&self, figures: &[(&str, Option<f64>)], strict: bool, hint: &str) {
+    pub(crate) fn ascending(&self, figures: &[(&str, Option<f64>)], strict: bool, hint: &str) {
         let known: Vec<_> = figures.iter().filter_map(|(column, x)| Some((*column, (*x)?))).collect();
         for pair in known.windows(2) {
             let [(low_column, low), (column, x)] = [pair[0], pair[1]];
@@ -140,7 +140,15 @@ impl<'a> Row<'a> {
 
     /// Compares a printed figure with the same figure computed from others of the row: warns beyond the
     /// share `warn`, refuses beyond `refuse`.
-    pub fn agrees(&self, column: &str, printed: f64, computed: f64, from: &str, warn: f64, refuse: f64) {
+    pub(crate) fn agrees(
+        &self,
+        column: &str,
+        printed: f64,
+        computed: f64,
+        from: &str,
+        warn: f64,
+        refuse: f64,
+    ) {
         let deviation = printed / computed - 1.0;
         let problem =
             || format!("= {printed} is {:+.1} % off {computed:.4e}, computed from {from}", 100.0 * deviation);
@@ -157,7 +165,14 @@ impl<'a> Row<'a> {
 
     /// Refuses a figure outside what is physically possible, warns outside what is usual. Returns whether
     /// the figure is possible.
-    pub fn within(&self, column: &str, x: f64, possible: [f64; 2], usual: [f64; 2], hint: &str) -> bool {
+    pub(crate) fn within(
+        &self,
+        column: &str,
+        x: f64,
+        possible: [f64; 2],
+        usual: [f64; 2],
+        hint: &str,
+    ) -> bool {
         let problem =
             |[low, high]: [f64; 2], what: &str| format!("= {x} is outside {low:e} to {high:e}, {what}");
         let is_possible = (possible[0]..=possible[1]).contains(&x);

@@ -8,7 +8,7 @@ use crate::input::json::closest;
 use std::collections::BTreeMap;
 
 /// The rows of a catalog file that have the right number of fields.
-pub fn rows<'a>(file: CatalogFile, name: &'a str, bytes: &[u8], log: &'a Log) -> Vec<Row<'a>> {
+pub(crate) fn rows<'a>(file: CatalogFile, name: &'a str, bytes: &[u8], log: &'a Log) -> Vec<Row<'a>> {
     let mut records = records(name, bytes, log).into_iter();
     let Some(Record { line, cells: header }) = records.next() else {
         log.fault(name, None, "", "is empty".into(), format!("begin with the header {}", required(file)));

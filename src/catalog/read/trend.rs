@@ -38,7 +38,7 @@ const GROW_WITH_RATIO: &[Figure] = &[
 ];
 
 /// Warns of gears that break the trend of their series, and of curves that miss the rated efficiency.
-pub fn check(catalogs: &Catalogs, log: &Log) {
+pub(crate) fn check(catalogs: &Catalogs, log: &Log) {
     let by_size = families(&catalogs.gears, |g| g.ratio, |g| g.size);
     let by_ratio = families(&catalogs.gears, |g| g.size, |g| g.ratio);
     for family in &by_size {

@@ -88,12 +88,12 @@ pub fn library_deflection_m(material: &Material, section: Section, links: LinkMo
 }
 
 /// The sections of a figure, b = h = 7 to 16 cm with the same wall.
-pub fn sizes(material: &Material) -> Vec<BeamPoint> {
+pub(crate) fn sizes(material: &Material) -> Vec<BeamPoint> {
     (7..=16).map(|cm| BeamPoint::new(material, f64::from(cm) / 100.0, WALL_M)).collect()
 }
 
 /// The points of several materials as CSV.
-pub fn points_csv(points: &[BeamPoint]) -> String {
+pub(crate) fn points_csv(points: &[BeamPoint]) -> String {
     let names = [
         "material",
         "outer_mm",

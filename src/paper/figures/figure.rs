@@ -8,7 +8,7 @@ use crate::report::svg::scale::Scale;
 use crate::report::table::Table;
 
 /// A plot with the figures' axes.
-pub fn deflection_plot(title: &str, description: &str) -> Plot {
+pub(crate) fn deflection_plot(title: &str, description: &str) -> Plot {
     Plot {
         title: title.to_string(),
         description: description.to_string(),

@@ -54,7 +54,7 @@ struct Cell {
 
 /// Intervals of the parameters `own` of a gear's curve, in their order. `pair` holds the indices of its break
 /// points.
-pub fn curve_intervals(
+pub(crate) fn curve_intervals(
     forward: &Forward,
     best: &Fit,
     weights: &Weights,

@@ -29,7 +29,7 @@ pub struct HeldOut {
 
 /// Residual of every datum with its pose held out \[declared standard deviations\]; `None` for data that are
 /// never held out.
-pub fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Vec<Option<f64>> {
+pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Vec<Option<f64>> {
     // A frequency steps where a torque passes a break point. With the break points free, a held-out test on
     // the step would be predicted from either side by chance.
     let mut model = model.clone();
@@ -61,7 +61,7 @@ pub fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &Weights)
 }
 
 /// Root mean square; 0 of nothing.
-pub fn rms(residuals: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn rms(residuals: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = residuals.fold((0.0, 0.0), |(s, n), r| (s + r * r, n + 1.0));
     if count == 0.0 { 0.0 } else { f64::sqrt(sum / count) }
 }

@@ -20,7 +20,7 @@ const Z95: f64 = 1.959_964;
 const RISE: f64 = 3.841_459;
 
 /// Standard deviation of every parameter from the curvature.
-pub fn deviations(fit: &Fit) -> Vec<f64> {
+pub(crate) fn deviations(fit: &Fit) -> Vec<f64> {
     let n = fit.curvature.nrows();
     let covariance =
         data_curvature(fit).try_inverse().unwrap_or_else(|| DMatrix::from_element(n, n, f64::INFINITY));
@@ -28,7 +28,7 @@ pub fn deviations(fit: &Fit) -> Vec<f64> {
 }
 
 /// Intervals of the parameters of all effects, in their order.
-pub fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec<Interval> {
+pub(crate) fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec<Interval> {
     let deviations = deviations(best);
     let breaks = best.model.break_points();
     let of_effect = |effect: usize| {

@@ -1,7 +1,7 @@
 //! Tail probabilities and medians.
 
 /// Probability that a chi-squared variable of `dof` degrees exceeds `x`, as its natural logarithm.
-pub fn ln_chi_squared_tail(x: f64, dof: f64) -> f64 {
+pub(crate) fn ln_chi_squared_tail(x: f64, dof: f64) -> f64 {
     if x <= 0.0 {
         return 0.0;
     }
@@ -10,12 +10,12 @@ pub fn ln_chi_squared_tail(x: f64, dof: f64) -> f64 {
 }
 
 /// Two-sided probability of a standard normal deviate beyond `z`, as its natural logarithm.
-pub fn ln_normal_tail(z: f64) -> f64 {
+pub(crate) fn ln_normal_tail(z: f64) -> f64 {
     ln_chi_squared_tail(z * z, 1.0)
 }
 
 /// Probability of a standard normal deviate below `z`.
-pub fn normal_below(z: f64) -> f64 {
+pub(crate) fn normal_below(z: f64) -> f64 {
     let beyond = 0.5 * ln_normal_tail(z).exp();
     if z < 0.0 { beyond } else { 1.0 - beyond }
 }
@@ -75,7 +75,7 @@ fn ln_gamma(x: f64) -> f64 {
 }
 
 /// The median; 0 for an empty list.
-pub fn median(mut values: Vec<f64>) -> f64 {
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     if values.is_empty() {
         return 0.0;
     }

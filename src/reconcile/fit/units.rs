@@ -17,21 +17,21 @@ const NEAR: f64 = 0.25;
 
 /// Standard deviations of a channel that are too small by a factor.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stretch {
+pub(crate) struct Stretch {
     channel: Channel,
     factor: f64,
 }
 
 impl Stretch {
     /// Whether one of the effects is this slip.
-    pub fn is_among(&self, effects: &[&Candidate]) -> bool {
+    pub(crate) fn is_among(&self, effects: &[&Candidate]) -> bool {
         effects
             .iter()
             .any(|effect| effect.kind.name == wrong_unit::KIND.name && effect.at == self.channel.word())
     }
 
     /// The assumption, in words.
-    pub fn sentence(&self) -> String {
+    pub(crate) fn sentence(&self) -> String {
         let Self { channel, factor } = self;
         let (channel, factor) = (channel.word(), crate::report::number::significant(*factor, 4));
         format!(
@@ -42,7 +42,7 @@ impl Stretch {
 
 /// The channels whose readings are about a slip's factor times those of the nominal arm, and that the best
 /// model misses by far more than declared: by a ratio nearer to the factor than to one.
-pub fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> {
+pub(crate) fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> {
     let nominal = forward.predict(&forward.coefficients(&forward.nominal));
     let predicted = forward.predict(best);
     let of_channel = |channel: Channel| {
@@ -67,7 +67,7 @@ pub fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> {
 }
 
 /// Multiplies the declared standard deviations of some channels.
-pub fn stretch(forward: &mut Forward, stretches: &[Stretch]) {
+pub(crate) fn stretch(forward: &mut Forward, stretches: &[Stretch]) {
     for Stretch { channel, factor } in stretches {
         let range = forward.range(*channel);
         forward.data[range].iter_mut().for_each(|datum| datum.sigma *= factor);

@@ -7,11 +7,11 @@ use crate::arm::joint_law::JointLaw;
 use crate::reconcile::readings::campaign::Campaign;
 
 /// Arc minutes in a radian.
-pub const ARCMIN_PER_RAD: f64 = 10800.0 / std::f64::consts::PI;
+pub(crate) const ARCMIN_PER_RAD: f64 = 10800.0 / std::f64::consts::PI;
 
 /// One joint's rows on the bench, in the order of the file.
 #[derive(Debug, Clone)]
-pub struct Bench {
+pub(crate) struct Bench {
     /// Index of the joint in the layout.
     pub joint: usize,
     torques_nm: Vec<f64>,
@@ -19,7 +19,7 @@ pub struct Bench {
 }
 
 /// Gathers the bench rows of each joint and appends their data.
-pub fn prepare(campaign: &Campaign, layout: &Layout, data: &mut Vec<Datum>) -> Vec<Bench> {
+pub(crate) fn prepare(campaign: &Campaign, layout: &Layout, data: &mut Vec<Datum>) -> Vec<Bench> {
     let mut bench: Vec<Bench> = Vec::new();
     for row in &campaign.windup {
         let Some(joint) = layout.joints.iter().position(|j| j.name == row.joint) else { continue };
@@ -45,12 +45,12 @@ pub fn prepare(campaign: &Campaign, layout: &Layout, data: &mut Vec<Datum>) -> V
 
 impl Bench {
     /// Sizes of the torques \[N m\].
-    pub fn sizes_nm(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(crate) fn sizes_nm(&self) -> impl Iterator<Item = f64> + '_ {
         self.torques_nm.iter().map(|t| t.abs())
     }
 
     /// Writes the twist at every row \[arcmin\].
-    pub fn predict(&self, law: &JointLaw, out: &mut [f64]) {
+    pub(crate) fn predict(&self, law: &JointLaw, out: &mut [f64]) {
         let twists = bench_twists_rad(law, &self.torques_nm);
         for (&index, twist) in self.rows.iter().zip(twists) {
             out[index] = twist * ARCMIN_PER_RAD;
@@ -60,7 +60,7 @@ impl Bench {
 
 /// Twists of a joint on the bench \[rad\]. The cycle runs once unrecorded, so that the friction play has
 /// settled, and then once recorded.
-pub fn bench_twists_rad(law: &JointLaw, torques_nm: &[f64]) -> Vec<f64> {
+pub(crate) fn bench_twists_rad(law: &JointLaw, torques_nm: &[f64]) -> Vec<f64> {
     // the first round only brings the play to where a closed cycle has it
     let mut state = 0.0;
     for &torque in torques_nm {

@@ -20,7 +20,7 @@ pub struct Datum {
 }
 
 /// The group of a pose. A pose that was not seen before starts a new group.
-pub fn group_of(pose_deg: &[f64], groups: &mut Vec<(Vec<f64>, String)>) -> usize {
+pub(crate) fn group_of(pose_deg: &[f64], groups: &mut Vec<(Vec<f64>, String)>) -> usize {
     if let Some(found) = groups.iter().position(|(p, _)| p == pose_deg) {
         return found;
     }

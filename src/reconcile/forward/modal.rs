@@ -58,7 +58,7 @@ pub struct Solved {
 }
 
 /// Prepares the modal tests and appends their data.
-pub fn prepare(
+pub(crate) fn prepare(
     campaign: &Campaign,
     layout: &Layout,
     nominal: &Subject,

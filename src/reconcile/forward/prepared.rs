@@ -175,7 +175,7 @@ impl Forward {
 }
 
 /// Makes all links of a nominal model rigid.
-pub fn make_links_rigid(subject: &mut Subject) {
+pub(crate) fn make_links_rigid(subject: &mut Subject) {
     let names: Vec<String> = subject.structure.links().map(|l| l.name.clone()).collect();
     for name in names {
         if let Some(beam) = subject.structure.link_mut(&name).and_then(|l| l.beam.as_mut()) {

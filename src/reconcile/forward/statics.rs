@@ -59,7 +59,7 @@ pub struct StaticPose {
 }
 
 /// Prepares the poses of the static rows and appends their data.
-pub fn prepare(
+pub(crate) fn prepare(
     campaign: &Campaign,
     layout: &Layout,
     nominal: &Subject,

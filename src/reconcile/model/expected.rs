@@ -7,7 +7,7 @@ use crate::reconcile::forward::prepared::Forward;
 
 /// Measures of an arm and of its campaign.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Sizes {
+pub(crate) struct Sizes {
     arm_kg: f64,
     arm_m: f64,
     payload_kg: f64,
@@ -18,7 +18,7 @@ pub struct Sizes {
 
 impl Sizes {
     /// Measures the nominal arm and the readings.
-    pub fn of(forward: &Forward) -> Self {
+    pub(crate) fn of(forward: &Forward) -> Self {
         let structure = &forward.nominal.structure;
         let largest = |channel| {
             let own = &forward.data[forward.range(channel)];
@@ -37,7 +37,7 @@ impl Sizes {
 
     /// The largest size expected of a parameter that grows with a measure: this part of it, in the
     /// parameter's unit.
-    pub fn expected(&self, measure: Measure, part: f64) -> f64 {
+    pub(crate) fn expected(&self, measure: Measure, part: f64) -> f64 {
         match measure {
             Measure::ArmMass => part * self.arm_kg,
             Measure::PayloadMass => part * self.payload_kg,

@@ -13,7 +13,7 @@ const ROUGH_M: f64 = 0.3;
 
 /// Places the arms, one by one. Behind an unknown mounting the 24 attitudes of a cube are tried, and a fit
 /// settles each. Without unknown mountings the nearest rigid motion is used.
-pub fn align(tree: &Tree, spec: &PositionsSpec, samples: &[Sample], geometry: &mut Geometry) {
+pub(crate) fn align(tree: &Tree, spec: &PositionsSpec, samples: &[Sample], geometry: &mut Geometry) {
     let mounts = mount_numbers(tree, spec);
     let mut placed = false;
     for arm in 0..tree.arms.len() {

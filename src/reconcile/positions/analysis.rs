@@ -30,7 +30,7 @@ const CLASSES: [Yields; 3] = [Yields::AboutAxis, Yields::Tilt, Yields::Frame];
 
 /// Everything that a campaign of positions shows.
 #[derive(Clone)]
-pub struct Positions {
+pub(crate) struct Positions {
     /// The table of position errors, stage by stage.
     pub stages: Vec<Stage>,
     /// All candidates.
@@ -57,7 +57,7 @@ pub struct Positions {
 }
 
 /// Arms whose geometry alone is calibrated.
-pub struct Calibrated {
+pub(crate) struct Calibrated {
     /// The arms with calibrated geometry. Their effects and all else are unchanged.
     pub arms: Vec<Arm>,
     /// The table of position errors.
@@ -67,7 +67,7 @@ pub struct Calibrated {
 }
 
 /// Calibrates the geometry without a search for effects.
-pub fn calibrated(campaign: &Campaign) -> Calibrated {
+pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
     let found = Positions::on_its_geometry(campaign);
     let mut provenance = Value::Null;
     let arm = |i| found.corrected(campaign, i, &found.rigid, &[], &mut provenance);
@@ -79,7 +79,7 @@ pub fn calibrated(campaign: &Campaign) -> Calibrated {
 }
 
 /// Calibrates the geometry, and finds what yields and what turns unevenly.
-pub fn analyze(campaign: &Campaign) -> Positions {
+pub(crate) fn analyze(campaign: &Campaign) -> Positions {
     let mut found = Positions::on_its_geometry(campaign);
     // An uneven joint can hide what yields, so the search begins again after each.
     loop {

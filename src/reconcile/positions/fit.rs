@@ -25,7 +25,7 @@ const MOST_TURN_RAD: f64 = 0.3;
 
 /// One measured position.
 #[derive(Debug, Clone)]
-pub struct Sample {
+pub(crate) struct Sample {
     /// Joint angles \[rad\].
     pub pose_rad: Vec<f64>,
     /// Index of its arm.
@@ -46,14 +46,14 @@ pub struct Sample {
 
 impl Sample {
     /// The arguments that the geometry needs.
-    pub fn placing(&self) -> Placing<'_> {
+    pub(crate) fn placing(&self) -> Placing<'_> {
         Placing { arm: self.arm, pose_rad: &self.pose_rad, point: self.point, station: self.station }
     }
 }
 
 /// A fitted model.
 #[derive(Debug, Clone)]
-pub struct Fitted {
+pub(crate) struct Fitted {
     /// Geometry.
     pub geometry: Geometry,
     /// Change of each number from its nominal value.
@@ -74,7 +74,7 @@ pub struct Fitted {
 
 impl Fitted {
     /// A model of a geometry without effects.
-    pub fn rigid(geometry: Geometry, scale_m: f64) -> Self {
+    pub(crate) fn rigid(geometry: Geometry, scale_m: f64) -> Self {
         Self {
             geometry,
             moved: Vec::new(),
@@ -88,18 +88,18 @@ impl Fitted {
     }
 
     /// Predicted position \[m\].
-    pub fn predicted_m(&self, sample: &Sample) -> Vector3<f64> {
+    pub(crate) fn predicted_m(&self, sample: &Sample) -> Vector3<f64> {
         let rigid = self.geometry.place(sample.placing(), &[]).at_m;
         rigid + self.geometry.level_to_instrument() * self.displacement(sample)
     }
 
     /// Error of a sample, measured minus predicted \[m\].
-    pub fn error(&self, sample: &Sample) -> Vector3<f64> {
+    pub(crate) fn error(&self, sample: &Sample) -> Vector3<f64> {
         sample.measured_m - self.predicted_m(sample)
     }
 
     /// Displacement of a sample's point by all that yields, in the level frame \[m\].
-    pub fn displacement(&self, sample: &Sample) -> Vector3<f64> {
+    pub(crate) fn displacement(&self, sample: &Sample) -> Vector3<f64> {
         let effects = self.effects.iter().zip(&self.compliances);
         let gravity = &self.geometry.gravity;
         let pulled = effects.map(|(&e, c)| pull(sample, e, c) * gravity);
@@ -134,7 +134,7 @@ impl Fitted {
     }
 
     /// Weight of a sample with this error \[1/m²\].
-    pub fn weight(&self, error: &Vector3<f64>) -> f64 {
+    pub(crate) fn weight(&self, error: &Vector3<f64>) -> f64 {
         weight(error, self.scale_m) / (self.scale_m * self.scale_m)
     }
 }
@@ -145,7 +145,7 @@ fn pull(sample: &Sample, effect: usize, compliances: &[f64]) -> Matrix3<f64> {
 }
 
 /// Fits geometry and the named compliances to the samples, starting from a model.
-pub fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &Fitted) -> Fitted {
+pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &Fitted) -> Fitted {
     let mut here = start.clone();
     here.compliances = effects
         .iter()
@@ -227,7 +227,7 @@ fn errors(samples: &[&Sample], fitted: &Fitted) -> Vec<Vector3<f64>> {
 }
 
 /// The scale of errors, by fixed-point iteration from a value nearby \[m\].
-pub fn scale(errors: &[Vector3<f64>], near_m: f64) -> f64 {
+pub(crate) fn scale(errors: &[Vector3<f64>], near_m: f64) -> f64 {
     let mut scale_m = near_m;
     for _ in 0..8 {
         let sum: f64 = errors.iter().map(|e| weight(e, scale_m) * e.norm_squared()).sum();
@@ -237,7 +237,7 @@ pub fn scale(errors: &[Vector3<f64>], near_m: f64) -> f64 {
 }
 
 /// ln of the likelihood of errors with this scale.
-pub fn ln_likelihood(errors: &[Vector3<f64>], scale_m: f64) -> f64 {
+pub(crate) fn ln_likelihood(errors: &[Vector3<f64>], scale_m: f64) -> f64 {
     let s2 = scale_m * scale_m;
     let one =
         |e: &Vector3<f64>| -0.5 * (NU + 3.0) * (1.0 + e.norm_squared() / (NU * s2)).ln() - 3.0 * scale_m.ln();
@@ -245,7 +245,7 @@ pub fn ln_likelihood(errors: &[Vector3<f64>], scale_m: f64) -> f64 {
 }
 
 /// Builds the normal equations at a model. `further` gives further columns of a sample \[m per unit\].
-pub fn normal(
+pub(crate) fn normal(
     samples: &[&Sample],
     numbers: &[Number],
     here: &Fitted,

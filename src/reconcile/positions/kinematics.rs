@@ -10,7 +10,7 @@ use nalgebra::{Rotation3, Unit, Vector3};
 
 /// One calibrated number of the geometry.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Number {
+pub(crate) enum Number {
     /// Rotation of the arm's base about an instrument axis \[rad\].
     BaseRotation(usize),
     /// Position of the arm's base \[m\].
@@ -43,7 +43,7 @@ pub enum Number {
 
 impl Number {
     /// Prior standard deviation, in the unit of the number.
-    pub fn prior(&self) -> f64 {
+    pub(crate) fn prior(&self) -> f64 {
         match self {
             Number::BaseRotation(_) | Number::Mount(..) => 10.0,
             Number::BasePosition(_) => 100.0,
@@ -57,14 +57,18 @@ impl Number {
     }
 
     /// Whether it turns a frame, by an angle of any size.
-    pub fn turns(&self) -> bool {
+    pub(crate) fn turns(&self) -> bool {
         matches!(self, Number::BaseRotation(_) | Number::Mount(..))
     }
 }
 
 /// The numbers that a campaign leaves free, in the groups in which they are freed: place of arm and points,
 /// joint zeros, geometry, direction of gravity.
-pub fn number_groups(tree: &Tree, spec: &PositionsSpec, points: usize) -> Vec<(&'static str, Vec<Number>)> {
+pub(crate) fn number_groups(
+    tree: &Tree,
+    spec: &PositionsSpec,
+    points: usize,
+) -> Vec<(&'static str, Vec<Number>)> {
     let mut placement = Vec::new();
     if spec.base_placement {
         placement.extend((0..3).map(Number::BaseRotation));
@@ -88,7 +92,7 @@ pub fn number_groups(tree: &Tree, spec: &PositionsSpec, points: usize) -> Vec<(&
 }
 
 /// Attitude and place behind the links whose mounting is unknown.
-pub fn mount_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
+pub(crate) fn mount_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
     let mounts = (0..tree.pieces.len()).filter(|&i| is_mount(&tree.pieces[i], spec));
     mounts
         .flat_map(|i| {
@@ -131,7 +135,7 @@ fn geometry_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
 
 /// A calibrated geometry: the nominal one with the values of the numbers.
 #[derive(Debug, Clone)]
-pub struct Geometry {
+pub(crate) struct Geometry {
     /// Base frame in the instrument's.
     pub base: Rotation3<f64>,
     /// Base origin \[m\].
@@ -157,7 +161,7 @@ pub struct Geometry {
 
 /// The point that is asked for: its arm, pose and session.
 #[derive(Debug, Clone, Copy)]
-pub struct Placing<'a> {
+pub(crate) struct Placing<'a> {
     /// Index of the arm.
     pub arm: usize,
     /// Joint angles \[rad\].
@@ -169,7 +173,7 @@ pub struct Placing<'a> {
 }
 
 /// A point and its derivatives by the numbers, in the instrument's frame.
-pub struct Placed {
+pub(crate) struct Placed {
     /// Position \[m\].
     pub at_m: Vector3<f64>,
     /// Its derivative by each number \[m per unit\].
@@ -187,7 +191,7 @@ type Frames = Vec<Option<(Frame, Frame)>>;
 
 impl Geometry {
     /// The nominal geometry, the arm standing at the instrument's origin.
-    pub fn nominal(tree: &Tree, points: usize) -> Self {
+    pub(crate) fn nominal(tree: &Tree, points: usize) -> Self {
         let axis = |p: &Piece| match p {
             Piece::Joint(j) => j.axis,
             Piece::Link(_) => Vector3::z_axis(),
@@ -218,12 +222,12 @@ impl Geometry {
     }
 
     /// Sets the attitude behind a link of unknown mounting.
-    pub fn set_mount(&mut self, piece: usize, rotation: Rotation3<f64>) {
+    pub(crate) fn set_mount(&mut self, piece: usize, rotation: Rotation3<f64>) {
         self.mounts[piece] = rotation;
     }
 
     /// Changes the numbers by a step.
-    pub fn step(&mut self, numbers: &[Number], step: &[f64]) {
+    pub(crate) fn step(&mut self, numbers: &[Number], step: &[f64]) {
         let about =
             |c: usize, by: f64| Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::ith(c, 1.0)), by);
         for (number, &by) in numbers.iter().zip(step) {
@@ -255,7 +259,7 @@ impl Geometry {
     }
 
     /// Turns the level frame so that gravity points along its -z again.
-    pub fn relevel(&mut self) {
+    pub(crate) fn relevel(&mut self) {
         if let Some(turn) = Rotation3::rotation_between(&self.gravity, &-Vector3::z()) {
             self.level = turn * self.level;
             self.gravity = -Vector3::z();
@@ -263,7 +267,7 @@ impl Geometry {
     }
 
     /// Rotation from the level frame to the instrument's.
-    pub fn level_to_instrument(&self) -> Rotation3<f64> {
+    pub(crate) fn level_to_instrument(&self) -> Rotation3<f64> {
         self.base * self.level.inverse()
     }
 
@@ -271,7 +275,7 @@ impl Geometry {
     ///
     /// A joint's zero and a mounting turn everything outboard, so later axes and vectors turn with them.
     /// Returns the rotation of the last frame.
-    pub fn write_into(&self, index: usize, arm: &mut Arm) -> Rotation3<f64> {
+    pub(crate) fn write_into(&self, index: usize, arm: &mut Arm) -> Rotation3<f64> {
         let mut turned = self.level;
         for (&i, element) in self.arms[index].iter().zip(&mut arm.chain) {
             match element {
@@ -297,7 +301,7 @@ impl Geometry {
     }
 
     /// Places a point of an arm, with its derivatives.
-    pub fn place(&self, asked: Placing, numbers: &[Number]) -> Placed {
+    pub(crate) fn place(&self, asked: Placing, numbers: &[Number]) -> Placed {
         let pose = self.turned_rad(asked.pose_rad);
         let mut frames: Frames = vec![None; self.axes.len()];
         let mut last = Frame { rotation: self.base, at_m: self.origin_m };

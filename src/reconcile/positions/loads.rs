@@ -25,11 +25,11 @@ use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 /// Row and column of each entry of a frame's compliance, in the order of its numbers.
-pub const FRAME_ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (0, 1), (0, 2), (1, 2), (2, 2)];
+pub(crate) const FRAME_ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (0, 1), (0, 2), (1, 2), (2, 2)];
 
 /// A candidate: something that yields.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Yielding {
+pub(crate) struct Yielding {
     /// Name of the effect.
     pub effect: &'static str,
     /// What turns.
@@ -40,7 +40,7 @@ pub struct Yielding {
 
 /// The effect of gravity on one measured position, in the level frame.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Deflection {
+pub(crate) struct Deflection {
     /// Displacement that the model already has \[m\].
     pub known_m: Vector3<f64>,
     /// Its derivatives by the two components of gravity across the vertical \[m\].
@@ -55,7 +55,7 @@ pub struct Deflection {
 
 /// The arm's candidates: every joint about and across its axis, the base, and the structures behind the
 /// joints.
-pub fn candidates(tree: &Tree) -> Vec<Yielding> {
+pub(crate) fn candidates(tree: &Tree) -> Vec<Yielding> {
     let mut out = Vec::new();
     for piece in &tree.pieces {
         if let Piece::Joint(joint) = piece {
@@ -81,7 +81,7 @@ pub fn candidates(tree: &Tree) -> Vec<Yielding> {
 impl Tree {
     /// Whether a frame can imitate another candidate: the frame of the base the tilt of the base, and the
     /// structure behind a joint that joint's own compliance.
-    pub fn contains(&self, frame: &Yielding, other: &Yielding) -> bool {
+    pub(crate) fn contains(&self, frame: &Yielding, other: &Yielding) -> bool {
         let is_behind = |pair: &[usize]| match (&self.pieces[pair[0]], &self.pieces[pair[1]]) {
             (Piece::Joint(joint), Piece::Link(link)) => joint.name == other.at && link.name == frame.at,
             _ => false,
@@ -99,7 +99,7 @@ impl Yielding {
     }
 
     /// Number of its compliances. A frame has xx, yy, xy, xz, yz, and zz where weights can turn it so.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         match (self.yields, self.at.as_str()) {
             (Yields::Frame, "base") => 5,
             (Yields::Frame, _) => 6,
@@ -129,7 +129,7 @@ struct Ready {
 }
 
 /// The deflection at every row. `points` holds the index of each row's point.
-pub fn deflections(
+pub(crate) fn deflections(
     campaign: &Campaign,
     tree: &Tree,
     geometry: &Geometry,

@@ -3,7 +3,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Weighted normal equations of a model: of its numbers, its compliances, and further columns.
-pub struct Normal {
+pub(crate) struct Normal {
     /// Curvature, with the priors included.
     pub curvature: DMatrix<f64>,
     /// Gradient towards the readings; the step is the inverse curvature times it.
@@ -14,14 +14,14 @@ pub struct Normal {
 
 /// A Cholesky factor of a curvature that is scaled to a unit diagonal. Numbers in different units would
 /// otherwise ruin its condition.
-pub struct Factor {
+pub(crate) struct Factor {
     cholesky: Cholesky<f64, Dyn>,
     diagonal: DVector<f64>,
 }
 
 impl Factor {
     /// Factorizes the rows and columns that are free; `None` if they are singular.
-    pub fn new(curvature: &DMatrix<f64>, free: &[usize]) -> Option<Self> {
+    pub(crate) fn new(curvature: &DMatrix<f64>, free: &[usize]) -> Option<Self> {
         let sub = DMatrix::from_fn(free.len(), free.len(), |i, j| curvature[(free[i], free[j])]);
         let diagonal = sub.diagonal().map(|d| 1.0 / d.max(1e-300).sqrt());
         let scaled = DMatrix::from_fn(free.len(), free.len(), |i, j| {
@@ -31,7 +31,7 @@ impl Factor {
     }
 
     /// Solves for one right side.
-    pub fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
+    pub(crate) fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
         self.cholesky.solve(&right.component_mul(&self.diagonal)).component_mul(&self.diagonal)
     }
 }

@@ -24,7 +24,7 @@ use crate::reconcile::verdict::stage::Stage;
 use serde_json::{Value, json};
 
 /// Smallest number of positions that can settle anything.
-pub const FEWEST: usize = 20;
+pub(crate) const FEWEST: usize = 20;
 /// With a variance above this multiple of the declared one, nothing is explained, whatever else holds. Errors
 /// are then five times those of the instrument.
 const HOPELESS_VARIANCE: f64 = 25.0;
@@ -39,7 +39,7 @@ const HELPFUL: f64 = 0.8;
 const WORST_POSES: usize = 3;
 
 /// Reconciles a campaign of absolute positions.
-pub fn reconcile(campaign: &Campaign) -> Outcome {
+pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let found = analyze(campaign);
     let lack_of_fit = found.lack_of_fit(campaign);
     let competitors: Vec<Vec<(usize, Fitted)>> =
@@ -306,7 +306,7 @@ impl Positions {
 
 /// Root mean squares of every part of the positions \[declared standard deviations\], without gross errors.
 /// `residuals` holds those of the positions, row by row.
-pub fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec<Located> {
+pub(crate) fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec<Located> {
     let mut parts: Vec<(String, Vec<&ReadingResidual>)> = Vec::new();
     for (row, own) in campaign.positions.iter().zip(residuals.chunks_exact(3)).filter(|(_, r)| !r[0].gross) {
         let pose: Vec<String> = row.pose_deg.iter().map(|a| format!("{a}")).collect();

@@ -5,7 +5,7 @@ use crate::reconcile::readings::rows::PositionRow;
 
 /// A point on the tool of an arm.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Point {
+pub(crate) struct Point {
     /// The arm, in the order of the campaign.
     pub arm: usize,
     /// Its name in the readings.
@@ -16,12 +16,12 @@ pub struct Point {
 
 impl Point {
     /// The point of a row.
-    pub fn of(row: &PositionRow) -> Self {
+    pub(crate) fn of(row: &PositionRow) -> Self {
         Self { arm: row.arm, name: row.point.clone(), before_row: None }
     }
 
     /// Its name, with the session.
-    pub fn label(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         match self.before_row {
             Some(row) => format!("{} before row {row}", self.name),
             None => self.name.clone(),
@@ -30,7 +30,7 @@ impl Point {
 }
 
 /// Every point that the readings name, in the order of its first row.
-pub fn points(campaign: &Campaign) -> Vec<Point> {
+pub(crate) fn points(campaign: &Campaign) -> Vec<Point> {
     let mut out: Vec<Point> = Vec::new();
     for point in campaign.positions.iter().map(Point::of) {
         if !out.contains(&point) {

@@ -12,7 +12,7 @@ use nalgebra::Rotation3;
 
 /// The positions that the campaign's arms would show \[mm\]. `subjects` holds each arm with all of its
 /// effects.
-pub fn predicted_mm(mut campaign: Campaign, arms: &[Placed], subjects: &[Subject]) -> Vec<[f64; 3]> {
+pub(crate) fn predicted_mm(mut campaign: Campaign, arms: &[Placed], subjects: &[Subject]) -> Vec<[f64; 3]> {
     for row in &mut campaign.positions {
         row.payload = subjects[row.arm].payload(&row.payload);
     }

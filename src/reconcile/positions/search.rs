@@ -11,9 +11,9 @@ use nalgebra::{DMatrix, Vector3};
 use rayon::prelude::*;
 
 /// Number of candidates fitted in full at each stage.
-pub const FULL_FITS: usize = 4;
+pub(crate) const FULL_FITS: usize = 4;
 /// Models whose ln of the likelihood differs by less than this cannot be told apart.
-pub const TIE: f64 = 3.0;
+pub(crate) const TIE: f64 = 3.0;
 
 impl Positions {
     /// Adds the effect of a class that raises the likelihood most, if it is worth its price and held-out

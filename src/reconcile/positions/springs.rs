@@ -21,7 +21,7 @@ const ROOM: f64 = 1e-3;
 const LOWER: [(usize, usize); FRAME_ENTRIES.len()] = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)];
 
 /// The minimum of the parabola.
-pub struct Best {
+pub(crate) struct Best {
     /// Change of each number, with those of the geometry first.
     pub step: Vec<f64>,
     /// Standard deviations; infinite for numbers that are held.
@@ -40,7 +40,7 @@ enum Block {
 
 /// The best step among springs. The compliances, at present `now`, come after `numbers` other numbers. `None`
 /// if the equations are singular.
-pub fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) -> Option<Best> {
+pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) -> Option<Best> {
     let mut first = numbers;
     let ranges: Vec<Range<usize>> = (now.iter())
         .map(|own| {
@@ -268,7 +268,7 @@ fn nearest_frame(compliances: &[f64]) -> Vec<f64> {
 }
 
 /// The compliance matrix of a frame. If zz is not among the numbers, it is as large as the couplings need.
-pub fn frame_matrix(compliances: &[f64]) -> Matrix3<f64> {
+pub(crate) fn frame_matrix(compliances: &[f64]) -> Matrix3<f64> {
     let mut out = Matrix3::zeros();
     for (&(i, j), c) in FRAME_ENTRIES.iter().zip(compliances) {
         (out[(i, j)], out[(j, i)]) = (*c, *c);

@@ -18,13 +18,13 @@ use crate::reconcile::select::waves::{order_functions, waves};
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 
 /// A structure is material from this part of the errors' sum of squares on.
-pub const MATERIAL_PART: f64 = 0.1;
+pub(crate) const MATERIAL_PART: f64 = 0.1;
 /// A variance below this multiple of the declared one is ascribed to the declaration.
-pub const MATERIAL_VARIANCE: f64 = 1.75;
+pub(crate) const MATERIAL_VARIANCE: f64 = 1.75;
 /// A structure less probable than this is real.
 const IMPROBABLE: f64 = 1e-6;
 /// Median length of a vector of three standard normal deviates.
-pub const MEDIAN_LENGTH: f64 = 1.538;
+pub(crate) const MEDIAN_LENGTH: f64 = 1.538;
 
 /// One question: what the errors would follow, and its number of columns.
 type Question = (String, usize);
@@ -94,7 +94,7 @@ impl Positions {
 
 /// The statistic `zᵀ S⁻¹ z` over the directions in which `S` is not singular, and the number of these
 /// directions.
-pub fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64) {
+pub(crate) fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64) {
     let eigen = SymmetricEigen::new((s + s.transpose()) * 0.5);
     let largest = eigen.eigenvalues.max();
     let (mut statistic, mut dof) = (0.0, 0.0);

@@ -11,10 +11,10 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 /// Name of the effect.
-pub const EFFECT: &str = transmission_error::KIND.name;
+pub(crate) const EFFECT: &str = transmission_error::KIND.name;
 
 /// The numbers of a driven joint's transmission error.
-pub fn numbers(joint: usize) -> impl Iterator<Item = Number> {
+pub(crate) fn numbers(joint: usize) -> impl Iterator<Item = Number> {
     (0..transmission_waves(0.0).len()).map(move |k| Number::Transmission(joint, k))
 }
 

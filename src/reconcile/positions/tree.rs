@@ -6,7 +6,7 @@ use crate::reconcile::readings::campaign::Campaign;
 
 /// The pieces of all arms of a campaign, with those of the trunk once.
 #[derive(Debug, Clone)]
-pub struct Tree {
+pub(crate) struct Tree {
     /// Joints and links. The angle of a joint is taken from the campaign's pose.
     pub pieces: Vec<Piece>,
     /// Indices of the pieces of each arm, base to tip.
@@ -21,7 +21,7 @@ pub struct Tree {
 
 impl Tree {
     /// The arms of a campaign.
-    pub fn new(campaign: &Campaign) -> Self {
+    pub(crate) fn new(campaign: &Campaign) -> Self {
         let driven = campaign.driven_joint_names();
         let arms = campaign.arms();
         let trunk = campaign.trunk();
@@ -57,14 +57,14 @@ impl Tree {
     }
 
     /// The pose of all arms, with the angles of one arm replaced.
-    pub fn with_pose_of(&self, arm: usize, own: &[f64], pose: &[f64]) -> Vec<f64> {
+    pub(crate) fn with_pose_of(&self, arm: usize, own: &[f64], pose: &[f64]) -> Vec<f64> {
         let mut out = pose.to_vec();
         self.poses[arm].iter().zip(own).for_each(|(&i, angle)| out[i] = *angle);
         out
     }
 
     /// The pose of one arm, taken from that of all.
-    pub fn pose_of(&self, arm: usize, pose: &[f64]) -> Vec<f64> {
+    pub(crate) fn pose_of(&self, arm: usize, pose: &[f64]) -> Vec<f64> {
         self.poses[arm].iter().map(|&i| pose[i]).collect()
     }
 }

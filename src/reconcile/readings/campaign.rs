@@ -99,7 +99,7 @@ const DEFAULT_PAYLOAD_DENSITY_KG_M3: f64 = 7850.0;
 ///
 /// # Errors
 /// The file is missing, or all of its faults.
-pub fn read_statement(path: &Path) -> Result<Statement, InputError> {
+pub(crate) fn read_statement(path: &Path) -> Result<Statement, InputError> {
     let document = Document::read(path)?;
     let statement = statement(&document.root());
     Ok(document.finish(statement)?)
@@ -413,7 +413,7 @@ impl Campaign {
 
 /// Joints of several arms that have an entry in a pose: those of the first arm, then those that only others
 /// have.
-pub fn driven_joint_names(arms: &[&Arm]) -> Vec<String> {
+pub(crate) fn driven_joint_names(arms: &[&Arm]) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
     for name in arms.iter().flat_map(|arm| arm.driven_joint_names()) {
         if !out.iter().any(|known| known == name) {

@@ -156,7 +156,7 @@ fn measured(table: &Table, row: usize, column: usize) -> Option<f64> {
 }
 
 /// Reads static rows.
-pub fn static_rows(table: &Table, arm: &Arm) -> Vec<StaticRow> {
+pub(crate) fn static_rows(table: &Table, arm: &Arm) -> Vec<StaticRow> {
     let state = StateColumns::find(table, &arm.driven_joint_names(), true);
     let find = |names: [&str; 3]| names.map(|n| table.required(n));
     let (force, d) = (find(["force_x_n", "force_y_n", "force_z_n"]), find(["dx_mm", "dy_mm", "dz_mm"]));
@@ -186,7 +186,7 @@ pub fn static_rows(table: &Table, arm: &Arm) -> Vec<StaticRow> {
 }
 
 /// Reads modal rows.
-pub fn modal_rows(table: &Table, arm: &Arm) -> Vec<ModalRow> {
+pub(crate) fn modal_rows(table: &Table, arm: &Arm) -> Vec<ModalRow> {
     let state = StateColumns::find(table, &arm.driven_joint_names(), true);
     let columns = ["mode", "frequency_hz", "sigma_hz"].map(|n| table.required(n));
     let (Some(state), [Some(mode), Some(frequency), Some(sigma_hz)]) = (state, columns) else {
@@ -221,7 +221,7 @@ pub fn modal_rows(table: &Table, arm: &Arm) -> Vec<ModalRow> {
 }
 
 /// Reads bench rows.
-pub fn windup_rows(table: &Table, arm: &Arm) -> Vec<WindupRow> {
+pub(crate) fn windup_rows(table: &Table, arm: &Arm) -> Vec<WindupRow> {
     let columns = ["joint", "torque_nm", "windup_arcmin", "sigma_arcmin"].map(|n| table.required(n));
     let branch = table.optional("branch");
     let [Some(joint), Some(torque), Some(windup), Some(sigma_arcmin)] = columns else {
@@ -249,7 +249,7 @@ pub fn windup_rows(table: &Table, arm: &Arm) -> Vec<WindupRow> {
 }
 
 /// Reads absolute positions. `arms` holds the names of the arms, `driven` the joints that have a column.
-pub fn position_rows(table: &Table, arms: &[&str], driven: &[String]) -> Vec<PositionRow> {
+pub(crate) fn position_rows(table: &Table, arms: &[&str], driven: &[String]) -> Vec<PositionRow> {
     let joints: Vec<&str> = driven.iter().map(String::as_str).collect();
     let state = StateColumns::find(table, &joints, false);
     let columns = ["x_mm", "y_mm", "z_mm", "sigma_mm"].map(|n| table.required(n));

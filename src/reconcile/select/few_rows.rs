@@ -21,7 +21,7 @@ use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
 /// Smallest number of rows from which one model can be chosen.
-pub const FEWEST_ROWS: usize = 11;
+pub(crate) const FEWEST_ROWS: usize = 11;
 /// Largest number of fits for sets of one size. Beyond it only the most promising smaller sets are extended.
 const MOST_FITS: usize = 6000;
 /// A set whose misfit is less probable than this does not explain the readings.
@@ -39,7 +39,7 @@ const FACTORS: [f64; 9] = [1.1, 1.2, 1.4, 1.7, 2.0, 3.0, 4.0, 6.0, 10.0];
 const MOST_PROFILES: usize = 6;
 
 /// Weighs every small set of effects. `others` holds those that explain the readings, best first.
-pub fn weigh(search: &Search) -> Selection {
+pub(crate) fn weigh(search: &Search) -> Selection {
     let baseline = scored(search, &[], &[]);
     let mut tried = vec![baseline.clone()];
     let mut level = tried.clone();
@@ -145,7 +145,12 @@ fn surprise(parameter: &FreeParameter, u: f64) -> f64 {
 }
 
 /// What the sets that explain the readings have in common, and what they do not.
-pub fn sentences(search: &Search, campaign: &Campaign, baseline: &Fit, explaining: &[Scored]) -> Vec<String> {
+pub(crate) fn sentences(
+    search: &Search,
+    campaign: &Campaign,
+    baseline: &Fit,
+    explaining: &[Scored],
+) -> Vec<String> {
     let Some(first) = explaining.first() else {
         return vec![
             gap(search, baseline),
@@ -315,7 +320,7 @@ fn span(values: impl Iterator<Item = f64>) -> (f64, f64) {
 
 /// Every effect of the sets: the range of its parameters over the sets that have it, and what replaces it in
 /// the others. A stiffness that some set does without has no upper end.
-pub fn suspects(search: &Search, explaining: &[Scored], weights: &Weights) -> Vec<Finding> {
+pub(crate) fn suspects(search: &Search, explaining: &[Scored], weights: &Weights) -> Vec<Finding> {
     let mut effects: Vec<usize> = Vec::new();
     for &e in explaining.iter().flat_map(|s| &s.effects) {
         if !effects.contains(&e) {

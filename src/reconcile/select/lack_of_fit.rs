@@ -54,7 +54,7 @@ impl LackOfFit {
 }
 
 /// Tests a fitted model.
-pub fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> LackOfFit {
+pub(crate) fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> LackOfFit {
     let tester = Tester::new(forward, fit, weights);
     let mut structures = Vec::new();
     for channel in [Channel::Static, Channel::Modal, Channel::Windup] {

@@ -18,7 +18,7 @@ use nalgebra::DVector;
 use std::f64::consts::TAU;
 
 /// A law without a name.
-pub struct Law {
+pub(crate) struct Law {
     /// The law in words.
     pub what: String,
     /// Change of each prediction per unit of each of the law's parameters, in the unit of the file.
@@ -26,7 +26,7 @@ pub struct Law {
 }
 
 /// Every law at every place, linearized about a fit.
-pub fn laws(campaign: &Campaign, forward: &Forward, fit: &Fit) -> Vec<Law> {
+pub(crate) fn laws(campaign: &Campaign, forward: &Forward, fit: &Fit) -> Vec<Law> {
     let builder = Builder { campaign, forward, fit, torques_nm: forward.torques_nm(&fit.point.coefficients) };
     let joints = (0..forward.layout.joints.len()).flat_map(|j| builder.joint_laws(j));
     let mut out: Vec<Law> = joints

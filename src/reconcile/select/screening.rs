@@ -27,7 +27,7 @@ const HOPELESS: f64 = 40.0;
 /// Models within this score of the best of a stage are examined further.
 const PROMISING: f64 = 12.0;
 /// Largest number of effects in a model.
-pub const MOST_EFFECTS: usize = 3;
+pub(crate) const MOST_EFFECTS: usize = 3;
 /// A law without a name whose ln of the evidence is higher by this much settles that the effects found are
 /// not the cause.
 const SETTLES: f64 = 12.0;
@@ -35,7 +35,7 @@ const SETTLES: f64 = 12.0;
 const FULL_FITS: usize = 7;
 
 /// What a search found.
-pub struct Selection {
+pub(crate) struct Selection {
     /// The best model.
     pub best: Scored,
     /// The baseline: calibration and no effect.
@@ -49,7 +49,7 @@ pub struct Selection {
 impl<'a> Search<'a> {
     /// Searches for the effects. With two effects or more, a model from an earlier search is a better start
     /// than none.
-    pub fn run(&self, before: Option<&Scored>) -> Selection {
+    pub(crate) fn run(&self, before: Option<&Scored>) -> Selection {
         let baseline_model = self.model(&[]);
         let baseline_fit = fit(
             self.forward,
@@ -107,7 +107,7 @@ impl<'a> Search<'a> {
     /// Fits the promising models of a selection again with other weights, and chooses among them. It includes
     /// models with only some of the best model's effects, because the others may have been named for the
     /// faults of the old weights.
-    pub fn weigh_again(&self, before: &Selection) -> Selection {
+    pub(crate) fn weigh_again(&self, before: &Selection) -> Selection {
         let mut promising: Vec<Scored> = vec![before.baseline.clone()];
         let near = before.others.iter().filter(|s| s.score > before.best.score - PROMISING).cloned();
         let parts = self.parts(&before.best);
@@ -336,7 +336,7 @@ impl<'a> Search<'a> {
     ///
     /// The likeliest come first. There are as many as needed for the right one to be among them with a
     /// probability of 95 %.
-    pub fn alternatives(&self, best: &Scored, seen: &[Scored]) -> Vec<Vec<Scored>> {
+    pub(crate) fn alternatives(&self, best: &Scored, seen: &[Scored]) -> Vec<Vec<Scored>> {
         (0..best.effects.len())
             .map(|i| {
                 let mut rest = best.effects.clone();

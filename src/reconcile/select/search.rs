@@ -20,7 +20,7 @@ const RULED_OUT: f64 = 14.0;
 const BEYOND_HOPE: f64 = 3.0;
 
 /// Everything that a search needs.
-pub struct Search<'a> {
+pub(crate) struct Search<'a> {
     /// The campaign.
     pub campaign: &'a Campaign,
     /// The campaign, prepared for fitting.
@@ -35,7 +35,7 @@ pub struct Search<'a> {
 
 /// A model with its score.
 #[derive(Clone)]
-pub struct Scored {
+pub(crate) struct Scored {
     /// Indices of the candidates in it.
     pub effects: Vec<usize>,
     /// Its parameters.
@@ -48,12 +48,12 @@ pub struct Scored {
 
 impl<'a> Search<'a> {
     /// A model of the candidates with these indices.
-    pub fn model(&self, effects: &[usize]) -> Model<'a> {
+    pub(crate) fn model(&self, effects: &[usize]) -> Model<'a> {
         Model::of(self.nuisance, self.candidates, effects)
     }
 
     /// Fits that model from `u`.
-    pub fn fit(&self, effects: &[usize], u: &[f64], effort: Effort) -> Fit<'a> {
+    pub(crate) fn fit(&self, effects: &[usize], u: &[f64], effort: Effort) -> Fit<'a> {
         self.fit_model(self.model(effects), u, effort)
     }
 
@@ -94,7 +94,7 @@ impl<'a> Search<'a> {
 
     /// Fits a model to the end. Break points of a gear's curve are moved by hand, because the frequencies'
     /// steps hide lower ground from a descent.
-    pub fn polish(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
+    pub(crate) fn polish(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
         let model = self.model(effects);
         let breaks = model.break_points();
         if breaks.is_empty() {
@@ -164,7 +164,7 @@ impl<'a> Search<'a> {
     }
 
     /// Scores a fit.
-    pub fn scored(&self, effects: &[usize], fit: &Fit) -> Scored {
+    pub(crate) fn scored(&self, effects: &[usize], fit: &Fit) -> Scored {
         // each effect could have been named at any place, and the price is the logarithm of their number
         let penalty = effects.len() as f64 * (self.places() as f64).ln();
         Scored {
@@ -176,12 +176,12 @@ impl<'a> Search<'a> {
     }
 
     /// Whether a model fits the readings well enough to be worth refining.
-    pub fn may_explain(&self, scored: &Scored) -> bool {
+    pub(crate) fn may_explain(&self, scored: &Scored) -> bool {
         scored.objective < BEYOND_HOPE * self.forward.data.len() as f64
     }
 
     /// Number of places where an effect could be named. All unit slips of a channel count once.
-    pub fn places(&self) -> usize {
+    pub(crate) fn places(&self) -> usize {
         let mut labels: Vec<String> = self.candidates.iter().map(|c| c.label()).collect();
         // all unit slips of a channel have the same label
         labels.dedup();
@@ -189,7 +189,7 @@ impl<'a> Search<'a> {
     }
 
     /// A model without one of its effects, and its start.
-    pub fn without(&self, scored: &Scored, effect: usize) -> (Vec<usize>, Vec<f64>) {
+    pub(crate) fn without(&self, scored: &Scored, effect: usize) -> (Vec<usize>, Vec<f64>) {
         let model = self.model(&scored.effects);
         let first = model.first_parameter(effect);
         let (mut effects, mut u) = (scored.effects.clone(), scored.u.clone());

@@ -28,7 +28,7 @@ const SHAPES: usize = 2;
 const LOOKS: usize = 4;
 
 /// The effects, and the quality of the readings.
-pub struct Settled {
+pub(crate) struct Settled {
     /// The models that were weighed.
     pub selection: Selection,
     /// Quality of the readings.
@@ -39,7 +39,7 @@ pub struct Settled {
 
 impl Settled {
     /// Handles few readings: they are taken as declared, and every small set of effects is weighed.
-    pub fn of_few(
+    pub(crate) fn of_few(
         campaign: &Campaign,
         forward: &Forward,
         nuisance: &Nuisance,
@@ -57,7 +57,7 @@ impl Settled {
     /// errors. It then removes further gross errors and searches again. At last the best model shows whether
     /// the declared standard deviations were right. If not, the models are weighed again with those it
     /// suggests.
-    pub fn of_many(
+    pub(crate) fn of_many(
         campaign: &Campaign,
         forward: &mut Forward,
         nuisance: &Nuisance,

@@ -37,7 +37,7 @@ struct Competitor {
 }
 
 /// A law that explains the readings better than the model it competes with.
-pub struct Better {
+pub(crate) struct Better {
     /// The law in words.
     pub what: String,
     /// Number of its parameters.
@@ -49,7 +49,12 @@ pub struct Better {
 }
 
 /// The misfit that each law would remove from a model's residuals, as questions for the lack-of-fit test.
-pub fn law_questions(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<Structure> {
+pub(crate) fn law_questions(
+    campaign: &Campaign,
+    forward: &Forward,
+    fit: &Fit,
+    weights: &Weights,
+) -> Vec<Structure> {
     let competitors = competitors(forward, fit, &laws(campaign, forward, fit), weights);
     // Bonferroni: one of many laws fits better by chance
     let asked = (competitors.len() as f64).max(1.0).ln();
@@ -64,14 +69,14 @@ pub fn law_questions(campaign: &Campaign, forward: &Forward, fit: &Fit, weights:
 }
 
 /// The law that, added to calibration alone, explains the readings better than calibration does.
-pub fn better_than_calibration(search: &Search, baseline: &Fit) -> Option<Better> {
+pub(crate) fn better_than_calibration(search: &Search, baseline: &Fit) -> Option<Better> {
     let places = search.places() as f64;
     let laws = laws(search.campaign, search.forward, baseline);
     best_of(competitors(search.forward, baseline, &laws, search.weights), baseline.evidence, places)
 }
 
 /// The law that explains the readings better in place of one named effect, or of all of them.
-pub fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<Better> {
+pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<Better> {
     let (named, places) = (best.effects.len(), search.places() as f64);
     // with one effect, the model without it is the baseline, which is tried anyway
     let single = (0..named).filter(|_| named > 1).map(|i| {

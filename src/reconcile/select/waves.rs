@@ -3,13 +3,13 @@
 use std::f64::consts::TAU;
 
 /// Sine and cosine of an angle, once and twice a turn.
-pub fn waves(angle_deg: f64) -> [f64; 4] {
+pub(crate) fn waves(angle_deg: f64) -> [f64; 4] {
     let a = angle_deg.to_radians();
     [a.sin(), a.cos(), (2.0 * a).sin(), (2.0 * a).cos()]
 }
 
 /// A line, a parabola, and slow and fast waves over the order of the rows; `part` runs from 0 to 1.
-pub fn order_functions(part: f64) -> [f64; 6] {
+pub(crate) fn order_functions(part: f64) -> [f64; 6] {
     let (a, b) = (TAU * part, 2.0 * TAU * part);
     [part - 0.5, (part - 0.5).powi(2), a.sin(), a.cos(), b.sin(), b.cos()]
 }

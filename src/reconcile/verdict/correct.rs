@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 /// The corrected arm, and the provenance of its values. Where nothing explains the gap, the arm stays as it
 /// was. A calibration that makes up for missing physics would be wrong.
-pub fn corrected(
+pub(crate) fn corrected(
     campaign: &Campaign,
     forward: &Forward,
     fit: &Fit,
@@ -40,7 +40,7 @@ pub fn corrected(
 }
 
 /// The provenance of a corrected arm's values, as JSON.
-pub fn provenance(campaign: &Campaign, verdict: Verdict, calibrated: Vec<Value>) -> Value {
+pub(crate) fn provenance(campaign: &Campaign, verdict: Verdict, calibrated: Vec<Value>) -> Value {
     json!({
         "campaign": campaign.statement.name, "campaign_blake3": campaign.hash,
         "tool": format!("armwright {}", env!("CARGO_PKG_VERSION")),

@@ -3,9 +3,9 @@
 use crate::arm::Arm;
 
 /// File of the first corrected arm.
-pub const CORRECTED_FILE: &str = "arm.corrected.json";
+pub(crate) const CORRECTED_FILE: &str = "arm.corrected.json";
 
 /// File of a further corrected arm.
-pub fn corrected_file(arm: &Arm) -> String {
+pub(crate) fn corrected_file(arm: &Arm) -> String {
     format!("{}.corrected.json", arm.name)
 }

@@ -11,7 +11,7 @@ use crate::reconcile::readings::campaign::Campaign;
 const WORST_POSES: usize = 3;
 
 /// Root mean squares of every part of the readings \[declared standard deviations\], without gross errors.
-pub fn located(
+pub(crate) fn located(
     campaign: &Campaign,
     forward: &Forward,
     baseline: &Fit,

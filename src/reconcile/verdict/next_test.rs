@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 /// The models to separate, and what is known so far.
-pub struct Question<'a> {
+pub(crate) struct Question<'a> {
     /// The campaign so far.
     pub campaign: &'a Campaign,
     /// The best model.
@@ -32,9 +32,9 @@ const STATIC_POSES: usize = 24;
 const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
 /// Separation that settles a question \[standard deviations\].
-pub const ENOUGH: f64 = 4.0;
+pub(crate) const ENOUGH: f64 = 4.0;
 /// A test that separates by less than this is not worth any number of readings \[standard deviations\].
-pub const WORTHLESS_SIGMAS: f64 = 0.1;
+pub(crate) const WORTHLESS_SIGMAS: f64 = 0.1;
 /// Standard deviations that are assumed where a channel was not measured.
 const DEFAULT_SIGMA_MM: f64 = 0.01;
 const DEFAULT_SIGMA_PART: f64 = 0.003;
@@ -49,7 +49,7 @@ enum Test {
 }
 
 /// The tests worth making, best first.
-pub fn propose(question: &Question) -> Vec<NextTest> {
+pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
     if question.verdict == Verdict::Unexplained {
         return question.residuals.iter().map(|pose| repeat(question.campaign, pose)).collect();
     }
@@ -150,7 +150,7 @@ fn ranges(campaign: &Campaign) -> Vec<(f64, f64)> {
 }
 
 /// A pose of Halton's sequence within ranges of angles, in whole degrees.
-pub fn spread_pose(ranges: &[(f64, f64)], index: usize) -> Vec<f64> {
+pub(crate) fn spread_pose(ranges: &[(f64, f64)], index: usize) -> Vec<f64> {
     ranges
         .iter()
         .enumerate()

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 /// The objectives of a design under one model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Values {
+pub(crate) struct Values {
     /// Tip deflection \[mm\].
     pub tip_deflection_mm: f64,
     /// Mass \[kg\].
@@ -23,7 +23,7 @@ pub struct Values {
 
 /// One of two models.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Model {
+pub(crate) enum Model {
     /// Without the corrections.
     Nominal,
     /// With them.
@@ -32,7 +32,7 @@ pub enum Model {
 
 /// A design of either front.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Changed {
+pub(crate) struct Changed {
     /// Name of the design.
     pub design_id: String,
     /// Whether it is on the front of either model, nominal first.
@@ -48,7 +48,7 @@ pub struct Changed {
 
 /// A pick, such as the lightest design, under both models.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PickChange {
+pub(crate) struct PickChange {
     /// `lightest`, `stiffest`, `highest mode` or `knee`.
     pub pick: &'static str,
     /// Whether another design takes its place.
@@ -67,7 +67,7 @@ pub struct PickChange {
 
 /// Both fronts side by side.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Changes {
+pub(crate) struct Changes {
     /// Every design of either front: those of the nominal front first.
     pub designs: Vec<Changed>,
 }
@@ -76,7 +76,7 @@ const PICKS: [&str; 4] = ["lightest", "stiffest", "highest mode", "knee"];
 
 impl Changes {
     /// Compares two fronts of one study; `judge` computes the objectives of a design under a model.
-    pub fn new(fronts: [&FrontTable; 2], judge: impl Fn(Model, &str) -> Option<Values>) -> Self {
+    pub(crate) fn new(fronts: [&FrontTable; 2], judge: impl Fn(Model, &str) -> Option<Values>) -> Self {
         let mut out = Self { designs: Vec::new() };
         for (side, front) in fronts.into_iter().enumerate() {
             let all = designs(front);
@@ -112,13 +112,13 @@ impl Changes {
     }
 
     /// Numbers of designs: on both fronts, only on the nominal one, only on the corrected one.
-    pub fn counts(&self) -> [usize; 3] {
+    pub(crate) fn counts(&self) -> [usize; 3] {
         [[true, true], [true, false], [false, true]]
             .map(|on| self.designs.iter().filter(|d| d.on_front == on).count())
     }
 
     /// The picks under both models; none if a front is empty.
-    pub fn picks(&self) -> Vec<PickChange> {
+    pub(crate) fn picks(&self) -> Vec<PickChange> {
         let of = |side: usize, pick: &str| self.designs.iter().find(|d| d.picks[side].contains(&pick));
         PICKS
             .into_iter()
@@ -138,7 +138,7 @@ impl Changes {
     }
 
     /// Counts and picks for a terminal.
-    pub fn to_text(&self) -> String {
+    pub(crate) fn to_text(&self) -> String {
         let [stay, leave, enter] = self.counts();
         let mut table = Table::new(vec![
             Column::left("pick"),
@@ -166,7 +166,7 @@ impl Changes {
     }
 
     /// One line a design.
-    pub fn to_csv(&self) -> String {
+    pub(crate) fn to_csv(&self) -> String {
         let names = ["design_id", "front", "nominal_pick", "corrected_pick"];
         let figures = ["tip_deflection_mm", "mass_kg", "lowest_mode_hz"];
         let both = figures.iter().flat_map(|f| [format!("{f}_nominal"), format!("{f}_corrected")]);

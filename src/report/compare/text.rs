@@ -286,7 +286,7 @@ fn out_of_reach(row: &Row, labels: &[String]) -> String {
 }
 
 /// Labels short enough for a narrow table, still different from each other.
-pub fn short_labels(labels: &[String]) -> Vec<String> {
+pub(crate) fn short_labels(labels: &[String]) -> Vec<String> {
     let short: Vec<String> = labels.iter().map(|l| shorten(l)).collect();
     let unique = |i: usize| short.iter().filter(|s| **s == short[i]).count() == 1;
     (0..labels.len()).map(|i| if unique(i) { short[i].clone() } else { labels[i].clone() }).collect()

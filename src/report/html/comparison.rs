@@ -12,7 +12,7 @@ use crate::report::svg::draw::MUTED;
 use serde_json::{Value, json};
 
 /// The page of a comparison; `picture` is its `compare.svg`.
-pub fn page(comparison: &Comparison, contenders: &[Contender], picture: String) -> Page {
+pub(crate) fn page(comparison: &Comparison, contenders: &[Contender], picture: String) -> Page {
     let mut gallery = Gallery::default();
     let views = views(contenders, picture);
     let competing: Vec<&str> = contenders.iter().filter(|c| !c.reference).map(|c| c.label.as_str()).collect();

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 /// Pictures and tables with words before them.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct DocumentPage {
+pub(crate) struct DocumentPage {
     /// Title.
     pub title: String,
     /// What was asked.
@@ -24,7 +24,7 @@ pub struct DocumentPage {
 
 impl DocumentPage {
     /// The page and its pictures.
-    pub fn page(&self) -> Page {
+    pub(crate) fn page(&self) -> Page {
         let mut gallery = Gallery::default();
         let figures: Vec<Value> = self.figures.iter().map(|f| gallery.show(f)).collect();
         let tables: Vec<Value> =

@@ -19,17 +19,17 @@ use std::cmp::Ordering;
 use std::collections::HashSet;
 
 /// Significant digits of the numbers on the page.
-pub const SHOWN_DIGITS: usize = 5;
+pub(crate) const SHOWN_DIGITS: usize = 5;
 /// Designs drawn at most.
-pub const MOST_ROWS: usize = 20_000;
+pub(crate) const MOST_ROWS: usize = 20_000;
 /// Size of the data on the page at most \[bytes\].
-pub const MOST_BYTES: usize = 1_200_000;
+pub(crate) const MOST_BYTES: usize = 1_200_000;
 /// Axes with fewer values than this are labelled value by value.
 const FEW: usize = 18;
 
 /// Designs that are drawn in one style.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Group {
+pub(crate) struct Group {
     /// Name in the legend.
     pub name: String,
     /// Colour and marker; [`crate::report::svg::MUTED`] stands back.
@@ -38,7 +38,7 @@ pub struct Group {
 
 /// One design of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row<'a> {
+pub(crate) struct Row<'a> {
     /// Its table.
     pub table: &'a FrontTable,
     /// Its row there.
@@ -51,7 +51,7 @@ pub struct Row<'a> {
 
 /// One axis of the views: a choice or a result.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
+pub(crate) struct Axis {
     /// Column in `front.csv`.
     pub column: String,
     /// Words for people.
@@ -70,7 +70,7 @@ pub struct Axis {
 
 /// What the linked views show.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FrontData<'a> {
+pub(crate) struct FrontData<'a> {
     /// The groups, in the order of the legend.
     pub groups: Vec<Group>,
     /// The rows that are drawn, lightest first.
@@ -85,7 +85,7 @@ pub struct FrontData<'a> {
 
 impl<'a> FrontData<'a> {
     /// The data of these designs in at most so many bytes; `kept` are drawn even if the front has to be sampled.
-    pub fn new(groups: Vec<Group>, rows: Vec<Row<'a>>, kept: &[String], most_bytes: usize) -> Self {
+    pub(crate) fn new(groups: Vec<Group>, rows: Vec<Row<'a>>, kept: &[String], most_bytes: usize) -> Self {
         let rows_total = counts(&rows);
         let mut room = MOST_ROWS;
         loop {
@@ -99,7 +99,7 @@ impl<'a> FrontData<'a> {
     }
 
     /// Rows that are drawn, counted as [`Self::rows_total`].
-    pub fn rows_drawn(&self) -> [usize; 2] {
+    pub(crate) fn rows_drawn(&self) -> [usize; 2] {
         counts(&self.rows)
     }
 
@@ -128,7 +128,7 @@ impl<'a> FrontData<'a> {
     }
 
     /// The data as columns for the page's program; `picks` are names with their `design_id`.
-    pub fn to_json(&self, picks: &[(String, String)]) -> Value {
+    pub(crate) fn to_json(&self, picks: &[(String, String)]) -> Value {
         let ids: Vec<&str> = self.rows.iter().map(|r| cell(r, "design_id")).collect();
         let picks: Vec<Value> = picks
             .iter()
@@ -155,14 +155,14 @@ impl<'a> FrontData<'a> {
     }
 
     /// Place of a row on each axis, 0 to 1.
-    pub fn places(&self, row: usize) -> Vec<Option<f64>> {
+    pub(crate) fn places(&self, row: usize) -> Vec<Option<f64>> {
         self.axes.iter().map(|a| a.values[row].map(|v| a.place(v))).collect()
     }
 }
 
 impl Axis {
     /// Where a value lies, 0 to 1.
-    pub fn place(&self, value: f64) -> f64 {
+    pub(crate) fn place(&self, value: f64) -> f64 {
         match self.range {
             Some((low, high, Scale::Log)) => (value / low).ln() / (high / low).ln(),
             Some((low, high, Scale::Linear)) => (value - low) / (high - low),
@@ -192,7 +192,7 @@ fn cell<'a>(row: &Row<'a>, column: &str) -> &'a str {
 }
 
 /// The column of an objective.
-pub fn objective_column(objective: Objective) -> &'static str {
+pub(crate) fn objective_column(objective: Objective) -> &'static str {
     match objective {
         Objective::Mass => "mass_kg",
         Objective::Deflection => "tip_deflection_mm",

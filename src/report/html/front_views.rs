@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 const STILL_LINES: usize = 400;
 
 /// What a page says about its views.
-pub struct FrontViews<'a> {
+pub(crate) struct FrontViews<'a> {
     /// Designs, groups and axes.
     pub data: FrontData<'a>,
     /// Picks, by name.
@@ -69,7 +69,7 @@ impl FrontViews<'_> {
     }
 
     /// The data for the page's program.
-    pub fn json(&self) -> Value {
+    pub(crate) fn json(&self) -> Value {
         let mut out = self.data.to_json(&named(self.picks));
         out["colouredBy"] = self.coloured_by.into();
         out
@@ -122,7 +122,7 @@ fn named(picks: &[Pick]) -> Vec<(String, String)> {
 }
 
 /// A design's objectives as the page and the terminal write them.
-pub fn headline(design: &Design) -> [(&'static str, String, &'static str); 3] {
+pub(crate) fn headline(design: &Design) -> [(&'static str, String, &'static str); 3] {
     [
         ("tip deflection", significant(design.tip_deflection_mm, 4), "mm"),
         ("mass", significant(design.mass_kg, 4), "kg"),

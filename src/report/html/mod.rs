@@ -3,7 +3,7 @@
 //! A page opens from disk: style, program, data and pictures are inside it, and its content security policy
 //! forbids the network, `eval` and inline handlers. Everything can be read without the program: pictures are
 //! the same SVG that stands beside the page in `plots/`, tables are tables. The program adds linked views
-//! with hovering, brushing and filters. [`study`], [`campaign`] and [`comparison`] take plain values and fill
+//! with hovering, brushing and filters. [`study`], `campaign` and `comparison` take plain values and fill
 //! the templates in this folder.
 
 pub(crate) mod campaign;

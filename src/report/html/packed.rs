@@ -8,11 +8,11 @@ use std::collections::HashMap;
 use std::sync::LazyLock;
 
 /// The letters, in the order of what they stand for: printable ASCII that neither JSON nor a script element escapes.
-pub static ALPHABET: LazyLock<String> =
+pub(crate) static ALPHABET: LazyLock<String> =
     LazyLock::new(|| (' '..='~').filter(|c| !['"', '\\', '<'].contains(c)).collect());
 
 /// Indexes below `count` as text, as many letters each as the largest may need.
-pub fn packed(indexes: impl Iterator<Item = usize>, count: usize) -> Value {
+pub(crate) fn packed(indexes: impl Iterator<Item = usize>, count: usize) -> Value {
     let letters = ALPHABET.as_bytes();
     let base = letters.len();
     let width = (1..).find(|w| base.pow(*w) >= count).unwrap_or(1);
@@ -24,7 +24,7 @@ pub fn packed(indexes: impl Iterator<Item = usize>, count: usize) -> Value {
 }
 
 /// A column of numbers, blanks among them: packed with the list of its values where that is shorter.
-pub fn column(values: &[Option<f64>]) -> Value {
+pub(crate) fn column(values: &[Option<f64>]) -> Value {
     let key = |v: &Option<f64>| v.map(f64::to_bits);
     let mut places: HashMap<Option<u64>, usize> = HashMap::new();
     let mut list = Vec::new();

@@ -226,7 +226,7 @@ impl PickedArm {
 }
 
 /// Where the deflection of several picks comes from, side by side.
-pub fn deflection_bars(picks: &[PickedArm]) -> Figure {
+pub(crate) fn deflection_bars(picks: &[PickedArm]) -> Figure {
     let parts: Vec<(String, Vec<DeflectionPart>)> = picks
         .iter()
         .map(|p| (format!("{} ({})", p.title(), p.pick.design.design_id), p.deflection_parts()))
@@ -275,7 +275,7 @@ fn solve<'a>(arm: &Arm, case: &'a LoadCase) -> Solved<'a> {
 }
 
 /// A pose in words: `0°, -45°, 90°`.
-pub fn degrees(pose_deg: &[f64]) -> String {
+pub(crate) fn degrees(pose_deg: &[f64]) -> String {
     pose_deg.iter().map(|a| format!("{}°", shortest(*a))).collect::<Vec<_>>().join(", ")
 }
 

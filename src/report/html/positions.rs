@@ -53,7 +53,7 @@ fn length(v: &[f64; 3]) -> f64 {
 }
 
 /// How the error falls as each effect is added.
-pub fn steps_figure(steps: &[Step]) -> Option<Figure> {
+pub(crate) fn steps_figure(steps: &[Step]) -> Option<Figure> {
     let row = |s: &Step| Row {
         label: s.added.clone(),
         marks: [s.median, s.mean, s.max]
@@ -88,7 +88,7 @@ pub fn steps_figure(steps: &[Step]) -> Option<Figure> {
 }
 
 /// The share of positions whose error is at most so large.
-pub fn sizes_figure(positions: &[Position]) -> Option<Figure> {
+pub(crate) fn sizes_figure(positions: &[Position]) -> Option<Figure> {
     let sorted = |of: fn(&Position) -> &[f64; 3]| {
         let mut out: Vec<f64> = positions.iter().map(|p| length(of(p))).collect();
         out.sort_by(f64::total_cmp);
@@ -135,7 +135,7 @@ pub fn sizes_figure(positions: &[Position]) -> Option<Figure> {
 }
 
 /// The errors along each axis of the instrument, row by row.
-pub fn axes_figure(positions: &[Position]) -> Option<Figure> {
+pub(crate) fn axes_figure(positions: &[Position]) -> Option<Figure> {
     let panel = |axis: usize| {
         let points =
             |of: fn(&Position) -> &[f64; 3]| -> Vec<f64> { positions.iter().map(|p| of(p)[axis]).collect() };
@@ -225,7 +225,7 @@ fn bins(positions: &[Position], joint: usize) -> Vec<Bin> {
 }
 
 /// The median error over the range of each joint, joints first whose angle the error follows most.
-pub fn angles_figure(joints: &[String], positions: &[Position]) -> Option<Figure> {
+pub(crate) fn angles_figure(joints: &[String], positions: &[Position]) -> Option<Figure> {
     let swing = |bins: &[Bin]| {
         let (low, high) =
             bins.iter().fold((f64::INFINITY, 0.0f64), |(l, h), b| (l.min(b.after_mm), h.max(b.after_mm)));

@@ -4,7 +4,7 @@ use minijinja::Environment;
 use serde_json::{Value, json};
 
 /// Folder beside a page that holds its pictures and the numbers behind them.
-pub const PLOTS: &str = "plots";
+pub(crate) const PLOTS: &str = "plots";
 
 const STYLE: &str = include_str!("page.css");
 const PROGRAM: &str = include_str!("page.js");

@@ -8,11 +8,11 @@ use crate::report::number::shortest;
 use std::fmt::Write;
 
 /// A place in the plane of the drawing \[m\], x to the right, y up.
-pub type Place = (f64, f64);
+pub(crate) type Place = (f64, f64);
 
 /// A link.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tube {
+pub(crate) struct Tube {
     /// Name.
     pub name: String,
     /// Points of its centre line with their motion \[m\].
@@ -23,7 +23,7 @@ pub struct Tube {
 
 /// A joint.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Pivot {
+pub(crate) struct Pivot {
     /// Name.
     pub name: String,
     /// Where it is, and its motion \[m\].
@@ -34,7 +34,7 @@ pub struct Pivot {
 
 /// An arm in a pose.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct ArmSketch {
+pub(crate) struct ArmSketch {
     /// Title.
     pub title: String,
     /// What is shown, in a sentence or two, for those who cannot see it.
@@ -61,7 +61,7 @@ const FOOT_PX: f64 = 56.0;
 
 impl ArmSketch {
     /// A round factor that makes the largest motion about a tenth of the arm's size.
-    pub fn fitting_factor(&self) -> f64 {
+    pub(crate) fn fitting_factor(&self) -> f64 {
         let places: Vec<Place> = self.stations().map(|(at, _)| at).collect();
         let span = |of: fn(&Place) -> f64| {
             let values = || places.iter().map(of);
@@ -79,7 +79,7 @@ impl ArmSketch {
     }
 
     /// The drawing as a self-contained SVG document.
-    pub fn to_svg(&self) -> String {
+    pub(crate) fn to_svg(&self) -> String {
         let (low, high) = self.bounds();
         let room = self.width_px - 2.0 * MARGIN_PX;
         let (wide, tall) = ((high.0 - low.0).max(1e-6), (high.1 - low.1).max(1e-6));

@@ -15,7 +15,7 @@ const WIDTH_PX: f64 = 900.0;
 
 /// A part that bars are made of.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Part {
+pub(crate) struct Part {
     /// Name.
     pub name: String,
     /// Whether it is of the second family (hatched).
@@ -24,7 +24,7 @@ pub struct Part {
 
 /// One bar.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Bar {
+pub(crate) struct Bar {
     /// Words at its left.
     pub label: String,
     /// Words at its right: the whole.
@@ -35,7 +35,7 @@ pub struct Bar {
 
 /// Bars under one another.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct StackedBars {
+pub(crate) struct StackedBars {
     /// Title.
     pub title: String,
     /// What the bars show, in a sentence or two, for those who cannot see them.
@@ -54,7 +54,7 @@ const FAR_APART: f64 = 8.0;
 impl StackedBars {
     /// The same with every bar as long as the others if some would be too short to be seen: parts of its own whole.
     #[must_use]
-    pub fn readable(mut self) -> Self {
+    pub(crate) fn readable(mut self) -> Self {
         let whole = |bar: &Bar| bar.values.iter().sum::<f64>();
         let (least, most) = self
             .bars
@@ -72,7 +72,7 @@ impl StackedBars {
     }
 
     /// The bars as a self-contained SVG document.
-    pub fn to_svg(&self) -> String {
+    pub(crate) fn to_svg(&self) -> String {
         let legend = self.legend_rows();
         let bars_px = self.bars.len() as f64 * (BAR_PX + GAP_PX);
         let height = TOP_PX + bars_px + 20.0 + legend.len() as f64 * 22.0 + 8.0;
@@ -103,7 +103,7 @@ impl StackedBars {
     }
 
     /// The numbers behind the bars, one line a bar and part.
-    pub fn to_csv(&self) -> String {
+    pub(crate) fn to_csv(&self) -> String {
         let mut out = csv_line(&["case".into(), "part".into(), self.unit.clone()]);
         for bar in &self.bars {
             for (part, value) in self.parts.iter().zip(&bar.values) {

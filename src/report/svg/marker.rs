@@ -3,7 +3,7 @@
 use super::draw::{MUTED, PALETTE, px};
 
 /// A marker's outline: circle, square, triangle up, diamond, triangle down, plus, cross, star.
-pub fn outline(style: usize, r: f64) -> String {
+pub(crate) fn outline(style: usize, r: f64) -> String {
     const UP: &[(f64, f64)] = &[(0.0, -1.25), (1.15, 0.8), (-1.15, 0.8)];
     const DOWN: &[(f64, f64)] = &[(0.0, 1.25), (1.15, -0.8), (-1.15, -0.8)];
     const SQUARE: &[(f64, f64)] = &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)];

@@ -12,7 +12,7 @@ const TICK_CHARACTERS: usize = 13;
 
 /// One axis.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ParallelAxis {
+pub(crate) struct ParallelAxis {
     /// Name with its unit.
     pub label: String,
     /// Place of each labelled value from 0 (bottom) to 1 (top).
@@ -21,7 +21,7 @@ pub struct ParallelAxis {
 
 /// One line across all axes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ParallelLine {
+pub(crate) struct ParallelLine {
     /// Place on each axis from 0 to 1; `None` has no place there.
     pub places: Vec<Option<f64>>,
     /// Colour as in the other pictures.
@@ -32,7 +32,7 @@ pub struct ParallelLine {
 
 /// Parallel coordinates.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Parallel {
+pub(crate) struct Parallel {
     /// Title.
     pub title: String,
     /// What is shown, in a sentence or two, for those who cannot see it.
@@ -45,7 +45,7 @@ pub struct Parallel {
 
 impl Parallel {
     /// The picture as a self-contained SVG document.
-    pub fn to_svg(&self) -> String {
+    pub(crate) fn to_svg(&self) -> String {
         let width = 120.0 + AXIS_PX * self.axes.len().saturating_sub(1) as f64 + 90.0;
         let mut out = head(&self.title, &self.description, width, HEIGHT_PX);
         text(&mut out, (16.0, 26.0), "start", " font-size=\"16\" font-weight=\"bold\"", &self.title);

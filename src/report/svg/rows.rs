@@ -14,7 +14,7 @@ const WIDTH_PX: f64 = 900.0;
 
 /// A mark in a row.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Mark {
+pub(crate) struct Mark {
     /// Where it is.
     pub value: f64,
     /// Ends of its interval; an end that is not known runs to the frame with an arrow.
@@ -25,7 +25,7 @@ pub struct Mark {
 
 /// One row.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub(crate) struct Row {
     /// Words at its left.
     pub label: String,
     /// Marks, joined by a line where there are several.
@@ -36,7 +36,7 @@ pub struct Row {
 
 /// Rows of marks under one axis.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct RowPlot {
+pub(crate) struct RowPlot {
     /// Title.
     pub title: String,
     /// What the rows show, in a sentence or two, for those who cannot see them.
@@ -53,7 +53,7 @@ pub struct RowPlot {
 
 impl RowPlot {
     /// The rows as a self-contained SVG document.
-    pub fn to_svg(&self) -> String {
+    pub(crate) fn to_svg(&self) -> String {
         let bottom = TOP_PX + self.rows.len() as f64 * ROW_PX;
         let mut out = head(&self.title, &self.description, WIDTH_PX, bottom + 52.0);
         text(&mut out, (16.0, 26.0), "start", " font-size=\"16\" font-weight=\"bold\"", &self.title);
@@ -86,7 +86,7 @@ impl RowPlot {
     }
 
     /// The numbers behind the rows, one line a mark.
-    pub fn to_csv(&self) -> String {
+    pub(crate) fn to_csv(&self) -> String {
         let cells = ["row", "mark", "value", "low", "high"].map(String::from);
         let mut out = csv_line(&cells);
         let number = |x: Option<f64>| x.map_or(String::new(), shortest);

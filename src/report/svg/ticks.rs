@@ -4,7 +4,7 @@ use super::scale::Scale;
 
 /// One tick.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tick {
+pub(crate) struct Tick {
     /// Where it is, in data units.
     pub value: f64,
     /// Its label; `None` for a minor tick.
@@ -13,7 +13,7 @@ pub struct Tick {
 
 /// A range widened to round numbers, and its ticks.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Ruling {
+pub(crate) struct Ruling {
     /// Scale of the axis.
     pub scale: Scale,
     /// Lower end in data units.
@@ -25,7 +25,7 @@ pub struct Ruling {
 }
 
 /// Rules an axis over the data from `low` to `high` with about `count` labelled ticks.
-pub fn rule(scale: Scale, low: f64, high: f64, count: usize) -> Ruling {
+pub(crate) fn rule(scale: Scale, low: f64, high: f64, count: usize) -> Ruling {
     match scale {
         Scale::Linear => linear(low, high, count),
         Scale::Log => logarithmic(low, high, count),
@@ -34,7 +34,7 @@ pub fn rule(scale: Scale, low: f64, high: f64, count: usize) -> Ruling {
 
 impl Ruling {
     /// Position of a value along the axis, 0 at the lower end and 1 at the upper.
-    pub fn position(&self, value: f64) -> f64 {
+    pub(crate) fn position(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear => (value - self.low) / (self.high - self.low),
             Scale::Log => (value / self.low).ln() / (self.high / self.low).ln(),

@@ -48,7 +48,7 @@ pub(super) struct Branchings {
 
 impl Rows<'_> {
     /// Branchings to part what is left of a subproblem, the most promising first.
-    pub fn branchings(&self, members: &Members, left: &Reduced) -> Vec<Branching> {
+    pub(super) fn branchings(&self, members: &Members, left: &Reduced) -> Vec<Branching> {
         let between = self.between(left);
         let mut found = Vec::new();
         // the drive that fits first is no choice
@@ -214,7 +214,7 @@ impl Rows<'_> {
 
 impl Branchings {
     /// The halves of a subproblem; `None` if it cannot be branched.
-    pub fn halves(&self, table: &PartsTable, subproblem: &Subproblem) -> Option<[Subproblem; 2]> {
+    pub(super) fn halves(&self, table: &PartsTable, subproblem: &Subproblem) -> Option<[Subproblem; 2]> {
         self.branchings.iter().find_map(|branching| subproblem.branched(table, branching, &self.curves))
     }
 }

@@ -45,33 +45,33 @@ pub(super) struct TubeTable {
 /// Places of a tube's numbers.
 pub(super) mod place {
     use crate::verify::tubes::{DENSITIES, STIFFNESSES};
-    pub const MASS: usize = 0;
+    pub(crate) const MASS: usize = 0;
     const AROUND: usize = 1 + DENSITIES;
 
-    pub fn weight(water: usize) -> usize {
+    pub(crate) fn weight(water: usize) -> usize {
         1 + water * AROUND
     }
 
-    pub fn density(water: usize, which: usize) -> usize {
+    pub(crate) fn density(water: usize, which: usize) -> usize {
         2 + water * AROUND + which
     }
 
-    pub fn stiffness(waters: usize, which: usize) -> usize {
+    pub(crate) fn stiffness(waters: usize, which: usize) -> usize {
         1 + waters * AROUND + which
     }
 
-    pub fn compliance(waters: usize, which: usize) -> usize {
+    pub(crate) fn compliance(waters: usize, which: usize) -> usize {
         stiffness(waters, STIFFNESSES + which)
     }
 
     /// How many numbers a price may be put on.
-    pub fn priced(waters: usize) -> usize {
+    pub(crate) fn priced(waters: usize) -> usize {
         stiffness(waters, 2 * STIFFNESSES)
     }
 }
 
 impl PartsTable {
-    pub fn new(parts: Parts) -> Self {
+    pub(super) fn new(parts: Parts) -> Self {
         Self {
             joints: parts.joints.into_iter().map(JointTable::new).collect(),
             tubes: parts.tubes.into_par_iter().map(TubeTable::new).collect(),
@@ -98,7 +98,7 @@ impl JointTable {
 
 impl JointTable {
     /// A drive.
-    pub fn range(&self, drive: u32) -> &DriveRange {
+    pub(super) fn range(&self, drive: u32) -> &DriveRange {
         &self.drives.options[drive as usize].range
     }
 }
@@ -132,7 +132,7 @@ impl TubeTable {
     }
 
     /// Least and most numbers of a node that prices may be put on.
-    pub fn bounds(&self, node: u32) -> [&[f64]; 2] {
+    pub(super) fn bounds(&self, node: u32) -> [&[f64]; 2] {
         self.all_bounds(node).map(|bounds| &bounds[..self.priced])
     }
 
@@ -143,12 +143,12 @@ impl TubeTable {
     }
 
     /// How many numbers a price may be put on.
-    pub fn priced(&self) -> usize {
+    pub(super) fn priced(&self) -> usize {
         self.priced
     }
 
     /// Range of some nodes.
-    pub fn range(&self, nodes: &[u32]) -> TubeRange {
+    pub(super) fn range(&self, nodes: &[u32]) -> TubeRange {
         let [mut least, mut most] = self.all_bounds(nodes[0]).map(<[f64]>::to_vec);
         for &node in nodes {
             let [low, high] = self.all_bounds(node);
@@ -160,14 +160,14 @@ impl TubeTable {
     }
 
     /// The tubes of some nodes.
-    pub fn only(&self, nodes: &[u32]) -> TubeOptions {
+    pub(super) fn only(&self, nodes: &[u32]) -> TubeOptions {
         let mut options: Vec<u32> = nodes.iter().flat_map(|&node| self.tree.options(node)).copied().collect();
         options.sort_unstable();
         self.options.only(&options)
     }
 
     /// How many tubes some nodes have.
-    pub fn count(&self, nodes: &[u32]) -> usize {
+    pub(super) fn count(&self, nodes: &[u32]) -> usize {
         nodes.iter().map(|&node| self.tree.options(node).len()).sum()
     }
 }

@@ -14,7 +14,7 @@ pub(super) struct Prices {
 }
 
 impl Prices {
-    pub fn new(prices: &[f64]) -> Self {
+    pub(super) fn new(prices: &[f64]) -> Self {
         Self {
             paid: prices.iter().map(|p| p.max(0.0)).collect(),
             earned: prices.iter().map(|p| p.min(0.0)).collect(),
@@ -22,12 +22,12 @@ impl Prices {
     }
 
     /// No member of a node is cheaper.
-    pub fn of(&self, [least, most]: [&[f64]; 2]) -> f64 {
+    pub(super) fn of(&self, [least, most]: [&[f64]; 2]) -> f64 {
         dot(&self.paid, least) + dot(&self.earned, most)
     }
 
     /// The numbers that make that price.
-    pub fn numbers(&self, [least, most]: [&[f64]; 2]) -> Vec<f64> {
+    pub(super) fn numbers(&self, [least, most]: [&[f64]; 2]) -> Vec<f64> {
         let cheapest = |i: usize| if self.earned[i] < 0.0 { most[i] } else { least[i] };
         (0..least.len()).map(cheapest).collect()
     }

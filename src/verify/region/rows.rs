@@ -72,7 +72,7 @@ pub(super) struct Rows<'a> {
 }
 
 impl Columns {
-    pub fn new(table: &PartsTable, cases: usize) -> Self {
+    pub(super) fn new(table: &PartsTable, cases: usize) -> Self {
         let joints = table.joints.len();
         let mut tubes = vec![joints * (1 + 2 * cases)];
         for tube in &table.tubes {
@@ -81,24 +81,24 @@ impl Columns {
         Self { cases, joints, tubes }
     }
 
-    pub fn mass(&self, joint: usize) -> usize {
+    pub(super) fn mass(&self, joint: usize) -> usize {
         joint * (1 + 2 * self.cases)
     }
 
-    pub fn twist(&self, joint: usize, case: usize) -> usize {
+    pub(super) fn twist(&self, joint: usize, case: usize) -> usize {
         self.mass(joint) + 1 + case
     }
 
-    pub fn slope(&self, joint: usize, case: usize) -> usize {
+    pub(super) fn slope(&self, joint: usize, case: usize) -> usize {
         self.mass(joint) + 1 + self.cases + case
     }
 
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.tubes[self.tubes.len() - 1]
     }
 
     /// The numbers of a part, joints before tubes.
-    pub fn of_part(&self, part: usize) -> std::ops::Range<usize> {
+    pub(super) fn of_part(&self, part: usize) -> std::ops::Range<usize> {
         match part.checked_sub(self.joints) {
             None => self.mass(part)..self.mass(part + 1),
             Some(tube) => self.tubes[tube]..self.tubes[tube + 1],
@@ -106,7 +106,7 @@ impl Columns {
     }
 
     /// The number that is in proportion to a load: mass of a drive or weight of a tube.
-    pub fn load(&self, load: usize, water: usize) -> usize {
+    pub(super) fn load(&self, load: usize, water: usize) -> usize {
         match load.checked_sub(self.joints) {
             None => self.mass(load),
             Some(tube) => self.tubes[tube] + place::weight(water),
@@ -132,14 +132,14 @@ impl Row {
         self
     }
 
-    pub fn value(&self, numbers: &[f64]) -> f64 {
+    pub(super) fn value(&self, numbers: &[f64]) -> f64 {
         self.fixed + self.per_number.iter().zip(numbers).map(|(a, b)| a * b).sum::<f64>()
     }
 }
 
 impl<'a> Rows<'a> {
     /// The rows of a subproblem whose members are known, with the shapes that the subproblem came with.
-    pub fn new(
+    pub(super) fn new(
         skeleton: &'a Skeleton,
         table: &'a PartsTable,
         subproblem: &Subproblem,
@@ -290,7 +290,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Adds the row of a shape; what may be rigid stands still in it.
-    pub fn add_mode(&mut self, case: usize, mut shape: Vec<f64>) {
+    pub(super) fn add_mode(&mut self, case: usize, mut shape: Vec<f64>) {
         let eigenvalue = self.upper.eigenvalue();
         if eigenvalue == 0.0 {
             return;
@@ -314,7 +314,7 @@ impl<'a> Rows<'a> {
     }
 
     /// A judged case.
-    pub fn pose(&self, case: usize) -> &'a Pose {
+    pub(super) fn pose(&self, case: usize) -> &'a Pose {
         self.skeleton.poses.iter().filter(|pose| pose.judged).nth(case).expect("a judged case")
     }
 
@@ -345,7 +345,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The arm whose parts have some numbers, in a case.
-    pub fn pencil(&self, case: usize, numbers: &[f64]) -> Pencil {
+    pub(super) fn pencil(&self, case: usize, numbers: &[f64]) -> Pencil {
         let pose = self.pose(case);
         let stiffness = self.skeleton.coordinates.iter().zip(&self.rigid[case]);
         let stiffness = stiffness.map(|(coordinate, rigid)| match self.stiffness(case, coordinate) {

@@ -48,7 +48,7 @@ enum Narrowed {
 
 impl RegionSearch<'_> {
     /// Looks for designs beside the rows of a front.
-    pub fn explore_all(skeleton: Arc<Skeleton>, parts: Parts, work: &Work) -> Found {
+    pub(crate) fn explore_all(skeleton: Arc<Skeleton>, parts: Parts, work: &Work) -> Found {
         let limits = &skeleton.limits;
         let room = 1.0 + ROUNDING;
         let limit = UpperBound {

@@ -43,7 +43,7 @@ pub(super) struct Shape {
 
 impl Subproblem {
     /// All options; `None` if a piece has none.
-    pub fn whole(table: &PartsTable) -> Option<Self> {
+    pub(super) fn whole(table: &PartsTable) -> Option<Self> {
         let joints: Vec<Vec<u32>> =
             table.joints.iter().map(|joint| (0..joint.masses_kg.len() as u32).collect()).collect();
         let some = joints.iter().all(|kept| !kept.is_empty()) && table.tubes.iter().all(|t| t.tree.len() > 0);
@@ -58,7 +58,7 @@ impl Subproblem {
     }
 
     /// Number of designs. The drive that fits first is no choice, so such a joint counts once.
-    pub fn designs(&self, table: &PartsTable) -> f64 {
+    pub(super) fn designs(&self, table: &PartsTable) -> f64 {
         let joints = self.joints.iter().zip(&table.joints);
         let joints = joints.map(|(kept, joint)| if joint.drives.level.is_some() { kept.len() } else { 1 });
         let tubes = self.tubes.iter().zip(&table.tubes).map(|(nodes, tubes)| tubes.count(nodes));
@@ -66,7 +66,7 @@ impl Subproblem {
     }
 
     /// Narrows the interval of a torque.
-    pub fn keep_torque(&mut self, new: TorqueInterval) {
+    pub(super) fn keep_torque(&mut self, new: TorqueInterval) {
         let known =
             self.torque_intervals.iter_mut().find(|known| known.case == new.case && known.joint == new.joint);
         match known {
@@ -79,7 +79,7 @@ impl Subproblem {
     }
 
     /// Keeps the shapes that have some weight, and the last one of each case.
-    pub fn keep_shapes(&mut self, cases: usize) {
+    pub(super) fn keep_shapes(&mut self, cases: usize) {
         let mut kept = Vec::new();
         for case in 0..cases {
             let of_case = self.shapes.iter().filter(|shape| shape.case == case);
@@ -90,12 +90,12 @@ impl Subproblem {
         self.shapes = kept;
     }
 
-    pub fn tube_ranges(&self, table: &PartsTable) -> Vec<TubeRange> {
+    pub(super) fn tube_ranges(&self, table: &PartsTable) -> Vec<TubeRange> {
         self.tubes.iter().zip(&table.tubes).map(|(nodes, tubes)| tubes.range(nodes)).collect()
     }
 
     /// Removes the drives that cannot hold, and returns the ranges of what is left; `None` if no member holds.
-    pub fn hold<'t>(
+    pub(super) fn hold<'t>(
         &mut self,
         skeleton: &Skeleton,
         table: &PartsTable,
@@ -122,7 +122,7 @@ impl Subproblem {
     }
 
     /// The options as parts.
-    pub fn parts(&self, table: &PartsTable) -> Parts {
+    pub(super) fn parts(&self, table: &PartsTable) -> Parts {
         let joints = self.joints.iter().zip(&table.joints);
         let tubes = self.tubes.iter().zip(&table.tubes);
         Parts {
@@ -132,7 +132,7 @@ impl Subproblem {
     }
 
     /// Torque on each joint in a judged case, within its interval if it has one.
-    pub fn torques(&self, case: usize, pose: &Pose, members: &Members) -> Vec<Span> {
+    pub(super) fn torques(&self, case: usize, pose: &Pose, members: &Members) -> Vec<Span> {
         let torque = |(joint, torque): (usize, &super::super::span::Linear)| {
             let own = torque.over(&members.loads[pose.water]);
             let intervals = self.torque_intervals.iter().filter(|i| i.case == case && i.joint == joint);

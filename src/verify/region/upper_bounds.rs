@@ -20,7 +20,7 @@ type Node = (UpperBound, Option<[usize; 2]>);
 impl UpperBounds {
     /// The upper bounds that rows leave of what the limits allow. Rows closer to each other than `apart` (relative) may be
     /// left out: fewer rows leave more open.
-    pub fn new(front: &[Objectives], limits: UpperBound, apart: f64) -> Self {
+    pub(super) fn new(front: &[Objectives], limits: UpperBound, apart: f64) -> Self {
         let mut uppers = left_open(&thinned(front, apart), limits);
         let mut nodes = Vec::new();
         if !uppers.is_empty() {
@@ -30,7 +30,7 @@ impl UpperBounds {
     }
 
     /// A node; `None` if nothing is open.
-    pub fn node(&self, at: usize) -> Option<Node> {
+    pub(super) fn node(&self, at: usize) -> Option<Node> {
         self.0.get(at).copied()
     }
 }

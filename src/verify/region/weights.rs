@@ -120,7 +120,7 @@ impl Rows<'_> {
     }
 
     /// What is left of a subproblem; `None` if some weighting proves that no member is below the upper bound.
-    pub fn reduce(&mut self, subproblem: &Subproblem) -> Option<Reduced> {
+    pub(super) fn reduce(&mut self, subproblem: &Subproblem) -> Option<Reduced> {
         let (mut surrogates, mut members, mut values) = (Vec::new(), Vec::new(), Vec::<Vec<f64>>::new());
         let (mut shapes, mut to_narrow, mut nearest) = (0, 0, f64::NEG_INFINITY);
         let mut weights = self.inherited(subproblem);
