@@ -1,26 +1,32 @@
 //! Armwright sizes high-precision robot arms.
 //!
-//! The rooms of the house, from the ground up. Each room knows only the rooms before it; `docs/library.md` says what
-//! each is for to a program that uses this library.
+//! It finds the Pareto-optimal arms of a design space on tip deflection, mass and lowest mode; it proves fronts complete
+//! and verifies them independently; and it finds what a model lacks that disagrees with measurements of a built arm.
 //!
-//! - [`input`]: what is wrong with an input file, all of it at once, with file, line and field.
-//! - [`pareto`]: fronts, and how they are measured.
-//! - [`catalog`]: what can be bought: materials, profiles, gears, motors.
-//! - [`arm`]: what an arm is: the chain, sections, load cases, effects; the arm file.
-//! - [`mechanics`]: how it behaves: link (Eqs 1-6), statics (7, 13-15), modes (16-18).
-//! - [`sizing`]: which drive each joint needs, outward in (7-12).
-//! - [`space`]: the design space, compiled for speed.
-//! - [`search`]: the sweep, which visits every design.
-//! - [`exact`], [`verify`], [`relax`]: the front without visiting every design, its independent check, and lower bounds.
-//! - [`report`]: numbers and pictures: CSV, JSON, SVG, pages, terminal.
-//! - [`reconcile`]: where an arm and its measurements disagree, and which physics is missing.
-//! - [`paper`]: the table and the figures of the paper.
-//! - [`study`]: named questions: read, resolve, run.
-//! - [`command_line`]: the program.
+//! The modules, from the ground up. Each uses only those before it:
 //!
-//! Equation numbers are those of the paper the product grew from, *Mechanical analysis of high
-//! precision manipulator*. All quantities are SI and carry their unit in their name; conversion
-//! happens only where a file is read or written.
+//! - [`input`]: JSON documents and tables, read such that every fault is found at once.
+//! - [`pareto`]: Pareto fronts of three objectives, and their hypervolume.
+//! - [`catalog`]: gears, motors, materials and profiles that one can buy.
+//! - [`arm`]: what an arm is: chain, sections, load cases, effects, and the arm file.
+//! - [`mechanics`]: how an arm behaves: link (Eqs 1-6), statics (7, 13-15), modes (16-18).
+//! - [`sizing`]: which drive each joint needs (Eqs 7-12).
+//! - [`space`]: what may be chosen, and single designs by the full model.
+//! - [`search`]: the sweep over every design of a space.
+//! - [`exact`]: the same front without visiting every design.
+//! - [`verify`]: an independent check of a finished front.
+//! - [`relax`]: lower bounds on mass.
+//! - [`report`]: numbers, tables, pictures and pages.
+//! - [`reconcile`]: where an arm and its measurements disagree, and which effect is missing.
+//! - [`paper`]: the numbers of the paper, computed.
+//! - [`study`]: named questions: read, run, evaluate.
+//! - [`command_line`]: the program itself: parse, run, print.
+//!
+//! `docs/library.md` says what to start with; `docs/architecture.md` says where in the source everything is.
+//!
+//! Equation numbers are those of the paper from which the program grew, *Mechanical analysis of high precision
+//! manipulator*. All quantities are SI and have their units in their names. Other units appear only where files are read
+//! or written.
 #![doc = ""]
 #![doc = include_str!("../docs/model.md")]
 #![deny(unreachable_pub)]

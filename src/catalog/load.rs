@@ -33,6 +33,15 @@ struct Source {
 
 impl Catalogs {
     /// The catalogs that come with the program.
+    ///
+    /// ```
+    /// use armwright::catalog::Catalogs;
+    ///
+    /// let catalogs = Catalogs::builtin();
+    /// let gear = catalogs.gear("HFUC-58-100").expect("a gear of the catalog");
+    /// assert_eq!((gear.ratio, gear.rated_torque_nm), (100, Some(696.0)));
+    /// assert!(catalogs.gear("HFUC-58-101").is_err(), "the error lists names that are near");
+    /// ```
     pub fn builtin() -> Self {
         // The files are compiled in and a test loads them, so that no user can see this fail.
         from_sources(&builtin_sources(), Vec::new()).expect("the built-in catalogs are tested to be sound")

@@ -45,6 +45,29 @@ const PROBES_TO_EVOLVE: f64 = 0.04;
 const MOST_WITH_TIES: usize = 20_000;
 
 /// A search for the exact front. Other threads can watch and stop it.
+///
+/// ```
+/// use armwright::catalog::Catalogs;
+/// use armwright::exact::Exact;
+/// use armwright::input::Document;
+/// use armwright::study::read_study;
+/// use std::sync::atomic::AtomicBool;
+///
+/// let text = r#"{"name": "one link",
+///     "chain": [
+///         {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e5, "mass_kg": 8},
+///         {"type": "link", "name": "arm", "vector_m": [0.5, 0, 0], "choose": {
+///             "materials": ["Structural steel S355"],
+///             "sections": [{"shape": "round_tube", "diameter_mm": 70, "wall_mm": [2, 3, 4]}]}}],
+///     "payload": {"mass_kg": 5},
+///     "poses": [{"name": "stretched", "pose_deg": [0]}]}"#;
+/// let catalogs = Catalogs::builtin();
+/// let study = read_study(Document::parse("study.json", text).expect("JSON"), &catalogs).expect("a sound study");
+/// let stop = AtomicBool::new(false);
+/// let outcome = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
+/// assert_eq!((outcome.designs_total, outcome.boxes_open), (3, 0), "the front is certified");
+/// assert!(!outcome.front.is_empty());
+/// ```
 pub struct Exact<'p> {
     space: &'p DesignSpace,
     catalogs: &'p Catalogs,

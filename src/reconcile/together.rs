@@ -20,7 +20,21 @@ use super::verdict::stage::Stage;
 use crate::arm::{Arm, Element};
 use serde_json::json;
 
-/// Reconciles a campaign with its arm.
+/// Reconciles a campaign with its arm. A campaign with absolute positions and other readings is reconciled in two parts,
+/// whose verdicts are then joined.
+///
+/// ```
+/// use armwright::catalog::Catalogs;
+/// use armwright::reconcile::{Campaign, Verdict, reconcile};
+/// use std::path::Path;
+///
+/// // three frequencies of the paper's arm: far too few readings to name an effect
+/// let folder = Path::new("examples/paper-frequencies");
+/// let campaign = Campaign::read(folder, &Catalogs::builtin()).expect("a sound campaign");
+/// let outcome = reconcile(&campaign);
+/// assert_eq!(outcome.verdict, Verdict::InsufficientData);
+/// assert!(outcome.effects.is_empty());
+/// ```
 pub fn reconcile(campaign: &Campaign) -> Outcome {
     let (loaded, placed) = campaign.parted();
     let (rows, count) = (analysis::rows(&loaded), placed.positions.len());

@@ -81,53 +81,34 @@ pub struct SweepOutcome {
 
 /// A sweep that other threads can watch and stop.
 ///
-/// The problem is any tree that can finish rows of designs; [`ArmProblem`](crate::space::ArmProblem) is the one for arms.
-/// The example is an arm whose only drive is found by first fit, so that the space has one design.
+/// The problem is any tree that can finish rows of designs. [`ArmProblem`](crate::space::ArmProblem) is the one for arms.
 ///
 /// ```
-/// use armwright::arm::{JointModel, Link, LinkBody, LinkModel, Payload};
-/// use armwright::catalog::{Catalogs, GearMass};
+/// use armwright::catalog::Catalogs;
+/// use armwright::input::Document;
 /// use armwright::search::{Status, Sweep};
-/// use armwright::sizing::DriveFilter;
-/// use armwright::space::design_space::{Case, DriveChoice, SpaceJoint, SpacePiece};
-/// use armwright::space::{ArmProblem, DesignSpace};
-/// use nalgebra::Vector3;
+/// use armwright::space::{ArmProblem, evaluate};
+/// use armwright::study::read_study;
 /// use std::sync::atomic::AtomicBool;
 ///
-/// let joint = SpaceJoint {
-///     name: "j2".into(),
-///     axis: Vector3::y_axis(),
-///     drive: DriveChoice::FirstFit(DriveFilter::everything(GearMass::HousedUnit)),
-///     max_speed_rad_s: None,
-/// };
-/// let body = LinkBody::Offset { mass_kg: 4.0 };
-/// let link = Link { name: "fore_arm".into(), vector_m: Vector3::new(0.5, 0.0, 0.0), body };
-/// let space = DesignSpace {
-///     name: "one joint".into(),
-///     gravity_m_s2: 9.81,
-///     pieces: vec![SpacePiece::Joint(joint), SpacePiece::Link(link)],
-///     cases: vec![Case {
-///         name: "stretched".into(),
-///         pose_deg: vec![0.0],
-///         payload: Payload { mass_kg: 5.0, ..Payload::default() },
-///         tip_force_n: Vector3::zeros(),
-///         water: None,
-///     }],
-///     judged_cases: vec![0],
-///     sizing_cases: vec![0],
-///     motion: Default::default(),
-///     links: LinkModel::Full,
-///     joints: JointModel::ThreeSegment,
-///     constraints: Default::default(),
-///     effects: Vec::new(),
-/// };
+/// let text = r#"{"name": "one link",
+///     "chain": [
+///         {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e5, "mass_kg": 8},
+///         {"type": "link", "name": "arm", "vector_m": [0.5, 0, 0], "choose": {
+///             "materials": ["Structural steel S355"],
+///             "sections": [{"shape": "round_tube", "diameter_mm": 70, "wall_mm": [2, 3, 4]}]}}],
+///     "payload": {"mass_kg": 5},
+///     "poses": [{"name": "stretched", "pose_deg": [0]}]}"#;
 /// let catalogs = Catalogs::builtin();
-/// let problem = ArmProblem::new(&space, &catalogs);
+/// let study = read_study(Document::parse("study.json", text).expect("JSON"), &catalogs).expect("a sound study");
+///
+/// let problem = ArmProblem::new(&study.space, &catalogs);
 /// let stop = AtomicBool::new(false);
-/// let outcome = Sweep::new(&problem, space.constraints, &stop).run();
-/// assert_eq!(outcome.status, Status::Complete);
-/// assert_eq!((outcome.designs_total, outcome.front.len()), (1, 1));
-/// assert!(outcome.front[0].objectives.lowest_mode_hz > 1.0);
+/// let outcome = Sweep::new(&problem, study.space.constraints, &stop).run();
+/// assert_eq!((outcome.status, outcome.designs_total), (Status::Complete, 3));
+/// // the full model gives the numbers that count
+/// let lightest = evaluate(&problem, outcome.front[0].number).expect("a design that holds");
+/// assert!(lightest.objectives.mass_kg > 8.0 && lightest.objectives.lowest_mode_hz > 1.0);
 /// ```
 pub struct Sweep<'p, P: FinishRows> {
     problem: &'p P,

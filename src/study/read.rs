@@ -39,10 +39,27 @@ const KEYS: [&str; 15] = [
     "notes",
 ];
 
-/// Reads a study; materials, profiles and parts are looked up in `catalogs`.
+/// Reads a study. Materials, profiles and parts that it names are looked up in `catalogs`. The keys are in
+/// `docs/study-format.md`.
 ///
 /// # Errors
 /// All faults of the document at once.
+///
+/// ```
+/// use armwright::catalog::Catalogs;
+/// use armwright::input::Document;
+/// use armwright::study::{named, read_study};
+///
+/// let catalogs = Catalogs::builtin();
+/// let text = named("light-arm").expect("a built-in study");
+/// let study = read_study(Document::parse("light-arm", text).expect("JSON"), &catalogs).expect("a sound study");
+/// assert_eq!(study.name, "light-arm");
+/// assert!(study.space.designs(&catalogs).expect("fewer than 2^128") > 1);
+///
+/// let faulty = text.replace("\"chain\"", "\"chian\"");
+/// let faults = read_study(Document::parse("light-arm", &faulty).expect("JSON"), &catalogs).expect_err("two faults");
+/// assert!(faults.to_string().contains("did you mean \"chain\"?"));
+/// ```
 pub fn read_study(document: Document, catalogs: &Catalogs) -> Result<Study, Faults> {
     let study = study(&document.root(), catalogs);
     document.finish(study)
