@@ -13,3 +13,4 @@ mod front_check;
 mod imports;
 mod pages;
 mod study_effects;
+mod words;

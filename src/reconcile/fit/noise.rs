@@ -154,7 +154,7 @@ impl Noise {
 
     /// Leaves out the few frequency lists that these coefficients miss by far; `None` if there are none or
     /// many.
-    pub fn doubtful_lists(forward: &Forward, coefficients: &Coefficients) -> Option<Self> {
+    pub fn uncertain_lists(forward: &Forward, coefficients: &Coefficients) -> Option<Self> {
         let residuals = declared_residuals(forward, &forward.predict(coefficients));
         let far = |datum: usize| residuals[datum].abs() > UNMISTAKABLE;
         let is_doubtful = |test: &&ModalTest| test.modes.iter().filter(|(datum, _)| far(*datum)).count() > 1;

@@ -174,7 +174,7 @@ impl Settling<'_> {
         }
         let round = self.first();
         let mut missed = self.forward.find_missed_modes(&round.coefficients);
-        if let Some(without) = Noise::doubtful_lists(self.forward, &round.coefficients)
+        if let Some(without) = Noise::uncertain_lists(self.forward, &round.coefficients)
             && missed.is_empty()
         {
             // a model that the suspect lists have shaped says nothing about them
