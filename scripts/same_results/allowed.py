@@ -17,6 +17,7 @@ class Entry:
         self.line, self.files, self.before, self.after = line, files, before, after
         self.patterns = {"before": fragment_pattern(before), "after": fragment_pattern(after)}
         self.used = False
+        self.group = line
 
     def is_for(self, file):
         return any(fnmatch(file, glob) for glob in self.files)
@@ -24,7 +25,7 @@ class Entry:
     @property
     def marker(self):
         """What takes the place of either text: counted like a number, unless one of the texts is nothing."""
-        return f"\u27e6{self.line}\u27e7" if self.before and self.after else " "
+        return f"\u27e6{self.group}\u27e7" if self.before and self.after else " "
 
     def apply(self, text, side):
         """The marker instead of the text before; after the change, instead of either text."""
@@ -42,6 +43,10 @@ class AllowList:
     def __init__(self, entries):
         # long ones first: a short piece may be part of a long one
         self.entries = sorted(entries, key=lambda entry: -max(len(entry.before), len(entry.after)))
+        # what has become the same text gets the same marker, however it was written before
+        first = {}
+        for entry in self.entries:
+            entry.group = first.setdefault(entry.after or entry.before, entry.line)
 
     @classmethod
     def read(cls, path):
