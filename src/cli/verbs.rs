@@ -61,11 +61,15 @@ const STACK: usize = 64 << 20;
 /// # Errors
 /// See [`Failure`].
 pub fn run(cli: Cli) -> Result<String, Failure> {
-    rayon::ThreadPoolBuilder::new()
+    let workers = rayon::ThreadPoolBuilder::new()
         .num_threads(cli.threads.map_or(0, Into::into))
         .stack_size(STACK)
-        .build_global()
-        .map_err(|e| Failure::Internal(e.to_string()))?;
+        .build_global();
+    // A process that has run a command line before keeps the workers it has. Results do not depend on their number,
+    // so only a number that was asked for and cannot be had is an error.
+    if let (Err(e), Some(_)) = (workers, cli.threads) {
+        return Err(Failure::Internal(e.to_string()));
+    }
     let overlay = cli.catalogs.as_deref();
     let catalogs = Catalogs::load(overlay).map_err(Failure::catalog);
     match cli.verb {

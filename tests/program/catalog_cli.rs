@@ -91,7 +91,7 @@ fn faults_of_an_overlay_are_printed_with_file_line_and_column() {
     std::fs::write(folder.path().join("motors.csv"), text).expect("writable");
     let shown =
         said(&format!("check --catalogs {}", folder.path().display())).expect_err("two faults").to_string();
-    assert!(shown.starts_with("2 faults in the input:"), "{shown}");
+    assert!(shown.starts_with("in the catalogs, 2 faults in the input:"), "{shown}");
     assert!(shown.contains("motors.csv:2: mass_kg: = -2 must be greater than 0"), "{shown}");
     assert!(shown.contains("motors.csv:3: mass_kg: \"2 kg\" is not a number"), "{shown}");
 }
