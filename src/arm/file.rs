@@ -30,7 +30,7 @@ pub fn read_arm(path: &Path, catalogs: &Catalogs) -> Result<Arm, InputError> {
 /// ```
 /// use armwright::arm::read_arm_document;
 /// use armwright::catalog::Catalogs;
-/// use armwright::input::json::Document;
+/// use armwright::input::Document;
 ///
 /// let catalogs = Catalogs::builtin();
 /// let text = r#"{"name": "one joint", "chain": [

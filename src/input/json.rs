@@ -80,7 +80,7 @@ pub enum InputError {
 /// The text of one JSON file, its parsed value, and the faults found in it so far.
 ///
 /// ```
-/// use armwright::input::json::Document;
+/// use armwright::input::Document;
 ///
 /// let document = Document::parse("x.json", "{\"mass_kg\": -5,\n \"lenght_m\": 1}").expect("JSON");
 /// let mass_kg = document.root().object(&["mass_kg", "length_m"]).and_then(|o| o.required("mass_kg")?.non_negative());

@@ -20,7 +20,7 @@ use nalgebra::{DMatrix, Matrix3, Matrix6, Matrix6xX, Rotation3, Vector3};
 /// ```
 /// use armwright::arm::{JointModel, LinkModel, Payload, read_arm_document};
 /// use armwright::catalog::Catalogs;
-/// use armwright::input::json::Document;
+/// use armwright::input::Document;
 /// use armwright::mechanics::Chain;
 /// use nalgebra::Vector3;
 ///

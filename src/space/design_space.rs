@@ -73,7 +73,9 @@ use nalgebra::{Unit, Vector3};
 /// let catalogs = Catalogs::builtin();
 /// let problem = ArmProblem::new(&space, &catalogs);
 /// let [thin, thick] = [0, 1].map(|number| evaluate(&problem, number).expect("this design holds").objectives);
-/// assert!(thin.mass_kg < thick.mass_kg && thin.tip_deflection_m > thick.tip_deflection_m);
+/// assert!(thin.mass_kg < thick.mass_kg);
+/// // the joint yields far more than the tube, and the heavier tube turns it further
+/// assert!(thin.tip_deflection_m < thick.tip_deflection_m);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct DesignSpace {
