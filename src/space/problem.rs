@@ -96,6 +96,7 @@ impl<'c> ArmProblem<'c> {
             }
             slots.push(match layer {
                 Layer::Piece(SpacePiece::Joint(joint)) => {
+                    // reaches are in order from the base and layers from the tip
                     joint_slot(space, joint, reaches.pop().unwrap_or_default(), catalogs)
                 }
                 Layer::Piece(SpacePiece::Link(link)) => link_slot(space, link),
@@ -265,6 +266,7 @@ impl<'c> ArmProblem<'c> {
             Slot::Link { options, .. } => self.add_link(slot, option, &options[option as usize], to),
             Slot::Offset { mass_kg } => self.add_offset(slot, *mass_kg, to),
         };
+        // no piece takes mass away, so the limit on mass can be checked after each
         added && self.space.constraints.mass_max_kg.is_none_or(|max| to.mass_kg <= max)
     }
 
@@ -275,6 +277,7 @@ impl<'c> ArmProblem<'c> {
             false => sized.table.first_fit(&demand),
         };
         let Some(index) = index else { return false };
+        // the drive that first fit takes is recorded like an option, so that the parts can be read from the arm
         to.options[slot] = index as u32;
         self.add_joint(slot, &sized.laws[index], sized.table.mass_kg(index), to)
     }
@@ -328,6 +331,7 @@ impl<'c> ArmProblem<'c> {
             return false;
         }
         to.mass_kg += link.mass_kg;
+        // with a limit on cost, materials of unknown cost were refused when the study was read
         to.cost_eur += link.cost_eur.unwrap_or(0.0);
         to.group = to.group.with(link.material);
         if self.space.constraints.material_cost_max_eur.is_some_and(|max| to.cost_eur > max) {
@@ -340,6 +344,7 @@ impl<'c> ArmProblem<'c> {
             let Some(stress) = &link.stress else { continue };
             // in a sizing case the arm accelerates; in the other cases it stands still
             let factor = if self.space.sizing_cases.contains(&case) { self.peak_factor } else { 1.0 };
+            // between the ends only the link's own weight changes force and moment: the ends are checked
             for (wrench, at_m) in [(&outboard, &place.end_m), (&state.wrench, &place.root_m)] {
                 to.stress_ratio = to.stress_ratio.max(stress.ratio(wrench, at_m, place) * factor);
             }

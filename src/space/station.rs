@@ -180,6 +180,7 @@ impl Station {
         let mut known: Vec<Tubes> = Vec::new();
         let mut stations = Vec::with_capacity(space.cases.len());
         for case in &space.cases {
+            // the water of a case comes before the water of an effect
             let structure = Structure { water: case.water.or(around.water), ..around.clone() };
             let tubes = known.iter().position(|tubes| tubes.structure == structure).unwrap_or_else(|| {
                 known.push(Tubes::new(space, structure));
@@ -282,6 +283,7 @@ pub(crate) fn reaches_m<'a>(space: &DesignSpace, cases: impl Iterator<Item = &'a
         let walk = Walk::new(space, case);
         for (reach, (piece, axis)) in reaches.iter_mut().zip(&joints) {
             let (origin, rotation) = &walk.places[*piece];
+            // the distance of a point from an axis through the origin is |axis x way to the point|
             *reach = reach.max((rotation * axis).cross(&(walk.tip_m - origin)).norm());
         }
     }
@@ -343,6 +345,7 @@ impl Builder<'_> {
         let (at_m, rotation) = self.place;
         let piece = self.space.link_piece(link);
         let point = self.body(piece.point_mass_kg, &(at_m + rotation * link.vector_m / 2.0));
+        // neither tube nor harness
         if self.tubes.is_empty() {
             return point;
         }
@@ -363,6 +366,7 @@ impl Builder<'_> {
         let vector = rotation * vector_m;
         let frame = rotation.matrix() * section_frame(vector_m);
         let place = Place { root_m, end_m: root_m + vector, frame };
+        // a link may have a hundred thousand options
         let options =
             self.tubes.par_iter().map(|tube| place_option(tube, &place, &vector, self.tip_m)).collect();
         Built::Link { options, place }
@@ -380,12 +384,15 @@ fn place_option(
     let tips: Vec<Vector3<f64>> =
         (0..6).map(|g| displacement_at(&placed.end.column(g).into(), tip_m)).collect();
     let option = StationLink {
+        // to order 0 in λ, over the motion of the root: the link as a rigid body
         inertia: placed.inertia[0].fixed_view::<6, 6>(0, 0).into_owned(),
+        // a uniform weight acts at mid-length
         weight: weight_wrench(tube.weight_n_per_m * tube.length_m, &(place.root_m + vector / 2.0)),
         end: placed.end,
         own_weight_end: placed.end_per_weight * tube.weight_n_per_m,
         tip: Matrix3x6::from_columns(&tips),
         end_inertia: placed.inertia[0].diagonal().fixed_rows::<6>(6).into_owned(),
+        // a pose in which some end lies in no single block is not split, and all blocks become 0
         block: ends_by_block(&placed).unwrap_or_default(),
         inner_trace_s2: placed.inner_trace_s2,
     };
@@ -481,6 +488,7 @@ fn block<const N: usize>(built: &[Built], payload: &Matrix6<f64>, motions: [usiz
 /// One option of a link restricted to the given motions, with the end coordinates that belong to them.
 fn block_link<const N: usize>(placed: &PlacedLink, motions: [usize; N]) -> BlockLink<N> {
     let mut ends = [0; N];
+    // in one block of six every end coordinate takes part; in two blocks each takes the three that move it
     if N == 6 {
         ends.copy_from_slice(&ALL[..N]);
     } else {
@@ -492,6 +500,7 @@ fn block_link<const N: usize>(placed: &PlacedLink, motions: [usize; N]) -> Block
     let part = |rows: [usize; N], columns: [usize; N]| {
         placed.inertia.map(|m| SMatrix::<f64, N, N>::from_fn(|i, j| m[(rows[i], columns[j])]))
     };
+    // a condensed link has the root motion in rows 0-5 and the end coordinates in rows 6-11
     let inner = ends.map(|g| 6 + g);
     BlockLink {
         root: part(motions, motions),
