@@ -304,6 +304,7 @@ impl JointLaw {
 
     /// State of the friction play \[N m\] after the torque has risen from rest to `torque_nm`.
     pub fn play_at_rest_nm(&self, torque_nm: f64) -> f64 {
+        // the sign of a rounding error would put the play on either side
         let sign = if torque_nm.abs() < REST_NM { 0.0 } else { torque_nm.signum() };
         torque_nm - sign * self.play_stiffness_nm_per_rad().unwrap_or_default() * self.hysteresis_rad
     }

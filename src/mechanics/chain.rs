@@ -178,6 +178,7 @@ impl Chain {
                 Prepared::Link(link, beam) => walk.link(index, link, beam.as_ref(), self.gravity_m_s2),
             }
         }
+        // the payload is the last body, so every element moves it
         walk.items.push(Item::Body(self.payload_body(payload, &walk)));
         Posed { chain: self, items: walk.items, tip_m: walk.at_m, tip_rotation: walk.rotation, tip_force_n }
     }
@@ -335,6 +336,7 @@ fn own_mass(piece: usize, beam: &PreparedBeam, frame: &Matrix3<f64>, root_m: &Ve
     let down = Vector3::new(0.0, 0.0, -beam.weight_n_per_m);
     let centre = root_m + frame.column(0) * (beam.length_m / 2.0);
     let local_down = frame.transpose() * down;
+    // a weight works on the area under each deflected shape
     let weight_work = beam.area_fields.column_iter().map(|f| f.fixed_rows::<3>(0).dot(&local_down)).collect();
     OwnMass {
         piece,

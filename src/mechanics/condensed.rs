@@ -46,6 +46,7 @@ impl CondensedLink {
         // coordinates per end coordinate: C Eᵀ L⁻ᵀ
         let spread = &compliance * end_fields.transpose() * inverse_transpose(&end);
         let inner = &compliance - &spread * spread.transpose();
+        // from root motion and g to root motion and q
         let mut expand = DMatrix::zeros(6 + n, 12);
         expand.view_mut((0, 0), (6, 6)).fill_with_identity();
         expand.view_mut((6, 6), (n, 6)).copy_from(&spread);
@@ -62,6 +63,7 @@ impl CondensedLink {
             ],
             end,
             end_per_line_load: SMatrix::from_iterator((spread.transpose() * areas).iter().copied()),
+            // rounding may make a trace of nothing negative
             inner_trace_s2: (&inner * inner_mass).trace().max(0.0),
         }
     }
@@ -123,6 +125,7 @@ fn semidefinite_cholesky(a: &Matrix6<f64>) -> Matrix6<f64> {
     let mut lower = Matrix6::zeros();
     for j in 0..6 {
         let pivot = a[(j, j)] - (0..j).map(|k| lower[(j, k)] * lower[(j, k)]).sum::<f64>();
+        // a link model without some strain leaves a direction rigid
         if pivot <= 1e-12 * a[(j, j)] {
             continue;
         }

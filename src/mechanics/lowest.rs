@@ -103,10 +103,12 @@ fn quick_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> Option<f6
     let (mut step_before, mut step_two_before) = (UNKNOWN_STEP * x, UNKNOWN_STEP * x);
     for _ in 0..QUICK_PASSES {
         let here = pass(steps, 1.0 / x);
+        // beyond a pole the last pivot belongs to another branch
         if !here.inner_sound {
             return None;
         }
         let y = here.last * x;
+        // the first step takes w as constant, for which 1/λ - w has the slope 1
         let slope = before.map_or(1.0, |(x0, y0)| (y - y0) / (x - x0));
         let next = x - y / slope;
         let step = (next - x).abs();
@@ -146,6 +148,7 @@ fn careful_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
         if near.0 - next <= 1e-15 * near.0 {
             return 1.0 / next;
         }
+        // `beyond` is below the root and `near` above it, so the root stays between them
         match product(next) {
             Some(point) => (far, near) = (near, point),
             None => beyond = next,

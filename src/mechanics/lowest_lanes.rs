@@ -136,6 +136,7 @@ pub(crate) fn pass<V: Lanes, const N: usize>(
             Shared::Link(link) => state.yielding_link(&**link),
         }
     }
+    // in the same walk: the pivots of shared and own pieces are one sequence
     inner.add_to(&mut state);
     LanePass { sound: state.sound, last: state.last }
 }
@@ -277,6 +278,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
             own = own + momentum[i] * V::splat(twist[i]);
         }
         let yielding = self.lambda * compliance;
+        // 1 - λ c tᵀWt
         let pivot = V::splat(1.0) - yielding * own;
         self.yield_by(pivot, &momentum, yielding / pivot);
     }
@@ -292,6 +294,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
     #[inline(always)]
     fn yielding_link<L: LinkNumbers<N>>(&mut self, link: &L) {
         let lambda = self.lambda;
+        // W t
         let mut moved = [[V::zero(); N]; N];
         for g in 0..N {
             for k in 0..N {
@@ -301,6 +304,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
                 }
             }
         }
+        // the lower triangle of 1 - λS, and Pᵀ with one row for each end coordinate
         let (mut s, mut p) = ([[V::zero(); N]; N], [[V::zero(); N]; N]);
         for g in 0..N {
             for h in 0..=g {
@@ -345,6 +349,7 @@ pub(crate) fn roots<V: Lanes, const N: usize>(
     let one = V::splat(1.0);
     let mut open = wanted;
     let mut x = one / guess;
+    // the first step takes w as constant, for which 1/λ - w has the slope 1
     let (mut result, mut slope) = (x, one);
     let (mut x_before, mut y_before) = (V::zero(), V::zero());
     let unknown = V::splat(UNKNOWN_STEP) * x;
@@ -354,6 +359,7 @@ pub(crate) fn roots<V: Lanes, const N: usize>(
         let here = pass(outboard, inner, one / x);
         let y = here.last * x;
         let secant = (y - y_before) / (x - x_before);
+        // a point beyond a pole belongs to another branch of the curve and gives no secant
         slope = V::choose(has_before & here.sound & open, secant, slope);
         let next = x - y / slope;
         let step = (next - x).abs();
@@ -370,6 +376,7 @@ pub(crate) fn roots<V: Lanes, const N: usize>(
         let in_reach = next.less(V::splat(4.0) * x) & (V::splat(0.25) * x).less(next) & here.sound;
         let drawn_back = V::choose(V::zero().less(y) & here.sound, V::splat(0.5) * x, V::splat(1.5) * x);
         has_before = here.sound;
+        // a step that was cut short says nothing about the error
         step_two_before = step_before;
         step_before = V::choose(in_reach, step, V::splat(UNKNOWN_STEP) * x);
         (x_before, y_before) = (x, y);

@@ -83,6 +83,7 @@ impl Posed<'_> {
         let mut motion = Twist::zeros();
         let (yielded, tangents) = match &element.yielding {
             Yielding::Joint(law) => {
+                // a linkage makes a driver hold the torque of its passive joint as well
                 let mut torque_nm = element.twists[0].dot(wrench);
                 let mut passive_twist = Twist::zeros();
                 for passive in transferred.iter().filter(|c| c.driver == element.name) {
@@ -105,6 +106,7 @@ impl Posed<'_> {
         out.shares_m.push((element.name.clone(), displacement_at(&motion, &self.tip_m)));
         out.deformations.push(yielded);
         out.tangent_compliances.push(tangents);
+        // a link's own weight was in its work above; from here on it loads everything inboard
         if let Some(own) = &element.own {
             *wrench += own.weight;
             let moment = angular(wrench) - own.root_m.cross(&linear(wrench));

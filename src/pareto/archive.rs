@@ -65,6 +65,7 @@ impl Archive {
         );
         let (Some(row), Some(column)) = (row, column) else { return };
         let hz = round_down(o.lowest_mode_hz);
+        // a cell that already has as good a mode has it in all cells beyond, so the rest can be left
         for cells in self.best_hz.chunks(self.columns).skip(row) {
             let worse = |cell: &&AtomicU32| cell.load(Ordering::Relaxed) < hz;
             let mut entered = false;

@@ -38,6 +38,7 @@ pub fn hypervolume(points: &[[f64; 3]], reference: [f64; 3]) -> Result<f64, NotA
         if height <= third {
             continue;
         }
+        // points come in the order of the first objective: what this one covers first, it covers up to the reference
         let depth = reference[0] - first;
         let (mut from, mut open) = (start, true);
         stairs.insert(rank, third, |next, its_third| {

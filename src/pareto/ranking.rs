@@ -79,6 +79,7 @@ fn sorted<O: Ord + Send>(
 ) -> Vec<Ranked> {
     let keys = || order.par_iter().map(&key);
     let (low, high) = (keys().min().unwrap_or(0), keys().max().unwrap_or(0));
+    // bits above the range of the keys are equal for all points and would be wasted
     let shift = 32 - (high - low).leading_zeros().min(32);
     let coded = order.par_iter().map(|r| Coded { code: ((key(r) - low) >> shift) as u32, ranked: *r });
     let mut coded = by_code(coded.collect());

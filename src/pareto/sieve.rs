@@ -46,6 +46,7 @@ struct Bins {
 impl Bins {
     /// The bins of one objective.
     fn new(points: &[[f64; 3]], objective: usize) -> Self {
+        // every so many points: the sample, and with it the result, is the same in every run
         let stride = points.len().div_ceil(SAMPLE);
         let mut sample: Vec<f64> =
             points.iter().step_by(stride).map(|p| p[objective]).filter(|x| x.is_finite()).collect();

@@ -185,6 +185,7 @@ impl Row {
     pub(crate) fn new(problem: &ArmProblem) -> Option<Self> {
         let first = *problem.level_slots().last()?;
         let slots = &problem.slots()[first..];
+        // the arrays of a row have a fixed size, so that the kernel needs no memory of its own
         if slots.len() > MOST_SLOTS
             || problem.stations().len() > MOST_CASES
             || slots[1..].iter().any(|s| matches!(s, Slot::Link { .. }))
@@ -242,6 +243,7 @@ fn twisting(slot: &Slot, drives: &DriveAttributes, k: usize, cases: &[RowCase]) 
         Slot::Sized(sized) => sized.laws.iter().any(JointLaw::has_play),
         _ => false,
     };
+    // a joint twists where objectives are taken; cases that only size drives need its torque but not its twist
     let turned = cases.iter().filter(|case| case.judged).any(|case| case.turned[k]);
     let [first, second, third] = &drives.compliance;
     match (has_play, turned) {
@@ -264,9 +266,11 @@ impl RowCase {
                 StationSlot::Body { inertia, weight } => (inertia, weight, Some(1.0)),
                 StationSlot::Link { .. } => continue,
             };
+            // the mass of a drive is inboard of its own joint, so a piece loads only the joints inboard of it
             for (j, joint) in slots.iter().enumerate().skip(k + 1) {
                 let StationSlot::Joint(joint) = joint else { continue };
                 let own = AtJoint::new(joint, inertia, weight);
+                // known masses are added up once; the mass of a sized drive is known only in each lane
                 match fixed_times {
                     Some(times) => fixed[j].add(own, times),
                     None => per_kg[k][j] = own,
@@ -290,6 +294,7 @@ impl RowCase {
             Modal::Spatial(block) => [last_yielding(block, first, links_yield), 0],
         };
         let spread_entries = if links_yield { spread_entries(&station.modal) } else { Vec::new() };
+        // the entries are in the order of their blocks
         let of_first = spread_entries.partition_point(|(block, ..)| *block == 0);
         let (turned, link_torque) = turning(station, slots, &link_weight);
         Self {
@@ -333,6 +338,7 @@ fn turning(
     let (mut turned, mut link_torque) = ([false; MOST_SLOTS], [0.0; MOST_SLOTS]);
     for (j, slot) in slots.iter().enumerate() {
         if let StationSlot::Joint(joint) = slot {
+            // exact zeros: a torque that is zero by symmetry is left out, one that is merely small is not
             turned[j] = (0..6).any(|i| loaded[i] && joint.twist[i] != 0.0);
             link_torque[j] = joint.twist.dot(link_weight);
         }
@@ -394,6 +400,7 @@ impl Chunk {
         first: usize,
         c: usize,
     ) -> Self {
+        // lanes beyond the end repeat the last option; the kernel ignores them
         let at = |lane: usize| (LANES * c + lane).min(options.len() - 1);
         let lanes =
             |of: &dyn Fn(&OptionAttributes) -> f64| std::array::from_fn(|lane| of(&options[at(lane)]));
@@ -401,6 +408,7 @@ impl Chunk {
             (0..LANES).fold(0, |bits, lane| bits | u8::from(of(&options[at(lane)])) << lane)
         };
         let stress = |of: &dyn Fn(&crate::space::attributes::StressCheck) -> f64| {
+            // a material of unknown strength has no stress that counts
             lanes(&|o| o.stress.as_ref().map_or(0.0, |s| of(s) / s.strength_pa))
         };
         let materials: [Option<usize>; LANES] = std::array::from_fn(|lane| options[at(lane)].material);
@@ -445,11 +453,13 @@ impl CaseChunk {
         let joint = |j: usize| joints.get(j).copied().unwrap_or_default();
         let trace = |block: usize| {
             lanes(&|l| {
+                // the end coordinates have unit stiffness, so their inertias are their parts of the sum
                 let ends: f64 = (0..6).filter(|&g| l.block[g] == block).map(|g| l.end_inertia[g]).sum();
                 ends + l.inner_trace_s2
             })
         };
         Some(Self {
+            // a weight points along -z of the world
             weight_n: lanes(&|l| -l.weight[2]),
             flexibility: std::array::from_fn(|i| {
                 std::array::from_fn(|j| flexibility.map(|f: Matrix3x6<f64>| f[(i, j)]))

@@ -97,6 +97,7 @@ impl Begun {
                 let both = if i == j { 1.0 } else { 2.0 };
                 both * state.inertia[(i, j)]
             }));
+            // a case that only sizes drives has no modes to find
             if !case.judged {
                 continue;
             }

@@ -88,6 +88,7 @@ impl RowChunk<'_, '_> {
         if arms.held == 0 {
             return FinishedEight::default();
         }
+        // squares first: most designs are settled without the square root
         let mut tip_m2 = V::zero();
         for (_, lanes) in self.row.cases.iter().zip(&arms.cases).filter(|(case, _)| case.judged) {
             let [x, y, z]: [V; 3] = load_all(&lanes.tip_m);
@@ -99,6 +100,7 @@ impl RowChunk<'_, '_> {
             return FinishedEight { held, below_bar, unsure: 0 };
         }
         arms.tip_deflection_m = tip_m2.sqrt().store();
+        // Dunkerley's sums are left until they are needed
         self.sum_traces::<V>(begun, arms);
         let question = Question::new(*self, begun, arms);
         below_bar |= question.below_bar::<V>(keep, held & !below_bar);
@@ -189,6 +191,7 @@ impl RowChunk<'_, '_> {
             let weight = V::load(&own.weight_n);
             for &j in &self.row.joints {
                 let AtJoint { torque_nm, inertia_kgm2 } = begun.at[j];
+                // the torque on a joint that nothing turns stays zero
                 if case.turned[j] {
                     let own = weight * V::splat(case.link_torque[j]);
                     lanes.torque_at[j] = (V::splat(torque_nm) + own).store();
@@ -202,6 +205,7 @@ impl RowChunk<'_, '_> {
                 let mut tip = V::splat(state.tip_m[i]);
                 if case.bends[i] {
                     tip = tip + V::load(&own.own_weight_deflection_m[i]);
+                    // in a planar pose half of the wrench is zero
                     for j in (0..6).filter(|&j| state.wrench[j] != 0.0) {
                         tip = tip + V::load(&own.flexibility[i][j]) * V::splat(state.wrench[j]);
                     }
@@ -233,6 +237,7 @@ impl RowChunk<'_, '_> {
                 false => standing = standing.max(largest),
             }
         }
+        // the largest squares were kept, so that two square roots are enough for all cases
         let own = standing.sqrt().max(moving.sqrt() * V::splat(self.problem.peak_factor()));
         own.max(V::splat(self.from.stress_ratio))
     }
@@ -259,6 +264,7 @@ impl RowChunk<'_, '_> {
             arms.held = held;
             return fits;
         }
+        // the joint is the innermost level: each lane has a drive of its own, with limits of its own
         let (static_nm, inertia_kgm2) = (static_nm.store(), inertia_kgm2.store());
         let mut indices = [0; LANES];
         for lane in 0..LANES {
@@ -280,6 +286,7 @@ impl RowChunk<'_, '_> {
         for (case, lanes) in self.row.cases.iter().zip(&mut arms.cases) {
             for &j in self.row.joints.iter().filter(|&&j| j > k) {
                 let AtJoint { torque_nm, inertia_kgm2 } = case.per_kg[k][j];
+                // the same for all lanes, and often zero
                 if torque_nm != 0.0 {
                     add(&mut lanes.torque_at[j], V::splat(torque_nm) * mass);
                 }
@@ -297,6 +304,7 @@ impl RowChunk<'_, '_> {
         let all_same = all_equal(&indices);
         let first: V = at_places(&drives.compliance[0], &indices, all_same);
         let twisting = self.row.twisting[k];
+        // gathered once for all cases
         let curves = match twisting {
             Twisting::Segments => Curves::<V>::gather(drives, &indices, all_same),
             _ => Curves::line(first),

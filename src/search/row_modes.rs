@@ -88,6 +88,7 @@ impl<'a, 'c> Question<'a, 'c> {
     #[inline(always)]
     fn below<V: Lanes>(&self, bars: &Eight, held: u8) -> u8 {
         let below = V::load(bars);
+        // a bar of zero excludes nothing
         let asked = held & V::zero().less(below);
         let mut above = asked & !self.sluggish(below);
         if above == 0 {
@@ -177,6 +178,7 @@ impl<'a, 'c> Question<'a, 'c> {
                 };
                 self.solve(&self.pieces(case, block, pieces, link), outboard, ask)
             }
+            // a case keeps its kind; if it did not, these lanes would be solved by themselves
             _ => (ask.below, ask.open),
         }
     }
@@ -215,6 +217,7 @@ impl<'a, 'c> Question<'a, 'c> {
             let here = pass(outboard, inner, V::choose(known, below, guess.unwrap_or(below)));
             open &= !(known & here.sound & V::zero().less(here.last));
         }
+        // without a guess only the side of `below` was asked for
         let Some(guess) = guess.filter(|_| open != 0) else { return (below, open) };
         let found = roots(outboard, inner, guess, open);
         (V::choose(open, found.eigenvalue, below), found.unsure)
@@ -254,6 +257,7 @@ impl<V: Lanes, const N: usize> Inner<V, N> for Pieces<'_, N> {
                     if twist.amax() > 0.0 {
                         walk.joint(twist, V::load(&self.compliance[k]));
                     }
+                    // the mass of the last drive that yields is inboard of everything that yields: no mode moves it
                     if k + 1 < self.end {
                         walk.mass(V::load(&self.masses_kg[k]), inertia_per_kg);
                     }

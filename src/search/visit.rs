@@ -120,6 +120,7 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
     /// The level at which no design with this beginning can hold.
     fn begin(&mut self, outer: &[u32], row: u128) -> Result<(), usize> {
         let wanted = options(outer, row).unwrap_or_default();
+        // neighbouring rows differ in their last levels; the arms up to the first difference are kept
         let shared = self.options.iter().zip(&wanted).take_while(|(a, b)| a == b).count();
         self.options.truncate(shared);
         for (level, &option) in wanted.iter().enumerate().skip(shared) {

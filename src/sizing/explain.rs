@@ -199,6 +199,7 @@ impl<'c> DriveTable<'c> {
             for motor in self.motors() {
                 let drive = Drive { gear, motor, gear_mass };
                 let checks = motor_checks(&drive, self.motion(), demand);
+                // a motor that cannot be checked at all is the farthest from holding
                 let worst_margin = binding(&checks).and_then(Check::torque_margin).unwrap_or(0.0);
                 trials.push(Trial { drive, worst_margin, failed: not_holding(checks) });
             }

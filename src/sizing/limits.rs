@@ -82,6 +82,7 @@ impl DriveLimits {
     /// Whether the drive holds a demand.
     #[inline]
     pub fn hold(&self, demand: &JointDemand) -> bool {
+        // `&` and not `&&`: five comparisons without a branch
         (demand.static_torque_nm <= self.static_torque_nm)
             & (demand.peak_torque_nm() <= self.peak_torque_nm)
             & (demand.stop_torque_nm <= self.stop_torque_nm)

@@ -165,6 +165,7 @@ impl<'c> DriveTable<'c> {
                 legal.push((mass_kg, drive, pair, limits));
             }
         }
+        // names settle ties, so that the order of the catalog files does not matter
         legal.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| parts(&a.1).cmp(&parts(&b.1))));
         for (mass_kg, _, pair, limits) in legal {
             self.pairs.push(pair);
@@ -176,6 +177,7 @@ impl<'c> DriveTable<'c> {
     /// Builds the ladder.
     fn raise_ladder(&mut self) {
         for (index, limits) in self.limits.iter().enumerate() {
+            // whatever a covered drive holds, a lighter one holds too
             if !self.ladder_limits.iter().any(|lighter| lighter.cover(limits)) {
                 self.ladder.push(index as u32);
                 self.ladder_limits.push(*limits);

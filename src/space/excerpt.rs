@@ -128,6 +128,7 @@ impl ArmProblem<'_> {
     /// Number in the whole space of a design of this space.
     pub fn whole_number(&self, design: u128) -> u128 {
         let here = options(self.level_sizes_slice(), design).unwrap_or_default();
+        // a level that keeps its whole list has the same sizes and places in both spaces
         let (sizes, places): (Vec<u32>, Vec<u32>) = self
             .excerpts()
             .zip(here.iter().zip(self.level_sizes_slice()))
