@@ -9,6 +9,7 @@
 //! - [`Structure`] is the arm as the mechanics sees it: effects are applied, and names of parts are gone.
 //! - [`effect`] has the effects, one file each.
 
+pub(crate) mod bearing;
 pub mod effect;
 pub(crate) mod file;
 pub(crate) mod joint_law;
@@ -18,6 +19,7 @@ pub(crate) mod section;
 pub(crate) mod structure;
 pub(crate) mod write;
 
+pub use bearing::{Bearing, BearingSource};
 pub use effect::entry::Effect;
 pub use file::{read_arm, read_arm_document};
 pub use joint_law::{Curve, JointLaw, LostMotion, Windup};
@@ -159,6 +161,8 @@ pub struct Joint {
     pub curve: Curve,
     /// Mass of the drive \[kg\]. It is a point on the axis, inboard of the torsion.
     pub mass_kg: f64,
+    /// Output bearing. `None` is rigid and without mass.
+    pub bearing: Option<Bearing>,
     /// Name of the gear, for information. The numbers above count.
     pub gear: Option<String>,
     /// Name of the motor, for information.
@@ -244,11 +248,18 @@ impl Arm {
     }
 }
 
+impl Joint {
+    /// Mass of drive and bearing \[kg\].
+    pub fn total_mass_kg(&self) -> f64 {
+        self.mass_kg + self.bearing.map_or(0.0, |bearing| bearing.mass_kg)
+    }
+}
+
 impl Element {
     /// Mass of the element \[kg\].
     pub fn mass_kg(&self) -> f64 {
         match self {
-            Element::Joint(joint) => joint.mass_kg,
+            Element::Joint(joint) => joint.total_mass_kg(),
             Element::Link(link) => match &link.body {
                 LinkBody::Tube { material, section, .. } => {
                     material.density_kg_m3

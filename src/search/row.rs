@@ -12,7 +12,6 @@
 //!
 //! An *inner* slot is one from the innermost level to the base. Inner slots are numbered from 0.
 
-use super::arms::MOST_SLOTS;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::mechanics::Wrench;
 use crate::mechanics::lanes::{Eight, LANES};
@@ -23,9 +22,6 @@ use crate::space::slot::Slot;
 use crate::space::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot};
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 use std::ops::Range;
-
-/// Largest number of cases that a row handles. With more cases, designs are finished one by one.
-pub(crate) const MOST_CASES: usize = 8;
 
 /// The inner slots of a problem, compiled.
 pub(crate) struct Row {
@@ -65,18 +61,18 @@ pub(crate) struct AtJoint {
 }
 
 /// Torque and inertia at each inner joint, by inner slot.
-pub(crate) type AtJoints = [AtJoint; MOST_SLOTS];
+pub(crate) type AtJoints = Vec<AtJoint>;
 
 /// What depends on the pose but not on the option.
 pub(crate) struct RowCase {
     /// Inner joints that some load or weight turns. In every arm the torque on the other joints is zero.
-    pub turned: [bool; MOST_SLOTS],
+    pub turned: Vec<bool>,
     /// Torque and inertia that one kilogram of each inner drive adds to the joints inboard of it.
-    pub per_kg: [AtJoints; MOST_SLOTS],
+    pub per_kg: Vec<AtJoints>,
     /// Torque and inertia of all inner pieces that are not chosen.
     pub fixed: AtJoints,
     /// Torque on each inner joint per newton of a link's weight. All options of a link have the same centre of mass.
-    pub link_torque: [f64; MOST_SLOTS],
+    pub link_torque: Vec<f64>,
     /// Axial force, torsion and both bending moments at the link's root per newton of its weight.
     pub link_weight_at_root: [f64; 4],
     /// Whether the links of the row move the tip in x, y and z.
@@ -136,7 +132,7 @@ pub(crate) struct CaseChunk {
     /// Displacement of the tip by the link's own weight.
     pub own_weight_deflection_m: [Eight; 3],
     /// Inertia of the link about each inner joint.
-    pub inertia_at: [Eight; MOST_SLOTS],
+    pub inertia_at: Vec<Eight>,
     /// Contribution to the sum of `1/λ` per unit of each entry of the outboard inertia ([`RowCase::spread_entries`]).
     pub spread: Vec<Eight>,
     /// Contribution of the link by itself to the sum of `1/λ`, by block \[s²\].
@@ -180,16 +176,12 @@ impl DriveAttributes {
 }
 
 impl Row {
-    /// Compiles the innermost level. Returns `None` if designs must be finished one by one: if there is no level, if a
-    /// given tube is inboard of it, or if there are too many slots or cases.
+    /// Compiles the innermost level. Returns `None` if designs must be finished one by one: if there is no level, or
+    /// if a given tube is inboard of it.
     pub(crate) fn new(problem: &ArmProblem) -> Option<Self> {
         let first = *problem.level_slots().last()?;
         let slots = &problem.slots()[first..];
-        // the arrays of a row have a fixed size, so that the kernel needs no memory of its own
-        if slots.len() > MOST_SLOTS
-            || problem.stations().len() > MOST_CASES
-            || slots[1..].iter().any(|s| matches!(s, Slot::Link { .. }))
-        {
+        if slots[1..].iter().any(|s| matches!(s, Slot::Link { .. })) {
             return None;
         }
         let space = problem.space();
@@ -210,7 +202,8 @@ impl Row {
             _ => Vec::new(),
         };
         let drives: Vec<DriveAttributes> = slots.iter().map(drive_attributes).collect();
-        let is_joint = |k: &usize| matches!(slots[*k], Slot::Given { .. } | Slot::Sized(_));
+        let is_joint =
+            |k: &usize| matches!(slots[*k], Slot::Given { .. } | Slot::Sized(_) | Slot::Bearing { .. });
         Some(Self {
             first,
             chunks,
@@ -228,6 +221,7 @@ fn drive_attributes(slot: &Slot) -> DriveAttributes {
     let mut drives = DriveAttributes::default();
     match slot {
         Slot::Given { law, mass_kg } => drives.push(*mass_kg, law),
+        Slot::Bearing { laws, .. } => laws.iter().for_each(|law| drives.push(0.0, law)),
         Slot::Sized(sized) => {
             sized.laws.iter().enumerate().for_each(|(i, law)| drives.push(sized.table.mass_kg(i), law));
         }
@@ -258,8 +252,8 @@ impl RowCase {
     /// Compiles a case. `pieces` are the inner slots, `first` is the slot of the innermost level.
     fn new(station: &Station, pieces: &[Slot], first: usize, judged: bool, sizing: bool) -> Self {
         let slots = &station.slots[first..];
-        let mut per_kg = [AtJoints::default(); MOST_SLOTS];
-        let mut fixed = AtJoints::default();
+        let mut per_kg = vec![vec![AtJoint::default(); slots.len()]; slots.len()];
+        let mut fixed = vec![AtJoint::default(); slots.len()];
         for (k, (slot, piece)) in slots.iter().zip(pieces).enumerate() {
             let (inertia, weight, fixed_times) = match slot {
                 StationSlot::Joint(joint) => (&joint.inertia_per_kg, &joint.weight_per_kg, piece.fixed_kg()),
@@ -333,9 +327,9 @@ fn turning(
     station: &Station,
     slots: &[StationSlot],
     link_weight: &Wrench,
-) -> ([bool; MOST_SLOTS], [f64; MOST_SLOTS]) {
+) -> (Vec<bool>, Vec<f64>) {
     let loaded = loaded(station);
-    let (mut turned, mut link_torque) = ([false; MOST_SLOTS], [0.0; MOST_SLOTS]);
+    let (mut turned, mut link_torque) = (vec![false; slots.len()], vec![0.0; slots.len()]);
     for (j, slot) in slots.iter().enumerate() {
         if let StationSlot::Joint(joint) = slot {
             // exact zeros: a torque that is zero by symmetry is left out, one that is merely small is not
@@ -443,14 +437,10 @@ impl CaseChunk {
         let lanes = |of: &dyn Fn(&StationLink) -> f64| links.map(of);
         let (flexibility, own_m) =
             (links.map(StationLink::flexibility), links.map(StationLink::own_weight_deflection_m));
-        let joints: Vec<_> = station.slots[first..]
-            .iter()
-            .map(|slot| match slot {
-                StationSlot::Joint(joint) => joint.twist,
-                _ => Vector6::zeros(),
-            })
-            .collect();
-        let joint = |j: usize| joints.get(j).copied().unwrap_or_default();
+        let twists = station.slots[first..].iter().map(|slot| match slot {
+            StationSlot::Joint(joint) => joint.twist,
+            _ => Vector6::zeros(),
+        });
         let trace = |block: usize| {
             lanes(&|l| {
                 // the end coordinates have unit stiffness, so their inertias are their parts of the sum
@@ -465,7 +455,7 @@ impl CaseChunk {
                 std::array::from_fn(|j| flexibility.map(|f: Matrix3x6<f64>| f[(i, j)]))
             }),
             own_weight_deflection_m: std::array::from_fn(|i| own_m.map(|s: Vector3<f64>| s[i])),
-            inertia_at: std::array::from_fn(|j| lanes(&|l| joint(j).dot(&(l.inertia * joint(j))))),
+            inertia_at: twists.map(|twist| lanes(&|l| twist.dot(&(l.inertia * twist)))).collect(),
             spread: case.spread_entries.iter().map(|entry| lanes(&|l| spread_of(l, *entry))).collect(),
             trace_s2: [trace(0), trace(1)],
             modal: chunk_modal(&station.modal, first, at),

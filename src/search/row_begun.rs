@@ -1,6 +1,6 @@
 //! Rows that have begun: what depends on the arm outboard of a row, worked out once for all its designs.
 
-use super::arms::{EightArms, MOST_SLOTS};
+use super::arms::EightArms;
 use super::row::{AtJoint, AtJoints, Row};
 use crate::mechanics::lowest_lanes::Outboard;
 use crate::space::problem::{ArmProblem, Partial, block_steps};
@@ -19,7 +19,7 @@ pub(crate) struct Begun {
     pub cases: Vec<CaseBegun>,
     /// For each inner joint, the step of the drive table at which the drive of the last design was found. The next search
     /// starts there, because the demands of neighbouring designs are similar.
-    pub steps: [usize; MOST_SLOTS],
+    pub steps: Vec<usize>,
 }
 
 /// A row that has begun, in one case.
@@ -64,17 +64,18 @@ impl RowScratch {
 impl Begun {
     /// Working space for one row of a problem.
     fn new(problem: &ArmProblem) -> Self {
+        let inner = problem.slots().len() - problem.level_slots().last().copied().unwrap_or(0);
         let cases = problem.stations().iter().map(|station| CaseBegun {
             outboard: match &station.modal {
                 Modal::Planar(_) => CaseOutboard::Planar(Box::default()),
                 Modal::Spatial(_) => CaseOutboard::Spatial(Box::default()),
             },
-            at: AtJoints::default(),
+            at: vec![AtJoint::default(); inner],
             spread: Vec::new(),
             at_end: [0.0; 4],
             at_root: [0.0; 4],
         });
-        Self { cases: cases.collect(), steps: [0; MOST_SLOTS] }
+        Self { cases: cases.collect(), steps: vec![0; inner] }
     }
 
     /// Begins the row beyond the arm `from`. Memory of the row before is used again.

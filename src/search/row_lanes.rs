@@ -140,21 +140,25 @@ impl RowChunk<'_, '_> {
     fn grow<V: Lanes>(&self, begun: &mut Begun, arms: &mut EightArms) {
         let slots = &self.problem.slots()[self.row.first..];
         let mut largest_s2 = V::zero();
+        let mut indices = [0; LANES];
         // the innermost level is a link or a drive, and no other inner slot is a link
         match self.row.chunks.get(self.chunk) {
             Some(chunk) => self.start_with_link::<V>(chunk, begun, arms),
             None => self.start::<V>(begun, arms),
         }
         for &k in &self.row.joints {
-            let Slot::Sized(sized) = &slots[k] else {
-                largest_s2 = largest_s2.max(self.add_joint(k, [0; LANES], arms));
-                continue;
+            // the springs of a bearing follow the drive they belong to
+            indices = match &slots[k] {
+                Slot::Sized(sized) => self.pick::<V>(k, sized, &mut begun.steps[k], arms),
+                Slot::Bearing { .. } => indices,
+                _ => [0; LANES],
             };
-            let indices = self.pick::<V>(k, sized, &mut begun.steps[k], arms);
             if arms.held == 0 {
                 return;
             }
-            self.add_drive::<V>(k, &indices, arms);
+            if matches!(slots[k], Slot::Sized(_)) {
+                self.add_drive::<V>(k, &indices, arms);
+            }
             largest_s2 = largest_s2.max(self.add_joint(k, indices, arms));
         }
         arms.largest_s2 = largest_s2.store();

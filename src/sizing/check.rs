@@ -1,9 +1,11 @@
 //! The checks of a drive, one by one, for people: needed, allowed, margin, and whether a check could be made at all.
 
+use super::bearing::{self, BearingDemand, BearingLimits, BearingLoad};
 use super::demand::{JointDemand, JointMotion};
-use super::drive::{Drive, MissingRating, Rating};
+use super::drive::{Drive, MissingRating, Rating, known};
 use super::limits as limit;
-use crate::catalog::gear::{Gear, GearMass};
+use crate::arm::bearing::Bearing;
+use crate::catalog::gear::Gear;
 use std::fmt;
 
 /// One limit of a gear or a motor.
@@ -15,8 +17,14 @@ pub enum CheckKind {
     GearMean,
     /// Torque in an emergency stop is below the gear's limit for momentary peaks.
     GearStop,
-    /// Moment across the axis is below the permissible moment of the gear's output bearing.
-    GearTilt,
+    /// The largest moment across the axis while the joint turns is below what the output bearing permits.
+    BearingMoment,
+    /// Static safety of the output bearing at rest.
+    BearingRest,
+    /// Static safety of the output bearing in an emergency stop.
+    BearingStop,
+    /// L10 life of the output bearing is above the required life.
+    BearingLife,
     /// N times speed is below the gear's largest input speed.
     GearSpeed,
     /// N times mean speed is below the gear's limit for average input speed.
@@ -40,7 +48,10 @@ impl CheckKind {
             CheckKind::GearPeak | CheckKind::MotorPeak => "peak",
             CheckKind::GearMean => "mean",
             CheckKind::GearStop => "stop",
-            CheckKind::GearTilt => "tilting moment",
+            CheckKind::BearingMoment => "bearing moment",
+            CheckKind::BearingRest => "bearing safety at rest",
+            CheckKind::BearingStop => "bearing safety in a stop",
+            CheckKind::BearingLife => "bearing life",
             CheckKind::GearSpeed => "input speed",
             CheckKind::GearMeanSpeed => "mean input speed",
             CheckKind::GearLife => "life",
@@ -56,7 +67,10 @@ impl CheckKind {
             CheckKind::GearPeak => "gear peak",
             CheckKind::GearMean => "gear mean",
             CheckKind::GearStop => "gear stop",
-            CheckKind::GearTilt => "gear tilt",
+            CheckKind::BearingMoment => "bearing moment",
+            CheckKind::BearingRest => "bearing rest",
+            CheckKind::BearingStop => "bearing stop",
+            CheckKind::BearingLife => "bearing life",
             CheckKind::GearSpeed => "gear speed",
             CheckKind::GearMeanSpeed => "gear av.speed",
             CheckKind::GearLife => "gear life",
@@ -71,13 +85,20 @@ impl CheckKind {
     pub fn unit(self) -> &'static str {
         match self {
             CheckKind::GearSpeed | CheckKind::GearMeanSpeed | CheckKind::MotorSpeed => "rpm",
-            CheckKind::GearLife => "h",
+            CheckKind::GearLife | CheckKind::BearingLife => "h",
+            CheckKind::BearingRest | CheckKind::BearingStop => "times",
             CheckKind::Mass => "kg",
             _ => "N m",
         }
     }
 
-    /// Whether the check is about the gear alone.
+    /// Whether the check is about the output bearing. A bearing whose rating is blank is not checked, and not excluded.
+    pub fn is_bearing(self) -> bool {
+        use CheckKind::{BearingLife, BearingMoment, BearingRest, BearingStop};
+        matches!(self, BearingMoment | BearingRest | BearingStop | BearingLife)
+    }
+
+    /// Whether the check is about gear and bearing alone, whatever the motor.
     pub fn is_gear(self) -> bool {
         !matches!(self, CheckKind::MotorHold | CheckKind::MotorPeak | CheckKind::MotorSpeed | CheckKind::Mass)
     }
@@ -117,10 +138,14 @@ impl Check {
     }
 
     /// The margin as a factor on torque, which makes checks comparable. Life goes with the cube of the torque, so its
-    /// margin becomes the cube root.
+    /// margin becomes the cube root; that of a bearing with the power 10/3 of its load.
     pub fn torque_margin(&self) -> Option<f64> {
         let margin = self.margin()?;
-        Some(if self.kind == CheckKind::GearLife { margin.cbrt() } else { margin })
+        Some(match self.kind {
+            CheckKind::GearLife => margin.cbrt(),
+            CheckKind::BearingLife => margin.powf(0.3),
+            _ => margin,
+        })
     }
 
     /// Needed minus allowed; positive if the check fails, `None` if one of the two is unknown.
@@ -128,9 +153,13 @@ impl Check {
         Some(self.needed? - self.allowed?)
     }
 
-    /// Whether the check holds.
+    /// Whether the check holds. A check of a bearing that could not be made excludes nothing.
     pub fn holds(&self) -> bool {
-        self.state == CheckState::Holds
+        match self.state {
+            CheckState::Holds => true,
+            CheckState::Fails => false,
+            CheckState::NotChecked(_) => self.kind.is_bearing(),
+        }
     }
 }
 
@@ -182,10 +211,11 @@ fn plain(kind: CheckKind, needed: f64, allowed: Rating) -> Check {
     check(kind, Ok(needed), allowed, needed, allowed)
 }
 
-/// The checks of a gear, which do not depend on the motor. The tilting moment is checked if the demand has one.
+/// The checks of a gear and of the output bearing, which do not depend on the motor. The bearing is checked if the demand
+/// has loads on it.
 pub fn gear_checks(
     gear: &Gear,
-    gear_mass: GearMass,
+    bearing: Option<&Bearing>,
     motion: &JointMotion,
     demand: &JointDemand,
 ) -> Vec<Check> {
@@ -201,11 +231,36 @@ pub fn gear_checks(
         ),
         gear_life(gear, motion, demand),
     ];
-    if demand.tilting_moment_nm != 0.0 {
-        let allowed = limit::tilting_moment_nm(gear, gear_mass);
-        checks.push(plain(CheckKind::GearTilt, demand.tilting_moment_nm, allowed));
+    if let Some(bearing) = bearing.filter(|_| !demand.bearing.is_zero()) {
+        checks.extend(bearing_checks(bearing, motion, &demand.bearing));
     }
     checks
+}
+
+/// The checks of an output bearing: moment, static safety at rest and in a stop, life.
+fn bearing_checks(bearing: &Bearing, motion: &JointMotion, demand: &BearingDemand) -> [Check; 4] {
+    let speed_rad_s = motion.mean_speed_rad_s();
+    let limits = BearingLimits::of(Some(bearing), speed_rad_s, motion.life_h);
+    let ratings = &bearing.ratings;
+    let known_pitch = |rating, name| {
+        known(ratings.pitch_diameter_m, "bearing_pitch_diameter_m").and_then(|_| known(rating, name))
+    };
+    let moment_nm = limits.moment_nm(&demand.running);
+    let permissible = known(bearing.permissible_moment_nm, "permissible_tilting_moment_nm");
+    let safety = |kind, asked, load: &BearingLoad, limit_n: f64| {
+        let load_n = limits.static_load_n(load);
+        let rating = known_pitch(ratings.static_load_rating_n, "bearing_static_load_rating_n");
+        check(kind, Ok(asked), rating.map(|c0_n| c0_n / load_n), load_n, rating.map(|_| limit_n))
+    };
+    let load_n = limits.dynamic_load_n(&demand.at_rest);
+    let rating = known_pitch(ratings.dynamic_load_rating_n, "bearing_dynamic_load_rating_n");
+    let life = rating.map(|c_n| bearing::life_h(c_n, load_n, speed_rad_s));
+    [
+        plain(CheckKind::BearingMoment, moment_nm, permissible),
+        safety(CheckKind::BearingRest, bearing::SAFETY_AT_REST, &demand.at_rest, limits.at_rest_n),
+        safety(CheckKind::BearingStop, bearing::SAFETY_IN_A_STOP, &demand.in_stop, limits.in_stop_n),
+        check(CheckKind::BearingLife, Ok(motion.life_h), life, load_n, rating.map(|_| limits.life_n)),
+    ]
 }
 
 fn gear_mean(gear: &Gear, demand: &JointDemand) -> Check {
@@ -253,7 +308,7 @@ fn motor_hold(drive: &Drive, demand: &JointDemand) -> Check {
     check(
         CheckKind::MotorHold,
         drive.gain().map(|gain| demand.static_torque_nm / gain),
-        super::drive::known(drive.motor.rated_torque_nm, "motor rated_torque_nm"),
+        known(drive.motor.rated_torque_nm, "motor rated_torque_nm"),
         demand.static_torque_nm,
         limit::motor_continuous_nm(drive),
     )
@@ -265,7 +320,7 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
     check(
         CheckKind::MotorPeak,
         drive.peak_motor_torque_nm(motion, peak_nm),
-        super::drive::known(drive.motor.peak_torque_nm, "peak_torque_nm"),
+        known(drive.motor.peak_torque_nm, "peak_torque_nm"),
         peak_nm,
         limit::motor_peak_nm(drive, motion),
     )
@@ -273,7 +328,7 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
 
 /// All checks of a drive: first those of the gear, then those of the motor.
 pub fn checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
-    let mut all = gear_checks(drive.gear, drive.gear_mass, motion, demand);
+    let mut all = gear_checks(drive.gear, drive.bearing().as_ref(), motion, demand);
     all.extend(motor_checks(drive, motion, demand));
     all
 }
@@ -324,7 +379,7 @@ mod tests {
         let (mut gear, mut motor) = ample();
         let (mut motion, mut demand) = (motion(), demand());
         change(&mut gear, &mut motor, &mut motion, &mut demand);
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
+        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit, bearing: BearingSource::OfGear };
         let checks = checks(&drive, &motion, &demand);
         assert!(checks.iter().all(|c| c.state != CheckState::Holds || c.margin().unwrap() >= 1.0));
         assert!(checks.iter().all(|c| c.state != CheckState::Fails || c.margin().unwrap() < 1.0));
@@ -401,7 +456,7 @@ mod tests {
     fn a_blank_rating_is_named_and_nothing_else_is_left_unchecked() {
         let (gear, _) = ample();
         let motor = char_lynn_j_8_2();
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
+        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit, bearing: BearingSource::OfGear };
         let checks = checks(&drive, &motion(), &demand());
         let blank: Vec<_> = checks.iter().filter(|c| !c.holds()).map(Check::to_string).collect();
         assert_eq!(blank, ["peak not checked: lacks rotor_inertia_kgm2"]);
@@ -428,7 +483,7 @@ mod tests {
     #[test]
     fn what_binds_is_the_smallest_margin() {
         let (gear, motor) = ample();
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
+        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit, bearing: BearingSource::OfGear };
         let mut checks = checks(&drive, &motion(), &demand());
         assert_eq!(binding(&checks).unwrap().kind, CheckKind::GearPeak);
         checks.remove(0);
@@ -439,7 +494,7 @@ mod tests {
     #[test]
     fn a_joint_that_carries_nothing_has_no_end_of_life() {
         let (gear, motor) = (hfuc_40_100(), f11_10());
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
+        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit, bearing: BearingSource::OfGear };
         let checks = checks(&drive, &motion(), &motion().demand_of_torques(0.0, 0.0));
         assert!(all_hold(&checks));
         let life = checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();
@@ -454,7 +509,7 @@ mod tests {
             gear in any_gear(), motor in any_motor(), motion in any_motion(), torques in any_torques(), housed: bool,
         ) {
             let gear_mass = if housed { GearMass::HousedUnit } else { GearMass::ComponentSet };
-            let drive = Drive { gear: &gear, motor: &motor, gear_mass };
+            let drive = Drive { gear: &gear, motor: &motor, gear_mass, bearing: BearingSource::OfGear };
             let demand = motion.demand_of_torques(torques[0], torques[1]).with_tilting_moment_nm(torques[2]);
             let checks = checks(&drive, &motion, &demand);
             let by_thresholds = DriveLimits::of(&drive, &motion).is_ok_and(|l| l.hold(&demand));

@@ -6,6 +6,7 @@
 use super::demand::{JointDemand, JointMotion};
 use super::drive::Drive;
 use super::limits::DriveLimits;
+use crate::arm::bearing::{Bearing, BearingSource};
 use crate::catalog::gear::{Gear, GearMass};
 use crate::catalog::motor::{Motor, MotorKind};
 use std::ops::Range;
@@ -15,6 +16,8 @@ use std::ops::Range;
 pub struct DriveFilter {
     /// Which mass of a gear counts.
     pub gear_mass: GearMass,
+    /// Where the output bearing of the joint comes from.
+    pub bearing: BearingSource,
     /// Series of gears, such as `CSG`.
     pub gear_series: Option<Vec<String>>,
     /// Reduction ratios.
@@ -32,6 +35,7 @@ impl DriveFilter {
     pub fn everything(gear_mass: GearMass) -> Self {
         Self {
             gear_mass,
+            bearing: BearingSource::OfGear,
             gear_series: None,
             ratios: None,
             gear_ids: None,
@@ -74,6 +78,7 @@ pub struct DriveTable<'c> {
     joint: String,
     motion: JointMotion,
     gear_mass: GearMass,
+    bearing: BearingSource,
     gears: Vec<&'c Gear>,
     motors: Vec<&'c Motor>,
     pairs: Vec<Pair>,
@@ -142,6 +147,7 @@ impl<'c> DriveTable<'c> {
             joint: joint.to_string(),
             motion,
             gear_mass: filter.gear_mass,
+            bearing: filter.bearing,
             gears: gears.iter().filter(|g| filter.allows_gear(g)).collect(),
             motors: motors.iter().filter(|m| filter.allows_motor(m)).collect(),
             pairs: Vec::new(),
@@ -197,11 +203,17 @@ impl<'c> DriveTable<'c> {
     }
 
     fn drive_of(&self, pair: Pair) -> Drive<'c> {
-        Drive {
-            gear: self.gears[pair.gear as usize],
-            motor: self.motors[pair.motor as usize],
-            gear_mass: self.gear_mass,
-        }
+        self.pair(self.gears[pair.gear as usize], self.motors[pair.motor as usize])
+    }
+
+    /// The drive of a gear and a motor in this joint.
+    pub(super) fn pair(&self, gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
+        Drive { gear, motor, gear_mass: self.gear_mass, bearing: self.bearing }
+    }
+
+    /// The output bearing of the joint with a gear.
+    pub(super) fn bearing_of(&self, gear: &Gear) -> Option<Bearing> {
+        self.bearing.with_gear(gear, self.gear_mass)
     }
 
     /// Name of the joint.
@@ -401,7 +413,7 @@ mod tests {
             let mut slow = Vec::new();
             for gear in &gears {
                 for motor in &motors {
-                    let drive = Drive { gear, motor, gear_mass };
+                    let drive = Drive { gear, motor, gear_mass, bearing: BearingSource::OfGear };
                     if all_hold(&checks(&drive, &motion, &demand)) {
                         slow.push((drive.mass_kg().unwrap(), gear.id.clone(), motor.id.clone()));
                     }

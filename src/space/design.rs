@@ -102,11 +102,16 @@ impl<'c> ArmProblem<'c> {
                 (SpacePiece::Link(link), _) => Some(Element::Link(link.clone())),
                 (SpacePiece::Joint(joint), part) => {
                     let (curve, mass_kg, [gear, motor]) = drive_of(&joint.drive, &part)?;
+                    let bearing = match &part {
+                        Part::Drive(drive) => drive.bearing(),
+                        _ => joint.bearing.stated(),
+                    };
                     Some(Element::Joint(Joint {
                         name: joint.name.clone(),
                         axis: joint.axis,
                         curve,
                         mass_kg,
+                        bearing,
                         gear,
                         motor,
                         coupled: None,

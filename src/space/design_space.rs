@@ -1,6 +1,7 @@
 //! What there is to choose: an arm with open links and drives, and the task it must do.
 
 use super::constraint::Constraints;
+use crate::arm::bearing::BearingSource;
 use crate::arm::effect::entry::Effect;
 use crate::arm::joint_law::Curve;
 use crate::arm::load::Payload;
@@ -136,6 +137,8 @@ pub struct SpaceJoint {
     pub name: String,
     /// Axis, in the frame that the joints before it carry.
     pub axis: Unit<Vector3<f64>>,
+    /// Where the output bearing of the joint comes from.
+    pub bearing: BearingSource,
     /// How the drive of the joint is found.
     pub drive: DriveChoice,
     /// Largest speed that the study asks for \[rad/s\]; `None`: the speed that follows from the tip's.
@@ -201,6 +204,13 @@ pub struct LinkOption {
     pub strength_pa: Option<f64>,
     /// Cost of the material \[EUR/kg\].
     pub cost_eur_per_kg: Option<f64>,
+}
+
+impl SpaceJoint {
+    /// Whether the bearing depends on the gear that is chosen.
+    pub(crate) fn bearing_is_open(&self) -> bool {
+        self.bearing == BearingSource::OfGear && !matches!(self.drive, DriveChoice::Given { .. })
+    }
 }
 
 impl DriveChoice {

@@ -7,6 +7,7 @@
 use super::definition::Study;
 use super::effects::check_effects;
 use super::sections::{read_materials, read_sections};
+use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::file::{read_curve, read_effects, read_joint_mass, read_link, read_name};
 use crate::arm::load::Payload;
 use crate::arm::load::{read_pose, vector, word};
@@ -303,6 +304,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         "gear_mass",
         "mass_kg",
         "max_speed_rad_s",
+        "bearing",
         "drives",
     ])?;
     let name = read_name(&object);
@@ -330,7 +332,36 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
             read_given_drive(&object, open)
         }
     };
-    Some(SpaceJoint { name: name?, axis: axis?, drive: drive?, max_speed_rad_s: max_speed? })
+    let (drive, bearing) = (drive?, read_bearing(&object, open.catalogs));
+    let bearing = bearing_source(&object, bearing?, &drive, open.catalogs);
+    Some(SpaceJoint { name: name?, axis: axis?, bearing: bearing?, drive, max_speed_rad_s: max_speed? })
+}
+
+/// Where the bearing of a joint comes from. A component set has none of its own, so a joint that is sized with component
+/// sets must say what it turns on.
+fn bearing_source(
+    object: &Object,
+    stated: Stated,
+    drive: &DriveChoice,
+    catalogs: &Catalogs,
+) -> Option<BearingSource> {
+    match (stated, drive) {
+        (Stated::Bearing(bearing), _) => Some(BearingSource::Stated(bearing)),
+        (Stated::Nothing, DriveChoice::Given { .. }) => {
+            crate::arm::file::read_joint_bearing(object, catalogs).map(BearingSource::Stated)
+        }
+        (Stated::Nothing, DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter))
+            if filter.gear_mass == GearMass::ComponentSet =>
+        {
+            object.node().fault(
+                "is sized with component sets, which have no output bearing, and states no \"bearing\"",
+                "name a housed gear whose bearing it turns on (\"bearing\": \"HFUC-32-100\"), give tilt_stiffness_nm_per_rad \
+                 and permissible_moment_nm, write \"bearing\": null for a rigid bearing without mass, or use housed units \
+                 (\"gear_mass\": \"housed_unit\")",
+            )
+        }
+        _ => Some(BearingSource::OfGear),
+    }
 }
 
 /// Reports keys that another key makes meaningless as faults, because nothing in a file is silently ignored.
