@@ -41,6 +41,10 @@ pub fn gear(id: &str, torques_nm: [f64; 4], input_rpm: [f64; 2], inertia: f64, m
         transmission_accuracy_arcmin: None,
         tilting_stiffness_nm_per_rad: None,
         permissible_tilting_moment_nm: None,
+        bearing: Default::default(),
+        buckling_torque_nm: None,
+        ratcheting_torque_nm: None,
+        envelope: Default::default(),
         efficiency: Some(0.78),
         provenance: provenance(),
     }
@@ -59,6 +63,7 @@ pub fn motor(id: &str, torques_nm: [f64; 2], speeds_rpm: [f64; 2], inertia: f64,
         rotor_inertia_kgm2: Some(inertia),
         mass_kg: Some(mass_kg),
         rated_power_w: None,
+        envelope: Default::default(),
         provenance: provenance(),
     }
 }

@@ -4,6 +4,7 @@
 //! within a row, [`trend`] looks across rows.
 
 pub mod efficiency;
+pub mod envelope;
 pub mod gears;
 pub mod materials;
 pub mod motors;
