@@ -46,7 +46,7 @@ fn the_built_in_catalogs_have_all_their_rows() {
     assert_eq!(catalogs.motors.len(), 91);
     assert_eq!(catalogs.motors.iter().filter(|m| m.kind.is_hydraulic()).count(), 11);
     assert_eq!(catalogs.materials.len(), 41);
-    assert_eq!(catalogs.profiles.len(), 375);
+    assert_eq!(catalogs.profiles.len(), 435);
     assert_eq!(catalogs.efficiency.len(), 42);
 }
 
