@@ -113,6 +113,7 @@ impl JointModel {
 /// use nalgebra::Vector3;
 ///
 /// let joint = Joint {
+///     bearing: None,
 ///     name: "j2".into(),
 ///     axis: Vector3::y_axis(),
 ///     curve: Curve::Linear(607e3),

@@ -56,12 +56,14 @@ impl<'c> Problem<'c> {
                 Layer::Tilt(tilt) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&tilt.law()) },
                 // A given mass beyond the parts loads the arm, but a design's mass does not count it.
                 Layer::Mass(_) => Part::Offset { mass_kg: 0.0 },
+                Layer::Extra(mass_kg) => Part::Offset { mass_kg },
+                Layer::Bearing(_) => Part::Offset { mass_kg: 0.0 },
             };
             problem.parts.push(part);
             // Play belongs to the joint, whichever drive it has.
             problem.joint_plays.push(match layer {
                 Layer::Piece(SpacePiece::Joint(joint)) => {
-                    JointPlay::of(&space.joint_piece(joint, Curve::Linear(1.0)).law)
+                    JointPlay::of(&space.joint_piece(joint, Curve::Linear(1.0), None).law)
                 }
                 _ => None,
             });
@@ -93,7 +95,7 @@ impl<'c> Problem<'c> {
                 Slot::Given { law, mass_kg } => Part::Given { mass_kg, curve: CurveBox::of(&law) },
                 Slot::Sized(sized) if sized.all_fits => self.drives(sized, ties)?,
                 Slot::Sized(sized) => self.first_fit(sized)?,
-                Slot::Link { .. } | Slot::Offset { .. } => return None,
+                Slot::Link { .. } | Slot::Offset { .. } | Slot::Bearing { .. } => return None,
             },
             SpacePiece::Choice(choice) => {
                 let slender = |option: &LinkOption| {

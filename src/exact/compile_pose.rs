@@ -118,7 +118,8 @@ fn posed(
     };
     match layer {
         Layer::Tilt(tilt) => hinge(&tilt.axis(rotation)),
-        Layer::Mass(mass_kg) => body(mass_kg, at_m, Matrix3::zeros()),
+        Layer::Mass(mass_kg) | Layer::Extra(mass_kg) => body(mass_kg, at_m, Matrix3::zeros()),
+        Layer::Bearing(_) => body(0.0, at_m, Matrix3::zeros()),
         Layer::Piece(SpacePiece::Joint(joint)) => hinge(&(rotation * joint.axis)),
         Layer::Piece(SpacePiece::Choice(choice)) => {
             posed_tube(space, water, &space.link_piece(&choice.first_link()), at_m, rotation.matrix(), true)

@@ -98,7 +98,7 @@ mod tests {
             peak_torque_nm: torque_nm,
             stop_torque_nm: torque_nm,
             mean_torque_cubed_nm3: torque_nm.powi(3),
-            tilting_moment_nm: 0.0,
+            bearing: BearingLimits::NONE,
         };
         DriveBox {
             mass_kg: [mass_kg; 2],

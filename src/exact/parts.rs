@@ -279,7 +279,7 @@ mod tests {
             peak_torque_nm: times(1) * usual.peak_torque_nm(),
             stop_torque_nm: times(2) * usual.stop_torque_nm,
             mean_torque_cubed_nm3: times(3).powi(3) * usual.mean_torque_cubed_nm3,
-            tilting_moment_nm: times(4) * usual.static_torque_nm,
+            bearing: BearingLimits::NONE,
         };
         DriveBox {
             mass_kg: [1.0; 2],

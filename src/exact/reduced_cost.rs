@@ -230,7 +230,7 @@ mod tests {
         peak_torque_nm: 0.0,
         stop_torque_nm: 0.0,
         mean_torque_cubed_nm3: 0.0,
-        tilting_moment_nm: 0.0,
+        bearing: BearingLimits::NONE,
     };
 
     proptest! {

@@ -14,15 +14,14 @@
 //!
 //! Each of the three grows with every load, so a bearing is a set of thresholds like the rest of a drive.
 
-use super::drive::MissingRating;
 use crate::arm::bearing::Bearing;
 
 /// Static safety at rest: the vendor's value for high precision.
-pub const SAFETY_AT_REST: f64 = 3.0;
+pub(crate) const SAFETY_AT_REST: f64 = 3.0;
 /// Static safety in an emergency stop: the vendor's value for shocks.
-pub const SAFETY_IN_A_STOP: f64 = 2.0;
+pub(crate) const SAFETY_IN_A_STOP: f64 = 2.0;
 /// Load factor f_w of the life: the vendor's value for its own tables, which lies in the range of normal use, 1.2 to 1.5.
-pub const LOAD_FACTOR: f64 = 1.3;
+pub(crate) const LOAD_FACTOR: f64 = 1.3;
 /// Share of the axial force in the static equivalent load P₀.
 const AXIAL_SHARE: f64 = 0.44;
 /// Turns that the dynamic rating C is for.
@@ -141,7 +140,7 @@ impl BearingDemand {
 
 impl BearingLimits {
     /// Limits that hold everything: of a joint without a bearing, or of one whose bearing is not asked about.
-    pub const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         flange_offset_m: 0.0,
         force_per_moment_per_m: 0.0,
         running_moment_nm: f64::INFINITY,
@@ -255,7 +254,7 @@ impl BearingLimits {
 }
 
 /// Life of a bearing of dynamic rating C \[N\] under an equivalent load \[N\] at a mean speed \[rad/s\], in hours.
-pub fn life_h(rating_n: f64, load_n: f64, mean_speed_rad_s: f64) -> f64 {
+pub(super) fn life_h(rating_n: f64, load_n: f64, mean_speed_rad_s: f64) -> f64 {
     RATED_TURNS / turns_per_h(mean_speed_rad_s) * (rating_n / (LOAD_FACTOR * load_n)).powf(10.0 / 3.0)
 }
 
@@ -267,17 +266,4 @@ fn load_of_life_n(rating_n: f64, mean_speed_rad_s: f64, life_h: f64) -> f64 {
 /// Turns in an hour.
 fn turns_per_h(speed_rad_s: f64) -> f64 {
     speed_rad_s / std::f64::consts::TAU * 3600.0
-}
-
-/// The rating that keeps a bearing from being checked; `None` if nothing lacks.
-pub(super) fn lacks(bearing: &Bearing) -> Option<MissingRating> {
-    let ratings = &bearing.ratings;
-    [
-        (bearing.permissible_moment_nm, "permissible_tilting_moment_nm"),
-        (ratings.pitch_diameter_m, "bearing_pitch_diameter_m"),
-        (ratings.static_load_rating_n, "bearing_static_load_rating_n"),
-        (ratings.dynamic_load_rating_n, "bearing_dynamic_load_rating_n"),
-    ]
-    .into_iter()
-    .find_map(|(rating, name)| rating.is_none().then_some(MissingRating(name)))
 }

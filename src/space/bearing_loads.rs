@@ -46,7 +46,7 @@ pub(crate) struct Lever {
 
 impl Lever {
     /// The lever with the options of an arm \[m\].
-    pub fn lever_m(&self, options: &[u32]) -> f64 {
+    pub(crate) fn lever_m(&self, options: &[u32]) -> f64 {
         self.link_slot.map_or(self.lever_m[0], |slot| self.lever_m[options[slot] as usize])
     }
 

@@ -57,7 +57,7 @@ pub(crate) struct BearingSpring<'s> {
 
 impl BearingSpring<'_> {
     /// Axis of the spring in the world. `rotation` is the attitude of the frame that the joint stands in.
-    pub fn axis(&self, rotation: &Rotation3<f64>) -> Vector3<f64> {
+    pub(crate) fn axis(&self, rotation: &Rotation3<f64>) -> Vector3<f64> {
         across(&(rotation * self.joint.axis))[self.which]
     }
 }

@@ -81,7 +81,7 @@ impl SizedJoint<'_> {
 
 impl<'c> Slot<'c> {
     /// A spring of the bearing of the joint in an earlier slot.
-    pub fn bearing(joint: usize, slots: &[Slot<'c>]) -> Self {
+    pub(crate) fn bearing(joint: usize, slots: &[Slot<'c>]) -> Self {
         let spring = |rad_per_nm: &f64| JointLaw {
             connection_rad_per_nm: *rad_per_nm,
             ..JointLaw::from(Curve::Rigid)

@@ -172,6 +172,7 @@ fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
     known_ratios.dedup();
     let filter = DriveFilter {
         gear_mass: gear_mass?,
+        bearing: BearingSource::OfGear,
         gear_series: names(&object, "gear_series", &known_series)?,
         ratios: object.or("ratios", None, |n| read_ratios(n, &known_ratios).map(Some))?,
         gear_ids: names(&object, "gears", &known_gears)?,

@@ -262,6 +262,7 @@ impl AskedJoint {
             axis: self.axis,
             curve,
             mass_kg,
+            bearing: None,
             gear: None,
             motor: None,
             coupled: None,
