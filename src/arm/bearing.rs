@@ -64,9 +64,8 @@ impl Bearing {
     /// Reads a bearing that is written as an object.
     fn read(node: &Node) -> Option<Self> {
         let object = node.object(&KEYS)?;
-        let positive = |key| {
-            object.or(key, None, |n| if n.is_null() { Some(None) } else { n.positive().map(Some) })
-        };
+        let positive =
+            |key| object.or(key, None, |n| if n.is_null() { Some(None) } else { n.positive().map(Some) });
         let stiffness = positive("tilt_stiffness_nm_per_rad");
         let permissible = positive("permissible_moment_nm");
         let ratings = ["pitch_diameter_m", "static_load_rating_n", "dynamic_load_rating_n"].map(positive);
@@ -93,7 +92,8 @@ impl Bearing {
         let gear = match catalogs.gear(node.string()?) {
             Ok(gear) => gear,
             Err(unknown) => {
-                return node.fault(unknown.to_string(), "name a gear of the catalog, give numbers, or write null");
+                return node
+                    .fault(unknown.to_string(), "name a gear of the catalog, give numbers, or write null");
             }
         };
         Self::as_part(gear).or_else(|| {

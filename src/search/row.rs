@@ -12,6 +12,7 @@
 //!
 //! An *inner* slot is one from the innermost level to the base. Inner slots are numbered from 0.
 
+use super::row_bearing::RowBearing;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::mechanics::Wrench;
 use crate::mechanics::lanes::{Eight, LANES};
@@ -38,6 +39,8 @@ pub(crate) struct Row {
     pub fixed_kg: f64,
     /// How the drives of each inner slot twist.
     pub twisting: Vec<Twisting>,
+    /// The checked bearings of inner joints whose drives are found by first fit.
+    pub bearings: Vec<RowBearing>,
 }
 
 /// How the drives of a joint twist in the judged cases. The simpler kinds save work in the kernel.
@@ -210,6 +213,7 @@ impl Row {
             joints: (0..slots.len()).filter(is_joint).collect(),
             fixed_kg: slots.iter().filter_map(Slot::fixed_kg).sum(),
             twisting: (0..slots.len()).map(|k| twisting(&slots[k], &drives[k], k, &cases)).collect(),
+            bearings: RowBearing::all(problem, first),
             cases,
             drives,
         })
@@ -323,11 +327,7 @@ impl AtJoint {
 }
 
 /// Whether some load turns each inner joint, and its torque per newton of a link's weight.
-fn turning(
-    station: &Station,
-    slots: &[StationSlot],
-    link_weight: &Wrench,
-) -> (Vec<bool>, Vec<f64>) {
+fn turning(station: &Station, slots: &[StationSlot], link_weight: &Wrench) -> (Vec<bool>, Vec<f64>) {
     let loaded = loaded(station);
     let (mut turned, mut link_torque) = (vec![false; slots.len()], vec![0.0; slots.len()]);
     for (j, slot) in slots.iter().enumerate() {

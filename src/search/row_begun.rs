@@ -2,7 +2,9 @@
 
 use super::arms::EightArms;
 use super::row::{AtJoint, AtJoints, Row};
+use super::row_bearing::{self, BearingsBegun};
 use crate::mechanics::lowest_lanes::Outboard;
+use crate::sizing::bearing::BearingDemand;
 use crate::space::problem::{ArmProblem, Partial, block_steps};
 use crate::space::station::{Modal, StationSlot};
 
@@ -20,6 +22,9 @@ pub(crate) struct Begun {
     /// For each inner joint, the step of the drive table at which the drive of the last design was found. The next search
     /// starts there, because the demands of neighbouring designs are similar.
     pub steps: Vec<usize>,
+    /// Loads on the bearing of the innermost level, if that is the drive of a joint.
+    pub of_innermost: BearingDemand,
+    pub bearings: BearingsBegun,
 }
 
 /// A row that has begun, in one case.
@@ -75,11 +80,21 @@ impl Begun {
             at_end: [0.0; 4],
             at_root: [0.0; 4],
         });
-        Self { cases: cases.collect(), steps: vec![0; inner] }
+        Self {
+            cases: cases.collect(),
+            steps: vec![0; inner],
+            of_innermost: BearingDemand::default(),
+            bearings: Vec::new(),
+        }
     }
 
     /// Begins the row beyond the arm `from`. Memory of the row before is used again.
     fn refill(&mut self, problem: &ArmProblem, row: &Row, from: &Partial) {
+        self.of_innermost = row_bearing::of_innermost(problem, row.first, from);
+        self.bearings.resize_with(row.bearings.len(), Vec::new);
+        for (bearing, begun) in row.bearings.iter().zip(&mut self.bearings) {
+            bearing.begin(from, begun);
+        }
         for (k, begun) in self.cases.iter_mut().enumerate() {
             let (station, state, case) = (&problem.stations()[k], &from.stations[k], &row.cases[k]);
             for (j, slot) in station.slots[row.first..].iter().enumerate() {

@@ -149,7 +149,7 @@ impl RowChunk<'_, '_> {
         for &k in &self.row.joints {
             // the springs of a bearing follow the drive they belong to
             indices = match &slots[k] {
-                Slot::Sized(sized) => self.pick::<V>(k, sized, &mut begun.steps[k], arms),
+                Slot::Sized(sized) => self.pick::<V>(k, sized, begun, arms),
                 Slot::Bearing { .. } => indices,
                 _ => [0; LANES],
             };
@@ -252,7 +252,7 @@ impl RowChunk<'_, '_> {
         &self,
         k: usize,
         sized: &SizedJoint,
-        step: &mut usize,
+        begun: &mut Begun,
         arms: &mut EightArms,
     ) -> [usize; LANES] {
         let (mut static_nm, mut inertia_kgm2) = (V::zero(), V::zero());
@@ -263,8 +263,10 @@ impl RowChunk<'_, '_> {
             inertia_kgm2 = inertia_kgm2.max(V::load(&arms.cases[c].inertia_at[k]));
         }
         if !sized.all_fits {
-            let demands = EightDemands::new(sized.table.motion(), static_nm, inertia_kgm2);
-            let (fits, held) = sized.table.first_fits(&demands, arms.held, step);
+            let bearing = self.bearing_demands(k, &begun.bearings, &arms.masses_kg);
+            let demands =
+                EightDemands::new(sized.table.motion(), static_nm, inertia_kgm2).with_bearing(bearing);
+            let (fits, held) = sized.table.first_fits(&demands, arms.held, &mut begun.steps[k]);
             arms.held = held;
             return fits;
         }
@@ -273,7 +275,8 @@ impl RowChunk<'_, '_> {
         let mut indices = [0; LANES];
         for lane in 0..LANES {
             if arms.held >> lane & 1 == 1 {
-                let demand = sized.table.motion().demand(static_nm[lane], inertia_kgm2[lane]);
+                let torques = sized.table.motion().demand(static_nm[lane], inertia_kgm2[lane]);
+                let demand = torques.with_bearing(begun.of_innermost);
                 indices[lane] = LANES * self.chunk + lane;
                 arms.held &= !(u8::from(!sized.table.limits(indices[lane]).hold(&demand)) << lane);
             }

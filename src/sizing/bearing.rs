@@ -23,7 +23,7 @@ pub(crate) const SAFETY_IN_A_STOP: f64 = 2.0;
 /// Load factor f_w of the life: the vendor's value for its own tables, which lies in the range of normal use, 1.2 to 1.5.
 pub(crate) const LOAD_FACTOR: f64 = 1.3;
 /// Share of the axial force in the static equivalent load P₀.
-const AXIAL_SHARE: f64 = 0.44;
+pub(super) const AXIAL_SHARE: f64 = 0.44;
 /// Turns that the dynamic rating C is for.
 const RATED_TURNS: f64 = 1e6;
 

@@ -379,7 +379,12 @@ mod tests {
         let (mut gear, mut motor) = ample();
         let (mut motion, mut demand) = (motion(), demand());
         change(&mut gear, &mut motor, &mut motion, &mut demand);
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit, bearing: BearingSource::OfGear };
+        let drive = Drive {
+            gear: &gear,
+            motor: &motor,
+            gear_mass: GearMass::HousedUnit,
+            bearing: BearingSource::OfGear,
+        };
         let checks = checks(&drive, &motion, &demand);
         assert!(checks.iter().all(|c| c.state != CheckState::Holds || c.margin().unwrap() >= 1.0));
         assert!(checks.iter().all(|c| c.state != CheckState::Fails || c.margin().unwrap() < 1.0));
@@ -456,7 +461,12 @@ mod tests {
     fn a_blank_rating_is_named_and_nothing_else_is_left_unchecked() {
         let (gear, _) = ample();
         let motor = char_lynn_j_8_2();
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit, bearing: BearingSource::OfGear };
+        let drive = Drive {
+            gear: &gear,
+            motor: &motor,
+            gear_mass: GearMass::HousedUnit,
+            bearing: BearingSource::OfGear,
+        };
         let checks = checks(&drive, &motion(), &demand());
         let blank: Vec<_> = checks.iter().filter(|c| !c.holds()).map(Check::to_string).collect();
         assert_eq!(blank, ["peak not checked: lacks rotor_inertia_kgm2"]);
@@ -483,7 +493,12 @@ mod tests {
     #[test]
     fn what_binds_is_the_smallest_margin() {
         let (gear, motor) = ample();
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit, bearing: BearingSource::OfGear };
+        let drive = Drive {
+            gear: &gear,
+            motor: &motor,
+            gear_mass: GearMass::HousedUnit,
+            bearing: BearingSource::OfGear,
+        };
         let mut checks = checks(&drive, &motion(), &demand());
         assert_eq!(binding(&checks).unwrap().kind, CheckKind::GearPeak);
         checks.remove(0);
@@ -494,7 +509,12 @@ mod tests {
     #[test]
     fn a_joint_that_carries_nothing_has_no_end_of_life() {
         let (gear, motor) = (hfuc_40_100(), f11_10());
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit, bearing: BearingSource::OfGear };
+        let drive = Drive {
+            gear: &gear,
+            motor: &motor,
+            gear_mass: GearMass::HousedUnit,
+            bearing: BearingSource::OfGear,
+        };
         let checks = checks(&drive, &motion(), &motion().demand_of_torques(0.0, 0.0));
         assert!(all_hold(&checks));
         let life = checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();

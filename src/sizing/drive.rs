@@ -182,7 +182,12 @@ mod tests {
     fn with_the_wave_generator_of_hfuc_58_the_rotary_torque_is_eight_times_that() {
         // Eq 9 adds the transmission: 0.00273 kg m² (gears.csv, HFUC-58-100), seven rotors.
         let (gear, motor) = (hfuc_58_100(), f11_10());
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::ComponentSet, bearing: BearingSource::OfGear };
+        let drive = Drive {
+            gear: &gear,
+            motor: &motor,
+            gear_mass: GearMass::ComponentSet,
+            bearing: BearingSource::OfGear,
+        };
         let inertia = drive.input_inertia_kgm2().unwrap();
         assert_eq!(inertia, 0.00312);
         assert_eq!(format!("{:.2}", rotary_torque_motor_nm(inertia, 100.0, 3.7)), "1.15");
@@ -192,7 +197,12 @@ mod tests {
     #[test]
     fn the_motor_carries_the_load_through_the_gear_and_its_own_inertia_directly() {
         let (gear, motor) = (hfuc_58_100(), f11_10());
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit, bearing: BearingSource::OfGear };
+        let drive = Drive {
+            gear: &gear,
+            motor: &motor,
+            gear_mass: GearMass::HousedUnit,
+            bearing: BearingSource::OfGear,
+        };
         let motion = MotionRequirement::default().joint_motion(1.35, None);
         let torque = drive.peak_motor_torque_nm(&motion, 858.0).unwrap();
         let by_hand = 858.0 / (100.0 * 0.78) + 0.00312 * 100.0 * 5.0 / 1.35;
@@ -202,7 +212,9 @@ mod tests {
     #[test]
     fn the_mass_is_that_of_the_build_asked_for_and_a_blank_is_named() {
         let (gear, mut motor) = (hfuc_58_100(), f11_10());
-        let mass = |gear_mass, motor: &Motor| Drive { gear: &gear, motor, gear_mass, bearing: BearingSource::OfGear }.mass_kg();
+        let mass = |gear_mass, motor: &Motor| {
+            Drive { gear: &gear, motor, gear_mass, bearing: BearingSource::OfGear }.mass_kg()
+        };
         assert!((mass(GearMass::ComponentSet, &motor).unwrap() - 12.2).abs() < 1e-12, "Table 1");
         assert!((mass(GearMass::HousedUnit, &motor).unwrap() - 22.1).abs() < 1e-12);
         motor.mass_kg = None;

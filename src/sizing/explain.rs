@@ -159,7 +159,8 @@ impl<'c> DriveTable<'c> {
     pub fn explain(&self, demand: &JointDemand) -> Vec<Rejection> {
         let (mut rejections, trials) = (Vec::new(), self.trials(demand));
         for gear in self.gears() {
-            let failed = not_holding(gear_checks(gear, self.bearing_of(gear).as_ref(), self.motion(), demand));
+            let failed =
+                not_holding(gear_checks(gear, self.bearing_of(gear).as_ref(), self.motion(), demand));
             if !failed.is_empty() {
                 rejections.push(self.rejection(RejectedPart::Gear { gear: gear.id.clone() }, failed));
                 continue;

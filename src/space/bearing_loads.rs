@@ -82,12 +82,7 @@ fn half_width_m(joint: &SpaceJoint, vector_m: &Vector3<f64>, section: &Section) 
 
 impl BearingLoads {
     /// The loads of a space whose slots are known. `reaches_m` are in order from the base.
-    pub(crate) fn new(
-        space: &DesignSpace,
-        slots: &[Slot],
-        piece_slots: &[usize],
-        reaches_m: &[f64],
-    ) -> Self {
+    pub(crate) fn new(space: &DesignSpace, slots: &[Slot], piece_slots: &[usize], reaches_m: &[f64]) -> Self {
         let mut levers: Vec<Option<Lever>> = slots.iter().map(|_| None).collect();
         let mut movers = Vec::new();
         let mut reaches_m = reaches_m.iter();
