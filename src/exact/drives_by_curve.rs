@@ -81,6 +81,7 @@ mod tests {
     use crate::exact::dual_price::JointPrice;
     use crate::exact::parts::Rays;
     use crate::exact::torsion::BreakPoints;
+    use crate::sizing::bearing::BearingLimits;
     use crate::sizing::limits::DriveLimits;
     use crate::sizing::requirement::MotionRequirement;
     use proptest::prelude::*;

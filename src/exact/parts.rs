@@ -267,6 +267,7 @@ impl Bounds for DriveBox {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sizing::bearing::BearingLimits;
     use crate::sizing::requirement::MotionRequirement;
     use proptest::prelude::*;
 

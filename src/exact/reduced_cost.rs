@@ -197,6 +197,7 @@ mod tests {
     use crate::arm::joint_law::{Curve, JointLaw};
     use crate::exact::parts::Line;
     use crate::exact::torsion::CurveBox;
+    use crate::sizing::bearing::BearingLimits;
     use crate::sizing::limits::DriveLimits;
     use proptest::prelude::*;
 

@@ -347,9 +347,12 @@ pub fn binding(checks: &[Check]) -> Option<&Check> {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{
-        any_gear, any_motion, any_motor, any_torques, char_lynn_j_8_2, f11_10, gear, hfuc_40_100, motor,
+        any_gear, any_motion, any_motor, any_torques, bearing_loads, char_lynn_j_8_2, f11_10, gear,
+        hfuc_40_100, motor,
     };
     use super::*;
+    use crate::arm::bearing::BearingSource;
+    use crate::catalog::gear::{BearingRatings, GearMass};
     use crate::catalog::motor::Motor;
     use crate::sizing::limits::{DriveLimits, Obstacle};
     use crate::sizing::requirement::MotionRequirement;
@@ -369,6 +372,12 @@ mod tests {
         let mut gear =
             gear("CSG-50-100", [600.0, 900.0, 700.0, 2000.0], [3500.0, 2500.0], 0.00125, [3.2, 8.9]);
         gear.permissible_tilting_moment_nm = Some(700.0);
+        gear.bearing = BearingRatings {
+            pitch_diameter_m: Some(0.1),
+            offset_m: Some(0.02),
+            static_load_rating_n: Some(80e3),
+            dynamic_load_rating_n: Some(40e3),
+        };
         (gear, motor("M", [10.0, 20.0], [2000.0, 3000.0], 0.0003, 4.0))
     }
 
@@ -393,7 +402,7 @@ mod tests {
 
     #[test]
     fn the_ample_drive_holds_everything() {
-        assert_eq!(failing(|_, _, _, d| d.tilting_moment_nm = 500.0), []);
+        assert_eq!(failing(|_, _, _, d| d.bearing = bearing_loads(500.0)), []);
     }
 
     #[test]
@@ -418,23 +427,64 @@ mod tests {
     }
 
     #[test]
-    fn a_moment_across_the_axis_is_checked_only_if_given() {
-        assert_eq!(failing(|_, _, _, d| d.tilting_moment_nm = 701.0), [CheckKind::GearTilt]);
+    fn the_bearing_is_checked_if_something_loads_it_and_its_ratings_are_known() {
+        // 661 N m and the offset of 0.02 m times 1983 N of radial force are 701 N m
+        let loaded = |d: &mut JointDemand| d.bearing = bearing_loads(661.0);
+        assert_eq!(failing(|_, _, _, d| loaded(d)), [CheckKind::BearingMoment]);
+        let blank = |g: &mut Gear, d: &mut JointDemand| {
+            loaded(d);
+            g.permissible_tilting_moment_nm = None;
+        };
+        assert_eq!(failing(|g, _, _, d| blank(g, d)), [], "a blank rating excludes nothing");
         assert_eq!(failing(|g, _, _, _| g.permissible_tilting_moment_nm = None), []);
+    }
+
+    #[test]
+    fn each_check_of_the_bearing_fails_alone_when_its_own_rating_is_lowered() {
+        let with = |change: fn(&mut BearingRatings, &mut JointMotion)| {
+            failing(|g, _, motion, d| {
+                d.bearing = bearing_loads(500.0);
+                change(&mut g.bearing, motion);
+            })
+        };
+        // a stop of 700 N m: P0 = 2100 + 20 (700 + 0.02 2100) + 0.44 1400 = 17556 N, twice that is 35.1 kN; at rest
+        // 300 N m: 900 + 20 (300 + 0.02 900) + 0.44 600 = 7524 N, three times that is 22.6 kN
+        assert_eq!(with(|b, _| b.static_load_rating_n = Some(35.0e3)), [CheckKind::BearingStop]);
+        assert_eq!(
+            with(|b, _| b.static_load_rating_n = Some(22.0e3)),
+            [CheckKind::BearingRest, CheckKind::BearingStop]
+        );
+        // Pc = 900 + 20 318 + 0.45 600 = 7530 N; at 0.4 / 1.35 rad/s, 10000 h are 1.70e6 turns: C = 1.3 7530 1.70^0.3
+        let turns: f64 = 0.4 / 1.35 / std::f64::consts::TAU * 3600.0 * 1e4;
+        let least_n = 1.3 * 7530.0 * (turns / 1e6).powf(0.3);
+        assert!((least_n / 11_472.0 - 1.0).abs() < 0.01, "{least_n}");
+        assert_eq!(with(|b, _| b.dynamic_load_rating_n = Some(11_300.0)), [CheckKind::BearingLife]);
+        assert_eq!(with(|b, _| b.dynamic_load_rating_n = Some(11_700.0)), []);
     }
 
     #[test]
     fn a_component_set_has_no_bearing_to_tilt() {
         let (gear, _) = ample();
-        let demand = demand().with_tilting_moment_nm(-9999.0);
-        assert!(all_hold(&gear_checks(&gear, GearMass::ComponentSet, &motion(), &demand)));
-        assert!(!all_hold(&gear_checks(&gear, GearMass::HousedUnit, &motion(), &demand)));
+        let demand = demand().with_bearing(bearing_loads(9999.0));
+        assert!(all_hold(&gear_checks(
+            &gear,
+            Bearing::of_gear(&gear, GearMass::ComponentSet).as_ref(),
+            &motion(),
+            &demand
+        )));
+        assert!(!all_hold(&gear_checks(
+            &gear,
+            Bearing::of_gear(&gear, GearMass::HousedUnit).as_ref(),
+            &motion(),
+            &demand
+        )));
     }
 
     #[test]
     fn the_life_is_the_vendors_formula() {
         let (gear, _) = ample();
-        let checks = gear_checks(&gear, GearMass::HousedUnit, &motion(), &demand());
+        let checks =
+            gear_checks(&gear, Bearing::of_gear(&gear, GearMass::HousedUnit).as_ref(), &motion(), &demand());
         let life = checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();
         let mean_rpm = 100.0 * 0.4 / 1.35 * 30.0 / std::f64::consts::PI;
         let by_hand = 10_000.0 * (600.0 / demand().mean_torque_nm()).powi(3) * (2000.0 / mean_rpm);
@@ -447,7 +497,8 @@ mod tests {
         let mut gear = hfuc_40_100();
         gear.repeated_peak_torque_nm = Some(523.0);
         let demand = motion().demand_of_torques(376.0, 192.3);
-        let checks = gear_checks(&gear, GearMass::HousedUnit, &motion(), &demand);
+        let checks =
+            gear_checks(&gear, Bearing::of_gear(&gear, GearMass::HousedUnit).as_ref(), &motion(), &demand);
         assert_eq!(checks[0].to_string(), "peak 568 N m needed, 523 allowed");
     }
 
@@ -530,7 +581,7 @@ mod tests {
         ) {
             let gear_mass = if housed { GearMass::HousedUnit } else { GearMass::ComponentSet };
             let drive = Drive { gear: &gear, motor: &motor, gear_mass, bearing: BearingSource::OfGear };
-            let demand = motion.demand_of_torques(torques[0], torques[1]).with_tilting_moment_nm(torques[2]);
+            let demand = motion.demand_of_torques(torques[0], torques[1]).with_bearing(bearing_loads(torques[2]));
             let checks = checks(&drive, &motion, &demand);
             let by_thresholds = DriveLimits::of(&drive, &motion).is_ok_and(|l| l.hold(&demand));
             prop_assert_eq!(by_thresholds, all_hold(&checks));

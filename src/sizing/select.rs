@@ -327,7 +327,9 @@ fn parts<'c>(drive: &Drive<'c>) -> (&'c str, &'c str) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{any_gear, any_motion, any_motor, any_torques, char_lynn_j_8_2, f11_10};
+    use super::super::testing::{
+        any_gear, any_motion, any_motor, any_torques, bearing_loads, char_lynn_j_8_2, f11_10,
+    };
     use super::super::testing::{hfuc_40_100, hfuc_58_100, motor};
     use super::*;
     use crate::sizing::check::{all_hold, checks};
@@ -408,7 +410,7 @@ mod tests {
             let motors: Vec<_> = motors.into_iter().enumerate().map(|(i, m)| Motor { id: format!("M{i}"), ..m }).collect();
             let demand = motion
                 .demand_of_torques(torques[0] / 2.0, torques[1] / 4.0)
-                .with_tilting_moment_nm(torques[2]);
+                .with_bearing(bearing_loads(torques[2]));
             let table = DriveTable::build("j", motion, &DriveFilter::everything(gear_mass), &gears, &motors);
             let mut slow = Vec::new();
             for gear in &gears {

@@ -192,6 +192,7 @@ fn shortened(name: &str) -> String {
 mod tests {
     use super::super::testing::{char_lynn_j_8_2, f11_10, hfuc_40_100, hfuc_58_100};
     use super::*;
+    use crate::arm::bearing::BearingSource;
     use crate::catalog::gear::GearMass;
     use crate::catalog::motor::Motor;
     use crate::sizing::demand::LinearReading;
