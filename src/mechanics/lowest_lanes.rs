@@ -289,6 +289,15 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         self.yielding_link(link);
     }
 
+    /// Adds a link that the eight chains share.
+    #[inline(always)]
+    pub(crate) fn shared_link(&mut self, link: &BlockLink<N>) {
+        match link.yields() {
+            true => self.yielding_link(link),
+            false => self.body(&link.root[0]),
+        }
+    }
+
     /// Adds a link that yields, whether the eight chains share it or not: `S` and `P` of the formula in
     /// [`lowest`](super::lowest), then one elimination for each end coordinate.
     #[inline(always)]

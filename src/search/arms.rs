@@ -1,5 +1,6 @@
 //! Eight arms side by side, as pieces are added from the innermost level to the base.
 
+use super::row::hinge_numbers;
 use crate::mechanics::lanes::{Eight, LANES};
 use crate::pareto::objectives::Objectives;
 use crate::space::problem::ArmProblem;
@@ -26,7 +27,7 @@ pub(crate) struct EightArms {
 #[derive(Clone)]
 pub(crate) struct CaseArms {
     pub tip_m: [Eight; 3],
-    /// Torque \[N m\] on each inner joint that some load turns, and outboard inertia \[kg m²\] about it.
+    /// Torque \[N m\] on each hinge that some load turns, and outboard inertia \[kg m²\] about it.
     pub torque_at: Vec<Eight>,
     pub inertia_at: Vec<Eight>,
     /// Tangent compliance of each inner joint \[rad/(N m)\].
@@ -40,10 +41,11 @@ impl EightArms {
     pub(crate) fn new(problem: &ArmProblem) -> Self {
         let zeros = [0.0; LANES];
         let inner = &problem.slots()[problem.level_slots().last().copied().unwrap_or(0)..];
+        let numbers = hinge_numbers(inner);
         let nothing = CaseArms {
             tip_m: [zeros; 3],
-            torque_at: vec![zeros; inner.len()],
-            inertia_at: vec![zeros; inner.len()],
+            torque_at: vec![zeros; numbers],
+            inertia_at: vec![zeros; numbers],
             compliance: vec![zeros; inner.len()],
             trace_s2: [zeros; 2],
         };

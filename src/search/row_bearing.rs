@@ -107,6 +107,9 @@ impl Source {
                 StationSlot::Body { inertia, weight } => {
                     add_times(&mut out.fixed, &effect(inertia, weight), 1.0);
                 }
+                StationSlot::Link { options, .. } if k > 0 => {
+                    add_times(&mut out.fixed, &effect(&options[0].inertia, &options[0].weight), 1.0);
+                }
                 StationSlot::Link { options, .. } => {
                     let of = |option: usize| {
                         let link = &options[option.min(options.len() - 1)];

@@ -1,7 +1,7 @@
 //! Rows that have begun: what depends on the arm outboard of a row, worked out once for all its designs.
 
 use super::arms::EightArms;
-use super::row::{AtJoint, AtJoints, Row};
+use super::row::{AtJoint, AtJoints, Row, hinge_numbers};
 use super::row_bearing::{self, BearingsBegun};
 use crate::mechanics::lowest_lanes::Outboard;
 use crate::sizing::bearing::BearingDemand;
@@ -30,7 +30,7 @@ pub(crate) struct Begun {
 /// A row that has begun, in one case.
 pub(crate) struct CaseBegun {
     pub outboard: CaseOutboard,
-    /// Torque and inertia at each inner joint: of everything outboard of the row, and of the inner pieces that are not
+    /// Torque and inertia at each hinge: of everything outboard of the row, and of the inner pieces that are not
     /// chosen.
     pub at: AtJoints,
     /// The entries of the outboard inertia that the ends of the links move ([`RowCase::spread_entries`](super::row::RowCase::spread_entries)).
@@ -69,20 +69,21 @@ impl RowScratch {
 impl Begun {
     /// Working space for one row of a problem.
     fn new(problem: &ArmProblem) -> Self {
-        let inner = problem.slots().len() - problem.level_slots().last().copied().unwrap_or(0);
+        let inner = &problem.slots()[problem.level_slots().last().copied().unwrap_or(0)..];
+        let numbers = hinge_numbers(inner);
         let cases = problem.stations().iter().map(|station| CaseBegun {
             outboard: match &station.modal {
                 Modal::Planar(_) => CaseOutboard::Planar(Box::default()),
                 Modal::Spatial(_) => CaseOutboard::Spatial(Box::default()),
             },
-            at: vec![AtJoint::default(); inner],
+            at: vec![AtJoint::default(); numbers],
             spread: Vec::new(),
             at_end: [0.0; 4],
             at_root: [0.0; 4],
         });
         Self {
             cases: cases.collect(),
-            steps: vec![0; inner],
+            steps: vec![0; inner.len()],
             of_innermost: BearingDemand::default(),
             bearings: Vec::new(),
         }
@@ -97,11 +98,11 @@ impl Begun {
         }
         for (k, begun) in self.cases.iter_mut().enumerate() {
             let (station, state, case) = (&problem.stations()[k], &from.stations[k], &row.cases[k]);
-            for (j, slot) in station.slots[row.first..].iter().enumerate() {
-                if let StationSlot::Joint(joint) = slot {
-                    begun.at[j] = AtJoint::new(joint, &state.inertia, &state.wrench);
-                    begun.at[j].add(case.fixed[j], 1.0);
-                }
+            for hinge in &row.hinges {
+                let twist = hinge.twist(&station.slots[row.first..]);
+                let at = &mut begun.at[hinge.number];
+                *at = AtJoint::new(&twist, &state.inertia, &state.wrench);
+                at.add(case.fixed[hinge.number], 1.0);
             }
             if let StationSlot::Link { place, .. } = &station.slots[row.first] {
                 begun.at_end = place.local(&state.wrench, &place.end_m);

@@ -10,7 +10,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::arms::EightArms;
-use super::row::{AtJoint, Chunk, DriveAttributes, Row, RowChunk, StressEight, Twisting};
+use super::row::{AtJoint, Chunk, DriveAttributes, Hinge, Row, RowChunk, StressEight, Twisting};
 use super::row_begun::{Begun, RowScratch};
 use super::row_modes::Question;
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, splat_all};
@@ -146,7 +146,11 @@ impl RowChunk<'_, '_> {
             Some(chunk) => self.start_with_link::<V>(chunk, begun, arms),
             None => self.start::<V>(begun, arms),
         }
-        for &k in &self.row.joints {
+        for &k in &self.row.yielding {
+            if slots[k].given_tube().is_some() {
+                largest_s2 = largest_s2.max(self.add_tube(k, arms));
+                continue;
+            }
             // the springs of a bearing follow the drive they belong to
             indices = match &slots[k] {
                 Slot::Sized(sized) => self.pick::<V>(k, sized, begun, arms),
@@ -172,7 +176,7 @@ impl RowChunk<'_, '_> {
             for i in 0..3 {
                 lanes.tip_m[i] = V::splat(state.tip_m[i]).store();
             }
-            for &j in &self.row.joints {
+            for &Hinge { number: j, .. } in &self.row.hinges {
                 lanes.torque_at[j] = V::splat(begun.cases[c].at[j].torque_nm).store();
                 lanes.inertia_at[j] = V::splat(begun.cases[c].at[j].inertia_kgm2).store();
             }
@@ -193,7 +197,7 @@ impl RowChunk<'_, '_> {
             let (state, begun, own) = (&self.from.stations[k], &begun.cases[k], &chunk.cases[k]);
             let lanes = &mut arms.cases[k];
             let weight = V::load(&own.weight_n);
-            for &j in &self.row.joints {
+            for &Hinge { number: j, .. } in &self.row.hinges {
                 let AtJoint { torque_nm, inertia_kgm2 } = begun.at[j];
                 // the torque on a joint that nothing turns stays zero
                 if case.turned[j] {
@@ -291,7 +295,7 @@ impl RowChunk<'_, '_> {
         add(&mut arms.mass_kg, mass);
         arms.masses_kg[k] = mass.store();
         for (case, lanes) in self.row.cases.iter().zip(&mut arms.cases) {
-            for &j in self.row.joints.iter().filter(|&&j| j > k) {
+            for &Hinge { number: j, .. } in self.row.hinges.iter().filter(|hinge| hinge.slot > k) {
                 let AtJoint { torque_nm, inertia_kgm2 } = case.per_kg[k][j];
                 // the same for all lanes, and often zero
                 if torque_nm != 0.0 {
@@ -338,6 +342,31 @@ impl RowChunk<'_, '_> {
         largest
     }
 
+    /// Adds the bending of a given tube. Returns the largest part that one of its end coordinates adds to Dunkerley's sums
+    /// \[s²\].
+    #[inline(always)]
+    fn add_tube<V: Lanes>(&self, k: usize, arms: &mut EightArms) -> V {
+        let mut largest = V::zero();
+        for (c, case) in self.row.cases.iter().enumerate().filter(|(_, case)| case.judged) {
+            let StationSlot::Link { options, .. } = &self.station(c).slots[self.row.first + k] else {
+                continue;
+            };
+            let (tube, lanes) = (&options[0], &mut arms.cases[c]);
+            for hinge in self.row.hinges.iter().filter(|hinge| hinge.slot == k) {
+                let Some(g) = hinge.end else { continue };
+                let mut bent = V::splat(tube.own_weight_end[g]);
+                if case.turned[hinge.number] {
+                    bent = bent + V::load(&lanes.torque_at[hinge.number]);
+                }
+                for i in (0..3).filter(|&i| tube.tip[(i, g)] != 0.0) {
+                    add(&mut lanes.tip_m[i], V::splat(tube.tip[(i, g)]) * bent);
+                }
+                largest = largest.max(V::load(&lanes.inertia_at[hinge.number]));
+            }
+        }
+        largest
+    }
+
     /// Dunkerley's sum of each case and block: the trace of flexibility times mass.
     #[inline(always)]
     fn sum_traces<V: Lanes>(&self, begun: &Begun, arms: &mut EightArms) {
@@ -352,9 +381,18 @@ impl RowChunk<'_, '_> {
                         sum = sum + V::splat(begun.cases[c].spread[e]) * V::load(&own.spread[e]);
                     }
                 }
-                for &k in &self.row.joints {
-                    if self.joint(c, k).is_some_and(|joint| joint.block == b) {
-                        sum = sum + V::load(&lanes.compliance[k]) * V::load(&lanes.inertia_at[k]);
+                sum = sum + V::splat(case.tubes_trace_s2[b]);
+                for hinge in &self.row.hinges {
+                    let inertia = V::load(&lanes.inertia_at[hinge.number]);
+                    match (&self.station(c).slots[self.row.first + hinge.slot], hinge.end) {
+                        (StationSlot::Joint(joint), _) if joint.block == b => {
+                            sum = sum + V::load(&lanes.compliance[hinge.slot]) * inertia;
+                        }
+                        // an end coordinate has unit stiffness
+                        (StationSlot::Link { options, .. }, Some(end)) if options[0].block[end] == b => {
+                            sum = sum + inertia;
+                        }
+                        _ => {}
                     }
                 }
                 lanes.trace_s2[b] = sum.store();

@@ -256,6 +256,8 @@ impl<V: Lanes, const N: usize> Inner<V, N> for Pieces<'_, N> {
                     }
                 }
                 BlockSlot::Body(inertia) => walk.body(inertia),
+                // a given tube: only the first slot may be the link of the row
+                BlockSlot::Links(options) if k > 0 => walk.shared_link(&options[0]),
                 BlockSlot::Links(_) => match self.link {
                     Some(link) if self.case.links_yield => walk.link(link),
                     Some(link) => walk.rigid(link),

@@ -118,6 +118,14 @@ impl Slot<'_> {
         }
     }
 
+    /// A tube that the study gives; `None` if the slot is something else or its tube is chosen.
+    pub(crate) fn given_tube(&self) -> Option<&OptionAttributes> {
+        match self {
+            Slot::Link { options, open: false } => options.first(),
+            _ => None,
+        }
+    }
+
     /// Joint law with one of the drives; `None` if the piece is no joint.
     pub(crate) fn law(&self, option: usize) -> Option<&JointLaw> {
         match self {
