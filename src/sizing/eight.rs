@@ -79,30 +79,23 @@ impl<V: Lanes> EightBearing<V> {
         Self { at_rest: EightLoad::zero(), running: EightLoad::zero(), in_stop: EightLoad::zero() }
     }
 
-    /// Takes a load at rest.
+    /// Takes a load at rest. What moves is taken with [`EightBearing::moving`].
     #[inline(always)]
     pub(crate) fn rest(&mut self, [u, v, along, about_u, about_v]: &[V; 5]) {
         let (radial, moment) = (*u * *u + *v * *v, *about_u * *about_u + *about_v * *about_v);
-        for load in [&mut self.at_rest, &mut self.running, &mut self.in_stop] {
-            load.max_of_squares(radial, along.abs(), moment);
-        }
+        self.at_rest.max_of_squares(radial, along.abs(), moment);
+        // ramps are taken with either sign, so they never load a bearing less
     }
 
     /// Takes a load at rest with what a ramp adds or takes away, and so many times as much in a stop. Of the two signs
     /// the larger norm is `|s|² + |d|² + 2 |s·d|`.
     #[inline(always)]
     pub(crate) fn moving(&mut self, at_rest: &[V; 5], ramp: &[V; 5], stop_factor: V) {
-        let larger = |of: [usize; 2], times: V| {
-            let [a, b] = of;
-            let (s, d) = ([at_rest[a], at_rest[b]], [ramp[a] * times, ramp[b] * times]);
-            let both = s[0] * d[0] + s[1] * d[1];
-            s[0] * s[0] + s[1] * s[1] + d[0] * d[0] + d[1] * d[1] + (both + both).abs()
-        };
-        let one = V::splat(1.0);
-        for (load, times) in [(&mut self.running, one), (&mut self.in_stop, stop_factor)] {
-            let axial_n = at_rest[2].abs() + (ramp[2] * times).abs();
-            load.max_of_squares(larger([0, 1], times), axial_n, larger([3, 4], times));
-        }
+        let (radial, moment) = (Pair::new(at_rest, ramp, 0), Pair::new(at_rest, ramp, 3));
+        let (rest_n, ramp_n) = (at_rest[2].abs(), ramp[2].abs());
+        self.running.max_of_squares(radial.largest(), rest_n + ramp_n, moment.largest());
+        let (radial, moment) = (radial.times(stop_factor), moment.times(stop_factor));
+        self.in_stop.max_of_squares(radial.largest(), rest_n + stop_factor * ramp_n, moment.largest());
     }
 
     /// The loads as norms, with forces that attach further out by a lever \[m\].
@@ -118,13 +111,47 @@ impl<V: Lanes> EightBearing<V> {
     /// The lanes whose loads a bearing does not hold.
     #[inline(always)]
     fn broken_by(&self, limits: &BearingLimits) -> u8 {
-        let statically = |load: &EightLoad<V>| load.across(limits) + V::splat(AXIAL_SHARE) * load.axial_n;
-        let (across, axial_n) = (self.at_rest.across(limits), self.at_rest.axial_n);
+        let across = self.at_rest.across(limits);
+        let axial_n = self.at_rest.axial_n;
+        let share = V::splat(AXIAL_SHARE);
         let lasting = (across + V::splat(0.45) * axial_n).max(V::splat(0.67) * (across + axial_n));
         V::splat(limits.running_moment_nm).less(self.running.moment_at_centre(limits))
-            | V::splat(limits.at_rest_n).less(statically(&self.at_rest))
-            | V::splat(limits.in_stop_n).less(statically(&self.in_stop))
+            | V::splat(limits.at_rest_n).less(across + share * axial_n)
+            | V::splat(limits.in_stop_n).less(self.in_stop.across(limits) + share * self.in_stop.axial_n)
             | V::splat(limits.life_n).less(lasting)
+    }
+}
+
+/// Two components of a load at rest and of what a ramp adds.
+#[derive(Clone, Copy)]
+struct Pair<V> {
+    /// `|s|²` of the load at rest.
+    rest: V,
+    /// `|d|²` of the ramp.
+    ramp: V,
+    /// `2 |s·d|`.
+    both: V,
+}
+
+impl<V: Lanes> Pair<V> {
+    /// The components `first` and the next.
+    #[inline(always)]
+    fn new(at_rest: &[V; 5], ramp: &[V; 5], first: usize) -> Self {
+        let (s, d) = ([at_rest[first], at_rest[first + 1]], [ramp[first], ramp[first + 1]]);
+        let both = (s[0] * d[0] + s[1] * d[1]).abs();
+        Self { rest: s[0] * s[0] + s[1] * s[1], ramp: d[0] * d[0] + d[1] * d[1], both: both + both }
+    }
+
+    /// The same with a ramp so many times as large.
+    #[inline(always)]
+    fn times(self, factor: V) -> Self {
+        Self { rest: self.rest, ramp: self.ramp * factor * factor, both: self.both * factor }
+    }
+
+    /// Square of the larger norm of the two signs of the ramp.
+    #[inline(always)]
+    fn largest(self) -> V {
+        self.rest + self.ramp + self.both
     }
 }
 
@@ -164,7 +191,10 @@ impl<V: Lanes> EightDemands<V> {
             | V::splat(limits.peak_torque_nm).less(self.peak_torque_nm)
             | V::splat(limits.stop_torque_nm).less(self.stop_torque_nm)
             | V::splat(limits.mean_torque_cubed_nm3).less(self.mean_torque_cubed_nm3)
-            | self.bearing.map_or(0, |bearing| bearing.broken_by(&limits.bearing)))
+            | match &self.bearing {
+                Some(bearing) => bearing.broken_by(&limits.bearing),
+                None => 0,
+            })
     }
 }
 
