@@ -5,18 +5,14 @@
 //! projected once on the five components that a bearing feels, so that the kernel only adds and squares.
 
 use super::row::{Row, RowChunk};
+use crate::mechanics::Wrench;
 use crate::mechanics::lanes::{Eight, LANES, Lanes};
-use crate::mechanics::{Wrench, angular, linear};
-use crate::sizing::bearing::BearingDemand;
 use crate::sizing::eight::EightBearing;
+use crate::space::bearing_loads::{Components, PosedBearing};
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::Slot;
-use crate::space::station::{Station, StationJoint, StationSlot};
-use nalgebra::{Matrix6, Vector3};
-
-/// Components of a load on a bearing: force along two axes across the joint's axis and along the axis \[N\], and moment
-/// about the two axes across \[N m\].
-type Components = [f64; 5];
+use crate::space::station::{Station, StationSlot};
+use nalgebra::Matrix6;
 
 /// The bearing of an inner joint that is checked.
 pub(crate) struct RowBearing {
@@ -37,7 +33,7 @@ enum RowLever {
 
 /// One bearing in one case: what loads it at rest, and what each joint adds when it moves.
 struct BearingCase {
-    joint: Projection,
+    joint: PosedBearing,
     at_rest: Source,
     ramps: Vec<Ramp>,
 }
@@ -60,28 +56,6 @@ struct Source {
     per_kg: Vec<(usize, Components)>,
     /// From the link of the row, by chunk; empty if the row has no link.
     link: Vec<[Eight; 5]>,
-}
-
-/// The five components of wrenches about the world's origin, on one bearing.
-struct Projection {
-    at_m: Vector3<f64>,
-    /// Two axes across the joint's axis, and the axis.
-    axes: [Vector3<f64>; 3],
-}
-
-impl Projection {
-    fn new(joint: &StationJoint) -> Self {
-        let axis = angular(&joint.twist);
-        let [u, v] = crate::mechanics::chain::across(&axis);
-        Self { at_m: joint.at_m, axes: [u, v, axis] }
-    }
-
-    fn of(&self, wrench: &Wrench) -> Components {
-        let force_n = linear(wrench);
-        let moment_nm = angular(wrench) - self.at_m.cross(&force_n);
-        let [u, v, axis] = &self.axes;
-        [force_n.dot(u), force_n.dot(v), force_n.dot(axis), moment_nm.dot(u), moment_nm.dot(v)]
-    }
 }
 
 impl Source {
@@ -138,8 +112,8 @@ impl BearingCase {
     /// Compiles the bearing of the joint in slot `slot` in one case.
     fn new(problem: &ArmProblem, station: &Station, first: usize, slot: usize) -> Option<Self> {
         let StationSlot::Joint(place) = &station.slots[slot] else { return None };
-        let joint = Projection::new(place);
-        let at_rest = Source::new(problem, station, first, slot, &|_, weight| joint.of(weight));
+        let joint = PosedBearing::new(place);
+        let at_rest = Source::new(problem, station, first, slot, &|_, weight| joint.components(weight));
         let movers = problem.bearing_loads().movers.iter().enumerate();
         let ramps = movers
             .map(|(mover, moving)| match &station.slots[moving.slot] {
@@ -148,7 +122,7 @@ impl BearingCase {
                     // a joint moves what is outboard of it, and the bearing feels what is outboard of itself
                     let limit = slot.min(moving.slot);
                     let source = Source::new(problem, station, first, limit, &|inertia, _| {
-                        joint.of(&(inertia * motion))
+                        joint.components(&(inertia * motion))
                     });
                     Ramp { mover, inner: Some(motion), source }
                 }
@@ -197,11 +171,11 @@ impl RowBearing {
                 std::array::from_fn(|i| source.fixed[i] + outboard[i])
             };
             out.clear();
-            out.push(fixed(&of.at_rest, of.joint.of(&state.wrench)));
+            out.push(fixed(&of.at_rest, of.joint.components(&state.wrench)));
             out.extend(of.ramps.iter().map(|ramp| {
                 let outboard = match &ramp.inner {
-                    Some(motion) => of.joint.of(&(state.inertia * motion)),
-                    None => of.joint.of(&state.ramps[ramp.mover]),
+                    Some(motion) => of.joint.components(&(state.inertia * motion)),
+                    None => of.joint.components(&state.ramps[ramp.mover]),
                 };
                 fixed(&ramp.source, outboard)
             }));
@@ -211,14 +185,6 @@ impl RowBearing {
 
 /// What is outboard of a row, for each checked bearing, case and source.
 pub(crate) type BearingsBegun = Vec<Vec<Vec<Components>>>;
-
-/// Loads on the bearing of the innermost joint whose drive is chosen: the same for every design of a row.
-pub(crate) fn of_innermost(problem: &ArmProblem, first: usize, from: &Partial) -> BearingDemand {
-    match &problem.slots()[first] {
-        Slot::Sized(_) => problem.bearing_demand(&from.stations, &from.options, first),
-        _ => BearingDemand::default(),
-    }
-}
 
 impl Row {
     /// The checked bearing of the inner joint in slot `k`.

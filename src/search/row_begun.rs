@@ -2,7 +2,7 @@
 
 use super::arms::EightArms;
 use super::row::{AtJoint, AtJoints, Row, hinge_numbers};
-use super::row_bearing::{self, BearingsBegun};
+use super::row_bearing::BearingsBegun;
 use crate::mechanics::lowest_lanes::Outboard;
 use crate::sizing::bearing::BearingDemand;
 use crate::space::problem::{ArmProblem, Partial, block_steps};
@@ -91,7 +91,7 @@ impl Begun {
 
     /// Begins the row beyond the arm `from`. Memory of the row before is used again.
     fn refill(&mut self, problem: &ArmProblem, row: &Row, from: &Partial) {
-        self.of_innermost = row_bearing::of_innermost(problem, row.first, from);
+        self.of_innermost = from.next_demand.map_or(BearingDemand::default(), |demand| demand.bearing);
         self.bearings.resize_with(row.bearings.len(), Vec::new);
         for (bearing, begun) in row.bearings.iter().zip(&mut self.bearings) {
             bearing.begin(from, begun);

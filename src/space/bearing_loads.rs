@@ -15,6 +15,7 @@ use super::station::{StationJoint, StationSlot};
 use crate::arm::section::Section;
 use crate::arm::{Link, LinkBody};
 use crate::mechanics::beam::section_frame;
+use crate::mechanics::chain::across;
 use crate::mechanics::{Wrench, angular, linear};
 use crate::sizing::bearing::{BearingDemand, BearingLimits, BearingLoad};
 use nalgebra::Vector3;
@@ -116,19 +117,78 @@ fn is_checked(slot: &Slot, joint: &SpaceJoint) -> bool {
     }
 }
 
-impl StationJoint {
-    /// The load of a wrench (about the world's origin) on the face of the bearing.
-    pub(crate) fn bearing_load(&self, wrench: &Wrench) -> BearingLoad {
-        let axis = angular(&self.twist);
+/// What a bearing feels of a wrench: force along two axes across the joint's axis and along the axis \[N\], and moment
+/// about the two axes across \[N m\].
+pub(crate) type Components = [f64; 5];
+
+/// The bearing of a joint in a pose: it takes the components of wrenches about the world's origin.
+pub(crate) struct PosedBearing {
+    at_m: Vector3<f64>,
+    /// Two axes across the joint's axis, and the axis.
+    axes: [Vector3<f64>; 3],
+}
+
+impl PosedBearing {
+    /// The bearing of a joint.
+    pub(crate) fn new(joint: &StationJoint) -> Self {
+        let axis = angular(&joint.twist);
+        let [u, v] = across(&axis);
+        Self { at_m: joint.at_m, axes: [u, v, axis] }
+    }
+
+    /// Components of a wrench.
+    pub(crate) fn components(&self, wrench: &Wrench) -> Components {
         let force_n = linear(wrench);
         let moment_nm = angular(wrench) - self.at_m.cross(&force_n);
-        let along_n = force_n.dot(&axis);
-        BearingLoad {
-            moment_nm: (moment_nm - axis * moment_nm.dot(&axis)).norm(),
-            radial_n: (force_n - axis * along_n).norm(),
-            axial_n: along_n.abs(),
+        let [u, v, axis] = &self.axes;
+        [force_n.dot(u), force_n.dot(v), force_n.dot(axis), moment_nm.dot(u), moment_nm.dot(v)]
+    }
+}
+
+/// The largest loads so far: forces across and moments as squares.
+#[derive(Default)]
+struct Largest {
+    at_rest: [f64; 3],
+    running: [f64; 3],
+    in_stop: [f64; 3],
+}
+
+impl Largest {
+    /// Takes a load at rest with what a ramp adds or takes away, and `stop_factor` times as much in a stop. Of the two
+    /// signs the larger norm is `|s|² + |d|² + 2 |s·d|`.
+    fn moving(&mut self, rest: &Components, ramp: &Components, stop_factor: f64) {
+        let larger = |first: usize, times: f64| {
+            let (s, d) = ([rest[first], rest[first + 1]], [ramp[first] * times, ramp[first + 1] * times]);
+            let both = 2.0 * (s[0] * d[0] + s[1] * d[1]).abs();
+            s[0] * s[0] + s[1] * s[1] + d[0] * d[0] + d[1] * d[1] + both
+        };
+        for (largest, times) in [(&mut self.running, 1.0), (&mut self.in_stop, stop_factor)] {
+            let axial_n = rest[2].abs() + ramp[2].abs() * times;
+            take(largest, [larger(3, times), larger(0, times), axial_n]);
         }
     }
+
+    fn at_rest(&mut self, rest: &Components) {
+        let square = |first: usize| rest[first] * rest[first] + rest[first + 1] * rest[first + 1];
+        take(&mut self.at_rest, [square(3), square(0), rest[2].abs()]);
+    }
+
+    fn demand(self) -> BearingDemand {
+        let load = |[moment, radial, axial_n]: [f64; 3]| BearingLoad {
+            moment_nm: moment.sqrt(),
+            radial_n: radial.sqrt(),
+            axial_n,
+        };
+        BearingDemand {
+            at_rest: load(self.at_rest),
+            running: load(self.running),
+            in_stop: load(self.in_stop),
+        }
+    }
+}
+
+fn take(largest: &mut [f64; 3], load: [f64; 3]) {
+    largest.iter_mut().zip(load).for_each(|(largest, load)| *largest = largest.max(load));
 }
 
 impl ArmProblem<'_> {
@@ -142,31 +202,28 @@ impl ArmProblem<'_> {
     ) -> BearingDemand {
         let loads = self.bearing_loads();
         let Some(lever) = &loads.levers[slot] else { return BearingDemand::default() };
-        let cases = self.space().sizing_cases.iter();
-        let demands = cases.map(|&case| self.bearing_demand_in(case, &states[case], slot));
-        demands.fold(BearingDemand::default(), BearingDemand::max).with_lever(lever.lever_m(options))
+        let mut largest = Largest::default();
+        for &case in &self.space().sizing_cases {
+            self.load_bearing(case, &states[case], slot, &mut largest);
+        }
+        largest.demand().with_lever(lever.lever_m(options))
     }
 
-    /// Loads at the face of the flange in one case.
-    fn bearing_demand_in(&self, case: usize, state: &StationState, slot: usize) -> BearingDemand {
+    /// Takes the loads at the face of the flange in one case.
+    fn load_bearing(&self, case: usize, state: &StationState, slot: usize, largest: &mut Largest) {
         let station = &self.stations()[case];
-        let StationSlot::Joint(joint) = &station.slots[slot] else { return BearingDemand::default() };
-        let loads = self.bearing_loads();
-        let at_rest = joint.bearing_load(&state.wrench);
-        let mut out = BearingDemand { at_rest, running: at_rest, in_stop: at_rest };
+        let StationSlot::Joint(joint) = &station.slots[slot] else { return };
+        let (loads, bearing) = (self.bearing_loads(), PosedBearing::new(joint));
+        let rest = bearing.components(&state.wrench);
+        largest.at_rest(&rest);
         for (k, mover) in loads.movers.iter().enumerate() {
             let ramp = match &station.slots[mover.slot] {
                 _ if mover.slot < slot => state.ramps[k],
                 StationSlot::Joint(moving) => state.inertia * moving.twist * mover.acceleration_rad_s2,
                 _ => continue,
             };
-            for sign in [1.0, -1.0] {
-                let moving = |times: f64| joint.bearing_load(&(state.wrench + ramp * (sign * times)));
-                out.running = out.running.max(moving(1.0));
-                out.in_stop = out.in_stop.max(moving(loads.stop_factor));
-            }
+            largest.moving(&rest, &bearing.components(&ramp), loads.stop_factor);
         }
-        out
     }
 
     /// Keeps what the joint in a slot, which is about to be added, does to bearings inboard of it.

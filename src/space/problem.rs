@@ -47,6 +47,8 @@ pub struct ArmProblem<'c> {
 #[derive(Debug, Clone, Default)]
 pub struct Partial {
     next_slot: usize,
+    /// Demand on the joint in the next slot, if its drive is a choice: all its options share it.
+    pub(crate) next_demand: Option<JointDemand>,
     pub(crate) mass_kg: f64,
     pub(crate) cost_eur: f64,
     pub(crate) group: Group,
@@ -269,6 +271,12 @@ impl<'c> ArmProblem<'c> {
                 return false;
             }
         }
+        partial.next_demand = match self.slots.get(partial.next_slot) {
+            Some(Slot::Sized(sized)) => {
+                Some(self.demand(partial, partial.next_slot, Some(sized.table.motion())))
+            }
+            _ => None,
+        };
         true
     }
 
@@ -291,7 +299,8 @@ impl<'c> ArmProblem<'c> {
     }
 
     fn add_sized(&self, slot: usize, sized: &SizedJoint, option: u32, to: &mut Partial) -> bool {
-        let demand = self.demand(to, slot, Some(sized.table.motion()));
+        let demand =
+            to.next_demand.take().unwrap_or_else(|| self.demand(to, slot, Some(sized.table.motion())));
         let index = match sized.all_fits {
             true => Some(option as usize).filter(|&i| sized.table.limits(i).hold(&demand)),
             false => sized.table.first_fit(&demand),
