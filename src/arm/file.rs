@@ -2,6 +2,7 @@
 
 use super::bearing::{Bearing, Stated, read_bearing};
 use super::effect::entry::Effect;
+use super::extras::read_extras;
 use super::joint_law::{Curve, Windup};
 use super::load::vector;
 use super::section::{LinkMaterial, Section};
@@ -96,7 +97,7 @@ fn read_chain(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> 
     read.into_iter().collect()
 }
 
-const JOINT_KEYS: [&str; 11] = [
+const JOINT_KEYS: [&str; 12] = [
     "type",
     "name",
     "axis",
@@ -107,6 +108,7 @@ const JOINT_KEYS: [&str; 11] = [
     "gear_mass",
     "mass_kg",
     "bearing",
+    "extras",
     "coupled",
 ];
 const LINK_KEYS: [&str; 6] = ["type", "name", "vector_m", "material", "section", "mass_kg"];
@@ -128,6 +130,7 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<Joint> {
     let curve = read_curve(object, catalogs);
     let mass_kg = read_joint_mass(object, catalogs);
     let bearing = read_joint_bearing(object, catalogs);
+    let extras = read_extras(object);
     let coupled = object.or("coupled", None, |n| read_coupling(n).map(Some));
     Some(Joint {
         name: name?,
@@ -135,6 +138,7 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<Joint> {
         curve: curve?,
         mass_kg: mass_kg?,
         bearing: bearing?,
+        extras: extras?,
         gear: gear?,
         motor: motor?,
         coupled: coupled?,

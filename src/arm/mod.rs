@@ -11,6 +11,7 @@
 
 pub(crate) mod bearing;
 pub mod effect;
+pub(crate) mod extras;
 pub(crate) mod file;
 pub(crate) mod joint_law;
 pub(crate) mod linkage;
@@ -21,6 +22,7 @@ pub(crate) mod write;
 
 pub use bearing::{Bearing, BearingSource};
 pub use effect::entry::Effect;
+pub use extras::{Extras, ExtrasSource};
 pub use file::{read_arm, read_arm_document};
 pub use joint_law::{Curve, JointLaw, LostMotion, Windup};
 pub use linkage::Linkage;
@@ -114,6 +116,7 @@ impl JointModel {
 ///
 /// let joint = Joint {
 ///     bearing: None,
+///     extras: Default::default(),
 ///     name: "j2".into(),
 ///     axis: Vector3::y_axis(),
 ///     curve: Curve::Linear(607e3),
@@ -164,6 +167,8 @@ pub struct Joint {
     pub mass_kg: f64,
     /// Output bearing. `None` is rigid and without mass.
     pub bearing: Option<Bearing>,
+    /// What the joint weighs beyond drive and bearing.
+    pub extras: Extras,
     /// Name of the gear, for information. The numbers above count.
     pub gear: Option<String>,
     /// Name of the motor, for information.
@@ -250,9 +255,9 @@ impl Arm {
 }
 
 impl Joint {
-    /// Mass of drive and bearing \[kg\].
+    /// Mass of drive, bearing and extras \[kg\].
     pub fn total_mass_kg(&self) -> f64 {
-        self.mass_kg + self.bearing.map_or(0.0, |bearing| bearing.mass_kg)
+        self.mass_kg + self.bearing.map_or(0.0, |bearing| bearing.mass_kg) + self.extras.total_kg()
     }
 }
 

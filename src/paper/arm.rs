@@ -122,6 +122,7 @@ impl PaperArm {
     fn joint(&self, index: usize, mass_kg: f64) -> Element {
         Element::Joint(Joint {
             bearing: None,
+            extras: Default::default(),
             name: JOINTS[index].into(),
             axis: Unit::new_unchecked(Vector3::y()),
             curve: self.curves[index],

@@ -352,6 +352,7 @@ mod tests {
     };
     use super::*;
     use crate::arm::bearing::BearingSource;
+    use crate::arm::extras::ExtrasSource;
     use crate::catalog::gear::{BearingRatings, GearMass};
     use crate::catalog::motor::Motor;
     use crate::sizing::limits::{DriveLimits, Obstacle};
@@ -393,6 +394,7 @@ mod tests {
             motor: &motor,
             gear_mass: GearMass::HousedUnit,
             bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
         };
         let checks = checks(&drive, &motion, &demand);
         assert!(checks.iter().all(|c| c.state != CheckState::Holds || c.margin().unwrap() >= 1.0));
@@ -517,6 +519,7 @@ mod tests {
             motor: &motor,
             gear_mass: GearMass::HousedUnit,
             bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
         };
         let checks = checks(&drive, &motion(), &demand());
         let blank: Vec<_> = checks.iter().filter(|c| !c.holds()).map(Check::to_string).collect();
@@ -549,6 +552,7 @@ mod tests {
             motor: &motor,
             gear_mass: GearMass::HousedUnit,
             bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
         };
         let mut checks = checks(&drive, &motion(), &demand());
         assert_eq!(binding(&checks).unwrap().kind, CheckKind::GearPeak);
@@ -565,6 +569,7 @@ mod tests {
             motor: &motor,
             gear_mass: GearMass::HousedUnit,
             bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
         };
         let checks = checks(&drive, &motion(), &motion().demand_of_torques(0.0, 0.0));
         assert!(all_hold(&checks));
@@ -580,7 +585,7 @@ mod tests {
             gear in any_gear(), motor in any_motor(), motion in any_motion(), torques in any_torques(), housed: bool,
         ) {
             let gear_mass = if housed { GearMass::HousedUnit } else { GearMass::ComponentSet };
-            let drive = Drive { gear: &gear, motor: &motor, gear_mass, bearing: BearingSource::OfGear };
+            let drive = Drive { gear: &gear, motor: &motor, gear_mass, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE };
             let demand = motion.demand_of_torques(torques[0], torques[1]).with_bearing(bearing_loads(torques[2]));
             let checks = checks(&drive, &motion, &demand);
             let by_thresholds = DriveLimits::of(&drive, &motion).is_ok_and(|l| l.hold(&demand));

@@ -2,6 +2,7 @@
 
 use super::demand::JointMotion;
 use crate::arm::bearing::{Bearing, BearingSource};
+use crate::arm::extras::{Extras, ExtrasSource};
 use crate::catalog::gear::{Gear, GearMass};
 use crate::catalog::motor::Motor;
 
@@ -30,13 +31,13 @@ pub(super) fn known(rating: Option<f64>, name: &'static str) -> Rating {
 ///
 /// ```
 /// use armwright::catalog::Catalogs;
-/// use armwright::arm::BearingSource;
+/// use armwright::arm::{BearingSource, ExtrasSource};
 /// use armwright::catalog::GearMass;
 /// use armwright::sizing::{Drive, MotionRequirement};
 ///
 /// let catalogs = Catalogs::builtin();
 /// let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
-/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet, bearing: BearingSource::OfGear };
+/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE };
 /// assert_eq!(drive.name(), "HFUC-58-100 + F11-10");
 /// assert_eq!(drive.mass_kg().unwrap(), 12.2);
 /// // Eq 11: the torque that accelerates rotor and wave generator, on the motor's side [N m]
@@ -54,12 +55,27 @@ pub struct Drive<'c> {
     pub gear_mass: GearMass,
     /// Where the output bearing comes from.
     pub bearing: BearingSource,
+    /// Where the masses beyond gear, motor and bearing come from.
+    pub extras: ExtrasSource,
 }
 
 impl Drive<'_> {
     /// `gear + motor`, for messages.
     pub fn name(&self) -> String {
         format!("{} + {}", self.gear.id, self.motor.id)
+    }
+
+    /// What the joint weighs beyond gear, motor and bearing.
+    pub fn extras(&self) -> Extras {
+        self.extras.with_parts(self.gear, self.motor, self.gear_mass)
+    }
+
+    /// Mass of gear, motor and extras \[kg\].
+    ///
+    /// # Errors
+    /// The mass that the catalog leaves blank.
+    pub fn mass_with_extras_kg(&self) -> Result<f64, MissingRating> {
+        Ok(self.mass_kg()? + self.extras().total_kg())
     }
 
     /// The output bearing; `None` if the joint has none.
@@ -187,6 +203,7 @@ mod tests {
             motor: &motor,
             gear_mass: GearMass::ComponentSet,
             bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
         };
         let inertia = drive.input_inertia_kgm2().unwrap();
         assert_eq!(inertia, 0.00312);
@@ -202,6 +219,7 @@ mod tests {
             motor: &motor,
             gear_mass: GearMass::HousedUnit,
             bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
         };
         let motion = MotionRequirement::default().joint_motion(1.35, None);
         let torque = drive.peak_motor_torque_nm(&motion, 858.0).unwrap();
@@ -213,7 +231,14 @@ mod tests {
     fn the_mass_is_that_of_the_build_asked_for_and_a_blank_is_named() {
         let (gear, mut motor) = (hfuc_58_100(), f11_10());
         let mass = |gear_mass, motor: &Motor| {
-            Drive { gear: &gear, motor, gear_mass, bearing: BearingSource::OfGear }.mass_kg()
+            Drive {
+                gear: &gear,
+                motor,
+                gear_mass,
+                bearing: BearingSource::OfGear,
+                extras: ExtrasSource::NONE,
+            }
+            .mass_kg()
         };
         assert!((mass(GearMass::ComponentSet, &motor).unwrap() - 12.2).abs() < 1e-12, "Table 1");
         assert!((mass(GearMass::HousedUnit, &motor).unwrap() - 22.1).abs() < 1e-12);

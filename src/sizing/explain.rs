@@ -280,7 +280,7 @@ impl<'c> DriveTable<'c> {
             .with_bearing(demand.bearing.slowed(factor));
         let holding = self.all_drives().filter_map(|drive| {
             let limits = DriveLimits::of(&drive, &motion).ok()?;
-            let mass_kg = drive.mass_kg().ok()?;
+            let mass_kg = drive.mass_with_extras_kg().ok()?;
             limits.hold(&slower).then_some((mass_kg, drive))
         });
         holding.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, drive)| drive)

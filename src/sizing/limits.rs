@@ -19,13 +19,13 @@ pub(super) const RATED_INPUT_SPEED_RPM: f64 = 2000.0;
 ///
 /// ```
 /// use armwright::catalog::Catalogs;
-/// use armwright::arm::BearingSource;
+/// use armwright::arm::{BearingSource, ExtrasSource};
 /// use armwright::catalog::GearMass;
 /// use armwright::sizing::{Drive, DriveLimits, MotionRequirement};
 ///
 /// let catalogs = Catalogs::builtin();
 /// let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
-/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet, bearing: BearingSource::OfGear };
+/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE };
 /// let motion = MotionRequirement::default().joint_motion(1.35, None);
 /// let limits = DriveLimits::of(&drive, &motion).expect("nothing excludes this drive");
 /// assert!(limits.hold(&motion.demand_of_torques(500.0, 250.0)));

@@ -7,6 +7,7 @@ use super::demand::{JointDemand, JointMotion};
 use super::drive::Drive;
 use super::limits::DriveLimits;
 use crate::arm::bearing::{Bearing, BearingSource};
+use crate::arm::extras::ExtrasSource;
 use crate::catalog::gear::{Gear, GearMass};
 use crate::catalog::motor::{Motor, MotorKind};
 use std::ops::Range;
@@ -18,6 +19,8 @@ pub struct DriveFilter {
     pub gear_mass: GearMass,
     /// Where the output bearing of the joint comes from.
     pub bearing: BearingSource,
+    /// Where the masses beyond gear, motor and bearing come from.
+    pub extras: ExtrasSource,
     /// Series of gears, such as `CSG`.
     pub gear_series: Option<Vec<String>>,
     /// Reduction ratios.
@@ -36,6 +39,7 @@ impl DriveFilter {
         Self {
             gear_mass,
             bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
             gear_series: None,
             ratios: None,
             gear_ids: None,
@@ -79,6 +83,7 @@ pub struct DriveTable<'c> {
     motion: JointMotion,
     gear_mass: GearMass,
     bearing: BearingSource,
+    extras: ExtrasSource,
     gears: Vec<&'c Gear>,
     motors: Vec<&'c Motor>,
     pairs: Vec<Pair>,
@@ -148,6 +153,7 @@ impl<'c> DriveTable<'c> {
             motion,
             gear_mass: filter.gear_mass,
             bearing: filter.bearing,
+            extras: filter.extras,
             gears: gears.iter().filter(|g| filter.allows_gear(g)).collect(),
             motors: motors.iter().filter(|m| filter.allows_motor(m)).collect(),
             pairs: Vec::new(),
@@ -167,7 +173,9 @@ impl<'c> DriveTable<'c> {
     fn fill(&mut self) {
         let mut legal = Vec::new();
         for (drive, pair) in self.all_pairs() {
-            if let (Ok(limits), Ok(mass_kg)) = (DriveLimits::of(&drive, &self.motion), drive.mass_kg()) {
+            if let (Ok(limits), Ok(mass_kg)) =
+                (DriveLimits::of(&drive, &self.motion), drive.mass_with_extras_kg())
+            {
                 legal.push((mass_kg, drive, pair, limits));
             }
         }
@@ -208,7 +216,7 @@ impl<'c> DriveTable<'c> {
 
     /// The drive of a gear and a motor in this joint.
     pub(super) fn pair(&self, gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
-        Drive { gear, motor, gear_mass: self.gear_mass, bearing: self.bearing }
+        Drive { gear, motor, gear_mass: self.gear_mass, bearing: self.bearing, extras: self.extras }
     }
 
     /// The output bearing of the joint with a gear.
@@ -256,7 +264,7 @@ impl<'c> DriveTable<'c> {
         self.drive_of(self.pairs[index])
     }
 
-    /// Mass of the drive at an index \[kg\].
+    /// Mass of the drive at an index with its extras \[kg\].
     #[inline]
     pub fn mass_kg(&self, index: usize) -> f64 {
         self.masses_kg[index]
@@ -415,7 +423,7 @@ mod tests {
             let mut slow = Vec::new();
             for gear in &gears {
                 for motor in &motors {
-                    let drive = Drive { gear, motor, gear_mass, bearing: BearingSource::OfGear };
+                    let drive = Drive { gear, motor, gear_mass, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE };
                     if all_hold(&checks(&drive, &motion, &demand)) {
                         slow.push((drive.mass_kg().unwrap(), gear.id.clone(), motor.id.clone()));
                     }

@@ -193,6 +193,7 @@ mod tests {
     use super::super::testing::{char_lynn_j_8_2, f11_10, hfuc_40_100, hfuc_58_100};
     use super::*;
     use crate::arm::bearing::BearingSource;
+    use crate::arm::extras::ExtrasSource;
     use crate::catalog::gear::GearMass;
     use crate::catalog::motor::Motor;
     use crate::sizing::demand::LinearReading;
@@ -202,8 +203,13 @@ mod tests {
         let study = MotionRequirement { linear_reading: LinearReading::Paper, ..Default::default() };
         let motion = study.joint_motion(1.35, None);
         let gear = hfuc_58_100();
-        let drive =
-            Drive { gear: &gear, motor, gear_mass: GearMass::ComponentSet, bearing: BearingSource::OfGear };
+        let drive = Drive {
+            gear: &gear,
+            motor,
+            gear_mass: GearMass::ComponentSet,
+            bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
+        };
         JointSizingRow::new("j2", &drive, &motion, &motion.demand(568.3, 0.0), 80.0)
     }
 
@@ -232,6 +238,7 @@ mod tests {
             motor: &motor,
             gear_mass: GearMass::ComponentSet,
             bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
         };
         let row = JointSizingRow::new("j2", &drive, &motion, &motion.demand(400.0, 1.0), 80.0);
         let life = row.checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();
@@ -259,6 +266,7 @@ mod tests {
             motor: &motor,
             gear_mass: GearMass::ComponentSet,
             bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
         };
         let row = JointSizingRow::new("j2", &drive, &motion, &motion.demand_of_torques(500.0, 100.0), 0.0);
         assert_eq!(row.fails[0], "gear peak 600 N m needed, 568 allowed");

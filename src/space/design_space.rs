@@ -3,6 +3,7 @@
 use super::constraint::Constraints;
 use crate::arm::bearing::BearingSource;
 use crate::arm::effect::entry::Effect;
+use crate::arm::extras::ExtrasSource;
 use crate::arm::joint_law::Curve;
 use crate::arm::load::Payload;
 use crate::arm::load::Water;
@@ -139,6 +140,8 @@ pub struct SpaceJoint {
     pub axis: Unit<Vector3<f64>>,
     /// Where the output bearing of the joint comes from.
     pub bearing: BearingSource,
+    /// Where the masses beyond gear, motor and bearing come from.
+    pub extras: ExtrasSource,
     /// How the drive of the joint is found.
     pub drive: DriveChoice,
     /// Largest speed that the study asks for \[rad/s\]; `None`: the speed that follows from the tip's.
@@ -209,7 +212,7 @@ pub struct LinkOption {
 impl SpaceJoint {
     /// Whether the bearing depends on the gear that is chosen.
     pub(crate) fn bearing_is_open(&self) -> bool {
-        self.bearing == BearingSource::OfGear && !matches!(self.drive, DriveChoice::Given { .. })
+        self.bearing == BearingSource::OfGear && self.drive.is_sized()
     }
 }
 
@@ -217,6 +220,11 @@ impl DriveChoice {
     /// Whether the search chooses the drive.
     pub fn is_open(&self) -> bool {
         matches!(self, DriveChoice::AllFits(_))
+    }
+
+    /// Whether the drive is found by sizing.
+    pub fn is_sized(&self) -> bool {
+        !matches!(self, DriveChoice::Given { .. })
     }
 }
 

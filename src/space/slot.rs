@@ -155,7 +155,7 @@ pub(crate) fn joint_slot<'c>(
     let (filter, all_fits) = match &joint.drive {
         DriveChoice::Given { curve, mass_kg, .. } => {
             let law = space.joint_piece(joint, *curve, joint.bearing.stated()).law;
-            return Slot::Given { law, mass_kg: *mass_kg };
+            return Slot::Given { law, mass_kg: *mass_kg + joint.extras.stated().total_kg() };
         }
         DriveChoice::FirstFit(filter) => (filter, false),
         DriveChoice::AllFits(filter) => (filter, true),
@@ -164,7 +164,7 @@ pub(crate) fn joint_slot<'c>(
     let table = DriveTable::build(
         &joint.name,
         motion,
-        &DriveFilter { bearing: joint.bearing, ..with_curve(filter, catalogs) },
+        &DriveFilter { bearing: joint.bearing, extras: joint.extras, ..with_curve(filter, catalogs) },
         &catalogs.gears,
         &catalogs.motors,
     );

@@ -8,6 +8,7 @@ use super::definition::Study;
 use super::effects::check_effects;
 use super::sections::{read_materials, read_sections};
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
+use crate::arm::extras::{ExtrasSource, read_extras_source};
 use crate::arm::file::{read_curve, read_effects, read_joint_mass, read_link, read_name};
 use crate::arm::load::Payload;
 use crate::arm::load::{read_pose, vector, word};
@@ -22,7 +23,7 @@ use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{Case, DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 use nalgebra::Vector3;
 
-const KEYS: [&str; 15] = [
+const KEYS: [&str; 16] = [
     "name",
     "question",
     "gravity_m_s2",
@@ -33,6 +34,7 @@ const KEYS: [&str; 15] = [
     "environments",
     "motion",
     "drives",
+    "extras",
     "constraints",
     "models",
     "effects",
@@ -80,9 +82,11 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let gap = root.or("gap_percent", 0.0, read_gap);
     let filter = root.or("drives", Drives::default(), |n| read_drives(n, catalogs));
     let constraints = root.or("constraints", Constraints::default(), read_constraints);
+    let extras = read_extras_source(&root, ExtrasSource::Usual);
     let mut not_checked = Vec::new();
     let chain = root.required("chain").and_then(|n| {
-        let open = Open { catalogs, drives: filter.as_ref()?, constraints: constraints.as_ref()? };
+        let (drives, constraints, extras) = (filter.as_ref()?, constraints.as_ref()?, extras?);
+        let open = Open { catalogs, drives, constraints, extras };
         read_chain(&n, &open, &mut not_checked)
     });
     let joints = joint_names(node);
@@ -147,6 +151,7 @@ struct Open<'a> {
     catalogs: &'a Catalogs,
     drives: &'a Drives,
     constraints: &'a Constraints,
+    extras: ExtrasSource,
 }
 
 /// Where drives are taken from.
@@ -173,6 +178,7 @@ fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
     let filter = DriveFilter {
         gear_mass: gear_mass?,
         bearing: BearingSource::OfGear,
+        extras: ExtrasSource::NONE,
         gear_series: names(&object, "gear_series", &known_series)?,
         ratios: object.or("ratios", None, |n| read_ratios(n, &known_ratios).map(Some))?,
         gear_ids: names(&object, "gears", &known_gears)?,
@@ -306,6 +312,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         "mass_kg",
         "max_speed_rad_s",
         "bearing",
+        "extras",
         "drives",
     ])?;
     let name = read_name(&object);
@@ -335,7 +342,11 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
     };
     let (drive, bearing) = (drive?, read_bearing(&object, open.catalogs));
     let bearing = bearing_source(&object, bearing?, &drive, open.catalogs);
-    Some(SpaceJoint { name: name?, axis: axis?, bearing: bearing?, drive, max_speed_rad_s: max_speed? })
+    // the mass of a given drive is stated, and so are its extras
+    let usually = if drive.is_sized() { open.extras } else { ExtrasSource::NONE };
+    let extras = read_extras_source(&object, usually);
+    let (bearing, extras) = (bearing?, extras?);
+    Some(SpaceJoint { name: name?, axis: axis?, bearing, extras, drive, max_speed_rad_s: max_speed? })
 }
 
 /// Where the bearing of a joint comes from. A component set has none of its own, so a joint that is sized with component

@@ -263,6 +263,7 @@ impl AskedJoint {
             curve,
             mass_kg,
             bearing: None,
+            extras: Default::default(),
             gear: None,
             motor: None,
             coupled: None,
