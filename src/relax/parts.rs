@@ -86,6 +86,6 @@ fn slot_masses(slot: &Slot) -> Vec<f64> {
         Slot::Given { mass_kg, .. } | Slot::Offset { mass_kg } => vec![*mass_kg],
         Slot::Sized(sized) => (0..sized.table.len()).map(|i| sized.table.mass_kg(i)).collect(),
         Slot::Link { options, .. } => options.iter().map(|o| o.mass_kg).collect(),
-        Slot::Bearing { .. } => vec![0.0],
+        Slot::Bearing { laws, .. } => vec![0.0; laws.len()],
     }
 }

@@ -291,7 +291,8 @@ fn joint_masses(slot: &Slot) -> Vec<f64> {
     match slot {
         Slot::Sized(sized) => (0..sized.table.len()).map(|i| sized.table.mass_kg(i)).collect(),
         Slot::Given { mass_kg, .. } | Slot::Offset { mass_kg } => vec![*mass_kg],
-        Slot::Link { .. } | Slot::Bearing { .. } => Vec::new(),
+        Slot::Bearing { laws, .. } => vec![0.0; laws.len()],
+        Slot::Link { .. } => Vec::new(),
     }
 }
 
