@@ -21,7 +21,7 @@ const DRIVE: [(usize, f64); 2] = [(3, 1.0), (0, 4.0)];
 const TUBE: [(usize, f64); 2] = [(0, 2.0), (1, 1.0)];
 /// Gains below this are due to rounding.
 const NOTHING: f64 = 1e-9;
-/// A force is known well enough if its interval is narrower than this part of its size.
+/// A force is known well enough if its interval is narrower than this part of the force's greatest magnitude.
 const KNOWN: f64 = 0.1;
 /// Least distance of a branching point from either end of the interval, as a part of the interval.
 const SAME: f64 = 1e-3;
@@ -197,7 +197,7 @@ impl Rows<'_> {
 }
 
 impl Problem<'_> {
-    /// The key of a node of a level's tree.
+    /// The coordinates that separate a node of a level's tree from other nodes.
     fn key(&self, level: usize, node: u32) -> Key {
         match &self.parts[self.level_pieces[level]] {
             Part::Drives { tree, .. } => tree.node(node).key,

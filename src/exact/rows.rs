@@ -58,7 +58,7 @@ pub(super) struct Rows<'a> {
     pub tips: Vec<TipRow>,
     /// For each judged case, the gears that yield.
     pub gears: Vec<Gear>,
-    /// The forces that have two rows each.
+    /// The forces that the bound has rows for, two rows for each force.
     pub forces: Vec<Force<'a>>,
     /// Eigenvalue at which the mode rows are taken \[1/s²\].
     pub lambda: f64,

@@ -2,7 +2,7 @@
 
 use super::names::NAMES;
 
-/// What a paper study gives.
+/// The result of one of the paper's studies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PaperStudyOutput {
     /// Files to write: name and content. `summary.md` is among them.

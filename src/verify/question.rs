@@ -82,7 +82,7 @@ pub enum AskedDrive {
 /// Which parts of the catalogs a joint may use; `None` allows all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AllowedParts {
-    /// Which mass of a gear counts.
+    /// Whether a gear counts with the mass of its housed unit or of its component set.
     pub gear_mass: GearMass,
     /// Series of gears.
     pub gear_series: Option<Vec<String>>,

@@ -15,7 +15,7 @@ use crate::report::number::{fixed, percent_change};
 use crate::report::svg::plot::{Guide, Plot, Series};
 use crate::report::table::{Column, Table};
 
-/// The reference deflection \[m\].
+/// Deflection at which the materials of the figure are compared \[m\].
 pub const REFERENCE_M: f64 = 0.2e-3;
 
 /// One curve of the figure: name in the legend, name in the catalog, style, and whether all fibres run along the

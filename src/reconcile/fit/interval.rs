@@ -95,7 +95,8 @@ fn refit(forward: &Forward, mut model: Model, u: &[f64], weights: &Weights, enou
     straight.min(end(&model, &start, effort).objective)
 }
 
-/// The end of the profile interval on one side; `None` if the profile does not rise enough within the range.
+/// One end of a parameter's 95 % interval, where the objective, refitted with the parameter held, has risen by
+/// [`RISE`]. `None` if it does not rise so much within the parameter's range.
 fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64, sd: f64) -> Option<f64> {
     let (low, high) = best.model.bounds(p);
     let u = best.point.u[p];

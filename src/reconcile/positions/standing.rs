@@ -71,7 +71,7 @@ impl Positions {
         out
     }
 
-    /// The place of the arm and of its points during a run.
+    /// Placement of the arm, and of the points on its tool, during a run.
     fn stand(
         &self,
         geometry: &Geometry,

@@ -37,7 +37,7 @@ const SUSPICIOUS: f64 = 1.8;
 const CHANCE: f64 = 1e-3;
 /// A structure less probable than this is suspected.
 const SUSPECTED: f64 = 0.02;
-/// Number of structures that are put into words.
+/// Largest number of structures that are described in words.
 const TOLD: usize = 3;
 
 impl LackOfFit {

@@ -142,7 +142,7 @@ impl Row {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows of a subproblem with these members. Its trial shapes give the rows of modes.
+    /// The rows of a subproblem with these members. The subproblem's trial shapes give the rows of modes.
     pub(super) fn new(
         skeleton: &'a Skeleton,
         table: &'a PartsTable,
