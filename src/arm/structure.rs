@@ -97,7 +97,7 @@ pub struct LinkPiece {
     pub point_mass_kg: f64,
     /// Cables and hoses along the axis \[kg/m\].
     pub harness_kg_per_m: f64,
-    /// Compliance of the frame at the root of the link, in the carried frame.
+    /// Rotational compliance of the structure behind the joint, at the root of the link, in carried-frame axes.
     pub root_frame: FrameCompliance,
 }
 

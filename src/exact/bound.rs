@@ -27,7 +27,7 @@ const MOST_STEPS: usize = 30;
 /// A box of designs: one node of each level's tree, tip first.
 pub(super) type DesignBox = Vec<u32>;
 
-/// The best objectives that a member of a box could have. No member is better in any of them.
+/// The ideal point of a box: the best objectives that a member could have. No member is better in any of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BoxBound {
     pub mass_kg: f64,
@@ -36,7 +36,7 @@ pub(super) struct BoxBound {
 }
 
 impl BoxBound {
-    /// The bound of a box about which nothing is known.
+    /// The bound of a box about which nothing is known yet.
     pub(super) const OPEN: Self = Self { mass_kg: 0.0, tip_m: 0.0, hz: f64::INFINITY };
 
     /// The bound with all three objectives made worse by the factor `1 + slack`.
@@ -66,8 +66,8 @@ impl<'c> Problem<'c> {
         vec![0; self.level_pieces.len()]
     }
 
-    /// The objectives of a box of one design. Mass and deflection are those of the bound; the mode is
-    /// computed exactly, because a trial shape gives only an upper bound of it.
+    /// The objectives of the design in a box of one design. Mass and deflection are exact in the bound; the mode is
+    /// computed anew, because a trial shape gives only an upper bound of its frequency.
     pub(super) fn objectives(&self, box_bound: &BoxBound, work: &Work) -> Objectives {
         let quotient = (box_bound.hz * std::f64::consts::TAU).powi(2);
         let lowest =
@@ -85,8 +85,8 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// The first trial shapes: those of the box of all designs, one for each start in each judged case.
-    /// `None` if no design meets the constraints.
+    /// The first trial shapes, made for the box of all designs: for each judged case, one for each acceleration in
+    /// [`STARTS`]. `None` if no design meets the constraints.
     pub(super) fn first_shapes(&self, work: &mut Work) -> Option<Vec<Shape>> {
         self.fill(&mut self.root(), work)?;
         self.least_tip_m(work)?;
@@ -103,8 +103,8 @@ impl<'c> Problem<'c> {
         Some(shapes)
     }
 
-    /// Bounds a box. `shapes` are the trial shapes of the parent box; they are replaced by this box's own
-    /// where that helps. `is_dominated` tells whether an incumbent dominates a bound, and `worth_refining`
+    /// Bounds a box. `shapes` holds the trial shapes of the parent box; a shape is replaced by one of this box where
+    /// that sharpens the bound. `is_dominated` tells whether an incumbent dominates a bound, and `worth_refining`
     /// whether a better shape could prune the box.
     pub(super) fn bound(
         &self,
@@ -166,7 +166,7 @@ impl<'c> Problem<'c> {
         Some(box_bound)
     }
 
-    /// Improves the trial shapes until the box is pruned or the bound no longer moves.
+    /// Improves the trial shapes until the box is pruned or the bound no longer changes.
     fn refine(
         &self,
         box_bound: &mut BoxBound,
@@ -202,8 +202,8 @@ impl<'c> Problem<'c> {
         Verdict::Open(*box_bound)
     }
 
-    /// Least deflection of the tip in the worst judged case \[m\]. `None` if no member has forces within the
-    /// force bounds of the problem.
+    /// Least deflection of the tip in the worst judged case \[m\]. `None` if no member's forces lie in the intervals
+    /// to which the problem's force bounds restrict them.
     pub(super) fn least_tip_m(&self, work: &mut Work) -> Option<f64> {
         let mut worst = 0.0f64;
         work.worst_tip = None;
@@ -275,8 +275,8 @@ fn hertz(lambda: f64) -> f64 {
     lambda.sqrt() / std::f64::consts::TAU * (1.0 + ROUNDING)
 }
 
-/// The strain coordinate of a tube, as an interval, for a force in an interval. The stiffness of the piece is
-/// an interval too, and the coordinate is the product of force and compliance.
+/// Interval of a tube's strain coordinate for a force in an interval. The coordinate is force times compliance, and
+/// the compliance of the piece is an interval too.
 pub(super) fn tube_strain(
     coordinate: usize,
     pose: &Pose,

@@ -16,7 +16,7 @@ use super::shape::{Shape, products};
 use super::torsion::Torsion;
 use super::work::Work;
 
-/// Ratio of the geometric mean of a range to its lower end, less one. Zero for an empty range.
+/// How far the geometric mean of an interval exceeds its lower end (relative). Zero for an interval without width.
 fn middling(low: f64, high: f64) -> f64 {
     if low > 0.0 && high > low { (high / low).sqrt() - 1.0 } else { 0.0 }
 }
@@ -70,9 +70,10 @@ impl Problem<'_> {
         best.map(|(_, level)| level)
     }
 
-    /// The relative fall of a shape's quotient if the torques, which each piece's weight makes uncertain, had
-    /// middling values. Such a fall occurs because a heavier part may press a gear inboard into a stiffer
-    /// segment of its curve. One number for each piece.
+    /// For each piece, the relative fall of a trial shape's Rayleigh quotient if torques had middle values instead of
+    /// those that are best for the bound, as far as the piece's weight makes the torques uncertain. The quotient
+    /// falls because a heavier part may press a gear inboard into a stiffer segment of its curve, and the bound
+    /// assumes this segment.
     fn softened_by_torque(&self, case: usize, shape: &Shape, strain: f64, work: &Work) -> Vec<f64> {
         let mut softened = vec![0.0; self.parts.len()];
         let pose = &self.poses[case];
@@ -91,8 +92,8 @@ impl Problem<'_> {
         softened
     }
 
-    /// The relative growth of the least deflection if a piece had middling numbers, one number for each
-    /// piece.
+    /// For each piece, the relative growth of the least deflection if the piece's stiffnesses had their geometric
+    /// mean instead of their greatest value.
     fn weigh_tip(&self, work: &mut Work) {
         work.tip_growth.clear();
         work.tip_growth.resize(self.parts.len(), 0.0);

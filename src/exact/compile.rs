@@ -22,8 +22,8 @@ use crate::space::station::reaches_m;
 use std::sync::Arc;
 
 impl<'c> Problem<'c> {
-    /// Compiles a space with the link options that `takes` admits. `ties` says whether drives of one mass and
-    /// one curve are one option. `None` if some level has no option.
+    /// Compiles a space with the link options for which `takes` is true. `ties` says whether drives of equal mass and
+    /// equal curve are one option. `None` if some level has no option.
     pub(super) fn new(
         space: &'c DesignSpace,
         catalogs: &'c Catalogs,
@@ -154,7 +154,7 @@ impl<'c> Problem<'c> {
         0..size as u32
     }
 
-    /// The fixed proportions of static torque and inertia for a joint, around the proportion that the payload
+    /// The rays of a joint: fixed proportions of static torque and inertia, around the proportion that the payload
     /// alone causes.
     fn rays(&self, piece: usize, motion: &JointMotion) -> Rays {
         let (mut static_nm, mut inertia_kgm2) = (0.0f64, 0.0f64);
@@ -166,8 +166,7 @@ impl<'c> Problem<'c> {
         Rays::new(motion, static_nm, inertia_kgm2)
     }
 
-    /// Adds the inertia matrices of every judged case. They need the numbers of some arm, to know which
-    /// coordinates yield.
+    /// Adds the inertia matrices of every judged case. An arbitrary arm of the space shows which coordinates yield.
     pub(super) fn with_inertias(mut self) -> Self {
         let mut work = Work::default();
         let filled = self.fill(&mut self.root(), &mut work);

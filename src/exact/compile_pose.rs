@@ -51,7 +51,7 @@ impl Pose {
         pose
     }
 
-    /// Goes inward from the tip. The wrench of everything outboard is kept as a linear function of the
+    /// Compiles the pieces from the tip inward. The wrench of everything outboard is kept as a linear function of the
     /// weights.
     fn compile(&mut self, space: &DesignSpace, payload: Wrench, tip_m: &Vector3<f64>) {
         let mut outboard = Outboard { fixed: payload, per_n: Vec::new(), inertia: Vec::new() };
@@ -227,7 +227,8 @@ impl PosedTube {
     }
 }
 
-/// Force on each of the coordinates [`ENDS`] per newton of the tube's own weight, which is spread along it.
+/// Force on each of the coordinates [`ENDS`] per newton of the tube's own weight, which is distributed along the
+/// tube.
 fn areas_per_n(tube: &PosedTube) -> [f64; 8] {
     let down = tube.frame.tr_mul(&-Vector3::z());
     let f = &tube.forms;

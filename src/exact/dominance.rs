@@ -22,13 +22,13 @@ use super::tree::Tree;
 use super::work::Work;
 use crate::sizing::demand::JointDemand;
 
-/// Part of the arm's mass by which the dominating drive must be lighter, so that rounding cannot decide.
+/// A dominating drive must be lighter by at least this part of the arm's mass, so that rounding cannot decide.
 const LIGHTER: f64 = 1e-6;
 
 /// Number of tree nodes that may be visited in the search for a dominating drive.
 const BOXES: usize = 64;
 
-/// What a dominating drive has to be.
+/// The properties that a dominating drive must have.
 struct DominatingDrive<'a> {
     lighter_than_kg: f64,
     demand: &'a JointDemand,
@@ -37,7 +37,7 @@ struct DominatingDrive<'a> {
 }
 
 impl DominatingDrive<'_> {
-    /// Whether a box of drives may have such a drive. For a box of one drive: whether it is one.
+    /// Whether a box of drives may have a dominating drive. For a box of one drive: whether this drive dominates.
     fn may_be_in(&self, drives: &DriveBox) -> bool {
         drives.mass_kg[0] < self.lighter_than_kg
             && drives.hold(self.demand)
@@ -48,7 +48,7 @@ impl DominatingDrive<'_> {
             }
     }
 
-    /// The mass of such a drive below a node \[kg\], if one is found before the visits are used up.
+    /// Mass of a dominating drive below a node \[kg\]; `None` if none is found before the visits are used up.
     fn find(&self, tree: &Tree<DriveBox>, node: u32, boxes_left: &mut usize) -> Option<f64> {
         let drives = &tree.node(node).bounds;
         if *boxes_left == 0 || !self.may_be_in(drives) {
@@ -63,18 +63,18 @@ impl DominatingDrive<'_> {
 }
 
 impl Problem<'_> {
-    /// Whether every load of the arm, and every displacement that it causes, grows with every weight. Then a
-    /// lighter arm of the same stiffness is no worse. It is not so with friction, because what friction holds
-    /// back grows with the weights too, nor with drives that fit first, because a lighter arm would get
-    /// softer drives.
+    /// Whether every load of the arm, and every displacement that a load causes, grows with every weight. Then a
+    /// lighter arm of the same stiffness is no worse. This fails with friction, because the twist that friction holds
+    /// back grows with the weights too. It also fails with first-fit drives, because a lighter arm would get softer
+    /// drives.
     pub(super) fn grows_with_weight(&self) -> bool {
         let fits_first = self.parts.iter().any(|part| matches!(part, Part::FirstFit { .. }));
         let friction = self.joint_plays.iter().flatten().any(JointPlay::has_friction);
         !fits_first && !friction && self.poses.iter().all(Pose::grows_with_weight)
     }
 
-    /// Removes dominated drives from a box whose numbers are in `work`. `None` if no design is left;
-    /// otherwise whether the box became smaller.
+    /// Removes dominated drives from a box whose numbers are in `work`. Returns whether the box became smaller;
+    /// `None` if no design is left.
     pub(super) fn prune_dominated_drives(
         &self,
         design_box: &mut [u32],
@@ -120,7 +120,7 @@ impl Problem<'_> {
         })
     }
 
-    /// Whether every gear inboard stays in its segment, and its play unchanged, if a piece loses this much
+    /// Whether every gear inboard stays in its segment, with unchanged play, if a piece becomes lighter by this
     /// weight \[N\].
     fn slopes_stay(&self, piece: usize, lost_n: f64, work: &Work) -> bool {
         self.judged_cases().all(|case| {

@@ -9,7 +9,7 @@ use super::parts::{DriveBox, LeastDemand};
 use super::torsion::CurveBox;
 use super::tree::Tree;
 
-/// The drives of one curve: mass \[kg\] and node of the lightest and of the heaviest.
+/// The drives with one torsion curve: mass \[kg\] and node of the lightest drive and of the heaviest.
 struct CurveGroup {
     curve: Option<CurveBox>,
     lightest: (f64, u32),
@@ -17,8 +17,8 @@ struct CurveGroup {
 }
 
 impl CurveGroup {
-    /// Adds a drive. Among equal masses the first node counts, so that the result does not depend on the
-    /// order.
+    /// Adds a drive. Among equal masses the lower node counts, so that the result does not depend on the order of the
+    /// drives.
     fn add(&mut self, drive: (f64, u32)) {
         if drive < self.lightest {
             self.lightest = drive;

@@ -4,10 +4,10 @@ use super::bound::BoxBound;
 use crate::search::sweep::Candidate;
 use rayon::prelude::*;
 
-/// The least `ε` such that for every open box some design of the front, with mass and deflection divided by
-/// `1 + ε` and mode multiplied by it, is no worse than the bound of the box. No missed design is then better
-/// than the whole front by more than `ε` in every objective at once. `None` if a bound says nothing, or if
-/// the front is empty.
+/// The gap that the open boxes leave: no missed design is better than the whole front by more than `ε` in every
+/// objective at once. It is the least `ε` with which every open box is covered by the front. A design covers a box if
+/// it is no worse than the bound of the box after mass and deflection are divided by `1 + ε` and the mode is
+/// multiplied by `1 + ε`. `None` if a bound says nothing, or if the front is empty.
 pub(super) fn gap(open: &[BoxBound], front: &[Candidate]) -> Option<f64> {
     let of = |box_bound: &BoxBound| {
         let factor = |c: &Candidate| {

@@ -9,14 +9,14 @@ use crate::sizing::demand::JointDemand;
 use crate::space::attributes::von_mises;
 use crate::space::slot::SizedJoint;
 
-/// Relative rounding of a sum of a few dozen terms, with a margin.
+/// Relative margin for rounding of a sum of a few dozen terms.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// Levels of a tree that are descended in the search for infeasible drives.
+/// Number of levels of a tree that are descended in the search for drives that cannot carry a demand.
 const DEPTH: usize = 6;
 
 impl Problem<'_> {
-    /// Fills in every interval from the tip inward, and shrinks the nodes of the box to the options that can
-    /// carry the least load. `None` if some part cannot carry it.
+    /// Computes every interval of a box, from the tip inward, and shrinks the nodes of the box to the options that
+    /// can carry the least load. `None` if some part cannot carry it.
     pub(super) fn fill(&self, design_box: &mut [u32], work: &mut Work) -> Option<()> {
         work.clear(self.parts.len(), self.poses.len());
         let mut level = 0;
@@ -116,7 +116,7 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Least and greatest static torque on a joint \[N m\], and inertia about it \[kg m²\].
+    /// Intervals of the static torque on a joint \[N m\] and of the inertia about its axis \[kg m²\].
     fn loads(&self, piece: usize, work: &Work) -> ([f64; 2], [f64; 2]) {
         let (mut static_nm, mut inertia_kgm2) = ([0.0f64; 2], [0.0f64; 2]);
         for (pose, weights) in self.poses.iter().zip(&work.weights).filter(|(p, _)| p.sizing) {
@@ -134,8 +134,8 @@ impl Problem<'_> {
         (rounded(static_nm), rounded(inertia_kgm2))
     }
 
-    /// The least axial force \[N\], moments about y and z and torsion \[N m\] at the ends of a tube in every
-    /// case, times the factors that are applied before the comparison with the strength.
+    /// For every case, the least axial force \[N\], moments about y and z and torsion \[N m\] at the ends of a tube.
+    /// They are multiplied by the factors with which stress is compared with the strength.
     fn least_loads(&self, piece: usize, safety: f64, work: &Work) -> Vec<[f64; 4]> {
         let cases = self.poses.iter().zip(&work.weights);
         cases
@@ -153,8 +153,8 @@ impl Problem<'_> {
     }
 }
 
-/// The box around the drives below a node that may carry a demand. It descends a few levels, so that
-/// infeasible drives do not widen the box. `None` if no drive may carry it.
+/// The box around those drives below a node that may carry a demand. The tree is descended a few levels, so that
+/// drives that cannot carry the demand do not widen the box. `None` if no drive may carry it.
 fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth: usize) -> Option<DriveBox> {
     let drives = &tree.node(node).bounds;
     if !drives.may_hold(asked) {

@@ -36,8 +36,8 @@ impl Problem<'_> {
 }
 
 impl Rows<'_> {
-    /// The multipliers that raise the lowest of some relaxed designs as far as possible above the limits of a
-    /// local upper bound.
+    /// The multipliers under which the lowest of the relaxed designs is as far as possible above the limits of a
+    /// local upper bound. The relaxed designs play a matrix game against the rows.
     pub(super) fn best_multipliers(&self, members: &[RelaxedDesign], upper: &LocalUpperBound) -> Game {
         /// A row this far below its limit (scaled) has no influence.
         const NO_SAY: f64 = -10.0;
@@ -50,8 +50,8 @@ impl Rows<'_> {
         solve(&members.iter().flat_map(above).collect::<Vec<f64>>(), row_limits.len(), balanced)
     }
 
-    /// Adds the modes of the mixed arm that lie below the required frequency, as new rows. Returns whether
-    /// there were any.
+    /// Adds a row for each mode of the mixed arm that lies below the required frequency. Returns whether there was
+    /// any.
     pub(super) fn add_violated_modes(
         &mut self,
         members: &mut [RelaxedDesign],
@@ -91,7 +91,8 @@ impl Rows<'_> {
         self.modes.len() > before
     }
 
-    /// Stiffness and inertia of the mixed arm in a case: the mean of the relaxed designs by their shares.
+    /// Stiffness and inertia of the mixed arm in a case: the means over the relaxed designs, weighted by their
+    /// shares.
     fn mixed_arm(&self, members: &[RelaxedDesign], mix: &[f64], judged: usize) -> Arm {
         let pieces = self.problem.parts.len();
         let mut arm = (vec![[0.0; STIFFNESSES]; pieces], vec![[0.0; INERTIAS]; pieces]);
@@ -103,7 +104,7 @@ impl Rows<'_> {
         arm
     }
 
-    /// The least weighted sum over the members of the box, and the relaxed design that attains it.
+    /// The least weighted sum of the rows over the members of the box, and the relaxed design that attains this sum.
     pub(super) fn minimize(&self, design_box: &[u32], multipliers: Vec<f64>) -> (DualPoint, RelaxedDesign) {
         let mut total: f64 = multipliers.iter().zip(&self.fixed).map(|(w, f)| w * f).sum();
         let mut levels = Vec::with_capacity(design_box.len());
@@ -160,7 +161,7 @@ impl Rows<'_> {
         (DualPoint { multipliers, least: total, levels }, member)
     }
 
-    /// A relaxed design without parts.
+    /// A relaxed design in which all numbers are zero.
     fn empty_design(&self, design_box: &[u32]) -> RelaxedDesign {
         let pieces = self.problem.parts.len();
         RelaxedDesign {
@@ -173,7 +174,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Adds a drive to a relaxed design, in the state that is cheapest for its price.
+    /// Adds a drive to a relaxed design, in the state that is cheapest at these prices.
     fn add_joint(
         &self,
         piece: usize,
@@ -198,7 +199,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Adds a tube to a relaxed design. For a box of tubes: the lightest and stiffest numbers.
+    /// Adds a tube to a relaxed design. For a box of tubes, the least masses and the greatest stiffnesses are added.
     fn add_tube(&self, piece: usize, length_m: f64, links: &LinkBox, member: &mut RelaxedDesign) {
         let (line, stiffnesses) = (&links.low.inertias, &links.high.stiffnesses);
         let mass_kg = line[inertia::MASS] * length_m;
@@ -280,7 +281,7 @@ impl Rows<'_> {
         price
     }
 
-    /// What a piece of a relaxed design adds to a row, scaled.
+    /// The amount that a piece of a relaxed design adds to a row, divided by the row's scale.
     pub(super) fn added(&self, member: &RelaxedDesign, piece: usize, row: usize) -> f64 {
         let adds = match row.checked_sub(self.first_mode) {
             None => member.adds[piece][row],

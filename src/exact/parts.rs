@@ -62,7 +62,7 @@ impl Line {
     }
 }
 
-/// A box of link options.
+/// A box of link options, with the least and the greatest of each number.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct LinkBox {
     pub low: Line,
@@ -122,23 +122,23 @@ impl Bounds for LinkBox {
         }
     }
 
-    /// Mass has the double weight, because it is an objective and also loads everything inboard. Shear and
-    /// stretch hardly move any objective.
+    /// Mass counts twice, because it is an objective and also loads everything inboard. Shear and stretch hardly
+    /// change any objective.
     fn key(&self) -> Key {
         let s = self.low.stiffnesses.map(|s| if s.is_finite() { s.ln() } else { 0.0 });
         [2.0 * self.low.inertias[inertia::MASS].ln(), s[0], 0.7 * s[1], 0.1 * s[2], 0.3 * s[3]]
     }
 }
 
-/// Torques whose relative difference is below this count as equal when compared with a break point.
+/// Torques count as equal, when compared with a break point, if their relative difference is below this.
 pub(super) const SAME_TORQUE: f64 = 1e-12;
 
-/// Number of load proportions for which a box of drives knows its capacity.
+/// Number of rays of a box of drives.
 pub(super) const RAYS: usize = 12;
 
-/// Demands in fixed proportions of static torque and inertia. A drive that can carry a demand can carry every
-/// smaller multiple of it. So if no member of a box carries the multiple of a ray that lies below a demand,
-/// none carries the demand, even though each single limit may be met by some member.
+/// Rays: demands in fixed proportions of static torque and inertia. A drive that can carry a demand can carry every
+/// smaller multiple of it. If no member of a box carries the multiple of a ray that lies below a demand, then no
+/// member carries the demand, even though each single limit may be met by some member.
 pub(super) struct Rays {
     /// Static torque \[N m\] and inertia \[kg m²\] of each ray.
     loads: [(f64, f64); RAYS],
@@ -146,7 +146,7 @@ pub(super) struct Rays {
 }
 
 impl Rays {
-    /// Rays around the proportion that the payload alone causes.
+    /// Rays around the proportion of static torque to inertia that the payload alone causes.
     pub(super) fn new(motion: &JointMotion, payload_static_nm: f64, payload_inertia_kgm2: f64) -> Self {
         let loads = std::array::from_fn(|k| match k {
             0 => (0.0, 1.0),
@@ -159,7 +159,7 @@ impl Rays {
         Self { demands: loads.map(|(static_nm, inertia)| motion.demand(static_nm, inertia)), loads }
     }
 
-    /// The multiple of each ray's demand that a drive can carry.
+    /// For each ray, the greatest multiple of its demand that a drive can carry.
     pub(super) fn capacity(&self, limits: &DriveLimits) -> [f64; RAYS] {
         self.demands.each_ref().map(|demand| limits.multiple_of(demand))
     }
@@ -168,12 +168,12 @@ impl Rays {
 /// The least demand that the members of a box make on a joint.
 pub(super) struct LeastDemand {
     pub demand: JointDemand,
-    /// The multiple of each ray that lies below the demand.
+    /// For each ray, the multiple of its demand that lies below this demand.
     multiples: [f64; RAYS],
 }
 
 impl LeastDemand {
-    /// The demand of a static torque \[N m\] and an inertia \[kg m²\].
+    /// The least demand for a static torque \[N m\] and an inertia \[kg m²\].
     pub(super) fn new(motion: &JointMotion, rays: &Rays, static_nm: f64, inertia_kgm2: f64) -> Self {
         let times = |asked: f64, unit: f64| if unit > 0.0 { asked / unit } else { f64::INFINITY };
         let multiples =
@@ -191,13 +191,14 @@ pub(super) struct DriveBox {
     pub limits: DriveLimits,
     /// The least of each limit over the members.
     pub least_limits: DriveLimits,
-    /// The greatest multiple of each ray's demand that any member carries.
+    /// For each ray, the greatest multiple of its demand that any member carries.
     pub multiples: [f64; RAYS],
     /// The curves of the members; `None` if one of them is rigid.
     pub curve: Option<CurveBox>,
     /// Break points of the members' curves.
     pub breaks: BreakPoints,
-    /// For a single kind of several drives, the limits of each. The kind carries what any of them carries.
+    /// For a single kind of several drives, the limits of each drive. A kind carries whatever one of its drives
+    /// carries.
     pub each: Option<Arc<[DriveLimits]>>,
 }
 
@@ -225,8 +226,8 @@ impl DriveBox {
             && self.multiples.iter().zip(&asked.multiples).all(|(carried, asked)| carried >= asked)
     }
 
-    /// Whether the demand is within the greatest limits. For a single kind: whether one of its drives carries
-    /// it.
+    /// Whether the demand is within the greatest limits. For a single kind: whether one of its drives carries the
+    /// demand.
     #[inline]
     pub(super) fn hold(&self, demand: &JointDemand) -> bool {
         self.limits.hold(demand)
@@ -248,7 +249,7 @@ impl Bounds for DriveBox {
         }
     }
 
-    /// First by curve, because drives with the same gear share it; then by mass.
+    /// Drives are separated by torsion curve first, because drives with the same gear share it, and then by mass.
     fn key(&self) -> Key {
         let k = self.curve.map_or([0.0; 3], |c| {
             let w = &c.stiff.windup;

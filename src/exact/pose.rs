@@ -48,7 +48,7 @@ pub(super) fn degree_factor(coordinate: usize) -> f64 {
 pub(super) struct Pose {
     pub judged: bool,
     pub sizing: bool,
-    /// Whether no two contributions to the tip's displacement oppose each other.
+    /// Whether no two contributions to the tip's displacement may have opposite signs.
     pub contributions_align: bool,
     /// Density of the water around the arm, 0 in air \[kg/m³\]. The net weight per length of a tube is `g
     /// (mass - water · outer area)`.
@@ -56,7 +56,7 @@ pub(super) struct Pose {
     pub pieces: Vec<PosedPiece>,
     /// Inertia of the payload, before any part is chosen.
     pub payload_inertia: Matrix6<f64>,
-    /// The rows of all coordinates that a weight or a load strains, tip first.
+    /// The rows of all coordinates that are strained by a weight or by another load, tip first.
     pub rows: Vec<Row>,
     pub stress: Vec<StressRow>,
     /// Inertia about each joint's axis; `None` for a piece that is no joint.
@@ -99,16 +99,17 @@ pub(super) struct TubeForms {
     pub along: SMatrix<f64, 4, 4>,
 }
 
-/// The force on a strain coordinate, and the effect of the coordinate on the tip.
+/// The force on a strain coordinate, as a linear function of the weights, and the displacement of the tip by this
+/// coordinate.
 pub(super) struct Row {
     pub piece: usize,
     /// Index of a tube's coordinate; 0 for a joint.
     pub coordinate: usize,
     /// Force without the weight of any part \[N or N m\].
     pub fixed: f64,
-    /// Force per newton of the weight of each piece, up to and including `piece`.
+    /// For each piece up to and including `piece`, the force per newton of the piece's weight.
     pub per_n: Vec<f64>,
-    /// Displacement of the tip per unit of the coordinate, and its length.
+    /// Displacement of the tip per unit of the coordinate. `tip_m_per_unit` is the length of this vector.
     pub tip_m: Vector3<f64>,
     pub tip_m_per_unit: f64,
 }
@@ -140,7 +141,7 @@ impl Pose {
 }
 
 impl Pose {
-    /// Whether every force, and so every demand, grows with every weight.
+    /// Whether every force, and so every demand on a joint, grows with every weight.
     pub(super) fn grows_with_weight(&self) -> bool {
         let loads = self.stress.iter().flat_map(|row| &row.loads);
         self.water_kg_m3 == 0.0
@@ -148,8 +149,8 @@ impl Pose {
             && loads.into_iter().all(|(fixed, per_n)| sign(*fixed, per_n).is_some())
     }
 
-    /// Whether no two contributions to the tip's displacement oppose each other. Then the tip moves further
-    /// if any part yields more.
+    /// Whether no two contributions to the tip's displacement may have opposite signs. Then the tip moves further if
+    /// any part yields more.
     pub(super) fn contributions_align(&self) -> bool {
         let rows = self.relevant_rows();
         let ways: Vec<_> = rows.map(|row| row.tip_m * sign(row.fixed, &row.per_n).unwrap_or(0.0)).collect();
@@ -165,7 +166,8 @@ impl Pose {
     }
 }
 
-/// The common sign of a force without weights and per weight; 0 if all are zero, `None` if signs differ.
+/// The common sign of the fixed part of a force and of its parts per weight. It is 0 if all are zero, and `None` if
+/// signs differ.
 fn sign(fixed: f64, per_n: &[f64]) -> Option<f64> {
     let largest = per_n.iter().fold(0.0f64, |most, c| most.max(c.abs()));
     // The fixed force and the coefficients have different units. They are compared as if every weight were

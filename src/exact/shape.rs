@@ -27,16 +27,16 @@ pub(super) struct Shape {
     pub kinetic_fixed: f64,
 }
 
-/// The stiffnesses and inertias of an arm, or the best of a box, for each piece from the tip. The best of a
-/// box is an ideal arm that need not be a member.
+/// The stiffnesses and inertias of an arm, piece by piece from the tip. For a box they are the best of each: an ideal
+/// arm that need not be a member.
 pub(super) struct Ideal<'a> {
     pub stiffness: &'a [[f64; STIFFNESSES]],
     pub inertia: &'a [[f64; INERTIAS]],
 }
 
 impl Shape {
-    /// A low mode shape of an ideal arm, started by an acceleration of the base and kept orthogonal to
-    /// others.
+    /// A low mode shape of an ideal arm. It starts as the deformation under an acceleration of the base, and is kept
+    /// orthogonal to the other shapes.
     pub(super) fn start(
         pose: &Pose,
         ideal: &Ideal,
@@ -81,7 +81,7 @@ impl Shape {
         if kinetic > 0.0 { strain / kinetic } else { f64::INFINITY }
     }
 
-    /// `xᵀMx`.
+    /// Twice the kinetic energy of the shape per squared angular frequency, `xᵀMx`.
     #[inline]
     pub(super) fn kinetic_energy(&self, inertia: &[[f64; INERTIAS]]) -> f64 {
         let mut kinetic = self.kinetic_fixed;
@@ -114,7 +114,7 @@ impl Shape {
         }
     }
 
-    /// Makes the shape orthogonal to others in the sense of `K`, so that it converges to another mode.
+    /// Makes the shape orthogonal to the other shapes in the sense of `K`, so that it converges to another mode.
     fn clear_of(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self]) {
         for other in others {
             let (mut common, mut own) = (0.0, 0.0);
@@ -132,7 +132,7 @@ impl Shape {
         }
     }
 
-    /// Computes the strain and kinetic energy of each piece.
+    /// Computes the part of each piece in `xᵀKx` and in `xᵀMx`.
     fn energies(&mut self, pose: &Pose) {
         let mut twist = Twist::zeros();
         self.kinetic_fixed = 0.0;
@@ -232,7 +232,7 @@ impl PosedPiece {
         }
     }
 
-    /// Stiffness of a coordinate; 0 where nothing yields.
+    /// Stiffness of a coordinate; 0 for a piece that does not yield.
     #[inline]
     pub(super) fn coordinate_stiffness(&self, coordinate: usize, stiffness: &[f64; STIFFNESSES]) -> f64 {
         match self {
@@ -244,7 +244,7 @@ impl PosedPiece {
     }
 }
 
-/// Buffers of one step.
+/// Buffers for one step of inverse iteration.
 #[derive(Default)]
 pub(super) struct Work {
     momenta: Vec<Momentum>,
@@ -252,7 +252,7 @@ pub(super) struct Work {
     pub forces: Vec<f64>,
 }
 
-/// The momentum of a piece on the way inward.
+/// The momentum of a piece, kept for the way inward.
 enum Momentum {
     Body(Wrench),
     Tube(TubeMomentum),
@@ -270,7 +270,7 @@ fn displacement(twist: &Twist, at_m: &Vector3<f64>) -> Vector3<f64> {
 }
 
 impl PosedTube {
-    /// Adds the motion of the tube's own coordinates to that of everything outboard.
+    /// Adds to `twist`, the motion of everything outboard, the part of the tube's own coordinates.
     #[inline]
     fn carry(&self, twist: &mut Twist, x: &[f64]) {
         for (end, coordinate) in ENDS.into_iter().enumerate() {
@@ -279,7 +279,7 @@ impl PosedTube {
     }
 }
 
-/// The motion of a tube in its own planes.
+/// The motion of a tube, separated by its planes.
 struct Local {
     z: SVector<f64, 9>,
     y: SVector<f64, 9>,

@@ -8,12 +8,12 @@ use super::work::Work;
 /// The displacement of the tip in a judged case, along the direction of its least deflection.
 pub(super) struct TipRow {
     pub case: usize,
-    /// Displacement per newton of each piece's weight \[m/N\], through tubes and through gears of a single
-    /// slope.
+    /// Displacement per newton of each piece's weight \[m/N\], through tubes and through gears with a single slope.
     pub per_n: Vec<f64>,
     /// Displacement per twist of each joint \[m/rad\].
     pub joints: Vec<f64>,
-    /// The torque at which a gear of a single slope twists \[N m\]; `None` if its slope may change.
+    /// For each gear with a single slope, the torque at which it twists \[N m\]; `None` for other pieces and for
+    /// gears whose slope may change.
     pub torques_nm: Vec<Option<f64>>,
     /// Displacement per compliance of each tube.
     pub tubes: Vec<[f64; STIFFNESSES]>,

@@ -24,8 +24,8 @@ pub(super) struct Work {
     pub(super) forces: Vec<Vec<[f64; 2]>>,
     /// Torsion curves of each joint; `None` for a rigid joint or another piece.
     pub(super) curves: Vec<Option<CurveBox>>,
-    /// Greatest stiffnesses of each piece in each case. A gear's slope depends on its torque, so it differs
-    /// between cases.
+    /// Greatest stiffnesses of each piece in each case. A gear's slope depends on its torque, so it differs from case
+    /// to case.
     pub(super) stiff_in: Vec<Vec<[f64; STIFFNESSES]>>,
     /// Mass of each piece, as an interval \[kg\].
     pub(super) masses: Vec<[f64; 2]>,
@@ -37,17 +37,19 @@ pub(super) struct Work {
     pub(super) breaks: Vec<BreakPoints>,
     /// Least and greatest magnitude of the torque on each joint, in each judged case \[N m\].
     pub(super) torques: Vec<Vec<[f64; 2]>>,
-    /// The case whose tip has the greatest least deflection, and its direction.
+    /// The judged case in which the tip's least deflection is greatest, and the direction of the tip's displacement
+    /// there.
     pub(super) worst_tip: Option<(usize, Vector3<f64>)>,
     /// Direction of the tip's least deflection in each judged case.
     pub(super) tip_directions: Vec<Vector3<f64>>,
     /// Upper bound of the tip's deflection in each judged case in which contributions may oppose each other
     /// \[m\].
     pub(super) greatest_tip_m: Vec<f64>,
-    /// The relative growth of the deflection if a piece had middling numbers.
+    /// For each piece, the relative growth of the deflection if the piece's stiffnesses had middle values instead of
+    /// their greatest.
     pub(super) tip_growth: Vec<f64>,
     pub(super) shape: ShapeWork,
-    /// Judged case and start of the shape with the least quotient.
+    /// Judged case, and number of the start, of the shape with the least quotient.
     pub(super) worst: (usize, usize),
 }
 

@@ -6,9 +6,9 @@ use crate::space::problem::ArmProblem;
 use crate::space::slot::Slot;
 
 impl Parts {
-    /// Drops the drives that cannot carry the least demand. Where the joint takes the lightest drive that
-    /// carries its demand, it also drops those heavier than the lightest that carries the greatest demand.
-    /// Returns whether any was dropped.
+    /// Drops the drives that cannot carry the least demand on their joint. If a joint takes the lightest drive that
+    /// carries its demand, drives heavier than the lightest that carries the greatest demand are dropped too. Returns
+    /// whether any drive was dropped.
     pub(super) fn drop_drives(&mut self, problem: &ArmProblem, cases: &[CaseLoads]) -> bool {
         let mut dropped = false;
         for (slot, piece) in problem.slots().iter().enumerate() {

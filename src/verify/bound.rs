@@ -11,29 +11,29 @@ use super::span::Span;
 use super::tubes::{DENSITIES, STIFFNESSES, TubeRange};
 use nalgebra::Vector3;
 
-/// Room for rounding where a limit decides (relative).
+/// Margin for rounding where a value is compared with a limit (relative).
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// The parts of a box as ranges.
+/// The members of a box or region, as ranges of the numbers of their parts.
 pub(super) struct Members<'w> {
-    /// Drives that may hold, joint by joint.
+    /// For each joint, the range of the drives that may hold.
     pub drives: Vec<DriveRange>,
     pub tubes: Vec<&'w TubeRange>,
-    /// Masses of drives, then weights of tubes per length, in each of the study's surroundings.
+    /// Masses of the drives, then weights per length of the tubes, in each of the study's surroundings.
     pub loads: Vec<Vec<Span>>,
 }
 
-/// A mass and a deflection that no member betters.
+/// A mass and a deflection that no member improves on, one by one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct IdealPoint {
     pub mass_kg: f64,
     pub tip_m: f64,
-    /// The judged case that bounds the deflection, and the direction in which it does.
+    /// The judged case that bounds the deflection, and the direction of the tip's displacement there.
     pub worst: usize,
     pub direction: Vector3<f64>,
 }
 
-/// What a joint is asked for at least or at most.
+/// Intervals of the static torque and the inertia that a joint's drive must hold, over the members.
 #[derive(Default)]
 struct Asked {
     static_nm: Span,
@@ -41,7 +41,7 @@ struct Asked {
 }
 
 impl<'w> Members<'w> {
-    /// Tubes, and drives of which nothing is known yet: their masses are zero.
+    /// Members with these tubes, and with drives about which nothing is known yet: their masses are zero.
     pub(super) fn new(drives: Vec<DriveRange>, tubes: Vec<&'w TubeRange>, waters: usize) -> Self {
         let loads = |water: usize| {
             let drives = drives.iter().map(|_| Span::default());
@@ -59,7 +59,7 @@ impl<'w> Members<'w> {
 }
 
 impl Skeleton {
-    /// What a joint is asked for at least and at most, with room for rounding.
+    /// Least and greatest demand on a joint's drive over the members, with a margin for rounding.
     pub(super) fn demands(&self, joint: usize, duty: &Duty, members: &Members) -> [Demand; 2] {
         let asked = self.asked(joint, members);
         let (statics, inertia) = (asked.static_nm, asked.inertia_kgm2);
@@ -70,8 +70,8 @@ impl Skeleton {
         ]
     }
 
-    /// The worst static torque and inertia on a joint over the cases it is sized in; everything outboard of it
-    /// is known.
+    /// Intervals of the worst static torque and inertia on a joint over the sizing cases. Everything outboard of the
+    /// joint must be known.
     fn asked(&self, joint: usize, members: &Members) -> Asked {
         let mut asked = Asked::default();
         for pose in self.poses.iter().filter(|pose| pose.sizing) {
@@ -87,7 +87,8 @@ impl Skeleton {
         asked
     }
 
-    /// Inertia of all that is outboard about a joint's axis: the entry of the twist of that joint.
+    /// Inertia, about a joint's axis, of everything outboard: the diagonal entry of the mass matrix at the twist of
+    /// the joint.
     fn inertia_about(&self, pose: &Pose, joint: usize, members: &Members) -> Span {
         let entry = joint * (joint + 3) / 2;
         let of_drives = members.loads[pose.water][..members.drives.len()].iter().copied();
@@ -102,7 +103,8 @@ impl Skeleton {
             .fold(fixed, |sum, (number, per)| sum.plus(number.times(per[entry])))
     }
 
-    /// Whether the least stress at both ends of every tube leaves the safety that is asked for.
+    /// Whether the stress at both ends of every tube keeps the required safety factor in some member, as far as the
+    /// least stress tells.
     pub(super) fn strong_enough(&self, members: &Members) -> bool {
         let Some(safety) = self.limits.stress_safety_factor_min else { return true };
         self.poses.iter().all(|pose| {
@@ -121,7 +123,7 @@ impl Skeleton {
         })
     }
 
-    /// Mass and deflection that no member betters; `None` if they break a limit.
+    /// A mass and a deflection that no member improves on; `None` if either breaks a limit.
     pub(super) fn ideal_point(&self, members: &Members) -> Option<IdealPoint> {
         let drives: f64 = members.drives.iter().map(|drive| drive.least_kg).sum();
         let tubes: f64 = members.tubes.iter().map(|tube| tube.least.mass_kg).sum();
@@ -144,7 +146,7 @@ impl Skeleton {
             .then_some(ideal)
     }
 
-    /// The largest stiffness of each coordinate in a pose.
+    /// The greatest stiffness of each coordinate over the members, in a pose.
     pub(super) fn stiffnesses(&self, pose: &Pose, members: &Members) -> Vec<f64> {
         let loads = &members.loads[pose.water];
         let stiffness = |coordinate: &Coordinate| match *coordinate {
@@ -160,7 +162,8 @@ impl Skeleton {
         self.coordinates.iter().map(stiffness).collect()
     }
 
-    /// The stiffest and lightest arm of a box in a pose.
+    /// Stiffness and inertia matrices of the ideal arm in a pose: every stiffness at its greatest, every inertia at
+    /// its least.
     pub(super) fn pencil(&self, pose: &Pose, members: &Members) -> Pencil {
         let mut inertia = pose.inertia.clone();
         let masses = members.drives.iter().map(|drive| drive.least_kg);
@@ -176,7 +179,7 @@ fn weight(tube: &TubeRange, water: usize) -> Span {
     Span { least: tube.least.around[water].weight_n_per_m, most: tube.most.around[water].weight_n_per_m }
 }
 
-/// Compliances of a set of tubes.
+/// Range of each compliance over a set of tubes.
 pub(super) fn compliances(tube: &TubeRange) -> [Span; STIFFNESSES] {
     std::array::from_fn(|i| Span {
         least: 1.0 / tube.most.stiffnesses[i],
@@ -184,7 +187,8 @@ pub(super) fn compliances(tube: &TubeRange) -> [Span; STIFFNESSES] {
     })
 }
 
-/// About the direction in which the tip of a box's stiffest arm moves; `None` if it does not. Any direction gives a bound.
+/// Approximate direction in which the tip of the stiffest arm moves; `None` if the tip does not move. Every direction
+/// gives a valid bound.
 pub(super) fn direction(pose: &Pose, members: &Members) -> Option<Vector3<f64>> {
     let loads = &members.loads[pose.water];
     let joints = members.drives.iter().zip(&pose.torques).zip(&pose.tip_m_per_rad).map(
@@ -200,7 +204,7 @@ pub(super) fn direction(pose: &Pose, members: &Members) -> Option<Vector3<f64>> 
     joints.chain(tubes).chain(tilts).sum::<Vector3<f64>>().try_normalize(0.0)
 }
 
-/// The least that the tip moves in a direction.
+/// Least displacement of the tip along a direction over the members \[m\].
 fn tip_along(pose: &Pose, members: &Members, direction: &Vector3<f64>) -> f64 {
     let loads = &members.loads[pose.water];
     let joints = members.drives.iter().zip(&pose.torques).zip(&pose.tip_m_per_rad).map(

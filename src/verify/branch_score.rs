@@ -10,8 +10,9 @@ use super::pencil::square;
 use super::tubes::{DENSITIES, TubeRange};
 use crate::arm::joint_law::Windup;
 
-/// Scores the levels of a box: how much the ideal point loses if an average part replaces the best one. The level with
-/// the largest score is halved. Any rule gives a valid proof; this one makes boxes shrink fast.
+/// Scores the levels of a box by how much worse the ideal point becomes if a level has an average part instead of the
+/// best one. The level with the largest score is halved. Any rule gives a valid proof; this one makes boxes shrink
+/// fast.
 pub(super) struct BranchScore<'a> {
     pub boxes: &'a Boxes,
     pub members: &'a Members<'a>,
@@ -21,7 +22,7 @@ pub(super) struct BranchScore<'a> {
 }
 
 impl BranchScore<'_> {
-    /// How much the ideal point loses by a level.
+    /// How much worse the ideal point becomes if a level has an average part.
     pub(super) fn score_of(&self, level: usize) -> f64 {
         let node = self.parts.0[level];
         let [mass_kg, tip_m, eigenvalue] = match self.boxes.skeleton.levels[level] {
@@ -35,7 +36,7 @@ impl BranchScore<'_> {
         part(mass_kg, self.ideal.mass_kg) + part(tip_m, self.ideal.tip_m).ln_1p() + 0.5 * slower.ln_1p()
     }
 
-    /// Loss of mass, deflection and `λ` by an average drive.
+    /// By how much an average drive makes mass \[kg\], deflection \[m\] and `λ` \[1/s²\] worse.
     fn of_joint(&self, joint: usize, node: u32) -> [f64; 3] {
         let (range, whole) = (&self.members.drives[joint], self.boxes.joints[joint].range(node));
         let mass_kg = 0.5 * (whole.most_kg.min(range.most_kg) - range.least_kg);
@@ -51,7 +52,7 @@ impl BranchScore<'_> {
         [mass_kg, tip_m + self.deflection_per(joint) * mass_kg, eigenvalue]
     }
 
-    /// Loss of mass, deflection and `λ` by an average tube.
+    /// By how much an average tube makes mass \[kg\], deflection \[m\] and `λ` \[1/s²\] worse.
     fn of_tube(&self, tube: usize) -> [f64; 3] {
         let range: &TubeRange = self.members.tubes[tube];
         let pose = &self.boxes.skeleton.poses[self.ideal.worst];
@@ -95,7 +96,7 @@ impl BranchScore<'_> {
         strain + self.slow.eigenvalue * inertia
     }
 
-    /// What a unit of a load adds to the deflection of the stiffest arm.
+    /// Deflection of the stiffest arm per unit of a load (the mass of a drive, or the weight per length of a tube).
     fn deflection_per(&self, load: usize) -> f64 {
         let pose = &self.boxes.skeleton.poses[self.ideal.worst];
         let loads = &self.members.loads[pose.water];

@@ -1,6 +1,6 @@
 //! The torques that a drive must hold.
 
-/// A torque on the output side that a drive must hold.
+/// A torque on the output side of a gear that a drive must hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
     /// While standing in the worst pose (Eq 7) \[N m\].
@@ -9,13 +9,13 @@ pub(super) enum Quantity {
     Peak,
     /// In an emergency stop \[N m\].
     Stop,
-    /// Cube of the cubic mean over the duty cycle \[(N m)³\]: a cube root is not needed to compare.
+    /// Cube of the cubic mean over the duty cycle \[(N m)³\]. Cubes are compared, so that no root has to be taken.
     MeanCubed,
 }
 
 /// Number of quantities.
 pub(super) const QUANTITIES: usize = 4;
 
-/// What is asked for of each quantity.
+/// The torques that a drive must hold, one for each [`Quantity`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Demand(pub [f64; QUANTITIES]);

@@ -16,15 +16,17 @@ pub(super) struct Duty {
     pub acceleration_rad_s2: f64,
     /// Required life \[h\].
     pub life_h: f64,
-    /// Linear torque per inertia \[rad/s²\] and per static torque; one of them is zero.
+    /// Torque of linear acceleration per inertia \[rad/s²\], and per static torque. One of the two is zero, depending
+    /// on how Eq 8 is read.
     linear_per_inertia: f64,
     linear_per_static: f64,
-    /// Linear torque of an emergency stop over that of the ramp.
+    /// Torque of linear acceleration in an emergency stop, divided by that in a ramp.
     stop_factor: f64,
     mean: MeanTorque,
 }
 
-/// Weights of the cubes in the cubic mean torque.
+/// Weights in the cube of the cubic mean: of static plus linear torque, of static torque, and of static minus linear
+/// torque, each cubed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct MeanTorque {
     of_sum: f64,
@@ -33,7 +35,7 @@ struct MeanTorque {
 }
 
 impl Duty {
-    /// The motion of a joint whose axis the tip is at most `reach_m` away from.
+    /// The motion of a joint; the tip is at most `reach_m` from its axis.
     pub(super) fn new(motion: &AskedMotion, reach_m: f64, max_speed_rad_s: Option<f64>) -> Self {
         // the tip's speed over its lever; a short lever would ask a roll joint for absurd speeds
         let lever_m = reach_m.max(motion.min_lever_m);
@@ -56,7 +58,8 @@ impl Duty {
         }
     }
 
-    /// What a static torque and an inertia outboard ask of the drive; it grows with both (see [`AskedMotion::grows`]).
+    /// The torques that a static torque and an inertia outboard ask of the drive. They grow with both (see
+    /// [`AskedMotion::grows`]).
     pub(super) fn demand(&self, static_nm: f64, inertia_kgm2: f64) -> Demand {
         let static_nm = static_nm.abs();
         let linear_nm = (self.linear_per_inertia * inertia_kgm2 + self.linear_per_static * static_nm).abs();
@@ -78,8 +81,8 @@ impl AskedMotion {
         self.tip_speed_m_s / self.ramp_time_s
     }
 
-    /// Whether no torque that is asked for falls when static torque or inertia grows. Only the ramp down subtracts
-    /// one from the other, and the ramp up outweighs it if it is at least as long.
+    /// Whether no torque of a demand falls when static torque or inertia grows. Only while slowing down is the linear
+    /// torque subtracted from the static torque; speeding up outweighs this if it takes at least as long.
     pub fn grows(&self) -> bool {
         let mean = self.mean_torque();
         mean.of_difference <= mean.of_sum
@@ -118,7 +121,7 @@ impl AskedMotion {
 }
 
 impl AskedPhase {
-    /// Duration times mean speed over full speed \[s\].
+    /// Time that the travel of the phase takes at full speed \[s\]: duration times mean speed over full speed.
     fn travel_s(&self) -> f64 {
         self.duration_s
             * match self.kind {

@@ -11,12 +11,12 @@ use crate::mechanics::beam::section_frame;
 use crate::mechanics::chain::across;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-/// Place of a piece's springs in the order from base to tip.
+/// Rank of a piece's springs in the order from base to tip.
 fn spring_rank(piece: usize) -> usize {
     2 * piece
 }
 
-/// Place of a piece itself in that order: its springs come before it.
+/// Rank of a piece in that order. Its springs come before it.
 fn piece_rank(piece: usize) -> usize {
     2 * piece + 1
 }
@@ -94,7 +94,8 @@ impl Layout {
         layout
     }
 
-    /// The springs that the arm stands on; they are inboard of the first piece, whose springs come first in the list.
+    /// Adds the springs on which the arm stands. They are inboard of the first piece, but in the list they come after
+    /// the springs of that piece.
     fn add_base(&mut self, structure: &Structure) {
         let fixed = structure.base_frame.springs();
         let level = [Vector3::x(), Vector3::y()].map(|axis| (axis, structure.base_tilt_rad_per_nm));
@@ -106,7 +107,8 @@ impl Layout {
         }
     }
 
-    /// Springs where the arm has come to, about axes of the world; those that do not yield are left out.
+    /// Adds springs at the end of the chain so far, about axes in the world frame. Springs that do not yield are left
+    /// out.
     fn add_springs(&mut self, place: usize, springs: &[(Vector3<f64>, f64)]) {
         for &(axis, rad_per_nm) in springs.iter().filter(|(_, rad_per_nm)| *rad_per_nm > 0.0) {
             let (rank, at_m) = (spring_rank(place), self.tip_m);
@@ -138,13 +140,14 @@ impl Layout {
     }
 }
 
-/// Whether something weighs along a link: it is a tube, or cables run along it.
+/// Whether a link has weight along its length: because it is a tube, or because cables run along it.
 pub(super) fn has_line(link: &LinkPiece) -> bool {
     let has_cables = link.harness_kg_per_m != 0.0 && link.vector_m.norm() > 0.0;
     link.beam.is_some() || has_cables
 }
 
-/// A point of the arm: beyond everything of a lower rank, and maybe inside the tube of this rank.
+/// A point of the arm. Everything of a lower rank is inboard of it. If it lies in a tube, its rank is that of the
+/// tube.
 #[derive(Clone, Copy)]
 pub(super) struct Point {
     pub at_m: Vector3<f64>,
@@ -156,11 +159,11 @@ pub(super) struct Point {
 /// A way in which a tube yields.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Shape {
-    /// Curvature that moves the tube along z, constant or from 1 at the root to -1 at the end.
+    /// Curvature that moves the tube along z: constant, or falling linearly from 1 at the root to -1 at the end.
     BendZ {
         linear: bool,
     },
-    /// The same along y.
+    /// Curvature that moves the tube along y, in the same two forms.
     BendY {
         linear: bool,
     },
@@ -179,7 +182,8 @@ const BENDING: [Shape; 4] = [
 const REST: [Shape; 4] = [Shape::ShearZ, Shape::ShearY, Shape::Twist, Shape::Stretch];
 
 impl Shape {
-    /// Displacement and rotation of the section at `x` per unit, from the clamped root, in the tube's frame.
+    /// Displacement and rotation of the section at `x` per unit of the shape, in the tube's frame. The root is
+    /// clamped.
     fn field(self, x: f64, length_m: f64) -> (Vector3<f64>, Vector3<f64>) {
         let slope = |linear: bool| if linear { x - x * x / length_m } else { x };
         let moved =
@@ -200,7 +204,8 @@ impl Shape {
         }
     }
 
-    /// Which of a tube's stiffnesses resists, and the integral of the squared strain \[m\].
+    /// Index of the tube's stiffness that resists the shape, and the integral of the squared strain along the tube
+    /// \[m\].
     pub(super) fn stiffness(self, length_m: f64) -> (usize, f64) {
         let bending = |linear: bool| if linear { length_m / 3.0 } else { length_m };
         match self {
@@ -239,7 +244,7 @@ pub(super) fn coordinates(layout: &Layout, model: LinkModel) -> Vec<Coordinate> 
 }
 
 impl Layout {
-    /// Displacement and rotation of a point per unit of a coordinate, world.
+    /// Displacement and rotation of a point per unit of a coordinate, in the world frame.
     pub(super) fn motion(&self, coordinate: Coordinate, point: &Point) -> (Vector3<f64>, Vector3<f64>) {
         let still = (Vector3::zeros(), Vector3::zeros());
         let turned = |axis: &Vector3<f64>, at_m| (axis.cross(&(point.at_m - at_m)), *axis);
@@ -258,7 +263,8 @@ impl Layout {
 }
 
 impl PlacedTube {
-    /// Displacement and rotation of a point in or beyond the tube per unit of a shape, world.
+    /// Displacement and rotation, per unit of a shape, of a point in the tube or outboard of it, in the world frame.
+    /// `None` for a point inboard of the tube.
     fn motion(&self, shape: Shape, point: &Point) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let world = |x: f64| {
             let (moved, turned) = shape.field(x, self.length_m);

@@ -13,19 +13,19 @@ use std::collections::HashMap;
 /// A gear and a motor.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Offer {
-    /// Place of the gear in the catalogs.
+    /// Index of the gear in the catalogs.
     pub gear: usize,
-    /// Place of the motor in the catalogs.
+    /// Index of the motor in the catalogs.
     pub motor: usize,
     pub mass_kg: f64,
     /// The gear's torsion curve.
     pub windup: Windup,
-    /// How the joint twists with it, effects included.
+    /// Joint law with this gear, effects included.
     pub law: JointLaw,
     pub ratings: Ratings,
 }
 
-/// The drive of a joint: given, or offers of the catalogs.
+/// The drive of a joint: given by the study, or offered by the catalogs.
 pub(super) enum JointOffers {
     Given { law: JointLaw, mass_kg: f64 },
     Catalog(CatalogOffers),
@@ -34,16 +34,16 @@ pub(super) enum JointOffers {
 /// The drives of the catalogs that a joint may have.
 pub(super) struct CatalogOffers {
     pub duty: Duty,
-    /// Whether any that holds may be chosen; else the lightest that holds is.
+    /// Whether the search may choose any drive that holds. Otherwise the joint takes the lightest drive that holds.
     pub is_choice: bool,
-    /// Lightest first, equal masses by the names of gear and motor.
+    /// The drives, lightest first; those of equal mass by the names of gear and motor.
     pub offers: Vec<Offer>,
-    /// Where the drive of a gear and a motor stands.
+    /// Index in `offers` of the drive with this gear and motor.
     places: HashMap<(usize, usize), u32>,
 }
 
 impl JointOffers {
-    /// The drives of a joint whose axis the tip is at most `reach_m` away from.
+    /// The drives of a joint; the tip is at most `reach_m` from its axis.
     pub(super) fn new(question: &Question, joint: &AskedJoint, reach_m: f64, catalogs: &Catalogs) -> Self {
         let law = |curve| question.joint_piece(joint, curve).law;
         let allowed = match &joint.drive {
@@ -58,7 +58,7 @@ impl JointOffers {
         Self::Catalog(CatalogOffers { duty, is_choice: joint.drive.is_choice(), offers, places })
     }
 
-    /// The drives of the catalogs, if they give the drive.
+    /// The drives that the catalogs offer; `None` if the study gives the drive.
     pub(super) fn of_catalog(&self) -> Option<&CatalogOffers> {
         match self {
             Self::Given { .. } => None,
@@ -96,13 +96,14 @@ fn offers(
     offers
 }
 
-/// Mass of gear and motor, to the microgram: sums that are equal on paper are then equal here, which ties are made of.
+/// Mass of gear and motor \[kg\], rounded to the microgram. Sums that are equal on paper are then equal here, as ties
+/// require. `None` if a mass is unknown.
 fn mass_kg(allowed: &AllowedParts, gear: &Gear, motor: &Motor) -> Option<f64> {
     const PER_KG: f64 = 1e9;
     Some(((gear.mass_kg(allowed.gear_mass)? + motor.mass_kg?) * PER_KG).round() / PER_KG)
 }
 
-/// The torsion curve of a gear, if the catalog has all of it.
+/// The torsion curve of a gear; `None` if the catalog lacks a number of the curve.
 fn torsion_curve(gear: &Gear) -> Option<Windup> {
     let [k1_nm_per_rad, k2_nm_per_rad, k3_nm_per_rad] =
         [gear.k1_nm_per_rad?, gear.k2_nm_per_rad?, gear.k3_nm_per_rad?];
@@ -110,7 +111,8 @@ fn torsion_curve(gear: &Gear) -> Option<Windup> {
 }
 
 impl CatalogOffers {
-    /// Places of the drives that can be the lightest that holds: those that no lighter one covers in every rating.
+    /// Indices of the drives that can be the lightest that holds. A drive cannot be if a lighter drive has ratings at
+    /// least as large in every quantity.
     pub(super) fn first_fits(&self) -> Vec<u32> {
         let mut kept: Vec<u32> = Vec::new();
         for (place, offer) in self.offers.iter().enumerate() {
@@ -122,7 +124,7 @@ impl CatalogOffers {
         kept
     }
 
-    /// Places of the drives in sets of equal mass and torsion, which no objective tells apart.
+    /// Indices of the drives, in sets of equal mass and torsion curve, which no objective tells apart.
     pub(super) fn ties(&self) -> Vec<Vec<u32>> {
         let mut sets: Vec<Vec<u32>> = Vec::new();
         let mut place = 0;
@@ -145,13 +147,13 @@ impl CatalogOffers {
         self.offers.iter().find(|offer| offer.ratings.hold(demand))
     }
 
-    /// The first of the drives of a drive's mass and torsion.
+    /// The first drive of the same mass and torsion curve as this drive.
     pub(super) fn first_tie<'o>(&'o self, offer: &'o Offer) -> &'o Offer {
         let first = self.offers.partition_point(|other| other.mass_kg < offer.mass_kg);
         self.offers[first..].iter().find(|other| other.law == offer.law).unwrap_or(offer)
     }
 
-    /// The drive of some gear and motor.
+    /// The drive with this gear and motor.
     pub(super) fn of(&self, gear: usize, motor: usize) -> Option<&Offer> {
         self.places.get(&(gear, motor)).map(|&place| &self.offers[place as usize])
     }

@@ -27,27 +27,28 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
-/// A case of the study.
+/// A case of the study, worked out for bounds.
 pub(super) struct Pose {
     pub judged: bool,
     pub sizing: bool,
-    /// Place of its water among the study's surroundings.
+    /// Index of the medium around the arm, among the study's surroundings.
     pub water: usize,
-    /// Stress over that of the static loads.
+    /// Ratio of the stress while the arm accelerates to the stress of the static loads.
     pub stress_factor: f64,
-    /// Torque on each joint.
+    /// Torque on each joint, as a linear function of the loads \[N m\].
     pub torques: Vec<Linear>,
-    /// Displacement of the tip per twist of each joint \[m/rad\].
+    /// Displacement of the tip per unit twist of each joint \[m/rad\].
     pub tip_m_per_rad: Vec<Vector3<f64>>,
-    /// Displacement of the tip by each spring of an effect.
+    /// Displacement of the tip that each spring of an effect causes, as a linear function of the loads \[m\].
     pub by_springs_m: Vec<LinearVector>,
-    /// Displacement of the tip times each stiffness of each tube.
+    /// For each tube and each of its stiffnesses, the displacement of the tip times the stiffness. Divided by the
+    /// stiffness it is the displacement.
     pub works: Vec<[LinearVector; STIFFNESSES]>,
-    /// Force and moment at root and end of each tube, in its frame.
+    /// Force and moment at root and end of each tube, in the tube's frame, as linear functions of the loads.
     pub ends: Vec<[[Linear; 6]; 2]>,
-    /// Inertia that no choice changes, lower triangle by rows.
+    /// Inertia matrix of everything that no choice changes: lower triangle, row by row.
     pub inertia: Vec<f64>,
-    /// Inertia per drive mass, and then per inertia of each tube.
+    /// Inertia matrix per unit mass of each drive, then per unit of each inertia per length of each tube.
     pub inertia_per: Vec<Vec<f64>>,
 }
 
@@ -58,23 +59,23 @@ struct Wrench {
     moment: Vector3<f64>,
 }
 
-/// What a section carries: of fixed loads, and of a unit of each load.
+/// Wrench on a section: of the fixed loads, and per unit of each load.
 struct Carried {
     fixed: Wrench,
     per_load: Vec<Wrench>,
 }
 
-/// What is needed to work out the sums of a case.
+/// The inputs from which the numbers of a case are computed.
 struct Builder<'a> {
     layout: &'a Layout,
     gravity_m_s2: f64,
-    /// Payload and tip force with the points they act at.
+    /// Weight of the payload, and the tip force, each with the point where it acts \[m\].
     tip_loads: [(Vector3<f64>, Vector3<f64>); 2],
     coordinates: &'a [Coordinate],
 }
 
 impl Pose {
-    /// Works out a case; `waters` are the study's surroundings.
+    /// Works out the case with this index. `waters` are the study's surroundings.
     pub(super) fn new(
         question: &Question,
         structure: &Structure,
@@ -110,7 +111,7 @@ impl Pose {
     }
 }
 
-/// The water of a case, or that of an effect.
+/// The water around the arm: stated by the case, or else by an effect.
 pub(super) fn water_of(structure: &Structure, case: &LoadCase) -> Option<Water> {
     case.water.or(structure.water)
 }
@@ -133,7 +134,7 @@ impl Wrench {
         Self { force: self.force + other.force, moment: self.moment + other.moment }
     }
 
-    /// Components in a frame: force, then moment.
+    /// Components of the wrench along the axes of a frame: force, then moment.
     fn in_frame(&self, frame: &Matrix3<f64>) -> [f64; 6] {
         let (force, moment) = (frame.tr_mul(&self.force), frame.tr_mul(&self.moment));
         [force.x, force.y, force.z, moment.x, moment.y, moment.z]
@@ -141,7 +142,7 @@ impl Wrench {
 }
 
 impl Builder<'_> {
-    /// What is carried at a point by everything beyond it.
+    /// Wrench at a point of everything outboard of it.
     fn carried(&self, point: &Point) -> Carried {
         let down = |size: f64| Vector3::new(0.0, 0.0, -size);
         let about_m = &point.at_m;
@@ -174,7 +175,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Displacement of the tip by a spring: its tilt under the moment about its axis times the way of the tip.
+    /// Displacement of the tip by a spring: the spring's tilt under the moment about its axis, times the displacement
+    /// of the tip per tilt.
     fn tilt(&self, spring: usize) -> LinearVector {
         let spring = &self.layout.springs[spring];
         let carried = self.carried(&Point { at_m: spring.at_m, rank: spring.rank, inside_m: None });
@@ -185,7 +187,7 @@ impl Builder<'_> {
         }
     }
 
-    /// A point of a tube's axis.
+    /// The point of a tube's axis at the distance `x` from its root.
     fn inside(&self, tube: usize, x: f64) -> Point {
         let tube = &self.layout.tubes[tube];
         Point { at_m: tube.root_m + tube.frame.column(0) * x, rank: tube.rank, inside_m: Some(x) }
@@ -231,7 +233,7 @@ impl Builder<'_> {
         works
     }
 
-    /// Inertia of payload and masses without a choice.
+    /// Inertia matrix of the payload and of the masses that no choice changes.
     fn fixed_inertia(&self, case: &LoadCase) -> Vec<f64> {
         let mut out = self.no_inertia();
         let rotation = &self.layout.tip_rotation;
@@ -264,7 +266,7 @@ impl Builder<'_> {
         drives.chain(tubes).collect()
     }
 
-    /// Inertia per unit of each inertia per length of a tube.
+    /// Inertia matrix per unit of each inertia per length of a tube.
     fn tube_inertia(&self, tube: usize) -> [Vec<f64>; DENSITIES] {
         let mut out: [Vec<f64>; DENSITIES] = std::array::from_fn(|_| self.no_inertia());
         let placed = &self.layout.tubes[tube];
@@ -280,7 +282,7 @@ impl Builder<'_> {
         out
     }
 
-    /// Displacement and rotation of a point per unit of every coordinate.
+    /// Displacement and rotation of a point per unit of every coordinate, in the world frame.
     fn motions(&self, point: &Point) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
         self.coordinates.iter().map(|&coordinate| self.layout.motion(coordinate, point)).unzip()
     }
@@ -291,7 +293,8 @@ impl Builder<'_> {
     }
 }
 
-/// Products of real and unit internal loads that each stiffness divides, times a length.
+/// For each stiffness, the product of the internal load that it resists and the same internal load of a unit tip
+/// force along each axis, times a length (method of the unit load).
 fn products(real: &[f64; 6], units: &[[f64; 6]; 3], length_m: f64) -> [Vector3<f64>; STIFFNESSES] {
     let product = |i: usize| Vector3::from_fn(|axis, _| real[i] * units[axis][i] * length_m);
     [product(4), product(5), product(1) + product(2), product(3), product(0)]
@@ -301,7 +304,7 @@ fn along(motions: &[Vector3<f64>], direction: &Vector3<f64>) -> Vec<f64> {
     motions.iter().map(|motion| motion.dot(direction)).collect()
 }
 
-/// Adds `weight` times the square of a row to a lower triangle.
+/// Adds `weight · row rowᵀ` to a lower triangle.
 fn add_square(triangle: &mut [f64], row: &[f64], weight: f64) {
     let mut entries = triangle.iter_mut();
     for (i, a) in row.iter().enumerate() {

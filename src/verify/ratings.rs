@@ -12,11 +12,11 @@ use super::duty::Duty;
 use crate::catalog::gear::Gear;
 use crate::catalog::motor::Motor;
 
-/// The most that a drive holds of each quantity.
+/// The greatest torque of each quantity that a drive holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Ratings([f64; QUANTITIES]);
 
-/// A limit of a drive on one quantity; `None` if the catalog leaves blank what it needs.
+/// A limit of a drive on one quantity. `most` gives the limit; `None` if the catalog lacks a number that it needs.
 struct Check {
     on: Quantity,
     most: fn(&Gear, &Motor, &Duty) -> Option<f64>,
@@ -32,14 +32,15 @@ const CHECKS: [Check; 6] = [
     Check { on: Quantity::MeanCubed, most: life_nm3 },
 ];
 
-/// Input speed that rated torques of gears refer to \[rpm\].
+/// Input speed for which the rated torques of gears are stated \[rpm\].
 const RATED_RPM: f64 = 2000.0;
 
 impl Ratings {
-    /// No check fails.
+    /// Ratings under which no check fails.
     pub(super) const UNLIMITED: Self = Self([f64::INFINITY; QUANTITIES]);
 
-    /// The ratings of a drive under a motion; `None` if it turns too fast for it or a number is blank.
+    /// The ratings of a drive under a joint's motion; `None` if the motion is too fast for the drive, or if the
+    /// catalog lacks a number.
     pub(super) fn of(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<Self> {
         let mut ratings = Self::UNLIMITED;
         for check in &CHECKS {
@@ -50,18 +51,18 @@ impl Ratings {
         turns_as_fast(gear, motor, duty)?.then_some(ratings)
     }
 
-    /// Whether every torque that is asked for is held.
+    /// Whether a drive with these ratings holds every torque of a demand.
     pub(super) fn hold(&self, demand: &Demand) -> bool {
         // no branch on the way: nearly every box asks this of many drives
         self.0.iter().zip(&demand.0).fold(true, |held, (most, asked)| held & (asked <= most))
     }
 
-    /// Whether a drive with these ratings holds whatever one with the others holds.
+    /// Whether a drive with these ratings holds every demand that a drive with the other ratings holds.
     pub(super) fn cover(&self, other: &Self) -> bool {
         self.0.iter().zip(&other.0).all(|(a, b)| a >= b)
     }
 
-    /// The larger of each rating.
+    /// The larger rating of the two for each quantity.
     pub(super) fn max(&self, other: &Self) -> Self {
         Self(std::array::from_fn(|i| self.0[i].max(other.0[i])))
     }
@@ -72,7 +73,7 @@ impl Ratings {
     }
 }
 
-/// Whether neither gear nor motor turns faster than it may.
+/// Whether gear and motor may turn as fast as the motion needs; `None` if the catalog lacks a number.
 fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     let motor_max_rpm = motor.max_speed_rpm.or(motor.rated_speed_rpm)?;
     let fastest_rpm = input_rpm(gear, duty.speed_rad_s);
@@ -84,7 +85,7 @@ fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     )
 }
 
-/// Speed of the motor when the joint turns at a speed \[rpm\].
+/// Speed of the motor \[rpm\] when the joint turns at `output_rad_s`.
 fn input_rpm(gear: &Gear, output_rad_s: f64) -> f64 {
     f64::from(gear.ratio) * (output_rad_s * 30.0 / std::f64::consts::PI)
 }
@@ -94,28 +95,28 @@ fn gain(gear: &Gear) -> Option<f64> {
     Some(f64::from(gear.ratio) * gear.efficiency?)
 }
 
-/// The static torque at which the motor gives what it can give for ever: `T_rated N η`.
+/// Torque at the joint that the motor can hold without end: `T_rated N η` \[N m\].
 fn motor_continuous_nm(gear: &Gear, motor: &Motor, _: &Duty) -> Option<f64> {
     Some(motor.rated_torque_nm? * gain(gear)?)
 }
 
-/// The torque at the joint at which the motor is at its peak: what is left of it once rotor and wave generator are
-/// accelerated (Eqs 9-12), `(T_peak - (J_rotor + J_input) N α) N η`.
+/// Torque at the joint when the motor gives its peak torque \[N m\]. The rotor's and the wave generator's own
+/// acceleration is subtracted (Eqs 9-12): `(T_peak - (J_rotor + J_input) N α) N η`.
 fn motor_peak_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
     let inertia_kgm2 = motor.rotor_inertia_kgm2? + gear.inertia_input_kgm2?;
     let own_nm = inertia_kgm2 * f64::from(gear.ratio) * duty.acceleration_rad_s2;
     Some((motor.peak_torque_nm? - own_nm) * gain(gear)?)
 }
 
-/// The cubed mean torque under which the wave generator's bearing lasts as long as it must, from
-/// `L10 = L_ref (T_rated / T_mean)³ (2000 rpm / n_mean)`.
+/// Cube of the mean torque under which the wave generator's bearing lasts for the required life \[(N m)³\], from `L10
+/// = L_ref (T_rated / T_mean)³ (2000 rpm / n_mean)`.
 fn life_nm3(gear: &Gear, _: &Motor, duty: &Duty) -> Option<f64> {
     let at_rated_h = rated_life_h(&gear.series)? * (RATED_RPM / input_rpm(gear, duty.mean_speed_rad_s));
     Some(gear.rated_torque_nm?.powi(3) * at_rated_h / duty.life_h)
 }
 
-/// L10 at rated torque and speed, by series \[h\] (Harmonic Drive SE, engineering data 1019659, table 20.1, and
-/// Harmonic Drive LLC, CSF/CSG catalog).
+/// L10 life at rated torque and speed, by series of gears \[h\] (Harmonic Drive SE, engineering data 1019659, table
+/// 20.1, and Harmonic Drive LLC, CSF/CSG catalog). `None` for an unknown series.
 fn rated_life_h(series: &str) -> Option<f64> {
     const LONG: [&str; 3] = ["CSG", "SHG", "CobaltLine"];
     const SHORT: [&str; 6] = ["HFUC", "HFUS", "CSF", "CSD", "CPU", "SHD"];

@@ -12,31 +12,31 @@ use crate::arm::load::Water;
 use crate::arm::structure::{Piece, Structure};
 use crate::catalog::Catalogs;
 
-/// An arm but for its drives and tubes.
+/// An arm without its drives and tubes: everything that no choice changes.
 pub(super) struct Skeleton {
     /// Lengths of the tubes \[m\].
     pub lengths_m: Vec<f64>,
     /// Mass of rigid offsets \[kg\].
     pub offsets_kg: f64,
     pub poses: Vec<Pose>,
-    /// The different surroundings of the cases: air, or some water.
+    /// The different media around the arm in the cases: air, or water.
     pub waters: Vec<Option<Water>>,
     pub coordinates: Vec<Coordinate>,
     /// Stiffnesses of the effects' springs \[N m/rad\].
     pub spring_stiffnesses: Vec<f64>,
     pub limits: Limits,
-    /// What each level chooses, tip first.
+    /// The piece that each level chooses, tip first.
     pub levels: Vec<Place>,
 }
 
-/// What each joint and each tube may be, base to tip.
+/// The options of each joint and of each tube, base to tip.
 pub(super) struct Parts {
     pub joints: Vec<DriveOptions>,
     pub tubes: Vec<TubeOptions>,
 }
 
 impl Skeleton {
-    /// Puts the arm of a question into all of its cases.
+    /// Puts the arm of a question into each of its cases.
     pub(super) fn new(question: &Question) -> Self {
         let structure = question.nominal_structure();
         let mut waters: Vec<Option<Water>> = Vec::new();
@@ -95,7 +95,7 @@ pub(super) fn joint_offers(question: &Question, catalogs: &Catalogs) -> Vec<Join
     joints.map(|(joint, reach_m)| JointOffers::new(question, joint, reach_m, catalogs)).collect()
 }
 
-/// Largest distance of the tip from each joint's axis over the cases in which drives must hold \[m\].
+/// Largest distance of the tip from each joint's axis over the sizing cases \[m\].
 fn reaches_m(question: &Question) -> Vec<f64> {
     let structure = question.nominal_structure();
     let mut reaches_m = vec![0.0f64; question.joints().count()];
@@ -127,7 +127,7 @@ fn offsets_kg(question: &Question) -> f64 {
     masses.sum()
 }
 
-/// What each level chooses, tip first.
+/// The piece that each level chooses, tip first.
 fn levels(question: &Question, structure: &Structure) -> Vec<Place> {
     let (mut joints, mut tubes, mut levels) = (0, 0, Vec::new());
     for (asked, piece) in question.pieces.iter().zip(&structure.pieces) {

@@ -9,11 +9,13 @@ use crate::arm::structure::{LinkPiece, Structure};
 use crate::arm::{Link, LinkBody, LinkModel};
 use crate::mechanics::beam::{line_densities, line_stiffnesses};
 
-/// Stiffnesses of a tube: `E I` about y and z, `κ G A`, `G J`, `E A`.
+/// Number of stiffnesses of a tube: `E I` about y and z, `κ G A`, `G J`, `E A`.
 pub(super) const STIFFNESSES: usize = 5;
-/// Inertias per length: along, across, about the link, about its y, about its z.
+/// Number of inertias per length: against motion along the link and across it, and against rotation about the link's
+/// axis, its y and its z.
 pub(super) const DENSITIES: usize = 5;
-/// Stress per axial force, moment about y, moment about z and torque, over the strength.
+/// Number of stress coefficients: stress per axial force, per moment about y, per moment about z and per torque, each
+/// over the strength.
 pub(super) const STRESSES: usize = 4;
 
 /// A tube in numbers.
@@ -21,43 +23,43 @@ pub(super) const STRESSES: usize = 4;
 pub(super) struct TubeNumbers {
     /// Mass \[kg\].
     pub mass_kg: f64,
-    /// Stiffnesses; infinite where the model knows no compliance.
+    /// Stiffnesses; infinite where the link model has no such strain.
     pub stiffnesses: [f64; STIFFNESSES],
-    /// Stress per load over the strength; zero if no strength is known.
+    /// Stress coefficients; zero if the strength is unknown.
     pub stresses: [f64; STRESSES],
     /// 1 for a round tube, 0 for a rectangular one.
     pub round: f64,
-    /// The rest in each of the study's surroundings.
+    /// Weight and inertias in each of the study's surroundings.
     pub around: Vec<TubeAround>,
 }
 
-/// What a tube is in air or in some water.
+/// Numbers of a tube that depend on the medium around it, air or water.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct TubeAround {
-    /// Weight less buoyancy per length \[N/m\].
+    /// Weight less buoyancy, per length \[N/m\].
     pub weight_n_per_m: f64,
     /// Inertias per length.
     pub densities: [f64; DENSITIES],
 }
 
-/// The tubes that a link may be.
+/// The tubes that a link may have.
 pub(super) struct TubeOptions {
-    /// Place among the levels of the space, if there is a choice.
+    /// Index among the levels of the space; `None` if the tube is no choice.
     pub level: Option<usize>,
-    /// Each with its number; none that is too slender.
+    /// Each tube with its number. Tubes that are too slender are left out.
     pub tubes: Vec<(u32, TubeNumbers)>,
 }
 
-/// Tubes that a link may be, halved again and again.
+/// The tubes that a link may have, in a tree whose nodes are halved down to single tubes.
 pub(super) struct Tubes {
     pub level: Option<usize>,
     pub tree: Tree,
     pub nodes: Vec<TubeRange>,
-    /// Number of each option.
+    /// Number of each tube in the list of the link.
     pub numbers: Vec<u32>,
 }
 
-/// Least, largest and middling numbers of a set of tubes.
+/// Least, greatest and middle numbers of a set of tubes.
 #[derive(Debug, Clone)]
 pub(super) struct TubeRange {
     pub least: TubeNumbers,
@@ -66,7 +68,7 @@ pub(super) struct TubeRange {
 }
 
 impl TubeOptions {
-    /// The tubes of a link with a choice.
+    /// The tubes of a link whose tube is chosen.
     pub(super) fn of_choice(
         question: &Question,
         choice: &AskedLink,
@@ -78,8 +80,8 @@ impl TubeOptions {
         Self { level: Some(level), tubes: tubes.collect() }
     }
 
-    /// The tube of a link without a choice; cables along a rigid offset count as a tube that does not yield. `None` if
-    /// nothing weighs along the link.
+    /// The tube of a link without a choice. Cables along a rigid offset count as a tube that does not yield. `None`
+    /// if the link has no weight along its length.
     pub(super) fn of_link(question: &Question, link: &Link, waters: &[Option<Water>]) -> Option<Self> {
         let piece = question.link_piece(link.clone());
         has_line(&piece).then(|| {
@@ -95,7 +97,7 @@ impl TubeOptions {
         })
     }
 
-    /// Some of the options, ascending.
+    /// Some of the options, given by ascending indices.
     pub(super) fn only(&self, some: &[u32]) -> Self {
         Self { tubes: some.iter().map(|&i| self.tubes[i as usize].clone()).collect(), ..*self }
     }
@@ -108,7 +110,7 @@ impl TubeOptions {
 }
 
 impl Tubes {
-    /// Halves the options.
+    /// Builds the tree of the options.
     pub(super) fn new(options: &TubeOptions) -> Self {
         let tree = options.tree();
         let range = |node| TubeRange::over(tree.options(node).iter().map(|&i| &options.tubes[i as usize].1));
@@ -118,7 +120,7 @@ impl Tubes {
     }
 }
 
-/// Whether a wall may buckle by the limit of the question.
+/// Whether a tube's wall is thinner, for its width, than the question allows because of buckling.
 pub(super) fn is_too_slender(question: &Question, section: &Section) -> bool {
     let (width_m, height_m) = section.outer_m();
     let wall_m = section.wall_m();
@@ -136,8 +138,9 @@ fn keys(tube: &TubeNumbers) -> Vec<f64> {
     vec![1.5 * tube.mass_kg.ln(), bending_y, bending_z, 0.3 * torsion]
 }
 
-/// Stress per axial force, moment about y, moment about z and torque, over a strength. Bending and torsion are largest on
-/// the outside of a round tube; torsion of a rectangular one is Bredt's, by the area within the middle of its wall.
+/// Stress per axial force, moment about y, moment about z and torque, each over the strength. Bending and torsion are
+/// largest on the outside of a round tube. Torsion of a rectangular tube is by Bredt's formula, with the area inside
+/// the middle line of its wall.
 fn stresses(tube: &AskedTube) -> [f64; STRESSES] {
     let Some(strength_pa) = tube.strength_pa else { return [0.0; STRESSES] };
     let section = tube.section.properties(tube.material.poisson);
@@ -156,7 +159,7 @@ fn stresses(tube: &AskedTube) -> [f64; STRESSES] {
     per_load.map(|per| per / strength_pa)
 }
 
-/// Stiffnesses that the model knows; the others are infinite.
+/// Stiffnesses of a tube; infinite where the link model has no such strain.
 fn stiffnesses(piece: &LinkPiece, model: LinkModel) -> [f64; STIFFNESSES] {
     let Some(beam) = piece.beam else { return [f64::INFINITY; STIFFNESSES] };
     let known = match model {
@@ -180,7 +183,7 @@ fn around(question: &Question, piece: &LinkPiece, water: Option<Water>) -> TubeA
 }
 
 impl TubeRange {
-    /// One tube.
+    /// The range of a single tube.
     pub(super) fn one(tube: &TubeNumbers) -> Self {
         Self { least: tube.clone(), most: tube.clone(), middle: tube.clone() }
     }
@@ -199,7 +202,7 @@ impl TubeRange {
 }
 
 impl TubeNumbers {
-    /// A tube of a link with a choice.
+    /// Numbers of a tube that a link may have.
     pub(super) fn of_choice(
         question: &Question,
         choice: &AskedLink,
@@ -213,7 +216,7 @@ impl TubeNumbers {
         Self { stresses: stresses(tube), round: f64::from(u8::from(is_round)), ..numbers }
     }
 
-    /// A tube of unknown strength.
+    /// Numbers of a tube whose strength is unknown.
     fn new(question: &Question, piece: &LinkPiece, mass_kg: f64, waters: &[Option<Water>]) -> Self {
         Self {
             mass_kg,

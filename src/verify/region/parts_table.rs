@@ -13,36 +13,38 @@ use super::super::tubes::{
 };
 use rayon::prelude::*;
 
-/// The parts of a space.
+/// All parts of a space, as lists of numbers.
 pub(super) struct PartsTable {
     pub joints: Vec<JointTable>,
     pub tubes: Vec<TubeTable>,
 }
 
-/// Twists and slopes of each curve of a joint; none of those that do not count.
+/// For each torsion curve of a joint: its twist in every judged case, then its slope in every judged case. `None` for
+/// a curve that no drive of the subproblem has.
 pub(super) type Numbers = Vec<Option<Vec<f64>>>;
 
-/// What a joint may have.
+/// The drives that a joint may have.
 pub(super) struct JointTable {
     pub drives: DriveOptions,
     pub masses_kg: Vec<f64>,
-    /// Which of the curves each drive has.
+    /// For each drive, the index of its torsion curve in `curves`.
     pub curve: Vec<u32>,
-    /// The curves, each as a drive that has it.
+    /// The different torsion curves, each with the numbers of the first drive that has the curve.
     pub curves: Vec<DriveRange>,
 }
 
-/// What a link may be.
+/// The tubes that a link may have.
 pub(super) struct TubeTable {
     pub options: TubeOptions,
     pub tree: Tree,
-    /// Least and then most numbers of every node.
+    /// For each node of the tree, the least value of every number over the node's tubes, then the greatest value of
+    /// every number.
     bounds: Vec<f64>,
     width: usize,
     priced: usize,
 }
 
-/// Places of a tube's numbers.
+/// Positions of the numbers in the list that describes a tube.
 pub(super) mod place {
     use crate::verify::tubes::{DENSITIES, STIFFNESSES};
     pub(crate) const MASS: usize = 0;
@@ -64,7 +66,7 @@ pub(super) mod place {
         stiffness(waters, STIFFNESSES + which)
     }
 
-    /// How many numbers a price may be put on.
+    /// How many of a tube's numbers may have a price. The stresses come after these and have none.
     pub(crate) fn priced(waters: usize) -> usize {
         stiffness(waters, 2 * STIFFNESSES)
     }
@@ -97,7 +99,7 @@ impl JointTable {
 }
 
 impl JointTable {
-    /// A drive.
+    /// The numbers of a drive.
     pub(super) fn range(&self, drive: u32) -> &DriveRange {
         &self.drives.options[drive as usize].range
     }
@@ -131,7 +133,7 @@ impl TubeTable {
         Self { options, tree, bounds, width, priced }
     }
 
-    /// Least and most numbers of a node that prices may be put on.
+    /// Least and greatest value, over a node's tubes, of every number that may have a price.
     pub(super) fn bounds(&self, node: u32) -> [&[f64]; 2] {
         self.all_bounds(node).map(|bounds| &bounds[..self.priced])
     }
@@ -142,12 +144,12 @@ impl TubeTable {
         [&both[..self.width], &both[self.width..]]
     }
 
-    /// How many numbers a price may be put on.
+    /// How many of a tube's numbers may have a price.
     pub(super) fn priced(&self) -> usize {
         self.priced
     }
 
-    /// Range of some nodes.
+    /// Range of the tubes below some nodes.
     pub(super) fn range(&self, nodes: &[u32]) -> TubeRange {
         let [mut least, mut most] = self.all_bounds(nodes[0]).map(<[f64]>::to_vec);
         for &node in nodes {
@@ -159,14 +161,14 @@ impl TubeTable {
         TubeRange { middle: least.clone(), least, most }
     }
 
-    /// The tubes of some nodes.
+    /// The tubes below some nodes, as options.
     pub(super) fn only(&self, nodes: &[u32]) -> TubeOptions {
         let mut options: Vec<u32> = nodes.iter().flat_map(|&node| self.tree.options(node)).copied().collect();
         options.sort_unstable();
         self.options.only(&options)
     }
 
-    /// How many tubes some nodes have.
+    /// Number of tubes below some nodes.
     pub(super) fn count(&self, nodes: &[u32]) -> usize {
         nodes.iter().map(|&node| self.tree.options(node).len()).sum()
     }

@@ -29,45 +29,49 @@ use super::parts_table::{Numbers, PartsTable, place};
 use super::subproblem::{Subproblem, TorqueInterval};
 use nalgebra::Vector3;
 
-/// Room for rounding in rows of torque intervals (relative).
+/// Margin for rounding in the rows of torque intervals (relative).
 const ROUNDING: f64 = 1e-9;
 
-/// A row: a sum over the numbers of all parts that is not positive.
+/// An inequality that every member below the upper bound satisfies: a linear function of the numbers of all parts
+/// that is not positive.
 pub(super) struct Row {
     pub per_number: Vec<f64>,
     pub fixed: f64,
 }
 
-/// Where the numbers of each part stand among those of all: of joints a mass, twists and slopes by judged case; of tubes
-/// those of the table.
+/// Positions of each part's numbers in the list of all numbers. A joint has its mass, then its twist in every judged
+/// case, then its slope in every judged case. A tube has its numbers of the parts table.
 #[derive(Clone)]
 pub(super) struct Columns {
     pub cases: usize,
     pub joints: usize,
-    /// First number of each tube, and the end of all.
+    /// Position of the first number of each tube, and at last the length of the list.
     pub tubes: Vec<usize>,
 }
 
-/// The rows of a subproblem.
+/// The rows of a subproblem below an upper bound.
 pub(super) struct Rows<'a> {
     pub skeleton: &'a Skeleton,
     pub table: &'a PartsTable,
     pub columns: Columns,
     pub upper: UpperBound,
     pub rows: Vec<Row>,
-    /// Place of the first row of a torque interval.
+    /// Index of the first row of a torque interval.
     pub first_interval: usize,
-    /// Place of the first row of a mode, and the case and shape of each.
+    /// Index of the first row of a mode. `modes` holds the case and the trial shape of each row of a mode.
     pub first_mode: usize,
     pub modes: Vec<(usize, Vec<f64>)>,
-    /// For every joint twists and slopes by judged case of each curve that the subproblem has; none of others.
+    /// For each joint, the twists and slopes of its torsion curves; `None` for a curve that no drive of the
+    /// subproblem has.
     pub curves: Vec<Numbers>,
-    /// Torques of each judged case, and the least twist per torque beyond the least \[rad/(N m)\].
+    /// Interval of the torque on each joint in each judged case \[N m\]. `per_torque` is the least increase of the
+    /// twist per torque, from the end of the interval where the twist is least \[rad/(N m)\].
     pub torques: Vec<Vec<Span>>,
     pub per_torque: Vec<Vec<f64>>,
-    /// Row, case and direction of each way of the tip.
+    /// For each row of a tip displacement: the index of the row, its judged case, and the direction of the
+    /// displacement.
     pub tips: Vec<(usize, usize, Vector3<f64>)>,
-    /// Whether a coordinate of the subproblem may be rigid, by judged case.
+    /// For each judged case, whether a strain coordinate may be rigid in some member of the subproblem.
     rigid: Vec<Vec<bool>>,
 }
 
@@ -97,7 +101,7 @@ impl Columns {
         self.tubes[self.tubes.len() - 1]
     }
 
-    /// The numbers of a part, joints before tubes.
+    /// Positions of the numbers of a part; joints are numbered before tubes.
     pub(super) fn of_part(&self, part: usize) -> std::ops::Range<usize> {
         match part.checked_sub(self.joints) {
             None => self.mass(part)..self.mass(part + 1),
@@ -105,7 +109,7 @@ impl Columns {
         }
     }
 
-    /// The number that is in proportion to a load: mass of a drive or weight of a tube.
+    /// Position of the number that is proportional to a load: the mass of a drive, or the weight of a tube.
     pub(super) fn load(&self, load: usize, water: usize) -> usize {
         match load.checked_sub(self.joints) {
             None => self.mass(load),
@@ -119,13 +123,13 @@ impl Row {
         Self { per_number: vec![0.0; columns.len()], fixed: 0.0 }
     }
 
-    /// Adds a number that is linear in the loads.
+    /// Adds a quantity that is linear in the loads: its fixed part, and its part per load.
     fn add(&mut self, columns: &Columns, water: usize, fixed: f64, per_load: impl Iterator<Item = f64>) {
         self.fixed += fixed;
         per_load.enumerate().for_each(|(load, per)| self.per_number[columns.load(load, water)] += per);
     }
 
-    /// Takes what is allowed from it, and divides it by a scale.
+    /// Subtracts the allowed value from the row and divides the row by a scale. The row is then at most zero.
     fn less(mut self, allowed: f64, scale: f64) -> Self {
         self.fixed = (self.fixed - allowed) / scale;
         self.per_number.iter_mut().for_each(|per| *per /= scale);
@@ -138,7 +142,7 @@ impl Row {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows of a subproblem whose members are known, with the shapes that the subproblem came with.
+    /// The rows of a subproblem with these members. The subproblem's trial shapes give the rows of modes.
     pub(super) fn new(
         skeleton: &'a Skeleton,
         table: &'a PartsTable,
@@ -203,7 +207,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// The way of the tip along its least deflection.
+    /// Adds the row of the tip displacement in a case, along the direction in which the stiffest arm's tip moves.
     fn add_tip(&mut self, case: usize, pose: &Pose, members: &Members) {
         let Some(direction) = direction(pose, members) else { return };
         let loads = &members.loads[pose.water];
@@ -234,7 +238,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds a gear's part of the way, and notes what each curve twists at the least torque.
+    /// Adds a gear's part of the tip displacement to a row, and stores the least twist of each torsion curve.
     fn add_twist(
         &mut self,
         row: &mut Row,
@@ -260,7 +264,7 @@ impl<'a> Rows<'a> {
         row.add(&self.columns, water, by * (sense * torque.fixed - span.least), per_load);
     }
 
-    /// Notes the largest slope of each curve.
+    /// Stores the greatest slope of each torsion curve under the torques of the subproblem.
     fn add_slopes(&mut self) {
         let cases = self.columns.cases;
         for (joint, curves) in self.curves.iter_mut().enumerate() {
@@ -289,7 +293,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds the row of a shape; what may be rigid stands still in it.
+    /// Adds the row of a trial shape. Coordinates that may be rigid are set to zero in the shape.
     pub(super) fn add_mode(&mut self, case: usize, mut shape: Vec<f64>) {
         let eigenvalue = self.upper.eigenvalue();
         if eigenvalue == 0.0 {
@@ -313,12 +317,13 @@ impl<'a> Rows<'a> {
         self.modes.push((case, shape));
     }
 
-    /// A judged case.
+    /// The pose of a judged case, given by its index among the judged cases.
     pub(super) fn pose(&self, case: usize) -> &'a Pose {
         self.skeleton.poses.iter().filter(|pose| pose.judged).nth(case).expect("a judged case")
     }
 
-    /// The numbers that inertia is in proportion to.
+    /// Positions of the numbers to which inertia is proportional: masses of drives, then inertias per length of
+    /// tubes.
     fn inertias(&self, water: usize) -> impl Iterator<Item = usize> {
         let (joints, tubes) = (self.columns.joints, self.columns.tubes.len() - 1);
         let masses = (0..joints).map(|joint| self.columns.mass(joint));
@@ -328,7 +333,8 @@ impl<'a> Rows<'a> {
         masses.chain(densities)
     }
 
-    /// The number that makes the stiffness of a coordinate, and its factor; or the stiffness if no part makes it.
+    /// Position of the number that determines the stiffness of a coordinate, and the factor on this number. If no
+    /// part determines the stiffness, the stiffness itself as an error.
     fn stiffness(&self, case: usize, coordinate: &Coordinate) -> Result<(usize, f64), f64> {
         match *coordinate {
             Coordinate::Joint(joint) => Ok((self.columns.slope(joint, case), 1.0)),
@@ -344,7 +350,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// The arm whose parts have some numbers, in a case.
+    /// Stiffness and inertia matrices, in a case, of the arm whose parts have these numbers.
     pub(super) fn pencil(&self, case: usize, numbers: &[f64]) -> Pencil {
         let pose = self.pose(case);
         let stiffness = self.skeleton.coordinates.iter().zip(&self.rigid[case]);
@@ -361,7 +367,8 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// The least that a gear's twist grows per torque from the least of some torques to any other of them \[rad/(N m)\].
+/// Least increase of a gear's twist per torque, from the least torque of an interval to any other torque in it
+/// \[rad/(N m)\].
 fn least_twist_per_nm(range: &DriveRange, torque_nm: Span) -> f64 {
     let Span { least, most } = torque_nm;
     let stiff = &range.stiff;
