@@ -18,6 +18,7 @@ pub(crate) mod linkage;
 pub(crate) mod load;
 pub(crate) mod section;
 pub(crate) mod structure;
+pub(crate) mod torsion;
 pub(crate) mod write;
 
 pub use bearing::{Bearing, BearingSource};

@@ -177,12 +177,12 @@ pub fn choices(front: &FrontTable, row: usize) -> Vec<String> {
     let cell = |name: &str| front.column(name).map(|c| front.rows[row][c].as_str()).filter(|c| !c.is_empty());
     let piece = |column: &String| {
         if let Some(link) = column.strip_suffix("_material") {
-            let is_round = cell(&format!("{link}_shape")).is_some_and(|s| s.starts_with("round"));
+            let shape = cell(&format!("{link}_shape")).unwrap_or_default();
             let sizes = ["width_mm", "height_mm", "wall_mm"].map(|s| cell(&format!("{link}_{s}")));
             let known: Vec<&str> = sizes.into_iter().flatten().collect();
             let size = match sizes {
                 [Some(width), Some(height), Some(wall)] => {
-                    format!(" {}", tube_size(is_round, [width, height, wall]))
+                    format!(" {}", tube_size(shape, [width, height, wall]))
                 }
                 [None, None, None] => String::new(),
                 // a table of another program may lack some of the columns

@@ -4,7 +4,7 @@ use crate::arm::section::{LinkMaterial, Section};
 use crate::catalog::Catalogs;
 use crate::catalog::material::Material;
 use crate::catalog::profile::{Profile, ProfileShape};
-use crate::input::json::{Node, closest};
+use crate::input::json::{Node, Object, closest};
 use crate::space::constraint::Constraints;
 use crate::space::design_space::LinkOption;
 use std::collections::HashSet;
@@ -71,10 +71,9 @@ pub(super) fn read_sections(node: &Node, catalogs: &Catalogs) -> Option<Sections
 }
 
 /// The identity of a section, to find duplicates.
-fn identity((section, profile): &Named) -> (bool, [u64; 3], Option<ProfileName>) {
-    let is_round = matches!(section, Section::RoundTube { .. });
+fn identity((section, profile): &Named) -> (&'static str, [u64; 3], Option<ProfileName>) {
     let (width_m, height_m) = section.outer_m();
-    (is_round, [width_m, height_m, section.wall_m()].map(f64::to_bits), profile.clone())
+    (section.shape(), [width_m, height_m, section.wall_m()].map(f64::to_bits), profile.clone())
 }
 
 type Named = (Section, Option<ProfileName>);
@@ -86,35 +85,52 @@ fn read_family(node: &Node, catalogs: &Catalogs) -> Option<Vec<Named>> {
     match node.value().get("shape").and_then(|v| v.as_str()) {
         Some("rectangular_tube") => read_rectangular(node),
         Some("round_tube") => read_round(node),
-        _ => node
-            .fault("has no known \"shape\"", "choose rectangular_tube or round_tube, or give \"profiles\""),
+        Some("rectangular_bar") => read_rectangular_bar(node),
+        Some("round_bar") => read_round_bar(node),
+        _ => node.fault(
+            "has no known \"shape\"",
+            "choose rectangular_tube, round_tube, rectangular_bar or round_bar, or give \"profiles\"",
+        ),
     }
 }
 
 fn read_rectangular(node: &Node) -> Option<Vec<Named>> {
     let object = node.object(&["shape", "width_mm", "height_mm", "wall_mm"])?;
-    let widths = object.required("width_mm").and_then(|n| read_grid(&n));
-    let square = object.optional("height_mm").is_none_or(|n| n.value().as_str() == Some("=width"));
-    let heights = match square {
-        true => Some(Vec::new()),
-        false => object.required("height_mm").and_then(|n| read_grid(&n)),
-    };
+    let outlines = read_outlines(&object);
     let walls = object.required("wall_mm").and_then(|n| read_grid(&n));
-    let (widths, heights, walls) = (widths?, heights?, walls?);
+    let (outlines, walls) = (outlines?, walls?);
     let mut out = Vec::new();
-    for &width in &widths {
-        for &height in if square { std::slice::from_ref(&width) } else { &heights } {
-            for &wall in walls.iter().filter(|&&t| 2.0 * t < width.min(height)) {
-                let section = Section::RectangularTube {
-                    width_m: width / 1e3,
-                    height_m: height / 1e3,
-                    wall_m: wall / 1e3,
-                };
-                out.push((section, None));
-            }
+    for (width, height) in outlines {
+        for &wall in walls.iter().filter(|&&t| 2.0 * t < width.min(height)) {
+            let section =
+                Section::RectangularTube { width_m: width / 1e3, height_m: height / 1e3, wall_m: wall / 1e3 };
+            out.push((section, None));
         }
     }
     Some(out)
+}
+
+fn read_rectangular_bar(node: &Node) -> Option<Vec<Named>> {
+    let outlines = read_outlines(&node.object(&["shape", "width_mm", "height_mm"])?)?;
+    let bar = |(w, h)| (Section::RectangularBar { width_m: w / 1e3, height_m: h / 1e3 }, None);
+    Some(outlines.into_iter().map(bar).collect())
+}
+
+/// Reads `width_mm` and `height_mm`: every pair of them, or squares where no height is given.
+fn read_outlines(object: &Object) -> Option<Vec<(f64, f64)>> {
+    let widths = object.required("width_mm").and_then(|n| read_grid(&n));
+    if object.optional("height_mm").is_none_or(|n| n.value().as_str() == Some("=width")) {
+        return Some(widths?.into_iter().map(|width| (width, width)).collect());
+    }
+    let heights = object.required("height_mm").and_then(|n| read_grid(&n));
+    let (widths, heights) = (widths?, heights?);
+    Some(widths.iter().flat_map(|&w| heights.iter().map(move |&h| (w, h))).collect())
+}
+
+fn read_round_bar(node: &Node) -> Option<Vec<Named>> {
+    let object = node.object(&["shape", "diameter_mm"])?;
+    let diameters = object.required("diameter_mm").and_then(|n| read_grid(&n))?;
+    Some(diameters.into_iter().map(|d| (Section::RoundBar { diameter_m: d / 1e3 }, None)).collect())
 }
 
 fn read_round(node: &Node) -> Option<Vec<Named>> {
@@ -241,6 +257,7 @@ pub(super) fn options(
                 section: *section,
                 profile: profile.as_ref().map(|p| p.designation.clone()),
                 strength_pa: material.strength_pa,
+                compressive_strength_pa: material.compressive_strength_pa,
                 cost_eur_per_kg: material.cost_eur_per_kg,
             });
         }
