@@ -1,12 +1,14 @@
 //! Bounds of the members of a box: least mass, least deflection, and the stiffest and lightest arm.
 
+use super::bearing::BearingDemand;
+use super::bearing_loads::Largest;
 use super::demand::Demand;
 use super::drive_range::DriveRange;
 use super::duty::Duty;
 use super::layout::Coordinate;
 use super::pencil::Pencil;
 use super::pose::Pose;
-use super::skeleton::Skeleton;
+use super::skeleton::{Lever, Skeleton};
 use super::span::Span;
 use super::tubes::{DENSITIES, STIFFNESSES, TubeRange};
 use nalgebra::Vector3;
@@ -56,6 +58,16 @@ impl<'w> Members<'w> {
         let mass = Span { least: range.least_kg, most: range.most_kg };
         self.loads.iter_mut().for_each(|loads| loads[joint] = mass);
     }
+
+    /// Masses of drives, then inertias per length of tubes, in some surroundings.
+    fn inertias(&self, water: usize) -> impl Iterator<Item = Span> {
+        let of_drives = self.loads[water][..self.drives.len()].iter().copied();
+        let of_tubes = self.tubes.iter().flat_map(move |tube| {
+            let (least, most) = (&tube.least.around[water], &tube.most.around[water]);
+            (0..DENSITIES).map(|i| Span { least: least.densities[i], most: most.densities[i] })
+        });
+        of_drives.chain(of_tubes)
+    }
 }
 
 impl Skeleton {
@@ -64,10 +76,30 @@ impl Skeleton {
         let asked = self.asked(joint, members);
         let (statics, inertia) = (asked.static_nm, asked.inertia_kgm2);
         let (less, more) = (1.0 - ROUNDING, 1.0 + ROUNDING);
+        let [least, most] = self.bearing_demands(joint, duty, members);
         [
-            duty.demand(statics.least * less, inertia.least * less),
-            duty.demand(statics.most * more, inertia.most * more),
+            Demand { bearing: least.times(less), ..duty.demand(statics.least * less, inertia.least * less) },
+            Demand { bearing: most.times(more), ..duty.demand(statics.most * more, inertia.most * more) },
         ]
+    }
+
+    /// The loads on a joint's bearing over the cases it is sized in, where the link attaches; zero if it is not checked.
+    fn bearing_demands(&self, joint: usize, duty: &Duty, members: &Members) -> [BearingDemand; 2] {
+        let mut largest = Largest::default();
+        for (pose, bearings) in self.poses.iter().zip(&self.bearings) {
+            if let Some(Some(bearing)) = bearings.get(joint) {
+                let inertias: Vec<Span> = members.inertias(pose.water).collect();
+                bearing.load(&members.loads[pose.water], &inertias, duty.stop_factor, &mut largest);
+            }
+        }
+        let levers_m = match self.levers[joint] {
+            Lever::Stated(lever_m) => [lever_m; 2],
+            Lever::HalfOf(tube) => {
+                [members.tubes[tube].least.half_width_m, members.tubes[tube].most.half_width_m]
+            }
+        };
+        let [least, most] = largest.demands();
+        [least.with_lever(levers_m[0]), most.with_lever(levers_m[1])]
     }
 
     /// Intervals of the worst static torque and inertia on a joint over the sizing cases. Everything outboard of the
@@ -91,14 +123,9 @@ impl Skeleton {
     /// the joint.
     fn inertia_about(&self, pose: &Pose, joint: usize, members: &Members) -> Span {
         let entry = joint * (joint + 3) / 2;
-        let of_drives = members.loads[pose.water][..members.drives.len()].iter().copied();
-        let of_tubes = members.tubes.iter().flat_map(|tube| {
-            let (least, most) = (&tube.least.around[pose.water], &tube.most.around[pose.water]);
-            (0..DENSITIES).map(|i| Span { least: least.densities[i], most: most.densities[i] })
-        });
         let fixed = Span { least: pose.inertia[entry], most: pose.inertia[entry] };
-        of_drives
-            .chain(of_tubes)
+        members
+            .inertias(pose.water)
             .zip(&pose.inertia_per)
             .fold(fixed, |sum, (number, per)| sum.plus(number.times(per[entry])))
     }
@@ -157,6 +184,9 @@ impl Skeleton {
                 let (which, integral_m) = shape.stiffness(self.lengths_m[tube]);
                 members.tubes[tube].most.stiffnesses[which] * integral_m
             }
+            Coordinate::Tilt(joint, _) => members.drives[joint].greatest_tilt_stiffness(),
+            // nothing yields like that
+            Coordinate::Shift(..) => f64::INFINITY,
             Coordinate::Spring(spring) => self.spring_stiffnesses[spring],
         };
         self.coordinates.iter().map(stiffness).collect()
@@ -200,8 +230,10 @@ pub(super) fn direction(pose: &Pose, members: &Members) -> Option<Vector3<f64>> 
     let tubes = members.tubes.iter().zip(&pose.works).flat_map(|(tube, works)| {
         works.iter().zip(compliances(tube)).map(|(work, compliance)| work.middle(loads) * compliance.least)
     });
-    let tilts = pose.by_springs_m.iter().map(|by_spring_m| by_spring_m.middle(loads));
-    joints.chain(tubes).chain(tilts).sum::<Vector3<f64>>().try_normalize(0.0)
+    let tilts = members.drives.iter().zip(&pose.by_tilts);
+    let tilts = tilts.map(|(drive, by_tilt)| by_tilt.middle(loads) * drive.tilt_rad_per_nm.least);
+    let springs = pose.by_springs_m.iter().map(|by_spring_m| by_spring_m.middle(loads));
+    joints.chain(tubes).chain(tilts).chain(springs).sum::<Vector3<f64>>().try_normalize(0.0)
 }
 
 /// Least displacement of the tip along a direction over the members \[m\].
@@ -221,6 +253,11 @@ fn tip_along(pose: &Pose, members: &Members, direction: &Vector3<f64>) -> f64 {
             .zip(compliances(tube))
             .map(|(work, compliance)| work.along(direction, loads).least_product(compliance))
     });
-    let tilts = pose.by_springs_m.iter().map(|by_spring_m| by_spring_m.along(direction, loads).least);
-    joints.chain(tubes).chain(tilts).sum()
+    let tilts = members
+        .drives
+        .iter()
+        .zip(&pose.by_tilts)
+        .map(|(drive, by_tilt)| by_tilt.along(direction, loads).least_product(drive.tilt_rad_per_nm));
+    let springs = pose.by_springs_m.iter().map(|by_spring_m| by_spring_m.along(direction, loads).least);
+    joints.chain(tubes).chain(tilts).chain(springs).sum()
 }

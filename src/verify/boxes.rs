@@ -20,10 +20,11 @@ pub struct Boxes {
 }
 
 impl Boxes {
-    /// Prepares a question. Drives of equal mass and torsion curve stay separate options.
+    /// Prepares a question. Drives of equal mass, torsion curve and tilt stay separate options.
     pub fn new(question: &Question, catalogs: &Catalogs) -> Self {
-        let skeleton = Skeleton::new(question);
-        let parts = skeleton.parts(question, &joint_offers(question, catalogs), Ties::Apart);
+        let offers = joint_offers(question, catalogs);
+        let skeleton = Skeleton::new(question, &offers);
+        let parts = skeleton.parts(question, &offers, Ties::Apart);
         Self::of(Arc::new(skeleton), parts)
     }
 

@@ -2,7 +2,7 @@
 
 use super::bound::{IdealPoint, Members, compliances};
 use super::boxes::Boxes;
-use super::drive_range::angle_rad;
+use super::drive_range::{DriveRange, angle_rad};
 use super::layout::Coordinate;
 use super::modes::Slow;
 use super::parts_box::{PartsBox, Place};
@@ -46,10 +46,24 @@ impl BranchScore<'_> {
         let tip_m = softer * pose.tip_m_per_rad[joint].dot(&self.ideal.direction).abs();
         let slope = |curve: &Windup| curve.tangent_nm_per_rad(torque_nm);
         let weaker = 0.5 * (slope(&range.stiff) - slope(&range.soft));
+        let looser_rad_per_nm = 0.5 * (range.tilt_rad_per_nm.most - range.tilt_rad_per_nm.least);
+        let by_tilt = pose.by_tilts[joint].along(&self.ideal.direction, &self.members.loads[pose.water]);
+        let tip_m = tip_m + looser_rad_per_nm * by_tilt.middle().max(0.0);
         let x = &self.slow.mode;
         let inertia = mass_kg * square(&self.slow.pose.inertia_per[joint], x);
-        let eigenvalue = weaker * x[joint] * x[joint] + self.slow.eigenvalue * inertia;
+        let eigenvalue =
+            weaker * x[joint] * x[joint] + self.slower_by_tilt(joint, range) + self.slow.eigenvalue * inertia;
         [mass_kg, tip_m + self.deflection_per(joint) * mass_kg, eigenvalue]
+    }
+
+    /// By how much an average bearing makes the strain of the mode less \[N m\].
+    fn slower_by_tilt(&self, joint: usize, range: &DriveRange) -> f64 {
+        let weaker = range.greatest_tilt_stiffness() - 1.0 / range.tilt_rad_per_nm.middle();
+        let coordinates = self.boxes.skeleton.coordinates.iter().zip(&self.slow.mode);
+        let tilts = coordinates.filter(|(c, _)| matches!(c, Coordinate::Tilt(j, _) if *j == joint));
+        let strain: f64 = tilts.map(|(_, x)| weaker * x * x).sum();
+        // a bearing that may be rigid stands still in the mode
+        if strain.is_finite() { strain } else { 0.0 }
     }
 
     /// By how much an average tube makes mass \[kg\], deflection \[m\] and `λ` \[1/s²\] worse.
@@ -109,7 +123,9 @@ impl BranchScore<'_> {
         let tubes = self.members.tubes.iter().zip(&pose.works).flat_map(|(tube, works)| {
             works.iter().zip(compliances(tube)).map(|(w, c)| w.per_load[load].dot(direction) * c.least)
         });
-        let tilts = pose.by_springs_m.iter().map(|by_spring_m| by_spring_m.per_load[load].dot(direction));
-        joints.chain(tubes).chain(tilts).sum()
+        let tilts = self.members.drives.iter().zip(&pose.by_tilts);
+        let tilts = tilts.map(|(d, w)| w.per_load[load].dot(direction) * d.tilt_rad_per_nm.least);
+        let springs = pose.by_springs_m.iter().map(|by_spring_m| by_spring_m.per_load[load].dot(direction));
+        joints.chain(tubes).chain(tilts).chain(springs).sum()
     }
 }

@@ -1,4 +1,6 @@
-//! The torques that a drive must hold.
+//! The torques that a drive must hold, and the loads on its output bearing.
+
+use super::bearing::BearingDemand;
 
 /// A torque on the output side of a gear that a drive must hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,6 +18,9 @@ pub(super) enum Quantity {
 /// Number of quantities.
 pub(super) const QUANTITIES: usize = 4;
 
-/// The torques that a drive must hold, one for each [`Quantity`].
+/// What a drive must hold: a torque for each [`Quantity`], and the loads on its output bearing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Demand(pub [f64; QUANTITIES]);
+pub(super) struct Demand {
+    pub torques: [f64; QUANTITIES],
+    pub bearing: BearingDemand,
+}

@@ -18,6 +18,8 @@ pub(super) struct DriveRange {
     pub stiff: Windup,
     /// A torsion curve that is nowhere stiffer than the curve of any of the drives.
     pub soft: Windup,
+    /// Tilt of the output bearing per moment across the axis, effects included \[rad/(N m)\]; 0 is rigid.
+    pub tilt_rad_per_nm: Span,
     /// Greatest slope that a mode sees in any of the drives, if modes see one slope under every torque \[N m/rad\].
     /// Infinite if for some drive the slope depends on the torque.
     pub modal_nm_per_rad: f64,
@@ -30,7 +32,7 @@ pub(super) struct DriveRange {
 
 impl DriveRange {
     /// The range of a single drive.
-    pub(super) fn of(law: &JointLaw, mass_kg: f64) -> Self {
+    pub(super) fn of(law: &JointLaw, tilt_rad_per_nm: f64, mass_kg: f64) -> Self {
         let one_slope = |k: f64| Windup {
             k1_nm_per_rad: k,
             k2_nm_per_rad: k,
@@ -56,6 +58,7 @@ impl DriveRange {
             most_kg: mass_kg,
             stiff: slopes([k1, k1.max(k2), k1.max(k2).max(k3)]),
             soft: slopes([k1.min(k2).min(k3), k2.min(k3), k3]),
+            tilt_rad_per_nm: Span { least: tilt_rad_per_nm, most: tilt_rad_per_nm },
             modal_nm_per_rad,
             lost_motion: law.lost_motion,
             friction_rad: law.hysteresis_rad,
@@ -68,9 +71,15 @@ impl DriveRange {
             most_kg: self.most_kg.max(other.most_kg),
             stiff: curve(&self.stiff, &other.stiff, f64::max, f64::min),
             soft: curve(&self.soft, &other.soft, f64::min, f64::max),
+            tilt_rad_per_nm: self.tilt_rad_per_nm.with(other.tilt_rad_per_nm),
             modal_nm_per_rad: self.modal_nm_per_rad.max(other.modal_nm_per_rad),
             ..*self
         }
+    }
+
+    /// Greatest stiffness of an output bearing against a tilt \[N m/rad\]; infinite if one of them is rigid.
+    pub(super) fn greatest_tilt_stiffness(&self) -> f64 {
+        1.0 / self.tilt_rad_per_nm.least
     }
 
     /// Least twist under the torques of an interval, with its sign \[rad\]. Gear and lost motion twist least under

@@ -21,7 +21,7 @@ pub(super) struct DriveOptions {
     pub options: Vec<DriveOption>,
 }
 
-/// A drive, or several drives of equal mass and torsion curve.
+/// A drive, or several drives of equal mass, torsion curve and tilt of the bearing.
 #[derive(Debug, Clone)]
 pub(super) struct DriveOption {
     pub range: DriveRange,
@@ -29,7 +29,7 @@ pub(super) struct DriveOption {
     pub drives: Vec<(u32, Ratings)>,
 }
 
-/// Whether drives of equal mass and torsion curve, which no objective tells apart, are one option.
+/// Whether drives of equal mass, torsion curve and tilt, which no objective tells apart, are one option.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Ties {
     Apart,
@@ -50,10 +50,10 @@ impl DriveOptions {
     /// All drives of a joint. `level` is used only if the drive is a choice.
     pub(super) fn new(offers: &JointOffers, level: usize, ties: Ties) -> Self {
         let offers = match offers {
-            JointOffers::Given { law, mass_kg } => {
+            JointOffers::Given { law, tilt_rad_per_nm, mass_kg } => {
                 let drives = vec![(0, Ratings::UNLIMITED)];
-                let given = DriveOption { range: DriveRange::of(law, *mass_kg), drives };
-                return Self { level: None, duty: None, options: vec![given] };
+                let range = DriveRange::of(law, *tilt_rad_per_nm, *mass_kg);
+                return Self { level: None, duty: None, options: vec![DriveOption { range, drives }] };
             }
             JointOffers::Catalog(offers) => offers,
         };
@@ -78,7 +78,7 @@ impl DriveOption {
     fn of_ties(CatalogOffers { offers, .. }: &CatalogOffers, set: &[u32]) -> Self {
         let first = &offers[set[0] as usize];
         Self {
-            range: DriveRange::of(&first.law, first.mass_kg),
+            range: first.range(),
             drives: set.iter().map(|&place| (place, offers[place as usize].ratings)).collect(),
         }
     }
@@ -179,6 +179,7 @@ fn keys(option: &DriveOption) -> Vec<f64> {
         0.5 * stiff.k1_nm_per_rad.ln(),
         0.5 * stiff.k3_nm_per_rad.ln(),
         0.2 * stiff.t1_nm.ln(),
+        0.3 * drive.greatest_tilt_stiffness().ln(),
         0.2 * ratings.on(Quantity::Peak).ln(),
         0.2 * ratings.on(Quantity::Static).ln(),
     ]

@@ -2,6 +2,7 @@
 //!
 //! Everything here follows from the question and the geometry alone; torque and inertia come in when a demand is made.
 
+use super::bearing::BearingDemand;
 use super::demand::{Demand, QUANTITIES, Quantity};
 use super::question::{AskedMotion, AskedPhase, AskedPhaseKind, LinearTorque};
 
@@ -21,7 +22,7 @@ pub(super) struct Duty {
     linear_per_inertia: f64,
     linear_per_static: f64,
     /// Torque of linear acceleration in an emergency stop, divided by that in a ramp.
-    stop_factor: f64,
+    pub stop_factor: f64,
     mean: MeanTorque,
 }
 
@@ -58,20 +59,20 @@ impl Duty {
         }
     }
 
-    /// The torques that a static torque and an inertia outboard ask of the drive. They grow with both (see
-    /// [`AskedMotion::grows`]).
+    /// The torques that a static torque and an inertia outboard ask of the drive, without any load on its bearing. They
+    /// grow with both (see [`AskedMotion::grows`]).
     pub(super) fn demand(&self, static_nm: f64, inertia_kgm2: f64) -> Demand {
         let static_nm = static_nm.abs();
         let linear_nm = (self.linear_per_inertia * inertia_kgm2 + self.linear_per_static * static_nm).abs();
         let cube = |nm: f64| nm * nm * nm;
-        let mut demand = [0.0; QUANTITIES];
-        demand[Quantity::Static as usize] = static_nm;
-        demand[Quantity::Peak as usize] = static_nm + linear_nm;
-        demand[Quantity::Stop as usize] = static_nm + self.stop_factor * linear_nm;
-        demand[Quantity::MeanCubed as usize] = self.mean.of_sum * cube(static_nm + linear_nm)
+        let mut torques = [0.0; QUANTITIES];
+        torques[Quantity::Static as usize] = static_nm;
+        torques[Quantity::Peak as usize] = static_nm + linear_nm;
+        torques[Quantity::Stop as usize] = static_nm + self.stop_factor * linear_nm;
+        torques[Quantity::MeanCubed as usize] = self.mean.of_sum * cube(static_nm + linear_nm)
             + self.mean.of_static * cube(static_nm)
             + self.mean.of_difference * cube((static_nm - linear_nm).abs());
-        Demand(demand)
+        Demand { torques, bearing: BearingDemand::default() }
     }
 }
 

@@ -8,7 +8,7 @@ use super::bound::Members;
 use super::drive_range::DriveRange;
 use super::offers::{CatalogOffers, JointOffers, Offer};
 use super::question::{AskedDrive, AskedJoint, AskedLink, AskedPiece, Question};
-use super::skeleton::{Skeleton, joint_offers};
+use super::skeleton::{Skeleton, carriers, joint_offers};
 use super::tubes::{TubeNumbers, TubeOptions, TubeRange, is_too_slender};
 use crate::arm::joint_law::Curve;
 use crate::arm::load::Water;
@@ -59,8 +59,8 @@ struct Fitted {
 impl<'q> Judge<'q> {
     /// Reads the drives that the catalogs offer, and puts the arm into every case of the question.
     pub fn new(question: &'q Question, catalogs: &Catalogs) -> Self {
-        let skeleton = Arc::new(Skeleton::new(question));
-        Self { question, skeleton, offers: joint_offers(question, catalogs) }
+        let offers = joint_offers(question, catalogs);
+        Self { question, skeleton: Arc::new(Skeleton::new(question, &offers)), offers }
     }
 
     /// The question whose designs are judged.
@@ -87,7 +87,7 @@ impl<'q> Judge<'q> {
         holds.then_some(Judged { picks, objectives })
     }
 
-    /// The design with every drive replaced by the first drive of equal mass and torsion curve. Two designs differ
+    /// The design with every drive replaced by the first drive of equal mass, torsion curve and tilt. Two designs differ
     /// only in such drives if the result is the same for both.
     pub fn first_tie(&self, picks: &[Pick]) -> Vec<Pick> {
         let mut joints = self.offers.iter();
@@ -106,11 +106,11 @@ impl<'q> Judge<'q> {
     fn tubes(&self, picks: &[Pick]) -> Option<Vec<TubeRange>> {
         let (question, waters): (_, &[Option<Water>]) = (self.question, &self.skeleton.waters);
         let mut tubes = Vec::new();
-        for (piece, pick) in question.pieces.iter().zip(picks) {
+        for ((carrier, piece), pick) in carriers(question).zip(picks) {
             match piece {
                 AskedPiece::Joint(_) => {}
                 AskedPiece::Link(link) => {
-                    if let Some(options) = TubeOptions::of_link(question, link, waters) {
+                    if let Some(options) = TubeOptions::of_link(question, carrier, link, waters) {
                         tubes.push(TubeRange::one(&options.tubes.first()?.1));
                     }
                 }
@@ -119,7 +119,8 @@ impl<'q> Judge<'q> {
                     if is_too_slender(question, &tube.section) {
                         return None;
                     }
-                    tubes.push(TubeRange::one(&TubeNumbers::of_choice(question, choice, tube, waters)));
+                    let numbers = TubeNumbers::of_choice(question, carrier, choice, tube, waters);
+                    tubes.push(TubeRange::one(&numbers));
                 }
             }
         }
@@ -134,7 +135,7 @@ impl<'q> Judge<'q> {
             .filter(|(_, piece)| matches!(piece, AskedPiece::Joint(_)))
             .map(|(place, _)| place)
             .collect();
-        let nothing = DriveRange::of(&Curve::Rigid.into(), 0.0);
+        let nothing = DriveRange::of(&Curve::Rigid.into(), 0.0, 0.0);
         let mut members =
             Members::new(vec![nothing; places.len()], tubes.iter().collect(), self.skeleton.waters.len());
         let mut out = picks.to_vec();
@@ -149,8 +150,9 @@ impl<'q> Judge<'q> {
     /// The drive of a joint; `None` if it does not hold. Everything outboard must be known.
     fn fitted(&self, joint: usize, pick: &Pick, members: &Members) -> Option<Fitted> {
         let offers = match &self.offers[joint] {
-            JointOffers::Given { law, mass_kg } => {
-                return Some(Fitted { range: DriveRange::of(law, *mass_kg), pick: Pick::Given });
+            JointOffers::Given { law, tilt_rad_per_nm, mass_kg } => {
+                let range = DriveRange::of(law, *tilt_rad_per_nm, *mass_kg);
+                return Some(Fitted { range, pick: Pick::Given });
             }
             JointOffers::Catalog(offers) => offers,
         };
@@ -166,7 +168,7 @@ impl<'q> Judge<'q> {
             before.into_iter().all(|other| !other.ratings.hold(&most)).then_some(())?;
         }
         let pick = Pick::Drive { gear: offer.gear, motor: offer.motor };
-        Some(Fitted { range: DriveRange::of(&offer.law, offer.mass_kg), pick })
+        Some(Fitted { range: offer.range(), pick })
     }
 
     /// The arm of a design with all of its parts.
@@ -183,10 +185,11 @@ impl<'q> Judge<'q> {
 
     fn joint(&self, joint: &AskedJoint, offers: &JointOffers, pick: &Pick) -> Option<Element> {
         if let AskedDrive::Given { curve, mass_kg } = joint.drive {
-            return Some(joint.with_drive(curve, mass_kg));
+            return Some(joint.with_drive(curve, mass_kg, joint.bearing.stated(), joint.extras.stated()));
         }
         let offer = offer_of(offers.of_catalog()?, pick)?;
-        Some(joint.with_drive(Curve::Windup(offer.windup), offer.mass_kg))
+        let curve = Curve::Windup(offer.windup);
+        Some(joint.with_drive(curve, offer.drive_kg, offer.bearing, offer.extras))
     }
 
     fn objectives(&self, arm: &Arm) -> Objectives {

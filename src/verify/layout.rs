@@ -1,6 +1,6 @@
 //! Where joints, tubes and masses are in a pose, and how every coordinate moves a point.
 //!
-//! The coordinates are the twist of a joint, the tilt of an effect's spring and, for each tube, constant and linear curvature in
+//! The coordinates are the twist of a joint, its tilts about two axes across, the tilt of an effect's spring and, for each tube, constant and linear curvature in
 //! both planes, and constant shear, twist and stretch. The full model has all of these, and more. A body that can move in
 //! fewer ways is stiffer, so its lowest mode is no lower than that of the full model.
 
@@ -26,6 +26,8 @@ pub(super) struct PlacedJoint {
     pub rank: usize,
     pub at_m: Vector3<f64>,
     pub axis: Vector3<f64>,
+    /// The axes about which its bearing tilts.
+    pub across: [Vector3<f64>; 2],
 }
 
 /// A tube in a pose; the frame's columns are its axis and the section's y and z.
@@ -78,9 +80,9 @@ impl Layout {
             match piece {
                 Piece::Joint(joint) => {
                     let axis = rotation * joint.axis.into_inner();
-                    layout.add_springs(place, &across(&axis).map(|axis| (axis, joint.tilt_rad_per_nm)));
                     layout.add_mass(place, layout.tip_m, joint.mass_kg);
-                    layout.joints.push(PlacedJoint { rank: piece_rank(place), at_m: layout.tip_m, axis });
+                    let (rank, at_m) = (piece_rank(place), layout.tip_m);
+                    layout.joints.push(PlacedJoint { rank, at_m, axis, across: across(&axis) });
                     let angle = angles.next().copied().unwrap_or_default().to_radians();
                     rotation *= Rotation3::from_axis_angle(&joint.axis, angle);
                 }
@@ -223,14 +225,19 @@ impl Shape {
 pub(super) enum Coordinate {
     /// Twist of a joint.
     Joint(usize),
+    /// Tilt of a joint's bearing about one of two axes across.
+    Tilt(usize, usize),
+    /// Displacement of all that is outboard of a joint along one of the two axes across, or along its axis. Nothing yields
+    /// like that: it tells forces.
+    Shift(usize, usize),
     /// A shape of a tube.
     Tube(usize, Shape),
     /// Tilt of an effect's spring.
     Spring(usize),
 }
 
-/// All coordinates of an arm, those of joints first.
-pub(super) fn coordinates(layout: &Layout, model: LinkModel) -> Vec<Coordinate> {
+/// All coordinates of an arm, twists of joints first; the bearings of some joints may tilt.
+pub(super) fn coordinates(layout: &Layout, model: LinkModel, tilting: &[bool]) -> Vec<Coordinate> {
     let shapes: &[&[Shape]] = match model {
         LinkModel::Rigid => &[],
         LinkModel::Bending => &[&BENDING],
@@ -240,7 +247,10 @@ pub(super) fn coordinates(layout: &Layout, model: LinkModel) -> Vec<Coordinate> 
     let joints = (0..layout.joints.len()).map(Coordinate::Joint);
     let tubes = 0..layout.tubes.len();
     let tubes = tubes.flat_map(|tube| shapes.iter().map(move |&shape| Coordinate::Tube(tube, shape)));
-    joints.chain(tubes).chain((0..layout.springs.len()).map(Coordinate::Spring)).collect()
+    let tilting = (0..layout.joints.len()).filter(|&joint| tilting[joint]);
+    let tilts = tilting.flat_map(|joint| [Coordinate::Tilt(joint, 0), Coordinate::Tilt(joint, 1)]);
+    let springs = (0..layout.springs.len()).map(Coordinate::Spring);
+    joints.chain(tubes).chain(tilts).chain(springs).collect()
 }
 
 impl Layout {
@@ -252,6 +262,15 @@ impl Layout {
             Coordinate::Joint(joint) => {
                 let joint = &self.joints[joint];
                 if joint.rank < point.rank { turned(&joint.axis, joint.at_m) } else { still }
+            }
+            Coordinate::Tilt(joint, which) => {
+                let joint = &self.joints[joint];
+                if joint.rank < point.rank { turned(&joint.across[which], joint.at_m) } else { still }
+            }
+            Coordinate::Shift(joint, which) => {
+                let joint = &self.joints[joint];
+                let direction = joint.across.get(which).unwrap_or(&joint.axis);
+                if joint.rank < point.rank { (*direction, Vector3::zeros()) } else { still }
             }
             Coordinate::Spring(spring) => {
                 let spring = &self.springs[spring];

@@ -39,6 +39,9 @@ pub(super) struct Pose {
     pub torques: Vec<Linear>,
     /// Displacement of the tip per unit twist of each joint \[m/rad\].
     pub tip_m_per_rad: Vec<Vector3<f64>>,
+    /// Displacement of the tip that each joint's bearing causes per compliance, as a linear function of the loads
+    /// \[m N m/rad\].
+    pub by_tilts: Vec<LinearVector>,
     /// Displacement of the tip that each spring of an effect causes, as a linear function of the loads \[m\].
     pub by_springs_m: Vec<LinearVector>,
     /// For each tube and each of its stiffnesses, the displacement of the tip times the stiffness. Divided by the
@@ -60,14 +63,15 @@ struct Wrench {
 }
 
 /// Wrench on a section: of the fixed loads, and per unit of each load.
-struct Carried {
+pub(super) struct Carried {
     fixed: Wrench,
     per_load: Vec<Wrench>,
 }
 
 /// The inputs from which the numbers of a case are computed.
-struct Builder<'a> {
-    layout: &'a Layout,
+#[derive(Clone, Copy)]
+pub(super) struct Builder<'a> {
+    pub layout: &'a Layout,
     gravity_m_s2: f64,
     /// Weight of the payload, and the tip force, each with the point where it acts \[m\].
     tip_loads: [(Vector3<f64>, Vector3<f64>); 2],
@@ -75,34 +79,21 @@ struct Builder<'a> {
 }
 
 impl Pose {
-    /// Works out the case with this index. `waters` are the study's surroundings.
-    pub(super) fn new(
-        question: &Question,
-        structure: &Structure,
-        index: usize,
-        waters: &[Option<Water>],
-        coordinates: &[Coordinate],
-    ) -> Self {
-        let case = &question.cases[index];
-        let water = water_of(structure, case);
-        let layout = Layout::new(structure, case);
-        let tip_loads = [
-            (payload_weight(question.gravity_m_s2, case, water), payload_at(&layout, case)),
-            (case.tip_force_n, layout.tip_m),
-        ];
-        let builder =
-            Builder { layout: &layout, gravity_m_s2: question.gravity_m_s2, tip_loads, coordinates };
+    /// Works out the case with this index. `water` is the index of its surroundings.
+    pub(super) fn new(question: &Question, index: usize, water: usize, builder: &Builder) -> Self {
+        let (case, layout) = (&question.cases[index], builder.layout);
         let sizing = question.sizing_cases.contains(&index);
         let gravity_m_s2 = question.gravity_m_s2.max(f64::MIN_POSITIVE);
         let acceleration = question.motion.tip_acceleration_m_s2() / gravity_m_s2;
         Self {
             judged: question.judged_cases.contains(&index),
             sizing,
-            water: waters.iter().position(|other| *other == water).unwrap_or_default(),
+            water,
             stress_factor: if sizing { 1.0 + acceleration } else { 1.0 },
             torques: (0..layout.joints.len()).map(|joint| builder.torque(joint)).collect(),
             tip_m_per_rad: layout.joints.iter().map(|j| j.axis.cross(&(layout.tip_m - j.at_m))).collect(),
-            by_springs_m: (0..layout.springs.len()).map(|spring| builder.tilt(spring)).collect(),
+            by_tilts: (0..layout.joints.len()).map(|joint| builder.by_tilt(joint)).collect(),
+            by_springs_m: (0..layout.springs.len()).map(|spring| builder.by_spring(spring)).collect(),
             works: (0..layout.tubes.len()).map(|tube| builder.works(tube)).collect(),
             ends: (0..layout.tubes.len()).map(|tube| builder.ends(tube)).collect(),
             inertia: builder.fixed_inertia(case),
@@ -141,9 +132,37 @@ impl Wrench {
     }
 }
 
+impl Carried {
+    /// Its force or its moment along a direction.
+    pub(super) fn along(&self, is_force: bool, direction: &Vector3<f64>) -> Linear {
+        let part = |wrench: &Wrench| direction.dot(if is_force { &wrench.force } else { &wrench.moment });
+        Linear { fixed: part(&self.fixed), per_load: self.per_load.iter().map(part).collect() }
+    }
+}
+
+impl<'a> Builder<'a> {
+    /// The inputs of a case, with the coordinates of its inertia matrix.
+    pub(super) fn new(
+        question: &Question,
+        structure: &Structure,
+        case: &LoadCase,
+        layout: &'a Layout,
+        coordinates: &'a [Coordinate],
+    ) -> Self {
+        let weight = payload_weight(question.gravity_m_s2, case, water_of(structure, case));
+        let tip_loads = [(weight, payload_at(layout, case)), (case.tip_force_n, layout.tip_m)];
+        Self { layout, gravity_m_s2: question.gravity_m_s2, tip_loads, coordinates }
+    }
+
+    /// The same with other coordinates.
+    pub(super) fn with_coordinates(&self, coordinates: &'a [Coordinate]) -> Self {
+        Self { coordinates, ..*self }
+    }
+}
+
 impl Builder<'_> {
     /// Wrench at a point of everything outboard of it.
-    fn carried(&self, point: &Point) -> Carried {
+    pub(super) fn carried(&self, point: &Point) -> Carried {
         let down = |size: f64| Vector3::new(0.0, 0.0, -size);
         let about_m = &point.at_m;
         let none = Wrench::default();
@@ -169,15 +188,24 @@ impl Builder<'_> {
     fn torque(&self, joint: usize) -> Linear {
         let joint = &self.layout.joints[joint];
         let carried = self.carried(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });
-        Linear {
-            fixed: joint.axis.dot(&carried.fixed.moment),
-            per_load: carried.per_load.iter().map(|wrench| joint.axis.dot(&wrench.moment)).collect(),
-        }
+        carried.along(false, &joint.axis)
+    }
+
+    /// Displacement of the tip by a joint's bearing of unit compliance: its tilts under the moments about both axes
+    /// across times the way of the tip.
+    fn by_tilt(&self, joint: usize) -> LinearVector {
+        let joint = &self.layout.joints[joint];
+        let carried = self.carried(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });
+        let tip_m = self.layout.tip_m - joint.at_m;
+        let moved = |wrench: &Wrench| -> Vector3<f64> {
+            joint.across.iter().map(|axis| axis.cross(&tip_m) * axis.dot(&wrench.moment)).sum()
+        };
+        LinearVector { fixed: moved(&carried.fixed), per_load: carried.per_load.iter().map(moved).collect() }
     }
 
     /// Displacement of the tip by a spring: the spring's tilt under the moment about its axis, times the displacement
     /// of the tip per tilt.
-    fn tilt(&self, spring: usize) -> LinearVector {
+    fn by_spring(&self, spring: usize) -> LinearVector {
         let spring = &self.layout.springs[spring];
         let carried = self.carried(&Point { at_m: spring.at_m, rank: spring.rank, inside_m: None });
         let along_m = spring.axis.cross(&(self.layout.tip_m - spring.at_m)) * spring.rad_per_nm;
@@ -234,7 +262,7 @@ impl Builder<'_> {
     }
 
     /// Inertia matrix of the payload and of the masses that no choice changes.
-    fn fixed_inertia(&self, case: &LoadCase) -> Vec<f64> {
+    pub(super) fn fixed_inertia(&self, case: &LoadCase) -> Vec<f64> {
         let mut out = self.no_inertia();
         let rotation = &self.layout.tip_rotation;
         let payload = Point { at_m: payload_at(self.layout, case), rank: usize::MAX, inside_m: None };
@@ -253,7 +281,7 @@ impl Builder<'_> {
         out
     }
 
-    fn inertia_per(&self) -> Vec<Vec<f64>> {
+    pub(super) fn inertia_per(&self) -> Vec<Vec<f64>> {
         let drives = self.layout.joints.iter().map(|joint| {
             let mut out = self.no_inertia();
             let (moved, _) = self.motions(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });

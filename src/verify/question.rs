@@ -4,7 +4,9 @@
 //! from its list of pieces. So whoever asks copies the study into these types, field by field, and everything that
 //! follows from them (which drives hold, what a tube weighs, where a joint is) is worked out in this room.
 
+use crate::arm::bearing::{Bearing, BearingSource};
 use crate::arm::effect::Effect;
+use crate::arm::extras::{Extras, ExtrasSource};
 use crate::arm::joint_law::Curve;
 use crate::arm::load::LoadCase;
 use crate::arm::section::{LinkMaterial, Section};
@@ -57,6 +59,10 @@ pub struct AskedJoint {
     pub name: String,
     /// Axis in the carried frame.
     pub axis: Unit<Vector3<f64>>,
+    /// Where its output bearing comes from.
+    pub bearing: BearingSource,
+    /// Where the masses beyond gear, motor and bearing come from.
+    pub extras: ExtrasSource,
     /// How its drive is found.
     pub drive: AskedDrive,
     /// Largest speed, if the study gives one \[rad/s\]; else it follows from the speed of the tip.
@@ -257,15 +263,21 @@ impl AskedPiece {
 }
 
 impl AskedJoint {
-    /// The arm's element for this joint, with a torsion curve and a mass of the drive.
-    pub(super) fn with_drive(&self, curve: Curve, mass_kg: f64) -> Element {
+    /// The arm's element for this joint, with a torsion curve and a mass of the drive, an output bearing and extras.
+    pub(super) fn with_drive(
+        &self,
+        curve: Curve,
+        mass_kg: f64,
+        bearing: Option<Bearing>,
+        extras: Extras,
+    ) -> Element {
         Element::Joint(Joint {
             name: self.name.clone(),
             axis: self.axis,
             curve,
             mass_kg,
-            bearing: None,
-            extras: Default::default(),
+            bearing,
+            extras,
             gear: None,
             motor: None,
             coupled: None,
@@ -288,10 +300,15 @@ impl Question {
         Arm { name: String::new(), gravity_m_s2: self.gravity_m_s2, chain, effects: self.effects.clone() }
     }
 
-    /// A joint with this torsion curve and with the effects that act on the joint. Its mass is only what the effects
-    /// add.
-    pub(super) fn joint_piece(&self, joint: &AskedJoint, curve: Curve) -> JointPiece {
-        let arm = self.arm(vec![joint.with_drive(curve, 0.0)]);
+    /// A joint with this torsion curve and bearing and with the effects that act on the joint. Its mass is only that of
+    /// the bearing and what the effects add.
+    pub(super) fn joint_piece(
+        &self,
+        joint: &AskedJoint,
+        curve: Curve,
+        bearing: Option<Bearing>,
+    ) -> JointPiece {
+        let arm = self.arm(vec![joint.with_drive(curve, 0.0, bearing, Extras::default())]);
         match arm.structure(self.joints).pieces.pop() {
             Some(Piece::Joint(piece)) => piece,
             _ => unreachable!("an arm of one joint has one joint"),
@@ -307,11 +324,13 @@ impl Question {
         }
     }
 
-    /// The arm without its choices, effects applied: joints are rigid and weightless, and an open link has its first
-    /// tube. It shows where the pieces are, and what effects put between them.
+    /// The arm without its choices, effects applied: joints do not twist and have no drives, stated bearings are there, and
+    /// an open link has its first tube. It shows where the pieces are, and what effects put between them.
     pub(super) fn nominal_structure(&self) -> Structure {
         let element = |piece: &AskedPiece| match piece {
-            AskedPiece::Joint(joint) => joint.with_drive(Curve::Rigid, 0.0),
+            AskedPiece::Joint(joint) => {
+                joint.with_drive(Curve::Rigid, 0.0, joint.bearing.stated(), Extras::default())
+            }
             AskedPiece::Link(link) => Element::Link(link.clone()),
             AskedPiece::Choice(choice) => Element::Link(match choice.tubes.first() {
                 Some(tube) => choice.with_tube(tube),

@@ -7,14 +7,19 @@
 //!
 //! Nothing of `sizing` is used: a wrong threshold there must not be repeated here.
 
+use super::bearing::BearingRatings;
 use super::demand::{Demand, QUANTITIES, Quantity};
 use super::duty::Duty;
+use crate::arm::bearing::Bearing;
 use crate::catalog::gear::Gear;
 use crate::catalog::motor::Motor;
 
-/// The greatest torque of each quantity that a drive holds.
+/// The greatest torque of each quantity that a drive holds, and what its output bearing holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Ratings([f64; QUANTITIES]);
+pub(super) struct Ratings {
+    most: [f64; QUANTITIES],
+    pub bearing: BearingRatings,
+}
 
 /// A limit of a drive on one quantity. `most` gives the limit; `None` if the catalog lacks a number that it needs.
 struct Check {
@@ -37,15 +42,16 @@ const RATED_RPM: f64 = 2000.0;
 
 impl Ratings {
     /// Ratings under which no check fails.
-    pub(super) const UNLIMITED: Self = Self([f64::INFINITY; QUANTITIES]);
+    pub(super) const UNLIMITED: Self =
+        Self { most: [f64::INFINITY; QUANTITIES], bearing: BearingRatings::UNLIMITED };
 
     /// The ratings of a drive under a joint's motion; `None` if the motion is too fast for the drive, or if the
-    /// catalog lacks a number.
-    pub(super) fn of(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<Self> {
-        let mut ratings = Self::UNLIMITED;
+    /// catalog lacks a number. A blank number of the bearing excludes nothing.
+    pub(super) fn of(gear: &Gear, motor: &Motor, bearing: Option<&Bearing>, duty: &Duty) -> Option<Self> {
+        let mut ratings = Self { bearing: BearingRatings::of(bearing, duty), ..Self::UNLIMITED };
         for check in &CHECKS {
             let most = (check.most)(gear, motor, duty)?;
-            let rating = &mut ratings.0[check.on as usize];
+            let rating = &mut ratings.most[check.on as usize];
             *rating = rating.min(most);
         }
         turns_as_fast(gear, motor, duty)?.then_some(ratings)
@@ -54,22 +60,26 @@ impl Ratings {
     /// Whether a drive with these ratings holds every torque of a demand.
     pub(super) fn hold(&self, demand: &Demand) -> bool {
         // no branch on the way: nearly every box asks this of many drives
-        self.0.iter().zip(&demand.0).fold(true, |held, (most, asked)| held & (asked <= most))
+        let torques = self.most.iter().zip(&demand.torques);
+        torques.fold(true, |held, (most, asked)| held & (asked <= most)) && self.bearing.hold(&demand.bearing)
     }
 
     /// Whether a drive with these ratings holds every demand that a drive with the other ratings holds.
     pub(super) fn cover(&self, other: &Self) -> bool {
-        self.0.iter().zip(&other.0).all(|(a, b)| a >= b)
+        self.most.iter().zip(&other.most).all(|(a, b)| a >= b) && self.bearing.cover(&other.bearing)
     }
 
-    /// The larger rating of the two for each quantity.
+    /// Ratings under which all holds that holds under one of the two: the larger rating for each quantity.
     pub(super) fn max(&self, other: &Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i].max(other.0[i])))
+        Self {
+            most: std::array::from_fn(|i| self.most[i].max(other.most[i])),
+            bearing: self.bearing.max(&other.bearing),
+        }
     }
 
     /// The rating of one quantity.
     pub(super) fn on(&self, quantity: Quantity) -> f64 {
-        self.0[quantity as usize]
+        self.most[quantity as usize]
     }
 }
 
@@ -158,7 +168,7 @@ mod tests {
     fn the_ratings_of_a_drive_are_those_worked_out_by_hand() {
         let catalogs = Catalogs::builtin();
         let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
-        let ratings = Ratings::of(gear, motor, &duty()).unwrap();
+        let ratings = Ratings::of(gear, motor, None, &duty()).unwrap();
         let near = |quantity, by_hand: f64| {
             let rating = ratings.on(quantity);
             assert!((rating / by_hand - 1.0).abs() < 1e-12, "{quantity:?}: {rating}, by hand {by_hand}");
@@ -177,9 +187,9 @@ mod tests {
     #[test]
     fn the_demand_is_the_one_worked_out_by_hand() {
         // 40 N m of linear torque on 100 N m of static torque
-        let Demand(demand) = duty().demand(-100.0, 40.0 / (5.0 / 1.35));
+        let Demand { torques, .. } = duty().demand(-100.0, 40.0 / (5.0 / 1.35));
         let mean = (140f64.powi(3) * 0.5 + 100f64.powi(3) * 3.0 + 60f64.powi(3) * 0.5) / 4.0;
-        for (asked, by_hand) in demand.iter().zip([100.0, 140.0, 180.0, mean]) {
+        for (asked, by_hand) in torques.iter().zip([100.0, 140.0, 180.0, mean]) {
             assert!((asked / by_hand - 1.0).abs() < 1e-12, "{asked}, by hand {by_hand}");
         }
     }
@@ -192,7 +202,7 @@ mod tests {
         let slow = Gear { max_input_speed_rpm: Some(10.0), ..gear.clone() };
         let unknown = Gear { series: "unheard of".into(), ..gear.clone() };
         for gear in [blank, slow, unknown] {
-            assert_eq!(Ratings::of(&gear, motor, &duty()), None);
+            assert_eq!(Ratings::of(&gear, motor, None, &duty()), None);
         }
     }
 }

@@ -21,6 +21,11 @@ impl Span {
         Self { least: self.least + other.least, most: self.most + other.most }
     }
 
+    /// The numbers of both and all between them.
+    pub(super) fn with(self, other: Self) -> Self {
+        Self { least: self.least.min(other.least), most: self.most.max(other.most) }
+    }
+
     /// The least product of a number of this span and a number of a span of compliances, none of which is negative.
     pub(super) fn least_product(self, compliance: Self) -> f64 {
         let factor = if self.least >= 0.0 { compliance.least } else { compliance.most };

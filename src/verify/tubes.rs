@@ -1,13 +1,14 @@
 //! The numbers of a tube that mass, torques, deflection, stress and modes depend on, and their ranges over a set of tubes.
 
 use super::layout::has_line;
-use super::question::{AskedLink, AskedTube, Question};
+use super::question::{AskedJoint, AskedLink, AskedTube, Question};
 use super::tree::Tree;
 use crate::arm::load::Water;
 use crate::arm::section::Section;
 use crate::arm::structure::{LinkPiece, Structure};
 use crate::arm::{Link, LinkBody, LinkModel};
-use crate::mechanics::beam::{line_densities, line_stiffnesses};
+use crate::mechanics::beam::{line_densities, line_stiffnesses, section_frame};
+use nalgebra::Vector3;
 
 /// Number of stiffnesses of a tube: `E I` about y and z, `κ G A`, `G J`, `E A`.
 pub(super) const STIFFNESSES: usize = 5;
@@ -29,6 +30,8 @@ pub(super) struct TubeNumbers {
     pub stresses: [f64; STRESSES],
     /// 1 for a round tube, 0 for a rectangular one.
     pub round: f64,
+    /// Half its width along the axis of the joint that carries it; zero if there is none \[m\].
+    pub half_width_m: f64,
     /// Weight and inertias in each of the study's surroundings.
     pub around: Vec<TubeAround>,
 }
@@ -71,18 +74,25 @@ impl TubeOptions {
     /// The tubes of a link whose tube is chosen.
     pub(super) fn of_choice(
         question: &Question,
+        carrier: Option<&AskedJoint>,
         choice: &AskedLink,
         level: usize,
         waters: &[Option<Water>],
     ) -> Self {
         let tubes = (0u32..).zip(&choice.tubes).filter(|(_, tube)| !is_too_slender(question, &tube.section));
-        let tubes = tubes.map(|(i, tube)| (i, TubeNumbers::of_choice(question, choice, tube, waters)));
+        let numbers = |tube| TubeNumbers::of_choice(question, carrier, choice, tube, waters);
+        let tubes = tubes.map(|(i, tube)| (i, numbers(tube)));
         Self { level: Some(level), tubes: tubes.collect() }
     }
 
     /// The tube of a link without a choice. Cables along a rigid offset count as a tube that does not yield. `None`
     /// if the link has no weight along its length.
-    pub(super) fn of_link(question: &Question, link: &Link, waters: &[Option<Water>]) -> Option<Self> {
+    pub(super) fn of_link(
+        question: &Question,
+        carrier: Option<&AskedJoint>,
+        link: &Link,
+        waters: &[Option<Water>],
+    ) -> Option<Self> {
         let piece = question.link_piece(link.clone());
         has_line(&piece).then(|| {
             let slender = match &link.body {
@@ -91,7 +101,7 @@ impl TubeOptions {
             };
             // what cables weigh is no mass of a design, and the strength of a given tube is not known
             let mass_kg = piece.beam.map_or(0.0, |_| piece.tube_kg_per_m() * piece.vector_m.norm());
-            let numbers = TubeNumbers::new(question, &piece, mass_kg, waters);
+            let numbers = TubeNumbers::new(question, carrier, &piece, mass_kg, waters);
             let tubes = if slender { Vec::new() } else { vec![(0, numbers)] };
             Self { level: None, tubes }
         })
@@ -131,6 +141,15 @@ pub(super) fn is_too_slender(question: &Question, section: &Section) -> bool {
         Section::RectangularBar { .. } | Section::RoundBar { .. } => return false,
     };
     question.limits.wall_slenderness_max.is_some_and(|most| slenderness > most)
+}
+
+/// Half the width of a tube along a direction of its carried frame: the part of the half widths, as a vector in the
+/// section's plane, that its two sides have in that direction; zero for an offset \[m\].
+fn half_width_m(piece: &LinkPiece, direction: &Vector3<f64>) -> f64 {
+    let Some(beam) = piece.beam else { return 0.0 };
+    let [y, z] = [1, 2].map(|side| section_frame(&piece.vector_m).column(side).dot(direction));
+    let (width_m, height_m) = beam.section.outer_m();
+    ((width_m * y).powi(2) + (height_m * z).powi(2)).sqrt() / 2.0
 }
 
 /// The numbers by which the tree separates tubes.
@@ -202,24 +221,32 @@ impl TubeNumbers {
     /// Numbers of a tube that a link may have.
     pub(super) fn of_choice(
         question: &Question,
+        carrier: Option<&AskedJoint>,
         choice: &AskedLink,
         tube: &AskedTube,
         waters: &[Option<Water>],
     ) -> Self {
         let kg_per_m = tube.material.density_kg_m3 * tube.section.properties(tube.material.poisson).area_m2;
         let piece = question.link_piece(choice.with_tube(tube));
-        let numbers = Self::new(question, &piece, kg_per_m * choice.vector_m.norm(), waters);
+        let numbers = Self::new(question, carrier, &piece, kg_per_m * choice.vector_m.norm(), waters);
         let is_round = tube.strength_pa.is_some() && tube.section.is_round();
         Self { stresses: stresses(tube), round: f64::from(u8::from(is_round)), ..numbers }
     }
 
     /// Numbers of a tube whose strength is unknown.
-    fn new(question: &Question, piece: &LinkPiece, mass_kg: f64, waters: &[Option<Water>]) -> Self {
+    fn new(
+        question: &Question,
+        carrier: Option<&AskedJoint>,
+        piece: &LinkPiece,
+        mass_kg: f64,
+        waters: &[Option<Water>],
+    ) -> Self {
         Self {
             mass_kg,
             stiffnesses: stiffnesses(piece, question.links),
             stresses: [0.0; STRESSES],
             round: 0.0,
+            half_width_m: carrier.map_or(0.0, |joint| half_width_m(piece, &joint.axis)),
             around: waters.iter().map(|water| around(question, piece, *water)).collect(),
         }
     }
@@ -234,6 +261,7 @@ impl TubeNumbers {
             stiffnesses: std::array::from_fn(|i| combine(self.stiffnesses[i], other.stiffnesses[i])),
             stresses: std::array::from_fn(|i| combine(self.stresses[i], other.stresses[i])),
             round: combine(self.round, other.round),
+            half_width_m: combine(self.half_width_m, other.half_width_m),
             around: self.around.iter().zip(&other.around).map(around).collect(),
         }
     }

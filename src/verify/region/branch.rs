@@ -5,7 +5,8 @@
 //! torque if the mixture twists less, or is stiffer, than its gears are at the torque that its own weights make.
 
 use super::super::bound::{Members, compliances};
-use super::super::span::{Linear, Span};
+use super::super::pose::Pose;
+use super::super::span::{Linear, LinearVector, Span};
 use super::parts_table::{Numbers, PartsTable, place};
 use super::rows::Rows;
 use super::subproblem::{Subproblem, TorqueInterval};
@@ -99,9 +100,7 @@ impl Rows<'_> {
         let row = (0..spreads.len()).max_by(|&a, &b| spreads[a].total_cmp(&spreads[b])).unwrap_or(0);
         let mut score: f64 = spreads.iter().sum();
         let at = (score > WORTH_IT).then(|| adds(row, between));
-        if let Some(tube) = part.checked_sub(self.columns.joints) {
-            score += self.left_out_of(tube, between, members, &left.weights);
-        }
+        score += self.left_out_of(part, between, members, &left.weights);
         let per_number = self.rows[row].per_number[columns.clone()].to_vec();
         if score <= WORTH_IT {
             score = WORTH_IT * (1.0 - 1.0 / self.options(left, part) as f64);
@@ -126,26 +125,44 @@ impl Rows<'_> {
         }
     }
 
-    /// The part of a tube's tip displacement that the linear bound of force times compliance leaves out at the
+    /// The part of a tube's or a bearing's tip displacement that the linear bound of force times compliance leaves out at the
     /// mixture, in units of the weighted rows.
-    fn left_out_of(&self, tube: usize, between: &[f64], members: &Members, weights: &[f64]) -> f64 {
+    fn left_out_of(&self, part: usize, between: &[f64], members: &Members, weights: &[f64]) -> f64 {
         let of_tip = |&(row, case, direction): &(usize, usize, nalgebra::Vector3<f64>)| {
             let pose = self.pose(case);
             let loads = &members.loads[pose.water];
-            let products = pose.works[tube].iter().zip(compliances(members.tubes[tube])).enumerate();
-            let left_out = products.map(|(which, (work, compliance))| {
-                let number = self.columns.tubes[tube] + place::compliance(self.skeleton.waters.len(), which);
-                let forces = work.along(&direction, loads);
-                let per_load = work.per_load.iter().enumerate();
-                let force = work.fixed.dot(&direction)
-                    + per_load
-                        .map(|(load, per)| between[self.columns.load(load, pose.water)] * per.dot(&direction))
-                        .sum::<f64>();
-                (force - forces.least) * (between[number] - compliance.least)
-            });
+            let left_out =
+                self.products(part, pose, members).into_iter().map(|(number, work, compliance)| {
+                    let forces = work.along(&direction, loads);
+                    let per_load = work.per_load.iter().enumerate();
+                    let force = work.fixed.dot(&direction)
+                        + per_load
+                            .map(|(load, per)| {
+                                between[self.columns.load(load, pose.water)] * per.dot(&direction)
+                            })
+                            .sum::<f64>();
+                    (force - forces.least) * (between[number] - compliance.least)
+                });
             weights[row] * left_out.sum::<f64>() / self.upper.tip_m
         };
         self.tips.iter().map(of_tip).sum()
+    }
+
+    /// Every product of force and compliance that a part has in the displacement of the tip, with the position of the
+    /// compliance.
+    fn products<'p>(
+        &self,
+        part: usize,
+        pose: &'p Pose,
+        members: &Members,
+    ) -> Vec<(usize, &'p LinearVector, Span)> {
+        let Some(tube) = part.checked_sub(self.columns.joints) else {
+            let tilt = members.drives[part].tilt_rad_per_nm;
+            return vec![(self.columns.tilt(part), &pose.by_tilts[part], tilt)];
+        };
+        let works = pose.works[tube].iter().zip(compliances(members.tubes[tube])).enumerate();
+        let number = |which| self.columns.tubes[tube] + place::compliance(self.skeleton.waters.len(), which);
+        works.map(|(which, (work, compliance))| (number(which), work, compliance)).collect()
     }
 
     /// Ways to branch at the torques of a case, each with its gain. The mixture gains where its gears twist or

@@ -2,7 +2,8 @@
 //!
 //! A tube is a line of numbers: its mass; for each of the study's surroundings its weight and its inertias per length; its stiffnesses
 //! and its compliances. The tubes of a link stand in a tree whose nodes know the least and the most of every number.
-//! A drive is its mass and its torsion curve; many drives have one curve, so that a curve's price is worked out once.
+//! A drive is its mass, its torsion curve and the tilt of its bearing; many drives have one curve and one bearing, so that
+//! their price is worked out once.
 
 use super::super::drive_range::DriveRange;
 use super::super::drives::DriveOptions;
@@ -19,8 +20,8 @@ pub(super) struct PartsTable {
     pub tubes: Vec<TubeTable>,
 }
 
-/// For each torsion curve of a joint: its twist in every judged case, then its slope in every judged case. `None` for
-/// a curve that no drive of the subproblem has.
+/// For each torsion curve of a joint: its twist in every judged case, then its slope in every judged case, then
+/// compliance and stiffness of the output bearing that comes with it. `None` for a curve that no drive of the subproblem has.
 pub(super) type Numbers = Vec<Option<Vec<f64>>>;
 
 /// The drives that a joint may have.
@@ -29,7 +30,7 @@ pub(super) struct JointTable {
     pub masses_kg: Vec<f64>,
     /// For each drive, the index of its torsion curve in `curves`.
     pub curve: Vec<u32>,
-    /// The different torsion curves, each with the numbers of the first drive that has the curve.
+    /// The different torsion curves with their bearings, each with the numbers of the first drive that has the curve.
     pub curves: Vec<DriveRange>,
 }
 
@@ -84,9 +85,9 @@ impl PartsTable {
 impl JointTable {
     fn new(drives: DriveOptions) -> Self {
         let mut curves: Vec<DriveRange> = Vec::new();
-        let twists = |a: &DriveRange| (a.stiff, a.soft, a.modal_nm_per_rad);
+        let yields = |a: &DriveRange| (a.stiff, a.soft, a.modal_nm_per_rad, a.tilt_rad_per_nm);
         let curve = |range: &DriveRange| {
-            let known = curves.iter().position(|known| twists(known) == twists(range));
+            let known = curves.iter().position(|known| yields(known) == yields(range));
             known.unwrap_or_else(|| {
                 curves.push(*range);
                 curves.len() - 1
@@ -110,7 +111,7 @@ impl TubeTable {
         let tree = options.tree();
         let waters = options.tubes.first().map_or(0, |(_, tube)| tube.around.len());
         let priced = place::priced(waters);
-        let width = priced + STRESSES + 1;
+        let width = priced + STRESSES + 2;
         let mut bounds = vec![0.0; 2 * width * tree.len()];
         // halves come after their node
         for node in (0..tree.len() as u32).rev() {
@@ -185,12 +186,12 @@ fn numbers(tube: &TubeNumbers) -> Vec<f64> {
     numbers.extend(tube.stiffnesses.iter().map(stiffness));
     numbers.extend(tube.stiffnesses.iter().map(|k| 1.0 / k));
     numbers.extend(tube.stresses);
-    numbers.push(tube.round);
+    numbers.extend([tube.round, tube.half_width_m]);
     numbers
 }
 
 fn tube(numbers: &[f64]) -> TubeNumbers {
-    let waters = (numbers.len() - 2 - 2 * STIFFNESSES - STRESSES) / (1 + DENSITIES);
+    let waters = (numbers.len() - 3 - 2 * STIFFNESSES - STRESSES) / (1 + DENSITIES);
     let stiffness = |k: f64| if k > 0.0 { k } else { f64::INFINITY };
     let around = |water: usize| TubeAround {
         weight_n_per_m: numbers[place::weight(water)],
@@ -202,6 +203,7 @@ fn tube(numbers: &[f64]) -> TubeNumbers {
         stiffnesses: std::array::from_fn(|i| stiffness(numbers[place::stiffness(waters, i)])),
         stresses: std::array::from_fn(|i| rest[i]),
         round: rest[STRESSES],
+        half_width_m: rest[STRESSES + 1],
         around: (0..waters).map(around).collect(),
     }
 }

@@ -11,6 +11,8 @@
 //! `F c >= F₀ c + c₀ (F - F₀)`. A gear twists under a torque `T`, in the sense that moves the tip along `e`, by at least
 //! `φ(T₀) + c₀ (T - T₀)`: `φ(T₀)` is the part's own, `c₀` the least twist per torque that a gear of the subproblem adds beyond `T₀`.
 //!
+//! A bearing tilts like a tube: force is the way of the tip per compliance.
+//!
 //! *Modes.* `M` is linear in masses and inertias per length, `K` diagonal; the slope of a gear is the largest it has
 //! under the torques of the subproblem.
 //!
@@ -22,7 +24,7 @@ use super::super::layout::Coordinate;
 use super::super::pencil::{Pencil, square};
 use super::super::pose::Pose;
 use super::super::skeleton::Skeleton;
-use super::super::span::{Linear, Span};
+use super::super::span::{Linear, LinearVector, Span};
 use super::super::tubes::{DENSITIES, STIFFNESSES};
 use super::super::upper_bound::UpperBound;
 use super::parts_table::{Numbers, PartsTable, place};
@@ -40,7 +42,8 @@ pub(super) struct Row {
 }
 
 /// Positions of each part's numbers in the list of all numbers. A joint has its mass, then its twist in every judged
-/// case, then its slope in every judged case. A tube has its numbers of the parts table.
+/// case, then its slope in every judged case, then compliance and stiffness of its bearing. A tube has its numbers
+/// of the parts table.
 #[derive(Clone)]
 pub(super) struct Columns {
     pub cases: usize,
@@ -61,7 +64,7 @@ pub(super) struct Rows<'a> {
     /// Index of the first row of a mode. `modes` holds the case and the trial shape of each row of a mode.
     pub first_mode: usize,
     pub modes: Vec<(usize, Vec<f64>)>,
-    /// For each joint, the twists and slopes of its torsion curves; `None` for a curve that no drive of the
+    /// For each joint, the twists, slopes and bearings of its torsion curves; `None` for a curve that no drive of the
     /// subproblem has.
     pub curves: Vec<Numbers>,
     /// Interval of the torque on each joint in each judged case \[N m\]. `per_torque` is the least increase of the
@@ -78,7 +81,7 @@ pub(super) struct Rows<'a> {
 impl Columns {
     pub(super) fn new(table: &PartsTable, cases: usize) -> Self {
         let joints = table.joints.len();
-        let mut tubes = vec![joints * (1 + 2 * cases)];
+        let mut tubes = vec![joints * (3 + 2 * cases)];
         for tube in &table.tubes {
             tubes.push(tubes[tubes.len() - 1] + tube.priced());
         }
@@ -86,7 +89,7 @@ impl Columns {
     }
 
     pub(super) fn mass(&self, joint: usize) -> usize {
-        joint * (1 + 2 * self.cases)
+        joint * (3 + 2 * self.cases)
     }
 
     pub(super) fn twist(&self, joint: usize, case: usize) -> usize {
@@ -95,6 +98,16 @@ impl Columns {
 
     pub(super) fn slope(&self, joint: usize, case: usize) -> usize {
         self.mass(joint) + 1 + self.cases + case
+    }
+
+    /// Compliance of the bearing.
+    pub(super) fn tilt(&self, joint: usize) -> usize {
+        self.mass(joint) + 1 + 2 * self.cases
+    }
+
+    /// Stiffness of the bearing; 0 if it is rigid, and then nothing is ever paid for it.
+    fn tilt_stiffness(&self, joint: usize) -> usize {
+        self.tilt(joint) + 1
     }
 
     pub(super) fn len(&self) -> usize {
@@ -175,9 +188,8 @@ impl<'a> Rows<'a> {
         for (joint, kept) in subproblem.joints.iter().enumerate() {
             for &drive in kept {
                 let curve = table.joints[joint].curve[drive as usize] as usize;
-                if rows.curves[joint][curve].is_none() {
-                    rows.curves[joint][curve] = Some(vec![0.0; 2 * rows.columns.cases]);
-                }
+                let range = &table.joints[joint].curves[curve];
+                rows.curves[joint][curve].get_or_insert_with(|| numbers_of(range, judged.len()));
             }
         }
         rows.add_mass();
@@ -221,12 +233,15 @@ impl<'a> Rows<'a> {
         for (tube, works) in pose.works.iter().enumerate() {
             let compliances = compliances(members.tubes[tube]);
             for (which, (work, compliance)) in works.iter().zip(compliances).enumerate() {
-                let (force, least) = (work.along(&direction, loads).least, compliance.least);
                 let number = self.columns.tubes[tube] + place::compliance(self.skeleton.waters.len(), which);
-                row.per_number[number] += force;
-                let per_load = work.per_load.iter().map(|per| least * per.dot(&direction));
-                row.add(&self.columns, pose.water, least * (work.fixed.dot(&direction) - force), per_load);
+                let force = Force { work, least: work.along(&direction, loads).least, water: pose.water };
+                self.add_product(&mut row, number, compliance.least, &force, &direction);
             }
+        }
+        for (joint, work) in pose.by_tilts.iter().enumerate() {
+            let force = Force { work, least: work.along(&direction, loads).least, water: pose.water };
+            let least = members.drives[joint].tilt_rad_per_nm.least;
+            self.add_product(&mut row, self.columns.tilt(joint), least, &force, &direction);
         }
         for by_spring_m in &pose.by_springs_m {
             let per_load = by_spring_m.per_load.iter().map(|per| per.dot(&direction));
@@ -236,6 +251,15 @@ impl<'a> Rows<'a> {
             self.tips.push((self.rows.len(), case, direction));
             self.rows.push(row.less(self.upper.tip_m, self.upper.tip_m));
         }
+    }
+
+    /// Adds the linear bound of the product of a force and a compliance to a row. `number` is the position of the
+    /// compliance, `least` the least that it is.
+    fn add_product(&self, row: &mut Row, number: usize, least: f64, force: &Force, direction: &Vector3<f64>) {
+        row.per_number[number] += force.least;
+        let per_load = force.work.per_load.iter().map(|per| least * per.dot(direction));
+        let fixed = least * (force.work.fixed.dot(direction) - force.least);
+        row.add(&self.columns, force.water, fixed, per_load);
     }
 
     /// Adds a gear's part of the tip displacement to a row, and stores the least twist of each torsion curve.
@@ -346,6 +370,8 @@ impl<'a> Rows<'a> {
                     integral_m,
                 ))
             }
+            Coordinate::Tilt(joint, _) => Ok((self.columns.tilt_stiffness(joint), 1.0)),
+            Coordinate::Shift(..) => Err(f64::INFINITY),
             Coordinate::Spring(spring) => Err(self.skeleton.spring_stiffnesses[spring]),
         }
     }
@@ -365,6 +391,21 @@ impl<'a> Rows<'a> {
         }
         Pencil::new(stiffness.collect(), inertia)
     }
+}
+
+/// A force, as displacement of the tip per compliance, and the least that it is along the direction of a row.
+struct Force<'w> {
+    work: &'w LinearVector,
+    least: f64,
+    water: usize,
+}
+
+/// The numbers of a torsion curve, whose twists and slopes are not known yet, and of the bearing that comes with it.
+fn numbers_of(range: &DriveRange, cases: usize) -> Vec<f64> {
+    let stiffness = range.greatest_tilt_stiffness();
+    let mut numbers = vec![0.0; 2 * cases];
+    numbers.extend([range.tilt_rad_per_nm.least, if stiffness.is_finite() { stiffness } else { 0.0 }]);
+    numbers
 }
 
 /// Least increase of a gear's twist per torque, from the least torque of an interval to any other torque in it
