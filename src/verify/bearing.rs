@@ -264,19 +264,11 @@ mod tests {
         near(BearingDemand { at_rest: load(20.0, 200.0, 300.0), ..none }, life_n / 1211.0);
         // 2000 > 1.5 · (200 + 40 · 1.9) = 414: P_c = 0.67 (276 + 2000)
         near(BearingDemand { at_rest: load(0.0, 200.0, 2000.0), ..none }, life_n / (0.67 * 2276.0));
-        let short = AskedLife(duty()).of(1.0);
+        let mut short = duty();
+        short.life_h = 1.0;
         let at_rest = BearingRatings::of(Some(&bearing()), &short);
         let demand = BearingDemand { at_rest: load(20.0, 200.0, 300.0), ..none };
         assert!((most(&at_rest, &demand) / (9000.0 / 3.0 / 1208.0) - 1.0).abs() < 1e-12);
-    }
-
-    /// The same duty for another life.
-    struct AskedLife(Duty);
-
-    impl AskedLife {
-        fn of(self, life_h: f64) -> Duty {
-            Duty { life_h, ..self.0 }
-        }
     }
 
     #[test]
