@@ -1,7 +1,6 @@
 //! Parts whose figures no document was seen for, or are typical of their class: it is said beside every pick that uses them.
 
 use super::front_table::FrontTable;
-use super::picks::Pick;
 use super::words::{TERMINAL, wrap};
 use crate::catalog::{Catalogs, Provenance};
 use std::collections::BTreeMap;
@@ -35,12 +34,13 @@ impl Caveats {
         self.of_part(name).map_or(name.to_string(), |caveat| format!("{name} ({caveat})"))
     }
 
-    /// One sentence for the terminal about the parts of picks; empty if documents were seen for all.
-    pub(crate) fn sentence(&self, front: &FrontTable, picks: &[Pick]) -> String {
+    /// One sentence for the terminal about the parts of picks, each with its row and its name; empty if documents were seen
+    /// for all.
+    pub(crate) fn sentence(&self, front: &FrontTable, picks: &[(usize, String)]) -> String {
         let mut used: Vec<(&str, Vec<String>)> = Vec::new();
-        for pick in picks {
-            for part in parts(front, pick.design.row).filter(|part| self.of_part(part).is_some()) {
-                let name = pick.names.join(", ");
+        for (row, name) in picks {
+            for part in parts(front, *row).filter(|part| self.of_part(part).is_some()) {
+                let name = name.clone();
                 match used.iter_mut().find(|(known, _)| *known == part) {
                     Some((_, names)) if names.contains(&name) => {}
                     Some((_, names)) => names.push(name),
@@ -72,7 +72,7 @@ fn parts(front: &FrontTable, row: usize) -> impl Iterator<Item = &str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::picks::{designs, picks};
+    use crate::report::picks::{designs, picks, rows_and_names};
 
     #[test]
     fn a_recalled_motor_and_a_representative_laminate_are_named_with_their_picks() {
@@ -87,7 +87,7 @@ mod tests {
                 words("b;Structural steel S355;F11-10;2;10;20"),
             ],
         };
-        let picked = picks(&designs(&front));
+        let picked = rows_and_names(&picks(&designs(&front)));
         let sentence = caveats.sentence(&front, &picked).replace('\n', " ");
         assert!(
             sentence.contains("Boron/epoxy quasi-isotropic (representative) in stiffest, highest mode"),

@@ -6,7 +6,9 @@ use super::compare::text::short_labels;
 use super::facts::SummaryFacts;
 use super::front_table::FrontTable;
 use super::number::{cost_words, grouped, large, percent_of, significant};
-use super::picks::{Design, Objective, Pick, best, designs, knee, marked_choices, materials, picks};
+use super::picks::{
+    Design, Objective, Pick, best, designs, knee, marked_choices, materials, picks, rows_and_names,
+};
 use super::table::{Column, Table};
 use super::words::{TERMINAL, and, capital, wrap};
 
@@ -104,7 +106,7 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
     if !found.picks.is_empty() {
         out.push_str(&format!("\n{}", small_plots(&found.designs)));
         out.push_str(&format!("\n{}", picks_table(&found.picks, TERMINAL_PICKS).to_text()));
-        out.push_str(&facts.caveats.sentence(&input.overall, &found.picks));
+        out.push_str(&facts.caveats.sentence(&input.overall, &rows_and_names(&found.picks)));
         let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
         if !names.is_empty() {
             out.push_str(&format!(
