@@ -33,6 +33,8 @@ pub(super) struct Problem<'c> {
     pub lighter_is_better: bool,
     /// Play of each piece; `None` if it has none.
     pub joint_plays: Vec<Option<JointPlay>>,
+    /// Lever of each joint whose bearing is checked; `None` for any other piece.
+    pub levers: Vec<Option<Lever>>,
     /// Intervals to which a region restricts single forces.
     pub force_bounds: Arc<[ForceBound]>,
 }
@@ -52,6 +54,22 @@ pub(super) enum Part<'c> {
     Tube { length_m: f64, tube: Box<LinkBox> },
     /// A rigid offset.
     Offset { mass_kg: f64 },
+}
+
+/// Lever along the axis of a joint from its bearing to where the link attaches.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Lever {
+    /// A lever that no choice changes \[m\].
+    Given(f64),
+    /// That of the link with this piece number.
+    OfLink(usize),
+}
+
+impl Part<'_> {
+    /// Whether it is a joint or a spring, and no body or tube.
+    pub(super) fn is_joint(&self) -> bool {
+        matches!(self, Part::Given { .. } | Part::Drives { .. } | Part::FirstFit { .. })
+    }
 }
 
 /// The drives that can be a first fit, by rising mass, with the box around any run of them.
