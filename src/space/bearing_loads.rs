@@ -44,7 +44,7 @@ impl Lever {
     }
 
     /// A joint whose link attaches at a stated offset, or at half the width of the link that is next to it.
-    fn new(space: &DesignSpace, piece: usize, joint: &SpaceJoint, piece_slots: &[usize]) -> Self {
+    pub(crate) fn new(space: &DesignSpace, piece: usize, joint: &SpaceJoint, piece_slots: &[usize]) -> Self {
         let half_m = |vector_m: &Vector3<f64>, section: &Section| half_width_m(joint, vector_m, section);
         if let Some(offset_m) = joint.bearing.stated().and_then(|bearing| bearing.offset_m) {
             return Self { link_slot: None, lever_m: vec![offset_m.abs()] };
