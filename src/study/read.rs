@@ -6,6 +6,7 @@
 
 use super::definition::Study;
 use super::effects::check_effects;
+use super::range::{check_poses, read_range};
 use super::sections::{Aside, read_materials, read_sections};
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
@@ -91,6 +92,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     });
     let joints = joint_names(node);
     let cases = read_cases(&root, &joints);
+    let in_range = check_poses(&root, chain.as_deref(), cases.as_ref().map(|read| &read.cases[..]));
     let motion = root.or("motion", MotionRequirement::default(), read_motion);
     let (links, joint_model) = root.or("models", Default::default(), read_models)?;
     let effects = root.or("effects", Vec::new(), read_effects);
@@ -111,6 +113,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         effects: effects?,
     };
     check_effects(&space, &root)?;
+    in_range?;
     let Aside { not_checked, remarks } = aside;
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
@@ -314,6 +317,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         "max_speed_rad_s",
         "bearing",
         "extras",
+        "range_deg",
         "drives",
     ])?;
     let name = read_name(&object);
@@ -346,8 +350,10 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
     // the mass of a given drive is stated, and so are its extras
     let usually = if drive.is_sized() { open.extras } else { ExtrasSource::NONE };
     let extras = read_extras_source(&object, usually);
-    let (bearing, extras) = (bearing?, extras?);
-    Some(SpaceJoint { name: name?, axis: axis?, bearing, extras, drive, max_speed_rad_s: max_speed? })
+    let range_deg = object.or("range_deg", None, |n| read_range(n).map(Some));
+    let (bearing, extras, range_deg) = (bearing?, extras?, range_deg?);
+    let max_speed_rad_s = max_speed?;
+    Some(SpaceJoint { name: name?, axis: axis?, bearing, extras, drive, max_speed_rad_s, range_deg })
 }
 
 /// Where the bearing of a joint comes from. A component set has none of its own, so a joint that is sized with component
