@@ -81,6 +81,7 @@ mod tests {
     use crate::exact::dual_price::JointPrice;
     use crate::exact::parts::Rays;
     use crate::exact::torsion::BreakPoints;
+    use crate::sizing::heat::MotorHeat;
     use crate::sizing::limits::DriveLimits;
     use crate::sizing::requirement::MotionRequirement;
     use proptest::prelude::*;
@@ -99,6 +100,7 @@ mod tests {
             stop_torque_nm: torque_nm,
             mean_torque_cubed_nm3: torque_nm.powi(3),
             tilting_moment_nm: 0.0,
+            heat: MotorHeat::NONE,
         };
         DriveBox {
             mass_kg: [mass_kg; 2],

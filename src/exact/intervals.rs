@@ -1,7 +1,7 @@
 //! Fills in the numbers of a box as intervals, part by part from the tip inward.
 
 use super::interval::interval;
-use super::parts::{DriveBox, LeastDemand, LinkBox, Rays};
+use super::parts::{DriveBox, HEAT_ROUNDING, LeastDemand, LinkBox, Rays};
 use super::problem::{Ladder, Part, Problem};
 use super::tree::{Bounds, Tree};
 use super::work::Work;
@@ -65,7 +65,8 @@ impl Problem<'_> {
         work.joint(self, piece, drives.mass_kg, drives.curve);
         work.breaks[piece] = drives.breaks;
         work.least_demands[piece] = Some(least);
-        work.greatest_demands[piece] = Some(sized.table.motion().demand(static_nm[1], inertia_kgm2[1]));
+        let most = sized.table.motion().demand(static_nm[1], inertia_kgm2[1]);
+        work.greatest_demands[piece] = Some(most.with_heat_times(1.0 + HEAT_ROUNDING));
         Some(())
     }
 
@@ -78,8 +79,10 @@ impl Problem<'_> {
         work: &mut Work,
     ) -> Option<()> {
         let (static_nm, inertia_kgm2) = self.loads(piece, work);
-        let demand = |i: usize| sized.table.motion().demand(static_nm[i], inertia_kgm2[i]);
-        let (least, most) = (demand(0), demand(1));
+        let demand = |i: usize, heat: f64| {
+            sized.table.motion().demand(static_nm[i], inertia_kgm2[i]).with_heat_times(heat)
+        };
+        let (least, most) = (demand(0, 1.0 - HEAT_ROUNDING), demand(1, 1.0 + HEAT_ROUNDING));
         let step = |demand: &JointDemand| {
             let fit = sized.table.first_fit(demand)? as u32;
             sized.table.first_fit_candidates().binary_search(&fit).ok()

@@ -197,6 +197,7 @@ mod tests {
     use crate::arm::joint_law::{Curve, JointLaw};
     use crate::exact::parts::Line;
     use crate::exact::torsion::CurveBox;
+    use crate::sizing::heat::MotorHeat;
     use crate::sizing::limits::DriveLimits;
     use proptest::prelude::*;
 
@@ -231,6 +232,7 @@ mod tests {
         stop_torque_nm: 0.0,
         mean_torque_cubed_nm3: 0.0,
         tilting_moment_nm: 0.0,
+        heat: MotorHeat::NONE,
     };
 
     proptest! {

@@ -33,6 +33,8 @@ pub struct SummaryFacts {
     pub cases: Vec<String>,
     /// Parts and options left out because a rating is unknown, in words.
     pub not_checked: Vec<String>,
+    /// Checks that the study turns off, in words.
+    pub caveats: Vec<String>,
     /// Result folder as it is typed.
     pub results: String,
 }

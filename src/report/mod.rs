@@ -10,6 +10,7 @@ pub mod front_table;
 pub mod html;
 pub mod number;
 pub mod picks;
+pub(crate) mod resonance;
 pub(crate) mod section;
 pub mod summary;
 pub(crate) mod supplement;

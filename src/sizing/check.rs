@@ -2,6 +2,7 @@
 
 use super::demand::{JointDemand, JointMotion};
 use super::drive::{Drive, MissingRating, Rating};
+use super::heat::{self, MotorHeat};
 use super::limits as limit;
 use crate::catalog::gear::{Gear, GearMass};
 use std::fmt;
@@ -23,10 +24,14 @@ pub enum CheckKind {
     GearMeanSpeed,
     /// L10 life of the wave-generator bearing is above the required life.
     GearLife,
+    /// The gear bears the number of emergency stops that the study asks for. This check is listed only if it does.
+    GearStops,
     /// The motor can hold the static torque continuously.
     MotorHold,
     /// The motor can give static, linear and rotary torque for the duration of the ramp.
     MotorPeak,
+    /// Root mean square of the motor's torque over the cycle is below its continuous torque.
+    MotorRms,
     /// N times speed is below the motor's largest speed.
     MotorSpeed,
     /// The mass of the drive is known. This check is listed only if it is not.
@@ -44,7 +49,9 @@ impl CheckKind {
             CheckKind::GearSpeed => "input speed",
             CheckKind::GearMeanSpeed => "mean input speed",
             CheckKind::GearLife => "life",
+            CheckKind::GearStops => "number of stops",
             CheckKind::MotorHold => "hold",
+            CheckKind::MotorRms => "rms",
             CheckKind::MotorSpeed => "speed",
             CheckKind::Mass => "mass",
         }
@@ -61,7 +68,9 @@ impl CheckKind {
             CheckKind::GearMeanSpeed => "gear av.speed",
             CheckKind::GearLife => "gear life",
             CheckKind::MotorHold => "motor hold",
+            CheckKind::GearStops => "gear stops",
             CheckKind::MotorPeak => "motor peak",
+            CheckKind::MotorRms => "motor rms",
             CheckKind::MotorSpeed => "motor speed",
             CheckKind::Mass => "mass",
         }
@@ -72,6 +81,7 @@ impl CheckKind {
         match self {
             CheckKind::GearSpeed | CheckKind::GearMeanSpeed | CheckKind::MotorSpeed => "rpm",
             CheckKind::GearLife => "h",
+            CheckKind::GearStops => "stops",
             CheckKind::Mass => "kg",
             _ => "N m",
         }
@@ -79,7 +89,8 @@ impl CheckKind {
 
     /// Whether the check is about the gear alone.
     pub fn is_gear(self) -> bool {
-        !matches!(self, CheckKind::MotorHold | CheckKind::MotorPeak | CheckKind::MotorSpeed | CheckKind::Mass)
+        use CheckKind::{Mass, MotorHold, MotorPeak, MotorRms, MotorSpeed};
+        !matches!(self, MotorHold | MotorPeak | MotorRms | MotorSpeed | Mass)
     }
 }
 
@@ -117,7 +128,7 @@ impl Check {
     }
 
     /// The margin as a factor on torque, which makes checks comparable. Life goes with the cube of the torque, so its
-    /// margin becomes the cube root.
+    /// margin becomes the cube root. The number of stops does not depend on the torque.
     pub fn torque_margin(&self) -> Option<f64> {
         let margin = self.margin()?;
         Some(if self.kind == CheckKind::GearLife { margin.cbrt() } else { margin })
@@ -201,6 +212,9 @@ pub fn gear_checks(
         ),
         gear_life(gear, motion, demand),
     ];
+    if let Some(stops) = motion.emergency_stops {
+        checks.push(plain(CheckKind::GearStops, stops, Ok(limit::stops_allowed(gear, motion))));
+    }
     if demand.tilting_moment_nm != 0.0 {
         let allowed = limit::tilting_moment_nm(gear, gear_mass);
         checks.push(plain(CheckKind::GearTilt, demand.tilting_moment_nm, allowed));
@@ -230,17 +244,18 @@ fn gear_life(gear: &Gear, motion: &JointMotion, demand: &JointDemand) -> Check {
     )
 }
 
-/// The checks of a motor behind its gear. An unknown mass of the pair is listed too.
+/// The checks of a motor behind its gear. Its heat is checked unless the study turns that off. An unknown mass of the pair
+/// is listed too.
 pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
-    let mut checks = vec![
-        motor_hold(drive, demand),
-        motor_peak(drive, motion, demand),
-        plain(
-            CheckKind::MotorSpeed,
-            limit::input_speed_rpm(drive.gear, motion),
-            limit::motor_max_speed_rpm(drive.motor),
-        ),
-    ];
+    let mut checks = vec![motor_hold(drive, motion, demand), motor_peak(drive, motion, demand)];
+    if motion.checks_motor_heat {
+        checks.push(motor_rms(drive, motion, demand));
+    }
+    checks.push(plain(
+        CheckKind::MotorSpeed,
+        limit::input_speed_rpm(drive.gear, motion),
+        limit::motor_max_speed_rpm(drive.motor),
+    ));
     if let Err(rating) = drive.mass_kg() {
         let state = CheckState::NotChecked(rating);
         checks.push(Check { kind: CheckKind::Mass, needed: None, allowed: None, state });
@@ -248,14 +263,15 @@ pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -
     checks
 }
 
-/// T / (N η), compared with the continuous torque.
-fn motor_hold(drive: &Drive, demand: &JointDemand) -> Check {
+/// T / (N η), compared with the continuous torque; a brake holds any.
+fn motor_hold(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
+    let rated = super::drive::known(drive.motor.rated_torque_nm, "motor rated_torque_nm");
     check(
         CheckKind::MotorHold,
         drive.gain().map(|gain| demand.static_torque_nm / gain),
-        super::drive::known(drive.motor.rated_torque_nm, "motor rated_torque_nm"),
+        if motion.has_brake { Ok(f64::INFINITY) } else { rated },
         demand.static_torque_nm,
-        limit::motor_continuous_nm(drive),
+        limit::motor_hold_nm(drive, motion),
     )
 }
 
@@ -269,6 +285,15 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
         peak_nm,
         limit::motor_peak_nm(drive, motion),
     )
+}
+
+/// Root mean square of the motor's torque over the cycle, compared with its continuous torque at the cruising speed.
+fn motor_rms(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
+    let input_rpm = limit::input_speed_rpm(drive.gear, motion);
+    let continuous_nm = heat::continuous_torque_nm(drive.motor, input_rpm);
+    let used = MotorHeat::of(drive, motion).map(|heat| heat.share_squared(demand));
+    let needed = used.and_then(|used| Ok(used.sqrt() * continuous_nm?));
+    check(CheckKind::MotorRms, needed, continuous_nm, used.unwrap_or(f64::NAN), used.map(|_| 1.0))
 }
 
 /// All checks of a drive: first those of the gear, then those of the motor.
@@ -346,7 +371,12 @@ mod tests {
             failing(|g, _, _, _| g.average_input_speed_limit_rpm = Some(282.0)),
             [CheckKind::GearMeanSpeed]
         );
-        assert_eq!(failing(|_, m, _, _| m.rated_torque_nm = Some(3.84)), [CheckKind::MotorHold]);
+        let holds_too_little =
+            |_: &mut Gear, m: &mut Motor, motion: &mut JointMotion, _: &mut JointDemand| {
+                (m.rated_torque_nm, motion.checks_motor_heat) = (Some(3.84), false);
+            };
+        assert_eq!(failing(holds_too_little), [CheckKind::MotorHold]);
+        assert_eq!(failing(|_, m, _, _| m.rated_torque_nm = Some(3.86)), [CheckKind::MotorRms]);
         assert_eq!(failing(|_, m, _, _| m.peak_torque_nm = Some(5.70)), [CheckKind::MotorPeak]);
         assert_eq!(failing(|_, m, _, _| m.max_speed_rpm = Some(707.0)), [CheckKind::MotorSpeed]);
     }

@@ -1,11 +1,13 @@
 //! Limits: a drive under a fixed motion, reduced to thresholds of torque.
 //!
 //! The study fixes speed, acceleration and duty cycle of a joint, so every check of a drive compares one torque with one
-//! number. [`DriveLimits`] has these numbers. A search compares five pairs of numbers and nothing else. The printed checks
+//! number. [`DriveLimits`] has these numbers. Heat is the one check that is not one torque: it compares a mean square with 1.
+//! A search compares these numbers and nothing else. The printed checks
 //! ([`check`](super::check)) are decided by the same thresholds.
 
 use super::demand::{JointDemand, JointMotion};
 use super::drive::{Drive, MissingRating, Rating, known, reference_life_h};
+use super::heat::MotorHeat;
 use super::rpm_from_rad_s;
 use crate::catalog::gear::{Gear, GearMass};
 use crate::catalog::motor::Motor;
@@ -41,6 +43,8 @@ pub struct DriveLimits {
     pub mean_torque_cubed_nm3: f64,
     /// Largest moment across the axis (gear with its bearing) \[N m\].
     pub tilting_moment_nm: f64,
+    /// What the motor uses of its continuous torque.
+    pub heat: MotorHeat,
 }
 
 /// Why a drive is excluded at every torque.
@@ -48,6 +52,8 @@ pub struct DriveLimits {
 pub enum Obstacle {
     /// The joint turns faster than the gear or the motor may.
     TooFast,
+    /// The gear does not bear so many emergency stops.
+    TooManyStops,
     /// A rating that a check needs is blank.
     Lacks(MissingRating),
 }
@@ -70,27 +76,32 @@ impl DriveLimits {
             return Err(Obstacle::TooFast);
         }
         let gear = drive.gear;
+        if motion.emergency_stops.is_some_and(|stops| stops > stops_allowed(gear, motion)) {
+            return Err(Obstacle::TooManyStops);
+        }
         Ok(Self {
-            static_torque_nm: motor_continuous_nm(drive)?,
+            static_torque_nm: motor_hold_nm(drive, motion)?,
             peak_torque_nm: gear_peak_nm(gear)?.min(motor_peak_nm(drive, motion)?),
             stop_torque_nm: gear_momentary_nm(gear)?,
             mean_torque_cubed_nm3: gear_average_cubed_nm3(gear)?.min(gear_life_cubed_nm3(gear, motion)?),
             tilting_moment_nm: tilting_moment_nm(gear, drive.gear_mass).unwrap_or(0.0),
+            heat: MotorHeat::of(drive, motion)?,
         })
     }
 
     /// Whether the drive holds a demand.
     #[inline]
     pub fn hold(&self, demand: &JointDemand) -> bool {
-        // `&` and not `&&`: five comparisons without a branch
+        // `&` and not `&&`: comparisons without a branch
         (demand.static_torque_nm <= self.static_torque_nm)
             & (demand.peak_torque_nm() <= self.peak_torque_nm)
             & (demand.stop_torque_nm <= self.stop_torque_nm)
             & (demand.mean_torque_cubed_nm3 <= self.mean_torque_cubed_nm3)
             & (demand.tilting_moment_nm <= self.tilting_moment_nm)
+            & (self.heat.share_squared(demand) <= 1.0)
     }
 
-    /// The larger of two drives' limits, one by one.
+    /// The larger of two drives' limits, one by one, of the heat the smaller numbers: it holds whatever one of them holds.
     pub(crate) fn max(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.max(other.static_torque_nm),
@@ -98,10 +109,11 @@ impl DriveLimits {
             stop_torque_nm: self.stop_torque_nm.max(other.stop_torque_nm),
             mean_torque_cubed_nm3: self.mean_torque_cubed_nm3.max(other.mean_torque_cubed_nm3),
             tilting_moment_nm: self.tilting_moment_nm.max(other.tilting_moment_nm),
+            heat: self.heat.least(&other.heat),
         }
     }
 
-    /// The smaller of two drives' limits, one by one.
+    /// The smaller of two drives' limits, one by one: both hold whatever it holds.
     pub(crate) fn min(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.min(other.static_torque_nm),
@@ -109,19 +121,21 @@ impl DriveLimits {
             stop_torque_nm: self.stop_torque_nm.min(other.stop_torque_nm),
             mean_torque_cubed_nm3: self.mean_torque_cubed_nm3.min(other.mean_torque_cubed_nm3),
             tilting_moment_nm: self.tilting_moment_nm.min(other.tilting_moment_nm),
+            heat: self.heat.greatest(&other.heat),
         }
     }
 
-    /// The largest factor on a demand that the drive still holds; infinite if the demand is zero.
+    /// The largest factor on a demand that the drive still holds, or slightly more; infinite if the demand is zero.
     pub(crate) fn multiple_of(&self, demand: &JointDemand) -> f64 {
         let times = |limit: f64, asked: f64| if asked > 0.0 { limit / asked } else { f64::INFINITY };
         times(self.static_torque_nm, demand.static_torque_nm)
             .min(times(self.peak_torque_nm, demand.peak_torque_nm()))
             .min(times(self.stop_torque_nm, demand.stop_torque_nm))
             .min(times(self.mean_torque_cubed_nm3, demand.mean_torque_cubed_nm3).cbrt())
+            .min(self.heat.multiple_of(demand))
     }
 
-    /// Whether every limit is at least as large as the limit of `other`.
+    /// Whether every limit is at least as large as the limit of `other`. Then this drive holds whatever the other holds.
     #[inline]
     pub fn cover(&self, other: &Self) -> bool {
         (self.static_torque_nm >= other.static_torque_nm)
@@ -129,6 +143,7 @@ impl DriveLimits {
             & (self.stop_torque_nm >= other.stop_torque_nm)
             & (self.mean_torque_cubed_nm3 >= other.mean_torque_cubed_nm3)
             & (self.tilting_moment_nm >= other.tilting_moment_nm)
+            & self.heat.covers(&other.heat)
     }
 }
 
@@ -162,6 +177,11 @@ pub(super) fn motor_max_speed_rpm(motor: &Motor) -> Rating {
     known(motor.max_speed_rpm.or(motor.rated_speed_rpm), "max_speed_rpm")
 }
 
+/// Static torque that the motor must hold without end: without limit if a brake holds the joint at rest.
+pub(super) fn motor_hold_nm(drive: &Drive, motion: &JointMotion) -> Rating {
+    if motion.has_brake { Ok(f64::INFINITY) } else { motor_continuous_nm(drive) }
+}
+
 /// Static torque at which the motor gives its continuous torque: T_rated N η.
 pub(super) fn motor_continuous_nm(drive: &Drive) -> Rating {
     Ok(known(drive.motor.rated_torque_nm, "motor rated_torque_nm")? * drive.gain()?)
@@ -187,6 +207,17 @@ pub(super) fn gear_average_cubed_nm3(gear: &Gear) -> Rating {
 
 pub(super) fn gear_momentary_nm(gear: &Gear) -> Rating {
     known(gear.momentary_peak_torque_nm, "momentary_peak_torque_nm")
+}
+
+/// Number of momentary peaks that a gear may bear: 1e4 / (2 n t / 60), n being the input speed in rpm and t the duration of
+/// a peak in seconds; never more than 1e4. The wave generator passes with two waves in each turn.
+///
+/// Source: Harmonic Drive AG, manual 1019658, glossary (momentary peaks only in an emergency, their number by the selection
+/// procedure); the formula as in the public program AimanHaidar/harmonic-drive-selector.
+pub(super) fn stops_allowed(gear: &Gear, motion: &JointMotion) -> f64 {
+    const WAVES: f64 = 1e4;
+    let waves_in_a_stop = 2.0 * input_speed_rpm(gear, motion) / 60.0 * motion.stop_time_s();
+    WAVES / waves_in_a_stop.max(1.0)
 }
 
 /// Life at a mean torque of 1 N m \[h (N m)³\]: L_ref T_rated³ (2000 rpm / n_mean).

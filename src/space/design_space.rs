@@ -8,8 +8,10 @@ use crate::arm::load::Water;
 use crate::arm::section::{LinkMaterial, Section};
 use crate::arm::structure::Beam;
 use crate::arm::{JointModel, Link, LinkModel};
+use crate::sizing::demand::JointMotion;
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
+use crate::sizing::stated::StatedDuty;
 use nalgebra::{Unit, Vector3};
 
 /// An arm with open choices, the cases in which it is judged, and the limits that every design must keep.
@@ -46,7 +48,14 @@ use nalgebra::{Unit, Vector3};
 ///     name: "one link".into(),
 ///     gravity_m_s2: 9.81,
 ///     pieces: vec![
-///         SpacePiece::Joint(SpaceJoint { name: "j2".into(), axis: Vector3::y_axis(), drive, max_speed_rad_s: None }),
+///         SpacePiece::Joint(SpaceJoint {
+///             name: "j2".into(),
+///             axis: Vector3::y_axis(),
+///             drive,
+///             max_speed_rad_s: None,
+///             has_brake: false,
+///             duty: None,
+///         }),
 ///         SpacePiece::Choice(LinkChoice {
 ///             name: "upper_arm".into(),
 ///             vector_m: Vector3::new(0.8, 0.0, 0.0),
@@ -140,6 +149,10 @@ pub struct SpaceJoint {
     pub drive: DriveChoice,
     /// Largest speed that the study asks for \[rad/s\]; `None`: the speed that follows from the tip's.
     pub max_speed_rad_s: Option<f64>,
+    /// Whether a brake holds the joint at rest, so that the motor need not.
+    pub has_brake: bool,
+    /// A duty that the study states for this joint, in place of its cycle.
+    pub duty: Option<StatedDuty>,
 }
 
 /// How a joint's drive is found.
@@ -201,6 +214,14 @@ pub struct LinkOption {
     pub strength_pa: Option<f64>,
     /// Cost of the material \[EUR/kg\].
     pub cost_eur_per_kg: Option<f64>,
+}
+
+impl SpaceJoint {
+    /// The motion of the joint when its axis is at most `reach_m` \[m\] away from the tip.
+    pub(crate) fn motion(&self, asked: &MotionRequirement, reach_m: f64) -> JointMotion {
+        let motion = asked.joint_motion(reach_m, self.max_speed_rad_s);
+        motion.of_joint(self.max_speed_rad_s, self.has_brake, self.duty.as_ref())
+    }
 }
 
 impl DriveChoice {

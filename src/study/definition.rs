@@ -16,4 +16,6 @@ pub struct Study {
     pub gap: f64,
     /// Options left out because a rating that a check needs is unknown, in words.
     pub not_checked: Vec<String>,
+    /// Checks that the study turns off, in words. They are said next to every result.
+    pub caveats: Vec<String>,
 }

@@ -6,6 +6,7 @@
 
 use super::definition::Study;
 use super::effects::check_effects;
+use super::motion::{read_duty, read_motion};
 use super::sections::{read_materials, read_sections};
 use crate::arm::file::{read_curve, read_effects, read_joint_mass, read_link, read_name};
 use crate::arm::load::Payload;
@@ -17,11 +18,12 @@ use crate::catalog::motor::MotorKind;
 use crate::input::json::{Document, Faults, Node, Object};
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
+use crate::sizing::stated::StatedDuty;
 use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{Case, DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 use nalgebra::Vector3;
 
-const KEYS: [&str; 15] = [
+const KEYS: [&str; 16] = [
     "name",
     "question",
     "gravity_m_s2",
@@ -31,6 +33,7 @@ const KEYS: [&str; 15] = [
     "poses",
     "environments",
     "motion",
+    "duty",
     "drives",
     "constraints",
     "models",
@@ -80,8 +83,10 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let filter = root.or("drives", Drives::default(), |n| read_drives(n, catalogs));
     let constraints = root.or("constraints", Constraints::default(), read_constraints);
     let mut not_checked = Vec::new();
+    let duty = root.or("duty", None, |n| read_duty_of_only_joint(n, node).map(Some));
     let chain = root.required("chain").and_then(|n| {
-        let open = Open { catalogs, drives: filter.as_ref()?, constraints: constraints.as_ref()? };
+        let (drives, constraints) = (filter.as_ref()?, constraints.as_ref()?);
+        let open = Open { catalogs, drives, constraints, duty: duty.as_ref()?.as_ref() };
         read_chain(&n, &open, &mut not_checked)
     });
     let joints = joint_names(node);
@@ -106,7 +111,14 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         effects: effects?,
     };
     check_effects(&space, &root)?;
-    Some(Study { name: name?, question: question?, space, gap: gap?, not_checked })
+    let caveats = caveats(&space);
+    Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, caveats })
+}
+
+/// Checks that the study turns off, in words.
+fn caveats(space: &DesignSpace) -> Vec<String> {
+    let heat = "Motor heat not checked: the study turns it off (check_motor_heat in its motion)";
+    (!space.motion.checks_motor_heat).then(|| heat.to_string()).into_iter().collect()
 }
 
 /// A fraction, written in percent.
@@ -124,6 +136,16 @@ fn joint_names(study: &Node) -> Vec<String> {
     let chain = study.value().get("chain").and_then(|c| c.as_array());
     let joints = chain.into_iter().flatten().filter(|e| e.get("type").is_some_and(|t| t == "joint"));
     joints.map(|j| j.get("name").and_then(|n| n.as_str()).unwrap_or("(unnamed)").to_string()).collect()
+}
+
+/// A duty beside the chain. It is meant for a study of a single joint, such as the worked examples of vendors.
+fn read_duty_of_only_joint(node: &Node, study: &Node) -> Option<StatedDuty> {
+    let duty = read_duty(node);
+    match joint_names(study).len() {
+        0 | 1 => duty,
+        joints => node
+            .fault(format!("stands beside {joints} joints"), "write \"duty\" into the joint it belongs to"),
+    }
 }
 
 /// Numbers the materials of all links through the study, in the order in which they first appear.
@@ -146,6 +168,8 @@ struct Open<'a> {
     catalogs: &'a Catalogs,
     drives: &'a Drives,
     constraints: &'a Constraints,
+    /// The duty that the study states for its only joint.
+    duty: Option<&'a StatedDuty>,
 }
 
 /// Where drives are taken from.
@@ -303,11 +327,23 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         "gear_mass",
         "mass_kg",
         "max_speed_rad_s",
+        "brake",
+        "duty",
         "drives",
     ])?;
     let name = read_name(&object);
     let axis = object.required("axis").and_then(|n| crate::arm::file::read_axis(&n));
     let max_speed = object.or("max_speed_rad_s", None, |n| n.positive().map(Some));
+    let brake = object.or("brake", false, Node::boolean);
+    let duty = object.or("duty", open.duty.cloned(), |n| read_duty(n).map(Some));
+    if !object.has("drive") && !object.has("motor") {
+        stray(
+            &object,
+            &["brake", "duty"],
+            "has no motor beside it",
+            "add \"drive\", or \"gear\" and \"motor\"",
+        );
+    }
     let drive = match object.optional("drive") {
         Some(drive) => {
             let given = ["stiffness_nm_per_rad", "windup", "gear", "motor", "gear_mass", "mass_kg"];
@@ -330,7 +366,14 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
             read_given_drive(&object, open)
         }
     };
-    Some(SpaceJoint { name: name?, axis: axis?, drive: drive?, max_speed_rad_s: max_speed? })
+    Some(SpaceJoint {
+        name: name?,
+        axis: axis?,
+        drive: drive?,
+        max_speed_rad_s: max_speed?,
+        has_brake: brake?,
+        duty: duty?,
+    })
 }
 
 /// Reports keys that another key makes meaningless as faults, because nothing in a file is silently ignored.
@@ -472,31 +515,6 @@ fn read_case(node: &Node, joints: &[&str], payload: &Payload, force: &Vector3<f6
     let case =
         Case { name: name?, pose_deg: pose_deg?, payload: payload?, tip_force_n: tip_force_n?, water: None };
     Some(ReadCase { case, judged: judged?, sizing: sizing? })
-}
-
-fn read_motion(node: &Node) -> Option<MotionRequirement> {
-    let object = node.object(&[
-        "tip_speed_m_s",
-        "ramp_time_s",
-        "emergency_deceleration_m_s2",
-        "min_lever_m",
-        "life_h",
-    ])?;
-    let default = MotionRequirement::default();
-    let speed = object.or("tip_speed_m_s", default.tip_speed_m_s, Node::positive);
-    let ramp = object.or("ramp_time_s", default.ramp_time_s, Node::positive);
-    let stop = object.or("emergency_deceleration_m_s2", None, |n| n.positive().map(Some));
-    let lever = object.or("min_lever_m", default.min_lever_m, Node::positive);
-    let life = object.or("life_h", default.life_h, Node::positive);
-    Some(MotionRequirement {
-        tip_speed_m_s: speed?,
-        ramp_time_s: ramp?,
-        emergency_deceleration_m_s2: stop?,
-        min_lever_m: lever?,
-        life_h: life?,
-        duty_cycle: crate::sizing::duty::DutyCycle::move_and_rest(ramp?),
-        ..default
-    })
 }
 
 fn read_constraints(node: &Node) -> Option<Constraints> {

@@ -6,6 +6,7 @@ use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
 use crate::report::tube::tube_size;
 use crate::sizing::demand::JointDemand;
+use crate::sizing::drive::critical_rpm;
 use crate::sizing::sheet::JointSizingRow;
 use crate::space::design::{Part, id_of, options};
 use crate::space::design_space::{DriveChoice, LinkOption, SpacePiece};
@@ -52,12 +53,15 @@ fn columns(problem: &ArmProblem, catalogs: &Catalogs) -> Vec<String> {
         if let SpacePiece::Joint(joint) = piece
             && (problem.sized_joint(i).is_some() || problem.fixed_drive(i, catalogs).is_some())
         {
-            out.extend(["margin", "binds"].map(|what| format!("{}_{what}", joint.name)));
+            out.extend(JOINT_COLUMNS.map(|what| format!("{}_{what}", joint.name)));
         }
     }
     out.extend(["stress_safety_factor", "material_cost_eur"].map(String::from));
     out
 }
+
+/// Columns of every joint with a gear and a motor.
+const JOINT_COLUMNS: [&str; 5] = ["margin", "binds", "motor_rms_margin", "input_rpm", "critical_rpm"];
 
 fn has_parts(drive: &DriveChoice) -> bool {
     !matches!(drive, DriveChoice::Given { gear: None, motor: None, .. })
@@ -88,6 +92,9 @@ fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::outcome::Judge
     for joint in sizing_rows(problem, catalogs, &chosen).ok()?.into_iter().rev() {
         out.push(joint.margin.map_or(String::new(), number));
         out.push(joint.binds.unwrap_or_default().to_string());
+        out.push(joint.motor_rms_margin.map_or(String::new(), number));
+        out.push(number(joint.motor_speed_rpm));
+        out.push(number(critical_rpm(o.lowest_mode_hz)));
     }
     let complete = problem.walk(&chosen, |_, _| {}).ok()?;
     out.push(problem.stress_safety_factor(&complete).map_or(String::new(), number));

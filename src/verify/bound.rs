@@ -65,8 +65,8 @@ impl Skeleton {
         let (statics, inertia) = (asked.static_nm, asked.inertia_kgm2);
         let (less, more) = (1.0 - ROUNDING, 1.0 + ROUNDING);
         [
-            duty.demand(statics.least * less, inertia.least * less),
-            duty.demand(statics.most * more, inertia.most * more),
+            duty.demand(statics.least * less, inertia.least * less, less),
+            duty.demand(statics.most * more, inertia.most * more, more),
         ]
     }
 

@@ -1,5 +1,7 @@
 //! The torques that a drive must hold.
 
+use super::heat::HeatDemand;
+
 /// A torque on the output side that a drive must hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
@@ -16,6 +18,9 @@ pub(super) enum Quantity {
 /// Number of quantities.
 pub(super) const QUANTITIES: usize = 4;
 
-/// What is asked for of each quantity.
+/// What is asked for of each quantity, and of the motor over the cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Demand(pub [f64; QUANTITIES]);
+pub(super) struct Demand {
+    pub torques: [f64; QUANTITIES],
+    pub heat: HeatDemand,
+}

@@ -52,7 +52,7 @@ impl JointOffers {
             }
             AskedDrive::FirstFit(allowed) | AskedDrive::AllFits(allowed) => allowed,
         };
-        let duty = Duty::new(&question.motion, reach_m, joint.max_speed_rad_s);
+        let duty = Duty::new(&question.motion, reach_m, joint);
         let offers = offers(allowed, &duty, catalogs, law);
         let places = (0..).zip(&offers).map(|(place, offer)| ((offer.gear, offer.motor), place)).collect();
         Self::Catalog(CatalogOffers { duty, is_choice: joint.drive.is_choice(), offers, places })

@@ -9,12 +9,16 @@
 
 use super::demand::{Demand, QUANTITIES, Quantity};
 use super::duty::Duty;
+use super::heat::MotorHeat;
 use crate::catalog::gear::Gear;
 use crate::catalog::motor::Motor;
 
-/// The most that a drive holds of each quantity.
+/// The most that a drive holds of each quantity, and how its motor heats.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Ratings([f64; QUANTITIES]);
+pub(super) struct Ratings {
+    most: [f64; QUANTITIES],
+    heat: MotorHeat,
+}
 
 /// A limit of a drive on one quantity; `None` if the catalog leaves blank what it needs.
 struct Check {
@@ -24,7 +28,7 @@ struct Check {
 
 /// All checks of torques. A drive that lacks a number for one of them cannot be chosen.
 const CHECKS: [Check; 6] = [
-    Check { on: Quantity::Static, most: motor_continuous_nm },
+    Check { on: Quantity::Static, most: motor_hold_nm },
     Check { on: Quantity::Peak, most: |gear, _, _| gear.repeated_peak_torque_nm },
     Check { on: Quantity::Peak, most: motor_peak_nm },
     Check { on: Quantity::Stop, most: |gear, _, _| gear.momentary_peak_torque_nm },
@@ -37,38 +41,49 @@ const RATED_RPM: f64 = 2000.0;
 
 impl Ratings {
     /// No check fails.
-    pub(super) const UNLIMITED: Self = Self([f64::INFINITY; QUANTITIES]);
+    pub(super) const UNLIMITED: Self = Self { most: [f64::INFINITY; QUANTITIES], heat: MotorHeat::NONE };
 
     /// The ratings of a drive under a motion; `None` if it turns too fast for it or a number is blank.
     pub(super) fn of(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<Self> {
-        let mut ratings = Self::UNLIMITED;
+        let heat = match duty.checks_heat {
+            true => {
+                MotorHeat::of((gear, motor), duty.speed_rad_s, duty.acceleration_rad_s2, &duty.stated.phases)?
+            }
+            false => MotorHeat::NONE,
+        };
+        let mut ratings = Self { heat, ..Self::UNLIMITED };
         for check in &CHECKS {
             let most = (check.most)(gear, motor, duty)?;
-            let rating = &mut ratings.0[check.on as usize];
+            let rating = &mut ratings.most[check.on as usize];
             *rating = rating.min(most);
         }
-        turns_as_fast(gear, motor, duty)?.then_some(ratings)
+        (turns_as_fast(gear, motor, duty)? && bears_the_stops(gear, duty)).then_some(ratings)
     }
 
-    /// Whether every torque that is asked for is held.
+    /// Whether every torque that is asked for is held, and the motor does not overheat.
     pub(super) fn hold(&self, demand: &Demand) -> bool {
         // no branch on the way: nearly every box asks this of many drives
-        self.0.iter().zip(&demand.0).fold(true, |held, (most, asked)| held & (asked <= most))
+        let torques = self.most.iter().zip(&demand.torques);
+        torques.fold(true, |held, (most, asked)| held & (asked <= most)) && self.heat.holds(&demand.heat)
     }
 
     /// Whether a drive with these ratings holds whatever one with the others holds.
     pub(super) fn cover(&self, other: &Self) -> bool {
-        self.0.iter().zip(&other.0).all(|(a, b)| a >= b)
+        self.most.iter().zip(&other.most).all(|(a, b)| a >= b) && self.heat.covers(&other.heat)
     }
 
-    /// The larger of each rating.
+    /// The larger of each rating and the smaller of each number of heat: it holds whatever one of the two holds, for
+    /// heat grows with each of its numbers and with every torque (see [`AskedMotion::grows`](super::question::AskedMotion::grows)).
     pub(super) fn max(&self, other: &Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i].max(other.0[i])))
+        Self {
+            most: std::array::from_fn(|i| self.most[i].max(other.most[i])),
+            heat: self.heat.min(&other.heat),
+        }
     }
 
     /// The rating of one quantity.
     pub(super) fn on(&self, quantity: Quantity) -> f64 {
-        self.0[quantity as usize]
+        self.most[quantity as usize]
     }
 }
 
@@ -84,6 +99,13 @@ fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     )
 }
 
+/// Whether the gear bears as many emergency stops as are asked for: 1e4 waves of the wave generator, two in a turn, and
+/// never fewer than one in a stop.
+fn bears_the_stops(gear: &Gear, duty: &Duty) -> bool {
+    let waves = 2.0 * input_rpm(gear, duty.speed_rad_s) / 60.0 * duty.stop_s;
+    duty.emergency_stops.is_none_or(|stops| stops <= 1e4 / waves.max(1.0))
+}
+
 /// Speed of the motor when the joint turns at a speed \[rpm\].
 fn input_rpm(gear: &Gear, output_rad_s: f64) -> f64 {
     f64::from(gear.ratio) * (output_rad_s * 30.0 / std::f64::consts::PI)
@@ -94,9 +116,12 @@ fn gain(gear: &Gear) -> Option<f64> {
     Some(f64::from(gear.ratio) * gear.efficiency?)
 }
 
-/// The static torque at which the motor gives what it can give for ever: `T_rated N η`.
-fn motor_continuous_nm(gear: &Gear, motor: &Motor, _: &Duty) -> Option<f64> {
-    Some(motor.rated_torque_nm? * gain(gear)?)
+/// The static torque at which the motor gives what it can give for ever: `T_rated N η`. A brake holds any.
+fn motor_hold_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
+    match duty.has_brake {
+        true => Some(f64::INFINITY),
+        false => Some(motor.rated_torque_nm? * gain(gear)?),
+    }
 }
 
 /// The torque at the joint at which the motor is at its peak: what is left of it once rotor and wave generator are
@@ -128,9 +153,22 @@ fn rated_life_h(series: &str) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::question::{AskedDrive, AskedJoint};
     use super::super::question::{AskedMotion, AskedPhase, AskedPhaseKind, LinearTorque};
     use super::*;
+    use crate::arm::joint_law::Curve;
     use crate::catalog::Catalogs;
+
+    fn joint() -> AskedJoint {
+        AskedJoint {
+            name: "j".into(),
+            axis: nalgebra::Vector3::y_axis(),
+            drive: AskedDrive::Given { curve: Curve::Rigid, mass_kg: 0.0 },
+            max_speed_rad_s: None,
+            has_brake: false,
+            duty: Vec::new(),
+        }
+    }
 
     /// The paper's 1 m/s in 0.2 s; ramps of 0.2 s about 0.6 s of travel, then 1 s of rest.
     fn duty() -> Duty {
@@ -149,8 +187,10 @@ mod tests {
             life_h: 10_000.0,
             linear_torque: LinearTorque::OfInertia,
             gravity_m_s2: 9.81,
+            checks_motor_heat: true,
+            emergency_stops: None,
         };
-        Duty::new(&motion, 1.35, None)
+        Duty::new(&motion, 1.35, &joint())
     }
 
     #[test]
@@ -176,7 +216,7 @@ mod tests {
     #[test]
     fn the_demand_is_the_one_worked_out_by_hand() {
         // 40 N m of linear torque on 100 N m of static torque
-        let Demand(demand) = duty().demand(-100.0, 40.0 / (5.0 / 1.35));
+        let demand = duty().demand(-100.0, 40.0 / (5.0 / 1.35), 1.0).torques;
         let mean = (140f64.powi(3) * 0.5 + 100f64.powi(3) * 3.0 + 60f64.powi(3) * 0.5) / 4.0;
         for (asked, by_hand) in demand.iter().zip([100.0, 140.0, 180.0, mean]) {
             assert!((asked / by_hand - 1.0).abs() < 1e-12, "{asked}, by hand {by_hand}");

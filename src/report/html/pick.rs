@@ -371,7 +371,7 @@ impl View {
 }
 
 /// Checks in the order of the table's columns.
-const CHECKS: [CheckKind; 10] = [
+const CHECKS: [CheckKind; 12] = [
     CheckKind::GearPeak,
     CheckKind::GearMean,
     CheckKind::GearStop,
@@ -379,8 +379,10 @@ const CHECKS: [CheckKind; 10] = [
     CheckKind::GearSpeed,
     CheckKind::GearMeanSpeed,
     CheckKind::GearLife,
+    CheckKind::GearStops,
     CheckKind::MotorHold,
     CheckKind::MotorPeak,
+    CheckKind::MotorRms,
     CheckKind::MotorSpeed,
 ];
 
