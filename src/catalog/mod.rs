@@ -5,6 +5,7 @@
 //! rows of a folder of the user's; [`Catalogs::gear`] and its sisters find a part by name.
 
 pub(crate) mod efficiency;
+pub(crate) mod envelope;
 pub(crate) mod gear;
 pub(crate) mod load;
 pub(crate) mod lookup;
@@ -15,7 +16,8 @@ pub(crate) mod read;
 pub(crate) mod schema;
 
 pub use efficiency::{EfficiencyKind, EfficiencyPoint};
-pub use gear::{Gear, GearMass};
+pub use envelope::Envelope;
+pub use gear::{BearingRatings, Gear, GearMass};
 pub use load::Loaded;
 pub use lookup::{PartError, PartKind};
 pub use material::{Material, MaterialClass};
