@@ -16,6 +16,10 @@ pub enum CheckKind {
     GearMean,
     /// Torque in an emergency stop is below the gear's limit for momentary peaks.
     GearStop,
+    /// Torque in an emergency stop is below the torque at which the flexspline buckles.
+    GearBuckling,
+    /// Torque in an emergency stop is below the torque at which the teeth jump.
+    GearRatcheting,
     /// Moment across the axis is below the permissible moment of the gear's output bearing.
     GearTilt,
     /// N times speed is below the gear's largest input speed.
@@ -49,6 +53,8 @@ impl CheckKind {
             CheckKind::GearSpeed => "input speed",
             CheckKind::GearMeanSpeed => "mean input speed",
             CheckKind::GearLife => "life",
+            CheckKind::GearBuckling => "buckling",
+            CheckKind::GearRatcheting => "ratcheting",
             CheckKind::GearStops => "number of stops",
             CheckKind::MotorHold => "hold",
             CheckKind::MotorRms => "rms",
@@ -68,6 +74,8 @@ impl CheckKind {
             CheckKind::GearMeanSpeed => "gear av.speed",
             CheckKind::GearLife => "gear life",
             CheckKind::MotorHold => "motor hold",
+            CheckKind::GearBuckling => "gear buckling",
+            CheckKind::GearRatcheting => "gear ratchet",
             CheckKind::GearStops => "gear stops",
             CheckKind::MotorPeak => "motor peak",
             CheckKind::MotorRms => "motor rms",
@@ -85,6 +93,12 @@ impl CheckKind {
             CheckKind::Mass => "kg",
             _ => "N m",
         }
+    }
+
+    /// Whether a drive is excluded if a rating that this check needs is blank. Buckling and ratcheting torques are known of
+    /// few gears and lie above the momentary peak, which is known.
+    pub fn needs_its_rating(self) -> bool {
+        !matches!(self, CheckKind::GearBuckling | CheckKind::GearRatcheting)
     }
 
     /// Whether the check is about the gear alone.
@@ -139,9 +153,13 @@ impl Check {
         Some(self.needed? - self.allowed?)
     }
 
-    /// Whether the check holds.
+    /// Whether the check holds, or could not be made and excludes nothing.
     pub fn holds(&self) -> bool {
-        self.state == CheckState::Holds
+        match self.state {
+            CheckState::Holds => true,
+            CheckState::Fails => false,
+            CheckState::NotChecked(_) => !self.kind.needs_its_rating(),
+        }
     }
 }
 
@@ -204,6 +222,8 @@ pub fn gear_checks(
         plain(CheckKind::GearPeak, demand.peak_torque_nm(), limit::gear_peak_nm(gear)),
         gear_mean(gear, demand),
         plain(CheckKind::GearStop, demand.stop_torque_nm, limit::gear_momentary_nm(gear)),
+        plain(CheckKind::GearBuckling, demand.stop_torque_nm, limit::gear_buckling_nm(gear)),
+        plain(CheckKind::GearRatcheting, demand.stop_torque_nm, limit::gear_ratcheting_nm(gear)),
         plain(CheckKind::GearSpeed, limit::input_speed_rpm(gear, motion), limit::gear_max_speed_rpm(gear)),
         plain(
             CheckKind::GearMeanSpeed,
@@ -377,6 +397,9 @@ mod tests {
             };
         assert_eq!(failing(holds_too_little), [CheckKind::MotorHold]);
         assert_eq!(failing(|_, m, _, _| m.rated_torque_nm = Some(3.86)), [CheckKind::MotorRms]);
+        assert_eq!(failing(|g, _, _, _| g.buckling_torque_nm = Some(499.0)), [CheckKind::GearBuckling]);
+        assert_eq!(failing(|g, _, _, _| g.ratcheting_torque_nm = Some(499.0)), [CheckKind::GearRatcheting]);
+        assert_eq!(failing(|_, _, motion, _| motion.emergency_stops = Some(1e4)), [CheckKind::GearStops]);
         assert_eq!(failing(|_, m, _, _| m.peak_torque_nm = Some(5.70)), [CheckKind::MotorPeak]);
         assert_eq!(failing(|_, m, _, _| m.max_speed_rpm = Some(707.0)), [CheckKind::MotorSpeed]);
     }
@@ -385,6 +408,30 @@ mod tests {
     fn life_fails_alone_when_more_is_required_than_the_bearing_gives() {
         assert_eq!(failing(|_, _, motion, _| motion.life_h = 1.0e6), [CheckKind::GearLife]);
         assert_eq!(failing(|g, _, _, _| g.rated_torque_nm = Some(100.0)), [CheckKind::GearLife]);
+    }
+
+    #[test]
+    fn buckling_and_ratcheting_are_not_checked_where_the_catalog_has_no_torque_and_exclude_nothing() {
+        let (gear, _) = ample();
+        let checks = gear_checks(&gear, GearMass::HousedUnit, &motion(), &demand());
+        let open: Vec<_> = checks.iter().filter(|c| c.needed.is_some() && c.allowed.is_none()).collect();
+        assert_eq!(
+            open.iter().map(|c| c.to_string()).collect::<Vec<_>>(),
+            [
+                "buckling not checked: lacks buckling_torque_nm",
+                "ratcheting not checked: lacks ratcheting_torque_nm"
+            ]
+        );
+        assert!(all_hold(&checks));
+    }
+
+    #[test]
+    fn a_brake_holds_what_the_motor_need_not() {
+        let brake = |_: &mut Gear, m: &mut Motor, motion: &mut JointMotion, d: &mut JointDemand| {
+            (m.rated_torque_nm, motion.has_brake) = (Some(3.5), true);
+            d.heat_weights.standing = 0.0;
+        };
+        assert_eq!(failing(brake), []);
     }
 
     #[test]
@@ -434,7 +481,10 @@ mod tests {
         let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
         let checks = checks(&drive, &motion(), &demand());
         let blank: Vec<_> = checks.iter().filter(|c| !c.holds()).map(Check::to_string).collect();
-        assert_eq!(blank, ["peak not checked: lacks rotor_inertia_kgm2"]);
+        assert_eq!(
+            blank,
+            ["peak not checked: lacks rotor_inertia_kgm2", "rms not checked: lacks rotor_inertia_kgm2"]
+        );
         assert_eq!(
             DriveLimits::of(&drive, &motion()),
             Err(Obstacle::Lacks(MissingRating("rotor_inertia_kgm2")))

@@ -82,7 +82,7 @@ impl DriveLimits {
         Ok(Self {
             static_torque_nm: motor_hold_nm(drive, motion)?,
             peak_torque_nm: gear_peak_nm(gear)?.min(motor_peak_nm(drive, motion)?),
-            stop_torque_nm: gear_momentary_nm(gear)?,
+            stop_torque_nm: gear_stop_nm(gear)?,
             mean_torque_cubed_nm3: gear_average_cubed_nm3(gear)?.min(gear_life_cubed_nm3(gear, motion)?),
             tilting_moment_nm: tilting_moment_nm(gear, drive.gear_mass).unwrap_or(0.0),
             heat: MotorHeat::of(drive, motion)?,
@@ -207,6 +207,21 @@ pub(super) fn gear_average_cubed_nm3(gear: &Gear) -> Rating {
 
 pub(super) fn gear_momentary_nm(gear: &Gear) -> Rating {
     known(gear.momentary_peak_torque_nm, "momentary_peak_torque_nm")
+}
+
+pub(super) fn gear_buckling_nm(gear: &Gear) -> Rating {
+    known(gear.buckling_torque_nm, "buckling_torque_nm")
+}
+
+pub(super) fn gear_ratcheting_nm(gear: &Gear) -> Rating {
+    known(gear.ratcheting_torque_nm, "ratcheting_torque_nm")
+}
+
+/// Largest torque in an emergency stop: the momentary limit, and what of buckling and ratcheting torque is known.
+fn gear_stop_nm(gear: &Gear) -> Rating {
+    let unknown = f64::INFINITY;
+    let jumps_nm = gear_ratcheting_nm(gear).unwrap_or(unknown);
+    Ok(gear_momentary_nm(gear)?.min(gear_buckling_nm(gear).unwrap_or(unknown)).min(jumps_nm))
 }
 
 /// Number of momentary peaks that a gear may bear: 1e4 / (2 n t / 60), n being the input speed in rpm and t the duration of

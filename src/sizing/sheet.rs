@@ -285,7 +285,13 @@ mod tests {
     fn a_motor_without_inertia_leaves_its_numbers_open_and_says_so() {
         let row = paper_joint_2(&char_lynn_j_8_2());
         assert_eq!((row.rotary_torque_motor_nm, row.total_torque_nm), (None, None));
-        assert_eq!(row.not_checked, ["motor peak not checked: lacks rotor_inertia_kgm2"]);
+        assert_eq!(
+            row.not_checked,
+            [
+                "motor peak not checked: lacks rotor_inertia_kgm2",
+                "motor rms not checked: lacks rotor_inertia_kgm2"
+            ]
+        );
         assert!(
             render_rows(&[row]).contains("\njoint j2: motor peak not checked: lacks rotor_inertia_kgm2\n")
         );
@@ -318,7 +324,7 @@ mod tests {
                 "over the cycle:",
                 "joint   mean input motor rms allowed margin stops",
                 "         N m   rpm       N m     N m      -     -",
-                "j2    602.68   283     7.690  31.120   4.05  4241",
+                "j2    603.04   283     7.604  31.120   4.09  4241",
             ]
         );
     }

@@ -88,6 +88,7 @@ pub(crate) fn hfuc_58_100() -> Gear {
     let mut gear =
         gear("HFUC-58-100", [696.0, 1590.0, 1060.0, 3180.0], [3000.0, 2200.0], 0.00273, [4.7, 14.6]);
     gear.permissible_tilting_moment_nm = Some(1180.0);
+    (gear.buckling_torque_nm, gear.ratcheting_torque_nm) = (Some(12000.0), Some(6400.0));
     gear
 }
 
@@ -95,6 +96,7 @@ pub(crate) fn hfuc_58_100() -> Gear {
 pub(crate) fn hfuc_40_100() -> Gear {
     let mut gear = gear("HFUC-40-100", [265.0, 568.0, 372.0, 1080.0], [4000.0, 3000.0], 0.00045, [1.7, 5.0]);
     gear.permissible_tilting_moment_nm = Some(450.0);
+    (gear.buckling_torque_nm, gear.ratcheting_torque_nm) = (Some(4300.0), Some(2100.0));
     gear
 }
 
@@ -128,6 +130,7 @@ prop_compose! {
         inertia in rating_in(0.0..0.003),
         masses in prop::array::uniform2(rating_in(0.1..15.0)),
         tilt in rating_in(50.0..1000.0),
+        breaking in prop::array::uniform2(prop::option::of(50.0..4000.0f64)),
         efficiency in rating_in(0.5..0.9),
     ) -> Gear {
         let mut gear = gear(&format!("{series}-32-{ratio}"), [0.0; 4], [0.0; 2], 0.0, [0.0; 2]);
@@ -137,6 +140,7 @@ prop_compose! {
         [gear.mass_component_set_kg, gear.mass_housed_unit_kg] = masses;
         (gear.inertia_input_kgm2, gear.efficiency) = (inertia, efficiency);
         gear.permissible_tilting_moment_nm = tilt;
+        [gear.buckling_torque_nm, gear.ratcheting_torque_nm] = breaking;
         gear
     }
 }

@@ -27,11 +27,12 @@ struct Check {
 }
 
 /// All checks of torques. A drive that lacks a number for one of them cannot be chosen.
-const CHECKS: [Check; 6] = [
+const CHECKS: [Check; 7] = [
     Check { on: Quantity::Static, most: motor_hold_nm },
     Check { on: Quantity::Peak, most: |gear, _, _| gear.repeated_peak_torque_nm },
     Check { on: Quantity::Peak, most: motor_peak_nm },
     Check { on: Quantity::Stop, most: |gear, _, _| gear.momentary_peak_torque_nm },
+    Check { on: Quantity::Stop, most: |gear, _, _| Some(breaks_nm(gear)) },
     Check { on: Quantity::MeanCubed, most: |gear, _, _| Some(gear.average_torque_limit_nm?.powi(3)) },
     Check { on: Quantity::MeanCubed, most: life_nm3 },
 ];
@@ -97,6 +98,11 @@ fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
             && fastest_rpm <= motor_max_rpm
             && mean_rpm <= gear.average_input_speed_limit_rpm?,
     )
+}
+
+/// The torque at which a gear buckles or its teeth jump, as far as the catalog knows it.
+fn breaks_nm(gear: &Gear) -> f64 {
+    [gear.buckling_torque_nm, gear.ratcheting_torque_nm].into_iter().flatten().fold(f64::INFINITY, f64::min)
 }
 
 /// Whether the gear bears as many emergency stops as are asked for: 1e4 waves of the wave generator, two in a turn, and

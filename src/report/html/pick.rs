@@ -371,10 +371,12 @@ impl View {
 }
 
 /// Checks in the order of the table's columns.
-const CHECKS: [CheckKind; 12] = [
+const CHECKS: [CheckKind; 14] = [
     CheckKind::GearPeak,
     CheckKind::GearMean,
     CheckKind::GearStop,
+    CheckKind::GearBuckling,
+    CheckKind::GearRatcheting,
     CheckKind::GearTilt,
     CheckKind::GearSpeed,
     CheckKind::GearMeanSpeed,
