@@ -1,10 +1,11 @@
 //! The sizing table: the numbers of one joint in a row, from the tip to the base.
 
-use super::check::{Check, CheckKind, CheckState, binding, checks};
+use super::check::{Check, CheckKind, CheckState, binding, checks, motor_checks};
 use super::demand::{JointDemand, JointMotion};
 use super::drive::{Drive, rotary_torque_output_nm};
 use super::limits::{input_speed_rpm, mean_input_speed_rpm, stops_allowed};
 use super::rpm_from_rad_s;
+use crate::catalog::gear::Gear;
 use serde::Serialize;
 
 /// One joint, sized. A number is `None` if a blank rating of the catalog leaves it unknown.
@@ -34,6 +35,11 @@ pub struct JointSizingRow {
     pub motor_continuous_torque_nm: Option<f64>,
     /// The second over the first. Also `None` if nothing is needed.
     pub motor_rms_margin: Option<f64>,
+    /// Efficiency of the gear at the mean speed and torque of the cycle, by representative curves; the checks use the rated
+    /// one.
+    pub cycle_efficiency: Option<f64>,
+    /// The margin of the motor's heat at this efficiency.
+    pub motor_rms_margin_at_cycle_efficiency: Option<f64>,
     /// Speed of the joint \[rpm\].
     pub joint_speed_rpm: f64,
     /// Speed of the motor \[rpm\].
@@ -94,6 +100,8 @@ impl JointSizingRow {
             motor_rms_torque_nm: rms.and_then(|c| c.needed),
             motor_continuous_torque_nm: rms.and_then(|c| c.allowed),
             motor_rms_margin: rms.and_then(Check::margin).filter(finite),
+            cycle_efficiency: None,
+            motor_rms_margin_at_cycle_efficiency: None,
             joint_speed_rpm: rpm_from_rad_s(motion.speed_rad_s),
             motor_speed_rpm: input_speed_rpm(drive.gear, motion),
             mean_input_speed_rpm: mean_input_speed_rpm(drive.gear, motion),
@@ -108,6 +116,27 @@ impl JointSizingRow {
             fails: remarks(&checks, |state| state == CheckState::Fails),
             not_checked: remarks(&checks, |state| matches!(state, CheckState::NotChecked(_))),
             checks,
+        }
+    }
+}
+
+impl JointSizingRow {
+    /// The same row with the efficiency that the gear has at the mean speed and torque of the cycle, and the margin of the
+    /// motor's heat at it.
+    pub fn at_efficiency(
+        self,
+        efficiency: f64,
+        drive: &Drive,
+        motion: &JointMotion,
+        demand: &JointDemand,
+    ) -> Self {
+        let gear = Gear { efficiency: Some(efficiency), ..drive.gear.clone() };
+        let checks = motor_checks(&Drive { gear: &gear, ..*drive }, motion, demand);
+        let rms = checks.iter().find(|c| c.kind == CheckKind::MotorRms);
+        Self {
+            cycle_efficiency: Some(efficiency),
+            motor_rms_margin_at_cycle_efficiency: rms.and_then(Check::margin).filter(|x| x.is_finite()),
+            ..self
         }
     }
 }
@@ -146,15 +175,21 @@ const HEADERS: [Header; 15] = [
 ];
 
 /// What follows from the whole cycle.
-const CYCLE_HEADERS: [Header; 7] = [
+const CYCLE_HEADERS: [Header; 9] = [
     ("joint", "", false),
     ("mean", "N m", true),
     ("input", "rpm", true),
     ("motor rms", "N m", true),
     ("allowed", "N m", true),
     ("margin", "-", true),
+    ("efficiency", "~", true),
+    ("margin", "~", true),
     ("stops", "-", true),
 ];
+
+/// What the tilde means.
+const REPRESENTATIVE: &str = "~ at the gear's efficiency at the mean speed and torque of the cycle, by representative \
+    curves; the checks use the rated one\n";
 
 /// The rows as two text tables of about 120 characters a line, the second for the whole cycle. Remarks on checks that
 /// failed or could not be made follow them.
@@ -162,6 +197,9 @@ pub fn render_rows(rows: &[JointSizingRow]) -> String {
     let mut text = table(&HEADERS, rows.iter().map(cells));
     text.push_str("\nover the cycle:\n");
     text.push_str(&table(&CYCLE_HEADERS, rows.iter().map(cycle_cells)));
+    if rows.iter().any(|row| row.cycle_efficiency.is_some()) {
+        text.push_str(REPRESENTATIVE);
+    }
     for row in rows {
         for remark in row.fails.iter().chain(&row.not_checked) {
             text.push_str(&format!("joint {}: {remark}\n", row.joint));
@@ -211,14 +249,17 @@ fn cells(row: &JointSizingRow) -> [String; 15] {
     ]
 }
 
-fn cycle_cells(row: &JointSizingRow) -> [String; 7] {
+fn cycle_cells(row: &JointSizingRow) -> [String; 9] {
+    let or_none = |x: Option<f64>| x.map_or("-".to_string(), |x| digits(x, 2));
     [
         row.joint.clone(),
         digits(row.mean_torque_nm, 2),
         digits(row.mean_input_speed_rpm, 0),
         or_open(row.motor_rms_torque_nm, 3),
         or_open(row.motor_continuous_torque_nm, 3),
-        row.motor_rms_margin.map_or("-".to_string(), |x| digits(x, 2)),
+        or_none(row.motor_rms_margin),
+        or_none(row.cycle_efficiency),
+        or_none(row.motor_rms_margin_at_cycle_efficiency),
         digits(row.emergency_stops_allowed.floor(), 0),
     ]
 }
@@ -322,9 +363,9 @@ mod tests {
                  76071 12.20  80.00",
                 "",
                 "over the cycle:",
-                "joint   mean input motor rms allowed margin stops",
-                "         N m   rpm       N m     N m      -     -",
-                "j2    603.04   283     7.604  31.120   4.09  4241",
+                "joint   mean input motor rms allowed margin efficiency margin stops",
+                "         N m   rpm       N m     N m      -          ~      ~     -",
+                "j2    603.04   283     7.604  31.120   4.09          -      -  4241",
             ]
         );
     }
