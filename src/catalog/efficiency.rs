@@ -80,6 +80,28 @@ impl Catalogs {
         interpolate(&self.efficiency_curve(gear, EfficiencyKind::FactorAgainstTorqueRatio), torque_over_rated)
     }
 
+    /// Efficiency of a gear at an input speed \[rpm\] and a share of its rated torque, by curves of its kind: representative,
+    /// not a vendor's figure. `None` without a rated efficiency.
+    ///
+    /// The curve against speed is the gear's own, or that of HFUC-25-100, scaled to the gear's efficiency at 2000 rpm; the
+    /// factor on it is that of CSF and CSG. Beyond their ends the curves go on level. Temperature is left out.
+    pub fn representative_efficiency(
+        &self,
+        gear: &Gear,
+        input_speed_rpm: f64,
+        torque_over_rated: f64,
+    ) -> Option<f64> {
+        let rated = gear.efficiency?;
+        let model = |of: &Gear, kind| Some(self.efficiency_curve(of, kind)).filter(|curve| !curve.is_empty());
+        let other = self.gear(MODEL).ok();
+        let curve = |kind| model(gear, kind).or_else(|| model(other?, kind));
+        let speed = curve(EfficiencyKind::AgainstInputSpeed);
+        let at_speed = speed.and_then(|c| Some(level(&c, input_speed_rpm)? / level(&c, RATED_RPM)?));
+        let load = curve(EfficiencyKind::FactorAgainstTorqueRatio);
+        let at_load = load.and_then(|c| level(&c, torque_over_rated));
+        Some(rated * at_speed.unwrap_or(1.0) * at_load.unwrap_or(1.0))
+    }
+
     /// The points of a gear's curve of a kind, by ascending x.
     pub(super) fn efficiency_curve(&self, gear: &Gear, kind: EfficiencyKind) -> Vec<[f64; 2]> {
         let aliases = self.series_aliases.iter().filter(|(_, series)| **series == gear.series);
@@ -89,6 +111,17 @@ impl Catalogs {
         curve.sort_by(|a, b| a[0].total_cmp(&b[0]));
         curve
     }
+}
+
+/// The gear whose curves stand for those of others.
+const MODEL: &str = "HFUC-25-100";
+/// Input speed of the rated efficiency \[rpm\].
+const RATED_RPM: f64 = 2000.0;
+
+/// Linear between points sorted by x, level beyond them; `None` without points.
+fn level(curve: &[[f64; 2]], x: f64) -> Option<f64> {
+    let (first, last) = (curve.first()?, curve.last()?);
+    interpolate(curve, x.clamp(first[0], last[0]))
 }
 
 /// Linear between points sorted by x; `None` outside them.
@@ -123,6 +156,21 @@ mod tests {
         let gear = catalogs.gear("HFUC-58-100").expect("built in");
         assert_eq!(catalogs.efficiency_at(gear, 1000.0), None);
         assert!(gear.efficiency.is_some());
+    }
+
+    #[test]
+    fn the_efficiency_of_a_gear_without_curves_follows_those_of_another_scaled_to_its_own() {
+        let catalogs = Catalogs::builtin();
+        let gear = |id: &str| catalogs.gear(id).expect("built in");
+        let at = |id: &str, rpm, torque| catalogs.representative_efficiency(gear(id), rpm, torque).unwrap();
+        let rated = gear("SHG-32-100").efficiency.unwrap();
+        assert_eq!(at("SHG-32-100", 2000.0, 1.0), rated);
+        // 0.82 of 0.78 at 1000 rpm, factor 0.9 at half the rated torque
+        assert!((at("SHG-32-100", 1000.0, 0.5) - rated * 0.82 / 0.78 * 0.9).abs() < 1e-12);
+        assert_eq!(at("SHG-32-100", 100.0, 2.0), at("SHG-32-100", 500.0, 1.0));
+        // the vendor's example (1019658, page 25): 0.78 at 1000 rpm becomes 0.73 at 57 % of the rated torque
+        let factor = at("HFUC-20-80", 1000.0, 0.57) / at("HFUC-20-80", 1000.0, 1.0);
+        assert!((0.78 * factor - 0.73).abs() < 0.006, "{factor}");
     }
 
     #[test]

@@ -134,6 +134,9 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
         motion.life_h,
         study.space.sizing_cases.len()
     );
+    for words in &study.turned_off {
+        let _ = writeln!(out, "{words}");
+    }
     let Some(parts) = problem.parts(chosen) else { return out };
     for (piece, part) in study.space.pieces.iter().zip(parts) {
         if let (SpacePiece::Choice(choice), crate::space::design::Part::Link(option)) = (piece, part) {
@@ -204,9 +207,10 @@ fn all_fits(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String,
 
 fn demand_line(joint: &str, demand: &JointDemand, table: &DriveTable) -> String {
     format!(
-        "joint {joint}: static {:.1} N m, peak {:.1} N m, stop {:.1} N m, mean {:.1} N m, {:.2} rad/s; {} drives are \
-         fast enough, {} hold",
+        "joint {joint}: static {:.1} N m, linear {:.1} N m, peak {:.1} N m, stop {:.1} N m, mean {:.1} N m, {:.2} rad/s; \
+         {} drives are fast enough, {} hold",
         demand.static_torque_nm,
+        demand.linear_torque_nm,
         demand.peak_torque_nm(),
         demand.stop_torque_nm,
         demand.mean_torque_nm(),

@@ -86,6 +86,7 @@ mod tests {
     use crate::exact::parts::Rays;
     use crate::exact::torsion::BreakPoints;
     use crate::sizing::bearing::BearingLimits;
+    use crate::sizing::heat::MotorHeat;
     use crate::sizing::limits::DriveLimits;
     use crate::sizing::requirement::MotionRequirement;
     use proptest::prelude::*;
@@ -104,6 +105,7 @@ mod tests {
             stop_torque_nm: torque_nm,
             mean_torque_cubed_nm3: torque_nm.powi(3),
             bearing: BearingLimits::NONE,
+            heat: MotorHeat::NONE,
         };
         DriveBox {
             mass_kg: [mass_kg; 2],

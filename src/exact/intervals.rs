@@ -2,7 +2,7 @@
 
 use super::bearing_rows::Numbers;
 use super::interval::interval;
-use super::parts::{DriveBox, LeastDemand, LinkBox, Rays};
+use super::parts::{DriveBox, HEAT_ROUNDING, LeastDemand, LinkBox, Rays};
 use super::problem::{Ladder, Lever, Part, Problem};
 use super::tree::{Bounds, Tree};
 use super::work::Work;
@@ -69,8 +69,8 @@ impl Problem<'_> {
         work.joint(self, piece, drives.mass_kg, drives.curve, drives.tilt_rad_per_nm);
         work.breaks[piece] = drives.breaks;
         work.least_demands[piece] = Some(least);
-        work.greatest_demands[piece] =
-            Some(motion.demand(static_nm[1], inertia_kgm2[1]).with_bearing(bearing[1]));
+        let most = motion.demand(static_nm[1], inertia_kgm2[1]).with_bearing(bearing[1]);
+        work.greatest_demands[piece] = Some(most.with_heat_times(1.0 + HEAT_ROUNDING));
         Some(())
     }
 
@@ -84,9 +84,11 @@ impl Problem<'_> {
     ) -> Option<()> {
         let (static_nm, inertia_kgm2) = self.loads(piece, work);
         let bearing = self.bearing_loads(piece, work);
-        let demand =
-            |i: usize| sized.table.motion().demand(static_nm[i], inertia_kgm2[i]).with_bearing(bearing[i]);
-        let (least, most) = (demand(0), demand(1));
+        let demand = |i: usize, heat: f64| {
+            let demand = sized.table.motion().demand(static_nm[i], inertia_kgm2[i]);
+            demand.with_bearing(bearing[i]).with_heat_times(heat)
+        };
+        let (least, most) = (demand(0, 1.0 - HEAT_ROUNDING), demand(1, 1.0 + HEAT_ROUNDING));
         let step = |demand: &JointDemand| {
             let fit = sized.table.first_fit(demand)? as u32;
             sized.table.first_fit_candidates().binary_search(&fit).ok()

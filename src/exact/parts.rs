@@ -158,8 +158,11 @@ pub(super) struct Rays {
 }
 
 impl Rays {
-    /// Rays around the proportion of static torque to inertia that the payload alone causes.
+    /// Rays around the proportion of static torque to inertia that the payload alone causes. A stated duty is left out,
+    /// because it does not grow with the arm; what is left is a lower bound. The motor's own inertia does not grow with the
+    /// arm either: [`MotorHeat::multiple_of`](crate::sizing::heat::MotorHeat::multiple_of) knows that.
     pub(super) fn new(motion: &JointMotion, payload_static_nm: f64, payload_inertia_kgm2: f64) -> Self {
+        let motion = motion.without_stated();
         let loads = std::array::from_fn(|k| match k {
             0 => (0.0, 1.0),
             1 => (1.0, 0.0),
@@ -176,6 +179,10 @@ impl Rays {
         self.demands.each_ref().map(|demand| limits.multiple_of(demand))
     }
 }
+
+/// Part by which the heat of a least demand is lowered and that of a greatest raised. The motor's own inertia can be most of
+/// it, so that rounding of the loads alone would not keep the rounding of the sum from deciding.
+pub(super) const HEAT_ROUNDING: f64 = 1e-12;
 
 /// The least demand that the members of a box make on a joint.
 pub(super) struct LeastDemand {
@@ -196,8 +203,9 @@ impl LeastDemand {
         let times = |asked: f64, unit: f64| if unit > 0.0 { asked / unit } else { f64::INFINITY };
         let multiples =
             rays.loads.map(|(t, i)| times(static_nm, t).min(times(inertia_kgm2, i)) * (1.0 - 1e-12));
+        let demand = motion.demand(static_nm, inertia_kgm2).with_heat_times(1.0 - HEAT_ROUNDING);
         // The rays do not load the bearing, so a multiple of one is below the demand whatever the bearing carries.
-        Self { demand: motion.demand(static_nm, inertia_kgm2).with_bearing(bearing), multiples }
+        Self { demand: demand.with_bearing(bearing), multiples }
     }
 }
 
@@ -302,6 +310,7 @@ impl Bounds for DriveBox {
 mod tests {
     use super::*;
     use crate::sizing::bearing::BearingLimits;
+    use crate::sizing::heat::MotorHeat;
     use crate::sizing::requirement::MotionRequirement;
     use proptest::prelude::*;
 
@@ -315,6 +324,7 @@ mod tests {
             stop_torque_nm: times(2) * usual.stop_torque_nm,
             mean_torque_cubed_nm3: times(3).powi(3) * usual.mean_torque_cubed_nm3,
             bearing: BearingLimits::NONE,
+            heat: MotorHeat::NONE,
         };
         DriveBox {
             mass_kg: [1.0; 2],

@@ -206,6 +206,7 @@ mod tests {
     use crate::exact::parts::Line;
     use crate::exact::torsion::CurveBox;
     use crate::sizing::bearing::BearingLimits;
+    use crate::sizing::heat::MotorHeat;
     use crate::sizing::limits::DriveLimits;
     use proptest::prelude::*;
 
@@ -240,6 +241,7 @@ mod tests {
         stop_torque_nm: 0.0,
         mean_torque_cubed_nm3: 0.0,
         bearing: BearingLimits::NONE,
+        heat: MotorHeat::NONE,
     };
 
     proptest! {

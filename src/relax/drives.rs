@@ -14,9 +14,10 @@ impl Parts {
         for (slot, piece) in problem.slots().iter().enumerate() {
             let Slot::Sized(sized) = piece else { continue };
             let motion = sized.table.motion();
-            // With such a duty cycle the mean torque may fall while a load rises, so the ends of the
+            // With such a duty cycle the mean torque or the motor's heat may fall while a load rises, so the ends of the
             // intervals prove nothing.
-            if motion.mean_torque.sum < motion.mean_torque.difference {
+            let heat = &motion.heat;
+            if motion.mean_torque.sum < motion.mean_torque.difference || heat.sum < heat.difference {
                 continue;
             }
             let (mut static_nm, mut inertia_kgm2) = ([0.0f64; 2], [0.0f64; 2]);
@@ -29,8 +30,10 @@ impl Parts {
                 }
             }
             let relaxed = [1.0 - 1e-12, 1.0 + 1e-12];
-            let [least, most] = [0, 1]
-                .map(|end| motion.demand(static_nm[end] * relaxed[end], inertia_kgm2[end] * relaxed[end]));
+            let [least, most] = [0, 1].map(|end| {
+                let demand = motion.demand(static_nm[end] * relaxed[end], inertia_kgm2[end] * relaxed[end]);
+                demand.with_heat_times(relaxed[end])
+            });
             // the load on a bearing has no upper bound here, so it may ask for a heavier drive than the torques
             let by_bearing = problem.bearing_loads().levers[slot].is_some();
             let heaviest = if sized.all_fits || by_bearing { None } else { sized.table.first_fit(&most) };

@@ -224,6 +224,7 @@ impl CaseLoads {
     }
 
     /// Rows that hold for every design whose sized joints carry their static, peak and emergency torque in this case.
+    /// The heat of a motor is no sum over parts and makes no row: that only weakens the bound.
     pub(super) fn torque_rows(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Row> {
         let mut rows = Vec::new();
         for (slot, piece) in problem.slots().iter().enumerate() {
@@ -247,6 +248,10 @@ impl CaseLoads {
                 ),
             ];
             for ([torque, inertia], allowed) in demands {
+                // a brake holds any static torque
+                if allowed.iter().any(|nm| nm.is_infinite()) {
+                    continue;
+                }
                 let station = &problem.stations()[self.case];
                 let own = |wrench: &Wrench| sign * torque * joint.twist.dot(wrench);
                 let mut coefficients = parts.each(|j, o| match j < slot {

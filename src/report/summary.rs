@@ -9,6 +9,7 @@ use super::number::{cost_words, grouped, large, percent_of, significant};
 use super::picks::{
     Design, Objective, Pick, best, designs, knee, marked_choices, materials, picks, rows_and_names,
 };
+use super::resonance::warnings;
 use super::table::{Column, Table};
 use super::words::{TERMINAL, and, capital, wrap};
 
@@ -85,9 +86,15 @@ pub fn summary_md(input: &SummaryInput) -> String {
         out.push_str("\n## Remarks\n\n");
         facts.remarks.iter().for_each(|words| out.push_str(&format!("- {words}\n")));
     }
-    if !facts.not_checked.is_empty() {
+    let warnings = warnings(&input.overall, &found.picks);
+    if !warnings.is_empty() {
+        out.push_str("\n## Warnings\n\n");
+        warnings.iter().for_each(|words| out.push_str(&format!("- {words}\n")));
+    }
+    if facts.not_checked.len() + facts.turned_off.len() > 0 {
         out.push_str("\n## Not checked\n\n");
-        facts.not_checked.iter().for_each(|words| out.push_str(&format!("- {words}\n")));
+        let words = facts.turned_off.iter().chain(&facts.not_checked);
+        words.for_each(|words| out.push_str(&format!("- {words}\n")));
     }
     if let Some(pick) = found.default_pick() {
         out.push_str(&format!("\n## Take a design out\n\n```\n{}```\n", commands(facts, pick)));
@@ -121,6 +128,9 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
     }
     out.push_str(&format!("\n{}", wrap(&counts(facts), TERMINAL, "")));
     facts.remarks.iter().for_each(|words| out.push_str(&wrap(words, TERMINAL, "")));
+    for words in warnings(&input.overall, &found.picks).iter().chain(&facts.turned_off) {
+        out.push_str(&wrap(&format!("{words}."), TERMINAL, ""));
+    }
     if !facts.not_checked.is_empty() {
         let words = format!("Options or parts not checked: {}; see summary.md.", facts.not_checked.len());
         out.push_str(&wrap(&words, TERMINAL, ""));

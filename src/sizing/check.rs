@@ -3,6 +3,7 @@
 use super::bearing::{self, BearingDemand, BearingLimits, BearingLoad};
 use super::demand::{JointDemand, JointMotion};
 use super::drive::{Drive, MissingRating, Rating, known};
+use super::heat::{self, MotorHeat};
 use super::limits as limit;
 use crate::arm::bearing::Bearing;
 use crate::catalog::gear::Gear;
@@ -17,6 +18,10 @@ pub enum CheckKind {
     GearMean,
     /// Torque in an emergency stop is below the gear's limit for momentary peaks.
     GearStop,
+    /// Torque in an emergency stop is below the torque at which the flexspline buckles.
+    GearBuckling,
+    /// Torque in an emergency stop is below the torque at which the teeth jump.
+    GearRatcheting,
     /// The largest moment across the axis while the joint turns is below what the output bearing permits.
     BearingMoment,
     /// Static safety of the output bearing at rest.
@@ -31,10 +36,14 @@ pub enum CheckKind {
     GearMeanSpeed,
     /// L10 life of the wave-generator bearing is above the required life.
     GearLife,
+    /// The gear bears the number of emergency stops that the study asks for. This check is listed only if it does.
+    GearStops,
     /// The motor can hold the static torque continuously.
     MotorHold,
     /// The motor can give static, linear and rotary torque for the duration of the ramp.
     MotorPeak,
+    /// Root mean square of the motor's torque over the cycle is below its continuous torque.
+    MotorRms,
     /// N times speed is below the motor's largest speed.
     MotorSpeed,
     /// The mass of the drive is known. This check is listed only if it is not.
@@ -55,7 +64,11 @@ impl CheckKind {
             CheckKind::GearSpeed => "input speed",
             CheckKind::GearMeanSpeed => "mean input speed",
             CheckKind::GearLife => "life",
+            CheckKind::GearBuckling => "buckling",
+            CheckKind::GearRatcheting => "ratcheting",
+            CheckKind::GearStops => "number of stops",
             CheckKind::MotorHold => "hold",
+            CheckKind::MotorRms => "rms",
             CheckKind::MotorSpeed => "speed",
             CheckKind::Mass => "mass",
         }
@@ -75,7 +88,11 @@ impl CheckKind {
             CheckKind::GearMeanSpeed => "gear av.speed",
             CheckKind::GearLife => "gear life",
             CheckKind::MotorHold => "motor hold",
+            CheckKind::GearBuckling => "gear buckling",
+            CheckKind::GearRatcheting => "gear ratchet",
+            CheckKind::GearStops => "gear stops",
             CheckKind::MotorPeak => "motor peak",
+            CheckKind::MotorRms => "motor rms",
             CheckKind::MotorSpeed => "motor speed",
             CheckKind::Mass => "mass",
         }
@@ -87,20 +104,28 @@ impl CheckKind {
             CheckKind::GearSpeed | CheckKind::GearMeanSpeed | CheckKind::MotorSpeed => "rpm",
             CheckKind::GearLife | CheckKind::BearingLife => "h",
             CheckKind::BearingRest | CheckKind::BearingStop => "times",
+            CheckKind::GearStops => "stops",
             CheckKind::Mass => "kg",
             _ => "N m",
         }
     }
 
-    /// Whether the check is about the output bearing. A bearing whose rating is blank is not checked, and not excluded.
+    /// Whether the check is about the output bearing.
     pub fn is_bearing(self) -> bool {
         use CheckKind::{BearingLife, BearingMoment, BearingRest, BearingStop};
         matches!(self, BearingMoment | BearingRest | BearingStop | BearingLife)
     }
 
+    /// Whether a drive is excluded if a rating that this check needs is blank. An output bearing whose rating is blank is
+    /// not checked. Buckling and ratcheting torques are known of few gears and lie above the momentary peak, which is known.
+    pub fn needs_its_rating(self) -> bool {
+        !self.is_bearing() && !matches!(self, CheckKind::GearBuckling | CheckKind::GearRatcheting)
+    }
+
     /// Whether the check is about gear and bearing alone, whatever the motor.
     pub fn is_gear(self) -> bool {
-        !matches!(self, CheckKind::MotorHold | CheckKind::MotorPeak | CheckKind::MotorSpeed | CheckKind::Mass)
+        use CheckKind::{Mass, MotorHold, MotorPeak, MotorRms, MotorSpeed};
+        !matches!(self, MotorHold | MotorPeak | MotorRms | MotorSpeed | Mass)
     }
 }
 
@@ -138,7 +163,8 @@ impl Check {
     }
 
     /// The margin as a factor on torque, which makes checks comparable. Life goes with the cube of the torque, so its
-    /// margin becomes the cube root; that of a bearing with the power 10/3 of its load.
+    /// margin becomes the cube root; that of a bearing with the power 10/3 of its load. The number of stops does not depend
+    /// on the torque.
     pub fn torque_margin(&self) -> Option<f64> {
         let margin = self.margin()?;
         Some(match self.kind {
@@ -153,12 +179,12 @@ impl Check {
         Some(self.needed? - self.allowed?)
     }
 
-    /// Whether the check holds. A check of a bearing that could not be made excludes nothing.
+    /// Whether the check holds, or could not be made and excludes nothing.
     pub fn holds(&self) -> bool {
         match self.state {
             CheckState::Holds => true,
             CheckState::Fails => false,
-            CheckState::NotChecked(_) => self.kind.is_bearing(),
+            CheckState::NotChecked(_) => !self.kind.needs_its_rating(),
         }
     }
 }
@@ -223,6 +249,8 @@ pub fn gear_checks(
         plain(CheckKind::GearPeak, demand.peak_torque_nm(), limit::gear_peak_nm(gear)),
         gear_mean(gear, demand),
         plain(CheckKind::GearStop, demand.stop_torque_nm, limit::gear_momentary_nm(gear)),
+        plain(CheckKind::GearBuckling, demand.stop_torque_nm, limit::gear_buckling_nm(gear)),
+        plain(CheckKind::GearRatcheting, demand.stop_torque_nm, limit::gear_ratcheting_nm(gear)),
         plain(CheckKind::GearSpeed, limit::input_speed_rpm(gear, motion), limit::gear_max_speed_rpm(gear)),
         plain(
             CheckKind::GearMeanSpeed,
@@ -231,6 +259,9 @@ pub fn gear_checks(
         ),
         gear_life(gear, motion, demand),
     ];
+    if let Some(stops) = motion.emergency_stops {
+        checks.push(plain(CheckKind::GearStops, stops, Ok(limit::stops_allowed(gear, motion))));
+    }
     if let Some(bearing) = bearing.filter(|_| !demand.bearing.is_zero()) {
         checks.extend(bearing_checks(bearing, motion, &demand.bearing));
     }
@@ -285,17 +316,18 @@ fn gear_life(gear: &Gear, motion: &JointMotion, demand: &JointDemand) -> Check {
     )
 }
 
-/// The checks of a motor behind its gear. An unknown mass of the pair is listed too.
+/// The checks of a motor behind its gear. Its heat is checked unless the study turns that off. An unknown mass of the pair
+/// is listed too.
 pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
-    let mut checks = vec![
-        motor_hold(drive, demand),
-        motor_peak(drive, motion, demand),
-        plain(
-            CheckKind::MotorSpeed,
-            limit::input_speed_rpm(drive.gear, motion),
-            limit::motor_max_speed_rpm(drive.motor),
-        ),
-    ];
+    let mut checks = vec![motor_hold(drive, motion, demand), motor_peak(drive, motion, demand)];
+    if motion.checks_motor_heat {
+        checks.push(motor_rms(drive, motion, demand));
+    }
+    checks.push(plain(
+        CheckKind::MotorSpeed,
+        limit::input_speed_rpm(drive.gear, motion),
+        limit::motor_max_speed_rpm(drive.motor),
+    ));
     if let Err(rating) = drive.mass_kg() {
         let state = CheckState::NotChecked(rating);
         checks.push(Check { kind: CheckKind::Mass, needed: None, allowed: None, state });
@@ -303,14 +335,15 @@ pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -
     checks
 }
 
-/// T / (N η), compared with the continuous torque.
-fn motor_hold(drive: &Drive, demand: &JointDemand) -> Check {
+/// T / (N η), compared with the continuous torque; a brake holds any.
+fn motor_hold(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
+    let rated = known(drive.motor.rated_torque_nm, "motor rated_torque_nm");
     check(
         CheckKind::MotorHold,
         drive.gain().map(|gain| demand.static_torque_nm / gain),
-        known(drive.motor.rated_torque_nm, "motor rated_torque_nm"),
+        if motion.has_brake { Ok(f64::INFINITY) } else { rated },
         demand.static_torque_nm,
-        limit::motor_continuous_nm(drive),
+        limit::motor_hold_nm(drive, motion),
     )
 }
 
@@ -324,6 +357,15 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
         peak_nm,
         limit::motor_peak_nm(drive, motion),
     )
+}
+
+/// Root mean square of the motor's torque over the cycle, compared with its continuous torque at the cruising speed.
+fn motor_rms(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
+    let input_rpm = limit::input_speed_rpm(drive.gear, motion);
+    let continuous_nm = heat::continuous_torque_nm(drive.motor, input_rpm);
+    let used = MotorHeat::of(drive, motion).map(|heat| heat.share_squared(demand));
+    let needed = used.and_then(|used| Ok(used.sqrt() * continuous_nm?));
+    check(CheckKind::MotorRms, needed, continuous_nm, used.unwrap_or(f64::NAN), used.map(|_| 1.0))
 }
 
 /// All checks of a drive: first those of the gear, then those of the motor.
@@ -417,7 +459,15 @@ mod tests {
             failing(|g, _, _, _| g.average_input_speed_limit_rpm = Some(282.0)),
             [CheckKind::GearMeanSpeed]
         );
-        assert_eq!(failing(|_, m, _, _| m.rated_torque_nm = Some(3.84)), [CheckKind::MotorHold]);
+        let holds_too_little =
+            |_: &mut Gear, m: &mut Motor, motion: &mut JointMotion, _: &mut JointDemand| {
+                (m.rated_torque_nm, motion.checks_motor_heat) = (Some(3.84), false);
+            };
+        assert_eq!(failing(holds_too_little), [CheckKind::MotorHold]);
+        assert_eq!(failing(|_, m, _, _| m.rated_torque_nm = Some(3.86)), [CheckKind::MotorRms]);
+        assert_eq!(failing(|g, _, _, _| g.buckling_torque_nm = Some(499.0)), [CheckKind::GearBuckling]);
+        assert_eq!(failing(|g, _, _, _| g.ratcheting_torque_nm = Some(499.0)), [CheckKind::GearRatcheting]);
+        assert_eq!(failing(|_, _, motion, _| motion.emergency_stops = Some(1e4)), [CheckKind::GearStops]);
         assert_eq!(failing(|_, m, _, _| m.peak_torque_nm = Some(5.70)), [CheckKind::MotorPeak]);
         assert_eq!(failing(|_, m, _, _| m.max_speed_rpm = Some(707.0)), [CheckKind::MotorSpeed]);
     }
@@ -426,6 +476,30 @@ mod tests {
     fn life_fails_alone_when_more_is_required_than_the_bearing_gives() {
         assert_eq!(failing(|_, _, motion, _| motion.life_h = 1.0e6), [CheckKind::GearLife]);
         assert_eq!(failing(|g, _, _, _| g.rated_torque_nm = Some(100.0)), [CheckKind::GearLife]);
+    }
+
+    #[test]
+    fn buckling_and_ratcheting_are_not_checked_where_the_catalog_has_no_torque_and_exclude_nothing() {
+        let (gear, _) = ample();
+        let checks = gear_checks(&gear, None, &motion(), &demand());
+        let open: Vec<_> = checks.iter().filter(|c| c.needed.is_some() && c.allowed.is_none()).collect();
+        assert_eq!(
+            open.iter().map(|c| c.to_string()).collect::<Vec<_>>(),
+            [
+                "buckling not checked: lacks buckling_torque_nm",
+                "ratcheting not checked: lacks ratcheting_torque_nm"
+            ]
+        );
+        assert!(all_hold(&checks));
+    }
+
+    #[test]
+    fn a_brake_holds_what_the_motor_need_not() {
+        let brake = |_: &mut Gear, m: &mut Motor, motion: &mut JointMotion, d: &mut JointDemand| {
+            (m.rated_torque_nm, motion.has_brake) = (Some(3.5), true);
+            d.heat_weights.standing = 0.0;
+        };
+        assert_eq!(failing(brake), []);
     }
 
     #[test]
@@ -523,7 +597,10 @@ mod tests {
         };
         let checks = checks(&drive, &motion(), &demand());
         let blank: Vec<_> = checks.iter().filter(|c| !c.holds()).map(Check::to_string).collect();
-        assert_eq!(blank, ["peak not checked: lacks rotor_inertia_kgm2"]);
+        assert_eq!(
+            blank,
+            ["peak not checked: lacks rotor_inertia_kgm2", "rms not checked: lacks rotor_inertia_kgm2"]
+        );
         assert_eq!(
             DriveLimits::of(&drive, &motion()),
             Err(Obstacle::Lacks(MissingRating("rotor_inertia_kgm2")))

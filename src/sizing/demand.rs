@@ -3,6 +3,9 @@
 
 use super::bearing::BearingDemand;
 use super::duty::MeanTorqueWeights;
+use super::heat::HeatWeights;
+use super::stated::{StatedDemand, StatedDuty};
+use super::{RAD_S_PER_RPM, rpm_from_rad_s};
 
 /// The reading of Eq 8, which gives the torque of linear acceleration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,9 +39,54 @@ pub struct JointMotion {
     pub mean_torque: MeanTorqueWeights,
     /// Required life, L10 \[h\].
     pub life_h: f64,
+    /// Weights of the motor's heat.
+    pub heat: HeatWeights,
+    /// Whether the heat of the motor is checked.
+    pub checks_motor_heat: bool,
+    /// Whether a brake holds the joint at rest.
+    pub has_brake: bool,
+    /// What a duty that the study states for this joint asks.
+    pub stated: Option<StatedDemand>,
+    /// Number of emergency stops in the life of the gear, if the study asks for one.
+    pub emergency_stops: Option<f64>,
 }
 
 impl JointMotion {
+    /// The same motion of a joint with a brake, or with a duty of its own.
+    ///
+    /// A stated duty replaces the cycle of the study: mean torque, mean speed and heat follow from its phases. Its first
+    /// ramp sets the acceleration, and its largest speed that of the joint unless `max_speed_rad_s` \[rad/s\] is larger.
+    pub fn of_joint(self, max_speed_rad_s: Option<f64>, has_brake: bool, duty: Option<&StatedDuty>) -> Self {
+        let mut motion = Self { has_brake, ..self };
+        if has_brake {
+            motion.heat.standing = 0.0;
+        }
+        let Some(duty) = duty else { return motion };
+        let speed_rad_s = max_speed_rad_s.unwrap_or(0.0).max(duty.fastest_rpm() * RAD_S_PER_RPM);
+        let ramp_time_s = duty.ramp_time_s().unwrap_or(self.ramp_time_s);
+        Self {
+            speed_rad_s,
+            acceleration_rad_s2: speed_rad_s / ramp_time_s,
+            ramp_time_s,
+            mean_speed_fraction: duty.mean_speed_rpm() / rpm_from_rad_s(speed_rad_s),
+            mean_torque: MeanTorqueWeights::NONE,
+            heat: HeatWeights::default(),
+            stated: Some(duty.demand(has_brake)),
+            ..motion
+        }
+    }
+
+    /// The same motion without the part of the demand that is the same for every arm. What is left grows in proportion
+    /// with static torque and inertia.
+    pub(crate) fn without_stated(self) -> Self {
+        Self { stated: None, ..self }
+    }
+
+    /// Duration of an emergency stop from full speed \[s\].
+    pub fn stop_time_s(&self) -> f64 {
+        self.ramp_time_s / self.stop_factor
+    }
+
     /// Mean speed over the duty cycle, output side \[rad/s\].
     pub fn mean_speed_rad_s(&self) -> f64 {
         self.speed_rad_s * self.mean_speed_fraction
@@ -55,6 +103,7 @@ impl JointMotion {
             speed_rad_s: self.speed_rad_s * factor,
             acceleration_rad_s2: self.acceleration_rad_s2 * factor,
             acceleration_over_gravity: self.acceleration_over_gravity * factor,
+            stated: self.stated.map(|stated| stated.slowed(factor)),
             ..self
         }
     }
@@ -80,17 +129,28 @@ impl JointMotion {
         self.demand_of_torques(static_torque_nm, linear_torque_nm)
     }
 
+    /// Largest torque \[N m\] and cube of the mean torque \[(N m)³\] of a stated duty; zeros without one.
+    #[inline]
+    pub(super) fn stated_torques(&self) -> [f64; 2] {
+        self.stated.map_or([0.0; 2], |stated| [stated.peak_torque_nm, stated.mean_torque_cubed_nm3])
+    }
+
     /// The demand on a joint whose static and linear torques are known \[N m\].
     #[inline]
     pub fn demand_of_torques(&self, static_torque_nm: f64, linear_torque_nm: f64) -> JointDemand {
         let static_torque_nm = static_torque_nm.abs();
         let linear_torque_nm = linear_torque_nm.abs();
+        let stop_nm = stop_torque_nm(static_torque_nm, linear_torque_nm, self.stop_factor);
+        let cubed_nm3 = cubic_mean_cubed_nm3(self.mean_torque, static_torque_nm, linear_torque_nm);
+        let [stated_peak_nm, stated_cubed_nm3] = self.stated_torques();
         JointDemand {
             static_torque_nm,
             linear_torque_nm,
-            stop_torque_nm: stop_torque_nm(static_torque_nm, linear_torque_nm, self.stop_factor),
-            mean_torque_cubed_nm3: cubic_mean_cubed_nm3(self.mean_torque, static_torque_nm, linear_torque_nm),
+            stop_torque_nm: stop_nm.max(stated_peak_nm),
+            mean_torque_cubed_nm3: cubed_nm3 + stated_cubed_nm3,
             bearing: BearingDemand::default(),
+            stated_peak_nm,
+            heat_weights: self.heat,
         }
     }
 }
@@ -109,13 +169,23 @@ pub struct JointDemand {
     pub mean_torque_cubed_nm3: f64,
     /// Loads on the output bearing; all zero if it is not to be checked.
     pub bearing: BearingDemand,
+    /// Largest torque of a duty that the study states for the joint \[N m\]; 0 without one.
+    pub stated_peak_nm: f64,
+    /// Weights of the motor's heat.
+    pub heat_weights: HeatWeights,
 }
 
 impl JointDemand {
-    /// Torque that the gear transmits while the joint accelerates: T + T_lin \[N m\].
+    /// Largest torque that the gear transmits in the cycle \[N m\]: T + T_lin while the joint accelerates, or the largest
+    /// of a stated duty.
     #[inline]
     pub fn peak_torque_nm(&self) -> f64 {
-        self.static_torque_nm + self.linear_torque_nm
+        (self.static_torque_nm + self.linear_torque_nm).max(self.stated_peak_nm)
+    }
+
+    /// The same demand with the motor's heat counted by a factor, so that rounding cannot decide.
+    pub(crate) fn with_heat_times(self, factor: f64) -> Self {
+        Self { heat_weights: self.heat_weights.times(factor), ..self }
     }
 
     /// Cubic mean torque over the duty cycle \[N m\].
@@ -136,6 +206,8 @@ impl JointDemand {
             stop_torque_nm: self.stop_torque_nm * factor,
             mean_torque_cubed_nm3: self.mean_torque_cubed_nm3 * factor.powi(3),
             bearing: self.bearing.scaled(factor),
+            stated_peak_nm: self.stated_peak_nm * factor,
+            ..self
         }
     }
 }

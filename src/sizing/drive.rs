@@ -165,6 +165,12 @@ pub fn motor_torque_nm(output_torque_nm: f64, gain: f64, rotary_torque_motor_nm:
     output_torque_nm / gain + rotary_torque_motor_nm
 }
 
+/// Input speed at which the gear excites a natural frequency: its wave generator passes with two waves in each turn, so
+/// that n / 60 · 2 = f \[rpm\].
+pub fn critical_rpm(frequency_hz: f64) -> f64 {
+    30.0 * frequency_hz
+}
+
 /// L10 life of a wave-generator bearing at rated torque and 2000 rpm \[h\], by series of gears; `None` for an unknown
 /// series.
 ///

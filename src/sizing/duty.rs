@@ -1,4 +1,7 @@
-//! Duty cycles: the cycle that a joint repeats, its mean speed, and the weights of its cubic mean torque.
+//! Duty cycles: the cycle that a joint repeats, its mean speed, and the weights of its cubic mean torque and of the heat
+//! of its motor.
+
+use super::heat::HeatWeights;
 
 /// What a joint does during one phase of the duty cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,6 +86,37 @@ impl DutyCycle {
         weights
     }
 
+    /// Weights of the squares of the motor's torque: shares of the cycle's time. A cycle that takes no time stands still.
+    pub fn heat_weights(&self) -> HeatWeights {
+        let total_s: f64 = self.phases.iter().map(|p| p.duration_s).sum();
+        if total_s <= 0.0 {
+            return HeatWeights { standing: 1.0, ..HeatWeights::default() };
+        }
+        let mut weights = HeatWeights::default();
+        for phase in &self.phases {
+            let share = phase.duration_s / total_s;
+            match phase.kind {
+                PhaseKind::Accelerate => weights.sum += share,
+                PhaseKind::Constant => weights.steady += share,
+                PhaseKind::Decelerate => weights.difference += share,
+                PhaseKind::Rest => weights.standing += share,
+                PhaseKind::Fraction { of_static_torque, of_speed } => {
+                    let square = share * of_static_torque * of_static_torque;
+                    let weight = if of_speed == 0.0 { &mut weights.standing } else { &mut weights.steady };
+                    *weight += square;
+                }
+            }
+        }
+        weights
+    }
+
+    /// Time of speeding up and of slowing down \[s\]. Both happen at one acceleration, so a cycle that comes back to rest
+    /// takes equally long for both.
+    pub fn ramps_s(&self) -> [f64; 2] {
+        [PhaseKind::Accelerate, PhaseKind::Decelerate]
+            .map(|kind| self.phases.iter().filter(|p| p.kind == kind).map(|p| p.duration_s).sum())
+    }
+
     /// Travel of the whole cycle divided by the full speed \[s\].
     fn travel_s(&self) -> f64 {
         self.phases.iter().map(Phase::travel_s).sum()
@@ -114,6 +148,11 @@ pub struct MeanTorqueWeights {
     pub difference: f64,
 }
 
+impl MeanTorqueWeights {
+    /// Nothing of the arm counts: the mean torque is that of a stated duty.
+    pub(super) const NONE: Self = Self { sum: 0.0, steady: 0.0, difference: 0.0 };
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -126,6 +165,25 @@ mod tests {
         assert!((w.sum - 0.125).abs() < 1e-15, "half a ramp of four: {w:?}");
         assert!((w.steady - 0.75).abs() < 1e-15);
         assert!((w.difference - 0.125).abs() < 1e-15);
+    }
+
+    #[test]
+    fn heat_counts_every_phase_by_its_time_and_rests_too() {
+        let HeatWeights { sum, steady, difference, standing } = DutyCycle::move_and_rest(0.20).heat_weights();
+        for (weight, by_hand) in [(sum, 0.1), (steady, 0.3), (difference, 0.1), (standing, 0.5)] {
+            assert!((weight - by_hand).abs() < 1e-15, "{weight}, by hand {by_hand}");
+        }
+    }
+
+    #[test]
+    fn a_fraction_phase_heats_by_the_square_of_its_torque_and_stands_if_it_has_no_speed() {
+        let phase = |of_speed| Phase {
+            duration_s: 1.0,
+            kind: PhaseKind::Fraction { of_static_torque: 0.5, of_speed },
+        };
+        let cycle = DutyCycle { phases: vec![phase(0.0), phase(1.0)] };
+        let weights = cycle.heat_weights();
+        assert_eq!((weights.steady, weights.standing), (0.125, 0.125));
     }
 
     #[test]

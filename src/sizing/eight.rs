@@ -6,6 +6,7 @@
 use super::bearing::{AXIAL_SHARE, BearingLimits};
 use super::demand::JointMotion;
 use super::demand::LinearReading;
+use super::heat::{HeatWeights, MotorHeat};
 use super::limits::DriveLimits;
 use super::select::DriveTable;
 use crate::mechanics::lanes::{LANES, Lanes};
@@ -19,6 +20,10 @@ pub(crate) struct EightDemands<V> {
     mean_torque_cubed_nm3: V,
     /// Loads on the output bearings; `None` if they are not checked.
     bearing: Option<EightBearing<V>>,
+    /// T + T_lin, and how much T exceeds T_lin and T_lin exceeds T \[N m\].
+    up_nm: V,
+    down_nm: [V; 2],
+    heat_weights: HeatWeights,
 }
 
 /// The loads on one output bearing of eight arms. Forces and moments are collected as squares, and become norms with
@@ -167,13 +172,19 @@ impl<V: Lanes> EightDemands<V> {
         let linear = linear.abs();
         let (up, down) = (statically + linear, (statically - linear).abs());
         let weights = &motion.mean_torque;
+        let [stated_peak_nm, stated_cubed_nm3] = motion.stated_torques();
+        let cubed_nm3 = V::splat(weights.sum) * (up * up * up)
+            + V::splat(weights.steady) * (statically * statically * statically)
+            + V::splat(weights.difference) * (down * down * down);
         Self {
             static_torque_nm: statically,
-            peak_torque_nm: up,
-            stop_torque_nm: statically + V::splat(motion.stop_factor) * linear,
-            mean_torque_cubed_nm3: V::splat(weights.sum) * (up * up * up)
-                + V::splat(weights.steady) * (statically * statically * statically)
-                + V::splat(weights.difference) * (down * down * down),
+            peak_torque_nm: up.max(V::splat(stated_peak_nm)),
+            stop_torque_nm: (statically + V::splat(motion.stop_factor) * linear)
+                .max(V::splat(stated_peak_nm)),
+            mean_torque_cubed_nm3: cubed_nm3 + V::splat(stated_cubed_nm3),
+            up_nm: up,
+            down_nm: [(statically - linear).max(V::zero()), (linear - statically).max(V::zero())],
+            heat_weights: motion.heat,
             bearing: None,
         }
     }
@@ -187,14 +198,31 @@ impl<V: Lanes> EightDemands<V> {
     /// Those of the lanes `of` whose demand a drive holds.
     #[inline(always)]
     fn held_by(&self, limits: &DriveLimits, of: u8) -> u8 {
-        of & !(V::splat(limits.static_torque_nm).less(self.static_torque_nm)
-            | V::splat(limits.peak_torque_nm).less(self.peak_torque_nm)
-            | V::splat(limits.stop_torque_nm).less(self.stop_torque_nm)
-            | V::splat(limits.mean_torque_cubed_nm3).less(self.mean_torque_cubed_nm3)
-            | match &self.bearing {
-                Some(bearing) => bearing.broken_by(&limits.bearing),
-                None => 0,
-            })
+        let held = of
+            & !(V::splat(limits.static_torque_nm).less(self.static_torque_nm)
+                | V::splat(limits.peak_torque_nm).less(self.peak_torque_nm)
+                | V::splat(limits.stop_torque_nm).less(self.stop_torque_nm)
+                | V::splat(limits.mean_torque_cubed_nm3).less(self.mean_torque_cubed_nm3)
+                | match &self.bearing {
+                    Some(bearing) => bearing.broken_by(&limits.bearing),
+                    None => 0,
+                });
+        // heat costs the most to compare, and most drives that do not hold fail before
+        if held == 0 { held } else { held & !V::splat(1.0).less(self.share_squared(&limits.heat)) }
+    }
+
+    /// [`MotorHeat::share_squared`] of each lane.
+    #[inline(always)]
+    fn share_squared(&self, heat: &MotorHeat) -> V {
+        let (weights, own) = (&self.heat_weights, V::splat(heat.own_share));
+        let driving = V::splat(heat.driving_per_nm);
+        let up = self.up_nm * driving + own;
+        let steady = self.static_torque_nm * driving;
+        let down = self.down_nm[0] * driving - self.down_nm[1] * V::splat(heat.driven_per_nm) - own;
+        V::splat(heat.stated_share_squared)
+            + V::splat(weights.sum) * (up * up)
+            + V::splat(weights.steady + weights.standing) * (steady * steady)
+            + V::splat(weights.difference) * (down * down)
     }
 }
 

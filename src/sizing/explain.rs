@@ -348,8 +348,10 @@ mod tests {
         let rejections = table(&gears, &motors).explain(&motion().demand_of_torques(200.0, 100.0));
         assert_eq!(
             lines(&rejections),
-            ["joint j2: HG-KR43 behind HFUC-40-100 hold 2.56 N m needed, 1.30 allowed \
-              (rejected with 2 of 2 gears that hold)"]
+            [
+                "joint j2: HG-KR43 behind HFUC-40-100 rms 2.65 N m needed, 1.30 allowed; hold 2.56 N m needed, 1.30 allowed \
+              (rejected with 2 of 2 gears that hold)"
+            ]
         );
     }
 
@@ -361,7 +363,7 @@ mod tests {
             rejections[0].part,
             RejectedPart::GearWithoutMotor { gear: "HFUC-58-100".into(), nearest_motor: "HG-KR43".into() }
         );
-        assert!(rejections[0].to_string().contains("HFUC-58-100 finds no motor, nearest HG-KR43: hold"));
+        assert!(rejections[0].to_string().contains("HFUC-58-100 finds no motor, nearest HG-KR43: rms"));
         assert_eq!(rejections.len(), 2);
     }
 

@@ -1,12 +1,14 @@
 //! Limits: a drive under a fixed motion, reduced to thresholds of torque.
 //!
 //! The study fixes speed, acceleration and duty cycle of a joint, so every check of a drive compares one torque with one
-//! number. [`DriveLimits`] has these numbers. A search compares these pairs of numbers and nothing else. The printed checks
-//! ([`check`](super::check)) are decided by the same thresholds.
+//! number. [`DriveLimits`] has these numbers. Two checks are not one torque: that of the output bearing (see
+//! [`BearingLimits`]), and that of heat, which compares a mean square with 1. A search compares these numbers and nothing
+//! else. The printed checks ([`check`](super::check)) are decided by the same thresholds.
 
 use super::bearing::BearingLimits;
 use super::demand::{JointDemand, JointMotion};
 use super::drive::{Drive, MissingRating, Rating, known, reference_life_h};
+use super::heat::MotorHeat;
 use super::rpm_from_rad_s;
 use crate::catalog::gear::Gear;
 use crate::catalog::motor::Motor;
@@ -43,6 +45,9 @@ pub struct DriveLimits {
     pub mean_torque_cubed_nm3: f64,
     /// What the output bearing holds.
     pub bearing: BearingLimits,
+    /// Largest moment across the axis (gear with its bearing) \[N m\].
+    /// What the motor uses of its continuous torque.
+    pub heat: MotorHeat,
 }
 
 /// Why a drive is excluded at every torque.
@@ -50,6 +55,8 @@ pub struct DriveLimits {
 pub enum Obstacle {
     /// The joint turns faster than the gear or the motor may.
     TooFast,
+    /// The gear does not bear so many emergency stops.
+    TooManyStops,
     /// A rating that a check needs is blank.
     Lacks(MissingRating),
 }
@@ -72,12 +79,16 @@ impl DriveLimits {
             return Err(Obstacle::TooFast);
         }
         let gear = drive.gear;
+        if motion.emergency_stops.is_some_and(|stops| stops > stops_allowed(gear, motion)) {
+            return Err(Obstacle::TooManyStops);
+        }
         Ok(Self {
-            static_torque_nm: motor_continuous_nm(drive)?,
+            static_torque_nm: motor_hold_nm(drive, motion)?,
             peak_torque_nm: gear_peak_nm(gear)?.min(motor_peak_nm(drive, motion)?),
-            stop_torque_nm: gear_momentary_nm(gear)?,
+            stop_torque_nm: gear_stop_nm(gear)?,
             mean_torque_cubed_nm3: gear_average_cubed_nm3(gear)?.min(gear_life_cubed_nm3(gear, motion)?),
             bearing: BearingLimits::of(drive.bearing().as_ref(), motion.mean_speed_rad_s(), motion.life_h),
+            heat: MotorHeat::of(drive, motion)?,
         })
     }
 
@@ -90,9 +101,10 @@ impl DriveLimits {
             & (demand.stop_torque_nm <= self.stop_torque_nm)
             & (demand.mean_torque_cubed_nm3 <= self.mean_torque_cubed_nm3)
             & self.bearing.hold(&demand.bearing)
+            & (self.heat.share_squared(demand) <= 1.0)
     }
 
-    /// The larger of two drives' limits, one by one.
+    /// The larger of two drives' limits, one by one, of the heat the smaller numbers: it holds whatever one of them holds.
     pub(crate) fn max(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.max(other.static_torque_nm),
@@ -100,10 +112,11 @@ impl DriveLimits {
             stop_torque_nm: self.stop_torque_nm.max(other.stop_torque_nm),
             mean_torque_cubed_nm3: self.mean_torque_cubed_nm3.max(other.mean_torque_cubed_nm3),
             bearing: self.bearing.max(&other.bearing),
+            heat: self.heat.least(&other.heat),
         }
     }
 
-    /// The smaller of two drives' limits, one by one.
+    /// The smaller of two drives' limits, one by one: both hold whatever it holds.
     pub(crate) fn min(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.min(other.static_torque_nm),
@@ -111,10 +124,11 @@ impl DriveLimits {
             stop_torque_nm: self.stop_torque_nm.min(other.stop_torque_nm),
             mean_torque_cubed_nm3: self.mean_torque_cubed_nm3.min(other.mean_torque_cubed_nm3),
             bearing: self.bearing.min(&other.bearing),
+            heat: self.heat.greatest(&other.heat),
         }
     }
 
-    /// The largest factor on a demand that the drive still holds; infinite if the demand is zero.
+    /// The largest factor on a demand that the drive still holds, or slightly more; infinite if the demand is zero.
     pub(crate) fn multiple_of(&self, demand: &JointDemand) -> f64 {
         let times = |limit: f64, asked: f64| if asked > 0.0 { limit / asked } else { f64::INFINITY };
         times(self.static_torque_nm, demand.static_torque_nm)
@@ -122,9 +136,10 @@ impl DriveLimits {
             .min(times(self.stop_torque_nm, demand.stop_torque_nm))
             .min(times(self.mean_torque_cubed_nm3, demand.mean_torque_cubed_nm3).cbrt())
             .min(self.bearing.multiple_of(&demand.bearing))
+            .min(self.heat.multiple_of(demand))
     }
 
-    /// Whether every limit is at least as large as the limit of `other`.
+    /// Whether every limit is at least as large as the limit of `other`. Then this drive holds whatever the other holds.
     #[inline]
     pub fn cover(&self, other: &Self) -> bool {
         (self.static_torque_nm >= other.static_torque_nm)
@@ -132,6 +147,7 @@ impl DriveLimits {
             & (self.stop_torque_nm >= other.stop_torque_nm)
             & (self.mean_torque_cubed_nm3 >= other.mean_torque_cubed_nm3)
             & self.bearing.cover(&other.bearing)
+            & self.heat.covers(&other.heat)
     }
 }
 
@@ -165,6 +181,11 @@ pub(super) fn motor_max_speed_rpm(motor: &Motor) -> Rating {
     known(motor.max_speed_rpm.or(motor.rated_speed_rpm), "max_speed_rpm")
 }
 
+/// Static torque that the motor must hold without end: without limit if a brake holds the joint at rest.
+pub(super) fn motor_hold_nm(drive: &Drive, motion: &JointMotion) -> Rating {
+    if motion.has_brake { Ok(f64::INFINITY) } else { motor_continuous_nm(drive) }
+}
+
 /// Static torque at which the motor gives its continuous torque: T_rated N η.
 pub(super) fn motor_continuous_nm(drive: &Drive) -> Rating {
     Ok(known(drive.motor.rated_torque_nm, "motor rated_torque_nm")? * drive.gain()?)
@@ -190,6 +211,32 @@ pub(super) fn gear_average_cubed_nm3(gear: &Gear) -> Rating {
 
 pub(super) fn gear_momentary_nm(gear: &Gear) -> Rating {
     known(gear.momentary_peak_torque_nm, "momentary_peak_torque_nm")
+}
+
+pub(super) fn gear_buckling_nm(gear: &Gear) -> Rating {
+    known(gear.buckling_torque_nm, "buckling_torque_nm")
+}
+
+pub(super) fn gear_ratcheting_nm(gear: &Gear) -> Rating {
+    known(gear.ratcheting_torque_nm, "ratcheting_torque_nm")
+}
+
+/// Largest torque in an emergency stop: the momentary limit, and what of buckling and ratcheting torque is known.
+fn gear_stop_nm(gear: &Gear) -> Rating {
+    let unknown = f64::INFINITY;
+    let jumps_nm = gear_ratcheting_nm(gear).unwrap_or(unknown);
+    Ok(gear_momentary_nm(gear)?.min(gear_buckling_nm(gear).unwrap_or(unknown)).min(jumps_nm))
+}
+
+/// Number of momentary peaks that a gear may bear: 1e4 / (2 n t / 60), n being the input speed in rpm and t the duration of
+/// a peak in seconds; never more than 1e4. The wave generator passes with two waves in each turn.
+///
+/// Source: Harmonic Drive AG, manual 1019658, glossary (momentary peaks only in an emergency, their number by the selection
+/// procedure); the formula as in the public program AimanHaidar/harmonic-drive-selector.
+pub(super) fn stops_allowed(gear: &Gear, motion: &JointMotion) -> f64 {
+    const WAVES: f64 = 1e4;
+    let waves_in_a_stop = 2.0 * input_speed_rpm(gear, motion) / 60.0 * motion.stop_time_s();
+    WAVES / waves_in_a_stop.max(1.0)
 }
 
 /// Life at a mean torque of 1 N m \[h (N m)³\]: L_ref T_rated³ (2000 rpm / n_mean).

@@ -6,7 +6,8 @@
 //! - [`MotionRequirement`] is the motion that a study asks of the tip, [`JointMotion`] the motion that follows for a joint.
 //! - [`JointDemand`] has the torques on the joint, which follow from static torque and outboard inertia.
 //! - [`Drive`] is a gear and a motor, [`Check`] compares one limit of one part with one demand.
-//! - [`DriveLimits`] has all checks of a drive under a fixed motion, reduced to five thresholds.
+//! - [`MotorHeat`] is what a motor uses of its continuous torque over the cycle, [`StatedDuty`] a cycle in numbers.
+//! - [`DriveLimits`] has all checks of a drive under a fixed motion, reduced to thresholds.
 //! - [`DriveTable`] has every drive of a joint that the study allows, sorted by mass. It finds first fits and all fits, and
 //!   says why a part was rejected.
 //! - [`JointSizingRow`] has the numbers of one joint for the sizing table.
@@ -25,7 +26,8 @@
 //!
 //! *Validity.* Efficiency is a single number of the catalog, for rated torque and 2000 rpm at the input. It is also used
 //! for holding, where friction in truth helps the motor. The catalog has no torque-speed curves of motors, so the peak
-//! torque is taken as available up to the largest speed.
+//! torque is taken as available up to the largest speed, and the continuous torque as falling with constant power beyond the
+//! rated speed.
 
 pub(crate) mod bearing;
 pub(crate) mod check;
@@ -34,10 +36,12 @@ pub(crate) mod drive;
 pub(crate) mod duty;
 pub(crate) mod eight;
 pub(crate) mod explain;
+pub(crate) mod heat;
 pub(crate) mod limits;
 pub(crate) mod requirement;
 pub(crate) mod select;
 pub(crate) mod sheet;
+pub(crate) mod stated;
 #[cfg(test)]
 pub(crate) mod testing;
 
@@ -47,14 +51,17 @@ pub use demand::{
     JointDemand, JointMotion, LinearReading, cubic_mean_cubed_nm3, linear_torque_nm, stop_torque_nm,
 };
 pub use drive::{
-    Drive, MissingRating, motor_torque_nm, reference_life_h, rotary_torque_motor_nm, rotary_torque_output_nm,
+    Drive, MissingRating, critical_rpm, motor_torque_nm, reference_life_h, rotary_torque_motor_nm,
+    rotary_torque_output_nm,
 };
 pub use duty::{DutyCycle, MeanTorqueWeights, Phase, PhaseKind};
 pub use explain::{RejectedPart, Rejection, Relaxation, RelaxationKind, Shortfall};
+pub use heat::{HeatWeights, MotorHeat, StatedHeat};
 pub use limits::{DriveLimits, Obstacle};
 pub use requirement::{MotionRequirement, RequirementError};
 pub use select::{DriveFilter, DriveTable};
 pub use sheet::{JointSizingRow, render_rows};
+pub use stated::{StatedDemand, StatedDuty, StatedPhase};
 
 /// One revolution a minute in rad/s.
 const RAD_S_PER_RPM: f64 = std::f64::consts::PI / 30.0;

@@ -22,6 +22,10 @@ pub struct MotionRequirement {
     pub linear_reading: LinearReading,
     /// Gravity \[m/s²\], used by the paper's reading of Eq 8.
     pub gravity_m_s2: f64,
+    /// Whether the heat of the motors is checked: the root mean square of their torque over the cycle.
+    pub checks_motor_heat: bool,
+    /// Number of emergency stops that every gear must bear in its life; `None`: not asked.
+    pub emergency_stops: Option<f64>,
 }
 
 impl Default for MotionRequirement {
@@ -36,6 +40,8 @@ impl Default for MotionRequirement {
             life_h: 10_000.0,
             linear_reading: LinearReading::Exact,
             gravity_m_s2: 9.81,
+            checks_motor_heat: true,
+            emergency_stops: None,
         }
     }
 }
@@ -82,6 +88,11 @@ impl MotionRequirement {
             mean_speed_fraction: self.duty_cycle.mean_speed_fraction(),
             mean_torque: self.duty_cycle.mean_torque_weights(),
             life_h: self.life_h,
+            heat: self.duty_cycle.heat_weights(),
+            checks_motor_heat: self.checks_motor_heat,
+            has_brake: false,
+            stated: None,
+            emergency_stops: self.emergency_stops,
         }
     }
 
@@ -98,10 +109,20 @@ impl MotionRequirement {
         if let Some(deceleration) = self.emergency_deceleration_m_s2 {
             positive("emergency_deceleration_m_s2", deceleration)?;
         }
+        if let Some(stops) = self.emergency_stops {
+            positive("emergency_stops", stops)?;
+        }
         self.duty_cycle.phases.iter().try_for_each(Phase::validate)?;
+        let [up_s, down_s] = self.duty_cycle.ramps_s();
+        if (up_s - down_s).abs() > SAME_TIME * (up_s + down_s) {
+            return Err(RequirementError::UnequalRamps { up_s, down_s });
+        }
         positive("duty_cycle total duration_s", self.duty_cycle.phases.iter().map(|p| p.duration_s).sum())
     }
 }
+
+/// Relative difference of two times that count as equal.
+const SAME_TIME: f64 = 1e-9;
 
 impl Phase {
     fn validate(&self) -> Result<(), RequirementError> {
@@ -132,6 +153,17 @@ pub enum RequirementError {
         field: &'static str,
         /// Value of the number.
         value: f64,
+    },
+    /// A cycle speeds up longer than it slows down, or the other way round, at one acceleration.
+    #[error(
+        "duty_cycle speeds up for {up_s} s and slows down for {down_s} s; both happen at one acceleration, so they take \
+         equally long"
+    )]
+    UnequalRamps {
+        /// Time of speeding up \[s\].
+        up_s: f64,
+        /// Time of slowing down \[s\].
+        down_s: f64,
     },
 }
 
@@ -188,5 +220,13 @@ mod tests {
         let backward =
             MotionRequirement { duty_cycle: DutyCycle { phases: vec![back] }, ..Default::default() };
         assert!(matches!(backward.validate(), Err(RequirementError::Negative { .. })));
+        let ramp = |kind, duration_s| Phase { duration_s, kind };
+        let phases = vec![ramp(PhaseKind::Accelerate, 0.2), ramp(PhaseKind::Decelerate, 0.3)];
+        let lame = MotionRequirement { duty_cycle: DutyCycle { phases }, ..Default::default() };
+        assert_eq!(
+            lame.validate().unwrap_err().to_string(),
+            "duty_cycle speeds up for 0.2 s and slows down for 0.3 s; both happen at one acceleration, so they take \
+             equally long"
+        );
     }
 }

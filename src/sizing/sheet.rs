@@ -1,10 +1,11 @@
 //! The sizing table: the numbers of one joint in a row, from the tip to the base.
 
-use super::check::{Check, CheckKind, CheckState, binding, checks};
+use super::check::{Check, CheckKind, CheckState, binding, checks, motor_checks};
 use super::demand::{JointDemand, JointMotion};
 use super::drive::{Drive, rotary_torque_output_nm};
-use super::limits::input_speed_rpm;
+use super::limits::{input_speed_rpm, mean_input_speed_rpm, stops_allowed};
 use super::rpm_from_rad_s;
+use crate::catalog::gear::Gear;
 use serde::Serialize;
 
 /// One joint, sized. A number is `None` if a blank rating of the catalog leaves it unknown.
@@ -28,10 +29,25 @@ pub struct JointSizingRow {
     pub stop_torque_nm: f64,
     /// Cubic mean torque over the duty cycle \[N m\].
     pub mean_torque_nm: f64,
+    /// Root mean square of the motor's torque over the cycle \[N m\]; `None` also if it is not checked.
+    pub motor_rms_torque_nm: Option<f64>,
+    /// What the motor gives continuously at the cruising speed \[N m\]; `None` also if it is not checked.
+    pub motor_continuous_torque_nm: Option<f64>,
+    /// The second over the first. Also `None` if nothing is needed.
+    pub motor_rms_margin: Option<f64>,
+    /// Efficiency of the gear at the mean speed and torque of the cycle, by representative curves; the checks use the rated
+    /// one.
+    pub cycle_efficiency: Option<f64>,
+    /// The margin of the motor's heat at this efficiency.
+    pub motor_rms_margin_at_cycle_efficiency: Option<f64>,
     /// Speed of the joint \[rpm\].
     pub joint_speed_rpm: f64,
     /// Speed of the motor \[rpm\].
     pub motor_speed_rpm: f64,
+    /// Mean speed of the motor over the cycle, rests included \[rpm\].
+    pub mean_input_speed_rpm: f64,
+    /// Number of emergency stops that the gear may bear in its life.
+    pub emergency_stops_allowed: f64,
     /// Gear chosen.
     pub gear: String,
     /// Motor chosen.
@@ -67,6 +83,7 @@ impl JointSizingRow {
         let checks = checks(drive, motion, demand);
         let bound = binding(&checks);
         let finite = |x: &f64| x.is_finite();
+        let rms = checks.iter().find(|c| c.kind == CheckKind::MotorRms);
         let rotary_output = drive
             .input_inertia_kgm2()
             .map(|inertia| rotary_torque_output_nm(inertia, drive.ratio(), motion.acceleration_rad_s2));
@@ -80,8 +97,15 @@ impl JointSizingRow {
             motor_peak_torque_nm: drive.peak_motor_torque_nm(motion, demand.peak_torque_nm()).ok(),
             stop_torque_nm: demand.stop_torque_nm,
             mean_torque_nm: demand.mean_torque_nm(),
+            motor_rms_torque_nm: rms.and_then(|c| c.needed),
+            motor_continuous_torque_nm: rms.and_then(|c| c.allowed),
+            motor_rms_margin: rms.and_then(Check::margin).filter(finite),
+            cycle_efficiency: None,
+            motor_rms_margin_at_cycle_efficiency: None,
             joint_speed_rpm: rpm_from_rad_s(motion.speed_rad_s),
             motor_speed_rpm: input_speed_rpm(drive.gear, motion),
+            mean_input_speed_rpm: mean_input_speed_rpm(drive.gear, motion),
+            emergency_stops_allowed: stops_allowed(drive.gear, motion),
             gear: drive.gear.id.clone(),
             motor: drive.motor.id.clone(),
             binds: bound.map(|c| c.kind.label()),
@@ -92,6 +116,27 @@ impl JointSizingRow {
             fails: remarks(&checks, |state| state == CheckState::Fails),
             not_checked: remarks(&checks, |state| matches!(state, CheckState::NotChecked(_))),
             checks,
+        }
+    }
+}
+
+impl JointSizingRow {
+    /// The same row with the efficiency that the gear has at the mean speed and torque of the cycle, and the margin of the
+    /// motor's heat at it.
+    pub fn at_efficiency(
+        self,
+        efficiency: f64,
+        drive: &Drive,
+        motion: &JointMotion,
+        demand: &JointDemand,
+    ) -> Self {
+        let gear = Gear { efficiency: Some(efficiency), ..drive.gear.clone() };
+        let checks = motor_checks(&Drive { gear: &gear, ..*drive }, motion, demand);
+        let rms = checks.iter().find(|c| c.kind == CheckKind::MotorRms);
+        Self {
+            cycle_efficiency: Some(efficiency),
+            motor_rms_margin_at_cycle_efficiency: rms.and_then(Check::margin).filter(|x| x.is_finite()),
+            ..self
         }
     }
 }
@@ -108,8 +153,10 @@ fn remarks(checks: &[Check], wanted: impl Fn(CheckState) -> bool) -> Vec<String>
 /// Largest number of characters of a motor's name in the table.
 const MOTOR_WIDTH: usize = 14;
 
-/// Header and unit of each column, and whether it is aligned to the right.
-const HEADERS: [(&str, &str, bool); 15] = [
+/// Header and unit of a column, and whether it is aligned to the right.
+type Header = (&'static str, &'static str, bool);
+
+const HEADERS: [Header; 15] = [
     ("joint", "", false),
     ("static", "N m", true),
     ("linear", "N m", true),
@@ -127,15 +174,31 @@ const HEADERS: [(&str, &str, bool); 15] = [
     ("inward", "kg", true),
 ];
 
-/// The rows as a text table of about 120 characters a line. Remarks on checks that failed or could not be made follow it.
+/// What follows from the whole cycle.
+const CYCLE_HEADERS: [Header; 9] = [
+    ("joint", "", false),
+    ("mean", "N m", true),
+    ("input", "rpm", true),
+    ("motor rms", "N m", true),
+    ("allowed", "N m", true),
+    ("margin", "-", true),
+    ("efficiency", "~", true),
+    ("margin", "~", true),
+    ("stops", "-", true),
+];
+
+/// What the tilde means.
+const REPRESENTATIVE: &str = "~ at the gear's efficiency at the mean speed and torque of the cycle, by representative \
+    curves; the checks use the rated one\n";
+
+/// The rows as two text tables of about 120 characters a line, the second for the whole cycle. Remarks on checks that
+/// failed or could not be made follow them.
 pub fn render_rows(rows: &[JointSizingRow]) -> String {
-    let mut lines = vec![HEADERS.map(|h| h.0.to_string()), HEADERS.map(|h| h.1.to_string())];
-    lines.extend(rows.iter().map(cells));
-    let mut text = String::new();
-    for line in &lines {
-        let padded: Vec<_> = (0..HEADERS.len()).map(|column| pad(&lines, line, column)).collect();
-        text.push_str(padded.join(" ").trim_end());
-        text.push('\n');
+    let mut text = table(&HEADERS, rows.iter().map(cells));
+    text.push_str("\nover the cycle:\n");
+    text.push_str(&table(&CYCLE_HEADERS, rows.iter().map(cycle_cells)));
+    if rows.iter().any(|row| row.cycle_efficiency.is_some()) {
+        text.push_str(REPRESENTATIVE);
     }
     for row in rows {
         for remark in row.fails.iter().chain(&row.not_checked) {
@@ -145,17 +208,28 @@ pub fn render_rows(rows: &[JointSizingRow]) -> String {
     text
 }
 
-fn pad(lines: &[[String; 15]], line: &[String; 15], column: usize) -> String {
-    let width = lines.iter().map(|l| l[column].chars().count()).max().unwrap_or(0);
-    match HEADERS[column].2 {
-        true => format!("{:>width$}", line[column]),
-        false => format!("{:<width$}", line[column]),
-    }
+fn table<const N: usize>(headers: &[Header; N], rows: impl Iterator<Item = [String; N]>) -> String {
+    let mut lines = vec![headers.map(|h| h.0.to_string()), headers.map(|h| h.1.to_string())];
+    lines.extend(rows);
+    let width = |column: usize| lines.iter().map(|l| l[column].chars().count()).max().unwrap_or(0);
+    let pad = |line: &[String; N], column: usize| match (headers[column].2, width(column)) {
+        (true, width) => format!("{:>width$}", line[column]),
+        (false, width) => format!("{:<width$}", line[column]),
+    };
+    let text = |line: &[String; N]| (0..N).map(|column| pad(line, column)).collect::<Vec<_>>().join(" ");
+    lines.iter().map(|line| text(line).trim_end().to_string() + "\n").collect()
+}
+
+fn digits(x: f64, n: usize) -> String {
+    format!("{x:.n$}")
+}
+
+/// A number, or a question mark if a blank rating leaves it open.
+fn or_open(x: Option<f64>, n: usize) -> String {
+    x.map_or("?".to_string(), |x| digits(x, n))
 }
 
 fn cells(row: &JointSizingRow) -> [String; 15] {
-    let digits = |x: f64, n: usize| format!("{x:.n$}");
-    let or_open = |x: Option<f64>, n: usize| x.map_or("?".to_string(), |x| digits(x, n));
     [
         row.joint.clone(),
         digits(row.static_torque_nm, 2),
@@ -172,6 +246,21 @@ fn cells(row: &JointSizingRow) -> [String; 15] {
         row.life_h.map_or("-".to_string(), life_text),
         or_open(row.mass_kg, 2),
         digits(row.mass_passed_inward_kg, 2),
+    ]
+}
+
+fn cycle_cells(row: &JointSizingRow) -> [String; 9] {
+    let or_none = |x: Option<f64>| x.map_or("-".to_string(), |x| digits(x, 2));
+    [
+        row.joint.clone(),
+        digits(row.mean_torque_nm, 2),
+        digits(row.mean_input_speed_rpm, 0),
+        or_open(row.motor_rms_torque_nm, 3),
+        or_open(row.motor_continuous_torque_nm, 3),
+        or_none(row.motor_rms_margin),
+        or_none(row.cycle_efficiency),
+        or_none(row.motor_rms_margin_at_cycle_efficiency),
+        digits(row.emergency_stops_allowed.floor(), 0),
     ]
 }
 
@@ -251,7 +340,13 @@ mod tests {
     fn a_motor_without_inertia_leaves_its_numbers_open_and_says_so() {
         let row = paper_joint_2(&char_lynn_j_8_2());
         assert_eq!((row.rotary_torque_motor_nm, row.total_torque_nm), (None, None));
-        assert_eq!(row.not_checked, ["motor peak not checked: lacks rotor_inertia_kgm2"]);
+        assert_eq!(
+            row.not_checked,
+            [
+                "motor peak not checked: lacks rotor_inertia_kgm2",
+                "motor rms not checked: lacks rotor_inertia_kgm2"
+            ]
+        );
         assert!(
             render_rows(&[row]).contains("\njoint j2: motor peak not checked: lacks rotor_inertia_kgm2\n")
         );
@@ -286,6 +381,11 @@ mod tests {
                  h    kg     kg",
                 "j2    568.30 289.65   1.156  115.56 973.5   7.1   707 HFUC-58-100 F11-10 gear mean   1.76 \
                  76071 12.20  80.00",
+                "",
+                "over the cycle:",
+                "joint   mean input motor rms allowed margin efficiency margin stops",
+                "         N m   rpm       N m     N m      -          ~      ~     -",
+                "j2    603.04   283     7.604  31.120   4.09          -      -  4241",
             ]
         );
     }

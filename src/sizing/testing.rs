@@ -89,6 +89,7 @@ pub(crate) fn hfuc_58_100() -> Gear {
     let mut gear =
         gear("HFUC-58-100", [696.0, 1590.0, 1060.0, 3180.0], [3000.0, 2200.0], 0.00273, [4.7, 14.6]);
     gear.permissible_tilting_moment_nm = Some(1180.0);
+    (gear.buckling_torque_nm, gear.ratcheting_torque_nm) = (Some(12000.0), Some(6400.0));
     gear
 }
 
@@ -96,6 +97,7 @@ pub(crate) fn hfuc_58_100() -> Gear {
 pub(crate) fn hfuc_40_100() -> Gear {
     let mut gear = gear("HFUC-40-100", [265.0, 568.0, 372.0, 1080.0], [4000.0, 3000.0], 0.00045, [1.7, 5.0]);
     gear.permissible_tilting_moment_nm = Some(450.0);
+    (gear.buckling_torque_nm, gear.ratcheting_torque_nm) = (Some(4300.0), Some(2100.0));
     gear
 }
 
@@ -132,6 +134,7 @@ prop_compose! {
         bearing in (
             rating_in(0.05..0.3), rating_in(0.0..0.05), rating_in(1e4..1e5), rating_in(5e3..6e4),
         ),
+        breaking in prop::array::uniform2(prop::option::of(50.0..4000.0f64)),
         efficiency in rating_in(0.5..0.9),
     ) -> Gear {
         let mut gear = gear(&format!("{series}-32-{ratio}"), [0.0; 4], [0.0; 2], 0.0, [0.0; 2]);
@@ -144,6 +147,7 @@ prop_compose! {
         let (pitch_diameter_m, offset_m, static_load_rating_n, dynamic_load_rating_n) = bearing;
         gear.bearing =
             BearingRatings { pitch_diameter_m, offset_m, static_load_rating_n, dynamic_load_rating_n };
+        [gear.buckling_torque_nm, gear.ratcheting_torque_nm] = breaking;
         gear
     }
 }

@@ -10,8 +10,10 @@ use crate::arm::load::Water;
 use crate::arm::section::{LinkMaterial, Section};
 use crate::arm::structure::Beam;
 use crate::arm::{JointModel, Link, LinkModel};
+use crate::sizing::demand::JointMotion;
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
+use crate::sizing::stated::StatedDuty;
 use nalgebra::{Unit, Vector3};
 
 /// An arm with open choices, the cases in which it is judged, and the limits that every design must keep.
@@ -54,6 +56,8 @@ use nalgebra::{Unit, Vector3};
 ///             drive,
 ///             max_speed_rad_s: None,
 ///             range_deg: None,
+///             has_brake: false,
+///             duty: None,
 ///         }),
 ///         SpacePiece::Choice(LinkChoice {
 ///             name: "upper_arm".into(),
@@ -154,6 +158,10 @@ pub struct SpaceJoint {
     pub max_speed_rad_s: Option<f64>,
     /// Smallest and largest angle to which the joint turns \[deg\]; `None`: not stated.
     pub range_deg: Option<[f64; 2]>,
+    /// Whether a brake holds the joint at rest, so that the motor need not.
+    pub has_brake: bool,
+    /// A duty that the study states for this joint, in place of its cycle.
+    pub duty: Option<StatedDuty>,
 }
 
 /// How a joint's drive is found.
@@ -223,6 +231,12 @@ impl SpaceJoint {
     /// Whether the bearing depends on the gear that is chosen.
     pub(crate) fn bearing_is_open(&self) -> bool {
         self.bearing == BearingSource::OfGear && self.drive.is_sized()
+    }
+
+    /// The motion of the joint when its axis is at most `reach_m` \[m\] away from the tip.
+    pub(crate) fn motion(&self, asked: &MotionRequirement, reach_m: f64) -> JointMotion {
+        let motion = asked.joint_motion(reach_m, self.max_speed_rad_s);
+        motion.of_joint(self.max_speed_rad_s, self.has_brake, self.duty.as_ref())
     }
 }
 

@@ -44,7 +44,7 @@ impl ArmProblem<'_> {
         Some(FixedDrive {
             drive: Drive { gear, motor, gear_mass, bearing: joint.bearing, extras: joint.extras },
             mass_kg: *mass_kg,
-            motion: space.motion.joint_motion(reach_m, joint.max_speed_rad_s),
+            motion: joint.motion(&space.motion, reach_m),
         })
     }
 

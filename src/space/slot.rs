@@ -160,7 +160,7 @@ pub(crate) fn joint_slot<'c>(
         DriveChoice::FirstFit(filter) => (filter, false),
         DriveChoice::AllFits(filter) => (filter, true),
     };
-    let motion = space.motion.joint_motion(reach_m, joint.max_speed_rad_s);
+    let motion = joint.motion(&space.motion, reach_m);
     let table = DriveTable::build(
         &joint.name,
         motion,

@@ -8,6 +8,7 @@ pub(crate) mod check;
 pub(crate) mod definition;
 pub(crate) mod diagnose;
 pub(crate) mod effects;
+pub(crate) mod motion;
 pub(crate) mod named;
 pub(crate) mod near;
 pub(crate) mod outcome;

@@ -9,6 +9,7 @@ use crate::sizing::demand::LinearReading;
 use crate::sizing::duty::{Phase, PhaseKind};
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
+use crate::sizing::stated::StatedPhase;
 use crate::space::constraint::Constraints;
 use crate::space::design::{Part, number, options};
 use crate::space::design_space::{DesignSpace, DriveChoice, LinkChoice, LinkOption, SpaceJoint, SpacePiece};
@@ -16,8 +17,8 @@ use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
 use crate::verify::judge::Pick;
 use crate::verify::question::{
-    AllowedParts, AskedDrive, AskedJoint, AskedLink, AskedMotion, AskedPhase, AskedPhaseKind, AskedPiece,
-    AskedTube, Limits, LinearTorque, Question,
+    AllowedParts, AskedDrive, AskedDutyPhase, AskedJoint, AskedLink, AskedMotion, AskedPhase, AskedPhaseKind,
+    AskedPiece, AskedTube, Limits, LinearTorque, Question,
 };
 
 /// What a study asks, without anything that a search has made of it.
@@ -59,6 +60,11 @@ fn asked_joint(joint: &SpaceJoint) -> AskedJoint {
         DriveChoice::FirstFit(filter) => AskedDrive::FirstFit(allowed(filter)),
         DriveChoice::AllFits(filter) => AskedDrive::AllFits(allowed(filter)),
     };
+    let phase = |phase: &StatedPhase| AskedDutyPhase {
+        torque_nm: phase.torque_nm,
+        time_s: phase.time_s,
+        speed_rpm: phase.speed_rpm,
+    };
     AskedJoint {
         name: joint.name.clone(),
         axis: joint.axis,
@@ -66,6 +72,8 @@ fn asked_joint(joint: &SpaceJoint) -> AskedJoint {
         extras: joint.extras,
         drive,
         max_speed_rad_s: joint.max_speed_rad_s,
+        has_brake: joint.has_brake,
+        duty: joint.duty.iter().flat_map(|duty| &duty.phases).map(phase).collect(),
     }
 }
 
@@ -108,6 +116,8 @@ fn motion(motion: &MotionRequirement) -> AskedMotion {
             LinearReading::Paper => LinearTorque::OfStaticTorque,
         },
         gravity_m_s2: motion.gravity_m_s2,
+        checks_motor_heat: motion.checks_motor_heat,
+        emergency_stops: motion.emergency_stops,
     }
 }
 

@@ -6,6 +6,7 @@
 
 use super::definition::Study;
 use super::effects::check_effects;
+use super::motion::{read_duty, read_motion};
 use super::range::{check_poses, read_range};
 use super::sections::{Aside, read_materials, read_sections};
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
@@ -20,11 +21,12 @@ use crate::catalog::motor::MotorKind;
 use crate::input::json::{Document, Faults, Node, Object};
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
+use crate::sizing::stated::StatedDuty;
 use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{Case, DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 use nalgebra::Vector3;
 
-const KEYS: [&str; 16] = [
+const KEYS: [&str; 17] = [
     "name",
     "question",
     "gravity_m_s2",
@@ -34,6 +36,7 @@ const KEYS: [&str; 16] = [
     "poses",
     "environments",
     "motion",
+    "duty",
     "drives",
     "extras",
     "constraints",
@@ -85,9 +88,10 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let constraints = root.or("constraints", Constraints::default(), read_constraints);
     let extras = read_extras_source(&root, ExtrasSource::Usual);
     let mut aside = Aside::default();
+    let duty = root.or("duty", None, |n| read_duty_of_only_joint(n, node).map(Some));
     let chain = root.required("chain").and_then(|n| {
         let (drives, constraints, extras) = (filter.as_ref()?, constraints.as_ref()?, extras?);
-        let open = Open { catalogs, drives, constraints, extras };
+        let open = Open { catalogs, drives, constraints, extras, duty: duty.as_ref()?.as_ref() };
         read_chain(&n, &open, &mut aside)
     });
     let joints = joint_names(node);
@@ -115,7 +119,14 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     check_effects(&space, &root)?;
     in_range?;
     let Aside { not_checked, remarks } = aside;
-    Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
+    let turned_off = turned_off(&space);
+    Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks, turned_off })
+}
+
+/// Checks that the study turns off, in words.
+fn turned_off(space: &DesignSpace) -> Vec<String> {
+    let heat = "Motor heat not checked: the study turns it off (check_motor_heat in its motion)";
+    (!space.motion.checks_motor_heat).then(|| heat.to_string()).into_iter().collect()
 }
 
 /// A fraction, written in percent.
@@ -133,6 +144,16 @@ fn joint_names(study: &Node) -> Vec<String> {
     let chain = study.value().get("chain").and_then(|c| c.as_array());
     let joints = chain.into_iter().flatten().filter(|e| e.get("type").is_some_and(|t| t == "joint"));
     joints.map(|j| j.get("name").and_then(|n| n.as_str()).unwrap_or("(unnamed)").to_string()).collect()
+}
+
+/// A duty beside the chain. It is meant for a study of a single joint, such as the worked examples of vendors.
+fn read_duty_of_only_joint(node: &Node, study: &Node) -> Option<StatedDuty> {
+    let duty = read_duty(node);
+    match joint_names(study).len() {
+        0 | 1 => duty,
+        joints => node
+            .fault(format!("stands beside {joints} joints"), "write \"duty\" into the joint it belongs to"),
+    }
 }
 
 /// Numbers the materials of all links through the study, in the order in which they first appear.
@@ -156,6 +177,8 @@ struct Open<'a> {
     drives: &'a Drives,
     constraints: &'a Constraints,
     extras: ExtrasSource,
+    /// The duty that the study states for its only joint.
+    duty: Option<&'a StatedDuty>,
 }
 
 /// Where drives are taken from.
@@ -318,11 +341,23 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         "bearing",
         "extras",
         "range_deg",
+        "brake",
+        "duty",
         "drives",
     ])?;
     let name = read_name(&object);
     let axis = object.required("axis").and_then(|n| crate::arm::file::read_axis(&n));
     let max_speed = object.or("max_speed_rad_s", None, |n| n.positive().map(Some));
+    let brake = object.or("brake", false, Node::boolean);
+    let duty = object.or("duty", open.duty.cloned(), |n| read_duty(n).map(Some));
+    if !object.has("drive") && !object.has("motor") {
+        stray(
+            &object,
+            &["brake", "duty"],
+            "has no motor beside it",
+            "add \"drive\", or \"gear\" and \"motor\"",
+        );
+    }
     let drive = match object.optional("drive") {
         Some(drive) => {
             let given = ["stiffness_nm_per_rad", "windup", "gear", "motor", "gear_mass", "mass_kg"];
@@ -352,8 +387,9 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
     let extras = read_extras_source(&object, usually);
     let range_deg = object.or("range_deg", None, |n| read_range(n).map(Some));
     let (bearing, extras, range_deg) = (bearing?, extras?, range_deg?);
-    let max_speed_rad_s = max_speed?;
-    Some(SpaceJoint { name: name?, axis: axis?, bearing, extras, drive, max_speed_rad_s, range_deg })
+    let (max_speed_rad_s, has_brake, duty) = (max_speed?, brake?, duty?);
+    let (name, axis) = (name?, axis?);
+    Some(SpaceJoint { name, axis, bearing, extras, drive, max_speed_rad_s, range_deg, has_brake, duty })
 }
 
 /// Where the bearing of a joint comes from. A component set has none of its own, so a joint that is sized with component
@@ -522,31 +558,6 @@ fn read_case(node: &Node, joints: &[&str], payload: &Payload, force: &Vector3<f6
     let case =
         Case { name: name?, pose_deg: pose_deg?, payload: payload?, tip_force_n: tip_force_n?, water: None };
     Some(ReadCase { case, judged: judged?, sizing: sizing? })
-}
-
-fn read_motion(node: &Node) -> Option<MotionRequirement> {
-    let object = node.object(&[
-        "tip_speed_m_s",
-        "ramp_time_s",
-        "emergency_deceleration_m_s2",
-        "min_lever_m",
-        "life_h",
-    ])?;
-    let default = MotionRequirement::default();
-    let speed = object.or("tip_speed_m_s", default.tip_speed_m_s, Node::positive);
-    let ramp = object.or("ramp_time_s", default.ramp_time_s, Node::positive);
-    let stop = object.or("emergency_deceleration_m_s2", None, |n| n.positive().map(Some));
-    let lever = object.or("min_lever_m", default.min_lever_m, Node::positive);
-    let life = object.or("life_h", default.life_h, Node::positive);
-    Some(MotionRequirement {
-        tip_speed_m_s: speed?,
-        ramp_time_s: ramp?,
-        emergency_deceleration_m_s2: stop?,
-        min_lever_m: lever?,
-        life_h: life?,
-        duty_cycle: crate::sizing::duty::DutyCycle::move_and_rest(ramp?),
-        ..default
-    })
 }
 
 fn read_constraints(node: &Node) -> Option<Constraints> {

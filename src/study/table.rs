@@ -4,7 +4,8 @@ use super::outcome::Front;
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
 use crate::report::tube::tube_size;
-use crate::sizing::demand::JointDemand;
+use crate::sizing::demand::{JointDemand, JointMotion};
+use crate::sizing::drive::{Drive, critical_rpm};
 use crate::sizing::sheet::JointSizingRow;
 use crate::space::design::{Part, id_of, options};
 use crate::space::design_space::{DriveChoice, LinkOption, SpacePiece};
@@ -51,12 +52,15 @@ fn columns(problem: &ArmProblem, catalogs: &Catalogs) -> Vec<String> {
         if let SpacePiece::Joint(joint) = piece
             && (problem.sized_joint(i).is_some() || problem.fixed_drive(i, catalogs).is_some())
         {
-            out.extend(["margin", "binds"].map(|what| format!("{}_{what}", joint.name)));
+            out.extend(JOINT_COLUMNS.map(|what| format!("{}_{what}", joint.name)));
         }
     }
     out.extend(["stress_safety_factor", "material_cost_eur"].map(String::from));
     out
 }
+
+/// Columns of every joint with a gear and a motor.
+const JOINT_COLUMNS: [&str; 5] = ["margin", "binds", "motor_rms_margin", "input_rpm", "critical_rpm"];
 
 fn has_parts(drive: &DriveChoice) -> bool {
     !matches!(drive, DriveChoice::Given { gear: None, motor: None, .. })
@@ -87,6 +91,9 @@ fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::outcome::Judge
     for joint in sizing_rows(problem, catalogs, &chosen).ok()?.into_iter().rev() {
         out.push(joint.margin.map_or(String::new(), number));
         out.push(joint.binds.unwrap_or_default().to_string());
+        out.push(joint.motor_rms_margin.map_or(String::new(), number));
+        out.push(number(joint.motor_speed_rpm));
+        out.push(number(critical_rpm(o.lowest_mode_hz)));
     }
     let complete = problem.walk(&chosen, |_, _| {}).ok()?;
     out.push(problem.stress_safety_factor(&complete).map_or(String::new(), number));
@@ -134,23 +141,19 @@ pub(crate) fn sizing_rows(
     // the drive of a sized joint is known once it is added: its row follows at the next slot
     let mut open: Option<(usize, JointDemand, f64)> = None;
     let complete = problem.walk(chosen, |slot, partial| {
-        rows.extend(close(problem, open.take(), partial));
+        rows.extend(close(problem, catalogs, open.take(), partial));
         let piece = problem.piece_of_slot(slot);
         if problem.sized_joint(piece).is_some() {
             open = Some((slot, problem.demand_at(partial, slot), problem.mass_kg(partial)));
         } else if let Some(fixed) = problem.fixed_drive(piece, catalogs) {
             let demand = problem.fixed_demand(partial, slot, &fixed.motion);
             let passed = problem.mass_kg(partial) + fixed.mass_kg;
-            rows.push(JointSizingRow::new(
-                joint_name(problem, piece),
-                &fixed.drive,
-                &fixed.motion,
-                &demand,
-                passed,
-            ));
+            let name = joint_name(problem, piece);
+            let row = JointSizingRow::new(name, &fixed.drive, &fixed.motion, &demand, passed);
+            rows.push(at_cycle_efficiency(row, catalogs, &fixed.drive, &fixed.motion, &demand));
         }
     })?;
-    rows.extend(close(problem, open.take(), &complete));
+    rows.extend(close(problem, catalogs, open.take(), &complete));
     Ok(rows)
 }
 
@@ -164,6 +167,7 @@ fn joint_name<'p>(problem: &'p ArmProblem, piece: usize) -> &'p str {
 /// The row of a sized joint whose drive is now known.
 fn close(
     problem: &ArmProblem,
+    catalogs: &Catalogs,
     open: Option<(usize, JointDemand, f64)>,
     with_it: &Partial,
 ) -> Option<JointSizingRow> {
@@ -172,5 +176,24 @@ fn close(
     let table = &problem.sized_joint(piece)?.table;
     let index = problem.options(with_it).nth(piece)? as usize;
     let passed = outboard_kg + table.mass_kg(index);
-    Some(JointSizingRow::new(table.joint(), &table.drive(index), table.motion(), &demand, passed))
+    let drive = table.drive(index);
+    let row = JointSizingRow::new(table.joint(), &drive, table.motion(), &demand, passed);
+    Some(at_cycle_efficiency(row, catalogs, &drive, table.motion(), &demand))
+}
+
+/// The row with the efficiency of the gear at the mean speed and torque of the cycle, where ratings allow it.
+fn at_cycle_efficiency(
+    row: JointSizingRow,
+    catalogs: &Catalogs,
+    drive: &Drive,
+    motion: &JointMotion,
+    demand: &JointDemand,
+) -> JointSizingRow {
+    let load = drive.gear.rated_torque_nm.map(|rated_nm| row.mean_torque_nm / rated_nm);
+    let efficiency =
+        load.and_then(|load| catalogs.representative_efficiency(drive.gear, row.mean_input_speed_rpm, load));
+    match efficiency {
+        Some(efficiency) => row.at_efficiency(efficiency, drive, motion, demand),
+        None => row,
+    }
 }

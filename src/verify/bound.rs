@@ -78,8 +78,14 @@ impl Skeleton {
         let (less, more) = (1.0 - ROUNDING, 1.0 + ROUNDING);
         let [least, most] = self.bearing_demands(joint, duty, members);
         [
-            Demand { bearing: least.times(less), ..duty.demand(statics.least * less, inertia.least * less) },
-            Demand { bearing: most.times(more), ..duty.demand(statics.most * more, inertia.most * more) },
+            Demand {
+                bearing: least.times(less),
+                ..duty.demand(statics.least * less, inertia.least * less, less)
+            },
+            Demand {
+                bearing: most.times(more),
+                ..duty.demand(statics.most * more, inertia.most * more, more)
+            },
         ]
     }
 

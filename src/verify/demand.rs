@@ -1,6 +1,7 @@
 //! The torques that a drive must hold, and the loads on its output bearing.
 
 use super::bearing::BearingDemand;
+use super::heat::HeatDemand;
 
 /// A torque on the output side of a gear that a drive must hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,9 +19,11 @@ pub(super) enum Quantity {
 /// Number of quantities.
 pub(super) const QUANTITIES: usize = 4;
 
-/// What a drive must hold: a torque for each [`Quantity`], and the loads on its output bearing.
+/// What a drive must hold: a torque for each [`Quantity`], the loads on its output bearing, and the heat of its motor over
+/// the cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Demand {
     pub torques: [f64; QUANTITIES],
     pub bearing: BearingDemand,
+    pub heat: HeatDemand,
 }

@@ -64,13 +64,13 @@ impl DriveOptions {
             (false, _) => one_each(offers.first_fits()),
         };
         let options = sets.iter().map(|set| DriveOption::of_ties(offers, set)).collect();
-        Self { level: offers.is_choice.then_some(level), duty: Some(offers.duty), options }
+        Self { level: offers.is_choice.then_some(level), duty: Some(offers.duty.clone()), options }
     }
 
     /// Some of the options, given by ascending indices.
     pub(super) fn only(&self, some: &[u32]) -> Self {
         let options = some.iter().map(|&i| self.options[i as usize].clone()).collect();
-        Self { options, ..*self }
+        Self { level: self.level, duty: self.duty.clone(), options }
     }
 }
 

@@ -4,10 +4,12 @@
 
 use super::bearing::BearingDemand;
 use super::demand::{Demand, QUANTITIES, Quantity};
-use super::question::{AskedMotion, AskedPhase, AskedPhaseKind, LinearTorque};
+use super::heat::{CycleShares, HeatDemand, StatedPhase, stated_phases};
+use super::question::{AskedDutyPhase, AskedJoint, AskedMotion, AskedPhase, AskedPhaseKind, LinearTorque};
+use std::f64::consts::PI;
 
 /// The motion of one joint, on the output side of its gear.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Duty {
     /// Largest speed \[rad/s\].
     pub speed_rad_s: f64,
@@ -24,6 +26,27 @@ pub(super) struct Duty {
     /// Torque of linear acceleration in an emergency stop, divided by that in a ramp.
     pub stop_factor: f64,
     mean: MeanTorque,
+    /// Duration of an emergency stop \[s\].
+    pub stop_s: f64,
+    /// Number of emergency stops that are asked for.
+    pub emergency_stops: Option<f64>,
+    /// Whether a brake holds the joint at rest.
+    pub has_brake: bool,
+    /// Whether the motor must not overheat.
+    pub checks_heat: bool,
+    shares: CycleShares,
+    /// What is stated for this joint, whatever the arm.
+    pub stated: Stated,
+}
+
+/// A duty that is stated for a joint; without one, nothing.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Stated {
+    /// Largest torque \[N m\].
+    peak_nm: f64,
+    /// Cubic mean \[(N m)³\].
+    cubed_nm3: f64,
+    pub phases: Vec<StatedPhase>,
 }
 
 /// Weights in the cube of the cubic mean: of static plus linear torque, of static torque, and of static minus linear
@@ -37,43 +60,89 @@ struct MeanTorque {
 
 impl Duty {
     /// The motion of a joint; the tip is at most `reach_m` from its axis.
-    pub(super) fn new(motion: &AskedMotion, reach_m: f64, max_speed_rad_s: Option<f64>) -> Self {
-        // the tip's speed over its lever; a short lever would ask a roll joint for absurd speeds
-        let lever_m = reach_m.max(motion.min_lever_m);
-        let speed_rad_s = max_speed_rad_s.unwrap_or(motion.tip_speed_m_s / lever_m);
-        let acceleration_rad_s2 = speed_rad_s / motion.ramp_time_s;
+    pub(super) fn new(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> Self {
+        let speed_rad_s = speed_rad_s(motion, reach_m, joint);
+        let ramp_s = first_ramp_s(&joint.duty).unwrap_or(motion.ramp_time_s);
+        let acceleration_rad_s2 = speed_rad_s / ramp_s;
         let tip_m_s2 = motion.tip_acceleration_m_s2();
+        let stop_factor = motion.emergency_deceleration_m_s2.map_or(2.0, |stop_m_s2| stop_m_s2 / tip_m_s2);
         let (linear_per_inertia, linear_per_static) = match motion.linear_torque {
             LinearTorque::OfInertia => (acceleration_rad_s2, 0.0),
             LinearTorque::OfStaticTorque => (0.0, tip_m_s2 / motion.gravity_m_s2),
         };
-        Self {
+        let duty = Self {
             speed_rad_s,
             mean_speed_rad_s: speed_rad_s * motion.mean_speed_fraction(),
             acceleration_rad_s2,
             life_h: motion.life_h,
             linear_per_inertia,
             linear_per_static,
-            stop_factor: motion.emergency_deceleration_m_s2.map_or(2.0, |stop_m_s2| stop_m_s2 / tip_m_s2),
+            stop_factor,
             mean: motion.mean_torque(),
+            stop_s: ramp_s / stop_factor,
+            emergency_stops: motion.emergency_stops,
+            has_brake: joint.has_brake,
+            checks_heat: motion.checks_motor_heat,
+            shares: motion.shares(joint.has_brake),
+            stated: Stated::default(),
+        };
+        if joint.duty.is_empty() { duty } else { duty.with_stated(&joint.duty) }
+    }
+
+    /// The same with a duty in numbers in place of the cycle.
+    fn with_stated(self, duty: &[AskedDutyPhase]) -> Self {
+        let travel = |phase: &AskedDutyPhase| phase.speed_rpm * phase.time_s;
+        let whole_s: f64 = duty.iter().map(|phase| phase.time_s).sum();
+        let travelled: f64 = duty.iter().map(travel).sum();
+        let cubes = duty.iter().map(|phase| travel(phase) * phase.torque_nm.abs().powi(3));
+        let stated = Stated {
+            peak_nm: duty.iter().map(|phase| phase.torque_nm.abs()).fold(0.0, f64::max),
+            cubed_nm3: cubes.sum::<f64>() / travelled,
+            phases: stated_phases(duty, self.has_brake),
+        };
+        Self {
+            mean_speed_rad_s: travelled / whole_s * PI / 30.0,
+            mean: MeanTorque::default(),
+            shares: CycleShares::default(),
+            stated,
+            ..self
         }
     }
 
-    /// The torques that a static torque and an inertia outboard ask of the drive, without any load on its bearing. They
-    /// grow with both (see [`AskedMotion::grows`]).
-    pub(super) fn demand(&self, static_nm: f64, inertia_kgm2: f64) -> Demand {
+    /// The torques and the heat that a static torque and an inertia outboard ask of the drive, without any load on its
+    /// bearing. They grow with both (see [`AskedMotion::grows`]). `heat_room` is a factor on the heat of the motor.
+    pub(super) fn demand(&self, static_nm: f64, inertia_kgm2: f64, heat_room: f64) -> Demand {
         let static_nm = static_nm.abs();
         let linear_nm = (self.linear_per_inertia * inertia_kgm2 + self.linear_per_static * static_nm).abs();
         let cube = |nm: f64| nm * nm * nm;
         let mut torques = [0.0; QUANTITIES];
         torques[Quantity::Static as usize] = static_nm;
-        torques[Quantity::Peak as usize] = static_nm + linear_nm;
-        torques[Quantity::Stop as usize] = static_nm + self.stop_factor * linear_nm;
-        torques[Quantity::MeanCubed as usize] = self.mean.of_sum * cube(static_nm + linear_nm)
+        torques[Quantity::Peak as usize] = (static_nm + linear_nm).max(self.stated.peak_nm);
+        torques[Quantity::Stop as usize] =
+            (static_nm + self.stop_factor * linear_nm).max(self.stated.peak_nm);
+        torques[Quantity::MeanCubed as usize] = self.stated.cubed_nm3
+            + self.mean.of_sum * cube(static_nm + linear_nm)
             + self.mean.of_static * cube(static_nm)
             + self.mean.of_difference * cube((static_nm - linear_nm).abs());
-        Demand { torques, bearing: BearingDemand::default() }
+        let heat = HeatDemand { static_nm, linear_nm, shares: self.shares, room: heat_room };
+        Demand { torques, bearing: BearingDemand::default(), heat }
     }
+}
+
+/// Largest speed of a joint \[rad/s\]: its own, or the tip's over its lever. A short lever would ask a roll joint for absurd
+/// speeds. A duty in numbers has its own largest speed.
+fn speed_rad_s(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> f64 {
+    let fastest_rpm = joint.duty.iter().map(|phase| phase.speed_rpm).fold(0.0, f64::max);
+    match (joint.max_speed_rad_s, joint.duty.is_empty()) {
+        (None, true) => motion.tip_speed_m_s / reach_m.max(motion.min_lever_m),
+        (stated, _) => stated.unwrap_or(0.0).max(fastest_rpm * PI / 30.0),
+    }
+}
+
+/// Duration of the first ramp up of a duty in numbers \[s\]; `None` if it has none.
+fn first_ramp_s(duty: &[AskedDutyPhase]) -> Option<f64> {
+    let ramp = stated_phases(duty, false).iter().position(StatedPhase::speeds_up)?;
+    Some(duty[ramp].time_s)
 }
 
 impl AskedMotion {
@@ -82,8 +151,9 @@ impl AskedMotion {
         self.tip_speed_m_s / self.ramp_time_s
     }
 
-    /// Whether no torque of a demand falls when static torque or inertia grows. Only while slowing down is the linear
-    /// torque subtracted from the static torque; speeding up outweighs this if it takes at least as long.
+    /// Whether no torque of a demand, and no heat, falls when static torque or inertia grows. Only while slowing down is the
+    /// linear torque subtracted from the static torque; speeding up outweighs this if it takes at least as long: there the
+    /// motor has the largest torque of the cycle, and that rises at least as fast as any falls.
     pub fn grows(&self) -> bool {
         let mean = self.mean_torque();
         mean.of_difference <= mean.of_sum
@@ -91,6 +161,29 @@ impl AskedMotion {
 
     fn travel_s(&self) -> f64 {
         self.phases.iter().map(AskedPhase::travel_s).sum()
+    }
+
+    /// Time shares of the cycle's phases.
+    fn shares(&self, has_brake: bool) -> CycleShares {
+        let whole_s: f64 = self.phases.iter().map(|phase| phase.duration_s).sum();
+        let mut shares = CycleShares::default();
+        for phase in &self.phases {
+            let (share, square) = match phase.kind {
+                AskedPhaseKind::Accelerate => (&mut shares.ramp_up, 1.0),
+                AskedPhaseKind::Constant => (&mut shares.travel, 1.0),
+                AskedPhaseKind::Decelerate => (&mut shares.ramp_down, 1.0),
+                AskedPhaseKind::Rest => (&mut shares.rest, 1.0),
+                AskedPhaseKind::Fraction { of_static_torque, of_speed } => {
+                    let moves = of_speed != 0.0;
+                    (if moves { &mut shares.travel } else { &mut shares.rest }, of_static_torque.powi(2))
+                }
+            };
+            *share += square * phase.duration_s / whole_s;
+        }
+        if has_brake {
+            shares.rest = 0.0;
+        }
+        shares
     }
 
     fn mean_speed_fraction(&self) -> f64 {

@@ -35,6 +35,7 @@ pub(crate) mod drives;
 pub(crate) mod duty;
 pub(crate) mod front_index;
 pub(crate) mod halt;
+pub(crate) mod heat;
 pub(crate) mod judge;
 pub(crate) mod layout;
 pub(crate) mod missing;
@@ -59,7 +60,7 @@ pub use judge::{Judge, Judged, Pick};
 pub use missing::{Looked, conditions};
 pub use parts_box::PartsBox;
 pub use question::{
-    AllowedParts, AskedDrive, AskedJoint, AskedLink, AskedMotion, AskedPhase, AskedPhaseKind, AskedPiece,
-    AskedTube, Limits, LinearTorque, Question,
+    AllowedParts, AskedDrive, AskedDutyPhase, AskedJoint, AskedLink, AskedMotion, AskedPhase, AskedPhaseKind,
+    AskedPiece, AskedTube, Limits, LinearTorque, Question,
 };
 pub use settings::Settings;

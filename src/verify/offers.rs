@@ -69,7 +69,7 @@ impl JointOffers {
             }
             AskedDrive::FirstFit(allowed) | AskedDrive::AllFits(allowed) => allowed,
         };
-        let duty = Duty::new(&question.motion, reach_m, joint.max_speed_rad_s);
+        let duty = Duty::new(&question.motion, reach_m, joint);
         let offers = offers(joint, allowed, &duty, catalogs, springs);
         let places = (0..).zip(&offers).map(|(place, offer)| ((offer.gear, offer.motor), place)).collect();
         Self::Catalog(CatalogOffers { duty, is_choice: joint.drive.is_choice(), offers, places })

@@ -67,6 +67,21 @@ pub struct AskedJoint {
     pub drive: AskedDrive,
     /// Largest speed, if the study gives one \[rad/s\]; else it follows from the speed of the tip.
     pub max_speed_rad_s: Option<f64>,
+    /// Whether a brake holds it at rest.
+    pub has_brake: bool,
+    /// The duty that the study states for it in place of its cycle; empty if none.
+    pub duty: Vec<AskedDutyPhase>,
+}
+
+/// One phase of a duty that the study states for a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AskedDutyPhase {
+    /// Torque at the joint \[N m\]; negative where the load drives the motor.
+    pub torque_nm: f64,
+    /// How long it lasts \[s\].
+    pub time_s: f64,
+    /// Mean speed of the joint \[rpm\].
+    pub speed_rpm: f64,
 }
 
 /// How a joint's drive is found.
@@ -147,6 +162,10 @@ pub struct AskedMotion {
     pub linear_torque: LinearTorque,
     /// Gravity, used by [`LinearTorque::OfStaticTorque`] \[m/s²\].
     pub gravity_m_s2: f64,
+    /// Whether motors must not overheat over the cycle.
+    pub checks_motor_heat: bool,
+    /// Number of emergency stops that a gear must bear, if the study asks for one.
+    pub emergency_stops: Option<f64>,
 }
 
 /// How Eq 8, the torque of linear acceleration, is read.

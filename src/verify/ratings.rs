@@ -10,15 +10,17 @@
 use super::bearing::BearingRatings;
 use super::demand::{Demand, QUANTITIES, Quantity};
 use super::duty::Duty;
+use super::heat::MotorHeat;
 use crate::arm::bearing::Bearing;
 use crate::catalog::gear::Gear;
 use crate::catalog::motor::Motor;
 
-/// The greatest torque of each quantity that a drive holds, and what its output bearing holds.
+/// The greatest torque of each quantity that a drive holds, what its output bearing holds, and how its motor heats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Ratings {
     most: [f64; QUANTITIES],
     pub bearing: BearingRatings,
+    heat: MotorHeat,
 }
 
 /// A limit of a drive on one quantity. `most` gives the limit; `None` if the catalog lacks a number that it needs.
@@ -28,11 +30,12 @@ struct Check {
 }
 
 /// All checks of torques. A drive that lacks a number for one of them cannot be chosen.
-const CHECKS: [Check; 6] = [
-    Check { on: Quantity::Static, most: motor_continuous_nm },
+const CHECKS: [Check; 7] = [
+    Check { on: Quantity::Static, most: motor_hold_nm },
     Check { on: Quantity::Peak, most: |gear, _, _| gear.repeated_peak_torque_nm },
     Check { on: Quantity::Peak, most: motor_peak_nm },
     Check { on: Quantity::Stop, most: |gear, _, _| gear.momentary_peak_torque_nm },
+    Check { on: Quantity::Stop, most: |gear, _, _| Some(breaks_nm(gear)) },
     Check { on: Quantity::MeanCubed, most: |gear, _, _| Some(gear.average_torque_limit_nm?.powi(3)) },
     Check { on: Quantity::MeanCubed, most: life_nm3 },
 ];
@@ -43,40 +46,51 @@ const RATED_RPM: f64 = 2000.0;
 impl Ratings {
     /// Ratings under which no check fails.
     pub(super) const UNLIMITED: Self =
-        Self { most: [f64::INFINITY; QUANTITIES], bearing: BearingRatings::UNLIMITED };
+        Self { most: [f64::INFINITY; QUANTITIES], bearing: BearingRatings::UNLIMITED, heat: MotorHeat::NONE };
 
     /// The ratings of a drive under a joint's motion; `None` if the motion is too fast for the drive, or if the
     /// catalog lacks a number. A blank number of the bearing excludes nothing.
     pub(super) fn of(gear: &Gear, motor: &Motor, bearing: Option<&Bearing>, duty: &Duty) -> Option<Self> {
-        let mut ratings = Self {
-            bearing: BearingRatings::of(bearing, [duty.mean_speed_rad_s, duty.life_h]),
-            ..Self::UNLIMITED
+        let heat = match duty.checks_heat {
+            true => {
+                MotorHeat::of((gear, motor), duty.speed_rad_s, duty.acceleration_rad_s2, &duty.stated.phases)?
+            }
+            false => MotorHeat::NONE,
         };
+        let bearing = BearingRatings::of(bearing, [duty.mean_speed_rad_s, duty.life_h]);
+        let mut ratings = Self { bearing, heat, ..Self::UNLIMITED };
         for check in &CHECKS {
             let most = (check.most)(gear, motor, duty)?;
             let rating = &mut ratings.most[check.on as usize];
             *rating = rating.min(most);
         }
-        turns_as_fast(gear, motor, duty)?.then_some(ratings)
+        (turns_as_fast(gear, motor, duty)? && bears_the_stops(gear, duty)).then_some(ratings)
     }
 
-    /// Whether a drive with these ratings holds every torque of a demand.
+    /// Whether a drive with these ratings holds every torque and load of a demand, and its motor does not overheat.
     pub(super) fn hold(&self, demand: &Demand) -> bool {
         // no branch on the way: nearly every box asks this of many drives
         let torques = self.most.iter().zip(&demand.torques);
-        torques.fold(true, |held, (most, asked)| held & (asked <= most)) && self.bearing.hold(&demand.bearing)
+        torques.fold(true, |held, (most, asked)| held & (asked <= most))
+            && self.bearing.hold(&demand.bearing)
+            && self.heat.holds(&demand.heat)
     }
 
     /// Whether a drive with these ratings holds every demand that a drive with the other ratings holds.
     pub(super) fn cover(&self, other: &Self) -> bool {
-        self.most.iter().zip(&other.most).all(|(a, b)| a >= b) && self.bearing.cover(&other.bearing)
+        self.most.iter().zip(&other.most).all(|(a, b)| a >= b)
+            && self.bearing.cover(&other.bearing)
+            && self.heat.covers(&other.heat)
     }
 
-    /// Ratings under which all holds that holds under one of the two: the larger rating for each quantity.
+    /// Ratings under which all holds that holds under one of the two: the larger rating for each quantity, and the smaller
+    /// of each number of heat, for heat grows with each of its numbers and with every torque (see
+    /// [`AskedMotion::grows`](super::question::AskedMotion::grows)).
     pub(super) fn max(&self, other: &Self) -> Self {
         Self {
             most: std::array::from_fn(|i| self.most[i].max(other.most[i])),
             bearing: self.bearing.max(&other.bearing),
+            heat: self.heat.min(&other.heat),
         }
     }
 
@@ -98,6 +112,18 @@ fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     )
 }
 
+/// The torque at which a gear buckles or its teeth jump, as far as the catalog knows it.
+fn breaks_nm(gear: &Gear) -> f64 {
+    [gear.buckling_torque_nm, gear.ratcheting_torque_nm].into_iter().flatten().fold(f64::INFINITY, f64::min)
+}
+
+/// Whether the gear bears as many emergency stops as are asked for: 1e4 waves of the wave generator, two in a turn, and
+/// never fewer than one in a stop.
+fn bears_the_stops(gear: &Gear, duty: &Duty) -> bool {
+    let waves = 2.0 * input_rpm(gear, duty.speed_rad_s) / 60.0 * duty.stop_s;
+    duty.emergency_stops.is_none_or(|stops| stops <= 1e4 / waves.max(1.0))
+}
+
 /// Speed of the motor \[rpm\] when the joint turns at `output_rad_s`.
 fn input_rpm(gear: &Gear, output_rad_s: f64) -> f64 {
     f64::from(gear.ratio) * (output_rad_s * 30.0 / std::f64::consts::PI)
@@ -108,9 +134,12 @@ fn gain(gear: &Gear) -> Option<f64> {
     Some(f64::from(gear.ratio) * gear.efficiency?)
 }
 
-/// Torque at the joint that the motor can hold without end: `T_rated N η` \[N m\].
-fn motor_continuous_nm(gear: &Gear, motor: &Motor, _: &Duty) -> Option<f64> {
-    Some(motor.rated_torque_nm? * gain(gear)?)
+/// Torque at the joint that the motor can hold without end: `T_rated N η` \[N m\]. A brake holds any.
+fn motor_hold_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
+    match duty.has_brake {
+        true => Some(f64::INFINITY),
+        false => Some(motor.rated_torque_nm? * gain(gear)?),
+    }
 }
 
 /// Torque at the joint when the motor gives its peak torque \[N m\]. The rotor's and the wave generator's own
@@ -142,9 +171,26 @@ fn rated_life_h(series: &str) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::question::{AskedDrive, AskedJoint};
     use super::super::question::{AskedMotion, AskedPhase, AskedPhaseKind, LinearTorque};
     use super::*;
+    use crate::arm::bearing::BearingSource;
+    use crate::arm::extras::ExtrasSource;
+    use crate::arm::joint_law::Curve;
     use crate::catalog::Catalogs;
+
+    fn joint() -> AskedJoint {
+        AskedJoint {
+            name: "j".into(),
+            axis: nalgebra::Vector3::y_axis(),
+            bearing: BearingSource::Stated(None),
+            extras: ExtrasSource::NONE,
+            drive: AskedDrive::Given { curve: Curve::Rigid, mass_kg: 0.0 },
+            max_speed_rad_s: None,
+            has_brake: false,
+            duty: Vec::new(),
+        }
+    }
 
     /// The paper's 1 m/s in 0.2 s; ramps of 0.2 s about 0.6 s of travel, then 1 s of rest.
     fn duty() -> Duty {
@@ -163,8 +209,10 @@ mod tests {
             life_h: 10_000.0,
             linear_torque: LinearTorque::OfInertia,
             gravity_m_s2: 9.81,
+            checks_motor_heat: true,
+            emergency_stops: None,
         };
-        Duty::new(&motion, 1.35, None)
+        Duty::new(&motion, 1.35, &joint())
     }
 
     #[test]
@@ -190,7 +238,7 @@ mod tests {
     #[test]
     fn the_demand_is_the_one_worked_out_by_hand() {
         // 40 N m of linear torque on 100 N m of static torque
-        let Demand { torques, .. } = duty().demand(-100.0, 40.0 / (5.0 / 1.35));
+        let Demand { torques, .. } = duty().demand(-100.0, 40.0 / (5.0 / 1.35), 1.0);
         let mean = (140f64.powi(3) * 0.5 + 100f64.powi(3) * 3.0 + 60f64.powi(3) * 0.5) / 4.0;
         for (asked, by_hand) in torques.iter().zip([100.0, 140.0, 180.0, mean]) {
             assert!((asked / by_hand - 1.0).abs() < 1e-12, "{asked}, by hand {by_hand}");

@@ -161,7 +161,7 @@ fn levers(question: &Question) -> Vec<Lever> {
 fn accelerations_rad_s2(question: &Question) -> Vec<f64> {
     let joints = question.joints().zip(reaches_m(question));
     let duty = |(joint, reach_m): (&AskedJoint, f64)| {
-        Duty::new(&question.motion, reach_m, joint.max_speed_rad_s).acceleration_rad_s2
+        Duty::new(&question.motion, reach_m, joint).acceleration_rad_s2
     };
     joints.map(duty).collect()
 }

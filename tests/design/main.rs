@@ -13,6 +13,7 @@ mod exact_support;
 mod exact_threads;
 mod exact_ties;
 mod mechanics_reference;
+mod motor_heat;
 mod paper;
 mod paper_support;
 mod reference_arms;

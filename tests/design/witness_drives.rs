@@ -124,12 +124,14 @@ fn times(number: &mut Option<f64>, factor: f64) {
     number.iter_mut().for_each(|number| *number *= factor);
 }
 
-const THRESHOLDS: [(&str, Spoil); 6] = [
+const THRESHOLDS: [(&str, Spoil); 8] = [
     ("gear peak", |gear, _, by| times(&mut gear.repeated_peak_torque_nm, by)),
     ("gear mean", |gear, _, by| times(&mut gear.average_torque_limit_nm, by)),
     ("gear stop", |gear, _, by| times(&mut gear.momentary_peak_torque_nm, by)),
     ("gear life", |gear, _, by| times(&mut gear.rated_torque_nm, by)),
     ("motor hold", |_, motor, by| times(&mut motor.rated_torque_nm, by)),
+    ("motor rms, by speed", |_, motor, by| times(&mut motor.rated_speed_rpm, 0.3 * by)),
+    ("motor rms, by inertia", |gear, _, by| times(&mut gear.inertia_input_kgm2, 5.0 * by)),
     ("motor peak", |_, motor, by| times(&mut motor.peak_torque_nm, by)),
 ];
 

@@ -204,7 +204,8 @@ fn assert_described(page: &str, keys: &BTreeSet<String>, at_least: usize) {
 fn every_study_object() -> Value {
     json!({
         "name": "all", "chain": [
-            {"type": "joint", "name": "j1", "axis": [0, 0, 1], "drive": "first_fit", "drives": {"ratios": [100]}},
+            {"type": "joint", "name": "j1", "axis": [0, 0, 1], "drive": "first_fit", "drives": {"ratios": [100]},
+                "duty": [{"torque_nm": 1, "time_s": 1, "speed_rpm": 1}]},
             {"type": "joint", "name": "j2", "axis": [0, 1, 0], "windup": {"k1_nm_per_rad": 1, "k2_nm_per_rad": 2,
                 "k3_nm_per_rad": 3, "t1_nm": 1, "t2_nm": 2}},
             {"type": "link", "name": "a", "vector_m": [1, 0, 0], "choose": {
@@ -219,7 +220,7 @@ fn every_study_object() -> Value {
                 "section": {"shape": "round_tube", "diameter_m": 0.1, "wall_m": 0.01}}],
         "payload": {"mass_kg": 1}, "poses": [{"pose_deg": [0, 0]}],
         "environments": [{"name": "sea", "water": {"density_kg_m3": 1025}}],
-        "motion": {}, "drives": {}, "constraints": {}, "models": {},
+        "motion": {"cycle": [{"phase": "rest", "time_s": 1}]}, "drives": {}, "constraints": {}, "models": {},
         "effects": [{"effect": "bearing_tilt", "at": "j1", "parameters": {"stiffness_nm_per_rad": 1e5}}]
     })
 }

@@ -9,6 +9,7 @@ mod catalog_cli;
 mod cli;
 mod compare;
 mod docs;
+mod duty_cycles;
 mod front_check;
 mod imports;
 mod links;

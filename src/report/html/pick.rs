@@ -371,10 +371,12 @@ impl View {
 }
 
 /// Checks in the order of the table's columns.
-const CHECKS: [CheckKind; 13] = [
+const CHECKS: [CheckKind; 17] = [
     CheckKind::GearPeak,
     CheckKind::GearMean,
     CheckKind::GearStop,
+    CheckKind::GearBuckling,
+    CheckKind::GearRatcheting,
     CheckKind::BearingMoment,
     CheckKind::BearingRest,
     CheckKind::BearingStop,
@@ -382,8 +384,10 @@ const CHECKS: [CheckKind; 13] = [
     CheckKind::GearSpeed,
     CheckKind::GearMeanSpeed,
     CheckKind::GearLife,
+    CheckKind::GearStops,
     CheckKind::MotorHold,
     CheckKind::MotorPeak,
+    CheckKind::MotorRms,
     CheckKind::MotorSpeed,
 ];
 

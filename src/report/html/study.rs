@@ -8,6 +8,7 @@ use super::pick::{PickedArm, deflection_bars};
 use super::render::anchor;
 use crate::report::number::large;
 use crate::report::picks::{self, materials};
+use crate::report::resonance::warnings;
 use crate::report::section::{Figure, PageSection};
 use crate::report::summary::{SummaryInput, answer_words, materials_side_by_side, single_materials};
 use crate::report::svg::draw::MUTED;
@@ -72,6 +73,8 @@ impl StudyPage<'_> {
         let views = self.views(&chosen, front_bytes);
         let data = views.json();
         let extras: Vec<Value> = self.extras.iter().map(|e| gallery.extra(e)).collect();
+        let mut warned = warnings(&self.summary.overall, &chosen);
+        warned.extend(facts.turned_off.iter().cloned());
         let content = json!({
             "study": facts.study,
             "question": facts.question,
@@ -88,6 +91,7 @@ impl StudyPage<'_> {
             "run": self.run,
             "not_checked": facts.not_checked,
             "remarks": facts.remarks,
+            "warnings": warned,
             "parts": self.parts.iter().map(part).collect::<Vec<_>>(),
             "caveats": self.parts.iter().filter_map(|p| Some((&p.name, facts.caveats.of_part(&p.name)?))).collect::<BTreeMap<_, _>>(),
             "results": facts.results,

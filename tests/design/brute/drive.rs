@@ -27,6 +27,7 @@ pub struct Drive {
     motor_rated_nm: f64,
     motor_peak_nm: f64,
     motor_rpm: f64,
+    motor_rated_rpm: Option<f64>,
 }
 
 /// The drives that a study's `drives` admits, lightest first, then by name.
@@ -97,6 +98,7 @@ impl Drive {
             motor_rated_nm: motor.number("rated_torque_nm")?,
             motor_peak_nm: motor.number("peak_torque_nm")?,
             motor_rpm: motor.number("max_speed_rpm").or(motor.number("rated_speed_rpm"))?,
+            motor_rated_rpm: motor.number("rated_speed_rpm"),
         })
     }
 
@@ -107,7 +109,34 @@ impl Drive {
         input_rpm <= self.input_rpm
             && mean_rpm <= self.average_input_rpm
             && input_rpm <= self.motor_rpm
+            && self.stays_cool(demand, input_rpm)
             && self.holds_torques(&demand.worst, demand.acceleration_rad_s2, mean_rpm, motion)
+    }
+
+    /// Whether the root mean square of the motor's torque is within what it gives continuously, whichever way the joint
+    /// turns: ramp up, three ramp times at speed, ramp down, five at rest.
+    fn stays_cool(&self, demand: &Demand, input_rpm: f64) -> bool {
+        let Torques { static_nm, linear_nm } = demand.worst;
+        let own_nm = self.inertia_kgm2 * self.ratio * demand.acceleration_rad_s2;
+        let through_gear_nm = |joint_nm: f64, moves: f64| match joint_nm * moves < 0.0 {
+            true => joint_nm * self.efficiency / self.ratio,
+            false => joint_nm / (self.ratio * self.efficiency),
+        };
+        let continuous_nm = match self.motor_rated_rpm {
+            Some(rated_rpm) if input_rpm > rated_rpm => self.motor_rated_nm * rated_rpm / input_rpm,
+            _ => self.motor_rated_nm,
+        };
+        [1.0, -1.0].into_iter().all(|moves| {
+            let ramp_nm = |speeds_up: f64| {
+                let turns = moves * speeds_up;
+                through_gear_nm(static_nm + turns * linear_nm, moves) + turns * own_nm
+            };
+            let squares = ramp_nm(1.0).powi(2)
+                + 3.0 * through_gear_nm(static_nm, moves).powi(2)
+                + ramp_nm(-1.0).powi(2)
+                + 5.0 * through_gear_nm(static_nm, 0.0).powi(2);
+            (squares / 10.0).sqrt() <= continuous_nm
+        })
     }
 
     fn holds_torques(&self, t: &Torques, acceleration_rad_s2: f64, mean_rpm: f64, motion: &Motion) -> bool {

@@ -1,0 +1,161 @@
+//! Whether a motor overheats over the cycle of its joint (docs/sizing.md, "Motor heat").
+//!
+//! Every phase is worked out by itself, once for a joint that lifts its load and once for one that lowers it: the torque
+//! at the joint in the direction of motion, then that of the motor, with the losses of the gear against whichever side
+//! drives. The worse of the two directions counts. The search uses a formula for lifting alone.
+
+use super::question::AskedDutyPhase;
+use crate::catalog::gear::Gear;
+use crate::catalog::motor::Motor;
+use std::f64::consts::PI;
+
+/// Torque of a motor as a share of what it gives continuously. Smaller numbers are better.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct MotorHeat {
+    /// For each newton metre at the joint that the motor drives.
+    driving: f64,
+    /// For each newton metre at the joint that drives the motor.
+    driven: f64,
+    /// For the acceleration of rotor and wave generator.
+    own: f64,
+    /// Mean square over a duty that is stated in numbers.
+    stated: f64,
+}
+
+/// Torques and time shares of a cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct HeatDemand {
+    pub static_nm: f64,
+    pub linear_nm: f64,
+    pub shares: CycleShares,
+    /// Factor on the mean square: room for rounding.
+    pub room: f64,
+}
+
+/// Time shares of the phases of a cycle.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct CycleShares {
+    pub ramp_up: f64,
+    /// With the square of the fraction of the static torque.
+    pub travel: f64,
+    pub ramp_down: f64,
+    /// With the square of the fraction; 0 if a brake holds the joint.
+    pub rest: f64,
+}
+
+impl MotorHeat {
+    /// A motor that nothing heats.
+    pub(super) const NONE: Self = Self { driving: 0.0, driven: 0.0, own: 0.0, stated: 0.0 };
+
+    /// The numbers of a drive whose joint cruises at a speed \[rad/s\], reached with an acceleration \[rad/s²\], or has a duty of
+    /// its own; `None` if the catalog leaves blank what they need.
+    pub(super) fn of(
+        (gear, motor): (&Gear, &Motor),
+        speed_rad_s: f64,
+        acceleration_rad_s2: f64,
+        stated: &[StatedPhase],
+    ) -> Option<Self> {
+        let (ratio, efficiency) = (f64::from(gear.ratio), gear.efficiency?);
+        let cruising_rpm = ratio * speed_rad_s * 30.0 / PI;
+        let continuous_nm = continuous_nm(motor, cruising_rpm)?;
+        let own_s2 = (motor.rotor_inertia_kgm2? + gear.inertia_input_kgm2?) * ratio / continuous_nm;
+        let heat = Self {
+            driving: 1.0 / (ratio * efficiency) / continuous_nm,
+            driven: efficiency / ratio / continuous_nm,
+            own: own_s2 * acceleration_rad_s2,
+            stated: 0.0,
+        };
+        let stated = stated.iter().map(|phase| {
+            let torque = heat.at_motor(phase.torque_nm) + own_s2 * phase.acceleration_rad_s2;
+            phase.share * torque * torque
+        });
+        Some(Self { stated: stated.sum(), ..heat })
+    }
+
+    /// Whether the root mean square of the motor's torque is within its continuous torque.
+    pub(super) fn holds(&self, asked: &HeatDemand) -> bool {
+        let worse = self.mean_square(asked, 1.0).max(self.mean_square(asked, -1.0));
+        (worse + self.stated) * asked.room <= 1.0
+    }
+
+    /// Mean square over the cycle of a joint that lifts its load (`against` is 1) or lowers it (-1).
+    fn mean_square(&self, asked: &HeatDemand, against: f64) -> f64 {
+        let (static_nm, linear_nm) = (against * asked.static_nm, asked.linear_nm);
+        let square = |share: f64, joint_nm: f64, own: f64| {
+            let motor = self.at_motor(joint_nm) + own;
+            share * motor * motor
+        };
+        let standing = self.driving * asked.static_nm;
+        square(asked.shares.ramp_up, static_nm + linear_nm, self.own)
+            + square(asked.shares.travel, static_nm, 0.0)
+            + square(asked.shares.ramp_down, static_nm - linear_nm, -self.own)
+            + asked.shares.rest * standing * standing
+    }
+
+    /// Torque of the motor for a torque at the joint in the direction of motion; a negative one drives the motor.
+    fn at_motor(&self, joint_nm: f64) -> f64 {
+        joint_nm * if joint_nm < 0.0 { self.driven } else { self.driving }
+    }
+
+    /// The smaller of each number.
+    pub(super) fn min(&self, other: &Self) -> Self {
+        Self {
+            driving: self.driving.min(other.driving),
+            driven: self.driven.min(other.driven),
+            own: self.own.min(other.own),
+            stated: self.stated.min(other.stated),
+        }
+    }
+
+    /// Whether no number is larger than that of another drive.
+    pub(super) fn covers(&self, other: &Self) -> bool {
+        self.driving <= other.driving
+            && self.driven <= other.driven
+            && self.own <= other.own
+            && self.stated <= other.stated
+    }
+}
+
+/// What a motor gives continuously at a speed: its rated torque, beyond the rated speed its rated power.
+fn continuous_nm(motor: &Motor, speed_rpm: f64) -> Option<f64> {
+    let beyond = motor.rated_speed_rpm.map_or(1.0, |rated_rpm| (speed_rpm / rated_rpm).max(1.0));
+    Some(motor.rated_torque_nm? / beyond)
+}
+
+/// A phase of a stated duty as its motor feels it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct StatedPhase {
+    /// Share of the time.
+    share: f64,
+    torque_nm: f64,
+    acceleration_rad_s2: f64,
+}
+
+impl StatedPhase {
+    /// Whether the joint speeds up.
+    pub(super) fn speeds_up(&self) -> bool {
+        self.acceleration_rad_s2 > 0.0
+    }
+}
+
+/// The phases of a stated duty. A phase at half the speed of its successor or predecessor is the ramp between rest and that
+/// speed. With a brake, phases at rest need no motor.
+pub(super) fn stated_phases(duty: &[AskedDutyPhase], has_brake: bool) -> Vec<StatedPhase> {
+    let whole_s: f64 = duty.iter().map(|phase| phase.time_s).sum();
+    let full_rad_s = |place: usize| duty[place % duty.len()].speed_rpm * PI / 30.0;
+    let ramps = |place: usize, to: usize| {
+        let (half, full) = (full_rad_s(place), full_rad_s(to));
+        full > 0.0 && (half / full - 0.5).abs() < 5e-7 && duty[place].time_s > 0.0
+    };
+    let of_phase = |(place, phase): (usize, &AskedDutyPhase)| {
+        let (next, before) = (place + 1, place + duty.len() - 1);
+        let acceleration_rad_s2 = match (ramps(place, next), ramps(place, before)) {
+            (true, _) => full_rad_s(next) / phase.time_s,
+            (false, true) => -full_rad_s(before) / phase.time_s,
+            (false, false) => 0.0,
+        };
+        StatedPhase { share: phase.time_s / whole_s, torque_nm: phase.torque_nm, acceleration_rad_s2 }
+    };
+    let moves = |(_, phase): &(usize, &AskedDutyPhase)| !has_brake || phase.speed_rpm != 0.0;
+    duty.iter().enumerate().filter(moves).map(of_phase).collect()
+}

@@ -1,0 +1,160 @@
+//! Motor heat in the searches: random small studies whose drives the root mean square of the motor's torque decides.
+//!
+//! `ARMWRIGHT_HEAT_STUDIES=300 cargo test --release --test design motor_heat` runs more of them.
+
+use crate::dice::Dice;
+use crate::exact_front::random_study;
+use crate::exact_support::{agrees, judged, read};
+use armwright::catalog::Catalogs;
+use armwright::exact::Exact;
+use armwright::pareto::Objectives;
+use armwright::pareto::front::nondominated;
+use armwright::search::Sweep;
+use armwright::space::{ArmProblem, Evaluated, evaluate};
+use armwright::study::Study;
+use armwright::study::question::{picks, question};
+use armwright::verify::{Judge, Pick, Settings};
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
+use std::sync::atomic::AtomicBool;
+
+fn studies() -> u64 {
+    std::env::var("ARMWRIGHT_HEAT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(24)
+}
+
+/// A cycle with short rests, steep ramps or none, and phases at part load.
+fn cycle(dice: &mut Dice) -> Value {
+    let ramp_s = dice.within(0.1, 0.3);
+    let mut cycle = vec![
+        json!({"phase": "accelerate", "time_s": ramp_s}),
+        json!({"phase": "constant", "time_s": dice.within(0.0, 0.5)}),
+        json!({"phase": "decelerate", "time_s": ramp_s}),
+        json!({"phase": "rest", "time_s": dice.within(0.0, 0.6)}),
+    ];
+    if dice.below(2) == 0 {
+        let speed = dice.of(&[0.0, 0.5]);
+        cycle.push(json!({"phase": "fraction", "time_s": 0.2, "of_static_torque": 1.2, "of_speed": speed}));
+    }
+    json!(cycle)
+}
+
+/// A study in which motors work hard: quick ramps, short rests, some brakes, now and then a joint with a duty of its own.
+fn hot_study(seed: u64) -> Value {
+    let dice = &mut Dice(seed.wrapping_mul(104_729).wrapping_add(5));
+    let mut study = random_study(seed);
+    study["motion"] = json!({"tip_speed_m_s": dice.within(0.5, 1.2), "ramp_time_s": dice.within(0.08, 0.25)});
+    if dice.below(2) == 0 {
+        study["motion"]["cycle"] = cycle(dice);
+    }
+    if dice.below(4) == 0 {
+        study["motion"]["emergency_stops"] = json!(dice.within(1000.0, 6000.0));
+    }
+    for piece in study["chain"].as_array_mut().expect("a chain") {
+        if piece["drive"].is_null() {
+            continue;
+        }
+        if dice.below(3) == 0 {
+            piece["brake"] = json!(true);
+        }
+        if dice.below(6) == 0 {
+            let (full_rpm, most_nm) = (dice.within(4.0, 9.0), dice.within(20.0, 80.0));
+            piece["duty"] = json!([
+                {"torque_nm": most_nm, "time_s": 0.2, "speed_rpm": 0.5 * full_rpm},
+                {"torque_nm": 0.6 * most_nm, "time_s": 0.6, "speed_rpm": full_rpm},
+                {"torque_nm": -0.3 * most_nm, "time_s": 0.2, "speed_rpm": 0.5 * full_rpm},
+                {"torque_nm": 0.5 * most_nm, "time_s": dice.within(0.0, 1.0), "speed_rpm": 0.0}]);
+        }
+    }
+    study
+}
+
+/// The same study without the check.
+fn unheated(study: &Study) -> Study {
+    let mut study = study.clone();
+    study.space.motion.checks_motor_heat = false;
+    study
+}
+
+fn swept(study: &Study, catalogs: &Catalogs) -> Vec<u128> {
+    let problem = ArmProblem::new(&study.space, catalogs);
+    let sweep = Sweep::new(&problem, study.space.constraints, &AtomicBool::new(false)).run();
+    judged(&problem, &sweep.front)
+}
+
+#[test]
+fn the_exact_front_is_the_front_of_every_design_where_motor_heat_decides() {
+    let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
+    let (mut points, mut decided) = (0, 0);
+    for seed in 0..studies() {
+        let text = hot_study(seed);
+        let study = read(&text, &catalogs);
+        let problem = ArmProblem::new(&study.space, &catalogs);
+        let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
+        let exact = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
+        points += agrees(&problem, &exact.front, &sweep.front, &format!("seed {seed}: {text}"));
+        decided += u64::from(judged(&problem, &sweep.front) != swept(&unheated(&study), &catalogs));
+    }
+    println!("{} studies, heat decides {decided}, {points} front designs, the same in both", studies());
+    assert!(decided * 3 > studies(), "heat decides only {decided} of {}", studies());
+    assert!(points as u64 > 5 * studies(), "fronts are too small to say much: {points} designs");
+}
+
+/// A design of a front, by its parts.
+type Row = (Vec<Pick>, Objectives);
+
+/// The front that the sweep finds for one study, in the terms of another.
+fn front(study: &Study, catalogs: &Catalogs) -> Vec<Row> {
+    let problem = ArmProblem::new(&study.space, catalogs);
+    let sweep = Sweep::new(&problem, study.space.constraints, &AtomicBool::new(false)).run();
+    let judged: Vec<Evaluated> = sweep.front.iter().filter_map(|c| evaluate(&problem, c.number)).collect();
+    let points: Vec<_> = judged.iter().map(|d| d.objectives.minimized()).collect();
+    let kept = nondominated(&points).expect("numbers").into_iter().flatten();
+    let row =
+        |i: usize| (picks(&problem, catalogs, judged[i].number).expect("it holds"), judged[i].objectives);
+    kept.map(row).collect()
+}
+
+/// Rows that the verifier says do not hold or have other objectives, and designs that it misses.
+fn faults(truth: &Study, catalogs: &Catalogs, rows: &[Row]) -> [usize; 2] {
+    let question = question(&truth.space);
+    let judge = Judge::new(&question, catalogs);
+    let is_wrong =
+        |(picks, objectives): &&Row| judge.judge(picks).map(|own| own.objectives) != Some(*objectives);
+    let wrong = rows.iter().filter(is_wrong).count();
+    let objectives: Vec<Objectives> = rows.iter().map(|row| row.1).collect();
+    let looked = judge.missing(&objectives, Settings::default(), &AtomicBool::new(false), None);
+    let listed: BTreeSet<&Vec<Pick>> = rows.iter().map(|row| &row.0).collect();
+    let missing = looked.candidates.iter().filter(|design| !listed.contains(&design.picks)).count();
+    [wrong, missing]
+}
+
+#[test]
+fn the_verifier_finds_the_drives_that_a_search_takes_or_drops_by_wrong_heat() {
+    let catalogs = Catalogs::builtin();
+    let (mut forgot, mut pruned) = (0, 0);
+    for seed in 0..studies() {
+        let truth = read(&hot_study(seed), &catalogs);
+        let rows = front(&truth, &catalogs);
+        assert_eq!(faults(&truth, &catalogs, &rows), [0, 0], "seed {seed}");
+        // a search that forgets the check takes drives that do not hold
+        let forgetful = front(&unheated(&truth), &catalogs);
+        if forgetful.iter().any(|row| !rows.contains(row)) {
+            assert!(faults(&truth, &catalogs, &forgetful)[0] > 0, "seed {seed}");
+            forgot += 1;
+        }
+        // a search whose motors are weaker at speed than they are drops drives that hold
+        let mut weaker = catalogs.clone();
+        weaker
+            .motors
+            .iter_mut()
+            .for_each(|m| m.rated_speed_rpm = m.rated_speed_rpm.or(m.max_speed_rpm).map(|n| 0.2 * n));
+        let strict = front(&truth, &weaker);
+        if rows.iter().any(|row| !strict.contains(row)) {
+            let [wrong, missing] = faults(&truth, &catalogs, &strict);
+            assert!(wrong + missing > 0, "seed {seed}");
+            pruned += u64::from(missing > 0);
+        }
+    }
+    println!("{} studies: check forgotten in {forgot}, drives dropped in {pruned}", studies());
+    assert!(4 * forgot > studies() && 4 * pruned > studies(), "{forgot}, {pruned}");
+}
