@@ -83,7 +83,7 @@ fn pose(dice: &mut Dice) -> Value {
     json!({"pose_deg": angles})
 }
 
-fn random_study(seed: u64) -> Value {
+pub fn random_study(seed: u64) -> Value {
     let dice = &mut Dice(seed);
     let mut open = 2;
     let (k4, k3) =
