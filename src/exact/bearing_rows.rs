@@ -230,3 +230,156 @@ fn widen(load: &mut [BearingLoad; 2], other: [BearingLoad; 2]) {
         *load = load.max(other);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalog::Catalogs;
+    use crate::exact::kinds::Ties;
+    use crate::exact::parts::inertia;
+    use crate::exact::problem::{Part, Problem};
+    use crate::exact::work::Work;
+    use crate::input::Document;
+    use crate::space::ArmProblem;
+    use crate::space::problem::Partial;
+    use crate::study::{Study, read_study};
+    use proptest::prelude::*;
+    use serde_json::json;
+    use std::collections::BTreeSet;
+
+    /// An arm with three sized joints, the middle one with an offset to its side, in two poses.
+    fn study(pose_deg: [f64; 3], side_m: f64, tip_n: f64, catalogs: &Catalogs) -> Study {
+        let drives =
+            json!({"gear_series": ["CSG"], "ratios": [100], "motor_models": ["ILM70x18", "ILM85x26"]});
+        let joint = |name: &str, axis: [f64; 3], drive: &str| json!({"type": "joint", "name": name, "axis": axis, "drive": drive, "drives": drives});
+        let text = json!({"name": "loads", "chain": [
+            joint("waist", [0.0, 0.0, 1.0], "first_fit"),
+            {"type": "link", "name": "column", "vector_m": [0, 0, 0.3], "mass_kg": 3},
+            joint("shoulder", [0.0, 1.0, 0.0], "all_fits"),
+            {"type": "link", "name": "upper_arm", "vector_m": [0.6, side_m, 0], "choose": {"materials": ["Aluminium 6061-T6", "Structural steel S355"],
+                "sections": [{"shape": "rectangular_tube", "width_mm": [60, 120], "height_mm": [80, 110], "wall_mm": [3]},
+                             {"shape": "round_tube", "diameter_mm": [70, 100], "wall_mm": [4]}]}},
+            joint("elbow", [0.0, 1.0, 0.0], "all_fits"),
+            {"type": "link", "name": "forearm", "vector_m": [0.4, 0, 0], "mass_kg": 1}],
+            "payload": {"mass_kg": 3, "cg_m": [0.05, side_m / 5.0, 0.03], "inertia_about_cg_kgm2": [0.01, 0.02, 0.015]},
+            "tip_force_n": [0, tip_n, -10],
+            "poses": [{"pose_deg": pose_deg}, {"pose_deg": [0, 0, 0]}],
+            "motion": {"tip_speed_m_s": 1.0, "ramp_time_s": 0.2}});
+        let document = Document::parse("loads", &text.to_string()).expect("JSON");
+        read_study(document, catalogs).unwrap_or_else(|fault| panic!("{fault}"))
+    }
+
+    fn numbers(demand: &BearingDemand) -> [f64; 9] {
+        let of = |load: BearingLoad| [load.moment_nm, load.radial_n, load.axial_n];
+        let all = [of(demand.at_rest), of(demand.running), of(demand.in_stop)];
+        std::array::from_fn(|k| all[k / 3][k % 3])
+    }
+
+    /// Whether each number of a demand is within a relative tolerance of lying between those of two others.
+    fn is_between(demand: &BearingDemand, ends: &[BearingDemand; 2], tolerance: f64) -> bool {
+        let [low, high] = ends.each_ref().map(numbers);
+        let slack = |x: f64| tolerance * (1.0 + x);
+        numbers(demand).iter().enumerate().all(|(k, x)| low[k] - slack(*x) <= *x && *x <= high[k] + slack(*x))
+    }
+
+    /// The loads on every sized joint of a design, tip first, as the walk over its arm computes them.
+    fn walked(problem: &ArmProblem, options: &[u32]) -> Option<Vec<BearingDemand>> {
+        let mut loads = Vec::new();
+        let see = |slot: usize, outboard: &Partial| {
+            if problem.sized_joint(problem.piece_of_slot(slot)).is_some() {
+                loads.push(problem.demand_at(outboard, slot).bearing);
+            }
+        };
+        problem.walk(options, see).ok()?;
+        Some(loads)
+    }
+
+    /// The loads of a box on every sized joint, tip first.
+    fn of_box(problem: &Problem, design_box: &mut [u32], work: &mut Work) -> Option<Vec<[BearingDemand; 2]>> {
+        problem.fill(design_box, work)?;
+        let sized = problem
+            .parts
+            .iter()
+            .enumerate()
+            .filter(|(_, part)| matches!(part, Part::Drives { .. } | Part::FirstFit { .. }));
+        Some(sized.map(|(piece, _)| problem.bearing_loads(piece, work)).collect())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        /// The box of one design has exactly the design's loads, and the box of all designs encloses them.
+        #[test]
+        fn loads_of_a_box_enclose_those_of_its_members(
+            pose_deg in prop::array::uniform3(-150.0f64..150.0), side_m in prop::sample::select(vec![0.0, 0.1]),
+            tip_n in prop::sample::select(vec![0.0, 25.0]), picks in prop::collection::vec(any::<u32>(), 24),
+        ) {
+            let catalogs = Catalogs::builtin();
+            let study = study(pose_deg, side_m, tip_n, &catalogs);
+            let arms = ArmProblem::new(&study.space, &catalogs);
+            let problem = Problem::new(&study.space, &catalogs, &|_| true, Ties::Separate).expect("options");
+            let mut work = Work::default();
+            let all = of_box(&problem, &mut problem.root(), &mut work).expect("some arm holds");
+            let mut held = 0;
+            for picks in picks.chunks(3) {
+                let options: Vec<u32> = picks.iter().zip(&problem.level_sizes).map(|(p, n)| p % n).collect();
+                let leaf = |(&piece, &option): (&usize, &u32)| {
+                    let wanted = BTreeSet::from([option]);
+                    match &problem.parts[piece] {
+                        Part::Drives { tree, .. } => tree.leaves_of(&wanted)[&option],
+                        Part::Links { tree, .. } => tree.leaves_of(&wanted)[&option],
+                        _ => 0,
+                    }
+                };
+                let mut design_box: Vec<u32> = problem.level_pieces.iter().zip(&options).map(leaf).collect();
+                let of_box = of_box(&problem, &mut design_box, &mut work);
+                let of_arm = walked(&arms, &options);
+                prop_assert_eq!(of_box.is_some(), of_arm.is_some(), "{:?}", options);
+                let (Some(of_box), Some(of_arm)) = (of_box, of_arm) else { continue };
+                prop_assert_eq!(of_arm.len(), 3);
+                held += 1;
+                for (joint, load) in of_arm.iter().enumerate() {
+                    let [least, most] = of_box[joint];
+                    prop_assert!(is_between(load, &[most, least], 1e-9), "{load:?} is not {:?}", of_box[joint]);
+                    prop_assert!(is_between(load, &all[joint], 1e-9), "{load:?} is outside {:?}", all[joint]);
+                }
+            }
+            prop_assert!(held > 0, "no design holds");
+        }
+
+        /// If the loads on a bearing are said to grow with the mass of a drive, they do, whatever the other parts weigh.
+        #[test]
+        fn loads_that_are_said_to_grow_with_a_drive_do(
+            pose_deg in prop::array::uniform3(-60.0f64..60.0), side_m in prop::sample::select(vec![0.0, 0.1]),
+            masses in prop::collection::vec(0.0f64..20.0, 16), more_kg in 0.1f64..10.0,
+        ) {
+            let catalogs = Catalogs::builtin();
+            for pose_deg in [pose_deg, [0.0; 3], [pose_deg[0], 0.0, 0.0]] {
+                let study = study(pose_deg, side_m, 0.0, &catalogs);
+                let problem = Problem::new(&study.space, &catalogs, &|_| true, Ties::Separate).expect("options");
+                let is_drive = |piece: usize| matches!(problem.parts[piece], Part::Drives { .. });
+                for rows in problem.poses.iter().flat_map(|pose| pose.bearings.iter().flatten()) {
+                    // at a right angle everywhere, as in the pose at rest, the answer must be yes
+                    let grows = rows.grow_with_mass(&is_drive);
+                    prop_assert!(grows || pose_deg != [0.0; 3] || side_m != 0.0);
+                    if !grows {
+                        continue;
+                    }
+                    let loads = |more: Option<usize>| {
+                        let mass = |piece: usize| masses[piece % 16] + if more == Some(piece) { more_kg } else { 0.0 };
+                        let pieces = 0..problem.parts.len();
+                        let weights: Vec<[f64; 2]> = pieces.clone().map(|piece| [9.81 * mass(piece); 2]).collect();
+                        let lines: Vec<[f64; INERTIAS]> = pieces
+                            .map(|piece| std::array::from_fn(|k| if k == inertia::MASS { mass(piece) } else { 0.01 }))
+                            .collect();
+                        rows.loads(&Numbers { weights_n: &weights, light: &lines, heavy: &lines }, 2.0)[0]
+                    };
+                    for piece in (0..problem.parts.len()).filter(|piece| is_drive(*piece)) {
+                        let (before, after) = (numbers(&loads(None)), numbers(&loads(Some(piece))));
+                        prop_assert!(before.iter().zip(after).all(|(a, b)| *a <= b * (1.0 + 1e-12) + 1e-9), "{before:?} {after:?}");
+                    }
+                }
+            }
+        }
+    }
+}

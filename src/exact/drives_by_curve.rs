@@ -84,14 +84,15 @@ mod tests {
     use crate::arm::joint_law::{Curve, JointLaw, Windup};
     use crate::exact::dual_price::JointPrice;
     use crate::exact::parts::Rays;
+    use crate::exact::pose::TILT;
     use crate::exact::torsion::BreakPoints;
-    use crate::sizing::bearing::BearingLimits;
+    use crate::sizing::bearing::{BearingDemand, BearingLimits};
     use crate::sizing::heat::MotorHeat;
     use crate::sizing::limits::DriveLimits;
     use crate::sizing::requirement::MotionRequirement;
     use proptest::prelude::*;
 
-    fn drive(mass_kg: f64, k1: f64, torque_nm: f64, rays: &Rays) -> DriveBox {
+    fn drive([mass_kg, k1, torque_nm, tilt]: [f64; 4], rays: &Rays) -> DriveBox {
         let windup = Windup {
             k1_nm_per_rad: k1,
             k2_nm_per_rad: 1.5 * k1,
@@ -114,6 +115,7 @@ mod tests {
             multiples: rays.capacity(&limits),
             curve: CurveBox::of(&JointLaw::from(Curve::Windup(windup))),
             breaks: BreakPoints::of(&windup),
+            tilt_rad_per_nm: [tilt; 2],
             each: None,
         }
     }
@@ -121,22 +123,25 @@ mod tests {
     proptest! {
         #[test]
         fn no_drive_that_holds_is_cheaper_whatever_the_prices_are(
-            drives in prop::collection::vec((1u32..20, 1u32..5, 1u32..20), 1..60), asked_nm in 0.0f64..15.0, per_kg in -2.0f64..2.0,
-            twist in -2.0f64..2.0, torque in -1.0f64..1.0, slope in 0.0f64..1.0, from_nm in -3.0f64..3.0, wide_nm in 0.0f64..3.0,
+            drives in prop::collection::vec(prop::array::uniform4(1u32..20), 1..60), asked_nm in 0.0f64..15.0, per_kg in -2.0f64..2.0,
+            twist in -2.0f64..2.0, torque in -1.0f64..1.0, slope in 0.0f64..1.0, tilt in prop::array::uniform2(-1.0f64..1.0), from_nm in -3.0f64..3.0, wide_nm in 0.0f64..3.0,
         ) {
             let motion = MotionRequirement::default().joint_motion(1.35, None);
             let rays = Rays::new(&motion, 5.0, 1.0);
-            let asked = LeastDemand::new(&motion, &rays, asked_nm, 0.1 * asked_nm);
+            let asked = LeastDemand::new(&motion, &rays, asked_nm, 0.1 * asked_nm, BearingDemand::default());
             let drives: Vec<DriveBox> = drives
                 .into_iter()
-                .map(|(kg, k, nm)| drive(f64::from(kg), f64::from(k), f64::from(nm), &rays))
+                .map(|[kg, k, nm, tilt]| drive([kg, k % 5 + 1, nm, tilt % 3 + 1].map(f64::from), &rays))
                 .collect();
             let joint = JointPrice { twist, torque, slope, torques_nm: [from_nm, from_nm + wide_nm], play: None };
             let mut price = DualPrice { joint: vec![joint], ..DualPrice::default() };
             price.inertia[0] = per_kg;
+            price.compliance[TILT] = tilt[0];
+            price.stiffness[TILT] = tilt[1].max(0.0);
             let options = drives.iter().cloned().enumerate().map(|(i, drive)| (i as u32, drive));
             let tree = Tree::build(options).unwrap();
-            let cost = |drive: &DriveBox| price.of_joint(drive.mass_kg, drive.curve.as_ref());
+            let cost =
+                |drive: &DriveBox| price.of_joint(drive.mass_kg, drive.curve.as_ref(), drive.tilt_rad_per_nm);
             let holding: Vec<&DriveBox> = drives.iter().filter(|drive| drive.hold(&asked.demand)).collect();
             let least = holding.iter().map(|drive| cost(drive)).fold(f64::INFINITY, f64::min);
             let found = DrivesByCurve::new(&tree, 0, Some(&asked)).cheapest(&price);

@@ -144,7 +144,7 @@ impl Problem<'_> {
     }
 
     /// The least and the greatest loads on the bearing of a joint; zero if no bearing is checked.
-    fn bearing_loads(&self, piece: usize, work: &Work) -> [BearingDemand; 2] {
+    pub(super) fn bearing_loads(&self, piece: usize, work: &Work) -> [BearingDemand; 2] {
         let Some(lever) = self.levers[piece] else { return [BearingDemand::default(); 2] };
         let cases = self.poses.iter().zip(&work.weights);
         let [least, most] = cases

@@ -309,12 +309,12 @@ impl Bounds for DriveBox {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sizing::bearing::BearingLimits;
+    use crate::sizing::bearing::{BearingLimits, BearingLoad};
     use crate::sizing::heat::MotorHeat;
     use crate::sizing::requirement::MotionRequirement;
     use proptest::prelude::*;
 
-    /// A drive whose limits are multiples of the demand of 100 N m and 10 kg m².
+    /// A drive whose limits are multiples of the demand of 100 N m and 10 kg m², and of a moment of 100 N m on its bearing.
     fn drive(of: [u32; 5], motion: &JointMotion, rays: &Rays) -> DriveBox {
         let usual = motion.demand(100.0, 10.0);
         let times = |k: usize| 0.2 * f64::from(of[k]);
@@ -323,7 +323,7 @@ mod tests {
             peak_torque_nm: times(1) * usual.peak_torque_nm(),
             stop_torque_nm: times(2) * usual.stop_torque_nm,
             mean_torque_cubed_nm3: times(3).powi(3) * usual.mean_torque_cubed_nm3,
-            bearing: BearingLimits::NONE,
+            bearing: BearingLimits { running_moment_nm: 100.0 * times(4), ..BearingLimits::NONE },
             heat: MotorHeat::NONE,
         };
         DriveBox {
@@ -344,11 +344,13 @@ mod tests {
         #[test]
         fn a_kind_holds_what_any_of_its_drives_holds(
             kinds in prop::collection::vec(prop::collection::vec(prop::array::uniform5(1u32..12), 1..5), 1..4),
-            static_nm in 1.0f64..250.0, inertia_kgm2 in 0.1f64..25.0,
+            static_nm in 1.0f64..250.0, inertia_kgm2 in 0.1f64..25.0, moment_nm in 0.0f64..200.0,
         ) {
             let motion = MotionRequirement::default().joint_motion(1.35, None);
             let rays = Rays::new(&motion, 50.0, 5.0);
-            let asked = LeastDemand::new(&motion, &rays, static_nm, inertia_kgm2);
+            let running = BearingLoad { moment_nm, ..BearingLoad::default() };
+            let bearing = BearingDemand { running, ..BearingDemand::default() };
+            let asked = LeastDemand::new(&motion, &rays, static_nm, inertia_kgm2, bearing);
             let mut with_ties = Vec::new();
             for kind in &kinds {
                 let drives: Vec<DriveBox> = kind.iter().map(|of| drive(*of, &motion, &rays)).collect();

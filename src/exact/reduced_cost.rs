@@ -262,7 +262,7 @@ mod tests {
             let (low, high) = (line(0.0), line(1.0));
             let compliances = [high.stiffnesses.map(f64::recip), low.stiffnesses.map(f64::recip)];
             let links =
-                LinkBox { low, high, compliances, stress: [0.0; 4], round: false, cost_eur_per_m: 0.0 };
+                LinkBox { low, high, compliances, stress: [0.0; 4], round: false, cost_eur_per_m: 0.0, lever_m: [0.0; 2] };
             let prices = prices.iter().map(|numbers| price(numbers)).collect();
             let cost = |price: &DualPrice| price.of_tube(&links);
             let afforded = afforded(prices, cost, dear);
@@ -272,13 +272,14 @@ mod tests {
         }
 
         /// Eight prices at once exclude exactly what each excludes alone, for drives whose gears are in one of three
-        /// segments under torques of either sign.
+        /// segments under torques of either sign, and whose bearings tilt or not.
         #[test]
         fn drives_cost_the_same_side_by_side(
-            prices in prop::collection::vec(prop::array::uniform8(-1.0f64..1.0), 1..20),
+            prices in prop::collection::vec(prop::array::uniform10(-1.0f64..1.0), 1..20),
             slopes in prop::array::uniform6(0.1f64..3.0), ends in prop::array::uniform2(0.1f64..3.0),
             torques in prop::array::uniform2((-5.0f64..5.0, 0.0f64..5.0)),
-            mass_kg in 0.1f64..3.0, more_kg in 0.0f64..1.0, dear in 0usize..30,
+            mass_kg in 0.1f64..3.0, more_kg in 0.0f64..1.0, tilts: bool, tilt in prop::array::uniform2(0.1f64..3.0),
+            dear in 0usize..30,
         ) {
             let curve = |k: &[f64]| {
                 let windup = crate::arm::joint_law::Windup {
@@ -292,16 +293,23 @@ mod tests {
                 mass_kg: [mass_kg, mass_kg + more_kg],
                 limits: ANY, least_limits: ANY, multiples: Default::default(),
                 curve: Some(curve), breaks: Default::default(), each: None,
+                tilt_rad_per_nm: if tilts { [tilt[0], tilt[0] + tilt[1]] } else { [0.0; 2] },
             };
             let joint = |g: usize, n: &[f64]| JointPrice {
                 twist: n[0], torque: n[1], slope: n[2].max(0.0),
                 torques_nm: [torques[g].0, torques[g].0 + torques[g].1], play: None,
             };
-            let prices = prices.iter().map(|n| DualPrice {
-                joint: vec![joint(0, &n[2..5]), joint(1, &n[5..8])],
-                ..price(&n[..1])
+            let prices = prices.iter().map(|n| {
+                let mut price = DualPrice {
+                    joint: vec![joint(0, &n[2..5]), joint(1, &n[5..8])],
+                    ..price(&n[..1])
+                };
+                price.compliance[TILT] = n[8];
+                price.stiffness[TILT] = n[9].max(0.0);
+                price
             });
-            let cost = |price: &DualPrice| price.of_joint(drives.mass_kg, drives.curve.as_ref());
+            let cost =
+                |price: &DualPrice| price.of_joint(drives.mass_kg, drives.curve.as_ref(), drives.tilt_rad_per_nm);
             let afforded = afforded(prices.collect(), cost, dear);
             let eights: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
             let gears = &afforded[0].0.joint;
