@@ -67,7 +67,7 @@ impl<'c> Joints<'c> {
 impl JointNeeds {
     /// What a pose has to know about a joint whose drives are in a slot.
     fn of(space: &DesignSpace, joint: &SpaceJoint, reach_m: f64, slot: &Slot) -> Self {
-        let motion = space.motion.joint_motion(reach_m, joint.max_speed_rad_s);
+        let motion = joint.motion(&space.motion, reach_m);
         let of_gear = Self { acceleration_rad_s2: motion.acceleration_rad_s2, ..Self::default() };
         let Slot::Sized(sized) = slot else { return of_gear };
         let limits = (0..sized.table.len()).map(|i| sized.table.limits(i).bearing);

@@ -2,8 +2,7 @@
 //! 8 and 12, cubic mean over the duty cycle).
 
 use super::bearing::BearingDemand;
-use super::duty::MeanTorqueWeights;
-use super::heat::HeatWeights;
+use super::duty::{HeatWeights, MeanTorqueWeights};
 use super::stated::{StatedDemand, StatedDuty};
 use super::{RAD_S_PER_RPM, rpm_from_rad_s};
 

@@ -1,8 +1,6 @@
 //! Duty cycles: the cycle that a joint repeats, its mean speed, and the weights of its cubic mean torque and of the heat
 //! of its motor.
 
-use super::heat::HeatWeights;
-
 /// What a joint does during one phase of the duty cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PhaseKind {
@@ -151,6 +149,31 @@ pub struct MeanTorqueWeights {
 impl MeanTorqueWeights {
     /// Nothing of the arm counts: the mean torque is that of a stated duty.
     pub(super) const NONE: Self = Self { sum: 0.0, steady: 0.0, difference: 0.0 };
+}
+
+/// Shares of the cycle's time, as weights of squared torques.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct HeatWeights {
+    /// Weight of the phases of speeding up.
+    pub sum: f64,
+    /// Weight of moving under the static torque.
+    pub steady: f64,
+    /// Weight of the phases of slowing down.
+    pub difference: f64,
+    /// Weight of standing under the static torque; 0 if a brake holds the joint.
+    pub standing: f64,
+}
+
+impl HeatWeights {
+    /// All weights times a factor.
+    pub(crate) fn times(self, factor: f64) -> Self {
+        Self {
+            sum: self.sum * factor,
+            steady: self.steady * factor,
+            difference: self.difference * factor,
+            standing: self.standing * factor,
+        }
+    }
 }
 
 #[cfg(test)]

@@ -6,7 +6,8 @@
 use super::bearing::{AXIAL_SHARE, BearingLimits};
 use super::demand::JointMotion;
 use super::demand::LinearReading;
-use super::heat::{HeatWeights, MotorHeat};
+use super::duty::HeatWeights;
+use super::heat::MotorHeat;
 use super::limits::DriveLimits;
 use super::select::DriveTable;
 use crate::mechanics::lanes::{LANES, Lanes};

@@ -36,31 +36,6 @@ use super::drive::{Drive, Rating, known};
 use super::limits::input_speed_rpm;
 use crate::catalog::motor::Motor;
 
-/// Shares of the cycle's time, as weights of squared torques.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct HeatWeights {
-    /// Weight of the phases of speeding up.
-    pub sum: f64,
-    /// Weight of moving under the static torque.
-    pub steady: f64,
-    /// Weight of the phases of slowing down.
-    pub difference: f64,
-    /// Weight of standing under the static torque; 0 if a brake holds the joint.
-    pub standing: f64,
-}
-
-impl HeatWeights {
-    /// All weights times a factor.
-    pub(crate) fn times(self, factor: f64) -> Self {
-        Self {
-            sum: self.sum * factor,
-            steady: self.steady * factor,
-            difference: self.difference * factor,
-            standing: self.standing * factor,
-        }
-    }
-}
-
 /// What a motor behind its gear uses of its continuous torque T_c. A drive that holds more has smaller numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotorHeat {
@@ -93,7 +68,9 @@ impl MotorHeat {
             stated_share_squared: 0.0,
         };
         let inertia_s2 = drive.input_inertia_kgm2()? * ratio / continuous_nm;
-        let stated = motion.stated.map_or(0.0, |stated| stated.heat.share_squared(&heat, inertia_s2));
+        let stated = motion.stated.map_or(0.0, |stated| {
+            stated.heat.share_squared([heat.driving_per_nm, heat.driven_per_nm], inertia_s2)
+        });
         Ok(Self { stated_share_squared: stated, ..heat })
     }
 
@@ -175,37 +152,6 @@ pub(super) fn continuous_torque_nm(motor: &Motor, speed_rpm: f64) -> Rating {
         Some(rated_rpm) if speed_rpm > rated_rpm => rated_nm * rated_rpm / speed_rpm,
         _ => rated_nm,
     })
-}
-
-/// The motor's torque over a stated duty: sums from which the mean square of any drive follows. A phase of time share w
-/// with torque T and acceleration α counts as w (T p + α c)², p being the share for each newton metre and c that for each
-/// rad/s² of the joint.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct StatedHeat {
-    /// Sum of w T² where the motor drives, and where it is driven \[(N m)²\].
-    pub(super) torque_nm2: [f64; 2],
-    /// Sum of w T α, in the same order \[N m rad/s²\].
-    pub(super) mixed_nm_rad_s2: [f64; 2],
-    /// Sum of w α² \[rad²/s⁴\].
-    pub(super) acceleration_rad2_s4: f64,
-}
-
-impl StatedHeat {
-    fn share_squared(&self, heat: &MotorHeat, inertia_s2: f64) -> f64 {
-        let per_nm = [heat.driving_per_nm, heat.driven_per_nm];
-        let torque: f64 = (0..2).map(|i| self.torque_nm2[i] * per_nm[i] * per_nm[i]).sum();
-        let mixed: f64 = (0..2).map(|i| self.mixed_nm_rad_s2[i] * per_nm[i]).sum();
-        torque + 2.0 * inertia_s2 * mixed + inertia_s2 * inertia_s2 * self.acceleration_rad2_s4
-    }
-
-    /// The same duty with every acceleration times a factor.
-    pub(super) fn slowed(self, factor: f64) -> Self {
-        Self {
-            mixed_nm_rad_s2: self.mixed_nm_rad_s2.map(|x| x * factor),
-            acceleration_rad2_s4: self.acceleration_rad2_s4 * factor * factor,
-            ..self
-        }
-    }
 }
 
 #[cfg(test)]

@@ -1,4 +1,6 @@
-use super::super::duty::DutyCycle;
+//! Tests of the heat of motors: against a motion that is stepped through in time, and of random members of boxes.
+
+use super::super::duty::{DutyCycle, HeatWeights};
 use super::super::limits::DriveLimits;
 use super::super::requirement::MotionRequirement;
 use super::super::stated::{StatedDuty, StatedPhase};

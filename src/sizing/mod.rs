@@ -54,14 +54,14 @@ pub use drive::{
     Drive, MissingRating, critical_rpm, motor_torque_nm, reference_life_h, rotary_torque_motor_nm,
     rotary_torque_output_nm,
 };
-pub use duty::{DutyCycle, MeanTorqueWeights, Phase, PhaseKind};
+pub use duty::{DutyCycle, HeatWeights, MeanTorqueWeights, Phase, PhaseKind};
 pub use explain::{RejectedPart, Rejection, Relaxation, RelaxationKind, Shortfall};
-pub use heat::{HeatWeights, MotorHeat, StatedHeat};
+pub use heat::MotorHeat;
 pub use limits::{DriveLimits, Obstacle};
 pub use requirement::{MotionRequirement, RequirementError};
 pub use select::{DriveFilter, DriveTable};
 pub use sheet::{JointSizingRow, render_rows};
-pub use stated::{StatedDemand, StatedDuty, StatedPhase};
+pub use stated::{StatedDemand, StatedDuty, StatedHeat, StatedPhase};
 
 /// One revolution a minute in rad/s.
 const RAD_S_PER_RPM: f64 = std::f64::consts::PI / 30.0;

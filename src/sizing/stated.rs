@@ -1,7 +1,6 @@
 //! A duty that the study states for a joint: torques, times and speeds at its output, as a vendor's worked example has them.
 
 use super::RAD_S_PER_RPM;
-use super::heat::StatedHeat;
 
 /// One phase of a stated duty.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -137,5 +136,37 @@ impl StatedDemand {
     /// The same duty with every acceleration times a factor.
     pub(super) fn slowed(self, factor: f64) -> Self {
         Self { heat: self.heat.slowed(factor), ..self }
+    }
+}
+
+/// The motor's torque over a stated duty: sums from which the mean square of any drive follows. A phase of time share w
+/// with torque T and acceleration α counts as w (T p + α c)², p being the share for each newton metre and c that for each
+/// rad/s² of the joint.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct StatedHeat {
+    /// Sum of w T² where the motor drives, and where it is driven \[(N m)²\].
+    torque_nm2: [f64; 2],
+    /// Sum of w T α, in the same order \[N m rad/s²\].
+    mixed_nm_rad_s2: [f64; 2],
+    /// Sum of w α² \[rad²/s⁴\].
+    acceleration_rad2_s4: f64,
+}
+
+impl StatedHeat {
+    /// Mean square as a share of the square of the continuous torque, of a drive with these shares per torque that the motor
+    /// drives and per torque that drives it \[1/(N m)\], and for each rad/s² of the joint \[s²\].
+    pub(super) fn share_squared(&self, per_nm: [f64; 2], inertia_s2: f64) -> f64 {
+        let torque: f64 = (0..2).map(|i| self.torque_nm2[i] * per_nm[i] * per_nm[i]).sum();
+        let mixed: f64 = (0..2).map(|i| self.mixed_nm_rad_s2[i] * per_nm[i]).sum();
+        torque + 2.0 * inertia_s2 * mixed + inertia_s2 * inertia_s2 * self.acceleration_rad2_s4
+    }
+
+    /// The same duty with every acceleration times a factor.
+    fn slowed(self, factor: f64) -> Self {
+        Self {
+            mixed_nm_rad_s2: self.mixed_nm_rad_s2.map(|x| x * factor),
+            acceleration_rad2_s4: self.acceleration_rad2_s4 * factor * factor,
+            ..self
+        }
     }
 }

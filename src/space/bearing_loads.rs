@@ -83,7 +83,7 @@ impl BearingLoads {
             let SpacePiece::Joint(joint) = what else { continue };
             let slot = piece_slots[piece];
             let reach_m = reaches_m.next().copied().unwrap_or_default();
-            let motion = space.motion.joint_motion(reach_m, joint.max_speed_rad_s);
+            let motion = joint.motion(&space.motion, reach_m);
             movers.push(Mover { slot, acceleration_rad_s2: motion.acceleration_rad_s2 });
             if is_checked(&slots[slot], joint) {
                 levers[slot] = Some(Lever::new(space, piece, joint, piece_slots));

@@ -113,7 +113,7 @@ fn swing(check: bool) -> Value {
         "sections": [{"shape": "rectangular_tube", "width_mm": 100, "height_mm": 100, "wall_mm": [4, 6]}]}});
     let mut study = json!({"name": "swing", "chain": [
         {"type": "joint", "name": "j1", "axis": [0, 0, 1], "drive": "first_fit",
-         "drives": {"gears": ["CSG-20-100"], "motors": ["electric"]}}, link],
+         "bearing": null, "drives": {"gears": ["CSG-20-100"], "motors": ["electric"]}}, link],
         "payload": {"mass_kg": 10}, "poses": [{"pose_deg": [0]}],
         "motion": {"tip_speed_m_s": 2, "ramp_time_s": 0.2, "life_h": 5000}});
     if !check {
