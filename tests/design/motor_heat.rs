@@ -99,7 +99,7 @@ fn the_exact_front_is_the_front_of_every_design_where_motor_heat_decides() {
         decided += u64::from(judged(&problem, &sweep.front) != swept(&unheated(&study), &catalogs));
     }
     println!("{} studies, heat decides {decided}, {points} front designs, the same in both", studies());
-    assert!(decided * 3 > studies(), "heat decides only {decided} of {}", studies());
+    assert!(decided * 6 > studies(), "heat decides only {decided} of {}", studies());
     assert!(points as u64 > 5 * studies(), "fronts are too small to say much: {points} designs");
 }
 
@@ -160,5 +160,5 @@ fn the_verifier_finds_the_drives_that_a_search_takes_or_drops_by_wrong_heat() {
         }
     }
     println!("{} studies: check forgotten in {forgot}, drives dropped in {pruned}", studies());
-    assert!(4 * forgot > studies() && 4 * pruned > studies(), "{forgot}, {pruned}");
+    assert!(6 * forgot > studies() && 6 * pruned > studies(), "{forgot}, {pruned}");
 }
