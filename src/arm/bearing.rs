@@ -61,6 +61,11 @@ impl Bearing {
         self.tilt_stiffness_nm_per_rad.map_or(0.0, |stiffness| 1.0 / stiffness)
     }
 
+    /// The same bearing with its tilting stiffness times a factor.
+    pub(crate) fn stiffened(self, factor: f64) -> Self {
+        Self { tilt_stiffness_nm_per_rad: self.tilt_stiffness_nm_per_rad.map(|k| k * factor), ..self }
+    }
+
     /// Reads a bearing that is written as an object.
     fn read(node: &Node) -> Option<Self> {
         let object = node.object(&KEYS)?;

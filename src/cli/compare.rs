@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use super::values::number_list;
+use super::version::refuse_earlier;
 use super::write::write_all;
 use crate::report::compare::comparison::{Comparison, compare};
 use crate::report::compare::contender::Contender;
@@ -128,15 +129,30 @@ fn load(results: &[PathBuf]) -> Result<Loaded, Failure> {
     if let [one] = results
         && one.is_dir()
     {
+        refuse_earlier_run(one)?;
         return Ok(Loaded { contenders: materials_of(one)?, one_study: false });
     }
     let labels = labels(results);
     let contenders = results
         .iter()
         .zip(&labels)
-        .map(|(path, label)| Ok(Contender::new(label, front_at(path)?)))
+        .map(|(path, label)| {
+            refuse_earlier_run(path)?;
+            Ok(Contender::new(label, front_at(path)?))
+        })
         .collect::<Result<Vec<_>, Failure>>()?;
     Ok(Loaded { contenders, one_study: results.len() > 1 && is_one_study(results) })
+}
+
+/// Refuses a result folder, or a front file in one, that an earlier version made. A front without a run.json beside it does
+/// not say what made it.
+fn refuse_earlier_run(path: &Path) -> Result<(), Failure> {
+    let dir = if path.is_dir() { path } else { path.parent().unwrap_or(path) };
+    let file = dir.join("run.json");
+    if !file.is_file() {
+        return Ok(());
+    }
+    refuse_earlier(&file, &run_json(dir)?)
 }
 
 /// The front of a result folder or a front file.

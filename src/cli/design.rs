@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use super::finished::{catalogs_hash, pretty};
+use super::version::refuse_earlier;
 use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
@@ -67,13 +68,14 @@ pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Fail
     ))
 }
 
-/// Reads the facts of a result's run. Fails if the result was made with other catalogs, because an id would
-/// then name another design.
+/// Reads the facts of a result's run. Fails if an earlier version made the result, or if it was made with other
+/// catalogs, because an id would then name another design.
 pub(super) fn check_catalogs(results: &Path, catalogs: &Catalogs) -> Result<Value, Failure> {
     let path = results.join("run.json");
     let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;
     let run: Value =
         serde_json::from_str(&text).map_err(|e| Failure::File(format!("{}: {e}", path.display())))?;
+    refuse_earlier(&path, &run)?;
     if run["catalogs_hash"].as_str() == Some(&catalogs_hash(catalogs)) {
         return Ok(run);
     }

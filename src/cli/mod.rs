@@ -20,6 +20,7 @@ pub(crate) mod size;
 pub(crate) mod supplements;
 pub(crate) mod values;
 pub(crate) mod verbs;
+pub(crate) mod version;
 pub(crate) mod write;
 
 pub use failure::Failure;

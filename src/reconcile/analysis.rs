@@ -12,7 +12,7 @@ use super::forward::prepared::Forward;
 use super::model::candidates::candidates;
 use super::model::estimate::Interval;
 use super::model::estimate::{Estimate, Finding};
-use super::model::parameters::{Calibration, Candidate, Model, Nuisance};
+use super::model::parameters::{Candidate, Model, Nuisance};
 use super::readings::campaign::Campaign;
 use super::select::few_rows;
 use super::select::lack_of_fit::{LackOfFit, lack_of_fit};
@@ -352,11 +352,7 @@ impl Analysis<'_> {
                 let factor = |u: f64| fit.model.nuisance.factor(i, u);
                 let (u, sd) = (fit.point.u[i], sds[i].min(1.0));
                 Calibrated {
-                    name: match calibration {
-                        Calibration::Stiffness(joint) => format!("{joint}.stiffness"),
-                        Calibration::Mass(joint) => format!("{joint}.mass"),
-                        Calibration::Modulus(material, _) => format!("{material}.modulus"),
-                    },
+                    name: calibration.name(),
                     factor: Estimate {
                         value: factor(u),
                         low: Some(factor(u - 1.96 * sd)),

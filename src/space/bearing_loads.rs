@@ -5,7 +5,7 @@ use super::design_space::{DesignSpace, SpaceJoint, SpacePiece};
 use super::slot::Slot;
 use super::station::StationJoint;
 use crate::arm::section::Section;
-use crate::arm::{Link, LinkBody};
+use crate::arm::{Bearing, Element, Link, LinkBody};
 use crate::mechanics::beam::section_frame;
 use crate::mechanics::chain::across;
 use crate::mechanics::{Wrench, angular, linear};
@@ -45,7 +45,8 @@ impl Lever {
 
     /// A joint whose link attaches at a stated offset, or at half the width of the link that is next to it.
     pub(crate) fn new(space: &DesignSpace, piece: usize, joint: &SpaceJoint, piece_slots: &[usize]) -> Self {
-        let half_m = |vector_m: &Vector3<f64>, section: &Section| half_width_m(joint, vector_m, section);
+        let half_m =
+            |vector_m: &Vector3<f64>, section: &Section| half_width_m(&joint.axis, vector_m, section);
         if let Some(offset_m) = joint.bearing.stated().and_then(|bearing| bearing.offset_m) {
             return Self { link_slot: None, lever_m: vec![offset_m.abs()] };
         }
@@ -65,9 +66,22 @@ impl Lever {
     }
 }
 
+/// The bearing of a joint of an arm with its lever resolved: the offset of the flange, and half the extent of the link that is
+/// next to the joint.
+pub(crate) fn resolved(bearing: Bearing, axis: &Vector3<f64>, next: Option<&Element>) -> Bearing {
+    let half_m = match next {
+        Some(Element::Link(Link { vector_m, body: LinkBody::Tube { section, .. }, .. })) => {
+            half_width_m(axis, vector_m, section)
+        }
+        _ => 0.0,
+    };
+    let lever_m = bearing.ratings.offset_m.unwrap_or_default() + half_m;
+    Bearing { offset_m: bearing.offset_m.or(Some(lever_m)), ..bearing }
+}
+
 /// Half the extent of a link along the axis of the joint that carries it \[m\].
-fn half_width_m(joint: &SpaceJoint, vector_m: &Vector3<f64>, section: &Section) -> f64 {
-    let along = section_frame(vector_m).tr_mul(&joint.axis);
+fn half_width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section) -> f64 {
+    let along = section_frame(vector_m).tr_mul(axis);
     let (width_m, height_m) = section.outer_m();
     // exact for a box seen along one of its sides, and for a round tube that is not oblique
     (width_m / 2.0 * along.y).hypot(height_m / 2.0 * along.z)

@@ -1,5 +1,6 @@
 //! One complete design: its number, its parts, its arm, and its objectives by the full model.
 
+use super::bearing_loads::resolved;
 use super::design_space::{DriveChoice, LinkOption, SpacePiece};
 use super::levels::OutwardIn;
 use super::problem::ArmProblem;
@@ -124,7 +125,7 @@ impl<'c> ArmProblem<'c> {
         Some(Arm {
             name: space.name.clone(),
             gravity_m_s2: space.gravity_m_s2,
-            chain,
+            chain: with_levers(chain),
             effects: space.effects.clone(),
         })
     }
@@ -147,6 +148,17 @@ impl<'c> ArmProblem<'c> {
             })
             .collect()
     }
+}
+
+/// The chain with the lever of every bearing resolved.
+fn with_levers(mut chain: Vec<Element>) -> Vec<Element> {
+    for index in 0..chain.len() {
+        let (inboard, outboard) = chain.split_at_mut(index + 1);
+        if let Element::Joint(joint) = &mut inboard[index] {
+            joint.bearing = joint.bearing.map(|bearing| resolved(bearing, &joint.axis, outboard.first()));
+        }
+    }
+    chain
 }
 
 /// Torsion curve, mass \[kg\], and the names of gear and motor of a joint.

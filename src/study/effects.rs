@@ -141,7 +141,7 @@ impl CorrectedStudy {
     fn calibration(&mut self, space: &DesignSpace, name: &str, factor: f64) {
         let what = format!("{name} x {factor:.4}");
         let (part, quantity) = name.rsplit_once('.').unwrap_or((name, ""));
-        if !matches!(quantity, "stiffness" | "mass") {
+        if !matches!(quantity, "stiffness" | "mass" | "bearing_stiffness") {
             let words =
                 "it belongs to the measured arm; the study keeps its geometry and the catalog's materials";
             return self.say(what, false, words);
@@ -155,11 +155,13 @@ impl CorrectedStudy {
             Some((_, SpaceJoint { drive: DriveChoice::FirstFit(_) | DriveChoice::AllFits(_), .. })) => {
                 self.say(what, false, "the study chooses this joint's drive: it keeps its catalog ratings");
             }
-            Some((index, SpaceJoint { drive: DriveChoice::Given { curve, mass_kg, .. }, .. })) => {
+            Some((index, SpaceJoint { drive: DriveChoice::Given { curve, mass_kg, .. }, bearing, .. })) => {
                 let entry = &mut self.file["chain"][index];
-                match quantity {
-                    "stiffness" => write_curve(entry, &curve.stiffened(factor)),
-                    _ => entry["mass_kg"] = json!(mass_kg * factor),
+                match (quantity, bearing.stated()) {
+                    ("stiffness", _) => write_curve(entry, &curve.stiffened(factor)),
+                    ("mass", _) => entry["mass_kg"] = json!(mass_kg * factor),
+                    (_, Some(bearing)) => entry["bearing"] = bearing.stiffened(factor).to_json(),
+                    _ => return self.say(what, false, "the bearing of this joint is rigid in the study"),
                 }
                 self.say(what, true, "the study gives this joint's drive: its value is calibrated");
             }

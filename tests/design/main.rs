@@ -13,6 +13,7 @@ mod exact_front;
 mod exact_support;
 mod exact_threads;
 mod exact_ties;
+mod frozen_designs;
 mod mechanics_reference;
 mod motor_heat;
 mod paper;

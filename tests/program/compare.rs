@@ -211,7 +211,12 @@ fn results(dir: &Path, study: &str) {
     write("front.steel.csv", &table(&STEEL).to_csv());
     write("front.carbon.csv", &table(&CARBON).to_csv());
     let materials = r#"[{"name": "Steel", "slug": "steel"}, {"name": "Carbon", "slug": "carbon"}]"#;
-    write("run.json", format!(r#"{{"study": "{study}", "materials": {materials}}}"#).as_bytes());
+    let version = env!("CARGO_PKG_VERSION");
+    write(
+        "run.json",
+        format!(r#"{{"study": "{study}", "tool_version": "{version}", "materials": {materials}}}"#)
+            .as_bytes(),
+    );
 }
 
 #[test]
@@ -243,6 +248,38 @@ fn two_runs_of_one_study_say_what_moved_and_front_files_are_taken() {
     let files = [path(&a.join("front.steel.csv")), path(&a.join("front.carbon.csv"))];
     let text = compare_cli(&[&files[0], &files[1]]).expect("compared");
     assert!(text.contains("\n  steel ") && !text.contains("From "), "{text}");
+}
+
+/// Writes that another version made a result.
+fn made_by(dir: &Path, version: &str) {
+    let file = dir.join("run.json");
+    let text = std::fs::read_to_string(&file).expect("a run");
+    let other = format!(r#""tool_version": "{version}""#);
+    std::fs::write(
+        &file,
+        text.replace(&format!(r#""tool_version": "{}""#, env!("CARGO_PKG_VERSION")), &other),
+    )
+    .expect("writable");
+}
+
+#[test]
+fn results_and_front_files_of_an_earlier_version_are_refused_with_the_reason() {
+    let temp = tempfile::tempdir().expect("a temporary folder");
+    let (a, b) = (temp.path().join("a"), temp.path().join("b"));
+    results(&a, "s");
+    results(&b, "s");
+    made_by(&b, "0.1.0");
+    let [a, b, file] = [a, b.clone(), b.join("front.steel.csv")].map(|p| p.display().to_string());
+    for line in [[&b, &b], [&a, &b], [&a, &file]] {
+        let line = if line[0] == line[1] { &line[..1] } else { &line[..] };
+        let line: Vec<&str> = line.iter().map(|word| word.as_str()).collect();
+        let cli = Cli::try_parse_from([&["armwright", "compare"], line.as_slice()].concat()).expect("words");
+        let failure = run(cli).expect_err("an earlier version");
+        assert_eq!(failure.exit_code(), 3, "{failure}");
+        let said = failure.to_string();
+        assert!(said.contains("made by version 0.1.0, before output bearings were modelled"), "{said}");
+        assert!(said.contains("run the study again"), "{said}");
+    }
 }
 
 #[test]

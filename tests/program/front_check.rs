@@ -1,6 +1,9 @@
 //! `armwright run --search exact` and `armwright front check` from the command line: a sound front passes, and
 //! a cell changed, a row dropped or a row added is found out, whichever search made the front.
 
+use armwright::arm::read_arm_document;
+use armwright::catalog::Catalogs;
+use armwright::input::Document;
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
@@ -78,6 +81,58 @@ fn a_design_of_an_exact_front_can_be_taken_out_and_analysed() {
     let id = lines[1].split(',').next().expect("an id");
     let (code, text) = armwright(&["design", path(dir.path()), id]);
     assert_eq!(code, 0, "{text}");
+}
+
+#[test]
+fn a_result_of_an_earlier_version_is_neither_checked_nor_taken_apart() {
+    let dir = result("exhaustive");
+    let id = front(&dir)[1].split(',').next().expect("an id").to_string();
+    let file = dir.path().join("run.json");
+    let mut run: Value = serde_json::from_str(&std::fs::read_to_string(&file).expect("a run")).expect("JSON");
+    run["tool_version"] = "0.1.0".into();
+    std::fs::write(&file, run.to_string()).expect("written");
+    for words in [vec!["front", "check", path(dir.path())], vec!["design", path(dir.path()), &id]] {
+        let (code, text) = armwright(&words);
+        assert_eq!(code, 3, "{text}");
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(text.contains("made by version 0.1.0, before output bearings were modelled"), "{text}");
+        assert!(text.contains("run the study again"), "{text}");
+    }
+}
+
+#[test]
+fn a_design_is_written_with_the_bearing_of_its_gear_resolved_and_reads_back_the_same() {
+    let dir = result("exhaustive");
+    let id = front(&dir)[1].split(',').next().expect("an id").to_string();
+    let out = dir.path().join("design");
+    let (code, text) = armwright(&["design", path(dir.path()), &id, "--out", path(&out)]);
+    assert_eq!(code, 0, "{text}");
+    let text = std::fs::read_to_string(out.join("arm.json")).expect("an arm");
+    let arm: Value = serde_json::from_str(&text).expect("JSON");
+    let catalogs = Catalogs::builtin();
+    for (joint, link) in [(0, 1), (2, 3)] {
+        let (joint, link) = (&arm["chain"][joint], &arm["chain"][link]);
+        let gear = catalogs.gear(joint["gear"].as_str().expect("a gear")).expect("in the catalog");
+        let bearing = &joint["bearing"];
+        let close = |key: &str, expected: Option<f64>| {
+            let found = bearing[key].as_f64();
+            let same =
+                found.zip(expected).map_or(found == expected, |(a, b)| (a - b).abs() < 1e-12 * b.abs());
+            assert!(same, "{key}: {found:?}, not {expected:?}");
+        };
+        close("tilt_stiffness_nm_per_rad", gear.tilting_stiffness_nm_per_rad);
+        close("permissible_moment_nm", gear.permissible_tilting_moment_nm);
+        close("pitch_diameter_m", gear.bearing.pitch_diameter_m);
+        close("static_load_rating_n", gear.bearing.static_load_rating_n);
+        close("dynamic_load_rating_n", gear.bearing.dynamic_load_rating_n);
+        // the joints turn about y, across which links along x are as wide as their section
+        let section = &link["section"];
+        let width_m = section["width_m"].as_f64().or(section["diameter_m"].as_f64()).expect("a width");
+        close("offset_m", Some(gear.bearing.offset_m.unwrap_or(0.0) + width_m / 2.0));
+    }
+    let read =
+        read_arm_document(Document::parse("arm.json", &text).expect("JSON"), &catalogs).expect("sound");
+    assert_eq!(read.to_json(), arm, "written and read");
 }
 
 #[test]

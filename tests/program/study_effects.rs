@@ -134,7 +134,9 @@ fn masses_taken_off_one_joint_count_together() {
 #[test]
 fn what_of_an_arm_file_carries_over_to_a_study_is_said_one_by_one() {
     let here = folder();
-    write(here.path(), "study.json", &study());
+    let mut with_bearing = study();
+    with_bearing["chain"][2]["bearing"] = json!({"tilt_stiffness_nm_per_rad": 2e5});
+    write(here.path(), "study.json", &with_bearing);
     let effects = json!([spring("connection_compliance", "elbow"), spring("bearing_tilt", "wrist"),
         {"effect": "payload_mass_error", "at": "payload", "parameters": {"delta_kg": 0.2}}]);
     let factor = |value: &str| json!({"value": value, "factor": 1.1, "low": 1.0, "high": 1.2});
@@ -142,6 +144,8 @@ fn what_of_an_arm_file_carries_over_to_a_study_is_said_one_by_one() {
         factor("shoulder.stiffness"),
         factor("elbow.stiffness"),
         factor("elbow.mass"),
+        factor("shoulder.bearing_stiffness"),
+        factor("elbow.bearing_stiffness"),
         factor("steel.modulus")
     ]);
     write(here.path(), "arm.json", &measured_arm(effects, calibrated));
@@ -164,16 +168,21 @@ fn what_of_an_arm_file_carries_over_to_a_study_is_said_one_by_one() {
             ("shoulder.stiffness x 1.1000", false),
             ("elbow.stiffness x 1.1000", true),
             ("elbow.mass x 1.1000", true),
+            ("shoulder.bearing_stiffness x 1.1000", false),
+            ("elbow.bearing_stiffness x 1.1000", true),
             ("steel.modulus x 1.1000", false),
         ]
     );
+    // lines are broken at 80 columns
+    let in_one_line = said.split_whitespace().collect::<Vec<_>>().join(" ");
     for (what, _) in carried {
-        assert!(said.contains(what), "{what} is not said: {said}");
+        assert!(in_one_line.contains(what), "{what} is not said: {said}");
     }
     // the study in the results is complete by itself
     let kept = read_json(out.join("study.json"));
     assert_eq!(kept["chain"][2]["windup"]["k2_nm_per_rad"], json!(1.5e4 * 1.1));
     assert_eq!(kept["chain"][2]["mass_kg"], json!(2.0 * 1.1));
+    assert_eq!(kept["chain"][2]["bearing"]["tilt_stiffness_nm_per_rad"], json!(2e5 * 1.1));
     assert_eq!(kept["effects"], json!([spring("connection_compliance", "elbow")]));
     let again = ["run", "results/bench-arm-with-effects/study.json", "--out", "again"];
     assert_eq!(armwright(here.path(), &again).0, 0);

@@ -1,5 +1,6 @@
 //! The prepared model that fits use against mechanics itself, for every effect at every place.
 
+use armwright::arm::{Bearing, Element};
 use armwright::catalog::Catalogs;
 use armwright::reconcile::Campaign;
 use armwright::reconcile::fit::descent::{Weights, evaluate, jacobian};
@@ -17,9 +18,30 @@ fn campaign() -> Campaign {
     campaign
 }
 
+/// The same campaign of an arm with output bearings, whose stiffness is calibrated.
+fn campaign_with_bearings() -> Campaign {
+    let mut campaign = campaign();
+    for (i, element) in campaign.arm.chain.iter_mut().enumerate() {
+        if let Element::Joint(joint) = element {
+            let tilt_stiffness_nm_per_rad = Some(1e5 * (2 + i) as f64);
+            joint.bearing = Some(Bearing { tilt_stiffness_nm_per_rad, mass_kg: 0.5, ..Bearing::default() });
+        }
+    }
+    campaign.statement.tolerance.bearing_stiffness = 0.3;
+    campaign
+}
+
 #[test]
 fn the_prepared_model_is_mechanics_for_every_effect_at_every_place() {
-    let campaign = campaign();
+    is_mechanics(campaign());
+}
+
+#[test]
+fn the_prepared_model_of_an_arm_with_bearings_is_mechanics_for_every_effect_at_every_place() {
+    is_mechanics(campaign_with_bearings());
+}
+
+fn is_mechanics(campaign: Campaign) {
     let forward = Forward::new(&campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
     let baseline = Model::baseline(&nuisance);
@@ -57,7 +79,15 @@ fn the_prepared_model_is_mechanics_for_every_effect_at_every_place() {
 
 #[test]
 fn sensitivities_are_differences_of_predictions() {
-    let campaign = campaign();
+    are_differences(campaign());
+}
+
+#[test]
+fn sensitivities_of_an_arm_with_bearings_are_differences_of_predictions() {
+    are_differences(campaign_with_bearings());
+}
+
+fn are_differences(campaign: Campaign) {
     let forward = Forward::new(&campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
     let weights =

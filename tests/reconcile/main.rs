@@ -1,6 +1,7 @@
 //! A model reconciled with measurements: campaigns of the independent witness, of other simulators, of real machines.
 
 mod bad_data;
+mod bearings;
 mod campaigns;
 #[path = "scoring/detectability.rs"]
 mod detectability;

@@ -4,7 +4,7 @@
 //! environment variable ARMWRIGHT_MEASURED, and their tests say aloud when they are skipped.
 
 use crate::measured;
-use crate::positions_maker::{LOPSIDED_RAD_PER_NM, Made, UNEVEN_RAD, standard};
+use crate::positions_maker::{EVEN_RAD_PER_NM, LOPSIDED_RAD_PER_NM, Made, UNEVEN_RAD, standard};
 
 use armwright::arm::JointModel;
 use armwright::arm::read_arm_document;
@@ -17,7 +17,7 @@ use armwright::reconcile::reconcile;
 use armwright::reconcile::verdict::page::campaign_page;
 use armwright::reconcile::{Outcome, Verdict};
 use nalgebra::Vector3;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// Where a machine's measurements are; says aloud when they are nowhere.
@@ -119,6 +119,20 @@ fn a_rigid_arm_that_stands_askew_has_no_gap() {
     let outcome = reconcile(&read(standard().write(&Made::rigid).path()));
     assert_eq!(outcome.verdict, Verdict::NoGap, "{}", outcome.to_text());
     assert!(!outcome.lack_of_fit.expect("asked").fails);
+}
+
+#[test]
+fn a_tilt_is_a_gap_and_with_a_nominal_bearing_that_tilts_as_much_it_is_none() {
+    let folder = standard().write(&Made::tilting);
+    let outcome = reconcile(&read(folder.path()));
+    assert_ne!(outcome.verdict, Verdict::NoGap, "{}", outcome.to_text());
+    // the first joint is vertical and at the origin: its bearing tilts like the base
+    let file = folder.path().join("arm.json");
+    let mut arm: Value = serde_json::from_str(&std::fs::read_to_string(&file).expect("text")).expect("JSON");
+    arm["chain"][0]["bearing"] = json!({"tilt_stiffness_nm_per_rad": 1.0 / EVEN_RAD_PER_NM});
+    std::fs::write(&file, arm.to_string()).expect("written");
+    let outcome = reconcile(&read(folder.path()));
+    assert_eq!(outcome.verdict, Verdict::NoGap, "{}", outcome.to_text());
 }
 
 #[test]

@@ -47,7 +47,7 @@ pub const LOPSIDED_RAD_PER_NM: [[f64; 3]; 2] = [[8e-6, 3e-6, 4e-6], [1e-6, 3e-6,
 /// The third joint's error twice a turn \[rad\].
 pub const UNEVEN_RAD: f64 = 2e-3;
 /// A base that tilts alike about x and y \[rad/(N m)\].
-const EVEN_RAD_PER_NM: f64 = 6e-6;
+pub const EVEN_RAD_PER_NM: f64 = 6e-6;
 
 impl Made {
     /// Nothing yields.

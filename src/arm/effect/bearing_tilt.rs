@@ -1,5 +1,5 @@
-//! `bearing_tilt`: the output bearing yields like equal rotational springs about the two axes across the
-//! joint's.
+//! `bearing_tilt`: a joint tilts beyond its nominal bearing, like equal rotational springs about the two axes across the
+//! joint's, in series with the bearing.
 
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits, Yields};
 use super::subject::Subject;
@@ -10,7 +10,7 @@ const PARAMETERS: &[Parameter] =
 /// The effect.
 pub(crate) const KIND: Kind = Kind {
     name: "bearing_tilt",
-    summary: "the output bearing tilts about the two axes across the joint",
+    summary: "the joint tilts beyond its nominal bearing, about the two axes across it",
     scope: Scope::Product,
     places: &[Place::Joint],
     parameters: |_| PARAMETERS,
@@ -45,5 +45,16 @@ mod tests {
         let posed = chain.pose_rad(&[0.0, 0.0], &Payload::default(), Vector3::new(0.0, 0.0, -10.0));
         let share = posed.statics().shares_m.iter().find(|(n, _)| n == "j1.bearing").expect("share").1;
         assert!((share.z + 10.0 / 2e5).abs() < 1e-12, "{share}");
+    }
+
+    #[test]
+    fn the_tilt_comes_in_series_with_the_nominal_bearing() {
+        let mut subject = subject();
+        let joint = subject.structure.joint_mut("j1").expect("j1");
+        joint.tilt_rad_per_nm = 1.0 / 3e5;
+        apply(&[6e5], "j1", &mut subject);
+        let tilt_rad_per_nm = subject.structure.joint_mut("j1").expect("j1").tilt_rad_per_nm;
+        // springs of 3e5 and 6e5 N m/rad in series
+        assert!((tilt_rad_per_nm * 2e5 - 1.0).abs() < 1e-12, "{tilt_rad_per_nm}");
     }
 }

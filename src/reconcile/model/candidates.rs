@@ -6,7 +6,7 @@ use super::parameters::{Candidate, FreeParameter};
 use crate::arm::effect::catalogue::KINDS;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::immersion::PAYLOAD_DENSITY;
-use crate::arm::effect::kind::{Kind, Parameter, Place, Removes, Setting};
+use crate::arm::effect::kind::{Kind, Parameter, Place, Removes, Setting, Yields};
 use crate::arm::effect::validate::fits_nominal;
 use crate::arm::effect::wrong_unit;
 use crate::arm::joint_law::Curve;
@@ -56,9 +56,11 @@ fn channel_is_read(forward: &Forward, place: Place) -> bool {
 }
 
 fn candidate(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place, at: String) -> Candidate {
+    let joint_stiffness = reference_stiffness(forward, &at);
+    let bearing = nominal_bearing_nm_per_rad(forward, kind, &at);
     let reference = match kind.traits.is_gear_curve {
         true => middle_stiffness(forward, &at),
-        false => reference_stiffness(forward, &at),
+        false => bearing.unwrap_or(joint_stiffness),
     };
     // at least 1 N m, so that logarithms exist for a joint without torque
     let torque_nm = largest_torque_nm(forward, &at).max(1.0);
@@ -74,6 +76,10 @@ fn candidate(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place
             Some(_) if parameter.name == PAYLOAD_DENSITY => fixed.push(forward.payload_density_kg_m3),
             Some(default) => fixed.push(default),
         }
+    }
+    if let Some(stiffness) = bearing {
+        // a bearing may be far stiffer than what yields beside it: as soft as beside a joint is looked for
+        free_parameters[0].high *= (stiffness / joint_stiffness).max(1.0);
     }
     if let Some(least_kg) = lightest_kg(forward, kind, &at) {
         // a small mass remains, because nothing oscillates without mass
@@ -111,6 +117,14 @@ fn of_size(parameter: &Parameter, sizes: &Sizes) -> Parameter {
     let wider = (size / parameter.prior.1).max(1.0);
     let prior = (parameter.prior.0 * wider, parameter.prior.1 * wider);
     Parameter { prior, low: parameter.low * wider, high: parameter.high * wider, ..*parameter }
+}
+
+/// Tilting stiffness of the nominal bearing of a joint, beyond which an effect tilts \[N m/rad\]; `None` for another effect
+/// and for a rigid bearing.
+fn nominal_bearing_nm_per_rad(forward: &Forward, kind: &Kind, at: &str) -> Option<f64> {
+    let joint = forward.nominal.structure.joints().find(|j| j.name == at)?;
+    let tilts = kind.traits.yields == Some(Yields::Tilt) && joint.tilt_rad_per_nm > 0.0;
+    tilts.then(|| 1.0 / joint.tilt_rad_per_nm)
 }
 
 /// The stiffness in which compliances are expressed: that of the joint itself, or of the first joint that

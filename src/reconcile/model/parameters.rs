@@ -228,6 +228,25 @@ pub enum Calibration {
     Modulus(String, Vec<String>),
     /// Factor on the mass of a joint.
     Mass(String),
+    /// Factor on the tilting stiffness of a joint's nominal bearing.
+    Bearing {
+        /// Name of the joint.
+        joint: String,
+        /// Tilt per moment of the nominal bearing \[rad/(N m)\].
+        tilt_rad_per_nm: f64,
+    },
+}
+
+impl Calibration {
+    /// The name of the calibrated value in results.
+    pub(crate) fn name(&self) -> String {
+        match self {
+            Calibration::Stiffness(joint) => format!("{joint}.stiffness"),
+            Calibration::Mass(joint) => format!("{joint}.mass"),
+            Calibration::Modulus(material, _) => format!("{material}.modulus"),
+            Calibration::Bearing { joint, .. } => format!("{joint}.bearing_stiffness"),
+        }
+    }
 }
 
 /// The calibrated parameters, each with the standard deviation of ln of its factor.
@@ -261,6 +280,7 @@ impl Nuisance {
                     .map(|j| (Calibration::Mass(j.name.clone()), tolerance.joint_mass / 2.0)),
             );
         }
+        numbers.extend(bearings(arm, tolerance.bearing_stiffness));
         Self { numbers }
     }
 
@@ -284,6 +304,12 @@ impl Nuisance {
                         joint.mass_kg *= factor;
                     }
                 }
+                Calibration::Bearing { joint, tilt_rad_per_nm } => {
+                    if let Some(joint) = structure.joint_mut(joint) {
+                        // effects of the arm file stay as they are
+                        joint.tilt_rad_per_nm += tilt_rad_per_nm * (1.0 / factor - 1.0);
+                    }
+                }
                 Calibration::Modulus(_, links) => {
                     for piece in &mut structure.pieces {
                         if let Piece::Link(link) = piece
@@ -298,6 +324,16 @@ impl Nuisance {
             }
         }
     }
+}
+
+/// The nominal bearings that yield, to be calibrated within a tolerance; none without a tolerance.
+fn bearings(arm: &Arm, tolerance: f64) -> impl Iterator<Item = (Calibration, f64)> + '_ {
+    let joints = arm.joints().filter(move |_| tolerance > 0.0);
+    joints.filter_map(move |joint| {
+        let tilt_rad_per_nm = joint.bearing?.tilt_rad_per_nm();
+        let calibration = Calibration::Bearing { joint: joint.name.clone(), tilt_rad_per_nm };
+        (tilt_rad_per_nm > 0.0).then_some((calibration, tolerance / 2.0))
+    })
 }
 
 fn materials(arm: &Arm) -> Vec<(String, Vec<String>)> {

@@ -113,7 +113,8 @@ impl Yielding {
         match self.yields {
             Yields::AboutAxis => self.at.clone(),
             Yields::Tilt if is_base_tilt => self.at.clone(),
-            Yields::Tilt | Yields::Frame => format!("{}.{}", self.at, self.effect),
+            Yields::Tilt => format!("{}.bearing", self.at),
+            Yields::Frame => format!("{}.{}", self.at, self.effect),
         }
     }
 }

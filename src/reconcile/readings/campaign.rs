@@ -21,6 +21,8 @@ pub struct Tolerance {
     pub modulus: f64,
     /// Limit of the mass of each joint, independently.
     pub joint_mass: f64,
+    /// Limit of the tilting stiffness of each joint's bearing, independently.
+    pub bearing_stiffness: f64,
 }
 
 /// What `campaign.json` says about absolute positions.
@@ -155,10 +157,11 @@ fn statement(node: &Node) -> Option<Statement> {
 }
 
 /// Tolerance as a fraction of the nominal value where a campaign states none.
-const DEFAULT_TOLERANCE: Tolerance = Tolerance { joint_stiffness: 0.10, modulus: 0.03, joint_mass: 0.02 };
+const DEFAULT_TOLERANCE: Tolerance =
+    Tolerance { joint_stiffness: 0.10, modulus: 0.03, joint_mass: 0.02, bearing_stiffness: 0.0 };
 
 fn read_tolerance(node: &Node) -> Option<Tolerance> {
-    let object = node.object(&["joint_stiffness", "modulus", "joint_mass"])?;
+    let object = node.object(&["joint_stiffness", "modulus", "joint_mass", "bearing_stiffness"])?;
     let part = |key, default| {
         object.or(key, default, |n| match n.non_negative()? {
             x if x < 1.0 => Some(x),
@@ -166,7 +169,8 @@ fn read_tolerance(node: &Node) -> Option<Tolerance> {
         })
     };
     let (k, e, m) = (part("joint_stiffness", 0.0), part("modulus", 0.0), part("joint_mass", 0.0));
-    Some(Tolerance { joint_stiffness: k?, modulus: e?, joint_mass: m? })
+    let bearing = part("bearing_stiffness", 0.0);
+    Some(Tolerance { joint_stiffness: k?, modulus: e?, joint_mass: m?, bearing_stiffness: bearing? })
 }
 
 fn read_positions(node: &Node) -> Option<PositionsSpec> {

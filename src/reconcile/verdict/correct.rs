@@ -80,6 +80,9 @@ fn calibrate(arm: &mut Arm, calibration: &Calibration, factor: f64) {
             (Calibration::Mass(name), Element::Joint(joint)) if joint.name == *name => {
                 joint.mass_kg *= factor;
             }
+            (Calibration::Bearing { joint: name, .. }, Element::Joint(joint)) if joint.name == *name => {
+                joint.bearing = joint.bearing.map(|bearing| bearing.stiffened(factor));
+            }
             (Calibration::Modulus(name, _), Element::Link(link)) => {
                 if let LinkBody::Tube { material_name, material, .. } = &mut link.body
                     && material_name == name
