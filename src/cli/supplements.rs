@@ -25,7 +25,8 @@ pub(super) const FILES: [&str; 4] = [ballast::FILE, ties::FILE, tolerance::FILE,
 /// What may be asked for in addition to a front.
 #[derive(Debug, Clone, Default, Args)]
 pub(super) struct SupplementArgs {
-    /// Scatter of catalog ratings, such as gear_stiffness=20%,modulus=3%,mass=2%. The front is sampled, and
+    /// Scatter of catalog ratings, such as
+    /// gear_stiffness=20%,bearing_stiffness=20%,modulus=3%,mass=2%. The front is sampled, and
     /// tolerance.csv lists for each design the share of samples in which it is on the front. A name alone
     /// stands for the number above. 95 % of the rows of a catalog lie within the scatter (log-normal)
     #[arg(long, value_name = "SCATTER")]

@@ -9,6 +9,9 @@
 //! - a required lowest mode is `K - ω² M ⪰ 0` with `K` and `M` linear, and each trial shape `x` gives one
 //!   linear inequality (`shapes`).
 //!
+//! The two springs of the bearing of a chosen gear share the weights of the drive. What a drive's bearing may carry is left
+//! out: designs that it forbids count too, so the bound stays a bound and is lower.
+//!
 //! The lightest mixture is a linear program, which Clarabel solves (`program`). The bound that is returned is
 //! the Lagrangian bound at the solver's multipliers. It is valid for any multipliers, so it does not depend
 //! on the solver's tolerance.

@@ -11,6 +11,8 @@ pub(super) struct Parts {
     /// For each slot, the option of the known design.
     pub known: Vec<u32>,
     mass_kg: Vec<Vec<f64>>,
+    /// Every slot with a spring of the bearing of a chosen gear, and the slot of its joint.
+    bearings: Vec<(usize, usize)>,
 }
 
 impl Parts {
@@ -30,7 +32,40 @@ impl Parts {
                 }
             })
             .collect();
-        Self { alive, known: known.to_vec(), mass_kg }
+        let bearing = |(slot, piece): (usize, &Slot)| match piece {
+            Slot::Bearing { joint, .. } => Some((slot, *joint)),
+            _ => None,
+        };
+        let bearings = problem.slots().iter().enumerate().filter_map(bearing).collect();
+        Self { alive, known: known.to_vec(), mass_kg, bearings }
+    }
+
+    /// A bearing comes with its drive, so it has the options that are left for the drive.
+    pub(super) fn follow_drives(&mut self) {
+        for &(bearing, joint) in &self.bearings {
+            self.alive[bearing] = self.alive[joint].clone();
+        }
+    }
+
+    /// The same inequality with the coefficients of a bearing added to those of the drive that it comes with: one weight
+    /// stands for both. The bearings must have followed their drives.
+    pub(super) fn with_drives(&self, mut row: Row) -> Row {
+        for &(bearing, joint) in &self.bearings {
+            for at in 0..self.alive[joint].len() {
+                let of_bearing = std::mem::take(&mut row.coefficients[bearing][at]);
+                row.coefficients[joint][at] += of_bearing;
+            }
+        }
+        row
+    }
+
+    /// Weights in which every bearing has those of its drive.
+    pub(super) fn with_bearings(&self, weights: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let mut out = weights.to_vec();
+        for &(bearing, joint) in &self.bearings {
+            out[bearing] = weights[joint].clone();
+        }
+        out
     }
 
     /// Mass of an option of a slot \[kg\].

@@ -116,6 +116,7 @@ impl Search<'_> {
     fn reduce(&mut self) {
         loop {
             let mut dropped = self.parts.drop_drives(self.problem, self.cases);
+            self.parts.follow_drives();
             let mass =
                 Row { coefficients: self.parts.masses(), limit: self.asked.mass_kg * (1.0 + ROUNDING) };
             for row in self.rows().iter().chain([&mass]) {
@@ -138,8 +139,8 @@ impl Search<'_> {
             rows.extend(self.cases[case].torque_rows(self.problem, &self.parts));
         }
         let stiffness = self.stiffness();
-        rows.extend(self.shapes.iter().map(|(model, shape)| self.shape_row(&stiffness, *model, shape)));
-        rows
+        let shapes = self.shapes.iter().map(|(model, shape)| self.shape_row(&stiffness, *model, shape));
+        rows.into_iter().map(|row| self.parts.with_drives(row)).chain(shapes).collect()
     }
 
     /// The least eigenvalue that the required mode allows \[1/s²\].
@@ -154,7 +155,8 @@ impl Search<'_> {
     }
 
     fn shape_row(&self, stiffness: &[Vec<Vec<f64>>], model: usize, shape: &nalgebra::DVector<f64>) -> Row {
-        self.models[model].row(&self.parts, &stiffness[model], shape, self.eigenvalue())
+        let row = self.models[model].row(&self.parts, &stiffness[model], shape, self.eigenvalue());
+        self.parts.with_drives(row)
     }
 
     /// Solves the program, and adds the trial shapes that the mixture violates and the options that it lacks.
@@ -184,9 +186,10 @@ impl Search<'_> {
         stiffness: &[Vec<Vec<f64>>],
         weights: &[Vec<f64>],
     ) -> Vec<(usize, nalgebra::DVector<f64>)> {
+        let weights = self.parts.with_bearings(weights);
         let mut found = Vec::new();
         for (index, model) in self.models.iter().enumerate() {
-            let shapes = model.violated(&self.parts, &stiffness[index], weights, self.eigenvalue());
+            let shapes = model.violated(&self.parts, &stiffness[index], &weights, self.eigenvalue());
             found.extend(shapes.into_iter().map(|shape| (index, shape)));
         }
         found

@@ -3,7 +3,9 @@
 //! Each rating has one factor. The factor of a gear's stiffness applies to its whole torsion curve (K1, K2 and K3; the
 //! break points T1 and T2 stay). The factor of a material's modulus applies to E and to G. Masses of gears and motors have
 //! factors of their own. A factor belongs to a row of a catalog, so it is the same in every joint and every design
-//! that uses the row.
+//! that uses the row. The stiffness of an output bearing has a factor too: that of the gear's row where the bearing comes
+//! with the chosen gear, and one of its own at each joint whose bearing is stated. What an effect adds to the tilt is
+//! exact.
 //!
 //! The designs are not sized again: they keep their drives and sections whatever the true ratings are.
 
@@ -11,7 +13,7 @@ use crate::arm::joint_law::JointLaw;
 use crate::arm::{Link, LinkBody};
 use crate::pareto::objectives::Objectives;
 use crate::sizing::drive::Drive;
-use crate::space::design_space::{DesignSpace, DriveChoice, SpacePiece};
+use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
 use crate::space::problem::{ArmProblem, Partial, objectives_over};
 use crate::space::slot::Slot;
 use crate::space::station::{Station, StationSlot};
@@ -28,6 +30,10 @@ pub enum Rating {
     GearMass(String),
     /// The mass of a motor.
     MotorMass(String),
+    /// The tilting stiffness of the output bearing of a gear.
+    BearingStiffness(String),
+    /// The tilting stiffness of the bearing that is stated for a joint.
+    StatedBearingStiffness(String),
 }
 
 /// Ratio of the true value to the catalog's, for each rating. A rating that is not listed is exact.
@@ -40,6 +46,8 @@ pub struct ChosenParts<'p, 'c> {
     designs: Vec<Vec<u32>>,
     /// Options that the designs use, slot by slot. Only these are built.
     used: Vec<BTreeSet<u32>>,
+    /// The joint whose stated bearing is the spring in a slot, slot by slot.
+    tilting: Vec<Option<&'p SpaceJoint>>,
 }
 
 /// A joint as it might be built.
@@ -63,7 +71,9 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
             designs.iter().map(|options| problem.walk(options, |_, _| {}).ok().map(|arm| arm.options));
         let designs = complete.collect::<Option<Vec<_>>>()?;
         let used = (0..problem.slots().len()).map(|s| designs.iter().map(|d| d[s]).collect()).collect();
-        Some(Self { problem, designs, used })
+        let layers = problem.space().layers();
+        let tilting = layers.iter().map(|(_, layer)| layer.bearing_of()).collect();
+        Some(Self { problem, designs, used, tilting })
     }
 
     /// Number of designs.
@@ -86,6 +96,7 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
                 self.material(slot, option).map(Rating::Modulus),
                 drive.map(|d| Rating::GearMass(d.gear.id.clone())),
                 drive.map(|d| Rating::MotorMass(d.motor.id.clone())),
+                self.bearing(slot, option).map(|bearing| bearing.0),
             ]
         })
         .flatten()
@@ -111,7 +122,11 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
 
     fn built_joint(&self, slot: usize, option: u32, factors: &Factors) -> Option<BuiltJoint> {
         let factor = |rating: Rating| factors.get(&rating).copied().unwrap_or(1.0);
-        let law = *self.problem.slots()[slot].law(option as usize)?;
+        let mut law = *self.problem.slots()[slot].law(option as usize)?;
+        if let Some((rating, nominal_rad_per_nm)) = self.bearing(slot, option) {
+            // as a deviation, so that a factor of 1 gives this compliance exactly
+            law.connection_rad_per_nm += nominal_rad_per_nm * (1.0 / factor(rating) - 1.0);
+        }
         let stiffness = self.gear(slot, option).map_or(1.0, |gear| factor(Rating::GearStiffness(gear)));
         let mass_kg = match &self.problem.slots()[slot] {
             Slot::Given { mass_kg, .. } => *mass_kg,
@@ -139,6 +154,23 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
             },
             _ => None,
         }
+    }
+
+    /// The rating of the bearing whose spring is in a slot, with its nominal compliance \[rad/(N m)\].
+    fn bearing(&self, slot: usize, option: u32) -> Option<(Rating, f64)> {
+        let (rating, bearing) = match &self.problem.slots()[slot] {
+            Slot::Bearing { joint, .. } => {
+                let drive = self.drive(*joint, option)?;
+                (Rating::BearingStiffness(drive.gear.id.clone()), drive.bearing())
+            }
+            Slot::Given { .. } => {
+                let joint = self.tilting[slot]?;
+                (Rating::StatedBearingStiffness(joint.name.clone()), joint.bearing.stated())
+            }
+            _ => return None,
+        };
+        let rad_per_nm = bearing?.tilt_rad_per_nm();
+        (rad_per_nm > 0.0).then_some((rating, rad_per_nm))
     }
 
     /// The drive of a joint that is sized. The drive of a given joint has the mass that the study gives; it does not scatter.

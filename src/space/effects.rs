@@ -55,6 +55,16 @@ pub(crate) struct BearingSpring<'s> {
     which: usize,
 }
 
+impl<'s> Layer<'s> {
+    /// The joint about whose axes across this spring tilts; `None` for what is no spring of a bearing that is known.
+    pub(crate) fn bearing_of(&self) -> Option<&'s SpaceJoint> {
+        match self {
+            Layer::Tilt(Tilt { about: About::Across(joint, _), .. }) => Some(joint),
+            _ => None,
+        }
+    }
+}
+
 impl BearingSpring<'_> {
     /// Axis of the spring in the world. `rotation` is the attitude of the frame that the joint stands in.
     pub(crate) fn axis(&self, rotation: &Rotation3<f64>) -> Vector3<f64> {

@@ -9,6 +9,7 @@
 //! | scatter | of | default | source |
 //! |---|---|---|---|
 //! | `gear_stiffness` | K1, K2 and K3 of a gear, together | 20 % | an assumption: the vendor calls them "average values" and states no scatter (Harmonic Drive SE, engineering data 1018856, 08/2018, p. 70) |
+//! | `bearing_stiffness` | the tilting stiffness of an output bearing | 20 % | an assumption: as for the gear; the vendor calls it an average value too |
 //! | `modulus` | E and G of a material, together | 3 % | an assumption, for metals; a laminate's is larger |
 //! | `mass` | a gear's and a motor's mass, each | 2 % | an assumption |
 
@@ -37,13 +38,14 @@ const BATCH: u32 = 256;
 const SIGMAS_95: f64 = 1.959_963_984_540_054;
 
 /// Names of what may scatter, with the scatter that a name alone stands for.
-const KINDS: [(&str, f64); 3] = [("gear_stiffness", 0.20), ("modulus", 0.03), ("mass", 0.02)];
+const KINDS: [(&str, f64); 4] =
+    [("gear_stiffness", 0.20), ("bearing_stiffness", 0.20), ("modulus", 0.03), ("mass", 0.02)];
 
 /// Scatter of catalog ratings, as fractions: 0.2 is 20 %.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Tolerance {
     /// Of [`KINDS`], in that order; 0 is exact.
-    parts: [f64; 3],
+    parts: [f64; 4],
 }
 
 /// A scatter with how it is sampled.
@@ -60,9 +62,9 @@ pub struct Sampling {
 impl FromStr for Tolerance {
     type Err = String;
 
-    /// `gear_stiffness=20%,modulus=3%,mass=2%`; a name alone stands for its default.
+    /// `gear_stiffness=20%,bearing_stiffness=20%,modulus=3%,mass=2%`; a name alone stands for its default.
     fn from_str(text: &str) -> Result<Self, String> {
-        let mut parts = [0.0; 3];
+        let mut parts = [0.0; 4];
         for item in text.split(',').map(str::trim) {
             let (name, value) =
                 item.split_once('=').map_or((item, None), |(n, v)| (n.trim(), Some(v.trim())));
@@ -96,9 +98,10 @@ impl Tolerance {
 
     /// Scatter of a rating.
     fn of(&self, figure: &Rating) -> f64 {
-        let [gear_stiffness, modulus, mass] = self.parts;
+        let [gear_stiffness, bearing_stiffness, modulus, mass] = self.parts;
         match figure {
             Rating::GearStiffness(_) => gear_stiffness,
+            Rating::BearingStiffness(_) | Rating::StatedBearingStiffness(_) => bearing_stiffness,
             Rating::Modulus(_) => modulus,
             Rating::GearMass(_) | Rating::MotorMass(_) => mass,
         }
@@ -310,8 +313,9 @@ mod tests {
     #[test]
     fn a_scatter_is_read_with_defaults_and_faults_are_named() {
         let read = |text: &str| text.parse::<Tolerance>();
-        assert_eq!(read("gear_stiffness=15%, mass"), Ok(Tolerance { parts: [0.15, 0.0, 0.02] }));
-        assert_eq!(read("modulus=0.05"), Ok(Tolerance { parts: [0.0, 0.05, 0.0] }));
+        assert_eq!(read("gear_stiffness=15%, mass"), Ok(Tolerance { parts: [0.15, 0.0, 0.0, 0.02] }));
+        assert_eq!(read("modulus=0.05"), Ok(Tolerance { parts: [0.0, 0.0, 0.05, 0.0] }));
+        assert_eq!(read("bearing_stiffness"), Ok(Tolerance { parts: [0.0, 0.2, 0.0, 0.0] }));
         for faulty in ["stiffness=20%", "mass=0", "mass=120%", "mass=1%,mass=2%", "mass=x", ""] {
             assert!(read(faulty).is_err(), "{faulty}");
         }

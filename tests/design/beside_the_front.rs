@@ -198,6 +198,36 @@ fn how_often_a_stiffer_gear_stays_on_the_front_follows_from_the_normal_distribut
     );
 }
 
+/// One joint with a rigid link that stands out along its axis: a payload at the tip loads the bearing alone.
+fn arm_on_its_bearing(bearing: Option<Value>) -> Value {
+    let mut joint = json!({"type": "joint", "name": "j", "axis": [1, 0, 0], "drive": "all_fits",
+        "drives": {"gears": ["CSG-32-100"], "gear_mass": "housed_unit", "motor_models": ["ILM85x26"]}});
+    bearing.into_iter().for_each(|stated| joint["bearing"] = stated);
+    json!({"name": "bearing alone", "chain": [
+        joint, {"type": "link", "name": "arm", "vector_m": [0.6, 0, 0]}],
+        "payload": {"mass_kg": 3}, "poses": [{"pose_deg": [0]}]})
+}
+
+#[test]
+fn a_tip_on_a_bearing_alone_scatters_as_the_inverse_of_its_stiffness() {
+    let catalogs = Catalogs::builtin();
+    let numbers = json!({"tilt_stiffness_nm_per_rad": 2e5, "permissible_moment_nm": 500});
+    for stated in [None, Some(numbers)] {
+        let study = read(&arm_on_its_bearing(stated), &catalogs);
+        let found = scattered(&study, &catalogs, &sampling("bearing_stiffness=10%", 20_000, 5));
+        let [low, middle, high] = found.fates[0].percentiles.expect("a pick")[0];
+        let nominal_mm = found.fates[0].design.tip_deflection_mm;
+        // the factor is log-normal with median 1, and 1.96 sigmas are the stated scatter
+        let expected = (1.644_854 * 1.1f64.ln() / 1.959_964).exp();
+        assert!((middle / nominal_mm - 1.0).abs() < 2e-3, "{middle} {nominal_mm}");
+        assert!((high / middle / expected - 1.0).abs() < 5e-3, "{high} {middle}");
+        assert!((middle / low / expected - 1.0).abs() < 5e-3, "{middle} {low}");
+        let of_gear = scattered(&study, &catalogs, &sampling("gear_stiffness=10%", 50, 5));
+        let [low, _, high] = of_gear.fates[0].percentiles.expect("a pick")[0];
+        assert_eq!(low, high, "the gear's torsion carries nothing");
+    }
+}
+
 #[test]
 fn samples_are_the_same_on_any_number_of_threads_and_limits_count() {
     let catalogs = Catalogs::builtin();
@@ -471,7 +501,10 @@ fn what_cannot_be_answered_is_refused() {
     let dir = tempfile::tempdir().expect("a folder");
     for (words, said) in [
         (&["--within", "200%"][..], "not a percentage"),
-        (&["--tolerance", "stiffness=20%"][..], "choose from gear_stiffness, modulus, mass"),
+        (
+            &["--tolerance", "stiffness=20%"][..],
+            "choose from gear_stiffness, bearing_stiffness, modulus, mass",
+        ),
         (&["--seed", "3"][..], "--tolerance"),
     ] {
         let (code, _, errors) = run(dir.path(), "out", words);

@@ -29,6 +29,14 @@ fn joint(dice: &mut Dice, name: &str) -> Value {
             joint["drives"] = json!({"gears": &gears[first..first + 3], "motor_models": ["ILM85x26"]});
         }
     }
+    match dice.below(4) {
+        0 => {
+            joint["bearing"] = json!({"tilt_stiffness_nm_per_rad": dice.within(3e4, 1e6), "mass_kg": 0.7,
+            "permissible_moment_nm": dice.within(100.0, 2000.0)})
+        }
+        1 => joint["bearing"] = Value::Null,
+        _ => (),
+    }
     joint
 }
 
@@ -87,7 +95,8 @@ fn study(dice: &mut Dice) -> Value {
             {"type": "link", "name": "shoulder", "vector_m": [0, 0, 0.3]},
             joint(dice, "j2"), choice(dice, "upper_arm"), joint(dice, "j3"), choice(dice, "forearm"),
         ],
-        "payload": {"mass_kg": dice.within(0.0, 15.0), "cg_m": [0.05, 0, 0]},
+        // beside the plane of the arm now and then, so that j2 and j3 carry moments across their axes
+        "payload": {"mass_kg": dice.within(0.0, 15.0), "cg_m": [0.05, dice.of(&[0.0, 0.2]), 0]},
         "poses": poses, "models": models, "effects": effects(dice, &models),
     });
     if dice.below(4) == 0 {
