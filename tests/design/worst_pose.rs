@@ -142,22 +142,25 @@ fn the_worst_poses_of_a_planar_arm_are_those_of_a_fine_grid_by_hand() {
 
 #[test]
 fn a_vertical_first_joint_does_not_matter_until_something_pushes_sideways() {
-    let arm = arm_of(json!([
-        {"type": "joint", "name": "j1", "axis": [0, 0, 1], "stiffness_nm_per_rad": 5e4},
-        {"type": "link", "name": "column", "vector_m": [0, 0, 0.3]},
-        {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": 3e4},
-        {"type": "link", "name": "boom", "vector_m": [0.7, 0, 0]}]));
+    let arm = |shoulder_nm_per_rad: f64| {
+        arm_of(json!([
+            {"type": "joint", "name": "j1", "axis": [0, 0, 1], "stiffness_nm_per_rad": 5e4},
+            {"type": "link", "name": "column", "vector_m": [0, 0, 0.3]},
+            {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": shoulder_nm_per_rad},
+            {"type": "link", "name": "boom", "vector_m": [0.7, 0, 0]}]))
+    };
     let payload = Payload { mass_kg: 5.0, ..Payload::default() };
     let ranges_deg = [[25.0, 140.0], [-90.0, 90.0]];
-    let hangs = found(&arm, &[case(&[30.0, 60.0], payload, [0.0; 3])], &ranges_deg);
+    let hangs = found(&arm(3e4), &[case(&[30.0, 60.0], payload, [0.0; 3])], &ranges_deg);
     assert_eq!(hangs.deflection.pose_deg, [25.0, 0.0]);
     assert_eq!(hangs.mode.pose_deg[0], 25.0);
     let weight_nm = 5.0 * GRAVITY_M_S2 * 0.7;
     assert!((hangs.deflection.value / (weight_nm / 3e4 * 0.7) - 1.0).abs() < 1e-9);
     assert!((hangs.deflection.judged / (0.5 * hangs.deflection.value) - 1.0).abs() < 1e-9);
-    // across the boom: a force along x turns joint 1 most where the boom is along y
-    let pushed = found(&arm, &[case(&[30.0, 60.0], payload, [90.0, 0.0, 0.0])], &ranges_deg);
-    assert!((pushed.deflection.pose_deg[0] - 90.0).abs() < 0.2, "{:?}", pushed.deflection.pose_deg);
+    // a force along x turns joint 1 most where the boom is along y; the stiff shoulder hardly yields to it
+    let pushed = found(&arm(1e7), &[case(&[30.0, 60.0], payload, [90.0, 0.0, 0.0])], &ranges_deg).deflection;
+    assert!((pushed.pose_deg[0] - 90.0).abs() < 1.0 && pushed.pose_deg[1].abs() < 1.0, "{pushed:?}");
+    assert!((pushed.value / (90.0 * 0.7 / 5e4 * 0.7) - 1.0).abs() < 1e-3, "{pushed:?}");
 }
 
 #[test]
