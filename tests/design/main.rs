@@ -28,3 +28,4 @@ mod witness_drives;
 mod witness_effects;
 mod witness_front;
 mod witness_regions;
+mod worst_pose;

@@ -13,6 +13,7 @@ mod duty_cycles;
 mod front_check;
 mod imports;
 mod links;
+mod other_poses;
 mod pages;
 mod study_effects;
 mod words;
