@@ -1,7 +1,6 @@
 //! Parts whose figures no document was seen for, or are typical of their class: it is said beside every pick that uses them.
 
 use super::front_table::FrontTable;
-use super::picks::Pick;
 use super::words::{TERMINAL, wrap};
 use crate::catalog::{Catalogs, Provenance};
 use std::collections::BTreeMap;
@@ -35,16 +34,16 @@ impl Caveats {
         self.of_part(name).map_or(name.to_string(), |caveat| format!("{name} ({caveat})"))
     }
 
-    /// One sentence for the terminal about the parts of picks; empty if documents were seen for all.
-    pub(crate) fn sentence(&self, front: &FrontTable, picks: &[Pick]) -> String {
+    /// One sentence for the terminal about the parts of picks, given by name and row of the front; empty if documents were
+    /// seen for all.
+    pub(crate) fn sentence(&self, front: &FrontTable, picks: &[(String, usize)]) -> String {
         let mut used: Vec<(&str, Vec<String>)> = Vec::new();
-        for pick in picks {
-            for part in parts(front, pick.design.row).filter(|part| self.of_part(part).is_some()) {
-                let name = pick.names.join(", ");
+        for (name, row) in picks {
+            for part in parts(front, *row).filter(|part| self.of_part(part).is_some()) {
                 match used.iter_mut().find(|(known, _)| *known == part) {
-                    Some((_, names)) if names.contains(&name) => {}
-                    Some((_, names)) => names.push(name),
-                    None => used.push((part, vec![name])),
+                    Some((_, names)) if names.contains(name) => {}
+                    Some((_, names)) => names.push(name.clone()),
+                    None => used.push((part, vec![name.clone()])),
                 }
             }
         }
@@ -72,7 +71,6 @@ fn parts(front: &FrontTable, row: usize) -> impl Iterator<Item = &str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::picks::{designs, picks};
 
     #[test]
     fn a_recalled_motor_and_a_representative_laminate_are_named_with_their_picks() {
@@ -87,7 +85,7 @@ mod tests {
                 words("b;Structural steel S355;F11-10;2;10;20"),
             ],
         };
-        let picked = picks(&designs(&front));
+        let picked = [("stiffest, highest mode".to_string(), 0), ("lightest".to_string(), 1)];
         let sentence = caveats.sentence(&front, &picked).replace('\n', " ");
         assert!(
             sentence.contains("Boron/epoxy quasi-isotropic (representative) in stiffest, highest mode"),

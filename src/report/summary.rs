@@ -104,7 +104,8 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
     if !found.picks.is_empty() {
         out.push_str(&format!("\n{}", small_plots(&found.designs)));
         out.push_str(&format!("\n{}", picks_table(&found.picks, TERMINAL_PICKS).to_text()));
-        out.push_str(&facts.caveats.sentence(&input.overall, &found.picks));
+        let picked: Vec<_> = found.picks.iter().map(|p| (p.names.join(", "), p.design.row)).collect();
+        out.push_str(&facts.caveats.sentence(&input.overall, &picked));
         let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
         if !names.is_empty() {
             out.push_str(&format!(

@@ -72,6 +72,8 @@ impl StudyPage<'_> {
         let views = self.views(&chosen, front_bytes);
         let data = views.json();
         let extras: Vec<Value> = self.extras.iter().map(|e| gallery.extra(e)).collect();
+        let caveat = |part: &CatalogRow| Some((part.name.clone(), facts.caveats.of_part(&part.name)?));
+        let caveats: BTreeMap<String, &str> = self.parts.iter().filter_map(caveat).collect();
         let content = json!({
             "study": facts.study,
             "question": facts.question,
@@ -89,7 +91,7 @@ impl StudyPage<'_> {
             "not_checked": facts.not_checked,
             "remarks": facts.remarks,
             "parts": self.parts.iter().map(part).collect::<Vec<_>>(),
-            "caveats": self.parts.iter().filter_map(|p| Some((&p.name, facts.caveats.of_part(&p.name)?))).collect::<BTreeMap<_, _>>(),
+            "caveats": caveats,
             "results": facts.results,
         });
         gallery.page("study.html", &facts.study, content, &json!({"front": data}))
