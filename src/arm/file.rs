@@ -1,6 +1,8 @@
 //! The reader of the arm file.
 
+use super::bearing::{Bearing, Stated, read_bearing};
 use super::effect::entry::Effect;
+use super::extras::read_extras;
 use super::joint_law::{Curve, Windup};
 use super::load::vector;
 use super::section::{LinkMaterial, Section};
@@ -95,7 +97,7 @@ fn read_chain(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> 
     read.into_iter().collect()
 }
 
-const JOINT_KEYS: [&str; 10] = [
+const JOINT_KEYS: [&str; 12] = [
     "type",
     "name",
     "axis",
@@ -105,6 +107,8 @@ const JOINT_KEYS: [&str; 10] = [
     "motor",
     "gear_mass",
     "mass_kg",
+    "bearing",
+    "extras",
     "coupled",
 ];
 const LINK_KEYS: [&str; 6] = ["type", "name", "vector_m", "material", "section", "mass_kg"];
@@ -125,16 +129,31 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<Joint> {
     let (gear, motor) = (text("gear"), text("motor"));
     let curve = read_curve(object, catalogs);
     let mass_kg = read_joint_mass(object, catalogs);
+    let bearing = read_joint_bearing(object, catalogs);
+    let extras = read_extras(object);
     let coupled = object.or("coupled", None, |n| read_coupling(n).map(Some));
     Some(Joint {
         name: name?,
         axis: axis?,
         curve: curve?,
         mass_kg: mass_kg?,
+        bearing: bearing?,
+        extras: extras?,
         gear: gear?,
         motor: motor?,
         coupled: coupled?,
     })
+}
+
+/// The joint's output bearing: what the file states, else that of the gear it names, if the catalogs know it.
+pub(crate) fn read_joint_bearing(object: &Object, catalogs: &Catalogs) -> Option<Option<Bearing>> {
+    if let Stated::Bearing(bearing) = read_bearing(object, catalogs)? {
+        return Some(bearing);
+    }
+    let which = read_gear_mass(object)?;
+    // a name beside explicit numbers need not be a catalog's
+    let gear = object.optional("gear").and_then(|n| catalogs.gear(n.value().as_str()?).ok());
+    Some(gear.and_then(|gear| Bearing::of_gear(gear, which)))
 }
 
 pub(crate) fn read_name(object: &Object) -> Option<String> {
@@ -224,11 +243,7 @@ pub(crate) fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f6
     if let Some(mass) = object.optional("mass_kg") {
         return mass.non_negative();
     }
-    let which = object.or("gear_mass", GearMass::HousedUnit, |n| match n.string()? {
-        "component_set" => Some(GearMass::ComponentSet),
-        "housed_unit" => Some(GearMass::HousedUnit),
-        other => n.fault(format!("\"{other}\" is not known"), "choose one of: component_set, housed_unit"),
-    })?;
+    let which = read_gear_mass(object)?;
     let gear = match object.optional("gear") {
         Some(node) => part_mass(&node, find_gear(&node, catalogs)?.mass_kg(which))?,
         None => 0.0,
@@ -238,6 +253,15 @@ pub(crate) fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f6
         None => 0.0,
     };
     Some(gear + motor)
+}
+
+/// Whether a joint's gear is a component set or a housed unit, the default.
+fn read_gear_mass(object: &Object) -> Option<GearMass> {
+    object.or("gear_mass", GearMass::HousedUnit, |n| match n.string()? {
+        "component_set" => Some(GearMass::ComponentSet),
+        "housed_unit" => Some(GearMass::HousedUnit),
+        other => n.fault(format!("\"{other}\" is not known"), "choose one of: component_set, housed_unit"),
+    })
 }
 
 fn find_motor_mass(node: &Node, catalogs: &Catalogs) -> Option<Option<f64>> {

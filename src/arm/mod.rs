@@ -9,7 +9,9 @@
 //! - [`Structure`] is the arm as the mechanics sees it: effects are applied, and names of parts are gone.
 //! - [`effect`] has the effects, one file each.
 
+pub(crate) mod bearing;
 pub mod effect;
+pub(crate) mod extras;
 pub(crate) mod file;
 pub(crate) mod joint_law;
 pub(crate) mod linkage;
@@ -19,7 +21,9 @@ pub(crate) mod structure;
 pub(crate) mod torsion;
 pub(crate) mod write;
 
+pub use bearing::{Bearing, BearingSource};
 pub use effect::entry::Effect;
+pub use extras::{Extras, ExtrasSource};
 pub use file::{read_arm, read_arm_document};
 pub use joint_law::{Curve, JointLaw, LostMotion, Windup};
 pub use linkage::Linkage;
@@ -112,6 +116,8 @@ impl JointModel {
 /// use nalgebra::Vector3;
 ///
 /// let joint = Joint {
+///     bearing: None,
+///     extras: Default::default(),
 ///     name: "j2".into(),
 ///     axis: Vector3::y_axis(),
 ///     curve: Curve::Linear(607e3),
@@ -125,7 +131,7 @@ impl JointModel {
 /// let chain = vec![Element::Joint(joint), Element::Link(link)];
 /// let arm = Arm { name: "two pieces".into(), gravity_m_s2: 9.81, chain, effects: Vec::new() };
 /// assert_eq!(arm.mass_kg(), 17.2);
-/// assert_eq!(arm.length_m(), 0.8);
+/// assert_eq!(arm.reach_m(), 0.8);
 /// assert_eq!(arm.to_json()["chain"][0]["stiffness_nm_per_rad"], 607e3);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -160,6 +166,10 @@ pub struct Joint {
     pub curve: Curve,
     /// Mass of the drive \[kg\]. It is a point on the axis, inboard of the torsion.
     pub mass_kg: f64,
+    /// Output bearing. `None` is rigid and without mass.
+    pub bearing: Option<Bearing>,
+    /// What the joint weighs beyond drive and bearing.
+    pub extras: Extras,
     /// Name of the gear, for information. The numbers above count.
     pub gear: Option<String>,
     /// Name of the motor, for information.
@@ -235,13 +245,24 @@ impl Arm {
         self.chain.iter().map(Element::mass_kg).sum()
     }
 
-    /// Sum of the lengths of all links \[m\].
-    pub fn length_m(&self) -> f64 {
+    /// Reach \[m\]: the sum of the lengths of the links outboard of the first joint that is not vertical. What carries this
+    /// joint is a column. Of an arm whose joints are all vertical, it is the length outboard of the first joint.
+    pub fn reach_m(&self) -> f64 {
+        let is_joint = |element: &Element| matches!(element, Element::Joint(_));
+        let leans = |element: &Element| matches!(element, Element::Joint(j) if j.axis.xy().norm() > 1e-9);
+        let first = self.chain.iter().position(leans).or_else(|| self.chain.iter().position(is_joint));
         let length = |element: &Element| match element {
             Element::Link(link) => link.vector_m.norm(),
             Element::Joint(_) => 0.0,
         };
-        self.chain.iter().map(length).sum()
+        self.chain.iter().skip(first.unwrap_or(0)).map(length).sum()
+    }
+}
+
+impl Joint {
+    /// Mass of drive, bearing and extras \[kg\].
+    pub fn total_mass_kg(&self) -> f64 {
+        self.mass_kg + self.bearing.map_or(0.0, |bearing| bearing.mass_kg) + self.extras.total_kg()
     }
 }
 
@@ -249,7 +270,7 @@ impl Element {
     /// Mass of the element \[kg\].
     pub fn mass_kg(&self) -> f64 {
         match self {
-            Element::Joint(joint) => joint.mass_kg,
+            Element::Joint(joint) => joint.total_mass_kg(),
             Element::Link(link) => match &link.body {
                 LinkBody::Tube { material, section, .. } => {
                     material.density_kg_m3

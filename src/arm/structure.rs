@@ -56,7 +56,8 @@ pub struct JointPiece {
     pub axis: Unit<Vector3<f64>>,
     /// Law of the twist about the axis.
     pub law: JointLaw,
-    /// Tilt of the bearing per moment, about both axes across the axis of the joint \[rad/(N m)\].
+    /// Tilt about both axes across the axis of the joint, per moment \[rad/(N m)\]: that of the nominal bearing, and what
+    /// effects add in series.
     pub tilt_rad_per_nm: f64,
     /// Point mass on the axis, inboard \[kg\].
     pub mass_kg: f64,
@@ -96,7 +97,7 @@ pub struct LinkPiece {
     pub point_mass_kg: f64,
     /// Cables and hoses along the axis \[kg/m\].
     pub harness_kg_per_m: f64,
-    /// Compliance of the frame at the root of the link, in the carried frame.
+    /// Rotational compliance of the structure behind the joint, at the root of the link, in carried-frame axes.
     pub root_frame: FrameCompliance,
 }
 
@@ -190,8 +191,8 @@ fn joint_piece(joint: &Joint, driven: &[&str], model: JointModel) -> JointPiece 
         name: joint.name.clone(),
         axis: joint.axis,
         law: JointLaw::from(joint.curve.reduced(model)),
-        tilt_rad_per_nm: 0.0,
-        mass_kg: joint.mass_kg,
+        tilt_rad_per_nm: joint.bearing.map_or(0.0, |bearing| bearing.tilt_rad_per_nm()),
+        mass_kg: joint.total_mass_kg(),
         angle,
     }
 }

@@ -1,6 +1,8 @@
 //! Writing the arm file.
 
+use super::bearing::Bearing;
 use super::effect::entry::Effect;
+use super::extras::Extras;
 use super::joint_law::Curve;
 use super::section::Section;
 use super::{Arm, Element, Joint, Link, LinkBody};
@@ -60,6 +62,13 @@ impl Joint {
             if let Some(part) = part {
                 map.insert(key.into(), json!(part));
             }
+        }
+        // a gear's bearing would count if nothing were said of it
+        if self.bearing.is_some() || self.gear.is_some() {
+            map.insert("bearing".into(), self.bearing.map_or(Value::Null, Bearing::to_json));
+        }
+        if self.extras != Extras::default() {
+            map.insert("extras".into(), self.extras.to_json());
         }
         if let Some(terms) = &self.coupled {
             let terms: Map<String, Value> = terms.iter().map(|(n, f)| (n.clone(), json!(f))).collect();

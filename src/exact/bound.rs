@@ -9,7 +9,7 @@
 //! If a joint or a link cannot carry even its least load, the whole box is infeasible.
 
 use super::intervals::ROUNDING;
-use super::pose::{Pose, PosedPiece, RESISTED, degree_factor};
+use super::pose::{Pose, Row, TORSION};
 use super::problem::{Part, Problem};
 use super::shape::{Ideal, Shape};
 use super::work::Work;
@@ -27,7 +27,7 @@ const MOST_STEPS: usize = 30;
 /// A box of designs: one node of each level's tree, tip first.
 pub(super) type DesignBox = Vec<u32>;
 
-/// The best objectives that a member of a box could have. No member is better in any of them.
+/// The ideal point of a box: the best objectives that a member could have. No member is better in any of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BoxBound {
     pub mass_kg: f64,
@@ -36,7 +36,7 @@ pub(super) struct BoxBound {
 }
 
 impl BoxBound {
-    /// The bound of a box about which nothing is known.
+    /// The bound of a box about which nothing is known yet.
     pub(super) const OPEN: Self = Self { mass_kg: 0.0, tip_m: 0.0, hz: f64::INFINITY };
 
     /// The bound with all three objectives made worse by the factor `1 + slack`.
@@ -66,8 +66,8 @@ impl<'c> Problem<'c> {
         vec![0; self.level_pieces.len()]
     }
 
-    /// The objectives of a box of one design. Mass and deflection are those of the bound; the mode is
-    /// computed exactly, because a trial shape gives only an upper bound of it.
+    /// The objectives of the design in a box of one design. Mass and deflection are exact in the bound; the mode is
+    /// computed anew, because a trial shape gives only an upper bound of its frequency.
     pub(super) fn objectives(&self, box_bound: &BoxBound, work: &Work) -> Objectives {
         let quotient = (box_bound.hz * std::f64::consts::TAU).powi(2);
         let lowest =
@@ -85,8 +85,8 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// The first trial shapes: those of the box of all designs, one for each start in each judged case.
-    /// `None` if no design meets the constraints.
+    /// The first trial shapes, made for the box of all designs: for each judged case, one for each acceleration in
+    /// [`STARTS`]. `None` if no design meets the constraints.
     pub(super) fn first_shapes(&self, work: &mut Work) -> Option<Vec<Shape>> {
         self.fill(&mut self.root(), work)?;
         self.least_tip_m(work)?;
@@ -103,8 +103,8 @@ impl<'c> Problem<'c> {
         Some(shapes)
     }
 
-    /// Bounds a box. `shapes` are the trial shapes of the parent box; they are replaced by this box's own
-    /// where that helps. `is_dominated` tells whether an incumbent dominates a bound, and `worth_refining`
+    /// Bounds a box. `shapes` holds the trial shapes of the parent box; a shape is replaced by one of this box where
+    /// that sharpens the bound. `is_dominated` tells whether an incumbent dominates a bound, and `worth_refining`
     /// whether a better shape could prune the box.
     pub(super) fn bound(
         &self,
@@ -166,7 +166,7 @@ impl<'c> Problem<'c> {
         Some(box_bound)
     }
 
-    /// Improves the trial shapes until the box is pruned or the bound no longer moves.
+    /// Improves the trial shapes until the box is pruned or the bound no longer changes.
     fn refine(
         &self,
         box_bound: &mut BoxBound,
@@ -202,8 +202,8 @@ impl<'c> Problem<'c> {
         Verdict::Open(*box_bound)
     }
 
-    /// Least deflection of the tip in the worst judged case \[m\]. `None` if no member has forces within the
-    /// force bounds of the problem.
+    /// Least deflection of the tip in the worst judged case \[m\]. `None` if no member's forces lie in the intervals
+    /// to which the problem's force bounds restrict them.
     pub(super) fn least_tip_m(&self, work: &mut Work) -> Option<f64> {
         let mut worst = 0.0f64;
         work.worst_tip = None;
@@ -218,18 +218,18 @@ impl<'c> Problem<'c> {
             for (at, row) in pose.rows.iter().enumerate() {
                 let force = work.forces[case][at];
                 let moved = match &work.curves[row.piece] {
-                    Some(curve) => {
+                    Some(curve) if row.coordinate == TORSION => {
                         let size = force[0].abs().max(force[1].abs());
                         let least = force[0].max(-force[1]).max(0.0);
                         let range = (least * (1.0 - ROUNDING), size * (1.0 + ROUNDING));
                         let play = self.joint_plays[row.piece].as_ref();
                         let stiffest = curve.stiffest(range.0, range.1);
-                        work.stiff_in[case][row.piece][0] =
+                        work.stiff_in[case][row.piece][TORSION] =
                             play.map_or(stiffest, |play| play.in_series(stiffest, range.1));
                         work.torques[case][row.piece] = range.into();
                         curve.twist(play, force)
                     }
-                    None => tube_strain(row.coordinate, pose, row.piece, force, work),
+                    _ => linear_strain(pose, row, force, work),
                 };
                 most_m += moved[1].max(-moved[0]) * row.tip_m_per_unit;
                 for (tip, d) in tip_m.iter_mut().zip(row.tip_m.iter()) {
@@ -275,22 +275,14 @@ fn hertz(lambda: f64) -> f64 {
     lambda.sqrt() / std::f64::consts::TAU * (1.0 + ROUNDING)
 }
 
-/// The strain coordinate of a tube, as an interval, for a force in an interval. The stiffness of the piece is
-/// an interval too, and the coordinate is the product of force and compliance.
-pub(super) fn tube_strain(
-    coordinate: usize,
-    pose: &Pose,
-    piece: usize,
-    [low, high]: [f64; 2],
-    work: &Work,
-) -> [f64; 2] {
-    let PosedPiece::Tube(tube) = &pose.pieces[piece] else { return [0.0; 2] };
-    let (resisted, _) = RESISTED[coordinate];
-    let (stiff, soft) = (work.stiff[piece][resisted], work.soft[piece][resisted]);
+/// The strain coordinate of a linear spring (of a tube, or of a bearing), as an interval, for a force in an interval. The
+/// stiffness of the piece is an interval too, and the coordinate is the product of force and compliance.
+pub(super) fn linear_strain(pose: &Pose, row: &Row, [low, high]: [f64; 2], work: &Work) -> [f64; 2] {
+    let (resisted, factor) = pose.pieces[row.piece].resisted(row.coordinate);
+    let (stiff, soft) = (work.stiff[row.piece][resisted], work.soft[row.piece][resisted]);
     if stiff == 0.0 {
         return [0.0; 2];
     }
-    let factor = degree_factor(coordinate) / tube.length_m;
     let (least, most) = (factor / stiff, factor / soft);
     [low * if low >= 0.0 { least } else { most }, high * if high >= 0.0 { most } else { least }]
 }

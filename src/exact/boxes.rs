@@ -10,10 +10,10 @@ use super::shape::Shape;
 use super::work::Work;
 use std::sync::Arc;
 
-/// Number of boxes that one task opens.
+/// Number of boxes that one task bounds.
 const BOXES: usize = 32;
 
-/// A box that waits to be bounded, with what its parent box knew.
+/// A box that waits to be bounded, with the trial shapes and the bound of its parent box.
 pub(super) struct OpenBox {
     pub design_box: DesignBox,
     pub shapes: Arc<Vec<Shape>>,
@@ -21,7 +21,8 @@ pub(super) struct OpenBox {
 }
 
 impl OpenBox {
-    /// The two halves along a level. The first half stands last, because the stack is opened from its end.
+    /// The two halves of a box along a level. The half to bound first stands last, because the stack is emptied from
+    /// its end.
     pub(super) fn halves(&self, problem: &Problem, level: usize, box_bound: BoxBound) -> Vec<Self> {
         let half = |node: u32| {
             let mut design_box = self.design_box.clone();
@@ -32,7 +33,7 @@ impl OpenBox {
     }
 }
 
-/// Opens the box of all designs and every box that comes of it. Findings are learned at the end of each
+/// Bounds the box of all designs and all boxes into which it is divided. Findings are learned at the end of each
 /// round. Returns the boxes that are still open when the search is stopped.
 pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
@@ -49,7 +50,7 @@ pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     in_rounds(state, vec![root], || budget.stopped(), task, learn)
 }
 
-/// Opens a box and then some of the boxes that come of it, depth first. Returns the open boxes and the
+/// Bounds a box and then some of the boxes into which it is divided, depth first. Returns the open boxes and the
 /// findings.
 pub(super) fn open_boxes<F: Default>(
     budget: &Budget,
@@ -91,14 +92,15 @@ pub(super) struct Search<'s, 'p> {
     pub budget: &'s Budget<'p>,
     pub problem: &'s Problem<'p>,
     pub state: &'s SearchState,
-    /// A box is pruned if an incumbent dominates its bound made worse by this slack (relative, 0 for none).
+    /// The slack of the pass: a box is pruned if an incumbent dominates its bound made worse by this (relative, 0 for
+    /// none).
     pub slack: f64,
-    /// The local upper bound below which designs are sought; `None` for the whole space.
+    /// The local upper bound below which designs are looked for; `None` for the whole space.
     pub below: Option<LocalUpperBound>,
 }
 
 impl Search<'_, '_> {
-    /// Bounds a box and returns its halves. A box of one design is judged and returns nothing.
+    /// Bounds a box and returns its halves. If the box is one design, the design is judged and nothing is returned.
     pub(super) fn open(&self, mut here: OpenBox, work: &mut Work, findings: &mut Findings) -> Vec<OpenBox> {
         self.budget.count_box();
         let verdict = self.problem.bound(
@@ -128,7 +130,7 @@ impl Search<'_, '_> {
         here.halves(self.problem, level, box_bound)
     }
 
-    /// Whether a design of the shared state or of the findings dominates the bound made worse by the slack.
+    /// Whether a design of the shared state or of the findings dominates the bound, made worse by the slack.
     pub(super) fn dominates(&self, box_bound: &BoxBound, findings: &Findings) -> bool {
         let slackened = box_bound.slackened(self.slack);
         self.state.incumbents.dominates(&slackened) || findings.dominates(&slackened)

@@ -8,15 +8,14 @@
 //! The bounds of the two halves would be a worse guide, because a box has to be halved several times before
 //! its bound moves at all.
 
-use super::bound::{STARTS, tube_strain};
+use super::bound::{STARTS, linear_strain};
 use super::parts::{INERTIAS, STIFFNESSES};
-use super::pose::RESISTED;
 use super::problem::{Part, Problem};
 use super::shape::{Shape, products};
 use super::torsion::Torsion;
 use super::work::Work;
 
-/// Ratio of the geometric mean of a range to its lower end, less one. Zero for an empty range.
+/// How far the geometric mean of an interval exceeds its lower end (relative). Zero for an interval without width.
 fn middling(low: f64, high: f64) -> f64 {
     if low > 0.0 && high > low { (high / low).sqrt() - 1.0 } else { 0.0 }
 }
@@ -70,14 +69,15 @@ impl Problem<'_> {
         best.map(|(_, level)| level)
     }
 
-    /// The relative fall of a shape's quotient if the torques, which each piece's weight makes uncertain, had
-    /// middling values. Such a fall occurs because a heavier part may press a gear inboard into a stiffer
-    /// segment of its curve. One number for each piece.
+    /// For each piece, the relative fall of a trial shape's Rayleigh quotient if torques had middle values instead of
+    /// those that are best for the bound, as far as the piece's weight makes the torques uncertain. The quotient
+    /// falls because a heavier part may press a gear inboard into a stiffer segment of its curve, and the bound
+    /// assumes this segment.
     fn softened_by_torque(&self, case: usize, shape: &Shape, strain: f64, work: &Work) -> Vec<f64> {
         let mut softened = vec![0.0; self.parts.len()];
         let pose = &self.poses[case];
         for row in &pose.rows {
-            let Some(curve) = &work.curves[row.piece] else { continue };
+            let Some(curve) = work.curve(row) else { continue };
             let [least_nm, most_nm] = work.torques[case][row.piece];
             let (soft, stiff) = (curve.stiffest(least_nm, least_nm), curve.stiffest(least_nm, most_nm));
             if stiff <= soft {
@@ -91,8 +91,8 @@ impl Problem<'_> {
         softened
     }
 
-    /// The relative growth of the least deflection if a piece had middling numbers, one number for each
-    /// piece.
+    /// For each piece, the relative growth of the least deflection if the piece's stiffnesses had their geometric
+    /// mean instead of their greatest value.
     fn weigh_tip(&self, work: &mut Work) {
         work.tip_growth.clear();
         work.tip_growth.resize(self.parts.len(), 0.0);
@@ -100,16 +100,16 @@ impl Problem<'_> {
         let pose = &self.poses[case];
         let mut total = 0.0;
         for (row, &force) in pose.rows.iter().zip(&work.forces[case]) {
-            let (moved, softer) = match &work.curves[row.piece] {
+            let (moved, softer) = match work.curve(row) {
                 Some(curve) => {
                     let play = self.joint_plays[row.piece].as_ref();
                     let middle = |torsion: &Torsion| torsion.windup.k2_nm_per_rad;
                     (curve.twist(play, force), middling(middle(&curve.soft), middle(&curve.stiff)))
                 }
                 None => {
-                    let (resisted, _) = RESISTED[row.coordinate];
+                    let (resisted, _) = pose.pieces[row.piece].resisted(row.coordinate);
                     let (soft, stiff) = (work.soft[row.piece][resisted], work.stiff[row.piece][resisted]);
-                    (tube_strain(row.coordinate, pose, row.piece, force, work), middling(soft, stiff))
+                    (linear_strain(pose, row, force, work), middling(soft, stiff))
                 }
             };
             // A coordinate whose interval contains zero need not move the tip at all.

@@ -15,27 +15,27 @@ use super::problem::{Part, Problem};
 use super::rows::{RelaxedDesign, Rows};
 use super::tree::Key;
 
-/// Coordinates of mass and stiffness in the key of a drive and of a tube, and the factors of their logarithms
-/// there.
+/// For drives and for tubes: which coordinates of the key stand for mass and for stiffness, and by what factor their
+/// logarithms are scaled there.
 const DRIVE: [(usize, f64); 2] = [(3, 1.0), (0, 4.0)];
 const TUBE: [(usize, f64); 2] = [(0, 2.0), (1, 1.0)];
-/// Gains below this are rounding.
+/// Gains below this are due to rounding.
 const NOTHING: f64 = 1e-9;
-/// A force is known well enough if its interval is narrower than this part of its size.
+/// A force is known well enough if its interval is narrower than this part of the force's greatest magnitude.
 const KNOWN: f64 = 0.1;
-/// Least distance of a branching point from the ends of the interval, as a part of the interval.
+/// Least distance of a branching point from either end of the interval, as a part of the interval.
 const SAME: f64 = 1e-3;
 
-/// What to branch on, and at which value.
+/// A way to divide a region into two: what is divided, and at which value.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Branching {
-    /// The gain that is expected, in units of a scaled row.
+    /// The expected gain, in units of a scaled row.
     gain: f64,
     by: BranchOn,
     at: f64,
 }
 
-/// What the two halves differ in.
+/// What is divided between the two halves.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum BranchOn {
     /// The options of a level, along a coordinate of their key.
@@ -44,21 +44,22 @@ pub(super) enum BranchOn {
     Force { case: usize, row: usize },
 }
 
-/// Relaxed designs that together may lie below a local upper bound, and their shares.
+/// A mixture: relaxed designs with their shares. The mixture may lie below a local upper bound although no design
+/// does.
 type Mixed<'a> = [(&'a RelaxedDesign, f64)];
 
 fn mean(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
     mixed.iter().map(|(member, share)| share * of(member)).sum()
 }
 
-/// Mean distance of a number of the mixed designs from its mean.
+/// Mean distance of a number of the mixed designs from the number's mean.
 fn spread(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
     let middle = mean(mixed, &of);
     mean(mixed, |member| (of(member) - middle).abs())
 }
 
 impl Rows<'_> {
-    /// Where to branch, the most promising first.
+    /// Ways to divide the region, the most promising first.
     pub(super) fn branchings(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
         let mut branchings = Vec::new();
         let left_out = self.left_out(mixed, multipliers);
@@ -86,7 +87,7 @@ impl Rows<'_> {
         branchings
     }
 
-    /// The key coordinates of a piece's mass and stiffness, and the best value that the box has of each.
+    /// Which coordinates of the key stand for a piece's mass and stiffness, and the best value of each in the box.
     fn best_of(&self, piece: usize) -> [(usize, f64); 2] {
         let (light, stiff) = (self.work.light[piece][inertia::MASS], self.work.stiff[piece][0]);
         let (places, stiff) = match &self.work.curves[piece] {
@@ -97,8 +98,8 @@ impl Rows<'_> {
         [number(places[0], light), number(places[1], stiff)]
     }
 
-    /// How much the McCormick underestimates leave out, in units of a scaled row. For each piece: what its
-    /// weight contributes, and what its compliance contributes.
+    /// For each piece, how much the McCormick bounds leave out because of the piece's weight, and because of its
+    /// compliance, in units of a scaled row.
     fn left_out(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<[f64; 2]> {
         let mut left_out = vec![[0.0; 2]; self.problem.parts.len()];
         for (judged, tip) in self.tips.iter().enumerate() {
@@ -118,14 +119,14 @@ impl Rows<'_> {
         left_out
     }
 
-    /// Branchings on the torque of a joint whose interval is wide. The gain is what the products leave out in
-    /// the joint's own twist and in the tubes between it and the next joint outboard, plus the spread of the
-    /// states of its gear.
+    /// Ways to divide the region at the torque of a joint whose interval is wide. The gain is what the McCormick
+    /// bounds leave out in the joint's twist and in the tubes up to the next joint outboard, plus the spread of the
+    /// states of the joint's gear.
     fn by_torque(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
         let mut branchings = Vec::new();
         for (judged, tip) in self.tips.iter().enumerate() {
             let (case, multiplier) = (tip.case, multipliers[1 + judged] / self.scale[1 + judged]);
-            // What the tubes further inboard leave out is due to the next joint's torque.
+            // What the tubes and bearings further inboard leave out is due to the next joint's torque.
             let mut left_out = 0.0;
             for (at, row) in self.problem.poses[case].rows.iter().enumerate() {
                 let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
@@ -137,7 +138,7 @@ impl Rows<'_> {
                 };
                 let acting = row.fixed + mean(mixed, made);
                 left_out += multiplier * self.product(mixed, judged, row, acting - least);
-                if self.work.curves[row.piece].is_none() {
+                if self.work.curve(row).is_none() {
                     continue;
                 }
                 let apart = self.free_gear(judged, row.piece).map_or(0.0, |next| {
@@ -160,14 +161,14 @@ impl Rows<'_> {
         branchings
     }
 
-    /// Tip displacement that the underestimate of one product leaves out \[m\]: the excess of the force over
-    /// its least, times the excess of the compliance over its least.
+    /// Tip displacement that the McCormick bound of one product leaves out \[m\]: the excess of the force over its
+    /// least value, times the excess of the compliance over its least value.
     fn product(&self, mixed: &Mixed, judged: usize, row: &Row, more: f64) -> f64 {
         let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
         (tip_per_unit * more * self.softer(mixed, judged, row)).abs()
     }
 
-    /// The excess of a force over its least that the weight of each piece contributes.
+    /// For each piece, the part of a force's excess over its least value that the piece's weight causes.
     fn heavier(&self, mixed: &Mixed, judged: usize, row: &Row, tip_per_unit: f64) -> Vec<f64> {
         let multipliers = row.per_n.iter().zip(&self.work.weights[self.tips[judged].case]).enumerate();
         multipliers
@@ -178,7 +179,7 @@ impl Rows<'_> {
             .collect()
     }
 
-    /// The excess of a coordinate's compliance over its least.
+    /// The excess of a coordinate's compliance over its least value.
     fn softer(&self, mixed: &Mixed, judged: usize, row: &Row) -> f64 {
         let case = self.tips[judged].case;
         let posed = &self.problem.poses[case].pieces[row.piece];
@@ -187,7 +188,7 @@ impl Rows<'_> {
             if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
         };
         let mut stiffest = self.work.stiff[row.piece];
-        if let Some(curve) = &self.work.curves[row.piece] {
+        if let Some(curve) = self.work.curve(row) {
             let [least_nm, most_nm] = self.work.torques[case][row.piece];
             stiffest[0] = curve.steepest(least_nm, most_nm);
         }
@@ -196,7 +197,7 @@ impl Rows<'_> {
 }
 
 impl Problem<'_> {
-    /// The key of a node of a level's tree.
+    /// The coordinates that separate a node of a level's tree from other nodes.
     fn key(&self, level: usize, node: u32) -> Key {
         match &self.parts[self.level_pieces[level]] {
             Part::Drives { tree, .. } => tree.node(node).key,

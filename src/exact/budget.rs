@@ -11,7 +11,7 @@ pub(super) struct Budget<'p> {
 }
 
 impl<'p> Budget<'p> {
-    /// A search that ends when `stop` is set or the deadline has passed.
+    /// A budget that ends the search when `stop` is set or the deadline has passed.
     pub(super) fn new(stop: &'p AtomicBool, deadline: Option<Instant>) -> Self {
         Self { stop, deadline, boxes: AtomicU64::new(0) }
     }

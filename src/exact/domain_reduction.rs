@@ -14,15 +14,15 @@ use crate::pareto::objectives::Objectives;
 use crate::space::design_space::DesignSpace;
 use std::collections::BTreeSet;
 
-/// Relative room between an objective of the known design and the local upper bound made of it, so that
-/// rounding excludes no part.
+/// Relative margin between the known design's objectives and the local upper bound made of them, so that rounding
+/// excludes no part.
 const ROOM: f64 = 1e-6;
-/// Greatest number of subproblems that are branched, and the number of designs below which branching is not
-/// worth its time.
+/// Greatest number of subproblems that are branched. A subproblem of fewer designs than [`FEW`] is not worth
+/// branching.
 const MOST_BRANCHED: usize = 50;
 const FEW: f64 = 1e6;
 
-/// A design space compiled to ask which parts can belong to a design as good as a known one.
+/// A compiled design space that answers which parts can belong to a design as good as a known one.
 pub struct DomainReduction<'p> {
     problem: Problem<'p>,
 }
@@ -33,8 +33,8 @@ impl<'p> DomainReduction<'p> {
         Some(Self { problem: Problem::new(space, catalogs, &|_| true, Ties::Merged)? })
     }
 
-    /// The options of each level, tip first and ascending, that a design may have that is no worse than a
-    /// known one in all three objectives. `None` if there is no such design, not even the known one.
+    /// For each level, tip first, the options that a design may have if it is no worse than a known design in all
+    /// three objectives, in ascending order. `None` if there is no such design, not even the known one.
     pub fn options_as_good(&self, known: &Objectives) -> Option<Vec<Vec<u32>>> {
         let upper = LocalUpperBound {
             mass_kg: known.mass_kg * (1.0 + ROOM),
@@ -67,7 +67,7 @@ impl<'p> DomainReduction<'p> {
     }
 }
 
-/// A subproblem whose options are reduced as far as that is worth its time.
+/// A subproblem whose options have been reduced as far as that is worth the time.
 struct Reduced<'p> {
     subproblem: Subproblem<'p>,
     survivors: Survivors,

@@ -4,15 +4,16 @@
 //! what it adds to the weighted sum of the rows in [`rows`](super::rows).
 
 use super::joint_play::JointPlay;
-use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia, stiffness_of};
+use super::pose::TILT;
 use super::torsion::CurveBox;
 use super::tree::{Bounds, Tree};
 use crate::arm::joint_law::Segment;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Greatest number of boxes that are priced in the search for the cheapest part. With fewer, the price of a
-/// box stands for that of its parts, and the last local upper bounds are never refuted.
+/// Greatest number of boxes that are priced in the search for the cheapest part. If it were smaller, the price of a
+/// box would more often stand for the price of its parts, and the last local upper bounds would never be refuted.
 const MOST_LOOKS: usize = 200;
 /// Relative rounding of a torque.
 const ROUNDING: f64 = 1e-12;
@@ -21,19 +22,19 @@ const ROUNDING: f64 = 1e-12;
 pub(super) struct Gear {
     pub piece: usize,
     pub judged: usize,
-    /// Interval of its torque \[N m\].
+    /// Interval of the gear's torque \[N m\].
     pub torques_nm: [f64; 2],
-    /// For a gear whose slope may change within the interval: the first of two rows that hold its own torque
-    /// equal to the torque that the weights make, one for each direction. `None` for a gear of a single
-    /// slope: its twist is taken at the torque `torques_nm[0]` and grows linearly from there with the
-    /// weights.
+    /// Index of the first of two rows, if the gear's slope may change within the interval. The rows, one for each
+    /// direction, hold the gear's own torque equal to the torque that the weights make. `None` for a gear with a
+    /// single slope. Such a gear is evaluated at the torque `torques_nm[0]`, from which its twist grows linearly with
+    /// the weights.
     pub row: Option<usize>,
     /// Least compliance of any gear of the box \[rad/(N m)\].
     pub least_compliance: f64,
 }
 
 impl Gear {
-    /// A gear whose torque may lie in several segments. `next` is the first of its two rows.
+    /// A gear whose torque may lie in several segments. `next` is the index of the first of its two rows.
     pub(super) fn free(
         piece: usize,
         judged: usize,
@@ -58,7 +59,7 @@ impl Gear {
 pub(super) struct DualPrice {
     /// Price per line inertia of a tube. For any other piece the first entry is the price per kilogram.
     pub inertia: [f64; INERTIAS],
-    /// Price per compliance of a tube, and the credit per stiffness.
+    /// Price per compliance of a tube, and the credit per stiffness. For a joint those of its bearing.
     pub compliance: [f64; STIFFNESSES],
     pub stiffness: [f64; STIFFNESSES],
     /// Prices of a joint, one for each judged case.
@@ -67,7 +68,8 @@ pub(super) struct DualPrice {
 
 /// The dual prices of a gear's state in a case.
 pub(super) struct JointPrice {
-    /// Price per twist \[1/rad\], per torque \[1/(N m)\], and the credit per slope \[rad/(N m)\].
+    /// Price per twist \[1/rad\]. `torque` is the price per torque \[1/(N m)\], `slope` the credit per slope \[rad/(N
+    /// m)\].
     pub twist: f64,
     pub torque: f64,
     pub slope: f64,
@@ -75,7 +77,7 @@ pub(super) struct JointPrice {
     pub play: Option<JointPlay>,
 }
 
-/// The state of a gear: its torque, twist and slope.
+/// The state of a gear: torque, twist and slope.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct JointState {
     pub torque_nm: f64,
@@ -83,9 +85,9 @@ pub(super) struct JointState {
     pub slope: f64,
 }
 
-/// A state of a gear that can be the cheapest. Twist is linear in the torque within a segment, so the ends of
-/// the segments are enough. For a box of gears the state has the least and the greatest twist (without play),
-/// and the greatest slope (with play).
+/// A state of a gear that may be the cheapest. Twist is linear in the torque within a segment, so the ends of the
+/// segments are enough. For a box of gears, `twist_rad` holds the least and the greatest twist (without play), and
+/// `slope` is the greatest slope (with play).
 #[derive(Clone, Copy, Default)]
 pub(super) struct GearState {
     pub torque_nm: f64,
@@ -123,7 +125,8 @@ fn each_state(
     }
 }
 
-/// The same for torques of one sign, given by their magnitudes \[N m\].
+/// Calls `see` for every candidate state of a curve under torques of one sign, which are given by their magnitudes
+/// \[N m\].
 #[inline(always)]
 fn each_state_of_sign(
     curve: &CurveBox,
@@ -155,8 +158,8 @@ fn each_state_of_sign(
 }
 
 impl JointPrice {
-    /// The price and the state of the cheapest state of a joint with this curve. For a box of joints the
-    /// price is a lower bound over its members.
+    /// Price of the cheapest state of a joint with this curve, and this state. For a box of joints the price is a
+    /// lower bound over its members.
     pub(super) fn best_of(&self, curve: Option<&CurveBox>) -> (f64, JointState) {
         let Some(curve) = curve else { return self.rigid() };
         let mut best = (f64::INFINITY, JointState::default());
@@ -171,7 +174,7 @@ impl JointPrice {
         best
     }
 
-    /// The price of the cheapest state alone.
+    /// Price of the cheapest state of a joint with this curve.
     #[inline]
     pub(super) fn least_of(&self, curve: Option<&CurveBox>) -> f64 {
         let Some(curve) = curve else { return self.rigid().0 };
@@ -188,7 +191,7 @@ impl JointPrice {
         least.min(most) + self.torque * end.torque_nm - self.slope * end.slope
     }
 
-    /// Collects the candidate states of a joint with this curve.
+    /// Collects the candidate states of a joint with this curve in `ends`.
     #[inline]
     pub(super) fn ends(&self, curve: &CurveBox, ends: &mut GearStates) {
         ends.count = 0;
@@ -198,7 +201,7 @@ impl JointPrice {
         });
     }
 
-    /// The price of a rigid joint. A box with `None` for its curve has a rigid member and members about which
+    /// Price and state of a rigid joint. A box without a curve has a rigid member, and perhaps members about which
     /// nothing is known, so the price must be a lower bound for those too.
     fn rigid(&self) -> (f64, JointState) {
         let [low, high] = self.torques_nm.map(|t| self.torque * t);
@@ -214,8 +217,21 @@ impl JointPrice {
 
 impl DualPrice {
     /// Price of a joint's drive. For a box of drives: a lower bound over its members.
-    pub(super) fn of_joint(&self, mass_kg: [f64; 2], curve: Option<&CurveBox>) -> f64 {
-        self.of_mass(mass_kg) + self.joint.iter().map(|price| price.least_of(curve)).sum::<f64>()
+    pub(super) fn of_joint(
+        &self,
+        mass_kg: [f64; 2],
+        curve: Option<&CurveBox>,
+        tilt_rad_per_nm: [f64; 2],
+    ) -> f64 {
+        let torsion: f64 = self.joint.iter().map(|price| price.least_of(curve)).sum();
+        self.of_mass(mass_kg) + torsion + self.of_tilt(tilt_rad_per_nm)
+    }
+
+    /// Price of the bearing of a drive.
+    #[inline]
+    fn of_tilt(&self, tilt_rad_per_nm: [f64; 2]) -> f64 {
+        least(self.compliance[TILT], tilt_rad_per_nm)
+            - self.stiffness[TILT] * stiffness_of(tilt_rad_per_nm[0])
     }
 
     /// Price of a drive's mass.
@@ -228,7 +244,6 @@ impl DualPrice {
     /// Price of a tube. For a box of tubes: a lower bound over its members.
     #[inline]
     pub(super) fn of_tube(&self, tube: &LinkBox) -> f64 {
-        let least = |price: f64, [a, b]: [f64; 2]| price * if price >= 0.0 { a } else { b };
         let mut sum = 0.0;
         for (i, &price) in self.inertia.iter().enumerate() {
             sum += least(price, [tube.low.inertias[i], tube.high.inertias[i]]);
@@ -241,6 +256,12 @@ impl DualPrice {
         }
         sum
     }
+}
+
+/// The least price of a number in an interval.
+#[inline]
+fn least(price: f64, [low, high]: [f64; 2]) -> f64 {
+    price * if price >= 0.0 { low } else { high }
 }
 
 /// The least price of an option below a node, and its node. If the search ends early the node is a box of

@@ -26,15 +26,15 @@ use std::sync::Arc;
 
 /// Greatest number of generations. Later ones hardly find better designs.
 const GENERATIONS: u64 = 20;
-/// Greatest number of children in a generation. A small space has fewer: the square root of its number of
-/// designs.
+/// Greatest number of children in a generation. In a small space, a generation has as many children as the square
+/// root of the number of designs.
 const MOST_CHILDREN: f64 = 8192.0;
 /// Width of a grid cell, in logarithms of the objectives.
 const STEP: f64 = 0.02;
-/// The second parent stands within this many places of the first in the order of mass.
+/// The second parent is taken from the designs within this many places of the first, in the order of mass.
 const CLOSE: u64 = 12;
 
-/// A design, and trial shapes that bound its modes (its own, or those of a similar design).
+/// A design with trial shapes that bound its modes. They are its own shapes, or those of a similar design.
 pub(super) struct Individual {
     pub design_box: DesignBox,
     pub objectives: Objectives,
@@ -45,16 +45,16 @@ pub(super) struct Individual {
 enum Offspring {
     /// The child has the parts of its parent.
     Unchanged,
-    /// A design seen before dominates the child, or one of its parts cannot carry its load.
+    /// A design that was found before dominates the child, or a part of the child cannot carry its load.
     Dominated,
     /// The objectives of the child are known, and it breaks a constraint.
     Infeasible,
-    /// The child meets every constraint, and no design seen before dominates it.
+    /// The child meets every constraint, and no design that was found before dominates it.
     Feasible(Individual),
 }
 
 impl Offspring {
-    /// Whether the three objectives were computed.
+    /// Whether the three objectives of the child were computed.
     fn is_evaluated(&self) -> bool {
         matches!(self, Self::Infeasible | Self::Feasible(_))
     }
@@ -67,7 +67,7 @@ impl Offspring {
     }
 }
 
-/// Evolves designs from those in `first` and adds what it finds to the state.
+/// Evolves designs from those in `first` and adds the designs found to the state.
 pub(super) fn evolve<'p>(
     budget: &Budget,
     problem: &Problem<'p>,
@@ -109,7 +109,7 @@ fn by_mass(members: Vec<Individual>) -> Vec<Individual> {
     kept
 }
 
-/// The sources of one child.
+/// Everything from which a child is made.
 struct Recombination<'a, 'p> {
     budget: &'a Budget<'p>,
     problem: &'a Problem<'p>,
@@ -152,7 +152,7 @@ impl Recombination<'_, '_> {
         Offspring::Feasible(Individual { design_box, objectives, shapes })
     }
 
-    /// Takes about a third of another design's parts.
+    /// Takes about a third of the parts from another design.
     fn exchange(&mut self, design_box: &mut DesignBox, other: &DesignBox) {
         for (mine, theirs) in design_box.iter_mut().zip(other) {
             if self.below(3) == 0 {
@@ -161,7 +161,7 @@ impl Recombination<'_, '_> {
         }
     }
 
-    /// Replaces the option of a level by any option below a box around the present one. Small boxes, and thus
+    /// Replaces the option of a level by a random option below a node around the present one. Small nodes, and thus
     /// similar options, are more likely.
     fn change(&mut self, design_box: &mut DesignBox, level: usize) {
         let problem = self.problem;

@@ -10,7 +10,7 @@ use super::pose::Row;
 /// Relative rounding of a force.
 const ROUNDING: f64 = 1e-12;
 
-/// The force of one row of a judged case, and the interval to which the region restricts it.
+/// An interval to which the region restricts one force: that of a row of a judged case.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ForceBound {
     pub case: usize,

@@ -6,7 +6,8 @@ use super::problem::Problem;
 use std::sync::Arc;
 
 impl Problem<'_> {
-    /// The interval of each row's force in a case. `None` if the force bounds leave an empty interval.
+    /// Computes the interval of each row's force in a case, within the force bounds. `None` if a force bound leaves
+    /// an empty interval.
     pub(super) fn forces(
         &self,
         case: usize,
@@ -33,7 +34,7 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// The problem with one more force bound. A bound that exists already is intersected.
+    /// The problem with one more force bound. If the force has a bound already, the two intervals are intersected.
     pub(super) fn with_force_bound(&self, case: usize, row: usize, [low, high]: [f64; 2]) -> Self {
         let mut bounds = self.force_bounds.to_vec();
         match bounds.iter_mut().find(|bound| bound.case == case && bound.row == row) {

@@ -1,12 +1,12 @@
-//! How much better than the front a design may be that a stopped search has missed.
+//! How near to every design of the study some found design is, after a search that was stopped.
 
 use super::bound::BoxBound;
 use crate::search::sweep::Candidate;
 use rayon::prelude::*;
 
 /// The least `ε` such that for every open box some design of the front, with mass and deflection divided by
-/// `1 + ε` and mode multiplied by it, is no worse than the bound of the box. No missed design is then better
-/// than the whole front by more than `ε` in every objective at once. `None` if a bound says nothing, or if
+/// `1 + ε` and mode multiplied by it, is no worse than the bound of the box. For every missed design some
+/// design of the front is then worse by at most `ε` in each objective. `None` if a bound says nothing, or if
 /// the front is empty.
 pub(super) fn gap(open: &[BoxBound], front: &[Candidate]) -> Option<f64> {
     let of = |box_bound: &BoxBound| {

@@ -13,7 +13,7 @@ use std::collections::HashMap;
 const EQUAL: f64 = 1e-9;
 /// The dominating design must be better by this (relative) in at least one objective.
 const BETTER: f64 = 1e-7;
-/// A better trial shape may lower the frequency of a bound to this part of it.
+/// A better trial shape is expected to lower a bound's frequency to no less than this part of it.
 const NEAR: f64 = 0.4;
 /// Number of grid steps in a factor of two.
 const STEPS: f64 = 64.0;
@@ -70,8 +70,8 @@ impl Incumbents {
         in_list(self.rows.get(&step(best.mass_kg))) || in_list(self.columns.get(&step(best.tip_deflection_m)))
     }
 
-    /// Whether an incumbent would dominate the bound if its frequency were lower. Then a better trial shape,
-    /// which lowers it, is worth its time.
+    /// Whether an incumbent would dominate the bound if a better trial shape lowered its frequency to the part
+    /// [`NEAR`]. Only then is a better shape worth its time.
     pub(super) fn nearly_dominates(&self, box_bound: &BoxBound) -> bool {
         self.dominates(&BoxBound { hz: box_bound.hz * NEAR, ..*box_bound })
     }

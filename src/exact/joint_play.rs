@@ -19,7 +19,7 @@ pub(super) struct JointPlay {
 }
 
 impl JointPlay {
-    /// The play of a joint's law. `None` if it has none.
+    /// The play of a joint's law; `None` if the law has no play.
     pub(super) fn of(law: &JointLaw) -> Option<Self> {
         let play = Self { lost_motion: law.lost_motion, friction_rad: law.hysteresis_rad };
         law.has_play().then_some(play)
@@ -30,8 +30,8 @@ impl JointPlay {
         self.friction_rad > 0.0
     }
 
-    /// Least and greatest twist that play adds for torques in an interval \[N m\] and springs with
-    /// compliances between `stiff` and `soft` \[rad/(N m)\]. The result is in rad.
+    /// Least and greatest twist that play adds \[rad\], for torques in an interval \[N m\] and gear springs with
+    /// compliances between `stiff` and `soft` \[rad/(N m)\].
     pub(super) fn twist(&self, [stiff, soft]: [f64; 2], [low, high]: [f64; 2]) -> [f64; 2] {
         let lost = |torque_nm: f64| self.lost_motion.map_or(0.0, |lost| lost.angle_rad(torque_nm));
         let held_back = |torque_nm: f64, compliance: f64| {
@@ -42,8 +42,8 @@ impl JointPlay {
         [lost(low) - most_held_back, lost(high) - least_held_back]
     }
 
-    /// The stiffness that small oscillations see, in series with lost motion \[N m/rad\]. For all torques of
-    /// at most this magnitude it is an upper bound.
+    /// Upper bound of the stiffness that small oscillations see: a gear of this stiffness in series with lost motion,
+    /// under torques of at most this magnitude \[N m/rad\].
     pub(super) fn in_series(&self, stiffness: f64, most_nm: f64) -> f64 {
         match self.lost_motion {
             None => stiffness,
@@ -51,7 +51,7 @@ impl JointPlay {
         }
     }
 
-    /// Whether small oscillations see the same slope of play under all torques up to a magnitude \[N m\].
+    /// Whether small oscillations see the same slope of lost motion under all torques up to a magnitude \[N m\].
     pub(super) fn stays(&self, most_nm: f64) -> bool {
         self.lost_motion.is_none_or(|lost| most_nm <= AT_REST * lost.torque_nm)
     }

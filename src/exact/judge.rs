@@ -10,7 +10,7 @@ use crate::search::sweep::Candidate;
 use crate::space::design::number;
 
 impl Problem<'_> {
-    /// The limits of mass, deflection and mode, as the upper bound of the whole front.
+    /// The limits on mass, deflection and mode as a local upper bound. It covers the whole front.
     pub(super) fn limits(&self) -> LocalUpperBound {
         let limits = &self.space.constraints;
         LocalUpperBound {
@@ -20,8 +20,9 @@ impl Problem<'_> {
         }
     }
 
-    /// Judges a box of one design. Its objectives are those of the bound, with the mode computed exactly.
-    /// `None` if it breaks a constraint, or if rounding leaves open whether it meets one.
+    /// Judges a box of one design, and returns the objectives of this design. Mass and deflection come from the
+    /// bound, the mode is computed anew. `None` if the design breaks a constraint, or if rounding leaves open whether
+    /// it meets one.
     pub(super) fn judge(
         &self,
         design_box: &[u32],

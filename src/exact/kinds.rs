@@ -11,7 +11,7 @@
 
 use crate::space::slot::SizedJoint;
 
-/// Whether tied drives (those of one kind) are one option of a search.
+/// Whether tied drives, which are the drives of one kind, are one option of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ties {
     /// One option for each kind.
@@ -20,7 +20,7 @@ pub(super) enum Ties {
     Separate,
 }
 
-/// The drives of a joint by kind, ascending. The first drive of a kind is its number.
+/// The drives of a joint, kind by kind, in ascending order. The first drive of a kind gives the kind its number.
 pub(super) struct Kinds(Vec<Vec<u32>>);
 
 impl Kinds {

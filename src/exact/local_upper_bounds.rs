@@ -11,8 +11,8 @@
 use super::bound::BoxBound;
 use crate::pareto::objectives::Objectives;
 
-/// A local upper bound. A design that is below it in mass and deflection, and above it in mode, is not
-/// dominated by the incumbents that made it.
+/// A local upper bound. A design below it, that is, of less mass, less deflection and a higher mode, is not dominated
+/// by the incumbents from which the bound was made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LocalUpperBound {
     pub mass_kg: f64,
@@ -21,7 +21,7 @@ pub(super) struct LocalUpperBound {
 }
 
 impl LocalUpperBound {
-    /// The local upper bound that covers two.
+    /// The least local upper bound that covers two others.
     fn join(&self, other: &Self) -> Self {
         Self {
             mass_kg: self.mass_kg.max(other.mass_kg),
@@ -30,13 +30,13 @@ impl LocalUpperBound {
         }
     }
 
-    /// Whether a box with this bound may have a member below the local upper bound.
+    /// Whether a box with this bound may have a member below this local upper bound.
     #[inline]
     pub(super) fn admits(&self, box_bound: &BoxBound) -> bool {
         box_bound.mass_kg <= self.mass_kg && box_bound.tip_m <= self.tip_m && box_bound.hz >= self.hz
     }
 
-    /// The eigenvalue of its frequency, `(2πf)²` \[1/s²\].
+    /// Eigenvalue of the local upper bound's frequency, `(2πf)²` \[1/s²\].
     pub(super) fn lambda(&self) -> f64 {
         (self.hz * std::f64::consts::TAU).powi(2)
     }
@@ -46,8 +46,8 @@ impl LocalUpperBound {
     }
 }
 
-/// All local upper bounds in a binary tree. Each node has a bound that covers those below it, so that many
-/// are refuted at once.
+/// All local upper bounds, as the leaves of a binary tree. Each node has a bound that covers those below it, so that
+/// many are refuted at once.
 pub(super) struct LocalUpperBounds {
     nodes: Vec<Node>,
 }
@@ -81,7 +81,7 @@ impl LocalUpperBounds {
         Self { nodes }
     }
 
-    /// The bound of a node and its two halves, if it has any. Node 0 is the root. `None` if there is no such
+    /// The bound of a node, and the node's two halves if it has any. Node 0 is the root. `None` if there is no such
     /// node.
     pub(super) fn node(&self, at: usize) -> Option<(LocalUpperBound, Option<[usize; 2]>)> {
         let node = self.nodes.get(at)?;
@@ -90,15 +90,15 @@ impl LocalUpperBounds {
     }
 }
 
-/// Deflection and mode of the incumbents so far that are not dominated, in ascending order of both.
+/// Deflection and mode of the incumbents added so far that are not dominated, in ascending order of both.
 struct Stairs {
     steps: Vec<[f64; 2]>,
     limits: LocalUpperBound,
 }
 
 impl Stairs {
-    /// Adds a design that is at least as heavy as all before, and appends the bounds that it completes.
-    /// Returns whether the design is not dominated.
+    /// Adds a design that is at least as heavy as all designs before it, and appends the local upper bounds that are
+    /// complete now. Returns whether the design is not dominated.
     fn add(&mut self, design: &Objectives, upper_bounds: &mut Vec<LocalUpperBound>) -> bool {
         let (tip_m, hz) = (design.tip_deflection_m, design.lowest_mode_hz);
         // Steps before `from` deflect less; steps before `to` have no higher mode.
@@ -114,7 +114,7 @@ impl Stairs {
         true
     }
 
-    /// The bound before a step.
+    /// The local upper bound between step `k` and the step before it.
     fn bound_before(&self, k: usize, mass_kg: f64) -> LocalUpperBound {
         LocalUpperBound {
             mass_kg,
@@ -124,7 +124,8 @@ impl Stairs {
     }
 }
 
-/// Builds the tree: halves the bounds at the median of the objective with the greatest ratio.
+/// Builds the tree: halves the bounds at the median of the objective in which the ratio of their greatest to their
+/// least value is largest.
 fn grow(upper_bounds: &mut [LocalUpperBound], nodes: &mut Vec<Node>) -> LocalUpperBound {
     let here = nodes.len();
     nodes.push(Node { bound: upper_bounds[0], end: here + 1 });
@@ -164,7 +165,7 @@ mod tests {
         prop::collection::vec(design, 0..40)
     }
 
-    /// Whether a design is below some local upper bound under a node, asked node by node.
+    /// Whether a design is below some local upper bound under a node. The tree is descended node by node.
     fn is_below(upper_bounds: &LocalUpperBounds, at: usize, design: [f64; 3]) -> bool {
         let [mass_kg, tip_m, hz] = design;
         upper_bounds.node(at).is_some_and(|(c, halves)| {

@@ -21,7 +21,7 @@ pub(super) struct CaseInertia {
 }
 
 impl CaseInertia {
-    /// The matrices of a case, over the coordinates that yield in some arm of the space.
+    /// The inertia matrices of a case, over the coordinates that yield in an arbitrary arm of the space.
     pub(super) fn new(pose: &Pose, some_arm: &Ideal) -> Self {
         let mut coordinates = Vec::new();
         for (piece, posed) in pose.pieces.iter().enumerate() {
@@ -48,8 +48,8 @@ impl CaseInertia {
         Self { coordinates, fixed, forms }
     }
 
-    /// The lowest eigenvalue of an arm \[1/s²\], given that it is at most `quotient`. In most cases the
-    /// quotient is it, so that is tested first.
+    /// The lowest eigenvalue of an arm \[1/s²\]. It is at most `quotient`, and in most cases equal to it, so that is
+    /// tested first.
     pub(super) fn lowest(&self, pose: &Pose, arm: &Ideal, quotient: f64) -> f64 {
         let scaled = self.scaled(pose, arm);
         let (mut low, mut high) = (quotient * (1.0 - TOLERANCE), quotient);
@@ -88,7 +88,8 @@ impl CaseInertia {
         m
     }
 
-    /// Whether `1/λ - A` is positive definite, by a Cholesky factorization.
+    /// Whether all eigenvalues of the pencil are above `lambda`: whether `1/λ - A` is positive definite, by a
+    /// Cholesky factorization.
     fn all_above(&self, scaled: &[f64], lambda: f64) -> bool {
         let n = self.coordinates.len();
         let mut l: Vec<f64> = scaled.iter().map(|a| -a).collect();

@@ -7,28 +7,27 @@ const MOST_PIVOTS: usize = 200;
 /// Numbers below this are rounding.
 const NOTHING: f64 = 1e-11;
 
-/// Tolerance of the sums over balanced columns. A different value for each column breaks ties between pivots.
+/// Tolerance of the sums over balanced columns. It differs from column to column, so that no two pivots are equal.
 const BALANCED: f64 = 1e-6;
 
 /// The solution of a game.
 pub(super) struct Game {
     /// Weights of the columns. None is negative, and they sum to one.
     pub weights: Vec<f64>,
-    /// Shares of the rows in the mixture that keeps every column as low as possible. They sum to one.
+    /// Shares of the rows in the mixture that keeps the greatest column as low as possible. They sum to one.
     pub mix: Vec<f64>,
-    /// The least weighted row.
+    /// Value of the game: the least weighted row.
     pub value: f64,
 }
 
-/// The weights of columns that make the least weighted row as large as possible. Each row has `width`
-/// numbers.
+/// The weights of columns that make the least weighted row as large as possible. Each row has `width` numbers.
 ///
-/// The simplex method solves the other player's linear program: `max Σ z` with `Σ_j (a_ji + c) z_j <= 1` for
+/// The simplex method solves the linear program of the other player: `max Σ z` with `Σ_j (a_ji + c) z_j <= 1` for
 /// every column `i` and `z >= 0`. Its dual values are the weights.
 ///
-/// Balanced columns are conditions on the mixture instead: `Σ_j a_ji z_j <= 0`. They come in pairs of
-/// opposite sign, so the sum is zero. As ordinary columns such a pair would guarantee the value zero without
-/// saying anything.
+/// Balanced columns are conditions on the mixture: `Σ_j a_ji z_j <= 0`. They come in pairs of opposite sign, so the
+/// sum must be zero. If such a pair were two ordinary columns, equal weights on both would guarantee the value zero
+/// and prove nothing.
 pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game {
     let count = rows.len() / width;
     let least = rows.iter().copied().fold(f64::INFINITY, f64::min);

@@ -16,13 +16,13 @@ use crate::search::near::{BUFFER, NearDesign, NearDesigns, ROUNDING, Shortfall, 
 use crate::search::sweep::Candidate;
 use crate::space::design::number;
 
-/// A better trial shape may lower the frequency of a bound to this part of it.
+/// A better trial shape is expected to lower a bound's frequency to no less than this part of it.
 const NEAR: f64 = 0.4;
 
 impl Exact<'_> {
-    /// Finds the designs that meet the constraints and whose shortfall is at most the slack, the front
-    /// included. `None` if the search was stopped. The total is not counted if it is far more than what is
-    /// asked for.
+    /// Finds the designs that meet the constraints and whose shortfall is at most the slack. The front is included.
+    /// `None` if the search was stopped. If there are far more designs than were asked for, their total is not
+    /// counted.
     pub fn near(&self, front: &[Candidate], slack: Slack) -> Option<NearDesigns> {
         let mut seeker = Seeker {
             shortfall: Shortfall::of(front.iter().map(|c| c.objectives)),
@@ -81,7 +81,7 @@ impl Exact<'_> {
     }
 }
 
-/// Number of designs that are kept before they are thinned out to the nearest.
+/// Number of designs that are stored before only the nearest of them are kept.
 fn kept_at_most(most: usize) -> usize {
     2 * most + BUFFER
 }
@@ -90,7 +90,7 @@ fn kept_at_most(most: usize) -> usize {
 struct Seeker {
     shortfall: Shortfall,
     most: usize,
-    /// The greatest shortfall that is still of interest.
+    /// The greatest shortfall with which a design can still be listed.
     reach: f64,
     found: u64,
     nearest: Vec<NearDesign>,
@@ -107,7 +107,7 @@ impl Seeker {
         Some(NearDesign { candidate, shortfall })
     }
 
-    /// Takes in near designs, and lowers the limit once there are enough of them.
+    /// Stores near designs. Once there are enough of them, lowers the greatest shortfall.
     fn learn(&mut self, near: Vec<NearDesign>) {
         self.found += near.len() as u64;
         self.nearest.extend(near);

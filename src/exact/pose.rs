@@ -1,5 +1,6 @@
 //! One case of a study as rows of numbers: the effect of each weight on each strain coordinate.
 
+use super::bearing_rows::BearingRows;
 use super::interval::interval;
 use super::parts::INERTIAS;
 use crate::mechanics::Twist;
@@ -38,6 +39,13 @@ pub(super) const RESISTED: [(usize, u8); COORDINATES] = [
     (4, 2),
 ];
 
+/// The coordinate of a joint's torsion, and the stiffness that resists it. Coordinates after it are the tilts of the
+/// bearing, which one stiffness resists.
+pub(super) const TORSION: usize = 0;
+pub(super) const TILT: usize = 1;
+/// Number of strain coordinates of a joint that tilts.
+pub(super) const JOINT_COORDINATES: usize = 3;
+
 /// `2i + 1` for a polynomial of degree `i`: the compliance of a coordinate times its stiffness and the tube's
 /// length.
 pub(super) fn degree_factor(coordinate: usize) -> f64 {
@@ -48,7 +56,7 @@ pub(super) fn degree_factor(coordinate: usize) -> f64 {
 pub(super) struct Pose {
     pub judged: bool,
     pub sizing: bool,
-    /// Whether no two contributions to the tip's displacement oppose each other.
+    /// Whether no two contributions to the tip's displacement may have opposite signs.
     pub contributions_align: bool,
     /// Density of the water around the arm, 0 in air \[kg/m³\]. The net weight per length of a tube is `g
     /// (mass - water · outer area)`.
@@ -56,17 +64,20 @@ pub(super) struct Pose {
     pub pieces: Vec<PosedPiece>,
     /// Inertia of the payload, before any part is chosen.
     pub payload_inertia: Matrix6<f64>,
-    /// The rows of all coordinates that a weight or a load strains, tip first.
+    /// The rows of all coordinates that are strained by a weight or by another load, tip first.
     pub rows: Vec<Row>,
     pub stress: Vec<StressRow>,
     /// Inertia about each joint's axis; `None` for a piece that is no joint.
     pub inertia_about: Vec<Option<InertiaRow>>,
+    /// Loads on the output bearing of each joint; `None` where the case sizes nothing or no bearing is checked.
+    pub bearings: Vec<Option<BearingRows>>,
 }
 
 /// A piece in a pose.
 pub(super) enum PosedPiece {
-    /// A joint: its unit twist, and the point of its mass.
-    Joint { twist: Twist, at_m: Vector3<f64> },
+    /// A joint: its unit twist, the point of its mass, and the unit twists about the two axes across its own,
+    /// about which the output bearing tilts; `None` if no option tilts.
+    Joint { twist: Twist, at_m: Vector3<f64>, across: Option<[Twist; 2]> },
     /// The inertia of a given body.
     Body(Matrix6<f64>),
     /// A tube.
@@ -99,16 +110,17 @@ pub(super) struct TubeForms {
     pub along: SMatrix<f64, 4, 4>,
 }
 
-/// The force on a strain coordinate, and the effect of the coordinate on the tip.
+/// The force on a strain coordinate, as a linear function of the weights, and the displacement of the tip by this
+/// coordinate.
 pub(super) struct Row {
     pub piece: usize,
-    /// Index of a tube's coordinate; 0 for a joint.
+    /// Index of a tube's coordinate. For a joint 0 is the torsion, 1 and 2 are the tilts of its bearing.
     pub coordinate: usize,
     /// Force without the weight of any part \[N or N m\].
     pub fixed: f64,
-    /// Force per newton of the weight of each piece, up to and including `piece`.
+    /// For each piece up to and including `piece`, the force per newton of the piece's weight.
     pub per_n: Vec<f64>,
-    /// Displacement of the tip per unit of the coordinate, and its length.
+    /// Displacement of the tip per unit of the coordinate. `tip_m_per_unit` is the length of this vector.
     pub tip_m: Vector3<f64>,
     pub tip_m_per_unit: f64,
 }
@@ -129,18 +141,22 @@ pub(super) struct InertiaRow {
 impl Pose {
     /// Torque on a joint, as an interval \[N m\].
     pub(super) fn torque(&self, piece: usize, weights: &[[f64; 2]]) -> [f64; 2] {
-        let row = self.rows.iter().find(|row| row.piece == piece);
-        row.map_or([0.0; 2], |row| interval(row.fixed, &row.per_n, weights))
+        self.torsion(piece).map_or([0.0; 2], |row| interval(row.fixed, &row.per_n, weights))
     }
 
     /// Torque on a joint without the weight of any part \[N m\].
     pub(super) fn payload_torque_nm(&self, piece: usize) -> f64 {
-        self.rows.iter().find(|row| row.piece == piece).map_or(0.0, |row| row.fixed)
+        self.torsion(piece).map_or(0.0, |row| row.fixed)
+    }
+
+    /// The row of a joint's torsion.
+    fn torsion(&self, piece: usize) -> Option<&Row> {
+        self.rows.iter().find(|row| row.piece == piece && row.coordinate == TORSION)
     }
 }
 
 impl Pose {
-    /// Whether every force, and so every demand, grows with every weight.
+    /// Whether every force, and so every demand on a joint, grows with every weight.
     pub(super) fn grows_with_weight(&self) -> bool {
         let loads = self.stress.iter().flat_map(|row| &row.loads);
         self.water_kg_m3 == 0.0
@@ -148,8 +164,8 @@ impl Pose {
             && loads.into_iter().all(|(fixed, per_n)| sign(*fixed, per_n).is_some())
     }
 
-    /// Whether no two contributions to the tip's displacement oppose each other. Then the tip moves further
-    /// if any part yields more.
+    /// Whether no two contributions to the tip's displacement may have opposite signs. Then the tip moves further if
+    /// any part yields more.
     pub(super) fn contributions_align(&self) -> bool {
         let rows = self.relevant_rows();
         let ways: Vec<_> = rows.map(|row| row.tip_m * sign(row.fixed, &row.per_n).unwrap_or(0.0)).collect();
@@ -158,14 +174,32 @@ impl Pose {
         ways.iter().enumerate().all(|(i, a)| ways[..i].iter().all(|b| agree(a, b)))
     }
 
-    /// The rows of joints, and the rows of coordinates that move the tip.
+    /// The rows of torsions, and the rows of coordinates that move the tip.
     fn relevant_rows(&self) -> impl Iterator<Item = &Row> {
-        let is_joint = |row: &Row| matches!(self.pieces[row.piece], PosedPiece::Joint { .. });
-        self.rows.iter().filter(move |row| is_joint(row) || row.tip_m.norm() > 0.0)
+        self.rows.iter().filter(|row| self.is_torsion(row) || row.tip_m.norm() > 0.0)
+    }
+
+    /// Whether a row is that of a joint's torsion.
+    pub(super) fn is_torsion(&self, row: &Row) -> bool {
+        row.coordinate == TORSION && matches!(self.pieces[row.piece], PosedPiece::Joint { .. })
     }
 }
 
-/// The common sign of a force without weights and per weight; 0 if all are zero, `None` if signs differ.
+impl PosedPiece {
+    /// The index of the stiffness that resists a coordinate, and what the coordinate yields per force times that
+    /// stiffness.
+    #[inline]
+    pub(super) fn resisted(&self, coordinate: usize) -> (usize, f64) {
+        match self {
+            PosedPiece::Tube(tube) => (RESISTED[coordinate].0, degree_factor(coordinate) / tube.length_m),
+            // Both tilts of a bearing have one stiffness.
+            _ => (coordinate.min(TILT), 1.0),
+        }
+    }
+}
+
+/// The common sign of the fixed part of a force and of its parts per weight. It is 0 if all are zero, and `None` if
+/// signs differ.
 fn sign(fixed: f64, per_n: &[f64]) -> Option<f64> {
     let largest = per_n.iter().fold(0.0f64, |most, c| most.max(c.abs()));
     // The fixed force and the coefficients have different units. They are compared as if every weight were

@@ -15,9 +15,9 @@ use crate::pareto::objectives::Objectives;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Greatest number of boxes in the first dive.
+/// Greatest number of boxes that the first descent of a probe bounds.
 const DIVE_BOXES: usize = 2_000;
-/// Greatest number of boxes when one level is optimized.
+/// Greatest number of boxes that are bounded while one level is optimized.
 const LEVEL_BOXES: usize = 300;
 /// Greatest number of rounds over all levels.
 const ROUNDS: usize = 3;
@@ -36,7 +36,7 @@ impl Merit {
         Self([u, v, 1.0 - u - v])
     }
 
-    /// The merit of a bound. Less is better.
+    /// The merit of a bound: a weighted sum of the logarithms of its objectives. Less is better.
     fn of(&self, box_bound: &BoxBound) -> f64 {
         let [mass, tip, mode] = self.0;
         mass * box_bound.mass_kg.ln() + tip * box_bound.tip_m.max(1e-12).ln() - mode * box_bound.hz.ln()
@@ -51,7 +51,7 @@ struct Best {
     shapes: Arc<Vec<Shape>>,
 }
 
-/// Runs this many probes, each with other weights, and adds what they find to the state.
+/// Runs this many probes, each with different weights of the objectives, and adds the designs found to the state.
 pub(super) fn probe<'p>(
     budget: &Budget,
     problem: &Problem<'p>,
@@ -73,7 +73,7 @@ pub(super) fn probe<'p>(
     best.into_iter().flatten().collect()
 }
 
-/// One probe.
+/// One probe: a descent to a good design for one weighting of the objectives.
 struct Probe<'a, 'p> {
     budget: &'a Budget<'p>,
     problem: &'a Problem<'p>,
@@ -81,7 +81,8 @@ struct Probe<'a, 'p> {
 }
 
 impl Probe<'_, '_> {
-    /// The best design that the probe finds: a dive from the box of all designs, then each level by itself.
+    /// The best design that the probe finds. It descends from the box of all designs, and then optimizes each level
+    /// by itself.
     fn best(&self, shapes: &Arc<Vec<Shape>>, findings: &mut Findings) -> Option<Individual> {
         let mut work = Work::default();
         let mut best = self.descend(self.problem.root(), shapes, DIVE_BOXES, None, &mut work, findings)?;
@@ -101,7 +102,7 @@ impl Probe<'_, '_> {
         Some(Individual { design_box: best.design_box, objectives: best.objectives, shapes: best.shapes })
     }
 
-    /// The design of least merit value in a box, or `best` if that is better. The better half is opened
+    /// The design of least merit in a box, or `best` if `best` is better. The half with the better bound is opened
     /// first.
     fn descend(
         &self,
@@ -140,7 +141,7 @@ impl Probe<'_, '_> {
         best
     }
 
-    /// Bounds a box. A box of one design is judged, and remembered if it is the best so far.
+    /// Bounds a box. If the box is one design, the design is judged, and stored if it is the best so far.
     fn look(
         &self,
         mut design_box: DesignBox,

@@ -28,11 +28,12 @@ pub(super) struct Problem<'c> {
     pub inertias: Arc<Vec<CaseInertia>>,
     /// Ratio of peak stress to static stress in sizing cases.
     pub peak_factor: f64,
-    /// Whether a lighter arm of the same stiffness is never worse, which the pruning of dominated drives
-    /// needs.
+    /// Whether a lighter arm of the same stiffness is never worse. Dominated drives can be pruned only then.
     pub lighter_is_better: bool,
     /// Play of each piece; `None` if it has none.
     pub joint_plays: Vec<Option<JointPlay>>,
+    /// Lever of each joint whose bearing is checked; `None` for any other piece.
+    pub levers: Vec<Option<Lever>>,
     /// Intervals to which a region restricts single forces.
     pub force_bounds: Arc<[ForceBound]>,
 }
@@ -54,9 +55,26 @@ pub(super) enum Part<'c> {
     Offset { mass_kg: f64 },
 }
 
+/// Lever along the axis of a joint from its bearing to where the link attaches.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Lever {
+    /// A lever that no choice changes \[m\].
+    Given(f64),
+    /// That of the link with this piece number.
+    OfLink(usize),
+}
+
+impl Part<'_> {
+    /// Whether it is a joint or a spring, and no body or tube.
+    pub(super) fn is_joint(&self) -> bool {
+        matches!(self, Part::Given { .. } | Part::Drives { .. } | Part::FirstFit { .. })
+    }
+}
+
 /// The drives that can be a first fit, by rising mass, with the box around any run of them.
 pub(super) struct Ladder {
-    /// `runs[k][i]` is the box of the drives `i..i + 2^k`, so that any run is the union of two of them.
+    /// `runs[k][i]` is the box around the `2^k` drives from `i` on. The box around any run is the union of two such
+    /// boxes.
     runs: Vec<Vec<DriveBox>>,
 }
 
@@ -87,8 +105,8 @@ impl Ladder {
 }
 
 impl<'c> Problem<'c> {
-    /// The problem restricted to the options below some nodes of each level's base tree. `None` if a level
-    /// has none.
+    /// The problem restricted to the options below some nodes of each level's base tree. `None` if a level has no
+    /// option left.
     pub(super) fn restricted_to(&self, kept: &[Vec<u32>]) -> Option<Self> {
         let mut narrower = self.clone();
         for (&piece, nodes) in self.level_pieces.iter().zip(kept) {
@@ -101,7 +119,7 @@ impl<'c> Problem<'c> {
         Some(narrower)
     }
 
-    /// Number of designs in a box, with the drives of a kind counted once.
+    /// Number of designs in a box, if all drives of a kind are counted as one.
     pub(super) fn members(&self, design_box: &[u32]) -> f64 {
         let of = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
             Part::Drives { tree, .. } => f64::from(tree.node(node).members),
@@ -111,7 +129,7 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(design_box).map(of).product()
     }
 
-    /// The options of each level below some nodes of its base tree, with all drives of a kind.
+    /// For each level, the options below some nodes of its base tree. All drives of a kind are included.
     pub(super) fn options_below(&self, kept: &[Vec<u32>]) -> Vec<Vec<u32>> {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, kinds, .. } => kinds.drives_of(&tree.options_of(nodes)),
@@ -121,7 +139,7 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(kept).map(of).collect()
     }
 
-    /// Number of designs below some nodes of each level's base tree, with the drives of a kind counted once.
+    /// Number of designs below some nodes of each level's base tree, if all drives of a kind are counted as one.
     pub(super) fn designs_below(&self, kept: &[Vec<u32>]) -> f64 {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, .. } => tree.members_of(nodes),

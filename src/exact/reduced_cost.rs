@@ -6,21 +6,24 @@
 
 use super::dual_price::{DualPrice, GearStates, JointPrice};
 use super::local_upper_bounds::LocalUpperBound;
-use super::parts::{DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::parts::{DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia, stiffness_of};
+use super::pose::TILT;
 use super::problem::Part;
 use super::rows::{DualPoint, ROUNDING, Rows};
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
 
 /// Approximate number of boxes into which the options of a level are divided.
 const BOXES: usize = 256;
-/// Number of dual points that are used, the strictest first.
+/// Number of dual points that are used to exclude options. Those with the greatest least sums are taken first.
 const STRICTEST: usize = 32;
 
-/// The dual prices of a level's options, and the greatest price that the local upper bound allows.
+/// The dual prices of a level's options at a dual point, and the greatest price that the local upper bound allows
+/// there.
 type PricedLimit = (DualPrice, f64);
 
 impl Rows<'_> {
-    /// The nodes of each level's base tree whose options no dual point excludes. `None` if a level has none.
+    /// For each level, the nodes of its base tree whose options no dual point excludes. `None` if a level has no
+    /// option left.
     pub(super) fn affordable_options(
         &self,
         design_box: &[u32],
@@ -74,13 +77,13 @@ impl Rows<'_> {
     }
 }
 
-/// The dual prices of a level's options at eight dual points, and the greatest allowed price at each.
+/// The dual prices of a level's options at eight dual points, and the greatest price allowed at each.
 struct EightPrices {
     most: Eight,
     inertia: [Eight; INERTIAS],
     compliance: [Eight; STIFFNESSES],
     stiffness: [Eight; STIFFNESSES],
-    /// Prices per twist, per torque and of the slope of a joint, for each judged case.
+    /// For each judged case, the prices of a joint per twist, per torque and per slope.
     joint: Vec<[Eight; 3]>,
 }
 
@@ -109,7 +112,7 @@ impl EightPrices {
     }
 }
 
-/// Whether at some dual point every drive of a box costs more than allowed. A price that is not a number
+/// Tells whether, at some dual point, every drive of a box costs more than allowed. A price that is not a number
 /// excludes nothing.
 struct DrivesCost<'a> {
     drives: &'a DriveBox,
@@ -125,8 +128,12 @@ impl LaneWork for DrivesCost<'_> {
         let Self { drives, gears, prices } = self;
         let mut ends = GearStates::default();
         let mut left = [V::zero(); STRICTEST / LANES];
+        let tilt_stiffness = V::splat(stiffness_of(drives.tilt_rad_per_nm[0]));
         for (left, eight) in left.iter_mut().zip(prices) {
-            *left = V::load(&eight.most) - least::<V>(&eight.inertia[inertia::MASS], drives.mass_kg);
+            let of_mass = least::<V>(&eight.inertia[inertia::MASS], drives.mass_kg);
+            let of_tilt = least::<V>(&eight.compliance[TILT], drives.tilt_rad_per_nm)
+                - V::load(&eight.stiffness[TILT]) * tilt_stiffness;
+            *left = V::load(&eight.most) - of_mass - of_tilt;
         }
         for (g, gear) in gears.iter().enumerate() {
             // A box with a rigid member has no bound of its price, so it stays.
@@ -150,7 +157,8 @@ impl LaneWork for DrivesCost<'_> {
     }
 }
 
-/// The same for every tube of a box.
+/// Tells whether, at some dual point, every tube of a box costs more than allowed. A price that is not a number
+/// excludes nothing.
 struct LinksCost<'a> {
     links: &'a LinkBox,
     prices: &'a [EightPrices],
@@ -184,7 +192,7 @@ impl LaneWork for LinksCost<'_> {
     }
 }
 
-/// The least price of a number in an interval, at each of eight dual points.
+/// The least price of a number that lies in an interval, at each of eight dual points.
 #[inline(always)]
 fn least<V: Lanes>(price: &Eight, [low, high]: [f64; 2]) -> V {
     let price = V::load(price);
@@ -197,6 +205,7 @@ mod tests {
     use crate::arm::joint_law::{Curve, JointLaw};
     use crate::exact::parts::Line;
     use crate::exact::torsion::CurveBox;
+    use crate::sizing::bearing::BearingLimits;
     use crate::sizing::limits::DriveLimits;
     use proptest::prelude::*;
 
@@ -230,7 +239,7 @@ mod tests {
         peak_torque_nm: 0.0,
         stop_torque_nm: 0.0,
         mean_torque_cubed_nm3: 0.0,
-        tilting_moment_nm: 0.0,
+        bearing: BearingLimits::NONE,
     };
 
     proptest! {
@@ -260,7 +269,8 @@ mod tests {
             prop_assert_eq!(excluded, excluded_one_by_one(&afforded, cost));
         }
 
-        /// The same for drives, whose gears are in one of three segments under torques of either sign.
+        /// Eight prices at once exclude exactly what each excludes alone, for drives whose gears are in one of three
+        /// segments under torques of either sign.
         #[test]
         fn drives_cost_the_same_side_by_side(
             prices in prop::collection::vec(prop::array::uniform8(-1.0f64..1.0), 1..20),

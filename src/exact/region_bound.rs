@@ -11,27 +11,27 @@ use super::work::Work;
 /// Greatest number of dual points, and of rounds of new shapes, for one box.
 const MOST_POINTS: usize = 24;
 const MOST_SHAPES: usize = 3;
-/// Greatest number of dual points after the game's value shows that the bound cannot be refuted. They improve
-/// the reduced costs.
+/// Greatest number of dual points that are added after it is clear that the region cannot be refuted. Further points
+/// improve the reduced costs.
 const MOST_TO_REDUCE: usize = 8;
-/// The iteration stops when the game promises at most this much more than the best dual point so far.
+/// The search for multipliers stops when the game promises at most this much more than the best dual point so far.
 const SETTLED: f64 = 1e-4;
-/// Shares of a mixture below this are rounding.
+/// A smaller share of a mixture is due to rounding.
 const SHARE: f64 = 1e-9;
 
-/// What a region may still contain.
+/// What remains of a region after bounding.
 pub(super) struct Survivors {
-    /// The nodes of each level's base tree that hold every option a member of the region may have.
+    /// For each level, nodes of its base tree with every option that a member of the region may have.
     pub options: Vec<Vec<u32>>,
-    /// Where to branch, the most promising first.
+    /// Ways to divide the region, the most promising first.
     pub branchings: Vec<Branching>,
-    /// Designs that may lie in the region; they are tried as incumbents.
+    /// Designs that may lie in the region. They are tried as incumbents.
     pub candidates: Vec<DesignBox>,
 }
 
 impl Problem<'_> {
-    /// Bounds a box, whose numbers are in `work`, below a local upper bound. `None` if no member lies below
-    /// it.
+    /// Bounds the part of a box that lies below a local upper bound. The numbers of the box are in `work`. `None` if
+    /// no member lies below the local upper bound.
     pub(super) fn bound_below(
         &self,
         design_box: &[u32],

@@ -26,27 +26,28 @@ use crate::pareto::objectives::Objectives;
 use crate::space::design::number;
 use std::sync::Arc;
 
-/// Part of the designs that must be excluded for the bound to be computed again.
+/// The bound is computed again if at least this part of the designs was excluded.
 const WORTH_IT: f64 = 0.1;
 /// Width of a grid cell for thinning the incumbents, as a part of the slack.
 const THINNED: f64 = 0.45;
 
-/// The options that may reach a region, with what was learned in the region around it.
+/// The options that may belong to a design of a region, with the shapes and multipliers that worked for the region
+/// around it.
 #[derive(Clone)]
 pub(super) struct Subproblem<'p> {
     problem: Arc<Problem<'p>>,
     design_box: DesignBox,
     shapes: Arc<Vec<Shape>>,
     warm_start: Arc<WarmStart>,
-    /// Number of incumbents that the local upper bounds of this region know.
+    /// Number of incumbents from which the local upper bounds of this region were made.
     incumbents_seen: usize,
 }
 
 /// A task of the search.
 enum Task<'p> {
-    /// The local upper bounds below a node of their tree.
+    /// The region of the local upper bounds below a node of their tree.
     Region { upper_bounds: Arc<LocalUpperBounds>, at: usize, subproblem: Subproblem<'p> },
-    /// The few designs of a region, box by box.
+    /// The designs of a region, if they are few: they are searched box by box.
     Boxes { problem: Arc<Problem<'p>>, upper: LocalUpperBound, first: OpenBox },
 }
 
@@ -123,7 +124,7 @@ impl<'p> Search<'_, 'p> {
             .into()
     }
 
-    /// Reduces the options as long as that is worth its time. `None` if the region is empty.
+    /// Reduces the options of a subproblem as long as that is worth the time. `None` if the region is empty.
     fn reduce(
         &self,
         subproblem: &mut Subproblem<'p>,
@@ -145,7 +146,7 @@ impl<'p> Search<'_, 'p> {
         }
     }
 
-    /// Judges a design that may be a good incumbent, once.
+    /// Judges a design that may be a good incumbent, unless it was judged before.
     fn try_design(&self, subproblem: &Subproblem<'p>, mut design_box: DesignBox, findings: &mut Findings) {
         let problem = &subproblem.problem;
         let Some(options) = problem.options(&design_box) else { return };
@@ -167,8 +168,8 @@ impl<'p> Search<'_, 'p> {
         }
     }
 
-    /// The local upper bounds that newer incumbents leave of a region. `None` if no newer incumbent lies in
-    /// it.
+    /// The local upper bounds that are left of a region by incumbents found since its bounds were made. `None` if no
+    /// such incumbent lies in the region.
     fn clipped(&self, upper: &LocalUpperBound, incumbents_seen: &mut usize) -> Option<LocalUpperBounds> {
         let is_inside = |o: &Objectives| {
             o.mass_kg < upper.mass_kg && o.tip_deflection_m < upper.tip_m && o.lowest_mode_hz > upper.hz
@@ -181,7 +182,8 @@ impl<'p> Search<'_, 'p> {
     }
 }
 
-/// An incumbent improved by the slack, so that only designs better by more than the slack are sought.
+/// The objectives of an incumbent, improved by the slack. Only designs that are better by more than the slack are
+/// then looked for.
 fn improved_by_slack(found: &Objectives, slack: f64) -> Objectives {
     found.better_by(1.0 + slack - DOMINANCE_MARGIN)
 }
@@ -199,8 +201,8 @@ impl<'p> Subproblem<'p> {
         })
     }
 
-    /// Bounds the subproblem below a local upper bound. Returns the survivors, and whether the subproblem was
-    /// restricted to them, which is done if enough designs were excluded. `None` if the region is empty.
+    /// Bounds a subproblem below a local upper bound. Returns the survivors, and whether the subproblem was
+    /// restricted to them. It is restricted if enough designs were excluded. `None` if the region is empty.
     pub(super) fn reduce(
         &mut self,
         upper: &LocalUpperBound,
@@ -226,8 +228,8 @@ impl<'p> Subproblem<'p> {
         Some((survivors, reduced))
     }
 
-    /// The subproblem as a search box by box. Force bounds are dropped, because they cost time and gain
-    /// little where designs are few.
+    /// A task that searches the designs of the subproblem box by box. Force bounds are dropped, because they cost
+    /// time and gain little where designs are few.
     fn in_boxes(self, upper: LocalUpperBound) -> Task<'p> {
         let problem = Arc::new(self.problem.without_force_bounds());
         Task::Boxes {
@@ -242,7 +244,7 @@ impl<'p> Subproblem<'p> {
         self.problem.designs_below(&survivors.options)
     }
 
-    /// Two halves of the subproblem, by the most promising branching. `None` if a single design is left.
+    /// Two halves of the subproblem, by the first branching that divides it. `None` if a single design is left.
     pub(super) fn branch(&self, survivors: &Survivors, work: &mut Work) -> Option<[Self; 2]> {
         let branch = survivors
             .branchings

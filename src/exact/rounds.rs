@@ -10,14 +10,14 @@ use rayon::prelude::*;
 /// Number of tasks in a round. More tasks keep more threads busy, but their findings are learned later.
 const TASKS: usize = 32;
 
-/// The result of a task: new tasks, of which the last is done first, and its findings.
+/// The result of a task: its findings, and new tasks, of which the last is done first.
 pub(super) struct Done<T, F> {
     pub tasks: Vec<T>,
     pub findings: F,
 }
 
-/// Does the tasks and those that come of them, the last first. Returns the tasks that remain when the search
-/// is stopped.
+/// Does the tasks in `first` and the tasks that they produce, the last first. Returns the tasks that remain when the
+/// search is stopped.
 pub(super) fn in_rounds<K: Sync, T: Send, F: Send>(
     known: &mut K,
     first: Vec<T>,

@@ -6,7 +6,7 @@
 //! | row | sum over the parts | what is lost |
 //! |---|---|---|
 //! | mass | exact | nothing |
-//! | displacement of the tip in a case, along a fixed direction | twist of the gears, each at a torque of its own; `F₀ c + c₀ (F - F₀)` for the force `F` and the compliance `c` of a tube, with `F₀` and `c₀` the least of the box (McCormick) | the product of the widths of `F` and `c` |
+//! | displacement of the tip in a case, along a fixed direction | twist of the gears, each at a torque of its own; `F₀ c + c₀ (F - F₀)` for the force `F` and the compliance `c` of a tube or a bearing, with `F₀` and `c₀` the least of the box (McCormick) | the product of the widths of `F` and `c` |
 //! | torque of a gear | its own torque less the torque that the weights outboard make: zero | nothing |
 //! | mode | `λ xᵀMx - xᵀKx` for a trial shape `x`: not positive for a member whose eigenvalues are at least `λ` | the square of the shape's error |
 //!
@@ -25,43 +25,44 @@ use super::shape::Shape;
 use super::tip_row::TipRow;
 use super::work::Work;
 
-/// Relative margin by which an incumbent must dominate. It is more than the difference that counts as equal.
+/// Relative amount by which an incumbent must be better to dominate. It is more than the difference below which
+/// objectives count as equal.
 pub(super) const DOMINANCE_MARGIN: f64 = 2e-7;
 /// Rounding of sums whose terms are about 1.
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// Multipliers and shapes from the parent box, where the search for multipliers starts.
+/// Multipliers and trial shapes of the parent box, with which the search for multipliers starts.
 #[derive(Clone, Default)]
 pub(super) struct WarmStart {
-    /// Multipliers of the mass, the tip rows and the modes. Torque rows get their own in every box.
+    /// Multipliers of the mass, the tip rows and the modes. Every box makes its own for torque rows.
     pub multipliers: Vec<f64>,
     pub shapes: Vec<Shape>,
 }
 
 impl WarmStart {
-    /// For the box of all designs: no multipliers, its own shapes.
+    /// The warm start of the box of all designs: no multipliers, and the box's own trial shapes.
     pub(super) fn new(shapes: &[Shape]) -> Self {
         Self { multipliers: Vec::new(), shapes: shapes.to_vec() }
     }
 }
 
-/// The rows of a box.
+/// The rows of a box: the inequalities that every member below a local upper bound satisfies.
 pub(super) struct Rows<'a> {
     pub problem: &'a Problem<'a>,
     pub work: &'a Work,
     /// The scale of each row, which makes its values about 1.
     pub scale: Vec<f64>,
-    /// The part of each scaled row that no choice changes.
+    /// The part of each row, scaled, that no choice changes.
     pub fixed: Vec<f64>,
     /// The displacement of the tip in each judged case.
     pub tips: Vec<TipRow>,
-    /// The gears that yield, in each judged case.
+    /// For each judged case, the gears that yield.
     pub gears: Vec<Gear>,
-    /// The forces that have rows.
+    /// The forces that the bound has rows for, two rows for each force.
     pub forces: Vec<Force<'a>>,
     /// Eigenvalue at which the mode rows are taken \[1/s²\].
     pub lambda: f64,
-    /// The trial shapes, one row each.
+    /// The trial shapes. Each has one row.
     pub modes: Vec<Mode>,
     /// Index of the first mode row.
     pub first_mode: usize,
@@ -69,7 +70,8 @@ pub(super) struct Rows<'a> {
     pub drives: Vec<DrivesByCurve>,
 }
 
-/// A force that the weights make in a judged case. It takes two rows, one for each sign.
+/// A force that the weights make in a judged case. It takes two rows, one for its least and one for its greatest
+/// value.
 pub(super) struct Force<'a> {
     pub judged: usize,
     pub per_n: &'a [f64],
@@ -85,14 +87,14 @@ pub(super) struct Mode {
     pub kinetic: [f64; 2],
 }
 
-/// A minimizer of the weighted sum. It need not be a member of the box: the torques of its gears need not
-/// agree with its weights, and a level may be a box of several options.
+/// A minimizer of the weighted sum over a box. It need not be a member of the box: the torques of its gears need not
+/// agree with its weights, and its node of a level may be a box of several options.
 pub(super) struct RelaxedDesign {
-    /// Its node of each level.
+    /// The node of each level.
     pub design_box: DesignBox,
     /// The scaled value of every row.
     pub values: Vec<f64>,
-    /// What each piece adds to the rows before the modes, unscaled.
+    /// For each piece, the amount that it adds to each row before the modes, unscaled.
     pub adds: Vec<Vec<f64>>,
     /// Line inertias of each piece.
     pub inertia: Vec<[f64; INERTIAS]>,
@@ -102,8 +104,8 @@ pub(super) struct RelaxedDesign {
     pub stiffness: Vec<Vec<[f64; STIFFNESSES]>>,
 }
 
-/// A point of the dual function: the multipliers, the least weighted sum over the box, and the part of it
-/// that each level adds.
+/// A point of the dual function: the multipliers, the least weighted sum over the box, and the amount that each level
+/// adds to this sum.
 pub(super) struct DualPoint {
     pub multipliers: Vec<f64>,
     pub least: f64,
@@ -122,7 +124,7 @@ impl Problem<'_> {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows of a box whose numbers are in `work`, for a local upper bound.
+    /// The rows of a box for a local upper bound. The numbers of the box are in `work`.
     pub(super) fn new(
         problem: &'a Problem,
         design_box: &[u32],
@@ -167,11 +169,11 @@ impl<'a> Rows<'a> {
         rows
     }
 
-    /// Adds the gears of a judged case, with two rows for each whose slope may change.
+    /// Adds the gears of a judged case, with two rows for each gear whose slope may change.
     fn push_gears(&mut self, judged: usize, case: usize) {
         let (problem, work) = (self.problem, self.work);
         for (at, row) in problem.poses[case].rows.iter().enumerate() {
-            let Some(curve) = &work.curves[row.piece] else { continue };
+            let Some(curve) = work.curve(row) else { continue };
             let gear = match self.tips[judged].torques_nm[row.piece] {
                 Some(torque_nm) => Gear::at(row.piece, judged, torque_nm),
                 None => {
@@ -188,12 +190,14 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds two rows for each bounded force of a judged case that no gear's rows cover.
+    /// Adds two rows for each force bound of a judged case, unless the force is the torque of a gear that has rows
+    /// already.
     fn push_force_bounds(&mut self, judged: usize, case: usize) {
         let (problem, work) = (self.problem, self.work);
         for bound in problem.force_bounds.iter().filter(|bound| bound.case == case) {
             let row = &problem.poses[case].rows[bound.row];
-            let is_free = |gear: &Gear| gear.piece == row.piece && gear.row.is_some();
+            let is_free =
+                |gear: &Gear| gear.piece == row.piece && gear.row.is_some() && work.curve(row).is_some();
             // A bounded force that belongs to no such gear needs rows of its own. The gear's rows cover
             // it otherwise.
             if !self.gears.iter().any(is_free) {
@@ -203,7 +207,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// The first of the two rows of a gear whose slope may change in a case. `None` if the gear has one
+    /// Index of the first of the two rows of a gear whose slope may change in a case. `None` if the gear has a single
     /// slope.
     pub(super) fn free_gear(&self, judged: usize, piece: usize) -> Option<usize> {
         self.gears.iter().find(|gear| gear.judged == judged && gear.piece == piece)?.row
@@ -214,8 +218,8 @@ impl<'a> Rows<'a> {
         self.fixed.push(fixed / scale);
     }
 
-    /// Adds the two rows of a force: its least value less what the weights make, and that less its greatest
-    /// value.
+    /// Adds the two rows of a force: its least value less the force that the weights make, and this force less its
+    /// greatest value.
     fn push_force(&mut self, judged: usize, row: &'a Row, [low, high]: [f64; 2], between: [f64; 2]) -> usize {
         let next = self.scale.len();
         // The scale stays comparable to that of the other rows however narrow the interval is.
@@ -234,7 +238,7 @@ impl<'a> Rows<'a> {
         self.modes.push(Mode { judged, start, shape, kinetic });
     }
 
-    /// Multipliers that start from those of the parent box, or equal ones if there are none.
+    /// The multipliers of the parent box. Rows that the parent did not have get equal multipliers.
     pub(super) fn starting_multipliers(&self, above: &[f64]) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.scale.len()];
         let others: Vec<usize> = (0..=self.tips.len()).chain(self.first_mode..self.scale.len()).collect();
@@ -246,8 +250,8 @@ impl<'a> Rows<'a> {
         self.with_torques(multipliers)
     }
 
-    /// Adds the multipliers that make the twist of a gear grow with the torque of the weights, by the least
-    /// compliance of the box (McCormick). Without them a gear could choose its torque at no price.
+    /// Adds multipliers of torque rows. They make the twist of a gear grow with the torque of the weights, by the
+    /// least compliance of the box (McCormick). Without them a gear could choose its torque at no price.
     pub(super) fn with_torques(&self, mut multipliers: Vec<f64>) -> Vec<f64> {
         for gear in &self.gears {
             let Some(row) = gear.row else { continue };
@@ -284,7 +288,7 @@ impl<'a> Rows<'a> {
         objectives.chain(torques).chain(modes).zip(&self.scale).map(|(row, scale)| row / scale)
     }
 
-    /// Multipliers that take each limited row by itself.
+    /// For each row with a limit, the multipliers that use this row alone.
     pub(super) fn single_row_multipliers(&self, upper: &LocalUpperBound) -> Vec<Vec<f64>> {
         let is_torque = |row: usize| (1 + self.tips.len()..self.first_mode).contains(&row);
         let rows = self.row_limits(upper).enumerate().filter(|(row, a)| a.is_finite() && !is_torque(*row));

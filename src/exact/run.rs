@@ -17,15 +17,16 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Slacks of the passes over a large space. With slack a box is also pruned if an incumbent comes that close
-/// to its bound. A completed pass therefore proves that nothing is missed by more than its slack.
+/// to its bound. A completed pass therefore proves that every design has a found one that close.
 const SLACKS: [f64; 25] = [
     1.0, 0.7, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.16, 0.12, 0.09, 0.075, 0.06, 0.05, 0.04, 0.035, 0.03, 0.025,
     0.02, 0.015, 0.01, 0.007, 0.005, 0.0035, 0.0025,
 ];
-/// Slacks below this are used only in searches by regions. A search by boxes finds as much without them.
+/// Slacks below this are used only in searches by regions. A search by boxes finds as much without such passes.
 const FINE: f64 = 0.02;
-/// A pass may be skipped if a finer one should take less than `QUICK` of the time left. At most this many are
-/// skipped at once; with a target gap more may be skipped, whatever time they take.
+/// A pass may be skipped if the next finer pass should take less than the part [`QUICK`] of the time left. At most
+/// this many passes are skipped at once. With a target gap at most [`PASSED_OVER_TO_A_GAP`] are skipped, whatever
+/// time they take.
 const MOST_PASSED_OVER: usize = 4;
 const PASSED_OVER_TO_A_GAP: usize = 8;
 const QUICK: f64 = 0.65;
@@ -37,9 +38,10 @@ const LARGE: f64 = 1e9;
 pub const VAST: f64 = 1e14;
 /// Number of designs below which a region is searched box by box.
 const FEW: f64 = 1e6;
-/// Number of probes per square of the decades of designs. A large space repays many probes, a small one none.
+/// Number of probes, divided by the square of the number of designs' common logarithm. A large space repays many
+/// probes, a small one none.
 const PROBES: f64 = 0.12;
-/// The same where the genetic algorithm follows.
+/// The factor that replaces [`PROBES`] where the genetic algorithm ([`evolve`]) follows.
 const PROBES_TO_EVOLVE: f64 = 0.04;
 /// Default for the greatest number of designs that are listed with all their ties.
 const MOST_WITH_TIES: usize = 20_000;
@@ -72,10 +74,10 @@ pub struct Exact<'p> {
     space: &'p DesignSpace,
     catalogs: &'p Catalogs,
     pub(super) budget: Budget<'p>,
-    /// The slack at which the search is complete: that of the last pass.
+    /// The slack of the last pass, after which the search is complete.
     gap: f64,
-    /// Number of designs above which the space is searched by regions, and below which a region is searched
-    /// by boxes.
+    /// Number of designs above which the space is searched by regions. `regions_to` is the number below which a
+    /// region is searched by boxes.
     regions_from: f64,
     regions_to: f64,
     /// Greatest number of designs that are listed with all their ties.
@@ -94,14 +96,14 @@ pub struct ExactOutcome {
     /// Number of boxes or regions that were still open when the search was stopped. It is 0 if the front is
     /// certified.
     pub boxes_open: u64,
-    /// The factor, less one, by which an undiscovered design may at most be better than the whole front in
-    /// every objective at once. After a complete search it is the gap that was asked for, 0 for the whole
-    /// front. `None` if nothing is known.
+    /// The greatest factor, less one, by which an undiscovered design may be better than the whole front in every
+    /// objective at once. After a complete search this is the gap that was asked for, 0 for the whole front. `None`
+    /// if nothing is known.
     pub gap: Option<f64>,
     /// The designs found that no other dominates.
     pub front: Vec<Candidate>,
-    /// Whether the front lists every design that differs only in drives of equal mass and curve. If these
-    /// would be too many, one of each is listed.
+    /// Whether the front lists every design that differs only in drives of equal mass and curve. If there are too
+    /// many, one of each set of ties is listed.
     pub ties_listed: bool,
 }
 
@@ -124,22 +126,22 @@ impl<'p> Exact<'p> {
         }
     }
 
-    /// Searches a space of more designs than this region by region, instead of one of more than 1e14. It
-    /// changes the time of the search, not its result.
+    /// Searches the space region by region if it has more designs than this. The default is 1e14. It changes the time
+    /// of the search, not its result.
     #[must_use]
     pub fn by_regions_from(self, designs: f64) -> Self {
         Self { regions_from: designs, regions_to: designs.min(FEW), ..self }
     }
 
-    /// Lists designs that differ only in drives of equal mass and curve if they are at most this many,
-    /// instead of 20,000. Otherwise one of each is listed.
+    /// Lists designs that differ only in drives of equal mass and curve if they are at most this many. The default is
+    /// 20,000. If there are more, one of each set of ties is listed.
     #[must_use]
     pub fn with_ties_up_to(self, designs: usize) -> Self {
         Self { most_with_ties: designs, ..self }
     }
 
-    /// Completes the search once no design is better than every known or found one by more than this part in
-    /// all three objectives at once.
+    /// Completes the search once for every design some known or found one is worse by at most this part in each
+    /// objective.
     #[must_use]
     pub fn to_gap(self, gap: f64) -> Self {
         Self { gap, ..self }
@@ -150,9 +152,9 @@ impl<'p> Exact<'p> {
         self.budget.boxes()
     }
 
-    /// The index of the next pass: the one with the least slack for which there should be time. With a target
-    /// gap the choice does not depend on the time, because a front with a gap depends on the passes before it
-    /// and must be the same on every machine.
+    /// The index of the next pass: the one with the least slack for which there should be time. With a target gap the
+    /// choice does not depend on the time. A front with a gap depends on the passes before it and must be the same on
+    /// every machine.
     fn next_pass(&self, passes: &[f64], last: usize, started: Instant) -> usize {
         let left = self.budget.deadline().map(|deadline| deadline.saturating_duration_since(Instant::now()));
         let took_s = started.elapsed().as_secs_f64();
@@ -167,8 +169,8 @@ impl<'p> Exact<'p> {
         ahead.take_while(|pass| passes[*pass] > 0.0 && is_quick(pass)).last().unwrap_or(last + 1)
     }
 
-    /// Finds the front. `known` are the objectives of designs that are known already; they prune, but they
-    /// are not listed.
+    /// Finds the front. `known` holds the objectives of designs that are known already. They prune boxes, but these
+    /// designs are not listed.
     pub fn run(&self, known: &[Objectives]) -> ExactOutcome {
         self.run_of(self.problem(&|_| true, Ties::Merged), known)
     }
@@ -180,7 +182,7 @@ impl<'p> Exact<'p> {
         self.run_of(self.problem(&is_of_it, Ties::Merged), &[])
     }
 
-    /// The space with the link options that `takes` admits. `None` if a level has none.
+    /// The compiled space with the link options for which `takes` is true. `None` if a level has no option.
     pub(super) fn problem(&self, takes: &dyn Fn(&LinkOption) -> bool, ties: Ties) -> Option<Problem<'p>> {
         Problem::new(self.space, self.catalogs, takes, ties)
     }
@@ -245,7 +247,7 @@ impl<'p> Exact<'p> {
     }
 }
 
-/// The smaller of two bounds, either of which may be unknown.
+/// The smaller of two bounds; a bound that is `None` is unknown and does not count.
 fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::min)
 }

@@ -7,7 +7,7 @@ use crate::pareto::objectives::Objectives;
 use crate::search::sweep::{Candidate, SLACK};
 use std::collections::HashSet;
 
-/// Above this number, candidates are filtered whenever their number reaches a power of two.
+/// Above this number, dominated candidates are removed whenever the number of candidates reaches a power of two.
 const BUFFER: usize = 4096;
 
 /// The state that all tasks of a round share.
@@ -22,7 +22,7 @@ pub(super) struct SearchState {
     pub evaluated: u64,
 }
 
-/// What a task found.
+/// The findings of a task, before they are made known to other tasks.
 #[derive(Default)]
 pub(super) struct Findings {
     pub kept: Vec<Candidate>,
@@ -32,7 +32,7 @@ pub(super) struct Findings {
 }
 
 impl Findings {
-    /// Whether a design found dominates every member of a box.
+    /// Whether a design that the task found dominates every member of a box.
     pub(super) fn dominates(&self, box_bound: &BoxBound) -> bool {
         let best = Objectives::from(*box_bound);
         self.kept.iter().any(|c| is_better(&c.objectives, &best))
@@ -59,7 +59,7 @@ impl SearchState {
         }
     }
 
-    /// The designs found that no other dominates, in ascending order, followed by the undecided ones.
+    /// The designs found that no other design dominates, in ascending order, followed by the undecided designs.
     pub(super) fn into_front(self) -> Vec<Candidate> {
         let mut front = self.kept;
         clear(&mut front);
@@ -74,7 +74,7 @@ impl SearchState {
     }
 }
 
-/// Removes the candidates that another one dominates.
+/// Removes the candidates that another candidate dominates.
 fn clear(kept: &mut Vec<Candidate>) {
     let points: Vec<[f64; 3]> = kept.iter().map(|c| c.objectives.minimized()).collect();
     *kept = not_clearly_beaten(&points, SLACK).into_iter().map(|i| kept[i]).collect();

@@ -10,14 +10,16 @@
 //! shape of the parent box is enough.
 
 use super::parts::{INERTIAS, STIFFNESSES, inertia};
-use super::pose::{COORDINATES, ENDS, Pose, PosedPiece, PosedTube, RESISTED, degree_factor};
+use super::pose::{
+    COORDINATES, ENDS, JOINT_COORDINATES, Pose, PosedPiece, PosedTube, RESISTED, TILT, TORSION, degree_factor,
+};
 use crate::mechanics::{Twist, Wrench, angular, linear, stack};
 use nalgebra::{SMatrix, SVector, Vector3};
 
 /// A motion of the arm, with the strain and kinetic energy of each piece. Pieces are counted from the tip.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Shape {
-    /// Strain coordinates: [`COORDINATES`] places for each piece, of which a joint uses the first.
+    /// Strain coordinates: [`COORDINATES`] places for each piece, of which a joint uses the first three.
     x: Vec<f64>,
     /// `xᵀKx` per unit of each stiffness of each piece.
     pub strain: Vec<[f64; STIFFNESSES]>,
@@ -27,16 +29,16 @@ pub(super) struct Shape {
     pub kinetic_fixed: f64,
 }
 
-/// The stiffnesses and inertias of an arm, or the best of a box, for each piece from the tip. The best of a
-/// box is an ideal arm that need not be a member.
+/// The stiffnesses and inertias of an arm, piece by piece from the tip. For a box they are the best of each: an ideal
+/// arm that need not be a member.
 pub(super) struct Ideal<'a> {
     pub stiffness: &'a [[f64; STIFFNESSES]],
     pub inertia: &'a [[f64; INERTIAS]],
 }
 
 impl Shape {
-    /// A low mode shape of an ideal arm, started by an acceleration of the base and kept orthogonal to
-    /// others.
+    /// A low mode shape of an ideal arm. It starts as the deformation under an acceleration of the base, and is kept
+    /// orthogonal to the other shapes.
     pub(super) fn start(
         pose: &Pose,
         ideal: &Ideal,
@@ -81,7 +83,7 @@ impl Shape {
         if kinetic > 0.0 { strain / kinetic } else { f64::INFINITY }
     }
 
-    /// `xᵀMx`.
+    /// Twice the kinetic energy of the shape per squared angular frequency, `xᵀMx`.
     #[inline]
     pub(super) fn kinetic_energy(&self, inertia: &[[f64; INERTIAS]]) -> f64 {
         let mut kinetic = self.kinetic_fixed;
@@ -114,7 +116,7 @@ impl Shape {
         }
     }
 
-    /// Makes the shape orthogonal to others in the sense of `K`, so that it converges to another mode.
+    /// Makes the shape orthogonal to the other shapes in the sense of `K`, so that it converges to another mode.
     fn clear_of(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self]) {
         for other in others {
             let (mut common, mut own) = (0.0, 0.0);
@@ -132,7 +134,7 @@ impl Shape {
         }
     }
 
-    /// Computes the strain and kinetic energy of each piece.
+    /// Computes the part of each piece in `xᵀKx` and in `xᵀMx`.
     fn energies(&mut self, pose: &Pose) {
         let mut twist = Twist::zeros();
         self.kinetic_fixed = 0.0;
@@ -140,11 +142,13 @@ impl Shape {
             let x = &self.x[piece * COORDINATES..(piece + 1) * COORDINATES];
             let (strain, kinetic) = (&mut self.strain[piece], &mut self.kinetic[piece]);
             match posed {
-                PosedPiece::Joint { twist: axis, at_m } => {
+                PosedPiece::Joint { twist: axis, at_m, across } => {
                     kinetic[inertia::MASS] = displacement(&twist, at_m).norm_squared();
-                    strain[0] = x[0] * x[0];
-                    // A joint's mass is inboard of its spring, so it moves before the twist is added.
+                    strain[TORSION] = x[0] * x[0];
+                    strain[TILT] = x[1] * x[1] + x[2] * x[2];
+                    // A joint's mass is inboard of its springs, so it moves before their twists are added.
                     twist += axis * x[0];
+                    add_tilts(across, x, &mut twist);
                 }
                 PosedPiece::Body(body) => self.kinetic_fixed += twist.dot(&(body * twist)),
                 PosedPiece::Tube(tube) => {
@@ -186,10 +190,11 @@ pub(super) fn inertia_forces(
     for (piece, posed) in pose.pieces.iter().enumerate().rev() {
         let x = &x[piece * COORDINATES..(piece + 1) * COORDINATES];
         match posed {
-            PosedPiece::Joint { twist: axis, at_m } => {
+            PosedPiece::Joint { twist: axis, at_m, across } => {
                 let momentum = displacement(&twist, at_m) * inertia[piece][inertia::MASS];
                 work.momenta.push(Momentum::Body(stack(&momentum, &at_m.cross(&momentum))));
                 twist += axis * x[0];
+                add_tilts(across, x, &mut twist);
             }
             PosedPiece::Body(body) => work.momenta.push(Momentum::Body(body * twist)),
             PosedPiece::Tube(tube) => {
@@ -203,8 +208,11 @@ pub(super) fn inertia_forces(
     for (piece, posed) in pose.pieces.iter().enumerate() {
         let forces = &mut work.forces[piece * COORDINATES..(piece + 1) * COORDINATES];
         match (posed, work.momenta.pop()) {
-            (PosedPiece::Joint { twist: axis, .. }, Some(Momentum::Body(momentum))) => {
+            (PosedPiece::Joint { twist: axis, across, .. }, Some(Momentum::Body(momentum))) => {
                 forces[0] = axis.dot(&wrench);
+                for (force, tilt) in forces[TILT..].iter_mut().zip(across.iter().flatten()) {
+                    *force = tilt.dot(&wrench);
+                }
                 wrench += momentum;
             }
             (PosedPiece::Body(_), Some(Momentum::Body(momentum))) => wrench += momentum,
@@ -226,21 +234,30 @@ impl PosedPiece {
     /// Number of strain coordinates.
     pub(super) fn coordinates(&self) -> usize {
         match self {
-            PosedPiece::Joint { .. } => 1,
+            PosedPiece::Joint { across: None, .. } => 1,
+            PosedPiece::Joint { across: Some(_), .. } => JOINT_COORDINATES,
             PosedPiece::Body(_) => 0,
             PosedPiece::Tube(_) => COORDINATES,
         }
     }
 
-    /// Stiffness of a coordinate; 0 where nothing yields.
+    /// Stiffness of a coordinate; 0 for a piece that does not yield.
     #[inline]
     pub(super) fn coordinate_stiffness(&self, coordinate: usize, stiffness: &[f64; STIFFNESSES]) -> f64 {
         match self {
             PosedPiece::Tube(tube) => {
                 stiffness[RESISTED[coordinate].0] * tube.length_m / degree_factor(coordinate)
             }
-            _ => stiffness[0],
+            _ => stiffness[coordinate.min(TILT)],
         }
+    }
+}
+
+/// Adds the tilts of a joint's bearing to the motion of everything outboard.
+#[inline]
+fn add_tilts(across: &Option<[Twist; 2]>, x: &[f64], twist: &mut Twist) {
+    for (tilt, x) in across.iter().flatten().zip(&x[TILT..]) {
+        *twist += tilt * *x;
     }
 }
 
@@ -252,7 +269,7 @@ pub(super) struct Work {
     pub forces: Vec<f64>,
 }
 
-/// The momentum of a piece on the way inward.
+/// The momentum of a piece, kept for the way inward.
 enum Momentum {
     Body(Wrench),
     Tube(TubeMomentum),
@@ -270,7 +287,7 @@ fn displacement(twist: &Twist, at_m: &Vector3<f64>) -> Vector3<f64> {
 }
 
 impl PosedTube {
-    /// Adds the motion of the tube's own coordinates to that of everything outboard.
+    /// Adds to `twist`, the motion of everything outboard, the part of the tube's own coordinates.
     #[inline]
     fn carry(&self, twist: &mut Twist, x: &[f64]) {
         for (end, coordinate) in ENDS.into_iter().enumerate() {
@@ -279,7 +296,7 @@ impl PosedTube {
     }
 }
 
-/// The motion of a tube in its own planes.
+/// The motion of a tube, separated by its planes.
 struct Local {
     z: SVector<f64, 9>,
     y: SVector<f64, 9>,

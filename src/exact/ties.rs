@@ -7,8 +7,9 @@ use crate::space::design::{number, options};
 use std::collections::{BTreeSet, HashMap};
 
 impl Problem<'_> {
-    /// The designs that designs of kinds stand for. If they are at most `most` all are returned, otherwise
-    /// the first of each. The flag says whether all are.
+    /// All designs for which the designs in `found` stand. A drive of such a design stands for all drives of its
+    /// kind. If there are more than `most` designs, only the first for each of `found` is returned. The flag says
+    /// whether all are returned.
     pub(super) fn with_ties(&self, found: &[Candidate], most: usize) -> (Vec<Candidate>, bool) {
         let with_ties: Vec<(&Candidate, Vec<Vec<u32>>)> = self.feasible_drives(found);
         let count = |lists: &Vec<Vec<u32>>| lists.iter().map(|list| list.len() as f64).product::<f64>();
@@ -33,8 +34,8 @@ impl Problem<'_> {
         (designs, lists_all)
     }
 
-    /// For each design of kinds, the options of each level, tip first: the drives of its kind that carry the
-    /// demand. Those that carry it by more than rounding come first.
+    /// For each design found, the drives at each level, tip first, that are of the same kind as the design's drive
+    /// and carry their demand. Drives that carry it by more than rounding come first.
     fn feasible_drives<'f>(&self, found: &'f [Candidate]) -> Vec<(&'f Candidate, Vec<Vec<u32>>)> {
         let chosen: Vec<Option<Vec<u32>>> =
             found.iter().map(|candidate| options(&self.level_sizes, candidate.number)).collect();
@@ -70,7 +71,7 @@ impl Problem<'_> {
         pairs.filter_map(|(candidate, options)| Some((candidate, lists_of(options.as_ref()?)?))).collect()
     }
 
-    /// For every level, the leaves of the options that some designs have.
+    /// For each level, the leaf of each option that some design has.
     fn leaves_of(&self, designs: &[Option<Vec<u32>>]) -> Vec<HashMap<u32, u32>> {
         let of_level = |(level, &piece): (usize, &usize)| {
             let wanted: BTreeSet<u32> = designs.iter().flatten().map(|options| options[level]).collect();

@@ -3,16 +3,16 @@
 use super::joint_play::JointPlay;
 use crate::arm::joint_law::{Curve, JointLaw, Segment, Windup};
 
-/// Stiffness that stands for a rigid gear where lost motion is in series \[N m/rad\]. It adds at most a part
-/// in 1e9 to any compliance.
+/// Stiffness that stands for a rigid gear in series with lost motion \[N m/rad\]. It adds at most a part in 1e9 to
+/// any compliance.
 const RIGID_NM_PER_RAD: f64 = 1e18;
 
 /// A torsion curve prepared for many evaluations, without divisions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Torsion {
     pub windup: Windup,
-    /// Compliance of each segment \[rad/(N m)\], and the twist where the second and third segment begin
-    /// \[rad\].
+    /// Compliance of each segment \[rad/(N m)\]. `begins_rad` holds the twist where the second and the third segment
+    /// begin \[rad\].
     compliance: [f64; 3],
     begins_rad: [f64; 2],
 }
@@ -34,7 +34,7 @@ impl Torsion {
         self.angle_in(segment, t).copysign(torque_nm)
     }
 
-    /// Twist under a torque that is not negative, in a given segment \[rad\].
+    /// Twist under a torque that is not negative, if the torque is in this segment \[rad\].
     #[inline]
     pub(super) fn angle_in(&self, segment: usize, t_nm: f64) -> f64 {
         let Windup { t1_nm, t2_nm, .. } = self.windup;
@@ -49,11 +49,11 @@ impl Torsion {
 /// A box of torsion curves, between its stiffest and its softest envelope.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct CurveBox {
-    /// A curve that is nowhere softer than a member. For a single curve it is that curve.
+    /// A curve that is nowhere softer than a member. For a single member it is the member's curve.
     pub stiff: Torsion,
-    /// A curve that is nowhere stiffer than a member. For a single curve it is that curve.
+    /// A curve that is nowhere stiffer than a member. For a single member it is the member's curve.
     pub soft: Torsion,
-    /// Whether modes use the first slope under any torque.
+    /// Whether modes use the slope of the first segment under any torque.
     pub k1_in_modes: bool,
 }
 
@@ -68,8 +68,8 @@ impl CurveBox {
         Some(Self { stiff: torsion, soft: torsion, k1_in_modes: !matches!(curve, Curve::Windup(_)) })
     }
 
-    /// Whether modes see the same slope, and play the same, under all torques with magnitudes in an interval
-    /// \[N m\], for each gear of the box.
+    /// Whether, for each gear of the box, modes see the same slope and the same play under all torques with
+    /// magnitudes in an interval \[N m\].
     pub(super) fn keeps_its_slope(
         &self,
         play: Option<&JointPlay>,
@@ -95,8 +95,8 @@ impl CurveBox {
         self.slopes(&self.soft.windup, least_nm, most_nm).fold(f64::INFINITY, f64::min)
     }
 
-    /// Greatest slope of the static twist at torque magnitudes in an interval, even if modes use the first
-    /// slope \[N m/rad\].
+    /// Greatest slope of the static twist at torque magnitudes in an interval \[N m/rad\]. It also counts if modes
+    /// use the slope of the first segment.
     pub(super) fn steepest(&self, least_nm: f64, most_nm: f64) -> f64 {
         slopes(&self.stiff.windup, least_nm, most_nm).fold(0.0, f64::max)
     }
@@ -130,8 +130,8 @@ impl CurveBox {
     }
 }
 
-/// A curve on one side of two: the extremes of their slopes and break points, after the slopes of each were
-/// made to rise with torque.
+/// A curve that bounds two others on one side. Its slopes and break points are the extremes of theirs, after the
+/// slopes of each were made to rise with torque.
 fn join(
     lifted: fn(&Windup) -> Windup,
     both: [&Torsion; 2],
@@ -148,20 +148,20 @@ fn join(
     })
 }
 
-/// The lowest curve with slopes that do not fall with torque, and are nowhere below those of `w`. For such
-/// curves the greatest slopes and the least break points make a curve that is nowhere softer than any.
+/// The curve with the least slopes that do not fall with torque and are nowhere below those of `w`. Of several such
+/// curves, the greatest slopes and the least break points make a curve that is nowhere softer than any of them.
 fn rising(w: &Windup) -> Windup {
     let k2 = w.k1_nm_per_rad.max(w.k2_nm_per_rad);
     Windup { k2_nm_per_rad: k2, k3_nm_per_rad: k2.max(w.k3_nm_per_rad), ..*w }
 }
 
-/// The highest curve with slopes that do not fall with torque, and are nowhere above those of `w`.
+/// The curve with the greatest slopes that do not fall with torque and are nowhere above those of `w`.
 fn rising_below(w: &Windup) -> Windup {
     let k2 = w.k2_nm_per_rad.min(w.k3_nm_per_rad);
     Windup { k1_nm_per_rad: k2.min(w.k1_nm_per_rad), k2_nm_per_rad: k2, ..*w }
 }
 
-/// The slopes of the segments that torques touch, given by magnitudes.
+/// The slopes of the segments that the torques of an interval touch. Torques are given by their magnitudes.
 fn slopes(w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
     // A break point belongs to the segment below it
     let touched = move |s: &Segment| least_nm <= s.to_nm && (most_nm > s.from_nm || s.from_nm == 0.0);

@@ -6,7 +6,7 @@
 use std::collections::{BTreeSet, BinaryHeap, HashMap};
 use std::sync::Arc;
 
-/// What a node knows about all of its members.
+/// The bounds of all members of a node: a box of parts.
 pub(super) trait Bounds: Clone {
     /// The box around two boxes.
     fn join(&self, other: &Self) -> Self;
@@ -18,24 +18,25 @@ pub(super) trait Bounds: Clone {
 /// Coordinates of an option.
 pub(super) type Key = [f64; 5];
 
-/// The base tree of a level, or a tree over some nodes of it.
+/// The base tree of a level, or a tree over some nodes of the base tree.
 pub(super) struct Tree<B> {
     nodes: Vec<Node<B>>,
-    /// The base tree, whose nodes are numbered from [`WHOLE`] on; `None` if this is the base tree.
+    /// The base tree, if this is a tree over some of its nodes. Nodes of the base tree are then numbered from
+    /// [`WHOLE`] on.
     whole: Option<Arc<Tree<B>>>,
     /// The nodes of the base tree over which this tree stands.
     stands_on: Vec<u32>,
 }
 
-/// Number of the first node of the base tree, as seen from a tree over it.
+/// Number of the first node of the base tree, in a tree over some of its nodes.
 const WHOLE: u32 = 1 << 31;
 
 /// One node of a [`Tree`].
 pub(super) struct Node<B> {
     pub bounds: B,
-    /// The coordinates by which it is separated.
+    /// The coordinates by which the node is separated from others.
     pub key: Key,
-    /// Number of options below it.
+    /// Number of options below the node.
     pub members: u32,
     /// The two halves of the node, or its single option.
     pub kind: NodeKind,
@@ -100,8 +101,8 @@ impl<B: Bounds> Tree<B> {
         Some(Arc::new(Self { nodes, whole: Some(Arc::clone(whole)), stands_on: kept.to_vec() }))
     }
 
-    /// The nodes of the base tree, about `most` of them, that cover the admitted options below a node. The
-    /// node with the most options is opened first.
+    /// About `most` nodes of the base tree that cover the options below a node for which `may` is true. The node with
+    /// the most options is opened first.
     pub(super) fn kept(&self, node: u32, most: usize, may: impl Fn(&B) -> bool) -> Vec<u32> {
         let mut heap = BinaryHeap::new();
         let mut enter = |at: u32| {
@@ -161,7 +162,7 @@ impl<B: Bounds> Tree<B> {
         options
     }
 
-    /// The leaves of some options.
+    /// For each of these options, its leaf.
     pub(super) fn leaves_of(&self, wanted: &BTreeSet<u32>) -> HashMap<u32, u32> {
         let nodes = self.nodes.iter().zip(0..);
         nodes
@@ -186,7 +187,7 @@ impl<B: Bounds> Tree<B> {
         }
     }
 
-    /// The smallest node with all the admitted options below a node. `None` if there are none.
+    /// The smallest node with all options below a node for which `holds` is true. `None` if there are none.
     pub(super) fn smallest_node(&self, mut node: u32, holds: impl Fn(&B) -> bool) -> Option<u32> {
         if !holds(&self.node(node).bounds) {
             return None;
@@ -230,7 +231,7 @@ struct Item {
     key: Key,
 }
 
-/// Grows the tree over some items and returns its root. For an item, `leaf` returns its box and the kind of
+/// Builds the tree over some items and returns its root. For an item, `leaf` returns the item's box and the kind of
 /// its node; the kind is `None` if the item is a node already.
 fn grow<'b, B: Bounds + 'b>(
     items: &mut [Item],

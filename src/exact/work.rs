@@ -1,6 +1,7 @@
 //! The numbers of one box, as intervals.
 
-use super::parts::{INERTIAS, LeastDemand, LinkBox, STIFFNESSES, inertia};
+use super::parts::{INERTIAS, LeastDemand, LinkBox, STIFFNESSES, inertia, stiffness_of};
+use super::pose::{Row, TILT, TORSION};
 use super::problem::Problem;
 use super::shape::Work as ShapeWork;
 use super::torsion::{BreakPoints, CurveBox};
@@ -24,8 +25,8 @@ pub(super) struct Work {
     pub(super) forces: Vec<Vec<[f64; 2]>>,
     /// Torsion curves of each joint; `None` for a rigid joint or another piece.
     pub(super) curves: Vec<Option<CurveBox>>,
-    /// Greatest stiffnesses of each piece in each case. A gear's slope depends on its torque, so it differs
-    /// between cases.
+    /// Greatest stiffnesses of each piece in each case. A gear's slope depends on its torque, so it differs from case
+    /// to case.
     pub(super) stiff_in: Vec<Vec<[f64; STIFFNESSES]>>,
     /// Mass of each piece, as an interval \[kg\].
     pub(super) masses: Vec<[f64; 2]>,
@@ -33,21 +34,27 @@ pub(super) struct Work {
     pub(super) least_demands: Vec<Option<LeastDemand>>,
     /// The greatest demand on each joint whose drive is a level.
     pub(super) greatest_demands: Vec<Option<JointDemand>>,
+    /// Tilt of each joint's bearing per moment, as an interval \[rad/(N m)\]; 0 for a joint that does not tilt.
+    pub(super) tilts: Vec<[f64; 2]>,
+    /// Lever along the axis of the joint inboard to where each link attaches, as an interval \[m\].
+    pub(super) levers: Vec<[f64; 2]>,
     /// Break points of the curves of each joint.
     pub(super) breaks: Vec<BreakPoints>,
     /// Least and greatest magnitude of the torque on each joint, in each judged case \[N m\].
     pub(super) torques: Vec<Vec<[f64; 2]>>,
-    /// The case whose tip has the greatest least deflection, and its direction.
+    /// The judged case in which the tip's least deflection is greatest, and the direction of the tip's displacement
+    /// there.
     pub(super) worst_tip: Option<(usize, Vector3<f64>)>,
     /// Direction of the tip's least deflection in each judged case.
     pub(super) tip_directions: Vec<Vector3<f64>>,
     /// Upper bound of the tip's deflection in each judged case in which contributions may oppose each other
     /// \[m\].
     pub(super) greatest_tip_m: Vec<f64>,
-    /// The relative growth of the deflection if a piece had middling numbers.
+    /// For each piece, the relative growth of the deflection if the piece's stiffnesses had middle values instead of
+    /// their greatest.
     pub(super) tip_growth: Vec<f64>,
     pub(super) shape: ShapeWork,
-    /// Judged case and start of the shape with the least quotient.
+    /// Judged case, and number of the start, of the shape with the least quotient.
     pub(super) worst: (usize, usize),
 }
 
@@ -64,6 +71,8 @@ impl Work {
         zero(&mut self.heavy, pieces, [0.0; INERTIAS]);
         zero(&mut self.curves, pieces, None);
         zero(&mut self.masses, pieces, [0.0; 2]);
+        zero(&mut self.tilts, pieces, [0.0; 2]);
+        zero(&mut self.levers, pieces, [0.0; 2]);
         zero(&mut self.greatest_demands, pieces, None);
         self.least_demands.clear();
         self.least_demands.resize_with(pieces, || None);
@@ -85,9 +94,13 @@ impl Work {
         piece: usize,
         mass_kg: [f64; 2],
         curve: Option<CurveBox>,
+        tilt_rad_per_nm: [f64; 2],
     ) {
         self.masses[piece] = mass_kg;
         self.curves[piece] = curve;
+        self.tilts[piece] = tilt_rad_per_nm;
+        self.stiff[piece][TILT] = stiffness_of(tilt_rad_per_nm[0]);
+        self.soft[piece][TILT] = stiffness_of(tilt_rad_per_nm[1]);
         self.light[piece][inertia::MASS] = mass_kg[0];
         self.heavy[piece][inertia::MASS] = mass_kg[1];
         let g = problem.space.gravity_m_s2;
@@ -101,6 +114,7 @@ impl Work {
         // Infinite stiffness becomes 0, which stands for a coordinate that does not yield; infinity times
         // zero strain would be NaN.
         let finite = |s: f64| if s.is_finite() { s } else { 0.0 };
+        self.levers[piece] = links.lever_m;
         self.stiff[piece] = links.high.stiffnesses.map(finite);
         self.soft[piece] = links.low.stiffnesses.map(finite);
         self.light[piece] = links.low.inertias;
@@ -115,6 +129,12 @@ impl Work {
                 g * (heavy[inertia::MASS] - pose.water_kg_m3 * light[inertia::OUTER_AREA]),
             ];
         }
+    }
+
+    /// The torsion curves of the joint to which a row belongs; `None` if the row is that of a linear spring.
+    #[inline]
+    pub(super) fn curve(&self, row: &Row) -> Option<&CurveBox> {
+        self.curves[row.piece].as_ref().filter(|_| row.coordinate == TORSION)
     }
 
     /// Whether the box has no width in any number that a mode depends on.

@@ -69,7 +69,7 @@ pub enum Yielding {
 /// One elastic element of an arm in a pose.
 #[derive(Debug, Clone)]
 pub struct ElasticElement {
-    /// Name: that of the joint or link, `NAME.bearing_tilt`, `NAME.frame_compliance`, or `base`.
+    /// Name: that of the joint or link, `NAME.bearing`, `NAME.frame_compliance`, or `base`.
     pub name: String,
     /// Motion of everything outboard per unit of each coordinate.
     pub twists: Vec<Twist>,
@@ -225,7 +225,7 @@ impl Walk {
         let axis = self.rotation * joint.axis;
         if joint.tilt_rad_per_nm > 0.0 {
             let across = across(&axis);
-            self.tilt(format!("{}.bearing_tilt", joint.name), &across, joint.tilt_rad_per_nm);
+            self.tilt(format!("{}.bearing", joint.name), &across, joint.tilt_rad_per_nm);
         }
         self.items.push(Item::Elastic(ElasticElement {
             name: joint.name.clone(),

@@ -29,7 +29,7 @@ pub const STEEL: LinkMaterial = LinkMaterial {
     poisson: 0.3,
 };
 
-/// The arm of Table 1, or a reading of it.
+/// The arm of the paper's Table 1, or one that the table may mean.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PaperArm {
     /// Torsion curves of joints 2, 3 and 4.
@@ -46,11 +46,11 @@ pub struct PaperArm {
     pub wrist_kg: f64,
     /// Mass of the load \[kg\].
     pub load_kg: f64,
-    /// From the wrist to the load \[m\].
+    /// Distance from the wrist to the load \[m\].
     pub third_link_m: f64,
 }
 
-/// What the library says of an arm.
+/// Statics and modes of an arm, computed by the library.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solved {
     /// The static state.
@@ -76,7 +76,7 @@ impl PaperArm {
         }
     }
 
-    /// The same arm with the joint stiffnesses multiplied by `factors`; joints with a curve keep it.
+    /// This arm with its joint stiffnesses multiplied by `factors`. Joints with a torsion curve keep it.
     pub fn with_stiffness_factors(&self, factors: [f64; 3]) -> Self {
         let mut arm = self.clone();
         for (curve, factor) in arm.curves.iter_mut().zip(factors) {
@@ -121,6 +121,8 @@ impl PaperArm {
 
     fn joint(&self, index: usize, mass_kg: f64) -> Element {
         Element::Joint(Joint {
+            bearing: None,
+            extras: Default::default(),
             name: JOINTS[index].into(),
             axis: Unit::new_unchecked(Vector3::y()),
             curve: self.curves[index],
@@ -153,7 +155,7 @@ impl PaperArm {
         self.solve_changed(links, |_| {})
     }
 
-    /// The same after a change to the structure (a connection in series, a stiffer link).
+    /// Statics and in-plane modes after a change to the structure, such as a connection in series or a stiffer link.
     pub fn solve_changed(&self, links: LinkModel, change: impl FnOnce(&mut Structure)) -> Solved {
         let mut structure = self.arm().structure(JointModel::ThreeSegment);
         change(&mut structure);
@@ -166,7 +168,7 @@ impl PaperArm {
         })
     }
 
-    /// Hands the posed arm to `use_it`.
+    /// Poses the stretched arm and hands it to `use_it`.
     pub fn with_posed<T>(
         &self,
         structure: &Structure,
@@ -184,17 +186,17 @@ impl Solved {
         -self.statics.tip_displacement_m.z
     }
 
-    /// Part of the drop that comes from one element \[m\].
+    /// Part of the load's drop that one element causes \[m\].
     pub fn share_m(&self, name: &str) -> f64 {
         self.statics.shares_m.iter().filter(|(n, _)| n == name).map(|(_, s)| -s.z).sum()
     }
 
-    /// Part of the drop that comes from the joints \[m\].
+    /// Part of the load's drop that the joints cause \[m\].
     pub fn joints_m(&self) -> f64 {
         JOINTS.iter().map(|name| self.share_m(name)).sum()
     }
 
-    /// Part of the drop that comes from the links \[m\].
+    /// Part of the load's drop that the links cause \[m\].
     pub fn links_m(&self) -> f64 {
         LINKS.iter().map(|name| self.share_m(name)).sum()
     }
@@ -204,13 +206,13 @@ impl Solved {
         self.statics.joint_torques_nm.iter().filter(|(n, _)| n == name).map(|(_, t)| *t).sum()
     }
 
-    /// The lowest frequency \[Hz\]; infinite if nothing yields.
+    /// The lowest frequency in the vertical plane \[Hz\]; infinite if nothing yields.
     pub fn lowest_hz(&self) -> f64 {
         self.in_plane_hz.first().copied().unwrap_or(f64::INFINITY)
     }
 }
 
-/// Puts a connection in series with a joint: what it adds in twist per torque \[rad/(N m)\].
+/// Puts a connection in series with a joint. The connection adds this compliance \[rad/(N m)\].
 pub fn connect(structure: &mut Structure, joint: &str, compliance_rad_per_nm: f64) {
     for piece in &mut structure.pieces {
         if let Piece::Joint(piece) = piece
@@ -221,7 +223,7 @@ pub fn connect(structure: &mut Structure, joint: &str, compliance_rad_per_nm: f6
     }
 }
 
-/// Multiplies every stiffness of a link by `factor`, its mass unchanged.
+/// Multiplies every stiffness of a link by `factor`, and leaves its mass as it is.
 pub fn stiffen_link(structure: &mut Structure, link: &str, factor: f64) {
     for piece in &mut structure.pieces {
         if let Piece::Link(piece) = piece

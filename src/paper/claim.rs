@@ -7,9 +7,9 @@ use crate::report::table::{Column, Table};
 pub struct Claim {
     /// Key, stable across versions.
     pub id: &'static str,
-    /// What is claimed.
+    /// The paper's statement, in words.
     pub statement: String,
-    /// What was computed.
+    /// The computed evidence, in words.
     pub evidence: String,
     /// Whether the evidence supports the statement.
     pub holds: bool,

@@ -30,7 +30,7 @@ pub struct CoupledArm {
 }
 
 impl CoupledArm {
-    /// Eq 16 of an arm with constant joint stiffnesses (a curve counts with its middle slope).
+    /// Eq 16 of an arm with constant joint stiffnesses. For a joint with a torsion curve the middle slope counts.
     pub fn new(arm: &PaperArm) -> Self {
         let [k2, k3, k4] = arm.curves.map(stiffness_nm_per_rad);
         let lengths_m = Vector3::new(arm.lengths_m[0], arm.lengths_m[1], arm.third_link_m);
@@ -46,7 +46,8 @@ impl CoupledArm {
         cubic_roots(self.characteristic_cubic()).map(|lambda| lambda.sqrt() / TAU)
     }
 
-    /// Coefficients of det(K - λ M), lowest power first: columns of K replaced by columns of -M.
+    /// Coefficients of det(K - λ M), lowest power first, as determinants in which columns of K are replaced by
+    /// columns of -M.
     pub fn characteristic_cubic(&self) -> [f64; 4] {
         let mut coefficients = [0.0; 4];
         for choice in 0..8u32 {
@@ -59,13 +60,14 @@ impl CoupledArm {
         coefficients
     }
 
-    /// Static motion of the tip under a vertical tip force of 1 N, for a right side of Eq 16 \[m/N\].
+    /// Static displacement of the tip per vertical tip force, for a right-hand side of Eq 16 \[m/N\]. `None` if the
+    /// stiffness matrix is singular.
     pub fn tip_compliance_m_per_n(&self, right_side_m: &Vector3<f64>) -> Option<f64> {
         let angles = self.stiffness.lu().solve(right_side_m)?;
         Some(self.lengths_m.dot(&angles))
     }
 
-    /// The right side of Eq 16 as printed, [l2, l2, l3].
+    /// The right-hand side of Eq 16 as printed, [l2, l2, l3] \[m\].
     pub fn printed_right_side_m(&self) -> Vector3<f64> {
         Vector3::new(self.lengths_m.y, self.lengths_m.y, self.lengths_m.z)
     }
@@ -114,16 +116,16 @@ fn polish([c, b, a]: [f64; 3], start: f64) -> f64 {
     })
 }
 
-/// Eq 18: one spring and one mass \[Hz\].
+/// Eq 18: natural frequency of one spring with one mass \[Hz\].
 pub fn single_spring_hz(stiffness_n_per_m: f64, mass_kg: f64) -> f64 {
     (stiffness_n_per_m / mass_kg).sqrt() / TAU
 }
 
-/// The arm with a given third spring whose masses give three wanted frequencies.
+/// The masses that give an arm three wanted frequencies, while its third spring stays as it is.
 ///
-/// Unknowns are wrist mass, load mass and the load's distance; Newton's method on their logarithms from
-/// the arm's own values, in steps that never change one by more than a tenth. `None` if the three
-/// frequencies cannot be had with this spring.
+/// Unknowns are wrist mass, load mass and the load's distance. Newton's method on their logarithms starts from the
+/// arm's own values, in steps that never change one of them by more than a tenth. `None` if the three frequencies
+/// cannot be reached with this spring.
 pub fn masses_that_give(arm: &PaperArm, wanted_hz: [f64; 3]) -> Option<PaperArm> {
     let wanted = Vector3::from(wanted_hz.map(f64::ln));
     let mut x = Vector3::new(arm.wrist_kg.ln(), arm.load_kg.ln(), arm.third_link_m.ln());

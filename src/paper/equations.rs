@@ -27,23 +27,23 @@ pub fn deflection_eq_13_m(torque_nm: f64, stiffness_nm_per_rad: f64, length_m: f
 pub struct PrintedDeflection {
     /// Wind-up of joints 2, 3 and 4 times the length to the wrist \[m\] (Eqs 13, 14).
     pub joints_m: [f64; 3],
-    /// Links 1 and 2 (Eq 4) \[m\].
+    /// Deflection of links 1 and 2 (Eq 4) \[m\].
     pub links_m: [f64; 2],
 }
 
 impl PrintedDeflection {
-    /// Eq 15 \[m\].
+    /// Total deflection, Eq 15 \[m\].
     pub fn total_m(&self) -> f64 {
         self.joints_m.iter().sum::<f64>() + self.links_sum_m()
     }
 
-    /// δ1 + δ2 of Eq 15: link 1's end slope is dropped \[m\].
+    /// Sum δ1 + δ2 of the links in Eq 15, in which the slope at the end of link 1 is left out \[m\].
     pub fn links_sum_m(&self) -> f64 {
         self.links_m.iter().sum()
     }
 }
 
-/// What the end force F of Eq 4 is taken to be.
+/// How the end force F of Eq 4 is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EndForce {
     /// The weight of everything outboard of the link.
@@ -75,7 +75,7 @@ pub fn printed_deflection(arm: &PaperArm, force: EndForce) -> PrintedDeflection 
     PrintedDeflection { joints_m: [0, 1, 2].map(windup), links_m: [0, 1].map(link) }
 }
 
-/// Acceleration of the load: 1 m/s in 0.20 s \[m/s²\].
+/// Acceleration of the load, which reaches 1 m/s in 0.20 s \[m/s²\].
 pub const LOAD_ACCELERATION_M_S2: f64 = 1.0 / 0.20;
 
 /// Eqs 8 to 12 for one joint, both sides of the gear.
@@ -87,13 +87,14 @@ pub struct DynamicTorque {
     pub linear_half_nm: f64,
     /// T_lin as Eq 8 defines it, (a/g) T_j \[N m\].
     pub linear_ratio_nm: f64,
-    /// Moment of inertia of everything outboard about the joint times its acceleration \[N m\].
+    /// Torque of linear acceleration by inertia: moment of inertia of everything outboard about the joint, times the
+    /// joint's acceleration \[N m\].
     pub linear_inertia_nm: f64,
-    /// Acceleration of the joint at the output, a over the distance of the load \[rad/s²\].
+    /// Angular acceleration of the joint: acceleration of the load over the load's distance \[rad/s²\].
     pub output_acceleration_rad_s2: f64,
-    /// T_rot at the motor's shaft, as Eqs 10 and 11 print it \[N m\].
+    /// T_rot on the motor's shaft, as Eqs 10 and 11 print it \[N m\].
     pub rotary_motor_side_nm: f64,
-    /// The same referred to the output: ratio times larger \[N m\].
+    /// T_rot on the output side of the gear, larger by the gear's ratio \[N m\].
     pub rotary_output_side_nm: f64,
 }
 
@@ -118,12 +119,12 @@ pub fn dynamic_torque_at_joint_2(arm: &PaperArm, ratio: f64, input_inertia_kgm2:
 }
 
 impl DynamicTorque {
-    /// Eq 12 as printed: T_rot of the motor's side added to torques of the output's \[N m\].
+    /// Eq 12 as printed: T_rot on the motor's side, added to torques on the output side \[N m\].
     pub fn total_as_printed_nm(&self) -> f64 {
         self.static_nm + self.linear_half_nm + self.rotary_motor_side_nm
     }
 
-    /// Eq 12 with all three at the output \[N m\].
+    /// Eq 12 with all three torques on the output side \[N m\].
     pub fn total_at_output_nm(&self) -> f64 {
         self.static_nm + self.linear_inertia_nm + self.rotary_output_side_nm
     }

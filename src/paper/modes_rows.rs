@@ -8,7 +8,8 @@ use crate::arm::LinkModel;
 use crate::arm::section::{LinkMaterial, Section};
 use crate::report::number::{fixed, percent_change, significant};
 
-/// All dynamic rows, given the reading of the third spring that gives the paper's frequencies.
+/// All rows about frequencies. `matching` is an interpretation of the third spring that gives the paper's
+/// frequencies.
 pub(crate) fn rows(matching: &Reading) -> Vec<PaperRow> {
     let arm = PaperArm::table_1();
     [

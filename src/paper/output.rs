@@ -2,12 +2,12 @@
 
 use super::names::NAMES;
 
-/// What a paper study gives.
+/// The result of one of the paper's studies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PaperStudyOutput {
     /// Files to write: name and content. `summary.md` is among them.
     pub files: Vec<(String, Vec<u8>)>,
-    /// What to print.
+    /// Text for the terminal.
     pub terminal: String,
 }
 
@@ -32,9 +32,9 @@ pub enum PaperError {
         "the catalogs have no {kind} \"{name}\", which this study needs; run with the built-in catalogs, or add it"
     )]
     Missing {
-        /// What is missing.
+        /// Kind of the missing part, such as "gear".
         kind: &'static str,
-        /// Its name.
+        /// Name of the missing part.
         name: String,
     },
 }

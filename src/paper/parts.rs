@@ -57,7 +57,7 @@ pub(crate) fn material<'c>(catalogs: &'c Catalogs, name: &str) -> Result<&'c Mat
     catalogs.materials.iter().find(|m| m.name == name).ok_or_else(|| missing("material", name))
 }
 
-/// What a study needs and the catalog lacks.
+/// The error for a part that a study needs and the catalog lacks.
 pub(crate) fn missing(kind: &'static str, name: &str) -> PaperError {
     PaperError::Missing { kind, name: name.to_string() }
 }
@@ -67,7 +67,7 @@ pub(crate) fn missing(kind: &'static str, name: &str) -> PaperError {
 const PRINTED_GEARS: [(u32, u32, f64, f64); 4] =
     [(58, 100, 4.7, 607e3), (50, 100, 3.2, 405e3), (32, 100, 0.9, 108e3), (20, 50, 0.98, 17.5e3)];
 
-/// The paper's gears beside the catalog's.
+/// The paper's gears next to those of the catalog.
 ///
 /// # Errors
 /// A gear is missing.

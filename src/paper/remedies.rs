@@ -10,7 +10,7 @@ use crate::catalog::Catalogs;
 use crate::report::number::{fixed, percent, percent_change, shortest};
 use crate::report::table::{Column, Table};
 
-/// How well the gear's curve is known, in the conclusions' second remedy.
+/// Errors of the gear's torsion curve that are assumed for the second remedy of the paper's conclusions (relative).
 pub const CURVE_ERRORS: [f64; 3] = [0.05, 0.10, 0.20];
 /// Reduction ratio of the drives in the connection table.
 pub const RATIO: f64 = 100.0;
@@ -20,14 +20,14 @@ const CONNECTIONS_NM_PER_RAD: [f64; 4] = [1e5, 3e5, 1e6, 3e6];
 /// Table 1 with the catalog's gears in joints 2, 3 and 4.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CatalogGears {
-    /// The middle slopes K2 alone.
+    /// The arm whose gears are springs with the middle slope K2.
     pub middle_slope: PaperArm,
-    /// The whole curves.
+    /// The arm whose gears follow the whole torsion curve.
     pub curve: PaperArm,
 }
 
 impl CatalogGears {
-    /// Looks the gears up.
+    /// Finds the gears in the catalog.
     ///
     /// # Errors
     /// A gear is missing or has no complete curve.
@@ -45,7 +45,7 @@ impl CatalogGears {
 /// The tip error that remains after a correction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorLeft {
-    /// What is measured or computed.
+    /// What is measured or computed for the correction.
     pub method: String,
     /// Remaining error if the gears are springs of stiffness K2 \[m\].
     pub middle_slope_m: f64,
@@ -53,7 +53,8 @@ pub struct ErrorLeft {
     pub curve_m: f64,
 }
 
-/// The conclusions' two remedies: joint deflection measured at the output, or computed from motor torque.
+/// What remains after the two remedies of the paper's conclusions: the deflection of the joints is measured at the
+/// output, or it is computed from the motor's torque.
 pub fn error_left(gears: &CatalogGears) -> Vec<ErrorLeft> {
     let [k2, curve] = [&gears.middle_slope, &gears.curve].map(|arm| arm.solve(LinkModel::Full));
     let row = |method: &str, left: &dyn Fn(&Solved) -> f64| ErrorLeft {
@@ -95,22 +96,22 @@ pub fn error_left_table(rows: &[ErrorLeft]) -> Table {
     table
 }
 
-/// What one connection in series with a joint does.
+/// The effect of one connection in series with a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Connection {
-    /// Joint.
+    /// Name of the joint.
     pub joint: &'static str,
     /// Stiffness between gear and arm \[N m/rad\].
     pub output_nm_per_rad: f64,
     /// Stiffness between motor and gear with the same effect: N² times smaller \[N m/rad\].
     pub motor_side_nm_per_rad: f64,
-    /// What it adds to the drop of the load \[m\].
+    /// Increase of the load's drop by the connection \[m\].
     pub added_m: f64,
-    /// The lowest frequency over that without the connection.
+    /// The lowest frequency with the connection over the lowest frequency without it.
     pub frequency_ratio: f64,
 }
 
-/// Rivin's connections, motor to gear and gear to arm, in each joint.
+/// Rivin's connections, between motor and gear and between gear and arm, in each joint in turn.
 pub fn connections(arm: &PaperArm) -> Vec<Connection> {
     let before = arm.solve(LinkModel::Full);
     let one = |joint: &'static str, stiffness: f64| {
@@ -147,22 +148,22 @@ pub fn connection_table(rows: &[Connection]) -> Table {
     table
 }
 
-/// What doubling one stiffness buys.
+/// The effect of doubling one stiffness.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stiffer {
-    /// Joint or link.
+    /// Name of the joint or link.
     pub element: &'static str,
-    /// Drop of the load \[m\].
+    /// Drop of the load after the change \[m\].
     pub drop_m: f64,
-    /// Drop over that before.
+    /// Drop of the load after the change over the drop before.
     pub drop_ratio: f64,
-    /// The lowest frequency \[Hz\].
+    /// The lowest frequency after the change \[Hz\].
     pub lowest_hz: f64,
-    /// The lowest frequency over that before.
+    /// The lowest frequency after the change over the lowest frequency before.
     pub frequency_ratio: f64,
 }
 
-/// Each joint and link in turn with twice its stiffness, masses unchanged.
+/// Doubles the stiffness of each joint and of each link in turn. Masses stay as they are.
 pub fn stiffer(arm: &PaperArm) -> Vec<Stiffer> {
     let before = arm.solve(LinkModel::Full);
     let row = |element, after: Solved| Stiffer {

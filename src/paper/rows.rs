@@ -9,53 +9,53 @@ use serde_json::{Value, json};
 pub struct PaperRow {
     /// Key, stable across versions.
     pub id: &'static str,
-    /// What the number is.
+    /// What the number stands for.
     pub quantity: &'static str,
-    /// Its unit; empty for a plain ratio.
+    /// Unit of the number; empty for a plain ratio.
     pub unit: &'static str,
     /// The number that the paper prints, if any.
     pub paper: Option<f64>,
-    /// The paper's words for it: `less than 3`, `about 70`.
+    /// The paper's words for this number, such as `less than 3` or `about 70`.
     pub paper_words: &'static str,
-    /// Our number, with the reading of the equation that gives the paper's number.
+    /// Our number, if the equation is read in the way that gives the paper's number.
     pub reading_value: Option<f64>,
     /// The number of the exact model: all compliances, Table 1 as printed.
     pub exact: Option<f64>,
     /// Digits after the point.
     pub decimals: usize,
-    /// The reading.
+    /// How the equation is read to get `reading_value`, in words.
     pub reading: String,
-    /// Why the numbers differ, if they do.
+    /// Why our number and the paper's differ, if they do.
     pub reason: String,
 }
 
 impl PaperRow {
-    /// A row without a number of the paper.
+    /// A row that does not yet have a number of the paper.
     pub fn new(id: &'static str, quantity: &'static str, unit: &'static str, decimals: usize) -> Self {
         Self { id, quantity, unit, decimals, ..Self::default() }
     }
 
-    /// The paper's number.
+    /// Sets the number of the paper, and the paper's words for it.
     pub fn paper(mut self, value: f64, words: &'static str) -> Self {
         self.paper = Some(value);
         self.paper_words = words;
         self
     }
 
-    /// Sets our number under a reading of the paper, and that reading in words.
+    /// Sets our number for one way to read the equation, and says in words how the equation is read.
     pub fn reading(mut self, value: f64, reading: impl Into<String>) -> Self {
         self.reading_value = Some(value);
         self.reading = reading.into();
         self
     }
 
-    /// The exact frame's.
+    /// Sets the number of the exact model.
     pub fn exact(mut self, value: f64) -> Self {
         self.exact = Some(value);
         self
     }
 
-    /// Why they differ.
+    /// Sets the reason why the numbers differ.
     pub fn because(mut self, reason: impl Into<String>) -> Self {
         self.reason = reason.into();
         self
@@ -84,7 +84,7 @@ impl PaperRow {
     }
 }
 
-/// The numbers next to each other; the words are in [`notes`].
+/// The rows as a table of numbers. Explanations are in [`notes`].
 pub fn table(rows: &[PaperRow]) -> Table {
     let mut table = Table::new(vec![
         Column::right("#"),
@@ -107,8 +107,8 @@ pub fn table(rows: &[PaperRow]) -> Table {
     table
 }
 
-/// Reading and reason of each row, numbered as in [`table`]; a reading shared by consecutive rows is given
-/// once.
+/// For each row, how the equation is read and why the numbers differ, numbered as in [`table`]. If consecutive rows
+/// read an equation in the same way, this is said once.
 pub fn notes(rows: &[PaperRow]) -> String {
     let mut text = String::new();
     let mut before = "";

@@ -80,7 +80,7 @@ fn links(arm: &PaperArm) -> Vec<PaperRow> {
     ]
 }
 
-/// Where the exact links' deflection comes from: bending with and without end slopes, and shear.
+/// Says where the exact deflection of the links comes from: bending with and without end slopes, and shear.
 fn what_eq_15_drops(arm: &PaperArm, printed: &PrintedDeflection) -> String {
     let [bending, full] = [LinkModel::Bending, LinkModel::Full].map(|model| arm.solve(model).links_m());
     format!(
@@ -102,7 +102,7 @@ fn total(arm: &PaperArm) -> Vec<PaperRow> {
     ]
 }
 
-/// Largest relative distance between the joint stiffnesses of two arms.
+/// Largest relative difference between the joint stiffnesses of two arms.
 fn worst_gap(a: &PaperArm, b: &PaperArm) -> f64 {
     let compliance = |arm: &PaperArm, i: usize| arm.curves[i].tangent_compliance_rad_per_nm(0.0);
     (0..JOINTS.len()).map(|i| (compliance(a, i) / compliance(b, i) - 1.0).abs()).fold(0.0, f64::max)

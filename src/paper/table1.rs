@@ -20,23 +20,23 @@ use nalgebra::Vector3;
 /// Damping ratio of every mode in the frequency response.
 pub const DAMPING_RATIO: f64 = 0.02;
 
-/// Everything the study computes.
+/// Everything that the study computes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table1 {
-    /// The paper's numbers beside ours.
+    /// The paper's numbers next to ours.
     pub rows: Vec<PaperRow>,
     /// Titled tables: what the conclusions' remedies leave, connections, and so on.
     pub sections: Vec<Section>,
 }
 
-/// One further table.
+/// One further table of the study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Section {
     /// Name of its CSV file, without the ending.
     pub file: &'static str,
     /// Title.
     pub title: &'static str,
-    /// What it says.
+    /// What the table shows, in words.
     pub words: String,
     /// The table.
     pub table: Table,

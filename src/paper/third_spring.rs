@@ -10,18 +10,20 @@ use crate::report::table::{Column, Table};
 /// The paper's three frequencies \[Hz\].
 pub const PRINTED_HZ: [f64; 3] = [14.8, 74.6, 159.6];
 
-/// One reading of the third spring and the masses that then give the paper's frequencies.
+/// One interpretation of the third spring of Eq 16 (K4 alone, or K4 in series with K5, or with K5 and K6), with the
+/// masses that then give the paper's three frequencies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    /// How the spring is read.
+    /// Which joints make up the third spring, in words.
     pub spring: &'static str,
     /// Stiffness of the third spring \[N m/rad\].
     pub stiffness_nm_per_rad: f64,
-    /// The arm.
+    /// The arm with these masses and this third spring.
     pub arm: PaperArm,
-    /// Its frequencies \[Hz\].
+    /// The three frequencies of this arm \[Hz\].
     pub frequencies_hz: [f64; 3],
-    /// The lowest frequency with four times joint 2's stiffness, over that before.
+    /// The lowest frequency with four times the stiffness of joint 2, over the lowest frequency with the stiffness as
+    /// it is.
     pub four_times_joint_2: f64,
 }
 
@@ -31,7 +33,7 @@ impl Reading {
         self.arm.wrist_kg + self.arm.load_kg
     }
 
-    /// Largest relative distance of a frequency from the paper's.
+    /// Largest relative difference between a frequency and the paper's.
     pub fn worst(&self) -> f64 {
         let gaps = self.frequencies_hz.iter().zip(PRINTED_HZ).map(|(f, p)| (f / p - 1.0).abs());
         gaps.fold(0.0, f64::max)
@@ -54,12 +56,13 @@ impl Reading {
 /// Stiffness of joints 4, 5 and 6 as printed \[N m/rad\].
 const K4_K5_K6: [f64; 3] = [108e3, 108e3, 17.5e3];
 
-/// Springs of `count` of the wrist's joints in series \[N m/rad\].
+/// Stiffness of the first `count` of the wrist's joints in series \[N m/rad\].
 fn in_series(count: usize) -> f64 {
     1.0 / K4_K5_K6[..count].iter().map(|k| 1.0 / k).sum::<f64>()
 }
 
-/// Every reading of the third spring with the masses that give the paper's frequencies, found by search.
+/// Every interpretation of the third spring, with the masses that give the paper's frequencies. The masses are found
+/// by search.
 pub fn readings() -> Vec<Reading> {
     let springs = [
         ("K4 alone", in_series(1)),
@@ -76,7 +79,7 @@ pub fn readings() -> Vec<Reading> {
         .collect()
 }
 
-/// The reading closest to Table 1: K4 and K5 in series, the table's wrist, a load of 7.33 kg at 0.1238 m.
+/// The interpretation closest to Table 1: K4 and K5 in series, the table's wrist, a load of 7.33 kg at 0.1238 m.
 pub fn closest_reading() -> Reading {
     let [k2, k3, _] = PaperArm::table_1().curves;
     let arm = PaperArm {
@@ -88,7 +91,7 @@ pub fn closest_reading() -> Reading {
     Reading::of("K4 and K5 in series, table's wrist, rounded load", arm)
 }
 
-/// Readings as a table.
+/// The interpretations as a table.
 pub fn table(readings: &[Reading]) -> Table {
     let mut table = Table::new(vec![
         Column::left("third spring"),

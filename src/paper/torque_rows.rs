@@ -8,7 +8,7 @@ use super::rows::PaperRow;
 use crate::catalog::Catalogs;
 use crate::report::number::fixed;
 
-/// Ratio of the paper's drives where it matters.
+/// Reduction ratio of the paper's drives, in rows that depend on it.
 const RATIO: f64 = 100.0;
 
 /// All rows of the sizing equations.

@@ -19,9 +19,9 @@ const DEFLECTION_OCTAVES: (i32, i32) = (-23, 4);
 /// far above the rounding errors of the fast model, on which the table works.
 const MARGIN: f64 = 1e-5;
 
-/// The table. All threads share it.
+/// The table of best frequencies. All threads share it.
 pub(crate) struct Archive {
-    /// Number of leading bits of the fraction that tell cells apart.
+    /// Number of leading bits of a number's fraction that decide its cell.
     bits: u32,
     columns: usize,
     /// Best frequency of each cell, as the bits of an `f32`: positive floats are ordered like their bits.
@@ -43,8 +43,8 @@ impl Archive {
         self.bar_hz(o.mass_kg, o.tip_deflection_m) > o.lowest_mode_hz
     }
 
-    /// The bar: a design of this mass and deflection with a lowest mode \[Hz\] below it is surely dominated by one entered
-    /// before. It is 0 if no such design was entered.
+    /// The bar: a design of this mass and deflection with a lowest mode \[Hz\] below it is surely dominated by a
+    /// design that was entered before. The bar is 0 if no such design was entered.
     #[inline]
     pub(crate) fn bar_hz(&self, mass_kg: f64, tip_deflection_m: f64) -> f64 {
         let (row, column) = (
@@ -79,7 +79,8 @@ impl Archive {
         }
     }
 
-    /// The step at or below a positive number, or at or above it; `None` outside of the range.
+    /// The step of the logarithmic scale at or below a positive number, or at or above it; `None` outside of the
+    /// range.
     #[inline]
     fn corner(&self, x: f64, (low, high): (i32, i32), side: Corner) -> Option<usize> {
         let shift = f64::MANTISSA_DIGITS - 1 - self.bits;
@@ -93,14 +94,15 @@ impl Archive {
     }
 }
 
-/// The corner of a cell at which a design is taken.
+/// The corner of a cell to which a design's mass and deflection are rounded.
 #[derive(Clone, Copy)]
 enum Corner {
     Below,
     Above,
 }
 
-/// The bits of the largest `f32` that is not above a positive number. Such bits are ordered like the numbers.
+/// The bits of the largest `f32` that is not above a positive number. For positive numbers, such bits are in the
+/// order of the numbers.
 fn round_down(x: f64) -> u32 {
     let near = x as f32;
     let bits = near.to_bits();

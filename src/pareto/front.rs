@@ -8,7 +8,8 @@ use super::sieve::sieve;
 use super::staircase::Staircase;
 use rayon::prelude::*;
 
-/// Number of significant decimal digits that count when two objectives are compared. Differences below are rounding errors.
+/// Number of significant decimal digits that count when two objectives are compared. Smaller differences are rounding
+/// errors.
 const DIGITS: i32 = 12;
 /// Relative difference from which on twelve digits surely tell two objectives apart.
 const SURELY_APART: f64 = 1e-10;
@@ -19,7 +20,7 @@ const SURELY_APART: f64 = 1e-10;
     "point {point} has an objective that is not a number: leave the point out, or find out what it should be"
 )]
 pub struct NotANumber {
-    /// Index of the first such point.
+    /// Index of the first point with a NaN.
     pub point: usize,
 }
 
@@ -33,7 +34,7 @@ pub fn rounded(x: f64) -> f64 {
     if scale.is_finite() { (x * scale).round() / scale } else { x }
 }
 
-/// Refuses points that cannot be compared.
+/// Refuses points with a NaN, which cannot be compared.
 pub(crate) fn all_numbers(points: &[[f64; 3]]) -> Result<(), NotANumber> {
     let faulty = points.par_iter().position_first(|p| p.iter().any(|x| x.is_nan()));
     faulty.map_or(Ok(()), |point| Err(NotANumber { point }))
@@ -119,7 +120,7 @@ pub fn not_clearly_beaten(points: &[[f64; 3]], slack: f64) -> Vec<usize> {
     kept
 }
 
-/// For each rank, the largest rank whose objective is not above the lowered objective of this rank.
+/// For each rank of the second objective, the largest rank whose objective is not above `lowered` of this one's.
 fn reaches(second: &[f64], lowered: impl Fn(f64) -> f64) -> Vec<Option<u32>> {
     let mut below = 0;
     let count = second.iter().map(|&x| {

@@ -65,7 +65,7 @@ pub fn front_hypervolume(designs: impl Iterator<Item = Objectives>) -> f64 {
     hypervolume(&points, logarithms(REFERENCE)).unwrap_or_default()
 }
 
-/// A compensated sum: it keeps what rounding took from it.
+/// A compensated sum: it keeps what rounding has removed and adds it at the end.
 #[derive(Default)]
 struct Sum {
     sum: f64,

@@ -12,7 +12,7 @@ pub struct Objectives {
 }
 
 impl Objectives {
-    /// Objectives that are better by a factor in each.
+    /// The objectives of a design that is better by this factor in all three.
     pub(crate) fn better_by(&self, factor: f64) -> Self {
         Self {
             tip_deflection_m: self.tip_deflection_m / factor,

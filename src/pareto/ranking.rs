@@ -15,7 +15,7 @@ pub(crate) struct Ranked {
     pub rank: u32,
 }
 
-/// Points in the order of a sweep.
+/// Points in the order in which a sweep visits them.
 pub(crate) struct Ranking {
     /// The points, sorted by first objective, then second, then third, then index.
     pub order: Vec<Ranked>,
@@ -45,13 +45,13 @@ impl Ranking {
     }
 }
 
-/// An integer key in the order of the numbers. Both zeros have the same key.
+/// An integer key that orders numbers as they are ordered themselves. Both zeros have the same key.
 fn key(x: f64) -> u64 {
     let bits = (x + 0.0).to_bits();
     if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
 }
 
-/// Gives ranks to a list that is sorted by the second objective. Returns the value of each rank.
+/// Gives ranks to a list of points that is sorted by the second objective. Returns the objective of each rank.
 fn rank(order: &mut [Ranked], points: &[[f64; 3]]) -> Vec<f64> {
     let mut second: Vec<f64> = Vec::new();
     for ranked in order {

@@ -9,13 +9,13 @@
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
-/// Number of points from which on the sieve is worth its cost.
+/// Smallest number of points for which the sieve is worth its cost.
 const WORTH_IT: usize = 1 << 12;
 /// Number of points in the sample, at most.
 const SAMPLE: usize = 1 << 12;
 /// Number of bins of each of the two objectives.
 const BINS: usize = 256;
-/// Number of equal steps of an objective's range, from which bins are put together.
+/// Number of equal steps of an objective's range. Bins are made of whole steps.
 const STEPS: usize = 1 << 12;
 
 /// Indices, ascending, of the points that may be on the front. Every point that is left out is beaten by another in all
@@ -64,7 +64,8 @@ impl Bins {
         bins
     }
 
-    /// The step of a number. The conversion to an integer saturates, so numbers outside of the range are at its ends.
+    /// The step in which a number lies. The conversion to an integer saturates, so numbers outside of the range are
+    /// at its ends.
     fn step(&self, x: f64) -> usize {
         (((x - self.low) * self.steps_per_unit) as usize).min(STEPS - 1)
     }
@@ -75,7 +76,7 @@ impl Bins {
     }
 }
 
-/// Smallest third objective of each pair of bins and of all pairs below it.
+/// For each pair of bins, the smallest third objective among the points in this pair and in lower bins.
 struct Table(Vec<f64>);
 
 impl Table {
@@ -107,7 +108,7 @@ impl Table {
         Self(cells)
     }
 
-    /// The smallest third objective in strictly lower bins.
+    /// The smallest third objective among points that are in strictly lower bins of both objectives.
     fn best_below(&self, row: usize, column: usize) -> f64 {
         match (row.checked_sub(1), column.checked_sub(1)) {
             (Some(row), Some(column)) => self.0[row * BINS + column],

@@ -8,7 +8,7 @@
 //! a neighbour or to change a step costs one word in each level. With the two sorts, a sweep takes O(n log n) (Kung, Luccio
 //! & Preparata 1975).
 
-/// The steps: ranks of second objectives, each with its third objective.
+/// The steps: ranks of the second objective, each with the third objective of its point.
 pub(crate) struct Staircase {
     steps: RankSet,
     third: Vec<f64>,
@@ -30,8 +30,8 @@ impl Staircase {
         self.best(rank).is_some_and(|best| best <= third)
     }
 
-    /// Adds a step that is not covered and removes those that it covers. `see` is called with rank and third objective of
-    /// each step above the new one, up to and including the first that stays.
+    /// Adds a step that is not covered and removes the steps that it covers. `see` is called with rank and third
+    /// objective of each step above the new one, up to and including the first that stays.
     pub(crate) fn insert(&mut self, rank: u32, third: f64, mut see: impl FnMut(u32, f64)) {
         self.steps.insert(rank);
         self.third[rank as usize] = third;
@@ -47,7 +47,8 @@ impl Staircase {
 
 /// A set of integers below a bound, which finds the nearest member to a number.
 struct RankSet {
-    /// One bit for each member; then, level by level, one bit for each word that is not empty.
+    /// Bits, level by level. The first level has one bit for each possible member, every further level one bit for
+    /// each word of the level before that is not empty.
     levels: Vec<Vec<u64>>,
 }
 
@@ -111,7 +112,8 @@ impl RankSet {
         None
     }
 
-    /// Goes from a word that is not empty down to one of its members.
+    /// Goes from a word that is not empty down to one of the members below it; `bit` chooses among the bits of a
+    /// word.
     fn descend(&self, height: usize, mut place: usize, bit: impl Fn(u64) -> usize) -> u32 {
         for level in self.levels[..height].iter().rev() {
             place = place * 64 + bit(level[place]);

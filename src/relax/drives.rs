@@ -6,9 +6,9 @@ use crate::space::problem::ArmProblem;
 use crate::space::slot::Slot;
 
 impl Parts {
-    /// Drops the drives that cannot carry the least demand. Where the joint takes the lightest drive that
-    /// carries its demand, it also drops those heavier than the lightest that carries the greatest demand.
-    /// Returns whether any was dropped.
+    /// Drops the drives that cannot carry the least demand on their joint. If a joint takes the lightest drive that
+    /// carries its demand, drives heavier than the lightest that carries the greatest demand are dropped too. Returns
+    /// whether any drive was dropped.
     pub(super) fn drop_drives(&mut self, problem: &ArmProblem, cases: &[CaseLoads]) -> bool {
         let mut dropped = false;
         for (slot, piece) in problem.slots().iter().enumerate() {
@@ -31,7 +31,9 @@ impl Parts {
             let relaxed = [1.0 - 1e-12, 1.0 + 1e-12];
             let [least, most] = [0, 1]
                 .map(|end| motion.demand(static_nm[end] * relaxed[end], inertia_kgm2[end] * relaxed[end]));
-            let heaviest = if sized.all_fits { None } else { sized.table.first_fit(&most) };
+            // the load on a bearing has no upper bound here, so it may ask for a heavier drive than the torques
+            let by_bearing = problem.bearing_loads().levers[slot].is_some();
+            let heaviest = if sized.all_fits || by_bearing { None } else { sized.table.first_fit(&most) };
             dropped |= self.keep(slot, |_, option| {
                 sized.table.limits(option as usize).hold(&least)
                     && heaviest.is_none_or(|heaviest| option as usize <= heaviest)

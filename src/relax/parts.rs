@@ -6,15 +6,15 @@ use crate::space::slot::Slot;
 
 /// Remaining options and masses of every slot.
 pub(super) struct Parts {
-    /// Remaining options of each slot, ascending.
+    /// For each slot, the options that remain, in ascending order.
     pub alive: Vec<Vec<u32>>,
-    /// The known design's option of each slot.
+    /// For each slot, the option of the known design.
     pub known: Vec<u32>,
     mass_kg: Vec<Vec<f64>>,
 }
 
 impl Parts {
-    /// Every option of every slot.
+    /// All options of every slot.
     pub(super) fn new(problem: &ArmProblem, known: &[u32]) -> Self {
         let mass_kg: Vec<Vec<f64>> = problem.slots().iter().map(slot_masses).collect();
         let alive = problem
@@ -33,24 +33,24 @@ impl Parts {
         Self { alive, known: known.to_vec(), mass_kg }
     }
 
-    /// Mass of an option \[kg\].
+    /// Mass of an option of a slot \[kg\].
     pub(super) fn mass_kg(&self, slot: usize, option: u32) -> f64 {
         self.mass_kg[slot][option as usize]
     }
 
-    /// Masses of the remaining options \[kg\].
+    /// Masses of the remaining options, slot by slot \[kg\].
     pub(super) fn masses(&self) -> Vec<Vec<f64>> {
         self.each(|slot, option| self.mass_kg(slot, option))
     }
 
-    /// One number for each remaining option.
+    /// A number for each remaining option, slot by slot.
     pub(super) fn each(&self, number: impl Fn(usize, u32) -> f64) -> Vec<Vec<f64>> {
         let slots = self.alive.iter().enumerate();
         slots.map(|(slot, alive)| alive.iter().map(|&o| number(slot, o)).collect()).collect()
     }
 
-    /// Drops the options with which a row exceeds its limit whatever the other pieces are. Returns whether
-    /// any was dropped.
+    /// Drops the options with which a row exceeds its limit even if every other slot has its best option. Returns
+    /// whether any option was dropped.
     pub(super) fn drop_by(&mut self, row: &Row) -> bool {
         let least = row.least();
         let total: f64 = least.iter().sum();
@@ -67,8 +67,8 @@ impl Parts {
         dropped
     }
 
-    /// Keeps the options of a slot that pass, given their index and number, and always the known one. Returns
-    /// whether any was dropped.
+    /// Keeps the options of a slot that pass, and always the known design's option. `passes` is given an option's
+    /// index among the remaining ones and its number. Returns whether any option was dropped.
     pub(super) fn keep(&mut self, slot: usize, passes: impl Fn(usize, u32) -> bool) -> bool {
         let known = self.known[slot];
         let before = self.alive[slot].len();
@@ -86,5 +86,6 @@ fn slot_masses(slot: &Slot) -> Vec<f64> {
         Slot::Given { mass_kg, .. } | Slot::Offset { mass_kg } => vec![*mass_kg],
         Slot::Sized(sized) => (0..sized.table.len()).map(|i| sized.table.mass_kg(i)).collect(),
         Slot::Link { options, .. } => options.iter().map(|o| o.mass_kg).collect(),
+        Slot::Bearing { laws, .. } => vec![0.0; laws.len()],
     }
 }

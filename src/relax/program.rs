@@ -15,16 +15,16 @@ use super::row::Row;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
 
-/// Number of options that are added to a slot at a time.
+/// Number of options that are added to a slot of the solver's program at a time.
 const ADDED: usize = 3;
 
-/// The program, and the options over which it is solved.
+/// The linear program, and the options over which it is solved.
 pub(super) struct Program {
     masses: Vec<Vec<f64>>,
     rows: Vec<Row>,
-    /// Indices, among the remaining options, that the solver sees.
+    /// For each slot, the options that the solver knows, as indices among the remaining options.
     seen: Vec<Vec<usize>>,
-    /// The best bound so far \[kg\], and its multipliers.
+    /// The best lower bound so far \[kg\], and the multipliers of the rows that give it.
     best: (f64, Vec<f64>),
 }
 
@@ -32,15 +32,15 @@ pub(super) struct Program {
 pub(super) struct Solution {
     /// Lower bound on the mass \[kg\].
     pub bound_kg: f64,
-    /// Weight of every remaining option.
+    /// For each slot, the weight of every remaining option in the solution.
     pub weights: Vec<Vec<f64>>,
-    /// Whether options were added that may make the mixture lighter.
+    /// Whether options were added to the solver's program, so that the mixture may become lighter.
     pub grew: bool,
 }
 
 impl Program {
-    /// A program that starts with the known design, the lightest options and those with the least coefficient
-    /// in each row.
+    /// A program that starts with three kinds of options: those of the known design, the lightest ones, and those
+    /// with the least coefficient in each row.
     pub(super) fn new(parts: &Parts, rows: Vec<Row>) -> Self {
         let masses = parts.masses();
         let seen = (0..masses.len())
@@ -85,7 +85,7 @@ impl Program {
         Some(Solution { bound_kg, weights, grew })
     }
 
-    /// Drops the options with which no design is as light as `mass_kg`.
+    /// Drops the options that no design of at most `mass_kg` can have.
     pub(super) fn drop_options(&self, parts: &mut Parts, mass_kg: f64) {
         let (bound_kg, multipliers) = &self.best;
         let reduced = self.reduced(multipliers);
@@ -95,8 +95,8 @@ impl Program {
         }
     }
 
-    /// Reduced costs: mass plus the price of each option in the rows. Rows that were added after the
-    /// multipliers cost nothing.
+    /// Reduced cost of each remaining option: its mass plus its price in the rows. A row without a multiplier,
+    /// because it was added later, costs nothing.
     fn reduced(&self, multipliers: &[f64]) -> Vec<Vec<f64>> {
         let mut out = self.masses.clone();
         for (row, y) in self.rows.iter().zip(multipliers).filter(|(_, y)| **y > 0.0) {
@@ -107,13 +107,13 @@ impl Program {
         out
     }
 
-    /// The Lagrangian bound \[kg\].
+    /// The Lagrangian bound on the mass for these reduced costs \[kg\].
     fn bound(&self, reduced: &[Vec<f64>], multipliers: &[f64]) -> f64 {
         let least: f64 = reduced.iter().map(|r| r.iter().copied().fold(f64::INFINITY, f64::min)).sum();
         least - self.rows.iter().zip(multipliers).map(|(row, y)| y * row.limit).sum::<f64>()
     }
 
-    /// Adds the options of least reduced cost. Returns whether any was new.
+    /// Adds the options of least reduced cost to the solver's program. Returns whether any of them was new.
     fn see_more(&mut self, reduced: &[Vec<f64>]) -> bool {
         let mut grew = false;
         for (seen, reduced) in self.seen.iter_mut().zip(reduced) {
@@ -130,8 +130,8 @@ impl Program {
         grew
     }
 
-    /// Weights of the options seen, slot by slot, and the multipliers of the rows. None is negative. `None`
-    /// if the solver fails.
+    /// Solves the program over the options that the solver knows. Returns the weights of these options, slot by slot,
+    /// and the multipliers of the rows, all at least zero. `None` if the solver fails.
     fn solver(&self) -> Option<(Vec<f64>, Vec<f64>)> {
         let (slots, rows) = (self.seen.len(), self.rows.len());
         let columns: usize = self.seen.iter().map(Vec::len).sum();

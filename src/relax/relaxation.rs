@@ -10,21 +10,21 @@ use crate::space::problem::ArmProblem;
 
 /// Greatest number of rounds of solving and dropping options.
 const ROUNDS: usize = 4;
-/// Greatest number of solutions of the program in a round. Each adds shapes or options.
+/// Greatest number of solutions of the program in a round. After each, trial shapes or options are added.
 const STEPS: usize = 40;
-/// Relative rounding of an objective.
+/// Relative margin for rounding of an objective.
 const ROUNDING: f64 = 1e-9;
 
-/// What the relaxation says about the designs that are good enough.
+/// What the relaxation proves about the designs that meet the objectives asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MassBound {
-    /// No design with at most the deflection and at least the lowest mode is lighter \[kg\].
+    /// No design with at most this deflection and at least this lowest mode is lighter \[kg\].
     pub mass_lower_bound_kg: f64,
-    /// The bound before it was used to drop options \[kg\]: about the mass of the lightest mixture of catalog
+    /// The bound before it was used to drop options \[kg\]. It is about the mass of the lightest mixture of catalog
     /// parts.
     pub mixture_kg: f64,
-    /// Number of options of each piece that such a design of at most the known one's mass may have, base to
-    /// tip. Tilting bearings and added masses are pieces too.
+    /// For each piece from base to tip, how many options are left for a design that meets the objectives and is no
+    /// heavier than the known design. Tilting bearings and added masses are pieces too.
     pub options_left: Vec<usize>,
     /// Whether some load may have either sign within the remaining options. The bound then has to take the
     /// more favourable sign and is weaker.
@@ -35,7 +35,7 @@ pub struct MassBound {
 pub struct Relaxation<'a> {
     problem: &'a ArmProblem<'a>,
     cases: Vec<CaseLoads>,
-    /// One for each judged case.
+    /// One model for each judged case.
     models: Vec<ShapeModel>,
 }
 
@@ -49,8 +49,8 @@ impl<'a> Relaxation<'a> {
         }
     }
 
-    /// Bounds the mass of every design that deflects no more and vibrates no lower than `asked`. `known` is a
-    /// design (one option for each level) that meets these objectives, of at most the mass asked. `None` if a
+    /// Bounds the mass of every design that deflects no more and vibrates no lower than `asked`. `known` is a design
+    /// (one option for each level) that meets these objectives and weighs at most the mass in `asked`. `None` if a
     /// part of the known design cannot carry its load.
     pub fn mass_lower_bound(&self, known: &[u32], asked: &Objectives) -> Option<MassBound> {
         let arm = self.problem.walk(known, |_, _| {}).ok()?;
@@ -86,7 +86,7 @@ struct Search<'a> {
     directions: Vec<(usize, nalgebra::Vector3<f64>)>,
     models: &'a [ShapeModel],
     parts: Parts,
-    /// Trial shapes: judged case and strain coordinates.
+    /// Trial shapes, each with its judged case and its strain coordinates.
     shapes: Vec<(usize, nalgebra::DVector<f64>)>,
     best_kg: f64,
     /// The best bound after the first round of solving \[kg\].
@@ -112,7 +112,7 @@ impl Search<'_> {
         }
     }
 
-    /// Drops options that some row excludes, whatever the other pieces are.
+    /// Drops the options with which some row exceeds its limit even if every other piece has its best option.
     fn reduce(&mut self) {
         loop {
             let mut dropped = self.parts.drop_drives(self.problem, self.cases);
@@ -127,7 +127,7 @@ impl Search<'_> {
         }
     }
 
-    /// Every inequality that a design as good as required satisfies.
+    /// Every inequality that holds for the designs that meet the objectives.
     fn rows(&self) -> Vec<Row> {
         let mut rows = Vec::new();
         for (case, direction) in &self.directions {
@@ -148,7 +148,7 @@ impl Search<'_> {
         omega * omega * (1.0 - ROUNDING)
     }
 
-    /// Greatest stiffness of every joint's options, by slot, for each judged case \[N m/rad\].
+    /// For each judged case and each slot, the greatest stiffness of the joint's options \[N m/rad\].
     fn stiffness(&self) -> Vec<Vec<Vec<f64>>> {
         self.models.iter().map(|m| self.cases[m.case].stiffest(self.problem, &self.parts)).collect()
     }
@@ -157,7 +157,7 @@ impl Search<'_> {
         self.models[model].row(&self.parts, &stiffness[model], shape, self.eigenvalue())
     }
 
-    /// Solves the program, and adds shapes that the mixture violates and options that it lacks.
+    /// Solves the program, and adds the trial shapes that the mixture violates and the options that it lacks.
     fn solve(&mut self) {
         let stiffness = self.stiffness();
         let mut program = Program::new(&self.parts, self.rows());
@@ -178,7 +178,7 @@ impl Search<'_> {
         program.drop_options(&mut self.parts, self.asked.mass_kg * (1.0 + ROUNDING));
     }
 
-    /// Shapes that the mixture violates, with their judged case.
+    /// Trial shapes whose inequalities the mixture violates, each with its judged case.
     fn violated(
         &self,
         stiffness: &[Vec<Vec<f64>>],

@@ -1,9 +1,10 @@
 //! One linear inequality of the program.
 
-/// Rounding of an inequality, relative to its largest terms.
+/// Margin for rounding of an inequality, relative to its largest terms.
 const ROUNDING: f64 = 1e-9;
 
-/// `Σ coefficient · weight ≤ limit`. Coefficients are by slot and by remaining option.
+/// The inequality `Σ coefficient · weight ≤ limit` over the weights of options. Coefficients are given slot by slot,
+/// for the remaining options.
 #[derive(Clone)]
 pub(super) struct Row {
     pub coefficients: Vec<Vec<f64>>,
@@ -23,7 +24,7 @@ impl Row {
         most > self.limit
     }
 
-    /// The same inequality scaled so that no number exceeds 1, with its limit raised by the rounding.
+    /// The same inequality, scaled so that no number exceeds 1, with the margin for rounding added to its limit.
     pub(super) fn ready(mut self) -> Self {
         let largest_of = |c: &Vec<f64>| c.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
         let terms: Vec<f64> = self.coefficients.iter().map(largest_of).collect();

@@ -20,33 +20,34 @@ use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, SymmetricEigen, Vector3};
 /// Greatest number of shapes taken from one mixture.
 const MOST_SHAPES: usize = 3;
 
-/// Masses and stiffnesses of one case over the strain coordinates.
+/// Masses and stiffnesses of the arm in one case, over the strain coordinates.
 pub(super) struct ShapeModel {
     /// Index of the case in the study.
     pub case: usize,
-    /// Inertia of what is given: the payload and rigid offsets.
+    /// Inertia of everything that is given: the payload and rigid offsets.
     given: DMatrix<f64>,
     joints: Vec<JointShape>,
     links: Vec<LinkShape>,
 }
 
-/// A joint: its coordinate, and the motion of its mass.
+/// A joint of the model: its coordinate, and the motion of its mass.
 struct JointShape {
     slot: usize,
     column: usize,
-    /// Velocity of the joint per unit of each coordinate.
+    /// Velocity of the joint's mass per unit of each coordinate.
     motion: DMatrix<f64>,
 }
 
-/// A tube: its coordinates, its motion, and the inertia and stiffness of its options.
+/// A tube of the model: its coordinates, its motion, and the inertia and stiffness of its options.
 struct LinkShape {
     slot: usize,
     first: usize,
-    /// Weighted displacement and rotation at each Gauss point, per unit of each coordinate.
+    /// Displacement and rotation at each Gauss point per unit of each coordinate, times the root of the point's
+    /// weight.
     fields: Vec<Matrix6xX<f64>>,
     /// Inertia per length of each option.
     densities: Vec<[f64; 6]>,
-    /// Stiffness of each coordinate of each option.
+    /// For each option, the stiffness of each of the tube's coordinates.
     stiffness: Vec<Vec<f64>>,
 }
 
@@ -109,8 +110,8 @@ impl ShapeModel {
         model
     }
 
-    /// The inequality of a shape at a required eigenvalue \[1/s²\]. `stiffness` holds the stiffnesses of the
-    /// joints' remaining options, by slot.
+    /// The inequality that a trial shape gives at a required eigenvalue \[1/s²\]. `stiffness` holds the stiffnesses
+    /// of the joints' remaining options, by slot.
     pub(super) fn row(
         &self,
         parts: &Parts,
@@ -200,7 +201,7 @@ impl ShapeModel {
 }
 
 impl LinkShape {
-    /// For each component of motion: the integral of its square along the link.
+    /// For each component of motion, the integral along the link of its square in the shape `x`.
     fn moved(&self, x: &DVector<f64>) -> [f64; 6] {
         let mut out = [0.0; 6];
         for field in &self.fields {
@@ -211,7 +212,7 @@ impl LinkShape {
     }
 }
 
-/// The options of a link, with the effects of the study; none if the layer is no link.
+/// The options of a link, with the effects of the study; empty if the layer is no link.
 fn tubes(space: &DesignSpace, layer: &Layer) -> Vec<LinkPiece> {
     match layer {
         Layer::Piece(SpacePiece::Choice(choice)) => {
@@ -227,7 +228,7 @@ fn mixture(weights: &[f64]) -> impl Iterator<Item = (usize, f64)> + Clone + '_ {
     weights.iter().copied().enumerate().filter(|(_, w)| *w > 0.0)
 }
 
-/// Velocity of a point per unit of each coordinate so far.
+/// Velocity of a point per unit of each coordinate inboard of it.
 fn point_motion(twist: &DMatrix<f64>, at_m: &Vector3<f64>) -> DMatrix<f64> {
     let columns: Vec<Vector3<f64>> =
         twist.column_iter().map(|t| displacement_at(&t.fixed_rows::<6>(0).into_owned(), at_m)).collect();

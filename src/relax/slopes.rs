@@ -2,10 +2,10 @@
 
 use crate::arm::joint_law::{Curve, JointLaw};
 
-/// Relative rounding of a torque, which may put it on either side of a break point.
+/// Relative margin for rounding of a torque near a break point.
 const NEAR: f64 = 1e-12;
 
-/// Least and greatest compliance to small oscillations about any torque in an interval \[rad/(N m)\].
+/// Least and greatest tangent compliance of a joint under torques in an interval \[rad/(N m)\].
 pub(super) fn tangent_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     let size = size_range(torque_nm);
     let curve = curve_range(&law.curve, size);
@@ -16,8 +16,8 @@ pub(super) fn tangent_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|end| curve[end] + law.connection_rad_per_nm + play[end])
 }
 
-/// Least and greatest mean slope of the twist between any two torques of an interval, after the torque has
-/// risen from rest \[rad/(N m)\]. Friction holds back the gear's spring until its half width is used up.
+/// Least and greatest mean slope of the twist between any two torques of an interval, if the torque has risen from
+/// rest \[rad/(N m)\]. Friction holds back the twist of the gear's spring until its half width is used up.
 pub(super) fn rising_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     let [least, most] = tangent_range(law, torque_nm);
     let Some(stiffness) = law.play_stiffness_nm_per_rad() else { return [least, most] };

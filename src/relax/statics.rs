@@ -19,27 +19,27 @@ use nalgebra::{Matrix6, Vector3};
 /// The loads of one case: where each slot's weight acts, and how much each option weighs.
 pub(super) struct CaseLoads {
     case: usize,
-    /// Wrench per unit of each slot's load.
+    /// For each slot, the wrench per unit of the slot's load.
     unit: Vec<Wrench>,
-    /// Load of each slot's options: kilograms for joints, newtons for links, 1 for a body.
+    /// For each slot, the load of each option: kilograms for joints, newtons for links, 1 for a body.
     amount: Vec<Vec<f64>>,
-    /// Inertia about each joint's axis of every option of every slot outboard of it \[kg m²\]. Empty if a
+    /// For each joint, the inertia about its axis of every option of every slot outboard of it \[kg m²\]. Empty if a
     /// slot is no joint.
     inertia: Vec<Vec<Vec<f64>>>,
 }
 
-/// The end of the loads' ranges from which a bound starts.
+/// The end of the loads' intervals at which a linear bound touches the true value.
 #[derive(Clone, Copy, PartialEq)]
 enum LoadEnd {
     Low,
     High,
 }
 
-/// A lower bound of one piece's part of the deflection.
+/// A linear lower bound of the part of the deflection that one piece causes.
 struct Term {
-    /// The part at that end, for each remaining option \[m\].
+    /// For each remaining option, the part of the deflection with all loads at that end \[m\].
     at_end: Vec<f64>,
-    /// Slope per unit of each load outboard, from that end \[m\].
+    /// For each load outboard, the slope of the part per unit of the load \[m\].
     slopes: Vec<f64>,
 }
 
@@ -81,7 +81,7 @@ impl CaseLoads {
         self.range(parts, slot)[usize::from(end == LoadEnd::High)]
     }
 
-    /// The wrench of everything outboard of a slot, with all loads at one end.
+    /// The wrench of everything outboard of a slot, with all loads at one end of their intervals.
     fn wrench(&self, problem: &ArmProblem, parts: &Parts, slot: usize, end: LoadEnd) -> Wrench {
         let start = problem.stations()[self.case].start_wrench;
         (0..slot).fold(start, |sum, j| sum + self.unit[j] * self.end_load(parts, j, end))
@@ -148,7 +148,7 @@ impl CaseLoads {
             .collect()
     }
 
-    /// Two rows that every design satisfies whose tip moves at most `limit_m` along a direction.
+    /// Two rows that hold for every design whose tip moves at most `limit_m` along a direction.
     pub(super) fn deflection_rows(
         &self,
         problem: &ArmProblem,
@@ -172,7 +172,7 @@ impl CaseLoads {
         })
     }
 
-    /// The lower bound of one slot's part of the deflection; `None` for a body.
+    /// The linear lower bound of one slot's part of the deflection; `None` for a body.
     fn term(
         &self,
         problem: &ArmProblem,
@@ -223,8 +223,7 @@ impl CaseLoads {
         }
     }
 
-    /// Rows that hold if the drive of every sized joint carries its static, peak and emergency torque in this
-    /// case.
+    /// Rows that hold for every design whose sized joints carry their static, peak and emergency torque in this case.
     pub(super) fn torque_rows(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Row> {
         let mut rows = Vec::new();
         for (slot, piece) in problem.slots().iter().enumerate() {
@@ -270,7 +269,7 @@ impl CaseLoads {
     }
 }
 
-/// Inertia about a joint's axis of every option outboard of it \[kg m²\].
+/// Inertia about a joint's axis of every option of every slot outboard of the joint \[kg m²\].
 fn inertias(station: &Station, slot: usize, amount: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let StationSlot::Joint(StationJoint { twist, .. }) = &station.slots[slot] else { return Vec::new() };
     let about = |inertia: &Matrix6<f64>| twist.dot(&(inertia * twist));
@@ -291,6 +290,7 @@ fn joint_masses(slot: &Slot) -> Vec<f64> {
     match slot {
         Slot::Sized(sized) => (0..sized.table.len()).map(|i| sized.table.mass_kg(i)).collect(),
         Slot::Given { mass_kg, .. } | Slot::Offset { mass_kg } => vec![*mass_kg],
+        Slot::Bearing { laws, .. } => vec![0.0; laws.len()],
         Slot::Link { .. } => Vec::new(),
     }
 }

@@ -34,16 +34,17 @@ impl Caveats {
         self.of_part(name).map_or(name.to_string(), |caveat| format!("{name} ({caveat})"))
     }
 
-    /// One sentence for the terminal about the parts of picks, given by name and row of the front; empty if documents were
-    /// seen for all.
-    pub(crate) fn sentence(&self, front: &FrontTable, picks: &[(String, usize)]) -> String {
+    /// One sentence for the terminal about the parts of picks, each with its row and its name; empty if documents were seen
+    /// for all.
+    pub(crate) fn sentence(&self, front: &FrontTable, picks: &[(usize, String)]) -> String {
         let mut used: Vec<(&str, Vec<String>)> = Vec::new();
-        for (name, row) in picks {
+        for (row, name) in picks {
             for part in parts(front, *row).filter(|part| self.of_part(part).is_some()) {
+                let name = name.clone();
                 match used.iter_mut().find(|(known, _)| *known == part) {
-                    Some((_, names)) if names.contains(name) => {}
-                    Some((_, names)) => names.push(name.clone()),
-                    None => used.push((part, vec![name.clone()])),
+                    Some((_, names)) if names.contains(&name) => {}
+                    Some((_, names)) => names.push(name),
+                    None => used.push((part, vec![name])),
                 }
             }
         }
@@ -71,6 +72,7 @@ fn parts(front: &FrontTable, row: usize) -> impl Iterator<Item = &str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::picks::{designs, picks, rows_and_names};
 
     #[test]
     fn a_recalled_motor_and_a_representative_laminate_are_named_with_their_picks() {
@@ -85,7 +87,7 @@ mod tests {
                 words("b;Structural steel S355;F11-10;2;10;20"),
             ],
         };
-        let picked = [("stiffest, highest mode".to_string(), 0), ("lightest".to_string(), 1)];
+        let picked = rows_and_names(&picks(&designs(&front)));
         let sentence = caveats.sentence(&front, &picked).replace('\n', " ");
         assert!(
             sentence.contains("Boron/epoxy quasi-isotropic (representative) in stiffest, highest mode"),

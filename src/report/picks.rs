@@ -154,6 +154,11 @@ pub struct Pick {
     pub design: Design,
 }
 
+/// The row and the names of each pick.
+pub(crate) fn rows_and_names(picks: &[Pick]) -> Vec<(usize, String)> {
+    picks.iter().map(|pick| (pick.design.row, pick.names.join(", "))).collect()
+}
+
 /// Lightest, stiffest, highest mode and knee; a design picked twice is listed once, with both names.
 pub fn picks(designs: &[Design]) -> Vec<Pick> {
     let named = [

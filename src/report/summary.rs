@@ -6,7 +6,9 @@ use super::compare::text::short_labels;
 use super::facts::SummaryFacts;
 use super::front_table::FrontTable;
 use super::number::{cost_words, grouped, large, percent_of, significant};
-use super::picks::{Design, Objective, Pick, best, designs, knee, marked_choices, materials, picks};
+use super::picks::{
+    Design, Objective, Pick, best, designs, knee, marked_choices, materials, picks, rows_and_names,
+};
 use super::table::{Column, Table};
 use super::words::{TERMINAL, and, capital, wrap};
 
@@ -76,6 +78,9 @@ pub fn summary_md(input: &SummaryInput) -> String {
         listed(&facts.constraints),
         listed(&facts.cases)
     ));
+    if !facts.ranges.is_empty() {
+        out.push_str(&format!("- Ranges of the joints: {}.\n", listed(&facts.ranges)));
+    }
     if !facts.remarks.is_empty() {
         out.push_str("\n## Remarks\n\n");
         facts.remarks.iter().for_each(|words| out.push_str(&format!("- {words}\n")));
@@ -104,8 +109,7 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
     if !found.picks.is_empty() {
         out.push_str(&format!("\n{}", small_plots(&found.designs)));
         out.push_str(&format!("\n{}", picks_table(&found.picks, TERMINAL_PICKS).to_text()));
-        let picked: Vec<_> = found.picks.iter().map(|p| (p.names.join(", "), p.design.row)).collect();
-        out.push_str(&facts.caveats.sentence(&input.overall, &picked));
+        out.push_str(&facts.caveats.sentence(&input.overall, &rows_and_names(&found.picks)));
         let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
         if !names.is_empty() {
             out.push_str(&format!(

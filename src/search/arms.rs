@@ -1,12 +1,9 @@
 //! Eight arms side by side, as pieces are added from the innermost level to the base.
 
+use super::row::hinge_numbers;
 use crate::mechanics::lanes::{Eight, LANES};
 use crate::pareto::objectives::Objectives;
 use crate::space::problem::ArmProblem;
-
-/// The largest number of slots from the innermost level to the base that a row handles. With more slots, designs are
-/// finished one by one.
-pub(crate) const MOST_SLOTS: usize = 12;
 
 /// Eight arms as they grow inward.
 ///
@@ -17,7 +14,7 @@ pub(crate) struct EightArms {
     pub held: u8,
     pub mass_kg: Eight,
     /// Mass of the drive in each inner slot. The masses of given drives are set from the beginning.
-    pub masses_kg: [Eight; MOST_SLOTS],
+    pub masses_kg: Vec<Eight>,
     /// Largest part of Dunkerley's sums that a single joint adds \[s²\]. The lowest eigenvalue is at most its reciprocal.
     pub largest_s2: Eight,
     pub cases: Vec<CaseArms>,
@@ -30,11 +27,11 @@ pub(crate) struct EightArms {
 #[derive(Clone)]
 pub(crate) struct CaseArms {
     pub tip_m: [Eight; 3],
-    /// Torque \[N m\] on each inner joint that some load turns, and outboard inertia \[kg m²\] about it.
-    pub torque_at: [Eight; MOST_SLOTS],
-    pub inertia_at: [Eight; MOST_SLOTS],
+    /// Torque \[N m\] on each hinge that some load turns, and outboard inertia \[kg m²\] about it.
+    pub torque_at: Vec<Eight>,
+    pub inertia_at: Vec<Eight>,
     /// Tangent compliance of each inner joint \[rad/(N m)\].
-    pub compliance: [Eight; MOST_SLOTS],
+    pub compliance: Vec<Eight>,
     /// Dunkerley's sum of each block \[s²\].
     pub trace_s2: [Eight; 2],
 }
@@ -43,22 +40,19 @@ impl EightArms {
     /// Working space for eight arms of a problem.
     pub(crate) fn new(problem: &ArmProblem) -> Self {
         let zeros = [0.0; LANES];
+        let inner = &problem.slots()[problem.level_slots().last().copied().unwrap_or(0)..];
+        let numbers = hinge_numbers(inner);
         let nothing = CaseArms {
             tip_m: [zeros; 3],
-            torque_at: [zeros; MOST_SLOTS],
-            inertia_at: [zeros; MOST_SLOTS],
-            compliance: [zeros; MOST_SLOTS],
+            torque_at: vec![zeros; numbers],
+            inertia_at: vec![zeros; numbers],
+            compliance: vec![zeros; inner.len()],
             trace_s2: [zeros; 2],
         };
-        let inner = &problem.slots()[problem.level_slots().last().copied().unwrap_or(0)..];
-        let mut masses_kg = [zeros; MOST_SLOTS];
-        for (mass_kg, slot) in masses_kg.iter_mut().zip(inner) {
-            *mass_kg = [slot.fixed_kg().unwrap_or(0.0); LANES];
-        }
         Self {
             held: 0,
             mass_kg: zeros,
-            masses_kg,
+            masses_kg: inner.iter().map(|slot| [slot.fixed_kg().unwrap_or(0.0); LANES]).collect(),
             largest_s2: zeros,
             cases: vec![nothing; problem.stations().len()],
             tip_deflection_m: zeros,

@@ -11,6 +11,7 @@ pub(crate) mod ballast;
 pub(crate) mod finish;
 pub mod near;
 pub(crate) mod row;
+pub(crate) mod row_bearing;
 pub(crate) mod row_begun;
 pub(crate) mod row_lanes;
 pub(crate) mod row_modes;

@@ -10,22 +10,21 @@
 //! A chunk takes some tens of kilobytes. Rows are finished in batches, so that a chunk stays in the nearest cache while
 //! it is used for all rows of a batch.
 //!
-//! An *inner* slot is one from the innermost level to the base. Inner slots are numbered from 0.
+//! An *inner* slot is one from the innermost level to the base. Inner slots are numbered from 0. What yields in them are
+//! *hinges*: a joint is one hinge, and a given tube has six, one for each end coordinate of its condensed link. The hinge
+//! of a joint has the number of its slot; the hinges of tubes follow after all slots.
 
-use super::arms::MOST_SLOTS;
+use super::row_bearing::RowBearing;
 use crate::arm::joint_law::{Curve, JointLaw};
-use crate::mechanics::Wrench;
 use crate::mechanics::lanes::{Eight, LANES};
 use crate::mechanics::lowest_lanes::LaneLink;
+use crate::mechanics::{Twist, Wrench};
 use crate::space::attributes::OptionAttributes;
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::Slot;
-use crate::space::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot};
+use crate::space::station::{Block, BlockSlot, Modal, Station, StationLink, StationSlot};
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 use std::ops::Range;
-
-/// Largest number of cases that a row handles. With more cases, designs are finished one by one.
-pub(crate) const MOST_CASES: usize = 8;
 
 /// The inner slots of a problem, compiled.
 pub(crate) struct Row {
@@ -36,12 +35,27 @@ pub(crate) struct Row {
     pub cases: Vec<RowCase>,
     /// Drives of each inner slot; empty for links.
     pub drives: Vec<DriveAttributes>,
-    /// Inner slots that are joints.
-    pub joints: Vec<usize>,
+    /// Inner slots that yield, apart from the link of the row.
+    pub yielding: Vec<usize>,
+    /// The hinges of these slots.
+    pub hinges: Vec<Hinge>,
     /// Mass of the given drives and offsets among the inner slots.
     pub fixed_kg: f64,
     /// How the drives of each inner slot twist.
     pub twisting: Vec<Twisting>,
+    /// The checked bearings of inner joints whose drives are found by first fit.
+    pub bearings: Vec<RowBearing>,
+}
+
+/// A way in which an inner slot yields.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Hinge {
+    /// Number of the hinge.
+    pub number: usize,
+    /// Inner slot in which it stands.
+    pub slot: usize,
+    /// End coordinate of a given tube; `None` for a joint.
+    pub end: Option<usize>,
 }
 
 /// How the drives of a joint twist in the judged cases. The simpler kinds save work in the kernel.
@@ -64,19 +78,19 @@ pub(crate) struct AtJoint {
     pub inertia_kgm2: f64,
 }
 
-/// Torque and inertia at each inner joint, by inner slot.
-pub(crate) type AtJoints = [AtJoint; MOST_SLOTS];
+/// Torque and inertia at each hinge, by its number.
+pub(crate) type AtJoints = Vec<AtJoint>;
 
 /// What depends on the pose but not on the option.
 pub(crate) struct RowCase {
-    /// Inner joints that some load or weight turns. In every arm the torque on the other joints is zero.
-    pub turned: [bool; MOST_SLOTS],
-    /// Torque and inertia that one kilogram of each inner drive adds to the joints inboard of it.
-    pub per_kg: [AtJoints; MOST_SLOTS],
+    /// Hinges that some load or weight turns. In every arm the torque on the others is zero.
+    pub turned: Vec<bool>,
+    /// Torque and inertia that one kilogram of each inner drive adds to the hinges inboard of it.
+    pub per_kg: Vec<AtJoints>,
     /// Torque and inertia of all inner pieces that are not chosen.
     pub fixed: AtJoints,
-    /// Torque on each inner joint per newton of a link's weight. All options of a link have the same centre of mass.
-    pub link_torque: [f64; MOST_SLOTS],
+    /// Torque on each hinge per newton of a link's weight. All options of a link have the same centre of mass.
+    pub link_torque: Vec<f64>,
     /// Axial force, torsion and both bending moments at the link's root per newton of its weight.
     pub link_weight_at_root: [f64; 4],
     /// Whether the links of the row move the tip in x, y and z.
@@ -88,6 +102,8 @@ pub(crate) struct RowCase {
     /// Number of inner slots up to the last that yields, in each block. Those beyond it cannot change a mode.
     pub ends: [usize; 2],
     pub links_yield: bool,
+    /// Dunkerley's sum of the given tubes by themselves, by block \[s²\].
+    pub tubes_trace_s2: [f64; 2],
     pub judged: bool,
     pub sizing: bool,
 }
@@ -135,8 +151,8 @@ pub(crate) struct CaseChunk {
     pub flexibility: [[Eight; 6]; 3],
     /// Displacement of the tip by the link's own weight.
     pub own_weight_deflection_m: [Eight; 3],
-    /// Inertia of the link about each inner joint.
-    pub inertia_at: [Eight; MOST_SLOTS],
+    /// Inertia of the link about each hinge.
+    pub inertia_at: Vec<Eight>,
     /// Contribution to the sum of `1/λ` per unit of each entry of the outboard inertia ([`RowCase::spread_entries`]).
     pub spread: Vec<Eight>,
     /// Contribution of the link by itself to the sum of `1/λ`, by block \[s²\].
@@ -180,18 +196,16 @@ impl DriveAttributes {
 }
 
 impl Row {
-    /// Compiles the innermost level. Returns `None` if designs must be finished one by one: if there is no level, if a
-    /// given tube is inboard of it, or if there are too many slots or cases.
+    /// Compiles the innermost level. Returns `None` if there is no level, or if a given tube inboard of it is too slender,
+    /// so that no design holds.
     pub(crate) fn new(problem: &ArmProblem) -> Option<Self> {
         let first = *problem.level_slots().last()?;
         let slots = &problem.slots()[first..];
-        // the arrays of a row have a fixed size, so that the kernel needs no memory of its own
-        if slots.len() > MOST_SLOTS
-            || problem.stations().len() > MOST_CASES
-            || slots[1..].iter().any(|s| matches!(s, Slot::Link { .. }))
-        {
+        let given_tubes = || slots[1..].iter().filter_map(Slot::given_tube);
+        if given_tubes().any(|tube| tube.slender) {
             return None;
         }
+        let hinges = hinges(slots);
         let space = problem.space();
         let cases: Vec<RowCase> = problem
             .stations()
@@ -200,26 +214,64 @@ impl Row {
             .map(|(case, station)| {
                 let (judged, sizing) =
                     (space.judged_cases.contains(&case), space.sizing_cases.contains(&case));
-                RowCase::new(station, slots, first, judged, sizing)
+                RowCase::new(station, slots, &hinges, first, [judged, sizing])
             })
             .collect();
         let chunks = match &slots[0] {
             Slot::Link { options, .. } => (0..options.len().div_ceil(LANES))
-                .map(|c| Chunk::new(problem, &cases, options, first, c))
+                .map(|c| Chunk::new(problem, &cases, &hinges, options, c))
                 .collect(),
             _ => Vec::new(),
         };
         let drives: Vec<DriveAttributes> = slots.iter().map(drive_attributes).collect();
-        let is_joint = |k: &usize| matches!(slots[*k], Slot::Given { .. } | Slot::Sized(_));
         Some(Self {
             first,
             chunks,
-            joints: (0..slots.len()).filter(is_joint).collect(),
-            fixed_kg: slots.iter().filter_map(Slot::fixed_kg).sum(),
+            yielding: (0..slots.len()).filter(|&k| hinges.iter().any(|hinge| hinge.slot == k)).collect(),
+            fixed_kg: slots.iter().filter_map(Slot::fixed_kg).sum::<f64>()
+                + given_tubes().map(|tube| tube.mass_kg).sum::<f64>(),
             twisting: (0..slots.len()).map(|k| twisting(&slots[k], &drives[k], k, &cases)).collect(),
+            bearings: RowBearing::all(problem, first),
+            hinges,
             cases,
             drives,
         })
+    }
+}
+
+/// The hinges of inner slots.
+fn hinges(slots: &[Slot]) -> Vec<Hinge> {
+    let mut tubes = slots.len();
+    let mut hinges = Vec::new();
+    for (slot, piece) in slots.iter().enumerate() {
+        match piece {
+            Slot::Given { .. } | Slot::Sized(_) | Slot::Bearing { .. } => {
+                hinges.push(Hinge { number: slot, slot, end: None });
+            }
+            // the first slot may be the link of the row
+            Slot::Link { .. } if slot > 0 => {
+                hinges.extend((0..6).map(|end| Hinge { number: tubes + end, slot, end: Some(end) }));
+                tubes += 6;
+            }
+            _ => {}
+        }
+    }
+    hinges
+}
+
+/// Number of hinges of inner slots, those of slots that do not yield included.
+pub(super) fn hinge_numbers(slots: &[Slot]) -> usize {
+    hinges(slots).iter().map(|hinge| hinge.number + 1).fold(slots.len(), usize::max)
+}
+
+impl Hinge {
+    /// Motion of everything outboard per unit of the hinge, among the inner slots of a case.
+    pub(super) fn twist(&self, slots: &[StationSlot]) -> Twist {
+        match (&slots[self.slot], self.end) {
+            (StationSlot::Joint(joint), _) => joint.twist,
+            (StationSlot::Link { options, .. }, Some(end)) => options[0].end.column(end).into_owned(),
+            _ => Twist::zeros(),
+        }
     }
 }
 
@@ -228,6 +280,7 @@ fn drive_attributes(slot: &Slot) -> DriveAttributes {
     let mut drives = DriveAttributes::default();
     match slot {
         Slot::Given { law, mass_kg } => drives.push(*mass_kg, law),
+        Slot::Bearing { laws, .. } => laws.iter().for_each(|law| drives.push(0.0, law)),
         Slot::Sized(sized) => {
             sized.laws.iter().enumerate().for_each(|(i, law)| drives.push(sized.table.mass_kg(i), law));
         }
@@ -256,24 +309,33 @@ fn twisting(slot: &Slot, drives: &DriveAttributes, k: usize, cases: &[RowCase]) 
 
 impl RowCase {
     /// Compiles a case. `pieces` are the inner slots, `first` is the slot of the innermost level.
-    fn new(station: &Station, pieces: &[Slot], first: usize, judged: bool, sizing: bool) -> Self {
+    fn new(
+        station: &Station,
+        pieces: &[Slot],
+        hinges: &[Hinge],
+        first: usize,
+        [judged, sizing]: [bool; 2],
+    ) -> Self {
         let slots = &station.slots[first..];
-        let mut per_kg = [AtJoints::default(); MOST_SLOTS];
-        let mut fixed = AtJoints::default();
+        let numbers = hinge_numbers(pieces);
+        let mut per_kg = vec![vec![AtJoint::default(); numbers]; slots.len()];
+        let mut fixed = vec![AtJoint::default(); numbers];
         for (k, (slot, piece)) in slots.iter().zip(pieces).enumerate() {
             let (inertia, weight, fixed_times) = match slot {
                 StationSlot::Joint(joint) => (&joint.inertia_per_kg, &joint.weight_per_kg, piece.fixed_kg()),
                 StationSlot::Body { inertia, weight } => (inertia, weight, Some(1.0)),
+                StationSlot::Link { options, .. } if k > 0 => {
+                    (&options[0].inertia, &options[0].weight, Some(1.0))
+                }
                 StationSlot::Link { .. } => continue,
             };
-            // the mass of a drive is inboard of its own joint, so a piece loads only the joints inboard of it
-            for (j, joint) in slots.iter().enumerate().skip(k + 1) {
-                let StationSlot::Joint(joint) = joint else { continue };
-                let own = AtJoint::new(joint, inertia, weight);
+            // the mass of a drive is inboard of its own joint, so a piece loads only the hinges inboard of it
+            for hinge in hinges.iter().filter(|hinge| hinge.slot > k) {
+                let own = AtJoint::new(&hinge.twist(slots), inertia, weight);
                 // known masses are added up once; the mass of a sized drive is known only in each lane
                 match fixed_times {
-                    Some(times) => fixed[j].add(own, times),
-                    None => per_kg[k][j] = own,
+                    Some(times) => fixed[hinge.number].add(own, times),
+                    None => per_kg[k][hinge.number] = own,
                 }
             }
         }
@@ -296,7 +358,7 @@ impl RowCase {
         let spread_entries = if links_yield { spread_entries(&station.modal) } else { Vec::new() };
         // the entries are in the order of their blocks
         let of_first = spread_entries.partition_point(|(block, ..)| *block == 0);
-        let (turned, link_torque) = turning(station, slots, &link_weight);
+        let (turned, link_torque) = turning(station, slots, hinges, numbers, &link_weight);
         Self {
             turned,
             per_kg,
@@ -308,6 +370,7 @@ impl RowCase {
             spread_entries,
             ends,
             links_yield,
+            tubes_trace_s2: tubes_trace_s2(&slots[1..]),
             judged,
             sizing,
         }
@@ -316,8 +379,7 @@ impl RowCase {
 
 impl AtJoint {
     /// Torque and inertia about the axis of a joint.
-    pub(super) fn new(joint: &StationJoint, inertia: &Matrix6<f64>, wrench: &Wrench) -> Self {
-        let twist = &joint.twist;
+    pub(super) fn new(twist: &Twist, inertia: &Matrix6<f64>, wrench: &Wrench) -> Self {
         Self { torque_nm: twist.dot(wrench), inertia_kgm2: twist.dot(&(inertia * twist)) }
     }
 
@@ -328,20 +390,35 @@ impl AtJoint {
     }
 }
 
-/// Whether some load turns each inner joint, and its torque per newton of a link's weight.
+/// Dunkerley's sum of given tubes by themselves, by block \[s²\].
+fn tubes_trace_s2(slots: &[StationSlot]) -> [f64; 2] {
+    let mut sum_s2 = [0.0; 2];
+    for slot in slots {
+        if let StationSlot::Link { options, .. } = slot {
+            let tube = &options[0];
+            // the end coordinates have unit stiffness, so their inertias are their parts of the sum
+            (0..6).for_each(|g| sum_s2[tube.block[g]] += tube.end_inertia[g]);
+            sum_s2.iter_mut().for_each(|sum| *sum += tube.inner_trace_s2);
+        }
+    }
+    sum_s2
+}
+
+/// Whether some load turns each hinge, and its torque per newton of a link's weight.
 fn turning(
     station: &Station,
     slots: &[StationSlot],
+    hinges: &[Hinge],
+    numbers: usize,
     link_weight: &Wrench,
-) -> ([bool; MOST_SLOTS], [f64; MOST_SLOTS]) {
+) -> (Vec<bool>, Vec<f64>) {
     let loaded = loaded(station);
-    let (mut turned, mut link_torque) = ([false; MOST_SLOTS], [0.0; MOST_SLOTS]);
-    for (j, slot) in slots.iter().enumerate() {
-        if let StationSlot::Joint(joint) = slot {
-            // exact zeros: a torque that is zero by symmetry is left out, one that is merely small is not
-            turned[j] = (0..6).any(|i| loaded[i] && joint.twist[i] != 0.0);
-            link_torque[j] = joint.twist.dot(link_weight);
-        }
+    let (mut turned, mut link_torque) = (vec![false; numbers], vec![0.0; numbers]);
+    for hinge in hinges {
+        let twist = hinge.twist(slots);
+        // exact zeros: a torque that is zero by symmetry is left out, one that is merely small is not
+        turned[hinge.number] = (0..6).any(|i| loaded[i] && twist[i] != 0.0);
+        link_torque[hinge.number] = twist.dot(link_weight);
     }
     (turned, link_torque)
 }
@@ -372,10 +449,16 @@ fn loaded(station: &Station) -> [bool; 6] {
 fn last_yielding<const N: usize>(block: &Block<N>, first: usize, links_yield: bool) -> usize {
     let yields = |slot: &BlockSlot<N>| match slot {
         BlockSlot::Joint { twist, .. } => twist.amax() > 0.0,
-        BlockSlot::Links(_) => links_yield,
+        BlockSlot::Links(options) => options[0].yields(),
         BlockSlot::Body(_) => false,
     };
-    block.slots[first..].iter().rposition(yields).map_or(0, |last| last + 1)
+    // the first slot may be the link of the row, one of whose options may yield
+    let inner = block.slots[first + 1..].iter().rposition(yields).map(|last| last + 2);
+    let of_row = match &block.slots[first] {
+        BlockSlot::Links(_) => links_yield,
+        slot => yields(slot),
+    };
+    inner.unwrap_or(usize::from(of_row))
 }
 
 /// Entries of the lower triangle of the outboard inertia, by block. The ends of the links in a block move these entries
@@ -396,10 +479,11 @@ impl Chunk {
     fn new(
         problem: &ArmProblem,
         cases: &[RowCase],
+        hinges: &[Hinge],
         options: &[OptionAttributes],
-        first: usize,
         c: usize,
     ) -> Self {
+        let first = problem.level_slots().last().copied().unwrap_or_default();
         // lanes beyond the end repeat the last option; the kernel ignores them
         let at = |lane: usize| (LANES * c + lane).min(options.len() - 1);
         let lanes =
@@ -429,7 +513,7 @@ impl Chunk {
                 .stations()
                 .iter()
                 .zip(cases)
-                .filter_map(|(station, case)| CaseChunk::new(station, case, first, &at))
+                .filter_map(|(station, case)| CaseChunk::new(station, case, hinges, first, &at))
                 .collect(),
         }
     }
@@ -437,20 +521,23 @@ impl Chunk {
 
 impl CaseChunk {
     /// The options of a chunk in one case; `at` gives the option in each lane.
-    fn new(station: &Station, case: &RowCase, first: usize, at: &dyn Fn(usize) -> usize) -> Option<Self> {
+    fn new(
+        station: &Station,
+        case: &RowCase,
+        hinges: &[Hinge],
+        first: usize,
+        at: &dyn Fn(usize) -> usize,
+    ) -> Option<Self> {
         let StationSlot::Link { options, .. } = &station.slots[first] else { return None };
         let links: [&StationLink; LANES] = std::array::from_fn(|lane| &options[at(lane)]);
         let lanes = |of: &dyn Fn(&StationLink) -> f64| links.map(of);
         let (flexibility, own_m) =
             (links.map(StationLink::flexibility), links.map(StationLink::own_weight_deflection_m));
-        let joints: Vec<_> = station.slots[first..]
-            .iter()
-            .map(|slot| match slot {
-                StationSlot::Joint(joint) => joint.twist,
-                _ => Vector6::zeros(),
-            })
-            .collect();
-        let joint = |j: usize| joints.get(j).copied().unwrap_or_default();
+        let mut inertia_at = vec![[0.0; LANES]; case.turned.len()];
+        for hinge in hinges {
+            let twist = hinge.twist(&station.slots[first..]);
+            inertia_at[hinge.number] = lanes(&|l| twist.dot(&(l.inertia * twist)));
+        }
         let trace = |block: usize| {
             lanes(&|l| {
                 // the end coordinates have unit stiffness, so their inertias are their parts of the sum
@@ -465,7 +552,7 @@ impl CaseChunk {
                 std::array::from_fn(|j| flexibility.map(|f: Matrix3x6<f64>| f[(i, j)]))
             }),
             own_weight_deflection_m: std::array::from_fn(|i| own_m.map(|s: Vector3<f64>| s[i])),
-            inertia_at: std::array::from_fn(|j| lanes(&|l| joint(j).dot(&(l.inertia * joint(j))))),
+            inertia_at,
             spread: case.spread_entries.iter().map(|entry| lanes(&|l| spread_of(l, *entry))).collect(),
             trace_s2: [trace(0), trace(1)],
             modal: chunk_modal(&station.modal, first, at),

@@ -1,8 +1,10 @@
 //! Rows that have begun: what depends on the arm outboard of a row, worked out once for all its designs.
 
-use super::arms::{EightArms, MOST_SLOTS};
-use super::row::{AtJoint, AtJoints, Row};
+use super::arms::EightArms;
+use super::row::{AtJoint, AtJoints, Row, hinge_numbers};
+use super::row_bearing::BearingsBegun;
 use crate::mechanics::lowest_lanes::Outboard;
+use crate::sizing::bearing::BearingDemand;
 use crate::space::problem::{ArmProblem, Partial, block_steps};
 use crate::space::station::{Modal, StationSlot};
 
@@ -19,13 +21,16 @@ pub(crate) struct Begun {
     pub cases: Vec<CaseBegun>,
     /// For each inner joint, the step of the drive table at which the drive of the last design was found. The next search
     /// starts there, because the demands of neighbouring designs are similar.
-    pub steps: [usize; MOST_SLOTS],
+    pub steps: Vec<usize>,
+    /// Loads on the bearing of the innermost level, if that is the drive of a joint.
+    pub of_innermost: BearingDemand,
+    pub bearings: BearingsBegun,
 }
 
 /// A row that has begun, in one case.
 pub(crate) struct CaseBegun {
     pub outboard: CaseOutboard,
-    /// Torque and inertia at each inner joint: of everything outboard of the row, and of the inner pieces that are not
+    /// Torque and inertia at each hinge: of everything outboard of the row, and of the inner pieces that are not
     /// chosen.
     pub at: AtJoints,
     /// The entries of the outboard inertia that the ends of the links move ([`RowCase::spread_entries`](super::row::RowCase::spread_entries)).
@@ -64,28 +69,40 @@ impl RowScratch {
 impl Begun {
     /// Working space for one row of a problem.
     fn new(problem: &ArmProblem) -> Self {
+        let inner = &problem.slots()[problem.level_slots().last().copied().unwrap_or(0)..];
+        let numbers = hinge_numbers(inner);
         let cases = problem.stations().iter().map(|station| CaseBegun {
             outboard: match &station.modal {
                 Modal::Planar(_) => CaseOutboard::Planar(Box::default()),
                 Modal::Spatial(_) => CaseOutboard::Spatial(Box::default()),
             },
-            at: AtJoints::default(),
+            at: vec![AtJoint::default(); numbers],
             spread: Vec::new(),
             at_end: [0.0; 4],
             at_root: [0.0; 4],
         });
-        Self { cases: cases.collect(), steps: [0; MOST_SLOTS] }
+        Self {
+            cases: cases.collect(),
+            steps: vec![0; inner.len()],
+            of_innermost: BearingDemand::default(),
+            bearings: Vec::new(),
+        }
     }
 
     /// Begins the row beyond the arm `from`. Memory of the row before is used again.
     fn refill(&mut self, problem: &ArmProblem, row: &Row, from: &Partial) {
+        self.of_innermost = from.next_demand.map_or(BearingDemand::default(), |demand| demand.bearing);
+        self.bearings.resize_with(row.bearings.len(), Vec::new);
+        for (bearing, begun) in row.bearings.iter().zip(&mut self.bearings) {
+            bearing.begin(from, begun);
+        }
         for (k, begun) in self.cases.iter_mut().enumerate() {
             let (station, state, case) = (&problem.stations()[k], &from.stations[k], &row.cases[k]);
-            for (j, slot) in station.slots[row.first..].iter().enumerate() {
-                if let StationSlot::Joint(joint) = slot {
-                    begun.at[j] = AtJoint::new(joint, &state.inertia, &state.wrench);
-                    begun.at[j].add(case.fixed[j], 1.0);
-                }
+            for hinge in &row.hinges {
+                let twist = hinge.twist(&station.slots[row.first..]);
+                let at = &mut begun.at[hinge.number];
+                *at = AtJoint::new(&twist, &state.inertia, &state.wrench);
+                at.add(case.fixed[hinge.number], 1.0);
             }
             if let StationSlot::Link { place, .. } = &station.slots[row.first] {
                 begun.at_end = place.local(&state.wrench, &place.end_m);

@@ -10,7 +10,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::arms::EightArms;
-use super::row::{AtJoint, Chunk, DriveAttributes, Row, RowChunk, StressEight, Twisting};
+use super::row::{AtJoint, Chunk, DriveAttributes, Hinge, Row, RowChunk, StressEight, Twisting};
 use super::row_begun::{Begun, RowScratch};
 use super::row_modes::Question;
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, splat_all};
@@ -140,21 +140,29 @@ impl RowChunk<'_, '_> {
     fn grow<V: Lanes>(&self, begun: &mut Begun, arms: &mut EightArms) {
         let slots = &self.problem.slots()[self.row.first..];
         let mut largest_s2 = V::zero();
+        let mut indices = [0; LANES];
         // the innermost level is a link or a drive, and no other inner slot is a link
         match self.row.chunks.get(self.chunk) {
             Some(chunk) => self.start_with_link::<V>(chunk, begun, arms),
             None => self.start::<V>(begun, arms),
         }
-        for &k in &self.row.joints {
-            let Slot::Sized(sized) = &slots[k] else {
-                largest_s2 = largest_s2.max(self.add_joint(k, [0; LANES], arms));
+        for &k in &self.row.yielding {
+            if slots[k].given_tube().is_some() {
+                largest_s2 = largest_s2.max(self.add_tube(k, arms));
                 continue;
+            }
+            // the springs of a bearing follow the drive they belong to
+            indices = match &slots[k] {
+                Slot::Sized(sized) => self.pick::<V>(k, sized, begun, arms),
+                Slot::Bearing { .. } => indices,
+                _ => [0; LANES],
             };
-            let indices = self.pick::<V>(k, sized, &mut begun.steps[k], arms);
             if arms.held == 0 {
                 return;
             }
-            self.add_drive::<V>(k, &indices, arms);
+            if matches!(slots[k], Slot::Sized(_)) {
+                self.add_drive::<V>(k, &indices, arms);
+            }
             largest_s2 = largest_s2.max(self.add_joint(k, indices, arms));
         }
         arms.largest_s2 = largest_s2.store();
@@ -168,7 +176,7 @@ impl RowChunk<'_, '_> {
             for i in 0..3 {
                 lanes.tip_m[i] = V::splat(state.tip_m[i]).store();
             }
-            for &j in &self.row.joints {
+            for &Hinge { number: j, .. } in &self.row.hinges {
                 lanes.torque_at[j] = V::splat(begun.cases[c].at[j].torque_nm).store();
                 lanes.inertia_at[j] = V::splat(begun.cases[c].at[j].inertia_kgm2).store();
             }
@@ -189,7 +197,7 @@ impl RowChunk<'_, '_> {
             let (state, begun, own) = (&self.from.stations[k], &begun.cases[k], &chunk.cases[k]);
             let lanes = &mut arms.cases[k];
             let weight = V::load(&own.weight_n);
-            for &j in &self.row.joints {
+            for &Hinge { number: j, .. } in &self.row.hinges {
                 let AtJoint { torque_nm, inertia_kgm2 } = begun.at[j];
                 // the torque on a joint that nothing turns stays zero
                 if case.turned[j] {
@@ -248,7 +256,7 @@ impl RowChunk<'_, '_> {
         &self,
         k: usize,
         sized: &SizedJoint,
-        step: &mut usize,
+        begun: &mut Begun,
         arms: &mut EightArms,
     ) -> [usize; LANES] {
         let (mut static_nm, mut inertia_kgm2) = (V::zero(), V::zero());
@@ -259,8 +267,18 @@ impl RowChunk<'_, '_> {
             inertia_kgm2 = inertia_kgm2.max(V::load(&arms.cases[c].inertia_at[k]));
         }
         if !sized.all_fits {
-            let demands = EightDemands::new(sized.table.motion(), static_nm, inertia_kgm2);
-            let (fits, held) = sized.table.first_fits(&demands, arms.held, step);
+            let bearing = match self.row.bearings.iter().position(|bearing| bearing.k == k) {
+                None => None,
+                Some(which) => Some(self.row.bearings[which].demands(
+                    self.problem,
+                    (self.from, self.chunk),
+                    &begun.bearings[which],
+                    &arms.masses_kg,
+                )),
+            };
+            let demands =
+                EightDemands::new(sized.table.motion(), static_nm, inertia_kgm2).with_bearing(bearing);
+            let (fits, held) = sized.table.first_fits(&demands, arms.held, &mut begun.steps[k]);
             arms.held = held;
             return fits;
         }
@@ -269,7 +287,8 @@ impl RowChunk<'_, '_> {
         let mut indices = [0; LANES];
         for lane in 0..LANES {
             if arms.held >> lane & 1 == 1 {
-                let demand = sized.table.motion().demand(static_nm[lane], inertia_kgm2[lane]);
+                let torques = sized.table.motion().demand(static_nm[lane], inertia_kgm2[lane]);
+                let demand = torques.with_bearing(begun.of_innermost);
                 indices[lane] = LANES * self.chunk + lane;
                 arms.held &= !(u8::from(!sized.table.limits(indices[lane]).hold(&demand)) << lane);
             }
@@ -284,7 +303,7 @@ impl RowChunk<'_, '_> {
         add(&mut arms.mass_kg, mass);
         arms.masses_kg[k] = mass.store();
         for (case, lanes) in self.row.cases.iter().zip(&mut arms.cases) {
-            for &j in self.row.joints.iter().filter(|&&j| j > k) {
+            for &Hinge { number: j, .. } in self.row.hinges.iter().filter(|hinge| hinge.slot > k) {
                 let AtJoint { torque_nm, inertia_kgm2 } = case.per_kg[k][j];
                 // the same for all lanes, and often zero
                 if torque_nm != 0.0 {
@@ -331,6 +350,31 @@ impl RowChunk<'_, '_> {
         largest
     }
 
+    /// Adds the bending of a given tube. Returns the largest part that one of its end coordinates adds to Dunkerley's sums
+    /// \[s²\].
+    #[inline(always)]
+    fn add_tube<V: Lanes>(&self, k: usize, arms: &mut EightArms) -> V {
+        let mut largest = V::zero();
+        for (c, case) in self.row.cases.iter().enumerate().filter(|(_, case)| case.judged) {
+            let StationSlot::Link { options, .. } = &self.station(c).slots[self.row.first + k] else {
+                continue;
+            };
+            let (tube, lanes) = (&options[0], &mut arms.cases[c]);
+            for hinge in self.row.hinges.iter().filter(|hinge| hinge.slot == k) {
+                let Some(g) = hinge.end else { continue };
+                let mut bent = V::splat(tube.own_weight_end[g]);
+                if case.turned[hinge.number] {
+                    bent = bent + V::load(&lanes.torque_at[hinge.number]);
+                }
+                for i in (0..3).filter(|&i| tube.tip[(i, g)] != 0.0) {
+                    add(&mut lanes.tip_m[i], V::splat(tube.tip[(i, g)]) * bent);
+                }
+                largest = largest.max(V::load(&lanes.inertia_at[hinge.number]));
+            }
+        }
+        largest
+    }
+
     /// Dunkerley's sum of each case and block: the trace of flexibility times mass.
     #[inline(always)]
     fn sum_traces<V: Lanes>(&self, begun: &Begun, arms: &mut EightArms) {
@@ -345,9 +389,18 @@ impl RowChunk<'_, '_> {
                         sum = sum + V::splat(begun.cases[c].spread[e]) * V::load(&own.spread[e]);
                     }
                 }
-                for &k in &self.row.joints {
-                    if self.joint(c, k).is_some_and(|joint| joint.block == b) {
-                        sum = sum + V::load(&lanes.compliance[k]) * V::load(&lanes.inertia_at[k]);
+                sum = sum + V::splat(case.tubes_trace_s2[b]);
+                for hinge in &self.row.hinges {
+                    let inertia = V::load(&lanes.inertia_at[hinge.number]);
+                    match (&self.station(c).slots[self.row.first + hinge.slot], hinge.end) {
+                        (StationSlot::Joint(joint), _) if joint.block == b => {
+                            sum = sum + V::load(&lanes.compliance[hinge.slot]) * inertia;
+                        }
+                        // an end coordinate has unit stiffness
+                        (StationSlot::Link { options, .. }, Some(end)) if options[0].block[end] == b => {
+                            sum = sum + inertia;
+                        }
+                        _ => {}
                     }
                 }
                 lanes.trace_s2[b] = sum.store();

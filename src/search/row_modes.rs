@@ -12,16 +12,13 @@
 //!    negative there.
 
 use super::arms::EightArms;
-use super::row::{ChunkModal, MOST_CASES, RowCase, RowChunk};
+use super::row::{ChunkModal, RowCase, RowChunk};
 use super::row_begun::{Begun, CaseOutboard};
 use crate::mechanics::lanes::{Eight, LANES, Lanes};
 use crate::mechanics::lowest_lanes::{Inner, LaneLink, Outboard, Walk, pass, roots};
 use crate::space::levels::Keep;
 use crate::space::station::{Block, BlockSlot, Modal};
 use std::f64::consts::TAU;
-
-/// Pairs of a case and one of its blocks.
-type Blocks = [Option<(usize, usize)>; 2 * MOST_CASES];
 
 /// A question about the lowest modes of eight complete arms.
 #[derive(Clone, Copy)]
@@ -94,7 +91,7 @@ impl<'a, 'c> Question<'a, 'c> {
         if above == 0 {
             return asked;
         }
-        for &block in self.blocks(above).iter().flatten() {
+        for block in self.blocks(above) {
             let open = above & self.least::<V>(block).less(below);
             if open != 0 {
                 above &= !self.answer(block, Ask { open, below, guess: None }).1;
@@ -107,7 +104,7 @@ impl<'a, 'c> Question<'a, 'c> {
     #[inline(always)]
     pub(crate) fn lowest<V: Lanes>(&self, held: u8) -> (V, u8) {
         let (mut lowest, mut unsure) = (V::splat(f64::INFINITY), 0);
-        for &block in self.blocks(held).iter().flatten() {
+        for block in self.blocks(held) {
             let least = self.least::<V>(block);
             let open = held & least.less(lowest);
             if open != 0 {
@@ -138,24 +135,20 @@ impl<'a, 'c> Question<'a, 'c> {
 
     /// The blocks of the judged cases. The one with the largest Dunkerley sum comes first, since it most likely has the
     /// lowest eigenvalue.
-    fn blocks(&self, of: u8) -> Blocks {
-        let mut blocks = [None; 2 * MOST_CASES];
-        let (mut largest, mut count) = (0.0, 0);
-        for (c, _) in self.at.row.cases.iter().enumerate().filter(|(_, case)| case.judged) {
-            for block in 0..2 {
-                let traces = &self.arms.cases[c].trace_s2[block];
-                let sum: f64 = (0..LANES).filter(|lane| of >> lane & 1 == 1).map(|lane| traces[lane]).sum();
-                if sum > 0.0 {
-                    blocks[count] = Some((c, block));
-                    if sum > largest {
-                        blocks.swap(0, count);
-                        largest = sum;
-                    }
-                    count += 1;
-                }
+    fn blocks(&self, of: u8) -> impl Iterator<Item = (usize, usize)> {
+        let sum = move |(case, block): (usize, usize)| -> f64 {
+            let traces = &self.arms.cases[case].trace_s2[block];
+            (0..LANES).filter(|lane| of >> lane & 1 == 1).map(|lane| traces[lane]).sum()
+        };
+        let judged = self.at.row.cases.iter().enumerate().filter(|(_, case)| case.judged);
+        let blocks = judged.flat_map(|(case, _)| [(case, 0), (case, 1)]);
+        let (mut first, mut largest) = (None, 0.0);
+        for (block, sum) in blocks.clone().map(|block| (block, sum(block))) {
+            if sum > largest {
+                (first, largest) = (Some(block), sum);
             }
         }
-        blocks
+        first.into_iter().chain(blocks.filter(move |&block| Some(block) != first && sum(block) > 0.0))
     }
 
     /// The eigenvalues of a block, and the lanes in which none was found. Without a guess: the lanes in which an eigenvalue
@@ -215,7 +208,7 @@ impl<'a, 'c> Question<'a, 'c> {
         if known != 0 {
             // no pivot is negative at `below`: the lowest eigenvalue is above it, and the lane is done
             let here = pass(outboard, inner, V::choose(known, below, guess.unwrap_or(below)));
-            open &= !(known & here.sound & V::zero().less(here.last));
+            open &= !(known & here.below_all);
         }
         // without a guess only the side of `below` was asked for
         let Some(guess) = guess.filter(|_| open != 0) else { return (below, open) };
@@ -263,6 +256,8 @@ impl<V: Lanes, const N: usize> Inner<V, N> for Pieces<'_, N> {
                     }
                 }
                 BlockSlot::Body(inertia) => walk.body(inertia),
+                // a given tube: only the first slot may be the link of the row
+                BlockSlot::Links(options) if k > 0 => walk.shared_link(&options[0]),
                 BlockSlot::Links(_) => match self.link {
                     Some(link) if self.case.links_yield => walk.link(link),
                     Some(link) => walk.rigid(link),

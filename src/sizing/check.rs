@@ -1,9 +1,11 @@
 //! The checks of a drive, one by one, for people: needed, allowed, margin, and whether a check could be made at all.
 
+use super::bearing::{self, BearingDemand, BearingLimits, BearingLoad};
 use super::demand::{JointDemand, JointMotion};
-use super::drive::{Drive, MissingRating, Rating};
+use super::drive::{Drive, MissingRating, Rating, known};
 use super::limits as limit;
-use crate::catalog::gear::{Gear, GearMass};
+use crate::arm::bearing::Bearing;
+use crate::catalog::gear::Gear;
 use std::fmt;
 
 /// One limit of a gear or a motor.
@@ -15,8 +17,14 @@ pub enum CheckKind {
     GearMean,
     /// Torque in an emergency stop is below the gear's limit for momentary peaks.
     GearStop,
-    /// Moment across the axis is below the permissible moment of the gear's output bearing.
-    GearTilt,
+    /// The largest moment across the axis while the joint turns is below what the output bearing permits.
+    BearingMoment,
+    /// Static safety of the output bearing at rest.
+    BearingRest,
+    /// Static safety of the output bearing in an emergency stop.
+    BearingStop,
+    /// L10 life of the output bearing is above the required life.
+    BearingLife,
     /// N times speed is below the gear's largest input speed.
     GearSpeed,
     /// N times mean speed is below the gear's limit for average input speed.
@@ -40,7 +48,10 @@ impl CheckKind {
             CheckKind::GearPeak | CheckKind::MotorPeak => "peak",
             CheckKind::GearMean => "mean",
             CheckKind::GearStop => "stop",
-            CheckKind::GearTilt => "tilting moment",
+            CheckKind::BearingMoment => "bearing moment",
+            CheckKind::BearingRest => "bearing safety at rest",
+            CheckKind::BearingStop => "bearing safety in a stop",
+            CheckKind::BearingLife => "bearing life",
             CheckKind::GearSpeed => "input speed",
             CheckKind::GearMeanSpeed => "mean input speed",
             CheckKind::GearLife => "life",
@@ -56,7 +67,10 @@ impl CheckKind {
             CheckKind::GearPeak => "gear peak",
             CheckKind::GearMean => "gear mean",
             CheckKind::GearStop => "gear stop",
-            CheckKind::GearTilt => "gear tilt",
+            CheckKind::BearingMoment => "bearing moment",
+            CheckKind::BearingRest => "bearing rest",
+            CheckKind::BearingStop => "bearing stop",
+            CheckKind::BearingLife => "bearing life",
             CheckKind::GearSpeed => "gear speed",
             CheckKind::GearMeanSpeed => "gear av.speed",
             CheckKind::GearLife => "gear life",
@@ -71,13 +85,20 @@ impl CheckKind {
     pub fn unit(self) -> &'static str {
         match self {
             CheckKind::GearSpeed | CheckKind::GearMeanSpeed | CheckKind::MotorSpeed => "rpm",
-            CheckKind::GearLife => "h",
+            CheckKind::GearLife | CheckKind::BearingLife => "h",
+            CheckKind::BearingRest | CheckKind::BearingStop => "times",
             CheckKind::Mass => "kg",
             _ => "N m",
         }
     }
 
-    /// Whether the check is about the gear alone.
+    /// Whether the check is about the output bearing. A bearing whose rating is blank is not checked, and not excluded.
+    pub fn is_bearing(self) -> bool {
+        use CheckKind::{BearingLife, BearingMoment, BearingRest, BearingStop};
+        matches!(self, BearingMoment | BearingRest | BearingStop | BearingLife)
+    }
+
+    /// Whether the check is about gear and bearing alone, whatever the motor.
     pub fn is_gear(self) -> bool {
         !matches!(self, CheckKind::MotorHold | CheckKind::MotorPeak | CheckKind::MotorSpeed | CheckKind::Mass)
     }
@@ -117,10 +138,14 @@ impl Check {
     }
 
     /// The margin as a factor on torque, which makes checks comparable. Life goes with the cube of the torque, so its
-    /// margin becomes the cube root.
+    /// margin becomes the cube root; that of a bearing with the power 10/3 of its load.
     pub fn torque_margin(&self) -> Option<f64> {
         let margin = self.margin()?;
-        Some(if self.kind == CheckKind::GearLife { margin.cbrt() } else { margin })
+        Some(match self.kind {
+            CheckKind::GearLife => margin.cbrt(),
+            CheckKind::BearingLife => margin.powf(0.3),
+            _ => margin,
+        })
     }
 
     /// Needed minus allowed; positive if the check fails, `None` if one of the two is unknown.
@@ -128,9 +153,13 @@ impl Check {
         Some(self.needed? - self.allowed?)
     }
 
-    /// Whether the check holds.
+    /// Whether the check holds. A check of a bearing that could not be made excludes nothing.
     pub fn holds(&self) -> bool {
-        self.state == CheckState::Holds
+        match self.state {
+            CheckState::Holds => true,
+            CheckState::Fails => false,
+            CheckState::NotChecked(_) => self.kind.is_bearing(),
+        }
     }
 }
 
@@ -182,10 +211,11 @@ fn plain(kind: CheckKind, needed: f64, allowed: Rating) -> Check {
     check(kind, Ok(needed), allowed, needed, allowed)
 }
 
-/// The checks of a gear, which do not depend on the motor. The tilting moment is checked if the demand has one.
+/// The checks of a gear and of the output bearing, which do not depend on the motor. The bearing is checked if the demand
+/// has loads on it.
 pub fn gear_checks(
     gear: &Gear,
-    gear_mass: GearMass,
+    bearing: Option<&Bearing>,
     motion: &JointMotion,
     demand: &JointDemand,
 ) -> Vec<Check> {
@@ -201,11 +231,36 @@ pub fn gear_checks(
         ),
         gear_life(gear, motion, demand),
     ];
-    if demand.tilting_moment_nm != 0.0 {
-        let allowed = limit::tilting_moment_nm(gear, gear_mass);
-        checks.push(plain(CheckKind::GearTilt, demand.tilting_moment_nm, allowed));
+    if let Some(bearing) = bearing.filter(|_| !demand.bearing.is_zero()) {
+        checks.extend(bearing_checks(bearing, motion, &demand.bearing));
     }
     checks
+}
+
+/// The checks of an output bearing: moment, static safety at rest and in a stop, life.
+fn bearing_checks(bearing: &Bearing, motion: &JointMotion, demand: &BearingDemand) -> [Check; 4] {
+    let speed_rad_s = motion.mean_speed_rad_s();
+    let limits = BearingLimits::of(Some(bearing), speed_rad_s, motion.life_h);
+    let ratings = &bearing.ratings;
+    let known_pitch = |rating, name| {
+        known(ratings.pitch_diameter_m, "bearing_pitch_diameter_m").and_then(|_| known(rating, name))
+    };
+    let moment_nm = limits.moment_nm(&demand.running);
+    let permissible = known(bearing.permissible_moment_nm, "permissible_tilting_moment_nm");
+    let safety = |kind, asked, load: &BearingLoad, limit_n: f64| {
+        let load_n = limits.static_load_n(load);
+        let rating = known_pitch(ratings.static_load_rating_n, "bearing_static_load_rating_n");
+        check(kind, Ok(asked), rating.map(|c0_n| c0_n / load_n), load_n, rating.map(|_| limit_n))
+    };
+    let load_n = limits.dynamic_load_n(&demand.at_rest);
+    let rating = known_pitch(ratings.dynamic_load_rating_n, "bearing_dynamic_load_rating_n");
+    let life = rating.map(|c_n| bearing::life_h(c_n, load_n, speed_rad_s));
+    [
+        plain(CheckKind::BearingMoment, moment_nm, permissible),
+        safety(CheckKind::BearingRest, bearing::SAFETY_AT_REST, &demand.at_rest, limits.at_rest_n),
+        safety(CheckKind::BearingStop, bearing::SAFETY_IN_A_STOP, &demand.in_stop, limits.in_stop_n),
+        check(CheckKind::BearingLife, Ok(motion.life_h), life, load_n, rating.map(|_| limits.life_n)),
+    ]
 }
 
 fn gear_mean(gear: &Gear, demand: &JointDemand) -> Check {
@@ -253,7 +308,7 @@ fn motor_hold(drive: &Drive, demand: &JointDemand) -> Check {
     check(
         CheckKind::MotorHold,
         drive.gain().map(|gain| demand.static_torque_nm / gain),
-        super::drive::known(drive.motor.rated_torque_nm, "motor rated_torque_nm"),
+        known(drive.motor.rated_torque_nm, "motor rated_torque_nm"),
         demand.static_torque_nm,
         limit::motor_continuous_nm(drive),
     )
@@ -265,7 +320,7 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
     check(
         CheckKind::MotorPeak,
         drive.peak_motor_torque_nm(motion, peak_nm),
-        super::drive::known(drive.motor.peak_torque_nm, "peak_torque_nm"),
+        known(drive.motor.peak_torque_nm, "peak_torque_nm"),
         peak_nm,
         limit::motor_peak_nm(drive, motion),
     )
@@ -273,7 +328,7 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
 
 /// All checks of a drive: first those of the gear, then those of the motor.
 pub fn checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
-    let mut all = gear_checks(drive.gear, drive.gear_mass, motion, demand);
+    let mut all = gear_checks(drive.gear, drive.bearing().as_ref(), motion, demand);
     all.extend(motor_checks(drive, motion, demand));
     all
 }
@@ -292,9 +347,13 @@ pub fn binding(checks: &[Check]) -> Option<&Check> {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{
-        any_gear, any_motion, any_motor, any_torques, char_lynn_j_8_2, f11_10, gear, hfuc_40_100, motor,
+        any_gear, any_motion, any_motor, any_torques, bearing_loads, char_lynn_j_8_2, f11_10, gear,
+        hfuc_40_100, motor,
     };
     use super::*;
+    use crate::arm::bearing::BearingSource;
+    use crate::arm::extras::ExtrasSource;
+    use crate::catalog::gear::{BearingRatings, GearMass};
     use crate::catalog::motor::Motor;
     use crate::sizing::limits::{DriveLimits, Obstacle};
     use crate::sizing::requirement::MotionRequirement;
@@ -314,6 +373,12 @@ mod tests {
         let mut gear =
             gear("CSG-50-100", [600.0, 900.0, 700.0, 2000.0], [3500.0, 2500.0], 0.00125, [3.2, 8.9]);
         gear.permissible_tilting_moment_nm = Some(700.0);
+        gear.bearing = BearingRatings {
+            pitch_diameter_m: Some(0.1),
+            offset_m: Some(0.02),
+            static_load_rating_n: Some(80e3),
+            dynamic_load_rating_n: Some(40e3),
+        };
         (gear, motor("M", [10.0, 20.0], [2000.0, 3000.0], 0.0003, 4.0))
     }
 
@@ -324,7 +389,13 @@ mod tests {
         let (mut gear, mut motor) = ample();
         let (mut motion, mut demand) = (motion(), demand());
         change(&mut gear, &mut motor, &mut motion, &mut demand);
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
+        let drive = Drive {
+            gear: &gear,
+            motor: &motor,
+            gear_mass: GearMass::HousedUnit,
+            bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
+        };
         let checks = checks(&drive, &motion, &demand);
         assert!(checks.iter().all(|c| c.state != CheckState::Holds || c.margin().unwrap() >= 1.0));
         assert!(checks.iter().all(|c| c.state != CheckState::Fails || c.margin().unwrap() < 1.0));
@@ -333,7 +404,7 @@ mod tests {
 
     #[test]
     fn the_ample_drive_holds_everything() {
-        assert_eq!(failing(|_, _, _, d| d.tilting_moment_nm = 500.0), []);
+        assert_eq!(failing(|_, _, _, d| d.bearing = bearing_loads(500.0)), []);
     }
 
     #[test]
@@ -358,23 +429,64 @@ mod tests {
     }
 
     #[test]
-    fn a_moment_across_the_axis_is_checked_only_if_given() {
-        assert_eq!(failing(|_, _, _, d| d.tilting_moment_nm = 701.0), [CheckKind::GearTilt]);
+    fn the_bearing_is_checked_if_something_loads_it_and_its_ratings_are_known() {
+        // 661 N m and the offset of 0.02 m times 1983 N of radial force are 701 N m
+        let loaded = |d: &mut JointDemand| d.bearing = bearing_loads(661.0);
+        assert_eq!(failing(|_, _, _, d| loaded(d)), [CheckKind::BearingMoment]);
+        let blank = |g: &mut Gear, d: &mut JointDemand| {
+            loaded(d);
+            g.permissible_tilting_moment_nm = None;
+        };
+        assert_eq!(failing(|g, _, _, d| blank(g, d)), [], "a blank rating excludes nothing");
         assert_eq!(failing(|g, _, _, _| g.permissible_tilting_moment_nm = None), []);
+    }
+
+    #[test]
+    fn each_check_of_the_bearing_fails_alone_when_its_own_rating_is_lowered() {
+        let with = |change: fn(&mut BearingRatings, &mut JointMotion)| {
+            failing(|g, _, motion, d| {
+                d.bearing = bearing_loads(500.0);
+                change(&mut g.bearing, motion);
+            })
+        };
+        // a stop of 700 N m: P0 = 2100 + 20 (700 + 0.02 2100) + 0.44 1400 = 17556 N, twice that is 35.1 kN; at rest
+        // 300 N m: 900 + 20 (300 + 0.02 900) + 0.44 600 = 7524 N, three times that is 22.6 kN
+        assert_eq!(with(|b, _| b.static_load_rating_n = Some(35.0e3)), [CheckKind::BearingStop]);
+        assert_eq!(
+            with(|b, _| b.static_load_rating_n = Some(22.0e3)),
+            [CheckKind::BearingRest, CheckKind::BearingStop]
+        );
+        // Pc = 900 + 20 318 + 0.45 600 = 7530 N; at 0.4 / 1.35 rad/s, 10000 h are 1.70e6 turns: C = 1.3 7530 1.70^0.3
+        let turns: f64 = 0.4 / 1.35 / std::f64::consts::TAU * 3600.0 * 1e4;
+        let least_n = 1.3 * 7530.0 * (turns / 1e6).powf(0.3);
+        assert!((least_n / 11_472.0 - 1.0).abs() < 0.01, "{least_n}");
+        assert_eq!(with(|b, _| b.dynamic_load_rating_n = Some(11_300.0)), [CheckKind::BearingLife]);
+        assert_eq!(with(|b, _| b.dynamic_load_rating_n = Some(11_700.0)), []);
     }
 
     #[test]
     fn a_component_set_has_no_bearing_to_tilt() {
         let (gear, _) = ample();
-        let demand = demand().with_tilting_moment_nm(-9999.0);
-        assert!(all_hold(&gear_checks(&gear, GearMass::ComponentSet, &motion(), &demand)));
-        assert!(!all_hold(&gear_checks(&gear, GearMass::HousedUnit, &motion(), &demand)));
+        let demand = demand().with_bearing(bearing_loads(9999.0));
+        assert!(all_hold(&gear_checks(
+            &gear,
+            Bearing::of_gear(&gear, GearMass::ComponentSet).as_ref(),
+            &motion(),
+            &demand
+        )));
+        assert!(!all_hold(&gear_checks(
+            &gear,
+            Bearing::of_gear(&gear, GearMass::HousedUnit).as_ref(),
+            &motion(),
+            &demand
+        )));
     }
 
     #[test]
     fn the_life_is_the_vendors_formula() {
         let (gear, _) = ample();
-        let checks = gear_checks(&gear, GearMass::HousedUnit, &motion(), &demand());
+        let checks =
+            gear_checks(&gear, Bearing::of_gear(&gear, GearMass::HousedUnit).as_ref(), &motion(), &demand());
         let life = checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();
         let mean_rpm = 100.0 * 0.4 / 1.35 * 30.0 / std::f64::consts::PI;
         let by_hand = 10_000.0 * (600.0 / demand().mean_torque_nm()).powi(3) * (2000.0 / mean_rpm);
@@ -387,7 +499,8 @@ mod tests {
         let mut gear = hfuc_40_100();
         gear.repeated_peak_torque_nm = Some(523.0);
         let demand = motion().demand_of_torques(376.0, 192.3);
-        let checks = gear_checks(&gear, GearMass::HousedUnit, &motion(), &demand);
+        let checks =
+            gear_checks(&gear, Bearing::of_gear(&gear, GearMass::HousedUnit).as_ref(), &motion(), &demand);
         assert_eq!(checks[0].to_string(), "peak 568 N m needed, 523 allowed");
     }
 
@@ -401,7 +514,13 @@ mod tests {
     fn a_blank_rating_is_named_and_nothing_else_is_left_unchecked() {
         let (gear, _) = ample();
         let motor = char_lynn_j_8_2();
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
+        let drive = Drive {
+            gear: &gear,
+            motor: &motor,
+            gear_mass: GearMass::HousedUnit,
+            bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
+        };
         let checks = checks(&drive, &motion(), &demand());
         let blank: Vec<_> = checks.iter().filter(|c| !c.holds()).map(Check::to_string).collect();
         assert_eq!(blank, ["peak not checked: lacks rotor_inertia_kgm2"]);
@@ -428,7 +547,13 @@ mod tests {
     #[test]
     fn what_binds_is_the_smallest_margin() {
         let (gear, motor) = ample();
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
+        let drive = Drive {
+            gear: &gear,
+            motor: &motor,
+            gear_mass: GearMass::HousedUnit,
+            bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
+        };
         let mut checks = checks(&drive, &motion(), &demand());
         assert_eq!(binding(&checks).unwrap().kind, CheckKind::GearPeak);
         checks.remove(0);
@@ -439,7 +564,13 @@ mod tests {
     #[test]
     fn a_joint_that_carries_nothing_has_no_end_of_life() {
         let (gear, motor) = (hfuc_40_100(), f11_10());
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
+        let drive = Drive {
+            gear: &gear,
+            motor: &motor,
+            gear_mass: GearMass::HousedUnit,
+            bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
+        };
         let checks = checks(&drive, &motion(), &motion().demand_of_torques(0.0, 0.0));
         assert!(all_hold(&checks));
         let life = checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();
@@ -454,8 +585,8 @@ mod tests {
             gear in any_gear(), motor in any_motor(), motion in any_motion(), torques in any_torques(), housed: bool,
         ) {
             let gear_mass = if housed { GearMass::HousedUnit } else { GearMass::ComponentSet };
-            let drive = Drive { gear: &gear, motor: &motor, gear_mass };
-            let demand = motion.demand_of_torques(torques[0], torques[1]).with_tilting_moment_nm(torques[2]);
+            let drive = Drive { gear: &gear, motor: &motor, gear_mass, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE };
+            let demand = motion.demand_of_torques(torques[0], torques[1]).with_bearing(bearing_loads(torques[2]));
             let checks = checks(&drive, &motion, &demand);
             let by_thresholds = DriveLimits::of(&drive, &motion).is_ok_and(|l| l.hold(&demand));
             prop_assert_eq!(by_thresholds, all_hold(&checks));

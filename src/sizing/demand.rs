@@ -1,6 +1,7 @@
 //! The demand on one joint: its motion, which the study fixes, and its torques, which follow from the masses outboard (Eqs
 //! 8 and 12, cubic mean over the duty cycle).
 
+use super::bearing::BearingDemand;
 use super::duty::MeanTorqueWeights;
 
 /// The reading of Eq 8, which gives the torque of linear acceleration.
@@ -89,7 +90,7 @@ impl JointMotion {
             linear_torque_nm,
             stop_torque_nm: stop_torque_nm(static_torque_nm, linear_torque_nm, self.stop_factor),
             mean_torque_cubed_nm3: cubic_mean_cubed_nm3(self.mean_torque, static_torque_nm, linear_torque_nm),
-            tilting_moment_nm: 0.0,
+            bearing: BearingDemand::default(),
         }
     }
 }
@@ -106,8 +107,8 @@ pub struct JointDemand {
     /// Cube of the cubic mean torque over the duty cycle \[(N m)³\]. It is kept as a cube, so that a search needs no cube
     /// root.
     pub mean_torque_cubed_nm3: f64,
-    /// Moment across the axis, on the output bearing \[N m\]; 0 if it is not to be checked.
-    pub tilting_moment_nm: f64,
+    /// Loads on the output bearing; all zero if it is not to be checked.
+    pub bearing: BearingDemand,
 }
 
 impl JointDemand {
@@ -122,9 +123,9 @@ impl JointDemand {
         self.mean_torque_cubed_nm3.cbrt()
     }
 
-    /// The same demand with a moment across the axis \[N m\].
-    pub fn with_tilting_moment_nm(self, moment_nm: f64) -> Self {
-        Self { tilting_moment_nm: moment_nm.abs(), ..self }
+    /// The same demand with loads on the output bearing.
+    pub fn with_bearing(self, bearing: BearingDemand) -> Self {
+        Self { bearing, ..self }
     }
 
     /// The same demand with every torque and moment times `factor`.
@@ -134,7 +135,7 @@ impl JointDemand {
             linear_torque_nm: self.linear_torque_nm * factor,
             stop_torque_nm: self.stop_torque_nm * factor,
             mean_torque_cubed_nm3: self.mean_torque_cubed_nm3 * factor.powi(3),
-            tilting_moment_nm: self.tilting_moment_nm * factor,
+            bearing: self.bearing.scaled(factor),
         }
     }
 }

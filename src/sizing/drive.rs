@@ -1,6 +1,8 @@
 //! A drive: a gear and a motor, with torques on either side of the gear (Eqs 9-12).
 
 use super::demand::JointMotion;
+use crate::arm::bearing::{Bearing, BearingSource};
+use crate::arm::extras::{Extras, ExtrasSource};
 use crate::catalog::gear::{Gear, GearMass};
 use crate::catalog::motor::Motor;
 
@@ -29,12 +31,13 @@ pub(super) fn known(rating: Option<f64>, name: &'static str) -> Rating {
 ///
 /// ```
 /// use armwright::catalog::Catalogs;
+/// use armwright::arm::{BearingSource, ExtrasSource};
 /// use armwright::catalog::GearMass;
 /// use armwright::sizing::{Drive, MotionRequirement};
 ///
 /// let catalogs = Catalogs::builtin();
 /// let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
-/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet };
+/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE };
 /// assert_eq!(drive.name(), "HFUC-58-100 + F11-10");
 /// assert_eq!(drive.mass_kg().unwrap(), 12.2);
 /// // Eq 11: the torque that accelerates rotor and wave generator, on the motor's side [N m]
@@ -50,12 +53,34 @@ pub struct Drive<'c> {
     pub motor: &'c Motor,
     /// Which mass of the gear counts.
     pub gear_mass: GearMass,
+    /// Where the output bearing comes from.
+    pub bearing: BearingSource,
+    /// Where the masses beyond gear, motor and bearing come from.
+    pub extras: ExtrasSource,
 }
 
 impl Drive<'_> {
     /// `gear + motor`, for messages.
     pub fn name(&self) -> String {
         format!("{} + {}", self.gear.id, self.motor.id)
+    }
+
+    /// What the joint weighs beyond gear, motor and bearing.
+    pub fn extras(&self) -> Extras {
+        self.extras.with_parts(self.gear, self.motor, self.gear_mass)
+    }
+
+    /// Mass of gear, motor and extras \[kg\].
+    ///
+    /// # Errors
+    /// The mass that the catalog leaves blank.
+    pub fn mass_with_extras_kg(&self) -> Result<f64, MissingRating> {
+        Ok(self.mass_kg()? + self.extras().total_kg())
+    }
+
+    /// The output bearing; `None` if the joint has none.
+    pub fn bearing(&self) -> Option<Bearing> {
+        self.bearing.with_gear(self.gear, self.gear_mass)
     }
 
     /// Reduction ratio N.
@@ -173,7 +198,13 @@ mod tests {
     fn with_the_wave_generator_of_hfuc_58_the_rotary_torque_is_eight_times_that() {
         // Eq 9 adds the transmission: 0.00273 kg m² (gears.csv, HFUC-58-100), seven rotors.
         let (gear, motor) = (hfuc_58_100(), f11_10());
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::ComponentSet };
+        let drive = Drive {
+            gear: &gear,
+            motor: &motor,
+            gear_mass: GearMass::ComponentSet,
+            bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
+        };
         let inertia = drive.input_inertia_kgm2().unwrap();
         assert_eq!(inertia, 0.00312);
         assert_eq!(format!("{:.2}", rotary_torque_motor_nm(inertia, 100.0, 3.7)), "1.15");
@@ -183,7 +214,13 @@ mod tests {
     #[test]
     fn the_motor_carries_the_load_through_the_gear_and_its_own_inertia_directly() {
         let (gear, motor) = (hfuc_58_100(), f11_10());
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass: GearMass::HousedUnit };
+        let drive = Drive {
+            gear: &gear,
+            motor: &motor,
+            gear_mass: GearMass::HousedUnit,
+            bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
+        };
         let motion = MotionRequirement::default().joint_motion(1.35, None);
         let torque = drive.peak_motor_torque_nm(&motion, 858.0).unwrap();
         let by_hand = 858.0 / (100.0 * 0.78) + 0.00312 * 100.0 * 5.0 / 1.35;
@@ -193,7 +230,16 @@ mod tests {
     #[test]
     fn the_mass_is_that_of_the_build_asked_for_and_a_blank_is_named() {
         let (gear, mut motor) = (hfuc_58_100(), f11_10());
-        let mass = |gear_mass, motor: &Motor| Drive { gear: &gear, motor, gear_mass }.mass_kg();
+        let mass = |gear_mass, motor: &Motor| {
+            Drive {
+                gear: &gear,
+                motor,
+                gear_mass,
+                bearing: BearingSource::OfGear,
+                extras: ExtrasSource::NONE,
+            }
+            .mass_kg()
+        };
         assert!((mass(GearMass::ComponentSet, &motor).unwrap() - 12.2).abs() < 1e-12, "Table 1");
         assert!((mass(GearMass::HousedUnit, &motor).unwrap() - 22.1).abs() < 1e-12);
         motor.mass_kg = None;

@@ -3,19 +3,156 @@
 //! The operations and their order are those of [`JointMotion::demand`] and [`DriveTable::first_fit`], so that an arm gets
 //! the same drive by itself and among eight.
 
+use super::bearing::{AXIAL_SHARE, BearingLimits};
 use super::demand::JointMotion;
 use super::demand::LinearReading;
 use super::limits::DriveLimits;
 use super::select::DriveTable;
 use crate::mechanics::lanes::{LANES, Lanes};
 
-/// The torques on one joint of eight arms, on the output side. None is negative. There is no moment across the axis.
+/// The torques on one joint of eight arms, on the output side. None is negative.
 #[derive(Clone, Copy)]
 pub(crate) struct EightDemands<V> {
     static_torque_nm: V,
     peak_torque_nm: V,
     stop_torque_nm: V,
     mean_torque_cubed_nm3: V,
+    /// Loads on the output bearings; `None` if they are not checked.
+    bearing: Option<EightBearing<V>>,
+}
+
+/// The loads on one output bearing of eight arms. Forces and moments are collected as squares, and become norms with
+/// [`EightBearing::with_lever`].
+#[derive(Clone, Copy)]
+pub(crate) struct EightBearing<V> {
+    at_rest: EightLoad<V>,
+    running: EightLoad<V>,
+    in_stop: EightLoad<V>,
+}
+
+/// A load on the bearing in eight arms.
+#[derive(Clone, Copy)]
+struct EightLoad<V> {
+    moment: V,
+    radial: V,
+    axial_n: V,
+}
+
+impl<V: Lanes> EightLoad<V> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self { moment: V::zero(), radial: V::zero(), axial_n: V::zero() }
+    }
+
+    /// Takes the larger of squares; the components are force along two axes across and along the axis, and moment about
+    /// the two axes across.
+    #[inline(always)]
+    fn max_of_squares(&mut self, radial: V, axial_n: V, moment: V) {
+        self.radial = self.radial.max(radial);
+        self.axial_n = self.axial_n.max(axial_n);
+        self.moment = self.moment.max(moment);
+    }
+
+    /// Norms, with forces that attach further out by a lever.
+    #[inline(always)]
+    fn with_lever(self, lever_m: V) -> Self {
+        let radial = self.radial.sqrt();
+        Self { moment: self.moment.sqrt() + lever_m * radial, radial, axial_n: self.axial_n }
+    }
+
+    /// Radial force and the forces that make up the moment, as [`BearingLimits`] computes it.
+    #[inline(always)]
+    fn across(&self, limits: &BearingLimits) -> V {
+        self.radial + V::splat(limits.force_per_moment_per_m) * self.moment_at_centre(limits)
+    }
+
+    #[inline(always)]
+    fn moment_at_centre(&self, limits: &BearingLimits) -> V {
+        self.moment + V::splat(limits.flange_offset_m) * self.radial
+    }
+}
+
+impl<V: Lanes> EightBearing<V> {
+    /// No load.
+    #[inline(always)]
+    pub(crate) fn zero() -> Self {
+        Self { at_rest: EightLoad::zero(), running: EightLoad::zero(), in_stop: EightLoad::zero() }
+    }
+
+    /// Takes a load at rest. What moves is taken with [`EightBearing::moving`].
+    #[inline(always)]
+    pub(crate) fn rest(&mut self, [u, v, along, about_u, about_v]: &[V; 5]) {
+        let (radial, moment) = (*u * *u + *v * *v, *about_u * *about_u + *about_v * *about_v);
+        self.at_rest.max_of_squares(radial, along.abs(), moment);
+        // ramps are taken with either sign, so they never load a bearing less
+    }
+
+    /// Takes a load at rest with what a ramp adds or takes away, and so many times as much in a stop. Of the two signs
+    /// the larger norm is `|s|² + |d|² + 2 |s·d|`.
+    #[inline(always)]
+    pub(crate) fn moving(&mut self, at_rest: &[V; 5], ramp: &[V; 5], stop_factor: V) {
+        let (radial, moment) = (Pair::new(at_rest, ramp, 0), Pair::new(at_rest, ramp, 3));
+        let (rest_n, ramp_n) = (at_rest[2].abs(), ramp[2].abs());
+        self.running.max_of_squares(radial.largest(), rest_n + ramp_n, moment.largest());
+        let (radial, moment) = (radial.times(stop_factor), moment.times(stop_factor));
+        self.in_stop.max_of_squares(radial.largest(), rest_n + stop_factor * ramp_n, moment.largest());
+    }
+
+    /// The loads as norms, with forces that attach further out by a lever \[m\].
+    #[inline(always)]
+    pub(crate) fn with_lever(self, lever_m: V) -> Self {
+        Self {
+            at_rest: self.at_rest.with_lever(lever_m),
+            running: self.running.with_lever(lever_m),
+            in_stop: self.in_stop.with_lever(lever_m),
+        }
+    }
+
+    /// The lanes whose loads a bearing does not hold.
+    #[inline(always)]
+    fn broken_by(&self, limits: &BearingLimits) -> u8 {
+        let across = self.at_rest.across(limits);
+        let axial_n = self.at_rest.axial_n;
+        let share = V::splat(AXIAL_SHARE);
+        let lasting = (across + V::splat(0.45) * axial_n).max(V::splat(0.67) * (across + axial_n));
+        V::splat(limits.running_moment_nm).less(self.running.moment_at_centre(limits))
+            | V::splat(limits.at_rest_n).less(across + share * axial_n)
+            | V::splat(limits.in_stop_n).less(self.in_stop.across(limits) + share * self.in_stop.axial_n)
+            | V::splat(limits.life_n).less(lasting)
+    }
+}
+
+/// Two components of a load at rest and of what a ramp adds.
+#[derive(Clone, Copy)]
+struct Pair<V> {
+    /// `|s|²` of the load at rest.
+    rest: V,
+    /// `|d|²` of the ramp.
+    ramp: V,
+    /// `2 |s·d|`.
+    both: V,
+}
+
+impl<V: Lanes> Pair<V> {
+    /// The components `first` and the next.
+    #[inline(always)]
+    fn new(at_rest: &[V; 5], ramp: &[V; 5], first: usize) -> Self {
+        let (s, d) = ([at_rest[first], at_rest[first + 1]], [ramp[first], ramp[first + 1]]);
+        let both = (s[0] * d[0] + s[1] * d[1]).abs();
+        Self { rest: s[0] * s[0] + s[1] * s[1], ramp: d[0] * d[0] + d[1] * d[1], both: both + both }
+    }
+
+    /// The same with a ramp so many times as large.
+    #[inline(always)]
+    fn times(self, factor: V) -> Self {
+        Self { rest: self.rest, ramp: self.ramp * factor * factor, both: self.both * factor }
+    }
+
+    /// Square of the larger norm of the two signs of the ramp.
+    #[inline(always)]
+    fn largest(self) -> V {
+        self.rest + self.ramp + self.both
+    }
 }
 
 impl<V: Lanes> EightDemands<V> {
@@ -37,7 +174,14 @@ impl<V: Lanes> EightDemands<V> {
             mean_torque_cubed_nm3: V::splat(weights.sum) * (up * up * up)
                 + V::splat(weights.steady) * (statically * statically * statically)
                 + V::splat(weights.difference) * (down * down * down),
+            bearing: None,
         }
+    }
+
+    /// The same demands with loads on the output bearings.
+    #[inline(always)]
+    pub(crate) fn with_bearing(self, bearing: Option<EightBearing<V>>) -> Self {
+        Self { bearing, ..self }
     }
 
     /// Those of the lanes `of` whose demand a drive holds.
@@ -46,7 +190,11 @@ impl<V: Lanes> EightDemands<V> {
         of & !(V::splat(limits.static_torque_nm).less(self.static_torque_nm)
             | V::splat(limits.peak_torque_nm).less(self.peak_torque_nm)
             | V::splat(limits.stop_torque_nm).less(self.stop_torque_nm)
-            | V::splat(limits.mean_torque_cubed_nm3).less(self.mean_torque_cubed_nm3))
+            | V::splat(limits.mean_torque_cubed_nm3).less(self.mean_torque_cubed_nm3)
+            | match &self.bearing {
+                Some(bearing) => bearing.broken_by(&limits.bearing),
+                None => 0,
+            })
     }
 }
 

@@ -159,7 +159,8 @@ impl<'c> DriveTable<'c> {
     pub fn explain(&self, demand: &JointDemand) -> Vec<Rejection> {
         let (mut rejections, trials) = (Vec::new(), self.trials(demand));
         for gear in self.gears() {
-            let failed = not_holding(gear_checks(gear, self.gear_mass(), self.motion(), demand));
+            let failed =
+                not_holding(gear_checks(gear, self.bearing_of(gear).as_ref(), self.motion(), demand));
             if !failed.is_empty() {
                 rejections.push(self.rejection(RejectedPart::Gear { gear: gear.id.clone() }, failed));
                 continue;
@@ -192,12 +193,12 @@ impl<'c> DriveTable<'c> {
     fn trials(&self, demand: &JointDemand) -> Vec<Trial<'c>> {
         let mut trials = Vec::new();
         for gear in self.gears() {
-            let gear_mass = self.gear_mass();
-            if !not_holding(gear_checks(gear, gear_mass, self.motion(), demand)).is_empty() {
+            let bearing = self.bearing_of(gear);
+            if !not_holding(gear_checks(gear, bearing.as_ref(), self.motion(), demand)).is_empty() {
                 continue;
             }
             for motor in self.motors() {
-                let drive = Drive { gear, motor, gear_mass };
+                let drive = self.pair(gear, motor);
                 let checks = motor_checks(&drive, self.motion(), demand);
                 // a motor that cannot be checked at all is the farthest from holding
                 let worst_margin = binding(&checks).and_then(Check::torque_margin).unwrap_or(0.0);
@@ -247,7 +248,7 @@ impl<'c> DriveTable<'c> {
         let mut best: Option<(f64, Drive<'c>, Check)> = None;
         for drive in self.all_drives() {
             let checks = checks(&drive, self.motion(), demand);
-            if checks.iter().any(|c| matches!(c.state, CheckState::NotChecked(_))) {
+            if checks.iter().any(|c| !c.holds() && matches!(c.state, CheckState::NotChecked(_))) {
                 continue;
             }
             let Some(worst) = binding(&checks) else { continue };
@@ -276,10 +277,10 @@ impl<'c> DriveTable<'c> {
         let motion = self.motion().slowed(factor);
         let slower = motion
             .demand_of_torques(demand.static_torque_nm, demand.linear_torque_nm * factor)
-            .with_tilting_moment_nm(demand.tilting_moment_nm);
+            .with_bearing(demand.bearing.slowed(factor));
         let holding = self.all_drives().filter_map(|drive| {
             let limits = DriveLimits::of(&drive, &motion).ok()?;
-            let mass_kg = drive.mass_kg().ok()?;
+            let mass_kg = drive.mass_with_extras_kg().ok()?;
             limits.hold(&slower).then_some((mass_kg, drive))
         });
         holding.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, drive)| drive)

@@ -1,13 +1,14 @@
 //! Limits: a drive under a fixed motion, reduced to thresholds of torque.
 //!
 //! The study fixes speed, acceleration and duty cycle of a joint, so every check of a drive compares one torque with one
-//! number. [`DriveLimits`] has these numbers. A search compares five pairs of numbers and nothing else. The printed checks
+//! number. [`DriveLimits`] has these numbers. A search compares these pairs of numbers and nothing else. The printed checks
 //! ([`check`](super::check)) are decided by the same thresholds.
 
+use super::bearing::BearingLimits;
 use super::demand::{JointDemand, JointMotion};
 use super::drive::{Drive, MissingRating, Rating, known, reference_life_h};
 use super::rpm_from_rad_s;
-use crate::catalog::gear::{Gear, GearMass};
+use crate::catalog::gear::Gear;
 use crate::catalog::motor::Motor;
 
 /// Input speed at which a gear's rated torque holds \[rpm\].
@@ -18,12 +19,13 @@ pub(super) const RATED_INPUT_SPEED_RPM: f64 = 2000.0;
 ///
 /// ```
 /// use armwright::catalog::Catalogs;
+/// use armwright::arm::{BearingSource, ExtrasSource};
 /// use armwright::catalog::GearMass;
 /// use armwright::sizing::{Drive, DriveLimits, MotionRequirement};
 ///
 /// let catalogs = Catalogs::builtin();
 /// let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
-/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet };
+/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE };
 /// let motion = MotionRequirement::default().joint_motion(1.35, None);
 /// let limits = DriveLimits::of(&drive, &motion).expect("nothing excludes this drive");
 /// assert!(limits.hold(&motion.demand_of_torques(500.0, 250.0)));
@@ -39,8 +41,8 @@ pub struct DriveLimits {
     pub stop_torque_nm: f64,
     /// Cube of the largest cubic mean torque (gear, average limit and life) \[(N m)³\].
     pub mean_torque_cubed_nm3: f64,
-    /// Largest moment across the axis (gear with its bearing) \[N m\].
-    pub tilting_moment_nm: f64,
+    /// What the output bearing holds.
+    pub bearing: BearingLimits,
 }
 
 /// Why a drive is excluded at every torque.
@@ -62,8 +64,8 @@ impl DriveLimits {
     /// The thresholds of a drive.
     ///
     /// # Errors
-    /// [`Obstacle`] if the drive is excluded at every torque. A blank tilting moment does not exclude it; its threshold is
-    /// then 0, which holds as long as no moment is asked for.
+    /// [`Obstacle`] if the drive is excluded at every torque. A blank rating of the bearing does not exclude the drive; it is
+    /// then not checked.
     pub fn of(drive: &Drive, motion: &JointMotion) -> Result<Self, Obstacle> {
         drive.mass_kg()?;
         if !speeds_hold(drive, motion)? {
@@ -75,19 +77,19 @@ impl DriveLimits {
             peak_torque_nm: gear_peak_nm(gear)?.min(motor_peak_nm(drive, motion)?),
             stop_torque_nm: gear_momentary_nm(gear)?,
             mean_torque_cubed_nm3: gear_average_cubed_nm3(gear)?.min(gear_life_cubed_nm3(gear, motion)?),
-            tilting_moment_nm: tilting_moment_nm(gear, drive.gear_mass).unwrap_or(0.0),
+            bearing: BearingLimits::of(drive.bearing().as_ref(), motion.mean_speed_rad_s(), motion.life_h),
         })
     }
 
     /// Whether the drive holds a demand.
     #[inline]
     pub fn hold(&self, demand: &JointDemand) -> bool {
-        // `&` and not `&&`: five comparisons without a branch
+        // `&` and not `&&`: comparisons without a branch
         (demand.static_torque_nm <= self.static_torque_nm)
             & (demand.peak_torque_nm() <= self.peak_torque_nm)
             & (demand.stop_torque_nm <= self.stop_torque_nm)
             & (demand.mean_torque_cubed_nm3 <= self.mean_torque_cubed_nm3)
-            & (demand.tilting_moment_nm <= self.tilting_moment_nm)
+            & self.bearing.hold(&demand.bearing)
     }
 
     /// The larger of two drives' limits, one by one.
@@ -97,7 +99,7 @@ impl DriveLimits {
             peak_torque_nm: self.peak_torque_nm.max(other.peak_torque_nm),
             stop_torque_nm: self.stop_torque_nm.max(other.stop_torque_nm),
             mean_torque_cubed_nm3: self.mean_torque_cubed_nm3.max(other.mean_torque_cubed_nm3),
-            tilting_moment_nm: self.tilting_moment_nm.max(other.tilting_moment_nm),
+            bearing: self.bearing.max(&other.bearing),
         }
     }
 
@@ -108,7 +110,7 @@ impl DriveLimits {
             peak_torque_nm: self.peak_torque_nm.min(other.peak_torque_nm),
             stop_torque_nm: self.stop_torque_nm.min(other.stop_torque_nm),
             mean_torque_cubed_nm3: self.mean_torque_cubed_nm3.min(other.mean_torque_cubed_nm3),
-            tilting_moment_nm: self.tilting_moment_nm.min(other.tilting_moment_nm),
+            bearing: self.bearing.min(&other.bearing),
         }
     }
 
@@ -119,6 +121,7 @@ impl DriveLimits {
             .min(times(self.peak_torque_nm, demand.peak_torque_nm()))
             .min(times(self.stop_torque_nm, demand.stop_torque_nm))
             .min(times(self.mean_torque_cubed_nm3, demand.mean_torque_cubed_nm3).cbrt())
+            .min(self.bearing.multiple_of(&demand.bearing))
     }
 
     /// Whether every limit is at least as large as the limit of `other`.
@@ -128,7 +131,7 @@ impl DriveLimits {
             & (self.peak_torque_nm >= other.peak_torque_nm)
             & (self.stop_torque_nm >= other.stop_torque_nm)
             & (self.mean_torque_cubed_nm3 >= other.mean_torque_cubed_nm3)
-            & (self.tilting_moment_nm >= other.tilting_moment_nm)
+            & self.bearing.cover(&other.bearing)
     }
 }
 
@@ -199,12 +202,4 @@ pub(super) fn life_product(gear: &Gear, motion: &JointMotion) -> Rating {
 /// Cube of the mean torque at which the life of the gear is just the required one.
 pub(super) fn gear_life_cubed_nm3(gear: &Gear, motion: &JointMotion) -> Rating {
     Ok(life_product(gear, motion)? / motion.life_h)
-}
-
-/// Permissible tilting moment. A component set has no bearing, and so no limit.
-pub(super) fn tilting_moment_nm(gear: &Gear, gear_mass: GearMass) -> Rating {
-    match gear_mass {
-        GearMass::ComponentSet => Ok(f64::INFINITY),
-        GearMass::HousedUnit => known(gear.permissible_tilting_moment_nm, "permissible_tilting_moment_nm"),
-    }
 }

@@ -27,6 +27,7 @@
 //! for holding, where friction in truth helps the motor. The catalog has no torque-speed curves of motors, so the peak
 //! torque is taken as available up to the largest speed.
 
+pub(crate) mod bearing;
 pub(crate) mod check;
 pub(crate) mod demand;
 pub(crate) mod drive;
@@ -40,6 +41,7 @@ pub(crate) mod sheet;
 #[cfg(test)]
 pub(crate) mod testing;
 
+pub use bearing::{BearingDemand, BearingLimits, BearingLoad};
 pub use check::{Check, CheckKind, CheckState, all_hold, binding, checks, gear_checks, motor_checks};
 pub use demand::{
     JointDemand, JointMotion, LinearReading, cubic_mean_cubed_nm3, linear_torque_nm, stop_torque_nm,

@@ -6,6 +6,8 @@
 use super::demand::{JointDemand, JointMotion};
 use super::drive::Drive;
 use super::limits::DriveLimits;
+use crate::arm::bearing::{Bearing, BearingSource};
+use crate::arm::extras::ExtrasSource;
 use crate::catalog::gear::{Gear, GearMass};
 use crate::catalog::motor::{Motor, MotorKind};
 use std::ops::Range;
@@ -15,6 +17,10 @@ use std::ops::Range;
 pub struct DriveFilter {
     /// Which mass of a gear counts.
     pub gear_mass: GearMass,
+    /// Where the output bearing of the joint comes from.
+    pub bearing: BearingSource,
+    /// Where the masses beyond gear, motor and bearing come from.
+    pub extras: ExtrasSource,
     /// Series of gears, such as `CSG`.
     pub gear_series: Option<Vec<String>>,
     /// Reduction ratios.
@@ -32,6 +38,8 @@ impl DriveFilter {
     pub fn everything(gear_mass: GearMass) -> Self {
         Self {
             gear_mass,
+            bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
             gear_series: None,
             ratios: None,
             gear_ids: None,
@@ -74,6 +82,8 @@ pub struct DriveTable<'c> {
     joint: String,
     motion: JointMotion,
     gear_mass: GearMass,
+    bearing: BearingSource,
+    extras: ExtrasSource,
     gears: Vec<&'c Gear>,
     motors: Vec<&'c Motor>,
     pairs: Vec<Pair>,
@@ -142,6 +152,8 @@ impl<'c> DriveTable<'c> {
             joint: joint.to_string(),
             motion,
             gear_mass: filter.gear_mass,
+            bearing: filter.bearing,
+            extras: filter.extras,
             gears: gears.iter().filter(|g| filter.allows_gear(g)).collect(),
             motors: motors.iter().filter(|m| filter.allows_motor(m)).collect(),
             pairs: Vec::new(),
@@ -161,7 +173,9 @@ impl<'c> DriveTable<'c> {
     fn fill(&mut self) {
         let mut legal = Vec::new();
         for (drive, pair) in self.all_pairs() {
-            if let (Ok(limits), Ok(mass_kg)) = (DriveLimits::of(&drive, &self.motion), drive.mass_kg()) {
+            if let (Ok(limits), Ok(mass_kg)) =
+                (DriveLimits::of(&drive, &self.motion), drive.mass_with_extras_kg())
+            {
                 legal.push((mass_kg, drive, pair, limits));
             }
         }
@@ -197,11 +211,17 @@ impl<'c> DriveTable<'c> {
     }
 
     fn drive_of(&self, pair: Pair) -> Drive<'c> {
-        Drive {
-            gear: self.gears[pair.gear as usize],
-            motor: self.motors[pair.motor as usize],
-            gear_mass: self.gear_mass,
-        }
+        self.pair(self.gears[pair.gear as usize], self.motors[pair.motor as usize])
+    }
+
+    /// The drive of a gear and a motor in this joint.
+    pub(super) fn pair(&self, gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
+        Drive { gear, motor, gear_mass: self.gear_mass, bearing: self.bearing, extras: self.extras }
+    }
+
+    /// The output bearing of the joint with a gear.
+    pub(super) fn bearing_of(&self, gear: &Gear) -> Option<Bearing> {
+        self.bearing.with_gear(gear, self.gear_mass)
     }
 
     /// Name of the joint.
@@ -244,7 +264,7 @@ impl<'c> DriveTable<'c> {
         self.drive_of(self.pairs[index])
     }
 
-    /// Mass of the drive at an index \[kg\].
+    /// Mass of the drive at an index with its extras \[kg\].
     #[inline]
     pub fn mass_kg(&self, index: usize) -> f64 {
         self.masses_kg[index]
@@ -315,7 +335,9 @@ fn parts<'c>(drive: &Drive<'c>) -> (&'c str, &'c str) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{any_gear, any_motion, any_motor, any_torques, char_lynn_j_8_2, f11_10};
+    use super::super::testing::{
+        any_gear, any_motion, any_motor, any_torques, bearing_loads, char_lynn_j_8_2, f11_10,
+    };
     use super::super::testing::{hfuc_40_100, hfuc_58_100, motor};
     use super::*;
     use crate::sizing::check::{all_hold, checks};
@@ -396,12 +418,12 @@ mod tests {
             let motors: Vec<_> = motors.into_iter().enumerate().map(|(i, m)| Motor { id: format!("M{i}"), ..m }).collect();
             let demand = motion
                 .demand_of_torques(torques[0] / 2.0, torques[1] / 4.0)
-                .with_tilting_moment_nm(torques[2]);
+                .with_bearing(bearing_loads(torques[2]));
             let table = DriveTable::build("j", motion, &DriveFilter::everything(gear_mass), &gears, &motors);
             let mut slow = Vec::new();
             for gear in &gears {
                 for motor in &motors {
-                    let drive = Drive { gear, motor, gear_mass };
+                    let drive = Drive { gear, motor, gear_mass, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE };
                     if all_hold(&checks(&drive, &motion, &demand)) {
                         slow.push((drive.mass_kg().unwrap(), gear.id.clone(), motor.id.clone()));
                     }

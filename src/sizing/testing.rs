@@ -1,8 +1,9 @@
 //! Parts for tests: some rows of the catalogs written out, and random parts.
 
+use super::bearing::{BearingDemand, BearingLoad};
 use super::demand::JointMotion;
 use super::requirement::MotionRequirement;
-use crate::catalog::gear::Gear;
+use crate::catalog::gear::{BearingRatings, Gear};
 use crate::catalog::motor::{Motor, MotorKind};
 use crate::catalog::{Confidence, Provenance};
 use proptest::prelude::*;
@@ -128,6 +129,9 @@ prop_compose! {
         inertia in rating_in(0.0..0.003),
         masses in prop::array::uniform2(rating_in(0.1..15.0)),
         tilt in rating_in(50.0..1000.0),
+        bearing in (
+            rating_in(0.05..0.3), rating_in(0.0..0.05), rating_in(1e4..1e5), rating_in(5e3..6e4),
+        ),
         efficiency in rating_in(0.5..0.9),
     ) -> Gear {
         let mut gear = gear(&format!("{series}-32-{ratio}"), [0.0; 4], [0.0; 2], 0.0, [0.0; 2]);
@@ -137,6 +141,9 @@ prop_compose! {
         [gear.mass_component_set_kg, gear.mass_housed_unit_kg] = masses;
         (gear.inertia_input_kgm2, gear.efficiency) = (inertia, efficiency);
         gear.permissible_tilting_moment_nm = tilt;
+        let (pitch_diameter_m, offset_m, static_load_rating_n, dynamic_load_rating_n) = bearing;
+        gear.bearing =
+            BearingRatings { pitch_diameter_m, offset_m, static_load_rating_n, dynamic_load_rating_n };
         gear
     }
 }
@@ -165,7 +172,17 @@ prop_compose! {
     }
 }
 
-/// Static torque, linear torque and tilting moment; one in ten is zero.
+/// Loads on a bearing with the moment as given \[N m\].
+pub(crate) fn bearing_loads(moment_nm: f64) -> BearingDemand {
+    let load = |times: f64| BearingLoad {
+        moment_nm: times * moment_nm,
+        radial_n: times * 3.0 * moment_nm,
+        axial_n: times * 2.0 * moment_nm,
+    };
+    BearingDemand { at_rest: load(0.6), running: load(1.0), in_stop: load(1.4) }
+}
+
+/// Static torque, linear torque and moment on the bearing; one in ten is zero.
 pub(crate) fn any_torques() -> impl Strategy<Value = [f64; 3]> {
     let torque = || prop_oneof![1 => Just(0.0), 9 => 0.0..800.0f64];
     (torque(), torque(), torque()).prop_map(|(a, b, c)| [a, b, c])

@@ -102,11 +102,17 @@ impl<'c> ArmProblem<'c> {
                 (SpacePiece::Link(link), _) => Some(Element::Link(link.clone())),
                 (SpacePiece::Joint(joint), part) => {
                     let (curve, mass_kg, [gear, motor]) = drive_of(&joint.drive, &part)?;
+                    let (bearing, extras) = match &part {
+                        Part::Drive(drive) => (drive.bearing(), drive.extras()),
+                        _ => (joint.bearing.stated(), joint.extras.stated()),
+                    };
                     Some(Element::Joint(Joint {
                         name: joint.name.clone(),
                         axis: joint.axis,
                         curve,
                         mass_kg,
+                        bearing,
+                        extras,
                         gear,
                         motor,
                         coupled: None,

@@ -1,7 +1,9 @@
 //! What there is to choose: an arm with open links and drives, and the task it must do.
 
 use super::constraint::Constraints;
+use crate::arm::bearing::BearingSource;
 use crate::arm::effect::entry::Effect;
+use crate::arm::extras::ExtrasSource;
 use crate::arm::joint_law::Curve;
 use crate::arm::load::Payload;
 use crate::arm::load::Water;
@@ -46,7 +48,13 @@ use nalgebra::{Unit, Vector3};
 ///     name: "one link".into(),
 ///     gravity_m_s2: 9.81,
 ///     pieces: vec![
-///         SpacePiece::Joint(SpaceJoint { name: "j2".into(), axis: Vector3::y_axis(), drive, max_speed_rad_s: None }),
+///         SpacePiece::Joint(SpaceJoint {
+///             name: "j2".into(),
+///             axis: Vector3::y_axis(),
+///             drive,
+///             max_speed_rad_s: None,
+///             range_deg: None,
+///         }),
 ///         SpacePiece::Choice(LinkChoice {
 ///             name: "upper_arm".into(),
 ///             vector_m: Vector3::new(0.8, 0.0, 0.0),
@@ -136,10 +144,16 @@ pub struct SpaceJoint {
     pub name: String,
     /// Axis, in the frame that the joints before it carry.
     pub axis: Unit<Vector3<f64>>,
+    /// Where the output bearing of the joint comes from.
+    pub bearing: BearingSource,
+    /// Where the masses beyond gear, motor and bearing come from.
+    pub extras: ExtrasSource,
     /// How the drive of the joint is found.
     pub drive: DriveChoice,
     /// Largest speed that the study asks for \[rad/s\]; `None`: the speed that follows from the tip's.
     pub max_speed_rad_s: Option<f64>,
+    /// Smallest and largest angle to which the joint turns \[deg\]; `None`: not stated.
+    pub range_deg: Option<[f64; 2]>,
 }
 
 /// How a joint's drive is found.
@@ -205,10 +219,22 @@ pub struct LinkOption {
     pub cost_eur_per_kg: Option<f64>,
 }
 
+impl SpaceJoint {
+    /// Whether the bearing depends on the gear that is chosen.
+    pub(crate) fn bearing_is_open(&self) -> bool {
+        self.bearing == BearingSource::OfGear && self.drive.is_sized()
+    }
+}
+
 impl DriveChoice {
     /// Whether the search chooses the drive.
     pub fn is_open(&self) -> bool {
         matches!(self, DriveChoice::AllFits(_))
+    }
+
+    /// Whether the drive is found by sizing.
+    pub fn is_sized(&self) -> bool {
+        !matches!(self, DriveChoice::Given { .. })
     }
 }
 

@@ -6,6 +6,7 @@
 
 use super::design_space::{DesignSpace, SpaceJoint, SpacePiece};
 use crate::arm::Link;
+use crate::arm::bearing::Bearing;
 use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::structure::{JointAngle, JointPiece, LinkPiece, Piece, Structure, link_piece};
@@ -19,8 +20,13 @@ pub(crate) enum Layer<'s> {
     Piece(&'s SpacePiece),
     /// A spring about an axis across the axis of a joint.
     Tilt(Tilt<'s>),
-    /// A point mass at a joint, in addition to its drive \[kg\].
+    /// A spring of the output bearing of the gear that is chosen for a joint.
+    Bearing(BearingSpring<'s>),
+    /// A point mass at a joint that an effect adds: it weighs, but is none of the links and drives whose mass counts
+    /// \[kg\].
     Mass(f64),
+    /// A point mass at a joint that counts in the mass of the design, such as a bearing of its own \[kg\].
+    Extra(f64),
 }
 
 /// The axis about which a spring turns.
@@ -42,6 +48,20 @@ pub(crate) struct Tilt<'s> {
     pub rad_per_nm: f64,
 }
 
+/// One of the two springs of the bearing of a joint whose gear is chosen.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BearingSpring<'s> {
+    pub joint: &'s SpaceJoint,
+    which: usize,
+}
+
+impl BearingSpring<'_> {
+    /// Axis of the spring in the world. `rotation` is the attitude of the frame that the joint stands in.
+    pub(crate) fn axis(&self, rotation: &Rotation3<f64>) -> Vector3<f64> {
+        across(&(rotation * self.joint.axis))[self.which]
+    }
+}
+
 impl Tilt<'_> {
     /// Axis of the spring in the world. `rotation` is the attitude of the frame that the spring stands in.
     pub(crate) fn axis(&self, rotation: &Rotation3<f64>) -> Vector3<f64> {
@@ -61,8 +81,9 @@ impl Tilt<'_> {
 impl DesignSpace {
     /// Everything that the search adds, tip first, each with the number of the piece (base to tip) at which it stands.
     ///
-    /// The springs of a bearing come before the torsion of their joint. All three turn about the same point, so their
-    /// order does not matter; this way the springs are computed once and not once for each drive of the joint.
+    /// All three springs of a joint turn about the same point, so their order does not matter. The springs of a bearing
+    /// that is known come before the torsion of the joint: they are computed once and not once for each drive. Those of
+    /// the bearing of a gear that is chosen follow the gear.
     pub(crate) fn layers(&self) -> Vec<(usize, Layer<'_>)> {
         let mut out = Vec::with_capacity(self.pieces.len());
         for (index, piece) in self.pieces.iter().enumerate().rev() {
@@ -79,10 +100,19 @@ impl DesignSpace {
                     continue;
                 }
             };
-            let affected = self.joint_piece(joint, Curve::Rigid);
-            let across = [About::Across(joint, 0), About::Across(joint, 1)];
-            out.extend(tilts(across, affected.tilt_rad_per_nm).map(|tilt| (index, tilt)));
-            out.push((index, Layer::Piece(piece)));
+            let bearing = joint.bearing.stated();
+            let affected = self.joint_piece(joint, Curve::Rigid, bearing);
+            if joint.bearing_is_open() {
+                out.push((index, Layer::Piece(piece)));
+                out.extend([0, 1].map(|which| (index, Layer::Bearing(BearingSpring { joint, which }))));
+            } else {
+                let across = [About::Across(joint, 0), About::Across(joint, 1)];
+                out.extend(tilts(across, affected.tilt_rad_per_nm).map(|tilt| (index, tilt)));
+                out.push((index, Layer::Piece(piece)));
+            }
+            if let Some(mass_kg) = bearing.map(|b| b.mass_kg).filter(|mass_kg| *mass_kg > 0.0) {
+                out.push((index, Layer::Extra(mass_kg)));
+            }
             if affected.mass_kg != 0.0 {
                 out.push((index, Layer::Mass(affected.mass_kg)));
             }
@@ -103,10 +133,16 @@ impl DesignSpace {
         springs.map(|(axis, c)| Layer::Tilt(Tilt { about: About::Fixed(axis), rad_per_nm: c }))
     }
 
-    /// A joint with this torsion curve, under the joint model of the study and with the effects at the joint. The mass of
+    /// A joint with this torsion curve and bearing, under the joint model of the study and with the effects at the joint. The mass of
     /// the piece is what the effects add.
-    pub(crate) fn joint_piece(&self, joint: &SpaceJoint, curve: Curve) -> JointPiece {
-        let nominal = nominal_joint(joint, self.curve(curve));
+    pub(crate) fn joint_piece(
+        &self,
+        joint: &SpaceJoint,
+        curve: Curve,
+        bearing: Option<Bearing>,
+    ) -> JointPiece {
+        let mut nominal = nominal_joint(joint, self.curve(curve));
+        nominal.tilt_rad_per_nm = bearing.map_or(0.0, |bearing| bearing.tilt_rad_per_nm());
         let mut affected = match self.affected(Piece::Joint(nominal.clone())) {
             Some(Piece::Joint(joint)) => joint,
             _ => nominal,

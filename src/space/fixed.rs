@@ -42,7 +42,7 @@ impl ArmProblem<'_> {
             false => GearMass::HousedUnit,
         };
         Some(FixedDrive {
-            drive: Drive { gear, motor, gear_mass },
+            drive: Drive { gear, motor, gear_mass, bearing: joint.bearing, extras: joint.extras },
             mass_kg: *mass_kg,
             motion: space.motion.joint_motion(reach_m, joint.max_speed_rad_s),
         })
@@ -50,6 +50,6 @@ impl ArmProblem<'_> {
 
     /// Demand on a joint with a given drive, when everything outboard is known.
     pub fn fixed_demand(&self, outboard: &Partial, slot: usize, motion: &JointMotion) -> JointDemand {
-        self.demand(&outboard.stations, slot, Some(motion))
+        self.demand(outboard, slot, Some(motion))
     }
 }

@@ -5,6 +5,7 @@
 //! arm has all that its extensions need.
 
 use super::attributes::OptionAttributes;
+use super::bearing_loads::BearingLoads;
 use super::design_space::{DesignSpace, SpacePiece};
 use super::effects::Layer;
 use super::levels::OutwardIn;
@@ -39,12 +40,15 @@ pub struct ArmProblem<'c> {
     materials: usize,
     /// Stress at peak load over stress at rest.
     peak_factor: f64,
+    bearing_loads: BearingLoads,
 }
 
 /// A partial arm: everything from the tip to some level.
 #[derive(Debug, Clone, Default)]
 pub struct Partial {
     next_slot: usize,
+    /// Demand on the joint in the next slot, if its drive is a choice: all its options share it.
+    pub(crate) next_demand: Option<JointDemand>,
     pub(crate) mass_kg: f64,
     pub(crate) cost_eur: f64,
     pub(crate) group: Group,
@@ -78,6 +82,8 @@ pub(crate) struct StationState {
     pub trace_s2: [f64; 2],
     /// Tangent compliance of each slot \[rad/(N m)\].
     pub compliances: Vec<f64>,
+    /// Wrench of the ramp of each joint so far, tip first, with the others at rest; empty if no bearing is checked.
+    pub ramps: Vec<Wrench>,
 }
 
 impl<'c> ArmProblem<'c> {
@@ -87,7 +93,9 @@ impl<'c> ArmProblem<'c> {
     /// ([`DesignSpace::excerpt`]).
     pub fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Self {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
-        let mut reaches = reaches_m(space, sizing);
+        let reaches = reaches_m(space, sizing);
+        // reaches are in order from the base and layers from the tip
+        let mut reaches_from_tip = reaches.iter().rev();
         let mut piece_slots = vec![0; space.pieces.len()];
         let mut slots: Vec<Slot> = Vec::new();
         for (piece, layer) in space.layers() {
@@ -96,11 +104,12 @@ impl<'c> ArmProblem<'c> {
             }
             slots.push(match layer {
                 Layer::Piece(SpacePiece::Joint(joint)) => {
-                    // reaches are in order from the base and layers from the tip
-                    joint_slot(space, joint, reaches.pop().unwrap_or_default(), catalogs)
+                    joint_slot(space, joint, reaches_from_tip.next().copied().unwrap_or_default(), catalogs)
                 }
                 Layer::Piece(SpacePiece::Link(link)) => link_slot(space, link),
                 Layer::Piece(SpacePiece::Choice(choice)) => choice_slot(space, choice),
+                Layer::Bearing(_) => Slot::bearing(piece_slots[piece], &slots),
+                Layer::Extra(mass_kg) => Slot::Offset { mass_kg },
                 Layer::Tilt(tilt) => Slot::Given { law: tilt.law(), mass_kg: 0.0 },
                 // the station has its weight and inertia; the mass of a design is that of its links and drives alone
                 Layer::Mass(_) => Slot::Offset { mass_kg: 0.0 },
@@ -118,6 +127,7 @@ impl<'c> ArmProblem<'c> {
             stations: Station::all(space),
             materials: space.material_names().len(),
             peak_factor: 1.0 + a_over_g,
+            bearing_loads: BearingLoads::new(space, &slots, &piece_slots, &reaches),
             slots,
             piece_slots,
         }
@@ -173,7 +183,7 @@ impl<'c> ArmProblem<'c> {
 
     /// Demand on the joint in a slot, when the partial arm is everything outboard of it.
     pub fn demand_at(&self, partial: &Partial, slot: usize) -> JointDemand {
-        self.demand(&partial.stations, slot, self.slots[slot].motion())
+        self.demand(partial, slot, self.slots[slot].motion())
     }
 
     /// Builds the design with these options, one for each level. Before each piece is added, `see` is called with its slot
@@ -223,6 +233,10 @@ impl<'c> ArmProblem<'c> {
         &self.stations
     }
 
+    pub(crate) fn bearing_loads(&self) -> &BearingLoads {
+        &self.bearing_loads
+    }
+
     pub(crate) fn peak_factor(&self) -> f64 {
         self.peak_factor
     }
@@ -240,6 +254,10 @@ impl<'c> ArmProblem<'c> {
                     tip_m: Vector3::zeros(),
                     trace_s2: [0.0; 2],
                     compliances: vec![0.0; self.slots.len()],
+                    ramps: match self.bearing_loads.any() {
+                        true => vec![Wrench::zeros(); self.bearing_loads.movers.len()],
+                        false => Vec::new(),
+                    },
                 })
                 .collect(),
             ..Partial::default()
@@ -253,6 +271,12 @@ impl<'c> ArmProblem<'c> {
                 return false;
             }
         }
+        partial.next_demand = match self.slots.get(partial.next_slot) {
+            Some(Slot::Sized(sized)) => {
+                Some(self.demand(partial, partial.next_slot, Some(sized.table.motion())))
+            }
+            _ => None,
+        };
         true
     }
 
@@ -263,6 +287,10 @@ impl<'c> ArmProblem<'c> {
         let added = match &self.slots[slot] {
             Slot::Given { law, mass_kg } => self.add_joint(slot, law, *mass_kg, to),
             Slot::Sized(sized) => self.add_sized(slot, sized, option, to),
+            Slot::Bearing { joint, laws } => {
+                to.options[slot] = to.options[*joint];
+                self.add_joint(slot, &laws[to.options[slot] as usize], 0.0, to)
+            }
             Slot::Link { options, .. } => self.add_link(slot, option, &options[option as usize], to),
             Slot::Offset { mass_kg } => self.add_offset(slot, *mass_kg, to),
         };
@@ -271,7 +299,8 @@ impl<'c> ArmProblem<'c> {
     }
 
     fn add_sized(&self, slot: usize, sized: &SizedJoint, option: u32, to: &mut Partial) -> bool {
-        let demand = self.demand(&to.stations, slot, Some(sized.table.motion()));
+        let demand =
+            to.next_demand.take().unwrap_or_else(|| self.demand(to, slot, Some(sized.table.motion())));
         let index = match sized.all_fits {
             true => Some(option as usize).filter(|&i| sized.table.limits(i).hold(&demand)),
             false => sized.table.first_fit(&demand),
@@ -287,27 +316,29 @@ impl<'c> ArmProblem<'c> {
     /// side.
     pub(crate) fn demand(
         &self,
-        states: &[StationState],
+        outboard: &Partial,
         slot: usize,
         motion: Option<&JointMotion>,
     ) -> JointDemand {
         let (mut static_nm, mut inertia_kgm2) = (0.0f64, 0.0f64);
         for &case in &self.space.sizing_cases {
             let StationSlot::Joint(joint) = &self.stations[case].slots[slot] else { continue };
-            let state = &states[case];
+            let state = &outboard.stations[case];
             static_nm = static_nm.max(joint.twist.dot(&state.wrench).abs());
             inertia_kgm2 = inertia_kgm2.max(joint.twist.dot(&(state.inertia * joint.twist)));
         }
-        motion.map_or_else(
+        let torques = motion.map_or_else(
             || self.space.motion.joint_motion(0.0, None).demand(static_nm, inertia_kgm2),
             |motion| motion.demand(static_nm, inertia_kgm2),
-        )
+        );
+        torques.with_bearing(self.bearing_demand(&outboard.stations, &outboard.options, slot))
     }
 
     /// Adds a joint to every case. It always holds: a sized drive was checked before, and a given one excludes nothing.
     fn add_joint(&self, slot: usize, law: &JointLaw, mass_kg: f64, to: &mut Partial) -> bool {
         to.mass_kg += mass_kg;
         to.masses_kg[slot] = mass_kg;
+        self.keep_ramp(slot, &mut to.stations);
         for (station, state) in self.stations.iter().zip(&mut to.stations) {
             if let StationSlot::Joint(joint) = &station.slots[slot] {
                 state.add_joint(slot, joint, law, mass_kg);

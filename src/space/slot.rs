@@ -4,6 +4,7 @@ use super::attributes::{OptionAttributes, attributes_of};
 use super::design_space::{DesignSpace, DriveChoice, LinkChoice, LinkOption, SpaceJoint};
 use crate::arm::file::windup_of;
 use crate::arm::joint_law::{Curve, JointLaw};
+use crate::arm::structure::JointPiece;
 use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
 use crate::sizing::demand::{JointDemand, JointMotion};
@@ -15,6 +16,8 @@ pub(crate) enum Slot<'c> {
     Given { law: JointLaw, mass_kg: f64 },
     /// A joint whose drive comes from the catalogs.
     Sized(SizedJoint<'c>),
+    /// A spring of the bearing of a sized joint: the slot of the joint, and the law by its drives.
+    Bearing { joint: usize, laws: Vec<JointLaw> },
     /// A tube. It is a choice of the search if it is `open`; a given tube has one option.
     Link { options: Vec<OptionAttributes>, open: bool },
     /// A rigid offset with its point mass.
@@ -27,6 +30,8 @@ pub struct SizedJoint<'c> {
     pub table: DriveTable<'c>,
     /// Joint law with each drive of the table, effects included.
     pub(crate) laws: Vec<JointLaw>,
+    /// Tilt of the output bearing of each drive per moment \[rad/(N m)\]: the gear's, and what an effect adds.
+    pub(crate) tilts_rad_per_nm: Vec<f64>,
     /// Whether every drive that holds is an option of the search; if not, the lightest one that holds is taken.
     pub(crate) all_fits: bool,
 }
@@ -68,7 +73,24 @@ impl SizedJoint<'_> {
 
     /// Whether two drives are ties: equal in mass and in torsion curve.
     pub(crate) fn are_ties(&self, a: usize, b: usize) -> bool {
-        self.table.mass_kg(a) == self.table.mass_kg(b) && self.laws[a] == self.laws[b]
+        self.table.mass_kg(a) == self.table.mass_kg(b)
+            && self.laws[a] == self.laws[b]
+            && self.tilts_rad_per_nm[a] == self.tilts_rad_per_nm[b]
+    }
+}
+
+impl<'c> Slot<'c> {
+    /// A spring of the bearing of the joint in an earlier slot.
+    pub(crate) fn bearing(joint: usize, slots: &[Slot<'c>]) -> Self {
+        let spring = |rad_per_nm: &f64| JointLaw {
+            connection_rad_per_nm: *rad_per_nm,
+            ..JointLaw::from(Curve::Rigid)
+        };
+        let laws = match &slots[joint] {
+            Slot::Sized(sized) => sized.tilts_rad_per_nm.iter().map(spring).collect(),
+            _ => Vec::new(),
+        };
+        Slot::Bearing { joint, laws }
     }
 }
 
@@ -91,6 +113,15 @@ impl Slot<'_> {
     pub(crate) fn fixed_kg(&self) -> Option<f64> {
         match self {
             Slot::Given { mass_kg, .. } | Slot::Offset { mass_kg } => Some(*mass_kg),
+            Slot::Bearing { .. } => Some(0.0),
+            _ => None,
+        }
+    }
+
+    /// A tube that the study gives; `None` if the slot is something else or its tube is chosen.
+    pub(crate) fn given_tube(&self) -> Option<&OptionAttributes> {
+        match self {
+            Slot::Link { options, open: false } => options.first(),
             _ => None,
         }
     }
@@ -100,6 +131,7 @@ impl Slot<'_> {
         match self {
             Slot::Given { law, .. } => Some(law),
             Slot::Sized(sized) => Some(&sized.laws[option]),
+            Slot::Bearing { laws, .. } => Some(&laws[option]),
             _ => None,
         }
     }
@@ -122,7 +154,8 @@ pub(crate) fn joint_slot<'c>(
 ) -> Slot<'c> {
     let (filter, all_fits) = match &joint.drive {
         DriveChoice::Given { curve, mass_kg, .. } => {
-            return Slot::Given { law: space.joint_piece(joint, *curve).law, mass_kg: *mass_kg };
+            let law = space.joint_piece(joint, *curve, joint.bearing.stated()).law;
+            return Slot::Given { law, mass_kg: *mass_kg + joint.extras.stated().total_kg() };
         }
         DriveChoice::FirstFit(filter) => (filter, false),
         DriveChoice::AllFits(filter) => (filter, true),
@@ -131,15 +164,20 @@ pub(crate) fn joint_slot<'c>(
     let table = DriveTable::build(
         &joint.name,
         motion,
-        &with_curve(filter, catalogs),
+        &DriveFilter { bearing: joint.bearing, extras: joint.extras, ..with_curve(filter, catalogs) },
         &catalogs.gears,
         &catalogs.motors,
     );
-    let laws = (0..table.len())
-        .map(|i| windup_of(table.drive(i).gear).map_or(Curve::Rigid, Curve::Windup))
-        .map(|curve| space.joint_piece(joint, curve).law)
+    let pieces: Vec<JointPiece> = (0..table.len())
+        .map(|i| {
+            let drive = table.drive(i);
+            let curve = windup_of(drive.gear).map_or(Curve::Rigid, Curve::Windup);
+            space.joint_piece(joint, curve, drive.bearing())
+        })
         .collect();
-    Slot::Sized(SizedJoint { table, laws, all_fits })
+    let laws = pieces.iter().map(|piece| piece.law).collect();
+    let tilts_rad_per_nm = pieces.iter().map(|piece| piece.tilt_rad_per_nm).collect();
+    Slot::Sized(SizedJoint { table, laws, tilts_rad_per_nm, all_fits })
 }
 
 /// Leaves out gears without a complete torsion curve, because their deflection cannot be computed.

@@ -47,6 +47,8 @@ pub(crate) enum StationSlot {
 pub(crate) struct StationJoint {
     /// Motion of everything outboard per radian of the joint's rotation.
     pub twist: Twist,
+    /// Where the joint is.
+    pub at_m: Vector3<f64>,
     /// Displacement of the tip per radian.
     pub tip_m_per_rad: Vector3<f64>,
     /// Inertia and weight of one kilogram at the joint.
@@ -311,7 +313,8 @@ impl Builder<'_> {
         let (at_m, rotation) = self.place;
         match layer {
             Layer::Tilt(tilt) => self.hinge(&tilt.axis(rotation)),
-            Layer::Mass(mass_kg) => self.body(mass_kg, at_m),
+            Layer::Bearing(spring) => self.hinge(&spring.axis(rotation)),
+            Layer::Mass(mass_kg) | Layer::Extra(mass_kg) => self.body(mass_kg, at_m),
             Layer::Piece(SpacePiece::Joint(joint)) => self.hinge(&(rotation * joint.axis)),
             Layer::Piece(SpacePiece::Link(link)) => self.link(link),
             Layer::Piece(SpacePiece::Choice(choice)) => self.tube(&choice.vector_m),
@@ -324,6 +327,7 @@ impl Builder<'_> {
         let twist = rotation_twist(axis, at_m);
         Built::Joint(StationJoint {
             twist,
+            at_m: *at_m,
             tip_m_per_rad: displacement_at(&twist, self.tip_m),
             inertia_per_kg: body_inertia(1.0, at_m, &Matrix3::zeros()),
             weight_per_kg: weight_wrench(self.structure.gravity_m_s2, at_m),

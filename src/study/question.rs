@@ -59,7 +59,14 @@ fn asked_joint(joint: &SpaceJoint) -> AskedJoint {
         DriveChoice::FirstFit(filter) => AskedDrive::FirstFit(allowed(filter)),
         DriveChoice::AllFits(filter) => AskedDrive::AllFits(allowed(filter)),
     };
-    AskedJoint { name: joint.name.clone(), axis: joint.axis, drive, max_speed_rad_s: joint.max_speed_rad_s }
+    AskedJoint {
+        name: joint.name.clone(),
+        axis: joint.axis,
+        bearing: joint.bearing,
+        extras: joint.extras,
+        drive,
+        max_speed_rad_s: joint.max_speed_rad_s,
+    }
 }
 
 fn allowed(filter: &DriveFilter) -> AllowedParts {

@@ -6,7 +6,10 @@
 
 use super::definition::Study;
 use super::effects::check_effects;
+use super::range::{check_poses, read_range};
 use super::sections::{Aside, read_materials, read_sections};
+use crate::arm::bearing::{BearingSource, Stated, read_bearing};
+use crate::arm::extras::{ExtrasSource, read_extras_source};
 use crate::arm::file::{read_curve, read_effects, read_joint_mass, read_link, read_name};
 use crate::arm::load::Payload;
 use crate::arm::load::{read_pose, vector, word};
@@ -21,7 +24,7 @@ use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{Case, DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 use nalgebra::Vector3;
 
-const KEYS: [&str; 15] = [
+const KEYS: [&str; 16] = [
     "name",
     "question",
     "gravity_m_s2",
@@ -32,6 +35,7 @@ const KEYS: [&str; 15] = [
     "environments",
     "motion",
     "drives",
+    "extras",
     "constraints",
     "models",
     "effects",
@@ -79,13 +83,16 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let gap = root.or("gap_percent", 0.0, read_gap);
     let filter = root.or("drives", Drives::default(), |n| read_drives(n, catalogs));
     let constraints = root.or("constraints", Constraints::default(), read_constraints);
+    let extras = read_extras_source(&root, ExtrasSource::Usual);
     let mut aside = Aside::default();
     let chain = root.required("chain").and_then(|n| {
-        let open = Open { catalogs, drives: filter.as_ref()?, constraints: constraints.as_ref()? };
+        let (drives, constraints, extras) = (filter.as_ref()?, constraints.as_ref()?, extras?);
+        let open = Open { catalogs, drives, constraints, extras };
         read_chain(&n, &open, &mut aside)
     });
     let joints = joint_names(node);
     let cases = read_cases(&root, &joints);
+    let in_range = check_poses(&root, chain.as_deref(), cases.as_ref().map(|read| &read.cases[..]));
     let motion = root.or("motion", MotionRequirement::default(), read_motion);
     let (links, joint_model) = root.or("models", Default::default(), read_models)?;
     let effects = root.or("effects", Vec::new(), read_effects);
@@ -106,6 +113,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         effects: effects?,
     };
     check_effects(&space, &root)?;
+    in_range?;
     let Aside { not_checked, remarks } = aside;
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
@@ -147,6 +155,7 @@ struct Open<'a> {
     catalogs: &'a Catalogs,
     drives: &'a Drives,
     constraints: &'a Constraints,
+    extras: ExtrasSource,
 }
 
 /// Where drives are taken from.
@@ -172,6 +181,8 @@ fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
     known_ratios.dedup();
     let filter = DriveFilter {
         gear_mass: gear_mass?,
+        bearing: BearingSource::OfGear,
+        extras: ExtrasSource::NONE,
         gear_series: names(&object, "gear_series", &known_series)?,
         ratios: object.or("ratios", None, |n| read_ratios(n, &known_ratios).map(Some))?,
         gear_ids: names(&object, "gears", &known_gears)?,
@@ -304,6 +315,9 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         "gear_mass",
         "mass_kg",
         "max_speed_rad_s",
+        "bearing",
+        "extras",
+        "range_deg",
         "drives",
     ])?;
     let name = read_name(&object);
@@ -331,7 +345,42 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
             read_given_drive(&object, open)
         }
     };
-    Some(SpaceJoint { name: name?, axis: axis?, drive: drive?, max_speed_rad_s: max_speed? })
+    let (drive, bearing) = (drive?, read_bearing(&object, open.catalogs));
+    let bearing = bearing_source(&object, bearing?, &drive, open.catalogs);
+    // the mass of a given drive is stated, and so are its extras
+    let usually = if drive.is_sized() { open.extras } else { ExtrasSource::NONE };
+    let extras = read_extras_source(&object, usually);
+    let range_deg = object.or("range_deg", None, |n| read_range(n).map(Some));
+    let (bearing, extras, range_deg) = (bearing?, extras?, range_deg?);
+    let max_speed_rad_s = max_speed?;
+    Some(SpaceJoint { name: name?, axis: axis?, bearing, extras, drive, max_speed_rad_s, range_deg })
+}
+
+/// Where the bearing of a joint comes from. A component set has none of its own, so a joint that is sized with component
+/// sets must say what it turns on.
+fn bearing_source(
+    object: &Object,
+    stated: Stated,
+    drive: &DriveChoice,
+    catalogs: &Catalogs,
+) -> Option<BearingSource> {
+    match (stated, drive) {
+        (Stated::Bearing(bearing), _) => Some(BearingSource::Stated(bearing)),
+        (Stated::Nothing, DriveChoice::Given { .. }) => {
+            crate::arm::file::read_joint_bearing(object, catalogs).map(BearingSource::Stated)
+        }
+        (Stated::Nothing, DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter))
+            if filter.gear_mass == GearMass::ComponentSet =>
+        {
+            object.node().fault(
+                "is sized with component sets, which have no output bearing, and states no \"bearing\"",
+                "name a housed gear whose bearing it turns on (\"bearing\": \"HFUC-32-100\"), give tilt_stiffness_nm_per_rad \
+                 and permissible_moment_nm, write \"bearing\": null for a rigid bearing without mass, or use housed units \
+                 (\"gear_mass\": \"housed_unit\")",
+            )
+        }
+        _ => Some(BearingSource::OfGear),
+    }
 }
 
 /// Reports keys that another key makes meaningless as faults, because nothing in a file is silently ignored.

@@ -1,39 +1,41 @@
 //! Bounds of the members of a box: least mass, least deflection, and the stiffest and lightest arm.
 
+use super::bearing::BearingDemand;
+use super::bearing_loads::Largest;
 use super::demand::Demand;
 use super::drive_range::DriveRange;
 use super::duty::Duty;
 use super::layout::Coordinate;
 use super::pencil::Pencil;
 use super::pose::Pose;
-use super::skeleton::Skeleton;
+use super::skeleton::{Lever, Skeleton};
 use super::span::Span;
 use super::tubes::{DENSITIES, STIFFNESSES, TubeRange};
 use nalgebra::Vector3;
 
-/// Room for rounding where a limit decides (relative).
+/// Margin for rounding where a value is compared with a limit (relative).
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// The parts of a box as ranges.
+/// The members of a box or region, as ranges of the numbers of their parts.
 pub(super) struct Members<'w> {
-    /// Drives that may hold, joint by joint.
+    /// For each joint, the range of the drives that may hold.
     pub drives: Vec<DriveRange>,
     pub tubes: Vec<&'w TubeRange>,
-    /// Masses of drives, then weights of tubes per length, in each of the study's surroundings.
+    /// Masses of the drives, then weights per length of the tubes, in each of the study's surroundings.
     pub loads: Vec<Vec<Span>>,
 }
 
-/// A mass and a deflection that no member betters.
+/// A mass and a deflection that no member improves on, one by one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct IdealPoint {
     pub mass_kg: f64,
     pub tip_m: f64,
-    /// The judged case that bounds the deflection, and the direction in which it does.
+    /// The judged case that bounds the deflection, and the direction of the tip's displacement there.
     pub worst: usize,
     pub direction: Vector3<f64>,
 }
 
-/// What a joint is asked for at least or at most.
+/// Intervals of the static torque and the inertia that a joint's drive must hold, over the members.
 #[derive(Default)]
 struct Asked {
     static_nm: Span,
@@ -41,7 +43,7 @@ struct Asked {
 }
 
 impl<'w> Members<'w> {
-    /// Tubes, and drives of which nothing is known yet: their masses are zero.
+    /// Members with these tubes, and with drives about which nothing is known yet: their masses are zero.
     pub(super) fn new(drives: Vec<DriveRange>, tubes: Vec<&'w TubeRange>, waters: usize) -> Self {
         let loads = |water: usize| {
             let drives = drives.iter().map(|_| Span::default());
@@ -56,22 +58,52 @@ impl<'w> Members<'w> {
         let mass = Span { least: range.least_kg, most: range.most_kg };
         self.loads.iter_mut().for_each(|loads| loads[joint] = mass);
     }
+
+    /// Masses of drives, then inertias per length of tubes, in some surroundings.
+    fn inertias(&self, water: usize) -> impl Iterator<Item = Span> {
+        let of_drives = self.loads[water][..self.drives.len()].iter().copied();
+        let of_tubes = self.tubes.iter().flat_map(move |tube| {
+            let (least, most) = (&tube.least.around[water], &tube.most.around[water]);
+            (0..DENSITIES).map(|i| Span { least: least.densities[i], most: most.densities[i] })
+        });
+        of_drives.chain(of_tubes)
+    }
 }
 
 impl Skeleton {
-    /// What a joint is asked for at least and at most, with room for rounding.
+    /// Least and greatest demand on a joint's drive over the members, with a margin for rounding.
     pub(super) fn demands(&self, joint: usize, duty: &Duty, members: &Members) -> [Demand; 2] {
         let asked = self.asked(joint, members);
         let (statics, inertia) = (asked.static_nm, asked.inertia_kgm2);
         let (less, more) = (1.0 - ROUNDING, 1.0 + ROUNDING);
+        let [least, most] = self.bearing_demands(joint, duty, members);
         [
-            duty.demand(statics.least * less, inertia.least * less),
-            duty.demand(statics.most * more, inertia.most * more),
+            Demand { bearing: least.times(less), ..duty.demand(statics.least * less, inertia.least * less) },
+            Demand { bearing: most.times(more), ..duty.demand(statics.most * more, inertia.most * more) },
         ]
     }
 
-    /// The worst static torque and inertia on a joint over the cases it is sized in; everything outboard of it
-    /// is known.
+    /// The loads on a joint's bearing over the cases it is sized in, where the link attaches; zero if it is not checked.
+    fn bearing_demands(&self, joint: usize, duty: &Duty, members: &Members) -> [BearingDemand; 2] {
+        let mut largest = Largest::default();
+        for (pose, bearings) in self.poses.iter().zip(&self.bearings) {
+            if let Some(Some(bearing)) = bearings.get(joint) {
+                let inertias: Vec<Span> = members.inertias(pose.water).collect();
+                bearing.load(&members.loads[pose.water], &inertias, duty.stop_factor, &mut largest);
+            }
+        }
+        let levers_m = match self.levers[joint] {
+            Lever::Stated(lever_m) => [lever_m; 2],
+            Lever::HalfOf(tube) => {
+                [members.tubes[tube].least.half_width_m, members.tubes[tube].most.half_width_m]
+            }
+        };
+        let [least, most] = largest.demands();
+        [least.with_lever(levers_m[0]), most.with_lever(levers_m[1])]
+    }
+
+    /// Intervals of the worst static torque and inertia on a joint over the sizing cases. Everything outboard of the
+    /// joint must be known.
     fn asked(&self, joint: usize, members: &Members) -> Asked {
         let mut asked = Asked::default();
         for pose in self.poses.iter().filter(|pose| pose.sizing) {
@@ -87,22 +119,19 @@ impl Skeleton {
         asked
     }
 
-    /// Inertia of all that is outboard about a joint's axis: the entry of the twist of that joint.
+    /// Inertia, about a joint's axis, of everything outboard: the diagonal entry of the mass matrix at the twist of
+    /// the joint.
     fn inertia_about(&self, pose: &Pose, joint: usize, members: &Members) -> Span {
         let entry = joint * (joint + 3) / 2;
-        let of_drives = members.loads[pose.water][..members.drives.len()].iter().copied();
-        let of_tubes = members.tubes.iter().flat_map(|tube| {
-            let (least, most) = (&tube.least.around[pose.water], &tube.most.around[pose.water]);
-            (0..DENSITIES).map(|i| Span { least: least.densities[i], most: most.densities[i] })
-        });
         let fixed = Span { least: pose.inertia[entry], most: pose.inertia[entry] };
-        of_drives
-            .chain(of_tubes)
+        members
+            .inertias(pose.water)
             .zip(&pose.inertia_per)
             .fold(fixed, |sum, (number, per)| sum.plus(number.times(per[entry])))
     }
 
-    /// Whether the least stress at both ends of every tube leaves the safety that is asked for.
+    /// Whether the stress at both ends of every tube keeps the required safety factor in some member, as far as the
+    /// least stress tells.
     pub(super) fn strong_enough(&self, members: &Members) -> bool {
         let Some(safety) = self.limits.stress_safety_factor_min else { return true };
         self.poses.iter().all(|pose| {
@@ -121,7 +150,7 @@ impl Skeleton {
         })
     }
 
-    /// Mass and deflection that no member betters; `None` if they break a limit.
+    /// A mass and a deflection that no member improves on; `None` if either breaks a limit.
     pub(super) fn ideal_point(&self, members: &Members) -> Option<IdealPoint> {
         let drives: f64 = members.drives.iter().map(|drive| drive.least_kg).sum();
         let tubes: f64 = members.tubes.iter().map(|tube| tube.least.mass_kg).sum();
@@ -144,7 +173,7 @@ impl Skeleton {
             .then_some(ideal)
     }
 
-    /// The largest stiffness of each coordinate in a pose.
+    /// The greatest stiffness of each coordinate over the members, in a pose.
     pub(super) fn stiffnesses(&self, pose: &Pose, members: &Members) -> Vec<f64> {
         let loads = &members.loads[pose.water];
         let stiffness = |coordinate: &Coordinate| match *coordinate {
@@ -155,12 +184,16 @@ impl Skeleton {
                 let (which, integral_m) = shape.stiffness(self.lengths_m[tube]);
                 members.tubes[tube].most.stiffnesses[which] * integral_m
             }
+            Coordinate::Tilt(joint, _) => members.drives[joint].greatest_tilt_stiffness(),
+            // nothing yields like that
+            Coordinate::Shift(..) => f64::INFINITY,
             Coordinate::Spring(spring) => self.spring_stiffnesses[spring],
         };
         self.coordinates.iter().map(stiffness).collect()
     }
 
-    /// The stiffest and lightest arm of a box in a pose.
+    /// Stiffness and inertia matrices of the ideal arm in a pose: every stiffness at its greatest, every inertia at
+    /// its least.
     pub(super) fn pencil(&self, pose: &Pose, members: &Members) -> Pencil {
         let mut inertia = pose.inertia.clone();
         let masses = members.drives.iter().map(|drive| drive.least_kg);
@@ -176,7 +209,7 @@ fn weight(tube: &TubeRange, water: usize) -> Span {
     Span { least: tube.least.around[water].weight_n_per_m, most: tube.most.around[water].weight_n_per_m }
 }
 
-/// Compliances of a set of tubes.
+/// Range of each compliance over a set of tubes.
 pub(super) fn compliances(tube: &TubeRange) -> [Span; STIFFNESSES] {
     std::array::from_fn(|i| Span {
         least: 1.0 / tube.most.stiffnesses[i],
@@ -184,7 +217,8 @@ pub(super) fn compliances(tube: &TubeRange) -> [Span; STIFFNESSES] {
     })
 }
 
-/// About the direction in which the tip of a box's stiffest arm moves; `None` if it does not. Any direction gives a bound.
+/// Approximate direction in which the tip of the stiffest arm moves; `None` if the tip does not move. Every direction
+/// gives a valid bound.
 pub(super) fn direction(pose: &Pose, members: &Members) -> Option<Vector3<f64>> {
     let loads = &members.loads[pose.water];
     let joints = members.drives.iter().zip(&pose.torques).zip(&pose.tip_m_per_rad).map(
@@ -196,11 +230,13 @@ pub(super) fn direction(pose: &Pose, members: &Members) -> Option<Vector3<f64>> 
     let tubes = members.tubes.iter().zip(&pose.works).flat_map(|(tube, works)| {
         works.iter().zip(compliances(tube)).map(|(work, compliance)| work.middle(loads) * compliance.least)
     });
-    let tilts = pose.by_springs_m.iter().map(|by_spring_m| by_spring_m.middle(loads));
-    joints.chain(tubes).chain(tilts).sum::<Vector3<f64>>().try_normalize(0.0)
+    let tilts = members.drives.iter().zip(&pose.by_tilts);
+    let tilts = tilts.map(|(drive, by_tilt)| by_tilt.middle(loads) * drive.tilt_rad_per_nm.least);
+    let springs = pose.by_springs_m.iter().map(|by_spring_m| by_spring_m.middle(loads));
+    joints.chain(tubes).chain(tilts).chain(springs).sum::<Vector3<f64>>().try_normalize(0.0)
 }
 
-/// The least that the tip moves in a direction.
+/// Least displacement of the tip along a direction over the members \[m\].
 fn tip_along(pose: &Pose, members: &Members, direction: &Vector3<f64>) -> f64 {
     let loads = &members.loads[pose.water];
     let joints = members.drives.iter().zip(&pose.torques).zip(&pose.tip_m_per_rad).map(
@@ -217,6 +253,11 @@ fn tip_along(pose: &Pose, members: &Members, direction: &Vector3<f64>) -> f64 {
             .zip(compliances(tube))
             .map(|(work, compliance)| work.along(direction, loads).least_product(compliance))
     });
-    let tilts = pose.by_springs_m.iter().map(|by_spring_m| by_spring_m.along(direction, loads).least);
-    joints.chain(tubes).chain(tilts).sum()
+    let tilts = members
+        .drives
+        .iter()
+        .zip(&pose.by_tilts)
+        .map(|(drive, by_tilt)| by_tilt.along(direction, loads).least_product(drive.tilt_rad_per_nm));
+    let springs = pose.by_springs_m.iter().map(|by_spring_m| by_spring_m.along(direction, loads).least);
+    joints.chain(tubes).chain(tilts).chain(springs).sum()
 }

@@ -12,7 +12,7 @@ use super::tubes::{TubeRange, Tubes};
 use crate::catalog::Catalogs;
 use std::sync::Arc;
 
-/// A question prepared for its boxes.
+/// A question, prepared for bounding boxes of its designs.
 pub struct Boxes {
     pub(super) skeleton: Arc<Skeleton>,
     pub(super) joints: Vec<Drives>,
@@ -20,27 +20,28 @@ pub struct Boxes {
 }
 
 impl Boxes {
-    /// Prepares a question; drives of equal mass and torsion are options of their own.
+    /// Prepares a question. Drives of equal mass, torsion curve and tilt stay separate options.
     pub fn new(question: &Question, catalogs: &Catalogs) -> Self {
-        let skeleton = Skeleton::new(question);
-        let parts = skeleton.parts(question, &joint_offers(question, catalogs), Ties::Apart);
+        let offers = joint_offers(question, catalogs);
+        let skeleton = Skeleton::new(question, &offers);
+        let parts = skeleton.parts(question, &offers, Ties::Apart);
         Self::of(Arc::new(skeleton), parts)
     }
 
-    /// The boxes of some parts.
+    /// The boxes that can be made of these parts.
     pub(super) fn of(skeleton: Arc<Skeleton>, parts: Parts) -> Self {
         let joints = parts.joints.into_iter().map(Drives::new).collect();
         Self { skeleton, joints, tubes: parts.tubes.iter().map(Tubes::new).collect() }
     }
 
-    /// All designs; `None` if there is none.
+    /// The box of all designs; `None` if a level has no option.
     pub fn root(&self) -> Option<PartsBox> {
         let some = self.joints.iter().all(|joint| !joint.is_empty())
             && self.tubes.iter().all(|tube| tube.tree.len() > 0);
         some.then(|| PartsBox(vec![0; self.skeleton.levels.len()]))
     }
 
-    /// A box with the options of one level halved; `None` if there is one option.
+    /// A box divided into two by the options of one level; `None` if the level has only one option.
     pub fn halves(&self, parts: &PartsBox, level: usize) -> Option<[PartsBox; 2]> {
         let halves = self.tree(level).halves(parts.0[level])?;
         Some(halves.map(|node| {
@@ -66,18 +67,18 @@ impl Boxes {
             .collect()
     }
 
-    /// A mass \[kg\] and a tip deflection \[m\] that no member of a box betters; `None` if no member holds.
+    /// A mass \[kg\] and a tip deflection \[m\] that no member of a box improves on; `None` if no member holds.
     pub fn least_mass_and_deflection(&self, parts: &PartsBox) -> Option<[f64; 2]> {
         let ideal = self.skeleton.ideal_point(&self.members(parts)?)?;
         Some([ideal.mass_kg, ideal.tip_m])
     }
 
-    /// Whether it is proved that no member of a box that holds has a lowest mode above `hz`.
+    /// Whether it is proved that every member of a box that holds has a lowest mode of at most `hz`.
     pub fn proves_none_faster(&self, parts: &PartsBox, hz: f64) -> bool {
         self.members(parts).is_none_or(|members| self.skeleton.slowest(&members, hz).is_none())
     }
 
-    /// The parts of a box, joint by joint from the tip; `None` if no member holds.
+    /// Ranges of a box's parts, worked out from the tip inward; `None` if no member holds.
     pub(super) fn members(&self, nodes: &PartsBox) -> Option<Members<'_>> {
         let tubes: Vec<&TubeRange> =
             self.tubes.iter().map(|tube| &tube.nodes[self.node(tube.level, nodes)]).collect();
@@ -113,7 +114,7 @@ impl Boxes {
         }
     }
 
-    /// The design of a box of one option a level, with all that tie with it.
+    /// The design of a box that has one option at every level, with all designs that tie with it.
     pub(super) fn design(&self, parts: &PartsBox) -> Option<Design> {
         let members = self.members(parts)?;
         let choice = |(place, &node): (&Place, &u32)| match *place {

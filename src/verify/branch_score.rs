@@ -2,7 +2,7 @@
 
 use super::bound::{IdealPoint, Members, compliances};
 use super::boxes::Boxes;
-use super::drive_range::angle_rad;
+use super::drive_range::{DriveRange, angle_rad};
 use super::layout::Coordinate;
 use super::modes::Slow;
 use super::parts_box::{PartsBox, Place};
@@ -10,8 +10,9 @@ use super::pencil::square;
 use super::tubes::{DENSITIES, TubeRange};
 use crate::arm::joint_law::Windup;
 
-/// Scores the levels of a box: how much the ideal point loses if an average part replaces the best one. The level with
-/// the largest score is halved. Any rule gives a valid proof; this one makes boxes shrink fast.
+/// Scores the levels of a box by how much worse the ideal point becomes if a level has an average part instead of the
+/// best one. The level with the largest score is halved. Any rule gives a valid proof; this one makes boxes shrink
+/// fast.
 pub(super) struct BranchScore<'a> {
     pub boxes: &'a Boxes,
     pub members: &'a Members<'a>,
@@ -21,7 +22,7 @@ pub(super) struct BranchScore<'a> {
 }
 
 impl BranchScore<'_> {
-    /// How much the ideal point loses by a level.
+    /// How much worse the ideal point becomes if a level has an average part.
     pub(super) fn score_of(&self, level: usize) -> f64 {
         let node = self.parts.0[level];
         let [mass_kg, tip_m, eigenvalue] = match self.boxes.skeleton.levels[level] {
@@ -35,7 +36,7 @@ impl BranchScore<'_> {
         part(mass_kg, self.ideal.mass_kg) + part(tip_m, self.ideal.tip_m).ln_1p() + 0.5 * slower.ln_1p()
     }
 
-    /// Loss of mass, deflection and `λ` by an average drive.
+    /// By how much an average drive makes mass \[kg\], deflection \[m\] and `λ` \[1/s²\] worse.
     fn of_joint(&self, joint: usize, node: u32) -> [f64; 3] {
         let (range, whole) = (&self.members.drives[joint], self.boxes.joints[joint].range(node));
         let mass_kg = 0.5 * (whole.most_kg.min(range.most_kg) - range.least_kg);
@@ -45,13 +46,27 @@ impl BranchScore<'_> {
         let tip_m = softer * pose.tip_m_per_rad[joint].dot(&self.ideal.direction).abs();
         let slope = |curve: &Windup| curve.tangent_nm_per_rad(torque_nm);
         let weaker = 0.5 * (slope(&range.stiff) - slope(&range.soft));
+        let looser_rad_per_nm = 0.5 * (range.tilt_rad_per_nm.most - range.tilt_rad_per_nm.least);
+        let by_tilt = pose.by_tilts[joint].along(&self.ideal.direction, &self.members.loads[pose.water]);
+        let tip_m = tip_m + looser_rad_per_nm * by_tilt.middle().max(0.0);
         let x = &self.slow.mode;
         let inertia = mass_kg * square(&self.slow.pose.inertia_per[joint], x);
-        let eigenvalue = weaker * x[joint] * x[joint] + self.slow.eigenvalue * inertia;
+        let eigenvalue =
+            weaker * x[joint] * x[joint] + self.slower_by_tilt(joint, range) + self.slow.eigenvalue * inertia;
         [mass_kg, tip_m + self.deflection_per(joint) * mass_kg, eigenvalue]
     }
 
-    /// Loss of mass, deflection and `λ` by an average tube.
+    /// By how much an average bearing makes the strain of the mode less \[N m\].
+    fn slower_by_tilt(&self, joint: usize, range: &DriveRange) -> f64 {
+        let weaker = range.greatest_tilt_stiffness() - 1.0 / range.tilt_rad_per_nm.middle();
+        let coordinates = self.boxes.skeleton.coordinates.iter().zip(&self.slow.mode);
+        let tilts = coordinates.filter(|(c, _)| matches!(c, Coordinate::Tilt(j, _) if *j == joint));
+        let strain: f64 = tilts.map(|(_, x)| weaker * x * x).sum();
+        // a bearing that may be rigid stands still in the mode
+        if strain.is_finite() { strain } else { 0.0 }
+    }
+
+    /// By how much an average tube makes mass \[kg\], deflection \[m\] and `λ` \[1/s²\] worse.
     fn of_tube(&self, tube: usize) -> [f64; 3] {
         let range: &TubeRange = self.members.tubes[tube];
         let pose = &self.boxes.skeleton.poses[self.ideal.worst];
@@ -95,7 +110,7 @@ impl BranchScore<'_> {
         strain + self.slow.eigenvalue * inertia
     }
 
-    /// What a unit of a load adds to the deflection of the stiffest arm.
+    /// Deflection of the stiffest arm per unit of a load (the mass of a drive, or the weight per length of a tube).
     fn deflection_per(&self, load: usize) -> f64 {
         let pose = &self.boxes.skeleton.poses[self.ideal.worst];
         let loads = &self.members.loads[pose.water];
@@ -108,7 +123,9 @@ impl BranchScore<'_> {
         let tubes = self.members.tubes.iter().zip(&pose.works).flat_map(|(tube, works)| {
             works.iter().zip(compliances(tube)).map(|(w, c)| w.per_load[load].dot(direction) * c.least)
         });
-        let tilts = pose.by_springs_m.iter().map(|by_spring_m| by_spring_m.per_load[load].dot(direction));
-        joints.chain(tubes).chain(tilts).sum()
+        let tilts = self.members.drives.iter().zip(&pose.by_tilts);
+        let tilts = tilts.map(|(d, w)| w.per_load[load].dot(direction) * d.tilt_rad_per_nm.least);
+        let springs = pose.by_springs_m.iter().map(|by_spring_m| by_spring_m.per_load[load].dot(direction));
+        joints.chain(tubes).chain(tilts).chain(springs).sum()
     }
 }

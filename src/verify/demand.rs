@@ -1,6 +1,8 @@
-//! The torques that a drive must hold.
+//! The torques that a drive must hold, and the loads on its output bearing.
 
-/// A torque on the output side that a drive must hold.
+use super::bearing::BearingDemand;
+
+/// A torque on the output side of a gear that a drive must hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
     /// While standing in the worst pose (Eq 7) \[N m\].
@@ -9,13 +11,16 @@ pub(super) enum Quantity {
     Peak,
     /// In an emergency stop \[N m\].
     Stop,
-    /// Cube of the cubic mean over the duty cycle \[(N m)³\]: a cube root is not needed to compare.
+    /// Cube of the cubic mean over the duty cycle \[(N m)³\]. Cubes are compared, so that no root has to be taken.
     MeanCubed,
 }
 
 /// Number of quantities.
 pub(super) const QUANTITIES: usize = 4;
 
-/// What is asked for of each quantity.
+/// What a drive must hold: a torque for each [`Quantity`], and the loads on its output bearing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Demand(pub [f64; QUANTITIES]);
+pub(super) struct Demand {
+    pub torques: [f64; QUANTITIES],
+    pub bearing: BearingDemand,
+}

@@ -9,27 +9,30 @@
 use super::span::Span;
 use crate::arm::joint_law::{Curve, JointLaw, LostMotion, Windup};
 
-/// Least, largest and middling numbers of a set of drives.
+/// Least and greatest numbers over a set of drives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct DriveRange {
     pub least_kg: f64,
     pub most_kg: f64,
-    /// Nowhere softer than any of the drives.
+    /// A torsion curve that is nowhere softer than the curve of any of the drives.
     pub stiff: Windup,
-    /// Nowhere stiffer than any of the drives.
+    /// A torsion curve that is nowhere stiffer than the curve of any of the drives.
     pub soft: Windup,
-    /// Largest slope in modes of any drive that has one slope there, whatever the torque \[N m/rad\];
-    /// infinite if a drive has not.
+    /// Tilt of the output bearing per moment across the axis, effects included \[rad/(N m)\]; 0 is rigid.
+    pub tilt_rad_per_nm: Span,
+    /// Greatest slope that a mode sees in any of the drives, if modes see one slope under every torque \[N m/rad\].
+    /// Infinite if for some drive the slope depends on the torque.
     pub modal_nm_per_rad: f64,
-    /// Of the joint, the same for all its drives: what closes with the torque.
+    /// Lost motion of the joint, the same for all of its drives.
     pub lost_motion: Option<LostMotion>,
-    /// Of the joint: half width of what friction holds back of the middle slope's twist \[rad\].
+    /// Half width of the joint's hysteresis \[rad\], the same for all of its drives. Friction holds back at most this
+    /// twist, and at most the twist that the torque would make with the slope K2.
     pub friction_rad: f64,
 }
 
 impl DriveRange {
-    /// One drive.
-    pub(super) fn of(law: &JointLaw, mass_kg: f64) -> Self {
+    /// The range of a single drive.
+    pub(super) fn of(law: &JointLaw, tilt_rad_per_nm: f64, mass_kg: f64) -> Self {
         let one_slope = |k: f64| Windup {
             k1_nm_per_rad: k,
             k2_nm_per_rad: k,
@@ -55,6 +58,7 @@ impl DriveRange {
             most_kg: mass_kg,
             stiff: slopes([k1, k1.max(k2), k1.max(k2).max(k3)]),
             soft: slopes([k1.min(k2).min(k3), k2.min(k3), k3]),
+            tilt_rad_per_nm: Span { least: tilt_rad_per_nm, most: tilt_rad_per_nm },
             modal_nm_per_rad,
             lost_motion: law.lost_motion,
             friction_rad: law.hysteresis_rad,
@@ -67,13 +71,19 @@ impl DriveRange {
             most_kg: self.most_kg.max(other.most_kg),
             stiff: curve(&self.stiff, &other.stiff, f64::max, f64::min),
             soft: curve(&self.soft, &other.soft, f64::min, f64::max),
+            tilt_rad_per_nm: self.tilt_rad_per_nm.with(other.tilt_rad_per_nm),
             modal_nm_per_rad: self.modal_nm_per_rad.max(other.modal_nm_per_rad),
             ..*self
         }
     }
 
-    /// Least twist under any of some torques, with its sign \[rad\]: the gear and what closes with the torque twist least
-    /// under the least torque, and friction holds back most under the most.
+    /// Greatest stiffness of an output bearing against a tilt \[N m/rad\]; infinite if one of them is rigid.
+    pub(super) fn greatest_tilt_stiffness(&self) -> f64 {
+        1.0 / self.tilt_rad_per_nm.least
+    }
+
+    /// Least twist under the torques of an interval, with its sign \[rad\]. Gear and lost motion twist least under
+    /// the least torque; friction holds back most under the greatest.
     pub(super) fn least_angle_rad(&self, torque_nm: Span) -> f64 {
         let Span { least, most } = torque_nm;
         let gear = if least >= 0.0 { angle_rad(&self.stiff, least) } else { -angle_rad(&self.soft, -least) };
@@ -81,7 +91,7 @@ impl DriveRange {
         gear + closed - self.most_held_rad(most)
     }
 
-    /// The most that friction may hold back of a twist under torques of no more than this, with its sign \[rad\].
+    /// Greatest twist that friction may hold back under any torque up to this one, with its sign \[rad\].
     fn most_held_rad(&self, torque_nm: f64) -> f64 {
         match torque_nm >= 0.0 {
             true => (torque_nm / self.soft.k2_nm_per_rad).min(self.friction_rad),
@@ -89,7 +99,7 @@ impl DriveRange {
         }
     }
 
-    /// Largest slope for a small further torque at any torque up to this size \[N m/rad\].
+    /// Greatest slope for a small further torque, at any torque of at most this magnitude \[N m/rad\].
     pub(super) fn largest_slope(&self, torque_nm: f64) -> f64 {
         // beyond a break point by less than rounding counts as beyond
         let reach_nm = torque_nm * (1.0 + 1e-9) + 1e-9;
@@ -109,7 +119,7 @@ fn curve(a: &Windup, b: &Windup, slope: fn(f64, f64) -> f64, break_point: fn(f64
     }
 }
 
-/// Twist under a torque that is not negative; break points may be infinite.
+/// Twist under a torque that is not negative \[rad\]; break points may be infinite.
 pub(super) fn angle_rad(curve: &Windup, torque_nm: f64) -> f64 {
     let first = torque_nm.min(curve.t1_nm);
     let second = torque_nm.min(curve.t2_nm) - first;

@@ -8,52 +8,52 @@ use super::parts_box::Choice;
 use super::ratings::Ratings;
 use super::tree::Tree;
 
-/// Sets of drives no larger than this are looked through one by one.
+/// In sets of no more drives than this, every drive is compared with the demand.
 const FEW: usize = 64;
 
 /// The drives that a joint may have.
 pub(super) struct DriveOptions {
-    /// Place among the levels of the space, if there is a choice.
+    /// Index among the levels of the space; `None` if the drive is no choice.
     pub level: Option<usize>,
-    /// What the joint does, if a drive must hold it.
+    /// The motion of the joint; `None` for a given drive, which is not checked.
     pub duty: Option<Duty>,
-    /// Lightest first.
+    /// The drives, lightest first.
     pub options: Vec<DriveOption>,
 }
 
-/// A drive, or drives of equal mass and torsion.
+/// A drive, or several drives of equal mass, torsion curve and tilt of the bearing.
 #[derive(Debug, Clone)]
 pub(super) struct DriveOption {
     pub range: DriveRange,
-    /// Number of each drive, and what it holds.
+    /// Number of each drive, and the torques that the drive holds.
     pub drives: Vec<(u32, Ratings)>,
 }
 
-/// Whether drives of equal mass and torsion, which no objective tells apart, are one option.
+/// Whether drives of equal mass, torsion curve and tilt, which no objective tells apart, are one option.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Ties {
     Apart,
     Together,
 }
 
-/// Drives that a joint may have, halved again and again.
+/// The drives that a joint may have, in a tree whose nodes are halved down to single options.
 pub(super) struct Drives {
     pub level: Option<usize>,
     pub duty: Option<Duty>,
     pub tree: Tree,
-    /// Range and largest ratings of each node.
+    /// For each node of the tree, range and greatest ratings of its drives.
     nodes: Vec<(DriveRange, Ratings)>,
     options: Vec<DriveOption>,
 }
 
 impl DriveOptions {
-    /// All drives of a joint; `level` counts if the drive is a choice.
+    /// All drives of a joint. `level` is used only if the drive is a choice.
     pub(super) fn new(offers: &JointOffers, level: usize, ties: Ties) -> Self {
         let offers = match offers {
-            JointOffers::Given { law, mass_kg } => {
+            JointOffers::Given { law, tilt_rad_per_nm, mass_kg } => {
                 let drives = vec![(0, Ratings::UNLIMITED)];
-                let given = DriveOption { range: DriveRange::of(law, *mass_kg), drives };
-                return Self { level: None, duty: None, options: vec![given] };
+                let range = DriveRange::of(law, *tilt_rad_per_nm, *mass_kg);
+                return Self { level: None, duty: None, options: vec![DriveOption { range, drives }] };
             }
             JointOffers::Catalog(offers) => offers,
         };
@@ -67,7 +67,7 @@ impl DriveOptions {
         Self { level: offers.is_choice.then_some(level), duty: Some(offers.duty), options }
     }
 
-    /// Some of the options, ascending.
+    /// Some of the options, given by ascending indices.
     pub(super) fn only(&self, some: &[u32]) -> Self {
         let options = some.iter().map(|&i| self.options[i as usize].clone()).collect();
         Self { options, ..*self }
@@ -78,17 +78,18 @@ impl DriveOption {
     fn of_ties(CatalogOffers { offers, .. }: &CatalogOffers, set: &[u32]) -> Self {
         let first = &offers[set[0] as usize];
         Self {
-            range: DriveRange::of(&first.law, first.mass_kg),
+            range: first.range(),
             drives: set.iter().map(|&place| (place, offers[place as usize].ratings)).collect(),
         }
     }
 
-    /// Whether a drive of it holds a demand.
+    /// Whether at least one drive of the option holds a demand.
     pub(super) fn holds(&self, asked: &Demand) -> bool {
         self.drives.iter().any(|(_, ratings)| ratings.hold(asked))
     }
 
-    /// Its drives that may hold a demand between two, and whether the first of them surely does.
+    /// The drives of the option that may hold a demand that lies between two, and whether the first of them surely
+    /// holds.
     pub(super) fn holding(&self, [least, most]: &[Demand; 2]) -> Choice {
         let may = self.drives.iter().filter(|(_, ratings)| ratings.hold(least));
         let (mut drives, unsure): (Vec<&(u32, Ratings)>, Vec<_>) =
@@ -98,7 +99,7 @@ impl DriveOption {
         Choice { options: drives.into_iter().map(|&(number, _)| number).collect(), one_holds }
     }
 
-    /// The largest rating of its drives for each quantity.
+    /// The greatest rating of the option's drives for each quantity.
     fn ratings(&self) -> Ratings {
         let (first, rest) = self.drives.split_first().expect("an option has a drive");
         rest.iter().fold(first.1, |ratings, (_, other)| ratings.max(other))
@@ -106,7 +107,7 @@ impl DriveOption {
 }
 
 impl Drives {
-    /// Halves the options.
+    /// Builds the tree of the options.
     pub(super) fn new(DriveOptions { level, duty, options }: DriveOptions) -> Self {
         let all: Vec<u32> = (0..options.len() as u32).collect();
         let tree = Tree::new(all, &options.iter().map(keys).collect::<Vec<_>>());
@@ -125,7 +126,7 @@ impl Drives {
         self.tree.options(node).iter().map(|&i| &self.options[i as usize])
     }
 
-    /// The drives of a node that may hold what is asked at least; `None` if there is none.
+    /// Range of a node's drives that may hold a demand of at least `asked`; `None` if there is none.
     pub(super) fn holding(&self, node: u32, asked: &Demand) -> Option<DriveRange> {
         if self.tree.options(node).len() > FEW {
             let (range, ratings) = &self.nodes[node as usize];
@@ -135,7 +136,8 @@ impl Drives {
         holding.map(|option| option.range).reduce(|a, b| a.with(&b))
     }
 
-    /// The drives that may be the lightest that holds a demand between two; `None` if none holds the least.
+    /// Range of the drives that may be the lightest to hold a demand that lies between two. `None` if no drive holds
+    /// the least.
     pub(super) fn first_fits(&self, least: &Demand, most: &Demand) -> Option<DriveRange> {
         let fits = first_fits(self.options.iter().map(|option| ((), option)), least, most);
         fits.map(|(_, option)| option.range).reduce(|a, b| a.with(&b))
@@ -152,8 +154,8 @@ impl Drives {
     }
 }
 
-/// The drives that may be the lightest that holds a demand between two: all that hold the least, up to the
-/// first that holds the most.
+/// The drives that may be the lightest to hold a demand that lies between two. These are all drives that hold the
+/// least demand, up to the first that holds the greatest.
 pub(super) fn first_fits<'o, T>(
     options: impl Iterator<Item = (T, &'o DriveOption)>,
     least: &Demand,
@@ -177,6 +179,7 @@ fn keys(option: &DriveOption) -> Vec<f64> {
         0.5 * stiff.k1_nm_per_rad.ln(),
         0.5 * stiff.k3_nm_per_rad.ln(),
         0.2 * stiff.t1_nm.ln(),
+        0.3 * drive.greatest_tilt_stiffness().ln(),
         0.2 * ratings.on(Quantity::Peak).ln(),
         0.2 * ratings.on(Quantity::Static).ln(),
     ]

@@ -2,6 +2,7 @@
 //!
 //! Everything here follows from the question and the geometry alone; torque and inertia come in when a demand is made.
 
+use super::bearing::BearingDemand;
 use super::demand::{Demand, QUANTITIES, Quantity};
 use super::question::{AskedMotion, AskedPhase, AskedPhaseKind, LinearTorque};
 
@@ -16,15 +17,17 @@ pub(super) struct Duty {
     pub acceleration_rad_s2: f64,
     /// Required life \[h\].
     pub life_h: f64,
-    /// Linear torque per inertia \[rad/s²\] and per static torque; one of them is zero.
+    /// Torque of linear acceleration per inertia \[rad/s²\], and per static torque. One of the two is zero, depending
+    /// on how Eq 8 is read.
     linear_per_inertia: f64,
     linear_per_static: f64,
-    /// Linear torque of an emergency stop over that of the ramp.
-    stop_factor: f64,
+    /// Torque of linear acceleration in an emergency stop, divided by that in a ramp.
+    pub stop_factor: f64,
     mean: MeanTorque,
 }
 
-/// Weights of the cubes in the cubic mean torque.
+/// Weights in the cube of the cubic mean: of static plus linear torque, of static torque, and of static minus linear
+/// torque, each cubed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct MeanTorque {
     of_sum: f64,
@@ -33,7 +36,7 @@ struct MeanTorque {
 }
 
 impl Duty {
-    /// The motion of a joint whose axis the tip is at most `reach_m` away from.
+    /// The motion of a joint; the tip is at most `reach_m` from its axis.
     pub(super) fn new(motion: &AskedMotion, reach_m: f64, max_speed_rad_s: Option<f64>) -> Self {
         // the tip's speed over its lever; a short lever would ask a roll joint for absurd speeds
         let lever_m = reach_m.max(motion.min_lever_m);
@@ -56,19 +59,20 @@ impl Duty {
         }
     }
 
-    /// What a static torque and an inertia outboard ask of the drive; it grows with both (see [`AskedMotion::grows`]).
+    /// The torques that a static torque and an inertia outboard ask of the drive, without any load on its bearing. They
+    /// grow with both (see [`AskedMotion::grows`]).
     pub(super) fn demand(&self, static_nm: f64, inertia_kgm2: f64) -> Demand {
         let static_nm = static_nm.abs();
         let linear_nm = (self.linear_per_inertia * inertia_kgm2 + self.linear_per_static * static_nm).abs();
         let cube = |nm: f64| nm * nm * nm;
-        let mut demand = [0.0; QUANTITIES];
-        demand[Quantity::Static as usize] = static_nm;
-        demand[Quantity::Peak as usize] = static_nm + linear_nm;
-        demand[Quantity::Stop as usize] = static_nm + self.stop_factor * linear_nm;
-        demand[Quantity::MeanCubed as usize] = self.mean.of_sum * cube(static_nm + linear_nm)
+        let mut torques = [0.0; QUANTITIES];
+        torques[Quantity::Static as usize] = static_nm;
+        torques[Quantity::Peak as usize] = static_nm + linear_nm;
+        torques[Quantity::Stop as usize] = static_nm + self.stop_factor * linear_nm;
+        torques[Quantity::MeanCubed as usize] = self.mean.of_sum * cube(static_nm + linear_nm)
             + self.mean.of_static * cube(static_nm)
             + self.mean.of_difference * cube((static_nm - linear_nm).abs());
-        Demand(demand)
+        Demand { torques, bearing: BearingDemand::default() }
     }
 }
 
@@ -78,8 +82,8 @@ impl AskedMotion {
         self.tip_speed_m_s / self.ramp_time_s
     }
 
-    /// Whether no torque that is asked for falls when static torque or inertia grows. Only the ramp down subtracts
-    /// one from the other, and the ramp up outweighs it if it is at least as long.
+    /// Whether no torque of a demand falls when static torque or inertia grows. Only while slowing down is the linear
+    /// torque subtracted from the static torque; speeding up outweighs this if it takes at least as long.
     pub fn grows(&self) -> bool {
         let mean = self.mean_torque();
         mean.of_difference <= mean.of_sum
@@ -118,7 +122,7 @@ impl AskedMotion {
 }
 
 impl AskedPhase {
-    /// Duration times mean speed over full speed \[s\].
+    /// Time that the travel of the phase takes at full speed \[s\]: duration times mean speed over full speed.
     fn travel_s(&self) -> f64 {
         self.duration_s
             * match self.kind {

@@ -4,20 +4,21 @@ use crate::pareto::objectives::Objectives;
 
 /// Objectives closer than this count as equal (relative).
 const TIE: f64 = 1e-9;
-/// A row must be better by this in one objective to discard a box (relative).
+/// A design of the front must be better by this in one objective to discard a box (relative).
 const BETTER: f64 = 1e-7;
 
-/// The rows of a front in the order of mass. It finds the highest frequency of all rows up to a mass and a deflection.
+/// The designs of a front, sorted by mass. The index finds the highest frequency among the designs up to a mass and a
+/// deflection.
 ///
-/// Position `i` of `blocks` (from 1, as in a Fenwick tree) stands for the last `i & -i` rows up to the `i`-th:
-/// deflections rising, each with the highest frequency of those that deflect no more.
+/// Position `i` of `blocks` (from 1, as in a Fenwick tree) stands for the last `i & -i` designs up to the `i`-th:
+/// their deflections in ascending order, each with the highest frequency of the designs that deflect no more.
 pub(super) struct FrontIndex {
     masses_kg: Vec<f64>,
     blocks: Vec<Vec<(f64, f64)>>,
 }
 
 impl FrontIndex {
-    /// Sorts the rows.
+    /// Sorts the designs of a front.
     pub(super) fn new(front: &[Objectives]) -> Self {
         let mut rows = front.to_vec();
         rows.sort_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
@@ -39,7 +40,8 @@ impl FrontIndex {
         }
     }
 
-    /// Highest frequency among rows that weigh and deflect no more \[Hz\]; zero if there is none.
+    /// Highest frequency among the designs of the front that weigh no more and deflect no more \[Hz\]; zero if there
+    /// is none.
     fn highest_hz(&self, mass_kg: f64, tip_m: f64) -> f64 {
         let mut end = self.masses_kg.partition_point(|row| *row <= mass_kg);
         let mut highest = 0.0f64;
@@ -52,8 +54,9 @@ impl FrontIndex {
         highest
     }
 
-    /// The largest frequency at which a design of this mass and deflection is beaten by a row: the row is no
-    /// worse in all three, ties counted for the row, and better in one. Zero if no row beats it at any.
+    /// Greatest frequency at which a design of this mass and deflection is dominated by a design of the front \[Hz\].
+    /// The dominating design is no worse in all three objectives, with ties counted in its favour, and better in one.
+    /// Zero if there is no such frequency.
     pub(super) fn beaten_up_to_hz(&self, mass_kg: f64, tip_m: f64) -> f64 {
         let lighter = self.highest_hz(mass_kg * (1.0 - BETTER), tip_m * (1.0 + TIE));
         let stiffer = self.highest_hz(mass_kg * (1.0 + TIE), tip_m * (1.0 - BETTER));
@@ -61,7 +64,7 @@ impl FrontIndex {
         (lighter.max(stiffer) * (1.0 + TIE)).max(as_good * (1.0 - BETTER))
     }
 
-    /// Whether a row beats a design.
+    /// Whether a design of the front dominates a design.
     pub(super) fn beats(&self, design: &Objectives) -> bool {
         design.lowest_mode_hz <= self.beaten_up_to_hz(design.mass_kg, design.tip_deflection_m)
     }

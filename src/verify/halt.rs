@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// The search stops at more single designs: the rows are then far from a front.
+/// The search stops when more single designs than this are left: the front checked is then far from complete.
 const MOST_DESIGNS: usize = 200_000;
 
-/// What a search found.
+/// Number of boxes that a search has bounded, and number of those that it left open.
 #[derive(Default)]
 pub(super) struct Found {
     pub boxes: u64,
@@ -22,29 +22,29 @@ impl Found {
     }
 }
 
-/// The designs that a search has come to, and what ends it early.
+/// The designs that a search has reached, and the conditions that end it early.
 pub(super) struct Halt<'s> {
     pub stop: &'s AtomicBool,
     pub deadline: Option<Instant>,
-    /// Single designs that no bound cut, and how many.
+    /// Single designs that no bound discarded, and their number.
     pub designs: Mutex<BTreeSet<Design>>,
     pub count: AtomicUsize,
 }
 
 impl Halt<'_> {
-    /// Whether the search is to end early.
+    /// Whether the search has to end early.
     pub(super) fn stopped(&self) -> bool {
         self.count.load(Ordering::Relaxed) > MOST_DESIGNS || self.out_of_time()
     }
 
-    /// Notes a design; it may be known from another region.
+    /// Stores a design. It may have been found in another region already.
     pub(super) fn note(&self, design: Option<Design>) {
         let mut designs = self.designs.lock().unwrap_or_else(PoisonError::into_inner);
         designs.extend(design);
         self.count.store(designs.len(), Ordering::Relaxed);
     }
 
-    /// Whether whoever asked wants an end.
+    /// Whether the user has stopped the search or its deadline has passed.
     pub(super) fn out_of_time(&self) -> bool {
         self.stop.load(Ordering::Relaxed) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }

@@ -8,7 +8,7 @@ use super::bound::Members;
 use super::drive_range::DriveRange;
 use super::offers::{CatalogOffers, JointOffers, Offer};
 use super::question::{AskedDrive, AskedJoint, AskedLink, AskedPiece, Question};
-use super::skeleton::{Skeleton, joint_offers};
+use super::skeleton::{Skeleton, carriers, joint_offers};
 use super::tubes::{TubeNumbers, TubeOptions, TubeRange, is_too_slender};
 use crate::arm::joint_law::Curve;
 use crate::arm::load::Water;
@@ -18,60 +18,61 @@ use crate::mechanics::chain::Chain;
 use crate::pareto::objectives::Objectives;
 use std::sync::Arc;
 
-/// What a design has for one piece of the chain.
+/// The part that a design has at one piece of the chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Pick {
-    /// What the question gives, or whatever its rule gives: a drive that fits first.
+    /// The part that the question gives, or that its rule determines: the lightest drive that holds.
     Given,
-    /// A drive of the catalogs, by the places of gear and motor in their lists.
+    /// A drive of the catalogs, given by the indices of its gear and motor.
     Drive {
-        /// Place of the gear.
+        /// Index of the gear in the catalogs.
         gear: usize,
-        /// Place of the motor.
+        /// Index of the motor in the catalogs.
         motor: usize,
     },
-    /// A tube, by its place in the list of its link.
+    /// A tube, given by its index in the list of the link.
     Tube(usize),
 }
 
-/// A design that holds.
+/// A design that meets every check and every limit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
-    /// What it has for each piece, base to tip; drives that fit first are named.
+    /// The part at each piece, base to tip. Drives that the first-fit rule determined are named.
     pub picks: Vec<Pick>,
-    /// Its objectives by the full model.
+    /// The objectives of the design by the full model.
     pub objectives: Objectives,
 }
 
-/// Judges designs of a question.
+/// Judges the designs of a question by the full model.
 pub struct Judge<'q> {
     pub(super) question: &'q Question,
     pub(super) skeleton: Arc<Skeleton>,
     pub(super) offers: Vec<JointOffers>,
 }
 
-/// The drive that a design has at a joint.
+/// The drive that a design has at a joint, with its range for the bounds.
 struct Fitted {
     range: DriveRange,
     pick: Pick,
 }
 
 impl<'q> Judge<'q> {
-    /// Reads the drives that the catalogs offer, and puts the arm into all of its cases.
+    /// Reads the drives that the catalogs offer, and puts the arm into every case of the question.
     pub fn new(question: &'q Question, catalogs: &Catalogs) -> Self {
-        let skeleton = Arc::new(Skeleton::new(question));
-        Self { question, skeleton, offers: joint_offers(question, catalogs) }
+        let offers = joint_offers(question, catalogs);
+        Self { question, skeleton: Arc::new(Skeleton::new(question, &offers)), offers }
     }
 
-    /// What is asked.
+    /// The question whose designs are judged.
     pub fn question(&self) -> &Question {
         self.question
     }
 
-    /// Judges a design; `None` if it does not hold, if it is none of the question's, or if it names a drive that does not
-    /// fit first.
+    /// Judges a design. `None` if it does not hold, if it is not a design of the question, or if it names another
+    /// drive than the lightest that holds.
     ///
-    /// A torque within 1e-9 of what a drive holds, and a stress as close to what is allowed, count as held.
+    /// A torque within 1e-9 (relative) of what a drive holds counts as held, and so does a stress that close to its
+    /// limit.
     pub fn judge(&self, picks: &[Pick]) -> Option<Judged> {
         let tubes = self.tubes(picks)?;
         let picks = self.with_drives(picks, &tubes)?;
@@ -86,8 +87,8 @@ impl<'q> Judge<'q> {
         holds.then_some(Judged { picks, objectives })
     }
 
-    /// A design with the first of every drive's ties in its place: two designs differ in nothing but drives of equal mass and
-    /// torsion if this is the same of both.
+    /// The design with every drive replaced by the first drive of equal mass, torsion curve and tilt. Two designs differ
+    /// only in such drives if the result is the same for both.
     pub fn first_tie(&self, picks: &[Pick]) -> Vec<Pick> {
         let mut joints = self.offers.iter();
         let first = |(piece, pick): (&AskedPiece, &Pick)| {
@@ -101,15 +102,15 @@ impl<'q> Judge<'q> {
         self.question.pieces.iter().zip(picks).map(first).collect()
     }
 
-    /// The tubes of a design as ranges of one, base to tip; `None` if one is too slender.
+    /// The tubes of a design, each as a range of one tube, base to tip; `None` if a tube is too slender.
     fn tubes(&self, picks: &[Pick]) -> Option<Vec<TubeRange>> {
         let (question, waters): (_, &[Option<Water>]) = (self.question, &self.skeleton.waters);
         let mut tubes = Vec::new();
-        for (piece, pick) in question.pieces.iter().zip(picks) {
+        for ((carrier, piece), pick) in carriers(question).zip(picks) {
             match piece {
                 AskedPiece::Joint(_) => {}
                 AskedPiece::Link(link) => {
-                    if let Some(options) = TubeOptions::of_link(question, link, waters) {
+                    if let Some(options) = TubeOptions::of_link(question, carrier, link, waters) {
                         tubes.push(TubeRange::one(&options.tubes.first()?.1));
                     }
                 }
@@ -118,21 +119,23 @@ impl<'q> Judge<'q> {
                     if is_too_slender(question, &tube.section) {
                         return None;
                     }
-                    tubes.push(TubeRange::one(&TubeNumbers::of_choice(question, choice, tube, waters)));
+                    let numbers = TubeNumbers::of_choice(question, carrier, choice, tube, waters);
+                    tubes.push(TubeRange::one(&numbers));
                 }
             }
         }
         Some(tubes)
     }
 
-    /// Goes from the tip inward and sees that every drive holds what is outboard of it; names those that fit first.
+    /// Checks from the tip inward whether every drive holds what is outboard of it, and names the drives of joints
+    /// with the first-fit rule. `None` if a drive does not hold.
     fn with_drives(&self, picks: &[Pick], tubes: &[TubeRange]) -> Option<Vec<Pick>> {
         let pieces = self.question.pieces.iter().enumerate();
         let places: Vec<usize> = pieces
             .filter(|(_, piece)| matches!(piece, AskedPiece::Joint(_)))
             .map(|(place, _)| place)
             .collect();
-        let nothing = DriveRange::of(&Curve::Rigid.into(), 0.0);
+        let nothing = DriveRange::of(&Curve::Rigid.into(), 0.0, 0.0);
         let mut members =
             Members::new(vec![nothing; places.len()], tubes.iter().collect(), self.skeleton.waters.len());
         let mut out = picks.to_vec();
@@ -144,11 +147,12 @@ impl<'q> Judge<'q> {
         self.skeleton.strong_enough(&members).then_some(out)
     }
 
-    /// The drive of a joint if it holds, everything outboard being known.
+    /// The drive of a joint; `None` if it does not hold. Everything outboard must be known.
     fn fitted(&self, joint: usize, pick: &Pick, members: &Members) -> Option<Fitted> {
         let offers = match &self.offers[joint] {
-            JointOffers::Given { law, mass_kg } => {
-                return Some(Fitted { range: DriveRange::of(law, *mass_kg), pick: Pick::Given });
+            JointOffers::Given { law, tilt_rad_per_nm, mass_kg } => {
+                let range = DriveRange::of(law, *tilt_rad_per_nm, *mass_kg);
+                return Some(Fitted { range, pick: Pick::Given });
             }
             JointOffers::Catalog(offers) => offers,
         };
@@ -164,7 +168,7 @@ impl<'q> Judge<'q> {
             before.into_iter().all(|other| !other.ratings.hold(&most)).then_some(())?;
         }
         let pick = Pick::Drive { gear: offer.gear, motor: offer.motor };
-        Some(Fitted { range: DriveRange::of(&offer.law, offer.mass_kg), pick })
+        Some(Fitted { range: offer.range(), pick })
     }
 
     /// The arm of a design with all of its parts.
@@ -181,10 +185,11 @@ impl<'q> Judge<'q> {
 
     fn joint(&self, joint: &AskedJoint, offers: &JointOffers, pick: &Pick) -> Option<Element> {
         if let AskedDrive::Given { curve, mass_kg } = joint.drive {
-            return Some(joint.with_drive(curve, mass_kg));
+            return Some(joint.with_drive(curve, mass_kg, joint.bearing.stated(), joint.extras.stated()));
         }
         let offer = offer_of(offers.of_catalog()?, pick)?;
-        Some(joint.with_drive(Curve::Windup(offer.windup), offer.mass_kg))
+        let curve = Curve::Windup(offer.windup);
+        Some(joint.with_drive(curve, offer.drive_kg, offer.bearing, offer.extras))
     }
 
     fn objectives(&self, arm: &Arm) -> Objectives {
@@ -200,7 +205,7 @@ impl<'q> Judge<'q> {
         worst
     }
 
-    /// Cost of the chosen tubes, tip first; material of unknown cost counts for nothing \[EUR\].
+    /// Cost of the chosen tubes, tip first \[EUR\]. Material of unknown cost counts as zero.
     fn material_cost_eur(&self, picks: &[Pick]) -> f64 {
         let costs = self.question.pieces.iter().zip(picks).rev().filter_map(|(piece, pick)| match piece {
             AskedPiece::Choice(choice) => {

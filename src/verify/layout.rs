@@ -1,6 +1,6 @@
 //! Where joints, tubes and masses are in a pose, and how every coordinate moves a point.
 //!
-//! The coordinates are the twist of a joint, the tilt of an effect's spring and, for each tube, constant and linear curvature in
+//! The coordinates are the twist of a joint, its tilts about two axes across, the tilt of an effect's spring and, for each tube, constant and linear curvature in
 //! both planes, and constant shear, twist and stretch. The full model has all of these, and more. A body that can move in
 //! fewer ways is stiffer, so its lowest mode is no lower than that of the full model.
 
@@ -11,12 +11,12 @@ use crate::mechanics::beam::section_frame;
 use crate::mechanics::chain::across;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-/// Place of a piece's springs in the order from base to tip.
+/// Rank of a piece's springs in the order from base to tip.
 fn spring_rank(piece: usize) -> usize {
     2 * piece
 }
 
-/// Place of a piece itself in that order: its springs come before it.
+/// Rank of a piece in that order. Its springs come before it.
 fn piece_rank(piece: usize) -> usize {
     2 * piece + 1
 }
@@ -26,6 +26,8 @@ pub(super) struct PlacedJoint {
     pub rank: usize,
     pub at_m: Vector3<f64>,
     pub axis: Vector3<f64>,
+    /// The axes about which its bearing tilts.
+    pub across: [Vector3<f64>; 2],
 }
 
 /// A tube in a pose; the frame's columns are its axis and the section's y and z.
@@ -78,9 +80,9 @@ impl Layout {
             match piece {
                 Piece::Joint(joint) => {
                     let axis = rotation * joint.axis.into_inner();
-                    layout.add_springs(place, &across(&axis).map(|axis| (axis, joint.tilt_rad_per_nm)));
                     layout.add_mass(place, layout.tip_m, joint.mass_kg);
-                    layout.joints.push(PlacedJoint { rank: piece_rank(place), at_m: layout.tip_m, axis });
+                    let (rank, at_m) = (piece_rank(place), layout.tip_m);
+                    layout.joints.push(PlacedJoint { rank, at_m, axis, across: across(&axis) });
                     let angle = angles.next().copied().unwrap_or_default().to_radians();
                     rotation *= Rotation3::from_axis_angle(&joint.axis, angle);
                 }
@@ -94,7 +96,8 @@ impl Layout {
         layout
     }
 
-    /// The springs that the arm stands on; they are inboard of the first piece, whose springs come first in the list.
+    /// Adds the springs on which the arm stands. They are inboard of the first piece, but in the list they come after
+    /// the springs of that piece.
     fn add_base(&mut self, structure: &Structure) {
         let fixed = structure.base_frame.springs();
         let level = [Vector3::x(), Vector3::y()].map(|axis| (axis, structure.base_tilt_rad_per_nm));
@@ -106,7 +109,8 @@ impl Layout {
         }
     }
 
-    /// Springs where the arm has come to, about axes of the world; those that do not yield are left out.
+    /// Adds springs at the end of the chain so far, about axes in the world frame. Springs that do not yield are left
+    /// out.
     fn add_springs(&mut self, place: usize, springs: &[(Vector3<f64>, f64)]) {
         for &(axis, rad_per_nm) in springs.iter().filter(|(_, rad_per_nm)| *rad_per_nm > 0.0) {
             let (rank, at_m) = (spring_rank(place), self.tip_m);
@@ -138,13 +142,14 @@ impl Layout {
     }
 }
 
-/// Whether something weighs along a link: it is a tube, or cables run along it.
+/// Whether a link has weight along its length: because it is a tube, or because cables run along it.
 pub(super) fn has_line(link: &LinkPiece) -> bool {
     let has_cables = link.harness_kg_per_m != 0.0 && link.vector_m.norm() > 0.0;
     link.beam.is_some() || has_cables
 }
 
-/// A point of the arm: beyond everything of a lower rank, and maybe inside the tube of this rank.
+/// A point of the arm. Everything of a lower rank is inboard of it. If it lies in a tube, its rank is that of the
+/// tube.
 #[derive(Clone, Copy)]
 pub(super) struct Point {
     pub at_m: Vector3<f64>,
@@ -156,11 +161,11 @@ pub(super) struct Point {
 /// A way in which a tube yields.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Shape {
-    /// Curvature that moves the tube along z, constant or from 1 at the root to -1 at the end.
+    /// Curvature that moves the tube along z: constant, or falling linearly from 1 at the root to -1 at the end.
     BendZ {
         linear: bool,
     },
-    /// The same along y.
+    /// Curvature that moves the tube along y, in the same two forms.
     BendY {
         linear: bool,
     },
@@ -179,7 +184,8 @@ const BENDING: [Shape; 4] = [
 const REST: [Shape; 4] = [Shape::ShearZ, Shape::ShearY, Shape::Twist, Shape::Stretch];
 
 impl Shape {
-    /// Displacement and rotation of the section at `x` per unit, from the clamped root, in the tube's frame.
+    /// Displacement and rotation of the section at `x` per unit of the shape, in the tube's frame. The root is
+    /// clamped.
     fn field(self, x: f64, length_m: f64) -> (Vector3<f64>, Vector3<f64>) {
         let slope = |linear: bool| if linear { x - x * x / length_m } else { x };
         let moved =
@@ -200,7 +206,8 @@ impl Shape {
         }
     }
 
-    /// Which of a tube's stiffnesses resists, and the integral of the squared strain \[m\].
+    /// Index of the tube's stiffness that resists the shape, and the integral of the squared strain along the tube
+    /// \[m\].
     pub(super) fn stiffness(self, length_m: f64) -> (usize, f64) {
         let bending = |linear: bool| if linear { length_m / 3.0 } else { length_m };
         match self {
@@ -218,14 +225,19 @@ impl Shape {
 pub(super) enum Coordinate {
     /// Twist of a joint.
     Joint(usize),
+    /// Tilt of a joint's bearing about one of two axes across.
+    Tilt(usize, usize),
+    /// Displacement of all that is outboard of a joint along one of the two axes across, or along its axis. Nothing yields
+    /// like that: it tells forces.
+    Shift(usize, usize),
     /// A shape of a tube.
     Tube(usize, Shape),
     /// Tilt of an effect's spring.
     Spring(usize),
 }
 
-/// All coordinates of an arm, those of joints first.
-pub(super) fn coordinates(layout: &Layout, model: LinkModel) -> Vec<Coordinate> {
+/// All coordinates of an arm, twists of joints first; the bearings of some joints may tilt.
+pub(super) fn coordinates(layout: &Layout, model: LinkModel, tilting: &[bool]) -> Vec<Coordinate> {
     let shapes: &[&[Shape]] = match model {
         LinkModel::Rigid => &[],
         LinkModel::Bending => &[&BENDING],
@@ -235,11 +247,14 @@ pub(super) fn coordinates(layout: &Layout, model: LinkModel) -> Vec<Coordinate> 
     let joints = (0..layout.joints.len()).map(Coordinate::Joint);
     let tubes = 0..layout.tubes.len();
     let tubes = tubes.flat_map(|tube| shapes.iter().map(move |&shape| Coordinate::Tube(tube, shape)));
-    joints.chain(tubes).chain((0..layout.springs.len()).map(Coordinate::Spring)).collect()
+    let tilting = (0..layout.joints.len()).filter(|&joint| tilting[joint]);
+    let tilts = tilting.flat_map(|joint| [Coordinate::Tilt(joint, 0), Coordinate::Tilt(joint, 1)]);
+    let springs = (0..layout.springs.len()).map(Coordinate::Spring);
+    joints.chain(tubes).chain(tilts).chain(springs).collect()
 }
 
 impl Layout {
-    /// Displacement and rotation of a point per unit of a coordinate, world.
+    /// Displacement and rotation of a point per unit of a coordinate, in the world frame.
     pub(super) fn motion(&self, coordinate: Coordinate, point: &Point) -> (Vector3<f64>, Vector3<f64>) {
         let still = (Vector3::zeros(), Vector3::zeros());
         let turned = |axis: &Vector3<f64>, at_m| (axis.cross(&(point.at_m - at_m)), *axis);
@@ -247,6 +262,15 @@ impl Layout {
             Coordinate::Joint(joint) => {
                 let joint = &self.joints[joint];
                 if joint.rank < point.rank { turned(&joint.axis, joint.at_m) } else { still }
+            }
+            Coordinate::Tilt(joint, which) => {
+                let joint = &self.joints[joint];
+                if joint.rank < point.rank { turned(&joint.across[which], joint.at_m) } else { still }
+            }
+            Coordinate::Shift(joint, which) => {
+                let joint = &self.joints[joint];
+                let direction = joint.across.get(which).unwrap_or(&joint.axis);
+                if joint.rank < point.rank { (*direction, Vector3::zeros()) } else { still }
             }
             Coordinate::Spring(spring) => {
                 let spring = &self.springs[spring];
@@ -258,7 +282,8 @@ impl Layout {
 }
 
 impl PlacedTube {
-    /// Displacement and rotation of a point in or beyond the tube per unit of a shape, world.
+    /// Displacement and rotation, per unit of a shape, of a point in the tube or outboard of it, in the world frame.
+    /// `None` for a point inboard of the tube.
     fn motion(&self, shape: Shape, point: &Point) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let world = |x: f64| {
             let (moved, turned) = shape.field(x, self.length_m);

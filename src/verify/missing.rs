@@ -19,28 +19,28 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
-/// Single designs judged at a time.
+/// Number of single designs that are judged at a time.
 const BATCH: usize = 4096;
-/// Designs that are listed with all their ties; of more, one of each is.
+/// Largest number of designs for which all ties are listed. If there are more, one of each set of ties is listed.
 const MOST_TIES: f64 = 2e4;
 
-/// What looking for missing designs came to.
+/// The result of looking for missing designs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Looked {
-    /// The designs that hold and that no row beats; those of the rows are among them.
+    /// The designs that hold and that no design of the front dominates. The front's own designs are among them.
     pub candidates: Vec<Judged>,
     /// Boxes bounded.
     pub boxes: u64,
-    /// Boxes left unopened when it was stopped.
+    /// Boxes that were not bounded because the search was stopped.
     pub open: u64,
-    /// Whether no candidate was left out because it ties with another.
+    /// Whether the candidates include every design that ties with another.
     pub ties_listed: bool,
 }
 
-/// Whether the bounds see all there is in a question.
+/// Whether the verifier's bounds are valid for a question.
 ///
 /// # Errors
-/// What they do not see, in words.
+/// What the bounds do not take into account, in words.
 pub fn conditions(question: &Question) -> Result<(), String> {
     match question.motion.grows() {
         true => Ok(()),
@@ -51,9 +51,9 @@ pub fn conditions(question: &Question) -> Result<(), String> {
 }
 
 impl Judge<'_> {
-    /// Looks for designs that belong beside the rows of a front. The question must meet the [`conditions`].
+    /// Looks for designs that belong on a front but are missing from it. The question must meet the [`conditions`].
     ///
-    /// The answer does not depend on the number of threads unless it is stopped.
+    /// The answer does not depend on the number of threads unless the search is stopped.
     pub fn missing(
         &self,
         front: &[Objectives],
@@ -90,7 +90,7 @@ impl Judge<'_> {
         boxes.root().map_or_else(Found::default, |root| search.explore(&root))
     }
 
-    /// Number of designs; `None` beyond what 128 bits hold.
+    /// Number of designs of the question; `None` if it exceeds 128 bits.
     fn designs(&self) -> Option<u128> {
         let drives = self.offers.iter().filter_map(JointOffers::of_catalog);
         let drives = drives.filter(|offers| offers.is_choice).map(|offers| offers.offers.len());
@@ -101,13 +101,13 @@ impl Judge<'_> {
         drives.chain(tubes).try_fold(1u128, |product, options| product.checked_mul(options as u128))
     }
 
-    /// Those of some designs that hold and that no row beats.
+    /// Judges designs, and returns those that hold and that no design of the front dominates.
     fn unbeaten(&self, designs: &[Vec<u32>], front: &FrontIndex) -> Vec<Judged> {
         let judged = designs.par_iter().filter_map(|options| self.judge(&self.picks(options)));
         judged.filter(|design| !front.beats(&design.objectives)).collect()
     }
 
-    /// What a design has for each piece, from its option of each level, tip first.
+    /// The part at each piece of a design, base to tip. `options` are the design's options at each level, tip first.
     pub fn picks(&self, options: &[u32]) -> Vec<Pick> {
         let (mut levels, mut joints) = (options.iter().rev(), self.offers.iter());
         let mut next = || levels.next().map_or(0, |&option| option as usize);
@@ -126,8 +126,8 @@ impl Judge<'_> {
     }
 }
 
-/// The options of some designs, ascending, and whether all of their ties are there: if they are too many it is one of
-/// each.
+/// The options of each single design, in ascending order, and whether all ties are among them. If there are too many,
+/// one of each set of ties is returned.
 fn one_by_one(designs: &BTreeSet<Design>) -> (Vec<Vec<u32>>, bool) {
     let count = |design: &Design| design.iter().map(|choice| choice.options.len() as f64).product::<f64>();
     let is_one = |design: &Design| count(design) == 1.0;

@@ -24,6 +24,8 @@
 //!
 //! Vast spaces are searched region by region (`region`).
 
+pub(crate) mod bearing;
+pub(crate) mod bearing_loads;
 pub(crate) mod bound;
 pub(crate) mod boxes;
 pub(crate) mod branch_score;

@@ -5,16 +5,16 @@ use super::pencil::{Factor, Pencil};
 use super::pose::Pose;
 use super::skeleton::Skeleton;
 
-/// The judged case in which the stiffest arm of a box is slowest.
+/// The judged case in which the ideal arm of a box has the lowest frequency, with the arm's mode there.
 pub(super) struct Slow<'w> {
     pub pose: &'w Pose,
     pub mode: Vec<f64>,
-    /// Its Rayleigh quotient.
+    /// Rayleigh quotient of the mode \[1/s²\].
     pub eigenvalue: f64,
 }
 
 impl Skeleton {
-    /// The slowest case if the stiffest arm is faster than `hz` in every case; `None` if in one it is not.
+    /// The judged case in which the ideal arm is slowest; `None` if its frequency is `hz` or less in some case.
     pub(super) fn slowest(&self, members: &Members, hz: f64) -> Option<Slow<'_>> {
         let eigenvalue = eigenvalue_of(hz);
         if !eigenvalue.is_finite() {
@@ -34,13 +34,13 @@ impl Skeleton {
         slow.reduce(|a, b| if b.eigenvalue < a.eigenvalue { b } else { a })
     }
 
-    /// The least frequency that the study asks for \[Hz\], less rounding.
+    /// The lowest mode that the study requires, less a margin for rounding \[Hz\].
     pub(super) fn required_hz(&self) -> f64 {
         self.limits.required_mode_hz() * (1.0 - ROUNDING)
     }
 }
 
-/// `(2 π f)²`.
+/// Eigenvalue of a frequency, `(2 π f)²` \[1/s²\].
 pub(super) fn eigenvalue_of(hz: f64) -> f64 {
     (std::f64::consts::TAU * hz).powi(2)
 }

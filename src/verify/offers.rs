@@ -1,9 +1,13 @@
 //! What the catalogs offer a joint: every drive that may be used, turns fast enough and has all numbers that are needed.
 
+use super::bearing::{BearingRatings, with_gear};
 use super::demand::Demand;
+use super::drive_range::DriveRange;
 use super::duty::Duty;
 use super::question::{AllowedParts, AskedDrive, AskedJoint, Question};
 use super::ratings::Ratings;
+use crate::arm::bearing::Bearing;
+use crate::arm::extras::Extras;
 use crate::arm::joint_law::{Curve, JointLaw, Windup};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::Gear;
@@ -13,81 +17,127 @@ use std::collections::HashMap;
 /// A gear and a motor.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Offer {
-    /// Place of the gear in the catalogs.
+    /// Index of the gear in the catalogs.
     pub gear: usize,
-    /// Place of the motor in the catalogs.
+    /// Index of the motor in the catalogs.
     pub motor: usize,
+    /// Mass of gear, motor and extras.
     pub mass_kg: f64,
+    /// Mass of gear and motor.
+    pub drive_kg: f64,
+    pub extras: Extras,
     /// The gear's torsion curve.
     pub windup: Windup,
-    /// How the joint twists with it, effects included.
+    /// The output bearing of the joint with this gear.
+    pub bearing: Option<Bearing>,
+    /// Joint law with this gear, effects included.
     pub law: JointLaw,
+    /// Tilt of the bearing per moment across the axis, effects included \[rad/(N m)\].
+    pub tilt_rad_per_nm: f64,
     pub ratings: Ratings,
 }
 
-/// The drive of a joint: given, or offers of the catalogs.
+/// The drive of a joint: given by the study, or offered by the catalogs.
 pub(super) enum JointOffers {
-    Given { law: JointLaw, mass_kg: f64 },
+    Given { law: JointLaw, tilt_rad_per_nm: f64, mass_kg: f64 },
     Catalog(CatalogOffers),
 }
 
 /// The drives of the catalogs that a joint may have.
 pub(super) struct CatalogOffers {
     pub duty: Duty,
-    /// Whether any that holds may be chosen; else the lightest that holds is.
+    /// Whether the search may choose any drive that holds. Otherwise the joint takes the lightest drive that holds.
     pub is_choice: bool,
-    /// Lightest first, equal masses by the names of gear and motor.
+    /// The drives, lightest first; those of equal mass by the names of gear and motor.
     pub offers: Vec<Offer>,
-    /// Where the drive of a gear and a motor stands.
+    /// Index in `offers` of the drive with this gear and motor.
     places: HashMap<(usize, usize), u32>,
 }
 
 impl JointOffers {
-    /// The drives of a joint whose axis the tip is at most `reach_m` away from.
+    /// The drives of a joint; the tip is at most `reach_m` from its axis.
     pub(super) fn new(question: &Question, joint: &AskedJoint, reach_m: f64, catalogs: &Catalogs) -> Self {
-        let law = |curve| question.joint_piece(joint, curve).law;
+        let springs = |curve, bearing| {
+            let piece = question.joint_piece(joint, curve, bearing);
+            (piece.law, piece.tilt_rad_per_nm)
+        };
         let allowed = match &joint.drive {
             AskedDrive::Given { curve, mass_kg } => {
-                return Self::Given { law: law(*curve), mass_kg: *mass_kg };
+                let (law, tilt_rad_per_nm) = springs(*curve, joint.bearing.stated());
+                let mass_kg = mass_kg + joint.extras.stated().total_kg();
+                return Self::Given { law, tilt_rad_per_nm, mass_kg };
             }
             AskedDrive::FirstFit(allowed) | AskedDrive::AllFits(allowed) => allowed,
         };
         let duty = Duty::new(&question.motion, reach_m, joint.max_speed_rad_s);
-        let offers = offers(allowed, &duty, catalogs, law);
+        let offers = offers(joint, allowed, &duty, catalogs, springs);
         let places = (0..).zip(&offers).map(|(place, offer)| ((offer.gear, offer.motor), place)).collect();
         Self::Catalog(CatalogOffers { duty, is_choice: joint.drive.is_choice(), offers, places })
     }
 
-    /// The drives of the catalogs, if they give the drive.
+    /// The drives that the catalogs offer; `None` if the study gives the drive.
     pub(super) fn of_catalog(&self) -> Option<&CatalogOffers> {
         match self {
             Self::Given { .. } => None,
             Self::Catalog(offers) => Some(offers),
         }
     }
+
+    /// Whether some drive makes the joint tilt.
+    pub(super) fn tilts(&self) -> bool {
+        match self {
+            Self::Given { tilt_rad_per_nm, .. } => *tilt_rad_per_nm > 0.0,
+            Self::Catalog(offers) => offers.offers.iter().any(|offer| offer.tilt_rad_per_nm > 0.0),
+        }
+    }
+
+    /// Whether a bearing may be too weak.
+    pub(super) fn checks_bearing(&self) -> bool {
+        let limits = |offer: &Offer| offer.ratings.bearing != BearingRatings::UNLIMITED;
+        self.of_catalog().is_some_and(|offers| offers.offers.iter().any(limits))
+    }
+}
+
+impl Offer {
+    /// The numbers of the drive as a range of one.
+    pub(super) fn range(&self) -> DriveRange {
+        DriveRange::of(&self.law, self.tilt_rad_per_nm, self.mass_kg)
+    }
+
+    /// Whether no objective tells two drives of equal mass apart.
+    fn yields_like(&self, other: &Self) -> bool {
+        self.law == other.law && self.tilt_rad_per_nm == other.tilt_rad_per_nm
+    }
 }
 
 fn offers(
+    joint: &AskedJoint,
     allowed: &AllowedParts,
     duty: &Duty,
     catalogs: &Catalogs,
-    law: impl Fn(Curve) -> JointLaw,
+    springs: impl Fn(Curve, Option<Bearing>) -> (JointLaw, f64),
 ) -> Vec<Offer> {
     let mut offers = Vec::new();
     for (gear_place, gear) in catalogs.gears.iter().enumerate().filter(|(_, gear)| allowed.allows_gear(gear))
     {
         // a gear whose torsion is not known cannot be judged
         let Some(windup) = torsion_curve(gear) else { continue };
-        let law = law(Curve::Windup(windup));
+        let bearing = with_gear(&joint.bearing, gear, allowed.gear_mass);
+        let (law, tilt_rad_per_nm) = springs(Curve::Windup(windup), bearing);
+        let extras = |motor| joint.extras.with_parts(gear, motor, allowed.gear_mass);
         let motors = catalogs.motors.iter().enumerate().filter(|(_, motor)| allowed.allows_motor(motor));
         offers.extend(motors.filter_map(|(motor_place, motor)| {
             Some(Offer {
                 gear: gear_place,
                 motor: motor_place,
-                mass_kg: mass_kg(allowed, gear, motor)?,
+                mass_kg: drive_kg(allowed, gear, motor)? + extras(motor).total_kg(),
+                drive_kg: drive_kg(allowed, gear, motor)?,
+                extras: extras(motor),
                 windup,
+                bearing,
                 law,
-                ratings: Ratings::of(gear, motor, duty)?,
+                tilt_rad_per_nm,
+                ratings: Ratings::of(gear, motor, bearing.as_ref(), duty)?,
             })
         }));
     }
@@ -96,13 +146,14 @@ fn offers(
     offers
 }
 
-/// Mass of gear and motor, to the microgram: sums that are equal on paper are then equal here, which ties are made of.
-fn mass_kg(allowed: &AllowedParts, gear: &Gear, motor: &Motor) -> Option<f64> {
+/// Mass of gear and motor \[kg\], rounded to the microgram. Sums that are equal on paper are then equal here, as ties
+/// require. `None` if a mass is unknown.
+fn drive_kg(allowed: &AllowedParts, gear: &Gear, motor: &Motor) -> Option<f64> {
     const PER_KG: f64 = 1e9;
     Some(((gear.mass_kg(allowed.gear_mass)? + motor.mass_kg?) * PER_KG).round() / PER_KG)
 }
 
-/// The torsion curve of a gear, if the catalog has all of it.
+/// The torsion curve of a gear; `None` if the catalog lacks a number of the curve.
 fn torsion_curve(gear: &Gear) -> Option<Windup> {
     let [k1_nm_per_rad, k2_nm_per_rad, k3_nm_per_rad] =
         [gear.k1_nm_per_rad?, gear.k2_nm_per_rad?, gear.k3_nm_per_rad?];
@@ -110,7 +161,8 @@ fn torsion_curve(gear: &Gear) -> Option<Windup> {
 }
 
 impl CatalogOffers {
-    /// Places of the drives that can be the lightest that holds: those that no lighter one covers in every rating.
+    /// Indices of the drives that can be the lightest that holds. A drive cannot be if a lighter drive has ratings at
+    /// least as large in every quantity.
     pub(super) fn first_fits(&self) -> Vec<u32> {
         let mut kept: Vec<u32> = Vec::new();
         for (place, offer) in self.offers.iter().enumerate() {
@@ -122,15 +174,15 @@ impl CatalogOffers {
         kept
     }
 
-    /// Places of the drives in sets of equal mass and torsion, which no objective tells apart.
+    /// Indices of the drives, in sets of equal mass, torsion curve and tilt, which no objective tells apart.
     pub(super) fn ties(&self) -> Vec<Vec<u32>> {
         let mut sets: Vec<Vec<u32>> = Vec::new();
         let mut place = 0;
         for of_mass in self.offers.chunk_by(|a, b| a.mass_kg == b.mass_kg) {
             let first = sets.len();
             for offer in of_mass {
-                let has_law = |set: &&mut Vec<u32>| self.offers[set[0] as usize].law == offer.law;
-                match sets[first..].iter_mut().find(has_law) {
+                let alike = |set: &&mut Vec<u32>| self.offers[set[0] as usize].yields_like(offer);
+                match sets[first..].iter_mut().find(alike) {
                     Some(set) => set.push(place),
                     None => sets.push(vec![place]),
                 }
@@ -145,13 +197,13 @@ impl CatalogOffers {
         self.offers.iter().find(|offer| offer.ratings.hold(demand))
     }
 
-    /// The first of the drives of a drive's mass and torsion.
+    /// The first drive of the same mass, torsion curve and tilt as this drive.
     pub(super) fn first_tie<'o>(&'o self, offer: &'o Offer) -> &'o Offer {
         let first = self.offers.partition_point(|other| other.mass_kg < offer.mass_kg);
-        self.offers[first..].iter().find(|other| other.law == offer.law).unwrap_or(offer)
+        self.offers[first..].iter().find(|other| other.yields_like(offer)).unwrap_or(offer)
     }
 
-    /// The drive of some gear and motor.
+    /// The drive with this gear and motor.
     pub(super) fn of(&self, gear: usize, motor: usize) -> Option<&Offer> {
         self.places.get(&(gear, motor)).map(|&place| &self.offers[place as usize])
     }

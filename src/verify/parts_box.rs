@@ -1,6 +1,6 @@
 //! A set of designs: one set of options for each level.
 
-/// The piece that a level chooses, base to tip.
+/// The piece whose part a level chooses. Joints and tubes are each counted from base to tip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Place {
     /// A joint's drive.
@@ -9,18 +9,19 @@ pub(super) enum Place {
     Tube(usize),
 }
 
-/// A box: a node of every level's tree, tip first. Its members are all designs whose options are below these nodes.
+/// A box: for every level, tip first, a node of the level's tree. Its members are all designs whose options are below
+/// these nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartsBox(pub(super) Vec<u32>);
 
 /// Options of one level that no objective tells apart.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Choice {
-    /// Their numbers, those first that hold whatever rounding does.
+    /// Numbers of the options. Those that hold whatever rounding does come first.
     pub options: Vec<u32>,
-    /// Whether the first is one.
+    /// Whether the first option surely holds.
     pub one_holds: bool,
 }
 
-/// A design, or those that no objective tells apart: what each level may be, tip first.
+/// A design, or several that no objective tells apart: the choice at each level, tip first.
 pub(super) type Design = Vec<Choice>;

@@ -5,10 +5,10 @@
 //! is at least and `M` at most that of any member (in the order of positive semidefinite differences), and
 //! then so is each Rayleigh quotient, and by Courant and Fischer `λ_1`.
 
-/// Stiffness and inertia of an arm's coordinates in a pose.
+/// Diagonal stiffness matrix `K` and inertia matrix `M` of an arm's coordinates in a pose.
 pub(super) struct Pencil {
     stiffness: Vec<f64>,
-    /// Lower triangle by rows.
+    /// Lower triangle of the inertia matrix, row by row.
     inertia: Vec<f64>,
 }
 
@@ -18,16 +18,16 @@ pub(super) struct Factor {
     lower: Vec<f64>,
 }
 
-/// Steps of inverse iteration towards a slower motion.
+/// Number of steps of inverse iteration towards a slower motion.
 const STEPS: usize = 5;
 
-/// Entries of a lower triangle before a row.
+/// Number of entries of a lower triangle before row `i`.
 fn row(i: usize) -> usize {
     i * (i + 1) / 2
 }
 
 impl Pencil {
-    /// The pencil of coordinates with a diagonal stiffness; those that are infinitely stiff stand still.
+    /// The pencil of these matrices. Coordinates of infinite stiffness are held at rest.
     pub(super) fn new(mut stiffness: Vec<f64>, mut inertia: Vec<f64>) -> Self {
         let size = stiffness.len();
         for i in 0..size {
@@ -45,8 +45,9 @@ impl Pencil {
         self.factor_or_slower(eigenvalue).ok()
     }
 
-    /// The factor of `K - λ M`, or a motion `x` with `xᵀ K x <= λ xᵀ M x`: the first pivot `p` that is not positive is
-    /// `xᵀ (K - λ M) x` of an `x` that has one there, nothing beyond it, and balances the rest before it.
+    /// The factor of `K - λ M`, or a motion `x` with `xᵀ K x <= λ xᵀ M x`. The motion comes from the first pivot that
+    /// is not positive: it is one at the pivot's coordinate, zero at later coordinates, and in equilibrium at earlier
+    /// ones, so the pivot equals `xᵀ (K - λ M) x`.
     fn factor_or_slower(&self, eigenvalue: f64) -> Result<Factor, Vec<f64>> {
         let size = self.stiffness.len();
         let mut lower = vec![0.0; self.inertia.len()];
@@ -71,7 +72,7 @@ impl Pencil {
         Ok(Factor { size, lower })
     }
 
-    /// About the lowest mode: a few steps of inverse iteration, scaled to `xᵀ M x = 1`.
+    /// Approximation of the lowest mode by a few steps of inverse iteration, scaled to `xᵀ M x = 1`.
     pub(super) fn lowest_mode(&self, factor: &Factor) -> Vec<f64> {
         let mut x = vec![1.0; self.stiffness.len()];
         for _ in 0..3 {
@@ -85,8 +86,8 @@ impl Pencil {
         x
     }
 
-    /// A motion whose quotient is a number or less, made slower by a few steps of inverse iteration; `None` if there is
-    /// none.
+    /// A motion whose Rayleigh quotient is at most `eigenvalue`, lowered further by a few steps of inverse iteration.
+    /// `None` if no motion has so low a quotient.
     pub(super) fn slower_motion(&self, eigenvalue: f64) -> Option<Vec<f64>> {
         let mut x = self.factor_or_slower(eigenvalue).err()?;
         for _ in 0..STEPS {
@@ -107,13 +108,13 @@ impl Pencil {
         square(&self.inertia, x)
     }
 
-    /// `xᵀ K x`.
+    /// Twice the strain energy of a motion, `xᵀ K x`.
     pub(super) fn strain(&self, x: &[f64]) -> f64 {
         self.stiffness.iter().zip(x).map(|(k, x)| k * x * x).sum()
     }
 }
 
-/// `xᵀ A x` of a symmetric matrix given by its lower triangle.
+/// `xᵀ A x` for a symmetric matrix `A`, given by its lower triangle.
 pub(super) fn square(triangle: &[f64], x: &[f64]) -> f64 {
     let mut sum = 0.0;
     for (i, a) in x.iter().enumerate() {
@@ -135,7 +136,7 @@ impl Factor {
         x
     }
 
-    /// The second half of it.
+    /// Solves `Lᵀ x = b` with the factor `L`; `x` holds `b` at first.
     fn solve_upper(&self, x: &mut [f64]) {
         let lower = |i: usize, j: usize| self.lower[row(i) + j];
         for i in (0..self.size).rev() {

@@ -27,27 +27,31 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
-/// A case of the study.
+/// A case of the study, worked out for bounds.
 pub(super) struct Pose {
     pub judged: bool,
     pub sizing: bool,
-    /// Place of its water among the study's surroundings.
+    /// Index of the medium around the arm, among the study's surroundings.
     pub water: usize,
-    /// Stress over that of the static loads.
+    /// Ratio of the stress while the arm accelerates to the stress of the static loads.
     pub stress_factor: f64,
-    /// Torque on each joint.
+    /// Torque on each joint, as a linear function of the loads \[N m\].
     pub torques: Vec<Linear>,
-    /// Displacement of the tip per twist of each joint \[m/rad\].
+    /// Displacement of the tip per unit twist of each joint \[m/rad\].
     pub tip_m_per_rad: Vec<Vector3<f64>>,
-    /// Displacement of the tip by each spring of an effect.
+    /// Displacement of the tip that each joint's bearing causes per compliance, as a linear function of the loads
+    /// \[m N m/rad\].
+    pub by_tilts: Vec<LinearVector>,
+    /// Displacement of the tip that each spring of an effect causes, as a linear function of the loads \[m\].
     pub by_springs_m: Vec<LinearVector>,
-    /// Displacement of the tip times each stiffness of each tube.
+    /// For each tube and each of its stiffnesses, the displacement of the tip times the stiffness. Divided by the
+    /// stiffness it is the displacement.
     pub works: Vec<[LinearVector; STIFFNESSES]>,
-    /// Force and moment at root and end of each tube, in its frame.
+    /// Force and moment at root and end of each tube, in the tube's frame, as linear functions of the loads.
     pub ends: Vec<[[Linear; 6]; 2]>,
-    /// Inertia that no choice changes, lower triangle by rows.
+    /// Inertia matrix of everything that no choice changes: lower triangle, row by row.
     pub inertia: Vec<f64>,
-    /// Inertia per drive mass, and then per inertia of each tube.
+    /// Inertia matrix per unit mass of each drive, then per unit of each inertia per length of each tube.
     pub inertia_per: Vec<Vec<f64>>,
 }
 
@@ -58,50 +62,38 @@ struct Wrench {
     moment: Vector3<f64>,
 }
 
-/// What a section carries: of fixed loads, and of a unit of each load.
-struct Carried {
+/// Wrench on a section: of the fixed loads, and per unit of each load.
+pub(super) struct Carried {
     fixed: Wrench,
     per_load: Vec<Wrench>,
 }
 
-/// What is needed to work out the sums of a case.
-struct Builder<'a> {
-    layout: &'a Layout,
+/// The inputs from which the numbers of a case are computed.
+#[derive(Clone, Copy)]
+pub(super) struct Builder<'a> {
+    pub layout: &'a Layout,
     gravity_m_s2: f64,
-    /// Payload and tip force with the points they act at.
+    /// Weight of the payload, and the tip force, each with the point where it acts \[m\].
     tip_loads: [(Vector3<f64>, Vector3<f64>); 2],
     coordinates: &'a [Coordinate],
 }
 
 impl Pose {
-    /// Works out a case; `waters` are the study's surroundings.
-    pub(super) fn new(
-        question: &Question,
-        structure: &Structure,
-        index: usize,
-        waters: &[Option<Water>],
-        coordinates: &[Coordinate],
-    ) -> Self {
-        let case = &question.cases[index];
-        let water = water_of(structure, case);
-        let layout = Layout::new(structure, case);
-        let tip_loads = [
-            (payload_weight(question.gravity_m_s2, case, water), payload_at(&layout, case)),
-            (case.tip_force_n, layout.tip_m),
-        ];
-        let builder =
-            Builder { layout: &layout, gravity_m_s2: question.gravity_m_s2, tip_loads, coordinates };
+    /// Works out the case with this index. `water` is the index of its surroundings.
+    pub(super) fn new(question: &Question, index: usize, water: usize, builder: &Builder) -> Self {
+        let (case, layout) = (&question.cases[index], builder.layout);
         let sizing = question.sizing_cases.contains(&index);
         let gravity_m_s2 = question.gravity_m_s2.max(f64::MIN_POSITIVE);
         let acceleration = question.motion.tip_acceleration_m_s2() / gravity_m_s2;
         Self {
             judged: question.judged_cases.contains(&index),
             sizing,
-            water: waters.iter().position(|other| *other == water).unwrap_or_default(),
+            water,
             stress_factor: if sizing { 1.0 + acceleration } else { 1.0 },
             torques: (0..layout.joints.len()).map(|joint| builder.torque(joint)).collect(),
             tip_m_per_rad: layout.joints.iter().map(|j| j.axis.cross(&(layout.tip_m - j.at_m))).collect(),
-            by_springs_m: (0..layout.springs.len()).map(|spring| builder.tilt(spring)).collect(),
+            by_tilts: (0..layout.joints.len()).map(|joint| builder.by_tilt(joint)).collect(),
+            by_springs_m: (0..layout.springs.len()).map(|spring| builder.by_spring(spring)).collect(),
             works: (0..layout.tubes.len()).map(|tube| builder.works(tube)).collect(),
             ends: (0..layout.tubes.len()).map(|tube| builder.ends(tube)).collect(),
             inertia: builder.fixed_inertia(case),
@@ -110,7 +102,7 @@ impl Pose {
     }
 }
 
-/// The water of a case, or that of an effect.
+/// The water around the arm: stated by the case, or else by an effect.
 pub(super) fn water_of(structure: &Structure, case: &LoadCase) -> Option<Water> {
     case.water.or(structure.water)
 }
@@ -133,16 +125,44 @@ impl Wrench {
         Self { force: self.force + other.force, moment: self.moment + other.moment }
     }
 
-    /// Components in a frame: force, then moment.
+    /// Components of the wrench along the axes of a frame: force, then moment.
     fn in_frame(&self, frame: &Matrix3<f64>) -> [f64; 6] {
         let (force, moment) = (frame.tr_mul(&self.force), frame.tr_mul(&self.moment));
         [force.x, force.y, force.z, moment.x, moment.y, moment.z]
     }
 }
 
+impl Carried {
+    /// Its force or its moment along a direction.
+    pub(super) fn along(&self, is_force: bool, direction: &Vector3<f64>) -> Linear {
+        let part = |wrench: &Wrench| direction.dot(if is_force { &wrench.force } else { &wrench.moment });
+        Linear { fixed: part(&self.fixed), per_load: self.per_load.iter().map(part).collect() }
+    }
+}
+
+impl<'a> Builder<'a> {
+    /// The inputs of a case, with the coordinates of its inertia matrix.
+    pub(super) fn new(
+        question: &Question,
+        structure: &Structure,
+        case: &LoadCase,
+        layout: &'a Layout,
+        coordinates: &'a [Coordinate],
+    ) -> Self {
+        let weight = payload_weight(question.gravity_m_s2, case, water_of(structure, case));
+        let tip_loads = [(weight, payload_at(layout, case)), (case.tip_force_n, layout.tip_m)];
+        Self { layout, gravity_m_s2: question.gravity_m_s2, tip_loads, coordinates }
+    }
+
+    /// The same with other coordinates.
+    pub(super) fn with_coordinates(&self, coordinates: &'a [Coordinate]) -> Self {
+        Self { coordinates, ..*self }
+    }
+}
+
 impl Builder<'_> {
-    /// What is carried at a point by everything beyond it.
-    fn carried(&self, point: &Point) -> Carried {
+    /// Wrench at a point of everything outboard of it.
+    pub(super) fn carried(&self, point: &Point) -> Carried {
         let down = |size: f64| Vector3::new(0.0, 0.0, -size);
         let about_m = &point.at_m;
         let none = Wrench::default();
@@ -168,14 +188,24 @@ impl Builder<'_> {
     fn torque(&self, joint: usize) -> Linear {
         let joint = &self.layout.joints[joint];
         let carried = self.carried(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });
-        Linear {
-            fixed: joint.axis.dot(&carried.fixed.moment),
-            per_load: carried.per_load.iter().map(|wrench| joint.axis.dot(&wrench.moment)).collect(),
-        }
+        carried.along(false, &joint.axis)
     }
 
-    /// Displacement of the tip by a spring: its tilt under the moment about its axis times the way of the tip.
-    fn tilt(&self, spring: usize) -> LinearVector {
+    /// Displacement of the tip by a joint's bearing of unit compliance: its tilts under the moments about both axes
+    /// across times the way of the tip.
+    fn by_tilt(&self, joint: usize) -> LinearVector {
+        let joint = &self.layout.joints[joint];
+        let carried = self.carried(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });
+        let tip_m = self.layout.tip_m - joint.at_m;
+        let moved = |wrench: &Wrench| -> Vector3<f64> {
+            joint.across.iter().map(|axis| axis.cross(&tip_m) * axis.dot(&wrench.moment)).sum()
+        };
+        LinearVector { fixed: moved(&carried.fixed), per_load: carried.per_load.iter().map(moved).collect() }
+    }
+
+    /// Displacement of the tip by a spring: the spring's tilt under the moment about its axis, times the displacement
+    /// of the tip per tilt.
+    fn by_spring(&self, spring: usize) -> LinearVector {
         let spring = &self.layout.springs[spring];
         let carried = self.carried(&Point { at_m: spring.at_m, rank: spring.rank, inside_m: None });
         let along_m = spring.axis.cross(&(self.layout.tip_m - spring.at_m)) * spring.rad_per_nm;
@@ -185,7 +215,7 @@ impl Builder<'_> {
         }
     }
 
-    /// A point of a tube's axis.
+    /// The point of a tube's axis at the distance `x` from its root.
     fn inside(&self, tube: usize, x: f64) -> Point {
         let tube = &self.layout.tubes[tube];
         Point { at_m: tube.root_m + tube.frame.column(0) * x, rank: tube.rank, inside_m: Some(x) }
@@ -231,8 +261,8 @@ impl Builder<'_> {
         works
     }
 
-    /// Inertia of payload and masses without a choice.
-    fn fixed_inertia(&self, case: &LoadCase) -> Vec<f64> {
+    /// Inertia matrix of the payload and of the masses that no choice changes.
+    pub(super) fn fixed_inertia(&self, case: &LoadCase) -> Vec<f64> {
         let mut out = self.no_inertia();
         let rotation = &self.layout.tip_rotation;
         let payload = Point { at_m: payload_at(self.layout, case), rank: usize::MAX, inside_m: None };
@@ -251,7 +281,7 @@ impl Builder<'_> {
         out
     }
 
-    fn inertia_per(&self) -> Vec<Vec<f64>> {
+    pub(super) fn inertia_per(&self) -> Vec<Vec<f64>> {
         let drives = self.layout.joints.iter().map(|joint| {
             let mut out = self.no_inertia();
             let (moved, _) = self.motions(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });
@@ -264,7 +294,7 @@ impl Builder<'_> {
         drives.chain(tubes).collect()
     }
 
-    /// Inertia per unit of each inertia per length of a tube.
+    /// Inertia matrix per unit of each inertia per length of a tube.
     fn tube_inertia(&self, tube: usize) -> [Vec<f64>; DENSITIES] {
         let mut out: [Vec<f64>; DENSITIES] = std::array::from_fn(|_| self.no_inertia());
         let placed = &self.layout.tubes[tube];
@@ -280,7 +310,7 @@ impl Builder<'_> {
         out
     }
 
-    /// Displacement and rotation of a point per unit of every coordinate.
+    /// Displacement and rotation of a point per unit of every coordinate, in the world frame.
     fn motions(&self, point: &Point) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
         self.coordinates.iter().map(|&coordinate| self.layout.motion(coordinate, point)).unzip()
     }
@@ -291,7 +321,8 @@ impl Builder<'_> {
     }
 }
 
-/// Products of real and unit internal loads that each stiffness divides, times a length.
+/// For each stiffness, the product of the internal load that it resists and the same internal load of a unit tip
+/// force along each axis, times a length (method of the unit load).
 fn products(real: &[f64; 6], units: &[[f64; 6]; 3], length_m: f64) -> [Vector3<f64>; STIFFNESSES] {
     let product = |i: usize| Vector3::from_fn(|axis, _| real[i] * units[axis][i] * length_m);
     [product(4), product(5), product(1) + product(2), product(3), product(0)]
@@ -301,7 +332,7 @@ fn along(motions: &[Vector3<f64>], direction: &Vector3<f64>) -> Vec<f64> {
     motions.iter().map(|motion| motion.dot(direction)).collect()
 }
 
-/// Adds `weight` times the square of a row to a lower triangle.
+/// Adds `weight · row rowᵀ` to a lower triangle.
 fn add_square(triangle: &mut [f64], row: &[f64], weight: f64) {
     let mut entries = triangle.iter_mut();
     for (i, a) in row.iter().enumerate() {

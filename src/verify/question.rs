@@ -4,7 +4,9 @@
 //! from its list of pieces. So whoever asks copies the study into these types, field by field, and everything that
 //! follows from them (which drives hold, what a tube weighs, where a joint is) is worked out in this room.
 
+use crate::arm::bearing::{Bearing, BearingSource};
 use crate::arm::effect::Effect;
+use crate::arm::extras::{Extras, ExtrasSource};
 use crate::arm::joint_law::Curve;
 use crate::arm::load::LoadCase;
 use crate::arm::section::{LinkMaterial, Section};
@@ -27,7 +29,7 @@ pub struct Question {
     pub judged_cases: Vec<usize>,
     /// Indices of the cases in which drives must hold and the arm accelerates.
     pub sizing_cases: Vec<usize>,
-    /// What the tip must do.
+    /// The motion that the tip must be able to make.
     pub motion: AskedMotion,
     /// Physics of the links.
     pub links: LinkModel,
@@ -57,6 +59,10 @@ pub struct AskedJoint {
     pub name: String,
     /// Axis in the carried frame.
     pub axis: Unit<Vector3<f64>>,
+    /// Where its output bearing comes from.
+    pub bearing: BearingSource,
+    /// Where the masses beyond gear, motor and bearing come from.
+    pub extras: ExtrasSource,
     /// How its drive is found.
     pub drive: AskedDrive,
     /// Largest speed, if the study gives one \[rad/s\]; else it follows from the speed of the tip.
@@ -82,7 +88,7 @@ pub enum AskedDrive {
 /// Which parts of the catalogs a joint may use; `None` allows all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AllowedParts {
-    /// Which mass of a gear counts.
+    /// Whether a gear counts with the mass of its housed unit or of its component set.
     pub gear_mass: GearMass,
     /// Series of gears.
     pub gear_series: Option<Vec<String>>,
@@ -122,40 +128,40 @@ pub struct AskedTube {
     pub cost_eur_per_kg: Option<f64>,
 }
 
-/// What the tip must do.
+/// The motion that the tip must be able to make, and how long its gears must last.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AskedMotion {
     /// Speed of the tip \[m/s\].
     pub tip_speed_m_s: f64,
-    /// Time in which it is reached \[s\].
+    /// Time in which the tip speed is reached \[s\].
     pub ramp_time_s: f64,
-    /// Deceleration of the tip in an emergency stop \[m/s²\]; `None` is twice the acceleration.
+    /// Deceleration of the tip in an emergency stop \[m/s²\]; `None` means twice the acceleration of the ramp.
     pub emergency_deceleration_m_s2: Option<f64>,
-    /// Smallest lever that turns the speed of the tip into that of a joint \[m\].
+    /// Smallest lever by which the tip speed is divided to give a joint's speed \[m\].
     pub min_lever_m: f64,
-    /// The cycle that a joint repeats.
+    /// Phases of the duty cycle that every joint repeats.
     pub phases: Vec<AskedPhase>,
     /// Required life of a gear, L10 \[h\].
     pub life_h: f64,
-    /// How the torque of acceleration is found.
+    /// How the torque of linear acceleration is computed.
     pub linear_torque: LinearTorque,
     /// Gravity, used by [`LinearTorque::OfStaticTorque`] \[m/s²\].
     pub gravity_m_s2: f64,
 }
 
-/// Reading of Eq 8, the torque of linear acceleration.
+/// How Eq 8, the torque of linear acceleration, is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinearTorque {
-    /// Inertia of all that is outboard about the axis, times the joint's acceleration.
+    /// Inertia of everything outboard about the axis, times the joint's acceleration.
     OfInertia,
-    /// Acceleration of the tip over gravity, times the static torque: the paper's reading.
+    /// Acceleration of the tip over gravity, times the static torque, as the paper has it.
     OfStaticTorque,
 }
 
 /// One phase of the duty cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AskedPhase {
-    /// How long it lasts \[s\].
+    /// Duration \[s\].
     pub duration_s: f64,
     /// What the joint does.
     pub kind: AskedPhaseKind,
@@ -190,18 +196,18 @@ pub struct Limits {
     pub mass_max_kg: Option<f64>,
     /// Smallest lowest mode \[Hz\].
     pub lowest_mode_min_hz: Option<f64>,
-    /// A servo's bandwidth \[Hz\] and the least ratio of the lowest mode to it.
+    /// A servo's bandwidth \[Hz\], and the least ratio of the lowest mode to the bandwidth.
     pub servo_hz_and_ratio: Option<[f64; 2]>,
-    /// Smallest strength over stress.
+    /// Smallest ratio of strength to stress.
     pub stress_safety_factor_min: Option<f64>,
-    /// Largest flat width (or diameter) over wall thickness.
+    /// Largest ratio of the flat width (or the diameter) to the wall thickness.
     pub wall_slenderness_max: Option<f64>,
     /// Largest cost of the chosen links' material \[EUR\].
     pub material_cost_max_eur: Option<f64>,
 }
 
 impl Limits {
-    /// The lowest mode that is asked for \[Hz\].
+    /// The lowest mode that the limits require \[Hz\].
     pub fn required_mode_hz(&self) -> f64 {
         let of_servo = self.servo_hz_and_ratio.map_or(0.0, |[bandwidth_hz, ratio]| bandwidth_hz * ratio);
         of_servo.max(self.lowest_mode_min_hz.unwrap_or(0.0))
@@ -231,7 +237,7 @@ fn is_listed<T>(list: &Option<Vec<T>>, is_it: impl Fn(&T) -> bool) -> bool {
 }
 
 impl AskedDrive {
-    /// What the catalogs may give, if they give the drive.
+    /// The parts that the catalogs may offer; `None` if the study gives the drive.
     pub fn allowed(&self) -> Option<&AllowedParts> {
         match self {
             AskedDrive::Given { .. } => None,
@@ -246,7 +252,7 @@ impl AskedDrive {
 }
 
 impl AskedPiece {
-    /// Whether it is a choice of the search.
+    /// Whether the part of this piece is a choice of the search.
     pub fn is_choice(&self) -> bool {
         match self {
             AskedPiece::Joint(joint) => joint.drive.is_choice(),
@@ -257,13 +263,21 @@ impl AskedPiece {
 }
 
 impl AskedJoint {
-    /// The joint of an arm with some drive.
-    pub(super) fn with_drive(&self, curve: Curve, mass_kg: f64) -> Element {
+    /// The arm's element for this joint, with a torsion curve and a mass of the drive, an output bearing and extras.
+    pub(super) fn with_drive(
+        &self,
+        curve: Curve,
+        mass_kg: f64,
+        bearing: Option<Bearing>,
+        extras: Extras,
+    ) -> Element {
         Element::Joint(Joint {
             name: self.name.clone(),
             axis: self.axis,
             curve,
             mass_kg,
+            bearing,
+            extras,
             gear: None,
             motor: None,
             coupled: None,
@@ -272,7 +286,7 @@ impl AskedJoint {
 }
 
 impl AskedLink {
-    /// The link of an arm with some tube.
+    /// The arm's element for this link, with a tube.
     pub(super) fn with_tube(&self, tube: &AskedTube) -> Link {
         let AskedTube { material, section, .. } = *tube;
         let body = LinkBody::Tube { material_name: String::new(), material, section };
@@ -281,21 +295,27 @@ impl AskedLink {
 }
 
 impl Question {
-    /// An arm of these elements with the effects of the question.
+    /// The arm of these elements, with the effects of the question.
     pub(super) fn arm(&self, chain: Vec<Element>) -> Arm {
         Arm { name: String::new(), gravity_m_s2: self.gravity_m_s2, chain, effects: self.effects.clone() }
     }
 
-    /// A joint with a torsion curve and the effects at it; its mass is what the effects add.
-    pub(super) fn joint_piece(&self, joint: &AskedJoint, curve: Curve) -> JointPiece {
-        let arm = self.arm(vec![joint.with_drive(curve, 0.0)]);
+    /// A joint with this torsion curve and bearing and with the effects that act on the joint. Its mass is only that of
+    /// the bearing and what the effects add.
+    pub(super) fn joint_piece(
+        &self,
+        joint: &AskedJoint,
+        curve: Curve,
+        bearing: Option<Bearing>,
+    ) -> JointPiece {
+        let arm = self.arm(vec![joint.with_drive(curve, 0.0, bearing, Extras::default())]);
         match arm.structure(self.joints).pieces.pop() {
             Some(Piece::Joint(piece)) => piece,
             _ => unreachable!("an arm of one joint has one joint"),
         }
     }
 
-    /// A link with the effects at it.
+    /// A link with the effects that act on the link.
     pub(super) fn link_piece(&self, link: Link) -> LinkPiece {
         let arm = self.arm(vec![Element::Link(link)]);
         match arm.structure(self.joints).pieces.pop() {
@@ -304,11 +324,13 @@ impl Question {
         }
     }
 
-    /// The arm without its choices, effects applied: joints are rigid and weightless, and an open link has its
-    /// first tube. It tells where pieces are, and what effects put between them.
+    /// The arm without its choices, effects applied: joints do not twist and have no drives, stated bearings are there, and
+    /// an open link has its first tube. It shows where the pieces are, and what effects put between them.
     pub(super) fn nominal_structure(&self) -> Structure {
         let element = |piece: &AskedPiece| match piece {
-            AskedPiece::Joint(joint) => joint.with_drive(Curve::Rigid, 0.0),
+            AskedPiece::Joint(joint) => {
+                joint.with_drive(Curve::Rigid, 0.0, joint.bearing.stated(), Extras::default())
+            }
             AskedPiece::Link(link) => Element::Link(link.clone()),
             AskedPiece::Choice(choice) => Element::Link(match choice.tubes.first() {
                 Some(tube) => choice.with_tube(tube),

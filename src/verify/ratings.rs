@@ -7,16 +7,21 @@
 //!
 //! Nothing of `sizing` is used: a wrong threshold there must not be repeated here.
 
+use super::bearing::BearingRatings;
 use super::demand::{Demand, QUANTITIES, Quantity};
 use super::duty::Duty;
+use crate::arm::bearing::Bearing;
 use crate::catalog::gear::Gear;
 use crate::catalog::motor::Motor;
 
-/// The most that a drive holds of each quantity.
+/// The greatest torque of each quantity that a drive holds, and what its output bearing holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Ratings([f64; QUANTITIES]);
+pub(super) struct Ratings {
+    most: [f64; QUANTITIES],
+    pub bearing: BearingRatings,
+}
 
-/// A limit of a drive on one quantity; `None` if the catalog leaves blank what it needs.
+/// A limit of a drive on one quantity. `most` gives the limit; `None` if the catalog lacks a number that it needs.
 struct Check {
     on: Quantity,
     most: fn(&Gear, &Motor, &Duty) -> Option<f64>,
@@ -32,47 +37,56 @@ const CHECKS: [Check; 6] = [
     Check { on: Quantity::MeanCubed, most: life_nm3 },
 ];
 
-/// Input speed that rated torques of gears refer to \[rpm\].
+/// Input speed for which the rated torques of gears are stated \[rpm\].
 const RATED_RPM: f64 = 2000.0;
 
 impl Ratings {
-    /// No check fails.
-    pub(super) const UNLIMITED: Self = Self([f64::INFINITY; QUANTITIES]);
+    /// Ratings under which no check fails.
+    pub(super) const UNLIMITED: Self =
+        Self { most: [f64::INFINITY; QUANTITIES], bearing: BearingRatings::UNLIMITED };
 
-    /// The ratings of a drive under a motion; `None` if it turns too fast for it or a number is blank.
-    pub(super) fn of(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<Self> {
-        let mut ratings = Self::UNLIMITED;
+    /// The ratings of a drive under a joint's motion; `None` if the motion is too fast for the drive, or if the
+    /// catalog lacks a number. A blank number of the bearing excludes nothing.
+    pub(super) fn of(gear: &Gear, motor: &Motor, bearing: Option<&Bearing>, duty: &Duty) -> Option<Self> {
+        let mut ratings = Self {
+            bearing: BearingRatings::of(bearing, [duty.mean_speed_rad_s, duty.life_h]),
+            ..Self::UNLIMITED
+        };
         for check in &CHECKS {
             let most = (check.most)(gear, motor, duty)?;
-            let rating = &mut ratings.0[check.on as usize];
+            let rating = &mut ratings.most[check.on as usize];
             *rating = rating.min(most);
         }
         turns_as_fast(gear, motor, duty)?.then_some(ratings)
     }
 
-    /// Whether every torque that is asked for is held.
+    /// Whether a drive with these ratings holds every torque of a demand.
     pub(super) fn hold(&self, demand: &Demand) -> bool {
         // no branch on the way: nearly every box asks this of many drives
-        self.0.iter().zip(&demand.0).fold(true, |held, (most, asked)| held & (asked <= most))
+        let torques = self.most.iter().zip(&demand.torques);
+        torques.fold(true, |held, (most, asked)| held & (asked <= most)) && self.bearing.hold(&demand.bearing)
     }
 
-    /// Whether a drive with these ratings holds whatever one with the others holds.
+    /// Whether a drive with these ratings holds every demand that a drive with the other ratings holds.
     pub(super) fn cover(&self, other: &Self) -> bool {
-        self.0.iter().zip(&other.0).all(|(a, b)| a >= b)
+        self.most.iter().zip(&other.most).all(|(a, b)| a >= b) && self.bearing.cover(&other.bearing)
     }
 
-    /// The larger of each rating.
+    /// Ratings under which all holds that holds under one of the two: the larger rating for each quantity.
     pub(super) fn max(&self, other: &Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i].max(other.0[i])))
+        Self {
+            most: std::array::from_fn(|i| self.most[i].max(other.most[i])),
+            bearing: self.bearing.max(&other.bearing),
+        }
     }
 
     /// The rating of one quantity.
     pub(super) fn on(&self, quantity: Quantity) -> f64 {
-        self.0[quantity as usize]
+        self.most[quantity as usize]
     }
 }
 
-/// Whether neither gear nor motor turns faster than it may.
+/// Whether gear and motor may turn as fast as the motion needs; `None` if the catalog lacks a number.
 fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     let motor_max_rpm = motor.max_speed_rpm.or(motor.rated_speed_rpm)?;
     let fastest_rpm = input_rpm(gear, duty.speed_rad_s);
@@ -84,7 +98,7 @@ fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     )
 }
 
-/// Speed of the motor when the joint turns at a speed \[rpm\].
+/// Speed of the motor \[rpm\] when the joint turns at `output_rad_s`.
 fn input_rpm(gear: &Gear, output_rad_s: f64) -> f64 {
     f64::from(gear.ratio) * (output_rad_s * 30.0 / std::f64::consts::PI)
 }
@@ -94,28 +108,28 @@ fn gain(gear: &Gear) -> Option<f64> {
     Some(f64::from(gear.ratio) * gear.efficiency?)
 }
 
-/// The static torque at which the motor gives what it can give for ever: `T_rated N η`.
+/// Torque at the joint that the motor can hold without end: `T_rated N η` \[N m\].
 fn motor_continuous_nm(gear: &Gear, motor: &Motor, _: &Duty) -> Option<f64> {
     Some(motor.rated_torque_nm? * gain(gear)?)
 }
 
-/// The torque at the joint at which the motor is at its peak: what is left of it once rotor and wave generator are
-/// accelerated (Eqs 9-12), `(T_peak - (J_rotor + J_input) N α) N η`.
+/// Torque at the joint when the motor gives its peak torque \[N m\]. The rotor's and the wave generator's own
+/// acceleration is subtracted (Eqs 9-12): `(T_peak - (J_rotor + J_input) N α) N η`.
 fn motor_peak_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
     let inertia_kgm2 = motor.rotor_inertia_kgm2? + gear.inertia_input_kgm2?;
     let own_nm = inertia_kgm2 * f64::from(gear.ratio) * duty.acceleration_rad_s2;
     Some((motor.peak_torque_nm? - own_nm) * gain(gear)?)
 }
 
-/// The cubed mean torque under which the wave generator's bearing lasts as long as it must, from
-/// `L10 = L_ref (T_rated / T_mean)³ (2000 rpm / n_mean)`.
+/// Cube of the mean torque under which the wave generator's bearing lasts for the required life \[(N m)³\], from `L10
+/// = L_ref (T_rated / T_mean)³ (2000 rpm / n_mean)`.
 fn life_nm3(gear: &Gear, _: &Motor, duty: &Duty) -> Option<f64> {
     let at_rated_h = rated_life_h(&gear.series)? * (RATED_RPM / input_rpm(gear, duty.mean_speed_rad_s));
     Some(gear.rated_torque_nm?.powi(3) * at_rated_h / duty.life_h)
 }
 
-/// L10 at rated torque and speed, by series \[h\] (Harmonic Drive SE, engineering data 1019659, table 20.1, and
-/// Harmonic Drive LLC, CSF/CSG catalog).
+/// L10 life at rated torque and speed, by series of gears \[h\] (Harmonic Drive SE, engineering data 1019659, table
+/// 20.1, and Harmonic Drive LLC, CSF/CSG catalog). `None` for an unknown series.
 fn rated_life_h(series: &str) -> Option<f64> {
     const LONG: [&str; 3] = ["CSG", "SHG", "CobaltLine"];
     const SHORT: [&str; 6] = ["HFUC", "HFUS", "CSF", "CSD", "CPU", "SHD"];
@@ -157,7 +171,7 @@ mod tests {
     fn the_ratings_of_a_drive_are_those_worked_out_by_hand() {
         let catalogs = Catalogs::builtin();
         let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
-        let ratings = Ratings::of(gear, motor, &duty()).unwrap();
+        let ratings = Ratings::of(gear, motor, None, &duty()).unwrap();
         let near = |quantity, by_hand: f64| {
             let rating = ratings.on(quantity);
             assert!((rating / by_hand - 1.0).abs() < 1e-12, "{quantity:?}: {rating}, by hand {by_hand}");
@@ -176,9 +190,9 @@ mod tests {
     #[test]
     fn the_demand_is_the_one_worked_out_by_hand() {
         // 40 N m of linear torque on 100 N m of static torque
-        let Demand(demand) = duty().demand(-100.0, 40.0 / (5.0 / 1.35));
+        let Demand { torques, .. } = duty().demand(-100.0, 40.0 / (5.0 / 1.35));
         let mean = (140f64.powi(3) * 0.5 + 100f64.powi(3) * 3.0 + 60f64.powi(3) * 0.5) / 4.0;
-        for (asked, by_hand) in demand.iter().zip([100.0, 140.0, 180.0, mean]) {
+        for (asked, by_hand) in torques.iter().zip([100.0, 140.0, 180.0, mean]) {
             assert!((asked / by_hand - 1.0).abs() < 1e-12, "{asked}, by hand {by_hand}");
         }
     }
@@ -191,7 +205,7 @@ mod tests {
         let slow = Gear { max_input_speed_rpm: Some(10.0), ..gear.clone() };
         let unknown = Gear { series: "unheard of".into(), ..gear.clone() };
         for gear in [blank, slow, unknown] {
-            assert_eq!(Ratings::of(&gear, motor, &duty()), None);
+            assert_eq!(Ratings::of(&gear, motor, None, &duty()), None);
         }
     }
 }

@@ -7,17 +7,17 @@ use super::halt::{Found, Halt};
 use super::parts_box::PartsBox;
 use super::upper_bound::UpperBound;
 
-/// A search of all boxes beside a front.
+/// A search, box by box, for designs that a front lacks.
 pub(super) struct Search<'s> {
     pub boxes: &'s Boxes,
     pub front: &'s FrontIndex,
-    /// What is not below it is left out.
+    /// Only designs below this upper bound are looked for.
     pub upper: UpperBound,
     pub halt: &'s Halt<'s>,
 }
 
 impl Search<'_> {
-    /// Looks into a box and, if it is not cut, into its halves.
+    /// Bounds a box and, unless it is discarded, explores its halves.
     pub(super) fn explore(&self, parts: &PartsBox) -> Found {
         if self.halt.stopped() {
             return Found { open: 1, ..Found::default() };
@@ -32,7 +32,7 @@ impl Search<'_> {
         here.with(a).with(b)
     }
 
-    /// The level to halve; none inside if the box is a single design, none at all if the box is cut.
+    /// The level to halve. `Some(None)` if the box is a single design, `None` if the box is discarded.
     fn level_to_halve(&self, parts: &PartsBox) -> Option<Option<usize>> {
         let boxes = self.boxes;
         let members = boxes.members(parts)?;

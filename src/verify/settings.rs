@@ -3,11 +3,11 @@
 /// How to look for missing designs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Spaces of more designs are searched region by region.
+    /// A space of more designs than this is searched region by region.
     pub regions_from: u128,
-    /// What has no more designs left is searched box by box.
+    /// A region with no more designs left than this is searched box by box.
     pub boxes_to: f64,
-    /// Rows closer to each other than this part may stand for each other.
+    /// Designs of the front that are closer to each other than this (relative) may stand for each other.
     pub apart: f64,
 }
 

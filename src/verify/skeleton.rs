@@ -1,43 +1,58 @@
 //! What all designs of a question have in common, and the parts that each piece of it may be.
 
+use super::bearing_loads::{PosedBearing, bearings};
 use super::drives::{DriveOptions, Ties};
+use super::duty::Duty;
 use super::layout::{Coordinate, Layout, coordinates};
 use super::offers::JointOffers;
 use super::parts_box::Place;
-use super::pose::{Pose, water_of};
-use super::question::{AskedPiece, Limits, Question};
+use super::pose::{Builder, Pose, water_of};
+use super::question::{AskedJoint, AskedPiece, Limits, Question};
 use super::tubes::TubeOptions;
 use crate::arm::LinkBody;
 use crate::arm::load::Water;
 use crate::arm::structure::{Piece, Structure};
 use crate::catalog::Catalogs;
 
-/// An arm but for its drives and tubes.
+/// An arm without its drives and tubes: everything that no choice changes.
 pub(super) struct Skeleton {
     /// Lengths of the tubes \[m\].
     pub lengths_m: Vec<f64>,
-    /// Mass of rigid offsets \[kg\].
+    /// Mass of rigid offsets and of bearings that the study states \[kg\].
     pub offsets_kg: f64,
     pub poses: Vec<Pose>,
-    /// The different surroundings of the cases: air, or some water.
+    /// Loads on the bearing of every joint in every case; none where it is not checked.
+    pub bearings: Vec<Vec<Option<PosedBearing>>>,
+    /// Where the link attaches to each joint.
+    pub levers: Vec<Lever>,
+    /// The different media around the arm in the cases: air, or water.
     pub waters: Vec<Option<Water>>,
     pub coordinates: Vec<Coordinate>,
     /// Stiffnesses of the effects' springs \[N m/rad\].
     pub spring_stiffnesses: Vec<f64>,
     pub limits: Limits,
-    /// What each level chooses, tip first.
+    /// The piece that each level chooses, tip first.
     pub levels: Vec<Place>,
 }
 
-/// What each joint and each tube may be, base to tip.
+/// The options of each joint and of each tube, base to tip.
 pub(super) struct Parts {
     pub joints: Vec<DriveOptions>,
     pub tubes: Vec<TubeOptions>,
 }
 
+/// Lever along the axis from the face of a joint's flange to where the link attaches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Lever {
+    /// As the study says \[m\].
+    Stated(f64),
+    /// Half the width of the tube with this index.
+    HalfOf(usize),
+}
+
 impl Skeleton {
-    /// Puts the arm of a question into all of its cases.
-    pub(super) fn new(question: &Question) -> Self {
+    /// Puts the arm of a question into each of its cases. `offers` are the drives of its joints.
+    pub(super) fn new(question: &Question, offers: &[JointOffers]) -> Self {
         let structure = question.nominal_structure();
         let mut waters: Vec<Option<Water>> = Vec::new();
         for water in question.cases.iter().map(|case| water_of(&structure, case)) {
@@ -49,6 +64,8 @@ impl Skeleton {
             lengths_m: tube_lengths_m(&structure),
             offsets_kg: offsets_kg(question),
             poses: Vec::new(),
+            bearings: Vec::new(),
+            levers: levers(question),
             waters,
             coordinates: Vec::new(),
             spring_stiffnesses: Vec::new(),
@@ -57,12 +74,28 @@ impl Skeleton {
         };
         if let Some(case) = question.cases.first() {
             let layout = Layout::new(&structure, case);
-            skeleton.coordinates = coordinates(&layout, question.links);
+            let tilting: Vec<bool> = offers.iter().map(JointOffers::tilts).collect();
+            skeleton.coordinates = coordinates(&layout, question.links, &tilting);
             skeleton.spring_stiffnesses = layout.springs.iter().map(|s| 1.0 / s.rad_per_nm).collect();
         }
-        let pose = |case| Pose::new(question, &structure, case, &skeleton.waters, &skeleton.coordinates);
-        skeleton.poses = (0..question.cases.len()).map(pose).collect();
+        skeleton.pose_all(question, &structure, offers);
         skeleton
+    }
+
+    fn pose_all(&mut self, question: &Question, structure: &Structure, offers: &[JointOffers]) {
+        let checked: Vec<bool> = offers.iter().map(JointOffers::checks_bearing).collect();
+        let accelerations_rad_s2 = accelerations_rad_s2(question);
+        for (index, case) in question.cases.iter().enumerate() {
+            let layout = Layout::new(structure, case);
+            let builder = Builder::new(question, structure, case, &layout, &self.coordinates);
+            let water = self.waters.iter().position(|other| *other == water_of(structure, case));
+            let pose = Pose::new(question, index, water.unwrap_or_default(), &builder);
+            self.bearings.push(match pose.sizing {
+                true => bearings(&builder, case, &checked, &accelerations_rad_s2),
+                false => Vec::new(),
+            });
+            self.poses.push(pose);
+        }
     }
 
     /// The options of every joint and tube.
@@ -72,20 +105,65 @@ impl Skeleton {
             DriveOptions::new(offers, level(Place::Joint(joint)).unwrap_or_default(), ties)
         });
         let mut tubes = Vec::new();
-        for piece in &question.pieces {
+        for (carrier, piece) in carriers(question) {
             match piece {
                 AskedPiece::Joint(_) => {}
                 AskedPiece::Choice(choice) => {
                     let level = level(Place::Tube(tubes.len())).unwrap_or_default();
-                    tubes.push(TubeOptions::of_choice(question, choice, level, &self.waters));
+                    tubes.push(TubeOptions::of_choice(question, carrier, choice, level, &self.waters));
                 }
                 AskedPiece::Link(link) => {
-                    tubes.extend(TubeOptions::of_link(question, link, &self.waters));
+                    tubes.extend(TubeOptions::of_link(question, carrier, link, &self.waters));
                 }
             }
         }
         Parts { joints: joints.collect(), tubes }
     }
+}
+
+/// Every piece with the joint that is next to it inboard, if it is a joint.
+pub(super) fn carriers<'q>(
+    question: &'q Question,
+) -> impl Iterator<Item = (Option<&'q AskedJoint>, &'q AskedPiece)> {
+    let joint = |piece: &'q AskedPiece| match piece {
+        AskedPiece::Joint(joint) => Some(joint),
+        _ => None,
+    };
+    let carriers = std::iter::once(None).chain(question.pieces.iter().map(joint));
+    carriers.zip(&question.pieces)
+}
+
+/// Where the link attaches to every joint, base to tip.
+fn levers(question: &Question) -> Vec<Lever> {
+    let mut levers = Vec::new();
+    let mut tubes = 0;
+    for (carrier, piece) in carriers(question) {
+        let is_tube = match piece {
+            AskedPiece::Joint(joint) => {
+                let offset_m = joint.bearing.stated().and_then(|bearing| bearing.offset_m);
+                levers.push(Lever::Stated(offset_m.unwrap_or(0.0).abs()));
+                false
+            }
+            AskedPiece::Choice(_) => true,
+            AskedPiece::Link(link) => super::layout::has_line(&question.link_piece(link.clone())),
+        };
+        let is_stated = |joint: &AskedJoint| joint.bearing.stated().is_some_and(|b| b.offset_m.is_some());
+        if is_tube && carrier.is_some_and(|joint| !is_stated(joint)) {
+            levers.pop();
+            levers.push(Lever::HalfOf(tubes));
+        }
+        tubes += usize::from(is_tube);
+    }
+    levers
+}
+
+/// Acceleration of every joint in its ramp \[rad/s²\].
+fn accelerations_rad_s2(question: &Question) -> Vec<f64> {
+    let joints = question.joints().zip(reaches_m(question));
+    let duty = |(joint, reach_m): (&AskedJoint, f64)| {
+        Duty::new(&question.motion, reach_m, joint.max_speed_rad_s).acceleration_rad_s2
+    };
+    joints.map(duty).collect()
 }
 
 /// The drives of every joint, base to tip.
@@ -95,7 +173,7 @@ pub(super) fn joint_offers(question: &Question, catalogs: &Catalogs) -> Vec<Join
     joints.map(|(joint, reach_m)| JointOffers::new(question, joint, reach_m, catalogs)).collect()
 }
 
-/// Largest distance of the tip from each joint's axis over the cases in which drives must hold \[m\].
+/// Largest distance of the tip from each joint's axis over the sizing cases \[m\].
 fn reaches_m(question: &Question) -> Vec<f64> {
     let structure = question.nominal_structure();
     let mut reaches_m = vec![0.0f64; question.joints().count()];
@@ -122,12 +200,13 @@ fn offsets_kg(question: &Question) -> f64 {
             LinkBody::Offset { mass_kg } => mass_kg,
             LinkBody::Tube { .. } => 0.0,
         },
-        _ => 0.0,
+        AskedPiece::Joint(joint) => joint.bearing.stated().map_or(0.0, |bearing| bearing.mass_kg),
+        AskedPiece::Choice(_) => 0.0,
     });
     masses.sum()
 }
 
-/// What each level chooses, tip first.
+/// The piece that each level chooses, tip first.
 fn levels(question: &Question, structure: &Structure) -> Vec<Place> {
     let (mut joints, mut tubes, mut levels) = (0, 0, Vec::new());
     for (asked, piece) in question.pieces.iter().zip(&structure.pieces) {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-/// All numbers from the least to the most.
+/// An interval: all numbers from the least to the most.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Span {
     pub least: f64,
@@ -10,29 +10,34 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// A number times every number of the span.
+    /// The interval of a number times every number of the span.
     pub(super) fn times(self, factor: f64) -> Self {
         let (a, b) = (self.least * factor, self.most * factor);
         Self { least: a.min(b), most: a.max(b) }
     }
 
-    /// Sums of a number of this span and one of another.
+    /// The interval of the sums of a number of this span and a number of another.
     pub(super) fn plus(self, other: Self) -> Self {
         Self { least: self.least + other.least, most: self.most + other.most }
     }
 
-    /// The least product of a number of this span and a compliance of another, none negative.
+    /// The numbers of both and all between them.
+    pub(super) fn with(self, other: Self) -> Self {
+        Self { least: self.least.min(other.least), most: self.most.max(other.most) }
+    }
+
+    /// The least product of a number of this span and a number of a span of compliances, none of which is negative.
     pub(super) fn least_product(self, compliance: Self) -> f64 {
         let factor = if self.least >= 0.0 { compliance.least } else { compliance.most };
         if self.least == 0.0 { 0.0 } else { self.least * factor }
     }
 
-    /// Least size of a number of the span.
+    /// Least magnitude of a number of the span.
     pub(super) fn least_size(self) -> f64 {
         self.least.max(-self.most).max(0.0)
     }
 
-    /// Largest size of a number of the span.
+    /// Largest magnitude of a number of the span.
     pub(super) fn largest_size(self) -> f64 {
         self.most.max(-self.least)
     }
@@ -42,7 +47,7 @@ impl Span {
     }
 }
 
-/// A number that is fixed but for what each load adds in proportion.
+/// A linear function of the loads: a fixed part, and a part per unit of each load.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Linear {
     pub fixed: f64,
@@ -50,14 +55,15 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    /// All its values: every load enters once, so these are the least and the most it can be.
+    /// The interval of the function's values over intervals of the loads. Every load enters once, so the interval is
+    /// exact.
     pub(super) fn over(&self, loads: &[Span]) -> Span {
         let start = Span { least: self.fixed, most: self.fixed };
         self.per_load.iter().zip(loads).fold(start, |sum, (factor, load)| sum.plus(load.times(*factor)))
     }
 }
 
-/// Three such numbers, the components of a vector.
+/// Three linear functions of the loads: the components of a vector.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct LinearVector {
     pub fixed: Vector3<f64>,
@@ -65,7 +71,7 @@ pub(super) struct LinearVector {
 }
 
 impl LinearVector {
-    /// All values of its component along a direction.
+    /// The interval of the vector's component along a direction.
     pub(super) fn along(&self, direction: &Vector3<f64>, loads: &[Span]) -> Span {
         let fixed = self.fixed.dot(direction);
         let start = Span { least: fixed, most: fixed };
@@ -75,7 +81,7 @@ impl LinearVector {
             .fold(start, |sum, (factor, load)| sum.plus(load.times(factor.dot(direction))))
     }
 
-    /// Its value where every load is in the middle of its span.
+    /// The vector where every load is in the middle of its interval.
     pub(super) fn middle(&self, loads: &[Span]) -> Vector3<f64> {
         let sum = |sum, (factor, load): (&Vector3<f64>, &Span)| sum + factor * load.middle();
         self.per_load.iter().zip(loads).fold(self.fixed, sum)

@@ -2,11 +2,11 @@
 
 use std::cmp::Ordering;
 
-/// A binary tree over the options of a level; every node is a set of them.
+/// A binary tree over the options of a level; every node is a set of options.
 #[derive(Debug, Clone)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
-    /// The options, so that every node's stand side by side.
+    /// The options, in an order in which those of every node are neighbours.
     order: Vec<u32>,
 }
 
@@ -18,7 +18,7 @@ struct Node {
 }
 
 impl Tree {
-    /// Halves options at the median of whichever of their `keys` is spread widest among them.
+    /// Builds the tree. A set of options is halved at the median of the key in which the set is spread most.
     pub(super) fn new(options: Vec<u32>, keys: &[Vec<f64>]) -> Self {
         let mut tree = Self { nodes: Vec::new(), order: options };
         if !tree.order.is_empty() {
@@ -60,7 +60,7 @@ impl Tree {
     }
 }
 
-/// The key in which options differ most.
+/// Index of the key in which the options differ most.
 fn widest(options: &[u32], keys: &[Vec<f64>]) -> usize {
     let width = |key: usize| {
         let values = options.iter().map(|&option| keys[option as usize][key]);

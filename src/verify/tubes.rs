@@ -1,19 +1,22 @@
 //! The numbers of a tube that mass, torques, deflection, stress and modes depend on, and their ranges over a set of tubes.
 
 use super::layout::has_line;
-use super::question::{AskedLink, AskedTube, Question};
+use super::question::{AskedJoint, AskedLink, AskedTube, Question};
 use super::tree::Tree;
 use crate::arm::load::Water;
 use crate::arm::section::Section;
 use crate::arm::structure::{LinkPiece, Structure};
 use crate::arm::{Link, LinkBody, LinkModel};
-use crate::mechanics::beam::{line_densities, line_stiffnesses};
+use crate::mechanics::beam::{line_densities, line_stiffnesses, section_frame};
+use nalgebra::Vector3;
 
-/// Stiffnesses of a tube: `E I` about y and z, `κ G A`, `G J`, `E A`.
+/// Number of stiffnesses of a tube: `E I` about y and z, `κ G A`, `G J`, `E A`.
 pub(super) const STIFFNESSES: usize = 5;
-/// Inertias per length: along, across, about the link, about its y, about its z.
+/// Number of inertias per length: against motion along the link and across it, and against rotation about the link's
+/// axis, its y and its z.
 pub(super) const DENSITIES: usize = 5;
-/// Stress per axial force, moment about y, moment about z and torque, over the strength.
+/// Number of stress coefficients: stress per axial force, per moment about y, per moment about z and per torque, each
+/// over the strength.
 pub(super) const STRESSES: usize = 4;
 
 /// A tube in numbers.
@@ -21,43 +24,45 @@ pub(super) const STRESSES: usize = 4;
 pub(super) struct TubeNumbers {
     /// Mass \[kg\].
     pub mass_kg: f64,
-    /// Stiffnesses; infinite where the model knows no compliance.
+    /// Stiffnesses; infinite where the link model has no such strain.
     pub stiffnesses: [f64; STIFFNESSES],
-    /// Stress per load over the strength; zero if no strength is known.
+    /// Stress coefficients; zero if the strength is unknown.
     pub stresses: [f64; STRESSES],
     /// 1 for a round tube, 0 for a rectangular one.
     pub round: f64,
-    /// The rest in each of the study's surroundings.
+    /// Half its width along the axis of the joint that carries it; zero if there is none \[m\].
+    pub half_width_m: f64,
+    /// Weight and inertias in each of the study's surroundings.
     pub around: Vec<TubeAround>,
 }
 
-/// What a tube is in air or in some water.
+/// Numbers of a tube that depend on the medium around it, air or water.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct TubeAround {
-    /// Weight less buoyancy per length \[N/m\].
+    /// Weight less buoyancy, per length \[N/m\].
     pub weight_n_per_m: f64,
     /// Inertias per length.
     pub densities: [f64; DENSITIES],
 }
 
-/// The tubes that a link may be.
+/// The tubes that a link may have.
 pub(super) struct TubeOptions {
-    /// Place among the levels of the space, if there is a choice.
+    /// Index among the levels of the space; `None` if the tube is no choice.
     pub level: Option<usize>,
-    /// Each with its number; none that is too slender.
+    /// Each tube with its number. Tubes that are too slender are left out.
     pub tubes: Vec<(u32, TubeNumbers)>,
 }
 
-/// Tubes that a link may be, halved again and again.
+/// The tubes that a link may have, in a tree whose nodes are halved down to single tubes.
 pub(super) struct Tubes {
     pub level: Option<usize>,
     pub tree: Tree,
     pub nodes: Vec<TubeRange>,
-    /// Number of each option.
+    /// Number of each tube in the list of the link.
     pub numbers: Vec<u32>,
 }
 
-/// Least, largest and middling numbers of a set of tubes.
+/// Least, greatest and middle numbers of a set of tubes.
 #[derive(Debug, Clone)]
 pub(super) struct TubeRange {
     pub least: TubeNumbers,
@@ -66,21 +71,28 @@ pub(super) struct TubeRange {
 }
 
 impl TubeOptions {
-    /// The tubes of a link with a choice.
+    /// The tubes of a link whose tube is chosen.
     pub(super) fn of_choice(
         question: &Question,
+        carrier: Option<&AskedJoint>,
         choice: &AskedLink,
         level: usize,
         waters: &[Option<Water>],
     ) -> Self {
         let tubes = (0u32..).zip(&choice.tubes).filter(|(_, tube)| !is_too_slender(question, &tube.section));
-        let tubes = tubes.map(|(i, tube)| (i, TubeNumbers::of_choice(question, choice, tube, waters)));
+        let numbers = |tube| TubeNumbers::of_choice(question, carrier, choice, tube, waters);
+        let tubes = tubes.map(|(i, tube)| (i, numbers(tube)));
         Self { level: Some(level), tubes: tubes.collect() }
     }
 
-    /// The tube of a link without a choice; cables along a rigid offset count as a tube that does not yield. `None` if
-    /// nothing weighs along the link.
-    pub(super) fn of_link(question: &Question, link: &Link, waters: &[Option<Water>]) -> Option<Self> {
+    /// The tube of a link without a choice. Cables along a rigid offset count as a tube that does not yield. `None`
+    /// if the link has no weight along its length.
+    pub(super) fn of_link(
+        question: &Question,
+        carrier: Option<&AskedJoint>,
+        link: &Link,
+        waters: &[Option<Water>],
+    ) -> Option<Self> {
         let piece = question.link_piece(link.clone());
         has_line(&piece).then(|| {
             let slender = match &link.body {
@@ -89,13 +101,13 @@ impl TubeOptions {
             };
             // what cables weigh is no mass of a design, and the strength of a given tube is not known
             let mass_kg = piece.beam.map_or(0.0, |_| piece.tube_kg_per_m() * piece.vector_m.norm());
-            let numbers = TubeNumbers::new(question, &piece, mass_kg, waters);
+            let numbers = TubeNumbers::new(question, carrier, &piece, mass_kg, waters);
             let tubes = if slender { Vec::new() } else { vec![(0, numbers)] };
             Self { level: None, tubes }
         })
     }
 
-    /// Some of the options, ascending.
+    /// Some of the options, given by ascending indices.
     pub(super) fn only(&self, some: &[u32]) -> Self {
         Self { tubes: some.iter().map(|&i| self.tubes[i as usize].clone()).collect(), ..*self }
     }
@@ -108,7 +120,7 @@ impl TubeOptions {
 }
 
 impl Tubes {
-    /// Halves the options.
+    /// Builds the tree of the options.
     pub(super) fn new(options: &TubeOptions) -> Self {
         let tree = options.tree();
         let range = |node| TubeRange::over(tree.options(node).iter().map(|&i| &options.tubes[i as usize].1));
@@ -118,7 +130,7 @@ impl Tubes {
     }
 }
 
-/// Whether a wall may buckle by the limit of the question.
+/// Whether a tube's wall is thinner, for its width, than the question allows because of buckling.
 pub(super) fn is_too_slender(question: &Question, section: &Section) -> bool {
     let (width_m, height_m) = section.outer_m();
     let wall_m = section.wall_m();
@@ -131,14 +143,24 @@ pub(super) fn is_too_slender(question: &Question, section: &Section) -> bool {
     question.limits.wall_slenderness_max.is_some_and(|most| slenderness > most)
 }
 
+/// Half the width of a tube along a direction of its carried frame: the part of the half widths, as a vector in the
+/// section's plane, that its two sides have in that direction; zero for an offset \[m\].
+fn half_width_m(piece: &LinkPiece, direction: &Vector3<f64>) -> f64 {
+    let Some(beam) = piece.beam else { return 0.0 };
+    let [y, z] = [1, 2].map(|side| section_frame(&piece.vector_m).column(side).dot(direction));
+    let (width_m, height_m) = beam.section.outer_m();
+    ((width_m * y).powi(2) + (height_m * z).powi(2)).sqrt() / 2.0
+}
+
 /// The numbers by which the tree separates tubes.
 fn keys(tube: &TubeNumbers) -> Vec<f64> {
     let [bending_y, bending_z, _, torsion, _] = tube.stiffnesses.map(f64::ln);
     vec![1.5 * tube.mass_kg.ln(), bending_y, bending_z, 0.3 * torsion]
 }
 
-/// Stress per axial force, moment about y, moment about z and torque, over a strength. A link in bending is pulled as much as
-/// it is pressed, so that the lower of two strengths decides.
+/// Stress per axial force, moment about y, moment about z and torque, each over the strength. A link in bending is pulled
+/// as much as it is pressed, so the lower of its two strengths decides. Bending and torsion are largest on the outside of
+/// a round tube.
 fn stresses(tube: &AskedTube) -> [f64; STRESSES] {
     let Some(tensile_pa) = tube.strength_pa else { return [0.0; STRESSES] };
     let strength_pa = tensile_pa.min(tube.compressive_strength_pa.unwrap_or(f64::INFINITY));
@@ -153,7 +175,7 @@ fn stresses(tube: &AskedTube) -> [f64; STRESSES] {
     per_load.map(|per| per / strength_pa)
 }
 
-/// Stiffnesses that the model knows; the others are infinite.
+/// Stiffnesses of a tube; infinite where the link model has no such strain.
 fn stiffnesses(piece: &LinkPiece, model: LinkModel) -> [f64; STIFFNESSES] {
     let Some(beam) = piece.beam else { return [f64::INFINITY; STIFFNESSES] };
     let known = match model {
@@ -177,7 +199,7 @@ fn around(question: &Question, piece: &LinkPiece, water: Option<Water>) -> TubeA
 }
 
 impl TubeRange {
-    /// One tube.
+    /// The range of a single tube.
     pub(super) fn one(tube: &TubeNumbers) -> Self {
         Self { least: tube.clone(), most: tube.clone(), middle: tube.clone() }
     }
@@ -196,27 +218,35 @@ impl TubeRange {
 }
 
 impl TubeNumbers {
-    /// A tube of a link with a choice.
+    /// Numbers of a tube that a link may have.
     pub(super) fn of_choice(
         question: &Question,
+        carrier: Option<&AskedJoint>,
         choice: &AskedLink,
         tube: &AskedTube,
         waters: &[Option<Water>],
     ) -> Self {
         let kg_per_m = tube.material.density_kg_m3 * tube.section.properties(tube.material.poisson).area_m2;
         let piece = question.link_piece(choice.with_tube(tube));
-        let numbers = Self::new(question, &piece, kg_per_m * choice.vector_m.norm(), waters);
+        let numbers = Self::new(question, carrier, &piece, kg_per_m * choice.vector_m.norm(), waters);
         let is_round = tube.strength_pa.is_some() && tube.section.is_round();
         Self { stresses: stresses(tube), round: f64::from(u8::from(is_round)), ..numbers }
     }
 
-    /// A tube of unknown strength.
-    fn new(question: &Question, piece: &LinkPiece, mass_kg: f64, waters: &[Option<Water>]) -> Self {
+    /// Numbers of a tube whose strength is unknown.
+    fn new(
+        question: &Question,
+        carrier: Option<&AskedJoint>,
+        piece: &LinkPiece,
+        mass_kg: f64,
+        waters: &[Option<Water>],
+    ) -> Self {
         Self {
             mass_kg,
             stiffnesses: stiffnesses(piece, question.links),
             stresses: [0.0; STRESSES],
             round: 0.0,
+            half_width_m: carrier.map_or(0.0, |joint| half_width_m(piece, &joint.axis)),
             around: waters.iter().map(|water| around(question, piece, *water)).collect(),
         }
     }
@@ -231,6 +261,7 @@ impl TubeNumbers {
             stiffnesses: std::array::from_fn(|i| combine(self.stiffnesses[i], other.stiffnesses[i])),
             stresses: std::array::from_fn(|i| combine(self.stresses[i], other.stresses[i])),
             round: combine(self.round, other.round),
+            half_width_m: combine(self.half_width_m, other.half_width_m),
             around: self.around.iter().zip(&other.around).map(around).collect(),
         }
     }

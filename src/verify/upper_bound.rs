@@ -3,7 +3,7 @@
 use super::bound::{IdealPoint, ROUNDING};
 use super::modes::eigenvalue_of;
 
-/// A mass, a deflection and a lowest mode that bound designs.
+/// A local upper bound. A design is below it if it is no heavier, deflects no more and has no lower mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct UpperBound {
     pub mass_kg: f64,
@@ -12,21 +12,21 @@ pub(super) struct UpperBound {
 }
 
 impl UpperBound {
-    /// Everything is below it.
+    /// The bound below which every design lies.
     pub(super) const OPEN: Self = Self { mass_kg: f64::INFINITY, tip_m: f64::INFINITY, hz: 0.0 };
 
-    /// Whether something of this mass and deflection may be below.
+    /// Whether a design with this ideal mass and deflection may be below the bound.
     pub(super) fn is_in_reach_of(&self, ideal: &IdealPoint) -> bool {
         let most = 1.0 + ROUNDING;
         ideal.mass_kg <= self.mass_kg * most && ideal.tip_m <= self.tip_m * most
     }
 
-    /// `(2 π f)²`.
+    /// Eigenvalue of the bound's frequency, `(2 π f)²` \[1/s²\].
     pub(super) fn eigenvalue(&self) -> f64 {
         eigenvalue_of(self.hz)
     }
 
-    /// The least bound above two.
+    /// The least upper bound that covers two.
     pub(super) fn join(&self, other: &Self) -> Self {
         Self {
             mass_kg: self.mass_kg.max(other.mass_kg),
@@ -35,17 +35,18 @@ impl UpperBound {
         }
     }
 
-    /// Whether all that is below this upper bound is below another.
+    /// Whether every design below this bound is also below another.
     pub(super) fn is_within(&self, other: &Self) -> bool {
         self.mass_kg <= other.mass_kg && self.tip_m <= other.tip_m && self.hz >= other.hz
     }
 
-    /// Whether a row beats some of what is below.
+    /// Whether a design of the front dominates some designs below this bound.
     pub(super) fn is_cut_by(&self, row: &UpperBound) -> bool {
         row.mass_kg < self.mass_kg && row.tip_m < self.tip_m && row.hz > self.hz
     }
 
-    /// What a row leaves of it: no heavier than the row, or deflecting no more, or no slower.
+    /// The three bounds into which a design of the front divides what it leaves below this one: no heavier than this
+    /// design, deflecting no more, with no lower mode.
     pub(super) fn left_by(&self, row: &UpperBound) -> [Self; 3] {
         [
             Self { mass_kg: row.mass_kg, ..*self },

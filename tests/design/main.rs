@@ -1,6 +1,7 @@
 //! From the model of an arm to the front of its designs, each against a closed form, another program, or a slow
 //! calculation from the definition.
 
+mod bearing_loads;
 mod beside_the_front;
 mod brute;
 mod brute_force;

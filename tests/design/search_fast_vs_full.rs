@@ -1,8 +1,10 @@
 //! The objectives that the sweep works with against the full model, on random designs of random studies.
 //!
-//! Studies differ in poses (planar, folded, straight up, every joint turned), link and joint models,
-//! payloads with an offset centre and inertia, water, tip force, given and sized joints, and in what the
-//! innermost level is; once without and once with effects at random joints and links. A design must hold in both or in neither, and all objectives must agree to 1e-10 (half of them to 1e-13).
+//! Studies differ in poses (planar, folded, straight up, every joint turned), link and joint models, payloads with an
+//! offset centre and inertia, water, tip force, given and sized joints, and in what the innermost level is. Shoulders are
+//! rigid offsets or tubes; bearings are those of the gears, stated or rigid. All of it is tested once without and once
+//! with effects at random joints and links. A design must hold in both or in neither, and all objectives must agree to
+//! 1e-10 (half of them to 1e-13).
 
 use crate::dice::Dice;
 use armwright::catalog::Catalogs;
@@ -40,7 +42,33 @@ fn joint(dice: &mut Dice, name: &str, axis: [f64; 3], stiffness: f64, kind: &str
     match kind {
         "given" => json!({"type": "joint", "name": name, "axis": axis,
             "stiffness_nm_per_rad": stiffness * dice.within(0.3, 3.0), "mass_kg": dice.of(&[0.0, 2.0, 6.0])}),
-        drive => json!({"type": "joint", "name": name, "axis": axis, "drive": drive}),
+        drive => {
+            let mut joint = json!({"type": "joint", "name": name, "axis": axis, "drive": drive});
+            match dice.below(8) {
+                0 => joint["bearing"] = Value::Null,
+                1 => {
+                    joint["bearing"] = json!({"tilt_stiffness_nm_per_rad": dice.within(2e4, 4e5),
+                        "permissible_moment_nm": dice.within(80.0, 900.0), "mass_kg": dice.of(&[0.0, 0.8]),
+                        "offset_m": dice.of(&[0.0, 0.05])});
+                }
+                _ => {}
+            }
+            joint
+        }
+    }
+}
+
+/// A shoulder: a rigid offset with a mass, or a tube that bends inboard of everything that is chosen.
+fn shoulder(dice: &mut Dice) -> Value {
+    let vector_m = [dice.of(&[0.0, 0.15]), 0.0, 0.3];
+    match dice.below(3) {
+        0 => {
+            json!({"type": "link", "name": "shoulder", "vector_m": vector_m, "material": "Aluminium 6061-T6",
+            "section": {"shape": "round_tube", "diameter_m": 0.12, "wall_m": 0.004}})
+        }
+        _ => {
+            json!({"type": "link", "name": "shoulder", "vector_m": vector_m, "mass_kg": dice.of(&[0.0, 4.0])})
+        }
     }
 }
 
@@ -120,7 +148,7 @@ fn random_study(dice: &mut Dice) -> Value {
     let k1 = dice.of(&["given", "first_fit", "all_fits", "first_fit"]);
     let chain = [
         joint(dice, "j1", [0.0, 0.0, 1.0], 3e5, k1),
-        json!({"type": "link", "name": "shoulder", "vector_m": [dice.of(&[0.0, 0.15]), 0, 0.3], "mass_kg": dice.of(&[0.0, 4.0])}),
+        shoulder(dice),
         joint(dice, "j2", [0.0, 1.0, 0.0], 3e5, k2),
         link(dice, "upper_arm", 0.8, 160),
         joint(dice, "j3", [0.0, 1.0, 0.0], 1e5, k3),

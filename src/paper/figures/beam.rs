@@ -20,7 +20,7 @@ pub const WALL_M: f64 = 0.010;
 /// Smallest and largest outer size, in steps of 1 cm \[m\].
 pub const SIZES_M: (f64, f64) = (0.07, 0.16);
 
-/// One section of one material.
+/// One section of one material, with its weight and deflection.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BeamPoint {
     /// Name of the material.
@@ -54,17 +54,17 @@ impl BeamPoint {
         }
     }
 
-    /// Force over deflection \[N/m\].
+    /// Force over deflection at the end of the cantilever \[N/m\].
     pub fn stiffness_n_per_m(&self) -> f64 {
         FORCE_N / self.deflection_m
     }
 
-    /// Stiffness over weight per length: N/m over N/m.
+    /// Stiffness over weight per length, N/m over N/m.
     pub fn stiffness_per_weight(&self) -> f64 {
         self.stiffness_n_per_m() / self.weight_n_per_m
     }
 
-    /// Place in the figures: weight per length \[N/m\], deflection \[mm\].
+    /// Coordinates in the figures: weight per length \[N/m\], deflection \[mm\].
     pub fn in_figure(&self) -> (f64, f64) {
         (self.weight_n_per_m, 1e3 * self.deflection_m)
     }
@@ -87,7 +87,7 @@ pub fn library_deflection_m(material: &Material, section: Section, links: LinkMo
     Some(-posed.statics().tip_displacement_m.z)
 }
 
-/// The sections of a figure, b = h = 7 to 16 cm with the same wall.
+/// The sections of a figure: square tubes of 7 to 16 cm with the same wall.
 pub(crate) fn sizes(material: &Material) -> Vec<BeamPoint> {
     (7..=16).map(|cm| BeamPoint::new(material, f64::from(cm) / 100.0, WALL_M)).collect()
 }

@@ -11,7 +11,7 @@ use crate::report::number::{fixed, shortest, significant};
 use crate::report::svg::plot::{Note, Plot, Series, Side};
 use crate::report::table::{Column, Table};
 
-/// The figure's metals in the catalog, as the legend names them.
+/// The metals of the figure: name in the legend, name in the catalog.
 pub const METALS: [(&str, &str); 3] = [
     ("steel", "Structural steel S235"),
     ("titanium", "Titanium Ti-6Al-4V"),
@@ -21,12 +21,12 @@ pub const METALS: [(&str, &str); 3] = [
 const OTHERS: [&str; 4] =
     ["Structural steel S355", "Titanium grade 2", "Aluminium 6061-T6", "Aluminium 7075-T6"];
 
-/// One curve of the figure.
+/// One curve of the figure, for one metal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
     /// Name in the legend.
     pub name: &'static str,
-    /// Its sections, smallest first.
+    /// Sections of the curve, smallest first.
     pub points: Vec<BeamPoint>,
 }
 
@@ -103,7 +103,7 @@ fn range(points: &[BeamPoint]) -> String {
     format!("{} to {}", mm(points.first()), mm(points.last()))
 }
 
-/// Largest and smallest deflection among the metals at each size \[m\].
+/// For each size, the largest and the smallest deflection among the metals \[m\].
 fn extremes(curves: &[Curve]) -> Vec<(f64, f64)> {
     let at = |i: usize| curves.iter().filter_map(move |c| c.points.get(i)).map(|p| p.deflection_m);
     let count = curves.first().map_or(0, |c| c.points.len());
@@ -140,7 +140,7 @@ fn ends(values: &[f64]) -> (f64, f64) {
     (values.first().copied().unwrap_or(f64::NAN), values.last().copied().unwrap_or(f64::NAN))
 }
 
-/// Rise of stiffness per weight from the smallest to the largest section.
+/// Stiffness per weight of the largest section, less that of the smallest.
 fn rise(points: &[BeamPoint]) -> f64 {
     let values: Vec<f64> = points.iter().map(BeamPoint::stiffness_per_weight).collect();
     let (first, last) = ends(&values);
@@ -181,7 +181,7 @@ fn best_metal(curves: &[Curve]) -> Claim {
     )
 }
 
-/// The range of every steel, titanium and aluminium that could be meant.
+/// A table of every steel, titanium and aluminium of the catalog that the figure may mean.
 fn alloys(catalogs: &Catalogs) -> Result<Table, PaperError> {
     let mut table = Table::new(vec![
         Column::left("material"),

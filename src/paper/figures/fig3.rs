@@ -14,25 +14,26 @@ use crate::report::table::{Column, Table};
 
 /// The figure's material.
 pub const MATERIAL: &str = "Aluminium 6082-T6";
-/// Outer sizes whose wall is thickened \[m\].
+/// Outer sizes for which the wall is thickened step by step \[m\].
 const THICKENED_M: [f64; 3] = [0.07, 0.10, 0.13];
-/// Largest weight per length the walls grow to, over that of the largest outer size.
+/// Largest weight per length of the thickened sections, over that of the section with the largest outer size.
 const WEIGHT_SHOWN: f64 = 1.1;
 
-/// A section that grows by the same weight in two ways.
+/// A section that is made heavier by the same factor in two ways: with larger outer dimensions, and with a thicker
+/// wall.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Growth {
-    /// The section it grows from.
+    /// The section before the change.
     pub from: BeamPoint,
-    /// Weight after over weight before.
+    /// Weight after the change over weight before.
     pub weight_ratio: f64,
-    /// Stiffness after over before if the outer dimensions grow.
+    /// Stiffness after the change over stiffness before, if the outer dimensions grow.
     pub by_width: f64,
-    /// Stiffness after over before if the wall grows inward; `None` if there is no room.
+    /// Stiffness after the change over stiffness before, if the wall grows inward; `None` if there is no room.
     pub by_wall: Option<f64>,
 }
 
-/// Every base section of the figure, grown by a tenth and by half.
+/// Every base section of the figure, made heavier by a tenth and by half.
 ///
 /// # Errors
 /// The catalog lacks the material.
@@ -42,7 +43,8 @@ pub fn growths(catalogs: &Catalogs) -> Result<Vec<Growth>, PaperError> {
     Ok(sizes(material).iter().flat_map(|from| ratios.map(|ratio| growth(material, from, ratio))).collect())
 }
 
-/// A square tube's area is 4 t (b - t): solved for b with t kept, and for t with b kept.
+/// Makes a section heavier in both ways. A square tube's area is 4 t (b - t); it is solved for b with t kept, and for
+/// t with b kept.
 fn growth(material: &Material, from: &BeamPoint, weight_ratio: f64) -> Growth {
     let (b, t) = (from.size_m, from.wall_m);
     let area_m2 = weight_ratio * 4.0 * t * (b - t);
@@ -118,7 +120,8 @@ fn curves(material: &Material) -> (Vec<Series>, Vec<BeamPoint>) {
     (series, points)
 }
 
-/// Walls from 4 mm in steps of 2 mm while they leave a hole of a fifth and are not too heavy to show.
+/// Sections of one outer size, with walls from 4 mm in steps of 2 mm. The hole is at least a fifth of the size, and
+/// the weight per length at most `most_n_per_m`.
 fn thickening(material: &Material, size_m: f64, most_n_per_m: f64) -> Vec<BeamPoint> {
     (2..)
         .map(|i| f64::from(i) * WALL_M / 5.0)

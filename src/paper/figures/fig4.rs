@@ -15,10 +15,11 @@ use crate::report::number::{fixed, percent_change};
 use crate::report::svg::plot::{Guide, Plot, Series};
 use crate::report::table::{Column, Table};
 
-/// The reference deflection \[m\].
+/// Deflection at which the materials of the figure are compared \[m\].
 pub const REFERENCE_M: f64 = 0.2e-3;
 
-/// One curve of the figure: legend, catalog row, style, and whether all fibres run along the link.
+/// One curve of the figure: name in the legend, name in the catalog, style, and whether all fibres run along the
+/// link.
 struct Row {
     name: &'static str,
     material: &'static str,
@@ -51,15 +52,15 @@ const ROWS: [Row; 7] = [
 pub struct Curve {
     /// Name in the legend.
     pub name: &'static str,
-    /// Whether all fibres run along the link.
+    /// Whether all fibres of the material run along the link.
     pub axial: bool,
-    /// Colour and marker.
+    /// Index of the colour and of the marker.
     pub style: usize,
-    /// Its sections, smallest first.
+    /// Sections of the curve, smallest first.
     pub points: Vec<BeamPoint>,
-    /// The section that deflects by the reference in bending (Eq 4).
+    /// The section whose deflection in bending (Eq 4) is the reference.
     pub at_reference: Option<BeamPoint>,
-    /// The section that does with shear counted.
+    /// The section whose deflection in bending and shear is the reference.
     pub at_reference_with_shear: Option<BeamPoint>,
 }
 
@@ -83,7 +84,7 @@ pub fn curves(catalogs: &Catalogs) -> Result<Vec<Curve>, PaperError> {
         .collect()
 }
 
-/// The outer size at which the deflection is the reference's, by bisection between 21 mm and 1 m.
+/// The section whose deflection is the reference, by bisection of the outer size between 21 mm and 1 m.
 fn section_for(material: &Material, deflection_m: impl Fn(&BeamPoint) -> Option<f64>) -> Option<BeamPoint> {
     let (mut small, mut large) = (2.1 * WALL_M, 1.0);
     for _ in 0..60 {

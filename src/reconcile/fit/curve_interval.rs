@@ -20,16 +20,16 @@ use std::collections::BTreeMap;
 
 /// Probability beyond each end of an interval.
 const TAIL: f64 = 0.025;
-/// The end of a range is ruled out where the density is below this part of its maximum. It equals a rise of
-/// the objective by 3.84.
+/// The interval is open at an end of the range where the density is more than this part of its maximum. The limit
+/// equals a rise of the objective by 3.84.
 const OPEN: f64 = 0.146;
-/// A node is ruled out where the objective is higher than the best by more than this.
+/// A node is ruled out where the objective exceeds that of the best fit by more than this.
 const RULED_OUT: f64 = 14.0;
 /// First step between nodes, in standard deviations of the break point.
 const STEP: f64 = 0.5;
 /// Smallest and largest first step \[ln of the torque\].
 const STEPS: (f64, f64) = (0.004, 0.08);
-/// Ratio of each step to the one before it, going outwards.
+/// Ratio of each step between nodes to the step before it, going outwards from the best fit.
 const GROWTH: f64 = 1.4;
 /// Every third node is always visited, so that no separate peak is missed.
 const COARSE: usize = 3;
@@ -42,7 +42,7 @@ struct Axis {
     nodes: Vec<f64>,
 }
 
-/// The fit with both break points held at a pair of nodes.
+/// The fit with both break points held at the values of a pair of nodes.
 struct Cell {
     u: Vec<f64>,
     /// Standard deviations of all parameters except the two break points.
@@ -91,7 +91,7 @@ impl Axis {
         Self { parameter, nodes }
     }
 
-    /// The part of the axis that a node represents: it reaches halfway to both neighbours.
+    /// The part of the axis for which a node stands: it reaches halfway to both neighbouring nodes.
     fn span(&self, node: usize) -> (f64, f64) {
         let middle = |a: usize, b: usize| 0.5 * (self.nodes[a] + self.nodes[b]);
         let last = self.nodes.len() - 1;
@@ -102,7 +102,8 @@ impl Axis {
 /// Index of the node on each of the two axes.
 type Nodes = [usize; 2];
 
-/// All cells that matter: those of a coarse grid, and the neighbours of every cell that is not ruled out.
+/// All cells that matter: those of a coarse grid over the nodes, and the neighbours of every cell that is not ruled
+/// out.
 fn explore(forward: &Forward, best: &Fit, weights: &Weights, axes: &[Axis; 2]) -> BTreeMap<Nodes, Cell> {
     let centre = [0, 1].map(|k| {
         let (axis, at) = (&axes[k], best.point.u[axes[k].parameter]);
@@ -232,8 +233,8 @@ impl Posterior {
         }
     }
 
-    /// The interval of a slope. Its distribution is a mixture of normal distributions, one per cell, each cut
-    /// off at the ends of the range.
+    /// The interval of one slope of the gear's curve. The slope's distribution is a mixture of normal distributions,
+    /// one per cell, each cut off at the ends of the range.
     fn slope(&self, p: usize, (low, high): (f64, f64)) -> Interval {
         let parts: Vec<(f64, f64, f64)> = self
             .masses()

@@ -17,15 +17,15 @@ use std::f64::consts::TAU;
 
 /// Residual at which Huber's loss turns from a square into a straight line \[standard deviations\].
 const HUBER: f64 = 4.0;
-/// Step of numerical derivatives, in `u`.
+/// Step of numerical derivatives, in the scaled parameters `u`.
 const STEP: f64 = 1e-4;
 
-/// Weights of the data: which of them count, and how their standard deviations are scaled.
+/// Weights of the data: which data count, and how their standard deviations are scaled.
 #[derive(Debug, Clone)]
 pub struct Weights {
     /// Reciprocal of the scaled standard deviation of each datum; 0 where the datum is left out.
     pub inverse: Vec<f64>,
-    /// Whether the modes may remain unsolved, because no frequency counts.
+    /// Whether the natural frequencies need not be computed, because none of them counts.
     pub smooth_only: bool,
 }
 
@@ -39,15 +39,15 @@ impl Weights {
     }
 }
 
-/// A model evaluated at one parameter vector.
+/// The predictions and the objective of a model at one parameter vector.
 pub struct Point {
     /// Parameters.
     pub u: Vec<f64>,
     /// Compliances, joint laws and masses that the parameters lead to.
     pub coefficients: Coefficients,
-    /// True value of each datum, in the unit of its file.
+    /// True value of each datum, before the measuring channel distorts it, in the unit of the datum's file.
     pub truth: Vec<f64>,
-    /// Predicted reading of each datum, in the unit of its file.
+    /// Predicted reading of each datum, in the unit of the datum's file.
     pub predicted: Vec<f64>,
     /// Solved modes of each modal test.
     pub solved: Vec<Vec<Solved>>,
@@ -69,7 +69,7 @@ pub struct Fit<'a> {
     pub evidence: f64,
 }
 
-/// Evaluates a model at `u`.
+/// Evaluates a model at the parameters `u`.
 pub fn evaluate(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Point {
     let coefficients = model.coefficients(forward, u);
     let mut truth = vec![0.0; forward.data.len()];
@@ -104,7 +104,7 @@ fn point(
     Point { u, coefficients, truth, predicted, solved, objective }
 }
 
-/// The objective `Σ ρ(r) + Σ u²`.
+/// The objective `Σ ρ(r) + Σ u²`: Huber's loss of the residuals, and the priors of the parameters.
 pub fn objective(forward: &Forward, model: &Model, u: &[f64], predicted: &[f64], weights: &Weights) -> f64 {
     let data: f64 = forward
         .data
@@ -184,7 +184,7 @@ pub struct Normal {
     pub curvature: DMatrix<f64>,
 }
 
-/// Builds the normal equations. Residuals are predicted minus measured, in the unit of the file.
+/// Builds the normal equations. Residuals are predicted minus measured, in the unit of the datum's file.
 pub fn normal(
     forward: &Forward,
     calibrated: usize,
@@ -311,7 +311,7 @@ pub fn descent(
     descended(forward, model, start, weights, effort, limit).0
 }
 
-/// The end point of a descent, and the slopes there if they are known.
+/// The end point of a descent, and the derivatives at this point if they are known.
 fn descended(
     forward: &Forward,
     model: &Model,
@@ -430,8 +430,8 @@ impl Fit<'_> {
     }
 }
 
-/// The curvature without most of the prior of the effects' parameters. The width of a prior belongs to the
-/// evidence, not to what the data say.
+/// The curvature without most of the prior of the effects' parameters. The width of such a prior matters for the
+/// evidence and must not narrow the intervals.
 pub fn data_curvature(fit: &Fit) -> DMatrix<f64> {
     let mut curvature = fit.curvature.clone();
     for (i, parameter) in fit.model.free_parameters().enumerate() {

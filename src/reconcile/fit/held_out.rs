@@ -10,11 +10,11 @@ use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Model;
 use rayon::prelude::*;
 
-/// Number of folds.
+/// Number of folds into which the poses are dealt. One fold is held out at a time.
 const HANDS: usize = 4;
 
-/// Root mean squares of held-out residuals, in standard deviations. These are the declared ones times the
-/// scale that the readings showed, which is 1 unless the report says otherwise.
+/// Root mean squares of held-out residuals, in standard deviations. Unless a field says otherwise, these are the
+/// declared ones times the factor by which the readings scatter more than declared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeldOut {
     /// Without any effect, with the calibration refitted.
@@ -60,7 +60,7 @@ pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &W
     all
 }
 
-/// Root mean square; 0 of nothing.
+/// Root mean square; 0 for an empty list.
 pub(crate) fn rms(residuals: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = residuals.fold((0.0, 0.0), |(s, n), r| (s + r * r, n + 1.0));
     if count == 0.0 { 0.0 } else { f64::sqrt(sum / count) }

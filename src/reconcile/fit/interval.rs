@@ -54,7 +54,7 @@ pub(crate) fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec
         .collect()
 }
 
-/// The interval of one parameter of an effect.
+/// The interval of parameter `p`, which belongs to an effect and has the standard deviation `sd`.
 fn interval(forward: &Forward, best: &Fit, weights: &Weights, effect: usize, p: usize, sd: f64) -> Interval {
     let crooked = best.model.effects[effect].kind.traits.is_nonlinear;
     let (low, high) = best.model.bounds(p);
@@ -69,9 +69,9 @@ fn interval(forward: &Forward, best: &Fit, weights: &Weights, effect: usize, p: 
     Interval { low: end(-1.0), high: end(1.0) }
 }
 
-/// Standard deviation of ln of the torque that the tolerance of masses leaves. A step of the frequencies at a
-/// break point cannot be placed more closely than this. A refit does not reveal it, because it cannot move a
-/// test across the step.
+/// Standard deviation of the logarithm of a joint's torque, as the tolerance of masses leaves it. At a break point
+/// the frequencies step, and the step cannot be placed more closely than this. A refit does not reveal the
+/// uncertainty, because it cannot move a test across the step.
 fn torque_deviation(best: &Fit) -> f64 {
     let numbers = best.model.nuisance.numbers.iter();
     let masses = numbers.filter(|(calibration, _)| matches!(calibration, Calibration::Mass(_)));
@@ -95,7 +95,8 @@ fn refit(forward: &Forward, mut model: Model, u: &[f64], weights: &Weights, enou
     straight.min(end(&model, &start, effort).objective)
 }
 
-/// The end of the profile interval on one side; `None` if the profile does not rise enough within the range.
+/// One end of a parameter's 95 % interval, where the objective, refitted with the parameter held, has risen by
+/// [`RISE`]. `None` if it does not rise so much within the parameter's range.
 fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64, sd: f64) -> Option<f64> {
     let (low, high) = best.model.bounds(p);
     let u = best.point.u[p];

@@ -16,15 +16,15 @@ pub struct Noise {
     pub outliers: Vec<(Channel, usize, f64)>,
 }
 
-/// A reading is a gross error from this many standard deviations on.
+/// A reading is a gross error if its residual is at least this many standard deviations.
 const GROSS: f64 = 5.5;
-/// The same before any effect is searched for. Play or a break point can put a single reading ten standard
-/// deviations off.
+/// Before any effect is searched for, a reading is a gross error only from this many standard deviations on. Play or
+/// a break point can put a single reading ten standard deviations off.
 const UNMISTAKABLE: f64 = 16.0;
 /// Largest part of a channel's rows that can be gross errors. More are a structure that the model lacks.
 const FEW: f64 = 0.10;
-/// The same before any effect is searched for. It is smaller, because an effect may move only a few
-/// frequencies, and these must stay.
+/// Largest part of a channel's rows that can be gross errors before any effect is searched for. It is smaller than
+/// [`FEW`], because an effect may move only a few frequencies, and these must stay.
 const FEW_UNSEEN: f64 = 0.05;
 /// Largest part of the frequency lists that can have been numbered wrongly.
 const FEW_LISTS: f64 = 0.34;
@@ -32,15 +32,16 @@ const FEW_LISTS: f64 = 0.34;
 const MOST_SLIPS: usize = 2;
 /// The channels whose readings are judged.
 const CHANNELS: [Channel; 3] = [Channel::Static, Channel::Modal, Channel::Windup];
-/// Largest factor on the declared standard deviations that is ascribed to the declaration.
+/// Largest factor on the declared standard deviations. Larger spreads are taken for missing physics, not for a
+/// wrongly declared standard deviation.
 const LARGEST_SCALE: f64 = 1.4;
-/// A model fits most readings if the spread of its residuals exceeds the declared one by no more than this
-/// \[declared standard deviations\].
+/// A model fits most readings if the robust spread of its residuals is at most one plus this \[declared standard
+/// deviations\].
 const CLOSE: f64 = 0.5;
-/// Three standard deviations of the spread, times the root of the number of readings. The standard deviation
-/// of the median of absolute values is 1.17 times the spread over that root.
+/// Room for chance in the test of the spread: three standard deviations of the spread, times the root of the number
+/// of readings. (The standard deviation of the median of absolute values is 1.17 times the spread over that root.)
 const BY_CHANCE: f64 = 3.5;
-/// Weight of the declared standard deviation, as a number of readings.
+/// Number of readings that the declared standard deviation counts for when the factor on it is estimated.
 const TRUST: f64 = 15.0;
 
 impl Default for Noise {
@@ -50,7 +51,7 @@ impl Default for Noise {
 }
 
 impl Noise {
-    /// Weights of the data.
+    /// The weights of the data under this judgement of the readings.
     pub fn weights(&self, forward: &Forward) -> Weights {
         let inverse = forward.data.iter().map(|d| {
             let gross = self.outliers.iter().any(|(c, row, _)| *c == d.channel && *row == d.row);
@@ -83,8 +84,8 @@ impl Noise {
         Self { outliers, ..Self::default() }
     }
 
-    /// Leaves out one or two further rows that a fit shows as possible gross errors; `None` if there are none
-    /// or more than that.
+    /// Leaves out one or two further rows that a fit shows as possible gross errors. `None` if there are no such
+    /// rows, or more than two.
     pub fn with_slips(&self, forward: &Forward, fit: &Fit) -> Option<Self> {
         let mut slips = misses(forward, fit, &self.weights(forward));
         slips.retain(|(_, _, size)| *size > GROSS);
@@ -97,7 +98,7 @@ impl Noise {
         Some(Self { outliers, ..self.clone() })
     }
 
-    /// The same with all frequencies included; `None` if none is left out.
+    /// The same judgement with all frequencies included; `None` if none of them is left out.
     pub fn with_frequencies(&self) -> Option<Self> {
         let mut with = self.clone();
         with.outliers.retain(|(channel, _, _)| *channel != Channel::Modal);
@@ -152,8 +153,8 @@ impl Noise {
         noise.with_whole_lists(forward, &residuals)
     }
 
-    /// Leaves out the few frequency lists that these coefficients miss by far; `None` if there are none or
-    /// many.
+    /// Leaves out the few frequency lists that the model with these coefficients misses by far. `None` if there is no
+    /// such list, or if there are many.
     pub fn uncertain_lists(forward: &Forward, coefficients: &Coefficients) -> Option<Self> {
         let residuals = declared_residuals(forward, &forward.predict(coefficients));
         let far = |datum: usize| residuals[datum].abs() > UNMISTAKABLE;
@@ -228,7 +229,7 @@ fn rows(forward: &Forward, channel: Channel) -> usize {
     forward.data[forward.range(channel)].iter().map(|d| d.row).max().map_or(0, |r| r + 1)
 }
 
-/// A part of the rows of a file, at least one.
+/// Number of rows that make a part of a file, at least one.
 fn at_most(part: f64, rows: usize) -> usize {
     ((part * rows as f64) as usize).max(1)
 }

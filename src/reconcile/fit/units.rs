@@ -15,7 +15,8 @@ use crate::reconcile::model::parameters::Candidate;
 /// physics.
 const NEAR: f64 = 0.25;
 
-/// Standard deviations of a channel that are too small by a factor.
+/// A suspicion that the declared standard deviations of a channel are too small by a factor, because a unit was
+/// confused.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stretch {
     channel: Channel,
@@ -23,14 +24,14 @@ pub(crate) struct Stretch {
 }
 
 impl Stretch {
-    /// Whether one of the effects is this slip.
+    /// Whether one of the effects is this confusion of units.
     pub(crate) fn is_among(&self, effects: &[&Candidate]) -> bool {
         effects
             .iter()
             .any(|effect| effect.kind.name == wrong_unit::KIND.name && effect.at == self.channel.word())
     }
 
-    /// The assumption, in words.
+    /// The assumed factor, in words.
     pub(crate) fn sentence(&self) -> String {
         let Self { channel, factor } = self;
         let (channel, factor) = (channel.word(), crate::report::number::significant(*factor, 4));
@@ -40,8 +41,9 @@ impl Stretch {
     }
 }
 
-/// The channels whose readings are about a slip's factor times those of the nominal arm, and that the best
-/// model misses by far more than declared: by a ratio nearer to the factor than to one.
+/// The channels in which a confusion of units is likely. Their readings are about the confusion's factor times those
+/// of the nominal arm, and the best model misses them by far more than declared: by a ratio nearer to the factor than
+/// to one.
 pub(crate) fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> {
     let nominal = forward.predict(&forward.coefficients(&forward.nominal));
     let predicted = forward.predict(best);
@@ -66,7 +68,7 @@ pub(crate) fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> 
     [Channel::Static, Channel::Modal, Channel::Windup].into_iter().filter_map(of_channel).collect()
 }
 
-/// Multiplies the declared standard deviations of some channels.
+/// Multiplies the declared standard deviations of these channels by their factors.
 pub(crate) fn stretch(forward: &mut Forward, stretches: &[Stretch]) {
     for Stretch { channel, factor } in stretches {
         let range = forward.range(*channel);

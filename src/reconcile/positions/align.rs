@@ -11,8 +11,8 @@ use rayon::prelude::*;
 /// Size of the errors that a wrong attitude leaves \[m\].
 const ROUGH_M: f64 = 0.3;
 
-/// Places the arms, one by one. Behind an unknown mounting the 24 attitudes of a cube are tried, and a fit
-/// settles each. Without unknown mountings the nearest rigid motion is used.
+/// Places the arms, one by one. Behind a link of unknown mounting the 24 attitudes of a cube are tried, and a fit
+/// starts from each. Without unknown mountings the nearest rigid motion is used.
 pub(crate) fn align(tree: &Tree, spec: &PositionsSpec, samples: &[Sample], geometry: &mut Geometry) {
     let mounts = mount_numbers(tree, spec);
     let mut placed = false;
@@ -38,7 +38,7 @@ pub(crate) fn align(tree: &Tree, spec: &PositionsSpec, samples: &[Sample], geome
     }
 }
 
-/// Finds the best of the cube's attitudes behind one mounting. `placed` says whether the base is known.
+/// Finds the best of the cube's attitudes behind a link of unknown mounting. `placed` says whether the base is known.
 fn settle_mount(
     own: &[&Sample],
     geometry: &Geometry,

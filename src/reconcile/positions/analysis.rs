@@ -18,14 +18,14 @@ use serde_json::Value;
 
 /// Number of folds that the poses are dealt into. One fold is held out at a time.
 const HANDS: usize = 5;
-/// An error beyond this many scales is gross.
+/// A position is a gross error if its residual is more than this many times the scale of the errors.
 const GROSS: f64 = 8.0;
 /// Scale of the errors before anything is fitted \[m\].
 const ROUGH_M: f64 = 0.01;
 /// Step of the direction of gravity for numerical derivatives \[rad\].
 const LEAN: f64 = 1e-3;
 
-/// The classes of effects in the order in which they are searched.
+/// The classes of effects, in the order in which the search takes them.
 const CLASSES: [Yields; 3] = [Yields::AboutAxis, Yields::Tilt, Yields::Frame];
 
 /// Everything that a campaign of positions shows.
@@ -35,30 +35,30 @@ pub(crate) struct Positions {
     pub stages: Vec<Stage>,
     /// All candidates.
     pub candidates: Vec<Yielding>,
-    /// Which of the candidates may be named.
+    /// For each candidate, whether it may be named as an effect.
     pub(super) considered: Vec<bool>,
     /// The final fit.
     pub fitted: Fitted,
-    /// A fit of the same geometry without any effect.
+    /// A fit of the same geometry in which nothing yields.
     pub rigid: Fitted,
     /// Rows that are gross errors, counted from 0, with their error \[mm\].
     pub gross: Vec<(usize, f64)>,
     pub(super) samples: Vec<Sample>,
     pub(super) numbers: Vec<Number>,
-    /// Driven joints that turn unevenly, by their index in a pose.
+    /// Driven joints with a transmission error, by their index in a pose.
     pub(super) transmissions: Vec<usize>,
     pub(super) tree: Tree,
-    /// The points on the tools, with those of separate sessions apart.
+    /// The points on the tools. A point that sat elsewhere in another session counts as a separate point.
     pub(super) points: Vec<Point>,
-    /// Sentences on where a session begins.
+    /// One sentence for every session that was found, with its first row.
     pub(super) sessions: Vec<String>,
     /// Held-out errors of the last stage, by row \[m\].
     pub(super) held_out: Vec<Vector3<f64>>,
 }
 
-/// Arms whose geometry alone is calibrated.
+/// Arms of which only the geometry is calibrated.
 pub(crate) struct Calibrated {
-    /// The arms with calibrated geometry. Their effects and all else are unchanged.
+    /// The arms with calibrated geometry. Everything else about them is unchanged.
     pub arms: Vec<Arm>,
     /// The table of position errors.
     pub stages: Vec<Stage>,
@@ -78,7 +78,7 @@ pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
     }
 }
 
-/// Calibrates the geometry, and finds what yields and what turns unevenly.
+/// Calibrates the geometry, and finds what yields and which joints have a transmission error.
 pub(crate) fn analyze(campaign: &Campaign) -> Positions {
     let mut found = Positions::on_its_geometry(campaign);
     // An uneven joint can hide what yields, so the search begins again after each.
@@ -171,7 +171,7 @@ impl Positions {
         }
     }
 
-    /// Computes how the known deflection changes with one component of the direction of gravity.
+    /// Computes the derivative of the known deflection by one component of the direction of gravity.
     fn lean(&mut self, campaign: &Campaign, points: &[usize], component: usize) {
         let upright = &self.fitted.geometry;
         let mut leaning = upright.clone();
@@ -186,7 +186,7 @@ impl Positions {
         }
     }
 
-    /// Adds a row about the current model to the table of position errors.
+    /// Adds a row for the current model to the table of position errors.
     pub(super) fn stage(&mut self, added: String, dropped: Vec<String>) {
         self.held_out = self.held_out_errors_m(&self.fitted);
         let mm: Vec<f64> = self.held_out.iter().map(|e| 1e3 * e.norm()).collect();
@@ -201,7 +201,7 @@ impl Positions {
         });
     }
 
-    /// Error of every position with the fold of its pose held out \[m\].
+    /// Error of every position, predicted by a fit without the fold of the position's pose \[m\].
     fn held_out_errors_m(&self, fitted: &Fitted) -> Vec<Vector3<f64>> {
         let mut out = vec![Vector3::zeros(); self.samples.len()];
         let hands: Vec<Vec<(usize, Vector3<f64>)>> = (0..HANDS)
@@ -219,7 +219,7 @@ impl Positions {
     }
 }
 
-/// The measured positions, each with the effect of gravity on it.
+/// The measured positions, each with the deflection of its point under gravity.
 pub(super) fn samples(
     campaign: &Campaign,
     tree: &Tree,

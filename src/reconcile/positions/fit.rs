@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 /// Degrees of freedom of the Student distribution.
 const NU: f64 = 4.0;
 const MOST_STEPS: usize = 40;
-/// Largest number of times that a step is halved until it makes the fit no worse.
+/// Largest number of times that a step is halved because the fit is worse after it.
 const MOST_HALVINGS: i32 = 10;
 /// Prior standard deviation of a compliance \[rad/(N m)\]. It is far above that of any part. Without it, a
 /// compliance that no weight loads could take any value.
@@ -28,19 +28,19 @@ const MOST_TURN_RAD: f64 = 0.3;
 pub(crate) struct Sample {
     /// Joint angles \[rad\].
     pub pose_rad: Vec<f64>,
-    /// Index of its arm.
+    /// Index of the arm that carries the point.
     pub arm: usize,
     /// Index of its point on the tool.
     pub point: usize,
     /// Index of the instrument's session.
     pub station: usize,
-    /// Its index among the samples.
+    /// Index of this sample among the samples.
     pub index: usize,
     /// Index of its pose. Samples of one pose are held out together.
     pub group: usize,
     /// Measured position in the instrument's frame \[m\].
     pub measured_m: Vector3<f64>,
-    /// The effect of gravity on it.
+    /// The effect of gravity on this position.
     pub deflection: Deflection,
 }
 
@@ -56,15 +56,15 @@ impl Sample {
 pub(crate) struct Fitted {
     /// Geometry.
     pub geometry: Geometry,
-    /// Change of each number from its nominal value.
+    /// Change of each number of the geometry from its nominal value.
     pub moved: Vec<f64>,
-    /// Standard deviations of the numbers.
+    /// Standard deviations of the numbers of the geometry.
     pub number_deviations: Vec<f64>,
-    /// Indices of the candidates in it.
+    /// Indices of the candidates that the model contains as effects.
     pub effects: Vec<usize>,
     /// The compliances of each effect \[rad/(N m)\].
     pub compliances: Vec<Vec<f64>>,
-    /// Their standard deviations.
+    /// Standard deviations of the compliances \[rad/(N m)\].
     pub deviations: Vec<Vec<f64>>,
     /// Scale of the errors \[m\].
     pub scale_m: f64,
@@ -98,7 +98,8 @@ impl Fitted {
         sample.measured_m - self.predicted_m(sample)
     }
 
-    /// Displacement of a sample's point by all that yields, in the level frame \[m\].
+    /// Displacement of a sample's point by gravity: known deflection, and the effects of the model, in the level
+    /// frame \[m\].
     pub(crate) fn displacement(&self, sample: &Sample) -> Vector3<f64> {
         let effects = self.effects.iter().zip(&self.compliances);
         let gravity = &self.geometry.gravity;
@@ -108,7 +109,8 @@ impl Fitted {
         sample.deflection.known_m + leaning + pulled.sum::<Vector3<f64>>()
     }
 
-    /// The model that is reached by a part of a step.
+    /// The model after a part of a step: the geometry changes by this part of `step`, the compliances go this part of
+    /// the way to those of `goal`.
     fn towards(&self, goal: &Self, part: f64, numbers: &[Number], step: &[f64], samples: &[&Sample]) -> Self {
         let mut out = goal.clone();
         let step: Vec<f64> = step.iter().map(|s| part * s).collect();
@@ -139,7 +141,7 @@ impl Fitted {
     }
 }
 
-/// The displacement of the point by the compliances of an effect, per direction of gravity.
+/// The displacement of the point by the compliances of one effect, per unit vector of gravity's direction.
 fn pull(sample: &Sample, effect: usize, compliances: &[f64]) -> Matrix3<f64> {
     sample.deflection.per_compliance[effect].iter().zip(compliances).map(|(p, c)| p * *c).sum()
 }
@@ -244,7 +246,8 @@ pub(crate) fn ln_likelihood(errors: &[Vector3<f64>], scale_m: f64) -> f64 {
     errors.iter().map(one).sum()
 }
 
-/// Builds the normal equations at a model. `further` gives further columns of a sample \[m per unit\].
+/// Builds the normal equations at a model. `further` gives additional columns, which belong to no parameter of the
+/// model: the derivatives of a sample's position \[m per unit\].
 pub(crate) fn normal(
     samples: &[&Sample],
     numbers: &[Number],
@@ -298,8 +301,8 @@ pub(crate) fn normal(
     Normal { curvature, gradient, own }
 }
 
-/// Takes one weighted Gauss-Newton step. The geometry's step is returned; the compliances are set to the best
-/// that are springs.
+/// Takes one weighted Gauss-Newton step. It returns the step of the geometry, and sets the compliances to the best
+/// values that springs can have.
 fn step(samples: &[&Sample], numbers: &[Number], here: &mut Fitted) -> Vec<f64> {
     let normal = normal(samples, numbers, here, &|_| Vec::new());
     let n = numbers.len();

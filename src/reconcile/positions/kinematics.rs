@@ -15,34 +15,36 @@ pub(crate) enum Number {
     BaseRotation(usize),
     /// Position of the arm's base \[m\].
     BasePosition(usize),
-    /// Offset of a point on the last frame \[m\].
+    /// Offset of a point on the last frame \[m\]: index of the point, component.
     Tool(usize, usize),
-    /// Attitude behind a link of unknown mounting \[rad\]: index of the piece, and axis of the frame before
-    /// it.
+    /// Rotation of everything behind a link of unknown mounting \[rad\]: index of the piece, and axis of the frame
+    /// inboard of the link.
     Mount(usize, usize),
-    /// Vector of a link of unknown mounting \[m\]: piece, component.
+    /// Vector of a link of unknown mounting \[m\]: index of the piece, component.
     MountVector(usize, usize),
-    /// Zero of a driven joint \[rad\]: index in the pose.
+    /// Zero of a driven joint \[rad\]: index of the joint in a pose.
     Zero(usize),
-    /// Tilt of a joint's axis \[rad\]: piece, and which of the two axes across.
+    /// Tilt of a joint's axis \[rad\]: index of the piece, and which of the two axes across the joint's axis.
     Axis(usize, usize),
-    /// Component of a link's vector \[m\]: piece, component.
+    /// Component of a link's vector \[m\]: index of the piece, component.
     Vector(usize, usize),
-    /// Amplitude of sine or cosine, once or twice a turn, of a driven joint's transmission error \[rad\]:
-    /// index in the pose, and which wave.
+    /// One amplitude of a driven joint's transmission error \[rad\]: index of the joint in a pose, and which wave
+    /// (sine or cosine, once or twice a turn).
     Transmission(usize, usize),
-    /// Factor by which a passive joint follows another: piece, term.
+    /// Factor by which the angle of a passive joint follows that of a driven joint: index of the piece, index of the
+    /// term.
     Ratio(usize, usize),
     /// Component of the direction of gravity across the arm's vertical.
     Gravity(usize),
-    /// Rotation of everything in another session, about the base's origin and an instrument axis \[rad\].
-    StationRotation(usize, usize),
-    /// Shift of everything in another session \[m\].
-    StationPosition(usize, usize),
+    /// Rotation of all points of a later session against the first one, about the base's origin \[rad\]: session,
+    /// instrument axis.
+    SessionRotation(usize, usize),
+    /// Shift of all points of a later session against the first one \[m\]: session, instrument axis.
+    SessionPosition(usize, usize),
 }
 
 impl Number {
-    /// Prior standard deviation, in the unit of the number.
+    /// Prior standard deviation of the number, in its unit.
     pub(crate) fn prior(&self) -> f64 {
         match self {
             Number::BaseRotation(_) | Number::Mount(..) => 10.0,
@@ -51,19 +53,19 @@ impl Number {
             Number::Zero(_) => 0.03,
             Number::Axis(..) | Number::Vector(..) | Number::Ratio(..) => 0.01,
             Number::Transmission(..) => 0.002,
-            Number::Gravity(_) | Number::StationPosition(..) => 0.05,
-            Number::StationRotation(..) => 0.02,
+            Number::Gravity(_) | Number::SessionPosition(..) => 0.05,
+            Number::SessionRotation(..) => 0.02,
         }
     }
 
-    /// Whether it turns a frame, by an angle of any size.
+    /// Whether the number is a rotation whose angle may have any size.
     pub(crate) fn turns(&self) -> bool {
         matches!(self, Number::BaseRotation(_) | Number::Mount(..))
     }
 }
 
-/// The numbers that a campaign leaves free, in the groups in which they are freed: place of arm and points,
-/// joint zeros, geometry, direction of gravity.
+/// The numbers that a campaign leaves free, in groups. The groups are freed one after the other: placement of arm and
+/// points, joint zeros, geometry, direction of gravity.
 pub(crate) fn number_groups(
     tree: &Tree,
     spec: &PositionsSpec,
@@ -136,18 +138,18 @@ fn geometry_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
 /// A calibrated geometry: the nominal one with the values of the numbers.
 #[derive(Debug, Clone)]
 pub(crate) struct Geometry {
-    /// Base frame in the instrument's.
+    /// Rotation from the base frame to the instrument's frame.
     pub base: Rotation3<f64>,
-    /// Base origin \[m\].
+    /// Origin of the base, in the instrument's frame \[m\].
     pub origin_m: Vector3<f64>,
-    /// Points on the last frame of their arm \[m\].
+    /// Points on the tools, each in the last frame of the point's arm \[m\].
     pub tools_m: Vec<Vector3<f64>>,
-    /// Rotation about the base's origin, and shift \[m\], of everything in each session. The first session
-    /// has none.
+    /// For each session, rotation of all points about the base's origin, and shift of all points \[m\], against the
+    /// first session.
     pub stations: Vec<(Rotation3<f64>, Vector3<f64>)>,
     /// Rotation from the base frame to the level frame, whose z points up.
     pub level: Rotation3<f64>,
-    /// Direction of gravity in the level frame; -z unless it has moved since the frame was levelled.
+    /// Direction of gravity in the level frame. It is -z, unless it was fitted after the frame was last levelled.
     pub gravity: Vector3<f64>,
     zeros_rad: Vec<f64>,
     /// Transmission error of each driven joint: sine and cosine, once and twice a turn \[rad\].
@@ -159,7 +161,7 @@ pub(crate) struct Geometry {
     arms: Vec<Vec<usize>>,
 }
 
-/// The point that is asked for: its arm, pose and session.
+/// Which point to place: its arm, pose and session.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Placing<'a> {
     /// Index of the arm.
@@ -172,11 +174,11 @@ pub(crate) struct Placing<'a> {
     pub station: usize,
 }
 
-/// A point and its derivatives by the numbers, in the instrument's frame.
+/// A placed point and its derivatives by the numbers, in the instrument's frame.
 pub(crate) struct Placed {
     /// Position \[m\].
     pub at_m: Vector3<f64>,
-    /// Its derivative by each number \[m per unit\].
+    /// Derivative of the position by each number \[m per unit\].
     pub slopes: Vec<Vector3<f64>>,
 }
 
@@ -186,7 +188,7 @@ struct Frame {
     at_m: Vector3<f64>,
 }
 
-/// The frames before and behind each piece of an arm; `None` for pieces of other arms.
+/// For each piece, the frame inboard of it and the frame outboard of it; `None` for pieces of other arms.
 type Frames = Vec<Option<(Frame, Frame)>>;
 
 impl Geometry {
@@ -226,7 +228,7 @@ impl Geometry {
         self.mounts[piece] = rotation;
     }
 
-    /// Changes the numbers by a step.
+    /// Changes the numbers by the amounts in `step`.
     pub(crate) fn step(&mut self, numbers: &[Number], step: &[f64]) {
         let about =
             |c: usize, by: f64| Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::ith(c, 1.0)), by);
@@ -235,8 +237,8 @@ impl Geometry {
                 Number::BaseRotation(c) => self.base = about(c, by) * self.base,
                 Number::BasePosition(c) => self.origin_m[c] += by,
                 Number::Tool(p, c) => self.tools_m[p][c] += by,
-                Number::StationRotation(s, c) => self.stations[s].0 = about(c, by) * self.stations[s].0,
-                Number::StationPosition(s, c) => self.stations[s].1[c] += by,
+                Number::SessionRotation(s, c) => self.stations[s].0 = about(c, by) * self.stations[s].0,
+                Number::SessionPosition(s, c) => self.stations[s].1[c] += by,
                 Number::Mount(i, c) => self.mounts[i] = about(c, by) * self.mounts[i],
                 Number::Zero(j) => self.zeros_rad[j] += by,
                 Number::Transmission(j, k) => self.transmissions_rad[j][k] += by,
@@ -273,8 +275,8 @@ impl Geometry {
 
     /// Writes the calibrated axes and vectors into one of the arms, in the level frame.
     ///
-    /// A joint's zero and a mounting turn everything outboard, so later axes and vectors turn with them.
-    /// Returns the rotation of the last frame.
+    /// A joint's zero and a mounting turn everything outboard, so later axes and vectors turn with them. Returns the
+    /// rotation of the arm's last frame.
     pub(crate) fn write_into(&self, index: usize, arm: &mut Arm) -> Rotation3<f64> {
         let mut turned = self.level;
         for (&i, element) in self.arms[index].iter().zip(&mut arm.chain) {
@@ -324,7 +326,7 @@ impl Geometry {
         Placed { at_m: self.origin_m + turn * (at_m - self.origin_m) + shift_m, slopes }
     }
 
-    /// The angles to which the driven joints turn when these are asked for.
+    /// The angles to which the driven joints turn for the angles `pose_rad` that are commanded.
     fn turned_rad(&self, pose_rad: &[f64]) -> Vec<f64> {
         let joints = pose_rad.iter().zip(&self.zeros_rad).zip(&self.transmissions_rad);
         joints.map(|((q, zero), waves)| q + zero + transmission_rad(waves, *q)).collect()
@@ -342,11 +344,11 @@ impl Geometry {
         match *number {
             Number::BaseRotation(c) => Vector3::ith(c, 1.0).cross(&(at_m - self.origin_m)),
             Number::BasePosition(c) => Vector3::ith(c, 1.0),
-            Number::StationRotation(s, c) if s == asked.station => {
+            Number::SessionRotation(s, c) if s == asked.station => {
                 Vector3::ith(c, 1.0).cross(&(at_m - self.origin_m))
             }
-            Number::StationPosition(s, c) if s == asked.station => Vector3::ith(c, 1.0),
-            Number::StationRotation(..) | Number::StationPosition(..) => zero,
+            Number::SessionPosition(s, c) if s == asked.station => Vector3::ith(c, 1.0),
+            Number::SessionRotation(..) | Number::SessionPosition(..) => zero,
             Number::Tool(p, c) if p == asked.point => last.rotation * Vector3::ith(c, 1.0),
             Number::Tool(..) | Number::Gravity(_) => zero,
             Number::Zero(j) => self.turning(j, frames, at_m),
@@ -375,7 +377,7 @@ impl Geometry {
 }
 
 impl Geometry {
-    /// Derivative of a point by the angle of a driven joint.
+    /// Derivative of a point's position by the angle of a driven joint.
     fn turning(&self, driven: usize, frames: &Frames, at_m: &Vector3<f64>) -> Vector3<f64> {
         (0..self.axes.len())
             .filter_map(|i| Some((i, frames[i]?.0, rate(self.angles[i].as_ref()?, driven))))
@@ -383,13 +385,14 @@ impl Geometry {
             .sum()
     }
 
-    /// Derivative of a point by the angle of the joint at a piece.
+    /// Derivative of a point's position by the angle of the joint at a piece.
     fn lever(&self, piece: usize, before: &Frame, at_m: &Vector3<f64>) -> Vector3<f64> {
         (before.rotation * self.axes[piece].into_inner()).cross(&(at_m - before.at_m))
     }
 }
 
-/// Derivative of a joint's angle by an entry of the pose.
+/// Derivative of a joint's angle by an entry of the pose: 1 for the driven joint itself, the factor for a passive
+/// joint.
 fn rate(angle: &JointAngle, driven: usize) -> f64 {
     match angle {
         JointAngle::Driven(index) => f64::from(u8::from(*index == driven)),
@@ -397,7 +400,7 @@ fn rate(angle: &JointAngle, driven: usize) -> f64 {
     }
 }
 
-/// Two unit axes across a third one and each other.
+/// Two unit axes, perpendicular to a given axis and to each other.
 fn across(axis: &Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
     let least = Vector3::ith(axis.iamin(), 1.0);
     let first = Unit::new_normalize(axis.cross(&least));

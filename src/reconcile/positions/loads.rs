@@ -24,17 +24,17 @@ use crate::reconcile::readings::rows::PositionRow;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-/// Row and column of each entry of a frame's compliance, in the order of its numbers.
+/// Row and column of each entry of a frame's compliance matrix, in the order in which the entries are fitted.
 pub(crate) const FRAME_ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (0, 1), (0, 2), (1, 2), (2, 2)];
 
-/// A candidate: something that yields.
+/// A candidate: an effect at a place, by which something yields there.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Yielding {
     /// Name of the effect.
     pub effect: &'static str,
-    /// What turns.
+    /// How the place yields: about a joint's axis, by tilting, or as a frame about every axis.
     pub yields: Yields,
-    /// The place where it sits.
+    /// Name of the place.
     pub at: String,
 }
 
@@ -43,18 +43,17 @@ pub(crate) struct Yielding {
 pub(crate) struct Deflection {
     /// Displacement that the model already has \[m\].
     pub known_m: Vector3<f64>,
-    /// Its derivatives by the two components of gravity across the vertical \[m\].
+    /// Derivatives of the known displacement by the two components of gravity across the vertical \[m\].
     pub known_slopes_m: [Vector3<f64>; 2],
-    /// Displacement at unit of each compliance of each candidate, per direction of gravity \[m per rad/(N
-    /// m)\].
+    /// For each compliance of each candidate, the displacement of the point per compliance, for gravity along each
+    /// axis \[m per rad/(N m)\].
     pub per_compliance: Vec<Vec<Matrix3<f64>>>,
-    /// For each candidate the motion of the point per rotation about its first axis \[m\], and the torque
-    /// about that axis under gravity along -z \[N m\]. Errors of a joint itself would show there.
+    /// For each candidate, the motion of the point per rotation about the candidate's first axis \[m\], and the
+    /// torque about this axis under gravity along -z \[N m\]. Errors of a joint's angle show along this motion.
     pub levers: Vec<(Vector3<f64>, f64)>,
 }
 
-/// The arm's candidates: every joint about and across its axis, the base, and the structures behind the
-/// joints.
+/// All candidates: every joint about its axis and across its axis, the base, and the structures behind the joints.
 pub(crate) fn candidates(tree: &Tree) -> Vec<Yielding> {
     let mut out = Vec::new();
     for piece in &tree.pieces {
@@ -79,8 +78,8 @@ pub(crate) fn candidates(tree: &Tree) -> Vec<Yielding> {
 }
 
 impl Tree {
-    /// Whether a frame can imitate another candidate: the frame of the base the tilt of the base, and the
-    /// structure behind a joint that joint's own compliance.
+    /// Whether the compliance of a frame can have the same effect as another candidate. The frame of the base
+    /// includes the tilt of the base, and the structure behind a joint includes the compliance of the joint.
     pub(crate) fn contains(&self, frame: &Yielding, other: &Yielding) -> bool {
         let is_behind = |pair: &[usize]| match (&self.pieces[pair[0]], &self.pieces[pair[1]]) {
             (Piece::Joint(joint), Piece::Link(link)) => joint.name == other.at && link.name == frame.at,
@@ -93,12 +92,13 @@ impl Tree {
 }
 
 impl Yielding {
-    /// A kind at a place; `None` if positions do not show that it yields.
+    /// The candidate of an effect at a place; `None` if positions do not show that the effect yields.
     fn new(kind: &'static Kind, at: &str) -> Option<Self> {
         kind.traits.yields.map(|yields| Self { effect: kind.name, yields, at: at.into() })
     }
 
-    /// Number of its compliances. A frame has xx, yy, xy, xz, yz, and zz where weights can turn it so.
+    /// Number of compliances of the candidate. A frame has xx, yy, xy, xz, yz, and zz where weights can turn it about
+    /// z.
     pub(crate) fn count(&self) -> usize {
         match (self.yields, self.at.as_str()) {
             (Yields::Frame, "base") => 5,
@@ -107,7 +107,7 @@ impl Yielding {
         }
     }
 
-    /// The name of its element in the chain.
+    /// The name of the candidate's element in the chain.
     fn element(&self) -> String {
         let is_base_tilt = self.effect == base_compliance::KIND.name;
         match self.yields {
@@ -128,7 +128,7 @@ struct Ready {
     point_m: Vector3<f64>,
 }
 
-/// The deflection at every row. `points` holds the index of each row's point.
+/// The effect of gravity on every measured position. `points` holds the index of each row's point.
 pub(crate) fn deflections(
     campaign: &Campaign,
     tree: &Tree,
@@ -183,7 +183,7 @@ impl Ready {
     }
 }
 
-/// The structure with unit compliances about and across every joint, of the base, and of every frame.
+/// The structure in which every joint, about and across its axis, the base and every frame have unit compliance.
 fn yielding_everywhere(structure: &Structure) -> Structure {
     let mut unit = structure.clone();
     unit.base_tilt_rad_per_nm = 1.0;
@@ -200,7 +200,7 @@ fn yielding_everywhere(structure: &Structure) -> Structure {
     unit
 }
 
-/// Number of items of a posed arm that belong to the trunk: with unit compliances, and as the arm is.
+/// How many items of a posed arm belong to the trunk: in the arm with unit compliances, and in the arm as it is.
 fn trunk_items(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> [usize; 2] {
     let rest = vec![0.0; tree.driven.len()];
     let first = &ready[0][0];
@@ -249,7 +249,7 @@ fn deflection(
     }
 }
 
-/// All bodies, as points.
+/// All bodies of a posed arm, as point masses.
 fn bodies<'a>(items: &'a [Item], structure: &'a Structure) -> impl Iterator<Item = Body> + 'a {
     items.iter().filter_map(|item| match item {
         Item::Body(body) => Some(body.clone()),
@@ -257,7 +257,7 @@ fn bodies<'a>(items: &'a [Item], structure: &'a Structure) -> impl Iterator<Item
     })
 }
 
-/// A link's distributed mass, as a point at its middle.
+/// The distributed mass of a link, as a point mass at the link's middle.
 fn own_body(element: &ElasticElement, structure: &Structure) -> Option<Body> {
     let own = element.own.as_ref()?;
     let Piece::Link(link) = &structure.pieces[own.piece] else { return None };
@@ -270,10 +270,11 @@ fn own_body(element: &ElasticElement, structure: &Structure) -> Option<Body> {
     })
 }
 
-/// A joint's lever to the tip \[m\] and the torque on it \[N m\].
+/// For a joint, the motion of the tip per rotation \[m\], and the torque on the joint \[N m\].
 type Lever = (Vector3<f64>, f64);
 
-/// The displacement of every candidate at unit compliance per direction of gravity, and its lever and torque.
+/// For every candidate: the displacement at unit compliance for gravity along each axis, and the lever with its
+/// torque.
 fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Vec<Matrix3<f64>>>, Vec<Lever>) {
     let answers = answers(unit, own);
     let of =
@@ -311,10 +312,10 @@ fn per_compliance(count: usize, list: &[Answer]) -> Vec<Matrix3<f64>> {
     }
 }
 
-/// Displacement of the point by a unit twist, and the generalized force of gravity on it per direction.
+/// Displacement of the point by a unit twist, and the generalized force on this twist by gravity along each axis.
 type Answer = (Vector3<f64>, Vector3<f64>);
 
-/// The answer of every element's twists, by the element's name.
+/// For every element, the answers of its twists, by the element's name.
 fn answers<'a>(unit: &'a Posed, own: &Ready) -> Vec<(&'a str, Vec<Answer>)> {
     let mut out = Vec::new();
     // weight and its first moment of everything outboard so far
@@ -337,7 +338,7 @@ fn answers<'a>(unit: &'a Posed, own: &Ready) -> Vec<(&'a str, Vec<Answer>)> {
     out
 }
 
-/// Generalized force of gravity on a twist, per direction of gravity.
+/// Generalized force on a twist, for gravity along each axis.
 fn pull(twist: &Twist, weight_n: f64, moment_nm: &Vector3<f64>) -> Vector3<f64> {
     linear(twist) * weight_n + angular(twist).cross(moment_nm)
 }

@@ -17,7 +17,7 @@ const WORTHLESS_SIGMAS: f64 = 0.1 * ENOUGH;
 const PROPOSED_POSES: usize = 60;
 
 impl Positions {
-    /// One test for each competing model, the best first.
+    /// The best test against each competing model, the most telling first.
     pub(crate) fn next_tests(
         &self,
         campaign: &Campaign,
@@ -45,7 +45,8 @@ impl Positions {
         out
     }
 
-    /// The proposed pose that best tells the model from a competing one, or a sentence that none does.
+    /// The proposed pose in which the predictions of the model and of a competing model differ most, as a test. If no
+    /// pose is enough, a sentence says so.
     fn telling_pose(&self, proposed: &Campaign, competitor: &Fitted, names: [String; 2]) -> Option<NextTest> {
         let own = samples(proposed, &self.tree, &self.fitted.geometry, &self.candidates, &self.points);
         let sigma_mm =
@@ -76,8 +77,8 @@ impl Positions {
         })
     }
 
-    /// The campaign with proposed poses in place of its own. They lie within the range of its own and have
-    /// its largest payload.
+    /// The campaign with proposed poses in place of the measured ones. Proposed poses lie within the range of the
+    /// measured ones and have the largest payload among them.
     fn proposals(&self, campaign: &Campaign) -> Campaign {
         let mut out = campaign.clone();
         let range = |j: usize| {
@@ -100,8 +101,8 @@ impl Positions {
         out
     }
 
-    /// Proposes a test where nothing in the library fits, so that no pose separates anything. What the errors
-    /// follow says which other test is worth making, in the pose that the best model misses most.
+    /// Proposes a test if no effect of the library fits, so that no pose can separate models. What the errors follow
+    /// says which kind of test is worth making; it is made in the pose that the best model misses most.
     fn after_unexplained(&self, campaign: &Campaign, left: &LackOfFit) -> Option<NextTest> {
         let gross = |i: usize| self.gross.iter().any(|(row, _)| *row == i);
         let errors = self.samples.iter().map(|s| self.fitted.error(s).norm()).enumerate();

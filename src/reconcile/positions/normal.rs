@@ -2,25 +2,26 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Weighted normal equations of a model: of its numbers, its compliances, and further columns.
+/// Weighted normal equations of a model. Their columns are the numbers of the geometry, then the compliances, then
+/// additional columns.
 pub(crate) struct Normal {
     /// Curvature, with the priors included.
     pub curvature: DMatrix<f64>,
-    /// Gradient towards the readings; the step is the inverse curvature times it.
+    /// Gradient towards the readings. The Gauss-Newton step is the inverse of the curvature times this gradient.
     pub gradient: DVector<f64>,
     /// Number of columns that belong to the model.
     pub own: usize,
 }
 
-/// A Cholesky factor of a curvature that is scaled to a unit diagonal. Numbers in different units would
-/// otherwise ruin its condition.
+/// A Cholesky factor of a curvature that is scaled to a unit diagonal. Without scaling, numbers in different units
+/// would make the matrix ill-conditioned.
 pub(crate) struct Factor {
     cholesky: Cholesky<f64, Dyn>,
     diagonal: DVector<f64>,
 }
 
 impl Factor {
-    /// Factorizes the rows and columns that are free; `None` if they are singular.
+    /// Factorizes the rows and columns with the indices `free`; `None` if they are singular.
     pub(crate) fn new(curvature: &DMatrix<f64>, free: &[usize]) -> Option<Self> {
         let sub = DMatrix::from_fn(free.len(), free.len(), |i, j| curvature[(free[i], free[j])]);
         let diagonal = sub.diagonal().map(|d| 1.0 / d.max(1e-300).sqrt());
@@ -30,7 +31,7 @@ impl Factor {
         Some(Self { cholesky: Cholesky::new(scaled)?, diagonal })
     }
 
-    /// Solves for one right side.
+    /// Solves the equations for one right-hand side.
     pub(crate) fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
         self.cholesky.solve(&right.component_mul(&self.diagonal)).component_mul(&self.diagonal)
     }

@@ -23,17 +23,17 @@ use crate::reconcile::verdict::outcome::{Evidence, Located, Outcome, ReadingResi
 use crate::reconcile::verdict::stage::Stage;
 use serde_json::{Value, json};
 
-/// Smallest number of positions that can settle anything.
+/// Smallest number of positions from which anything can be concluded.
 pub(crate) const FEWEST: usize = 20;
-/// With a variance above this multiple of the declared one, nothing is explained, whatever else holds. Errors
-/// are then five times those of the instrument.
+/// If the variance of the errors exceeds the declared one by this factor, the verdict is that nothing is explained,
+/// whatever else holds. The errors are then five times those of the instrument.
 const HOPELESS_VARIANCE: f64 = 25.0;
 /// Largest ratio of the errors of held-out poses to those in the fit.
 const UNSTABLE: f64 = 8.0;
-/// Largest number of alternatives with which an effect is still named.
+/// An effect is named only if at most this many alternatives would fit as well.
 const MOST_ALTERNATIVES: usize = 3;
-/// Effects that lower the error of held-out poses to this part are written into the arm even if they do not
-/// explain everything.
+/// Effects are written into the corrected arm, even if they do not explain everything, if they lower the error of
+/// held-out poses to this part or less.
 const HELPFUL: f64 = 0.8;
 /// Number of poses that are listed.
 const WORST_POSES: usize = 3;
@@ -143,7 +143,7 @@ impl Positions {
         (Verdict::Explained, reasons)
     }
 
-    /// Says which structure is left, without naming an effect.
+    /// Says in words which structure is left in the errors, without naming an effect.
     fn left_over(&self, left: &LackOfFit) -> Vec<String> {
         let mut out = vec![format!(
             "the best model leaves {:.2} times the declared standard deviation",
@@ -159,7 +159,7 @@ impl Positions {
         out
     }
 
-    /// The stage without effects, and the one with all of them.
+    /// The row of the position-error table without effects, and the row with all effects.
     fn before_and_after(&self) -> [&Stage; 2] {
         let calibration = self.stages.iter().rposition(|s| !s.added.contains('@')).unwrap_or_default();
         [&self.stages[calibration], &self.stages[self.stages.len() - 1]]
@@ -211,7 +211,7 @@ impl Positions {
         }
     }
 
-    /// One arm with its calibrated geometry and its effects. Notes its placement in the provenance.
+    /// One arm with calibrated geometry and with its effects. Its placement is written into `provenance`.
     pub(crate) fn corrected(
         &self,
         campaign: &Campaign,
@@ -266,8 +266,8 @@ impl Positions {
             Number::Vector(i, c) | Number::MountVector(i, c) => format!("{}.vector_m[{c}]", piece(*i)),
             Number::Mount(i, c) => format!("{}.attitude_rad[{c}]", piece(*i)),
             Number::Gravity(c) => format!("gravity_direction[{c}]"),
-            Number::StationRotation(s, c) => format!("session_{s}.rotation_rad[{c}]"),
-            Number::StationPosition(s, c) => format!("session_{s}.position_m[{c}]"),
+            Number::SessionRotation(s, c) => format!("session_{s}.rotation_rad[{c}]"),
+            Number::SessionPosition(s, c) => format!("session_{s}.position_m[{c}]"),
             Number::BaseRotation(c) => format!("base_rotation_rad[{c}]"),
             Number::BasePosition(c) => format!("base_position_m[{c}]"),
             Number::Tool(p, c) => format!("{}.tool_m[{c}]", self.points[*p].label()),
@@ -304,8 +304,9 @@ impl Positions {
     }
 }
 
-/// Root mean squares of every part of the positions \[declared standard deviations\], without gross errors.
-/// `residuals` holds those of the positions, row by row.
+/// Root mean squares of the residuals of all positions, of each point, of each payload and of the worst poses
+/// \[declared standard deviations\], without gross errors. `residuals` holds the residuals of the positions, row by
+/// row.
 pub(crate) fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec<Located> {
     let mut parts: Vec<(String, Vec<&ReadingResidual>)> = Vec::new();
     for (row, own) in campaign.positions.iter().zip(residuals.chunks_exact(3)).filter(|(_, r)| !r[0].gross) {
@@ -341,7 +342,7 @@ fn within(value: f64, deviation: f64) -> Estimate {
     Estimate { value, low: end(-1.96), high: end(1.96) }
 }
 
-/// A stiffness, estimated from its compliance.
+/// The reciprocal of a compliance, as a stiffness with its 95 % interval.
 fn stiffness(compliance: f64, deviation: f64) -> Estimate {
     let end = |c: f64| (c > 0.0).then(|| 1.0 / c);
     Estimate {
@@ -351,7 +352,7 @@ fn stiffness(compliance: f64, deviation: f64) -> Estimate {
     }
 }
 
-/// The compliances of a frame as parameters of the effect. One that no weight loads has no bounds.
+/// The compliances of a frame as parameters of the effect. A compliance that no weight loads has no bounds.
 fn frame_parameters(compliances: &[f64], deviations: &[f64]) -> Vec<(String, Vec<Estimate>)> {
     let matrix = frame_matrix(compliances);
     let entry = |at: (usize, usize)| {

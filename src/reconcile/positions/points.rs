@@ -3,14 +3,14 @@
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::PositionRow;
 
-/// A point on the tool of an arm.
+/// A point on the tool of an arm, as the fit sees it. In another session it may be a separate point.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Point {
-    /// The arm, in the order of the campaign.
+    /// Index of the arm in the campaign.
     pub arm: usize,
-    /// Its name in the readings.
+    /// Name of the point in the readings.
     pub name: String,
-    /// For a session of its own: the row, from 1, before which the session ends.
+    /// If the point belongs to an earlier session: the row, counted from 1, that begins the next session.
     pub before_row: Option<usize>,
 }
 
@@ -20,7 +20,7 @@ impl Point {
         Self { arm: row.arm, name: row.point.clone(), before_row: None }
     }
 
-    /// Its name, with the session.
+    /// Name of the point, with its session.
     pub(crate) fn label(&self) -> String {
         match self.before_row {
             Some(row) => format!("{} before row {row}", self.name),

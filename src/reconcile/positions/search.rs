@@ -16,8 +16,8 @@ pub(crate) const FULL_FITS: usize = 4;
 pub(crate) const TIE: f64 = 3.0;
 
 impl Positions {
-    /// Adds the effect of a class that raises the likelihood most, if it is worth its price and held-out
-    /// poses confirm it. Drops the effects that it makes unnecessary.
+    /// Adds the effect of a class that raises the likelihood most, if the rise is worth the effect's price and
+    /// held-out poses confirm it. Drops the effects that it makes unnecessary.
     pub(crate) fn add(&mut self, campaign: &Campaign, class: Yields) -> bool {
         let base = &self.fitted;
         let tried = self.best_additions(base, |c| self.candidates[c].yields == class);
@@ -30,8 +30,8 @@ impl Positions {
         self.take_if_confirmed(campaign, next, self.label(added))
     }
 
-    /// Replaces this model by the next one, without what that makes unnecessary, if it is worth its price and
-    /// predicts held-out poses better.
+    /// Replaces this model by `next`, if the gain is worth the price and `next` predicts held-out poses better.
+    /// Effects that are no longer needed are dropped first.
     pub(crate) fn take_if_confirmed(&mut self, campaign: &Campaign, mut next: Self, added: String) -> bool {
         next.settle(campaign);
         if next.score() <= self.score() {
@@ -52,7 +52,7 @@ impl Positions {
         ln_likelihood(&self.held_out, scale(&self.held_out, self.fitted.scale_m))
     }
 
-    /// Fits again with the effect of gravity on the fitted geometry, until no effect is unnecessary.
+    /// Repeats fits, each with gravity's effect on the geometry fitted before, until no effect is unnecessary.
     fn settle(&mut self, campaign: &Campaign) {
         loop {
             self.refresh(campaign);
@@ -84,8 +84,8 @@ impl Positions {
         }
     }
 
-    /// Whether an effect may not be worth its price, judged generously by its compliances over their standard
-    /// deviations.
+    /// Whether an effect may not be worth its price. The test is generous: it takes the effect's compliances over
+    /// their standard deviations.
     fn is_doubtful(&self, position: usize) -> bool {
         let price = self.price_of(self.fitted.effects[position]);
         let numbers = self.fitted.compliances[position].iter().zip(&self.fitted.deviations[position]);
@@ -118,8 +118,8 @@ impl Positions {
         self.price(self.candidates[candidate].count(), places)
     }
 
-    /// Price of `count` parameters in ln of the likelihood: for the parameters, and for having looked at so
-    /// many places.
+    /// Price of `numbers` parameters in ln of the likelihood. It charges for the parameters, and for having looked at
+    /// `places` places.
     pub(crate) fn price(&self, numbers: usize, places: usize) -> f64 {
         let readings = 3.0 * self.samples.len() as f64;
         0.5 * numbers as f64 * readings.ln() + (places as f64).ln() + 3.0
@@ -139,8 +139,8 @@ impl Positions {
         models.into_par_iter().map(|(c, effects)| (c, fit(&all, &self.numbers, &effects, base))).collect()
     }
 
-    /// Sets of effects to fit: the model's and the added one, and the same without those that the added one
-    /// can imitate. Next to these it would have hardly any size.
+    /// Two sets of effects to fit. One holds the model's effects and the added one; the other leaves out those that
+    /// the added one can imitate, because next to these the added effect would have hardly any size.
     fn with(&self, base: &Fitted, added: usize) -> Vec<Vec<usize>> {
         let contains =
             |effect: &usize| self.tree.contains(&self.candidates[added], &self.candidates[*effect]);
@@ -149,7 +149,7 @@ impl Positions {
         if instead.len() < both.len() { vec![both, instead] } else { vec![both] }
     }
 
-    /// Rise of ln of the likelihood that the linearized model expects of each candidate.
+    /// For each candidate, the rise of ln of the likelihood that the linearized model expects.
     fn gains(&self, base: &Fitted) -> Vec<(usize, f64)> {
         let from_level = base.geometry.level_to_instrument();
         let columns = |s: &Sample| -> Vec<Vector3<f64>> {
@@ -164,8 +164,8 @@ impl Positions {
         self.linear_gains(base, &columns, &counts).into_iter().enumerate().collect()
     }
 
-    /// Gain in ln of the likelihood of each block of `counts` further columns. A single column is a
-    /// compliance and gains nothing where it would be negative.
+    /// Gain in ln of the likelihood of each block of additional columns; `counts` holds the number of columns of each
+    /// block. A single column is a compliance and gains nothing where it would be negative.
     pub(crate) fn linear_gains(
         &self,
         base: &Fitted,
@@ -196,8 +196,7 @@ impl Positions {
         counts.iter().map(gain).collect()
     }
 
-    /// Competing candidates with the same number of parameters that fit as well in place of one of the
-    /// effects.
+    /// Candidates that compete with one of the effects: they have as many parameters and fit as well in its place.
     pub(crate) fn competitors(&self, position: usize) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let own = self.fitted.effects[position];

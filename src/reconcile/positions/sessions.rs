@@ -14,17 +14,18 @@ use nalgebra::{DMatrix, Vector3};
 
 /// Smallest number of positions in a session.
 const FEWEST: usize = 5;
-/// Number of rows that are tried at first as the first of a session. Those around the best are tried next.
+/// Number of rows that are tried at first as the first row of a session. The rows around the best of them are tried
+/// next.
 const TRIED: usize = 40;
 /// Largest number of sessions beyond the first.
 const MOST: usize = 6;
 
-/// What differs between sessions.
+/// What is placed differently in another session.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Moved {
-    /// The place of a point on the tool.
+    /// A point on the tool, by its index.
     Point(usize),
-    /// The place of the instrument.
+    /// The instrument or the base: the session with this index is divided.
     Station(usize),
 }
 
@@ -40,8 +41,8 @@ impl Moved {
         match self {
             Moved::Point(p) => (0..3).map(|c| Number::Tool(p, c)).collect(),
             Moved::Station(s) => {
-                let turns = (0..3).map(move |c| Number::StationRotation(s, c));
-                turns.chain((0..3).map(move |c| Number::StationPosition(s, c))).collect()
+                let turns = (0..3).map(move |c| Number::SessionRotation(s, c));
+                turns.chain((0..3).map(move |c| Number::SessionPosition(s, c))).collect()
             }
         }
     }
@@ -58,7 +59,7 @@ struct Split {
 }
 
 impl Positions {
-    /// Adds sessions while one is worth its price, and returns a sentence for each.
+    /// Finds sessions, as long as another session is worth its price. Returns one sentence for each.
     pub(crate) fn find_sessions(&mut self, tools_free: bool, base_free: bool) -> Vec<String> {
         let mut out = Vec::new();
         while out.len() < MOST {
@@ -93,7 +94,7 @@ impl Positions {
         fine.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(first, _)| first)
     }
 
-    /// Gain in ln of the likelihood if the rows before each of `firsts` had numbers of their own.
+    /// For each row of `firsts`, the gain in ln of the likelihood if the rows before it had their own placement.
     fn gains_of(&self, moved: Moved, firsts: Vec<usize>) -> Vec<(usize, f64)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let own = moved.numbers();
@@ -119,8 +120,8 @@ impl Positions {
         firsts.iter().enumerate().map(|(k, first)| (*first, gain(k))).collect()
     }
 
-    /// The model in which the rows before `first` have numbers of their own. Its likelihood is charged for
-    /// these numbers and for having looked at every row.
+    /// The model in which the rows before `first` have their own placement. Its likelihood is charged for the numbers
+    /// of this placement and for having looked at every row.
     fn split(&self, moved: Moved, first: usize, kinds: usize) -> Split {
         let mut samples = self.samples.clone();
         let mut start = self.fitted.clone();

@@ -9,37 +9,38 @@ use super::normal::{Factor, Normal};
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix2, Matrix3, Vector2};
 use std::ops::Range;
 
-/// Largest number of steps over the entries of `L`, and of halvings of one step.
+/// Largest number of Newton steps over the entries of `L`, the factor of a frame's compliance matrix `L Lᵀ`.
 const MOST_STEPS: usize = 30;
+/// Largest number of times that one step is halved.
 const MOST_HALVINGS: i32 = 8;
-/// The steps end when one promises to lower half of chi-squared by less than this.
+/// The Newton steps end when the next one would lower half of chi-squared by less than this.
 const SETTLED: f64 = 1e-6;
-/// `L` starts with this part of the frame's largest compliance in every direction. At zero the parabola would
-/// have no slope there.
+/// `L Lᵀ` starts with this part of the frame's largest compliance added in every direction. With a zero in `L`, half
+/// of chi-squared would have no slope there.
 const ROOM: f64 = 1e-3;
-/// Row and column of each entry of `L`. A base has no last entry: its zz is what the couplings need.
+/// Row and column of each entry of `L`. The base lacks the last entry: its zz follows from the couplings.
 const LOWER: [(usize, usize); FRAME_ENTRIES.len()] = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)];
 
-/// The minimum of the parabola.
+/// The step to the least value of half of chi-squared, which is quadratic in the numbers (a parabola).
 pub(crate) struct Best {
-    /// Change of each number, with those of the geometry first.
+    /// Change of each number. The numbers of the geometry come first, then the compliances.
     pub step: Vec<f64>,
-    /// Standard deviations; infinite for numbers that are held.
+    /// Standard deviations of the numbers; infinite for a number that is held.
     pub deviations: Vec<f64>,
 }
 
-/// What the compliances of an effect are free to do.
+/// How the compliances of an effect may change.
 #[derive(Clone)]
 enum Block {
     Free,
-    /// They change by these amounts.
+    /// The compliances change by these amounts.
     Held(Vec<f64>),
-    /// They are the entries of `L Lᵀ`.
+    /// The compliances are the entries of `L Lᵀ`.
     Frame(Matrix3<f64>),
 }
 
-/// The best step among springs. The compliances, at present `now`, come after `numbers` other numbers. `None`
-/// if the equations are singular.
+/// The best step that leaves every compliance possible for a spring. The compliances, which are `now` before the
+/// step, come after `numbers` other numbers. `None` if the equations are singular.
 pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) -> Option<Best> {
     let mut first = numbers;
     let ranges: Vec<Range<usize>> = (now.iter())
@@ -85,26 +86,26 @@ pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) ->
     }
 }
 
-/// The Cholesky factor `L` of a frame, with room in every direction.
+/// The Cholesky factor `L` of a frame's compliance matrix, enlarged in every direction by [`ROOM`].
 fn factor_of(compliances: &[f64]) -> Matrix3<f64> {
     let matrix = frame_matrix(compliances);
     let room = (ROOM * matrix.diagonal().max()).max(f64::MIN_POSITIVE);
     Cholesky::new(matrix + Matrix3::identity() * room).map_or_else(Matrix3::zeros, |c| c.l())
 }
 
-/// The normal equations, and what each effect is free to do.
+/// Half of chi-squared as a quadratic function of the numbers, and how the compliances of each effect may change.
 struct Parabola<'a> {
     curvature: DMatrix<f64>,
     gradient: DVector<f64>,
     numbers: usize,
     now: &'a [Vec<f64>],
-    /// Range of the compliances of each effect.
+    /// For each effect, the range of its compliances among the numbers.
     ranges: Vec<Range<usize>>,
     blocks: Vec<Block>,
 }
 
 impl Parabola<'_> {
-    /// The best step. Linear numbers are solved at once, and the entries of `L` step by step.
+    /// The best step. Without frames it is found in one step; the entries of `L` need several Newton steps.
     fn best(&mut self) -> Option<Best> {
         let mut linear = vec![0.0; self.gradient.len()];
         let mut step = self.step(&linear);
@@ -141,7 +142,7 @@ impl Parabola<'_> {
         Some(Best { deviations: (0..step.len()).map(deviation).collect(), step })
     }
 
-    /// Restarts every frame from its present compliance.
+    /// Starts every frame again from its present compliance.
     fn frames_from_now(&mut self) {
         for (block, now) in self.blocks.iter_mut().zip(self.now) {
             if let Block::Frame(l) = block {
@@ -152,7 +153,7 @@ impl Parabola<'_> {
         }
     }
 
-    /// The gradient after a step.
+    /// The gradient after a step of the numbers.
     fn gradient_at(&self, step: &[f64]) -> DVector<f64> {
         &self.gradient - &self.curvature * DVector::from_column_slice(step)
     }
@@ -162,7 +163,7 @@ impl Parabola<'_> {
         0.5 * step.dot(&(&self.curvature * &step)) - step.dot(&self.gradient)
     }
 
-    /// The factorized curvature over what is free.
+    /// Factorizes the curvature over the free numbers and the entries of `L`.
     fn factor(&self, slopes: &DMatrix<f64>) -> Option<Factor> {
         let all_free = self.blocks.iter().all(|block| matches!(block, Block::Free));
         let curvature = match all_free {
@@ -172,7 +173,7 @@ impl Parabola<'_> {
         Factor::new(&curvature, &(0..curvature.nrows()).collect::<Vec<_>>())
     }
 
-    /// The step of every number; `linear` is that of the linear ones.
+    /// The step of every number. `linear` holds the steps of the free numbers, the entries of `L` give the rest.
     fn step(&self, linear: &[f64]) -> Vec<f64> {
         let mut step = linear.to_vec();
         for ((block, range), now) in self.blocks.iter().zip(&self.ranges).zip(self.now) {
@@ -192,7 +193,8 @@ impl Parabola<'_> {
         step
     }
 
-    /// Derivatives of every number (rows) by what is free (columns): itself, or the entries of `L`.
+    /// Derivatives of every number (rows) by every free variable (columns). A variable is a free number, or an entry
+    /// of `L`.
     fn slopes(&self) -> DMatrix<f64> {
         let mut columns: Vec<DVector<f64>> = Vec::new();
         let unit = |at: usize| {
@@ -218,7 +220,7 @@ impl Parabola<'_> {
         DMatrix::from_columns(&columns)
     }
 
-    /// Moves what is free by a step.
+    /// Changes the free numbers and the entries of `L` by a step.
     fn advance(&mut self, linear: &mut [f64], by: &DVector<f64>) {
         let mut by = by.iter();
         let mut next = || by.next().copied().unwrap_or_default();
@@ -233,7 +235,8 @@ impl Parabola<'_> {
     }
 }
 
-/// Projects compliances onto springs: none is negative, and no moment turns a frame against itself.
+/// Projects compliances onto values that springs can have: none is negative, and no moment turns a frame the opposite
+/// way.
 fn nearest_spring(compliances: &[f64]) -> Vec<f64> {
     match compliances.len() {
         1 => vec![compliances[0].max(0.0)],

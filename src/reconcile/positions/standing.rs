@@ -54,7 +54,7 @@ impl Positions {
         }
     }
 
-    /// The samples of an arm, split into runs within which nothing is moved.
+    /// The samples of an arm, divided into runs within which neither the instrument nor a point was moved.
     fn runs(&self, campaign: &Campaign, own: &[usize]) -> Vec<Vec<usize>> {
         let mut out: Vec<Vec<usize>> = Vec::new();
         for &i in own {
@@ -71,7 +71,7 @@ impl Positions {
         out
     }
 
-    /// The place of the arm and of its points during a run.
+    /// Placement of the arm, and of the points on its tool, during a run.
     fn stand(
         &self,
         geometry: &Geometry,
@@ -93,7 +93,7 @@ impl Positions {
         }
     }
 
-    /// The geometry with base and points placed to suit all sessions. All else is held.
+    /// The geometry with base and points placed to suit all sessions together. All other numbers are held.
     fn merged(&self, campaign: &Campaign, shown: &Fitted) -> Geometry {
         let named = points(campaign);
         let together: Vec<Sample> = self

@@ -17,20 +17,20 @@ use crate::reconcile::select::structure::Structure;
 use crate::reconcile::select::waves::{order_functions, waves};
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 
-/// A structure is material from this part of the errors' sum of squares on.
+/// A structure in the errors counts if it accounts for at least this part of their sum of squares.
 pub(crate) const MATERIAL_PART: f64 = 0.1;
 /// A variance below this multiple of the declared one is ascribed to the declaration.
 pub(crate) const MATERIAL_VARIANCE: f64 = 1.75;
-/// A structure less probable than this is real.
+/// A structure is not chance if it is less probable than this.
 const IMPROBABLE: f64 = 1e-6;
 /// Median length of a vector of three standard normal deviates.
 pub(crate) const MEDIAN_LENGTH: f64 = 1.538;
 
-/// One question: what the errors would follow, and its number of columns.
+/// One question about the errors: what they would follow, in words, and the number of regressors.
 type Question = (String, usize);
 
 impl Positions {
-    /// Asks all questions.
+    /// Tests the errors for every structure that a question asks for.
     pub(crate) fn lack_of_fit(&self, campaign: &Campaign) -> LackOfFit {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let asker = Asker::new(self, campaign);
@@ -108,13 +108,13 @@ pub(crate) fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64
     (statistic, dof)
 }
 
-/// Every question's columns for a sample \[m per unit\].
+/// Computes the regressors of every question for a sample \[m per unit\].
 struct Asker<'a> {
     found: &'a Positions,
     questions: Vec<Question>,
     /// For each joint the index of its candidate, and its largest torque \[N m\].
     joints: Vec<(usize, f64)>,
-    /// For each driven joint the index of the candidate at it.
+    /// For each driven joint, the index of the candidate at this joint.
     driven: Vec<usize>,
     largest_payload_kg: f64,
     payloads_kg: Vec<f64>,

@@ -19,8 +19,8 @@ pub(crate) fn numbers(joint: usize) -> impl Iterator<Item = Number> {
 }
 
 impl Positions {
-    /// Lets that joint turn unevenly which raises the likelihood most, if it is worth its price and held-out
-    /// poses confirm it.
+    /// Adds the transmission error that raises the likelihood most, if the rise is worth its price and held-out poses
+    /// confirm it.
     pub(crate) fn add_transmission(&mut self, campaign: &Campaign) -> bool {
         if !campaign.statement.considers(EFFECT) {
             return false;
@@ -41,7 +41,7 @@ impl Positions {
         self.price(numbers(0).count(), self.tree.driven.len())
     }
 
-    /// Models in which one more joint turns unevenly. The most promising are fitted in full.
+    /// Models in which one more joint has a transmission error. The most promising are fitted in full.
     fn best_transmissions(&self) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let open: Vec<usize> =
@@ -61,7 +61,7 @@ impl Positions {
         order.into_par_iter().map(with).collect()
     }
 
-    /// Competing joints whose uneven turning would fit as well as that of `joint`.
+    /// Other joints whose transmission error would fit as well as that of `joint`.
     pub(crate) fn transmission_competitors(&self, joint: usize) -> Vec<usize> {
         let mut without = self.clone();
         let kept = |n: &Number| !matches!(n, Number::Transmission(j, _) if *j == joint);

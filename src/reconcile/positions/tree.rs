@@ -4,10 +4,10 @@ use crate::arm::structure::{JointAngle, Piece};
 use crate::arm::{Arm, JointModel};
 use crate::reconcile::readings::campaign::Campaign;
 
-/// The pieces of all arms of a campaign, with those of the trunk once.
+/// The pieces of all arms of a campaign. Those of the trunk are in it once.
 #[derive(Debug, Clone)]
 pub(crate) struct Tree {
-    /// Joints and links. The angle of a joint is taken from the campaign's pose.
+    /// Joints and links. A joint's angle comes from the pose of the campaign.
     pub pieces: Vec<Piece>,
     /// Indices of the pieces of each arm, base to tip.
     pub arms: Vec<Vec<usize>>,

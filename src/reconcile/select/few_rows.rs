@@ -24,21 +24,21 @@ use rayon::prelude::*;
 pub(crate) const FEWEST_ROWS: usize = 11;
 /// Largest number of fits for sets of one size. Beyond it only the most promising smaller sets are extended.
 const MOST_FITS: usize = 6000;
-/// A set whose misfit is less probable than this does not explain the readings.
+/// A set of effects whose misfit is less probable than this does not explain the readings.
 const IMPROBABLE: f64 = 0.01;
-/// Explaining sets whose ln of the evidence is this far behind the best are not listed. The limit is wide,
+/// Sets that explain the readings are left out if ln of their evidence is this far below the best. The limit is wide,
 /// because with few readings the evidence mostly repeats the prior.
 const IMPLAUSIBLE: f64 = 15.0;
 /// A missing mass is reported if every set differs from the arm file by more than this part.
 const MATERIAL: f64 = 0.02;
 /// A stiffness whose largest and smallest value have a ratio above this is not identified.
 const WIDE: f64 = 1.2;
-/// Factors on a stiffness that are tried in turn, and their reciprocals.
+/// Factors by which a stiffness is multiplied, and divided, in turn.
 const FACTORS: [f64; 9] = [1.1, 1.2, 1.4, 1.7, 2.0, 3.0, 4.0, 6.0, 10.0];
 /// Number of sets whose stiffnesses are varied.
 const MOST_PROFILES: usize = 6;
 
-/// Weighs every small set of effects. `others` holds those that explain the readings, best first.
+/// Fits every small set of effects. In the result, `others` holds the sets that explain the readings, best first.
 pub(crate) fn weigh(search: &Search) -> Selection {
     let baseline = scored(search, &[], &[]);
     let mut tried = vec![baseline.clone()];
@@ -59,7 +59,7 @@ pub(crate) fn weigh(search: &Search) -> Selection {
     Selection { best, baseline, others, given_up: false }
 }
 
-/// The sets that explain the readings and have no smaller part that does, best first.
+/// The sets that explain the readings and of which no smaller part does, best first.
 fn explaining(search: &Search, tried: Vec<Scored>) -> Vec<Scored> {
     let all: Vec<Scored> = tried.into_iter().filter(|s| explains(search, s)).collect();
     let within = |a: &Scored, b: &Scored| {
@@ -77,7 +77,7 @@ fn explains(search: &Search, scored: &Scored) -> bool {
     is_probable(search, scored, scored.objective)
 }
 
-/// Whether chance can leave such a misfit.
+/// Whether chance can leave a misfit as large as this.
 fn is_probable(search: &Search, set: &Scored, misfit: f64) -> bool {
     let readings = search.forward.data.len();
     let free = free_parameters(search, &set.effects);
@@ -89,7 +89,7 @@ fn free_parameters(search: &Search, effects: &[usize]) -> usize {
     effects.iter().map(|&e| search.candidates[e].free_parameters.len()).sum()
 }
 
-/// Fits every set of `level` with one more effect, no set twice.
+/// Fits every set that is a set of `level` with one more effect, each set once.
 fn extend(search: &Search, level: &[Scored]) -> Vec<Scored> {
     let candidates = 0..search.candidates.len();
     let mut from: Vec<&Scored> = level.iter().collect();
@@ -144,7 +144,7 @@ fn surprise(parameter: &FreeParameter, u: f64) -> f64 {
     0.5 * (parameter.beyond_expected(u) / 0.25).powi(2)
 }
 
-/// What the sets that explain the readings have in common, and what they do not.
+/// Says what the sets that explain the readings have in common, and in what they differ.
 pub(crate) fn sentences(
     search: &Search,
     campaign: &Campaign,
@@ -175,7 +175,7 @@ pub(crate) fn sentences(
     out
 }
 
-/// Describes the worst reading of the arm as given.
+/// Describes the reading that the arm as given, calibrated within its tolerances, misses most.
 fn gap(search: &Search, baseline: &Fit) -> String {
     let sigmas = |i: usize| {
         let datum = &search.forward.data[i];
@@ -193,8 +193,8 @@ fn gap(search: &Search, baseline: &Fit) -> String {
     )
 }
 
-/// Finds the outermost joint from which outwards mass is missing, or too much: by every set that leaves the
-/// stiffnesses as they are.
+/// Finds the outermost joint outboard of which mass is missing, or is too much. It considers every set that leaves
+/// the stiffnesses as they are.
 fn missing_mass(
     search: &Search,
     campaign: &Campaign,
@@ -318,8 +318,8 @@ fn span(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }
 
-/// Every effect of the sets: the range of its parameters over the sets that have it, and what replaces it in
-/// the others. A stiffness that some set does without has no upper end.
+/// Every effect of the sets: the range of its parameters over the sets that have it, and what replaces it in the
+/// others. If an effect is a stiffness and some set does without it, the range of this stiffness has no upper end.
 pub(crate) fn suspects(search: &Search, explaining: &[Scored], weights: &Weights) -> Vec<Finding> {
     let mut effects: Vec<usize> = Vec::new();
     for &e in explaining.iter().flat_map(|s| &s.effects) {

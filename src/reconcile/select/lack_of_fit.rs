@@ -17,31 +17,31 @@ use crate::reconcile::model::parameters::Calibration;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// The answers to all questions.
+/// The answers to all questions about the residuals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LackOfFit {
     /// The structure of every question, the most improbable first.
     pub structures: Vec<Structure>,
     /// Chi-squared over degrees of freedom of all data, by declared standard deviations.
     pub chi2_per_dof: f64,
-    /// Whether the model fails the test.
+    /// Whether the model fails the lack-of-fit test.
     pub fails: bool,
 }
 
-/// The model fails above this chi-squared per degree of freedom. Wrongly declared standard deviations hardly
+/// The model fails if chi-squared per degree of freedom exceeds this. Wrongly declared standard deviations hardly
 /// explain more.
 const MATERIAL: f64 = 2.5;
-/// The same where a structure is suspected.
+/// If a structure is suspected, the model fails already above this chi-squared per degree of freedom.
 const SUSPICIOUS: f64 = 1.8;
 /// A structure less probable than this, with all questions counted, is not chance.
 const CHANCE: f64 = 1e-3;
 /// A structure less probable than this is suspected.
 const SUSPECTED: f64 = 0.02;
-/// Number of structures that are put into words.
+/// Largest number of structures that are described in words.
 const TOLD: usize = 3;
 
 impl LackOfFit {
-    /// Sentences on the most improbable structures, each said once.
+    /// Sentences on the most improbable structures, without repetition.
     pub fn sentences(&self) -> Vec<String> {
         let mut told: Vec<&Structure> = Vec::new();
         for structure in self.structures.iter().filter(|s| s.ln_p < CHANCE.ln()) {
@@ -53,7 +53,7 @@ impl LackOfFit {
     }
 }
 
-/// Tests a fitted model.
+/// Tests the residuals of a fitted model for structure.
 pub(crate) fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> LackOfFit {
     let tester = Tester::new(forward, fit, weights);
     let mut structures = Vec::new();
@@ -80,8 +80,8 @@ pub(crate) fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, wei
     LackOfFit { structures, chi2_per_dof, fails }
 }
 
-/// A regressor of which the model leaves less than this part of its square counts as the model's own. The
-/// rest would only show how well the fit converged.
+/// A regressor is dropped if the model already explains all but this part of its sum of squares. The rest would only
+/// show how well the fit converged.
 const ABSORBED: f64 = 1e-3;
 
 /// Scales columns to length 1.
@@ -160,8 +160,8 @@ impl Tester {
     }
 }
 
-/// The questions about a channel: what the residuals would follow, and the regressors, which are zero outside
-/// the channel.
+/// The questions about a channel, each with what the residuals would follow and with regressors. Regressors are zero
+/// outside the channel.
 fn questions(
     campaign: &Campaign,
     forward: &Forward,

@@ -17,7 +17,7 @@ use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::DVector;
 use std::f64::consts::TAU;
 
-/// A law without a name.
+/// A law without a name: a way in which readings can differ that is not an effect of the library.
 pub(crate) struct Law {
     /// The law in words.
     pub what: String,
@@ -39,19 +39,19 @@ pub(crate) fn laws(campaign: &Campaign, forward: &Forward, fit: &Fit) -> Vec<Law
     out
 }
 
-/// The state of a joint when a reading is taken.
+/// The state of a joint at the time of a reading.
 struct State {
     torque_nm: f64,
     angle_deg: f64,
-    /// Part of the channel's tests that were done before.
+    /// Part of the channel's tests that were done before this reading.
     part: f64,
     channel: Channel,
 }
 
-/// A further twist and its slope at a state, both as multiples of torque over stiffness.
+/// A further twist in a state of the joint, and the slope of this twist, both as multiples of torque over stiffness.
 type Shape<'a> = &'a dyn Fn(&State) -> (f64, f64);
 
-/// Makes a column of a channel from a function of the datum and its predicted reading.
+/// Makes a column of a channel. The column is a function of the datum's index and its predicted reading.
 type ColumnOf<'a> = &'a dyn Fn(&dyn Fn(usize, f64) -> f64) -> Vec<f64>;
 
 struct Builder<'a> {
@@ -113,7 +113,7 @@ impl Builder<'_> {
         out
     }
 
-    /// The change of every reading by a further twist of a joint.
+    /// The change of every reading by an additional twist of a joint.
     fn joint_column(&self, joint: usize, compliance: f64, shape: Shape) -> Vec<f64> {
         let forward = self.forward;
         let driven = self.campaign.arm.driven_joint_names();
@@ -159,7 +159,7 @@ impl Builder<'_> {
         self.read(&truth)
     }
 
-    /// A base, bearings and links that yield further, each in one direction or in part.
+    /// Laws of a base, bearings and links that yield more than modelled, each in one direction or in part.
     fn yielding_laws(&self) -> Vec<Law> {
         let layout = &self.forward.layout;
         let own = &self.fit.point.coefficients;
@@ -234,7 +234,7 @@ impl Builder<'_> {
         change_to(self.forward, &self.fit.point, &moved).into_iter().map(|d| d / PART).collect()
     }
 
-    /// The change of every reading by further compliances of coordinates.
+    /// The change of every reading by additional compliances of strain coordinates.
     fn yielding_column(&self, further: &[(usize, f64)]) -> Vec<f64> {
         let forward = self.forward;
         let mut truth = vec![0.0; forward.data.len()];
@@ -245,8 +245,8 @@ impl Builder<'_> {
         self.read(&truth)
     }
 
-    /// The change of the frequencies by a change of the compliances. The function gives `yᵀ dC y` for a datum
-    /// and its `y`.
+    /// Adds the change of the frequencies by a change `dC` of the compliances. `energy` gives `yᵀ dC y` for a datum
+    /// and the datum's mode `y`.
     fn add_modal(&self, truth: &mut [f64], energy: impl Fn(usize, &DVector<f64>) -> f64) {
         for (test, solved) in self.forward.modal.iter().zip(&self.fit.point.solved) {
             for &(datum, mode) in &test.modes {
@@ -289,8 +289,8 @@ impl Builder<'_> {
         out
     }
 
-    /// Loads that differ from those stated, a support that gives way along the load, and readings that grow
-    /// while a pose is kept.
+    /// Laws of loads that differ from those stated, of a support that gives way along the load, and of readings that
+    /// grow while a pose is kept.
     fn load_laws(&self, column: ColumnOf) -> Vec<Law> {
         let rows = &self.campaign.statics;
         let gravity = self.forward.layout.gravity_m_s2;
@@ -332,8 +332,8 @@ impl Builder<'_> {
         out
     }
 
-    /// A column of the static readings, joined with that of the frequencies under payloads that are heavier
-    /// in proportion.
+    /// Joins a column of the static readings with the change of the frequencies under payloads that are heavier in
+    /// the same proportion.
     fn heavier_payloads(&self, mut column: Vec<f64>) -> Vec<f64> {
         const PART: f64 = 1e-4;
         let forward = self.forward;
@@ -351,7 +351,7 @@ impl Builder<'_> {
         column
     }
 
-    /// A separate gain for each direction, and a turned frame.
+    /// Laws of the measuring frame: a separate gain for each direction, and a rotation of the frame.
     fn direction_laws(&self, column: ColumnOf) -> Vec<Law> {
         let data = &self.forward.data;
         let gain = |c: usize| column(&|i, d| if data[i].component == c { d } else { 0.0 });
@@ -380,7 +380,7 @@ impl Builder<'_> {
     }
 }
 
-/// How many rows of the same pose came directly before each row.
+/// For each row, how many rows directly before it have the same pose.
 fn rows_in_pose<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
     let mut last: Option<(&[f64], usize)> = None;
     poses
@@ -392,7 +392,7 @@ fn rows_in_pose<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
         .collect()
 }
 
-/// Three laws: of the first column, of the second, and of both.
+/// Three laws: with the first column, with the second, and with both.
 fn one_or_both(what: &str, columns: [Vec<f64>; 2]) -> Vec<Law> {
     let [a, b] = columns;
     let law = |columns| Law { what: what.to_string(), columns };

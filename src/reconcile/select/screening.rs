@@ -15,26 +15,26 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::cell::OnceCell;
 
-/// A further effect must raise the score by this much, because two missing things at once are rarer than one.
+/// Least rise of the score by which a second or third effect is accepted. Two missing things at once are rarer than
+/// one.
 const WORTH: f64 = 3.0;
-/// The first effect must raise the score by this much. It is 0, because something missing is as likely as
+/// Least rise of the score by which the first effect is accepted. It is 0, because something missing is as likely as
 /// nothing missing.
 const FIRST_WORTH: f64 = 0.0;
-/// Probability that an effect and its alternatives must have together.
+/// Alternatives to an effect are listed until the effect and its alternatives together have this probability.
 const CREDIBLE: f64 = 0.95;
-/// Models whose score is this far behind after a few steps are not fitted further.
+/// Models whose score is this far behind the best after a few steps are not fitted further.
 const HOPELESS: f64 = 40.0;
-/// Models within this score of the best of a stage are examined further.
+/// Models whose score is within this of the best of a stage are examined further.
 const PROMISING: f64 = 12.0;
 /// Largest number of effects in a model.
 pub(crate) const MOST_EFFECTS: usize = 3;
-/// A law without a name whose ln of the evidence is higher by this much settles that the effects found are
-/// not the cause.
+/// If ln of the evidence of a law without a name is higher by this much, the effects found are not the cause.
 const SETTLES: f64 = 12.0;
 /// Number of candidates fitted in full at each stage.
 const FULL_FITS: usize = 7;
 
-/// What a search found.
+/// The result of a search for effects.
 pub(crate) struct Selection {
     /// The best model.
     pub best: Scored,
@@ -47,8 +47,8 @@ pub(crate) struct Selection {
 }
 
 impl<'a> Search<'a> {
-    /// Searches for the effects. With two effects or more, a model from an earlier search is a better start
-    /// than none.
+    /// Searches for the effects. `before` is a model from an earlier search; if it has two effects or more, it is a
+    /// better start than none.
     pub(crate) fn run(&self, before: Option<&Scored>) -> Selection {
         let baseline_model = self.model(&[]);
         let baseline_fit = fit(
@@ -92,9 +92,8 @@ impl<'a> Search<'a> {
         Selection { best, baseline, others: seen, given_up }
     }
 
-    /// Whether a law without a name is so much better than the best model that further effects are not worth
-    /// a search. With one effect so far it must also leave no more than noise, because two effects could
-    /// still be better.
+    /// Whether the search is over because a law without a name is far better than the best model. With one effect so
+    /// far the law must also leave no more than noise, because two effects could still be better.
     fn is_settled_by(&self, law: &Option<Better>, baseline: &Scored, best: &Scored) -> bool {
         let readings = self.forward.data.len() as f64;
         let noise = readings + 2.0 * (2.0 * readings).sqrt();
@@ -104,9 +103,9 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Fits the promising models of a selection again with other weights, and chooses among them. It includes
-    /// models with only some of the best model's effects, because the others may have been named for the
-    /// faults of the old weights.
+    /// Fits the promising models of a selection again with other weights, and chooses among them. Models with only
+    /// some of the best model's effects are included, because the others may have been named only because of the
+    /// earlier weights.
     pub(crate) fn weigh_again(&self, before: &Selection) -> Selection {
         let mut promising: Vec<Scored> = vec![before.baseline.clone()];
         let near = before.others.iter().filter(|s| s.score > before.best.score - PROMISING).cloned();
@@ -161,7 +160,7 @@ impl<'a> Search<'a> {
         best
     }
 
-    /// The models with some of a model's effects, each with a start from that model.
+    /// The models with some, but not all, of a model's effects, each with start values from that model.
     fn parts(&self, scored: &Scored) -> Vec<Scored> {
         let mut parts: Vec<Scored> = Vec::new();
         let mut open = vec![scored.clone()];
@@ -177,7 +176,7 @@ impl<'a> Search<'a> {
         parts
     }
 
-    /// The best models with one more effect. Models that were fitted before are taken from `seen`.
+    /// The best models with one more effect. A model that was fitted before is taken from `seen`.
     fn extend(&self, base: &Scored, seen: &[Scored]) -> Vec<Scored> {
         let screened = self.screen(base);
         let starts = screened.into_iter().map(|(c, u, _)| ([base.effects.as_slice(), &[c]].concat(), u));

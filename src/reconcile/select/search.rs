@@ -13,7 +13,7 @@ use rayon::prelude::*;
 /// of the frequencies. The narrow one leaves the steps nearly sharp.
 const WIDE: f64 = 0.1;
 const NARROW: f64 = 0.01;
-/// A break point is not followed further where the objective has risen by more than this.
+/// A break point is not moved further where the objective has risen by more than this.
 const RULED_OUT: f64 = 14.0;
 /// A model with a larger objective per datum cannot become the explanation, whatever the declared standard
 /// deviations.
@@ -38,7 +38,7 @@ pub(crate) struct Search<'a> {
 pub(crate) struct Scored {
     /// Indices of the candidates in it.
     pub effects: Vec<usize>,
-    /// Its parameters.
+    /// Fitted parameters of the model.
     pub u: Vec<f64>,
     /// ln of the evidence minus ln of the number of places for each effect.
     pub score: f64,
@@ -52,7 +52,7 @@ impl<'a> Search<'a> {
         Model::of(self.nuisance, self.candidates, effects)
     }
 
-    /// Fits that model from `u`.
+    /// Fits the model of these effects from the start `u`.
     pub(crate) fn fit(&self, effects: &[usize], u: &[f64], effort: Effort) -> Fit<'a> {
         self.fit_model(self.model(effects), u, effort)
     }
@@ -77,8 +77,8 @@ impl<'a> Search<'a> {
         descent(self.forward, model, u, self.weights, effort, f64::INFINITY)
     }
 
-    /// Takes a few steps, enough to see whether a model is close. Where the last effect is a gear's curve,
-    /// the frequencies' steps are smoothed widely at first.
+    /// Fits a model in a few steps, enough to see whether it is close. If the last effect is a gear's curve, the
+    /// steps of the frequencies are smoothed widely at first.
     pub(super) fn rough(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
         let mut model = self.model(effects);
         let mut start = u.to_vec();
@@ -117,8 +117,8 @@ impl<'a> Search<'a> {
         self.centre_breaks(model, best)
     }
 
-    /// Fits a model with break points to the end if it may be the explanation. Otherwise a further effect
-    /// might be named that only makes up for what the descent missed.
+    /// Fits a model with break points to the end if it may be the explanation. A descent that stops early would
+    /// otherwise make a further effect seem necessary.
     pub(super) fn settled(&self, scored: Scored) -> Scored {
         if self.model(&scored.effects).break_points().is_empty() || !self.may_explain(&scored) {
             return scored;

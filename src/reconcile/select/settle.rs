@@ -13,21 +13,22 @@ use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::{Candidate, Model, Nuisance};
 use crate::reconcile::readings::campaign::Campaign;
 
-/// Cost of a gross error in ln of the evidence, where it replaces an effect. About one row in a thousand is
-/// one.
+/// Cost of a gross error, in ln of the evidence, where it replaces an effect. About one row in a thousand is a gross
+/// error.
 const SLIP: f64 = 7.0;
 
-/// Largest tolerable error of a frequency from its trial shapes \[standard deviations\].
+/// Largest tolerable error of a frequency that comes from computing it with fixed trial shapes \[standard
+/// deviations\].
 const INEXACT: f64 = 0.5;
 
-/// Largest number of times that trial shapes are taken from the best model.
+/// Largest number of times that the trial shapes are replaced by those of the best model.
 const SHAPES: usize = 2;
 
 /// Largest number of times that the worst readings are left out to see whether calibration alone fits the
 /// others.
 const LOOKS: usize = 4;
 
-/// The effects, and the quality of the readings.
+/// The result of the search for effects, and of the judgement of the readings.
 pub(crate) struct Settled {
     /// The models that were weighed.
     pub selection: Selection,
@@ -53,10 +54,10 @@ impl Settled {
 
     /// Handles many readings, in this order.
     ///
-    /// It finds missing modes, and searches with the declared standard deviations and without obvious gross
-    /// errors. It then removes further gross errors and searches again. At last the best model shows whether
-    /// the declared standard deviations were right. If not, the models are weighed again with those it
-    /// suggests.
+    /// Missing modes are found first. A search follows with the declared standard deviations and without obvious
+    /// gross errors. Then further gross errors are removed and the search is repeated. At last the best model shows
+    /// whether the declared standard deviations were right. If not, the models are weighed again with the standard
+    /// deviations that it suggests.
     pub(crate) fn of_many(
         campaign: &Campaign,
         forward: &mut Forward,
@@ -91,15 +92,15 @@ struct Settling<'a> {
     candidates: &'a [Candidate],
 }
 
-/// One search.
+/// One search, with the noise that it assumed and found.
 struct Round {
     /// The noise that the search assumed.
     noise: Noise,
     selection: Selection,
     coefficients: Coefficients,
-    /// The noise that its best model shows.
+    /// The noise that the best model of the search shows.
     judged: Noise,
-    /// Whether its best model may become the explanation.
+    /// Whether the best model of the search may become the explanation.
     hopeful: bool,
 }
 
@@ -130,8 +131,8 @@ impl Settling<'_> {
         Round { noise, selection, coefficients: best.point.coefficients, judged, hopeful }
     }
 
-    /// Fits calibration alone with the declared standard deviations, and returns its weights. Where it fits
-    /// most readings, the few worst ones are left out.
+    /// Fits the calibration alone with the declared standard deviations, and returns the fit with its weights. If it
+    /// fits most readings, the few worst readings are left out.
     fn baseline(&self) -> (Fit<'_>, Weights) {
         let calibrated = |noise: Noise| {
             let baseline = Model::baseline(self.nuisance);
@@ -154,7 +155,7 @@ impl Settling<'_> {
     }
 
     /// Searches without the gross errors that show before any effect is known. An effect may show in a single
-    /// frequency, so a search with those frequencies replaces it if it is more probable.
+    /// frequency, so a search that includes those frequencies replaces the first if it is more probable.
     fn first(&self) -> Round {
         let (baseline, weights) = self.baseline();
         let noise = Noise::first_look(self.forward, &baseline, &weights);
@@ -186,9 +187,9 @@ impl Settling<'_> {
         round
     }
 
-    /// Weighs again with the trial shapes of the model that was found. Those of the nominal arm are not exact
-    /// far from it, and a further effect or a law without a name would make up for it. Where the difference
-    /// shows in the readings, the whole search is repeated.
+    /// Weighs again with trial shapes of the model that was found. The shapes of the nominal arm are inexact far from
+    /// this arm, and a further effect or a law without a name would make up for the error. If the difference shows in
+    /// the readings, the whole search is repeated.
     fn with_exact_modes(&mut self, mut round: Round) -> Round {
         for _ in 0..SHAPES {
             if round.selection.best.effects.is_empty() {
@@ -212,8 +213,8 @@ impl Settling<'_> {
         round
     }
 
-    /// Searches without one or two rows that could be gross errors by the best model, or by the best of the
-    /// models with one effect fewer. That search counts if such slips are more probable than the effects they
+    /// Searches without one or two rows that may be gross errors according to the best model, or to the best model
+    /// with one effect fewer. The new search counts if such errors are more probable than the effects that they
     /// replace.
     fn with_slips(&self, round: Round) -> Round {
         let best = &round.selection.best;
@@ -268,7 +269,7 @@ impl Settling<'_> {
     }
 }
 
-/// The result that a search can start from.
+/// An earlier result from which a search can start.
 enum Before<'a> {
     Nothing,
     /// The best model so far, if other rows count now.

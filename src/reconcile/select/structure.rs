@@ -5,13 +5,13 @@ use crate::arm::effect::channel::Channel;
 /// One question about the residuals, and its answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Structure {
-    /// The channel; `None` for all of them together.
+    /// The channel; `None` if the question is about all channels together.
     pub channel: Option<Channel>,
     /// What the residuals would follow, in words.
     pub follows: String,
     /// Test statistic.
     pub statistic: f64,
-    /// Its degrees of freedom.
+    /// Degrees of freedom of the statistic.
     pub dof: f64,
     /// ln of the probability that chance gives so large a statistic, times the number of questions.
     pub ln_p: f64,

@@ -16,18 +16,18 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Sizes below this part of a law's full size are equally likely. At full size a stiffness or a reading
-/// changes by all of itself.
+/// Sizes of a law below this part of its full size are equally likely. At full size a stiffness or a reading changes
+/// by 100 %.
 const SMALL: f64 = 0.02;
 /// Largest number of reweighted steps of the linear fit.
 const STEPS: usize = 6;
 /// The linear fit ends when a step lowers the objective by less than this.
 const SETTLED: f64 = 0.01;
-/// A law without a name is preferred to named effects if ln of the evidence is higher by this much. Where no
-/// effect is named, it is mentioned from there on.
+/// A law without a name is preferred to named effects if ln of the evidence is higher by this much. If no effect is
+/// named, a law that is better by this much is mentioned.
 const BETTER: f64 = 2.0;
 
-/// A competing model: one with a law in it.
+/// A competing model: the fitted model with a law in it.
 struct Competitor {
     what: String,
     numbers: usize,
@@ -42,7 +42,7 @@ pub(crate) struct Better {
     pub what: String,
     /// Number of its parameters.
     pub numbers: usize,
-    /// The objective `Σ ρ(r) + Σ u²` with it.
+    /// The objective `Σ ρ(r) + Σ u²` of the model with the law.
     pub objective: f64,
     /// Rise of ln of the evidence.
     pub gain: f64,
@@ -92,8 +92,8 @@ pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<
     fits.iter().chain([baseline]).filter_map(better).max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
 
-/// The best competing model, if it is better than a model of this evidence. That evidence is not charged for
-/// the places of effects that stay.
+/// The best competing model, if its evidence is higher than `evidence`. That evidence is not charged for the places
+/// of effects that stay.
 fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<Better> {
     let gain = |r: &Competitor| r.evidence - places.ln() - evidence;
     let best = competitors.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
@@ -155,8 +155,8 @@ fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Com
     Competitor { what: law.what.clone(), numbers: law.columns.len(), objective, evidence }
 }
 
-/// Width of the prior of a parameter. It is that of an effect's parameter, or of a law's, whose size may be
-/// of any order of magnitude.
+/// Width of the prior of a parameter: the parameter of an effect, or else that of a law, whose size may be of any
+/// order of magnitude.
 fn width(fit: &Fit, own: usize, p: usize, u: f64) -> f64 {
     match p < own {
         true => fit.model.free_parameters().nth(p - fit.model.calibrated()).map_or(1.0, |k| k.width(u)),

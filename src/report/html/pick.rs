@@ -371,11 +371,14 @@ impl View {
 }
 
 /// Checks in the order of the table's columns.
-const CHECKS: [CheckKind; 10] = [
+const CHECKS: [CheckKind; 13] = [
     CheckKind::GearPeak,
     CheckKind::GearMean,
     CheckKind::GearStop,
-    CheckKind::GearTilt,
+    CheckKind::BearingMoment,
+    CheckKind::BearingRest,
+    CheckKind::BearingStop,
+    CheckKind::BearingLife,
     CheckKind::GearSpeed,
     CheckKind::GearMeanSpeed,
     CheckKind::GearLife,

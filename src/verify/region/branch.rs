@@ -5,28 +5,31 @@
 //! torque if the mixture twists less, or is stiffer, than its gears are at the torque that its own weights make.
 
 use super::super::bound::{Members, compliances};
-use super::super::span::{Linear, Span};
+use super::super::pose::Pose;
+use super::super::span::{Linear, LinearVector, Span};
 use super::parts_table::{Numbers, PartsTable, place};
 use super::rows::Rows;
 use super::subproblem::{Subproblem, TorqueInterval};
 use super::weights::{Member, Reduced};
 
-/// Gains below this part of what the upper bound allows are no reason to branch: then the most options are.
+/// Smallest gain that is a reason to branch, as a part of what the upper bound allows. If no gain is larger, the
+/// level with the most options is branched.
 const WORTH_IT: f64 = 1e-4;
-/// Rows in which the mixture has less room than this count for this more than their weights.
+/// A row counts for [`SAY`] more than its weight if its value at the mixture is within this distance of zero.
 const NEAR: f64 = 0.2;
 const SAY: f64 = 0.1;
-/// Members of smaller shares do not say where to branch a torque.
+/// Members with a smaller share of the mixture provide no break points at which to branch a torque.
 const SHARE: f64 = 1e-3;
-/// A torque within this part of itself is known.
+/// A torque is not branched if its interval is narrower than this part of the torque's greatest magnitude.
 const KNOWN: f64 = 2e-3;
-/// Part of a torque's interval from either end in which it is not branched.
+/// Where the mixture's own torque is nearer to an end than this part of the interval, the interval is divided
+/// elsewhere.
 const EDGE: f64 = 0.1;
 
 /// A way to branch a subproblem.
 pub(super) enum Branching {
-    /// The options of a part, joints before tubes, by the sum of their numbers times factors: up to one and beyond, or in
-    /// equal parts.
+    /// Divides the options of a part (joints are numbered before tubes) by the sum of an option's numbers times
+    /// `per_number`: options up to the value `at`, and those beyond. Without `at` they are divided into equal parts.
     Options {
         part: usize,
         per_number: Vec<f64>,
@@ -39,7 +42,8 @@ pub(super) enum Branching {
     },
 }
 
-/// Ways to branch, the most promising first, with the numbers of the torsion curves that they refer to.
+/// Ways to branch, the most promising first. `curves` holds the twists and slopes of the torsion curves, by which
+/// drives are divided.
 #[derive(Default)]
 pub(super) struct Branchings {
     pub branchings: Vec<Branching>,
@@ -47,7 +51,7 @@ pub(super) struct Branchings {
 }
 
 impl Rows<'_> {
-    /// Branchings to part what is left of a subproblem, the most promising first.
+    /// Ways to branch what is left of a subproblem, the most promising first.
     pub(super) fn branchings(&self, members: &Members, left: &Reduced) -> Vec<Branching> {
         let between = self.between(left);
         let mut found = Vec::new();
@@ -63,7 +67,7 @@ impl Rows<'_> {
         found.into_iter().map(|(_, branching)| branching).collect()
     }
 
-    /// The numbers of the arm in between the mixed members.
+    /// The numbers of the mixture: the mean of the members' numbers, weighted by their shares.
     fn between(&self, left: &Reduced) -> Vec<f64> {
         let mut between = vec![0.0; self.columns.len()];
         for (share, member) in &left.mixed {
@@ -72,7 +76,8 @@ impl Rows<'_> {
         between
     }
 
-    /// How much the mixed members differ in a part, and the row in which they differ most.
+    /// How much the members of the mixture differ in what a part adds to the rows, and how to branch by the row in
+    /// which they differ most.
     fn by_options(
         &self,
         part: usize,
@@ -95,9 +100,7 @@ impl Rows<'_> {
         let row = (0..spreads.len()).max_by(|&a, &b| spreads[a].total_cmp(&spreads[b])).unwrap_or(0);
         let mut score: f64 = spreads.iter().sum();
         let at = (score > WORTH_IT).then(|| adds(row, between));
-        if let Some(tube) = part.checked_sub(self.columns.joints) {
-            score += self.left_out_of(tube, between, members, &left.weights);
-        }
+        score += self.left_out_of(part, between, members, &left.weights);
         let per_number = self.rows[row].per_number[columns.clone()].to_vec();
         if score <= WORTH_IT {
             score = WORTH_IT * (1.0 - 1.0 / self.options(left, part) as f64);
@@ -112,8 +115,8 @@ impl Rows<'_> {
         }
     }
 
-    /// What a row counts for: its weight, and something for any that the mixture has little room in. What holds a torque
-    /// does not.
+    /// How much a row counts: its weight, and [`SAY`] more if the mixture is close to the row's limit. Rows of torque
+    /// intervals do not count.
     fn says(&self, row: usize, between: &[f64], left: &Reduced) -> f64 {
         let near = self.rows[row].value(between) > -NEAR;
         match (self.first_interval..self.first_mode).contains(&row) {
@@ -122,28 +125,48 @@ impl Rows<'_> {
         }
     }
 
-    /// What the products of force and compliance of a tube leave out at the mixture.
-    fn left_out_of(&self, tube: usize, between: &[f64], members: &Members, weights: &[f64]) -> f64 {
+    /// The part of a tube's or a bearing's tip displacement that the linear bound of force times compliance leaves out at the
+    /// mixture, in units of the weighted rows.
+    fn left_out_of(&self, part: usize, between: &[f64], members: &Members, weights: &[f64]) -> f64 {
         let of_tip = |&(row, case, direction): &(usize, usize, nalgebra::Vector3<f64>)| {
             let pose = self.pose(case);
             let loads = &members.loads[pose.water];
-            let products = pose.works[tube].iter().zip(compliances(members.tubes[tube])).enumerate();
-            let left_out = products.map(|(which, (work, compliance))| {
-                let number = self.columns.tubes[tube] + place::compliance(self.skeleton.waters.len(), which);
-                let forces = work.along(&direction, loads);
-                let per_load = work.per_load.iter().enumerate();
-                let force = work.fixed.dot(&direction)
-                    + per_load
-                        .map(|(load, per)| between[self.columns.load(load, pose.water)] * per.dot(&direction))
-                        .sum::<f64>();
-                (force - forces.least) * (between[number] - compliance.least)
-            });
+            let left_out =
+                self.products(part, pose, members).into_iter().map(|(number, work, compliance)| {
+                    let forces = work.along(&direction, loads);
+                    let per_load = work.per_load.iter().enumerate();
+                    let force = work.fixed.dot(&direction)
+                        + per_load
+                            .map(|(load, per)| {
+                                between[self.columns.load(load, pose.water)] * per.dot(&direction)
+                            })
+                            .sum::<f64>();
+                    (force - forces.least) * (between[number] - compliance.least)
+                });
             weights[row] * left_out.sum::<f64>() / self.upper.tip_m
         };
         self.tips.iter().map(of_tip).sum()
     }
 
-    /// Ways to branch at torques of a case: the mixture gains by gears that are at other torques than its own weights make.
+    /// Every product of force and compliance that a part has in the displacement of the tip, with the position of the
+    /// compliance.
+    fn products<'p>(
+        &self,
+        part: usize,
+        pose: &'p Pose,
+        members: &Members,
+    ) -> Vec<(usize, &'p LinearVector, Span)> {
+        let Some(tube) = part.checked_sub(self.columns.joints) else {
+            let tilt = members.drives[part].tilt_rad_per_nm;
+            return vec![(self.columns.tilt(part), &pose.by_tilts[part], tilt)];
+        };
+        let works = pose.works[tube].iter().zip(compliances(members.tubes[tube])).enumerate();
+        let number = |which| self.columns.tubes[tube] + place::compliance(self.skeleton.waters.len(), which);
+        works.map(|(which, (work, compliance))| (number(which), work, compliance)).collect()
+    }
+
+    /// Ways to branch at the torques of a case, each with its gain. The mixture gains where its gears twist or
+    /// stiffen as they would under other torques than those that the mixture's own masses make.
     fn by_torques(&self, case: usize, between: &[f64], left: &Reduced) -> Vec<(f64, Branching)> {
         let pose = self.pose(case);
         let own_nm = |torque: &Linear| {
@@ -179,7 +202,8 @@ impl Rows<'_> {
         branchings.collect()
     }
 
-    /// What the mixture twists less than its gears would at a torque, in the weighted row of the tip.
+    /// By how much the mixture twists less than its gears would under a torque, in units of the weighted row of the
+    /// tip.
     fn less_twisted(&self, case: usize, joint: usize, torque_nm: f64, left: &Reduced) -> f64 {
         let Some(&(row, _, direction)) = self.tips.iter().find(|tip| tip.1 == case) else { return 0.0 };
         let sense = 1.0f64.copysign(self.pose(case).tip_m_per_rad[joint].dot(&direction));
@@ -195,8 +219,9 @@ impl Rows<'_> {
         left.weights[row] * self.rows[row].per_number[twist] * less
     }
 
-    /// Where to branch a torque: at the nearest torque beyond the mixture's at which the slope of one of its gears grows, else
-    /// at the mixture's own or in the middle. `None` if it is known.
+    /// Torque at which to divide the interval of a joint's torque: the next break point (T1, T2) of a gear in the
+    /// mixture, beyond the mixture's own torque. If there is none, the mixture's own torque; if that is too near an
+    /// end, the middle. `None` if the interval is already narrow enough.
     fn branching_nm(&self, case: usize, joint: usize, torque_nm: f64, left: &Reduced) -> Option<f64> {
         let Span { least, most } = self.torques[case][joint];
         let edge = EDGE * (most - least);
@@ -213,7 +238,7 @@ impl Rows<'_> {
 }
 
 impl Branchings {
-    /// The halves of a subproblem; `None` if it cannot be branched.
+    /// The two halves of a subproblem; `None` if no branching divides it.
     pub(super) fn halves(&self, table: &PartsTable, subproblem: &Subproblem) -> Option<[Subproblem; 2]> {
         self.branchings.iter().find_map(|branching| subproblem.branched(table, branching, &self.curves))
     }
@@ -271,7 +296,8 @@ impl Subproblem {
     }
 }
 
-/// Options whose value is no more than one, and the others; in equal parts if either has none. `None` if there is one option.
+/// The options whose value is at most `at`, and the others. If either group would be empty, the options are sorted by
+/// their value and divided into equal parts. `None` if there is only one option.
 fn halved(options: &[u32], value: impl Fn(&u32) -> f64, at: Option<f64>) -> Option<[Vec<u32>; 2]> {
     let (mut low, mut high): (Vec<u32>, Vec<u32>) =
         options.iter().partition(|option| at.is_some_and(|at| value(option) <= at));

@@ -9,30 +9,32 @@
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
-/// The barrier parameter `μ`: its first value, its factor from stage to stage, and its last value over the number of rows
-/// and columns.
+/// The barrier parameter `μ`: its first value, the factor by which it falls from stage to stage, and its last value
+/// times the number of rows and columns.
 const FIRST: f64 = 0.3;
 const STAGE: f64 = 0.2;
 const LAST: f64 = 3e-4;
-/// Newton's steps at each stage.
+/// Largest number of Newton steps at each stage.
 const STEPS: usize = 4;
 /// Upper bound of a condition's weight.
 const MOST: f64 = 3.0;
-/// Largest part of the way to the boundary that a step goes.
+/// Largest part of the distance to the nearest bound that a step may go, so that weights and slacks stay positive.
 const SHORT_OF: f64 = 0.95;
 
-/// Weights of the columns and shares of the rows. The counted weights have the sum one, and so have the shares.
+/// Weights of the columns, and shares of the rows in a mixture (the dual solution). The shares add up to one, and so
+/// do the weights of the columns that are not conditions.
 pub(super) struct Minimax {
     pub weights: Vec<f64>,
     pub shares: Vec<f64>,
-    /// No weights make the least weighted row greater than this.
+    /// Upper bound of the least weighted row, over all weights.
     pub most: f64,
 }
 
-/// Minimax weights of the columns of a matrix.
+/// The weights of the columns under which the least weighted row is greatest.
 ///
-/// Columns that are conditions do not count in the sum of the weights; each weight of theirs is bounded instead. They come in
-/// opposite pairs (a torque is at least, at most), and equal weights on both would share in the sum without any effect.
+/// Weights of conditions do not count in the sum of the weights; each is at most [`MOST`] instead. Conditions come in
+/// pairs of opposite sign (a torque is at least so large, and at most so large). If their weights counted, equal
+/// weights on both columns of a pair would use up part of the sum without any effect.
 pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Minimax {
     let (count, width) = (rows.len(), rows[0].len());
     let is_counted = |column: &usize| !conditions.contains(column);
@@ -74,7 +76,7 @@ pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Minimax {
     Minimax { weights: w, shares, most }
 }
 
-/// Newton's step of weights and `t`.
+/// The Newton step: the change of every weight, then the change of `t`. `None` if the equations are singular.
 fn newton(rows: &[Vec<f64>], w: &[f64], counts: &[f64], slack: &[f64], mu: f64) -> Option<DVector<f64>> {
     let width = w.len();
     let mut curvature = DMatrix::<f64>::zeros(width + 1, width + 1);
@@ -114,7 +116,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// No weights can do better than what is said; those found do nearly as well as any, by fictitious play.
+        /// No weights make the least weighted row greater than `most`, and the weights found come close to it. The
+        /// witness is fictitious play.
         #[test]
         fn no_weights_are_better_by_much_and_none_than_what_is_said(
             rows in prop::collection::vec(prop::collection::vec(-1.0f64..1.0, 4), 1..9),

@@ -2,7 +2,8 @@
 //!
 //! A tube is a line of numbers: its mass; for each of the study's surroundings its weight and its inertias per length; its stiffnesses
 //! and its compliances. The tubes of a link stand in a tree whose nodes know the least and the most of every number.
-//! A drive is its mass and its torsion curve; many drives have one curve, so that a curve's price is worked out once.
+//! A drive is its mass, its torsion curve and the tilt of its bearing; many drives have one curve and one bearing, so that
+//! their price is worked out once.
 
 use super::super::drive_range::DriveRange;
 use super::super::drives::DriveOptions;
@@ -13,36 +14,38 @@ use super::super::tubes::{
 };
 use rayon::prelude::*;
 
-/// The parts of a space.
+/// All parts of a space, as lists of numbers.
 pub(super) struct PartsTable {
     pub joints: Vec<JointTable>,
     pub tubes: Vec<TubeTable>,
 }
 
-/// Twists and slopes of each curve of a joint; none of those that do not count.
+/// For each torsion curve of a joint: its twist in every judged case, then its slope in every judged case, then
+/// compliance and stiffness of the output bearing that comes with it. `None` for a curve that no drive of the subproblem has.
 pub(super) type Numbers = Vec<Option<Vec<f64>>>;
 
-/// What a joint may have.
+/// The drives that a joint may have.
 pub(super) struct JointTable {
     pub drives: DriveOptions,
     pub masses_kg: Vec<f64>,
-    /// Which of the curves each drive has.
+    /// For each drive, the index of its torsion curve in `curves`.
     pub curve: Vec<u32>,
-    /// The curves, each as a drive that has it.
+    /// The different torsion curves with their bearings, each with the numbers of the first drive that has the curve.
     pub curves: Vec<DriveRange>,
 }
 
-/// What a link may be.
+/// The tubes that a link may have.
 pub(super) struct TubeTable {
     pub options: TubeOptions,
     pub tree: Tree,
-    /// Least and then most numbers of every node.
+    /// For each node of the tree, the least value of every number over the node's tubes, then the greatest value of
+    /// every number.
     bounds: Vec<f64>,
     width: usize,
     priced: usize,
 }
 
-/// Places of a tube's numbers.
+/// Positions of the numbers in the list that describes a tube.
 pub(super) mod place {
     use crate::verify::tubes::{DENSITIES, STIFFNESSES};
     pub(crate) const MASS: usize = 0;
@@ -64,7 +67,7 @@ pub(super) mod place {
         stiffness(waters, STIFFNESSES + which)
     }
 
-    /// How many numbers a price may be put on.
+    /// How many of a tube's numbers may have a price. The stresses come after these and have none.
     pub(crate) fn priced(waters: usize) -> usize {
         stiffness(waters, 2 * STIFFNESSES)
     }
@@ -82,9 +85,9 @@ impl PartsTable {
 impl JointTable {
     fn new(drives: DriveOptions) -> Self {
         let mut curves: Vec<DriveRange> = Vec::new();
-        let twists = |a: &DriveRange| (a.stiff, a.soft, a.modal_nm_per_rad);
+        let yields = |a: &DriveRange| (a.stiff, a.soft, a.modal_nm_per_rad, a.tilt_rad_per_nm);
         let curve = |range: &DriveRange| {
-            let known = curves.iter().position(|known| twists(known) == twists(range));
+            let known = curves.iter().position(|known| yields(known) == yields(range));
             known.unwrap_or_else(|| {
                 curves.push(*range);
                 curves.len() - 1
@@ -97,7 +100,7 @@ impl JointTable {
 }
 
 impl JointTable {
-    /// A drive.
+    /// The numbers of a drive.
     pub(super) fn range(&self, drive: u32) -> &DriveRange {
         &self.drives.options[drive as usize].range
     }
@@ -108,7 +111,7 @@ impl TubeTable {
         let tree = options.tree();
         let waters = options.tubes.first().map_or(0, |(_, tube)| tube.around.len());
         let priced = place::priced(waters);
-        let width = priced + STRESSES + 1;
+        let width = priced + STRESSES + 2;
         let mut bounds = vec![0.0; 2 * width * tree.len()];
         // halves come after their node
         for node in (0..tree.len() as u32).rev() {
@@ -131,7 +134,7 @@ impl TubeTable {
         Self { options, tree, bounds, width, priced }
     }
 
-    /// Least and most numbers of a node that prices may be put on.
+    /// Least and greatest value, over a node's tubes, of every number that may have a price.
     pub(super) fn bounds(&self, node: u32) -> [&[f64]; 2] {
         self.all_bounds(node).map(|bounds| &bounds[..self.priced])
     }
@@ -142,12 +145,12 @@ impl TubeTable {
         [&both[..self.width], &both[self.width..]]
     }
 
-    /// How many numbers a price may be put on.
+    /// How many of a tube's numbers may have a price.
     pub(super) fn priced(&self) -> usize {
         self.priced
     }
 
-    /// Range of some nodes.
+    /// Range of the tubes below some nodes.
     pub(super) fn range(&self, nodes: &[u32]) -> TubeRange {
         let [mut least, mut most] = self.all_bounds(nodes[0]).map(<[f64]>::to_vec);
         for &node in nodes {
@@ -159,14 +162,14 @@ impl TubeTable {
         TubeRange { middle: least.clone(), least, most }
     }
 
-    /// The tubes of some nodes.
+    /// The tubes below some nodes, as options.
     pub(super) fn only(&self, nodes: &[u32]) -> TubeOptions {
         let mut options: Vec<u32> = nodes.iter().flat_map(|&node| self.tree.options(node)).copied().collect();
         options.sort_unstable();
         self.options.only(&options)
     }
 
-    /// How many tubes some nodes have.
+    /// Number of tubes below some nodes.
     pub(super) fn count(&self, nodes: &[u32]) -> usize {
         nodes.iter().map(|&node| self.tree.options(node).len()).sum()
     }
@@ -183,12 +186,12 @@ fn numbers(tube: &TubeNumbers) -> Vec<f64> {
     numbers.extend(tube.stiffnesses.iter().map(stiffness));
     numbers.extend(tube.stiffnesses.iter().map(|k| 1.0 / k));
     numbers.extend(tube.stresses);
-    numbers.push(tube.round);
+    numbers.extend([tube.round, tube.half_width_m]);
     numbers
 }
 
 fn tube(numbers: &[f64]) -> TubeNumbers {
-    let waters = (numbers.len() - 2 - 2 * STIFFNESSES - STRESSES) / (1 + DENSITIES);
+    let waters = (numbers.len() - 3 - 2 * STIFFNESSES - STRESSES) / (1 + DENSITIES);
     let stiffness = |k: f64| if k > 0.0 { k } else { f64::INFINITY };
     let around = |water: usize| TubeAround {
         weight_n_per_m: numbers[place::weight(water)],
@@ -200,6 +203,7 @@ fn tube(numbers: &[f64]) -> TubeNumbers {
         stiffnesses: std::array::from_fn(|i| stiffness(numbers[place::stiffness(waters, i)])),
         stresses: std::array::from_fn(|i| rest[i]),
         round: rest[STRESSES],
+        half_width_m: rest[STRESSES + 1],
         around: (0..waters).map(around).collect(),
     }
 }

@@ -4,10 +4,12 @@ use super::parts_table::TubeTable;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Nodes that are looked at for the cheapest tube: with too few its price is that of a node.
+/// Largest number of nodes that are priced in the search for the cheapest tube. If it is reached, the price of a node
+/// of several tubes stands for theirs.
 const MOST_LOOKS: usize = 400;
 
-/// What is paid for each of a tube's numbers: the least counts where it is paid, the most where it is earned.
+/// Prices of a tube's numbers, with the positive and the negative prices apart. For a set of tubes, the least value
+/// of a number counts where its price is positive (paid), and the greatest where it is negative (earned).
 pub(super) struct Prices {
     paid: Vec<f64>,
     earned: Vec<f64>,
@@ -21,19 +23,19 @@ impl Prices {
         }
     }
 
-    /// No member of a node is cheaper.
+    /// Lower bound of the price of every tube in a set, given the least and greatest values of its numbers.
     pub(super) fn of(&self, [least, most]: [&[f64]; 2]) -> f64 {
         dot(&self.paid, least) + dot(&self.earned, most)
     }
 
-    /// The numbers that make that price.
+    /// The values of the numbers that give the price of [`Self::of`].
     pub(super) fn numbers(&self, [least, most]: [&[f64]; 2]) -> Vec<f64> {
         let cheapest = |i: usize| if self.earned[i] < 0.0 { most[i] } else { least[i] };
         (0..least.len()).map(cheapest).collect()
     }
 }
 
-/// A sum of products in four strands.
+/// Dot product in four separate sums, which a processor computes side by side.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (fours, others) = (a.chunks_exact(4), b.chunks_exact(4));
@@ -44,7 +46,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     rest.map(|(a, b)| a * b).sum::<f64>() + (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// The node of the cheapest tube below some nodes, or one of no more than its price if that takes too long.
+/// Price and node of the cheapest tube below some nodes. If the search takes too long, the node holds several tubes,
+/// and the price is a lower bound of theirs.
 pub(super) fn cheapest(table: &TubeTable, nodes: &[u32], prices: &Prices) -> (f64, u32) {
     let price = |node: u32| prices.of(table.bounds(node));
     // the cheapest first, of equals the first node
@@ -61,7 +64,8 @@ pub(super) fn cheapest(table: &TubeTable, nodes: &[u32], prices: &Prices) -> (f6
     }
 }
 
-/// The nodes below some that can be afforded, about so many: the largest are taken apart first.
+/// About `about` nodes that hold every tube below `nodes` whose price is within all limits. The nodes with the most
+/// tubes are divided first.
 pub(super) fn affordable(
     table: &TubeTable,
     nodes: &[u32],
@@ -81,7 +85,7 @@ pub(super) fn affordable(
     kept
 }
 
-/// A whole number that rises with a price: that of [`f64::total_cmp`].
+/// An integer that grows with the price, in the order of [`f64::total_cmp`].
 fn rank(price: f64) -> i64 {
     let bits = price.to_bits() as i64;
     bits ^ ((bits >> 63) as u64 >> 1) as i64

@@ -11,6 +11,8 @@
 //! `F c >= F₀ c + c₀ (F - F₀)`. A gear twists under a torque `T`, in the sense that moves the tip along `e`, by at least
 //! `φ(T₀) + c₀ (T - T₀)`: `φ(T₀)` is the part's own, `c₀` the least twist per torque that a gear of the subproblem adds beyond `T₀`.
 //!
+//! A bearing tilts like a tube: force is the way of the tip per compliance.
+//!
 //! *Modes.* `M` is linear in masses and inertias per length, `K` diagonal; the slope of a gear is the largest it has
 //! under the torques of the subproblem.
 //!
@@ -22,59 +24,64 @@ use super::super::layout::Coordinate;
 use super::super::pencil::{Pencil, square};
 use super::super::pose::Pose;
 use super::super::skeleton::Skeleton;
-use super::super::span::{Linear, Span};
+use super::super::span::{Linear, LinearVector, Span};
 use super::super::tubes::{DENSITIES, STIFFNESSES};
 use super::super::upper_bound::UpperBound;
 use super::parts_table::{Numbers, PartsTable, place};
 use super::subproblem::{Subproblem, TorqueInterval};
 use nalgebra::Vector3;
 
-/// Room for rounding in rows of torque intervals (relative).
+/// Margin for rounding in the rows of torque intervals (relative).
 const ROUNDING: f64 = 1e-9;
 
-/// A row: a sum over the numbers of all parts that is not positive.
+/// An inequality that every member below the upper bound satisfies: a linear function of the numbers of all parts
+/// that is not positive.
 pub(super) struct Row {
     pub per_number: Vec<f64>,
     pub fixed: f64,
 }
 
-/// Where the numbers of each part stand among those of all: of joints a mass, twists and slopes by judged case; of tubes
-/// those of the table.
+/// Positions of each part's numbers in the list of all numbers. A joint has its mass, then its twist in every judged
+/// case, then its slope in every judged case, then compliance and stiffness of its bearing. A tube has its numbers
+/// of the parts table.
 #[derive(Clone)]
 pub(super) struct Columns {
     pub cases: usize,
     pub joints: usize,
-    /// First number of each tube, and the end of all.
+    /// Position of the first number of each tube, and at last the length of the list.
     pub tubes: Vec<usize>,
 }
 
-/// The rows of a subproblem.
+/// The rows of a subproblem below an upper bound.
 pub(super) struct Rows<'a> {
     pub skeleton: &'a Skeleton,
     pub table: &'a PartsTable,
     pub columns: Columns,
     pub upper: UpperBound,
     pub rows: Vec<Row>,
-    /// Place of the first row of a torque interval.
+    /// Index of the first row of a torque interval.
     pub first_interval: usize,
-    /// Place of the first row of a mode, and the case and shape of each.
+    /// Index of the first row of a mode. `modes` holds the case and the trial shape of each row of a mode.
     pub first_mode: usize,
     pub modes: Vec<(usize, Vec<f64>)>,
-    /// For every joint twists and slopes by judged case of each curve that the subproblem has; none of others.
+    /// For each joint, the twists, slopes and bearings of its torsion curves; `None` for a curve that no drive of the
+    /// subproblem has.
     pub curves: Vec<Numbers>,
-    /// Torques of each judged case, and the least twist per torque beyond the least \[rad/(N m)\].
+    /// Interval of the torque on each joint in each judged case \[N m\]. `per_torque` is the least increase of the
+    /// twist per torque, from the end of the interval where the twist is least \[rad/(N m)\].
     pub torques: Vec<Vec<Span>>,
     pub per_torque: Vec<Vec<f64>>,
-    /// Row, case and direction of each way of the tip.
+    /// For each row of a tip displacement: the index of the row, its judged case, and the direction of the
+    /// displacement.
     pub tips: Vec<(usize, usize, Vector3<f64>)>,
-    /// Whether a coordinate of the subproblem may be rigid, by judged case.
+    /// For each judged case, whether a strain coordinate may be rigid in some member of the subproblem.
     rigid: Vec<Vec<bool>>,
 }
 
 impl Columns {
     pub(super) fn new(table: &PartsTable, cases: usize) -> Self {
         let joints = table.joints.len();
-        let mut tubes = vec![joints * (1 + 2 * cases)];
+        let mut tubes = vec![joints * (3 + 2 * cases)];
         for tube in &table.tubes {
             tubes.push(tubes[tubes.len() - 1] + tube.priced());
         }
@@ -82,7 +89,7 @@ impl Columns {
     }
 
     pub(super) fn mass(&self, joint: usize) -> usize {
-        joint * (1 + 2 * self.cases)
+        joint * (3 + 2 * self.cases)
     }
 
     pub(super) fn twist(&self, joint: usize, case: usize) -> usize {
@@ -93,11 +100,21 @@ impl Columns {
         self.mass(joint) + 1 + self.cases + case
     }
 
+    /// Compliance of the bearing.
+    pub(super) fn tilt(&self, joint: usize) -> usize {
+        self.mass(joint) + 1 + 2 * self.cases
+    }
+
+    /// Stiffness of the bearing; 0 if it is rigid, and then nothing is ever paid for it.
+    fn tilt_stiffness(&self, joint: usize) -> usize {
+        self.tilt(joint) + 1
+    }
+
     pub(super) fn len(&self) -> usize {
         self.tubes[self.tubes.len() - 1]
     }
 
-    /// The numbers of a part, joints before tubes.
+    /// Positions of the numbers of a part; joints are numbered before tubes.
     pub(super) fn of_part(&self, part: usize) -> std::ops::Range<usize> {
         match part.checked_sub(self.joints) {
             None => self.mass(part)..self.mass(part + 1),
@@ -105,7 +122,7 @@ impl Columns {
         }
     }
 
-    /// The number that is in proportion to a load: mass of a drive or weight of a tube.
+    /// Position of the number that is proportional to a load: the mass of a drive, or the weight of a tube.
     pub(super) fn load(&self, load: usize, water: usize) -> usize {
         match load.checked_sub(self.joints) {
             None => self.mass(load),
@@ -119,13 +136,13 @@ impl Row {
         Self { per_number: vec![0.0; columns.len()], fixed: 0.0 }
     }
 
-    /// Adds a number that is linear in the loads.
+    /// Adds a quantity that is linear in the loads: its fixed part, and its part per load.
     fn add(&mut self, columns: &Columns, water: usize, fixed: f64, per_load: impl Iterator<Item = f64>) {
         self.fixed += fixed;
         per_load.enumerate().for_each(|(load, per)| self.per_number[columns.load(load, water)] += per);
     }
 
-    /// Takes what is allowed from it, and divides it by a scale.
+    /// Subtracts the allowed value from the row and divides the row by a scale. The row is then at most zero.
     fn less(mut self, allowed: f64, scale: f64) -> Self {
         self.fixed = (self.fixed - allowed) / scale;
         self.per_number.iter_mut().for_each(|per| *per /= scale);
@@ -138,7 +155,7 @@ impl Row {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows of a subproblem whose members are known, with the shapes that the subproblem came with.
+    /// The rows of a subproblem with these members. The subproblem's trial shapes give the rows of modes.
     pub(super) fn new(
         skeleton: &'a Skeleton,
         table: &'a PartsTable,
@@ -171,9 +188,8 @@ impl<'a> Rows<'a> {
         for (joint, kept) in subproblem.joints.iter().enumerate() {
             for &drive in kept {
                 let curve = table.joints[joint].curve[drive as usize] as usize;
-                if rows.curves[joint][curve].is_none() {
-                    rows.curves[joint][curve] = Some(vec![0.0; 2 * rows.columns.cases]);
-                }
+                let range = &table.joints[joint].curves[curve];
+                rows.curves[joint][curve].get_or_insert_with(|| numbers_of(range, judged.len()));
             }
         }
         rows.add_mass();
@@ -203,7 +219,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// The way of the tip along its least deflection.
+    /// Adds the row of the tip displacement in a case, along the direction in which the stiffest arm's tip moves.
     fn add_tip(&mut self, case: usize, pose: &Pose, members: &Members) {
         let Some(direction) = direction(pose, members) else { return };
         let loads = &members.loads[pose.water];
@@ -217,12 +233,15 @@ impl<'a> Rows<'a> {
         for (tube, works) in pose.works.iter().enumerate() {
             let compliances = compliances(members.tubes[tube]);
             for (which, (work, compliance)) in works.iter().zip(compliances).enumerate() {
-                let (force, least) = (work.along(&direction, loads).least, compliance.least);
                 let number = self.columns.tubes[tube] + place::compliance(self.skeleton.waters.len(), which);
-                row.per_number[number] += force;
-                let per_load = work.per_load.iter().map(|per| least * per.dot(&direction));
-                row.add(&self.columns, pose.water, least * (work.fixed.dot(&direction) - force), per_load);
+                let force = Force { work, least: work.along(&direction, loads).least, water: pose.water };
+                self.add_product(&mut row, number, compliance.least, &force, &direction);
             }
+        }
+        for (joint, work) in pose.by_tilts.iter().enumerate() {
+            let force = Force { work, least: work.along(&direction, loads).least, water: pose.water };
+            let least = members.drives[joint].tilt_rad_per_nm.least;
+            self.add_product(&mut row, self.columns.tilt(joint), least, &force, &direction);
         }
         for by_spring_m in &pose.by_springs_m {
             let per_load = by_spring_m.per_load.iter().map(|per| per.dot(&direction));
@@ -234,7 +253,16 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds a gear's part of the way, and notes what each curve twists at the least torque.
+    /// Adds the linear bound of the product of a force and a compliance to a row. `number` is the position of the
+    /// compliance, `least` the least that it is.
+    fn add_product(&self, row: &mut Row, number: usize, least: f64, force: &Force, direction: &Vector3<f64>) {
+        row.per_number[number] += force.least;
+        let per_load = force.work.per_load.iter().map(|per| least * per.dot(direction));
+        let fixed = least * (force.work.fixed.dot(direction) - force.least);
+        row.add(&self.columns, force.water, fixed, per_load);
+    }
+
+    /// Adds a gear's part of the tip displacement to a row, and stores the least twist of each torsion curve.
     fn add_twist(
         &mut self,
         row: &mut Row,
@@ -260,7 +288,7 @@ impl<'a> Rows<'a> {
         row.add(&self.columns, water, by * (sense * torque.fixed - span.least), per_load);
     }
 
-    /// Notes the largest slope of each curve.
+    /// Stores the greatest slope of each torsion curve under the torques of the subproblem.
     fn add_slopes(&mut self) {
         let cases = self.columns.cases;
         for (joint, curves) in self.curves.iter_mut().enumerate() {
@@ -289,7 +317,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds the row of a shape; what may be rigid stands still in it.
+    /// Adds the row of a trial shape. Coordinates that may be rigid are set to zero in the shape.
     pub(super) fn add_mode(&mut self, case: usize, mut shape: Vec<f64>) {
         let eigenvalue = self.upper.eigenvalue();
         if eigenvalue == 0.0 {
@@ -313,12 +341,13 @@ impl<'a> Rows<'a> {
         self.modes.push((case, shape));
     }
 
-    /// A judged case.
+    /// The pose of a judged case, given by its index among the judged cases.
     pub(super) fn pose(&self, case: usize) -> &'a Pose {
         self.skeleton.poses.iter().filter(|pose| pose.judged).nth(case).expect("a judged case")
     }
 
-    /// The numbers that inertia is in proportion to.
+    /// Positions of the numbers to which inertia is proportional: masses of drives, then inertias per length of
+    /// tubes.
     fn inertias(&self, water: usize) -> impl Iterator<Item = usize> {
         let (joints, tubes) = (self.columns.joints, self.columns.tubes.len() - 1);
         let masses = (0..joints).map(|joint| self.columns.mass(joint));
@@ -328,7 +357,8 @@ impl<'a> Rows<'a> {
         masses.chain(densities)
     }
 
-    /// The number that makes the stiffness of a coordinate, and its factor; or the stiffness if no part makes it.
+    /// Position of the number that determines the stiffness of a coordinate, and the factor on this number. If no
+    /// part determines the stiffness, the stiffness itself as an error.
     fn stiffness(&self, case: usize, coordinate: &Coordinate) -> Result<(usize, f64), f64> {
         match *coordinate {
             Coordinate::Joint(joint) => Ok((self.columns.slope(joint, case), 1.0)),
@@ -340,11 +370,13 @@ impl<'a> Rows<'a> {
                     integral_m,
                 ))
             }
+            Coordinate::Tilt(joint, _) => Ok((self.columns.tilt_stiffness(joint), 1.0)),
+            Coordinate::Shift(..) => Err(f64::INFINITY),
             Coordinate::Spring(spring) => Err(self.skeleton.spring_stiffnesses[spring]),
         }
     }
 
-    /// The arm whose parts have some numbers, in a case.
+    /// Stiffness and inertia matrices, in a case, of the arm whose parts have these numbers.
     pub(super) fn pencil(&self, case: usize, numbers: &[f64]) -> Pencil {
         let pose = self.pose(case);
         let stiffness = self.skeleton.coordinates.iter().zip(&self.rigid[case]);
@@ -361,7 +393,23 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// The least that a gear's twist grows per torque from the least of some torques to any other of them \[rad/(N m)\].
+/// A force, as displacement of the tip per compliance, and the least that it is along the direction of a row.
+struct Force<'w> {
+    work: &'w LinearVector,
+    least: f64,
+    water: usize,
+}
+
+/// The numbers of a torsion curve, whose twists and slopes are not known yet, and of the bearing that comes with it.
+fn numbers_of(range: &DriveRange, cases: usize) -> Vec<f64> {
+    let stiffness = range.greatest_tilt_stiffness();
+    let mut numbers = vec![0.0; 2 * cases];
+    numbers.extend([range.tilt_rad_per_nm.least, if stiffness.is_finite() { stiffness } else { 0.0 }]);
+    numbers
+}
+
+/// Least increase of a gear's twist per torque, from the least torque of an interval to any other torque in it
+/// \[rad/(N m)\].
 fn least_twist_per_nm(range: &DriveRange, torque_nm: Span) -> f64 {
     let Span { least, most } = torque_nm;
     let stiff = &range.stiff;

@@ -18,26 +18,26 @@ use super::weights::Reduced;
 use crate::pareto::objectives::Objectives;
 use std::sync::Arc;
 
-/// Part of the designs that must go for the options to be narrowed once more.
+/// The options are narrowed once more if the last narrowing removed at least this part of the designs.
 const WORTH_IT: f64 = 0.3;
 
-/// What a search is given besides the parts.
+/// The inputs of a search, except the parts.
 pub(in super::super) struct Work<'s> {
-    /// Rows of the front, and the same to ask for the highest frequency.
+    /// The designs of the front, and an index that finds the highest frequency among them.
     pub front: &'s [Objectives],
     pub index: &'s FrontIndex,
     pub settings: Settings,
     pub halt: &'s Halt<'s>,
 }
 
-/// A search of all regions beside a front.
+/// A search of all regions that the designs of a front leave open.
 pub(in super::super) struct RegionSearch<'s> {
     skeleton: Arc<Skeleton>,
     table: PartsTable,
     work: &'s Work<'s>,
 }
 
-/// What came of narrowing a subproblem.
+/// The result of narrowing a subproblem.
 enum Narrowed {
     /// No member is below the upper bound.
     Refuted,
@@ -47,7 +47,7 @@ enum Narrowed {
 }
 
 impl RegionSearch<'_> {
-    /// Looks for designs beside the rows of a front.
+    /// Looks for designs that belong on a front but are missing from it.
     pub(crate) fn explore_all(skeleton: Arc<Skeleton>, parts: Parts, work: &Work) -> Found {
         let limits = &skeleton.limits;
         let room = 1.0 + ROUNDING;
@@ -62,7 +62,7 @@ impl RegionSearch<'_> {
         RegionSearch { skeleton, table, work }.explore(&uppers, 0, whole)
     }
 
-    /// Looks below a node of the tree of upper bounds.
+    /// Searches the regions below a node of the tree of upper bounds.
     fn explore(&self, uppers: &UpperBounds, at: usize, mut subproblem: Subproblem) -> Found {
         let Some((upper, halves)) = uppers.node(at) else { return Found::default() };
         let mut found = Found::default();
@@ -82,7 +82,7 @@ impl RegionSearch<'_> {
         found.with(a).with(b)
     }
 
-    /// Narrows the options of a subproblem as long as that pays.
+    /// Narrows the options of a subproblem as long as each narrowing removes enough designs.
     fn narrow(&self, subproblem: &mut Subproblem, upper: UpperBound, regions: &mut u64) -> Narrowed {
         loop {
             if self.work.halt.stopped() {
@@ -101,7 +101,8 @@ impl RegionSearch<'_> {
         }
     }
 
-    /// Leaves out what no member below an upper bound has, and says where to branch the rest; `None` if no member is left.
+    /// Removes the options that no member below an upper bound has, and returns ways to branch the rest. `None` if no
+    /// member is left.
     fn narrow_once(&self, subproblem: &mut Subproblem, upper: UpperBound) -> Option<Branchings> {
         let tubes = subproblem.tube_ranges(&self.table);
         let members = subproblem.hold(&self.skeleton, &self.table, &tubes)?;
@@ -132,7 +133,8 @@ impl RegionSearch<'_> {
         Some(Branchings { branchings, curves })
     }
 
-    /// Begins with the lowest mode of the stiffest arm where a subproblem has no shape; `None` if that is too slow.
+    /// Where a subproblem has no trial shape in a case, adds the lowest mode of the stiffest arm. `None` if this arm
+    /// has a frequency of `hz` or less in some case.
     fn stiffest_shapes(&self, subproblem: &mut Subproblem, members: &Members, hz: f64) -> Option<()> {
         let eigenvalue = eigenvalue_of(hz);
         if !eigenvalue.is_finite() {
@@ -148,7 +150,7 @@ impl RegionSearch<'_> {
         Some(())
     }
 
-    /// Searches the designs left box by box.
+    /// Searches the designs of a subproblem box by box.
     fn explore_boxes(&self, subproblem: &Subproblem, upper: UpperBound) -> Found {
         let boxes = Boxes::of(Arc::clone(&self.skeleton), subproblem.parts(&self.table));
         let search = Search { boxes: &boxes, front: self.work.index, upper, halt: self.work.halt };

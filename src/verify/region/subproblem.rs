@@ -9,10 +9,10 @@ use super::super::span::Span;
 use super::super::tubes::TubeRange;
 use super::parts_table::PartsTable;
 
-/// Shapes whose weights are no larger than this are not handed on.
+/// Trial shapes whose rows have no larger weight than this are not handed on to the halves of a subproblem.
 const NO_SAY: f64 = 0.01;
 
-/// The torque on a joint in a judged case is between two numbers: a branch of the search.
+/// Limits the torque on a joint in a judged case to an interval. Branching makes such limits.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TorqueInterval {
     pub case: usize,
@@ -20,20 +20,21 @@ pub(super) struct TorqueInterval {
     pub between: Span,
 }
 
-/// Options of every joint and link, and what their parent leaves them: torque intervals, weights, shapes.
+/// The options of every joint and link, and what the parent subproblem hands on: torque intervals, weights of rows,
+/// trial shapes.
 #[derive(Clone)]
 pub(super) struct Subproblem {
-    /// Drives of each joint, ascending.
+    /// Drives of each joint, in ascending order.
     pub joints: Vec<Vec<u32>>,
-    /// Nodes of each link's tree of tubes.
+    /// For each link, the nodes of its tree whose tubes remain.
     pub tubes: Vec<Vec<u32>>,
     pub torque_intervals: Vec<TorqueInterval>,
-    /// Weights to begin with, of all rows but those of torques and modes.
+    /// Weights of the rows with which the search for weights starts. Rows of torques and modes are left out.
     pub weights: Vec<f64>,
     pub shapes: Vec<Shape>,
 }
 
-/// A motion of a judged case and the weight of its row.
+/// A trial shape in a judged case, with the weight of its row.
 #[derive(Clone)]
 pub(super) struct Shape {
     pub case: usize,
@@ -42,7 +43,7 @@ pub(super) struct Shape {
 }
 
 impl Subproblem {
-    /// All options; `None` if a piece has none.
+    /// The subproblem with all options; `None` if a joint or link has no option.
     pub(super) fn whole(table: &PartsTable) -> Option<Self> {
         let joints: Vec<Vec<u32>> =
             table.joints.iter().map(|joint| (0..joint.masses_kg.len() as u32).collect()).collect();
@@ -57,7 +58,7 @@ impl Subproblem {
         })
     }
 
-    /// Number of designs. The drive that fits first is no choice, so such a joint counts once.
+    /// Number of designs. A joint that takes the lightest drive that holds is no choice and counts once.
     pub(super) fn designs(&self, table: &PartsTable) -> f64 {
         let joints = self.joints.iter().zip(&table.joints);
         let joints = joints.map(|(kept, joint)| if joint.drives.level.is_some() { kept.len() } else { 1 });
@@ -65,7 +66,7 @@ impl Subproblem {
         joints.chain(tubes).map(|count| count as f64).product()
     }
 
-    /// Narrows the interval of a torque.
+    /// Limits a torque to an interval, in addition to any interval that it has already.
     pub(super) fn keep_torque(&mut self, new: TorqueInterval) {
         let known =
             self.torque_intervals.iter_mut().find(|known| known.case == new.case && known.joint == new.joint);
@@ -78,7 +79,7 @@ impl Subproblem {
         }
     }
 
-    /// Keeps the shapes that have some weight, and the last one of each case.
+    /// Keeps the trial shapes whose rows have some weight, and the last shape of each case.
     pub(super) fn keep_shapes(&mut self, cases: usize) {
         let mut kept = Vec::new();
         for case in 0..cases {
@@ -94,7 +95,7 @@ impl Subproblem {
         self.tubes.iter().zip(&table.tubes).map(|(nodes, tubes)| tubes.range(nodes)).collect()
     }
 
-    /// Removes the drives that cannot hold, and returns the ranges of what is left; `None` if no member holds.
+    /// Removes the drives that cannot hold, and returns the ranges of the remaining parts. `None` if no member holds.
     pub(super) fn hold<'t>(
         &mut self,
         skeleton: &Skeleton,
@@ -121,7 +122,7 @@ impl Subproblem {
         skeleton.strong_enough(&members).then_some(members)
     }
 
-    /// The options as parts.
+    /// The remaining options as parts, for a search box by box.
     pub(super) fn parts(&self, table: &PartsTable) -> Parts {
         let joints = self.joints.iter().zip(&table.joints);
         let tubes = self.tubes.iter().zip(&table.tubes);
@@ -131,7 +132,7 @@ impl Subproblem {
         }
     }
 
-    /// Torque on each joint in a judged case, within its interval if it has one.
+    /// Interval of the torque on each joint in a judged case, limited by the subproblem's torque intervals.
     pub(super) fn torques(&self, case: usize, pose: &Pose, members: &Members) -> Vec<Span> {
         let torque = |(joint, torque): (usize, &super::super::span::Linear)| {
             let own = torque.over(&members.loads[pose.water]);

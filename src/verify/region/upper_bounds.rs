@@ -8,18 +8,19 @@ use super::super::upper_bound::UpperBound;
 use crate::pareto::objectives::Objectives;
 use std::collections::HashSet;
 
-/// A row must be better than what it beats by this in one objective (relative), and counts for worse by as much.
+/// Relative amount by which a dominating design must be better in at least one objective. All objectives of the
+/// front's designs are made worse by as much before bounds are made.
 const BETTER: f64 = 2e-7;
 
 /// A binary tree over upper bounds; the root is node 0.
 pub(super) struct UpperBounds(Vec<Node>);
 
-/// The upper bound that bounds those below, and the halves.
+/// The upper bound that covers all bounds below a node, and the two halves of the node.
 type Node = (UpperBound, Option<[usize; 2]>);
 
 impl UpperBounds {
-    /// The upper bounds that rows leave of what the limits allow. Rows closer to each other than `apart` (relative) may be
-    /// left out: fewer rows leave more open.
+    /// The upper bounds that the designs of a front leave open within the limits. Designs closer to each other than
+    /// `apart` (relative) may be left out; fewer designs leave more open.
     pub(super) fn new(front: &[Objectives], limits: UpperBound, apart: f64) -> Self {
         let mut uppers = left_open(&thinned(front, apart), limits);
         let mut nodes = Vec::new();
@@ -29,13 +30,14 @@ impl UpperBounds {
         Self(nodes)
     }
 
-    /// A node; `None` if nothing is open.
+    /// A node of the tree. Node 0, the root, is `None` if nothing is open.
     pub(super) fn node(&self, at: usize) -> Option<Node> {
         self.0.get(at).copied()
     }
 }
 
-/// One row for each cell of a grid whose lines are `apart` (relative) from each other; all rows if that is zero.
+/// One design for each cell of a logarithmic grid with steps of `apart` (relative), or all designs if `apart` is
+/// zero. Their objectives are made worse by [`BETTER`].
 fn thinned(front: &[Objectives], apart: f64) -> Vec<UpperBound> {
     let mut taken = HashSet::new();
     let step = apart.ln_1p();
@@ -52,7 +54,7 @@ fn thinned(front: &[Objectives], apart: f64) -> Vec<UpperBound> {
     rows.map(worse).collect()
 }
 
-/// The upper bounds that rows leave, none within another.
+/// The upper bounds that designs leave open within the limits. None of these bounds lies within another.
 fn left_open(rows: &[UpperBound], limits: UpperBound) -> Vec<UpperBound> {
     let mut uppers = vec![limits];
     for row in rows {
@@ -77,7 +79,8 @@ fn left_open(rows: &[UpperBound], limits: UpperBound) -> Vec<UpperBound> {
     uppers
 }
 
-/// Halves upper bounds where they are furthest apart.
+/// Builds the tree under some upper bounds: divides them at the median of the objective in which they are spread
+/// most, and so on. Returns the number of the node.
 fn grow(uppers: &mut [UpperBound], nodes: &mut Vec<Node>) -> usize {
     let here = nodes.len();
     nodes.push((uppers[0], None));
@@ -104,7 +107,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Whether a design is below some upper bound under a node, asked node by node.
+    /// Whether a design is below some upper bound under a node. The tree is descended node by node.
     fn is_below(uppers: &UpperBounds, at: usize, design: &UpperBound) -> bool {
         uppers.node(at).is_some_and(|(upper, halves)| {
             design.is_within(&upper)

@@ -10,50 +10,53 @@ use super::rows::Rows;
 use super::subproblem::Subproblem;
 use std::ops::Range;
 
-/// Most weightings that are tried for a subproblem.
+/// Largest number of weightings that are tried for a subproblem.
 const MOST_SURROGATES: usize = 24;
-/// Most times that shapes are renewed.
+/// Largest number of times that new trial shapes are added.
 const MOST_SHAPES: usize = 3;
-/// Further weightings once no weights can refute: better weights exclude more options.
+/// Number of further weightings after it is clear that none can refute the subproblem. Better weights exclude more
+/// options.
 const TO_NARROW: usize = 4;
-/// A weighting is good enough if no other can exceed its least sum by more than this.
+/// A weighting is good enough if no other can raise the least weighted sum by more than this.
 const SETTLED: f64 = 5e-4;
-/// Rows are clamped to this size, so that one that is far from its limit does not drown the others.
+/// Values of rows are clamped to this magnitude, so that a row far from its limit does not outweigh the others.
 const FAR: f64 = 10.0;
 /// Rounding of sums whose terms are about one.
 pub(super) const ROUNDING: f64 = 1e-9;
-/// How many weightings exclude options: those with the greatest least sums.
+/// Number of weightings that are used to exclude options. Those with the greatest least sums are taken.
 const STRICTEST: usize = 12;
-/// About how many nodes the tubes of a link are kept in.
+/// Approximate number of nodes into which the tubes of a link are divided.
 const NODES: usize = 128;
 
-/// Weights of the rows, the least weighted sum of any member, and what each part adds to it.
+/// Weights of the rows, the least weighted sum over all members, and the amount that each part adds to it.
 struct Surrogate {
     weights: Vec<f64>,
     least: f64,
     parts: Vec<f64>,
 }
 
-/// The cheapest member under a weighting, in the numbers of its parts; its gears may be at torques of their own.
+/// The cheapest member under a weighting, as the numbers of its parts. It need not be a design: each of its gears may
+/// be under another torque than the masses make.
 pub(super) struct Member {
     pub numbers: Vec<f64>,
-    /// Its drive of each joint.
+    /// The drive of each joint.
     pub drives: Vec<u32>,
 }
 
 /// What is left of a subproblem below an upper bound.
 pub(super) struct Reduced {
-    /// Drives of each joint and nodes of each link's tubes that a member below the upper bound may have.
+    /// For each joint, the drives that a member below the upper bound may have. `tubes` holds the same for each link,
+    /// as nodes of its tree.
     pub joints: Vec<Vec<u32>>,
     pub tubes: Vec<Vec<u32>>,
-    /// The cheapest members, with their shares in the mixture that no weights refute.
+    /// The cheapest members, each with its share in the mixture that no weights refute.
     pub mixed: Vec<(f64, Member)>,
-    /// The weights that come nearest to refuting them.
+    /// The weights of the rows that come nearest to a proof that no member is below the upper bound.
     pub weights: Vec<f64>,
 }
 
 impl Rows<'_> {
-    /// Price of each number under a weighting of the rows.
+    /// Price of each number: its coefficient in the weighted sum of the rows.
     fn prices(&self, weights: &[f64]) -> Vec<f64> {
         let mut prices = vec![0.0; self.columns.len()];
         for (row, weight) in self.rows.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
@@ -62,14 +65,14 @@ impl Rows<'_> {
         prices
     }
 
-    /// What each torsion curve of a joint costs; infinite if no drive of the subproblem has it.
+    /// Price of each torsion curve of a joint; infinite if no drive of the subproblem has the curve.
     fn curve_prices(&self, joint: usize, prices: &[f64]) -> Vec<f64> {
         let first = self.columns.mass(joint) + 1;
         let price = |numbers: &Vec<f64>| numbers.iter().zip(&prices[first..]).map(|(a, b)| a * b).sum();
         self.curves[joint].iter().map(|numbers| numbers.as_ref().map_or(f64::INFINITY, price)).collect()
     }
 
-    /// The least weighted sum of any member of a subproblem, and a member that has it.
+    /// The least weighted sum over the members of a subproblem, and a member that attains it.
     fn least(&self, subproblem: &Subproblem, weights: Vec<f64>) -> (Surrogate, Member) {
         let prices = self.prices(&weights);
         let mut numbers = vec![0.0; self.columns.len()];
@@ -107,7 +110,7 @@ impl Rows<'_> {
         (Surrogate { weights, least, parts }, Member { numbers, drives })
     }
 
-    /// The weights that the parent ended with; equal weights if there is none.
+    /// The weights with which the parent subproblem ended; equal weights if there is no parent.
     fn inherited(&self, subproblem: &Subproblem) -> Vec<f64> {
         let mut weights = subproblem.weights.clone();
         weights.resize(self.first_mode, 0.0);
@@ -119,7 +122,7 @@ impl Rows<'_> {
         if fits { weights.iter().map(|weight| weight / sum).collect() } else { even }
     }
 
-    /// What is left of a subproblem; `None` if some weighting proves that no member is below the upper bound.
+    /// What is left of a subproblem below the upper bound; `None` if some weighting proves that nothing is left.
     pub(super) fn reduce(&mut self, subproblem: &Subproblem) -> Option<Reduced> {
         let (mut surrogates, mut members, mut values) = (Vec::new(), Vec::new(), Vec::<Vec<f64>>::new());
         let (mut shapes, mut to_narrow, mut nearest) = (0, 0, f64::NEG_INFINITY);
@@ -173,7 +176,8 @@ impl Rows<'_> {
         })
     }
 
-    /// The rows of torque intervals. They come in opposite pairs, so they do not count in the sum of the weights.
+    /// Indices of the rows of torque intervals. Such rows come in pairs of opposite sign, so they do not count in the
+    /// sum of the weights.
     fn conditions(&self) -> Range<usize> {
         self.first_interval..self.first_mode
     }
@@ -182,8 +186,8 @@ impl Rows<'_> {
         self.rows.iter().map(|row| row.value(&member.numbers).clamp(-FAR, FAR)).collect()
     }
 
-    /// Adds the lowest mode of the mixture of some members in every case in which it is below that of the upper bound. Returns
-    /// whether there is one.
+    /// In every case in which the mixture of some members has a mode below the upper bound's frequency, adds the row
+    /// of this mode. Returns whether any was added.
     fn add_shapes(&mut self, members: &[Member], minimax: &Minimax) -> bool {
         let mut between = vec![0.0; self.columns.len()];
         for (member, share) in members.iter().zip(&minimax.shares) {
@@ -199,7 +203,8 @@ impl Rows<'_> {
         self.rows.len() > before
     }
 
-    /// The options of each joint and of each link that no weighting excludes; `None` if one has none.
+    /// The options of each joint and of each link that no weighting excludes; `None` if a joint or link has no option
+    /// left.
     fn affordable(
         &self,
         subproblem: &Subproblem,

@@ -1,0 +1,182 @@
+//! What a joint weighs beyond its gear and motor: housing, brake, encoders, flange, cables.
+//!
+//! A catalog row of a gear is a component set or a housed gear, and that of a frameless motor is a rotor and a stator. The
+//! rest of a joint has no catalog row. [`Extras::usual`] estimates it from published shares of a joint's mass (eyoubot,
+//! "Lightweight harmonic drive robot actuator": motor 30 to 40 %, reducer 25 to 35 %, housing 15 to 25 %, brake 5 to 15 %,
+//! encoders 3 to 5 %; the middle of each range over the 65 % of motor and reducer). The brake agrees with what Harmonic
+//! Drive's SHA actuators of sizes 20, 25 and 32 weigh more with a brake than without (0.10, 0.15 and 0.28 kg here). The
+//! flange is a disc of aluminium; that and the cables are representative figures without a source.
+
+use crate::catalog::gear::{Gear, GearMass};
+use crate::catalog::motor::{Motor, MotorKind};
+use crate::input::json::{Node, Object};
+use serde_json::{Value, json};
+
+/// Masses at the point of a joint, inboard of its springs \[kg\].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Extras {
+    /// Housing of the motor, or of gear and motor.
+    pub housing_kg: f64,
+    /// Holding brake.
+    pub brake_kg: f64,
+    /// Encoders.
+    pub encoder_kg: f64,
+    /// Flange that carries the next link.
+    pub flange_kg: f64,
+    /// Cables and connectors within the joint.
+    pub cable_kg: f64,
+}
+
+/// Where the extras of a joint come from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ExtrasSource {
+    /// From the parts that are chosen ([`Extras::usual`]).
+    Usual,
+    /// From the file.
+    Stated(Extras),
+}
+
+/// Mass of the housing per mass of what it holds: 20 % over 65 %.
+const HOUSING_SHARE: f64 = 0.31;
+/// Mass of the brake per mass of motor and component set: 10 % over 65 %.
+const BRAKE_SHARE: f64 = 0.15;
+/// Mass of the encoders per mass of motor and component set: 4 % over 65 %.
+const ENCODER_SHARE: f64 = 0.06;
+/// Smallest mass of the encoders \[kg\].
+const LEAST_ENCODER_KG: f64 = 0.05;
+/// Smallest mass of the housing of a frameless motor \[kg\]: castings do not shrink with what is in them.
+const LEAST_HOUSING_KG: f64 = 0.35;
+/// Mass of a flange per cube of its diameter \[kg/m³\]: a disc of aluminium, 0.08 of its diameter thick.
+const FLANGE_KG_PER_M3: f64 = 170.0;
+/// Cables and connectors of one joint \[kg\].
+const CABLE_KG: f64 = 0.05;
+/// Outer diameter of a housed gear per size \[m\], where the catalog has none: size 20 is 0.093 m.
+const DIAMETER_PER_SIZE_M: f64 = 0.0046;
+
+const KEYS: [&str; 5] = ["housing_kg", "brake_kg", "encoder_kg", "flange_kg", "cable_kg"];
+
+impl Extras {
+    /// What a joint of these parts usually has.
+    ///
+    /// ```
+    /// use armwright::arm::Extras;
+    /// use armwright::catalog::{Catalogs, GearMass};
+    ///
+    /// let catalogs = Catalogs::builtin();
+    /// let (gear, motor) = (catalogs.gear("CSG-20-100").unwrap(), catalogs.motor("ILM70x18").unwrap());
+    /// let extras = Extras::usual(gear, motor, GearMass::HousedUnit);
+    /// assert!(extras.brake_kg > 0.05 && extras.brake_kg < 0.2);
+    /// assert!(extras.total_kg() > 0.5 && extras.total_kg() < 1.2, "{extras:?}");
+    /// ```
+    pub fn usual(gear: &Gear, motor: &Motor, which: GearMass) -> Self {
+        let motor_kg = motor.mass_kg.unwrap_or_default();
+        let set_kg = gear.mass_component_set_kg.or(gear.mass_housed_unit_kg).unwrap_or_default();
+        let frameless = matches!(motor.kind, MotorKind::FramelessServo | MotorKind::FramelessTorque);
+        let motor_housing_kg = if frameless { (HOUSING_SHARE * motor_kg).max(LEAST_HOUSING_KG) } else { 0.0 };
+        let gear_housing_kg = match which {
+            GearMass::ComponentSet => HOUSING_SHARE * set_kg,
+            GearMass::HousedUnit => 0.0,
+        };
+        let diameter_m = gear.envelope.outer_diameter_m.unwrap_or(DIAMETER_PER_SIZE_M * f64::from(gear.size));
+        let flange_kg = FLANGE_KG_PER_M3 * diameter_m.powi(3);
+        Self {
+            housing_kg: motor_housing_kg + gear_housing_kg,
+            brake_kg: BRAKE_SHARE * (set_kg + motor_kg),
+            // a motor with a housing has its encoder in its mass
+            encoder_kg: match frameless {
+                true => (ENCODER_SHARE * (set_kg + motor_kg)).max(LEAST_ENCODER_KG),
+                false => LEAST_ENCODER_KG,
+            },
+            flange_kg,
+            cable_kg: CABLE_KG,
+        }
+        .rounded()
+    }
+
+    /// To the gram, so that the masses that are printed are those that are computed with.
+    fn rounded(self) -> Self {
+        let gram = |kg: f64| (kg * 1e3).round() / 1e3;
+        Self {
+            housing_kg: gram(self.housing_kg),
+            brake_kg: gram(self.brake_kg),
+            encoder_kg: gram(self.encoder_kg),
+            flange_kg: gram(self.flange_kg),
+            cable_kg: gram(self.cable_kg),
+        }
+    }
+
+    /// Sum of all \[kg\].
+    pub fn total_kg(&self) -> f64 {
+        self.housing_kg + self.brake_kg + self.encoder_kg + self.flange_kg + self.cable_kg
+    }
+
+    fn read(node: &Node) -> Option<Self> {
+        let object = node.object(&KEYS)?;
+        let [housing_kg, brake_kg, encoder_kg, flange_kg, cable_kg] =
+            KEYS.map(|key| object.or(key, 0.0, Node::non_negative));
+        Some(Self {
+            housing_kg: housing_kg?,
+            brake_kg: brake_kg?,
+            encoder_kg: encoder_kg?,
+            flange_kg: flange_kg?,
+            cable_kg: cable_kg?,
+        })
+    }
+
+    /// The extras as files write them.
+    pub(crate) fn to_json(self) -> Value {
+        json!({
+            "housing_kg": self.housing_kg,
+            "brake_kg": self.brake_kg,
+            "encoder_kg": self.encoder_kg,
+            "flange_kg": self.flange_kg,
+            "cable_kg": self.cable_kg,
+        })
+    }
+}
+
+impl ExtrasSource {
+    /// No extras.
+    pub const NONE: Self = Self::Stated(Extras {
+        housing_kg: 0.0,
+        brake_kg: 0.0,
+        encoder_kg: 0.0,
+        flange_kg: 0.0,
+        cable_kg: 0.0,
+    });
+
+    /// The extras of a joint with these parts.
+    pub fn with_parts(&self, gear: &Gear, motor: &Motor, which: GearMass) -> Extras {
+        match self {
+            ExtrasSource::Usual => Extras::usual(gear, motor, which),
+            ExtrasSource::Stated(extras) => *extras,
+        }
+    }
+
+    /// The extras that the file states; none if the parts decide.
+    pub fn stated(&self) -> Extras {
+        match self {
+            ExtrasSource::Usual => Extras::default(),
+            ExtrasSource::Stated(extras) => *extras,
+        }
+    }
+}
+
+/// Reads the key `extras` of a joint in an arm file; none without the key.
+pub(crate) fn read_extras(object: &Object) -> Option<Extras> {
+    object.or("extras", Extras::default(), Extras::read)
+}
+
+/// Reads the key `extras` of a study or of one of its joints: `"usual"`, `"none"`, or masses. `usually` is what holds
+/// without the key.
+pub(crate) fn read_extras_source(object: &Object, usually: ExtrasSource) -> Option<ExtrasSource> {
+    object.or("extras", usually, |n| match n.value() {
+        Value::String(word) if word == "usual" => Some(ExtrasSource::Usual),
+        Value::String(word) if word == "none" => Some(ExtrasSource::NONE),
+        Value::Object(_) => Extras::read(n).map(ExtrasSource::Stated),
+        _ => n.fault(
+            "is neither \"usual\" nor \"none\" nor a list of masses",
+            "write \"usual\" for masses that follow from the parts, \"none\", or {\"housing_kg\": 0.4, \"brake_kg\": 0.1, ...}",
+        ),
+    })
+}

@@ -1,0 +1,269 @@
+//! The check of an output bearing: the vendor's procedure for crossed-roller bearings, reduced to thresholds.
+//!
+//! The vendor compares three things with what a bearing is rated for (Harmonic Drive LLC, FHA-C manual, pages 20 to 23;
+//! Harmonic Drive AG, engineering data 1021387, pages 43 and 45):
+//!
+//! 1. *Running*. The largest moment while the joint turns is at most the permissible one. That is a limit of deflection
+//!    and not of life, so it holds however short the load lasts. `M = M₀ + R F_r`, with R the distance from the bearing's
+//!    centre to the face of the flange.
+//! 2. *Static safety*. `fs = C₀ / P₀` with `P₀ = F_r + 2 M / d_p + 0.44 F_a` is at least 1.5 in normal use, 2 with shocks
+//!    and 3 for high precision. Here: [`SAFETY_AT_REST`] at rest, [`SAFETY_IN_A_STOP`] in an emergency stop.
+//! 3. *Life*. `L₁₀ = 10⁶ / (60 n) · (C / (f_w P_c))^(10/3)` hours with `P_c = X (F_r + 2 M / d_p) + Y F_a`. X and Y are 1
+//!    and 0.45 while `F_a` is at most 1.5 times the bracket, else both are 0.67. n is the mean speed of the joint over its
+//!    cycle, so the same formula holds for joints that swing: a swing of ±θ travels 4θ in each oscillation.
+//!
+//! Each of the three grows with every load, so a bearing is a set of thresholds like the rest of a drive.
+
+use crate::arm::bearing::Bearing;
+
+/// Static safety at rest: the vendor's value for high precision.
+pub(crate) const SAFETY_AT_REST: f64 = 3.0;
+/// Static safety in an emergency stop: the vendor's value for shocks.
+pub(crate) const SAFETY_IN_A_STOP: f64 = 2.0;
+/// Load factor f_w of the life: the vendor's value for its own tables, which lies in the range of normal use, 1.2 to 1.5.
+pub(crate) const LOAD_FACTOR: f64 = 1.3;
+/// Share of the axial force in the static equivalent load P₀.
+pub(super) const AXIAL_SHARE: f64 = 0.44;
+/// Turns that the dynamic rating C is for.
+const RATED_TURNS: f64 = 1e6;
+
+/// The load on a bearing: forces on its face and the moment of everything outboard.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BearingLoad {
+    /// Moment across the axis at the face of the flange \[N m\].
+    pub moment_nm: f64,
+    /// Force across the axis \[N\].
+    pub radial_n: f64,
+    /// Force along the axis \[N\].
+    pub axial_n: f64,
+}
+
+/// The loads that a study puts on the bearing of a joint. Each number is the largest over the sizing cases and over the
+/// ramps or stops of single joints; the numbers of one load may come from different cases, which is on the safe side.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BearingDemand {
+    /// Gravity and load alone.
+    pub at_rest: BearingLoad,
+    /// With one joint in its ramp and the others at rest.
+    pub running: BearingLoad,
+    /// With one joint in its emergency stop and the others at rest.
+    pub in_stop: BearingLoad,
+}
+
+/// What a bearing allows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BearingLimits {
+    /// Distance R from the bearing's centre to the face of the flange \[m\].
+    pub flange_offset_m: f64,
+    /// Equivalent force per moment: `2 / d_p` \[1/m\].
+    pub force_per_moment_per_m: f64,
+    /// Largest moment while the joint turns \[N m\].
+    pub running_moment_nm: f64,
+    /// Largest static equivalent load at rest \[N\].
+    pub at_rest_n: f64,
+    /// Largest static equivalent load in a stop \[N\].
+    pub in_stop_n: f64,
+    /// Largest dynamic equivalent load at which the bearing lives as long as required \[N\].
+    pub life_n: f64,
+}
+
+impl BearingLoad {
+    /// Each number the larger of two.
+    pub fn max(self, other: Self) -> Self {
+        Self {
+            moment_nm: self.moment_nm.max(other.moment_nm),
+            radial_n: self.radial_n.max(other.radial_n),
+            axial_n: self.axial_n.max(other.axial_n),
+        }
+    }
+
+    /// The load of a force that attaches further out along the axis by a lever \[m\].
+    pub fn with_lever(self, lever_m: f64) -> Self {
+        Self { moment_nm: self.moment_nm + lever_m * self.radial_n, ..self }
+    }
+
+    /// The load times a factor.
+    pub fn scaled(self, factor: f64) -> Self {
+        Self {
+            moment_nm: self.moment_nm * factor,
+            radial_n: self.radial_n * factor,
+            axial_n: self.axial_n * factor,
+        }
+    }
+}
+
+impl BearingDemand {
+    /// Whether nothing loads the bearing, or nobody asks.
+    pub fn is_zero(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Each number the larger of two.
+    pub fn max(self, other: Self) -> Self {
+        Self {
+            at_rest: self.at_rest.max(other.at_rest),
+            running: self.running.max(other.running),
+            in_stop: self.in_stop.max(other.in_stop),
+        }
+    }
+
+    /// The demand with forces that attach further out by a lever \[m\].
+    pub fn with_lever(self, lever_m: f64) -> Self {
+        Self {
+            at_rest: self.at_rest.with_lever(lever_m),
+            running: self.running.with_lever(lever_m),
+            in_stop: self.in_stop.with_lever(lever_m),
+        }
+    }
+
+    /// A demand that is surely no smaller than this one with all accelerations times a factor of at most 1: what the
+    /// accelerations add to the norm of a load is convex in them.
+    pub fn slowed(self, factor: f64) -> Self {
+        let between = |at_rest: f64, moving: f64| at_rest + factor * (moving - at_rest).max(0.0);
+        let load = |moving: BearingLoad| BearingLoad {
+            moment_nm: between(self.at_rest.moment_nm, moving.moment_nm),
+            radial_n: between(self.at_rest.radial_n, moving.radial_n),
+            axial_n: between(self.at_rest.axial_n, moving.axial_n),
+        };
+        Self { at_rest: self.at_rest, running: load(self.running), in_stop: load(self.in_stop) }
+    }
+
+    /// The demand with every load times a factor.
+    pub fn scaled(self, factor: f64) -> Self {
+        Self {
+            at_rest: self.at_rest.scaled(factor),
+            running: self.running.scaled(factor),
+            in_stop: self.in_stop.scaled(factor),
+        }
+    }
+}
+
+impl BearingLimits {
+    /// Limits that hold everything: of a joint without a bearing, or of one whose bearing is not asked about.
+    pub(crate) const NONE: Self = Self {
+        flange_offset_m: 0.0,
+        force_per_moment_per_m: 0.0,
+        running_moment_nm: f64::INFINITY,
+        at_rest_n: f64::INFINITY,
+        in_stop_n: f64::INFINITY,
+        life_n: f64::INFINITY,
+    };
+
+    /// The limits of a bearing in a joint with this mean speed \[rad/s\] and required life \[h\]. A blank rating does not
+    /// limit: what cannot be checked is listed by the [checks](super::check).
+    pub fn of(bearing: Option<&Bearing>, mean_speed_rad_s: f64, life_h: f64) -> Self {
+        let Some(bearing) = bearing else { return Self::NONE };
+        let ratings = &bearing.ratings;
+        let flange_offset_m =
+            if bearing.offset_m.is_some() { 0.0 } else { ratings.offset_m.unwrap_or_default() };
+        let Some(pitch_m) = ratings.pitch_diameter_m else {
+            let running_moment_nm = bearing.permissible_moment_nm.unwrap_or(f64::INFINITY);
+            return Self { flange_offset_m, running_moment_nm, ..Self::NONE };
+        };
+        let share = |safety: f64| ratings.static_load_rating_n.map_or(f64::INFINITY, |c0_n| c0_n / safety);
+        Self {
+            flange_offset_m,
+            force_per_moment_per_m: 2.0 / pitch_m,
+            running_moment_nm: bearing.permissible_moment_nm.unwrap_or(f64::INFINITY),
+            at_rest_n: share(SAFETY_AT_REST),
+            in_stop_n: share(SAFETY_IN_A_STOP),
+            life_n: ratings
+                .dynamic_load_rating_n
+                .map_or(f64::INFINITY, |c_n| load_of_life_n(c_n, mean_speed_rad_s, life_h)),
+        }
+    }
+
+    /// Moment across the axis at the centre of the bearing \[N m\].
+    #[inline]
+    pub fn moment_nm(&self, load: &BearingLoad) -> f64 {
+        load.moment_nm + self.flange_offset_m * load.radial_n
+    }
+
+    /// Radial force and the forces that make up the moment: `F_r + 2 M / d_p` \[N\].
+    #[inline]
+    fn across_n(&self, load: &BearingLoad) -> f64 {
+        load.radial_n + self.force_per_moment_per_m * self.moment_nm(load)
+    }
+
+    /// Static equivalent load P₀ \[N\].
+    #[inline]
+    pub fn static_load_n(&self, load: &BearingLoad) -> f64 {
+        self.across_n(load) + AXIAL_SHARE * load.axial_n
+    }
+
+    /// Dynamic equivalent load P_c \[N\]. The two pairs of X and Y meet where the axial force is 1.5 times the bracket, and
+    /// the larger load is the vendor's on either side of it.
+    #[inline]
+    pub fn dynamic_load_n(&self, load: &BearingLoad) -> f64 {
+        let across_n = self.across_n(load);
+        (across_n + 0.45 * load.axial_n).max(0.67 * (across_n + load.axial_n))
+    }
+
+    /// Whether the bearing holds a demand.
+    #[inline]
+    pub fn hold(&self, demand: &BearingDemand) -> bool {
+        (self.moment_nm(&demand.running) <= self.running_moment_nm)
+            & (self.static_load_n(&demand.at_rest) <= self.at_rest_n)
+            & (self.static_load_n(&demand.in_stop) <= self.in_stop_n)
+            & (self.dynamic_load_n(&demand.at_rest) <= self.life_n)
+    }
+
+    /// The largest factor on every load that the bearing still holds; infinite if nothing loads it.
+    pub fn multiple_of(&self, demand: &BearingDemand) -> f64 {
+        let times = |limit: f64, asked: f64| if asked > 0.0 { limit / asked } else { f64::INFINITY };
+        times(self.running_moment_nm, self.moment_nm(&demand.running))
+            .min(times(self.at_rest_n, self.static_load_n(&demand.at_rest)))
+            .min(times(self.in_stop_n, self.static_load_n(&demand.in_stop)))
+            .min(times(self.life_n, self.dynamic_load_n(&demand.at_rest)))
+    }
+
+    /// Limits that hold whatever one of two bearings holds.
+    pub fn max(&self, other: &Self) -> Self {
+        Self {
+            flange_offset_m: self.flange_offset_m.min(other.flange_offset_m),
+            force_per_moment_per_m: self.force_per_moment_per_m.min(other.force_per_moment_per_m),
+            running_moment_nm: self.running_moment_nm.max(other.running_moment_nm),
+            at_rest_n: self.at_rest_n.max(other.at_rest_n),
+            in_stop_n: self.in_stop_n.max(other.in_stop_n),
+            life_n: self.life_n.max(other.life_n),
+        }
+    }
+
+    /// Limits that hold only what both of two bearings hold.
+    pub fn min(&self, other: &Self) -> Self {
+        Self {
+            flange_offset_m: self.flange_offset_m.max(other.flange_offset_m),
+            force_per_moment_per_m: self.force_per_moment_per_m.max(other.force_per_moment_per_m),
+            running_moment_nm: self.running_moment_nm.min(other.running_moment_nm),
+            at_rest_n: self.at_rest_n.min(other.at_rest_n),
+            in_stop_n: self.in_stop_n.min(other.in_stop_n),
+            life_n: self.life_n.min(other.life_n),
+        }
+    }
+
+    /// Whether the bearing surely holds whatever `other` holds.
+    #[inline]
+    pub fn cover(&self, other: &Self) -> bool {
+        (self.flange_offset_m <= other.flange_offset_m)
+            & (self.force_per_moment_per_m <= other.force_per_moment_per_m)
+            & (self.running_moment_nm >= other.running_moment_nm)
+            & (self.at_rest_n >= other.at_rest_n)
+            & (self.in_stop_n >= other.in_stop_n)
+            & (self.life_n >= other.life_n)
+    }
+}
+
+/// Life of a bearing of dynamic rating C \[N\] under an equivalent load \[N\] at a mean speed \[rad/s\], in hours.
+pub(super) fn life_h(rating_n: f64, load_n: f64, mean_speed_rad_s: f64) -> f64 {
+    RATED_TURNS / turns_per_h(mean_speed_rad_s) * (rating_n / (LOAD_FACTOR * load_n)).powf(10.0 / 3.0)
+}
+
+/// The equivalent load \[N\] under which a bearing of dynamic rating C \[N\] just lives so long.
+fn load_of_life_n(rating_n: f64, mean_speed_rad_s: f64, life_h: f64) -> f64 {
+    rating_n / LOAD_FACTOR * (RATED_TURNS / (turns_per_h(mean_speed_rad_s) * life_h)).powf(0.3)
+}
+
+/// Turns in an hour.
+fn turns_per_h(speed_rad_s: f64) -> f64 {
+    speed_rad_s / std::f64::consts::TAU * 3600.0
+}
