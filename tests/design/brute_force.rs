@@ -278,15 +278,14 @@ fn sold() -> Value {
 fn stout() -> Value {
     let mut study = spatial();
     study["name"] = json!("brute-stout");
-    let thick = json!({"shape": "rectangular_tube", "width_mm": [40, 70], "height_mm": [40, 60], "wall_mm": [6.1, 8, 15]});
-    let bars = [
-        json!({"shape": "rectangular_bar", "width_mm": [25, 40], "height_mm": [40]}),
-        json!({"shape": "round_bar", "diameter_mm": 35}),
-    ];
+    let thick = json!({"shape": "rectangular_tube", "width_mm": [40, 70], "height_mm": [40, 60],
+        "wall_mm": [6.1, 8, 15]});
+    let flat = json!({"shape": "rectangular_bar", "width_mm": [20, 30], "height_mm": [20, 35]});
+    let round = |sizes: Value| json!({"shape": "round_bar", "diameter_mm": sizes});
     let materials = [ALUMINIUM, KEVLAR];
-    study["chain"][3]["choose"] = json!({"materials": materials, "sections": [thick, bars[0], bars[1]]});
-    study["chain"][5]["choose"] = json!({"materials": materials, "sections": [thick, bars[1]]});
-    study["constraints"] = json!({"stress_safety_factor_min": 6, "wall_slenderness_max": 7.5});
+    study["chain"][3]["choose"] = json!({"materials": materials, "sections": [thick, round(json!(35))]});
+    study["chain"][5]["choose"] = json!({"materials": materials, "sections": [flat, round(json!([20, 30]))]});
+    study["constraints"] = json!({"stress_safety_factor_min": 7, "wall_slenderness_max": 7.5});
     study
 }
 

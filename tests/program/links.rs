@@ -155,8 +155,8 @@ fn a_study_that_offers_stainless_steel_in_structural_sections_alone_says_so() {
     assert_eq!(told(&[STEEL], &["steel"]), [""; 0]);
 }
 
-/// Three steel and three aluminium tubes. By kg/m: aluminium 20 x 1, 30 x 1.5, steel 20 x 1, 30 x 1.5, aluminium 50 x 4, steel 50 x 4; the
-/// fourth of six is the median. The middle of the list would be the smallest steel tube.
+/// Three steel and three aluminium tubes. By kg/m: aluminium 20 x 1, 30 x 1.5, steel 20 x 1, 30 x 1.5, aluminium 50 x 4,
+/// steel 50 x 4; the fourth of six is the median. The middle of the list would be the smallest steel tube.
 #[test]
 fn size_takes_the_section_of_median_mass() {
     let tube = |side: f64, wall: f64| json!({"shape": "rectangular_tube", "width_mm": side, "wall_mm": wall});
@@ -166,4 +166,27 @@ fn size_takes_the_section_of_median_mass() {
     let (code, said) = armwright(here.path(), &["size", "study.json"]);
     assert_eq!(code, 0, "{said}");
     assert!(said.contains(&format!("link upper_arm: {STEEL}, 30 x 30 x 1.5 mm")), "{said}");
+}
+
+/// Aluminium 6082-T6 and the stock sizes of aluminium tubes are representative; 6061-T6 was read in a document.
+#[test]
+fn a_pick_of_a_representative_material_says_so() {
+    let profiles = json!([{"profiles": {"family": "aluminium", "max_outer_mm": 60}}]);
+    let grid = json!([{"shape": "rectangular_tube", "width_mm": 60, "wall_mm": [2, 3]}]);
+    let said_of = |material: &str, sections: &Value| {
+        let choose = json!({"materials": [material], "sections": sections});
+        let here = folder_with("study.json", &study(choose));
+        let (code, said) = armwright(here.path(), &["run", "study.json", "--out", "out"]);
+        assert_eq!(code, 0, "{said}");
+        let read = |file: &str| std::fs::read_to_string(here.path().join("out").join(file)).expect(file);
+        [said.split_whitespace().collect::<Vec<_>>().join(" "), read("summary.md"), read("report.html")]
+    };
+    let [said, summary, page] = said_of("Aluminium 6082-T6", &profiles);
+    assert!(said.contains("Figures not from a document: "), "{said}");
+    assert!(said.contains("Aluminium 6082-T6 (representative) in every pick"), "{said}");
+    assert!(summary.contains("Aluminium 6082-T6 (representative) (profile representative)"), "{summary}");
+    assert!(page.contains("</a> (representative)"), "beside the material of a link");
+    let [said, summary, _] = said_of("Aluminium 6061-T6", &grid);
+    assert!(!said.contains("6061-T6 (representative)"), "{said}");
+    assert!(!summary.contains("6061-T6 (representative)"), "{summary}");
 }

@@ -75,6 +75,8 @@ impl StudyPage<'_> {
         let extras: Vec<Value> = self.extras.iter().map(|e| gallery.extra(e)).collect();
         let mut warned = warnings(&self.summary.overall, &chosen);
         warned.extend(facts.turned_off.iter().cloned());
+        let caveat = |part: &CatalogRow| Some((part.name.clone(), facts.caveats.of_part(&part.name)?));
+        let caveats: BTreeMap<String, &str> = self.parts.iter().filter_map(caveat).collect();
         let content = json!({
             "study": facts.study,
             "question": facts.question,
@@ -93,7 +95,7 @@ impl StudyPage<'_> {
             "remarks": facts.remarks,
             "warnings": warned,
             "parts": self.parts.iter().map(part).collect::<Vec<_>>(),
-            "caveats": self.parts.iter().filter_map(|p| Some((&p.name, facts.caveats.of_part(&p.name)?))).collect::<BTreeMap<_, _>>(),
+            "caveats": caveats,
             "results": facts.results,
         });
         gallery.page("study.html", &facts.study, content, &json!({"front": data}))
