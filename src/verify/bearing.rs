@@ -200,19 +200,23 @@ mod tests {
     use crate::catalog::Catalogs;
     use crate::catalog::gear::BearingRatings as Printed;
 
-    /// A joint that always turns at 1.5 rad/s, for 20 000 h.
-    fn duty() -> Duty {
+    /// A joint that always turns at 1.5 rad/s, for so long.
+    fn duty_of(life_h: f64) -> Duty {
         let motion = AskedMotion {
             tip_speed_m_s: 1.5,
             ramp_time_s: 0.2,
             emergency_deceleration_m_s2: None,
             min_lever_m: 0.3,
             phases: vec![AskedPhase { duration_s: 1.0, kind: AskedPhaseKind::Constant }],
-            life_h: 20_000.0,
+            life_h,
             linear_torque: LinearTorque::OfInertia,
             gravity_m_s2: 9.81,
         };
         Duty::new(&motion, 1.0, None)
+    }
+
+    fn duty() -> Duty {
+        duty_of(20_000.0)
     }
 
     /// HFUC-20 as printed: d_p 50 mm, R 9.5 mm, C₀ 9000 N, C 5800 N, M 91 N m.
@@ -264,19 +268,9 @@ mod tests {
         near(BearingDemand { at_rest: load(20.0, 200.0, 300.0), ..none }, life_n / 1211.0);
         // 2000 > 1.5 · (200 + 40 · 1.9) = 414: P_c = 0.67 (276 + 2000)
         near(BearingDemand { at_rest: load(0.0, 200.0, 2000.0), ..none }, life_n / (0.67 * 2276.0));
-        let short = AskedLife(duty()).of(1.0);
-        let at_rest = BearingRatings::of(Some(&bearing()), &short);
+        let at_rest = BearingRatings::of(Some(&bearing()), &duty_of(1.0));
         let demand = BearingDemand { at_rest: load(20.0, 200.0, 300.0), ..none };
         assert!((most(&at_rest, &demand) / (9000.0 / 3.0 / 1208.0) - 1.0).abs() < 1e-12);
-    }
-
-    /// The same duty for another life.
-    struct AskedLife(Duty);
-
-    impl AskedLife {
-        fn of(self, life_h: f64) -> Duty {
-            Duty { life_h, ..self.0 }
-        }
     }
 
     #[test]
