@@ -47,8 +47,4 @@ fn without_its_bearings_the_study_has_other_designs() {
     let without = search(&Study::from_json(&rigid, &catalog)).designs;
     println!("{} designs hold, {} without bearings", with.len(), without.len());
     assert!(with.len() > 20 && with.len() * 11 < without.len() * 10);
-    let stiffest = |designs: &[crate::brute::design::Design]| {
-        designs.iter().map(|design| design.tip_deflection_mm).fold(f64::INFINITY, f64::min)
-    };
-    assert!(stiffest(&with) > 1.1 * stiffest(&without), "{} mm", stiffest(&with));
 }
