@@ -63,6 +63,27 @@ impl Confidence {
     }
 }
 
+impl Provenance {
+    /// What is said beside a part whose core figures no document was seen for: `from memory` or `representative`.
+    ///
+    /// ```
+    /// use armwright::catalog::Catalogs;
+    ///
+    /// let catalogs = Catalogs::builtin();
+    /// let caveat = |name| catalogs.material(name).expect("built in").provenance.caveat();
+    /// assert_eq!(caveat("Kevlar 49/epoxy quasi-isotropic"), Some("representative"));
+    /// assert_eq!(caveat("Structural steel S355"), None);
+    /// ```
+    pub fn caveat(&self) -> Option<&'static str> {
+        match self.confidence {
+            Confidence::Verified | Confidence::ThirdParty => None,
+            Confidence::FromMemory | Confidence::Representative => {
+                Some(Confidence::WORDS[self.confidence as usize])
+            }
+        }
+    }
+}
+
 impl fmt::Display for Confidence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(Self::WORDS[*self as usize])

@@ -8,6 +8,7 @@ use crate::arm::effect::entry::Effect;
 use crate::catalog::Catalogs;
 use crate::pareto::hypervolume::front_hypervolume;
 use crate::report::budget::{PickBudget, budget_csv};
+use crate::report::caveats::Caveats;
 use crate::report::certificate::certificate_section;
 use crate::report::facts::{SummaryFacts, constraint_words};
 use crate::report::front_svg::{FrontPicture, PlottedFront, designs_of, mixed_designs};
@@ -29,6 +30,7 @@ use crate::study::definition::Study;
 use crate::study::effects::Correction;
 use crate::study::outcome::StudyOutcome;
 use crate::study::page::study_page;
+use crate::study::range::range_words;
 use crate::study::table::{front_table, slug};
 use crate::study::ties::ties;
 use serde_json::{Value, json};
@@ -186,7 +188,10 @@ impl Finished<'_> {
                 tool_version: env!("CARGO_PKG_VERSION").into(),
                 constraints: constraint_words(&study.space.constraints),
                 cases: self.judged_cases(),
+                ranges: range_words(&study.space),
                 not_checked: study.not_checked.clone(),
+                remarks: study.remarks.clone(),
+                caveats: Caveats::of(self.catalogs),
                 results: self.dir.display().to_string(),
             },
             overall,
@@ -266,6 +271,7 @@ impl Finished<'_> {
             "cases": summary.facts.cases,
             "materials": materials,
             "not_checked": study.not_checked,
+            "remarks": study.remarks,
             "effects": self.effects(),
             "effects_mass_kg": study.space.effects_mass_kg(),
             "carried_over": corrections::to_json(self.corrections),

@@ -9,7 +9,7 @@
 //! If a joint or a link cannot carry even its least load, the whole box is infeasible.
 
 use super::intervals::ROUNDING;
-use super::pose::{Pose, PosedPiece, RESISTED, degree_factor};
+use super::pose::{Pose, Row, TORSION};
 use super::problem::{Part, Problem};
 use super::shape::{Ideal, Shape};
 use super::work::Work;
@@ -218,18 +218,18 @@ impl<'c> Problem<'c> {
             for (at, row) in pose.rows.iter().enumerate() {
                 let force = work.forces[case][at];
                 let moved = match &work.curves[row.piece] {
-                    Some(curve) => {
+                    Some(curve) if row.coordinate == TORSION => {
                         let size = force[0].abs().max(force[1].abs());
                         let least = force[0].max(-force[1]).max(0.0);
                         let range = (least * (1.0 - ROUNDING), size * (1.0 + ROUNDING));
                         let play = self.joint_plays[row.piece].as_ref();
                         let stiffest = curve.stiffest(range.0, range.1);
-                        work.stiff_in[case][row.piece][0] =
+                        work.stiff_in[case][row.piece][TORSION] =
                             play.map_or(stiffest, |play| play.in_series(stiffest, range.1));
                         work.torques[case][row.piece] = range.into();
                         curve.twist(play, force)
                     }
-                    None => tube_strain(row.coordinate, pose, row.piece, force, work),
+                    _ => linear_strain(pose, row, force, work),
                 };
                 most_m += moved[1].max(-moved[0]) * row.tip_m_per_unit;
                 for (tip, d) in tip_m.iter_mut().zip(row.tip_m.iter()) {
@@ -275,22 +275,14 @@ fn hertz(lambda: f64) -> f64 {
     lambda.sqrt() / std::f64::consts::TAU * (1.0 + ROUNDING)
 }
 
-/// Interval of a tube's strain coordinate for a force in an interval. The coordinate is force times compliance, and
-/// the compliance of the piece is an interval too.
-pub(super) fn tube_strain(
-    coordinate: usize,
-    pose: &Pose,
-    piece: usize,
-    [low, high]: [f64; 2],
-    work: &Work,
-) -> [f64; 2] {
-    let PosedPiece::Tube(tube) = &pose.pieces[piece] else { return [0.0; 2] };
-    let (resisted, _) = RESISTED[coordinate];
-    let (stiff, soft) = (work.stiff[piece][resisted], work.soft[piece][resisted]);
+/// The strain coordinate of a linear spring (of a tube, or of a bearing), as an interval, for a force in an interval. The
+/// stiffness of the piece is an interval too, and the coordinate is the product of force and compliance.
+pub(super) fn linear_strain(pose: &Pose, row: &Row, [low, high]: [f64; 2], work: &Work) -> [f64; 2] {
+    let (resisted, factor) = pose.pieces[row.piece].resisted(row.coordinate);
+    let (stiff, soft) = (work.stiff[row.piece][resisted], work.soft[row.piece][resisted]);
     if stiff == 0.0 {
         return [0.0; 2];
     }
-    let factor = degree_factor(coordinate) / tube.length_m;
     let (least, most) = (factor / stiff, factor / soft);
     [low * if low >= 0.0 { least } else { most }, high * if high >= 0.0 { most } else { least }]
 }

@@ -8,9 +8,8 @@
 //! The bounds of the two halves would be a worse guide, because a box has to be halved several times before
 //! its bound moves at all.
 
-use super::bound::{STARTS, tube_strain};
+use super::bound::{STARTS, linear_strain};
 use super::parts::{INERTIAS, STIFFNESSES};
-use super::pose::RESISTED;
 use super::problem::{Part, Problem};
 use super::shape::{Shape, products};
 use super::torsion::Torsion;
@@ -78,7 +77,7 @@ impl Problem<'_> {
         let mut softened = vec![0.0; self.parts.len()];
         let pose = &self.poses[case];
         for row in &pose.rows {
-            let Some(curve) = &work.curves[row.piece] else { continue };
+            let Some(curve) = work.curve(row) else { continue };
             let [least_nm, most_nm] = work.torques[case][row.piece];
             let (soft, stiff) = (curve.stiffest(least_nm, least_nm), curve.stiffest(least_nm, most_nm));
             if stiff <= soft {
@@ -101,16 +100,16 @@ impl Problem<'_> {
         let pose = &self.poses[case];
         let mut total = 0.0;
         for (row, &force) in pose.rows.iter().zip(&work.forces[case]) {
-            let (moved, softer) = match &work.curves[row.piece] {
+            let (moved, softer) = match work.curve(row) {
                 Some(curve) => {
                     let play = self.joint_plays[row.piece].as_ref();
                     let middle = |torsion: &Torsion| torsion.windup.k2_nm_per_rad;
                     (curve.twist(play, force), middling(middle(&curve.soft), middle(&curve.stiff)))
                 }
                 None => {
-                    let (resisted, _) = RESISTED[row.coordinate];
+                    let (resisted, _) = pose.pieces[row.piece].resisted(row.coordinate);
                     let (soft, stiff) = (work.soft[row.piece][resisted], work.stiff[row.piece][resisted]);
-                    (tube_strain(row.coordinate, pose, row.piece, force, work), middling(soft, stiff))
+                    (linear_strain(pose, row, force, work), middling(soft, stiff))
                 }
             };
             // A coordinate whose interval contains zero need not move the tip at all.

@@ -126,7 +126,7 @@ impl Rows<'_> {
         let mut branchings = Vec::new();
         for (judged, tip) in self.tips.iter().enumerate() {
             let (case, multiplier) = (tip.case, multipliers[1 + judged] / self.scale[1 + judged]);
-            // What the tubes further inboard leave out is due to the next joint's torque.
+            // What the tubes and bearings further inboard leave out is due to the next joint's torque.
             let mut left_out = 0.0;
             for (at, row) in self.problem.poses[case].rows.iter().enumerate() {
                 let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
@@ -138,7 +138,7 @@ impl Rows<'_> {
                 };
                 let acting = row.fixed + mean(mixed, made);
                 left_out += multiplier * self.product(mixed, judged, row, acting - least);
-                if self.work.curves[row.piece].is_none() {
+                if self.work.curve(row).is_none() {
                     continue;
                 }
                 let apart = self.free_gear(judged, row.piece).map_or(0.0, |next| {
@@ -188,7 +188,7 @@ impl Rows<'_> {
             if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
         };
         let mut stiffest = self.work.stiff[row.piece];
-        if let Some(curve) = &self.work.curves[row.piece] {
+        if let Some(curve) = self.work.curve(row) {
             let [least_nm, most_nm] = self.work.torques[case][row.piece];
             stiffest[0] = curve.steepest(least_nm, most_nm);
         }

@@ -1,12 +1,12 @@
 //! Compiles a design space into the [`Problem`] of branch and bound.
 
-use super::compile_pose::harness_kg;
+use super::compile_pose::{JointNeeds, harness_kg};
 use super::joint_play::JointPlay;
 use super::kinds::{Kinds, Ties};
 use super::lowest_eigenvalue::CaseInertia;
-use super::parts::{DriveBox, LinkBox, Rays};
+use super::parts::{DriveBox, LinkBox, RIGID_RAD_PER_NM, Rays};
 use super::pose::Pose;
-use super::problem::{Ladder, Part, Problem};
+use super::problem::{Ladder, Lever, Part, Problem};
 use super::shape::Ideal;
 use super::torsion::{BreakPoints, CurveBox};
 use super::tree::Tree;
@@ -14,51 +14,115 @@ use super::work::Work;
 use crate::arm::LinkBody;
 use crate::arm::joint_law::Curve;
 use crate::catalog::Catalogs;
+use crate::sizing::bearing::BearingLimits;
 use crate::sizing::demand::JointMotion;
-use crate::space::design_space::{DesignSpace, LinkOption, SpacePiece};
+use crate::space::bearing_loads::Lever as LeverByOption;
+use crate::space::design_space::{DesignSpace, LinkOption, SpaceJoint, SpacePiece};
 use crate::space::effects::Layer;
 use crate::space::slot::{SizedJoint, Slot, joint_slot};
 use crate::space::station::reaches_m;
 use std::sync::Arc;
 
+/// The joints of a chain with their drives, before anything is compiled. All lists go by the pieces of the chain, base to
+/// tip.
+struct Joints<'c> {
+    slots: Vec<Option<Slot<'c>>>,
+    needs: Vec<JointNeeds>,
+    /// Where the link attaches to each joint whose bearing is checked.
+    levers: Vec<Option<LeverByOption>>,
+}
+
+impl<'c> Joints<'c> {
+    /// Tabulates the drives of a space.
+    fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Self {
+        let numbers = piece_numbers(space);
+        let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
+        let mut reaches_m = reaches_m(space, sizing).into_iter();
+        let mut joints = Self { slots: Vec::new(), needs: Vec::new(), levers: Vec::new() };
+        for (place, piece) in space.pieces.iter().enumerate() {
+            let SpacePiece::Joint(joint) = piece else {
+                joints.slots.push(None);
+                joints.needs.push(JointNeeds::default());
+                joints.levers.push(None);
+                continue;
+            };
+            let reach_m = reaches_m.next().unwrap_or_default();
+            let slot = joint_slot(space, joint, reach_m, catalogs);
+            let needs = JointNeeds::of(space, joint, reach_m, &slot);
+            let lever = needs.is_checked.then(|| LeverByOption::new(space, place, joint, &numbers));
+            joints.slots.push(Some(slot));
+            joints.needs.push(needs);
+            joints.levers.push(lever);
+        }
+        joints
+    }
+
+    /// Lever from the joint next inboard of a link to the link with an option \[m\]; 0 if no bearing asks for it.
+    fn lever_m(&self, place: usize, option: usize) -> f64 {
+        let inboard = place.checked_sub(1).and_then(|inboard| self.levers[inboard].as_ref());
+        inboard.and_then(|lever| lever.lever_m.get(option)).copied().unwrap_or_default()
+    }
+}
+
+impl JointNeeds {
+    /// What a pose has to know about a joint whose drives are in a slot.
+    fn of(space: &DesignSpace, joint: &SpaceJoint, reach_m: f64, slot: &Slot) -> Self {
+        let motion = space.motion.joint_motion(reach_m, joint.max_speed_rad_s);
+        let of_gear = Self { acceleration_rad_s2: motion.acceleration_rad_s2, ..Self::default() };
+        let Slot::Sized(sized) = slot else { return of_gear };
+        let limits = (0..sized.table.len()).map(|i| sized.table.limits(i).bearing);
+        Self {
+            // A stated bearing is a spring of its own.
+            tilts: joint.bearing_is_open() && sized.tilts_rad_per_nm.iter().any(|tilt| *tilt > 0.0),
+            is_checked: limits.into_iter().any(|limits| limits != BearingLimits::NONE),
+            ..of_gear
+        }
+    }
+}
+
 impl<'c> Problem<'c> {
-    /// Compiles a space with the link options for which `takes` is true. `ties` says whether drives of equal mass and
-    /// equal curve are one option. `None` if some level has no option.
+    /// Compiles a space with the link options that `takes` admits. `ties` says whether drives of one mass, one
+    /// curve and one tilt are one option. `None` if some level has no option.
     pub(super) fn new(
         space: &'c DesignSpace,
         catalogs: &'c Catalogs,
         takes: &dyn Fn(&LinkOption) -> bool,
         ties: Ties,
     ) -> Option<Self> {
-        let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
-        let mut reaches = reaches_m(space, sizing).into_iter();
-        let of = |piece: &SpacePiece| match piece {
-            SpacePiece::Joint(_) => reaches.next().unwrap_or_default(),
-            _ => 0.0,
-        };
-        let reaches_m: Vec<f64> = space.pieces.iter().map(of).collect();
+        let mut joints = Joints::new(space, catalogs);
+        let poses = (0..space.cases.len()).map(|i| Pose::new(space, i, &joints.needs)).collect();
         let mut problem = Self {
             space,
             parts: Vec::new(),
             level_pieces: Vec::new(),
             level_sizes: Vec::new(),
-            poses: Arc::new((0..space.cases.len()).map(|i| Pose::new(space, i)).collect()),
+            poses: Arc::new(poses),
             inertias: Arc::default(),
             peak_factor: 1.0
                 + space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE),
             lighter_is_better: false,
             joint_plays: Vec::new(),
+            levers: Vec::new(),
             force_bounds: Arc::default(),
         };
         for (place, layer) in space.layers() {
             let part = match layer {
-                Layer::Piece(piece) => problem.part(piece, reaches_m[place], catalogs, takes, ties)?,
+                Layer::Piece(SpacePiece::Joint(_)) => {
+                    problem.joint(joints.slots[place].take()?, joints.needs[place].tilts, ties)?
+                }
+                Layer::Piece(piece) => {
+                    problem.link(piece, takes, |option| joints.lever_m(place, option as usize))?
+                }
                 Layer::Tilt(tilt) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&tilt.law()) },
                 // A given mass beyond the parts loads the arm, but a design's mass does not count it.
                 Layer::Mass(_) => Part::Offset { mass_kg: 0.0 },
                 Layer::Extra(mass_kg) => Part::Offset { mass_kg },
-                Layer::Bearing(_) => Part::Offset { mass_kg: 0.0 },
+                // The tilts of a gear's bearing are coordinates of its joint.
+                Layer::Bearing(_) => continue,
             };
+            let is_joint = matches!(layer, Layer::Piece(SpacePiece::Joint(_)));
+            let lever = joints.levers[place].as_ref().filter(|_| is_joint);
+            problem.levers.push(lever.map(|lever| problem.lever(lever)));
             problem.parts.push(part);
             // Play belongs to the joint, whichever drive it has.
             problem.joint_plays.push(match layer {
@@ -74,61 +138,77 @@ impl<'c> Problem<'c> {
             {
                 problem.parts.push(Part::Offset { mass_kg: -harness_kg });
                 problem.joint_plays.push(None);
+                problem.levers.push(None);
             }
         }
         problem.lighter_is_better = problem.grows_with_weight();
         Some(problem.with_inertias())
     }
 
-    /// Compiles one piece of the chain. `None` if it has no option.
-    fn part(
+    /// Compiles a joint of the chain, whose bearing `tilts` with some drive or with none. `None` if it has no drive.
+    fn joint(&mut self, slot: Slot<'c>, tilts: bool, ties: Ties) -> Option<Part<'c>> {
+        match slot {
+            Slot::Given { law, mass_kg } => Some(Part::Given { mass_kg, curve: CurveBox::of(&law) }),
+            Slot::Sized(sized) if sized.all_fits => self.drives(sized, tilts, ties),
+            Slot::Sized(sized) => self.first_fit(sized, tilts),
+            Slot::Link { .. } | Slot::Offset { .. } | Slot::Bearing { .. } => None,
+        }
+    }
+
+    /// The lever of a joint to the link outboard, which is compiled already.
+    fn lever(&self, lever: &LeverByOption) -> Lever {
+        match lever.link_slot {
+            Some(link) if matches!(self.parts[link], Part::Links { .. }) => Lever::OfLink(link),
+            _ => Lever::Given(lever.lever_m[0]),
+        }
+    }
+
+    /// Compiles a link of the chain. `lever_m` gives the lever from the joint inboard to an option \[m\]. `None` if it has
+    /// no option.
+    fn link(
         &mut self,
         piece: &'c SpacePiece,
-        reach_m: f64,
-        catalogs: &'c Catalogs,
         takes: &dyn Fn(&LinkOption) -> bool,
-        ties: Ties,
+        lever_m: impl Fn(u32) -> f64,
     ) -> Option<Part<'c>> {
         let space = self.space;
-        Some(match piece {
-            SpacePiece::Joint(joint) => match joint_slot(space, joint, reach_m, catalogs) {
-                Slot::Given { law, mass_kg } => Part::Given { mass_kg, curve: CurveBox::of(&law) },
-                Slot::Sized(sized) if sized.all_fits => self.drives(sized, ties)?,
-                Slot::Sized(sized) => self.first_fit(sized)?,
-                Slot::Link { .. } | Slot::Offset { .. } | Slot::Bearing { .. } => return None,
-            },
+        let slender = |option: &LinkOption| {
+            space.constraints.wall_slenderness_max.is_some_and(|max| option.wall_slenderness() > max)
+        };
+        match piece {
+            SpacePiece::Joint(_) => None,
             SpacePiece::Choice(choice) => {
-                let slender = |option: &LinkOption| {
-                    space.constraints.wall_slenderness_max.is_some_and(|max| option.wall_slenderness() > max)
-                };
                 let options = self.level(choice.options.len());
+                let tube = |(i, option): (u32, &LinkOption)| {
+                    let link = space.link_piece(&choice.link(option));
+                    (i, LinkBox::of(option, &link, space.links, lever_m(i)))
+                };
                 let boxes = options
                     .map(|i| (i, &choice.options[i as usize]))
                     .filter(|(_, option)| takes(option) && !slender(option))
-                    .map(|(i, o)| (i, LinkBox::of(o, &space.link_piece(&choice.link(o)), space.links)));
-                Part::Links { length_m: choice.vector_m.norm(), tree: Arc::new(Tree::build(boxes)?) }
+                    .map(tube);
+                let tree = Arc::new(Tree::build(boxes)?);
+                Some(Part::Links { length_m: choice.vector_m.norm(), tree })
             }
             SpacePiece::Link(link) => match &link.body {
-                LinkBody::Offset { mass_kg } => Part::Offset { mass_kg: *mass_kg },
+                LinkBody::Offset { mass_kg } => Some(Part::Offset { mass_kg: *mass_kg }),
                 LinkBody::Tube { material, section, .. } => {
                     let option = LinkOption::given(*material, *section);
-                    let slender = space.constraints.wall_slenderness_max;
-                    if slender.is_some_and(|max| option.wall_slenderness() > max) {
-                        return None;
-                    }
-                    let tube = Box::new(LinkBox::of(&option, &space.link_piece(link), space.links));
-                    Part::Tube { length_m: link.vector_m.norm(), tube }
+                    let tube = LinkBox::of(&option, &space.link_piece(link), space.links, 0.0);
+                    (!slender(&option))
+                        .then(|| Part::Tube { length_m: link.vector_m.norm(), tube: Box::new(tube) })
                 }
             },
-        })
+        }
     }
 
     /// A joint whose drive is a level of the search.
-    fn drives(&mut self, sized: SizedJoint<'c>, ties: Ties) -> Option<Part<'c>> {
+    fn drives(&mut self, sized: SizedJoint<'c>, tilts: bool, ties: Ties) -> Option<Part<'c>> {
         self.level(sized.table.len());
         let rays = self.rays(self.parts.len(), sized.table.motion());
         let kinds = Kinds::of(&sized, ties);
-        let drives = |kind: &[u32]| DriveBox::of_kind(kind.iter().map(|&i| drive_box(&sized, i, &rays)));
+        let drives =
+            |kind: &[u32]| DriveBox::of_kind(kind.iter().map(|&i| drive_box(&sized, i, &rays, tilts)));
         let tree = Tree::build(kinds.iter().filter_map(|kind| Some((kind[0], drives(kind)?))))?;
         Some(Part::Drives {
             sized: Arc::new(sized),
@@ -139,10 +219,10 @@ impl<'c> Problem<'c> {
     }
 
     /// A joint that takes the lightest drive that can carry its load.
-    fn first_fit(&self, sized: SizedJoint<'c>) -> Option<Part<'c>> {
+    fn first_fit(&self, sized: SizedJoint<'c>, tilts: bool) -> Option<Part<'c>> {
         let rays = self.rays(self.parts.len(), sized.table.motion());
         let candidates = sized.table.first_fit_candidates();
-        let steps: Vec<DriveBox> = candidates.iter().map(|&i| drive_box(&sized, i, &rays)).collect();
+        let steps: Vec<DriveBox> = candidates.iter().map(|&i| drive_box(&sized, i, &rays, tilts)).collect();
         let ladder = (!steps.is_empty()).then(|| Arc::new(Ladder::new(steps)))?;
         Some(Part::FirstFit { ladder, sized: Arc::new(sized) })
     }
@@ -181,9 +261,23 @@ impl<'c> Problem<'c> {
     }
 }
 
-/// The box of a single drive.
-fn drive_box(sized: &SizedJoint, index: u32, rays: &Rays) -> DriveBox {
+/// The number that the problem gives to each piece of the chain. Effects have pieces of their own in between.
+fn piece_numbers(space: &DesignSpace) -> Vec<usize> {
+    let (mut numbers, mut next) = (vec![0; space.pieces.len()], 0);
+    for (place, layer) in space.layers() {
+        if let Layer::Piece(piece) = layer {
+            numbers[place] = next;
+            next += usize::from(harness_kg(space, piece).is_some());
+        }
+        next += usize::from(!matches!(layer, Layer::Bearing(_)));
+    }
+    numbers
+}
+
+/// The box of a single drive. In a joint whose bearing `tilts` with some drive none is wholly rigid.
+fn drive_box(sized: &SizedJoint, index: u32, rays: &Rays, tilts: bool) -> DriveBox {
     let index = index as usize;
+    let tilt_rad_per_nm = if tilts { sized.tilts_rad_per_nm[index].max(RIGID_RAD_PER_NM) } else { 0.0 };
     let mass_kg = sized.table.mass_kg(index);
     let curve = CurveBox::of(&sized.laws[index]);
     DriveBox {
@@ -193,6 +287,7 @@ fn drive_box(sized: &SizedJoint, index: u32, rays: &Rays) -> DriveBox {
         multiples: rays.capacity(sized.table.limits(index)),
         curve,
         breaks: curve.map_or_else(BreakPoints::default, |c| BreakPoints::of(&c.stiff.windup)),
+        tilt_rad_per_nm: [tilt_rad_per_nm; 2],
         each: None,
     }
 }

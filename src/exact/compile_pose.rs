@@ -6,29 +6,48 @@
 //! constant vector. With weights and compliances as intervals both become intervals. This holds in every
 //! pose.
 
+use super::bearing_rows::{BearingRows, Loads, Ramp};
 use super::parts::{INERTIAS, inertia};
-use super::pose::{COORDINATES, ENDS, InertiaRow, Pose, PosedPiece, PosedTube, Row, StressRow, TubeForms};
+use super::pose::{
+    COORDINATES, ENDS, InertiaRow, Pose, PosedPiece, PosedTube, Row, StressRow, TILT, TORSION, TubeForms,
+};
 use crate::arm::LinkModel;
 use crate::arm::load::Water;
 use crate::arm::structure::{LinkPiece, Structure};
 use crate::mechanics::beam::{PreparedBeam, section_frame};
+use crate::mechanics::chain::across;
 use crate::mechanics::{Twist, Wrench, angular, body_inertia, displacement_at, linear, rotation_twist};
 use crate::space::design_space::{DesignSpace, SpacePiece};
 use crate::space::effects::Layer;
 use crate::space::station::{Walk, payload_in, weight_wrench};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Rotation3, SMatrix, Vector3};
 
+/// What a pose has to know about a joint of the chain, beside its axis.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct JointNeeds {
+    /// Whether its bearing tilts with some drive that may be chosen.
+    pub tilts: bool,
+    /// Whether the bearing of some drive limits what it carries.
+    pub is_checked: bool,
+    /// Acceleration in a ramp \[rad/s²\].
+    pub acceleration_rad_s2: f64,
+}
+
 impl Pose {
-    /// Compiles the case with this index.
-    pub(super) fn new(space: &DesignSpace, index: usize) -> Self {
+    /// Compiles the case with this index. `joints` has what is to be known about the joint at each place of the chain.
+    pub(super) fn new(space: &DesignSpace, index: usize, joints: &[JointNeeds]) -> Self {
         let case = &space.cases[index];
         let water = case.water.or(space.surroundings().water);
         let walk = Walk::new(space, case);
         let (payload_wrench, payload_inertia) = payload_in(space, case, water, &walk);
-        let mut pieces = Vec::new();
+        let (mut pieces, mut needs) = (Vec::new(), Vec::new());
         for (place, layer) in space.layers() {
-            let at = &walk.places[place];
-            pieces.push(posed(space, water, layer, at));
+            let (at, joint) = (&walk.places[place], joints[place]);
+            let Some(posed) = posed(space, water, layer, joint.tilts, at) else { continue };
+            if let Layer::Piece(SpacePiece::Joint(_)) = layer {
+                needs.push((pieces.len(), joint));
+            }
+            pieces.push(posed);
             if let Layer::Piece(piece) = layer
                 && harness_kg(space, piece).is_some()
             {
@@ -45,35 +64,41 @@ impl Pose {
             rows: Vec::new(),
             stress: Vec::new(),
             inertia_about: Vec::new(),
+            bearings: Vec::new(),
         };
-        pose.compile(space, payload_wrench, &walk.tip_m);
+        pose.compile(space, payload_wrench, &walk.tip_m, &needs);
         pose.contributions_align = pose.contributions_align();
         pose
     }
 
-    /// Compiles the pieces from the tip inward. The wrench of everything outboard is kept as a linear function of the
-    /// weights.
-    fn compile(&mut self, space: &DesignSpace, payload: Wrench, tip_m: &Vector3<f64>) {
-        let mut outboard = Outboard { fixed: payload, per_n: Vec::new(), inertia: Vec::new() };
-        let mut fixed_inertia = self.payload_inertia;
+    /// Goes inward from the tip. The wrench of everything outboard is kept as a linear function of the
+    /// weights. `joints` are the joints of the chain by their pieces.
+    fn compile(
+        &mut self,
+        space: &DesignSpace,
+        payload: Wrench,
+        tip_m: &Vector3<f64>,
+        joints: &[(usize, JointNeeds)],
+    ) {
+        let mut outboard = Outboard::new(payload, self.payload_inertia);
         for (piece, posed) in self.pieces.iter().enumerate() {
+            outboard.fixed_inertia_of.push(outboard.fixed_inertia);
+            let bearing = self.bearing(piece, joints, &outboard);
+            self.bearings.push(bearing);
             match posed {
-                PosedPiece::Joint { twist, at_m } => {
-                    self.rows.push(outboard.row(piece, 0, twist, 0.0, tip_m));
-                    self.inertia_about.push(Some(outboard.inertia_row(&fixed_inertia, twist)));
+                PosedPiece::Joint { twist, at_m, across } => {
+                    for (at, tilt) in across.iter().flatten().enumerate() {
+                        self.rows.push(outboard.row(piece, TILT + at, tilt, 0.0, tip_m));
+                    }
+                    self.rows.push(outboard.row(piece, TORSION, twist, 0.0, tip_m));
+                    self.inertia_about.push(Some(outboard.inertia_row(twist)));
                     let mut forms = [Matrix6::zeros(); INERTIAS];
                     forms[inertia::MASS] = body_inertia(1.0, at_m, &Matrix3::zeros());
                     outboard.push(weight_wrench(1.0, at_m), forms);
                 }
                 PosedPiece::Body(body) => {
-                    fixed_inertia += body;
-                    let mass_kg = body[(0, 0)];
-                    if mass_kg > 0.0 {
-                        let moment = Vector3::new(body[(5, 1)], body[(3, 2)], body[(4, 0)]) / mass_kg;
-                        outboard.fixed += weight_wrench(mass_kg * space.gravity_m_s2, &moment);
-                    }
                     self.inertia_about.push(None);
-                    outboard.push(Wrench::zeros(), [Matrix6::zeros(); INERTIAS]);
+                    outboard.add_body(body, space.gravity_m_s2);
                 }
                 PosedPiece::Tube(tube) => {
                     self.inertia_about.push(None);
@@ -98,36 +123,70 @@ impl Pose {
             }
         }
         let scale = self.rows.iter().map(Row::largest).fold(0.0, f64::max);
-        // Coordinates that nothing strains, such as those across a vertical plane, are left out. Joints stay,
-        // because their demand is needed in any case.
-        let strained = |row: &Row| matches!(self.pieces[row.piece], PosedPiece::Joint { .. });
-        self.rows.retain(|row| strained(row) || row.largest() > 1e-13 * scale);
+        // Coordinates that nothing strains, such as those across a vertical plane, are left out. Torsions stay,
+        // because the demand on joints is needed in any case.
+        let is_torsion: Vec<bool> = self.rows.iter().map(|row| self.is_torsion(row)).collect();
+        let mut is_torsion = is_torsion.into_iter();
+        self.rows.retain(|row| is_torsion.next() == Some(true) || row.largest() > 1e-13 * scale);
+    }
+
+    /// The loads on the bearing of a piece; `None` if none is checked in this case.
+    fn bearing(
+        &self,
+        piece: usize,
+        joints: &[(usize, JointNeeds)],
+        outboard: &Outboard,
+    ) -> Option<BearingRows> {
+        let is_checked = |(at, needs): &(usize, JointNeeds)| *at == piece && needs.is_checked;
+        let PosedPiece::Joint { twist, at_m, .. } = &self.pieces[piece] else { return None };
+        joints.iter().find(|joint| is_checked(joint)).filter(|_| self.sizing)?;
+        let loads = Loads { fixed: outboard.fixed, per_n: &outboard.per_n };
+        let ramps = joints.iter().filter_map(|(moving, needs)| {
+            let PosedPiece::Joint { twist, .. } = &self.pieces[*moving] else { return None };
+            // A joint outboard of the bearing moves only what is outboard of itself.
+            let (fixed, inertia) = match outboard.fixed_inertia_of.get(*moving) {
+                Some(fixed) => (*fixed, &outboard.inertia[..*moving]),
+                None => (outboard.fixed_inertia, &outboard.inertia[..]),
+            };
+            Some(Ramp { acceleration: twist * needs.acceleration_rad_s2, fixed, inertia })
+        });
+        let axis = angular(twist);
+        Some(BearingRows::new([at_m, &axis], &across(&axis), &loads, ramps))
     }
 }
 
-/// One layer of the chain at its place in the pose.
+/// One layer of the chain at its place in the pose. `None` for the springs of a gear's bearing, which are coordinates of
+/// its joint.
 fn posed(
     space: &DesignSpace,
     water: Option<Water>,
     layer: Layer,
+    tilts: bool,
     (at_m, rotation): &(Vector3<f64>, Rotation3<f64>),
-) -> PosedPiece {
-    let hinge = |axis: &Vector3<f64>| PosedPiece::Joint { twist: rotation_twist(axis, at_m), at_m: *at_m };
+) -> Option<PosedPiece> {
+    let hinge = |axis: &Vector3<f64>, across: Option<[Vector3<f64>; 2]>| PosedPiece::Joint {
+        twist: rotation_twist(axis, at_m),
+        at_m: *at_m,
+        across: across.map(|axes| axes.map(|axis| rotation_twist(&axis, at_m))),
+    };
     let body = |mass_kg: f64, centre_m: &Vector3<f64>, inertia_kgm2: Matrix3<f64>| {
         PosedPiece::Body(body_inertia(mass_kg, centre_m, &inertia_kgm2))
     };
-    match layer {
-        Layer::Tilt(tilt) => hinge(&tilt.axis(rotation)),
+    Some(match layer {
+        Layer::Tilt(tilt) => hinge(&tilt.axis(rotation), None),
         Layer::Mass(mass_kg) | Layer::Extra(mass_kg) => body(mass_kg, at_m, Matrix3::zeros()),
-        Layer::Bearing(_) => body(0.0, at_m, Matrix3::zeros()),
-        Layer::Piece(SpacePiece::Joint(joint)) => hinge(&(rotation * joint.axis)),
+        Layer::Bearing(_) => return None,
+        Layer::Piece(SpacePiece::Joint(joint)) => {
+            let axis = rotation * joint.axis;
+            hinge(&axis, tilts.then(|| across(&axis)))
+        }
         Layer::Piece(SpacePiece::Choice(choice)) => {
             posed_tube(space, water, &space.link_piece(&choice.first_link()), at_m, rotation.matrix(), true)
         }
         Layer::Piece(SpacePiece::Link(link)) => {
             let link = space.link_piece(link);
             if link.beam.is_some() && link.vector_m.norm() > 0.0 {
-                return posed_tube(space, water, &link, at_m, rotation.matrix(), false);
+                return Some(posed_tube(space, water, &link, at_m, rotation.matrix(), false));
             }
             // A harness along a rigid offset is a slender rod.
             let vector_m = rotation * link.vector_m;
@@ -135,7 +194,7 @@ fn posed(
             let rod = Matrix3::identity() * vector_m.norm_squared() - vector_m * vector_m.transpose();
             body(link.point_mass_kg + along_kg, &(at_m + vector_m / 2.0), rod * (along_kg / 12.0))
         }
-    }
+    })
 }
 
 /// A tube whose root is at a place of the pose.
@@ -248,10 +307,35 @@ fn areas_per_n(tube: &PosedTube) -> [f64; 8] {
 struct Outboard {
     fixed: Wrench,
     per_n: Vec<Wrench>,
+    /// Inertia of payload and given bodies.
+    fixed_inertia: Matrix6<f64>,
+    /// What it is outboard of each piece.
+    fixed_inertia_of: Vec<Matrix6<f64>>,
     inertia: Vec<[Matrix6<f64>; INERTIAS]>,
 }
 
 impl Outboard {
+    fn new(payload: Wrench, payload_inertia: Matrix6<f64>) -> Self {
+        Self {
+            fixed: payload,
+            per_n: Vec::new(),
+            fixed_inertia: payload_inertia,
+            fixed_inertia_of: Vec::new(),
+            inertia: Vec::new(),
+        }
+    }
+
+    /// Adds a given body.
+    fn add_body(&mut self, body: &Matrix6<f64>, gravity_m_s2: f64) {
+        self.fixed_inertia += body;
+        let mass_kg = body[(0, 0)];
+        if mass_kg > 0.0 {
+            let moment = Vector3::new(body[(5, 1)], body[(3, 2)], body[(4, 0)]) / mass_kg;
+            self.fixed += weight_wrench(mass_kg * gravity_m_s2, &moment);
+        }
+        self.push(Wrench::zeros(), [Matrix6::zeros(); INERTIAS]);
+    }
+
     fn push(&mut self, per_n: Wrench, inertia: [Matrix6<f64>; INERTIAS]) {
         self.per_n.push(per_n);
         self.inertia.push(inertia);
@@ -272,10 +356,10 @@ impl Outboard {
     }
 
     /// The inertia of everything outboard about a joint's axis.
-    fn inertia_row(&self, fixed: &Matrix6<f64>, twist: &Twist) -> InertiaRow {
+    fn inertia_row(&self, twist: &Twist) -> InertiaRow {
         let about = |m: &Matrix6<f64>| twist.dot(&(m * twist)).max(0.0);
         InertiaRow {
-            fixed: about(fixed),
+            fixed: about(&self.fixed_inertia),
             per_line: self.inertia.iter().map(|forms| std::array::from_fn(|k| about(&forms[k]))).collect(),
         }
     }

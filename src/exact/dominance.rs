@@ -1,11 +1,12 @@
 //! Drives that a lighter drive dominates within a box.
 //!
 //! Let a design have drive B at a joint. Let drive A be lighter, at least as stiff up to the torque that the
-//! joint carries, and able to carry the joint's demand. The demand depends only on the arm outboard, so it is
-//! the same for both. Now put A in the place of B:
+//! joint carries, with a bearing that tilts no more, and able to carry the joint's demand. The demand depends only on the
+//! arm outboard, so it is the same for both. Now put A in the place of B:
 //!
 //! - Every force of the study grows with every weight, so no torque, stress or demand inboard grows and the
-//!   tip does not deflect further.
+//!   tip does not deflect further. The load on a bearing is a sum of vectors; that it grows with the mass of every drive
+//!   outboard is asked for separately ([`bearing_rows`](super::bearing_rows)).
 //! - No inertia grows. No stiffness falls if every gear inboard stays in its segment of the torsion curve.
 //!   Then no mode falls.
 //!
@@ -34,12 +35,14 @@ struct DominatingDrive<'a> {
     demand: &'a JointDemand,
     curve: Option<CurveBox>,
     most_torque_nm: f64,
+    most_tilt_rad_per_nm: f64,
 }
 
 impl DominatingDrive<'_> {
     /// Whether a box of drives may have a dominating drive. For a box of one drive: whether this drive dominates.
     fn may_be_in(&self, drives: &DriveBox) -> bool {
         drives.mass_kg[0] < self.lighter_than_kg
+            && drives.tilt_rad_per_nm[0] <= self.most_tilt_rad_per_nm
             && drives.hold(self.demand)
             && match (&drives.curve, &self.curve) {
                 (None, _) => true,
@@ -70,7 +73,12 @@ impl Problem<'_> {
     pub(super) fn grows_with_weight(&self) -> bool {
         let fits_first = self.parts.iter().any(|part| matches!(part, Part::FirstFit { .. }));
         let friction = self.joint_plays.iter().flatten().any(JointPlay::has_friction);
-        !fits_first && !friction && self.poses.iter().all(Pose::grows_with_weight)
+        let is_drive = |piece: usize| matches!(self.parts[piece], Part::Drives { .. });
+        let bearings = || self.poses.iter().flat_map(|pose| pose.bearings.iter().flatten());
+        !fits_first
+            && !friction
+            && self.poses.iter().all(Pose::grows_with_weight)
+            && bearings().all(|rows| rows.grow_with_mass(&is_drive))
     }
 
     /// Removes dominated drives from a box whose numbers are in `work`. Returns whether the box became smaller;
@@ -112,6 +120,7 @@ impl Problem<'_> {
             lighter_than_kg: drives.mass_kg[0] - LIGHTER * arm_kg,
             demand,
             curve: drives.curve,
+            most_tilt_rad_per_nm: drives.tilt_rad_per_nm[0],
             most_torque_nm: work.torques.iter().map(|torques| torques[piece][1]).fold(0.0, f64::max),
         };
         // The search starts at the root, for the dominating drive need not be in the box.
@@ -124,8 +133,8 @@ impl Problem<'_> {
     /// weight \[N\].
     fn slopes_stay(&self, piece: usize, lost_n: f64, work: &Work) -> bool {
         self.judged_cases().all(|case| {
-            self.poses[case].rows.iter().filter(|row| row.piece > piece && row.coordinate == 0).all(|row| {
-                let Some(curve) = &work.curves[row.piece] else { return true };
+            self.poses[case].rows.iter().filter(|row| row.piece > piece).all(|row| {
+                let Some(curve) = work.curve(row) else { return true };
                 let [least_nm, most_nm] = work.torques[case][row.piece];
                 let drop_nm = row.per_n.get(piece).map_or(0.0, |c| c.abs() * lost_n);
                 let from_nm = (least_nm * (1.0 - SAME_TORQUE) - drop_nm).max(0.0);

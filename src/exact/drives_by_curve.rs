@@ -1,17 +1,18 @@
-//! The feasible drives below a node, grouped by torsion curve.
+//! The feasible drives below a node, grouped by torsion curve and bearing.
 //!
-//! A joint has hundreds of drives but only some dozens of curves. The price of a drive is the price of its
-//! mass plus the price of its curve. Among the drives of one curve only the lightest or the heaviest can
-//! therefore be the cheapest, whatever the prices are.
+//! A joint has hundreds of drives but only some dozens of curves, and gears of one curve mostly have one bearing. The
+//! price of a drive is the price of its mass plus the prices of its curve and its bearing. Among the drives of one group
+//! only the lightest or the heaviest can therefore be the cheapest, whatever the prices are.
 
 use super::dual_price::DualPrice;
 use super::parts::{DriveBox, LeastDemand};
 use super::torsion::CurveBox;
 use super::tree::Tree;
 
-/// The drives with one torsion curve: mass \[kg\] and node of the lightest drive and of the heaviest.
+/// The drives of one curve and one bearing: mass \[kg\] and node of the lightest and of the heaviest.
 struct CurveGroup {
     curve: Option<CurveBox>,
+    tilt_rad_per_nm: [f64; 2],
     lightest: (f64, u32),
     heaviest: (f64, u32),
 }
@@ -29,7 +30,7 @@ impl CurveGroup {
     }
 }
 
-/// The feasible drives, one group for each curve.
+/// The feasible drives, one group for each curve and bearing.
 #[derive(Default)]
 pub(super) struct DrivesByCurve(Vec<CurveGroup>);
 
@@ -48,8 +49,11 @@ impl DrivesByCurve {
                 continue;
             }
             let drive = (drives.mass_kg[0], at);
+            let DriveBox { curve, tilt_rad_per_nm, .. } = *drives;
             // Neighbours in the tree mostly have the same curve, so the last group is tried first.
-            let is_of = |at: &usize| curves.get(*at).is_some_and(|of| of.curve == drives.curve);
+            let is_of = |at: &usize| {
+                curves.get(*at).is_some_and(|of| of.curve == curve && of.tilt_rad_per_nm == tilt_rad_per_nm)
+            };
             match Some(last).filter(is_of).or_else(|| (0..curves.len()).find(|at| is_of(at))) {
                 Some(place) => {
                     curves[place].add(drive);
@@ -57,7 +61,7 @@ impl DrivesByCurve {
                 }
                 None => {
                     last = curves.len();
-                    curves.push(CurveGroup { curve: drives.curve, lightest: drive, heaviest: drive });
+                    curves.push(CurveGroup { curve, tilt_rad_per_nm, lightest: drive, heaviest: drive });
                 }
             }
         }
@@ -68,7 +72,7 @@ impl DrivesByCurve {
     pub(super) fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
         let of = |of: &CurveGroup| {
             let (mass_kg, node) = if price.of_mass([0.0, 1.0]) < 0.0 { of.heaviest } else { of.lightest };
-            (price.of_joint([mass_kg; 2], of.curve.as_ref()), node)
+            (price.of_joint([mass_kg; 2], of.curve.as_ref(), of.tilt_rad_per_nm), node)
         };
         self.0.iter().map(of).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
     }

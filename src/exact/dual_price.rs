@@ -4,7 +4,8 @@
 //! what it adds to the weighted sum of the rows in [`rows`](super::rows).
 
 use super::joint_play::JointPlay;
-use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia, stiffness_of};
+use super::pose::TILT;
 use super::torsion::CurveBox;
 use super::tree::{Bounds, Tree};
 use crate::arm::joint_law::Segment;
@@ -58,7 +59,7 @@ impl Gear {
 pub(super) struct DualPrice {
     /// Price per line inertia of a tube. For any other piece the first entry is the price per kilogram.
     pub inertia: [f64; INERTIAS],
-    /// Price per compliance of a tube. `stiffness` holds the credit per stiffness.
+    /// Price per compliance of a tube, and the credit per stiffness. For a joint those of its bearing.
     pub compliance: [f64; STIFFNESSES],
     pub stiffness: [f64; STIFFNESSES],
     /// Prices of a joint, one for each judged case.
@@ -216,8 +217,21 @@ impl JointPrice {
 
 impl DualPrice {
     /// Price of a joint's drive. For a box of drives: a lower bound over its members.
-    pub(super) fn of_joint(&self, mass_kg: [f64; 2], curve: Option<&CurveBox>) -> f64 {
-        self.of_mass(mass_kg) + self.joint.iter().map(|price| price.least_of(curve)).sum::<f64>()
+    pub(super) fn of_joint(
+        &self,
+        mass_kg: [f64; 2],
+        curve: Option<&CurveBox>,
+        tilt_rad_per_nm: [f64; 2],
+    ) -> f64 {
+        let torsion: f64 = self.joint.iter().map(|price| price.least_of(curve)).sum();
+        self.of_mass(mass_kg) + torsion + self.of_tilt(tilt_rad_per_nm)
+    }
+
+    /// Price of the bearing of a drive.
+    #[inline]
+    fn of_tilt(&self, tilt_rad_per_nm: [f64; 2]) -> f64 {
+        least(self.compliance[TILT], tilt_rad_per_nm)
+            - self.stiffness[TILT] * stiffness_of(tilt_rad_per_nm[0])
     }
 
     /// Price of a drive's mass.
@@ -230,7 +244,6 @@ impl DualPrice {
     /// Price of a tube. For a box of tubes: a lower bound over its members.
     #[inline]
     pub(super) fn of_tube(&self, tube: &LinkBox) -> f64 {
-        let least = |price: f64, [a, b]: [f64; 2]| price * if price >= 0.0 { a } else { b };
         let mut sum = 0.0;
         for (i, &price) in self.inertia.iter().enumerate() {
             sum += least(price, [tube.low.inertias[i], tube.high.inertias[i]]);
@@ -245,7 +258,13 @@ impl DualPrice {
     }
 }
 
-/// The least price of an option below a node, and the option's node. If the search ends early, the node is a box of
+/// The least price of a number in an interval.
+#[inline]
+fn least(price: f64, [low, high]: [f64; 2]) -> f64 {
+    price * if price >= 0.0 { low } else { high }
+}
+
+/// The least price of an option below a node, and its node. If the search ends early the node is a box of
 /// several options, and the price is a lower bound.
 pub(super) fn cheapest<B: Bounds>(tree: &Tree<B>, node: u32, price: impl Fn(&B) -> f64) -> (f64, u32) {
     let offer = |node: u32| Offer { price: price(&tree.node(node).bounds), node };

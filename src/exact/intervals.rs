@@ -1,10 +1,12 @@
 //! Fills in the numbers of a box as intervals, part by part from the tip inward.
 
+use super::bearing_rows::Numbers;
 use super::interval::interval;
 use super::parts::{DriveBox, LeastDemand, LinkBox, Rays};
-use super::problem::{Ladder, Part, Problem};
+use super::problem::{Ladder, Lever, Part, Problem};
 use super::tree::{Bounds, Tree};
 use super::work::Work;
+use crate::sizing::bearing::BearingDemand;
 use crate::sizing::demand::JointDemand;
 use crate::space::attributes::von_mises;
 use crate::space::slot::SizedJoint;
@@ -23,7 +25,7 @@ impl Problem<'_> {
         let mut cost_eur = 0.0;
         for (piece, part) in self.parts.iter().enumerate() {
             match part {
-                Part::Given { mass_kg, curve } => work.joint(self, piece, [*mass_kg; 2], *curve),
+                Part::Given { mass_kg, curve } => work.joint(self, piece, [*mass_kg; 2], *curve, [0.0; 2]),
                 Part::Drives { sized, tree, rays, .. } => {
                     self.fill_drives(piece, sized, tree, rays, &mut design_box[level], work)?;
                     level += 1;
@@ -59,13 +61,16 @@ impl Problem<'_> {
         work: &mut Work,
     ) -> Option<()> {
         let (static_nm, inertia_kgm2) = self.loads(piece, work);
-        let least = LeastDemand::new(sized.table.motion(), rays, static_nm[0], inertia_kgm2[0]);
+        let bearing = self.bearing_loads(piece, work);
+        let motion = sized.table.motion();
+        let least = LeastDemand::new(motion, rays, static_nm[0], inertia_kgm2[0], bearing[0]);
         *node = tree.smallest_node(*node, |drives| drives.may_hold(&least))?;
         let drives = feasible_drives(tree, *node, &least, DEPTH)?;
-        work.joint(self, piece, drives.mass_kg, drives.curve);
+        work.joint(self, piece, drives.mass_kg, drives.curve, drives.tilt_rad_per_nm);
         work.breaks[piece] = drives.breaks;
         work.least_demands[piece] = Some(least);
-        work.greatest_demands[piece] = Some(sized.table.motion().demand(static_nm[1], inertia_kgm2[1]));
+        work.greatest_demands[piece] =
+            Some(motion.demand(static_nm[1], inertia_kgm2[1]).with_bearing(bearing[1]));
         Some(())
     }
 
@@ -78,7 +83,9 @@ impl Problem<'_> {
         work: &mut Work,
     ) -> Option<()> {
         let (static_nm, inertia_kgm2) = self.loads(piece, work);
-        let demand = |i: usize| sized.table.motion().demand(static_nm[i], inertia_kgm2[i]);
+        let bearing = self.bearing_loads(piece, work);
+        let demand =
+            |i: usize| sized.table.motion().demand(static_nm[i], inertia_kgm2[i]).with_bearing(bearing[i]);
         let (least, most) = (demand(0), demand(1));
         let step = |demand: &JointDemand| {
             let fit = sized.table.first_fit(demand)? as u32;
@@ -87,8 +94,8 @@ impl Problem<'_> {
         let first = step(&least)?;
         // If no drive carries the greatest demand, the heaviest may still be the fit of some member.
         let last = step(&most).unwrap_or(ladder.len() - 1);
-        let DriveBox { mass_kg, curve, .. } = ladder.run(first, last);
-        work.joint(self, piece, mass_kg, curve);
+        let DriveBox { mass_kg, curve, tilt_rad_per_nm, .. } = ladder.run(first, last);
+        work.joint(self, piece, mass_kg, curve, tilt_rad_per_nm);
         Some(())
     }
 
@@ -134,8 +141,28 @@ impl Problem<'_> {
         (rounded(static_nm), rounded(inertia_kgm2))
     }
 
-    /// For every case, the least axial force \[N\], moments about y and z and torsion \[N m\] at the ends of a tube.
-    /// They are multiplied by the factors with which stress is compared with the strength.
+    /// The least and the greatest loads on the bearing of a joint; zero if no bearing is checked.
+    fn bearing_loads(&self, piece: usize, work: &Work) -> [BearingDemand; 2] {
+        let Some(lever) = self.levers[piece] else { return [BearingDemand::default(); 2] };
+        let cases = self.poses.iter().zip(&work.weights);
+        let [least, most] = cases
+            .filter_map(|(pose, weights_n)| {
+                let numbers = Numbers { weights_n, light: &work.light, heavy: &work.heavy };
+                Some(pose.bearings[piece].as_ref()?.loads(&numbers, self.space.motion.stop_factor()))
+            })
+            .fold([BearingDemand::default(); 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
+        let lever_m = match lever {
+            Lever::Given(lever_m) => [lever_m; 2],
+            Lever::OfLink(link) => work.levers[link],
+        };
+        [
+            least.with_lever(lever_m[0]).scaled(1.0 - ROUNDING),
+            most.with_lever(lever_m[1]).scaled(1.0 + ROUNDING),
+        ]
+    }
+
+    /// The least axial force \[N\], moments about y and z and torsion \[N m\] at the ends of a tube in every
+    /// case, times the factors that are applied before the comparison with the strength.
     fn least_loads(&self, piece: usize, safety: f64, work: &Work) -> Vec<[f64; 4]> {
         let cases = self.poses.iter().zip(&work.weights);
         cases

@@ -12,7 +12,8 @@ use super::bound::STARTS;
 use super::dual_price::{DualPrice, JointPrice, cheapest};
 use super::local_upper_bounds::LocalUpperBound;
 use super::matrix_game::{Game, solve};
-use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia, stiffness_of};
+use super::pose::{TILT, TORSION};
 use super::problem::{Part, Problem};
 use super::rows::{DualPoint, Force, Mode, RelaxedDesign, Rows};
 use super::shape::{Ideal, Shape, Work as ShapeWork, dot, products};
@@ -23,6 +24,14 @@ const STEPS: usize = 3;
 
 /// Stiffnesses and inertias of each piece.
 type Arm = (Vec<[f64; STIFFNESSES]>, Vec<[f64; INERTIAS]>);
+
+/// A joint that is added to a relaxed design.
+struct AddedJoint<'a> {
+    piece: usize,
+    mass_kg: f64,
+    curve: Option<&'a CurveBox>,
+    tilt_rad_per_nm: [f64; 2],
+}
 
 impl Problem<'_> {
     /// Mass of a piece per unit of its first line inertia: the length of a tube \[m\], and 1 for any other
@@ -123,7 +132,13 @@ impl Rows<'_> {
                     member.design_box[level] = at;
                     levels.push(least);
                     let drives = &tree.node(at).bounds;
-                    self.add_joint(piece, drives.mass_kg[0], drives.curve.as_ref(), &price, &mut member);
+                    let added = AddedJoint {
+                        piece,
+                        mass_kg: drives.mass_kg[0],
+                        curve: drives.curve.as_ref(),
+                        tilt_rad_per_nm: drives.tilt_rad_per_nm,
+                    };
+                    self.add_joint(&added, &price, &mut member);
                     least
                 }
                 Part::Links { tree, length_m } => {
@@ -141,9 +156,10 @@ impl Rows<'_> {
                 }
                 Part::Given { .. } | Part::FirstFit { .. } => {
                     let (price, mass_kg) = (price(), self.work.masses[piece]);
-                    let curve = self.work.curves[piece].as_ref();
-                    self.add_joint(piece, mass_kg[0], curve, &price, &mut member);
-                    price.of_joint(mass_kg, curve)
+                    let (curve, tilt_rad_per_nm) = (self.work.curves[piece].as_ref(), self.work.tilts[piece]);
+                    let added = AddedJoint { piece, mass_kg: mass_kg[0], curve, tilt_rad_per_nm };
+                    self.add_joint(&added, &price, &mut member);
+                    price.of_joint(mass_kg, curve, tilt_rad_per_nm)
                 }
                 Part::Offset { mass_kg } => {
                     member.values[0] += mass_kg;
@@ -174,24 +190,23 @@ impl Rows<'_> {
         }
     }
 
-    /// Adds a drive to a relaxed design, in the state that is cheapest at these prices.
-    fn add_joint(
-        &self,
-        piece: usize,
-        mass_kg: f64,
-        curve: Option<&CurveBox>,
-        price: &DualPrice,
-        member: &mut RelaxedDesign,
-    ) {
+    /// Adds a drive to a relaxed design, in the state that is cheapest for its price.
+    fn add_joint(&self, joint: &AddedJoint, price: &DualPrice, member: &mut RelaxedDesign) {
+        let AddedJoint { piece, mass_kg, curve, tilt_rad_per_nm } = *joint;
         member.values[0] += mass_kg;
         member.inertia[piece][inertia::MASS] = mass_kg;
         let weight_n = mass_kg * self.problem.space.gravity_m_s2;
         (0..self.tips.len()).for_each(|judged| self.add_weight(piece, judged, weight_n, member));
+        for (judged, tip) in self.tips.iter().enumerate() {
+            let cheaper = tilt_rad_per_nm[usize::from(price.compliance[TILT] < 0.0)];
+            member.values[1 + judged] += tip.compliances[piece][TILT] * cheaper;
+            member.stiffness[judged][piece][TILT] = stiffness_of(tilt_rad_per_nm[0]);
+        }
         let gears = self.gears.iter().filter(|gear| gear.piece == piece);
         for (gear, price) in gears.zip(&price.joint) {
             let state = price.best_of(curve).1;
             member.values[1 + gear.judged] += state.twist_rad * self.tips[gear.judged].joints[piece];
-            member.stiffness[gear.judged][piece][0] = state.slope;
+            member.stiffness[gear.judged][piece][TORSION] = state.slope;
             if let Some(row) = gear.row {
                 member.values[row] += state.torque_nm;
                 member.values[row + 1] -= state.torque_nm;
@@ -208,7 +223,7 @@ impl Rows<'_> {
         for (judged, tip) in self.tips.iter().enumerate() {
             let water_kg = self.problem.poses[tip.case].water_kg_m3 * line[inertia::OUTER_AREA] * length_m;
             self.add_weight(piece, judged, (mass_kg - water_kg) * self.problem.space.gravity_m_s2, member);
-            let yields = tip.tubes[piece].iter().zip(stiffnesses).map(|(c, s)| c / s);
+            let yields = tip.compliances[piece].iter().zip(stiffnesses).map(|(c, s)| c / s);
             member.values[1 + judged] += yields.sum::<f64>();
             // What does not yield stores no energy.
             member.stiffness[judged][piece] = stiffnesses.map(|s| if s.is_finite() { s } else { 0.0 });
@@ -230,7 +245,7 @@ impl Rows<'_> {
     /// The dual prices of a piece under these multipliers.
     pub(super) fn price(&self, piece: usize, multipliers: &[f64]) -> DualPrice {
         let multiplier = |row: usize| multipliers[row] / self.scale[row];
-        let (length_m, is_joint) = (self.problem.length_m(piece), self.work.curves[piece].is_some());
+        let (length_m, is_joint) = (self.problem.length_m(piece), self.problem.parts[piece].is_joint());
         let mut price = DualPrice::default();
         price.inertia[inertia::MASS] = multiplier(0) * length_m;
         let g = self.problem.space.gravity_m_s2 * length_m;
@@ -242,8 +257,8 @@ impl Rows<'_> {
             price.inertia[inertia::MASS] += g * per_n;
             // Buoyancy: the net weight falls with the outer area.
             price.inertia[inertia::OUTER_AREA] -= g * per_n * self.problem.poses[tip.case].water_kg_m3;
-            for (c, tube) in price.compliance.iter_mut().zip(&tip.tubes[piece]) {
-                *c += multiplier(1 + judged) * tube;
+            for (c, tip_per_compliance) in price.compliance.iter_mut().zip(&tip.compliances[piece]) {
+                *c += multiplier(1 + judged) * tip_per_compliance;
             }
         }
         // A drive has no outer area; the weight of water on it is not counted by the model either.
@@ -255,7 +270,7 @@ impl Rows<'_> {
             price.joint.push(JointPrice {
                 twist: multiplier(1 + gear.judged) * self.tips[gear.judged].joints[piece],
                 slope: modes
-                    .map(|(m, mode)| multiplier(self.first_mode + m) * mode.shape.strain[piece][0])
+                    .map(|(m, mode)| multiplier(self.first_mode + m) * mode.shape.strain[piece][TORSION])
                     .sum(),
                 torque: gear.row.map_or(0.0, |row| multiplier(row) - multiplier(row + 1)),
                 torques_nm: gear.torques_nm,
@@ -272,10 +287,9 @@ impl Rows<'_> {
                 *p += w * self.lambda * kinetic;
             }
             // The slope of a gear depends on its state, so `JointPrice` has its credit instead.
-            if !is_joint {
-                for (p, strain) in price.stiffness.iter_mut().zip(&mode.shape.strain[piece]) {
-                    *p += w * strain;
-                }
+            let first = if is_joint { TILT } else { 0 };
+            for (p, strain) in price.stiffness.iter_mut().zip(&mode.shape.strain[piece]).skip(first) {
+                *p += w * strain;
             }
         }
         price

@@ -15,6 +15,7 @@
 //! No assumption is made about the poses, the order of the parts or the shape of the torsion curves. The
 //! proof and its conditions are in `docs/exact.md`.
 
+pub(crate) mod bearing_rows;
 pub(crate) mod bound;
 pub(crate) mod boxes;
 pub(crate) mod branch_level;

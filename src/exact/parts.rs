@@ -5,6 +5,7 @@ use super::tree::{Bounds, Key};
 use crate::arm::LinkModel;
 use crate::arm::structure::{Beam, LinkPiece};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
+use crate::sizing::bearing::BearingDemand;
 use crate::sizing::demand::{JointDemand, JointMotion};
 use crate::sizing::limits::DriveLimits;
 use crate::space::attributes::StressCheck;
@@ -77,11 +78,15 @@ pub(super) struct LinkBox {
     pub round: bool,
     /// Least cost of the material \[EUR/m\].
     pub cost_eur_per_m: f64,
+    /// Least and greatest lever along the axis of the joint inboard to where the link attaches \[m\]; 0 if no bearing
+    /// asks for it.
+    pub lever_m: [f64; 2],
 }
 
 impl LinkBox {
-    /// The box of one option. `link` is the option with the effects of the study.
-    pub(super) fn of(option: &LinkOption, link: &LinkPiece, model: LinkModel) -> Self {
+    /// The box of one option. `link` is the option with the effects of the study, and `lever_m` the lever from the joint
+    /// inboard \[m\].
+    pub(super) fn of(option: &LinkOption, link: &LinkPiece, model: LinkModel, lever_m: f64) -> Self {
         let nominal = Beam { material: option.material, section: option.section, flexibility: 1.0 };
         let line = Line::new(link.beam.as_ref().unwrap_or(&nominal), link.harness_kg_per_m, model);
         let check = StressCheck::new(option);
@@ -95,8 +100,14 @@ impl LinkBox {
             stress,
             round: check.is_none_or(|s| s.round),
             cost_eur_per_m: option.cost_eur_per_kg.unwrap_or(0.0) * option.mass_kg_per_m(),
+            lever_m: [lever_m; 2],
         }
     }
+}
+
+/// The interval around two intervals.
+fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
 }
 
 fn pairwise<const N: usize>(a: &[f64; N], b: &[f64; N], pick: fn(f64, f64) -> f64) -> [f64; N] {
@@ -119,6 +130,7 @@ impl Bounds for LinkBox {
             stress: pairwise(&self.stress, &other.stress, f64::min),
             round: self.round || other.round,
             cost_eur_per_m: self.cost_eur_per_m.min(other.cost_eur_per_m),
+            lever_m: joined(self.lever_m, other.lever_m),
         }
     }
 
@@ -173,13 +185,31 @@ pub(super) struct LeastDemand {
 }
 
 impl LeastDemand {
-    /// The least demand for a static torque \[N m\] and an inertia \[kg m²\].
-    pub(super) fn new(motion: &JointMotion, rays: &Rays, static_nm: f64, inertia_kgm2: f64) -> Self {
+    /// The demand of a static torque \[N m\] and an inertia \[kg m²\], with the loads on the bearing.
+    pub(super) fn new(
+        motion: &JointMotion,
+        rays: &Rays,
+        static_nm: f64,
+        inertia_kgm2: f64,
+        bearing: BearingDemand,
+    ) -> Self {
         let times = |asked: f64, unit: f64| if unit > 0.0 { asked / unit } else { f64::INFINITY };
         let multiples =
             rays.loads.map(|(t, i)| times(static_nm, t).min(times(inertia_kgm2, i)) * (1.0 - 1e-12));
-        Self { demand: motion.demand(static_nm, inertia_kgm2), multiples }
+        // The rays do not load the bearing, so a multiple of one is below the demand whatever the bearing carries.
+        Self { demand: motion.demand(static_nm, inertia_kgm2).with_bearing(bearing), multiples }
     }
+}
+
+/// Least tilt per moment of a joint where some drives tilt and others are rigid \[rad/(N m)\]. A stiffness of 0 stands
+/// for what yields in no member of any box, so a rigid drive among others gets this tilt instead. It adds less than a part
+/// in 1e9 to any deflection.
+pub(super) const RIGID_RAD_PER_NM: f64 = 1e-18;
+
+/// The stiffness of a linear spring of a joint; 0 stands for a spring that never yields.
+#[inline]
+pub(super) fn stiffness_of(rad_per_nm: f64) -> f64 {
+    if rad_per_nm > 0.0 { rad_per_nm.recip() } else { 0.0 }
 }
 
 /// A box of drives.
@@ -197,13 +227,15 @@ pub(super) struct DriveBox {
     pub curve: Option<CurveBox>,
     /// Break points of the members' curves.
     pub breaks: BreakPoints,
-    /// For a single kind of several drives, the limits of each drive. A kind carries whatever one of its drives
-    /// carries.
+    /// Least and greatest tilt of the output bearing per moment \[rad/(N m)\], in series with what an effect adds. 0 if
+    /// no drive of the joint tilts.
+    pub tilt_rad_per_nm: [f64; 2],
+    /// For a single kind of several drives, the limits of each. The kind carries what any of them carries.
     pub each: Option<Arc<[DriveLimits]>>,
 }
 
 impl DriveBox {
-    /// The box of one kind: drives of one mass and one curve.
+    /// The box of one kind: drives of one mass, one curve and one tilt.
     pub(super) fn of_kind(drives: impl Iterator<Item = Self>) -> Option<Self> {
         let drives: Vec<Self> = drives.collect();
         let kind =
@@ -238,13 +270,14 @@ impl DriveBox {
 impl Bounds for DriveBox {
     fn join(&self, other: &Self) -> Self {
         Self {
-            mass_kg: [self.mass_kg[0].min(other.mass_kg[0]), self.mass_kg[1].max(other.mass_kg[1])],
+            mass_kg: joined(self.mass_kg, other.mass_kg),
             limits: self.limits.max(&other.limits),
             least_limits: self.least_limits.min(&other.least_limits),
             multiples: pairwise(&self.multiples, &other.multiples, f64::max),
             // A rigid member makes the stiff side rigid, so the box has no curve.
             curve: self.curve.zip(other.curve).map(|(a, b)| a.join(&b)),
             breaks: self.breaks.join(&other.breaks),
+            tilt_rad_per_nm: joined(self.tilt_rad_per_nm, other.tilt_rad_per_nm),
             each: None,
         }
     }
@@ -290,6 +323,7 @@ mod tests {
             multiples: rays.capacity(&limits),
             curve: None,
             breaks: BreakPoints::default(),
+            tilt_rad_per_nm: [0.0; 2],
             each: None,
         }
     }

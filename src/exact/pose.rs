@@ -1,5 +1,6 @@
 //! One case of a study as rows of numbers: the effect of each weight on each strain coordinate.
 
+use super::bearing_rows::BearingRows;
 use super::interval::interval;
 use super::parts::INERTIAS;
 use crate::mechanics::Twist;
@@ -38,6 +39,13 @@ pub(super) const RESISTED: [(usize, u8); COORDINATES] = [
     (4, 2),
 ];
 
+/// The coordinate of a joint's torsion, and the stiffness that resists it. Coordinates after it are the tilts of the
+/// bearing, which one stiffness resists.
+pub(super) const TORSION: usize = 0;
+pub(super) const TILT: usize = 1;
+/// Number of strain coordinates of a joint that tilts.
+pub(super) const JOINT_COORDINATES: usize = 3;
+
 /// `2i + 1` for a polynomial of degree `i`: the compliance of a coordinate times its stiffness and the tube's
 /// length.
 pub(super) fn degree_factor(coordinate: usize) -> f64 {
@@ -61,12 +69,15 @@ pub(super) struct Pose {
     pub stress: Vec<StressRow>,
     /// Inertia about each joint's axis; `None` for a piece that is no joint.
     pub inertia_about: Vec<Option<InertiaRow>>,
+    /// Loads on the output bearing of each joint; `None` where the case sizes nothing or no bearing is checked.
+    pub bearings: Vec<Option<BearingRows>>,
 }
 
 /// A piece in a pose.
 pub(super) enum PosedPiece {
-    /// A joint: its unit twist, and the point of its mass.
-    Joint { twist: Twist, at_m: Vector3<f64> },
+    /// A joint: its unit twist, the point of its mass, and the unit twists about the two axes across its own,
+    /// about which the output bearing tilts; `None` if no option tilts.
+    Joint { twist: Twist, at_m: Vector3<f64>, across: Option<[Twist; 2]> },
     /// The inertia of a given body.
     Body(Matrix6<f64>),
     /// A tube.
@@ -103,7 +114,7 @@ pub(super) struct TubeForms {
 /// coordinate.
 pub(super) struct Row {
     pub piece: usize,
-    /// Index of a tube's coordinate; 0 for a joint.
+    /// Index of a tube's coordinate. For a joint 0 is the torsion, 1 and 2 are the tilts of its bearing.
     pub coordinate: usize,
     /// Force without the weight of any part \[N or N m\].
     pub fixed: f64,
@@ -130,13 +141,17 @@ pub(super) struct InertiaRow {
 impl Pose {
     /// Torque on a joint, as an interval \[N m\].
     pub(super) fn torque(&self, piece: usize, weights: &[[f64; 2]]) -> [f64; 2] {
-        let row = self.rows.iter().find(|row| row.piece == piece);
-        row.map_or([0.0; 2], |row| interval(row.fixed, &row.per_n, weights))
+        self.torsion(piece).map_or([0.0; 2], |row| interval(row.fixed, &row.per_n, weights))
     }
 
     /// Torque on a joint without the weight of any part \[N m\].
     pub(super) fn payload_torque_nm(&self, piece: usize) -> f64 {
-        self.rows.iter().find(|row| row.piece == piece).map_or(0.0, |row| row.fixed)
+        self.torsion(piece).map_or(0.0, |row| row.fixed)
+    }
+
+    /// The row of a joint's torsion.
+    fn torsion(&self, piece: usize) -> Option<&Row> {
+        self.rows.iter().find(|row| row.piece == piece && row.coordinate == TORSION)
     }
 }
 
@@ -159,10 +174,27 @@ impl Pose {
         ways.iter().enumerate().all(|(i, a)| ways[..i].iter().all(|b| agree(a, b)))
     }
 
-    /// The rows of joints, and the rows of coordinates that move the tip.
+    /// The rows of torsions, and the rows of coordinates that move the tip.
     fn relevant_rows(&self) -> impl Iterator<Item = &Row> {
-        let is_joint = |row: &Row| matches!(self.pieces[row.piece], PosedPiece::Joint { .. });
-        self.rows.iter().filter(move |row| is_joint(row) || row.tip_m.norm() > 0.0)
+        self.rows.iter().filter(|row| self.is_torsion(row) || row.tip_m.norm() > 0.0)
+    }
+
+    /// Whether a row is that of a joint's torsion.
+    pub(super) fn is_torsion(&self, row: &Row) -> bool {
+        row.coordinate == TORSION && matches!(self.pieces[row.piece], PosedPiece::Joint { .. })
+    }
+}
+
+impl PosedPiece {
+    /// The index of the stiffness that resists a coordinate, and what the coordinate yields per force times that
+    /// stiffness.
+    #[inline]
+    pub(super) fn resisted(&self, coordinate: usize) -> (usize, f64) {
+        match self {
+            PosedPiece::Tube(tube) => (RESISTED[coordinate].0, degree_factor(coordinate) / tube.length_m),
+            // Both tilts of a bearing have one stiffness.
+            _ => (coordinate.min(TILT), 1.0),
+        }
     }
 }
 

@@ -32,6 +32,8 @@ pub(super) struct Problem<'c> {
     pub lighter_is_better: bool,
     /// Play of each piece; `None` if it has none.
     pub joint_plays: Vec<Option<JointPlay>>,
+    /// Lever of each joint whose bearing is checked; `None` for any other piece.
+    pub levers: Vec<Option<Lever>>,
     /// Intervals to which a region restricts single forces.
     pub force_bounds: Arc<[ForceBound]>,
 }
@@ -53,7 +55,23 @@ pub(super) enum Part<'c> {
     Offset { mass_kg: f64 },
 }
 
-/// The drives that can be a first fit, in ascending order of mass, with the box around any run of consecutive drives.
+/// Lever along the axis of a joint from its bearing to where the link attaches.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Lever {
+    /// A lever that no choice changes \[m\].
+    Given(f64),
+    /// That of the link with this piece number.
+    OfLink(usize),
+}
+
+impl Part<'_> {
+    /// Whether it is a joint or a spring, and no body or tube.
+    pub(super) fn is_joint(&self) -> bool {
+        matches!(self, Part::Given { .. } | Part::Drives { .. } | Part::FirstFit { .. })
+    }
+}
+
+/// The drives that can be a first fit, by rising mass, with the box around any run of them.
 pub(super) struct Ladder {
     /// `runs[k][i]` is the box around the `2^k` drives from `i` on. The box around any run is the union of two such
     /// boxes.

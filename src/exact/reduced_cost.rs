@@ -6,7 +6,8 @@
 
 use super::dual_price::{DualPrice, GearStates, JointPrice};
 use super::local_upper_bounds::LocalUpperBound;
-use super::parts::{DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia};
+use super::parts::{DriveBox, INERTIAS, LinkBox, STIFFNESSES, inertia, stiffness_of};
+use super::pose::TILT;
 use super::problem::Part;
 use super::rows::{DualPoint, ROUNDING, Rows};
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
@@ -127,8 +128,12 @@ impl LaneWork for DrivesCost<'_> {
         let Self { drives, gears, prices } = self;
         let mut ends = GearStates::default();
         let mut left = [V::zero(); STRICTEST / LANES];
+        let tilt_stiffness = V::splat(stiffness_of(drives.tilt_rad_per_nm[0]));
         for (left, eight) in left.iter_mut().zip(prices) {
-            *left = V::load(&eight.most) - least::<V>(&eight.inertia[inertia::MASS], drives.mass_kg);
+            let of_mass = least::<V>(&eight.inertia[inertia::MASS], drives.mass_kg);
+            let of_tilt = least::<V>(&eight.compliance[TILT], drives.tilt_rad_per_nm)
+                - V::load(&eight.stiffness[TILT]) * tilt_stiffness;
+            *left = V::load(&eight.most) - of_mass - of_tilt;
         }
         for (g, gear) in gears.iter().enumerate() {
             // A box with a rigid member has no bound of its price, so it stays.

@@ -6,7 +6,7 @@
 //! | row | sum over the parts | what is lost |
 //! |---|---|---|
 //! | mass | exact | nothing |
-//! | displacement of the tip in a case, along a fixed direction | twist of the gears, each at a torque of its own; `F₀ c + c₀ (F - F₀)` for the force `F` and the compliance `c` of a tube, with `F₀` and `c₀` the least of the box (McCormick) | the product of the widths of `F` and `c` |
+//! | displacement of the tip in a case, along a fixed direction | twist of the gears, each at a torque of its own; `F₀ c + c₀ (F - F₀)` for the force `F` and the compliance `c` of a tube or a bearing, with `F₀` and `c₀` the least of the box (McCormick) | the product of the widths of `F` and `c` |
 //! | torque of a gear | its own torque less the torque that the weights outboard make: zero | nothing |
 //! | mode | `λ xᵀMx - xᵀKx` for a trial shape `x`: not positive for a member whose eigenvalues are at least `λ` | the square of the shape's error |
 //!
@@ -173,7 +173,7 @@ impl<'a> Rows<'a> {
     fn push_gears(&mut self, judged: usize, case: usize) {
         let (problem, work) = (self.problem, self.work);
         for (at, row) in problem.poses[case].rows.iter().enumerate() {
-            let Some(curve) = &work.curves[row.piece] else { continue };
+            let Some(curve) = work.curve(row) else { continue };
             let gear = match self.tips[judged].torques_nm[row.piece] {
                 Some(torque_nm) => Gear::at(row.piece, judged, torque_nm),
                 None => {
@@ -196,7 +196,8 @@ impl<'a> Rows<'a> {
         let (problem, work) = (self.problem, self.work);
         for bound in problem.force_bounds.iter().filter(|bound| bound.case == case) {
             let row = &problem.poses[case].rows[bound.row];
-            let is_free = |gear: &Gear| gear.piece == row.piece && gear.row.is_some();
+            let is_free =
+                |gear: &Gear| gear.piece == row.piece && gear.row.is_some() && work.curve(row).is_some();
             // A bounded force that belongs to no such gear needs rows of its own. The gear's rows cover
             // it otherwise.
             if !self.gears.iter().any(is_free) {

@@ -10,14 +10,16 @@
 //! shape of the parent box is enough.
 
 use super::parts::{INERTIAS, STIFFNESSES, inertia};
-use super::pose::{COORDINATES, ENDS, Pose, PosedPiece, PosedTube, RESISTED, degree_factor};
+use super::pose::{
+    COORDINATES, ENDS, JOINT_COORDINATES, Pose, PosedPiece, PosedTube, RESISTED, TILT, TORSION, degree_factor,
+};
 use crate::mechanics::{Twist, Wrench, angular, linear, stack};
 use nalgebra::{SMatrix, SVector, Vector3};
 
 /// A motion of the arm, with the strain and kinetic energy of each piece. Pieces are counted from the tip.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Shape {
-    /// Strain coordinates: [`COORDINATES`] places for each piece, of which a joint uses the first.
+    /// Strain coordinates: [`COORDINATES`] places for each piece, of which a joint uses the first three.
     x: Vec<f64>,
     /// `xᵀKx` per unit of each stiffness of each piece.
     pub strain: Vec<[f64; STIFFNESSES]>,
@@ -140,11 +142,13 @@ impl Shape {
             let x = &self.x[piece * COORDINATES..(piece + 1) * COORDINATES];
             let (strain, kinetic) = (&mut self.strain[piece], &mut self.kinetic[piece]);
             match posed {
-                PosedPiece::Joint { twist: axis, at_m } => {
+                PosedPiece::Joint { twist: axis, at_m, across } => {
                     kinetic[inertia::MASS] = displacement(&twist, at_m).norm_squared();
-                    strain[0] = x[0] * x[0];
-                    // A joint's mass is inboard of its spring, so it moves before the twist is added.
+                    strain[TORSION] = x[0] * x[0];
+                    strain[TILT] = x[1] * x[1] + x[2] * x[2];
+                    // A joint's mass is inboard of its springs, so it moves before their twists are added.
                     twist += axis * x[0];
+                    add_tilts(across, x, &mut twist);
                 }
                 PosedPiece::Body(body) => self.kinetic_fixed += twist.dot(&(body * twist)),
                 PosedPiece::Tube(tube) => {
@@ -186,10 +190,11 @@ pub(super) fn inertia_forces(
     for (piece, posed) in pose.pieces.iter().enumerate().rev() {
         let x = &x[piece * COORDINATES..(piece + 1) * COORDINATES];
         match posed {
-            PosedPiece::Joint { twist: axis, at_m } => {
+            PosedPiece::Joint { twist: axis, at_m, across } => {
                 let momentum = displacement(&twist, at_m) * inertia[piece][inertia::MASS];
                 work.momenta.push(Momentum::Body(stack(&momentum, &at_m.cross(&momentum))));
                 twist += axis * x[0];
+                add_tilts(across, x, &mut twist);
             }
             PosedPiece::Body(body) => work.momenta.push(Momentum::Body(body * twist)),
             PosedPiece::Tube(tube) => {
@@ -203,8 +208,11 @@ pub(super) fn inertia_forces(
     for (piece, posed) in pose.pieces.iter().enumerate() {
         let forces = &mut work.forces[piece * COORDINATES..(piece + 1) * COORDINATES];
         match (posed, work.momenta.pop()) {
-            (PosedPiece::Joint { twist: axis, .. }, Some(Momentum::Body(momentum))) => {
+            (PosedPiece::Joint { twist: axis, across, .. }, Some(Momentum::Body(momentum))) => {
                 forces[0] = axis.dot(&wrench);
+                for (force, tilt) in forces[TILT..].iter_mut().zip(across.iter().flatten()) {
+                    *force = tilt.dot(&wrench);
+                }
                 wrench += momentum;
             }
             (PosedPiece::Body(_), Some(Momentum::Body(momentum))) => wrench += momentum,
@@ -226,7 +234,8 @@ impl PosedPiece {
     /// Number of strain coordinates.
     pub(super) fn coordinates(&self) -> usize {
         match self {
-            PosedPiece::Joint { .. } => 1,
+            PosedPiece::Joint { across: None, .. } => 1,
+            PosedPiece::Joint { across: Some(_), .. } => JOINT_COORDINATES,
             PosedPiece::Body(_) => 0,
             PosedPiece::Tube(_) => COORDINATES,
         }
@@ -239,12 +248,20 @@ impl PosedPiece {
             PosedPiece::Tube(tube) => {
                 stiffness[RESISTED[coordinate].0] * tube.length_m / degree_factor(coordinate)
             }
-            _ => stiffness[0],
+            _ => stiffness[coordinate.min(TILT)],
         }
     }
 }
 
-/// Buffers for one step of inverse iteration.
+/// Adds the tilts of a joint's bearing to the motion of everything outboard.
+#[inline]
+fn add_tilts(across: &Option<[Twist; 2]>, x: &[f64], twist: &mut Twist) {
+    for (tilt, x) in across.iter().flatten().zip(&x[TILT..]) {
+        *twist += tilt * *x;
+    }
+}
+
+/// Buffers of one step.
 #[derive(Default)]
 pub(super) struct Work {
     momenta: Vec<Momentum>,

@@ -1,22 +1,22 @@
 //! The displacement of the tip along a direction, as a sum over the parts of a box's members.
 
 use super::parts::STIFFNESSES;
-use super::pose::{PosedPiece, RESISTED, degree_factor};
 use super::problem::{Part, Problem};
 use super::work::Work;
 
 /// The displacement of the tip in a judged case, along the direction of its least deflection.
 pub(super) struct TipRow {
     pub case: usize,
-    /// Displacement per newton of each piece's weight \[m/N\], through tubes and through gears with a single slope.
+    /// Displacement per newton of each piece's weight \[m/N\], through tubes, bearings and gears of a single
+    /// slope.
     pub per_n: Vec<f64>,
     /// Displacement per twist of each joint \[m/rad\].
     pub joints: Vec<f64>,
     /// For each gear with a single slope, the torque at which it twists \[N m\]; `None` for other pieces and for
     /// gears whose slope may change.
     pub torques_nm: Vec<Option<f64>>,
-    /// Displacement per compliance of each tube.
-    pub tubes: Vec<[f64; STIFFNESSES]>,
+    /// Displacement per compliance of each tube and of each joint's bearing.
+    pub compliances: Vec<[f64; STIFFNESSES]>,
 }
 
 impl TipRow {
@@ -29,25 +29,15 @@ impl TipRow {
             per_n: vec![0.0; pieces],
             joints: vec![0.0; pieces],
             torques_nm: vec![None; pieces],
-            tubes: vec![[0.0; STIFFNESSES]; pieces],
+            compliances: vec![[0.0; STIFFNESSES]; pieces],
         };
         let mut fixed_m = 0.0;
         for (row, &force) in pose.rows.iter().zip(&work.forces[case]) {
             let tip_per_unit = work.tip_directions[judged].dot(&row.tip_m);
             let at = if tip_per_unit > 0.0 { force[0] } else { force[1] };
-            let least = if let PosedPiece::Tube(tube) = &pose.pieces[row.piece] {
-                let resisted = RESISTED[row.coordinate].0;
-                let stiffness = work.stiff[row.piece][resisted];
-                if stiffness == 0.0 {
-                    continue;
-                }
-                let factor = degree_factor(row.coordinate) / tube.length_m;
-                tip.tubes[row.piece][resisted] += tip_per_unit * at * factor;
-                tip_per_unit * factor / stiffness
-            } else {
+            let least = if let Some(curve) = work.curve(row) {
                 tip.joints[row.piece] = tip_per_unit;
                 let [least_nm, most_nm] = work.torques[case][row.piece];
-                let Some(curve) = &work.curves[row.piece] else { continue };
                 let (breaks, play) = (work.breaks[row.piece], problem.joint_plays[row.piece].as_ref());
                 let [less, more] = curve.twist_of_play(play, force);
                 fixed_m += tip_per_unit * if tip_per_unit > 0.0 { less } else { more };
@@ -58,6 +48,14 @@ impl TipRow {
                 }
                 tip.torques_nm[row.piece] = Some(at);
                 tip_per_unit / curve.steepest(least_nm, most_nm)
+            } else {
+                let (resisted, factor) = pose.pieces[row.piece].resisted(row.coordinate);
+                let stiffness = work.stiff[row.piece][resisted];
+                if stiffness == 0.0 {
+                    continue;
+                }
+                tip.compliances[row.piece][resisted] += tip_per_unit * at * factor;
+                tip_per_unit * factor / stiffness
             };
             fixed_m += least * (row.fixed - at);
             for (total, c) in tip.per_n.iter_mut().zip(&row.per_n) {

@@ -1,6 +1,7 @@
 //! The numbers of one box, as intervals.
 
-use super::parts::{INERTIAS, LeastDemand, LinkBox, STIFFNESSES, inertia};
+use super::parts::{INERTIAS, LeastDemand, LinkBox, STIFFNESSES, inertia, stiffness_of};
+use super::pose::{Row, TILT, TORSION};
 use super::problem::Problem;
 use super::shape::Work as ShapeWork;
 use super::torsion::{BreakPoints, CurveBox};
@@ -33,6 +34,10 @@ pub(super) struct Work {
     pub(super) least_demands: Vec<Option<LeastDemand>>,
     /// The greatest demand on each joint whose drive is a level.
     pub(super) greatest_demands: Vec<Option<JointDemand>>,
+    /// Tilt of each joint's bearing per moment, as an interval \[rad/(N m)\]; 0 for a joint that does not tilt.
+    pub(super) tilts: Vec<[f64; 2]>,
+    /// Lever along the axis of the joint inboard to where each link attaches, as an interval \[m\].
+    pub(super) levers: Vec<[f64; 2]>,
     /// Break points of the curves of each joint.
     pub(super) breaks: Vec<BreakPoints>,
     /// Least and greatest magnitude of the torque on each joint, in each judged case \[N m\].
@@ -66,6 +71,8 @@ impl Work {
         zero(&mut self.heavy, pieces, [0.0; INERTIAS]);
         zero(&mut self.curves, pieces, None);
         zero(&mut self.masses, pieces, [0.0; 2]);
+        zero(&mut self.tilts, pieces, [0.0; 2]);
+        zero(&mut self.levers, pieces, [0.0; 2]);
         zero(&mut self.greatest_demands, pieces, None);
         self.least_demands.clear();
         self.least_demands.resize_with(pieces, || None);
@@ -87,9 +94,13 @@ impl Work {
         piece: usize,
         mass_kg: [f64; 2],
         curve: Option<CurveBox>,
+        tilt_rad_per_nm: [f64; 2],
     ) {
         self.masses[piece] = mass_kg;
         self.curves[piece] = curve;
+        self.tilts[piece] = tilt_rad_per_nm;
+        self.stiff[piece][TILT] = stiffness_of(tilt_rad_per_nm[0]);
+        self.soft[piece][TILT] = stiffness_of(tilt_rad_per_nm[1]);
         self.light[piece][inertia::MASS] = mass_kg[0];
         self.heavy[piece][inertia::MASS] = mass_kg[1];
         let g = problem.space.gravity_m_s2;
@@ -103,6 +114,7 @@ impl Work {
         // Infinite stiffness becomes 0, which stands for a coordinate that does not yield; infinity times
         // zero strain would be NaN.
         let finite = |s: f64| if s.is_finite() { s } else { 0.0 };
+        self.levers[piece] = links.lever_m;
         self.stiff[piece] = links.high.stiffnesses.map(finite);
         self.soft[piece] = links.low.stiffnesses.map(finite);
         self.light[piece] = links.low.inertias;
@@ -117,6 +129,12 @@ impl Work {
                 g * (heavy[inertia::MASS] - pose.water_kg_m3 * light[inertia::OUTER_AREA]),
             ];
         }
+    }
+
+    /// The torsion curves of the joint to which a row belongs; `None` if the row is that of a linear spring.
+    #[inline]
+    pub(super) fn curve(&self, row: &Row) -> Option<&CurveBox> {
+        self.curves[row.piece].as_ref().filter(|_| row.coordinate == TORSION)
     }
 
     /// Whether the box has no width in any number that a mode depends on.

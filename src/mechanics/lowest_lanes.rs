@@ -48,10 +48,12 @@ pub(crate) struct LaneLink<const N: usize> {
 /// Result of one pass at `λ`, in each lane.
 #[derive(Clone, Copy)]
 pub(crate) struct LanePass<V> {
-    /// One bit for each lane in which every pivot before the last is positive.
-    pub sound: u8,
-    /// The last pivot.
-    pub last: V,
+    /// One bit for each lane in which no pivot is negative: no eigenvalue is below `λ`.
+    pub below_all: u8,
+    /// One bit for each lane in which at most one pivot is negative: at most one eigenvalue is below `λ`.
+    pub near_first: u8,
+    /// Product of all pivots.
+    pub product: V,
 }
 
 /// The roots that were found.
@@ -64,7 +66,7 @@ pub(crate) struct Roots<V> {
 }
 
 /// Largest number of passes. A lane that needs more is left to [`lowest_eigenvalue`](super::lowest::lowest_eigenvalue).
-const MOST_PASSES: usize = 10;
+const MOST_PASSES: usize = 16;
 
 impl<const N: usize> Default for Outboard<N> {
     fn default() -> Self {
@@ -138,7 +140,7 @@ pub(crate) fn pass<V: Lanes, const N: usize>(
     }
     // in the same walk: the pivots of shared and own pieces are one sequence
     inner.add_to(&mut state);
-    LanePass { sound: state.sound, last: state.last }
+    LanePass { below_all: !state.negative, near_first: !state.twice_negative, product: state.product }
 }
 
 /// The numbers of a link in lanes, whether the eight chains share the link or not.
@@ -216,8 +218,11 @@ macro_rules! at_lambda {
 pub(crate) struct Walk<V, const N: usize> {
     lambda: V,
     apparent: Inertia<V, N>,
-    sound: u8,
-    last: V,
+    /// Lanes with a negative pivot, and with two.
+    negative: u8,
+    twice_negative: u8,
+    /// Product of the pivots so far.
+    product: V,
 }
 
 impl<V: Lanes, const N: usize> Walk<V, N> {
@@ -225,14 +230,16 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
     fn new(start: &SMatrix<f64, N, N>, lambda: V) -> Self {
         let mut apparent = [[V::zero(); N]; N];
         add_lower!(apparent, |i, j| V::splat(start[(i, j)]));
-        Self { lambda, apparent, sound: u8::MAX, last: V::splat(1.0) }
+        Self { lambda, apparent, negative: 0, twice_negative: 0, product: V::splat(1.0) }
     }
 
-    /// Notes a pivot; the one before it is no longer the last.
+    /// Notes a pivot.
     #[inline(always)]
     fn pivot(&mut self, pivot: V) {
-        self.sound &= V::zero().less(self.last);
-        self.last = pivot;
+        let negative = pivot.less(V::zero());
+        self.twice_negative |= self.negative & negative;
+        self.negative |= negative;
+        self.product = self.product * pivot;
     }
 
     /// Adds a body that all eight chains have.
@@ -346,8 +353,10 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
     }
 }
 
-/// Lowest eigenvalue of every wanted lane, by the secant method for `1/λ - w` as a function of `1/λ`. The method is that of
-/// [`lowest_eigenvalue`](super::lowest::lowest_eigenvalue). A guess beyond a pole is moved back.
+/// Lowest eigenvalue of every wanted lane, by secants on the product of all pivots times `x = 1/λ`.
+///
+/// The product is `Π (1 - x_i / x)`, so this function is `(x - x_1) Π (1 - x_i / x)` over the other modes: a straight line
+/// if they are far away, and without poles however near they are. A guess beyond the second mode is moved back.
 #[inline(always)]
 pub(crate) fn roots<V: Lanes, const N: usize>(
     outboard: &Outboard<N>,
@@ -366,15 +375,15 @@ pub(crate) fn roots<V: Lanes, const N: usize>(
     let mut has_before = 0u8;
     for _ in 0..MOST_PASSES {
         let here = pass(outboard, inner, one / x);
-        let y = here.last * x;
+        let y = here.product * x;
         let secant = (y - y_before) / (x - x_before);
         // a point beyond a pole belongs to another branch of the curve and gives no secant
-        slope = V::choose(has_before & here.sound & open, secant, slope);
+        slope = V::choose(has_before & here.near_first & open, secant, slope);
         let next = x - y / slope;
         let step = (next - x).abs();
         let settled = step.less(V::splat(LAST_STEP) * x)
             & (step * step).less(V::splat(SHOWN_ERROR) * x * step_two_before)
-            & here.sound
+            & here.near_first
             & open;
         result = V::choose(settled, next, result);
         open &= !settled;
@@ -382,9 +391,9 @@ pub(crate) fn roots<V: Lanes, const N: usize>(
             break;
         }
         // a step may not lead beyond a pole, and may change x by a factor of four at most
-        let in_reach = next.less(V::splat(4.0) * x) & (V::splat(0.25) * x).less(next) & here.sound;
-        let drawn_back = V::choose(V::zero().less(y) & here.sound, V::splat(0.5) * x, V::splat(1.5) * x);
-        has_before = here.sound;
+        let in_reach = next.less(V::splat(4.0) * x) & (V::splat(0.25) * x).less(next) & here.near_first;
+        let drawn_back = V::choose(V::zero().less(y) & here.near_first, V::splat(0.5) * x, V::splat(1.5) * x);
+        has_before = here.near_first;
         // a step that was cut short says nothing about the error
         step_two_before = step_before;
         step_before = V::choose(in_reach, step, V::splat(UNKNOWN_STEP) * x);

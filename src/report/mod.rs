@@ -2,6 +2,7 @@
 
 pub(crate) mod braille;
 pub mod budget;
+pub mod caveats;
 pub(crate) mod certificate;
 pub mod compare;
 pub mod facts;
@@ -11,6 +12,7 @@ pub mod html;
 pub mod number;
 pub mod picks;
 pub(crate) mod section;
+pub(crate) mod small_displacement;
 pub mod summary;
 pub(crate) mod supplement;
 pub mod svg;

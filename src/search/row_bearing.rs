@@ -4,7 +4,6 @@
 //! what is chosen: what is outboard of the row, the link of the row, and the masses of inner drives. The parts are
 //! projected once on the five components that a bearing feels, so that the kernel only adds and squares.
 
-use super::row::{Row, RowChunk};
 use crate::mechanics::Wrench;
 use crate::mechanics::lanes::{Eight, LANES, Lanes};
 use crate::sizing::eight::EightBearing;
@@ -186,60 +185,52 @@ impl RowBearing {
 /// What is outboard of a row, for each checked bearing, case and source.
 pub(crate) type BearingsBegun = Vec<Vec<Vec<Components>>>;
 
-impl Row {
-    /// The checked bearing of the inner joint in slot `k`.
+impl RowBearing {
+    /// Loads on the bearing in eight designs of a chunk. `begun` is what is outboard of the row, `masses_kg` those of the
+    /// inner drives so far.
     #[inline(always)]
-    fn bearing(&self, k: usize) -> Option<usize> {
-        self.bearings.iter().position(|bearing| bearing.k == k)
+    pub(crate) fn demands<V: Lanes>(
+        &self,
+        problem: &ArmProblem,
+        (from, chunk): (&Partial, usize),
+        begun: &[Vec<Components>],
+        masses_kg: &[Eight],
+    ) -> EightBearing<V> {
+        let loads = problem.bearing_loads();
+        let mut out = EightBearing::<V>::zero();
+        for ((_, case), begun) in self.cases.iter().zip(begun) {
+            let at_rest: [V; 5] = case.at_rest.load(chunk, &begun[0], masses_kg);
+            out.rest(&at_rest);
+            for (ramp, begun) in case.ramps.iter().zip(&begun[1..]) {
+                let ramp = ramp.source.load(chunk, begun, masses_kg);
+                out.moving(&at_rest, &ramp, V::splat(loads.stop_factor));
+            }
+        }
+        let lever_m = match &self.lever {
+            RowLever::OfChunk(chunks) => V::load(&chunks[chunk]),
+            RowLever::OfSlot(slot) => match &loads.levers[*slot] {
+                Some(lever) => V::splat(lever.lever_m(&from.options)),
+                None => V::zero(),
+            },
+        };
+        out.with_lever(lever_m)
     }
 }
 
-impl RowChunk<'_, '_> {
-    /// Loads on the bearing of the joint in inner slot `k`; `None` if it is not checked.
-    #[inline(always)]
-    pub(crate) fn bearing_demands<V: Lanes>(
-        &self,
-        k: usize,
-        begun: &BearingsBegun,
-        masses_kg: &[Eight],
-    ) -> Option<EightBearing<V>> {
-        let which = self.row.bearing(k)?;
-        let bearing = &self.row.bearings[which];
-        let mut out = EightBearing::<V>::zero();
-        for ((_, case), begun) in bearing.cases.iter().zip(&begun[which]) {
-            let at_rest: [V; 5] = self.load(&case.at_rest, &begun[0], masses_kg);
-            out.rest(&at_rest);
-            for (ramp, begun) in case.ramps.iter().zip(&begun[1..]) {
-                out.moving(
-                    &at_rest,
-                    &self.load(&ramp.source, begun, masses_kg),
-                    V::splat(self.problem.bearing_loads().stop_factor),
-                );
-            }
-        }
-        let lever_m = match &bearing.lever {
-            RowLever::OfChunk(chunks) => V::load(&chunks[self.chunk]),
-            RowLever::OfSlot(slot) => {
-                let lever = &self.problem.bearing_loads().levers[*slot];
-                V::splat(lever.as_ref().map_or(0.0, |lever| lever.lever_m(&self.from.options)))
-            }
-        };
-        Some(out.with_lever(lever_m))
-    }
-
+impl Source {
     /// The components of a load: outboard of the row, of its link, and of the drives so far.
     #[inline(always)]
-    fn load<V: Lanes>(&self, source: &Source, begun: &Components, masses_kg: &[Eight]) -> [V; 5] {
+    fn load<V: Lanes>(&self, chunk: usize, begun: &Components, masses_kg: &[Eight]) -> [V; 5] {
         let mut out = [V::zero(); 5];
         for i in 0..5 {
             out[i] = V::splat(begun[i]);
         }
-        if let Some(link) = source.link.get(self.chunk) {
+        if let Some(link) = self.link.get(chunk) {
             for i in 0..5 {
                 out[i] = out[i] + V::load(&link[i]);
             }
         }
-        for (k, per_kg) in &source.per_kg {
+        for (k, per_kg) in &self.per_kg {
             let mass_kg = V::load(&masses_kg[*k]);
             for i in 0..5 {
                 out[i] = out[i] + mass_kg * V::splat(per_kg[i]);

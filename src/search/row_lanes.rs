@@ -267,7 +267,15 @@ impl RowChunk<'_, '_> {
             inertia_kgm2 = inertia_kgm2.max(V::load(&arms.cases[c].inertia_at[k]));
         }
         if !sized.all_fits {
-            let bearing = self.bearing_demands(k, &begun.bearings, &arms.masses_kg);
+            let bearing = match self.row.bearings.iter().position(|bearing| bearing.k == k) {
+                None => None,
+                Some(which) => Some(self.row.bearings[which].demands(
+                    self.problem,
+                    (self.from, self.chunk),
+                    &begun.bearings[which],
+                    &arms.masses_kg,
+                )),
+            };
             let demands =
                 EightDemands::new(sized.table.motion(), static_nm, inertia_kgm2).with_bearing(bearing);
             let (fits, held) = sized.table.first_fits(&demands, arms.held, &mut begun.steps[k]);

@@ -208,7 +208,7 @@ impl<'a, 'c> Question<'a, 'c> {
         if known != 0 {
             // no pivot is negative at `below`: the lowest eigenvalue is above it, and the lane is done
             let here = pass(outboard, inner, V::choose(known, below, guess.unwrap_or(below)));
-            open &= !(known & here.sound & V::zero().less(here.last));
+            open &= !(known & here.below_all);
         }
         // without a guess only the side of `below` was asked for
         let Some(guess) = guess.filter(|_| open != 0) else { return (below, open) };

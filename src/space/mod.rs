@@ -10,6 +10,7 @@
 //! - [`design`] judges one design by the full model.
 
 pub(crate) mod attributes;
+pub(crate) mod bearing_demand;
 pub(crate) mod bearing_loads;
 pub mod constraint;
 pub mod design;

@@ -134,7 +134,7 @@ fn shares(arm: &Arm, cases: &[LoadCase]) -> Vec<f64> {
     let Some(worst) = worst else { return vec![0.0; arm.chain.len()] };
     let whole = worst.tip_displacement_m;
     let of = |name: &str| {
-        let own = worst.shares_m.iter().filter(|(n, _)| n.strip_suffix(".bearing_tilt").unwrap_or(n) == name);
+        let own = worst.shares_m.iter().filter(|(n, _)| n.strip_suffix(".bearing").unwrap_or(n) == name);
         own.map(|(_, moved)| moved.dot(&whole)).sum::<f64>() / whole.norm_squared().max(f64::MIN_POSITIVE)
     };
     arm.chain.iter().map(|element| of(element.name())).collect()

@@ -6,7 +6,8 @@
 
 use super::definition::Study;
 use super::effects::check_effects;
-use super::sections::{read_materials, read_sections};
+use super::range::{check_poses, read_range};
+use super::sections::{Aside, read_materials, read_sections};
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
 use crate::arm::file::{read_curve, read_effects, read_joint_mass, read_link, read_name};
@@ -83,14 +84,15 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let filter = root.or("drives", Drives::default(), |n| read_drives(n, catalogs));
     let constraints = root.or("constraints", Constraints::default(), read_constraints);
     let extras = read_extras_source(&root, ExtrasSource::Usual);
-    let mut not_checked = Vec::new();
+    let mut aside = Aside::default();
     let chain = root.required("chain").and_then(|n| {
         let (drives, constraints, extras) = (filter.as_ref()?, constraints.as_ref()?, extras?);
         let open = Open { catalogs, drives, constraints, extras };
-        read_chain(&n, &open, &mut not_checked)
+        read_chain(&n, &open, &mut aside)
     });
     let joints = joint_names(node);
     let cases = read_cases(&root, &joints);
+    let in_range = check_poses(&root, chain.as_deref(), cases.as_ref().map(|read| &read.cases[..]));
     let motion = root.or("motion", MotionRequirement::default(), read_motion);
     let (links, joint_model) = root.or("models", Default::default(), read_models)?;
     let effects = root.or("effects", Vec::new(), read_effects);
@@ -111,7 +113,9 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         effects: effects?,
     };
     check_effects(&space, &root)?;
-    Some(Study { name: name?, question: question?, space, gap: gap?, not_checked })
+    in_range?;
+    let Aside { not_checked, remarks } = aside;
+    Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
 
 /// A fraction, written in percent.
@@ -264,7 +268,7 @@ fn read_motor_kinds(node: &Node) -> Option<Vec<MotorKind>> {
     Some(read.into_iter().collect::<Option<Vec<_>>>()?.concat())
 }
 
-fn read_chain(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> Option<Vec<SpacePiece>> {
+fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePiece>> {
     let items = node.array()?;
     if items.is_empty() {
         return node.fault("is empty", "an arm has at least one joint or link");
@@ -273,7 +277,7 @@ fn read_chain(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> Option
         .iter()
         .map(|n| match n.value().get("type").and_then(|v| v.as_str()) {
             Some("joint") => read_space_joint(n, open).map(SpacePiece::Joint),
-            Some("link") => read_space_link(n, open, not_checked),
+            Some("link") => read_space_link(n, open, aside),
             _ => n.fault("has no \"type\" of \"joint\" or \"link\"", "add \"type\": \"joint\" or \"link\""),
         })
         .collect();
@@ -313,6 +317,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         "max_speed_rad_s",
         "bearing",
         "extras",
+        "range_deg",
         "drives",
     ])?;
     let name = read_name(&object);
@@ -345,8 +350,10 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
     // the mass of a given drive is stated, and so are its extras
     let usually = if drive.is_sized() { open.extras } else { ExtrasSource::NONE };
     let extras = read_extras_source(&object, usually);
-    let (bearing, extras) = (bearing?, extras?);
-    Some(SpaceJoint { name: name?, axis: axis?, bearing, extras, drive, max_speed_rad_s: max_speed? })
+    let range_deg = object.or("range_deg", None, |n| read_range(n).map(Some));
+    let (bearing, extras, range_deg) = (bearing?, extras?, range_deg?);
+    let max_speed_rad_s = max_speed?;
+    Some(SpaceJoint { name: name?, axis: axis?, bearing, extras, drive, max_speed_rad_s, range_deg })
 }
 
 /// Where the bearing of a joint comes from. A component set has none of its own, so a joint that is sized with component
@@ -402,7 +409,7 @@ fn read_given_drive(object: &Object, open: &Open) -> Option<DriveChoice> {
     Some(DriveChoice::Given { curve: curve?, mass_kg: mass_kg?, gear, motor })
 }
 
-fn read_space_link(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> Option<SpacePiece> {
+fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpacePiece> {
     let object = node.object(&["type", "name", "vector_m", "material", "section", "mass_kg", "choose"])?;
     let Some(choose) = object.optional("choose") else {
         return read_link(&object, &[], open.catalogs).map(SpacePiece::Link);
@@ -421,7 +428,7 @@ fn read_space_link(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> O
     let materials = choices.required("materials").and_then(|n| read_materials(&n, open.catalogs));
     let sections = choices.required("sections").and_then(|n| read_sections(&n, open.catalogs));
     let options =
-        super::sections::options(&materials?, &sections?, open.constraints, name.as_deref()?, not_checked);
+        super::sections::options(&materials?, &sections?, open.constraints, name.as_deref()?, aside);
     Some(SpacePiece::Choice(LinkChoice { name: name?, vector_m: vector_m?, options, excerpt: None }))
 }
 

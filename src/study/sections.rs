@@ -7,7 +7,7 @@ use crate::catalog::profile::{Profile, ProfileShape};
 use crate::input::json::{Node, Object, closest};
 use crate::space::constraint::Constraints;
 use crate::space::design_space::LinkOption;
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 
 const DEFAULT_POISSON: f64 = 0.3;
 /// Most points of a grid; more would be a mistake in the step.
@@ -16,6 +16,15 @@ const MOST_POINTS: usize = 100_000;
 /// Sections to choose from.
 pub(super) struct Sections {
     sections: Vec<(Section, Option<ProfileName>)>,
+}
+
+/// What is said beside the result about options of links.
+#[derive(Default)]
+pub(super) struct Aside {
+    /// Options left out because a rating that a check needs is unknown.
+    pub not_checked: Vec<String>,
+    /// What a reader of the result should know.
+    pub remarks: Vec<String>,
 }
 
 /// A profile and the family of materials it is sold in.
@@ -150,10 +159,13 @@ fn read_round(node: &Node) -> Option<Vec<Named>> {
 fn read_profiles(node: &Node, catalogs: &Catalogs) -> Option<Vec<Named>> {
     let object = node.object(&["profiles"])?.required("profiles")?;
     let object = object.object(&["family", "shapes", "max_outer_mm"])?;
-    let families: Vec<&str> = catalogs.profiles.iter().map(|p| p.material_family.as_str()).collect();
+    let families: BTreeSet<&str> = catalogs.profiles.iter().map(|p| p.material_family.as_str()).collect();
     let family = object.required("family").and_then(|n| match n.string()? {
-        family if families.contains(&family) => Some(family),
-        family => n.fault(format!("\"{family}\" has no profiles"), "choose steel or aluminium"),
+        family if families.contains(family) => Some(family),
+        family => n.fault(
+            format!("\"{family}\" has no profiles"),
+            &format!("choose one of: {}", families.iter().copied().collect::<Vec<_>>().join(", ")),
+        ),
     });
     let shapes = object.or("shapes", None, |n| read_shapes(n).map(Some));
     let largest_mm = object.or("max_outer_mm", f64::INFINITY, Node::positive);
@@ -225,19 +237,39 @@ fn sold_in(family: &str, material: &Material) -> bool {
     }
 }
 
+/// Word in the names of stainless steels, and their family of profiles.
+const STAINLESS: &str = "stainless";
+
+/// Says so where a link of catalog profiles offers stainless steel, but no profile that is sold in it: structural steel
+/// sections are not.
+fn stainless_without_profiles(materials: &[&Material], sections: &Sections, link: &str) -> Option<String> {
+    let families: HashSet<&str> =
+        sections.sections.iter().filter_map(|(_, profile)| Some(profile.as_ref()?.family.as_str())).collect();
+    let stainless: Vec<&str> =
+        materials.iter().filter(|m| sold_in(STAINLESS, m)).map(|m| m.name.as_str()).collect();
+    (!stainless.is_empty() && !families.is_empty() && !families.contains(STAINLESS)).then(|| {
+        format!(
+            "Link {link} offers {} without profiles of the family \"{STAINLESS}\": steel profiles are structural steel \
+             and not sold in it.",
+            stainless.join(" and ")
+        )
+    })
+}
+
 /// Materials times sections. Options that lack a rating that a constraint needs are left out and listed.
 pub(super) fn options(
     materials: &[&Material],
     sections: &Sections,
     constraints: &Constraints,
     link: &str,
-    not_checked: &mut Vec<String>,
+    aside: &mut Aside,
 ) -> Vec<LinkOption> {
+    aside.remarks.extend(stainless_without_profiles(materials, sections, link));
     let mut out = Vec::new();
     for material in materials {
         let Some(shear_modulus_pa) = material.shear_modulus_pa else { continue };
         if let Some(missing) = missing_rating(material, constraints) {
-            not_checked.push(format!("link {link}: {} has no {missing} in the catalog", material.name));
+            aside.not_checked.push(format!("link {link}: {} has no {missing} in the catalog", material.name));
             continue;
         }
         let elastic = LinkMaterial {

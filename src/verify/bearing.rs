@@ -11,7 +11,6 @@
 //!
 //! Nothing of `sizing` is used: a wrong limit there must not be repeated here.
 
-use super::duty::Duty;
 use crate::arm::bearing::{Bearing, BearingSource};
 use crate::catalog::gear::{Gear, GearMass};
 
@@ -111,8 +110,8 @@ impl BearingRatings {
         life_n: f64::INFINITY,
     };
 
-    /// What a bearing holds in a joint of this duty.
-    pub(super) fn of(bearing: Option<&Bearing>, duty: &Duty) -> Self {
+    /// What a bearing holds in a joint of this mean speed \[rad/s\] and required life \[h\].
+    pub(super) fn of(bearing: Option<&Bearing>, duty: [f64; 2]) -> Self {
         let Some(bearing) = bearing else { return Self::UNLIMITED };
         let printed = &bearing.ratings;
         // a stated offset begins at the centre
@@ -187,37 +186,20 @@ impl BearingRatings {
 }
 
 /// The load under which a bearing of dynamic rating C \[N\] lasts just as long as the joint must \[N\].
-fn life_load_n(rating_n: f64, duty: &Duty) -> f64 {
-    let mean_rpm = duty.mean_speed_rad_s * 30.0 / std::f64::consts::PI;
-    let million_turns = 60.0 * mean_rpm * duty.life_h / 1e6;
+fn life_load_n(rating_n: f64, [mean_speed_rad_s, life_h]: [f64; 2]) -> f64 {
+    let mean_rpm = mean_speed_rad_s * 30.0 / std::f64::consts::PI;
+    let million_turns = 60.0 * mean_rpm * life_h / 1e6;
     rating_n / (LOAD_FACTOR * million_turns.powf(0.3))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::question::{AskedMotion, AskedPhase, AskedPhaseKind, LinearTorque};
     use super::*;
     use crate::catalog::Catalogs;
     use crate::catalog::gear::BearingRatings as Printed;
 
-    /// A joint that always turns at 1.5 rad/s, for so long.
-    fn duty_of(life_h: f64) -> Duty {
-        let motion = AskedMotion {
-            tip_speed_m_s: 1.5,
-            ramp_time_s: 0.2,
-            emergency_deceleration_m_s2: None,
-            min_lever_m: 0.3,
-            phases: vec![AskedPhase { duration_s: 1.0, kind: AskedPhaseKind::Constant }],
-            life_h,
-            linear_torque: LinearTorque::OfInertia,
-            gravity_m_s2: 9.81,
-        };
-        Duty::new(&motion, 1.0, None)
-    }
-
-    fn duty() -> Duty {
-        duty_of(20_000.0)
-    }
+    /// A joint that always turns at 1.5 rad/s, for 20 000 h.
+    const DUTY: [f64; 2] = [1.5, 20_000.0];
 
     /// HFUC-20 as printed: d_p 50 mm, R 9.5 mm, C₀ 9000 N, C 5800 N, M 91 N m.
     fn bearing() -> Bearing {
@@ -251,7 +233,7 @@ mod tests {
 
     #[test]
     fn each_check_decides_at_the_load_worked_out_by_hand() {
-        let ratings = BearingRatings::of(Some(&bearing()), &duty());
+        let ratings = BearingRatings::of(Some(&bearing()), DUTY);
         let near = |demand: BearingDemand, by_hand: f64| {
             let most = most(&ratings, &demand);
             assert!((most / by_hand - 1.0).abs() < 1e-12, "{most}, by hand {by_hand}");
@@ -268,7 +250,7 @@ mod tests {
         near(BearingDemand { at_rest: load(20.0, 200.0, 300.0), ..none }, life_n / 1211.0);
         // 2000 > 1.5 · (200 + 40 · 1.9) = 414: P_c = 0.67 (276 + 2000)
         near(BearingDemand { at_rest: load(0.0, 200.0, 2000.0), ..none }, life_n / (0.67 * 2276.0));
-        let at_rest = BearingRatings::of(Some(&bearing()), &duty_of(1.0));
+        let at_rest = BearingRatings::of(Some(&bearing()), [DUTY[0], 1.0]);
         let demand = BearingDemand { at_rest: load(20.0, 200.0, 300.0), ..none };
         assert!((most(&at_rest, &demand) / (9000.0 / 3.0 / 1208.0) - 1.0).abs() < 1e-12);
     }
@@ -278,14 +260,14 @@ mod tests {
         let heavy = BearingDemand { at_rest: load(1e6, 1e6, 1e6), ..BearingDemand::default() };
         let unknown =
             Bearing { ratings: Printed { pitch_diameter_m: None, ..bearing().ratings }, ..bearing() };
-        let of_moment = BearingRatings::of(Some(&unknown), &duty());
+        let of_moment = BearingRatings::of(Some(&unknown), DUTY);
         assert!(of_moment.hold(&heavy));
         let running =
             |moment_nm| BearingDemand { running: load(moment_nm, 1000.0, 0.0), ..BearingDemand::default() };
         assert!(of_moment.hold(&running(81.0)) && !of_moment.hold(&running(82.0)), "R counts: 9.5 N m");
-        let stated = BearingRatings::of(Some(&Bearing { offset_m: Some(0.1), ..bearing() }), &duty());
+        let stated = BearingRatings::of(Some(&Bearing { offset_m: Some(0.1), ..bearing() }), DUTY);
         assert!(stated.hold(&running(90.9)) && !stated.hold(&running(91.1)));
-        assert_eq!(BearingRatings::of(None, &duty()), BearingRatings::UNLIMITED);
+        assert_eq!(BearingRatings::of(None, DUTY), BearingRatings::UNLIMITED);
     }
 
     #[test]
@@ -295,7 +277,7 @@ mod tests {
             .gears
             .iter()
             .filter_map(|gear| with_gear(&BearingSource::OfGear, gear, GearMass::HousedUnit))
-            .map(|bearing| BearingRatings::of(Some(&bearing), &duty()))
+            .map(|bearing| BearingRatings::of(Some(&bearing), DUTY))
             .collect();
         assert!(all.len() > 50);
         for (a, b) in all.iter().zip(all.iter().skip(7)) {

@@ -48,7 +48,10 @@ impl Ratings {
     /// The ratings of a drive under a joint's motion; `None` if the motion is too fast for the drive, or if the
     /// catalog lacks a number. A blank number of the bearing excludes nothing.
     pub(super) fn of(gear: &Gear, motor: &Motor, bearing: Option<&Bearing>, duty: &Duty) -> Option<Self> {
-        let mut ratings = Self { bearing: BearingRatings::of(bearing, duty), ..Self::UNLIMITED };
+        let mut ratings = Self {
+            bearing: BearingRatings::of(bearing, [duty.mean_speed_rad_s, duty.life_h]),
+            ..Self::UNLIMITED
+        };
         for check in &CHECKS {
             let most = (check.most)(gear, motor, duty)?;
             let rating = &mut ratings.most[check.on as usize];

@@ -254,7 +254,8 @@ fn a_gap_in_a_study_or_on_the_command_line_is_proved_and_checked() {
         assert_eq!((run["status"].as_str(), run["gap"].as_f64()), (Some("certified"), Some(gap)));
         let (said, checked) = match gap > 0.0 {
             true => {
-                let words = format!("no design beats every listed one by more than {:.1} %", 100.0 * gap);
+                let words =
+                    format!("for every design of the study some listed one is at most {:.1} %", 100.0 * gap);
                 (format!("certified: {words}"), words)
             }
             false => ("certified: every design of the front is listed".into(), "no design is missing".into()),

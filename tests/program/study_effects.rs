@@ -76,7 +76,7 @@ fn a_design_of_a_study_with_effects_analyzes_to_the_numbers_of_its_front() {
         nalgebra::Vector3::from(tip).norm() * 1e3
     };
     let cases = cases.as_array().expect("cases");
-    assert!(cases[0]["shares"].to_string().contains("elbow.bearing_tilt"), "the arm file has the effects");
+    assert!(cases[0]["shares"].to_string().contains("elbow.bearing"), "the arm file has the effects");
     let worst_mm = cases.iter().map(tip_mm).fold(0.0, f64::max);
     assert_eq!(worst_mm, column(&front, "tip_deflection_mm")[1]);
     let lowest = |case: &Value| case["modes"][0]["frequency_hz"].as_f64().expect("a mode");

@@ -178,7 +178,11 @@ fn a_base_that_is_stiffer_one_way_is_named_with_its_couplings() {
 fn what_no_pose_separates_is_said_and_another_test_proposed() {
     let outcome = reconcile(&read(standard().write(&Made::tilting).path()));
     assert_eq!(outcome.verdict, Verdict::Explained, "{}", outcome.to_text());
-    let test = outcome.next_tests.iter().find(|t| t.kind == "another kind").expect("honest");
+    let test = outcome
+        .next_tests
+        .iter()
+        .find(|t| t.kind == "another kind")
+        .unwrap_or_else(|| panic!("{}", outcome.to_text()));
     assert!(test.description.contains("no position separates"), "{test:?}");
     assert!(
         test.description.contains("bearing_tilt@q1") && test.description.contains("base_compliance@base")

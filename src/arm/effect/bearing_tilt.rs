@@ -43,7 +43,7 @@ mod tests {
         let chain = crate::mechanics::chain::Chain::new(&subject.structure, LinkModel::Rigid);
         // j1 turns about z; 10 N down at the tip, 1 m out: moment 10 N m across the axis
         let posed = chain.pose_rad(&[0.0, 0.0], &Payload::default(), Vector3::new(0.0, 0.0, -10.0));
-        let share = posed.statics().shares_m.iter().find(|(n, _)| n == "j1.bearing_tilt").expect("share").1;
+        let share = posed.statics().shares_m.iter().find(|(n, _)| n == "j1.bearing").expect("share").1;
         assert!((share.z + 10.0 / 2e5).abs() < 1e-12, "{share}");
     }
 }

@@ -12,7 +12,7 @@ use crate::report::section::{Figure, PageSection};
 use crate::report::summary::{SummaryInput, answer_words, materials_side_by_side, single_materials};
 use crate::report::svg::draw::MUTED;
 use serde_json::{Value, json};
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 /// Size of a page at most \[bytes\].
 const MOST_PAGE_BYTES: usize = 2_000_000;
@@ -87,7 +87,9 @@ impl StudyPage<'_> {
             "extras": extras,
             "run": self.run,
             "not_checked": facts.not_checked,
+            "remarks": facts.remarks,
             "parts": self.parts.iter().map(part).collect::<Vec<_>>(),
+            "caveats": self.parts.iter().filter_map(|p| Some((&p.name, facts.caveats.of_part(&p.name)?))).collect::<BTreeMap<_, _>>(),
             "results": facts.results,
         });
         gallery.page("study.html", &facts.study, content, &json!({"front": data}))
@@ -102,6 +104,7 @@ impl StudyPage<'_> {
             ("on the front", large(front as u128)),
             ("limits", listed(&facts.constraints)),
             ("poses (the worst counts)", listed(&facts.cases)),
+            ("ranges of the joints", listed(&facts.ranges)),
         ]
     }
 

@@ -1,0 +1,110 @@
+//! Loads on output bearings, from the masses outboard of a joint.
+//!
+//! A bearing carries the force and the moment of everything outboard: of gravity and load, and of the ramp or the stop of
+//! one joint while the others are at rest. A joint *outboard* of the bearing moves only what is outboard of itself; the
+//! joint of the bearing and those *inboard* of it move everything outboard of the bearing. In this way the stop of a
+//! shoulder tilts the bearing of the waist below it.
+//!
+//! Forces are added as vectors before their norms are taken. A lever along the axis, to where the link attaches, adds
+//! lever times radial force to the moment, as in the vendor's `M = F_r (L_r + R) + F_a L_a`.
+
+use super::bearing_loads::{Components, PosedBearing};
+use super::problem::{ArmProblem, StationState};
+use super::station::StationSlot;
+use crate::sizing::bearing::{BearingDemand, BearingLoad};
+
+/// The largest loads so far: forces across and moments as squares.
+#[derive(Default)]
+struct Largest {
+    at_rest: [f64; 3],
+    running: [f64; 3],
+    in_stop: [f64; 3],
+}
+
+impl Largest {
+    /// Takes a load at rest with what a ramp adds or takes away, and `stop_factor` times as much in a stop. Of the two
+    /// signs the larger norm is `|s|² + |d|² + 2 |s·d|`.
+    fn moving(&mut self, rest: &Components, ramp: &Components, stop_factor: f64) {
+        let larger = |first: usize, times: f64| {
+            let (s, d) = ([rest[first], rest[first + 1]], [ramp[first] * times, ramp[first + 1] * times]);
+            let both = 2.0 * (s[0] * d[0] + s[1] * d[1]).abs();
+            s[0] * s[0] + s[1] * s[1] + d[0] * d[0] + d[1] * d[1] + both
+        };
+        for (largest, times) in [(&mut self.running, 1.0), (&mut self.in_stop, stop_factor)] {
+            let axial_n = rest[2].abs() + ramp[2].abs() * times;
+            take(largest, [larger(3, times), larger(0, times), axial_n]);
+        }
+    }
+
+    fn at_rest(&mut self, rest: &Components) {
+        let square = |first: usize| rest[first] * rest[first] + rest[first + 1] * rest[first + 1];
+        take(&mut self.at_rest, [square(3), square(0), rest[2].abs()]);
+    }
+
+    fn demand(self) -> BearingDemand {
+        let load = |[moment, radial, axial_n]: [f64; 3]| BearingLoad {
+            moment_nm: moment.sqrt(),
+            radial_n: radial.sqrt(),
+            axial_n,
+        };
+        BearingDemand {
+            at_rest: load(self.at_rest),
+            running: load(self.running),
+            in_stop: load(self.in_stop),
+        }
+    }
+}
+
+fn take(largest: &mut [f64; 3], load: [f64; 3]) {
+    largest.iter_mut().zip(load).for_each(|(largest, load)| *largest = largest.max(load));
+}
+
+impl ArmProblem<'_> {
+    /// Loads on the bearing of the joint in a slot, when an arm of these states and options is everything outboard of it;
+    /// zero if the bearing is not checked.
+    pub(crate) fn bearing_demand(
+        &self,
+        states: &[StationState],
+        options: &[u32],
+        slot: usize,
+    ) -> BearingDemand {
+        let loads = self.bearing_loads();
+        let Some(lever) = &loads.levers[slot] else { return BearingDemand::default() };
+        let mut largest = Largest::default();
+        for &case in &self.space().sizing_cases {
+            self.load_bearing(case, &states[case], slot, &mut largest);
+        }
+        largest.demand().with_lever(lever.lever_m(options))
+    }
+
+    /// Takes the loads at the face of the flange in one case.
+    fn load_bearing(&self, case: usize, state: &StationState, slot: usize, largest: &mut Largest) {
+        let station = &self.stations()[case];
+        let StationSlot::Joint(joint) = &station.slots[slot] else { return };
+        let (loads, bearing) = (self.bearing_loads(), PosedBearing::new(joint));
+        let rest = bearing.components(&state.wrench);
+        largest.at_rest(&rest);
+        for (k, mover) in loads.movers.iter().enumerate() {
+            let ramp = match &station.slots[mover.slot] {
+                _ if mover.slot < slot => state.ramps[k],
+                StationSlot::Joint(moving) => state.inertia * moving.twist * mover.acceleration_rad_s2,
+                _ => continue,
+            };
+            largest.moving(&rest, &bearing.components(&ramp), loads.stop_factor);
+        }
+    }
+
+    /// Keeps what the joint in a slot, which is about to be added, does to bearings inboard of it.
+    pub(crate) fn keep_ramp(&self, slot: usize, states: &mut [StationState]) {
+        let loads = self.bearing_loads();
+        let Some(k) = loads.movers.iter().position(|mover| mover.slot == slot).filter(|_| loads.any()) else {
+            return;
+        };
+        for &case in &self.space().sizing_cases {
+            if let StationSlot::Joint(moving) = &self.stations()[case].slots[slot] {
+                let state = &mut states[case];
+                state.ramps[k] = state.inertia * moving.twist * loads.movers[k].acceleration_rad_s2;
+            }
+        }
+    }
+}
