@@ -84,6 +84,32 @@ fn one_wrong_number_of_bearings_is_found_and_each_decides_somewhere() {
     assert!(idle.is_empty(), "no study depends on {idle:?}");
 }
 
+/// Search and verifier have the same formula of life: at no life of a ladder do they disagree, and the ladder is fine
+/// enough to cross what bearings allow.
+#[test]
+fn the_lives_that_bearings_decide_are_those_of_the_search() {
+    let catalogs = Catalogs::builtin();
+    let mut fronts: Vec<Vec<Row>> = Vec::new();
+    for step in 0..10 {
+        let life_h = 15_000.0 * 1.3f64.powi(step);
+        let motion = json!({"ramp_time_s": 0.5, "emergency_deceleration_m_s2": 2, "life_h": life_h});
+        let study = study(motion, Value::Null, &catalogs);
+        let rows = front(&study, &catalogs, &catalogs);
+        assert_eq!(faults(&study, &catalogs, &rows), [0, 0], "{life_h} h");
+        fronts.push(rows);
+    }
+    let rigid = json!({"bearing": null});
+    let changes = fronts.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    let of_teeth = (0..10).map(|step| {
+        let motion = json!({"ramp_time_s": 0.5, "emergency_deceleration_m_s2": 2,
+            "life_h": 15_000.0 * 1.3f64.powi(step)});
+        front(&study(motion, rigid.clone(), &catalogs), &catalogs, &catalogs)
+    });
+    let of_teeth: Vec<Vec<Row>> = of_teeth.collect();
+    let of_teeth = of_teeth.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    assert!(changes > of_teeth, "{changes} steps change the front, {of_teeth} without the waist's bearing");
+}
+
 /// The designs that the verifier misses beside some rows.
 fn missing(study: &Study, catalogs: &Catalogs, rows: &[Row], by: Settings) -> Vec<Objectives> {
     let question = question(&study.space);
