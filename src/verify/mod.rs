@@ -9,8 +9,8 @@
 //! box are bounded by
 //!
 //! - *mass*: the sum of the least masses;
-//! - *demand on joints*: torques by lever arms. Every weight is an interval that enters once (`span`, `pose`). A
-//!   box is discarded if none of its drives holds the least demand. The drive that fits first holds the least demand,
+//! - *demand on joints*: torques by lever arms, loads on bearings by couplings of two motions (`bearing_loads`). Every
+//!   weight and every inertia is an interval that enters each sum once (`span`, `pose`). A box is discarded if none of its drives holds the least demand. The drive that fits first holds the least demand,
 //!   and does not come after the fit of the greatest (`drives`);
 //! - *deflection*: the method of the unit load along a fixed direction. A displacement is at least as long
 //!   as its component along any direction (`bound`);

@@ -26,7 +26,7 @@ const MASS_TOLERANCE: f64 = 1e-9;
 const MARGIN_TOLERANCE: f64 = 1e-9;
 
 /// The chain of a six-axis arm with open links and drives.
-fn six_axes(upper_arm: Value, forearm: Value) -> Value {
+pub fn six_axes(upper_arm: Value, forearm: Value) -> Value {
     json!([
         {"type": "joint", "name": "j1", "axis": [0, 0, 1], "drive": "first_fit"},
         {"type": "link", "name": "shoulder", "vector_m": [0, 0, 0.3]},
@@ -41,13 +41,13 @@ fn six_axes(upper_arm: Value, forearm: Value) -> Value {
     ])
 }
 
-fn boxes(materials: &[&str], widths: Value, heights: Value, walls: Value) -> Value {
+pub fn boxes(materials: &[&str], widths: Value, heights: Value, walls: Value) -> Value {
     json!({"materials": materials, "sections": [
         {"shape": "rectangular_tube", "width_mm": widths, "height_mm": heights, "wall_mm": walls}]})
 }
 
-const STEEL: &str = "Structural steel S355";
-const ALUMINIUM: &str = "Aluminium 6061-T6";
+pub const STEEL: &str = "Structural steel S355";
+pub const ALUMINIUM: &str = "Aluminium 6061-T6";
 const KEVLAR: &str = "Kevlar 49/epoxy UD";
 const CFRP: &str = "CFRP T300/5208 (standard modulus) quasi-isotropic";
 
@@ -55,7 +55,7 @@ const CFRP: &str = "CFRP T300/5208 (standard modulus) quasi-isotropic";
 fn compare_materials() -> Value {
     let materials = [STEEL, ALUMINIUM, CFRP];
     json!({
-        "name": "brute-compare",
+        "name": "brute-compare", "extras": "none",
         "chain": six_axes(
             boxes(&materials, json!([80, 140]), json!({"from": 100, "to": 180, "step": 80}), json!([3, 6])),
             boxes(&materials, json!([60, 100]), json!([60, 120]), json!([2, 5])),
@@ -70,9 +70,9 @@ fn compare_materials() -> Value {
 
 /// What is compared about a study, and how well the two agree.
 #[derive(Debug, Default)]
-struct Agreement {
-    designs: usize,
-    front: usize,
+pub struct Agreement {
+    pub designs: usize,
+    pub front: usize,
     close_calls: usize,
     worst_mass: f64,
     worst_deflection: f64,
@@ -80,7 +80,7 @@ struct Agreement {
 }
 
 /// Runs a study with both and compares everything.
-fn assert_same(study_json: &Value) -> Agreement {
+pub fn assert_same(study_json: &Value) -> Agreement {
     let dir = tempfile::tempdir().expect("a temporary folder");
     let results = run_study(dir.path(), study_json);
     let study = Study::from_json(study_json, &Catalog::built_in());
@@ -215,7 +215,7 @@ fn free_second_drive() -> Value {
     study
 }
 
-/// Limits on all that can be limited, each of which excludes something.
+/// Limits on all that can be limited, each of which excludes something. Bearings are rigid.
 fn limited() -> Value {
     let mut study = compare_materials();
     study["name"] = json!("brute-limits");
@@ -223,6 +223,9 @@ fn limited() -> Value {
         boxes(&[STEEL, ALUMINIUM], json!([60, 120]), json!([60, 120, 160]), json!([2, 4])),
         boxes(&[STEEL, ALUMINIUM], json!([40, 90]), json!([60, 120]), json!([2, 4])),
     );
+    for joint in [0, 2, 4, 6, 7, 8] {
+        study["chain"][joint]["bearing"] = Value::Null;
+    }
     study["constraints"] = json!({"tip_deflection_max_mm": 4.5, "lowest_mode_min_hz": 4.6, "mass_max_kg": 20,
         "stress_safety_factor_min": 40, "wall_slenderness_max": 50});
     study
@@ -235,13 +238,24 @@ fn spatial() -> Value {
         boxes(&[STEEL, ALUMINIUM], json!([80, 140]), json!([100, 160]), json!([4])),
         boxes(&[STEEL, ALUMINIUM], json!([60, 100]), json!([60, 120]), json!([2, 5])),
     );
+    // a gear's bearing as a part of its own, numbers, and rigid ones without mass
+    chain[0]["bearing"] = json!("HFUC-45-100");
+    for joint in [6, 8] {
+        chain[joint]["bearing"] = Value::Null;
+    }
+    let stated = json!({"tilt_stiffness_nm_per_rad": 8e4, "permissible_moment_nm": 450, "mass_kg": 0.7, "offset_m": 0.04,
+        "pitch_diameter_m": 0.06, "static_load_rating_n": 30000, "dynamic_load_rating_n": 19000});
+    for joint in [2, 7] {
+        chain[joint]["bearing"] = stated.clone();
+    }
     chain[1]["mass_kg"] = json!(3.5);
     chain[4] = json!({"type": "joint", "name": "j3", "axis": [0, 1, 0.1], "mass_kg": 4.5,
+        "bearing": {"tilt_stiffness_nm_per_rad": 2.5e5, "mass_kg": 0.4},
         "windup": {"k1_nm_per_rad": 1.3e5, "k2_nm_per_rad": 1.9e5, "k3_nm_per_rad": 2.2e5, "t1_nm": 40, "t2_nm": 110}});
     chain[5]["vector_m"] = json!([0.45, 0.1, 0.15]);
     chain[8]["max_speed_rad_s"] = json!(6.0);
     json!({
-        "name": "brute-spatial",
+        "name": "brute-spatial", "extras": {"housing_kg": 0.3, "flange_kg": 0.12},
         "gravity_m_s2": 9.80665,
         "chain": chain,
         "payload": {"mass_kg": 4, "cg_m": [0.03, 0.02, 0.05], "inertia_about_cg_kgm2": [0.02, 0.03, 0.04]},
@@ -510,11 +524,18 @@ fn assert_taken_out_is_the_same(dir: &Path, row: &FrontRow) {
     );
 }
 
-/// Drives, offsets and tubes of an arm file.
+/// A joint with its bearing and extras, or an offset.
+fn piece_mass_kg(piece: &Value) -> f64 {
+    let extras = piece["extras"].as_object().into_iter().flat_map(|extras| extras.values());
+    let masses = [&piece["mass_kg"], &piece["bearing"]["mass_kg"]].into_iter().chain(extras);
+    masses.filter_map(Value::as_f64).sum()
+}
+
+/// Joints, offsets and tubes of an arm file.
 fn arm_mass_kg(arm: &Value) -> f64 {
     let mass = |piece: &Value| {
         let Some(material) = piece["material"].as_str() else {
-            return piece["mass_kg"].as_f64().unwrap_or(0.0);
+            return piece_mass_kg(piece);
         };
         let length_m =
             Vector3::from([0, 1, 2].map(|i| piece["vector_m"][i].as_f64().expect("a number"))).norm();
@@ -563,9 +584,10 @@ fn assert_smallest_relaxation(study_json: &Value) {
     let (code, said) = armwright_fails(&["run", word(&file), "--out", word(&out)]);
     assert_eq!(code, 6, "{said}");
     let study = Study::from_json(study_json, &Catalog::built_in());
-    let (joint, asked) = joint_that_nothing_holds(&study).expect("nothing holds");
+    let (joint, bearing, asked) = joint_that_nothing_holds(&study).expect("nothing holds");
     assert!(said.contains(&format!("joint {joint}:")), "{joint} is not named in {said}");
-    let holds = |demand: &Demand| study.drives.iter().any(|drive| drive.holds(demand, &study.motion));
+    let holds =
+        |demand: &Demand| study.drives.iter().any(|drive| drive.holds(&bearing, demand, &study.motion));
     let by_torque = largest_factor(&|factor| holds(&asked.with_torques_times(factor)));
     let by_speed = largest_factor(&|factor| holds(&asked.with_speed_times(factor)));
     let stated = |what: &str| {

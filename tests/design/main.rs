@@ -4,6 +4,7 @@
 mod bearing_loads;
 mod beside_the_front;
 mod brute;
+mod brute_bearings;
 mod brute_force;
 mod budget;
 mod closed_forms;
@@ -24,6 +25,7 @@ mod search_fast_vs_full;
 mod study_rerun;
 #[path = "../witness/mod.rs"]
 mod witness;
+mod witness_bearings;
 mod witness_drives;
 mod witness_effects;
 mod witness_front;

@@ -39,10 +39,10 @@ fn study(catalogs: &Catalogs) -> Study {
 }
 
 /// A design of a front, by its parts.
-type Row = (Vec<Pick>, Objectives);
+pub type Row = (Vec<Pick>, Objectives);
 
 /// The front that the sweep finds with some catalogs; parts by their places in the true ones.
-fn front(study: &Study, read: &Catalogs, truth: &Catalogs) -> Vec<Row> {
+pub fn front(study: &Study, read: &Catalogs, truth: &Catalogs) -> Vec<Row> {
     let problem = ArmProblem::new(&study.space, read);
     let sweep = Sweep::new(&problem, study.space.constraints, &AtomicBool::new(false)).run();
     let judged: Vec<Evaluated> = sweep.front.iter().filter_map(|c| evaluate(&problem, c.number)).collect();
@@ -53,7 +53,7 @@ fn front(study: &Study, read: &Catalogs, truth: &Catalogs) -> Vec<Row> {
 }
 
 /// What the verifier finds fault with: rows that do not hold or have other objectives, and designs that are missing.
-fn faults(study: &Study, truth: &Catalogs, rows: &[Row]) -> [usize; 2] {
+pub fn faults(study: &Study, truth: &Catalogs, rows: &[Row]) -> [usize; 2] {
     let question = question(&study.space);
     let judge = Judge::new(&question, truth);
     let is_wrong =
@@ -118,9 +118,9 @@ fn a_drive_that_the_catalogs_of_the_search_lack_is_found() {
 }
 
 /// One number of a catalog that a threshold is made of, and how to make it wrong.
-type Spoil = fn(&mut Gear, &mut Motor, f64);
+pub type Spoil = fn(&mut Gear, &mut Motor, f64);
 
-fn times(number: &mut Option<f64>, factor: f64) {
+pub fn times(number: &mut Option<f64>, factor: f64) {
     number.iter_mut().for_each(|number| *number *= factor);
 }
 
@@ -135,6 +135,24 @@ const THRESHOLDS: [(&str, Spoil); 8] = [
     ("motor peak", |_, motor, by| times(&mut motor.peak_torque_nm, by)),
 ];
 
+/// Catalogs with a number of every part wrong by a factor.
+pub fn spoiled(catalogs: &Catalogs, spoil: Spoil, factor: f64) -> Catalogs {
+    let mut spoiled = catalogs.clone();
+    for place in 0..spoiled.gears.len().max(spoiled.motors.len()) {
+        // numbers of parts that are not there are spoiled in vain
+        let mut gear = spoiled.gears[place.min(catalogs.gears.len() - 1)].clone();
+        let mut motor = spoiled.motors[place.min(catalogs.motors.len() - 1)].clone();
+        spoil(&mut gear, &mut motor, factor);
+        if place < catalogs.gears.len() {
+            spoiled.gears[place] = gear;
+        }
+        if place < catalogs.motors.len() {
+            spoiled.motors[place] = motor;
+        }
+    }
+    spoiled
+}
+
 #[test]
 fn one_wrong_threshold_of_a_drive_is_found() {
     let catalogs = Catalogs::builtin();
@@ -142,20 +160,7 @@ fn one_wrong_threshold_of_a_drive_is_found() {
     let true_front = front(&study, &catalogs, &catalogs);
     for (name, spoil) in THRESHOLDS {
         for factor in [0.7, 1.0 / 0.7, 0.3, 1.0 / 0.3] {
-            let mut spoiled = catalogs.clone();
-            for place in 0..spoiled.gears.len().max(spoiled.motors.len()) {
-                // numbers of parts that are not there are spoiled in vain
-                let mut gear = spoiled.gears[place.min(catalogs.gears.len() - 1)].clone();
-                let mut motor = spoiled.motors[place.min(catalogs.motors.len() - 1)].clone();
-                spoil(&mut gear, &mut motor, factor);
-                if place < catalogs.gears.len() {
-                    spoiled.gears[place] = gear;
-                }
-                if place < catalogs.motors.len() {
-                    spoiled.motors[place] = motor;
-                }
-            }
-            let rows = front(&study, &spoiled, &catalogs);
+            let rows = front(&study, &spoiled(&catalogs, spoil, factor), &catalogs);
             let found = faults(&study, &catalogs, &rows);
             println!("{name} times {factor:.2}: {} rows, faults {found:?}", rows.len());
             assert_eq!(found == [0, 0], rows == true_front, "{name} times {factor}: {found:?}");

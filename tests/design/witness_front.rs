@@ -79,7 +79,40 @@ fn joint(dice: &mut Dice, name: &str, axis: [f64; 3]) -> Value {
     };
     let fields = fields.as_object().expect("fields").clone();
     joint.as_object_mut().expect("a joint").extend(fields);
+    if let Some(bearing) = bearing(dice) {
+        joint["bearing"] = bearing;
+    }
     joint
+}
+
+/// What a joint may say of its output bearing; nothing is the gear's.
+fn bearing(dice: &mut Dice) -> Option<Value> {
+    match dice.below(8) {
+        0 => Some(Value::Null),
+        1 => Some(json!("HFUC-32-100")),
+        2 => Some(json!({"tilt_stiffness_nm_per_rad": 10f64.powf(dice.within(4.5, 6.0)),
+            "permissible_moment_nm": dice.within(60.0, 400.0), "mass_kg": dice.within(0.0, 2.0),
+            "offset_m": dice.of(&[json!(null), json!(0.05)]), "pitch_diameter_m": 0.08,
+            "static_load_rating_n": dice.within(5e3, 3e4), "dynamic_load_rating_n": dice.within(4e3, 2e4)})),
+        _ => None,
+    }
+}
+
+/// The catalogs of a random study. In one of three some bearings are rigid, and numbers of others are not known.
+fn catalogs(seed: u64) -> Catalogs {
+    let mut catalogs = Catalogs::builtin();
+    if seed % 3 == 1 {
+        for (place, gear) in (seed..).zip(&mut catalogs.gears) {
+            match place % 7 {
+                0 | 1 => gear.tilting_stiffness_nm_per_rad = None,
+                2 => gear.permissible_tilting_moment_nm = None,
+                3 => gear.bearing.pitch_diameter_m = None,
+                4 => gear.bearing.dynamic_load_rating_n = None,
+                _ => {}
+            }
+        }
+    }
+    catalogs
 }
 
 fn random_study(seed: u64) -> Value {
@@ -228,9 +261,9 @@ fn judged(study: &Study, problem: &ArmProblem, number: u128) -> Option<Objective
 /// The judge builds the arm of a design on its own, and comes to what the search's full model says: the same bits.
 #[test]
 fn a_design_is_judged_as_by_the_full_model_of_the_search() {
-    let catalogs = Catalogs::builtin();
     let (mut holding, mut others) = (0, 0);
     for seed in 0..studies() {
+        let catalogs = catalogs(seed);
         let study = read(&random_study(seed), &catalogs);
         let problem = ArmProblem::new(&study.space, &catalogs);
         let question = question(&study.space);
@@ -258,9 +291,9 @@ fn a_design_is_judged_as_by_the_full_model_of_the_search() {
 
 #[test]
 fn no_member_of_a_box_is_better_than_its_ceiling() {
-    let catalogs = Catalogs::builtin();
     let mut members = 0;
     for seed in 0..studies() {
+        let catalogs = catalogs(seed);
         let study = read(&random_study(seed), &catalogs);
         let problem = ArmProblem::new(&study.space, &catalogs);
         let boxes = Boxes::new(&question(&study.space), &catalogs);
@@ -290,9 +323,9 @@ fn no_member_of_a_box_is_better_than_its_ceiling() {
 
 #[test]
 fn the_ceiling_of_a_single_design_is_close_to_it() {
-    let catalogs = Catalogs::builtin();
     let mut singles = 0;
     for seed in 0..studies() {
+        let catalogs = catalogs(seed);
         let text = random_study(seed);
         if text.to_string().contains("80000") {
             // a curve that softens is bounded by one that does not
@@ -320,9 +353,9 @@ fn the_ceiling_of_a_single_design_is_close_to_it() {
 
 #[test]
 fn a_design_is_cut_exactly_if_it_is_too_weak() {
-    let catalogs = Catalogs::builtin();
     let mut designs = 0;
     for seed in 0..studies() {
+        let catalogs = catalogs(seed);
         let mut study = read(&random_study(seed), &catalogs);
         study.space.constraints = Constraints::default();
         let dice = &mut Dice(seed);
@@ -392,9 +425,9 @@ fn nearly_covers(a: &Evaluated, b: &Evaluated) -> bool {
 /// Asserts of the random studies of no more designs that nothing is missing beside their fronts, and that what is dropped
 /// from one is found; at least one study in so many is to have a front.
 fn finds_what_is_dropped(by: Settings, most_designs: u128, one_in: u64) {
-    let catalogs = Catalogs::builtin();
     let (mut fronts, mut dropped, mut boxes) = (0, 0, 0);
     for seed in 0..studies() {
+        let catalogs = catalogs(seed);
         let study = read(&random_study(seed), &catalogs);
         if study.space.designs(&catalogs).is_none_or(|designs| designs > most_designs) {
             continue;

@@ -113,8 +113,8 @@ impl Joint {
             name: name_of(joint),
             axis: vector(&joint["axis"]).normalize(),
             law,
-            tilt_nm_per_rad: None,
-            mass_kg: joint["mass_kg"].as_f64().unwrap_or(0.0),
+            tilt_nm_per_rad: joint["bearing"]["tilt_stiffness_nm_per_rad"].as_f64(),
+            mass_kg: joint_mass_kg(joint),
         }
     }
 }
@@ -147,6 +147,14 @@ impl Tube {
             density_kg_m3: number(material, "density_kg_m3"),
         }
     }
+}
+
+/// Drive, bearing and extras of a joint.
+fn joint_mass_kg(joint: &Value) -> f64 {
+    let extras = joint["extras"].as_object();
+    let extras_kg: f64 = extras.map_or(0.0, |extras| extras.values().filter_map(Value::as_f64).sum());
+    let of = |part: &Value| part["mass_kg"].as_f64().unwrap_or(0.0);
+    of(joint) + of(&joint["bearing"]) + extras_kg
 }
 
 fn name_of(part: &Value) -> String {

@@ -151,7 +151,9 @@ fn apply_to_joints(arm: &mut Arm, effects: &Effects) {
         arm.joint_mut(name).law.terms.push(Term::LostMotion { half_width_rad, torque_nm });
     }
     for (name, stiffness_nm_per_rad) in &effects.bearing_tilt_nm_per_rad {
-        arm.joint_mut(name).tilt_nm_per_rad = Some(*stiffness_nm_per_rad);
+        // in series with the joint's own bearing
+        let own = arm.joint_mut(name).tilt_nm_per_rad.map_or(0.0, |own| 1.0 / own);
+        arm.joint_mut(name).tilt_nm_per_rad = Some(1.0 / (own + 1.0 / stiffness_nm_per_rad));
     }
     for (name, delta_kg) in &effects.extra_mass_kg {
         arm.joint_mut(name).mass_kg += delta_kg;

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Unit, Vector3};
 
 use super::arm::{Body, Chosen, turned};
+use super::bearing::{Load, Loads, loads};
 use super::study::{Piece, Pose, Posed, Study};
 
 /// Torques on a joint in one pose.
@@ -19,40 +20,74 @@ pub struct Demand {
     pub acceleration_rad_s2: f64,
     /// The largest static torque of all sizing poses, and the largest linear torque of all.
     pub worst: Torques,
+    /// The largest loads on the output bearing.
+    pub bearing: Loads,
 }
 
 impl Demand {
-    /// The same motion against other torques.
+    /// The same motion against other torques and loads.
     pub fn with_torques_times(&self, factor: f64) -> Self {
         let Torques { static_nm, linear_nm } = self.worst;
-        Self { worst: Torques { static_nm: factor * static_nm, linear_nm: factor * linear_nm }, ..*self }
+        let Loads { at_rest, running, in_stop, .. } = self.bearing;
+        let [at_rest, running, in_stop] =
+            [at_rest, running, in_stop].map(|load| between(&Load::default(), &load, factor));
+        Self {
+            worst: Torques { static_nm: factor * static_nm, linear_nm: factor * linear_nm },
+            bearing: Loads { at_rest, running, in_stop, ..self.bearing },
+            ..*self
+        }
     }
 
-    /// A slower motion, with the same time for the ramp.
+    /// A slower motion, with the same time for the ramp. What ramps and stops add to the loads on the bearing is taken as
+    /// linear, which is on the safe side.
     pub fn with_speed_times(&self, factor: f64) -> Self {
         Self {
             speed_rad_s: factor * self.speed_rad_s,
             acceleration_rad_s2: factor * self.acceleration_rad_s2,
             worst: Torques { linear_nm: factor * self.worst.linear_nm, ..self.worst },
+            bearing: Loads {
+                running: between(&self.bearing.at_rest, &self.bearing.running, factor),
+                in_stop: between(&self.bearing.at_rest, &self.bearing.in_stop, factor),
+                ..self.bearing
+            },
         }
     }
 }
 
-/// The demand on the joint at `index`; `outboard` are the pieces beyond it, nearest first.
-pub fn demand(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: &[Chosen]) -> Demand {
-    let Piece::Joint { axis, max_speed_rad_s, .. } = &study.pieces[index] else { panic!("not a joint") };
-    // The axis turns with the joints before it; turning about itself leaves it.
-    let axis_in = |posed: &Posed| Unit::new_normalize(posed.places[index].frame * axis);
+/// A load between two.
+fn between(a: &Load, b: &Load, part: f64) -> Load {
+    let mix = |a: f64, b: f64| a + part * (b - a);
+    Load {
+        moment_nm: mix(a.moment_nm, b.moment_nm),
+        radial_n: mix(a.radial_n, b.radial_n),
+        axial_n: mix(a.axial_n, b.axial_n),
+    }
+}
+
+/// The axis of the joint at `index` in the world. It turns with the joints before it; turning about itself leaves it.
+pub fn axis_in(study: &Study, posed: &Posed, index: usize) -> Unit<Vector3<f64>> {
+    let Piece::Joint { axis, .. } = &study.pieces[index] else { panic!("not a joint") };
+    Unit::new_normalize(posed.places[index].frame * axis)
+}
+
+/// Largest speed of the joint at `index`.
+pub fn speed_rad_s(study: &Study, sizing: &[(&Pose, Posed)], index: usize) -> f64 {
+    let Piece::Joint { max_speed_rad_s, .. } = &study.pieces[index] else { panic!("not a joint") };
     let reach_m = sizing.iter().map(|(_, posed)| {
         let to_tip = posed.tip_m - posed.places[index].start_m;
-        to_tip.cross(&axis_in(posed)).norm()
+        to_tip.cross(&axis_in(study, posed, index)).norm()
     });
     let lever_m = reach_m.fold(study.motion.min_lever_m, f64::max);
-    let speed_rad_s = max_speed_rad_s.unwrap_or(study.motion.tip_speed_m_s / lever_m);
+    max_speed_rad_s.unwrap_or(study.motion.tip_speed_m_s / lever_m)
+}
+
+/// The demand on the joint at `index`; `outboard` are the pieces beyond it, nearest first.
+pub fn demand(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: &[Chosen]) -> Demand {
+    let speed_rad_s = speed_rad_s(study, sizing, index);
     let acceleration_rad_s2 = speed_rad_s / study.motion.ramp_time_s;
     let torques = |(pose, posed): &(&Pose, Posed)| {
         let bodies = bodies(study, pose, posed, index, outboard);
-        let (axis, at_m) = (axis_in(posed), posed.places[index].start_m);
+        let (axis, at_m) = (axis_in(study, posed, index), posed.places[index].start_m);
         let force_nm = axis.dot(&(posed.tip_m - at_m).cross(&pose.case.tip_force_n));
         let gravity_nm = |body: &Body| {
             let weight_n = Vector3::new(0.0, 0.0, -body.mass_kg * study.gravity_m_s2);
@@ -67,7 +102,7 @@ pub fn demand(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: 
         linear_nm: a.linear_nm.max(b.linear_nm),
     };
     let worst = sizing.iter().map(torques).reduce(larger).expect("a study sizes in some pose");
-    Demand { speed_rad_s, acceleration_rad_s2, worst }
+    Demand { speed_rad_s, acceleration_rad_s2, worst, bearing: loads(study, sizing, index, outboard) }
 }
 
 /// Everything beyond the piece at `index`, the payload too.

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::arm::{Chosen, Joint, Link, LinkOption, arm_file};
+use super::bearing::Source;
 use super::demand::{Demand, demand};
 use super::drive::Drive;
 use super::stress::stress_safety_factor;
@@ -83,36 +84,39 @@ fn choices(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: &[C
             };
             options.iter().filter(slender).map(|o| Chosen::Link(Link::of(name, *vector_m, o))).collect()
         }
-        Piece::Joint { drive: DriveChoice::Given(entry), name, .. } => {
-            vec![Chosen::Joint(given(name, entry))]
+        Piece::Joint { drive: DriveChoice::Given(entry), name, bearing, .. } => {
+            vec![Chosen::Joint(given(name, entry, bearing))]
         }
-        Piece::Joint { name, axis, drive, .. } => {
+        Piece::Joint { name, axis, drive, bearing, extras_kg, .. } => {
             let asked = demand(study, sizing, index, outboard);
             let joint = |drive: &Drive| {
+                let beside = bearing.beside(drive.bearing);
+                let mass_kg = drive.mass_kg + extras_kg + beside.map_or(0.0, |bearing| bearing.mass_kg);
                 Chosen::Joint(Joint {
                     name: name.clone(),
-                    mass_kg: drive.mass_kg,
+                    mass_kg,
                     gear: drive.gear.clone(),
                     motor: drive.motor.clone(),
                     entry: json!({"type": "joint", "name": name, "axis": [axis.x, axis.y, axis.z],
-                        "windup": drive.windup, "mass_kg": drive.mass_kg}),
+                        "windup": drive.windup, "mass_kg": drive.mass_kg + extras_kg,
+                        "bearing": beside.map(|bearing| bearing.entry())}),
                 })
             };
             let most = if matches!(drive, DriveChoice::FirstFit) { 1 } else { usize::MAX };
-            fits(study, &asked).take(most).map(joint).collect()
+            fits(study, bearing, &asked).take(most).map(joint).collect()
         }
     }
 }
 
 /// The first joint from the tip that no drive holds when every piece takes its first choice, and what is asked of it.
-pub fn joint_that_nothing_holds(study: &Study) -> Option<(String, Demand)> {
+pub fn joint_that_nothing_holds(study: &Study) -> Option<(String, Source, Demand)> {
     let sizing = sizing_poses(study);
     let mut outboard: Vec<Chosen> = Vec::new();
     for index in (0..study.pieces.len()).rev() {
         match (choices(study, &sizing, index, &outboard).into_iter().next(), &study.pieces[index]) {
             (Some(choice), _) => outboard.insert(0, choice),
-            (None, Piece::Joint { name, .. }) => {
-                return Some((name.clone(), demand(study, &sizing, index, &outboard)));
+            (None, Piece::Joint { name, bearing, .. }) => {
+                return Some((name.clone(), *bearing, demand(study, &sizing, index, &outboard)));
             }
             (None, _) => panic!("no section is left"),
         }
@@ -120,13 +124,18 @@ pub fn joint_that_nothing_holds(study: &Study) -> Option<(String, Demand)> {
     None
 }
 
-fn fits<'a>(study: &'a Study, asked: &'a Demand) -> impl Iterator<Item = &'a Drive> {
-    study.drives.iter().filter(|drive| drive.holds(asked, &study.motion))
+fn fits<'a>(study: &'a Study, bearing: &'a Source, asked: &'a Demand) -> impl Iterator<Item = &'a Drive> {
+    study.drives.iter().filter(|drive| drive.holds(bearing, asked, &study.motion))
 }
 
-fn given(name: &str, entry: &Value) -> Joint {
-    let mass_kg = entry["mass_kg"].as_f64().unwrap_or(0.0);
-    Joint { name: name.to_owned(), mass_kg, gear: String::new(), motor: String::new(), entry: entry.clone() }
+fn given(name: &str, entry: &Value, bearing: &Source) -> Joint {
+    let mut entry = entry.clone();
+    let mut mass_kg = entry["mass_kg"].as_f64().unwrap_or(0.0);
+    if let Some(bearing) = bearing.beside(None) {
+        mass_kg += bearing.mass_kg;
+        entry["bearing"] = bearing.entry();
+    }
+    Joint { name: name.to_owned(), mass_kg, gear: String::new(), motor: String::new(), entry }
 }
 
 /// The widest flat between the corners over the wall's thickness; a round tube's diameter over it. Bars do not buckle so.

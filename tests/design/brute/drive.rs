@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
+use super::bearing::{Bearing, Source};
 use super::catalog::{Catalog, Row};
 use super::demand::{Demand, Torques};
 use super::study::Motion;
@@ -14,6 +15,8 @@ pub struct Drive {
     pub motor: String,
     pub mass_kg: f64,
     pub windup: Value,
+    /// Of a housed gear.
+    pub bearing: Option<Bearing>,
     ratio: f64,
     efficiency: f64,
     inertia_kgm2: f64,
@@ -85,6 +88,7 @@ impl Drive {
                 "t1_nm": gear.number("t1_nm")?,
                 "t2_nm": gear.number("t2_nm")?,
             }),
+            bearing: (mass_column == "mass_housed_unit_kg").then(|| Bearing::of_gear(gear)),
             ratio: gear.number("ratio")?,
             efficiency: gear.number("efficiency_rated_2000rpm")?,
             inertia_kgm2: gear.number("inertia_input_kgm2")? + motor.number("rotor_inertia_kgm2")?,
@@ -102,14 +106,16 @@ impl Drive {
         })
     }
 
-    /// Whether the drive holds the worst of all sizing poses.
-    pub fn holds(&self, demand: &Demand, motion: &Motion) -> bool {
+    /// Whether the drive, with the bearing that the joint has beside it, holds the worst of all sizing poses.
+    pub fn holds(&self, bearing: &Source, demand: &Demand, motion: &Motion) -> bool {
+        let bearing = bearing.beside(self.bearing);
         let input_rpm = self.ratio * demand.speed_rad_s * 60.0 / TAU;
         let mean_rpm = 0.4 * input_rpm;
         input_rpm <= self.input_rpm
             && mean_rpm <= self.average_input_rpm
             && input_rpm <= self.motor_rpm
             && self.stays_cool(demand, input_rpm)
+            && bearing.is_none_or(|b| b.holds(&demand.bearing, 0.4 * demand.speed_rad_s, motion.life_h))
             && self.holds_torques(&demand.worst, demand.acceleration_rad_s2, mean_rpm, motion)
     }
 

@@ -19,6 +19,7 @@
 //! both: the arm passes between its poses.
 
 pub mod arm;
+pub mod bearing;
 pub mod catalog;
 pub mod demand;
 pub mod design;

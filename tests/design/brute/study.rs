@@ -4,15 +4,28 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use serde_json::{Value, json};
 
 use super::arm::{Body, Link, LinkOption};
+use super::bearing::Source;
 use super::catalog::{Catalog, Row};
 use super::drive::{Drive, candidates};
 use crate::witness::LoadCase;
 
 /// A piece of the chain with what is open about it.
 pub enum Piece {
-    Joint { name: String, axis: Vector3<f64>, max_speed_rad_s: Option<f64>, drive: DriveChoice },
+    Joint {
+        name: String,
+        axis: Vector3<f64>,
+        max_speed_rad_s: Option<f64>,
+        drive: DriveChoice,
+        bearing: Source,
+        /// Mass beyond gear, motor and bearing.
+        extras_kg: f64,
+    },
     Fixed(Box<Link>),
-    Choice { name: String, vector_m: Vector3<f64>, options: Vec<LinkOption> },
+    Choice {
+        name: String,
+        vector_m: Vector3<f64>,
+        options: Vec<LinkOption>,
+    },
 }
 
 /// How a joint gets its drive.
@@ -52,7 +65,8 @@ pub struct Study {
 
 impl Study {
     pub fn from_json(study: &Value, catalog: &Catalog) -> Self {
-        let pieces: Vec<Piece> = list(&study["chain"]).map(|piece| read_piece(piece, catalog)).collect();
+        let pieces: Vec<Piece> =
+            list(&study["chain"]).map(|piece| read_piece(piece, &study["extras"], catalog)).collect();
         Self {
             gravity_m_s2: study["gravity_m_s2"].as_f64().unwrap_or(9.81),
             pieces,
@@ -127,7 +141,7 @@ fn vector(value: &Value) -> Vector3<f64> {
     Vector3::from_iterator(list(value).map(|x| x.as_f64().expect("a number")))
 }
 
-fn read_piece(piece: &Value, catalog: &Catalog) -> Piece {
+fn read_piece(piece: &Value, extras: &Value, catalog: &Catalog) -> Piece {
     let name = piece["name"].as_str().expect("a name").to_owned();
     if piece["type"] == "joint" {
         let drive = match piece["drive"].as_str() {
@@ -136,7 +150,15 @@ fn read_piece(piece: &Value, catalog: &Catalog) -> Piece {
             _ => DriveChoice::Given(piece.clone()),
         };
         let max_speed_rad_s = piece["max_speed_rad_s"].as_f64();
-        return Piece::Joint { name, axis: vector(&piece["axis"]).normalize(), max_speed_rad_s, drive };
+        let extras = if piece["extras"].is_null() { extras } else { &piece["extras"] };
+        return Piece::Joint {
+            name,
+            axis: vector(&piece["axis"]).normalize(),
+            max_speed_rad_s,
+            extras_kg: if piece["drive"].is_string() { extras_kg(extras) } else { 0.0 },
+            drive,
+            bearing: Source::read(piece, catalog),
+        };
     }
     let vector_m = vector(&piece["vector_m"]);
     if piece["choose"].is_null() {
@@ -144,6 +166,17 @@ fn read_piece(piece: &Value, catalog: &Catalog) -> Piece {
         return Piece::Fixed(Box::new(Link { name, vector_m, mass_kg, option: None }));
     }
     Piece::Choice { name, vector_m, options: read_options(&piece["choose"], catalog) }
+}
+
+/// Masses that a study states, or none; the usual ones follow from formulas that are not repeated here.
+fn extras_kg(extras: &Value) -> f64 {
+    match extras.as_object() {
+        Some(masses) => masses.values().map(|kg| kg.as_f64().expect("a mass")).sum(),
+        None => {
+            assert_eq!(extras, "none", "the brute force knows no usual extras");
+            0.0
+        }
+    }
 }
 
 fn read_options(choose: &Value, catalog: &Catalog) -> Vec<LinkOption> {
