@@ -37,7 +37,9 @@ fn study_of_ties(seed: u64) -> Value {
         "drives": {"gear_mass": dice.of(&["housed_unit", "component_set"])}});
     // a component set has no bearing of its own
     if study["drives"]["gear_mass"] == "component_set" {
-        [0, 2].map(|joint| study["chain"][joint]["bearing"] = Value::Null);
+        for joint in [0, 2] {
+            study["chain"][joint]["bearing"] = Value::Null;
+        }
     }
     study
 }
