@@ -280,7 +280,7 @@ fn hertz(lambda: f64) -> f64 {
 pub(super) fn linear_strain(pose: &Pose, row: &Row, [low, high]: [f64; 2], work: &Work) -> [f64; 2] {
     let (resisted, factor) = pose.pieces[row.piece].resisted(row.coordinate);
     let (stiff, soft) = (work.stiff[row.piece][resisted], work.soft[row.piece][resisted]);
-    if stiff == 0.0 || (super::parts::broken("tip") && pose.pieces[row.piece].coordinates() == 3) {
+    if stiff == 0.0 {
         return [0.0; 2];
     }
     let (least, most) = (factor / stiff, factor / soft);

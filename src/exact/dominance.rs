@@ -42,7 +42,7 @@ impl DominatingDrive<'_> {
     /// Whether a box of drives may have a dominating drive. For a box of one drive: whether this drive dominates.
     fn may_be_in(&self, drives: &DriveBox) -> bool {
         drives.mass_kg[0] < self.lighter_than_kg
-            && (super::parts::broken("dominance") || drives.tilt_rad_per_nm[0] <= self.most_tilt_rad_per_nm)
+            && drives.tilt_rad_per_nm[0] <= self.most_tilt_rad_per_nm
             && drives.hold(self.demand)
             && match (&drives.curve, &self.curve) {
                 (None, _) => true,
@@ -78,7 +78,7 @@ impl Problem<'_> {
         !fits_first
             && !friction
             && self.poses.iter().all(Pose::grows_with_weight)
-            && (super::parts::broken("grow") || bearings().all(|rows| rows.grow_with_mass(&is_drive)))
+            && bearings().all(|rows| rows.grow_with_mass(&is_drive))
     }
 
     /// Removes dominated drives from a box whose numbers are in `work`. Returns whether the box became smaller;

@@ -231,7 +231,7 @@ impl DualPrice {
     #[inline]
     fn of_tilt(&self, tilt_rad_per_nm: [f64; 2]) -> f64 {
         least(self.compliance[TILT], tilt_rad_per_nm)
-            - f64::from(!super::parts::broken("price")) * self.stiffness[TILT] * stiffness_of(tilt_rad_per_nm[0])
+            - self.stiffness[TILT] * stiffness_of(tilt_rad_per_nm[0])
     }
 
     /// Price of a drive's mass.

@@ -145,7 +145,6 @@ impl Problem<'_> {
 
     /// The least and the greatest loads on the bearing of a joint; zero if no bearing is checked.
     pub(super) fn bearing_loads(&self, piece: usize, work: &Work) -> [BearingDemand; 2] {
-        if super::parts::broken("unchecked") { return [BearingDemand::default(); 2]; }
         let Some(lever) = self.levers[piece] else { return [BearingDemand::default(); 2] };
         let cases = self.poses.iter().zip(&work.weights);
         let [least, most] = cases
@@ -159,7 +158,7 @@ impl Problem<'_> {
             Lever::OfLink(link) => work.levers[link],
         };
         [
-            (if super::parts::broken("most") {most} else {least}).with_lever(lever_m[0]).scaled(1.0 - ROUNDING),
+            least.with_lever(lever_m[0]).scaled(1.0 - ROUNDING),
             most.with_lever(lever_m[1]).scaled(1.0 + ROUNDING),
         ]
     }

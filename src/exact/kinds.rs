@@ -1,9 +1,9 @@
 //! Drives that no objective distinguishes.
 //!
-//! Deflection, mass and modes depend on a drive only through its mass and its torsion curve. Gears of one
-//! size have the same curve for several ratios and in several series. So the drives of one mass and one curve
-//! form a **kind**, which is a single option of the search. A kind can carry a demand if any of its drives
-//! can.
+//! Deflection, mass and modes depend on a drive only through its mass, its torsion curve and the tilt of its bearing.
+//! Gears of one size have the same curve and tilt for several ratios and in several series. So the drives of one mass,
+//! one curve and one tilt form a **kind**, which is a single option of the search. A kind can carry a demand if any of
+//! its drives can.
 //!
 //! A design of kinds stands for every design whose joints have drives of these kinds, each able to carry its
 //! joint's demand. The demand depends only on the masses outboard, which are the same for all of them, so

@@ -209,8 +209,6 @@ impl LeastDemand {
     }
 }
 
-pub(super) static BREAK: std::sync::LazyLock<String> = std::sync::LazyLock::new(|| std::env::var("BREAK").unwrap_or_default());
-pub(super) fn broken(what: &str) -> bool { *BREAK == what }
 /// Least tilt per moment of a joint where some drives tilt and others are rigid \[rad/(N m)\]. A stiffness of 0 stands
 /// for what yields in no member of any box, so a rigid drive among others gets this tilt instead. It adds less than a part
 /// in 1e9 to any deflection.

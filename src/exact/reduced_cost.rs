@@ -132,7 +132,7 @@ impl LaneWork for DrivesCost<'_> {
         for (left, eight) in left.iter_mut().zip(prices) {
             let of_mass = least::<V>(&eight.inertia[inertia::MASS], drives.mass_kg);
             let of_tilt = least::<V>(&eight.compliance[TILT], drives.tilt_rad_per_nm)
-                - V::load(&eight.stiffness[TILT]) * tilt_stiffness * V::splat(f64::from(!super::parts::broken("lanes")));
+                - V::load(&eight.stiffness[TILT]) * tilt_stiffness;
             *left = V::load(&eight.most) - of_mass - of_tilt;
         }
         for (g, gear) in gears.iter().enumerate() {

@@ -145,7 +145,7 @@ impl Shape {
                 PosedPiece::Joint { twist: axis, at_m, across } => {
                     kinetic[inertia::MASS] = displacement(&twist, at_m).norm_squared();
                     strain[TORSION] = x[0] * x[0];
-                    strain[TILT] = f64::from(!super::parts::broken("shape")) * (x[1] * x[1] + x[2] * x[2]);
+                    strain[TILT] = x[1] * x[1] + x[2] * x[2];
                     // A joint's mass is inboard of its springs, so it moves before their twists are added.
                     twist += axis * x[0];
                     add_tilts(across, x, &mut twist);
