@@ -104,7 +104,11 @@ impl Parts {
 
     /// Keeps the options of a slot that pass, and always the known design's option. `passes` is given an option's
     /// index among the remaining ones and its number. Returns whether any option was dropped.
+    /// A bearing loses options only by following its drive.
     pub(super) fn keep(&mut self, slot: usize, passes: impl Fn(usize, u32) -> bool) -> bool {
+        if self.bearings.iter().any(|(bearing, _)| *bearing == slot) {
+            return false;
+        }
         let known = self.known[slot];
         let before = self.alive[slot].len();
         let mut at = 0;
