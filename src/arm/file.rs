@@ -345,17 +345,32 @@ pub(crate) fn read_section(node: &Node) -> Option<Section> {
                 ["diameter_m", "wall_m"].map(|k| object.required(k).and_then(|n| n.positive()));
             Section::RoundTube { diameter_m: diameter?, wall_m: wall? }
         }
-        _ => return node.fault("has no known \"shape\"", "choose one of: rectangular_tube, round_tube"),
+        Some("rectangular_bar") => {
+            let object = node.object(&["shape", "width_m", "height_m"])?;
+            let [width, height] =
+                ["width_m", "height_m"].map(|k| object.required(k).and_then(|n| n.positive()));
+            Section::RectangularBar { width_m: width?, height_m: height? }
+        }
+        Some("round_bar") => {
+            let object = node.object(&["shape", "diameter_m"])?;
+            Section::RoundBar { diameter_m: object.required("diameter_m").and_then(|n| n.positive())? }
+        }
+        _ => {
+            return node.fault(
+                "has no known \"shape\"",
+                "choose one of: rectangular_tube, round_tube, rectangular_bar, round_bar",
+            );
+        }
     };
     let (width, height) = section.outer_m();
     let wall = section.wall_m();
-    if 2.0 * wall >= width.min(height) {
+    if 2.0 * wall > width.min(height) {
         return node.fault(
             format!("wall_m = {wall} leaves no hollow in {width} x {height} m"),
-            "the wall is less than half of the smaller outer dimension",
+            "the wall is at most half of the smaller outer dimension, which is a solid bar",
         );
     }
-    Some(section)
+    Some(section.closed())
 }
 
 /// Reads a list of effects. Whether each effect fits its arm is checked later.

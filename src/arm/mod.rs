@@ -16,6 +16,7 @@ pub(crate) mod linkage;
 pub(crate) mod load;
 pub(crate) mod section;
 pub(crate) mod structure;
+pub(crate) mod torsion;
 pub(crate) mod write;
 
 pub use effect::entry::Effect;

@@ -4,11 +4,15 @@
 //! |---|---|---|
 //! | `I` rectangular | `(b h³ - (b-2t)(h-2t)³)/12` | Eq 5 |
 //! | `A` rectangular | `b h - (b-2t)(h-2t)` | Eq 6 |
-//! | `J` rectangular | `2 t (b-t)² (h-t)² / ((b-t)+(h-t))` | Bredt, thin closed wall |
+//! | `J` rectangular | Bredt for thin walls; thick ones and bars after Saint-Venant | `torsion.rs` |
 //! | `J` round | `2 I` | exact for a circular tube |
 //! | shear factor, rectangular | `20(1+nu)/(48+39nu)` | Cowper 1966, thin square tube |
 //! | shear factor, round | `2(1+nu)/(4+3nu)` | Cowper 1966, thin round tube |
+//! | shear factor, bars | `10(1+nu)/(12+11nu)`, round `6(1+nu)/(7+6nu)` | Cowper 1966, solid sections |
+//!
+//! A bar is a tube whose wall is half its smaller side: `A` and `I` are the same formulas.
 
+use super::torsion;
 use std::f64::consts::PI;
 
 /// Elastic properties and density of the material of a link.
@@ -36,7 +40,7 @@ impl LinkMaterial {
     }
 }
 
-/// A hollow cross-section. Height is along the z axis of the section, width along its y axis.
+/// A cross-section, hollow or solid. Height is along the z axis of the section, width along its y axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Section {
     /// Rectangular tube with sharp corners.
@@ -55,6 +59,18 @@ pub enum Section {
         /// Wall thickness \[m\].
         wall_m: f64,
     },
+    /// Solid rectangular bar.
+    RectangularBar {
+        /// Width b \[m\].
+        width_m: f64,
+        /// Height h \[m\].
+        height_m: f64,
+    },
+    /// Solid round bar.
+    RoundBar {
+        /// Diameter \[m\].
+        diameter_m: f64,
+    },
 }
 
 /// Geometric properties of a section.
@@ -68,6 +84,8 @@ pub struct SectionProperties {
     pub second_moment_z_m4: f64,
     /// Torsion constant J \[m⁴\].
     pub torsion_constant_m4: f64,
+    /// Largest shear stress of torsion per torque \[1/m³\].
+    pub torsion_shear_per_m3: f64,
     /// Cowper's shear factor.
     pub shear_factor: f64,
     /// Area within the outer contour, which displaces water \[m²\].
@@ -75,18 +93,56 @@ pub struct SectionProperties {
 }
 
 impl Section {
-    /// Outer width and height \[m\]. For a round tube both are the diameter.
+    /// Outer width and height \[m\]. For a round section both are the diameter.
     pub fn outer_m(&self) -> (f64, f64) {
         match *self {
-            Section::RectangularTube { width_m, height_m, .. } => (width_m, height_m),
-            Section::RoundTube { diameter_m, .. } => (diameter_m, diameter_m),
+            Section::RectangularTube { width_m, height_m, .. }
+            | Section::RectangularBar { width_m, height_m } => (width_m, height_m),
+            Section::RoundTube { diameter_m, .. } | Section::RoundBar { diameter_m } => {
+                (diameter_m, diameter_m)
+            }
         }
     }
 
-    /// Wall thickness \[m\].
+    /// Wall thickness \[m\]. That of a bar is half its smaller side.
     pub fn wall_m(&self) -> f64 {
         match *self {
             Section::RectangularTube { wall_m, .. } | Section::RoundTube { wall_m, .. } => wall_m,
+            Section::RectangularBar { width_m, height_m } => width_m.min(height_m) / 2.0,
+            Section::RoundBar { diameter_m } => diameter_m / 2.0,
+        }
+    }
+
+    /// Whether the outer contour is a circle.
+    pub fn is_round(&self) -> bool {
+        matches!(self, Section::RoundTube { .. } | Section::RoundBar { .. })
+    }
+
+    /// Whether the section has no hollow.
+    pub fn is_bar(&self) -> bool {
+        matches!(self, Section::RectangularBar { .. } | Section::RoundBar { .. })
+    }
+
+    /// The word that files use for the shape.
+    pub fn shape(&self) -> &'static str {
+        match self {
+            Section::RectangularTube { .. } => "rectangular_tube",
+            Section::RoundTube { .. } => "round_tube",
+            Section::RectangularBar { .. } => "rectangular_bar",
+            Section::RoundBar { .. } => "round_bar",
+        }
+    }
+
+    /// The bar that a tube is if its wall fills the whole section, else the section itself.
+    #[must_use]
+    pub fn closed(self) -> Section {
+        let (width_m, height_m) = self.outer_m();
+        if 2.0 * self.wall_m() < width_m.min(height_m) {
+            return self;
+        }
+        match self.is_round() {
+            true => Section::RoundBar { diameter_m: width_m },
+            false => Section::RectangularBar { width_m, height_m },
         }
     }
 
@@ -104,18 +160,21 @@ impl Section {
         match *self {
             Section::RectangularTube { width_m: b, height_m: h, wall_m: t } => rectangular(b, h, t, poisson),
             Section::RoundTube { diameter_m, wall_m } => round(diameter_m, wall_m, poisson),
+            Section::RectangularBar { width_m, height_m } => rectangular_bar(width_m, height_m, poisson),
+            Section::RoundBar { diameter_m } => round_bar(diameter_m, poisson),
         }
     }
 }
 
 fn rectangular(b: f64, h: f64, t: f64, nu: f64) -> SectionProperties {
     let (bi, hi) = (b - 2.0 * t, h - 2.0 * t);
-    let (bm, hm) = (b - t, h - t);
+    let torsion = torsion::tube(b, h, t);
     SectionProperties {
         area_m2: b * h - bi * hi,
         second_moment_y_m4: (b * h.powi(3) - bi * hi.powi(3)) / 12.0,
         second_moment_z_m4: (h * b.powi(3) - hi * bi.powi(3)) / 12.0,
-        torsion_constant_m4: 2.0 * t * bm * bm * hm * hm / (bm + hm),
+        torsion_constant_m4: torsion.constant_m4,
+        torsion_shear_per_m3: torsion.shear_per_m3,
         shear_factor: 20.0 * (1.0 + nu) / (48.0 + 39.0 * nu),
         outer_area_m2: b * h,
     }
@@ -129,9 +188,27 @@ fn round(d: f64, t: f64, nu: f64) -> SectionProperties {
         second_moment_y_m4: second_moment,
         second_moment_z_m4: second_moment,
         torsion_constant_m4: 2.0 * second_moment,
+        torsion_shear_per_m3: d / 2.0 / (2.0 * second_moment),
         shear_factor: 2.0 * (1.0 + nu) / (4.0 + 3.0 * nu),
         outer_area_m2: PI / 4.0 * d * d,
     }
+}
+
+fn rectangular_bar(b: f64, h: f64, nu: f64) -> SectionProperties {
+    let torsion = torsion::bar(b, h);
+    SectionProperties {
+        area_m2: b * h,
+        second_moment_y_m4: b * h.powi(3) / 12.0,
+        second_moment_z_m4: h * b.powi(3) / 12.0,
+        torsion_constant_m4: torsion.constant_m4,
+        torsion_shear_per_m3: torsion.shear_per_m3,
+        shear_factor: 10.0 * (1.0 + nu) / (12.0 + 11.0 * nu),
+        outer_area_m2: b * h,
+    }
+}
+
+fn round_bar(d: f64, nu: f64) -> SectionProperties {
+    SectionProperties { shear_factor: 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu), ..round(d, d / 2.0, nu) }
 }
 
 #[cfg(test)]

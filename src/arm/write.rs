@@ -106,11 +106,15 @@ impl Section {
     pub fn to_json(&self) -> Value {
         match self {
             Section::RectangularTube { width_m, height_m, wall_m } => json!({
-                "shape": "rectangular_tube", "width_m": width_m, "height_m": height_m, "wall_m": wall_m,
+                "shape": self.shape(), "width_m": width_m, "height_m": height_m, "wall_m": wall_m,
             }),
             Section::RoundTube { diameter_m, wall_m } => json!({
-                "shape": "round_tube", "diameter_m": diameter_m, "wall_m": wall_m,
+                "shape": self.shape(), "diameter_m": diameter_m, "wall_m": wall_m,
             }),
+            Section::RectangularBar { width_m, height_m } => json!({
+                "shape": self.shape(), "width_m": width_m, "height_m": height_m,
+            }),
+            Section::RoundBar { diameter_m } => json!({"shape": self.shape(), "diameter_m": diameter_m}),
         }
     }
 }

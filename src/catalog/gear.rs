@@ -1,6 +1,7 @@
 //! Harmonic-drive (strain-wave) gears.
 
 use super::Provenance;
+use super::envelope::Envelope;
 
 /// Which printed mass of a gear is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -9,6 +10,20 @@ pub enum GearMass {
     ComponentSet,
     /// With cross-roller bearing and housing.
     HousedUnit,
+}
+
+/// What the vendor prints of a housed unit's output bearing, for the check of its moments, its static
+/// safety and its life. `None` is a figure the catalog does not give.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BearingRatings {
+    /// Pitch circle diameter dp of the rollers \[m\].
+    pub pitch_diameter_m: Option<f64>,
+    /// Distance R from the bearing's centre to the face of the output flange \[m\].
+    pub offset_m: Option<f64>,
+    /// Static load rating C0 \[N\].
+    pub static_load_rating_n: Option<f64>,
+    /// Dynamic load rating C \[N\].
+    pub dynamic_load_rating_n: Option<f64>,
 }
 
 /// One gear: series, size and ratio. `None` is a figure the catalog does not give.
@@ -56,8 +71,16 @@ pub struct Gear {
     pub transmission_accuracy_arcmin: Option<f64>,
     /// Tilting stiffness of the output bearing (housed unit) \[N m/rad\].
     pub tilting_stiffness_nm_per_rad: Option<f64>,
-    /// Permissible tilting moment of the output bearing \[N m\].
+    /// Permissible tilting moment of the output bearing while the gear runs \[N m\].
     pub permissible_tilting_moment_nm: Option<f64>,
+    /// Ratings of the output bearing (housed unit).
+    pub bearing: BearingRatings,
+    /// Torque at which the flexspline buckles \[N m\].
+    pub buckling_torque_nm: Option<f64>,
+    /// Torque at which the teeth jump \[N m\].
+    pub ratcheting_torque_nm: Option<f64>,
+    /// Outer size of the housed unit.
+    pub envelope: Envelope,
     /// Efficiency at rated torque and 2000 rpm.
     pub efficiency: Option<f64>,
     /// Where the row comes from.

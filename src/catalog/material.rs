@@ -49,7 +49,9 @@ pub struct Material {
     pub poisson: Option<f64>,
     /// Yield strength of a metal, strength of a composite \[Pa\].
     pub strength_pa: Option<f64>,
-    /// What kind of strength that is.
+    /// Strength in compression along the link \[Pa\]; `None` if it is that in tension or unknown.
+    pub compressive_strength_pa: Option<f64>,
+    /// What kind of strength `strength_pa` is.
     pub strength_kind: String,
     /// Cost of the raw material \[EUR/kg\].
     pub cost_eur_per_kg: Option<f64>,

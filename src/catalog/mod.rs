@@ -5,6 +5,7 @@
 //! rows of a folder of the user's; [`Catalogs::gear`] and its sisters find a part by name.
 
 pub(crate) mod efficiency;
+pub(crate) mod envelope;
 pub(crate) mod gear;
 pub(crate) mod load;
 pub(crate) mod lookup;
@@ -15,7 +16,8 @@ pub(crate) mod read;
 pub(crate) mod schema;
 
 pub use efficiency::{EfficiencyKind, EfficiencyPoint};
-pub use gear::{Gear, GearMass};
+pub use envelope::Envelope;
+pub use gear::{BearingRatings, Gear, GearMass};
 pub use load::Loaded;
 pub use lookup::{PartError, PartKind};
 pub use material::{Material, MaterialClass};
@@ -58,6 +60,27 @@ impl Confidence {
     pub fn from_word(word: &str) -> Option<Self> {
         let place = Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word))?;
         Some(*Self::ALL.get(place).unwrap_or(&Confidence::FromMemory))
+    }
+}
+
+impl Provenance {
+    /// What is said beside a part whose core figures no document was seen for: `from memory` or `representative`.
+    ///
+    /// ```
+    /// use armwright::catalog::Catalogs;
+    ///
+    /// let catalogs = Catalogs::builtin();
+    /// let caveat = |name| catalogs.material(name).expect("built in").provenance.caveat();
+    /// assert_eq!(caveat("Kevlar 49/epoxy quasi-isotropic"), Some("representative"));
+    /// assert_eq!(caveat("Structural steel S355"), None);
+    /// ```
+    pub fn caveat(&self) -> Option<&'static str> {
+        match self.confidence {
+            Confidence::Verified | Confidence::ThirdParty => None,
+            Confidence::FromMemory | Confidence::Representative => {
+                Some(Confidence::WORDS[self.confidence as usize])
+            }
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Motors: electric servo and hydraulic.
 
 use super::Provenance;
+use super::envelope::Envelope;
 use std::fmt;
 
 /// Families of motors, as the catalog's `type` column names them.
@@ -114,6 +115,8 @@ pub struct Motor {
     pub mass_kg: Option<f64>,
     /// Rated power \[W\].
     pub rated_power_w: Option<f64>,
+    /// Outer size; of a frameless motor, that of rotor and stator.
+    pub envelope: Envelope,
     /// Where the row comes from.
     pub provenance: Provenance,
 }

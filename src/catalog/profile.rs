@@ -32,8 +32,10 @@ impl fmt::Display for ProfileShape {
 }
 
 impl Profile {
-    /// Words of the column `material_family`. Stainless steel is steel.
-    pub const MATERIAL_FAMILIES: [&'static str; 4] = ["steel", "aluminium", "titanium", "composite"];
+    /// Words of the column `material_family`. `steel` is structural steel; stainless steel is sold in other
+    /// sizes and is a family of its own.
+    pub const MATERIAL_FAMILIES: [&'static str; 5] =
+        ["steel", "aluminium", "titanium", "composite", "stainless"];
 }
 
 /// One hollow profile. Corner radii are kept for information; mechanics uses sharp corners.
@@ -43,7 +45,7 @@ pub struct Profile {
     pub designation: String,
     /// Shape.
     pub shape: ProfileShape,
-    /// `steel`, `aluminium`, `titanium` or `composite`: the family of materials it is sold in.
+    /// One of [`Self::MATERIAL_FAMILIES`]: the family of materials it is sold in.
     pub material_family: String,
     /// Outer width (diameter of a round tube) \[m\].
     pub width_m: f64,

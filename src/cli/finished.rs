@@ -8,6 +8,7 @@ use crate::arm::effect::entry::Effect;
 use crate::catalog::Catalogs;
 use crate::pareto::hypervolume::front_hypervolume;
 use crate::report::budget::{PickBudget, budget_csv};
+use crate::report::caveats::Caveats;
 use crate::report::certificate::certificate_section;
 use crate::report::facts::{SummaryFacts, constraint_words};
 use crate::report::front_svg::{FrontPicture, PlottedFront, designs_of, mixed_designs};
@@ -187,6 +188,8 @@ impl Finished<'_> {
                 constraints: constraint_words(&study.space.constraints),
                 cases: self.judged_cases(),
                 not_checked: study.not_checked.clone(),
+                remarks: study.remarks.clone(),
+                caveats: Caveats::of(self.catalogs),
                 results: self.dir.display().to_string(),
             },
             overall,
@@ -266,6 +269,7 @@ impl Finished<'_> {
             "cases": summary.facts.cases,
             "materials": materials,
             "not_checked": study.not_checked,
+            "remarks": study.remarks,
             "effects": self.effects(),
             "effects_mass_kg": study.space.effects_mass_kg(),
             "carried_over": corrections::to_json(self.corrections),

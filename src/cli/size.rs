@@ -25,7 +25,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: armwright size light-arm\n         armwright size compare-materials --explain j2\n\n\
-                        Open links take the section in the middle of their options unless --design names one."
+                        Open links take the section of median mass unless --design names one."
 )]
 pub(crate) struct SizeArgs {
     /// A built-in study or a study file
@@ -77,7 +77,7 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     Ok(if args.json { json } else { text })
 }
 
-/// The most options of a link among which a middle one is looked for.
+/// The most options of a link among which the one of median mass is looked for.
 const MOST_OPTIONS: u32 = 4096;
 
 fn no_design(args: &SizeArgs, study: &Study) -> Failure {
@@ -85,14 +85,13 @@ fn no_design(args: &SizeArgs, study: &Study) -> Failure {
     Failure::Usage(format!("the study \"{}\" has no design \"{id}\"", study.name))
 }
 
-/// Takes the middle option of every open link and the first drive that holds for every joint with `all_fits`.
+/// Takes the option of median mass of every open link and the first drive that holds for every joint with `all_fits`.
 fn middle(problem: &ArmProblem) -> Vec<u32> {
     let mut out = Vec::new();
     for (piece, what) in problem.space().pieces.iter().enumerate().rev() {
         match (what, problem.sized_joint(piece)) {
             (SpacePiece::Choice(choice), _) => {
-                let option = nearest_to_middle(problem, &out, piece, choice.options.len() as u32);
-                out.push(option);
+                out.push(nearest_to_median(problem, &out, piece, &choice.by_mass()));
             }
             (_, Some(sized)) if sized.is_level() => out.push(first_fit_so_far(problem, &out, piece)),
             _ => {}
@@ -101,16 +100,16 @@ fn middle(problem: &ArmProblem) -> Vec<u32> {
     out
 }
 
-/// The option nearest to the middle that keeps the link's own limits.
-fn nearest_to_middle(problem: &ArmProblem, outboard: &[u32], piece: usize, options: u32) -> u32 {
-    let middle = options / 2;
-    let mut order: Vec<u32> = (0..options).collect();
-    order.sort_by_key(|&o| o.abs_diff(middle));
+/// The option nearest to the median that keeps the link's own limits; `by_mass` goes from the lightest to the heaviest.
+fn nearest_to_median(problem: &ArmProblem, outboard: &[u32], piece: usize, by_mass: &[u32]) -> u32 {
+    let median = by_mass.len() / 2;
+    let mut order: Vec<usize> = (0..by_mass.len()).collect();
+    order.sort_by_key(|&rank| rank.abs_diff(median));
     let holds = |&option: &u32| match problem.walk(&[outboard, &[option]].concat(), |_, _| {}) {
         Ok(_) => true,
         Err(slot) => problem.piece_of_slot(slot) != piece,
     };
-    order.into_iter().find(holds).unwrap_or(middle)
+    order.into_iter().map(|rank| by_mass[rank]).find(holds).unwrap_or(by_mass[median])
 }
 
 fn first_fit_so_far(problem: &ArmProblem, outboard: &[u32], piece: usize) -> u32 {

@@ -1,5 +1,6 @@
 //! What a run knows besides its fronts.
 
+use super::caveats::Caveats;
 use super::number::{shortest, significant};
 use crate::space::constraint::Constraints;
 
@@ -33,6 +34,10 @@ pub struct SummaryFacts {
     pub cases: Vec<String>,
     /// Parts and options left out because a rating is unknown, in words.
     pub not_checked: Vec<String>,
+    /// What a reader of the result should know of the question, in sentences.
+    pub remarks: Vec<String>,
+    /// Parts whose figures no document was seen for.
+    pub caveats: Caveats,
     /// Result folder as it is typed.
     pub results: String,
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod braille;
 pub mod budget;
+pub mod caveats;
 pub(crate) mod certificate;
 pub mod compare;
 pub mod facts;

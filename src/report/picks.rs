@@ -1,5 +1,6 @@
 //! The designs of a front that a reader looks for first: lightest, stiffest, highest mode, knee.
 
+use super::caveats::Caveats;
 use super::front_table::FrontTable;
 use super::number::significant;
 use super::tube::tube_size;
@@ -174,25 +175,33 @@ pub fn picks(designs: &[Design]) -> Vec<Pick> {
 /// The choices of a row in words, link by link and joint by joint as the columns come:
 /// `upper_arm 120 x 100 x 3 mm Aluminium 6061-T6`.
 pub fn choices(front: &FrontTable, row: usize) -> Vec<String> {
+    marked_choices(front, row, &Caveats::default())
+}
+
+/// [`choices`] with what is said beside their parts: `CFRP (representative)`, `F11-10 (from memory)`.
+pub fn marked_choices(front: &FrontTable, row: usize, caveats: &Caveats) -> Vec<String> {
     let cell = |name: &str| front.column(name).map(|c| front.rows[row][c].as_str()).filter(|c| !c.is_empty());
     let piece = |column: &String| {
         if let Some(link) = column.strip_suffix("_material") {
-            let is_round = cell(&format!("{link}_shape")).is_some_and(|s| s.starts_with("round"));
+            let shape = cell(&format!("{link}_shape")).unwrap_or_default();
             let sizes = ["width_mm", "height_mm", "wall_mm"].map(|s| cell(&format!("{link}_{s}")));
             let known: Vec<&str> = sizes.into_iter().flatten().collect();
             let size = match sizes {
                 [Some(width), Some(height), Some(wall)] => {
-                    format!(" {}", tube_size(is_round, [width, height, wall]))
+                    format!(" {}", tube_size(shape, [width, height, wall]))
                 }
                 [None, None, None] => String::new(),
                 // a table of another program may lack some of the columns
                 _ => format!(" {} mm", known.join(" x ")),
             };
-            return cell(column).map(|material| format!("{link}{size} {material}"));
+            let profile = cell(&format!("{link}_profile")).and_then(|profile| caveats.of_part(profile));
+            let of_profile = profile.map_or(String::new(), |caveat| format!(" (profile {caveat})"));
+            return cell(column)
+                .map(|material| format!("{link}{size} {}{of_profile}", caveats.marked(material)));
         }
         let joint = column.strip_suffix("_gear")?;
-        let parts: Vec<&str> =
-            [cell(column), cell(&format!("{joint}_motor"))].into_iter().flatten().collect();
+        let parts = [cell(column), cell(&format!("{joint}_motor"))];
+        let parts: Vec<String> = parts.into_iter().flatten().map(|part| caveats.marked(part)).collect();
         (!parts.is_empty()).then(|| format!("{joint} {}", parts.join(" + ")))
     };
     front.columns.iter().filter_map(piece).collect()

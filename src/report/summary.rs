@@ -6,7 +6,7 @@ use super::compare::text::short_labels;
 use super::facts::SummaryFacts;
 use super::front_table::FrontTable;
 use super::number::{cost_words, grouped, large, percent_of, significant};
-use super::picks::{Design, Objective, Pick, best, choices, designs, knee, materials, picks};
+use super::picks::{Design, Objective, Pick, best, designs, knee, marked_choices, materials, picks};
 use super::table::{Column, Table};
 use super::words::{TERMINAL, and, capital, wrap};
 
@@ -51,7 +51,7 @@ pub fn summary_md(input: &SummaryInput) -> String {
         out.push_str("\n![The front](front.svg)\n");
         out.push_str(&format!("\n## Picks\n\n{}\n", picks_table(&found.picks, MARKDOWN_PICKS).to_markdown()));
         for pick in &found.picks {
-            let choices = choices(&input.overall, pick.design.row).join("; ");
+            let choices = marked_choices(&input.overall, pick.design.row, &facts.caveats).join("; ");
             out.push_str(&format!(
                 "- {} ({}): {choices}{}\n",
                 pick.names.join(", "),
@@ -76,6 +76,10 @@ pub fn summary_md(input: &SummaryInput) -> String {
         listed(&facts.constraints),
         listed(&facts.cases)
     ));
+    if !facts.remarks.is_empty() {
+        out.push_str("\n## Remarks\n\n");
+        facts.remarks.iter().for_each(|words| out.push_str(&format!("- {words}\n")));
+    }
     if !facts.not_checked.is_empty() {
         out.push_str("\n## Not checked\n\n");
         facts.not_checked.iter().for_each(|words| out.push_str(&format!("- {words}\n")));
@@ -100,6 +104,8 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
     if !found.picks.is_empty() {
         out.push_str(&format!("\n{}", small_plots(&found.designs)));
         out.push_str(&format!("\n{}", picks_table(&found.picks, TERMINAL_PICKS).to_text()));
+        let picked: Vec<_> = found.picks.iter().map(|p| (p.names.join(", "), p.design.row)).collect();
+        out.push_str(&facts.caveats.sentence(&input.overall, &picked));
         let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
         if !names.is_empty() {
             out.push_str(&format!(
@@ -110,6 +116,7 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
         out.push_str(&format!("\n{}", budget_text(&input.budgets, TERMINAL)));
     }
     out.push_str(&format!("\n{}", wrap(&counts(facts), TERMINAL, "")));
+    facts.remarks.iter().for_each(|words| out.push_str(&wrap(words, TERMINAL, "")));
     if !facts.not_checked.is_empty() {
         let words = format!("Options or parts not checked: {}; see summary.md.", facts.not_checked.len());
         out.push_str(&wrap(&words, TERMINAL, ""));

@@ -1,13 +1,15 @@
-//! The size of a tube in words: a round tube has one diameter and is never written like a square one.
+//! The size of a section in words: a round one has one diameter and is never written like a square one, a bar has no wall.
 
 use crate::arm::section::Section;
 
-/// Outer size and wall of a tube, `60 x 40 x 2 mm` or `Ø60 x 2 mm`; the numbers are written by the caller, in
-/// millimetres: width, height, wall.
-pub(crate) fn tube_size(is_round: bool, [width, height, wall]: [&str; 3]) -> String {
-    match is_round {
-        true => format!("Ø{width} x {wall} mm"),
-        false => format!("{width} x {height} x {wall} mm"),
+/// Outer size and wall of a section, `60 x 40 x 2 mm`, `Ø60 x 2 mm` or `60 x 40 mm bar`; the numbers are written by the
+/// caller, in millimetres: width, height, wall. `shape` is the word that files use ([`Section::shape`]).
+pub(crate) fn tube_size(shape: &str, [width, height, wall]: [&str; 3]) -> String {
+    match (shape.starts_with("round"), shape.ends_with("bar")) {
+        (true, false) => format!("Ø{width} x {wall} mm"),
+        (true, true) => format!("Ø{width} mm bar"),
+        (false, false) => format!("{width} x {height} x {wall} mm"),
+        (false, true) => format!("{width} x {height} mm bar"),
     }
 }
 
@@ -18,8 +20,7 @@ pub(crate) fn section_size(
     wall: impl Fn(f64) -> String,
 ) -> String {
     let (width_m, height_m) = section.outer_m();
-    let is_round = matches!(section, Section::RoundTube { .. });
-    tube_size(is_round, [&outer(width_m), &outer(height_m), &wall(section.wall_m())])
+    tube_size(section.shape(), [&outer(width_m), &outer(height_m), &wall(section.wall_m())])
 }
 
 #[cfg(test)]
@@ -34,5 +35,14 @@ mod tests {
         let square = Section::RectangularTube { width_m: 0.06, height_m: 0.06, wall_m: 0.002 };
         assert_eq!(section_size(&round, whole, tenths), "Ø60 x 2.0 mm");
         assert_eq!(section_size(&square, whole, tenths), "60 x 60 x 2.0 mm");
+    }
+
+    #[test]
+    fn a_bar_is_written_without_a_wall() {
+        let whole = |m: f64| format!("{:.0}", m * 1e3);
+        let flat = Section::RectangularBar { width_m: 0.06, height_m: 0.02 };
+        let round = Section::RoundBar { diameter_m: 0.03 };
+        assert_eq!(section_size(&flat, whole, whole), "60 x 20 mm bar");
+        assert_eq!(section_size(&round, whole, whole), "Ø30 mm bar");
     }
 }

@@ -50,6 +50,10 @@ pub(crate) fn gear(
         transmission_accuracy_arcmin: None,
         tilting_stiffness_nm_per_rad: None,
         permissible_tilting_moment_nm: None,
+        bearing: Default::default(),
+        buckling_torque_nm: None,
+        ratcheting_torque_nm: None,
+        envelope: Default::default(),
         efficiency: Some(0.78),
         provenance: provenance(),
     }
@@ -74,6 +78,7 @@ pub(crate) fn motor(
         rotor_inertia_kgm2: Some(inertia),
         mass_kg: Some(mass_kg),
         rated_power_w: None,
+        envelope: Default::default(),
         provenance: provenance(),
     }
 }

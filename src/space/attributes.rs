@@ -2,7 +2,6 @@
 
 use super::design_space::{DesignSpace, LinkOption};
 use super::station::Place;
-use crate::arm::section::Section;
 use nalgebra::{Vector3, Vector6};
 
 /// What the search needs to know of a link option in addition to its mechanics.
@@ -34,21 +33,13 @@ impl StressCheck {
     pub(crate) fn new(option: &LinkOption) -> Option<Self> {
         let p = option.section.properties(option.material.poisson);
         let (width, height) = option.section.outer_m();
-        let wall = option.section.wall_m();
-        let round = matches!(option.section, Section::RoundTube { .. });
-        // a round tube has an exact solution, largest on its outside; a rectangular one follows Bredt's formula, in
-        // which the area is the one that the middle line of the wall encloses
-        let per_torsion = match round {
-            true => width / 2.0 / p.torsion_constant_m4,
-            false => 1.0 / (2.0 * (width - wall) * (height - wall) * wall),
-        };
         Some(Self {
             per_axial_n: 1.0 / p.area_m2,
             per_moment_y: height / 2.0 / p.second_moment_y_m4,
             per_moment_z: width / 2.0 / p.second_moment_z_m4,
-            per_torsion,
-            round,
-            strength_pa: option.strength_pa?,
+            per_torsion: p.torsion_shear_per_m3,
+            round: option.section.is_round(),
+            strength_pa: option.lower_strength_pa()?,
         })
     }
 
@@ -85,7 +76,7 @@ pub(crate) fn attributes_of(space: &DesignSpace, option: &LinkOption, length_m: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arm::section::LinkMaterial;
+    use crate::arm::section::{LinkMaterial, Section};
 
     /// `τ = T r / J` on the outside of a round tube with a thick wall; Bredt's formula gives a sixth less here.
     #[test]

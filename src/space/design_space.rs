@@ -197,8 +197,10 @@ pub struct LinkOption {
     pub section: Section,
     /// Designation, if the section is a catalog profile.
     pub profile: Option<String>,
-    /// Strength of the material \[Pa\].
+    /// Strength of the material \[Pa\]; that in tension if it has another in compression.
     pub strength_pa: Option<f64>,
+    /// Strength of the material in compression \[Pa\]; `None` if it is the same.
+    pub compressive_strength_pa: Option<f64>,
     /// Cost of the material \[EUR/kg\].
     pub cost_eur_per_kg: Option<f64>,
 }
@@ -225,8 +227,16 @@ impl LinkOption {
             section,
             profile: None,
             strength_pa: None,
+            compressive_strength_pa: None,
             cost_eur_per_kg: None,
         }
+    }
+
+    /// The strength that a stress is compared with \[Pa\]. Bending pulls one side of a link and presses the other, so that
+    /// the lower one counts.
+    pub fn lower_strength_pa(&self) -> Option<f64> {
+        let tensile_pa = self.strength_pa?;
+        Some(self.compressive_strength_pa.map_or(tensile_pa, |pa| pa.min(tensile_pa)))
     }
 
     /// Mass per length \[kg/m\].
@@ -234,13 +244,14 @@ impl LinkOption {
         self.material.density_kg_m3 * self.section.properties(self.material.poisson).area_m2
     }
 
-    /// Wall slenderness: the larger flat width (or the diameter) over the wall thickness.
+    /// Wall slenderness: the larger flat width (or the diameter) over the wall thickness. A bar has none.
     pub fn wall_slenderness(&self) -> f64 {
         let (width, height) = self.section.outer_m();
         let wall = self.section.wall_m();
         match self.section {
             Section::RectangularTube { .. } => (width.max(height) - 2.0 * wall) / wall,
             Section::RoundTube { .. } => width / wall,
+            Section::RectangularBar { .. } | Section::RoundBar { .. } => 0.0,
         }
     }
 }

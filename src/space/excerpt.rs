@@ -70,15 +70,18 @@ impl DesignSpace {
         Some(out)
     }
 
-    /// The space with at most `most` options for every open link, taken from the middle of its list.
+    /// The space with at most `most` options for every open link: those of middling mass.
     pub fn middle(&self, most: u32) -> DesignSpace {
         let mut out = self.clone();
         for piece in &mut out.pieces {
             if let SpacePiece::Choice(choice) = piece
                 && choice.options.len() as u32 > most
             {
-                let first = choice.options.len() as u32 / 2 - most / 2;
-                choice.keep((first..first + most).collect());
+                let by_mass = choice.by_mass();
+                let first = by_mass.len() / 2 - most as usize / 2;
+                let mut kept = by_mass[first..first + most as usize].to_vec();
+                kept.sort_unstable();
+                choice.keep(kept);
             }
         }
         out.renumber_materials();
@@ -107,6 +110,14 @@ impl DesignSpace {
 
 impl LinkChoice {
     /// Keeps the options at these places of the whole list.
+    /// Places of the options from the lightest to the heaviest; among equals, as they are listed.
+    pub(crate) fn by_mass(&self) -> Vec<u32> {
+        let kg_per_m: Vec<f64> = self.options.iter().map(LinkOption::mass_kg_per_m).collect();
+        let mut places: Vec<u32> = (0..self.options.len() as u32).collect();
+        places.sort_by(|&a, &b| kg_per_m[a as usize].total_cmp(&kg_per_m[b as usize]));
+        places
+    }
+
     fn keep(&mut self, places: Vec<u32>) {
         let of = self.options.len() as u32;
         self.options = places.iter().map(|&i| self.options[i as usize].clone()).collect();

@@ -16,4 +16,6 @@ pub struct Study {
     pub gap: f64,
     /// Options left out because a rating that a check needs is unknown, in words.
     pub not_checked: Vec<String>,
+    /// What a reader of the result should know of the question, in sentences.
+    pub remarks: Vec<String>,
 }

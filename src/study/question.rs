@@ -78,6 +78,7 @@ fn asked_link(choice: &LinkChoice) -> AskedLink {
         material: option.material,
         section: option.section,
         strength_pa: option.strength_pa,
+        compressive_strength_pa: option.compressive_strength_pa,
         cost_eur_per_kg: option.cost_eur_per_kg,
     };
     AskedLink {

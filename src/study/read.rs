@@ -6,7 +6,7 @@
 
 use super::definition::Study;
 use super::effects::check_effects;
-use super::sections::{read_materials, read_sections};
+use super::sections::{Aside, read_materials, read_sections};
 use crate::arm::file::{read_curve, read_effects, read_joint_mass, read_link, read_name};
 use crate::arm::load::Payload;
 use crate::arm::load::{read_pose, vector, word};
@@ -79,10 +79,10 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let gap = root.or("gap_percent", 0.0, read_gap);
     let filter = root.or("drives", Drives::default(), |n| read_drives(n, catalogs));
     let constraints = root.or("constraints", Constraints::default(), read_constraints);
-    let mut not_checked = Vec::new();
+    let mut aside = Aside::default();
     let chain = root.required("chain").and_then(|n| {
         let open = Open { catalogs, drives: filter.as_ref()?, constraints: constraints.as_ref()? };
-        read_chain(&n, &open, &mut not_checked)
+        read_chain(&n, &open, &mut aside)
     });
     let joints = joint_names(node);
     let cases = read_cases(&root, &joints);
@@ -106,7 +106,8 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         effects: effects?,
     };
     check_effects(&space, &root)?;
-    Some(Study { name: name?, question: question?, space, gap: gap?, not_checked })
+    let Aside { not_checked, remarks } = aside;
+    Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
 
 /// A fraction, written in percent.
@@ -256,7 +257,7 @@ fn read_motor_kinds(node: &Node) -> Option<Vec<MotorKind>> {
     Some(read.into_iter().collect::<Option<Vec<_>>>()?.concat())
 }
 
-fn read_chain(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> Option<Vec<SpacePiece>> {
+fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePiece>> {
     let items = node.array()?;
     if items.is_empty() {
         return node.fault("is empty", "an arm has at least one joint or link");
@@ -265,7 +266,7 @@ fn read_chain(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> Option
         .iter()
         .map(|n| match n.value().get("type").and_then(|v| v.as_str()) {
             Some("joint") => read_space_joint(n, open).map(SpacePiece::Joint),
-            Some("link") => read_space_link(n, open, not_checked),
+            Some("link") => read_space_link(n, open, aside),
             _ => n.fault("has no \"type\" of \"joint\" or \"link\"", "add \"type\": \"joint\" or \"link\""),
         })
         .collect();
@@ -359,7 +360,7 @@ fn read_given_drive(object: &Object, open: &Open) -> Option<DriveChoice> {
     Some(DriveChoice::Given { curve: curve?, mass_kg: mass_kg?, gear, motor })
 }
 
-fn read_space_link(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> Option<SpacePiece> {
+fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpacePiece> {
     let object = node.object(&["type", "name", "vector_m", "material", "section", "mass_kg", "choose"])?;
     let Some(choose) = object.optional("choose") else {
         return read_link(&object, &[], open.catalogs).map(SpacePiece::Link);
@@ -378,7 +379,7 @@ fn read_space_link(node: &Node, open: &Open, not_checked: &mut Vec<String>) -> O
     let materials = choices.required("materials").and_then(|n| read_materials(&n, open.catalogs));
     let sections = choices.required("sections").and_then(|n| read_sections(&n, open.catalogs));
     let options =
-        super::sections::options(&materials?, &sections?, open.constraints, name.as_deref()?, not_checked);
+        super::sections::options(&materials?, &sections?, open.constraints, name.as_deref()?, aside);
     Some(SpacePiece::Choice(LinkChoice { name: name?, vector_m: vector_m?, options, excerpt: None }))
 }
 

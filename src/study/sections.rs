@@ -4,10 +4,10 @@ use crate::arm::section::{LinkMaterial, Section};
 use crate::catalog::Catalogs;
 use crate::catalog::material::Material;
 use crate::catalog::profile::{Profile, ProfileShape};
-use crate::input::json::{Node, closest};
+use crate::input::json::{Node, Object, closest};
 use crate::space::constraint::Constraints;
 use crate::space::design_space::LinkOption;
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 
 const DEFAULT_POISSON: f64 = 0.3;
 /// Most points of a grid; more would be a mistake in the step.
@@ -16,6 +16,15 @@ const MOST_POINTS: usize = 100_000;
 /// Sections to choose from.
 pub(super) struct Sections {
     sections: Vec<(Section, Option<ProfileName>)>,
+}
+
+/// What is said beside the result about options of links.
+#[derive(Default)]
+pub(super) struct Aside {
+    /// Options left out because a rating that a check needs is unknown.
+    pub not_checked: Vec<String>,
+    /// What a reader of the result should know.
+    pub remarks: Vec<String>,
 }
 
 /// A profile and the family of materials it is sold in.
@@ -71,10 +80,9 @@ pub(super) fn read_sections(node: &Node, catalogs: &Catalogs) -> Option<Sections
 }
 
 /// The identity of a section, to find duplicates.
-fn identity((section, profile): &Named) -> (bool, [u64; 3], Option<ProfileName>) {
-    let is_round = matches!(section, Section::RoundTube { .. });
+fn identity((section, profile): &Named) -> (&'static str, [u64; 3], Option<ProfileName>) {
     let (width_m, height_m) = section.outer_m();
-    (is_round, [width_m, height_m, section.wall_m()].map(f64::to_bits), profile.clone())
+    (section.shape(), [width_m, height_m, section.wall_m()].map(f64::to_bits), profile.clone())
 }
 
 type Named = (Section, Option<ProfileName>);
@@ -86,35 +94,52 @@ fn read_family(node: &Node, catalogs: &Catalogs) -> Option<Vec<Named>> {
     match node.value().get("shape").and_then(|v| v.as_str()) {
         Some("rectangular_tube") => read_rectangular(node),
         Some("round_tube") => read_round(node),
-        _ => node
-            .fault("has no known \"shape\"", "choose rectangular_tube or round_tube, or give \"profiles\""),
+        Some("rectangular_bar") => read_rectangular_bar(node),
+        Some("round_bar") => read_round_bar(node),
+        _ => node.fault(
+            "has no known \"shape\"",
+            "choose rectangular_tube, round_tube, rectangular_bar or round_bar, or give \"profiles\"",
+        ),
     }
 }
 
 fn read_rectangular(node: &Node) -> Option<Vec<Named>> {
     let object = node.object(&["shape", "width_mm", "height_mm", "wall_mm"])?;
-    let widths = object.required("width_mm").and_then(|n| read_grid(&n));
-    let square = object.optional("height_mm").is_none_or(|n| n.value().as_str() == Some("=width"));
-    let heights = match square {
-        true => Some(Vec::new()),
-        false => object.required("height_mm").and_then(|n| read_grid(&n)),
-    };
+    let outlines = read_outlines(&object);
     let walls = object.required("wall_mm").and_then(|n| read_grid(&n));
-    let (widths, heights, walls) = (widths?, heights?, walls?);
+    let (outlines, walls) = (outlines?, walls?);
     let mut out = Vec::new();
-    for &width in &widths {
-        for &height in if square { std::slice::from_ref(&width) } else { &heights } {
-            for &wall in walls.iter().filter(|&&t| 2.0 * t < width.min(height)) {
-                let section = Section::RectangularTube {
-                    width_m: width / 1e3,
-                    height_m: height / 1e3,
-                    wall_m: wall / 1e3,
-                };
-                out.push((section, None));
-            }
+    for (width, height) in outlines {
+        for &wall in walls.iter().filter(|&&t| 2.0 * t < width.min(height)) {
+            let section =
+                Section::RectangularTube { width_m: width / 1e3, height_m: height / 1e3, wall_m: wall / 1e3 };
+            out.push((section, None));
         }
     }
     Some(out)
+}
+
+fn read_rectangular_bar(node: &Node) -> Option<Vec<Named>> {
+    let outlines = read_outlines(&node.object(&["shape", "width_mm", "height_mm"])?)?;
+    let bar = |(w, h)| (Section::RectangularBar { width_m: w / 1e3, height_m: h / 1e3 }, None);
+    Some(outlines.into_iter().map(bar).collect())
+}
+
+/// Reads `width_mm` and `height_mm`: every pair of them, or squares where no height is given.
+fn read_outlines(object: &Object) -> Option<Vec<(f64, f64)>> {
+    let widths = object.required("width_mm").and_then(|n| read_grid(&n));
+    if object.optional("height_mm").is_none_or(|n| n.value().as_str() == Some("=width")) {
+        return Some(widths?.into_iter().map(|width| (width, width)).collect());
+    }
+    let heights = object.required("height_mm").and_then(|n| read_grid(&n));
+    let (widths, heights) = (widths?, heights?);
+    Some(widths.iter().flat_map(|&w| heights.iter().map(move |&h| (w, h))).collect())
+}
+
+fn read_round_bar(node: &Node) -> Option<Vec<Named>> {
+    let object = node.object(&["shape", "diameter_mm"])?;
+    let diameters = object.required("diameter_mm").and_then(|n| read_grid(&n))?;
+    Some(diameters.into_iter().map(|d| (Section::RoundBar { diameter_m: d / 1e3 }, None)).collect())
 }
 
 fn read_round(node: &Node) -> Option<Vec<Named>> {
@@ -134,10 +159,13 @@ fn read_round(node: &Node) -> Option<Vec<Named>> {
 fn read_profiles(node: &Node, catalogs: &Catalogs) -> Option<Vec<Named>> {
     let object = node.object(&["profiles"])?.required("profiles")?;
     let object = object.object(&["family", "shapes", "max_outer_mm"])?;
-    let families: Vec<&str> = catalogs.profiles.iter().map(|p| p.material_family.as_str()).collect();
+    let families: BTreeSet<&str> = catalogs.profiles.iter().map(|p| p.material_family.as_str()).collect();
     let family = object.required("family").and_then(|n| match n.string()? {
-        family if families.contains(&family) => Some(family),
-        family => n.fault(format!("\"{family}\" has no profiles"), "choose steel or aluminium"),
+        family if families.contains(family) => Some(family),
+        family => n.fault(
+            format!("\"{family}\" has no profiles"),
+            &format!("choose one of: {}", families.iter().copied().collect::<Vec<_>>().join(", ")),
+        ),
     });
     let shapes = object.or("shapes", None, |n| read_shapes(n).map(Some));
     let largest_mm = object.or("max_outer_mm", f64::INFINITY, Node::positive);
@@ -209,19 +237,39 @@ fn sold_in(family: &str, material: &Material) -> bool {
     }
 }
 
+/// Word in the names of stainless steels, and their family of profiles.
+const STAINLESS: &str = "stainless";
+
+/// Says so where a link of catalog profiles offers stainless steel, but no profile that is sold in it: structural steel
+/// sections are not.
+fn stainless_without_profiles(materials: &[&Material], sections: &Sections, link: &str) -> Option<String> {
+    let families: HashSet<&str> =
+        sections.sections.iter().filter_map(|(_, profile)| Some(profile.as_ref()?.family.as_str())).collect();
+    let stainless: Vec<&str> =
+        materials.iter().filter(|m| sold_in(STAINLESS, m)).map(|m| m.name.as_str()).collect();
+    (!stainless.is_empty() && !families.is_empty() && !families.contains(STAINLESS)).then(|| {
+        format!(
+            "Link {link} offers {} without profiles of the family \"{STAINLESS}\": steel profiles are structural steel \
+             and not sold in it.",
+            stainless.join(" and ")
+        )
+    })
+}
+
 /// Materials times sections. Options that lack a rating that a constraint needs are left out and listed.
 pub(super) fn options(
     materials: &[&Material],
     sections: &Sections,
     constraints: &Constraints,
     link: &str,
-    not_checked: &mut Vec<String>,
+    aside: &mut Aside,
 ) -> Vec<LinkOption> {
+    aside.remarks.extend(stainless_without_profiles(materials, sections, link));
     let mut out = Vec::new();
     for material in materials {
         let Some(shear_modulus_pa) = material.shear_modulus_pa else { continue };
         if let Some(missing) = missing_rating(material, constraints) {
-            not_checked.push(format!("link {link}: {} has no {missing} in the catalog", material.name));
+            aside.not_checked.push(format!("link {link}: {} has no {missing} in the catalog", material.name));
             continue;
         }
         let elastic = LinkMaterial {
@@ -241,6 +289,7 @@ pub(super) fn options(
                 section: *section,
                 profile: profile.as_ref().map(|p| p.designation.clone()),
                 strength_pa: material.strength_pa,
+                compressive_strength_pa: material.compressive_strength_pa,
                 cost_eur_per_kg: material.cost_eur_per_kg,
             });
         }

@@ -1,7 +1,6 @@
 //! A front as a table: every choice, objective and margin of every design.
 
 use super::outcome::Front;
-use crate::arm::section::Section;
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
 use crate::report::tube::tube_size;
@@ -97,13 +96,9 @@ fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::outcome::Judge
 
 fn link_cells(option: &LinkOption) -> [String; 6] {
     let (width, height) = option.section.outer_m();
-    let shape = match option.section {
-        Section::RectangularTube { .. } => "rectangular_tube",
-        Section::RoundTube { .. } => "round_tube",
-    };
     [
         option.material_name.clone(),
-        shape.to_string(),
+        option.section.shape().to_string(),
         millimetres(width),
         millimetres(height),
         millimetres(option.section.wall_m()),
@@ -114,7 +109,7 @@ fn link_cells(option: &LinkOption) -> [String; 6] {
 /// A tube in words: `120 x 100 x 3 mm Aluminium 6061-T6`.
 pub(super) fn link_words(option: &LinkOption) -> String {
     let [material, shape, width, height, wall, _] = link_cells(option);
-    format!("{} {material}", tube_size(shape == "round_tube", [&width, &height, &wall]))
+    format!("{} {material}", tube_size(&shape, [&width, &height, &wall]))
 }
 
 /// A length as the millimetres it was given in: the shortest decimal that reads back the same.

@@ -114,8 +114,10 @@ pub struct AskedTube {
     pub material: LinkMaterial,
     /// Cross-section.
     pub section: Section,
-    /// Strength of the material \[Pa\]; unknown strengths are not checked.
+    /// Strength of the material in tension \[Pa\]; unknown strengths are not checked.
     pub strength_pa: Option<f64>,
+    /// Strength in compression \[Pa\], if it is another.
+    pub compressive_strength_pa: Option<f64>,
     /// Cost of the material \[EUR/kg\].
     pub cost_eur_per_kg: Option<f64>,
 }

@@ -128,6 +128,7 @@ pub(super) fn is_too_slender(question: &Question, section: &Section) -> bool {
     let slenderness = match section {
         Section::RectangularTube { .. } => (width_m.max(height_m) - 2.0 * wall_m) / wall_m,
         Section::RoundTube { .. } => width_m / wall_m,
+        Section::RectangularBar { .. } | Section::RoundBar { .. } => return false,
     };
     question.limits.wall_slenderness_max.is_some_and(|most| slenderness > most)
 }
@@ -138,23 +139,19 @@ fn keys(tube: &TubeNumbers) -> Vec<f64> {
     vec![1.5 * tube.mass_kg.ln(), bending_y, bending_z, 0.3 * torsion]
 }
 
-/// Stress per axial force, moment about y, moment about z and torque, each over the strength. Bending and torsion are
-/// largest on the outside of a round tube. Torsion of a rectangular tube is by Bredt's formula, with the area inside
-/// the middle line of its wall.
+/// Stress per axial force, moment about y, moment about z and torque, each over the strength. A link in bending is pulled
+/// as much as it is pressed, so the lower of its two strengths decides. Bending and torsion are largest on the outside of
+/// a round tube.
 fn stresses(tube: &AskedTube) -> [f64; STRESSES] {
-    let Some(strength_pa) = tube.strength_pa else { return [0.0; STRESSES] };
+    let Some(tensile_pa) = tube.strength_pa else { return [0.0; STRESSES] };
+    let strength_pa = tensile_pa.min(tube.compressive_strength_pa.unwrap_or(f64::INFINITY));
     let section = tube.section.properties(tube.material.poisson);
     let (width_m, height_m) = tube.section.outer_m();
-    let wall_m = tube.section.wall_m();
-    let per_torque = match tube.section {
-        Section::RoundTube { .. } => width_m / (2.0 * section.torsion_constant_m4),
-        Section::RectangularTube { .. } => 0.5 / ((width_m - wall_m) * (height_m - wall_m) * wall_m),
-    };
     let per_load = [
         1.0 / section.area_m2,
         height_m / (2.0 * section.second_moment_y_m4),
         width_m / (2.0 * section.second_moment_z_m4),
-        per_torque,
+        section.torsion_shear_per_m3,
     ];
     per_load.map(|per| per / strength_pa)
 }
@@ -212,7 +209,7 @@ impl TubeNumbers {
         let kg_per_m = tube.material.density_kg_m3 * tube.section.properties(tube.material.poisson).area_m2;
         let piece = question.link_piece(choice.with_tube(tube));
         let numbers = Self::new(question, &piece, kg_per_m * choice.vector_m.norm(), waters);
-        let is_round = tube.strength_pa.is_some() && matches!(tube.section, Section::RoundTube { .. });
+        let is_round = tube.strength_pa.is_some() && tube.section.is_round();
         Self { stresses: stresses(tube), round: f64::from(u8::from(is_round)), ..numbers }
     }
 

@@ -49,7 +49,7 @@ fn the_built_in_catalogs_have_all_their_rows() {
     assert_eq!(catalogs.motors.len(), 91);
     assert_eq!(catalogs.motors.iter().filter(|m| m.kind.is_hydraulic()).count(), 11);
     assert_eq!(catalogs.materials.len(), 41);
-    assert_eq!(catalogs.profiles.len(), 375);
+    assert_eq!(catalogs.profiles.len(), 435);
     assert_eq!(catalogs.efficiency.len(), 42);
 }
 
@@ -132,6 +132,7 @@ fn a_blank_cell_is_unknown_and_never_zero() {
     let catalogs = Catalogs::builtin();
     let shg = catalogs.gear("SHG-65-160").expect("built in");
     assert_eq!((shg.average_input_speed_limit_rpm, shg.mass_component_set_kg), (None, None));
+    assert_eq!((shg.buckling_torque_nm, shg.envelope.hollow_bore_m), (None, Some(0.08)));
     let orbital = catalogs.motor("J 8.2").expect("built in");
     assert_eq!((orbital.kind, orbital.rotor_inertia_kgm2), (MotorKind::HydraulicOrbital, None));
     assert!(catalogs.motors.iter().all(|m| m.mass_kg != Some(0.0) && m.rotor_inertia_kgm2 != Some(0.0)));
@@ -142,11 +143,48 @@ fn every_row_knows_its_file_line_and_trust() {
     let catalogs = Catalogs::builtin();
     let gear = catalogs.gear("HFUC-14-30").expect("built in");
     assert_eq!((gear.provenance.file.as_str(), gear.provenance.line), ("built-in gears.csv", 2));
-    assert_eq!(gear.provenance.unverified_fields, ["mass_component_set_kg", "efficiency_rated_2000rpm"]);
+    let unverified = &gear.provenance.unverified_fields;
+    assert_eq!(unverified[..2], ["mass_component_set_kg", "efficiency_rated_2000rpm"]);
+    assert!(!unverified.iter().any(|f| f.starts_with("bearing_")), "{unverified:?}");
     let motor = catalogs.motor("F11-10").expect("built in");
     assert_eq!(motor.provenance.confidence, Confidence::FromMemory);
     let unverified = &motor.provenance.unverified_fields;
     assert!(unverified.iter().any(|f| f == "rated_torque_nm") && !unverified.iter().any(|f| f == "mass_kg"));
+}
+
+#[test]
+fn every_housed_unit_has_the_figures_its_output_bearing_is_checked_with() {
+    for gear in &Catalogs::builtin().gears {
+        let bearing = gear.bearing;
+        let figures = [bearing.pitch_diameter_m, bearing.static_load_rating_n, bearing.dynamic_load_rating_n];
+        assert!(figures.iter().all(Option::is_some) && bearing.offset_m.is_some(), "{}", gear.id);
+        let [pitch_m, static_n, dynamic_n] = figures.map(Option::unwrap_or_default);
+        assert!(static_n > dynamic_n, "{}: a crossed-roller bearing holds more at rest", gear.id);
+        // Standing still with the least safety the vendor allows, a bearing bears more than while it runs.
+        let at_rest_nm = pitch_m * static_n / (2.0 * 1.5);
+        assert!(gear.permissible_tilting_moment_nm.is_some_and(|m| m < at_rest_nm), "{}", gear.id);
+    }
+    let gear = Catalogs::builtin().gear("CSG-20-100").cloned().expect("built in");
+    let printed = [Some(0.050), Some(0.0095), Some(9000.0), Some(5780.0)];
+    let bearing = gear.bearing;
+    let read = [
+        bearing.pitch_diameter_m,
+        bearing.offset_m,
+        bearing.static_load_rating_n,
+        bearing.dynamic_load_rating_n,
+    ];
+    assert_eq!(read, printed);
+}
+
+#[test]
+fn a_compressive_strength_is_given_where_it_differs() {
+    let catalogs = Catalogs::builtin();
+    let kevlar = catalogs.material("Kevlar 49/epoxy UD").expect("built in");
+    assert_eq!((kevlar.strength_pa, kevlar.compressive_strength_pa), (Some(1.4e9), Some(3.35e8)));
+    for material in catalogs.materials.iter().filter(|m| m.class == MaterialClass::Composite) {
+        assert!(material.compressive_strength_pa.is_some(), "{}", material.name);
+    }
+    assert!(catalogs.material("S355").is_ok_and(|m| m.compressive_strength_pa.is_none()));
 }
 
 #[test]

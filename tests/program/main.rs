@@ -11,6 +11,7 @@ mod compare;
 mod docs;
 mod front_check;
 mod imports;
+mod links;
 mod pages;
 mod study_effects;
 mod words;

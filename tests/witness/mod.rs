@@ -33,6 +33,7 @@ mod solve;
 pub use effects::{Effects, Immersion, LostMotion};
 pub use joint_law::ThreeSegment;
 pub use load_case::{LoadCase, Payload};
+pub use section::rectangle_in_torsion;
 pub use solve::{Answer, Mode};
 
 use nalgebra::Vector3;

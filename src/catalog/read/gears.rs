@@ -1,7 +1,8 @@
 //! Rows of `gears.csv` and what must hold within one row.
 
+use super::envelope::envelope;
 use super::row::Row;
-use crate::catalog::gear::Gear;
+use crate::catalog::gear::{BearingRatings, Gear};
 
 /// The gear of a row; `None` if its name or source was refused.
 pub(crate) fn gear(row: &Row) -> Option<Gear> {
@@ -30,9 +31,22 @@ pub(crate) fn gear(row: &Row) -> Option<Gear> {
         transmission_accuracy_arcmin: row.number("transmission_accuracy_arcmin"),
         tilting_stiffness_nm_per_rad: row.number("tilting_stiffness_nm_per_rad"),
         permissible_tilting_moment_nm: row.number("permissible_tilting_moment_nm"),
+        bearing: bearing(row),
+        buckling_torque_nm: row.number("buckling_torque_nm"),
+        ratcheting_torque_nm: row.number("ratcheting_torque_nm"),
+        envelope: envelope(row),
         efficiency: row.number("efficiency_rated_2000rpm"),
         provenance: row.provenance()?,
     })
+}
+
+fn bearing(row: &Row) -> BearingRatings {
+    BearingRatings {
+        pitch_diameter_m: row.number("bearing_pitch_diameter_m"),
+        offset_m: row.number("bearing_offset_m"),
+        static_load_rating_n: row.number("bearing_static_load_rating_n"),
+        dynamic_load_rating_n: row.number("bearing_dynamic_load_rating_n"),
+    }
 }
 
 /// The word by which the row's series is also sold. A cell such as `HFUS outline` describes the series and
@@ -74,6 +88,16 @@ fn check(row: &Row) {
         true,
         "the housed unit contains the component set",
     );
+    for limit in ["buckling_torque_nm", "ratcheting_torque_nm"] {
+        order(row, &["momentary_peak_torque_nm", limit], false, "a gear survives its momentary peak torque");
+    }
+    if let (Some(pitch_m), Some(outer_mm)) =
+        (row.number("bearing_pitch_diameter_m"), row.number("outer_diameter_mm"))
+        && pitch_m * 1e3 >= outer_mm
+    {
+        let problem = format!("= {pitch_m} is not within outer_diameter_mm = {outer_mm}");
+        row.fault("bearing_pitch_diameter_m", problem, "write the pitch diameter in m, the outer one in mm");
+    }
     usual_figures(row);
 }
 
@@ -99,5 +123,77 @@ fn usual_figures(row: &Row) {
     if let Some(t2) = row.number("t2_nm") {
         scaled("t1_nm", t2, [1.5e-3, 0.5], "N m");
     }
+    scaled("bearing_pitch_diameter_m", size, [1e-3, 6e-3], "m");
+    scaled("bearing_offset_m", size, [2e-4, 3e-3], "m");
+    scaled("bearing_static_load_rating_n", size.powi(2), [5.0, 200.0], "N");
+    scaled("bearing_dynamic_load_rating_n", size.powi(2), [5.0, 200.0], "N");
     scaled("efficiency_rated_2000rpm", 1.0, [0.5, 0.9], "");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalog::CatalogFile;
+    use crate::catalog::read::log::Log;
+    use crate::catalog::read::table::rows;
+
+    const HEADER: &str = "series,size,ratio,source,confidence,momentary_peak_torque_nm,bearing_pitch_diameter_m,\
+        bearing_offset_m,bearing_static_load_rating_n,bearing_dynamic_load_rating_n,buckling_torque_nm,\
+        ratcheting_torque_nm,outer_diameter_mm,length_mm,hollow_bore_mm";
+
+    /// The gear of a row with these figures after the confidence, and the columns found at fault.
+    fn read(figures: &str) -> (Option<Gear>, Vec<String>) {
+        let log = Log::default();
+        let text = format!("{HEADER}\nA,25,100,a test,verified,{figures}\n");
+        let read = rows(CatalogFile::Gears, "gears.csv", text.as_bytes(), &log);
+        let gear = read.first().and_then(gear);
+        let faults = log.faults.borrow().iter().map(|fault| fault.field.clone()).collect();
+        (gear, faults)
+    }
+
+    #[test]
+    fn a_bearing_keeps_its_units_and_outer_sizes_become_metres() {
+        let (gear, faults) = read("369,0.062,0.0115,15100,9600,1700,650,107,52,0");
+        let gear = gear.expect("sound");
+        assert!(faults.is_empty(), "{faults:?}");
+        let bearing = gear.bearing;
+        assert_eq!([bearing.pitch_diameter_m, bearing.offset_m], [Some(0.062), Some(0.0115)]);
+        assert_eq!(
+            [bearing.static_load_rating_n, bearing.dynamic_load_rating_n],
+            [Some(15_100.0), Some(9_600.0)]
+        );
+        assert_eq!([gear.buckling_torque_nm, gear.ratcheting_torque_nm], [Some(1700.0), Some(650.0)]);
+        let size = gear.envelope;
+        assert_eq!([size.outer_diameter_m, size.length_m], [Some(0.107), Some(0.052)]);
+        assert_eq!(size.hollow_bore_m, Some(0.0), "a gear without a passage");
+    }
+
+    #[test]
+    fn blank_figures_of_bearing_and_size_are_unknown() {
+        let (gear, faults) = read("369,,,,,,,,,");
+        let gear = gear.expect("sound");
+        assert!(faults.is_empty(), "{faults:?}");
+        assert_eq!((gear.bearing, gear.envelope), Default::default());
+        assert_eq!((gear.buckling_torque_nm, gear.ratcheting_torque_nm), (None, None));
+    }
+
+    #[test]
+    fn impossible_figures_of_bearing_and_size_are_refused() {
+        assert_eq!(read("369,0.120,,,,,,107,52,").1, ["bearing_pitch_diameter_m"], "wider than the gear");
+        assert_eq!(read("369,,,,,,,107,52,110").1, ["outer_diameter_mm"], "narrower than its bore");
+        assert_eq!(read("369,,,,,,,0.107,52,").1, ["outer_diameter_mm"], "metres");
+        assert_eq!(read("369,,,-1,,,,,,").1, ["bearing_static_load_rating_n"]);
+        assert_eq!(read("369,,,,,300,,,,").1, ["buckling_torque_nm"], "below the momentary peak");
+        assert_eq!(read("369,,,,,,300,,,").1, ["ratcheting_torque_nm"], "below the momentary peak");
+    }
+
+    #[test]
+    fn a_bearing_in_millimetres_is_a_warning() {
+        let log = Log::default();
+        let text = format!("{HEADER}\nA,25,100,a test,verified,369,62,11.5,15100,9600,,,,,\n");
+        let read = rows(CatalogFile::Gears, "gears.csv", text.as_bytes(), &log);
+        assert!(read.first().and_then(gear).is_some());
+        let warned: Vec<_> = log.warnings.borrow().iter().map(|w| w.field.clone()).collect();
+        assert_eq!(warned, ["bearing_pitch_diameter_m", "bearing_offset_m"]);
+    }
 }

@@ -14,6 +14,7 @@ pub(crate) fn material(row: &Row) -> Option<Material> {
         density_kg_m3: row.number("density_kg_m3")?,
         poisson: row.number("poisson"),
         strength_pa: row.number("yield_or_strength_pa"),
+        compressive_strength_pa: row.number("compressive_strength_pa"),
         strength_kind: row.text("strength_kind").to_string(),
         cost_eur_per_kg: row.number("cost_eur_per_kg"),
         corrosion_note: row.text("corrosion_note").to_string(),
@@ -36,6 +37,7 @@ fn check(row: &Row) {
         ("g_pa", [1e7, 1e12], [1e9, 2e11], "write Pa (1 GPa = 1e9 Pa)"),
         ("density_kg_m3", [100.0, 25_000.0], [1000.0, 9000.0], "write kg/m3 (1 g/cm3 = 1000 kg/m3)"),
         ("yield_or_strength_pa", [1e5, 2e10], [1e7, 6e9], "write Pa (1 MPa = 1e6 Pa)"),
+        ("compressive_strength_pa", [1e5, 2e10], [1e7, 6e9], "write Pa (1 MPa = 1e6 Pa)"),
         ("cte_1_per_k", [-1e-4, 1e-3], [-6e-6, 3e-5], "write 1/K (1 um/(m K) = 1e-6)"),
     ];
     let mut moduli_are_possible = true;
@@ -77,5 +79,27 @@ fn shear_modulus(row: &Row) {
             MaterialClass::Composite => f64::INFINITY,
         };
         row.agrees("g_pa", g_pa, e_pa / (2.0 * (1.0 + nu)), "G = E/2(1+nu)", 0.06, refuse);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalog::CatalogFile;
+    use crate::catalog::read::log::Log;
+    use crate::catalog::read::table::rows;
+
+    #[test]
+    fn the_compressive_strength_is_read_and_a_slip_of_unit_refused() {
+        let log = Log::default();
+        let text = "name,class,e_pa,density_kg_m3,yield_or_strength_pa,compressive_strength_pa,source,confidence\n\
+            A,composite,8e10,1380,1.4e9,3.35e8,a test,verified\n\
+            B,composite,8e10,1380,1.4e9,,a test,verified\n\
+            C,composite,8e10,1380,1.4e9,335,a test,verified\n";
+        let read = rows(CatalogFile::Materials, "materials.csv", text.as_bytes(), &log);
+        let strengths: Vec<_> = read.iter().filter_map(material).map(|m| m.compressive_strength_pa).collect();
+        assert_eq!(strengths[..2], [Some(3.35e8), None]);
+        let faults: Vec<_> = log.faults.borrow().iter().map(|fault| fault.field.clone()).collect();
+        assert_eq!(faults, ["compressive_strength_pa"]);
     }
 }

@@ -4,6 +4,7 @@
 //! within a row, [`trend`] looks across rows.
 
 pub(crate) mod efficiency;
+pub(crate) mod envelope;
 pub(crate) mod gears;
 pub(crate) mod log;
 pub(crate) mod materials;

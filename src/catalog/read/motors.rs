@@ -1,5 +1,6 @@
 //! Rows of `motors.csv` and what must hold within one row.
 
+use super::envelope::envelope;
 use super::row::Row;
 use crate::catalog::motor::{Motor, MotorKind};
 use std::f64::consts::PI;
@@ -18,6 +19,7 @@ pub(crate) fn motor(row: &Row) -> Option<Motor> {
         rotor_inertia_kgm2: row.number("rotor_inertia_kgm2"),
         mass_kg: row.number("mass_kg"),
         rated_power_w: row.number("rated_power_w"),
+        envelope: envelope(row),
         provenance: row.provenance()?,
     })
 }
@@ -65,5 +67,26 @@ fn inertia(row: &Row) {
                 "usual: 0.001 to 0.09 m; a slip of unit? (1 kg cm2 = 1e-4 kg m2)",
             );
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalog::read::log::Log;
+    use crate::catalog::read::table::rows;
+    use crate::catalog::{CatalogFile, Envelope};
+
+    #[test]
+    fn outer_sizes_of_motors_become_metres_and_blank_ones_stay_unknown() {
+        let log = Log::default();
+        let text = "type,model,source,confidence,outer_diameter_mm,length_mm,hollow_bore_mm\n\
+            frameless-servo,A,a test,verified,69,22.5,42\n\
+            ac-servo,B,a test,verified,,,\n";
+        let read = rows(CatalogFile::Motors, "motors.csv", text.as_bytes(), &log);
+        let sizes: Vec<_> = read.iter().filter_map(motor).map(|m| m.envelope).collect();
+        let frameless =
+            Envelope { outer_diameter_m: Some(0.069), length_m: Some(0.0225), hollow_bore_m: Some(0.042) };
+        assert_eq!(sizes, [frameless, Envelope::default()]);
     }
 }

@@ -85,6 +85,7 @@ fn density_kg_m3(family: &str) -> Option<f64> {
     match family.to_lowercase().as_str() {
         "steel" => Some(7850.0),
         "aluminium" => Some(2700.0),
+        "stainless" => Some(7900.0),
         _ => None,
     }
 }

@@ -25,6 +25,10 @@ const GROW_WITH_SIZE: &[Figure] = &[
     ("k3_nm_per_rad", |g| g.k3_nm_per_rad),
     ("tilting_stiffness_nm_per_rad", |g| g.tilting_stiffness_nm_per_rad),
     ("permissible_tilting_moment_nm", |g| g.permissible_tilting_moment_nm),
+    ("bearing_pitch_diameter_m", |g| g.bearing.pitch_diameter_m),
+    ("bearing_static_load_rating_n", |g| g.bearing.static_load_rating_n),
+    ("bearing_dynamic_load_rating_n", |g| g.bearing.dynamic_load_rating_n),
+    ("outer_diameter_mm", |g| g.envelope.outer_diameter_m.map(|x| x * 1e3)),
     ("max_input_speed_rpm", |g| g.max_input_speed_rpm.map(|speed| -speed)),
 ];
 

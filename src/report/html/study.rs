@@ -12,7 +12,7 @@ use crate::report::section::{Figure, PageSection};
 use crate::report::summary::{SummaryInput, answer_words, materials_side_by_side, single_materials};
 use crate::report::svg::draw::MUTED;
 use serde_json::{Value, json};
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 /// Size of a page at most \[bytes\].
 const MOST_PAGE_BYTES: usize = 2_000_000;
@@ -72,6 +72,8 @@ impl StudyPage<'_> {
         let views = self.views(&chosen, front_bytes);
         let data = views.json();
         let extras: Vec<Value> = self.extras.iter().map(|e| gallery.extra(e)).collect();
+        let caveat = |part: &CatalogRow| Some((part.name.clone(), facts.caveats.of_part(&part.name)?));
+        let caveats: BTreeMap<String, &str> = self.parts.iter().filter_map(caveat).collect();
         let content = json!({
             "study": facts.study,
             "question": facts.question,
@@ -87,7 +89,9 @@ impl StudyPage<'_> {
             "extras": extras,
             "run": self.run,
             "not_checked": facts.not_checked,
+            "remarks": facts.remarks,
             "parts": self.parts.iter().map(part).collect::<Vec<_>>(),
+            "caveats": caveats,
             "results": facts.results,
         });
         gallery.page("study.html", &facts.study, content, &json!({"front": data}))

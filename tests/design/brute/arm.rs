@@ -35,11 +35,16 @@ pub struct Tube {
 }
 
 impl Tube {
-    /// Of a section as an arm file has it.
+    /// Of a section as an arm file has it. A bar is a tube whose walls meet.
     pub fn from_json(section: &Value) -> Self {
         let number = |key: &str| section[key].as_f64().expect("a number");
-        let wall_m = number("wall_m");
-        if section["shape"] == "round_tube" {
+        let shape = section["shape"].as_str().expect("a shape");
+        let wall_m = match shape {
+            "rectangular_bar" => 0.5 * number("width_m").min(number("height_m")),
+            "round_bar" => 0.5 * number("diameter_m"),
+            _ => number("wall_m"),
+        };
+        if shape.starts_with("round") {
             let outer_m = number("diameter_m");
             let inner_m = outer_m - 2.0 * wall_m;
             let over_z2_m4 = PI / 64.0 * (outer_m.powi(4) - inner_m.powi(4));
@@ -84,7 +89,10 @@ impl LinkOption {
             tube: Tube::from_json(&section),
             section,
             profile,
-            strength_pa: material.number("yield_or_strength_pa"),
+            strength_pa: ["yield_or_strength_pa", "compressive_strength_pa"]
+                .iter()
+                .filter_map(|column| material.number(column))
+                .reduce(f64::min),
             cost_eur_per_kg: material.number("cost_eur_per_kg"),
             density_kg_m3: figure("density_kg_m3"),
         }

@@ -129,9 +129,12 @@ fn given(name: &str, entry: &Value) -> Joint {
     Joint { name: name.to_owned(), mass_kg, gear: String::new(), motor: String::new(), entry: entry.clone() }
 }
 
-/// The widest flat between the corners over the wall's thickness; a round tube's diameter over it.
+/// The widest flat between the corners over the wall's thickness; a round tube's diameter over it. Bars do not buckle so.
 fn wall_slenderness(option: &LinkOption) -> f64 {
     let tube = &option.tube;
+    if 2.0 * tube.wall_m == tube.width_m.min(tube.height_m) {
+        return 0.0;
+    }
     let corners_m = if tube.is_round { 0.0 } else { 2.0 * tube.wall_m };
     (tube.width_m.max(tube.height_m) - corners_m) / tube.wall_m
 }

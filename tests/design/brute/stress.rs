@@ -3,13 +3,15 @@
 //! Peak load is gravity, payload and tip force times 1 + a / g in the sizing poses, the paper's reading of Eq 8, and
 //! times 1 in the others. At
 //! either end of a link, bending in both planes and the axial force add up at the worst corner (round: on the rim);
-//! with Bredt's shear stress of torsion they make von Mises' stress. Transverse shear is left out.
+//! with the shear stress of torsion they make von Mises' stress. Transverse shear is left out. It is compared with the
+//! lower of the strengths in tension and in compression.
 
 use nalgebra::Vector3;
 
 use super::arm::{Chosen, Link, Tube, section_axes};
 use super::demand::bodies;
 use super::study::{Pose, Posed, Study};
+use crate::witness::rectangle_in_torsion;
 
 /// Strength over the largest stress of all links in all poses; none if no strength is known.
 pub fn stress_safety_factor(study: &Study, poses: &[(&Pose, Posed)], chain: &[Chosen]) -> Option<f64> {
@@ -71,10 +73,10 @@ fn von_mises_pa(tube: &Tube, force_n: &Vector3<f64>, moment_nm: &Vector3<f64>) -
     (normal_pa.powi(2) + 3.0 * shear_pa.powi(2)).sqrt()
 }
 
-/// Bredt: 1 / (2 A t) with the area within the wall's middle line; a round tube exactly, on its outside.
+/// A rectangle as in the finite elements; a round section exactly, on its outside.
 fn shear_per_torque_1_m3(tube: &Tube) -> f64 {
     if tube.is_round {
         return tube.width_m / 2.0 / (2.0 * tube.over_z2_m4);
     }
-    1.0 / (2.0 * (tube.width_m - tube.wall_m) * (tube.height_m - tube.wall_m) * tube.wall_m)
+    rectangle_in_torsion(tube.width_m, tube.height_m, tube.wall_m).1
 }

@@ -162,12 +162,14 @@ fn read_options(choose: &Value, catalog: &Catalog) -> Vec<LinkOption> {
 
 fn grid_sections(family: &Value) -> Vec<(Value, String)> {
     let mut sections = Vec::new();
-    for wall_mm in grid(&family["wall_mm"]) {
-        if family["shape"] == "round_tube" {
+    // a bar has no wall; the number is not read
+    let walls = if family["wall_mm"].is_null() { vec![0.0] } else { grid(&family["wall_mm"]) };
+    for wall_mm in walls {
+        let shape = family["shape"].as_str().expect("a shape");
+        if shape.starts_with("round") {
             for diameter_mm in grid(&family["diameter_mm"]) {
-                sections.push(
-                    json!({"shape": "round_tube", "diameter_m": diameter_mm / 1e3, "wall_m": wall_mm / 1e3}),
-                );
+                sections
+                    .push(json!({"shape": shape, "diameter_m": diameter_mm / 1e3, "wall_m": wall_mm / 1e3}));
             }
             continue;
         }
@@ -177,15 +179,15 @@ fn grid_sections(family: &Value) -> Vec<(Value, String)> {
             sections.extend(
                 heights
                     .into_iter()
-                    .map(|height_mm| rectangular(width_mm / 1e3, height_mm / 1e3, wall_mm / 1e3)),
+                    .map(|height_mm| rectangular(shape, width_mm / 1e3, height_mm / 1e3, wall_mm / 1e3)),
             );
         }
     }
     sections.into_iter().map(|section| (section, String::new())).collect()
 }
 
-fn rectangular(width_m: f64, height_m: f64, wall_m: f64) -> Value {
-    json!({"shape": "rectangular_tube", "width_m": width_m, "height_m": height_m, "wall_m": wall_m})
+fn rectangular(shape: &str, width_m: f64, height_m: f64, wall_m: f64) -> Value {
+    json!({"shape": shape, "width_m": width_m, "height_m": height_m, "wall_m": wall_m})
 }
 
 /// A number, a list, or from-to-step.
@@ -225,7 +227,7 @@ fn profile_sections(wanted: &Value, material: &Row, catalog: &Catalog) -> Vec<(V
         let [width_m, height_m, wall_m] = ["outer_b_m", "outer_h_m", "wall_t_m"].map(|c| figure(row, c));
         match row.text("shape") {
             "round" => json!({"shape": "round_tube", "diameter_m": width_m, "wall_m": wall_m}),
-            _ => rectangular(width_m, height_m, wall_m),
+            _ => rectangular("rectangular_tube", width_m, height_m, wall_m),
         }
     };
     catalog.profiles.iter().filter(is_wanted).map(|row| (section(row), row.id.clone())).collect()

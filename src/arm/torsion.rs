@@ -1,0 +1,207 @@
+//! Torsion of rectangles, hollow and solid, after Saint-Venant.
+//!
+//! | symbol | formula | source |
+//! |---|---|---|
+//! | `J` thin tube | `2 t (b-t)² (h-t)² / ((b-t)+(h-t))` | Bredt, thin closed wall |
+//! | `τ/M` thin tube | `1 / (2 t (b-t)(h-t))` | Bredt: the mean over the wall |
+//! | `J` thick tube | `Bredt + c (2/3) t³ ((b-t)+(h-t))` | the open section's term; `c` makes the closed tube the bar |
+//! | `J` bar | `h b³ (1/3 - (64/π⁵)(b/h) Σ tanh(nπh/2b)/n⁵)`, n odd, b ≤ h | Saint-Venant's series |
+//! | `τ J/M` bar | `b (1 - (8/π²) Σ 1/(n² cosh(nπh/2b)))`, n odd, b ≤ h | the same series, middle of the long side |
+//!
+//! Bredt's formula is used up to a wall of 0.15 of the smaller side, where it is 9.0 % low for a square tube and less for
+//! any other. From there on the added term fades in while the wall grows by a thirtieth, so that `J` has no step, which a
+//! derivative by the wall would see. Beyond that, `J` is within 7.0 % of the exact solution up to the solid bar (sides 1:1
+//! to 1:4), and it never falls as the wall grows. Bredt's shear stress is the mean over the wall; the outside of a wall of
+//! 0.15 bears up to 29 % more.
+
+use std::f64::consts::PI;
+
+/// Wall over the smaller side, up to which the wall counts as thin.
+const THIN: f64 = 0.15;
+/// Wall over the smaller side, from which on the open section's term counts in full.
+const THICK: f64 = 0.155;
+
+/// How a section answers a torque.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Torsion {
+    /// Torsion constant J \[m⁴\].
+    pub constant_m4: f64,
+    /// Largest shear stress per torque \[1/m³\].
+    pub shear_per_m3: f64,
+}
+
+/// Torsion of a rectangular tube of outer sides b, h \[m\] and wall t \[m\], thick or thin.
+pub(super) fn tube(b: f64, h: f64, t: f64) -> Torsion {
+    let thin = Torsion { constant_m4: bredt(b, h, t), shear_per_m3: 1.0 / (2.0 * (b - t) * (h - t) * t) };
+    let side = b.min(h);
+    let share = ((t / side - THIN) / (THICK - THIN)).min(1.0);
+    if share <= 0.0 {
+        return thin;
+    }
+    let closed = side / 2.0;
+    let (bar, bar_shear_m) = (bar_constant(b, h), bar_shear_m(b, h));
+    let scale = (bar - bredt(b, h, closed)) / open(b, h, closed);
+    let constant_m4 = thin.constant_m4 + share * scale * open(b, h, t);
+    // the outside of the wall is sheared as by Bredt and as by the open section, which adds its thickness
+    let bend = (bar_shear_m - bredt_shear_m(b, h, closed)) / closed;
+    let shear_m = bredt_shear_m(b, h, t) + share * bend * t;
+    Torsion { constant_m4, shear_per_m3: shear_m / constant_m4 }
+}
+
+/// Torsion of a solid bar of sides b, h \[m\].
+pub(super) fn bar(b: f64, h: f64) -> Torsion {
+    let constant_m4 = bar_constant(b, h);
+    Torsion { constant_m4, shear_per_m3: bar_shear_m(b, h) / constant_m4 }
+}
+
+/// `J` of a thin closed wall \[m⁴\].
+fn bredt(b: f64, h: f64, t: f64) -> f64 {
+    let (bm, hm) = (b - t, h - t);
+    2.0 * t * bm * bm * hm * hm / (bm + hm)
+}
+
+/// Shear stress of a thin closed wall per G and twist per length \[m\].
+fn bredt_shear_m(b: f64, h: f64, t: f64) -> f64 {
+    let (bm, hm) = (b - t, h - t);
+    bm * hm / (bm + hm)
+}
+
+/// `J` of the same wall cut open \[m⁴\].
+fn open(b: f64, h: f64, t: f64) -> f64 {
+    2.0 / 3.0 * t.powi(3) * ((b - t) + (h - t))
+}
+
+/// Sum of n⁻⁵ over the odd numbers, 31/32 ζ(5).
+const ODD_FIFTH_POWERS: f64 = 1.004_523_762_795_139_5;
+const ODD: [f64; 5] = [1.0, 3.0, 5.0, 7.0, 9.0];
+
+/// `J` of a solid rectangle \[m⁴\]. Written as its sum less `1 - tanh`, the series ends after few terms.
+fn bar_constant(b: f64, h: f64) -> f64 {
+    let (b, h) = (b.min(h), b.max(h));
+    let rest: f64 = ODD.iter().map(|n| 2.0 / (n.powi(5) * ((n * PI * h / b).exp() + 1.0))).sum();
+    h * b.powi(3) * (1.0 / 3.0 - 64.0 / PI.powi(5) * b / h * (ODD_FIFTH_POWERS - rest))
+}
+
+/// Largest shear stress of a solid rectangle per G and twist per length \[m\].
+fn bar_shear_m(b: f64, h: f64) -> f64 {
+    let (b, h) = (b.min(h), b.max(h));
+    let series: f64 = ODD.iter().map(|n| 1.0 / (n * n * (n * PI * h / (2.0 * b)).cosh())).sum();
+    b * (1.0 - 8.0 / PI.powi(2) * series)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DVector;
+
+    #[test]
+    fn a_thin_wall_twists_by_bredt_to_the_last_bit() {
+        for (b, h, t) in [(0.16, 0.16, 0.01), (0.04, 0.1, 0.002), (0.1, 0.04, 0.0059)] {
+            let (bm, hm): (f64, f64) = (b - t, h - t);
+            let thin = tube(b, h, t);
+            assert_eq!(thin.constant_m4, 2.0 * t * bm * bm * hm * hm / (bm + hm));
+            assert_eq!(thin.shear_per_m3, 1.0 / (2.0 * bm * hm * t));
+        }
+    }
+
+    /// Timoshenko and Goodier, Theory of Elasticity, table of k1 and k2: J = k1 h b³, largest shear stress M/(k2 h b²).
+    #[test]
+    fn a_solid_bar_has_the_coefficients_of_the_textbook() {
+        let table = [(1.0, 0.1406, 0.208), (1.5, 0.196, 0.231), (2.0, 0.229, 0.246), (4.0, 0.281, 0.282)];
+        for (h, k1, k2) in table {
+            let solid = bar(h, 1.0);
+            assert!((solid.constant_m4 / (k1 * h) - 1.0).abs() < 3e-3, "{h}: {solid:?}");
+            assert!((solid.shear_per_m3 * k2 * h - 1.0).abs() < 3e-3, "{h}: {solid:?}");
+        }
+    }
+
+    #[test]
+    fn the_torsion_constant_rises_with_the_wall_without_a_step_until_the_tube_is_a_bar() {
+        for h in [1.0, 1.1, 1.5, 2.0, 4.0, 10.0] {
+            let steps = 20_000;
+            let constants: Vec<f64> = (1..=steps)
+                .map(|i| tube(h, 1.0, 0.5 * f64::from(i) / f64::from(steps)).constant_m4)
+                .collect();
+            for (i, pair) in constants.windows(2).enumerate() {
+                let growth = pair[1] / pair[0] - 1.0;
+                assert!(growth > 0.0, "{h}: falls after step {i}");
+                // the first steps double the wall
+                assert!(i < 1000 || growth < 1.1e-3, "{h}: jumps by {growth} after step {i}");
+            }
+            assert!((constants[steps as usize - 1] / bar(h, 1.0).constant_m4 - 1.0).abs() < 1e-12, "{h}");
+        }
+    }
+
+    /// Prandtl's stress function by finite differences: within 8 % for thick walls, and Bredt's own error for thin ones.
+    #[test]
+    fn thick_walls_are_within_8_percent_of_saint_venant() {
+        for aspect in [1, 2, 4] {
+            for (cells, tolerance) in [(3, 0.095), (4, 0.08), (5, 0.08), (6, 0.08), (8, 0.08), (10, 0.02)] {
+                // twenty cells over the smaller side: walls of 0.15, 0.2, 0.25, 0.3, 0.4 and 0.5
+                let exact = saint_venant(20, 20 * aspect, cells);
+                let ours = tube(1.0, aspect as f64, cells as f64 / 20.0).constant_m4;
+                assert!(
+                    (ours / exact - 1.0).abs() < tolerance,
+                    "1:{aspect}, {cells}: {ours} against {exact}"
+                );
+            }
+        }
+    }
+
+    /// `J` of a tube whose smaller side is 1, on a grid of `b` x `h` cells with a wall of `t` cells, and on one twice as
+    /// fine, extrapolated. The stress function is constant over the hollow, which is one unknown.
+    fn saint_venant(b: usize, h: usize, t: usize) -> f64 {
+        let [coarse, fine] =
+            [1, 2].map(|n| stress_function_volume(n * b, n * h, n * t) / (n * b).pow(4) as f64);
+        // a re-entrant corner limits the order to 4/3
+        fine + (fine - coarse) / (2f64.powf(4.0 / 3.0) - 1.0)
+    }
+
+    /// Twice the volume under the stress function of a section whose sides and wall have these numbers of unit cells. A
+    /// quarter of it is solved.
+    fn stress_function_volume(b: usize, h: usize, t: usize) -> f64 {
+        let (half_b, half_h) = (b / 2, h / 2);
+        let (hole_b, hole_h) = (half_b - t, half_h - t);
+        // nodes of the hollow share the first unknown; those on the outline are zero
+        let unknown = |i: usize, j: usize| match (i == half_b || j == half_h, i <= hole_b && j <= hole_h) {
+            (true, _) => None,
+            (_, true) if hole_b > 0 => Some(0),
+            _ => Some(1 + i * half_h + j),
+        };
+        let width = |k: usize| if k == 0 { 0.5 } else { 1.0 };
+        let mut edges = Vec::new();
+        let mut load = DVector::zeros(1 + half_b * half_h);
+        for (i, j) in (0..half_b).flat_map(|i| (0..half_h).map(move |j| (i, j))) {
+            let Some(here) = unknown(i, j) else { continue };
+            load[here] += 2.0 * width(i) * width(j);
+            edges.push((here, unknown(i + 1, j), width(j)));
+            edges.push((here, unknown(i, j + 1), width(i)));
+        }
+        4.0 * load.dot(&conjugate_gradients(&edges, &load))
+    }
+
+    /// Solves the network of springs `edges` (from, to, stiffness; to nothing is to the ground) under a load.
+    fn conjugate_gradients(edges: &[(usize, Option<usize>, f64)], load: &DVector<f64>) -> DVector<f64> {
+        let times = |x: &DVector<f64>| {
+            let mut out = DVector::zeros(x.len());
+            for &(from, to, stiffness) in edges {
+                let force = stiffness * (x[from] - to.map_or(0.0, |to| x[to]));
+                out[from] += force;
+                if let Some(to) = to {
+                    out[to] -= force;
+                }
+            }
+            out
+        };
+        let mut x = DVector::zeros(load.len());
+        let (mut rest, mut along) = (load.clone(), load.clone());
+        while rest.norm() > 1e-9 * load.norm() {
+            let force = times(&along);
+            let (before, step) = (rest.norm_squared(), rest.norm_squared() / along.dot(&force));
+            x.axpy(step, &along, 1.0);
+            rest.axpy(-step, &force, 1.0);
+            along = &rest + along * (rest.norm_squared() / before);
+        }
+        x
+    }
+}

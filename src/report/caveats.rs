@@ -1,0 +1,97 @@
+//! Parts whose figures no document was seen for, or are typical of their class: it is said beside every pick that uses them.
+
+use super::front_table::FrontTable;
+use super::words::{TERMINAL, wrap};
+use crate::catalog::{Catalogs, Provenance};
+use std::collections::BTreeMap;
+
+/// What is said beside parts, by their names.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Caveats(BTreeMap<String, &'static str>);
+
+/// Columns of a front that name parts, without the link or joint.
+const PARTS: [&str; 4] = ["_material", "_profile", "_gear", "_motor"];
+
+impl Caveats {
+    /// Of all parts of a catalog.
+    pub fn of(catalogs: &Catalogs) -> Self {
+        let gears = catalogs.gears.iter().map(|p| (&p.id, &p.provenance));
+        let motors = catalogs.motors.iter().map(|p| (&p.id, &p.provenance));
+        let materials = catalogs.materials.iter().map(|p| (&p.name, &p.provenance));
+        let profiles = catalogs.profiles.iter().map(|p| (&p.designation, &p.provenance));
+        let parts = gears.chain(motors).chain(materials).chain(profiles);
+        let caveat = |(name, provenance): (&String, &Provenance)| Some((name.clone(), provenance.caveat()?));
+        Self(parts.filter_map(caveat).collect())
+    }
+
+    /// `representative` or `from memory`; `None` for a part that a document was seen for.
+    pub fn of_part(&self, name: &str) -> Option<&'static str> {
+        self.0.get(name).copied()
+    }
+
+    /// The name of a part, with the caveat behind it in brackets.
+    pub fn marked(&self, name: &str) -> String {
+        self.of_part(name).map_or(name.to_string(), |caveat| format!("{name} ({caveat})"))
+    }
+
+    /// One sentence for the terminal about the parts of picks, given by name and row of the front; empty if documents were
+    /// seen for all.
+    pub(crate) fn sentence(&self, front: &FrontTable, picks: &[(String, usize)]) -> String {
+        let mut used: Vec<(&str, Vec<String>)> = Vec::new();
+        for (name, row) in picks {
+            for part in parts(front, *row).filter(|part| self.of_part(part).is_some()) {
+                match used.iter_mut().find(|(known, _)| *known == part) {
+                    Some((_, names)) if names.contains(name) => {}
+                    Some((_, names)) => names.push(name.clone()),
+                    None => used.push((part, vec![name.clone()])),
+                }
+            }
+        }
+        let place = |names: &[String]| match names.len() == picks.len() {
+            true => "every pick".to_string(),
+            false => names.join(", "),
+        };
+        let words: Vec<String> =
+            used.iter().map(|(part, names)| format!("{} in {}", self.marked(part), place(names))).collect();
+        match words.is_empty() {
+            true => String::new(),
+            false => wrap(&format!("Figures not from a document: {}.", words.join("; ")), TERMINAL, ""),
+        }
+    }
+}
+
+/// The names of the parts of a row.
+fn parts(front: &FrontTable, row: usize) -> impl Iterator<Item = &str> {
+    let named = front.columns.iter().zip(&front.rows[row]);
+    named
+        .filter(|(column, cell)| PARTS.iter().any(|end| column.ends_with(end)) && !cell.is_empty())
+        .map(|(_, cell)| cell.as_str())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_recalled_motor_and_a_representative_laminate_are_named_with_their_picks() {
+        let caveats = Caveats::of(&Catalogs::builtin());
+        assert_eq!(caveats.of_part("Structural steel S355"), None);
+        assert_eq!(caveats.marked("F11-10"), "F11-10 (from memory)");
+        let words = |row: &str| row.split(';').map(String::from).collect::<Vec<_>>();
+        let front = FrontTable {
+            columns: words("design_id;arm_material;j1_motor;tip_deflection_mm;mass_kg;lowest_mode_hz"),
+            rows: vec![
+                words("a;Boron/epoxy quasi-isotropic;F11-10;1;20;30"),
+                words("b;Structural steel S355;F11-10;2;10;20"),
+            ],
+        };
+        let picked = [("stiffest, highest mode".to_string(), 0), ("lightest".to_string(), 1)];
+        let sentence = caveats.sentence(&front, &picked).replace('\n', " ");
+        assert!(
+            sentence.contains("Boron/epoxy quasi-isotropic (representative) in stiffest, highest mode"),
+            "{sentence}"
+        );
+        assert!(sentence.contains("F11-10 (from memory) in every pick"), "{sentence}");
+        assert!(!sentence.contains("S355"), "{sentence}");
+    }
+}
