@@ -125,7 +125,7 @@ impl JointModel {
 /// let chain = vec![Element::Joint(joint), Element::Link(link)];
 /// let arm = Arm { name: "two pieces".into(), gravity_m_s2: 9.81, chain, effects: Vec::new() };
 /// assert_eq!(arm.mass_kg(), 17.2);
-/// assert_eq!(arm.length_m(), 0.8);
+/// assert_eq!(arm.reach_m(), 0.8);
 /// assert_eq!(arm.to_json()["chain"][0]["stiffness_nm_per_rad"], 607e3);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -235,13 +235,17 @@ impl Arm {
         self.chain.iter().map(Element::mass_kg).sum()
     }
 
-    /// Sum of the lengths of all links \[m\].
-    pub fn length_m(&self) -> f64 {
+    /// Reach \[m\]: the sum of the lengths of the links outboard of the first joint that is not vertical. What carries this
+    /// joint is a column. Of an arm whose joints are all vertical, it is the length outboard of the first joint.
+    pub fn reach_m(&self) -> f64 {
+        let is_joint = |element: &Element| matches!(element, Element::Joint(_));
+        let leans = |element: &Element| matches!(element, Element::Joint(j) if j.axis.xy().norm() > 1e-9);
+        let first = self.chain.iter().position(leans).or_else(|| self.chain.iter().position(is_joint));
         let length = |element: &Element| match element {
             Element::Link(link) => link.vector_m.norm(),
             Element::Joint(_) => 0.0,
         };
-        self.chain.iter().map(length).sum()
+        self.chain.iter().skip(first.unwrap_or(0)).map(length).sum()
     }
 }
 

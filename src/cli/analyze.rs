@@ -13,6 +13,7 @@ use crate::mechanics::modes::Mode;
 use crate::mechanics::response::{Response, frequency_response};
 use crate::mechanics::statics::Statics;
 use crate::report::number::percent;
+use crate::report::small_displacement::too_far;
 use clap::Args;
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
@@ -109,9 +110,6 @@ fn non_negative(text: &str) -> Result<f64, String> {
         _ => Err("give a number that is not negative".into()),
     }
 }
-
-/// A displacement larger than this part of the arm's length is not small.
-const LARGE_PART: f64 = 0.1;
 
 /// One case, solved.
 struct Solved {
@@ -248,11 +246,10 @@ impl Solved {
             tip.y,
             tip.z
         );
-        if tip.norm() > 1e3 * LARGE_PART * arm.length_m() {
+        if let Some(words) = too_far(self.statics.tip_displacement_m.norm(), arm.reach_m()) {
             let _ = writeln!(
                 out,
-                "  The tip moves by more than a tenth of the arm's length; the model is valid for small displacements only.\n  \
-                 Is every number of the file in its unit (Pa, kg/m3, m, kg, N m/rad)?"
+                "  The tip {words}.\n  Is every number of the file in its unit (Pa, kg/m3, m, kg, N m/rad)?"
             );
         }
         if !self.unbent.is_empty() {

@@ -30,6 +30,7 @@ use crate::study::definition::Study;
 use crate::study::effects::Correction;
 use crate::study::outcome::StudyOutcome;
 use crate::study::page::study_page;
+use crate::study::range::range_words;
 use crate::study::table::{front_table, slug};
 use crate::study::ties::ties;
 use serde_json::{Value, json};
@@ -187,6 +188,7 @@ impl Finished<'_> {
                 tool_version: env!("CARGO_PKG_VERSION").into(),
                 constraints: constraint_words(&study.space.constraints),
                 cases: self.judged_cases(),
+                ranges: range_words(&study.space),
                 not_checked: study.not_checked.clone(),
                 remarks: study.remarks.clone(),
                 caveats: Caveats::of(self.catalogs),

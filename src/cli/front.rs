@@ -31,7 +31,8 @@ enum FrontVerb {
     /// The check works out from the study and the catalogs which drives hold, and looks for missing designs by
     /// bounds of its own. It shares with the search the reader of studies and catalogs, and the full model that
     /// judges a single design (docs/exact.md). The last line says whether these bounds sufficed, or why the exact
-    /// search's were used. For a front with a gap the gap is checked: no design may beat every row by more.
+    /// search's were used. For a front with a gap the gap is checked: for every design some row must be
+    /// worse by no more than the gap in each objective.
     Check(CheckArgs),
 }
 

@@ -30,9 +30,9 @@ pub(crate) struct SearchArgs {
     /// missing
     #[arg(long, value_name = "SECONDS")]
     time_limit: Option<f64>,
-    /// End the exact search once it is proved that no design beats every listed one by more than this
-    /// percentage in tip deflection, mass and lowest mode at once, such as 2%. With 0% the whole front is
-    /// found; only then are per-material fronts and near-front lists written. Default: the study's
+    /// End the exact search once it is proved that for every design of the study some listed one is worse by
+    /// at most this percentage in each of tip deflection, mass and lowest mode, such as 2%. With 0% the whole
+    /// front is found; only then are per-material fronts and near-front lists written. Default: the study's
     /// gap_percent
     #[arg(long, value_name = "PERCENT", value_parser = part_or_none)]
     gap: Option<f64>,

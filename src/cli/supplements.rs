@@ -12,6 +12,7 @@ use crate::space::problem::ArmProblem;
 use crate::study::ballast::{self, ballast_flags};
 use crate::study::near::{self, NearFront, near_front};
 use crate::study::outcome::StudyOutcome;
+use crate::study::pick_poses::picks_in_poses;
 use crate::study::ties::{self, ties};
 use crate::study::tolerance::{Sampling, Tolerance, part, scatter_front};
 use clap::Args;
@@ -67,7 +68,10 @@ impl SupplementArgs {
     /// The user stops it.
     pub(super) fn work_out(&self, found: &Found, front: &FrontTable) -> Result<Vec<Supplement>, Failure> {
         let stopped = || Failure::Interrupted("stopped after the search; nothing was written".into());
-        let mut out = vec![ballast_flags(found.problem, &found.outcome.front).supplement()];
+        let mut out = vec![
+            picks_in_poses(found.problem, front).supplement(),
+            ballast_flags(found.problem, &found.outcome.front).supplement(),
+        ];
         if !found.ties_listed {
             out.push(ties(found.problem, &found.outcome.front).supplement());
         }

@@ -1,13 +1,13 @@
-//! How much better than the front a design may be that a stopped search has missed.
+//! How near to every design of the study some found design is, after a search that was stopped.
 
 use super::bound::BoxBound;
 use crate::search::sweep::Candidate;
 use rayon::prelude::*;
 
-/// The gap that the open boxes leave: no missed design is better than the whole front by more than `ε` in every
-/// objective at once. It is the least `ε` with which every open box is covered by the front. A design covers a box if
-/// it is no worse than the bound of the box after mass and deflection are divided by `1 + ε` and the mode is
-/// multiplied by `1 + ε`. `None` if a bound says nothing, or if the front is empty.
+/// The least `ε` such that for every open box some design of the front, with mass and deflection divided by
+/// `1 + ε` and mode multiplied by it, is no worse than the bound of the box. For every missed design some
+/// design of the front is then worse by at most `ε` in each objective. `None` if a bound says nothing, or if
+/// the front is empty.
 pub(super) fn gap(open: &[BoxBound], front: &[Candidate]) -> Option<f64> {
     let of = |box_bound: &BoxBound| {
         let factor = |c: &Candidate| {

@@ -16,8 +16,8 @@ use crate::space::design_space::{DesignSpace, LinkOption};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Slacks of the passes over a large space. In a pass, a box is also pruned if an incumbent is worse than its bound
-/// by no more than the slack. A completed pass therefore proves that nothing is missed by more than its slack.
+/// Slacks of the passes over a large space. With slack a box is also pruned if an incumbent comes that close
+/// to its bound. A completed pass therefore proves that every design has a found one that close.
 const SLACKS: [f64; 25] = [
     1.0, 0.7, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.16, 0.12, 0.09, 0.075, 0.06, 0.05, 0.04, 0.035, 0.03, 0.025,
     0.02, 0.015, 0.01, 0.007, 0.005, 0.0035, 0.0025,
@@ -140,8 +140,8 @@ impl<'p> Exact<'p> {
         Self { most_with_ties: designs, ..self }
     }
 
-    /// Ends the search when no undiscovered design can be better than every known or found design by more than this
-    /// part in all three objectives at once.
+    /// Completes the search once for every design some known or found one is worse by at most this part in each
+    /// objective.
     #[must_use]
     pub fn to_gap(self, gap: f64) -> Self {
         Self { gap, ..self }

@@ -62,9 +62,12 @@ pub(crate) fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>)
 }
 
 /// How much an exact search may have missed, in the same words for page, terminal and summary.
+///
+/// What is excluded is a design to which no listed one comes within the gap in all objectives. That none beats *every*
+/// listed one in everything would say nothing: the lightest listed design alone may settle it.
 pub(crate) fn gap_words(gap: f64) -> String {
     format!(
-        "no design beats every listed one by more than {} in tip deflection, mass and lowest mode at once",
+        "for every design of the study some listed one is at most {} worse in each of tip deflection, mass and lowest mode",
         percent_rounded(100.0 * gap, 2)
     )
 }

@@ -19,8 +19,8 @@ pub struct SummaryFacts {
     pub designs_evaluated: u128,
     /// Designs left out because a limit cannot be met.
     pub designs_excluded: u128,
-    /// For a search that was stopped or asked for a gap: the largest fraction by which an unlisted design may
-    /// beat every listed one in all three objectives at once.
+    /// For a search that was stopped or asked for a gap: for every design of the study some listed one is worse by at
+    /// most this fraction in each objective.
     pub gap: Option<f64>,
     /// Duration of the search \[s\].
     pub elapsed_s: f64,
@@ -32,6 +32,8 @@ pub struct SummaryFacts {
     pub constraints: Vec<String>,
     /// Names of the cases, the worst of which counts.
     pub cases: Vec<String>,
+    /// How far the joints turn, in words; joints of the same range share a line.
+    pub ranges: Vec<String>,
     /// Parts and options left out because a rating is unknown, in words.
     pub not_checked: Vec<String>,
     /// What a reader of the result should know of the question, in sentences.

@@ -12,6 +12,7 @@ pub mod html;
 pub mod number;
 pub mod picks;
 pub(crate) mod section;
+pub(crate) mod small_displacement;
 pub mod summary;
 pub(crate) mod supplement;
 pub mod svg;

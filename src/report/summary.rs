@@ -76,6 +76,9 @@ pub fn summary_md(input: &SummaryInput) -> String {
         listed(&facts.constraints),
         listed(&facts.cases)
     ));
+    if !facts.ranges.is_empty() {
+        out.push_str(&format!("- Ranges of the joints: {}.\n", listed(&facts.ranges)));
+    }
     if !facts.remarks.is_empty() {
         out.push_str("\n## Remarks\n\n");
         facts.remarks.iter().for_each(|words| out.push_str(&format!("- {words}\n")));

@@ -46,7 +46,13 @@ use nalgebra::{Unit, Vector3};
 ///     name: "one link".into(),
 ///     gravity_m_s2: 9.81,
 ///     pieces: vec![
-///         SpacePiece::Joint(SpaceJoint { name: "j2".into(), axis: Vector3::y_axis(), drive, max_speed_rad_s: None }),
+///         SpacePiece::Joint(SpaceJoint {
+///             name: "j2".into(),
+///             axis: Vector3::y_axis(),
+///             drive,
+///             max_speed_rad_s: None,
+///             range_deg: None,
+///         }),
 ///         SpacePiece::Choice(LinkChoice {
 ///             name: "upper_arm".into(),
 ///             vector_m: Vector3::new(0.8, 0.0, 0.0),
@@ -140,6 +146,8 @@ pub struct SpaceJoint {
     pub drive: DriveChoice,
     /// Largest speed that the study asks for \[rad/s\]; `None`: the speed that follows from the tip's.
     pub max_speed_rad_s: Option<f64>,
+    /// Smallest and largest angle to which the joint turns \[deg\]; `None`: not stated.
+    pub range_deg: Option<[f64; 2]>,
 }
 
 /// How a joint's drive is found.

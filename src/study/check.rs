@@ -48,8 +48,7 @@ pub struct FrontCheck {
 pub struct Completeness {
     /// Boxes bounded.
     pub boxes: u64,
-    /// No design beats every row by more than this fraction in all three objectives at once; 0 if none is
-    /// missing.
+    /// For every design some row is worse by at most this fraction in each objective; 0 if no design is missing.
     pub gap: f64,
     /// Why the exact search's own bounds had to be used; `None` if independent bounds were used.
     pub by_exact_search: Option<String>,
@@ -60,8 +59,8 @@ pub struct Completeness {
 pub struct Claim<'t> {
     /// Its rows.
     pub table: &'t FrontTable,
-    /// No design beats every row by more than this fraction in all three objectives at once; 0 if the front
-    /// is whole. `None` if no such claim is made.
+    /// For every design some row is worse by at most this fraction in each objective; 0 if the front is whole. `None` if
+    /// no such claim is made.
     pub gap: Option<f64>,
     /// Whether designs that differ only in drives of equal mass and torsion curve all have rows.
     pub ties_listed: bool,

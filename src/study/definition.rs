@@ -11,8 +11,8 @@ pub struct Study {
     pub question: String,
     /// What may be chosen, and what the arm must do.
     pub space: DesignSpace,
-    /// An exact search ends when no design beats every listed one by more than this fraction in all three
-    /// objectives at once.
+    /// An exact search ends when for every design of the study some listed one is worse by at most this fraction in each
+    /// objective.
     pub gap: f64,
     /// Options left out because a rating that a check needs is unknown, in words.
     pub not_checked: Vec<String>,

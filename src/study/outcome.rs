@@ -106,7 +106,8 @@ pub struct ExactStudy {
     pub outcome: StudyOutcome,
     /// Boxes bounded for the front of all designs, and how many were left open.
     pub boxes: [u64; 2],
-    /// The gap: the largest fraction by which a missing design may beat the front; 0 if the front is whole.
+    /// The gap: for every design some listed one is worse by at most this fraction in each objective; 0 if the front is
+    /// whole.
     pub gap: Option<f64>,
     /// The designs near the front; `None` if they were not asked for, or time ran out before all were found.
     pub near: Option<NearDesigns>,
@@ -120,8 +121,8 @@ pub struct ExactStudy {
 pub struct Extent {
     /// When to stop; `None` lets the search end by itself.
     pub deadline: Option<Instant>,
-    /// The search may end when no design beats every listed one by more than this fraction in all three
-    /// objectives at once; 0 asks for the whole front.
+    /// The search may end when for every design some listed one is worse by at most this fraction in each objective; 0
+    /// asks for the whole front.
     pub gap: f64,
     /// Which designs near the front are asked for.
     pub near: Option<Slack>,

@@ -6,6 +6,7 @@
 
 use super::definition::Study;
 use super::effects::check_effects;
+use super::range::{check_poses, read_range};
 use super::sections::{Aside, read_materials, read_sections};
 use crate::arm::file::{read_curve, read_effects, read_joint_mass, read_link, read_name};
 use crate::arm::load::Payload;
@@ -86,6 +87,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     });
     let joints = joint_names(node);
     let cases = read_cases(&root, &joints);
+    let in_range = check_poses(&root, chain.as_deref(), cases.as_ref().map(|read| &read.cases[..]));
     let motion = root.or("motion", MotionRequirement::default(), read_motion);
     let (links, joint_model) = root.or("models", Default::default(), read_models)?;
     let effects = root.or("effects", Vec::new(), read_effects);
@@ -106,6 +108,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         effects: effects?,
     };
     check_effects(&space, &root)?;
+    in_range?;
     let Aside { not_checked, remarks } = aside;
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
@@ -304,6 +307,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         "gear_mass",
         "mass_kg",
         "max_speed_rad_s",
+        "range_deg",
         "drives",
     ])?;
     let name = read_name(&object);
@@ -331,7 +335,8 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
             read_given_drive(&object, open)
         }
     };
-    Some(SpaceJoint { name: name?, axis: axis?, drive: drive?, max_speed_rad_s: max_speed? })
+    let range_deg = object.or("range_deg", None, |n| read_range(n).map(Some))?;
+    Some(SpaceJoint { name: name?, axis: axis?, drive: drive?, max_speed_rad_s: max_speed?, range_deg })
 }
 
 /// Reports keys that another key makes meaningless as faults, because nothing in a file is silently ignored.

@@ -24,3 +24,4 @@ mod witness_drives;
 mod witness_effects;
 mod witness_front;
 mod witness_regions;
+mod worst_pose;

@@ -12,6 +12,7 @@ mod docs;
 mod front_check;
 mod imports;
 mod links;
+mod other_poses;
 mod pages;
 mod study_effects;
 mod words;

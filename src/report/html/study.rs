@@ -106,6 +106,7 @@ impl StudyPage<'_> {
             ("on the front", large(front as u128)),
             ("limits", listed(&facts.constraints)),
             ("poses (the worst counts)", listed(&facts.cases)),
+            ("ranges of the joints", listed(&facts.ranges)),
         ]
     }
 

@@ -1,0 +1,258 @@
+//! What a result says of its picks in other poses than the judged ones, and of picks that deflect too far.
+
+use super::range::{range_words, ranges_deg};
+use super::worst_pose::{WorstPose, WorstPoses, loads, worst_poses};
+use crate::report::front_table::FrontTable;
+use crate::report::number::{percent, shortest, significant};
+use crate::report::picks::{Objective, Pick, designs, picks};
+use crate::report::section::PageSection;
+use crate::report::small_displacement::too_far;
+use crate::report::supplement::Supplement;
+use crate::report::table::{Column, Table};
+use crate::report::words::{TERMINAL, wrap};
+use crate::space::design::number_of;
+use crate::space::design_space::SpacePiece;
+use crate::space::problem::ArmProblem;
+use rayon::prelude::*;
+use serde_json::{Map, Value, json};
+
+/// Key of `run.json`.
+pub(crate) const KEY: &str = "worst_poses";
+/// A pose is worse than the judged cases if it is worse by more than this fraction.
+const WORSE: f64 = 0.02;
+/// What the numbers leave out.
+const LEFT_OUT: &str = "Not modelled in these poses: an arm that passes through itself, its base or the floor. Drives and stresses are \
+                        checked in the sizing poses only. The poses were found by a search; worse ones are not excluded.";
+
+/// A pick and its worst poses.
+#[derive(Debug, Clone, PartialEq)]
+struct PickPoses {
+    pick: Pick,
+    reach_m: f64,
+    worst: WorstPoses,
+}
+
+/// The picks of a front in their worst poses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PicksInPoses {
+    picks: Vec<PickPoses>,
+    /// Name, range \[deg\] and whether the range is stated, of each joint.
+    ranges: Vec<(String, [f64; 2], bool)>,
+    range_words: Vec<String>,
+    /// Whether the judged cases have several loads.
+    has_loads: bool,
+}
+
+/// Looks for the worst poses of the picks of a front, which is given as its table.
+pub fn picks_in_poses(problem: &ArmProblem, front: &FrontTable) -> PicksInPoses {
+    let space = problem.space();
+    let (cases, ranges_deg) = (problem.load_cases(), ranges_deg(space));
+    let of_pick = |pick: Pick| {
+        let arm = problem.arm(&problem.options_of_whole(number_of(&pick.design.design_id)?)?)?;
+        let worst = worst_poses(&arm, &cases, &ranges_deg)?;
+        Some(PickPoses { pick, reach_m: arm.reach_m(), worst })
+    };
+    let joints = space.pieces.iter().filter_map(|piece| match piece {
+        SpacePiece::Joint(joint) => Some((joint.name.clone(), joint.range_deg.is_some())),
+        _ => None,
+    });
+    PicksInPoses {
+        picks: picks(&designs(front)).into_par_iter().filter_map(of_pick).collect(),
+        ranges: joints.zip(ranges_deg).map(|((name, is_stated), range)| (name, range, is_stated)).collect(),
+        range_words: range_words(space),
+        has_loads: loads(&cases).len() > 1,
+    }
+}
+
+impl WorstPose {
+    /// By how much it is worse than the judged cases, as a fraction of these; 0 if either is no number.
+    fn worse(&self) -> f64 {
+        let by = (self.value - self.judged).abs() / self.judged;
+        if by.is_finite() { by } else { 0.0 }
+    }
+
+    fn pose_words(&self) -> String {
+        let angles: Vec<String> = self.pose_deg.iter().map(|&angle| shortest(angle)).collect();
+        format!("({})", angles.join(", "))
+    }
+
+    /// Its facts for `run.json`, under the name of the quantity with its unit.
+    fn to_json(&self, unit: &str, of_unit: f64) -> Value {
+        let mut out = Map::new();
+        out.insert(format!("judged_{unit}"), json!(of_unit * self.judged));
+        out.insert(format!("worst_{unit}"), json!(of_unit * self.value));
+        out.insert("worse_percent".into(), json!(100.0 * self.worse()));
+        out.insert("pose_deg".into(), json!(self.pose_deg));
+        out.insert("load_of_case".into(), json!(self.load_of));
+        Value::Object(out)
+    }
+}
+
+impl PickPoses {
+    /// Names and design.
+    fn title(&self) -> String {
+        format!("{} ({})", self.pick.names.join(", "), self.pick.design.design_id)
+    }
+
+    /// Deflection and mode, each with the objective and what it is multiplied by to get the objective's unit.
+    fn both(&self) -> [(Objective, f64, &WorstPose); 2] {
+        [(Objective::Deflection, 1e3, &self.worst.deflection), (Objective::Mode, 1.0, &self.worst.mode)]
+    }
+
+    /// Those that are worse than the judged cases.
+    fn worse(&self) -> impl Iterator<Item = (Objective, f64, &WorstPose)> {
+        self.both().into_iter().filter(|(_, _, pose)| pose.worse() > WORSE)
+    }
+
+    fn sentence(&self, (objective, of_unit, pose): (Objective, f64, &WorstPose), has_loads: bool) -> String {
+        let what = if objective == Objective::Mode { "lowest mode" } else { "tip deflection" };
+        let side = if objective == Objective::Mode { "lower" } else { "more" };
+        let load = if has_loads { format!(" with the load of \"{}\"", pose.load_of) } else { String::new() };
+        let far = match objective {
+            Objective::Deflection => too_far(pose.value, self.reach_m),
+            _ => None,
+        };
+        format!(
+            "{}: {what} {} in pose {} deg{load}, {} {side} than the {} of the judged cases.{}",
+            self.title(),
+            objective.amount(of_unit * pose.value),
+            pose.pose_words(),
+            percent(100.0 * pose.worse(), 1),
+            objective.amount(of_unit * pose.judged),
+            far.map_or(String::new(), |words| format!(" There the tip {words}."))
+        )
+    }
+
+    fn to_json(&self) -> Value {
+        json!({
+            "names": self.pick.names,
+            "design_id": self.pick.design.design_id,
+            "reach_m": self.reach_m,
+            "small_displacements": too_far(self.worst.deflection.judged, self.reach_m).is_none(),
+            "tip_deflection": self.worst.deflection.to_json("mm", 1e3),
+            "lowest_mode": self.worst.mode.to_json("hz", 1.0),
+        })
+    }
+}
+
+impl PicksInPoses {
+    /// A warning for each pick that deflects too far in the judged cases.
+    fn warnings(&self) -> Vec<String> {
+        let warning = |of: &PickPoses| {
+            let words = too_far(of.worst.deflection.judged, of.reach_m)?;
+            Some(format!("{}: the tip {words}.", of.title()))
+        };
+        self.picks.iter().filter_map(warning).collect()
+    }
+
+    /// A sentence for each pick and objective that is worse than in the judged cases.
+    fn worse(&self) -> Vec<String> {
+        let of_pick =
+            |of| PickPoses::worse(of).map(|worse| of.sentence(worse, self.has_loads)).collect::<Vec<_>>();
+        self.picks.iter().flat_map(of_pick).collect()
+    }
+
+    /// Which poses were searched, and whether worse ones were found.
+    fn lead(&self) -> String {
+        let ranges = self.range_words.join("; ");
+        match self.worse().is_empty() {
+            true => format!(
+                "No pose within the ranges of the joints ({ranges}) was found in which a pick is more than {} worse than \
+                 in the judged cases.",
+                percent(100.0 * WORSE, 0)
+            ),
+            false => format!(
+                "Picks that are more than {} worse in another pose within the ranges of the joints ({ranges}) than in \
+                 the judged cases:",
+                percent(100.0 * WORSE, 0)
+            ),
+        }
+    }
+
+    /// Everything that a result reports about them.
+    pub fn supplement(&self) -> Supplement {
+        let run = Some((KEY, self.to_json()));
+        if self.picks.is_empty() {
+            return Supplement { run, ..Supplement::default() };
+        }
+        let paragraphs = |words: &[String]| words.iter().map(|s| wrap(s, TERMINAL, "")).collect::<String>();
+        let listed = self.worse().into_iter().map(|s| format!("- {s}"));
+        let words: Vec<String> =
+            [self.lead()].into_iter().chain(listed).chain([LEFT_OUT.to_string()]).collect();
+        let warnings = paragraphs(&self.warnings());
+        let gap = if warnings.is_empty() { "" } else { "\n" };
+        Supplement {
+            file: None,
+            markdown: self.to_markdown(),
+            section: Some(self.section()),
+            run,
+            terminal: format!("{warnings}{gap}{}", paragraphs(&words)),
+        }
+    }
+
+    /// What `run.json` says of them.
+    fn to_json(&self) -> Value {
+        let range = |(name, [low, high], is_stated): &(String, [f64; 2], bool)| json!({"joint": name, "low_deg": low, "high_deg": high, "stated": is_stated});
+        json!({
+            "ranges": self.ranges.iter().map(range).collect::<Vec<Value>>(),
+            "picks": self.picks.iter().map(PickPoses::to_json).collect::<Vec<Value>>(),
+            "left_out": [LEFT_OUT],
+        })
+    }
+
+    /// The section of a page.
+    fn section(&self) -> PageSection {
+        let words =
+            self.warnings().into_iter().chain([self.lead()]).chain(self.worse()).chain([LEFT_OUT.into()]);
+        PageSection {
+            title: "Other poses".into(),
+            words: words.collect(),
+            tables: vec![("The worst pose found for each pick".into(), self.table())],
+            figures: Vec::new(),
+        }
+    }
+
+    /// The section of a summary.
+    fn to_markdown(&self) -> String {
+        let list = |words: Vec<String>| words.iter().map(|s| format!("- {s}\n")).collect::<String>();
+        let (warnings, worse) = (list(self.warnings()), list(self.worse()));
+        let gap = |list: &str| if list.is_empty() { "" } else { "\n" };
+        format!(
+            "\n## Other poses\n\n{warnings}{}{}\n\n{worse}{}{}\n{LEFT_OUT}\n",
+            gap(&warnings),
+            self.lead(),
+            gap(&worse),
+            self.table().to_markdown()
+        )
+    }
+
+    /// One row for each pick and objective.
+    fn table(&self) -> Table {
+        let mut table = Table::new(vec![
+            Column::left("pick"),
+            Column::left("design"),
+            Column::left("objective"),
+            Column::right("judged"),
+            Column::right("worst"),
+            Column::right("worse by [%]"),
+            Column::left("pose [deg]"),
+            Column::left("load of"),
+        ]);
+        for of in &self.picks {
+            for (objective, of_unit, pose) in of.both() {
+                let what = if objective == Objective::Mode { "lowest mode" } else { "tip deflection" };
+                table.row([
+                    of.pick.names.join(", "),
+                    of.pick.design.design_id.clone(),
+                    format!("{what} [{}]", objective.unit()),
+                    significant(of_unit * pose.judged, 4),
+                    significant(of_unit * pose.value, 4),
+                    significant(100.0 * pose.worse(), 3),
+                    pose.pose_words(),
+                    pose.load_of.clone(),
+                ]);
+            }
+        }
+        table
+    }
+}

@@ -1,0 +1,275 @@
+//! The pose with the largest score, looked for within ranges of angles.
+//!
+//! The score is computed at a fixed set of poses: the corners, where every joint is at a multiple of 90 degrees or at an
+//! end of its range, and Halton's sequence between them. From the best of these that lie apart, a compass search climbs:
+//! it turns one joint at a time, or two at once where no single joint helps, by steps that become smaller. Nothing is
+//! random and nothing depends on the number of threads. The result is a pose that was found, not one that is proved.
+
+use rayon::prelude::*;
+
+/// Most corners that are looked at; of more, so many are drawn by Halton's sequence.
+const MOST_CORNERS: usize = 1024;
+/// Poses between the corners.
+const SPREAD: usize = 512;
+/// Poses from which a search climbs.
+const STARTS: usize = 6;
+/// Starts differ by at least this much in some joint \[deg\].
+const APART_DEG: f64 = 40.0;
+/// Of the starts, so many are followed to the top.
+const FOLLOWED: usize = 2;
+/// Steps of the climb from a start \[deg\].
+const COARSE_DEG: [f64; 3] = [24.0, 12.0, 6.0];
+/// Steps of the rest of the climb \[deg\].
+const FINE_DEG: [f64; 5] = [6.0, 2.0, 0.7, 0.3, 0.1];
+/// Moves with one step at most; a climb that needs more goes on with a smaller step.
+const MOST_MOVES: usize = 60;
+/// A smaller rise of the score than this fraction is rounding.
+const RISE: f64 = 1e-9;
+/// Bases of Halton's sequence.
+const PRIMES: [usize; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
+
+/// The angles of one joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Turn {
+    low_deg: f64,
+    high_deg: f64,
+    /// Whether the ends are the same angle.
+    is_full: bool,
+}
+
+impl Turn {
+    /// The angles of a range. Of a range of more than a full turn, that full turn is taken which is nearest to -180 to 180.
+    fn new([low_deg, high_deg]: [f64; 2]) -> Self {
+        if high_deg - low_deg < 360.0 {
+            return Self { low_deg, high_deg, is_full: false };
+        }
+        let low_deg = (-180.0f64).clamp(low_deg, high_deg - 360.0);
+        Self { low_deg, high_deg: low_deg + 360.0, is_full: true }
+    }
+
+    /// The angle of the range that is nearest to another, in tenths of a degree or at an end.
+    fn within(self, angle_deg: f64) -> f64 {
+        let turned = match self.is_full {
+            // the upper end stays, because 180 reads better than -180
+            true if angle_deg <= self.low_deg || angle_deg > self.high_deg => {
+                self.high_deg - (self.high_deg - angle_deg).rem_euclid(360.0)
+            }
+            _ => angle_deg,
+        };
+        ((turned * 10.0).round() / 10.0).clamp(self.low_deg, self.high_deg)
+    }
+
+    /// Multiples of 90 degrees, those near zero first, and the ends.
+    fn corners_deg(self) -> Vec<f64> {
+        let first = (self.low_deg / 90.0).ceil() as i64;
+        let last = (self.high_deg / 90.0).floor() as i64;
+        let mut out: Vec<f64> = (first..=last).map(|i| 90.0 * i as f64).collect();
+        match self.is_full {
+            true => out.retain(|&angle| angle != self.low_deg),
+            false => out.extend([self.low_deg, self.high_deg].iter().filter(|end| *end % 90.0 != 0.0)),
+        }
+        out.sort_by(|a, b| a.abs().total_cmp(&b.abs()).then(b.total_cmp(a)));
+        out
+    }
+}
+
+/// A pose \[deg\] and its score.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Scored {
+    /// One angle per joint \[deg\].
+    pub pose_deg: Vec<f64>,
+    /// The score, in the unit of the score.
+    pub score: f64,
+}
+
+/// The angles of all joints, and which of them matter.
+#[derive(Debug, Clone)]
+pub(super) struct PoseRanges {
+    turns: Vec<Turn>,
+    /// Numbers of the joints whose angle matters.
+    free: Vec<usize>,
+}
+
+impl PoseRanges {
+    /// The ranges of all joints \[deg\].
+    pub(super) fn new(ranges_deg: &[[f64; 2]]) -> Self {
+        let turns: Vec<Turn> = ranges_deg.iter().map(|range| Turn::new(*range)).collect();
+        Self { free: (0..turns.len()).collect(), turns }
+    }
+
+    /// The same ranges without the joints whose angle changes nothing, such as a vertical first joint under weight
+    /// alone. These joints stay as near to zero as they can. `values` are compared, which are the scores at a pose.
+    pub(super) fn that_matter<const N: usize>(mut self, values: impl Fn(&[f64]) -> [f64; N]) -> Self {
+        const TURNED_DEG: [f64; 2] = [31.7, 123.4];
+        let differs =
+            |a: &[f64; N], b: &[f64; N]| a.iter().zip(b).any(|(a, b)| (a - b).abs() > RISE * a.abs());
+        let matters = |joint: usize| {
+            (1..=2).any(|index| {
+                let pose_deg = self.spread(index);
+                let here = values(&pose_deg);
+                TURNED_DEG.iter().any(|by| {
+                    let mut turned = pose_deg.clone();
+                    turned[joint] += by;
+                    differs(&here, &values(&turned))
+                })
+            })
+        };
+        self.free = (0..self.turns.len()).filter(|&joint| matters(joint)).collect();
+        self
+    }
+
+    /// The fixed set of poses from which a search begins.
+    pub(super) fn first_poses(&self) -> Vec<Vec<f64>> {
+        let corners: Vec<Vec<f64>> = self.free.iter().map(|&joint| self.turns[joint].corners_deg()).collect();
+        let all = corners.iter().try_fold(1usize, |n, of| n.checked_mul(of.len()));
+        let count = all.map_or(MOST_CORNERS, |all| all.min(MOST_CORNERS));
+        let corner = |index: usize| {
+            let mut pose_deg = self.home();
+            let mut rest = index;
+            for (place, (&joint, of)) in self.free.iter().zip(&corners).enumerate() {
+                pose_deg[joint] = match all {
+                    Some(all) if all <= MOST_CORNERS => of[rest % of.len()],
+                    _ => of[(halton(index, PRIMES[place % PRIMES.len()]) * of.len() as f64) as usize],
+                };
+                rest /= of.len();
+            }
+            pose_deg
+        };
+        (0..count).map(corner).chain((1..=SPREAD).map(|index| self.spread(index))).collect()
+    }
+
+    /// The pose within the ranges that is nearest to another.
+    pub(super) fn nearest(&self, pose_deg: &[f64]) -> Vec<f64> {
+        let mut out = self.home();
+        self.free.iter().for_each(|&joint| out[joint] = self.turns[joint].within(pose_deg[joint]));
+        out
+    }
+
+    /// The best pose that climbs from the best of these poses reach; `None` without a pose.
+    pub(super) fn climb(&self, from: &[Scored], score: impl Fn(&[f64]) -> f64 + Sync) -> Option<Scored> {
+        let mut climbed: Vec<Scored> = self
+            .starts(from)
+            .into_par_iter()
+            .map(|start| self.climbed(start, &COARSE_DEG, false, &score))
+            .collect();
+        climbed.sort_by(|a, b| b.score.total_cmp(&a.score));
+        climbed.dedup_by(|a, b| a.pose_deg == b.pose_deg);
+        climbed.truncate(FOLLOWED);
+        let followed: Vec<Scored> =
+            climbed.into_par_iter().map(|start| self.climbed(start, &FINE_DEG, true, &score)).collect();
+        followed.into_iter().reduce(|best, other| if other.score > best.score { other } else { best })
+    }
+
+    /// The best of some poses that lie apart.
+    fn starts(&self, from: &[Scored]) -> Vec<Scored> {
+        let mut order: Vec<&Scored> = from.iter().collect();
+        order.sort_by(|a, b| b.score.total_cmp(&a.score));
+        let mut out: Vec<Scored> = Vec::new();
+        for scored in order {
+            if out.len() < STARTS && out.iter().all(|other| self.apart_deg(other, scored) >= APART_DEG) {
+                out.push(scored.clone());
+            }
+        }
+        out
+    }
+
+    /// The largest difference of an angle that matters.
+    fn apart_deg(&self, one: &Scored, other: &Scored) -> f64 {
+        let apart = |&joint: &usize| {
+            let by = (one.pose_deg[joint] - other.pose_deg[joint]).abs();
+            if self.turns[joint].is_full { by.min(360.0 - by) } else { by }
+        };
+        self.free.iter().map(apart).fold(0.0, f64::max)
+    }
+
+    /// Climbs from a pose with every step in turn, until no move with it helps.
+    fn climbed(
+        &self,
+        start: Scored,
+        steps_deg: &[f64],
+        in_pairs: bool,
+        score: &impl Fn(&[f64]) -> f64,
+    ) -> Scored {
+        let mut here = start;
+        for &step_deg in steps_deg {
+            for _ in 0..MOST_MOVES {
+                let single = self.turned_once(&here, step_deg, score);
+                let pair = || if in_pairs { self.turned_in_pair(&here, step_deg, score) } else { None };
+                match single.or_else(pair) {
+                    Some(better) => here = better,
+                    None => break,
+                }
+            }
+        }
+        here
+    }
+
+    /// Turns each joint in turn, to the side that helps; `None` if none does.
+    fn turned_once(&self, from: &Scored, step_deg: f64, score: &impl Fn(&[f64]) -> f64) -> Option<Scored> {
+        let mut best: Option<Scored> = None;
+        for &joint in &self.free {
+            for by in [step_deg, -step_deg] {
+                let here = best.as_ref().unwrap_or(from);
+                if let Some(better) = self.moved(here, &[(joint, by)], score) {
+                    best = Some(better);
+                    break;
+                }
+            }
+        }
+        best
+    }
+
+    /// The first turn of two joints at once that helps.
+    fn turned_in_pair(&self, from: &Scored, step_deg: f64, score: &impl Fn(&[f64]) -> f64) -> Option<Scored> {
+        let pairs =
+            self.free.iter().enumerate().flat_map(|(i, &a)| self.free[i + 1..].iter().map(move |&b| [a, b]));
+        pairs
+            .flat_map(|pair| [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|signs| (pair, signs)))
+            .find_map(|([a, b], [x, y])| self.moved(from, &[(a, x * step_deg), (b, y * step_deg)], score))
+    }
+
+    /// The pose after some joints turned, if its score is higher.
+    fn moved(
+        &self,
+        from: &Scored,
+        by_deg: &[(usize, f64)],
+        score: &impl Fn(&[f64]) -> f64,
+    ) -> Option<Scored> {
+        let mut pose_deg = from.pose_deg.clone();
+        for &(joint, by) in by_deg {
+            pose_deg[joint] = self.turns[joint].within(pose_deg[joint] + by);
+        }
+        if pose_deg == from.pose_deg {
+            return None;
+        }
+        let score = score(&pose_deg);
+        (score > from.score + RISE * from.score.abs()).then_some(Scored { pose_deg, score })
+    }
+
+    /// A pose between the corners, in whole degrees.
+    fn spread(&self, index: usize) -> Vec<f64> {
+        let mut pose_deg = self.home();
+        for (place, &joint) in self.free.iter().enumerate() {
+            let Turn { low_deg, high_deg, .. } = self.turns[joint];
+            let part = halton(index, PRIMES[place % PRIMES.len()]);
+            pose_deg[joint] = self.turns[joint].within((low_deg + (high_deg - low_deg) * part).round());
+        }
+        pose_deg
+    }
+
+    /// Every joint as near to zero as it can be.
+    fn home(&self) -> Vec<f64> {
+        self.turns.iter().map(|turn| turn.within(0.0)).collect()
+    }
+}
+
+/// A number of Halton's low-discrepancy sequence, from 0 to 1.
+fn halton(mut index: usize, base: usize) -> f64 {
+    let (mut part, mut sum) = (1.0, 0.0);
+    while index > 0 {
+        part /= base as f64;
+        sum += part * (index % base) as f64;
+        index /= base;
+    }
+    sum
+}

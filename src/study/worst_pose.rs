@@ -1,0 +1,108 @@
+//! The worst poses of a front's picks within the ranges of their joints.
+//!
+//! A study judges its designs in the poses that it lists. Here each pick is put into other poses, under the loads of the
+//! judged cases, and the pose with the largest tip deflection and the pose with the lowest mode are looked for.
+
+use super::pose_search::{PoseRanges, Scored};
+use crate::arm::Arm;
+use crate::arm::load::LoadCase;
+use crate::mechanics::chain::Chain;
+use crate::space::design::full_objectives;
+use rayon::prelude::*;
+
+/// The worst value of one objective over poses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WorstPose {
+    /// The pose: one angle per driven joint, base to tip \[deg\].
+    pub pose_deg: Vec<f64>,
+    /// Name of the judged case whose load the arm has in it.
+    pub load_of: String,
+    /// The value there, in the unit of the objective (m or Hz).
+    pub value: f64,
+    /// The worst value over the judged cases.
+    pub judged: f64,
+}
+
+/// The worst poses of an arm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WorstPoses {
+    /// The pose of the largest tip deflection found \[m\].
+    pub deflection: WorstPose,
+    /// The pose of the lowest mode found \[Hz\].
+    pub mode: WorstPose,
+}
+
+/// Looks for the worst poses of an arm within ranges \[deg\], one for each driven joint; passive joints follow. Every
+/// load of the cases is tried in every pose. `None` without a case.
+pub fn worst_poses(arm: &Arm, cases: &[LoadCase], ranges_deg: &[[f64; 2]]) -> Option<WorstPoses> {
+    let judged = full_objectives(arm, cases);
+    let found: Vec<[WorstPose; 2]> =
+        loads(cases).into_iter().filter_map(|load| worst_under(arm, load, cases, ranges_deg)).collect();
+    let [deflections, modes]: [Vec<WorstPose>; 2] =
+        [0, 1].map(|which| found.iter().map(|of_load| of_load[which].clone()).collect());
+    let deflection = deflections.into_iter().reduce(|a, b| if b.value > a.value { b } else { a })?;
+    let mode = modes.into_iter().reduce(|a, b| if b.value < a.value { b } else { a })?;
+    Some(WorstPoses {
+        deflection: WorstPose { judged: judged.tip_deflection_m, ..deflection },
+        mode: WorstPose { judged: judged.lowest_mode_hz, ..mode },
+    })
+}
+
+/// The first case of each load.
+pub(super) fn loads(cases: &[LoadCase]) -> Vec<&LoadCase> {
+    let same = |a: &LoadCase, b: &LoadCase| {
+        a.payload == b.payload
+            && a.tip_force_n == b.tip_force_n
+            && a.water == b.water
+            && (a.links, a.joints) == (b.links, b.joints)
+    };
+    let mut out: Vec<&LoadCase> = Vec::new();
+    for case in cases {
+        if out.iter().all(|other| !same(other, case)) {
+            out.push(case);
+        }
+    }
+    out
+}
+
+/// The worst poses under the load of one case: of the deflection, and of the mode.
+fn worst_under(
+    arm: &Arm,
+    load: &LoadCase,
+    cases: &[LoadCase],
+    ranges_deg: &[[f64; 2]],
+) -> Option<[WorstPose; 2]> {
+    let structure = arm.structure_in(load);
+    let chain = Chain::new(&structure, load.links);
+    let posed = |pose_deg: &[f64]| {
+        let pose_rad: Vec<f64> = pose_deg.iter().map(|angle| angle.to_radians()).collect();
+        chain.pose_rad(&pose_rad, &load.payload, load.tip_force_n)
+    };
+    let deflection_m = |pose_deg: &[f64]| posed(pose_deg).statics().tip_displacement_m.norm();
+    let both = |pose_deg: &[f64]| {
+        let posed = posed(pose_deg);
+        let statics = posed.statics();
+        [statics.tip_displacement_m.norm(), -posed.lowest_frequency_hz(&statics)]
+    };
+    let ranges = PoseRanges::new(ranges_deg).that_matter(both);
+    let mut poses = ranges.first_poses();
+    poses.extend(cases.iter().map(|case| ranges.nearest(&case.pose_deg)));
+    let values: Vec<[f64; 2]> = poses.par_iter().map(|pose_deg| both(pose_deg)).collect();
+    let scored = |which: usize| -> Vec<Scored> {
+        let of = |(pose_deg, values): (&Vec<f64>, &[f64; 2])| Scored {
+            pose_deg: pose_deg.clone(),
+            score: values[which],
+        };
+        poses.iter().zip(&values).map(of).collect()
+    };
+    let found = |top: Scored, sign: f64| WorstPose {
+        pose_deg: top.pose_deg,
+        load_of: load.name.clone(),
+        value: sign * top.score,
+        judged: f64::NAN,
+    };
+    Some([
+        found(ranges.climb(&scored(0), deflection_m)?, 1.0),
+        found(ranges.climb(&scored(1), |pose_deg: &[f64]| both(pose_deg)[1])?, -1.0),
+    ])
+}
