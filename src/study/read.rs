@@ -6,6 +6,7 @@
 
 use super::definition::Study;
 use super::effects::check_effects;
+use super::omissions::omissions;
 use super::range::{check_poses, read_range};
 use super::sections::{Aside, read_materials, read_sections};
 use crate::arm::file::{read_curve, read_effects, read_joint_mass, read_link, read_name};
@@ -109,7 +110,8 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     };
     check_effects(&space, &root)?;
     in_range?;
-    let Aside { not_checked, remarks } = aside;
+    let Aside { not_checked, mut remarks } = aside;
+    remarks.extend(omissions(&space));
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
 

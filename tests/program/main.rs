@@ -11,6 +11,7 @@ mod compare;
 mod docs;
 mod front_check;
 mod imports;
+mod left_out;
 mod links;
 mod other_poses;
 mod pages;
