@@ -134,7 +134,7 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
         motion.life_h,
         study.space.sizing_cases.len()
     );
-    for words in &study.turned_off {
+    for words in &study.remarks {
         let _ = writeln!(out, "{words}");
     }
     let Some(parts) = problem.parts(chosen) else { return out };

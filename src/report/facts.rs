@@ -40,8 +40,6 @@ pub struct SummaryFacts {
     pub remarks: Vec<String>,
     /// Parts whose figures no document was seen for.
     pub caveats: Caveats,
-    /// Checks that the study turns off, in words.
-    pub turned_off: Vec<String>,
     /// Result folder as it is typed.
     pub results: String,
 }

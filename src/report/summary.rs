@@ -91,10 +91,9 @@ pub fn summary_md(input: &SummaryInput) -> String {
         out.push_str("\n## Warnings\n\n");
         warnings.iter().for_each(|words| out.push_str(&format!("- {words}\n")));
     }
-    if facts.not_checked.len() + facts.turned_off.len() > 0 {
+    if !facts.not_checked.is_empty() {
         out.push_str("\n## Not checked\n\n");
-        let words = facts.turned_off.iter().chain(&facts.not_checked);
-        words.for_each(|words| out.push_str(&format!("- {words}\n")));
+        facts.not_checked.iter().for_each(|words| out.push_str(&format!("- {words}\n")));
     }
     if let Some(pick) = found.default_pick() {
         out.push_str(&format!("\n## Take a design out\n\n```\n{}```\n", commands(facts, pick)));
@@ -128,7 +127,7 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
     }
     out.push_str(&format!("\n{}", wrap(&counts(facts), TERMINAL, "")));
     facts.remarks.iter().for_each(|words| out.push_str(&wrap(words, TERMINAL, "")));
-    for words in warnings(&input.overall, &found.picks).iter().chain(&facts.turned_off) {
+    for words in warnings(&input.overall, &found.picks) {
         out.push_str(&wrap(&format!("{words}."), TERMINAL, ""));
     }
     if !facts.not_checked.is_empty() {

@@ -43,6 +43,7 @@ use nalgebra::{Unit, Vector3};
 ///     section: Section::RectangularTube { width_m: 0.12, height_m: 0.12, wall_m },
 ///     profile: None,
 ///     strength_pa: Some(355e6),
+///     compressive_strength_pa: None,
 ///     cost_eur_per_kg: None,
 /// };
 /// let drive = DriveChoice::Given { curve: Curve::Linear(405e3), mass_kg: 8.2, gear: None, motor: None };

@@ -18,6 +18,4 @@ pub struct Study {
     pub not_checked: Vec<String>,
     /// What a reader of the result should know of the question, in sentences.
     pub remarks: Vec<String>,
-    /// Checks that the study turns off, in words. They are said next to every result.
-    pub turned_off: Vec<String>,
 }

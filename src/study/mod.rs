@@ -11,6 +11,7 @@ pub(crate) mod effects;
 pub(crate) mod motion;
 pub(crate) mod named;
 pub(crate) mod near;
+pub(crate) mod omissions;
 pub(crate) mod outcome;
 pub(crate) mod page;
 pub(crate) mod pick_poses;

@@ -88,6 +88,11 @@ impl WorstPose {
     }
 }
 
+/// What the worst pose of an objective is worst in.
+fn name_of(objective: Objective) -> &'static str {
+    if objective == Objective::Mode { "lowest mode" } else { "tip deflection" }
+}
+
 impl PickPoses {
     /// Names and design.
     fn title(&self) -> String {
@@ -105,7 +110,7 @@ impl PickPoses {
     }
 
     fn sentence(&self, (objective, of_unit, pose): (Objective, f64, &WorstPose), has_loads: bool) -> String {
-        let what = if objective == Objective::Mode { "lowest mode" } else { "tip deflection" };
+        let what = name_of(objective);
         let side = if objective == Objective::Mode { "lower" } else { "more" };
         let load = if has_loads { format!(" with the load of \"{}\"", pose.load_of) } else { String::new() };
         let far = match objective {
@@ -240,11 +245,10 @@ impl PicksInPoses {
         ]);
         for of in &self.picks {
             for (objective, of_unit, pose) in of.both() {
-                let what = if objective == Objective::Mode { "lowest mode" } else { "tip deflection" };
                 table.row([
                     of.pick.names.join(", "),
                     of.pick.design.design_id.clone(),
-                    format!("{what} [{}]", objective.unit()),
+                    format!("{} [{}]", name_of(objective), objective.unit()),
                     significant(of_unit * pose.judged, 4),
                     significant(of_unit * pose.value, 4),
                     significant(100.0 * pose.worse(), 3),

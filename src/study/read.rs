@@ -7,6 +7,7 @@
 use super::definition::Study;
 use super::effects::check_effects;
 use super::motion::{read_duty, read_motion};
+use super::omissions::omissions;
 use super::range::{check_poses, read_range};
 use super::sections::{Aside, read_materials, read_sections};
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
@@ -118,15 +119,9 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     };
     check_effects(&space, &root)?;
     in_range?;
-    let Aside { not_checked, remarks } = aside;
-    let turned_off = turned_off(&space);
-    Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks, turned_off })
-}
-
-/// Checks that the study turns off, in words.
-fn turned_off(space: &DesignSpace) -> Vec<String> {
-    let heat = "Motor heat not checked: the study turns it off (check_motor_heat in its motion)";
-    (!space.motion.checks_motor_heat).then(|| heat.to_string()).into_iter().collect()
+    let Aside { not_checked, mut remarks } = aside;
+    remarks.extend(omissions(&space));
+    Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
 
 /// A fraction, written in percent.

@@ -161,7 +161,7 @@ fn a_run_has_margins_and_critical_speeds_and_says_what_was_not_checked() {
     for text in [&said, &summary] {
         assert!(!text.contains("Motor heat not checked"));
     }
-    assert!(record.contains("\"checks_off\": []"), "{record}");
+    assert!(!record.contains("Motor heat not checked"), "{record}");
     let (said, front, summary, record) = run(&swing(false));
     for text in [&said, &summary, &record] {
         assert!(text.contains("Motor heat not checked"), "{text}");

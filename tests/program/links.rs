@@ -9,14 +9,14 @@ const G_PA: f64 = 26e9;
 const E_PA: f64 = 69e9;
 
 /// Exit code and what was said: standard output if it succeeds, standard error if not.
-fn armwright(here: &Path, words: &[&str]) -> (i32, String) {
+pub fn armwright(here: &Path, words: &[&str]) -> (i32, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));
     let output = command.current_dir(here).args(words).output().expect("it runs");
     let said = if output.status.success() { output.stdout } else { output.stderr };
     (output.status.code().expect("a code"), String::from_utf8(said).expect("text"))
 }
 
-fn folder_with(name: &str, file: &Value) -> tempfile::TempDir {
+pub fn folder_with(name: &str, file: &Value) -> tempfile::TempDir {
     let here = tempfile::tempdir().expect("a temporary folder");
     std::fs::write(here.path().join(name), file.to_string()).expect("written");
     here
@@ -137,7 +137,9 @@ fn a_study_that_offers_stainless_steel_in_structural_sections_alone_says_so() {
         assert_eq!(code, 0, "{said}");
         let run = std::fs::read_to_string(here.path().join("out/run.json")).expect("run.json");
         let run: Value = serde_json::from_str(&run).expect("JSON");
-        let remarks: Vec<String> = serde_json::from_value(run["remarks"].clone()).expect("a list");
+        let mut remarks: Vec<String> = serde_json::from_value(run["remarks"].clone()).expect("a list");
+        // the other remark is what every study with gears leaves out
+        remarks.retain(|words| words.starts_with("Link "));
         for file in ["summary.md", "report.html"] {
             let text = std::fs::read_to_string(here.path().join("out").join(file)).expect(file);
             assert_eq!(text.contains("offers Stainless"), !remarks.is_empty(), "{file}");

@@ -12,6 +12,7 @@ mod docs;
 mod duty_cycles;
 mod front_check;
 mod imports;
+mod left_out;
 mod links;
 mod other_poses;
 mod pages;

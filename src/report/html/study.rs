@@ -73,8 +73,6 @@ impl StudyPage<'_> {
         let views = self.views(&chosen, front_bytes);
         let data = views.json();
         let extras: Vec<Value> = self.extras.iter().map(|e| gallery.extra(e)).collect();
-        let mut warned = warnings(&self.summary.overall, &chosen);
-        warned.extend(facts.turned_off.iter().cloned());
         let caveat = |part: &CatalogRow| Some((part.name.clone(), facts.caveats.of_part(&part.name)?));
         let caveats: BTreeMap<String, &str> = self.parts.iter().filter_map(caveat).collect();
         let content = json!({
@@ -93,7 +91,7 @@ impl StudyPage<'_> {
             "run": self.run,
             "not_checked": facts.not_checked,
             "remarks": facts.remarks,
-            "warnings": warned,
+            "warnings": warnings(&self.summary.overall, &chosen),
             "parts": self.parts.iter().map(part).collect::<Vec<_>>(),
             "caveats": caveats,
             "results": facts.results,

@@ -1,0 +1,47 @@
+//! What the numbers of a study leave out, so that it can be said beside the numbers.
+
+use crate::arm::bearing::BearingSource;
+use crate::arm::extras::ExtrasSource;
+use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
+
+/// What the numbers leave out, in sentences; none if no joint has a gear.
+pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
+    let with_gear: Vec<&SpaceJoint> = joints(space).filter(|joint| has_gear(joint)).collect();
+    if with_gear.is_empty() {
+        return Vec::new();
+    }
+    let named = |wanted: fn(&SpaceJoint) -> bool| {
+        let names: Vec<&str> =
+            with_gear.iter().filter(|joint| wanted(joint)).map(|joint| joint.name.as_str()).collect();
+        (!names.is_empty()).then(|| names.join(", "))
+    };
+    let rigid = named(|joint| joint.bearing == BearingSource::Stated(None)).map(|names| {
+        format!(
+            "Rigid output bearing without mass in {names}: the study states none there, so that no bearing yields, is \
+             checked or is weighed."
+        )
+    });
+    let bare = named(|joint| joint.drive.is_sized() && joint.extras == ExtrasSource::NONE).map(|names| {
+        format!(
+            "Nothing is weighed beyond gear, motor and bearing in {names}: the study states no extras there."
+        )
+    });
+    let heat = (!space.motion.checks_motor_heat && with_gear.iter().any(|joint| joint.drive.is_sized()))
+        .then(|| {
+            "Motor heat not checked: the study turns it off (check_motor_heat in its motion).".to_string()
+        });
+    let always = "Left out of every number: the yield of the connections between links and joints, the cables along \
+                  the links, temperature, and whether the parts fit into each other.";
+    [rigid, bare, heat, Some(always.to_string())].into_iter().flatten().collect()
+}
+
+fn joints(space: &DesignSpace) -> impl Iterator<Item = &SpaceJoint> {
+    space.pieces.iter().filter_map(|piece| match piece {
+        SpacePiece::Joint(joint) => Some(joint),
+        _ => None,
+    })
+}
+
+fn has_gear(joint: &SpaceJoint) -> bool {
+    !matches!(joint.drive, DriveChoice::Given { gear: None, .. })
+}

@@ -1,0 +1,64 @@
+//! What every number of a result leaves out stands beside the numbers.
+
+use crate::links::{armwright, folder_with};
+use serde_json::{Value, json};
+
+const RIGID: &str = "Rigid output bearing without mass in shoulder";
+const BARE: &str = "Nothing is weighed beyond gear, motor and bearing in shoulder";
+const HEAT: &str = "Motor heat not checked";
+const ALWAYS: &str = "Left out of every number: the yield of the connections";
+
+/// An arm of one joint and one open tube.
+fn study(joint: Value, motion: Value) -> Value {
+    let mut joint = joint;
+    joint["type"] = json!("joint");
+    joint["name"] = json!("shoulder");
+    joint["axis"] = json!([0, 1, 0]);
+    let choose = json!({"materials": ["Aluminium 6061-T6"],
+        "sections": [{"shape": "rectangular_tube", "width_mm": [60, 80], "wall_mm": [2, 3]}]});
+    json!({"name": "one joint", "question": "?", "payload": {"mass_kg": 2}, "motion": motion,
+        "chain": [joint, {"type": "link", "name": "arm", "vector_m": [0.5, 0, 0], "choose": choose}],
+        "poses": [{"name": "level", "pose_deg": [0]}]})
+}
+
+/// Which of the sentences terminal, summary, page and `run.json` say; all four must agree.
+fn said(joint: Value, motion: Value) -> Vec<&'static str> {
+    let here = folder_with("study.json", &study(joint, motion));
+    let (code, terminal) = armwright(here.path(), &["run", "study.json", "--out", "out"]);
+    assert_eq!(code, 0, "{terminal}");
+    let read = |file: &str| std::fs::read_to_string(here.path().join("out").join(file)).expect(file);
+    let texts = [terminal, read("summary.md"), read("report.html"), read("run.json")].map(|text| {
+        let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        [RIGID, BARE, HEAT, ALWAYS]
+            .into_iter()
+            .filter(|sentence| words.contains(sentence))
+            .collect::<Vec<_>>()
+    });
+    assert!(texts.iter().all(|text| *text == texts[0]), "{texts:?}");
+    texts[0].clone()
+}
+
+#[test]
+fn a_whole_joint_leaves_out_only_what_no_study_can_bring_in() {
+    assert_eq!(said(json!({"drive": "first_fit"}), json!({})), [ALWAYS]);
+}
+
+#[test]
+fn a_joint_without_bearing_extras_and_heat_is_named() {
+    let joint = json!({"drive": "first_fit", "bearing": null, "extras": "none"});
+    assert_eq!(said(joint, json!({"check_motor_heat": false})), [RIGID, BARE, HEAT, ALWAYS]);
+}
+
+#[test]
+fn a_gear_in_numbers_has_a_bearing_too() {
+    assert_eq!(said(json!({"gear": "CSG-25-100", "mass_kg": 3.0}), json!({})), [ALWAYS]);
+    assert_eq!(
+        said(json!({"gear": "CSG-25-100", "mass_kg": 3.0, "bearing": null}), json!({})),
+        [RIGID, ALWAYS]
+    );
+}
+
+#[test]
+fn a_result_without_gears_leaves_nothing_of_them_out() {
+    assert!(said(json!({"stiffness_nm_per_rad": 1e5, "mass_kg": 3.0}), json!({})).is_empty());
+}
