@@ -6,7 +6,7 @@ use super::kinds::{Kinds, Ties};
 use super::lowest_eigenvalue::CaseInertia;
 use super::parts::{DriveBox, LinkBox, RIGID_RAD_PER_NM, Rays};
 use super::pose::Pose;
-use super::problem::{Ladder, Lever, Part, Problem};
+use super::problem::{Ladder, Lever, Part, Problem, Room};
 use super::shape::Ideal;
 use super::torsion::{BreakPoints, CurveBox};
 use super::tree::Tree;
@@ -16,9 +16,11 @@ use crate::arm::joint_law::Curve;
 use crate::catalog::Catalogs;
 use crate::sizing::bearing::BearingLimits;
 use crate::sizing::demand::JointMotion;
+use crate::sizing::fit::LinkRoom;
 use crate::space::bearing_loads::Lever as LeverByOption;
 use crate::space::design_space::{DesignSpace, LinkOption, SpaceJoint, SpacePiece};
 use crate::space::effects::Layer;
+use crate::space::fit::RoomAtJoint;
 use crate::space::slot::{SizedJoint, Slot, joint_slot};
 use crate::space::station::reaches_m;
 use std::sync::Arc;
@@ -30,6 +32,10 @@ struct Joints<'c> {
     needs: Vec<JointNeeds>,
     /// Where the link attaches to each joint whose bearing is checked.
     levers: Vec<Option<LeverByOption>>,
+    /// The room at each joint that asks for room.
+    rooms: Vec<Option<RoomAtJoint>>,
+    /// The number that the problem gives to each piece.
+    numbers: Vec<usize>,
 }
 
 impl<'c> Joints<'c> {
@@ -38,7 +44,10 @@ impl<'c> Joints<'c> {
         let numbers = piece_numbers(space);
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let mut reaches_m = reaches_m(space, sizing).into_iter();
-        let mut joints = Self { slots: Vec::new(), needs: Vec::new(), levers: Vec::new() };
+        let room = |place| RoomAtJoint::new(&space.pieces, place, &numbers);
+        let rooms = (0..space.pieces.len()).map(room).collect();
+        let mut joints =
+            Self { slots: Vec::new(), needs: Vec::new(), levers: Vec::new(), rooms, numbers: Vec::new() };
         for (place, piece) in space.pieces.iter().enumerate() {
             let SpacePiece::Joint(joint) = piece else {
                 joints.slots.push(None);
@@ -54,7 +63,14 @@ impl<'c> Joints<'c> {
             joints.needs.push(needs);
             joints.levers.push(lever);
         }
-        joints
+        Self { numbers, ..joints }
+    }
+
+    /// Room that a link with an option leaves to the joint that carries it.
+    fn room(&self, place: usize, option: usize) -> LinkRoom {
+        let mut rooms = self.rooms[..place].iter().flatten();
+        let room = rooms.find(|room| room.link_slot == self.numbers[place]);
+        room.and_then(|room| room.rooms.get(option)).copied().unwrap_or(LinkRoom::ANY)
     }
 
     /// Lever from the joint next inboard of a link to the link with an option \[m\]; 0 if no bearing asks for it.
@@ -103,6 +119,7 @@ impl<'c> Problem<'c> {
             lighter_is_better: false,
             joint_plays: Vec::new(),
             levers: Vec::new(),
+            rooms: Vec::new(),
             force_bounds: Arc::default(),
         };
         for (place, layer) in space.layers() {
@@ -111,7 +128,8 @@ impl<'c> Problem<'c> {
                     problem.joint(joints.slots[place].take()?, joints.needs[place].tilts, ties)?
                 }
                 Layer::Piece(piece) => {
-                    problem.link(piece, takes, |option| joints.lever_m(place, option as usize))?
+                    let leaves = |option| (joints.lever_m(place, option), joints.room(place, option));
+                    problem.link(piece, takes, leaves)?
                 }
                 Layer::Tilt(tilt) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&tilt.law()) },
                 // A given mass beyond the parts loads the arm, but a design's mass does not count it.
@@ -123,6 +141,8 @@ impl<'c> Problem<'c> {
             let is_joint = matches!(layer, Layer::Piece(SpacePiece::Joint(_)));
             let lever = joints.levers[place].as_ref().filter(|_| is_joint);
             problem.levers.push(lever.map(|lever| problem.lever(lever)));
+            let room = joints.rooms[place].as_ref().filter(|_| is_joint);
+            problem.rooms.push(room.map(|room| problem.room_at(room)));
             problem.parts.push(part);
             // Play belongs to the joint, whichever drive it has.
             problem.joint_plays.push(match layer {
@@ -139,6 +159,7 @@ impl<'c> Problem<'c> {
                 problem.parts.push(Part::Offset { mass_kg: -harness_kg });
                 problem.joint_plays.push(None);
                 problem.levers.push(None);
+                problem.rooms.push(None);
             }
         }
         problem.lighter_is_better = problem.grows_with_weight();
@@ -163,13 +184,21 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// Compiles a link of the chain. `lever_m` gives the lever from the joint inboard to an option \[m\]. `None` if it has
-    /// no option.
+    /// The room at a joint, whose link is compiled already.
+    fn room_at(&self, room: &RoomAtJoint) -> Room {
+        match &self.parts[room.link_slot] {
+            Part::Links { .. } => Room::OfLink(room.link_slot),
+            _ => Room::Given(room.rooms[0]),
+        }
+    }
+
+    /// Compiles a link of the chain. `leaves` gives the lever from the joint inboard to an option \[m\], and the room that the
+    /// option leaves to the joint that carries it. `None` if it has no option.
     fn link(
         &mut self,
         piece: &'c SpacePiece,
         takes: &dyn Fn(&LinkOption) -> bool,
-        lever_m: impl Fn(u32) -> f64,
+        leaves: impl Fn(usize) -> (f64, LinkRoom),
     ) -> Option<Part<'c>> {
         let space = self.space;
         let slender = |option: &LinkOption| {
@@ -181,7 +210,8 @@ impl<'c> Problem<'c> {
                 let options = self.level(choice.options.len());
                 let tube = |(i, option): (u32, &LinkOption)| {
                     let link = space.link_piece(&choice.link(option));
-                    (i, LinkBox::of(option, &link, space.links, lever_m(i)))
+                    let (lever_m, room) = leaves(i as usize);
+                    (i, LinkBox::of(option, &link, space.links, lever_m, room))
                 };
                 let boxes = options
                     .map(|i| (i, &choice.options[i as usize]))
@@ -194,7 +224,7 @@ impl<'c> Problem<'c> {
                 LinkBody::Offset { mass_kg } => Some(Part::Offset { mass_kg: *mass_kg }),
                 LinkBody::Tube { material, section, .. } => {
                     let option = LinkOption::given(*material, *section);
-                    let tube = LinkBox::of(&option, &space.link_piece(link), space.links, 0.0);
+                    let tube = LinkBox::of(&option, &space.link_piece(link), space.links, 0.0, LinkRoom::ANY);
                     (!slender(&option))
                         .then(|| Part::Tube { length_m: link.vector_m.norm(), tube: Box::new(tube) })
                 }

@@ -87,6 +87,7 @@ mod tests {
     use crate::exact::pose::TILT;
     use crate::exact::torsion::BreakPoints;
     use crate::sizing::bearing::{BearingDemand, BearingLimits};
+    use crate::sizing::fit::{DriveWidths, LinkRoom};
     use crate::sizing::heat::MotorHeat;
     use crate::sizing::limits::DriveLimits;
     use crate::sizing::requirement::MotionRequirement;
@@ -106,6 +107,7 @@ mod tests {
             stop_torque_nm: torque_nm,
             mean_torque_cubed_nm3: torque_nm.powi(3),
             bearing: BearingLimits::NONE,
+            widths: DriveWidths::default(),
             heat: MotorHeat::NONE,
         };
         DriveBox {
@@ -128,7 +130,7 @@ mod tests {
         ) {
             let motion = MotionRequirement::default().joint_motion(1.35, None);
             let rays = Rays::new(&motion, 5.0, 1.0);
-            let asked = LeastDemand::new(&motion, &rays, asked_nm, 0.1 * asked_nm, BearingDemand::default());
+            let asked = LeastDemand::new(&motion, &rays, asked_nm, 0.1 * asked_nm, BearingDemand::default(), LinkRoom::ANY);
             let drives: Vec<DriveBox> = drives
                 .into_iter()
                 .map(|[kg, k, nm, tilt]| drive([kg, k % 5 + 1, nm, tilt % 3 + 1].map(f64::from), &rays))

@@ -3,11 +3,12 @@
 use super::bearing_rows::Numbers;
 use super::interval::interval;
 use super::parts::{DriveBox, HEAT_ROUNDING, LeastDemand, LinkBox, Rays};
-use super::problem::{Ladder, Lever, Part, Problem};
+use super::problem::{Ladder, Lever, Part, Problem, Room};
 use super::tree::{Bounds, Tree};
 use super::work::Work;
 use crate::sizing::bearing::BearingDemand;
 use crate::sizing::demand::JointDemand;
+use crate::sizing::fit::LinkRoom;
 use crate::space::attributes::von_mises;
 use crate::space::slot::SizedJoint;
 
@@ -63,13 +64,14 @@ impl Problem<'_> {
         let (static_nm, inertia_kgm2) = self.loads(piece, work);
         let bearing = self.bearing_loads(piece, work);
         let motion = sized.table.motion();
-        let least = LeastDemand::new(motion, rays, static_nm[0], inertia_kgm2[0], bearing[0]);
+        let [narrowest, widest] = self.room(piece, work);
+        let least = LeastDemand::new(motion, rays, static_nm[0], inertia_kgm2[0], bearing[0], widest);
         *node = tree.smallest_node(*node, |drives| drives.may_hold(&least))?;
         let drives = feasible_drives(tree, *node, &least, DEPTH)?;
         work.joint(self, piece, drives.mass_kg, drives.curve, drives.tilt_rad_per_nm);
         work.breaks[piece] = drives.breaks;
         work.least_demands[piece] = Some(least);
-        let most = motion.demand(static_nm[1], inertia_kgm2[1]).with_bearing(bearing[1]);
+        let most = motion.demand(static_nm[1], inertia_kgm2[1]).with_bearing(bearing[1]).with_room(narrowest);
         work.greatest_demands[piece] = Some(most.with_heat_times(1.0 + HEAT_ROUNDING));
         Some(())
     }
@@ -84,9 +86,11 @@ impl Problem<'_> {
     ) -> Option<()> {
         let (static_nm, inertia_kgm2) = self.loads(piece, work);
         let bearing = self.bearing_loads(piece, work);
+        let [narrowest, widest] = self.room(piece, work);
+        let room = [widest, narrowest];
         let demand = |i: usize, heat: f64| {
             let demand = sized.table.motion().demand(static_nm[i], inertia_kgm2[i]);
-            demand.with_bearing(bearing[i]).with_heat_times(heat)
+            demand.with_bearing(bearing[i]).with_room(room[i]).with_heat_times(heat)
         };
         let (least, most) = (demand(0, 1.0 - HEAT_ROUNDING), demand(1, 1.0 + HEAT_ROUNDING));
         let step = |demand: &JointDemand| {
@@ -161,6 +165,15 @@ impl Problem<'_> {
             least.with_lever(lever_m[0]).scaled(1.0 - ROUNDING),
             most.with_lever(lever_m[1]).scaled(1.0 + ROUNDING),
         ]
+    }
+
+    /// The least and the greatest room that the link which a joint carries leaves to the joint's parts.
+    fn room(&self, piece: usize, work: &Work) -> [LinkRoom; 2] {
+        match self.rooms[piece] {
+            None => [LinkRoom::ANY; 2],
+            Some(Room::Given(room)) => [room; 2],
+            Some(Room::OfLink(link)) => work.rooms[link],
+        }
     }
 
     /// The least axial force \[N\], moments about y and z and torsion \[N m\] at the ends of a tube in every

@@ -7,6 +7,7 @@ use crate::arm::structure::{Beam, LinkPiece};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
 use crate::sizing::bearing::BearingDemand;
 use crate::sizing::demand::{JointDemand, JointMotion};
+use crate::sizing::fit::LinkRoom;
 use crate::sizing::limits::DriveLimits;
 use crate::space::attributes::StressCheck;
 use crate::space::design_space::LinkOption;
@@ -81,12 +82,20 @@ pub(super) struct LinkBox {
     /// Least and greatest lever along the axis of the joint inboard to where the link attaches \[m\]; 0 if no bearing
     /// asks for it.
     pub lever_m: [f64; 2],
+    /// Least and greatest room for the parts of the joint that carries the link.
+    pub room: [LinkRoom; 2],
 }
 
 impl LinkBox {
     /// The box of one option. `link` is the option with the effects of the study, and `lever_m` the lever from the joint
-    /// inboard \[m\].
-    pub(super) fn of(option: &LinkOption, link: &LinkPiece, model: LinkModel, lever_m: f64) -> Self {
+    /// inboard \[m\]. `room` is what the option leaves to the parts of the joint that carries it.
+    pub(super) fn of(
+        option: &LinkOption,
+        link: &LinkPiece,
+        model: LinkModel,
+        lever_m: f64,
+        room: LinkRoom,
+    ) -> Self {
         let nominal = Beam { material: option.material, section: option.section, flexibility: 1.0 };
         let line = Line::new(link.beam.as_ref().unwrap_or(&nominal), link.harness_kg_per_m, model);
         let check = StressCheck::new(option);
@@ -101,6 +110,7 @@ impl LinkBox {
             round: check.is_none_or(|s| s.round),
             cost_eur_per_m: option.cost_eur_per_kg.unwrap_or(0.0) * option.mass_kg_per_m(),
             lever_m: [lever_m; 2],
+            room: [room; 2],
         }
     }
 }
@@ -131,6 +141,7 @@ impl Bounds for LinkBox {
             round: self.round || other.round,
             cost_eur_per_m: self.cost_eur_per_m.min(other.cost_eur_per_m),
             lever_m: joined(self.lever_m, other.lever_m),
+            room: [self.room[0].min(other.room[0]), self.room[1].max(other.room[1])],
         }
     }
 
@@ -192,20 +203,21 @@ pub(super) struct LeastDemand {
 }
 
 impl LeastDemand {
-    /// The demand of a static torque \[N m\] and an inertia \[kg m²\], with the loads on the bearing.
+    /// The demand of a static torque \[N m\] and an inertia \[kg m²\], with the loads on the bearing and the room of the link.
     pub(super) fn new(
         motion: &JointMotion,
         rays: &Rays,
         static_nm: f64,
         inertia_kgm2: f64,
         bearing: BearingDemand,
+        room: LinkRoom,
     ) -> Self {
         let times = |asked: f64, unit: f64| if unit > 0.0 { asked / unit } else { f64::INFINITY };
         let multiples =
             rays.loads.map(|(t, i)| times(static_nm, t).min(times(inertia_kgm2, i)) * (1.0 - 1e-12));
         let demand = motion.demand(static_nm, inertia_kgm2).with_heat_times(1.0 - HEAT_ROUNDING);
         // The rays do not load the bearing, so a multiple of one is below the demand whatever the bearing carries.
-        Self { demand: demand.with_bearing(bearing), multiples }
+        Self { demand: demand.with_bearing(bearing).with_room(room), multiples }
     }
 }
 
@@ -310,12 +322,13 @@ impl Bounds for DriveBox {
 mod tests {
     use super::*;
     use crate::sizing::bearing::{BearingLimits, BearingLoad};
+    use crate::sizing::fit::DriveWidths;
     use crate::sizing::heat::MotorHeat;
     use crate::sizing::requirement::MotionRequirement;
     use proptest::prelude::*;
 
     /// A drive whose limits are multiples of the demand of 100 N m and 10 kg m², and of a moment of 100 N m on its bearing.
-    fn drive(of: [u32; 5], motion: &JointMotion, rays: &Rays) -> DriveBox {
+    fn drive(of: [u32; 6], motion: &JointMotion, rays: &Rays) -> DriveBox {
         let usual = motion.demand(100.0, 10.0);
         let times = |k: usize| 0.2 * f64::from(of[k]);
         let limits = DriveLimits {
@@ -324,6 +337,7 @@ mod tests {
             stop_torque_nm: times(2) * usual.stop_torque_nm,
             mean_torque_cubed_nm3: times(3).powi(3) * usual.mean_torque_cubed_nm3,
             bearing: BearingLimits { running_moment_nm: 100.0 * times(4), ..BearingLimits::NONE },
+            widths: DriveWidths { gear_m: 0.02 * f64::from(of[5]), motor_m: 0.0 },
             heat: MotorHeat::NONE,
         };
         DriveBox {
@@ -343,14 +357,15 @@ mod tests {
         /// more.
         #[test]
         fn a_kind_holds_what_any_of_its_drives_holds(
-            kinds in prop::collection::vec(prop::collection::vec(prop::array::uniform5(1u32..12), 1..5), 1..4),
+            kinds in prop::collection::vec(prop::collection::vec(prop::array::uniform6(1u32..12), 1..5), 1..4),
             static_nm in 1.0f64..250.0, inertia_kgm2 in 0.1f64..25.0, moment_nm in 0.0f64..200.0,
+            room_m in 0.05f64..0.3,
         ) {
             let motion = MotionRequirement::default().joint_motion(1.35, None);
             let rays = Rays::new(&motion, 50.0, 5.0);
             let running = BearingLoad { moment_nm, ..BearingLoad::default() };
             let bearing = BearingDemand { running, ..BearingDemand::default() };
-            let asked = LeastDemand::new(&motion, &rays, static_nm, inertia_kgm2, bearing);
+            let asked = LeastDemand::new(&motion, &rays, static_nm, inertia_kgm2, bearing, LinkRoom { gear_m: room_m, ..LinkRoom::ANY });
             let mut with_ties = Vec::new();
             for kind in &kinds {
                 let drives: Vec<DriveBox> = kind.iter().map(|of| drive(*of, &motion, &rays)).collect();

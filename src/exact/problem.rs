@@ -10,6 +10,7 @@ use super::parts::{DriveBox, LinkBox, Rays};
 use super::pose::Pose;
 use super::torsion::CurveBox;
 use super::tree::{Bounds, Tree};
+use crate::sizing::fit::LinkRoom;
 use crate::space::design_space::DesignSpace;
 use crate::space::slot::SizedJoint;
 use std::sync::Arc;
@@ -34,6 +35,8 @@ pub(super) struct Problem<'c> {
     pub joint_plays: Vec<Option<JointPlay>>,
     /// Lever of each joint whose bearing is checked; `None` for any other piece.
     pub levers: Vec<Option<Lever>>,
+    /// The room at each joint that asks for room; `None` for any other piece.
+    pub rooms: Vec<Option<Room>>,
     /// Intervals to which a region restricts single forces.
     pub force_bounds: Arc<[ForceBound]>,
 }
@@ -60,6 +63,15 @@ pub(super) enum Part<'c> {
 pub(super) enum Lever {
     /// A lever that no choice changes \[m\].
     Given(f64),
+    /// That of the link with this piece number.
+    OfLink(usize),
+}
+
+/// The room that a link leaves to the parts of the joint that carries it.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Room {
+    /// That of a given link.
+    Given(LinkRoom),
     /// That of the link with this piece number.
     OfLink(usize),
 }

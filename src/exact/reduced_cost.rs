@@ -206,6 +206,7 @@ mod tests {
     use crate::exact::parts::Line;
     use crate::exact::torsion::CurveBox;
     use crate::sizing::bearing::BearingLimits;
+    use crate::sizing::fit::{DriveWidths, LinkRoom};
     use crate::sizing::heat::MotorHeat;
     use crate::sizing::limits::DriveLimits;
     use proptest::prelude::*;
@@ -241,6 +242,7 @@ mod tests {
         stop_torque_nm: 0.0,
         mean_torque_cubed_nm3: 0.0,
         bearing: BearingLimits::NONE,
+        widths: DriveWidths { gear_m: 0.0, motor_m: 0.0 },
         heat: MotorHeat::NONE,
     };
 
@@ -262,7 +264,8 @@ mod tests {
             let (low, high) = (line(0.0), line(1.0));
             let compliances = [high.stiffnesses.map(f64::recip), low.stiffnesses.map(f64::recip)];
             let links =
-                LinkBox { low, high, compliances, stress: [0.0; 4], round: false, cost_eur_per_m: 0.0, lever_m: [0.0; 2] };
+                LinkBox { low, high, compliances, stress: [0.0; 4], round: false, cost_eur_per_m: 0.0, lever_m: [0.0; 2],
+                    room: [LinkRoom::ANY; 2] };
             let prices = prices.iter().map(|numbers| price(numbers)).collect();
             let cost = |price: &DualPrice| price.of_tube(&links);
             let afforded = afforded(prices, cost, dear);

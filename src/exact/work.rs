@@ -6,6 +6,7 @@ use super::problem::Problem;
 use super::shape::Work as ShapeWork;
 use super::torsion::{BreakPoints, CurveBox};
 use crate::sizing::demand::JointDemand;
+use crate::sizing::fit::LinkRoom;
 use nalgebra::Vector3;
 
 /// The numbers of one box. A worker keeps them between boxes, so that nothing is allocated.
@@ -38,6 +39,8 @@ pub(super) struct Work {
     pub(super) tilts: Vec<[f64; 2]>,
     /// Lever along the axis of the joint inboard to where each link attaches, as an interval \[m\].
     pub(super) levers: Vec<[f64; 2]>,
+    /// Least and greatest room that each link leaves to the parts of the joint that carries it.
+    pub(super) rooms: Vec<[LinkRoom; 2]>,
     /// Break points of the curves of each joint.
     pub(super) breaks: Vec<BreakPoints>,
     /// Least and greatest magnitude of the torque on each joint, in each judged case \[N m\].
@@ -73,6 +76,7 @@ impl Work {
         zero(&mut self.masses, pieces, [0.0; 2]);
         zero(&mut self.tilts, pieces, [0.0; 2]);
         zero(&mut self.levers, pieces, [0.0; 2]);
+        zero(&mut self.rooms, pieces, [LinkRoom::ANY; 2]);
         zero(&mut self.greatest_demands, pieces, None);
         self.least_demands.clear();
         self.least_demands.resize_with(pieces, || None);
@@ -115,6 +119,7 @@ impl Work {
         // zero strain would be NaN.
         let finite = |s: f64| if s.is_finite() { s } else { 0.0 };
         self.levers[piece] = links.lever_m;
+        self.rooms[piece] = links.room;
         self.stiff[piece] = links.high.stiffnesses.map(finite);
         self.soft[piece] = links.low.stiffnesses.map(finite);
         self.light[piece] = links.low.inertias;

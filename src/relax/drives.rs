@@ -2,6 +2,8 @@
 
 use super::parts::Parts;
 use super::statics::CaseLoads;
+use crate::sizing::fit::LinkRoom;
+use crate::space::fit::RoomAtJoint;
 use crate::space::problem::ArmProblem;
 use crate::space::slot::Slot;
 
@@ -30,9 +32,10 @@ impl Parts {
                 }
             }
             let relaxed = [1.0 - 1e-12, 1.0 + 1e-12];
+            let room = self.rooms(problem, slot);
             let [least, most] = [0, 1].map(|end| {
                 let demand = motion.demand(static_nm[end] * relaxed[end], inertia_kgm2[end] * relaxed[end]);
-                demand.with_heat_times(relaxed[end])
+                demand.with_heat_times(relaxed[end]).with_room(room[end])
             });
             // the load on a bearing has no upper bound here, so it may ask for a heavier drive than the torques
             let by_bearing = problem.bearing_loads().levers[slot].is_some();
@@ -43,5 +46,15 @@ impl Parts {
             });
         }
         dropped
+    }
+
+    /// The most and the least room that the remaining tubes leave to the parts of a joint.
+    fn rooms(&self, problem: &ArmProblem, slot: usize) -> [LinkRoom; 2] {
+        let Some(RoomAtJoint { link_slot, rooms }) = &problem.rooms()[slot] else {
+            return [LinkRoom::ANY; 2];
+        };
+        let remaining = || self.alive[*link_slot].iter().map(|&option| rooms[option as usize]);
+        let widest = remaining().reduce(LinkRoom::max).unwrap_or(LinkRoom::ANY);
+        [widest, remaining().fold(LinkRoom::ANY, LinkRoom::min)]
     }
 }

@@ -15,6 +15,7 @@ pub(crate) mod row_bearing;
 pub(crate) mod row_begun;
 pub(crate) mod row_lanes;
 pub(crate) mod row_modes;
+pub(crate) mod row_room;
 pub mod scatter;
 pub mod sweep;
 pub(crate) mod visit;

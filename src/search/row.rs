@@ -15,6 +15,7 @@
 //! of a joint has the number of its slot; the hinges of tubes follow after all slots.
 
 use super::row_bearing::RowBearing;
+use super::row_room::RowRoom;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::mechanics::lanes::{Eight, LANES};
 use crate::mechanics::lowest_lanes::LaneLink;
@@ -45,6 +46,8 @@ pub(crate) struct Row {
     pub twisting: Vec<Twisting>,
     /// The checked bearings of inner joints whose drives are found by first fit.
     pub bearings: Vec<RowBearing>,
+    /// The rooms at inner joints whose drives are found by first fit.
+    pub rooms: Vec<RowRoom>,
 }
 
 /// A way in which an inner slot yields.
@@ -232,6 +235,7 @@ impl Row {
                 + given_tubes().map(|tube| tube.mass_kg).sum::<f64>(),
             twisting: (0..slots.len()).map(|k| twisting(&slots[k], &drives[k], k, &cases)).collect(),
             bearings: RowBearing::all(problem, first),
+            rooms: RowRoom::all(problem, first),
             hinges,
             cases,
             drives,

@@ -5,6 +5,7 @@ use super::row::{AtJoint, AtJoints, Row, hinge_numbers};
 use super::row_bearing::BearingsBegun;
 use crate::mechanics::lowest_lanes::Outboard;
 use crate::sizing::bearing::BearingDemand;
+use crate::sizing::fit::LinkRoom;
 use crate::space::problem::{ArmProblem, Partial, block_steps};
 use crate::space::station::{Modal, StationSlot};
 
@@ -24,6 +25,8 @@ pub(crate) struct Begun {
     pub steps: Vec<usize>,
     /// Loads on the bearing of the innermost level, if that is the drive of a joint.
     pub of_innermost: BearingDemand,
+    /// The room at that joint.
+    pub room_of_innermost: LinkRoom,
     pub bearings: BearingsBegun,
 }
 
@@ -85,6 +88,7 @@ impl Begun {
             cases: cases.collect(),
             steps: vec![0; inner.len()],
             of_innermost: BearingDemand::default(),
+            room_of_innermost: LinkRoom::ANY,
             bearings: Vec::new(),
         }
     }
@@ -92,6 +96,7 @@ impl Begun {
     /// Begins the row beyond the arm `from`. Memory of the row before is used again.
     fn refill(&mut self, problem: &ArmProblem, row: &Row, from: &Partial) {
         self.of_innermost = from.next_demand.map_or(BearingDemand::default(), |demand| demand.bearing);
+        self.room_of_innermost = from.next_demand.map_or(LinkRoom::ANY, |demand| demand.room);
         self.bearings.resize_with(row.bearings.len(), Vec::new);
         for (bearing, begun) in row.bearings.iter().zip(&mut self.bearings) {
             bearing.begin(from, begun);

@@ -276,8 +276,11 @@ impl RowChunk<'_, '_> {
                     &arms.masses_kg,
                 )),
             };
-            let demands =
-                EightDemands::new(sized.table.motion(), static_nm, inertia_kgm2).with_bearing(bearing);
+            let room = self.row.rooms.iter().find(|room| room.k == k);
+            let room = room.and_then(|room| room.room(self.problem, (self.from, self.chunk)));
+            let demands = EightDemands::new(sized.table.motion(), static_nm, inertia_kgm2)
+                .with_bearing(bearing)
+                .with_room(room);
             let (fits, held) = sized.table.first_fits(&demands, arms.held, &mut begun.steps[k]);
             arms.held = held;
             return fits;
@@ -288,7 +291,7 @@ impl RowChunk<'_, '_> {
         for lane in 0..LANES {
             if arms.held >> lane & 1 == 1 {
                 let torques = sized.table.motion().demand(static_nm[lane], inertia_kgm2[lane]);
-                let demand = torques.with_bearing(begun.of_innermost);
+                let demand = torques.with_bearing(begun.of_innermost).with_room(begun.room_of_innermost);
                 indices[lane] = LANES * self.chunk + lane;
                 arms.held &= !(u8::from(!sized.table.limits(indices[lane]).hold(&demand)) << lane);
             }

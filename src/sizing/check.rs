@@ -3,6 +3,7 @@
 use super::bearing::{self, BearingDemand, BearingLimits, BearingLoad};
 use super::demand::{JointDemand, JointMotion};
 use super::drive::{Drive, MissingRating, Rating, known};
+use super::fit::{FitRequirement, LinkRoom, MotorPlace};
 use super::heat::{self, MotorHeat};
 use super::limits as limit;
 use crate::arm::bearing::Bearing;
@@ -46,6 +47,16 @@ pub enum CheckKind {
     MotorRms,
     /// N times speed is below the motor's largest speed.
     MotorSpeed,
+    /// The gear is no wider than the link that the joint carries allows. Checks of fit are listed only if the study asks.
+    GearWidth,
+    /// The motor goes into the hollow of that link.
+    MotorWidth,
+    /// Cables go through the gear.
+    GearBore,
+    /// Cables go through the motor behind the gear.
+    MotorBore,
+    /// The drive is no longer than the room at the joint.
+    DriveLength,
     /// The mass of the drive is known. This check is listed only if it is not.
     Mass,
 }
@@ -70,6 +81,9 @@ impl CheckKind {
             CheckKind::MotorHold => "hold",
             CheckKind::MotorRms => "rms",
             CheckKind::MotorSpeed => "speed",
+            CheckKind::GearWidth | CheckKind::MotorWidth => "width",
+            CheckKind::GearBore | CheckKind::MotorBore => "bore",
+            CheckKind::DriveLength => "length of the drive",
             CheckKind::Mass => "mass",
         }
     }
@@ -94,6 +108,11 @@ impl CheckKind {
             CheckKind::MotorPeak => "motor peak",
             CheckKind::MotorRms => "motor rms",
             CheckKind::MotorSpeed => "motor speed",
+            CheckKind::GearWidth => "gear width",
+            CheckKind::MotorWidth => "motor width",
+            CheckKind::GearBore => "gear bore",
+            CheckKind::MotorBore => "motor bore",
+            CheckKind::DriveLength => "drive length",
             CheckKind::Mass => "mass",
         }
     }
@@ -106,6 +125,7 @@ impl CheckKind {
             CheckKind::BearingRest | CheckKind::BearingStop => "times",
             CheckKind::GearStops => "stops",
             CheckKind::Mass => "kg",
+            fit if fit.is_fit() => "mm",
             _ => "N m",
         }
     }
@@ -116,16 +136,29 @@ impl CheckKind {
         matches!(self, BearingMoment | BearingRest | BearingStop | BearingLife)
     }
 
-    /// Whether a drive is excluded if a rating that this check needs is blank. An output bearing whose rating is blank is
-    /// not checked. Buckling and ratcheting torques are known of few gears and lie above the momentary peak, which is known.
+    /// Whether the check is about the sizes of the parts, and no torque changes it.
+    pub fn is_fit(self) -> bool {
+        use CheckKind::{DriveLength, GearBore, GearWidth, MotorBore, MotorWidth};
+        matches!(self, GearWidth | MotorWidth | GearBore | MotorBore | DriveLength)
+    }
+
+    /// Whether a drive is excluded if a rating that this check needs is blank. An output bearing whose rating is blank and a
+    /// part whose size is blank are not checked. Buckling and ratcheting torques are known of few gears and lie above the momentary peak, which is known.
     pub fn needs_its_rating(self) -> bool {
-        !self.is_bearing() && !matches!(self, CheckKind::GearBuckling | CheckKind::GearRatcheting)
+        !self.is_bearing()
+            && !self.is_fit()
+            && !matches!(self, CheckKind::GearBuckling | CheckKind::GearRatcheting)
     }
 
     /// Whether the check is about gear and bearing alone, whatever the motor.
     pub fn is_gear(self) -> bool {
-        use CheckKind::{Mass, MotorHold, MotorPeak, MotorRms, MotorSpeed};
-        !matches!(self, MotorHold | MotorPeak | MotorRms | MotorSpeed | Mass)
+        use CheckKind::{
+            DriveLength, Mass, MotorBore, MotorHold, MotorPeak, MotorRms, MotorSpeed, MotorWidth,
+        };
+        !matches!(
+            self,
+            MotorHold | MotorPeak | MotorRms | MotorSpeed | MotorWidth | MotorBore | DriveLength | Mass
+        )
     }
 }
 
@@ -164,12 +197,13 @@ impl Check {
 
     /// The margin as a factor on torque, which makes checks comparable. Life goes with the cube of the torque, so its
     /// margin becomes the cube root; that of a bearing with the power 10/3 of its load. The number of stops does not depend
-    /// on the torque.
+    /// on the torque. A part that fits does so at any torque.
     pub fn torque_margin(&self) -> Option<f64> {
         let margin = self.margin()?;
         Some(match self.kind {
             CheckKind::GearLife => margin.cbrt(),
             CheckKind::BearingLife => margin.powf(0.3),
+            fit if fit.is_fit() && self.state == CheckState::Holds => f64::INFINITY,
             _ => margin,
         })
     }
@@ -233,7 +267,7 @@ fn check(kind: CheckKind, needed: Rating, allowed: Rating, load: f64, threshold:
 }
 
 /// A check that compares the printed numbers themselves.
-fn plain(kind: CheckKind, needed: f64, allowed: Rating) -> Check {
+pub(super) fn plain(kind: CheckKind, needed: f64, allowed: Rating) -> Check {
     check(kind, Ok(needed), allowed, needed, allowed)
 }
 
@@ -262,6 +296,7 @@ pub fn gear_checks(
     if let Some(stops) = motion.emergency_stops {
         checks.push(plain(CheckKind::GearStops, stops, Ok(limit::stops_allowed(gear, motion))));
     }
+    checks.extend(gear_fits(gear, &motion.fit, &demand.room));
     if let Some(bearing) = bearing.filter(|_| !demand.bearing.is_zero()) {
         checks.extend(bearing_checks(bearing, motion, &demand.bearing));
     }
@@ -316,6 +351,45 @@ fn gear_life(gear: &Gear, motion: &JointMotion, demand: &JointDemand) -> Check {
     )
 }
 
+/// What is asked of the sizes of a gear.
+fn gear_fits(gear: &Gear, fit: &FitRequirement, room: &LinkRoom) -> impl Iterator<Item = Check> {
+    let width = known(gear.envelope.outer_diameter_m, "gear outer_diameter_mm");
+    let bore = known(gear.envelope.hollow_bore_m, "gear hollow_bore_mm");
+    let width = at_most(CheckKind::GearWidth, width, room.gear_m);
+    [width, fit.least_bore_m().map(|least_m| bore_check(CheckKind::GearBore, least_m, bore))]
+        .into_iter()
+        .flatten()
+}
+
+/// What is asked of the sizes of a motor, and of motor and gear together.
+fn motor_fits(drive: &Drive, fit: &FitRequirement, room: &LinkRoom) -> impl Iterator<Item = Check> {
+    let (gear, motor) = (&drive.gear.envelope, &drive.motor.envelope);
+    let width = known(motor.outer_diameter_m, "motor outer_diameter_mm");
+    let blank = if gear.length_m.is_none() { "gear length_mm" } else { "motor length_mm" };
+    let length = known(fit.length_m(drive.gear, drive.motor), blank);
+    let bore = known(motor.hollow_bore_m, "motor hollow_bore_mm");
+    let least_bore_m = fit.least_bore_m().filter(|_| fit.motor == MotorPlace::Behind);
+    let checks = [
+        at_most(CheckKind::MotorWidth, width, room.motor_m),
+        least_bore_m.map(|least_m| bore_check(CheckKind::MotorBore, least_m, bore)),
+        at_most(CheckKind::DriveLength, length, fit.most_length_m().unwrap_or(f64::INFINITY)),
+    ];
+    checks.into_iter().flatten()
+}
+
+/// Whether a size is at most what there is room for; `None` if there is no end of room.
+fn at_most(kind: CheckKind, size: Rating, room_m: f64) -> Option<Check> {
+    let in_mm = |m: f64| m * 1e3;
+    let needed =
+        || check(kind, size.map(in_mm), Ok(in_mm(room_m)), size.unwrap_or(0.0), size.map(|_| room_m));
+    room_m.is_finite().then(needed)
+}
+
+/// Whether cables that need a passage of this diameter go through a bore.
+fn bore_check(kind: CheckKind, least_m: f64, bore: Rating) -> Check {
+    check(kind, Ok(least_m * 1e3), bore.map(|m| m * 1e3), least_m, bore)
+}
+
 /// The checks of a motor behind its gear. Its heat is checked unless the study turns that off. An unknown mass of the pair
 /// is listed too.
 pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
@@ -328,6 +402,7 @@ pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -
         limit::input_speed_rpm(drive.gear, motion),
         limit::motor_max_speed_rpm(drive.motor),
     ));
+    checks.extend(motor_fits(drive, &motion.fit, &demand.room));
     if let Err(rating) = drive.mass_kg() {
         let state = CheckState::NotChecked(rating);
         checks.push(Check { kind: CheckKind::Mass, needed: None, allowed: None, state });
@@ -384,299 +459,4 @@ pub fn all_hold(checks: &[Check]) -> bool {
 pub fn binding(checks: &[Check]) -> Option<&Check> {
     let made = checks.iter().filter_map(|c| Some((c.torque_margin()?, c)));
     made.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, check)| check)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::testing::{
-        any_gear, any_motion, any_motor, any_torques, bearing_loads, char_lynn_j_8_2, f11_10, gear,
-        hfuc_40_100, motor,
-    };
-    use super::*;
-    use crate::arm::bearing::BearingSource;
-    use crate::arm::extras::ExtrasSource;
-    use crate::catalog::gear::{BearingRatings, GearMass};
-    use crate::catalog::motor::Motor;
-    use crate::sizing::limits::{DriveLimits, Obstacle};
-    use crate::sizing::requirement::MotionRequirement;
-    use proptest::prelude::*;
-
-    /// A joint at 1.35 m with 300 N m static and 100 N m linear torque.
-    fn motion() -> JointMotion {
-        MotionRequirement::default().joint_motion(1.35, None)
-    }
-
-    fn demand() -> JointDemand {
-        motion().demand_of_torques(300.0, 100.0)
-    }
-
-    /// A gear and a motor that hold `demand()` in every respect.
-    fn ample() -> (Gear, Motor) {
-        let mut gear =
-            gear("CSG-50-100", [600.0, 900.0, 700.0, 2000.0], [3500.0, 2500.0], 0.00125, [3.2, 8.9]);
-        gear.permissible_tilting_moment_nm = Some(700.0);
-        gear.bearing = BearingRatings {
-            pitch_diameter_m: Some(0.1),
-            offset_m: Some(0.02),
-            static_load_rating_n: Some(80e3),
-            dynamic_load_rating_n: Some(40e3),
-        };
-        (gear, motor("M", [10.0, 20.0], [2000.0, 3000.0], 0.0003, 4.0))
-    }
-
-    /// Kinds that do not hold after one thing was changed.
-    fn failing(
-        change: impl FnOnce(&mut Gear, &mut Motor, &mut JointMotion, &mut JointDemand),
-    ) -> Vec<CheckKind> {
-        let (mut gear, mut motor) = ample();
-        let (mut motion, mut demand) = (motion(), demand());
-        change(&mut gear, &mut motor, &mut motion, &mut demand);
-        let drive = Drive {
-            gear: &gear,
-            motor: &motor,
-            gear_mass: GearMass::HousedUnit,
-            bearing: BearingSource::OfGear,
-            extras: ExtrasSource::NONE,
-        };
-        let checks = checks(&drive, &motion, &demand);
-        assert!(checks.iter().all(|c| c.state != CheckState::Holds || c.margin().unwrap() >= 1.0));
-        assert!(checks.iter().all(|c| c.state != CheckState::Fails || c.margin().unwrap() < 1.0));
-        checks.iter().filter(|c| !c.holds()).map(|c| c.kind).collect()
-    }
-
-    #[test]
-    fn the_ample_drive_holds_everything() {
-        assert_eq!(failing(|_, _, _, d| d.bearing = bearing_loads(500.0)), []);
-    }
-
-    #[test]
-    fn each_check_fails_alone_when_its_own_limit_is_lowered() {
-        assert_eq!(failing(|g, _, _, _| g.repeated_peak_torque_nm = Some(399.0)), [CheckKind::GearPeak]);
-        assert_eq!(failing(|g, _, _, _| g.average_torque_limit_nm = Some(300.0)), [CheckKind::GearMean]);
-        assert_eq!(failing(|g, _, _, _| g.momentary_peak_torque_nm = Some(499.0)), [CheckKind::GearStop]);
-        assert_eq!(failing(|g, _, _, _| g.max_input_speed_rpm = Some(707.0)), [CheckKind::GearSpeed]);
-        assert_eq!(
-            failing(|g, _, _, _| g.average_input_speed_limit_rpm = Some(282.0)),
-            [CheckKind::GearMeanSpeed]
-        );
-        let holds_too_little =
-            |_: &mut Gear, m: &mut Motor, motion: &mut JointMotion, _: &mut JointDemand| {
-                (m.rated_torque_nm, motion.checks_motor_heat) = (Some(3.84), false);
-            };
-        assert_eq!(failing(holds_too_little), [CheckKind::MotorHold]);
-        assert_eq!(failing(|_, m, _, _| m.rated_torque_nm = Some(3.86)), [CheckKind::MotorRms]);
-        assert_eq!(failing(|g, _, _, _| g.buckling_torque_nm = Some(499.0)), [CheckKind::GearBuckling]);
-        assert_eq!(failing(|g, _, _, _| g.ratcheting_torque_nm = Some(499.0)), [CheckKind::GearRatcheting]);
-        assert_eq!(failing(|_, _, motion, _| motion.emergency_stops = Some(1e4)), [CheckKind::GearStops]);
-        assert_eq!(failing(|_, m, _, _| m.peak_torque_nm = Some(5.70)), [CheckKind::MotorPeak]);
-        assert_eq!(failing(|_, m, _, _| m.max_speed_rpm = Some(707.0)), [CheckKind::MotorSpeed]);
-    }
-
-    #[test]
-    fn life_fails_alone_when_more_is_required_than_the_bearing_gives() {
-        assert_eq!(failing(|_, _, motion, _| motion.life_h = 1.0e6), [CheckKind::GearLife]);
-        assert_eq!(failing(|g, _, _, _| g.rated_torque_nm = Some(100.0)), [CheckKind::GearLife]);
-    }
-
-    #[test]
-    fn buckling_and_ratcheting_are_not_checked_where_the_catalog_has_no_torque_and_exclude_nothing() {
-        let (gear, _) = ample();
-        let checks = gear_checks(&gear, None, &motion(), &demand());
-        let open: Vec<_> = checks.iter().filter(|c| c.needed.is_some() && c.allowed.is_none()).collect();
-        assert_eq!(
-            open.iter().map(|c| c.to_string()).collect::<Vec<_>>(),
-            [
-                "buckling not checked: lacks buckling_torque_nm",
-                "ratcheting not checked: lacks ratcheting_torque_nm"
-            ]
-        );
-        assert!(all_hold(&checks));
-    }
-
-    #[test]
-    fn a_brake_holds_what_the_motor_need_not() {
-        let brake = |_: &mut Gear, m: &mut Motor, motion: &mut JointMotion, d: &mut JointDemand| {
-            (m.rated_torque_nm, motion.has_brake) = (Some(3.5), true);
-            d.heat_weights.standing = 0.0;
-        };
-        assert_eq!(failing(brake), []);
-    }
-
-    #[test]
-    fn the_bearing_is_checked_if_something_loads_it_and_its_ratings_are_known() {
-        // 661 N m and the offset of 0.02 m times 1983 N of radial force are 701 N m
-        let loaded = |d: &mut JointDemand| d.bearing = bearing_loads(661.0);
-        assert_eq!(failing(|_, _, _, d| loaded(d)), [CheckKind::BearingMoment]);
-        let blank = |g: &mut Gear, d: &mut JointDemand| {
-            loaded(d);
-            g.permissible_tilting_moment_nm = None;
-        };
-        assert_eq!(failing(|g, _, _, d| blank(g, d)), [], "a blank rating excludes nothing");
-        assert_eq!(failing(|g, _, _, _| g.permissible_tilting_moment_nm = None), []);
-    }
-
-    #[test]
-    fn each_check_of_the_bearing_fails_alone_when_its_own_rating_is_lowered() {
-        let with = |change: fn(&mut BearingRatings, &mut JointMotion)| {
-            failing(|g, _, motion, d| {
-                d.bearing = bearing_loads(500.0);
-                change(&mut g.bearing, motion);
-            })
-        };
-        // a stop of 700 N m: P0 = 2100 + 20 (700 + 0.02 2100) + 0.44 1400 = 17556 N, twice that is 35.1 kN; at rest
-        // 300 N m: 900 + 20 (300 + 0.02 900) + 0.44 600 = 7524 N, three times that is 22.6 kN
-        assert_eq!(with(|b, _| b.static_load_rating_n = Some(35.0e3)), [CheckKind::BearingStop]);
-        assert_eq!(
-            with(|b, _| b.static_load_rating_n = Some(22.0e3)),
-            [CheckKind::BearingRest, CheckKind::BearingStop]
-        );
-        // Pc = 900 + 20 318 + 0.45 600 = 7530 N; at 0.4 / 1.35 rad/s, 10000 h are 1.70e6 turns: C = 1.3 7530 1.70^0.3
-        let turns: f64 = 0.4 / 1.35 / std::f64::consts::TAU * 3600.0 * 1e4;
-        let least_n = 1.3 * 7530.0 * (turns / 1e6).powf(0.3);
-        assert!((least_n / 11_472.0 - 1.0).abs() < 0.01, "{least_n}");
-        assert_eq!(with(|b, _| b.dynamic_load_rating_n = Some(11_300.0)), [CheckKind::BearingLife]);
-        assert_eq!(with(|b, _| b.dynamic_load_rating_n = Some(11_700.0)), []);
-    }
-
-    #[test]
-    fn a_component_set_has_no_bearing_to_tilt() {
-        let (gear, _) = ample();
-        let demand = demand().with_bearing(bearing_loads(9999.0));
-        assert!(all_hold(&gear_checks(
-            &gear,
-            Bearing::of_gear(&gear, GearMass::ComponentSet).as_ref(),
-            &motion(),
-            &demand
-        )));
-        assert!(!all_hold(&gear_checks(
-            &gear,
-            Bearing::of_gear(&gear, GearMass::HousedUnit).as_ref(),
-            &motion(),
-            &demand
-        )));
-    }
-
-    #[test]
-    fn the_life_is_the_vendors_formula() {
-        let (gear, _) = ample();
-        let checks =
-            gear_checks(&gear, Bearing::of_gear(&gear, GearMass::HousedUnit).as_ref(), &motion(), &demand());
-        let life = checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();
-        let mean_rpm = 100.0 * 0.4 / 1.35 * 30.0 / std::f64::consts::PI;
-        let by_hand = 10_000.0 * (600.0 / demand().mean_torque_nm()).powi(3) * (2000.0 / mean_rpm);
-        assert!((life.allowed.unwrap() / by_hand - 1.0).abs() < 1e-12);
-        assert_eq!(life.needed, Some(10_000.0));
-    }
-
-    #[test]
-    fn a_check_reads_as_needed_and_allowed() {
-        let mut gear = hfuc_40_100();
-        gear.repeated_peak_torque_nm = Some(523.0);
-        let demand = motion().demand_of_torques(376.0, 192.3);
-        let checks =
-            gear_checks(&gear, Bearing::of_gear(&gear, GearMass::HousedUnit).as_ref(), &motion(), &demand);
-        assert_eq!(checks[0].to_string(), "peak 568 N m needed, 523 allowed");
-    }
-
-    #[test]
-    fn numbers_that_round_to_the_same_are_printed_until_they_differ() {
-        let near = plain(CheckKind::GearPeak, 523.04, Ok(522.96));
-        assert_eq!(near.to_string(), "peak 523.04 N m needed, 522.96 allowed");
-    }
-
-    #[test]
-    fn a_blank_rating_is_named_and_nothing_else_is_left_unchecked() {
-        let (gear, _) = ample();
-        let motor = char_lynn_j_8_2();
-        let drive = Drive {
-            gear: &gear,
-            motor: &motor,
-            gear_mass: GearMass::HousedUnit,
-            bearing: BearingSource::OfGear,
-            extras: ExtrasSource::NONE,
-        };
-        let checks = checks(&drive, &motion(), &demand());
-        let blank: Vec<_> = checks.iter().filter(|c| !c.holds()).map(Check::to_string).collect();
-        assert_eq!(
-            blank,
-            ["peak not checked: lacks rotor_inertia_kgm2", "rms not checked: lacks rotor_inertia_kgm2"]
-        );
-        assert_eq!(
-            DriveLimits::of(&drive, &motion()),
-            Err(Obstacle::Lacks(MissingRating("rotor_inertia_kgm2")))
-        );
-    }
-
-    #[test]
-    fn a_blank_mass_is_listed_as_a_check_that_could_not_be_made() {
-        assert_eq!(failing(|_, m, _, _| m.mass_kg = None), [CheckKind::Mass]);
-    }
-
-    #[test]
-    fn a_rated_speed_stands_in_for_a_blank_largest_speed() {
-        assert_eq!(failing(|_, m, _, _| m.max_speed_rpm = None), []);
-        let slow = |_: &mut Gear, m: &mut Motor, _: &mut JointMotion, _: &mut JointDemand| {
-            (m.max_speed_rpm, m.rated_speed_rpm) = (None, Some(700.0));
-        };
-        assert_eq!(failing(slow), [CheckKind::MotorSpeed]);
-    }
-
-    #[test]
-    fn what_binds_is_the_smallest_margin() {
-        let (gear, motor) = ample();
-        let drive = Drive {
-            gear: &gear,
-            motor: &motor,
-            gear_mass: GearMass::HousedUnit,
-            bearing: BearingSource::OfGear,
-            extras: ExtrasSource::NONE,
-        };
-        let mut checks = checks(&drive, &motion(), &demand());
-        assert_eq!(binding(&checks).unwrap().kind, CheckKind::GearPeak);
-        checks.remove(0);
-        assert_eq!(binding(&checks).unwrap().kind, CheckKind::GearMean);
-        assert!(binding(&[]).is_none());
-    }
-
-    #[test]
-    fn a_joint_that_carries_nothing_has_no_end_of_life() {
-        let (gear, motor) = (hfuc_40_100(), f11_10());
-        let drive = Drive {
-            gear: &gear,
-            motor: &motor,
-            gear_mass: GearMass::HousedUnit,
-            bearing: BearingSource::OfGear,
-            extras: ExtrasSource::NONE,
-        };
-        let checks = checks(&drive, &motion(), &motion().demand_of_torques(0.0, 0.0));
-        assert!(all_hold(&checks));
-        let life = checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();
-        assert_eq!(life.allowed, Some(f64::INFINITY));
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(4000))]
-
-        #[test]
-        fn thresholds_hold_exactly_when_all_checks_do(
-            gear in any_gear(), motor in any_motor(), motion in any_motion(), torques in any_torques(), housed: bool,
-        ) {
-            let gear_mass = if housed { GearMass::HousedUnit } else { GearMass::ComponentSet };
-            let drive = Drive { gear: &gear, motor: &motor, gear_mass, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE };
-            let demand = motion.demand_of_torques(torques[0], torques[1]).with_bearing(bearing_loads(torques[2]));
-            let checks = checks(&drive, &motion, &demand);
-            let by_thresholds = DriveLimits::of(&drive, &motion).is_ok_and(|l| l.hold(&demand));
-            prop_assert_eq!(by_thresholds, all_hold(&checks));
-            for c in &checks {
-                let Some(margin) = c.margin() else {
-                    prop_assert!(matches!(c.state, CheckState::NotChecked(_)), "{:?}", c);
-                    continue;
-                };
-                // The printed numbers decide alike, but for rounding at the limit itself.
-                if (margin - 1.0).abs() > 1e-12 {
-                    prop_assert_eq!(c.holds(), margin > 1.0, "{:?}", c);
-                }
-            }
-        }
-    }
 }

@@ -3,6 +3,7 @@
 
 use super::bearing::BearingDemand;
 use super::duty::{HeatWeights, MeanTorqueWeights};
+use super::fit::{FitRequirement, LinkRoom};
 use super::stated::{StatedDemand, StatedDuty};
 use super::{RAD_S_PER_RPM, rpm_from_rad_s};
 
@@ -48,6 +49,8 @@ pub struct JointMotion {
     pub stated: Option<StatedDemand>,
     /// Number of emergency stops in the life of the gear, if the study asks for one.
     pub emergency_stops: Option<f64>,
+    /// What the study asks of the sizes of the parts.
+    pub fit: FitRequirement,
 }
 
 impl JointMotion {
@@ -148,6 +151,7 @@ impl JointMotion {
             stop_torque_nm: stop_nm.max(stated_peak_nm),
             mean_torque_cubed_nm3: cubed_nm3 + stated_cubed_nm3,
             bearing: BearingDemand::default(),
+            room: LinkRoom::ANY,
             stated_peak_nm,
             heat_weights: self.heat,
         }
@@ -168,6 +172,8 @@ pub struct JointDemand {
     pub mean_torque_cubed_nm3: f64,
     /// Loads on the output bearing; all zero if it is not to be checked.
     pub bearing: BearingDemand,
+    /// The room that the link which the joint carries leaves to its parts.
+    pub room: LinkRoom,
     /// Largest torque of a duty that the study states for the joint \[N m\]; 0 without one.
     pub stated_peak_nm: f64,
     /// Weights of the motor's heat.
@@ -195,6 +201,11 @@ impl JointDemand {
     /// The same demand with loads on the output bearing.
     pub fn with_bearing(self, bearing: BearingDemand) -> Self {
         Self { bearing, ..self }
+    }
+
+    /// The same demand with the room that the link leaves.
+    pub fn with_room(self, room: LinkRoom) -> Self {
+        Self { room, ..self }
     }
 
     /// The same demand with every torque and moment times `factor`.

@@ -21,6 +21,8 @@ pub(crate) struct EightDemands<V> {
     mean_torque_cubed_nm3: V,
     /// Loads on the output bearings; `None` if they are not checked.
     bearing: Option<EightBearing<V>>,
+    /// Room that the links leave to gear and motor \[m\]; `None` if it is not asked about.
+    room: Option<[V; 2]>,
     /// T + T_lin, and how much T exceeds T_lin and T_lin exceeds T \[N m\].
     up_nm: V,
     down_nm: [V; 2],
@@ -187,6 +189,7 @@ impl<V: Lanes> EightDemands<V> {
             down_nm: [(statically - linear).max(V::zero()), (linear - statically).max(V::zero())],
             heat_weights: motion.heat,
             bearing: None,
+            room: None,
         }
     }
 
@@ -194,6 +197,12 @@ impl<V: Lanes> EightDemands<V> {
     #[inline(always)]
     pub(crate) fn with_bearing(self, bearing: Option<EightBearing<V>>) -> Self {
         Self { bearing, ..self }
+    }
+
+    /// The same demands with the room that the links leave to gear and motor \[m\].
+    #[inline(always)]
+    pub(crate) fn with_room(self, room: Option<[V; 2]>) -> Self {
+        Self { room, ..self }
     }
 
     /// Those of the lanes `of` whose demand a drive holds.
@@ -206,6 +215,13 @@ impl<V: Lanes> EightDemands<V> {
                 | V::splat(limits.mean_torque_cubed_nm3).less(self.mean_torque_cubed_nm3)
                 | match &self.bearing {
                     Some(bearing) => bearing.broken_by(&limits.bearing),
+                    None => 0,
+                }
+                | match &self.room {
+                    Some([gear_m, motor_m]) => {
+                        gear_m.less(V::splat(limits.widths.gear_m))
+                            | motor_m.less(V::splat(limits.widths.motor_m))
+                    }
                     None => 0,
                 });
         // heat costs the most to compare, and most drives that do not hold fail before
@@ -274,7 +290,7 @@ impl DriveTable<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{any_gear, any_motion, any_motor};
+    use super::super::testing::{any_gear, any_link_m, any_motion, any_motor};
     use super::*;
     use crate::catalog::gear::{Gear, GearMass};
     use crate::catalog::motor::Motor;
@@ -282,13 +298,15 @@ mod tests {
     use crate::sizing::select::{DriveFilter, DriveTable};
     use proptest::prelude::*;
 
-    struct Fits<'a>(&'a DriveTable<'a>, Eight, Eight, u8, usize);
+    struct Fits<'a>(&'a DriveTable<'a>, Eight, Eight, u8, usize, [Eight; 2]);
 
     impl LaneWork for Fits<'_> {
         type Output = ([usize; LANES], u8);
 
         fn run<V: Lanes>(mut self) -> Self::Output {
-            let demands = EightDemands::new(self.0.motion(), V::load(&self.1), V::load(&self.2));
+            let room = [V::load(&self.5[0]), V::load(&self.5[1])];
+            let demands =
+                EightDemands::new(self.0.motion(), V::load(&self.1), V::load(&self.2)).with_room(Some(room));
             self.0.first_fits(&demands, self.3, &mut self.4)
         }
     }
@@ -304,6 +322,7 @@ mod tests {
             paper: bool,
             torques in prop::array::uniform8(-900.0..900.0f64),
             inertias in prop::array::uniform8(0.0..60.0f64),
+            links_m in prop::array::uniform8(any_link_m()),
             wanted: u8,
             step in 0..70usize,
         ) {
@@ -313,9 +332,12 @@ mod tests {
             let motion = motion.with_linear_reading(reading);
             let filter = DriveFilter::everything(GearMass::ComponentSet);
             let table = DriveTable::build("j", motion, &filter, &gears, &motors);
-            let (fits, fitted) = in_lanes(Fits(&table, torques, inertias, wanted, step));
+            let rooms = links_m.map(|[width_m, hollow_m]| motion.fit.room(width_m, hollow_m));
+            let room_m = [rooms.map(|room| room.gear_m), rooms.map(|room| room.motor_m)];
+            let (fits, fitted) = in_lanes(Fits(&table, torques, inertias, wanted, step, room_m));
             for lane in 0..LANES {
-                let alone = table.first_fit(&table.motion().demand(torques[lane], inertias[lane]));
+                let demand = table.motion().demand(torques[lane], inertias[lane]).with_room(rooms[lane]);
+                let alone = table.first_fit(&demand);
                 let among = (fitted >> lane & 1 == 1).then_some(fits[lane]);
                 prop_assert_eq!(among, alone.filter(|_| wanted >> lane & 1 == 1));
             }

@@ -140,6 +140,9 @@ impl fmt::Display for Shortfall {
         }
         let steps: Vec<_> = self.relaxations.iter().map(Relaxation::to_string).collect();
         match steps.is_empty() {
+            true if self.check.kind.is_fit() => {
+                f.write_str("; give it more room (\"fit\" of the study or of the joint), or widen \"drives\"")
+            }
             true => f.write_str("; neither less torque nor less speed alone lets one hold"),
             false => write!(f, "; smallest relaxation that helps: {}", steps.join("; or ")),
         }
@@ -277,7 +280,8 @@ impl<'c> DriveTable<'c> {
         let motion = self.motion().slowed(factor);
         let slower = motion
             .demand_of_torques(demand.static_torque_nm, demand.linear_torque_nm * factor)
-            .with_bearing(demand.bearing.slowed(factor));
+            .with_bearing(demand.bearing.slowed(factor))
+            .with_room(demand.room);
         let holding = self.all_drives().filter_map(|drive| {
             let limits = DriveLimits::of(&drive, &motion).ok()?;
             let mass_kg = drive.mass_with_extras_kg().ok()?;

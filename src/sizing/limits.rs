@@ -1,13 +1,14 @@
 //! Limits: a drive under a fixed motion, reduced to thresholds of torque.
 //!
 //! The study fixes speed, acceleration and duty cycle of a joint, so every check of a drive compares one torque with one
-//! number. [`DriveLimits`] has these numbers. Two checks are not one torque: that of the output bearing (see
-//! [`BearingLimits`]), and that of heat, which compares a mean square with 1. A search compares these numbers and nothing
+//! number. [`DriveLimits`] has these numbers. Three checks are not one torque: that of the output bearing (see
+//! [`BearingLimits`]), that of heat, which compares a mean square with 1, and that of the room ([`DriveWidths`]). A search compares these numbers and nothing
 //! else. The printed checks ([`check`](super::check)) are decided by the same thresholds.
 
 use super::bearing::BearingLimits;
 use super::demand::{JointDemand, JointMotion};
 use super::drive::{Drive, MissingRating, Rating, known, reference_life_h};
+use super::fit::DriveWidths;
 use super::heat::MotorHeat;
 use super::rpm_from_rad_s;
 use crate::catalog::gear::Gear;
@@ -45,7 +46,8 @@ pub struct DriveLimits {
     pub mean_torque_cubed_nm3: f64,
     /// What the output bearing holds.
     pub bearing: BearingLimits,
-    /// Largest moment across the axis (gear with its bearing) \[N m\].
+    /// How wide the parts are.
+    pub widths: DriveWidths,
     /// What the motor uses of its continuous torque.
     pub heat: MotorHeat,
 }
@@ -57,6 +59,8 @@ pub enum Obstacle {
     TooFast,
     /// The gear does not bear so many emergency stops.
     TooManyStops,
+    /// The drive is too long for the joint, or has no passage for its cables.
+    DoesNotFit,
     /// A rating that a check needs is blank.
     Lacks(MissingRating),
 }
@@ -82,12 +86,16 @@ impl DriveLimits {
         if motion.emergency_stops.is_some_and(|stops| stops > stops_allowed(gear, motion)) {
             return Err(Obstacle::TooManyStops);
         }
+        if !motion.fit.allows(drive.gear, drive.motor) {
+            return Err(Obstacle::DoesNotFit);
+        }
         Ok(Self {
             static_torque_nm: motor_hold_nm(drive, motion)?,
             peak_torque_nm: gear_peak_nm(gear)?.min(motor_peak_nm(drive, motion)?),
             stop_torque_nm: gear_stop_nm(gear)?,
             mean_torque_cubed_nm3: gear_average_cubed_nm3(gear)?.min(gear_life_cubed_nm3(gear, motion)?),
             bearing: BearingLimits::of(drive.bearing().as_ref(), motion.mean_speed_rad_s(), motion.life_h),
+            widths: DriveWidths::of(drive.gear, drive.motor, &motion.fit),
             heat: MotorHeat::of(drive, motion)?,
         })
     }
@@ -101,10 +109,11 @@ impl DriveLimits {
             & (demand.stop_torque_nm <= self.stop_torque_nm)
             & (demand.mean_torque_cubed_nm3 <= self.mean_torque_cubed_nm3)
             & self.bearing.hold(&demand.bearing)
+            & self.widths.fit(&demand.room)
             & (self.heat.share_squared(demand) <= 1.0)
     }
 
-    /// The larger of two drives' limits, one by one, of the heat the smaller numbers: it holds whatever one of them holds.
+    /// The larger of two drives' limits, one by one, of heat and widths the smaller numbers: it holds whatever one of them holds.
     pub(crate) fn max(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.max(other.static_torque_nm),
@@ -112,6 +121,7 @@ impl DriveLimits {
             stop_torque_nm: self.stop_torque_nm.max(other.stop_torque_nm),
             mean_torque_cubed_nm3: self.mean_torque_cubed_nm3.max(other.mean_torque_cubed_nm3),
             bearing: self.bearing.max(&other.bearing),
+            widths: self.widths.min(&other.widths),
             heat: self.heat.least(&other.heat),
         }
     }
@@ -124,11 +134,13 @@ impl DriveLimits {
             stop_torque_nm: self.stop_torque_nm.min(other.stop_torque_nm),
             mean_torque_cubed_nm3: self.mean_torque_cubed_nm3.min(other.mean_torque_cubed_nm3),
             bearing: self.bearing.min(&other.bearing),
+            widths: self.widths.max(&other.widths),
             heat: self.heat.greatest(&other.heat),
         }
     }
 
-    /// The largest factor on a demand that the drive still holds, or slightly more; infinite if the demand is zero.
+    /// The largest factor on a demand that the drive still holds, or slightly more; infinite if the demand is zero. The room is
+    /// not asked about: no factor changes it.
     pub(crate) fn multiple_of(&self, demand: &JointDemand) -> f64 {
         let times = |limit: f64, asked: f64| if asked > 0.0 { limit / asked } else { f64::INFINITY };
         times(self.static_torque_nm, demand.static_torque_nm)
@@ -147,6 +159,7 @@ impl DriveLimits {
             & (self.stop_torque_nm >= other.stop_torque_nm)
             & (self.mean_torque_cubed_nm3 >= other.mean_torque_cubed_nm3)
             & self.bearing.cover(&other.bearing)
+            & self.widths.cover(&other.widths)
             & self.heat.covers(&other.heat)
     }
 }

@@ -31,11 +31,14 @@
 
 pub(crate) mod bearing;
 pub(crate) mod check;
+#[cfg(test)]
+mod check_tests;
 pub(crate) mod demand;
 pub(crate) mod drive;
 pub(crate) mod duty;
 pub(crate) mod eight;
 pub(crate) mod explain;
+pub(crate) mod fit;
 pub(crate) mod heat;
 pub(crate) mod limits;
 pub(crate) mod requirement;
@@ -56,6 +59,7 @@ pub use drive::{
 };
 pub use duty::{DutyCycle, HeatWeights, MeanTorqueWeights, Phase, PhaseKind};
 pub use explain::{RejectedPart, Rejection, Relaxation, RelaxationKind, Shortfall};
+pub use fit::{DriveWidths, FitRequirement, LinkRoom, MotorPlace};
 pub use heat::MotorHeat;
 pub use limits::{DriveLimits, Obstacle};
 pub use requirement::{MotionRequirement, RequirementError};

@@ -2,6 +2,7 @@
 
 use super::demand::{JointMotion, LinearReading};
 use super::duty::{DutyCycle, Phase, PhaseKind};
+use super::fit::FitRequirement;
 
 /// The motion that a study asks of the tip, and the life it asks of every gear.
 #[derive(Debug, Clone, PartialEq)]
@@ -93,6 +94,7 @@ impl MotionRequirement {
             has_brake: false,
             stated: None,
             emergency_stops: self.emergency_stops,
+            fit: FitRequirement::default(),
         }
     }
 

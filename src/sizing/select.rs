@@ -336,7 +336,7 @@ fn parts<'c>(drive: &Drive<'c>) -> (&'c str, &'c str) {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{
-        any_gear, any_motion, any_motor, any_torques, bearing_loads, char_lynn_j_8_2, f11_10,
+        any_gear, any_link_m, any_motion, any_motor, any_torques, bearing_loads, char_lynn_j_8_2, f11_10,
     };
     use super::super::testing::{hfuc_40_100, hfuc_58_100, motor};
     use super::*;
@@ -411,6 +411,7 @@ mod tests {
             motors in prop::collection::vec(any_motor(), 1..8),
             motion in any_motion(),
             torques in any_torques(),
+            link_m in any_link_m(),
             housed: bool,
         ) {
             let gear_mass = if housed { GearMass::HousedUnit } else { GearMass::ComponentSet };
@@ -418,7 +419,8 @@ mod tests {
             let motors: Vec<_> = motors.into_iter().enumerate().map(|(i, m)| Motor { id: format!("M{i}"), ..m }).collect();
             let demand = motion
                 .demand_of_torques(torques[0] / 2.0, torques[1] / 4.0)
-                .with_bearing(bearing_loads(torques[2]));
+                .with_bearing(bearing_loads(torques[2]))
+                .with_room(motion.fit.room(link_m[0], link_m[1]));
             let table = DriveTable::build("j", motion, &DriveFilter::everything(gear_mass), &gears, &motors);
             let mut slow = Vec::new();
             for gear in &gears {

@@ -2,7 +2,9 @@
 
 use super::bearing::{BearingDemand, BearingLoad};
 use super::demand::JointMotion;
+use super::fit::{FitRequirement, MotorPlace};
 use super::requirement::MotionRequirement;
+use crate::catalog::envelope::Envelope;
 use crate::catalog::gear::{BearingRatings, Gear};
 use crate::catalog::motor::{Motor, MotorKind};
 use crate::catalog::{Confidence, Provenance};
@@ -136,6 +138,7 @@ prop_compose! {
         ),
         breaking in prop::array::uniform2(prop::option::of(50.0..4000.0f64)),
         efficiency in rating_in(0.5..0.9),
+        envelope in any_envelope(),
     ) -> Gear {
         let mut gear = gear(&format!("{series}-32-{ratio}"), [0.0; 4], [0.0; 2], 0.0, [0.0; 2]);
         [gear.rated_torque_nm, gear.repeated_peak_torque_nm, gear.average_torque_limit_nm,
@@ -148,6 +151,7 @@ prop_compose! {
         gear.bearing =
             BearingRatings { pitch_diameter_m, offset_m, static_load_rating_n, dynamic_load_rating_n };
         [gear.buckling_torque_nm, gear.ratcheting_torque_nm] = breaking;
+        gear.envelope = envelope;
         gear
     }
 }
@@ -159,21 +163,52 @@ prop_compose! {
         speeds in prop::array::uniform2(rating_in(300.0..6000.0)),
         inertia in rating_in(0.0..0.003),
         mass in rating_in(0.1..15.0),
+        envelope in any_envelope(),
     ) -> Motor {
         let mut motor = motor("M", [0.0; 2], [0.0; 2], 0.0, 0.0);
         [motor.rated_torque_nm, motor.peak_torque_nm] = torques;
         [motor.rated_speed_rpm, motor.max_speed_rpm] = speeds;
         (motor.rotor_inertia_kgm2, motor.mass_kg) = (inertia, mass);
+        motor.envelope = envelope;
         motor
     }
 }
 
 prop_compose! {
     /// The motion of a joint.
-    pub fn any_motion()(reach in 0.2..2.0f64, ramp in 0.1..1.0f64, life in 1e3..5e4f64) -> JointMotion {
+    pub fn any_motion()(
+        reach in 0.2..2.0f64, ramp in 0.1..1.0f64, life in 1e3..5e4f64, fit in any_fit(),
+    ) -> JointMotion {
         let study = MotionRequirement { ramp_time_s: ramp, life_h: life, ..Default::default() };
-        study.joint_motion(reach, None)
+        JointMotion { fit, ..study.joint_motion(reach, None) }
     }
+}
+
+/// Sizes of a part; some are blank.
+fn any_envelope() -> impl Strategy<Value = Envelope> {
+    let size = |range: std::ops::Range<f64>| prop_oneof![4 => range.prop_map(Some), 1 => Just(None)];
+    (size(0.03..0.2), size(0.02..0.1), size(0.0..0.05)).prop_map(
+        |(outer_diameter_m, length_m, hollow_bore_m)| Envelope { outer_diameter_m, length_m, hollow_bore_m },
+    )
+}
+
+/// What a study may ask of sizes, often nothing.
+fn any_fit() -> impl Strategy<Value = FitRequirement> {
+    let asked = |range: std::ops::Range<f64>| prop_oneof![1 => range.prop_map(Some), 3 => Just(None)];
+    let motor = prop_oneof![Just(MotorPlace::Behind), Just(MotorPlace::InLink), Just(MotorPlace::Beside)];
+    (asked(0.5..2.0), motor, asked(0.0..0.03), asked(0.06..0.2)).prop_map(
+        |(gear_to_link_max, motor, cable_bore_min_m, drive_length_max_m)| FitRequirement {
+            gear_to_link_max,
+            motor,
+            cable_bore_min_m,
+            drive_length_max_m,
+        },
+    )
+}
+
+/// The room that a link leaves under a requirement; width and clear width \[m\].
+pub fn any_link_m() -> impl Strategy<Value = [f64; 2]> {
+    (0.05..0.2f64, 0.0..1.0f64).prop_map(|(width_m, clear)| [width_m, clear * width_m])
 }
 
 /// Loads on a bearing with the moment as given \[N m\].

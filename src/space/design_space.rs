@@ -11,6 +11,7 @@ use crate::arm::section::{LinkMaterial, Section};
 use crate::arm::structure::Beam;
 use crate::arm::{JointModel, Link, LinkModel};
 use crate::sizing::demand::JointMotion;
+use crate::sizing::fit::FitRequirement;
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
 use crate::sizing::stated::StatedDuty;
@@ -163,6 +164,8 @@ pub struct SpaceJoint {
     pub has_brake: bool,
     /// A duty that the study states for this joint, in place of its cycle.
     pub duty: Option<StatedDuty>,
+    /// What the study asks of the sizes of the joint's parts.
+    pub fit: FitRequirement,
 }
 
 /// How a joint's drive is found.
@@ -237,7 +240,8 @@ impl SpaceJoint {
     /// The motion of the joint when its axis is at most `reach_m` \[m\] away from the tip.
     pub(crate) fn motion(&self, asked: &MotionRequirement, reach_m: f64) -> JointMotion {
         let motion = asked.joint_motion(reach_m, self.max_speed_rad_s);
-        motion.of_joint(self.max_speed_rad_s, self.has_brake, self.duty.as_ref())
+        let motion = motion.of_joint(self.max_speed_rad_s, self.has_brake, self.duty.as_ref());
+        JointMotion { fit: self.fit, ..motion }
     }
 }
 

@@ -17,7 +17,7 @@ pub mod design;
 pub mod design_space;
 pub(crate) mod effects;
 pub(crate) mod excerpt;
-
+pub(crate) mod fit;
 pub(crate) mod fixed;
 pub(crate) mod levels;
 pub(crate) mod problem;

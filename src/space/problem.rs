@@ -8,6 +8,7 @@ use super::attributes::OptionAttributes;
 use super::bearing_loads::BearingLoads;
 use super::design_space::{DesignSpace, SpacePiece};
 use super::effects::Layer;
+use super::fit::RoomAtJoint;
 use super::levels::OutwardIn;
 pub(crate) use super::slot::SizedJoint;
 pub(crate) use super::slot::Slot;
@@ -19,6 +20,7 @@ use crate::mechanics::Wrench;
 use crate::mechanics::lowest::{Step, frequency_hz, lowest_eigenvalue};
 use crate::pareto::objectives::Objectives;
 use crate::sizing::demand::{JointDemand, JointMotion};
+use crate::sizing::fit::LinkRoom;
 use nalgebra::{Matrix6, Vector3};
 
 /// A design space as the search sees it: the drives are tabulated and the poses are compiled.
@@ -41,6 +43,8 @@ pub struct ArmProblem<'c> {
     /// Stress at peak load over stress at rest.
     peak_factor: f64,
     bearing_loads: BearingLoads,
+    /// The room that links leave to the joint in each slot; `None` where nothing depends on a link.
+    rooms: Vec<Option<RoomAtJoint>>,
 }
 
 /// A partial arm: everything from the tip to some level.
@@ -128,6 +132,7 @@ impl<'c> ArmProblem<'c> {
             materials: space.material_names().len(),
             peak_factor: 1.0 + a_over_g,
             bearing_loads: BearingLoads::new(space, &slots, &piece_slots, &reaches),
+            rooms: rooms(space, &piece_slots, slots.len()),
             slots,
             piece_slots,
         }
@@ -237,6 +242,10 @@ impl<'c> ArmProblem<'c> {
         &self.bearing_loads
     }
 
+    pub(crate) fn rooms(&self) -> &[Option<RoomAtJoint>] {
+        &self.rooms
+    }
+
     pub(crate) fn peak_factor(&self) -> f64 {
         self.peak_factor
     }
@@ -331,7 +340,8 @@ impl<'c> ArmProblem<'c> {
             || self.space.motion.joint_motion(0.0, None).demand(static_nm, inertia_kgm2),
             |motion| motion.demand(static_nm, inertia_kgm2),
         );
-        torques.with_bearing(self.bearing_demand(&outboard.stations, &outboard.options, slot))
+        let room = self.rooms[slot].as_ref().map_or(LinkRoom::ANY, |room| room.of(&outboard.options));
+        torques.with_bearing(self.bearing_demand(&outboard.stations, &outboard.options, slot)).with_room(room)
     }
 
     /// Adds a joint to every case. It always holds: a sized drive was checked before, and a given one excludes nothing.
@@ -390,6 +400,15 @@ impl<'c> ArmProblem<'c> {
     ) -> impl Iterator<Item = (&'s Station, &'s StationState)> + Clone {
         self.space.judged_cases.iter().map(|&i| (&self.stations[i], &complete.stations[i]))
     }
+}
+
+/// The room that links leave to the joint in each slot.
+fn rooms(space: &DesignSpace, piece_slots: &[usize], slots: usize) -> Vec<Option<RoomAtJoint>> {
+    let mut rooms: Vec<Option<RoomAtJoint>> = (0..slots).map(|_| None).collect();
+    for (place, &slot) in piece_slots.iter().enumerate() {
+        rooms[slot] = RoomAtJoint::new(&space.pieces, place, piece_slots);
+    }
+    rooms
 }
 
 /// Objectives of a complete arm from its states in the judged cases.

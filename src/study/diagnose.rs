@@ -247,6 +247,10 @@ fn first_obstacle(study: &Study, catalogs: &Catalogs) -> String {
         format!("; {} may stand in the way too", keys.join(", "))
     };
     match sized.table.smallest_shortfall(&demand) {
+        // a wider link would be heavier
+        Some(shortfall) if shortfall.check.kind.is_fit() => {
+            format!("with the lightest links, {shortfall}{also}")
+        }
         Some(shortfall) => format!("even with the lightest links, {shortfall}{also}"),
         None => together,
     }
@@ -280,10 +284,10 @@ fn too_fast(sized: &SizedJoint) -> String {
             )
         }
         _ => format!(
-            "joint {}: every drive that \"drives\" offers is too fast for its average input speed or lacks a rating \
-             that a check needs; `armwright size STUDY --explain {}` lists them",
-            table.joint(),
-            table.joint()
+            "joint {joint}: every drive that \"drives\" offers is too fast for its average input speed{fit} or lacks a rating \
+             that a check needs; `armwright size STUDY --explain {joint}` lists them",
+            joint = table.joint(),
+            fit = if table.motion().fit.is_asked() { ", does not fit" } else { "" },
         ),
     }
 }

@@ -8,6 +8,8 @@ pub(crate) mod check;
 pub(crate) mod definition;
 pub(crate) mod diagnose;
 pub(crate) mod effects;
+mod environments;
+mod fit;
 pub(crate) mod motion;
 pub(crate) mod named;
 pub(crate) mod near;

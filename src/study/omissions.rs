@@ -1,5 +1,6 @@
 //! What the numbers of a study leave out, so that it can be said beside the numbers.
 
+use super::fit::joints_that_ask;
 use crate::arm::bearing::BearingSource;
 use crate::arm::extras::ExtrasSource;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
@@ -30,9 +31,14 @@ pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
         .then(|| {
             "Motor heat not checked: the study turns it off (check_motor_heat in its motion).".to_string()
         });
-    let always = "Left out of every number: the yield of the connections between links and joints, the cables along \
-                  the links, temperature, and whether the parts fit into each other.";
-    [rigid, bare, heat, Some(always.to_string())].into_iter().flatten().collect()
+    let fits = match joints_that_ask(space).next() {
+        Some(_) => " and temperature",
+        None => ", temperature, and whether the parts fit into each other",
+    };
+    let always = format!(
+        "Left out of every number: the yield of the connections between links and joints, the cables along the links{fits}."
+    );
+    [rigid, bare, heat, Some(always)].into_iter().flatten().collect()
 }
 
 fn joints(space: &DesignSpace) -> impl Iterator<Item = &SpaceJoint> {

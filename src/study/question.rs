@@ -7,6 +7,7 @@ use crate::arm::load::LoadCase;
 use crate::catalog::Catalogs;
 use crate::sizing::demand::LinearReading;
 use crate::sizing::duty::{Phase, PhaseKind};
+use crate::sizing::fit::MotorPlace;
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
 use crate::sizing::stated::StatedPhase;
@@ -17,8 +18,8 @@ use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
 use crate::verify::judge::Pick;
 use crate::verify::question::{
-    AllowedParts, AskedDrive, AskedDutyPhase, AskedJoint, AskedLink, AskedMotion, AskedPhase, AskedPhaseKind,
-    AskedPiece, AskedTube, Limits, LinearTorque, Question,
+    AllowedParts, AskedDrive, AskedDutyPhase, AskedFit, AskedJoint, AskedLink, AskedMotion, AskedPhase,
+    AskedPhaseKind, AskedPiece, AskedTube, Limits, LinearTorque, Question,
 };
 
 /// What a study asks, without anything that a search has made of it.
@@ -74,6 +75,13 @@ fn asked_joint(joint: &SpaceJoint) -> AskedJoint {
         max_speed_rad_s: joint.max_speed_rad_s,
         has_brake: joint.has_brake,
         duty: joint.duty.iter().flat_map(|duty| &duty.phases).map(phase).collect(),
+        fit: AskedFit {
+            gear_to_link_max: joint.fit.gear_to_link_max,
+            motor_in_link: joint.fit.motor == MotorPlace::InLink,
+            motor_on_axis: joint.fit.motor == MotorPlace::Behind,
+            cable_bore_min_m: joint.fit.cable_bore_min_m,
+            drive_length_max_m: joint.fit.drive_length_max_m,
+        },
     }
 }
 

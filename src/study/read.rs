@@ -6,6 +6,8 @@
 
 use super::definition::Study;
 use super::effects::check_effects;
+use super::environments::{Environment, read_environments};
+use super::fit::{fit_remarks, read_fit};
 use super::motion::{read_duty, read_motion};
 use super::omissions::omissions;
 use super::range::{check_poses, read_range};
@@ -20,6 +22,7 @@ use crate::catalog::Catalogs;
 use crate::catalog::gear::GearMass;
 use crate::catalog::motor::MotorKind;
 use crate::input::json::{Document, Faults, Node, Object};
+use crate::sizing::fit::FitRequirement;
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
 use crate::sizing::stated::StatedDuty;
@@ -27,7 +30,7 @@ use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{Case, DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 use nalgebra::Vector3;
 
-const KEYS: [&str; 17] = [
+const KEYS: [&str; 18] = [
     "name",
     "question",
     "gravity_m_s2",
@@ -40,6 +43,7 @@ const KEYS: [&str; 17] = [
     "duty",
     "drives",
     "extras",
+    "fit",
     "constraints",
     "models",
     "effects",
@@ -88,11 +92,12 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let filter = root.or("drives", Drives::default(), |n| read_drives(n, catalogs));
     let constraints = root.or("constraints", Constraints::default(), read_constraints);
     let extras = read_extras_source(&root, ExtrasSource::Usual);
+    let fit = read_fit(&root, FitRequirement::default());
     let mut aside = Aside::default();
     let duty = root.or("duty", None, |n| read_duty_of_only_joint(n, node).map(Some));
     let chain = root.required("chain").and_then(|n| {
-        let (drives, constraints, extras) = (filter.as_ref()?, constraints.as_ref()?, extras?);
-        let open = Open { catalogs, drives, constraints, extras, duty: duty.as_ref()?.as_ref() };
+        let (drives, constraints, extras, fit) = (filter.as_ref()?, constraints.as_ref()?, extras?, fit?);
+        let open = Open { catalogs, drives, constraints, extras, fit, duty: duty.as_ref()?.as_ref() };
         read_chain(&n, &open, &mut aside)
     });
     let joints = joint_names(node);
@@ -120,6 +125,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     check_effects(&space, &root)?;
     in_range?;
     let Aside { not_checked, mut remarks } = aside;
+    remarks.extend(fit_remarks(&space, catalogs));
     remarks.extend(omissions(&space));
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
@@ -172,6 +178,7 @@ struct Open<'a> {
     drives: &'a Drives,
     constraints: &'a Constraints,
     extras: ExtrasSource,
+    fit: FitRequirement,
     /// The duty that the study states for its only joint.
     duty: Option<&'a StatedDuty>,
 }
@@ -339,16 +346,18 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         "brake",
         "duty",
         "drives",
+        "fit",
     ])?;
     let name = read_name(&object);
     let axis = object.required("axis").and_then(|n| crate::arm::file::read_axis(&n));
     let max_speed = object.or("max_speed_rad_s", None, |n| n.positive().map(Some));
     let brake = object.or("brake", false, Node::boolean);
     let duty = object.or("duty", open.duty.cloned(), |n| read_duty(n).map(Some));
+    let fit = read_fit(&object, open.fit);
     if !object.has("drive") && !object.has("motor") {
         stray(
             &object,
-            &["brake", "duty"],
+            &["brake", "duty", "fit"],
             "has no motor beside it",
             "add \"drive\", or \"gear\" and \"motor\"",
         );
@@ -383,8 +392,8 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
     let range_deg = object.or("range_deg", None, |n| read_range(n).map(Some));
     let (bearing, extras, range_deg) = (bearing?, extras?, range_deg?);
     let (max_speed_rad_s, has_brake, duty) = (max_speed?, brake?, duty?);
-    let (name, axis) = (name?, axis?);
-    Some(SpaceJoint { name, axis, bearing, extras, drive, max_speed_rad_s, range_deg, has_brake, duty })
+    let (name, axis, fit) = (name?, axis?, fit?);
+    Some(SpaceJoint { name, axis, bearing, extras, drive, max_speed_rad_s, range_deg, has_brake, duty, fit })
 }
 
 /// Where the bearing of a joint comes from. A component set has none of its own, so a joint that is sized with component
@@ -517,29 +526,6 @@ fn read_cases(root: &Object, joints: &[String]) -> Option<Cases> {
         );
     }
     Some(out)
-}
-
-#[derive(Debug, Clone, Default)]
-struct Environment {
-    name: String,
-    water: Option<crate::arm::load::Water>,
-}
-
-fn read_environments(node: &Node) -> Option<Vec<Environment>> {
-    let items = node.array()?;
-    if items.is_empty() {
-        return node.fault("is empty", "name what the arm is in, or leave it away for air");
-    }
-    let read: Vec<_> = items
-        .iter()
-        .map(|n| {
-            let object = n.object(&["name", "water"])?;
-            let name = object.required("name").and_then(|n| n.string().map(String::from));
-            let water = object.or("water", None, |n| crate::arm::load::Water::read(n).map(Some));
-            Some(Environment { name: name?, water: water? })
-        })
-        .collect();
-    read.into_iter().collect()
 }
 
 fn read_case(node: &Node, joints: &[&str], payload: &Payload, force: &Vector3<f64>) -> Option<ReadCase> {

@@ -5,6 +5,7 @@ use super::bearing_loads::Largest;
 use super::demand::Demand;
 use super::drive_range::DriveRange;
 use super::duty::Duty;
+use super::fit::{ANY_WIDTH, Widths};
 use super::layout::Coordinate;
 use super::pencil::Pencil;
 use super::pose::Pose;
@@ -77,13 +78,16 @@ impl Skeleton {
         let (statics, inertia) = (asked.static_nm, asked.inertia_kgm2);
         let (less, more) = (1.0 - ROUNDING, 1.0 + ROUNDING);
         let [least, most] = self.bearing_demands(joint, duty, members);
+        let [widest, narrowest] = self.rooms(joint, members);
         [
             Demand {
                 bearing: least.times(less),
+                room: widest,
                 ..duty.demand(statics.least * less, inertia.least * less, less)
             },
             Demand {
                 bearing: most.times(more),
+                room: narrowest,
                 ..duty.demand(statics.most * more, inertia.most * more, more)
             },
         ]
@@ -106,6 +110,14 @@ impl Skeleton {
         };
         let [least, most] = largest.demands();
         [least.with_lever(levers_m[0]), most.with_lever(levers_m[1])]
+    }
+
+    /// The most and the least room that the members' tubes leave to the parts of a joint.
+    fn rooms(&self, joint: usize, members: &Members) -> [Widths; 2] {
+        self.first_tubes[joint].map_or([ANY_WIDTH; 2], |tube| {
+            let TubeRange { least, most, .. } = members.tubes[tube];
+            [most.room, least.room]
+        })
     }
 
     /// Intervals of the worst static torque and inertia on a joint over the sizing cases. Everything outboard of the

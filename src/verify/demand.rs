@@ -1,6 +1,7 @@
 //! The torques that a drive must hold, and the loads on its output bearing.
 
 use super::bearing::BearingDemand;
+use super::fit::Widths;
 use super::heat::HeatDemand;
 
 /// A torque on the output side of a gear that a drive must hold.
@@ -26,4 +27,6 @@ pub(super) struct Demand {
     pub torques: [f64; QUANTITIES],
     pub bearing: BearingDemand,
     pub heat: HeatDemand,
+    /// The room that the link leaves.
+    pub room: Widths,
 }

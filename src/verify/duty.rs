@@ -4,8 +4,11 @@
 
 use super::bearing::BearingDemand;
 use super::demand::{Demand, QUANTITIES, Quantity};
+use super::fit::ANY_WIDTH;
 use super::heat::{CycleShares, HeatDemand, StatedPhase, stated_phases};
-use super::question::{AskedDutyPhase, AskedJoint, AskedMotion, AskedPhase, AskedPhaseKind, LinearTorque};
+use super::question::{
+    AskedDutyPhase, AskedFit, AskedJoint, AskedMotion, AskedPhase, AskedPhaseKind, LinearTorque,
+};
 use std::f64::consts::PI;
 
 /// The motion of one joint, on the output side of its gear.
@@ -32,6 +35,8 @@ pub(super) struct Duty {
     pub emergency_stops: Option<f64>,
     /// Whether a brake holds the joint at rest.
     pub has_brake: bool,
+    /// What is asked of the sizes of the parts.
+    pub fit: AskedFit,
     /// Whether the motor must not overheat.
     pub checks_heat: bool,
     shares: CycleShares,
@@ -82,6 +87,7 @@ impl Duty {
             stop_s: ramp_s / stop_factor,
             emergency_stops: motion.emergency_stops,
             has_brake: joint.has_brake,
+            fit: joint.fit,
             checks_heat: motion.checks_motor_heat,
             shares: motion.shares(joint.has_brake),
             stated: Stated::default(),
@@ -125,7 +131,7 @@ impl Duty {
             + self.mean.of_static * cube(static_nm)
             + self.mean.of_difference * cube((static_nm - linear_nm).abs());
         let heat = HeatDemand { static_nm, linear_nm, shares: self.shares, room: heat_room };
-        Demand { torques, bearing: BearingDemand::default(), heat }
+        Demand { torques, bearing: BearingDemand::default(), heat, room: ANY_WIDTH }
     }
 }
 

@@ -5,10 +5,11 @@
 //! this room's sums, with each weight known.
 
 use super::bound::Members;
+use super::carriers::carriers;
 use super::drive_range::DriveRange;
 use super::offers::{CatalogOffers, JointOffers, Offer};
 use super::question::{AskedDrive, AskedJoint, AskedLink, AskedPiece, Question};
-use super::skeleton::{Skeleton, carriers, joint_offers};
+use super::skeleton::{Skeleton, joint_offers};
 use super::tubes::{TubeNumbers, TubeOptions, TubeRange, is_too_slender};
 use crate::arm::joint_law::Curve;
 use crate::arm::load::Water;

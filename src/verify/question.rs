@@ -71,6 +71,23 @@ pub struct AskedJoint {
     pub has_brake: bool,
     /// The duty that the study states for it in place of its cycle; empty if none.
     pub duty: Vec<AskedDutyPhase>,
+    /// What is asked of the sizes of its parts.
+    pub fit: AskedFit,
+}
+
+/// What is asked of the sizes of a joint's parts; nothing by default.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AskedFit {
+    /// Largest ratio of the gear's outer diameter to the width of the link that the joint carries.
+    pub gear_to_link_max: Option<f64>,
+    /// Whether the motor must go into the hollow of that link.
+    pub motor_in_link: bool,
+    /// Whether the motor is behind the gear on its axis.
+    pub motor_on_axis: bool,
+    /// Smallest bore of what is on the axis \[m\].
+    pub cable_bore_min_m: Option<f64>,
+    /// Largest length of what is on the axis \[m\].
+    pub drive_length_max_m: Option<f64>,
 }
 
 /// One phase of a duty that the study states for a joint.

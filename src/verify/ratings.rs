@@ -10,17 +10,20 @@
 use super::bearing::BearingRatings;
 use super::demand::{Demand, QUANTITIES, Quantity};
 use super::duty::Duty;
+use super::fit::{Widths, goes_into_joint, widths};
 use super::heat::MotorHeat;
 use crate::arm::bearing::Bearing;
 use crate::catalog::gear::Gear;
 use crate::catalog::motor::Motor;
 
-/// The greatest torque of each quantity that a drive holds, what its output bearing holds, and how its motor heats.
+/// The greatest torque of each quantity that a drive holds, what its output bearing holds, how its motor heats, and how wide
+/// its parts are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Ratings {
     most: [f64; QUANTITIES],
     pub bearing: BearingRatings,
     heat: MotorHeat,
+    widths: Widths,
 }
 
 /// A limit of a drive on one quantity. `most` gives the limit; `None` if the catalog lacks a number that it needs.
@@ -45,11 +48,15 @@ const RATED_RPM: f64 = 2000.0;
 
 impl Ratings {
     /// Ratings under which no check fails.
-    pub(super) const UNLIMITED: Self =
-        Self { most: [f64::INFINITY; QUANTITIES], bearing: BearingRatings::UNLIMITED, heat: MotorHeat::NONE };
+    pub(super) const UNLIMITED: Self = Self {
+        most: [f64::INFINITY; QUANTITIES],
+        bearing: BearingRatings::UNLIMITED,
+        heat: MotorHeat::NONE,
+        widths: [0.0; 2],
+    };
 
-    /// The ratings of a drive under a joint's motion; `None` if the motion is too fast for the drive, or if the
-    /// catalog lacks a number. A blank number of the bearing excludes nothing.
+    /// The ratings of a drive under a joint's motion; `None` if the motion is too fast for the drive, if the drive does not
+    /// go into the joint, or if the catalog lacks a number. A blank number of the bearing or of a size excludes nothing.
     pub(super) fn of(gear: &Gear, motor: &Motor, bearing: Option<&Bearing>, duty: &Duty) -> Option<Self> {
         let heat = match duty.checks_heat {
             true => {
@@ -58,22 +65,25 @@ impl Ratings {
             false => MotorHeat::NONE,
         };
         let bearing = BearingRatings::of(bearing, [duty.mean_speed_rad_s, duty.life_h]);
-        let mut ratings = Self { bearing, heat, ..Self::UNLIMITED };
+        let mut ratings = Self { bearing, heat, widths: widths(&duty.fit, gear, motor), ..Self::UNLIMITED };
         for check in &CHECKS {
             let most = (check.most)(gear, motor, duty)?;
             let rating = &mut ratings.most[check.on as usize];
             *rating = rating.min(most);
         }
-        (turns_as_fast(gear, motor, duty)? && bears_the_stops(gear, duty)).then_some(ratings)
+        let goes_in = goes_into_joint(&duty.fit, gear, motor);
+        (turns_as_fast(gear, motor, duty)? && bears_the_stops(gear, duty) && goes_in).then_some(ratings)
     }
 
-    /// Whether a drive with these ratings holds every torque and load of a demand, and its motor does not overheat.
+    /// Whether a drive with these ratings holds every torque and load of a demand and fits into its room, and its motor does
+    /// not overheat.
     pub(super) fn hold(&self, demand: &Demand) -> bool {
         // no branch on the way: nearly every box asks this of many drives
         let torques = self.most.iter().zip(&demand.torques);
         torques.fold(true, |held, (most, asked)| held & (asked <= most))
             && self.bearing.hold(&demand.bearing)
             && self.heat.holds(&demand.heat)
+            && self.widths.iter().zip(&demand.room).all(|(width, room)| width <= room)
     }
 
     /// Whether a drive with these ratings holds every demand that a drive with the other ratings holds.
@@ -81,16 +91,18 @@ impl Ratings {
         self.most.iter().zip(&other.most).all(|(a, b)| a >= b)
             && self.bearing.cover(&other.bearing)
             && self.heat.covers(&other.heat)
+            && self.widths.iter().zip(&other.widths).all(|(a, b)| a <= b)
     }
 
     /// Ratings under which all holds that holds under one of the two: the larger rating for each quantity, and the smaller
-    /// of each number of heat, for heat grows with each of its numbers and with every torque (see
+    /// of each number of heat and width, for heat grows with each of its numbers and with every torque (see
     /// [`AskedMotion::grows`](super::question::AskedMotion::grows)).
     pub(super) fn max(&self, other: &Self) -> Self {
         Self {
             most: std::array::from_fn(|i| self.most[i].max(other.most[i])),
             bearing: self.bearing.max(&other.bearing),
             heat: self.heat.min(&other.heat),
+            widths: std::array::from_fn(|i| self.widths[i].min(other.widths[i])),
         }
     }
 
@@ -171,7 +183,7 @@ fn rated_life_h(series: &str) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::question::{AskedDrive, AskedJoint};
+    use super::super::question::{AskedDrive, AskedFit, AskedJoint};
     use super::super::question::{AskedMotion, AskedPhase, AskedPhaseKind, LinearTorque};
     use super::*;
     use crate::arm::bearing::BearingSource;
@@ -189,6 +201,7 @@ mod tests {
             max_speed_rad_s: None,
             has_brake: false,
             duty: Vec::new(),
+            fit: AskedFit::default(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! What all designs of a question have in common, and the parts that each piece of it may be.
 
 use super::bearing_loads::{PosedBearing, bearings};
+use super::carriers::{carriers, is_tube};
 use super::drives::{DriveOptions, Ties};
 use super::duty::Duty;
 use super::layout::{Coordinate, Layout, coordinates};
@@ -25,6 +26,8 @@ pub(super) struct Skeleton {
     pub bearings: Vec<Vec<Option<PosedBearing>>>,
     /// Where the link attaches to each joint.
     pub levers: Vec<Lever>,
+    /// Index of the first tube that each joint carries.
+    pub first_tubes: Vec<Option<usize>>,
     /// The different media around the arm in the cases: air, or water.
     pub waters: Vec<Option<Water>>,
     pub coordinates: Vec<Coordinate>,
@@ -66,6 +69,7 @@ impl Skeleton {
             poses: Vec::new(),
             bearings: Vec::new(),
             levers: levers(question),
+            first_tubes: first_tubes(question),
             waters,
             coordinates: Vec::new(),
             spring_stiffnesses: Vec::new(),
@@ -121,16 +125,25 @@ impl Skeleton {
     }
 }
 
-/// Every piece with the joint that is next to it inboard, if it is a joint.
-pub(super) fn carriers<'q>(
-    question: &'q Question,
-) -> impl Iterator<Item = (Option<&'q AskedJoint>, &'q AskedPiece)> {
-    let joint = |piece: &'q AskedPiece| match piece {
-        AskedPiece::Joint(joint) => Some(joint),
-        _ => None,
-    };
-    let carriers = std::iter::once(None).chain(question.pieces.iter().map(joint));
-    carriers.zip(&question.pieces)
+/// The first tube between each joint and the next, base to tip, by its number among what has a weight along its length.
+fn first_tubes(question: &Question) -> Vec<Option<usize>> {
+    let mut first: Vec<Option<usize>> = Vec::new();
+    let mut tubes = 0;
+    for (carrier, piece) in carriers(question) {
+        let has_line = match piece {
+            AskedPiece::Joint(_) => {
+                first.push(None);
+                false
+            }
+            AskedPiece::Choice(_) => true,
+            AskedPiece::Link(link) => super::layout::has_line(&question.link_piece(link.clone())),
+        };
+        if let (true, Some(_), Some(last)) = (is_tube(piece), carrier.of_first_tube, first.last_mut()) {
+            *last = Some(tubes);
+        }
+        tubes += usize::from(has_line);
+    }
+    first
 }
 
 /// Where the link attaches to every joint, base to tip.
@@ -148,7 +161,7 @@ fn levers(question: &Question) -> Vec<Lever> {
             AskedPiece::Link(link) => super::layout::has_line(&question.link_piece(link.clone())),
         };
         let is_stated = |joint: &AskedJoint| joint.bearing.stated().is_some_and(|b| b.offset_m.is_some());
-        if is_tube && carrier.is_some_and(|joint| !is_stated(joint)) {
+        if is_tube && carrier.next.is_some_and(|joint| !is_stated(joint)) {
             levers.pop();
             levers.push(Lever::HalfOf(tubes));
         }

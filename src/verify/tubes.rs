@@ -1,7 +1,9 @@
 //! The numbers of a tube that mass, torques, deflection, stress and modes depend on, and their ranges over a set of tubes.
 
+use super::carriers::Carrier;
+use super::fit::{ANY_WIDTH, Widths, room};
 use super::layout::has_line;
-use super::question::{AskedJoint, AskedLink, AskedTube, Question};
+use super::question::{AskedLink, AskedTube, Question};
 use super::tree::Tree;
 use crate::arm::load::Water;
 use crate::arm::section::Section;
@@ -32,6 +34,8 @@ pub(super) struct TubeNumbers {
     pub round: f64,
     /// Half its width along the axis of the joint that carries it; zero if there is none \[m\].
     pub half_width_m: f64,
+    /// The room that it leaves to the parts of the joint whose first tube it is.
+    pub room: Widths,
     /// Weight and inertias in each of the study's surroundings.
     pub around: Vec<TubeAround>,
 }
@@ -74,7 +78,7 @@ impl TubeOptions {
     /// The tubes of a link whose tube is chosen.
     pub(super) fn of_choice(
         question: &Question,
-        carrier: Option<&AskedJoint>,
+        carrier: Carrier,
         choice: &AskedLink,
         level: usize,
         waters: &[Option<Water>],
@@ -89,7 +93,7 @@ impl TubeOptions {
     /// if the link has no weight along its length.
     pub(super) fn of_link(
         question: &Question,
-        carrier: Option<&AskedJoint>,
+        carrier: Carrier,
         link: &Link,
         waters: &[Option<Water>],
     ) -> Option<Self> {
@@ -221,7 +225,7 @@ impl TubeNumbers {
     /// Numbers of a tube that a link may have.
     pub(super) fn of_choice(
         question: &Question,
-        carrier: Option<&AskedJoint>,
+        carrier: Carrier,
         choice: &AskedLink,
         tube: &AskedTube,
         waters: &[Option<Water>],
@@ -236,7 +240,7 @@ impl TubeNumbers {
     /// Numbers of a tube whose strength is unknown.
     fn new(
         question: &Question,
-        carrier: Option<&AskedJoint>,
+        carrier: Carrier,
         piece: &LinkPiece,
         mass_kg: f64,
         waters: &[Option<Water>],
@@ -246,7 +250,11 @@ impl TubeNumbers {
             stiffnesses: stiffnesses(piece, question.links),
             stresses: [0.0; STRESSES],
             round: 0.0,
-            half_width_m: carrier.map_or(0.0, |joint| half_width_m(piece, &joint.axis)),
+            half_width_m: carrier.next.map_or(0.0, |joint| half_width_m(piece, &joint.axis)),
+            room: match (carrier.of_first_tube, piece.beam) {
+                (Some(joint), Some(beam)) => room(joint, &piece.vector_m, &beam.section),
+                _ => ANY_WIDTH,
+            },
             around: waters.iter().map(|water| around(question, piece, *water)).collect(),
         }
     }
@@ -262,6 +270,7 @@ impl TubeNumbers {
             stresses: std::array::from_fn(|i| combine(self.stresses[i], other.stresses[i])),
             round: combine(self.round, other.round),
             half_width_m: combine(self.half_width_m, other.half_width_m),
+            room: std::array::from_fn(|i| combine(self.room[i], other.room[i])),
             around: self.around.iter().zip(&other.around).map(around).collect(),
         }
     }

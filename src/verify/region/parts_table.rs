@@ -187,11 +187,12 @@ fn numbers(tube: &TubeNumbers) -> Vec<f64> {
     numbers.extend(tube.stiffnesses.iter().map(|k| 1.0 / k));
     numbers.extend(tube.stresses);
     numbers.extend([tube.round, tube.half_width_m]);
+    numbers.extend(tube.room);
     numbers
 }
 
 fn tube(numbers: &[f64]) -> TubeNumbers {
-    let waters = (numbers.len() - 3 - 2 * STIFFNESSES - STRESSES) / (1 + DENSITIES);
+    let waters = (numbers.len() - 5 - 2 * STIFFNESSES - STRESSES) / (1 + DENSITIES);
     let stiffness = |k: f64| if k > 0.0 { k } else { f64::INFINITY };
     let around = |water: usize| TubeAround {
         weight_n_per_m: numbers[place::weight(water)],
@@ -204,6 +205,7 @@ fn tube(numbers: &[f64]) -> TubeNumbers {
         stresses: std::array::from_fn(|i| rest[i]),
         round: rest[STRESSES],
         half_width_m: rest[STRESSES + 1],
+        room: [rest[STRESSES + 2], rest[STRESSES + 3]],
         around: (0..waters).map(around).collect(),
     }
 }

@@ -1,0 +1,62 @@
+//! The room that links leave to the parts of inner joints, eight designs at once.
+
+use crate::mechanics::lanes::{Eight, LANES, Lanes};
+use crate::space::fit::RoomAtJoint;
+use crate::space::problem::{ArmProblem, Partial};
+use crate::space::slot::Slot;
+
+/// The room at an inner joint whose drive is found by first fit.
+pub(crate) struct RowRoom {
+    /// Inner slot of the joint.
+    pub k: usize,
+    of: RoomOf,
+}
+
+/// The link that leaves the room.
+enum RoomOf {
+    /// The link is outboard of the row, or given; the slot of the joint.
+    Slot(usize),
+    /// The link is that of the row: the room for gear and motor in each lane of each chunk \[m\].
+    Chunk(Vec<[Eight; 2]>),
+}
+
+impl RowRoom {
+    /// The rooms at the inner joints of a row whose innermost level is in slot `first`.
+    pub(crate) fn all(problem: &ArmProblem, first: usize) -> Vec<Self> {
+        let slots = problem.slots();
+        let first_fit = |slot: usize| matches!(&slots[slot], Slot::Sized(sized) if !sized.all_fits);
+        let rooms = problem.rooms().iter().enumerate().skip(first).filter(|(slot, _)| first_fit(*slot));
+        let room = |(slot, room): (usize, &Option<RoomAtJoint>)| {
+            let room = room.as_ref()?;
+            let of = if room.link_slot == first { RoomOf::Chunk(chunks(room)) } else { RoomOf::Slot(slot) };
+            Some(Self { k: slot - first, of })
+        };
+        rooms.filter_map(room).collect()
+    }
+
+    /// The room for gear and motor \[m\] in eight designs of a chunk, beyond the arm `from`.
+    #[inline(always)]
+    pub(crate) fn room<V: Lanes>(
+        &self,
+        problem: &ArmProblem,
+        (from, chunk): (&Partial, usize),
+    ) -> Option<[V; 2]> {
+        match &self.of {
+            RoomOf::Chunk(chunks) => Some([V::load(&chunks[chunk][0]), V::load(&chunks[chunk][1])]),
+            RoomOf::Slot(slot) => {
+                let room = problem.rooms()[*slot].as_ref()?.of(&from.options);
+                Some([V::splat(room.gear_m), V::splat(room.motor_m)])
+            }
+        }
+    }
+}
+
+/// The rooms by the option of a link, eight in a chunk.
+fn chunks(room: &RoomAtJoint) -> Vec<[Eight; 2]> {
+    let of = |option: usize| room.rooms[option.min(room.rooms.len() - 1)];
+    let eight = |chunk: usize| {
+        let rooms: [_; LANES] = std::array::from_fn(|lane| of(LANES * chunk + lane));
+        [rooms.map(|room| room.gear_m), rooms.map(|room| room.motor_m)]
+    };
+    (0..room.rooms.len().div_ceil(LANES)).map(eight).collect()
+}

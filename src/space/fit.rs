@@ -1,0 +1,136 @@
+//! The room that links leave to the parts of the joints that carry them.
+//!
+//! A joint carries the first tube between it and the next joint outboard. With rigid offsets alone it carries no link, and
+//! what a study asks of the link is not checked there.
+
+use super::design_space::{SpaceJoint, SpacePiece};
+use crate::arm::section::Section;
+use crate::arm::{Link, LinkBody};
+use crate::mechanics::beam::section_frame;
+use crate::sizing::fit::{FitRequirement, LinkRoom};
+use nalgebra::{Unit, Vector3};
+
+/// Cosine between the axis of a joint and its link from which on the joint rolls the link; as for the frames of sections.
+const ROLLS: f64 = 0.99;
+
+/// The room at one joint.
+pub(crate) struct RoomAtJoint {
+    /// Slot of the link.
+    pub link_slot: usize,
+    /// Room by the option of the link; a single one if the study gives the link.
+    pub rooms: Vec<LinkRoom>,
+}
+
+impl RoomAtJoint {
+    /// The room at the joint in a place of the chain; `None` if nothing is asked of its link, or it carries none.
+    /// `piece_slots` are the slots of the chain's pieces.
+    pub(crate) fn new(pieces: &[SpacePiece], place: usize, piece_slots: &[usize]) -> Option<Self> {
+        let SpacePiece::Joint(joint) = &pieces[place] else { return None };
+        let link = carried_link(pieces, place).filter(|_| joint.fit.asks_of_link())?;
+        let room =
+            |vector_m: &Vector3<f64>, section: &Section| room(&joint.fit, &joint.axis, vector_m, section);
+        let rooms = match &pieces[link] {
+            SpacePiece::Choice(choice) => {
+                choice.options.iter().map(|option| room(&choice.vector_m, &option.section)).collect()
+            }
+            SpacePiece::Link(Link { vector_m, body: LinkBody::Tube { section, .. }, .. }) => {
+                vec![room(vector_m, section)]
+            }
+            _ => return None,
+        };
+        Some(Self { link_slot: piece_slots[link], rooms })
+    }
+
+    /// The room with the options of an arm.
+    pub(crate) fn of(&self, options: &[u32]) -> LinkRoom {
+        self.rooms[options[self.link_slot] as usize]
+    }
+}
+
+/// Place of the link that the joint in a place of the chain carries; `None` if there is none before the next joint.
+pub(crate) fn carried_link(pieces: &[SpacePiece], place: usize) -> Option<usize> {
+    let outboard = pieces.iter().enumerate().skip(place + 1);
+    let mut before_next_joint = outboard.take_while(|(_, piece)| !matches!(piece, SpacePiece::Joint(_)));
+    let is_tube = |piece: &SpacePiece| match piece {
+        SpacePiece::Choice(_) => true,
+        SpacePiece::Link(link) => matches!(link.body, LinkBody::Tube { .. }),
+        SpacePiece::Joint(_) => false,
+    };
+    before_next_joint.find(|(_, piece)| is_tube(piece)).map(|(link, _)| link)
+}
+
+/// Names of the joints of which a study asks something that depends on a link, and which carry none.
+pub(crate) fn joints_without_link(pieces: &[SpacePiece]) -> Vec<&str> {
+    let asks = |joint: &SpaceJoint| joint.drive.is_sized() && joint.fit.asks_of_link();
+    let without = pieces.iter().enumerate().filter_map(|(place, piece)| match piece {
+        SpacePiece::Joint(joint) if asks(joint) && carried_link(pieces, place).is_none() => {
+            Some(joint.name.as_str())
+        }
+        _ => None,
+    });
+    without.collect()
+}
+
+fn room(
+    fit: &FitRequirement,
+    axis: &Unit<Vector3<f64>>,
+    vector_m: &Vector3<f64>,
+    section: &Section,
+) -> LinkRoom {
+    let (outer_m, wall_m) = (section.outer_m(), section.wall_m());
+    let hollow_m = outer_m.0.min(outer_m.1) - 2.0 * wall_m;
+    fit.room(width_across_m(axis, vector_m, section), hollow_m)
+}
+
+/// Width of a link across the axis of the joint that carries it \[m\]: of a joint that turns the link, its extent in the plane in
+/// which it turns; of a joint that rolls it, the smaller of its sides.
+fn width_across_m(axis: &Unit<Vector3<f64>>, vector_m: &Vector3<f64>, section: &Section) -> f64 {
+    let along = section_frame(vector_m).tr_mul(axis);
+    let (width_m, height_m) = section.outer_m();
+    if along.x.abs() > ROLLS {
+        return width_m.min(height_m);
+    }
+    // exact for a box that lies along the axis with one of its sides, and for a round tube
+    (width_m * along.z).hypot(height_m * along.y) / along.y.hypot(along.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn box_of(width_m: f64, height_m: f64) -> Section {
+        Section::RectangularTube { width_m, height_m, wall_m: 0.003 }
+    }
+
+    fn width_mm(axis: [f64; 3], section: Section) -> f64 {
+        let width_m =
+            width_across_m(&Unit::new_normalize(Vector3::from(axis)), &Vector3::new(0.5, 0.0, 0.0), &section);
+        (width_m * 1e9).round() / 1e6
+    }
+
+    #[test]
+    fn a_gear_is_as_wide_as_the_side_of_the_link_in_the_plane_in_which_it_turns() {
+        let section = || box_of(0.08, 0.14);
+        assert_eq!(
+            width_mm([0.0, 1.0, 0.0], section()),
+            140.0,
+            "a pitch joint turns its disc beside the height"
+        );
+        assert_eq!(width_mm([0.0, 0.0, 1.0], section()), 80.0, "a yaw joint beside the width");
+        assert_eq!(width_mm([1.0, 0.0, 0.0], section()), 80.0, "a roll joint within the smaller of both");
+        let round = Section::RoundTube { diameter_m: 0.1, wall_m: 0.003 };
+        for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.3, 0.4, -0.5]] {
+            assert_eq!(width_mm(axis, round), 100.0);
+        }
+    }
+
+    #[test]
+    fn a_bar_has_no_hollow() {
+        let fit =
+            FitRequirement { motor: crate::sizing::fit::MotorPlace::InLink, ..FitRequirement::default() };
+        let hollow_m =
+            |section: Section| room(&fit, &Vector3::y_axis(), &Vector3::new(0.5, 0.0, 0.0), &section).motor_m;
+        assert_eq!(hollow_m(Section::RoundBar { diameter_m: 0.05 }), 0.0);
+        assert!((hollow_m(box_of(0.08, 0.14)) - 0.074).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,135 @@
+//! What a study asks of the sizes of parts, and what it says of that beside its results.
+
+use crate::catalog::Catalogs;
+use crate::input::json::{Node, Object};
+use crate::report::number::significant;
+use crate::sizing::fit::{FitRequirement, MotorPlace};
+use crate::sizing::select::DriveFilter;
+use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
+use crate::space::fit::joints_without_link;
+
+/// Reads the key `fit` of a study or of a joint. What a joint does not say is as in `usual`; `null` asks nothing.
+pub(super) fn read_fit(object: &Object, usual: FitRequirement) -> Option<FitRequirement> {
+    object.or("fit", usual, |node| match node.is_null() {
+        true => Some(FitRequirement::default()),
+        false => read_requirement(node, usual),
+    })
+}
+
+fn read_requirement(node: &Node, usual: FitRequirement) -> Option<FitRequirement> {
+    let object = node.object(&["gear_to_link_max", "motor", "cable_bore_min_mm", "drive_length_max_mm"])?;
+    let number =
+        |key: &str, usual: Option<f64>, per_unit: f64| {
+            object.or(key, usual, |n| {
+                if n.is_null() { Some(None) } else { n.positive().map(|x| Some(x / per_unit)) }
+            })
+        };
+    let gear_to_link_max = number("gear_to_link_max", usual.gear_to_link_max, 1.0);
+    let cable_bore_min_m = number("cable_bore_min_mm", usual.cable_bore_min_m, 1e3);
+    let drive_length_max_m = number("drive_length_max_mm", usual.drive_length_max_m, 1e3);
+    let motor = object.or("motor", usual.motor, read_motor_place);
+    Some(FitRequirement {
+        gear_to_link_max: gear_to_link_max?,
+        motor: motor?,
+        cable_bore_min_m: cable_bore_min_m?,
+        drive_length_max_m: drive_length_max_m?,
+    })
+}
+
+fn read_motor_place(node: &Node) -> Option<MotorPlace> {
+    match node.string()? {
+        "behind" => Some(MotorPlace::Behind),
+        "in_link" => Some(MotorPlace::InLink),
+        "beside" => Some(MotorPlace::Beside),
+        other => node.fault(
+            format!("\"{other}\" is not known"),
+            "choose one of: behind (the gear, on its axis), in_link (in the hollow of the link), beside (not checked)",
+        ),
+    }
+}
+
+/// What is asked of the sizes of parts, where it cannot be asked, and of how many parts the catalogs lack a size, in
+/// sentences; none if nothing is asked.
+pub(super) fn fit_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
+    let asking: Vec<&SpaceJoint> = joints_that_ask(space).collect();
+    if asking.is_empty() {
+        return Vec::new();
+    }
+    let asked = format!("Fit is checked: {}.", phrases(&asking).join("; "));
+    let without = joints_without_link(&space.pieces);
+    let no_link = (!without.is_empty()).then(|| {
+        format!(
+            "Gear and motor are not compared with a link in {}: there is none before the next joint.",
+            without.join(", ")
+        )
+    });
+    [Some(asked), no_link, unknown_sizes(&asking, catalogs)].into_iter().flatten().collect()
+}
+
+/// The sized joints of which a study asks that their parts fit.
+pub(super) fn joints_that_ask(space: &DesignSpace) -> impl Iterator<Item = &SpaceJoint> {
+    space.pieces.iter().filter_map(|piece| match piece {
+        SpacePiece::Joint(joint) if joint.drive.is_sized() && joint.fit.is_asked() => Some(joint),
+        _ => None,
+    })
+}
+
+/// What is asked, each time with the names of the joints of which it is asked.
+fn phrases(asking: &[&SpaceJoint]) -> Vec<String> {
+    let mm = |m: f64| significant(m * 1e3, 4);
+    let mut phrases: Vec<(String, Vec<&str>)> = Vec::new();
+    for joint in asking {
+        let fit = &joint.fit;
+        let behind = if fit.motor == MotorPlace::Behind { " and of the motor behind it" } else { "" };
+        let of_joint = [
+            fit.gear_to_link_max
+                .map(|factor| format!("gear no wider than {factor} times the link that the joint carries")),
+            (fit.motor == MotorPlace::InLink).then(|| "motor in the hollow of that link".to_string()),
+            fit.cable_bore_min_m.map(|m| format!("bore of the gear{behind} at least {} mm", mm(m))),
+            fit.drive_length_max_m.map(|m| format!("length of the gear{behind} at most {} mm", mm(m))),
+        ];
+        for phrase in of_joint.into_iter().flatten() {
+            match phrases.iter_mut().find(|(other, _)| *other == phrase) {
+                Some((_, names)) => names.push(&joint.name),
+                None => phrases.push((phrase, vec![&joint.name])),
+            }
+        }
+    }
+    phrases.into_iter().map(|(phrase, names)| format!("{phrase} ({})", names.join(", "))).collect()
+}
+
+/// Of how many parts that the joints may have the catalogs lack a size that is asked about; `None` if of none.
+fn unknown_sizes(asking: &[&SpaceJoint], catalogs: &Catalogs) -> Option<String> {
+    let is_blank = |asked: bool, size_m: Option<f64>| asked && size_m.is_none();
+    let by_any = |lacks: &dyn Fn(&FitRequirement, &DriveFilter) -> bool| {
+        asking.iter().any(|joint| match &joint.drive {
+            DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter) => lacks(&joint.fit, filter),
+            DriveChoice::Given { .. } => false,
+        })
+    };
+    let gears = catalogs.gears.iter().filter(|gear| {
+        let size = &gear.envelope;
+        by_any(&|fit, filter| {
+            filter.allows_gear(gear)
+                && (is_blank(fit.gear_to_link_max.is_some(), size.outer_diameter_m)
+                    || is_blank(fit.cable_bore_min_m.is_some(), size.hollow_bore_m)
+                    || is_blank(fit.drive_length_max_m.is_some(), size.length_m))
+        })
+    });
+    let motors = catalogs.motors.iter().filter(|motor| {
+        let size = &motor.envelope;
+        by_any(&|fit, filter| {
+            let behind = fit.motor == MotorPlace::Behind;
+            filter.allows_motor(motor)
+                && (is_blank(fit.motor == MotorPlace::InLink, size.outer_diameter_m)
+                    || is_blank(behind && fit.cable_bore_min_m.is_some(), size.hollow_bore_m)
+                    || is_blank(behind && fit.drive_length_max_m.is_some(), size.length_m))
+        })
+    });
+    let (gears, motors) = (gears.count(), motors.count());
+    let counts = format!(
+        "A size that the catalogs do not give is not checked: that is so of {gears} gears and {motors} motors that these joints \
+         may have."
+    );
+    (gears + motors > 0).then_some(counts)
+}

@@ -1,0 +1,78 @@
+//! Whether the parts of a joint fit where they go (docs/study-format.md, "fit").
+//!
+//! | asked | compared |
+//! |---|---|
+//! | gear beside the link | outer diameter of the gear, a factor times the width of the link |
+//! | motor in the link | outer diameter of the motor, the clear width of the hollow |
+//! | cables | the bores of what is on the axis, the smallest one asked for |
+//! | room at the joint | the length of what is on the axis, the largest one asked for |
+//!
+//! The link of a joint is the first tube between it and the next joint. A size that the catalog lacks is not compared.
+//!
+//! Nothing of `sizing` or `space` is used: a wrong size there must not be repeated here.
+
+use super::question::{AskedFit, AskedJoint};
+use crate::arm::section::Section;
+use crate::catalog::gear::Gear;
+use crate::catalog::motor::Motor;
+use crate::mechanics::beam::section_frame;
+use nalgebra::Vector3;
+
+/// Part of a size by which two that are to fit may differ: they are products of decimals.
+const SAME_SIZE: f64 = 1e-9;
+
+/// The widest gear and the widest motor that a link leaves room for, or how wide those of a drive are \[m\].
+pub(super) type Widths = [f64; 2];
+
+/// No link, or nothing asked of it.
+pub(super) const ANY_WIDTH: Widths = [f64::INFINITY; 2];
+
+/// The room that a tube along a vector leaves to the parts of the joint that carries it.
+pub(super) fn room(joint: &AskedJoint, vector_m: &Vector3<f64>, section: &Section) -> Widths {
+    let AskedFit { gear_to_link_max, motor_in_link, .. } = joint.fit;
+    let [mut gear_m, mut motor_m] = ANY_WIDTH;
+    if let Some(factor) = gear_to_link_max {
+        gear_m = factor * width_m(&joint.axis, vector_m, section) * (1.0 + SAME_SIZE);
+    }
+    if motor_in_link {
+        let (width_m, height_m) = section.outer_m();
+        motor_m = (width_m.min(height_m) - 2.0 * section.wall_m()) * (1.0 + SAME_SIZE);
+    }
+    [gear_m, motor_m]
+}
+
+/// Width of a tube in the plane in which a joint turns it. A joint whose axis is along the tube, within the angle at which
+/// section frames change, sees its smaller side.
+fn width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section) -> f64 {
+    let frame = section_frame(vector_m);
+    let (width_m, height_m) = section.outer_m();
+    let link = frame.column(0).into_owned();
+    if link.dot(axis).abs() > 0.99 {
+        return width_m.min(height_m);
+    }
+    let across = link.cross(axis).normalize();
+    let [on_y, on_z] = [1, 2].map(|side| frame.column(side).dot(&across));
+    ((width_m * on_y).powi(2) + (height_m * on_z).powi(2)).sqrt()
+}
+
+/// How wide the parts of a drive are, where the joint asks; 0 if nobody knows.
+pub(super) fn widths(fit: &AskedFit, gear: &Gear, motor: &Motor) -> Widths {
+    let of = |asked: bool, width_m: Option<f64>| if asked { width_m.unwrap_or(0.0) } else { 0.0 };
+    [
+        of(fit.gear_to_link_max.is_some(), gear.envelope.outer_diameter_m),
+        of(fit.motor_in_link, motor.envelope.outer_diameter_m),
+    ]
+}
+
+/// Whether a drive has the bores and the length that its joint asks for, whatever the link.
+pub(super) fn goes_into_joint(fit: &AskedFit, gear: &Gear, motor: &Motor) -> bool {
+    let mut on_axis = vec![gear.envelope];
+    if fit.motor_on_axis {
+        on_axis.push(motor.envelope);
+    }
+    let least_m = fit.cable_bore_min_m.unwrap_or(0.0) * (1.0 - SAME_SIZE);
+    let most_m = fit.drive_length_max_m.unwrap_or(f64::INFINITY) * (1.0 + SAME_SIZE);
+    let bores_hold = on_axis.iter().filter_map(|part| part.hollow_bore_m).all(|bore_m| bore_m >= least_m);
+    let length_m: Option<f64> = on_axis.iter().map(|part| part.length_m).sum();
+    bores_hold && length_m.is_none_or(|length_m| length_m <= most_m)
+}
