@@ -10,8 +10,8 @@
 use super::alternatives::alternatives;
 use super::bounds::MassBounds;
 use crate::arm::load::LoadCase;
-use crate::arm::structure::{Piece, Structure};
-use crate::arm::{Arm, Element};
+use crate::arm::structure::Piece;
+use crate::arm::{Arm, Element, Joint};
 use crate::catalog::Catalogs;
 use crate::exact::domain_reduction::DomainReduction;
 use crate::mechanics::chain::Chain;
@@ -145,18 +145,21 @@ fn in_place(arm: &Arm, piece: usize, cases: &[LoadCase]) -> Gain {
     let mass_kg = arm.chain[piece].mass_kg();
     let with = |step: f64| Objectives {
         mass_kg: arm.mass_kg() + step * mass_kg,
-        ..objectives_with(arm, cases, |structure| grow(structure, piece, step, mass_kg))
+        ..objectives_with(arm, cases, |structure| grow(&mut structure.pieces[piece], &arm.chain[piece], step))
     };
     gain(&with(-STEP), &with(STEP))
 }
 
 /// Increases mass and stiffness of a piece by the relative step; what effects add stays as it is.
-fn grow(structure: &mut Structure, piece: usize, step: f64, mass_kg: f64) {
+fn grow(piece: &mut Piece, element: &Element, step: f64) {
     let factor = 1.0 + step;
-    match &mut structure.pieces[piece] {
+    match piece {
         Piece::Joint(joint) => {
-            joint.mass_kg += step * mass_kg;
+            joint.mass_kg += step * element.mass_kg();
             joint.law.curve = joint.law.curve.stiffened(factor);
+            if let Element::Joint(Joint { bearing: Some(bearing), .. }) = element {
+                joint.tilt_rad_per_nm += bearing.tilt_rad_per_nm() * (1.0 / factor - 1.0);
+            }
         }
         Piece::Link(link) => match &mut link.beam {
             Some(beam) => {
@@ -164,7 +167,7 @@ fn grow(structure: &mut Structure, piece: usize, step: f64, mass_kg: f64) {
                 beam.material.shear_modulus_pa *= factor;
                 beam.material.density_kg_m3 *= factor;
             }
-            None => link.point_mass_kg += step * mass_kg,
+            None => link.point_mass_kg += step * element.mass_kg(),
         },
     }
 }
