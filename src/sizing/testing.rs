@@ -207,7 +207,7 @@ fn any_fit() -> impl Strategy<Value = FitRequirement> {
 }
 
 /// The room that a link leaves under a requirement; width and clear width \[m\].
-pub fn any_link_m() -> impl Strategy<Value = [f64; 2]> {
+pub(crate) fn any_link_m() -> impl Strategy<Value = [f64; 2]> {
     (0.05..0.2f64, 0.0..1.0f64).prop_map(|(width_m, clear)| [width_m, clear * width_m])
 }
 

@@ -10,6 +10,7 @@ pub(crate) mod diagnose;
 pub(crate) mod effects;
 mod environments;
 mod fit;
+mod harness;
 pub(crate) mod motion;
 pub(crate) mod named;
 pub(crate) mod near;

@@ -1,6 +1,7 @@
 //! What the numbers of a study leave out, so that it can be said beside the numbers.
 
 use super::fit::joints_that_ask;
+use super::harness::has_harness;
 use crate::arm::bearing::BearingSource;
 use crate::arm::extras::ExtrasSource;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
@@ -31,14 +32,22 @@ pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
         .then(|| {
             "Motor heat not checked: the study turns it off (check_motor_heat in its motion).".to_string()
         });
-    let fits = match joints_that_ask(space).next() {
-        Some(_) => " and temperature",
-        None => ", temperature, and whether the parts fit into each other",
-    };
-    let always = format!(
-        "Left out of every number: the yield of the connections between links and joints, the cables along the links{fits}."
-    );
-    [rigid, bare, heat, Some(always)].into_iter().flatten().collect()
+    [rigid, bare, heat, Some(left_out_everywhere(space))].into_iter().flatten().collect()
+}
+
+/// What no number of a study has.
+fn left_out_everywhere(space: &DesignSpace) -> String {
+    let fits = joints_that_ask(space).next().is_some();
+    let connections = "the yield of the connections between links and joints";
+    let list = [
+        Some(connections),
+        (!has_harness(space)).then_some("the cables along the links"),
+        Some("temperature"),
+        (!fits).then_some("whether the parts fit into each other"),
+    ];
+    let list: Vec<&str> = list.into_iter().flatten().collect();
+    let (last, first) = list.split_last().unwrap_or((&connections, &[]));
+    format!("Left out of every number: {}, and {last}.", first.join(", "))
 }
 
 fn joints(space: &DesignSpace) -> impl Iterator<Item = &SpaceJoint> {

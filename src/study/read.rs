@@ -8,6 +8,7 @@ use super::definition::Study;
 use super::effects::check_effects;
 use super::environments::{Environment, read_environments};
 use super::fit::{fit_remarks, read_fit};
+use super::harness::{harness_effects, harness_remark};
 use super::motion::{read_duty, read_motion};
 use super::omissions::omissions;
 use super::range::{check_poses, read_range};
@@ -30,7 +31,7 @@ use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{Case, DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 use nalgebra::Vector3;
 
-const KEYS: [&str; 18] = [
+const KEYS: [&str; 19] = [
     "name",
     "question",
     "gravity_m_s2",
@@ -44,6 +45,7 @@ const KEYS: [&str; 18] = [
     "drives",
     "extras",
     "fit",
+    "harness_kg_per_m",
     "constraints",
     "models",
     "effects",
@@ -106,13 +108,16 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let motion = root.or("motion", MotionRequirement::default(), read_motion);
     let (links, joint_model) = root.or("models", Default::default(), read_models)?;
     let effects = root.or("effects", Vec::new(), read_effects);
+    let harness_kg_per_m = root.or("harness_kg_per_m", 0.0, Node::non_negative);
     let Cases { cases, judged, sizing } = cases?;
     let mut motion = motion?;
     motion.gravity_m_s2 = gravity?;
+    let (chain, mut effects, harness_kg_per_m) = (chain?, effects?, harness_kg_per_m?);
+    effects.extend(harness_effects(&chain, harness_kg_per_m, &effects));
     let space = DesignSpace {
         name: name.clone()?,
         gravity_m_s2: gravity?,
-        pieces: chain?,
+        pieces: chain,
         cases,
         judged_cases: judged,
         sizing_cases: sizing,
@@ -120,11 +125,12 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         links,
         joints: joint_model,
         constraints: constraints?,
-        effects: effects?,
+        effects,
     };
     check_effects(&space, &root)?;
     in_range?;
     let Aside { not_checked, mut remarks } = aside;
+    remarks.extend(harness_remark(&space, harness_kg_per_m));
     remarks.extend(fit_remarks(&space, catalogs));
     remarks.extend(omissions(&space));
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })

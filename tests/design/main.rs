@@ -14,6 +14,7 @@ mod exact_front;
 mod exact_support;
 mod exact_threads;
 mod exact_ties;
+mod fits;
 mod frozen_designs;
 mod mechanics_reference;
 mod motor_heat;

@@ -371,7 +371,7 @@ impl View {
 }
 
 /// Checks in the order of the table's columns.
-const CHECKS: [CheckKind; 17] = [
+const CHECKS: [CheckKind; 22] = [
     CheckKind::GearPeak,
     CheckKind::GearMean,
     CheckKind::GearStop,
@@ -389,6 +389,11 @@ const CHECKS: [CheckKind; 17] = [
     CheckKind::MotorPeak,
     CheckKind::MotorRms,
     CheckKind::MotorSpeed,
+    CheckKind::GearWidth,
+    CheckKind::MotorWidth,
+    CheckKind::GearBore,
+    CheckKind::MotorBore,
+    CheckKind::DriveLength,
 ];
 
 /// A drive for its row: torques, parts and the margin of every check.

@@ -87,7 +87,7 @@ fn choices(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: &[C
         Piece::Joint { drive: DriveChoice::Given(entry), name, bearing, .. } => {
             vec![Chosen::Joint(given(name, entry, bearing))]
         }
-        Piece::Joint { name, axis, drive, bearing, extras_kg, .. } => {
+        Piece::Joint { name, axis, drive, bearing, extras_kg, fit, .. } => {
             let asked = demand(study, sizing, index, outboard);
             let joint = |drive: &Drive| {
                 let beside = bearing.beside(drive.bearing);
@@ -103,7 +103,8 @@ fn choices(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: &[C
                 })
             };
             let most = if matches!(drive, DriveChoice::FirstFit) { 1 } else { usize::MAX };
-            fits(study, bearing, &asked).take(most).map(joint).collect()
+            let holding = fits(study, bearing, &asked).filter(|drive| drive.sizes.fit(fit, axis, outboard));
+            holding.take(most).map(joint).collect()
         }
     }
 }

@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use super::bearing::{Bearing, Source};
 use super::catalog::{Catalog, Row};
 use super::demand::{Demand, Torques};
+use super::fit::Sizes;
 use super::study::Motion;
 
 /// A gear and a motor with every figure that a check needs.
@@ -17,6 +18,7 @@ pub struct Drive {
     pub windup: Value,
     /// Of a housed gear.
     pub bearing: Option<Bearing>,
+    pub sizes: Sizes,
     ratio: f64,
     efficiency: f64,
     inertia_kgm2: f64,
@@ -89,6 +91,7 @@ impl Drive {
                 "t2_nm": gear.number("t2_nm")?,
             }),
             bearing: (mass_column == "mass_housed_unit_kg").then(|| Bearing::of_gear(gear)),
+            sizes: Sizes::of(gear, motor),
             ratio: gear.number("ratio")?,
             efficiency: gear.number("efficiency_rated_2000rpm")?,
             inertia_kgm2: gear.number("inertia_input_kgm2")? + motor.number("rotor_inertia_kgm2")?,

@@ -24,6 +24,7 @@ pub mod catalog;
 pub mod demand;
 pub mod design;
 pub mod drive;
+pub mod fit;
 pub mod front;
 pub mod program;
 pub mod stress;

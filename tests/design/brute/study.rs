@@ -7,6 +7,7 @@ use super::arm::{Body, Link, LinkOption};
 use super::bearing::Source;
 use super::catalog::{Catalog, Row};
 use super::drive::{Drive, candidates};
+use super::fit;
 use crate::witness::LoadCase;
 
 /// A piece of the chain with what is open about it.
@@ -19,6 +20,8 @@ pub enum Piece {
         bearing: Source,
         /// Mass beyond gear, motor and bearing.
         extras_kg: f64,
+        /// What is asked of the sizes of the parts.
+        fit: Value,
     },
     Fixed(Box<Link>),
     Choice {
@@ -66,7 +69,7 @@ pub struct Study {
 impl Study {
     pub fn from_json(study: &Value, catalog: &Catalog) -> Self {
         let pieces: Vec<Piece> =
-            list(&study["chain"]).map(|piece| read_piece(piece, &study["extras"], catalog)).collect();
+            list(&study["chain"]).map(|piece| read_piece(piece, study, catalog)).collect();
         Self {
             gravity_m_s2: study["gravity_m_s2"].as_f64().unwrap_or(9.81),
             pieces,
@@ -141,7 +144,7 @@ fn vector(value: &Value) -> Vector3<f64> {
     Vector3::from_iterator(list(value).map(|x| x.as_f64().expect("a number")))
 }
 
-fn read_piece(piece: &Value, extras: &Value, catalog: &Catalog) -> Piece {
+fn read_piece(piece: &Value, study: &Value, catalog: &Catalog) -> Piece {
     let name = piece["name"].as_str().expect("a name").to_owned();
     if piece["type"] == "joint" {
         let drive = match piece["drive"].as_str() {
@@ -150,7 +153,7 @@ fn read_piece(piece: &Value, extras: &Value, catalog: &Catalog) -> Piece {
             _ => DriveChoice::Given(piece.clone()),
         };
         let max_speed_rad_s = piece["max_speed_rad_s"].as_f64();
-        let extras = if piece["extras"].is_null() { extras } else { &piece["extras"] };
+        let extras = if piece["extras"].is_null() { &study["extras"] } else { &piece["extras"] };
         return Piece::Joint {
             name,
             axis: vector(&piece["axis"]).normalize(),
@@ -158,6 +161,7 @@ fn read_piece(piece: &Value, extras: &Value, catalog: &Catalog) -> Piece {
             extras_kg: if piece["drive"].is_string() { extras_kg(extras) } else { 0.0 },
             drive,
             bearing: Source::read(piece, catalog),
+            fit: fit::asked(piece, &study["fit"]),
         };
     }
     let vector_m = vector(&piece["vector_m"]);

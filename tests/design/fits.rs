@@ -1,0 +1,282 @@
+//! Parts that must fit: gear beside its link, motor in the hollow, cables through the bores, room at the joint. The sweep,
+//! the exact search, the brute force and the verifier must have the same designs.
+
+use crate::brute::catalog::Catalog;
+use crate::brute::design::search;
+use crate::brute::study::Study as BruteStudy;
+use crate::brute_force::{ALUMINIUM, STEEL, assert_same, boxes, six_axes};
+use crate::dice::Dice;
+use crate::exact_front::random_study;
+use crate::exact_support::{agrees, read};
+use crate::witness_drives::{Row, Spoil, faults, front, spoiled, times};
+use armwright::catalog::Catalogs;
+use armwright::exact::Exact;
+use armwright::pareto::Objectives;
+use armwright::relax::Relaxation;
+use armwright::search::Sweep;
+use armwright::search::sweep::Candidate;
+use armwright::sizing::LinkRoom;
+use armwright::space::{ArmProblem, OutwardIn};
+use armwright::study::Study;
+use armwright::study::question::question;
+use armwright::verify::{Judge, Settings};
+use serde_json::{Value, json};
+use std::sync::atomic::AtomicBool;
+
+/// The catalogs with other sizes: most parts shrunk, so that some fit into these links, and some blank.
+fn other_sizes(seed: u64) -> Catalogs {
+    let mut catalogs = Catalogs::builtin();
+    let dice = &mut Dice(seed + 6_000);
+    let gears = catalogs.gears.iter_mut().map(|gear| &mut gear.envelope);
+    for size in gears.chain(catalogs.motors.iter_mut().map(|motor| &mut motor.envelope)) {
+        let by = dice.within(0.3, 0.9);
+        size.outer_diameter_m = size.outer_diameter_m.map(|m| m * by).filter(|_| dice.below(8) > 0);
+        size.length_m = size.length_m.map(|m| m * by).filter(|_| dice.below(8) > 0);
+        size.hollow_bore_m = Some(dice.within(0.0, 0.04)).filter(|_| dice.below(4) > 0);
+    }
+    catalogs
+}
+
+fn wishes(dice: &mut Dice) -> Value {
+    let mut fit = json!({"motor": dice.of(&["behind", "in_link", "in_link", "beside"])});
+    if dice.below(4) > 0 {
+        fit["gear_to_link_max"] = json!(dice.within(0.7, 1.6));
+    }
+    if dice.below(3) == 0 {
+        fit["cable_bore_min_mm"] = json!(dice.within(2.0, 12.0));
+    }
+    if dice.below(3) == 0 {
+        fit["drive_length_max_mm"] = json!(dice.within(50.0, 140.0));
+    }
+    fit
+}
+
+/// A random study that asks for room, with a joint of its own mind, a link that is given, or an offset before the link.
+fn study_of_fits(seed: u64) -> Value {
+    let mut study = random_study(seed);
+    let dice = &mut Dice(seed + 7_000);
+    study["fit"] = wishes(dice);
+    let chain = study["chain"].as_array_mut().expect("a chain");
+    for joint in chain.iter_mut().filter(|piece| piece["drive"].is_string()) {
+        match dice.below(4) {
+            0 => joint["fit"] = wishes(dice),
+            1 => joint["fit"] = dice.of(&[Value::Null, json!({"gear_to_link_max": null, "motor": "behind"})]),
+            _ => {}
+        }
+    }
+    let column = json!({"type": "link", "name": "shoulder", "vector_m": [0, 0, 0.3], "material": "Aluminium 6061-T6",
+        "section": {"shape": "round_tube", "diameter_m": dice.within(0.08, 0.2), "wall_m": 0.006}});
+    if dice.below(2) == 0 {
+        chain[1] = column;
+    }
+    if dice.below(3) == 0 {
+        let elbow = chain.iter().position(|piece| piece["name"] == "j3").expect("an elbow");
+        chain.insert(
+            elbow + 1,
+            json!({"type": "link", "name": "bracket", "vector_m": [0, 0.05, 0], "mass_kg": 0.3}),
+        );
+    }
+    study
+}
+
+/// Numbers of joints at which some design has another drive, or none, because of its link.
+fn decided_by_links(problem: &ArmProblem) -> usize {
+    let mut decided = 0;
+    let sizes = problem.level_sizes();
+    let total: u64 = sizes.iter().map(|n| u64::from(*n)).product();
+    for number in (0..total).step_by(1 + total as usize / 50) {
+        let options = armwright::space::design::options(sizes, u128::from(number)).expect("in range");
+        let _ = problem.walk(&options, |slot, outboard| {
+            let Some(sized) = problem.sized_joint(problem.piece_of_slot(slot)) else { return };
+            let demand = problem.demand_at(outboard, slot);
+            let anywhere = demand.with_room(LinkRoom::ANY);
+            decided += usize::from(sized.table.first_fit(&demand) != sized.table.first_fit(&anywhere));
+        });
+    }
+    decided
+}
+
+/// The relaxation bounds the mass of what is as good as some designs of a front; how many it was asked of.
+fn bounds_on_mass_hold(problem: &ArmProblem, front: &[Candidate], what: &str) -> usize {
+    let relaxation = Relaxation::new(problem);
+    let known = front.iter().step_by(1 + front.len() / 4);
+    let mut bounds = 0;
+    for Candidate { number, objectives, .. } in known {
+        let asked = Objectives { mass_kg: objectives.mass_kg * 1.1, ..*objectives };
+        let is_as_good = |o: &Objectives| {
+            o.tip_deflection_m <= asked.tip_deflection_m && o.lowest_mode_hz >= asked.lowest_mode_hz
+        };
+        let options = armwright::space::design::options(problem.level_sizes(), *number).expect("a design");
+        let Some(bound) = relaxation.mass_lower_bound(&options, &asked) else { continue };
+        let as_good = front.iter().map(|c| c.objectives).filter(is_as_good);
+        let lightest_kg = as_good.map(|o| o.mass_kg).fold(f64::INFINITY, f64::min);
+        assert!(
+            bound.mass_lower_bound_kg <= lightest_kg * (1.0 + 1e-9),
+            "{bound:?} {lightest_kg} kg: {what}"
+        );
+        bounds += 1;
+    }
+    bounds
+}
+
+#[test]
+fn the_exact_front_is_whole_where_parts_must_fit() {
+    let studies: u64 =
+        std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(32);
+    let stop = AtomicBool::new(false);
+    let (mut points, mut feasible, mut decided, mut bounds) = (0, 0, 0, 0);
+    for seed in 0..studies {
+        let (text, catalogs) = (study_of_fits(seed), other_sizes(seed));
+        let study = read(&text, &catalogs);
+        let problem = ArmProblem::new(&study.space, &catalogs);
+        let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
+        let exact = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
+        let what = format!("seed {seed}, {} designs: {text}", sweep.designs_total);
+        let listed = agrees(&problem, &exact.front, &sweep.front, &what);
+        if seed % 4 == 0 {
+            let by_regions = Exact::new(&study.space, &catalogs, &stop, None).by_regions_from(100.0).run(&[]);
+            agrees(&problem, &by_regions.front, &sweep.front, &what);
+        }
+        if study.space.effects.is_empty() {
+            bounds += bounds_on_mass_hold(&problem, &sweep.front, &what);
+        }
+        points += listed;
+        feasible += u64::from(listed > 0);
+        decided += usize::from(decided_by_links(&problem) > 0);
+    }
+    println!(
+        "{studies} studies, {feasible} feasible, {points} front designs; links decide in {decided}; {bounds} bounds"
+    );
+    assert!(feasible * 3 > studies, "only {feasible} of {studies} studies are feasible");
+    assert!(points as u64 > 6 * feasible, "fronts are too small to say much: {points} designs");
+    assert!(decided as u64 * 3 > studies, "links decide in {decided} of {studies} studies only");
+}
+
+/// A waist on a bracket, a shoulder and an elbow; the gears are about as wide as the tubes, and the motors about as wide as their
+/// hollows.
+fn tight(fit: Value, catalogs: &Catalogs) -> Study {
+    let tubes = |diameters_mm: Value| {
+        json!({"materials": ["Aluminium 6061-T6"],
+            "sections": [{"shape": "round_tube", "diameter_mm": diameters_mm, "wall_mm": [3, 5]}]})
+    };
+    let few = json!({"gear_series": ["CSG", "SHG"], "ratios": [100], "motor_models": ["ILM50x14", "ILM70x18", "ILM85x26"]});
+    read(
+        &json!({
+            "name": "tight", "fit": fit,
+            "chain": [
+                {"type": "joint", "name": "waist", "axis": [0, 0, 1], "drive": "first_fit", "drives": few},
+                {"type": "link", "name": "bracket", "vector_m": [0, 0, 0.1]},
+                {"type": "link", "name": "column", "vector_m": [0, 0, 0.2], "material": "Aluminium 6061-T6",
+                    "section": {"shape": "round_tube", "diameter_m": 0.115, "wall_m": 0.006}},
+                {"type": "joint", "name": "shoulder", "axis": [0, 1, 0], "drive": "all_fits", "drives": few},
+                {"type": "link", "name": "upper", "vector_m": [0.5, 0, 0], "choose": tubes(json!([76, 90, 120, 150]))},
+                {"type": "joint", "name": "elbow", "axis": [0, 1, 0], "drive": "first_fit", "drives": few},
+                {"type": "link", "name": "fore", "vector_m": [0.4, 0, 0], "choose": tubes(json!([60, 76, 90, 110]))}],
+            "payload": {"mass_kg": 2, "cg_m": [0.05, 0.03, 0]},
+            "poses": [{"pose_deg": [0, 0, 0]}, {"pose_deg": [0, -40, 90]}],
+            "motion": {"tip_speed_m_s": 0.5},
+        }),
+        catalogs,
+    )
+}
+
+const ALL_ASKED: &str =
+    r#"{"gear_to_link_max": 1.25, "motor": "in_link", "cable_bore_min_mm": 10, "drive_length_max_mm": 70}"#;
+const ON_AXIS: &str = r#"{"cable_bore_min_mm": 30, "drive_length_max_mm": 110}"#;
+
+fn asked(text: &str) -> Value {
+    serde_json::from_str(text).expect("JSON")
+}
+
+/// One size each, and a study in which it decides.
+const SIZES: [(&str, &str, Spoil); 6] = [
+    ("gear diameter", ALL_ASKED, |gear, _, by| times(&mut gear.envelope.outer_diameter_m, by)),
+    ("gear bore", ALL_ASKED, |gear, _, by| times(&mut gear.envelope.hollow_bore_m, by)),
+    ("gear length", ALL_ASKED, |gear, _, by| times(&mut gear.envelope.length_m, by)),
+    ("motor diameter", ALL_ASKED, |_, motor, by| times(&mut motor.envelope.outer_diameter_m, by)),
+    ("motor bore", ON_AXIS, |_, motor, by| times(&mut motor.envelope.hollow_bore_m, by)),
+    ("motor length", ON_AXIS, |_, motor, by| times(&mut motor.envelope.length_m, by)),
+];
+
+#[test]
+fn one_wrong_size_is_found_by_the_verifier_and_each_decides() {
+    let catalogs = Catalogs::builtin();
+    for (name, fit, spoil) in SIZES {
+        let study = tight(asked(fit), &catalogs);
+        let true_front = front(&study, &catalogs, &catalogs);
+        assert_eq!(faults(&study, &catalogs, &true_front), [0, 0], "{name}");
+        let mut decides = false;
+        for factor in [0.4, 0.7, 1.4, 2.5] {
+            let rows = front(&study, &spoiled(&catalogs, spoil, factor), &catalogs);
+            let found = faults(&study, &catalogs, &rows);
+            println!("{name} times {factor}: {} rows of {}, faults {found:?}", rows.len(), true_front.len());
+            assert_eq!(found == [0, 0], rows == true_front, "{name} times {factor}: {found:?}");
+            decides |= rows != true_front;
+        }
+        assert!(decides, "no front depends on the {name}");
+    }
+}
+
+#[test]
+fn a_dropped_row_is_found_where_fit_decides() {
+    let catalogs = Catalogs::builtin();
+    let study = tight(asked(ALL_ASKED), &catalogs);
+    let rows = front(&study, &catalogs, &catalogs);
+    let anything = front(&tight(json!({}), &catalogs), &catalogs, &catalogs);
+    assert!(rows.len() > 5 && rows != anything, "{} rows", rows.len());
+    // rows of the study that asks for nothing break the wishes of the other, all but those of both fronts
+    let [wrong, _] = faults(&study, &catalogs, &anything);
+    assert!(wrong > 0 && wrong >= anything.iter().filter(|row| !rows.contains(row)).count() / 2, "{wrong}");
+    let by_regions = Settings { regions_from: 1, boxes_to: 60.0, apart: 0.0 };
+    for dropped in (0..rows.len()).step_by(2) {
+        let mut rest: Vec<Row> = rows.clone();
+        let (_, lost) = rest.remove(dropped);
+        if rest.iter().any(|row| row.1 == lost) {
+            continue;
+        }
+        for by in [Settings::default(), by_regions] {
+            let question = question(&study.space);
+            let listed: Vec<Objectives> = rest.iter().map(|row| row.1).collect();
+            let looked = Judge::new(&question, &catalogs).missing(&listed, by, &AtomicBool::new(false), None);
+            assert!(looked.candidates.iter().any(|c| c.objectives == lost), "{lost:?} is not found");
+        }
+    }
+}
+
+/// A six-axis arm that asks for room at every joint but the waist, and whose roll joint is within its link.
+fn six_axes_that_fit() -> Value {
+    let mut chain = six_axes(
+        boxes(&[STEEL, ALUMINIUM], json!([100, 160]), json!([120, 180]), json!([4])),
+        boxes(&[STEEL, ALUMINIUM], json!([70, 120]), json!([90, 130]), json!([3])),
+    );
+    chain[0]["drive"] = json!("all_fits");
+    chain[0]["fit"] = json!({"gear_to_link_max": null, "motor": "beside"});
+    chain[4]["fit"] = json!({"gear_to_link_max": 1.3});
+    // a rolling wrist joint that carries a tube of its own, seen along its axis
+    chain[9] = json!({"type": "link", "name": "flange", "vector_m": [0.05, 0, 0],
+        "choose": {"materials": [ALUMINIUM], "sections": [{"shape": "rectangular_tube", "width_mm": [90, 70],
+            "height_mm": 80, "wall_mm": 4}]}});
+    json!({
+        "name": "brute-fit", "extras": "none",
+        "fit": {"gear_to_link_max": 1.05, "motor": "in_link", "cable_bore_min_mm": 10, "drive_length_max_mm": 110},
+        "chain": chain,
+        "payload": {"mass_kg": 3, "cg_m": [0.02, 0.06, 0.04]},
+        "poses": [{"name": "stretched", "pose_deg": [0, 0, 0, 0, 0, 0]},
+            {"name": "aside", "pose_deg": [30, -40, 70, 50, -60, 20]}],
+        "motion": {"tip_speed_m_s": 0.5, "ramp_time_s": 0.2},
+        "drives": {"gear_series": ["CSG", "SHG"], "ratios": [100], "motor_models": ["ILM50x14", "ILM70x18", "ILM85x26",
+            "ILM115x25"], "gear_mass": "housed_unit"}
+    })
+}
+
+#[test]
+fn the_brute_force_has_the_same_front_where_parts_must_fit() {
+    let agreement = assert_same(&six_axes_that_fit());
+    assert!(agreement.front > 5, "{agreement:?}");
+    let designs = |study: &Value| search(&BruteStudy::from_json(study, &Catalog::built_in())).designs.len();
+    let mut anything = six_axes_that_fit();
+    anything["fit"] = Value::Null;
+    let (fitting, all) = (designs(&six_axes_that_fit()), designs(&anything));
+    println!("{fitting} designs fit, {all} if nothing is asked");
+    assert!(fitting * 10 < all * 9, "{fitting} of {all}");
+}
