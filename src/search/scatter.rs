@@ -161,7 +161,8 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         let (rating, bearing) = match &self.problem.slots()[slot] {
             Slot::Bearing { joint, .. } => {
                 let drive = self.drive(*joint, option)?;
-                (Rating::BearingStiffness(drive.gear.id.clone()), drive.bearing())
+                let SpacePiece::Joint(asked) = self.problem.piece_in_slot(*joint)? else { return None };
+                (Rating::BearingStiffness(drive.gear.id.clone()), asked.bearing_with(&drive))
             }
             Slot::Given { .. } => {
                 let joint = self.tilting[slot]?;

@@ -4,11 +4,11 @@ use super::bearing_loads::resolved;
 use super::design_space::{DriveChoice, LinkOption, SpacePiece};
 use super::levels::OutwardIn;
 use super::problem::ArmProblem;
-use crate::arm::file::windup_of;
 use crate::arm::joint_law::Curve;
 use crate::arm::load::LoadCase;
 use crate::arm::structure::Structure;
 use crate::arm::{Arm, Element, Joint};
+use crate::catalog::gear::Gear;
 use crate::mechanics::chain::Chain;
 use crate::pareto::objectives::Objectives;
 use crate::sizing::drive::Drive;
@@ -102,9 +102,10 @@ impl<'c> ArmProblem<'c> {
                 (SpacePiece::Choice(choice), Part::Link(option)) => Some(Element::Link(choice.link(option))),
                 (SpacePiece::Link(link), _) => Some(Element::Link(link.clone())),
                 (SpacePiece::Joint(joint), part) => {
-                    let (curve, mass_kg, [gear, motor]) = drive_of(&joint.drive, &part)?;
+                    let (curve, mass_kg, [gear, motor]) =
+                        drive_of(&joint.drive, &part, |gear| joint.curve_with(gear))?;
                     let (bearing, extras) = match &part {
-                        Part::Drive(drive) => (drive.bearing(), drive.extras()),
+                        Part::Drive(drive) => (joint.bearing_with(drive), drive.extras()),
                         _ => (joint.bearing.stated(), joint.extras.stated()),
                     };
                     Some(Element::Joint(Joint {
@@ -161,14 +162,18 @@ fn with_levers(mut chain: Vec<Element>) -> Vec<Element> {
     chain
 }
 
-/// Torsion curve, mass \[kg\], and the names of gear and motor of a joint.
-fn drive_of(choice: &DriveChoice, part: &Part) -> Option<(Curve, f64, [Option<String>; 2])> {
+/// Torsion curve, mass \[kg\], and the names of gear and motor of a joint. `curve_with` is the curve with a gear that was chosen.
+fn drive_of(
+    choice: &DriveChoice,
+    part: &Part,
+    curve_with: impl Fn(&Gear) -> Curve,
+) -> Option<(Curve, f64, [Option<String>; 2])> {
     match (choice, part) {
         (DriveChoice::Given { curve, mass_kg, gear, motor }, _) => {
             Some((*curve, *mass_kg, [gear.clone(), motor.clone()]))
         }
         (_, Part::Drive(drive)) => {
-            let curve = windup_of(drive.gear).map_or(Curve::Rigid, Curve::Windup);
+            let curve = curve_with(drive.gear);
             let names = [&drive.gear.id, &drive.motor.id].map(|id| Some(id.clone()));
             Some((curve, drive.mass_kg().ok()?, names))
         }
@@ -218,7 +223,10 @@ mod tests {
         let gear = Some("HFUC-50-100".to_string());
         let choice =
             DriveChoice::Given { curve: Curve::Linear(4e5), mass_kg: 3.2, gear: gear.clone(), motor: None };
-        assert_eq!(drive_of(&choice, &Part::Given), Some((Curve::Linear(4e5), 3.2, [gear, None])));
+        assert_eq!(
+            drive_of(&choice, &Part::Given, |_| Curve::Rigid),
+            Some((Curve::Linear(4e5), 3.2, [gear, None]))
+        );
     }
 
     #[test]

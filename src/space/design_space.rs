@@ -1,16 +1,19 @@
 //! What there is to choose: an arm with open links and drives, and the task it must do.
 
 use super::constraint::Constraints;
-use crate::arm::bearing::BearingSource;
+use crate::arm::bearing::{Bearing, BearingSource};
 use crate::arm::effect::entry::Effect;
 use crate::arm::extras::ExtrasSource;
+use crate::arm::file::windup_of;
 use crate::arm::joint_law::Curve;
 use crate::arm::load::Payload;
 use crate::arm::load::Water;
 use crate::arm::section::{LinkMaterial, Section};
 use crate::arm::structure::Beam;
 use crate::arm::{JointModel, Link, LinkModel};
+use crate::catalog::gear::Gear;
 use crate::sizing::demand::JointMotion;
+use crate::sizing::drive::Drive;
 use crate::sizing::fit::FitRequirement;
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
@@ -166,6 +169,9 @@ pub struct SpaceJoint {
     pub duty: Option<StatedDuty>,
     /// What the study asks of the sizes of the joint's parts.
     pub fit: FitRequirement,
+    /// Compliance of the connections at the joint as a share of that of its gear and its bearing. What the study states in
+    /// numbers has it already.
+    pub connection_share: f64,
 }
 
 /// How a joint's drive is found.
@@ -235,6 +241,22 @@ impl SpaceJoint {
     /// Whether the bearing depends on the gear that is chosen.
     pub(crate) fn bearing_is_open(&self) -> bool {
         self.bearing == BearingSource::OfGear && self.drive.is_sized()
+    }
+
+    /// Torsion curve of the joint with a gear of the catalogs, its connections included; rigid if the gear has none.
+    pub(crate) fn curve_with(&self, gear: &Gear) -> Curve {
+        let yields = 1.0 + self.connection_share;
+        windup_of(gear).map_or(Curve::Rigid, |windup| Curve::Windup(windup.stiffened(1.0 / yields)))
+    }
+
+    /// Output bearing of the joint with a drive of the catalogs, its connections included.
+    pub(crate) fn bearing_with(&self, drive: &Drive) -> Option<Bearing> {
+        match self.bearing {
+            BearingSource::Stated(bearing) => bearing,
+            BearingSource::OfGear => {
+                drive.bearing().map(|b| b.stiffened(1.0 / (1.0 + self.connection_share)))
+            }
+        }
     }
 
     /// The motion of the joint when its axis is at most `reach_m` \[m\] away from the tip.

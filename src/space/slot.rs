@@ -171,8 +171,7 @@ pub(crate) fn joint_slot<'c>(
     let pieces: Vec<JointPiece> = (0..table.len())
         .map(|i| {
             let drive = table.drive(i);
-            let curve = windup_of(drive.gear).map_or(Curve::Rigid, Curve::Windup);
-            space.joint_piece(joint, curve, drive.bearing())
+            space.joint_piece(joint, joint.curve_with(drive.gear), joint.bearing_with(&drive))
         })
         .collect();
     let laws = pieces.iter().map(|piece| piece.law).collect();

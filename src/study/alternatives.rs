@@ -1,7 +1,6 @@
 //! Alternatives to each part of a design: other drives that are strong enough there, and other tubes.
 
 use crate::arm::file::windup_of;
-use crate::arm::joint_law::Curve;
 use crate::arm::structure::Beam;
 use crate::arm::{Arm, Element, Joint, Link, LinkBody};
 use crate::mechanics::beam::line_stiffnesses;
@@ -10,7 +9,7 @@ use crate::report::tube::section_size;
 use crate::sizing::drive::Drive;
 use crate::space::constraint::Constraints;
 use crate::space::design_space::DesignSpace;
-use crate::space::design_space::{LinkChoice, LinkOption, SpacePiece};
+use crate::space::design_space::{LinkChoice, LinkOption, SpaceJoint, SpacePiece};
 use crate::space::problem::ArmProblem;
 
 /// The alternatives of the whole space for each piece, by name.
@@ -23,11 +22,13 @@ pub(super) fn alternatives(
     let mut others: Vec<Vec<(String, Element)>> = vec![Vec::new(); arm.chain.len()];
     let complete = problem.walk(options, |slot, outboard| {
         let piece = problem.piece_of_slot(slot);
-        if let (Some(sized), Element::Joint(joint)) = (problem.sized_joint(piece), &arm.chain[piece]) {
+        if let (Some(sized), Element::Joint(joint), SpacePiece::Joint(asked)) =
+            (problem.sized_joint(piece), &arm.chain[piece], &whole.pieces[piece])
+        {
             let demand = problem.demand_at(outboard, slot);
             let holding =
                 sized.table.all_fits(&demand).map(|i| (sized.table.drive(i), sized.table.mass_kg(i)));
-            others[piece] = drives(joint, holding);
+            others[piece] = drives(asked, joint, holding);
         }
     });
     complete.ok()?;
@@ -40,7 +41,11 @@ pub(super) fn alternatives(
 }
 
 /// The drives that hold at a joint, lightest first; each has a gear that is stiffer than all lighter ones.
-fn drives<'c>(joint: &Joint, drives: impl Iterator<Item = (Drive<'c>, f64)>) -> Vec<(String, Element)> {
+fn drives<'c>(
+    asked: &SpaceJoint,
+    joint: &Joint,
+    drives: impl Iterator<Item = (Drive<'c>, f64)>,
+) -> Vec<(String, Element)> {
     let mut out: Vec<(String, Element)> = Vec::new();
     let mut kept: Vec<[f64; 3]> = Vec::new();
     for (drive, mass_kg) in drives {
@@ -50,7 +55,7 @@ fn drives<'c>(joint: &Joint, drives: impl Iterator<Item = (Drive<'c>, f64)>) -> 
             continue;
         }
         kept.push(stiffness);
-        let curve = Curve::Windup(windup);
+        let curve = asked.curve_with(drive.gear);
         out.push((drive.gear.id.clone(), Element::Joint(Joint { curve, mass_kg, ..joint.clone() })));
     }
     out

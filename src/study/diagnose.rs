@@ -237,7 +237,8 @@ fn first_obstacle(study: &Study, catalogs: &Catalogs) -> String {
         return together;
     };
     let Some(sized) = problem.sized_joint(problem.piece_of_slot(slot)) else { return together };
-    if sized.table.is_empty() {
+    let table = &sized.table;
+    if table.is_empty() && !table.motion().fit.is_asked() {
         return too_fast(sized);
     }
     let demand = problem.demand_at(&last.unwrap_or_default(), slot);
@@ -246,12 +247,13 @@ fn first_obstacle(study: &Study, catalogs: &Catalogs) -> String {
     } else {
         format!("; {} may stand in the way too", keys.join(", "))
     };
-    match sized.table.smallest_shortfall(&demand) {
+    match table.smallest_shortfall(&demand) {
         // a wider link would be heavier
         Some(shortfall) if shortfall.check.kind.is_fit() => {
             format!("with the lightest links, {shortfall}{also}")
         }
         Some(shortfall) => format!("even with the lightest links, {shortfall}{also}"),
+        None if table.is_empty() => too_fast(sized),
         None => together,
     }
 }

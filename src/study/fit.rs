@@ -133,3 +133,73 @@ fn unknown_sizes(asking: &[&SpaceJoint], catalogs: &Catalogs) -> Option<String> 
     );
     (gears + motors > 0).then_some(counts)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::json::Document;
+    use crate::study::definition::Study;
+    use crate::study::read::read_study;
+    use serde_json::{Value, json};
+
+    fn read(fit: Value, elbow: Value) -> Result<Study, String> {
+        let mut study = json!({"name": "fits", "fit": fit, "chain": [
+            {"type": "joint", "name": "shoulder", "axis": [0, 1, 0], "drive": "first_fit", "drives": {"motor_models": ["ILM85x26"]}},
+            {"type": "link", "name": "upper", "vector_m": [0.5, 0, 0], "material": "Aluminium 6061-T6",
+                "section": {"shape": "round_tube", "diameter_m": 0.12, "wall_m": 0.004}},
+            {"type": "joint", "name": "elbow", "axis": [0, 1, 0], "drive": "first_fit"},
+            {"type": "link", "name": "fore", "vector_m": [0.3, 0, 0]}],
+            "poses": [{"pose_deg": [0, 0]}]});
+        study["chain"][2].as_object_mut().unwrap().extend(elbow.as_object().unwrap().clone());
+        let document = Document::parse("study", &study.to_string()).unwrap();
+        read_study(document, &Catalogs::builtin()).map_err(|faults| faults.to_string())
+    }
+
+    fn of_joints(study: &Study) -> Vec<FitRequirement> {
+        let joint = |piece: &SpacePiece| match piece {
+            SpacePiece::Joint(joint) => Some(joint.fit),
+            _ => None,
+        };
+        study.space.pieces.iter().filter_map(joint).collect()
+    }
+
+    #[test]
+    fn a_joint_has_the_wishes_of_the_study_but_for_those_of_its_own() {
+        let all = json!({"gear_to_link_max": 1.2, "motor": "in_link", "cable_bore_min_mm": 12, "drive_length_max_mm": 150});
+        let [usual, own] = of_joints(
+            &read(all.clone(), json!({"fit": {"cable_bore_min_mm": null, "drive_length_max_mm": 90}}))
+                .unwrap(),
+        )[..] else {
+            panic!("two joints")
+        };
+        assert_eq!(usual.cable_bore_min_m, Some(0.012));
+        let expected = FitRequirement { cable_bore_min_m: None, drive_length_max_m: Some(0.09), ..usual };
+        assert_eq!(own, expected);
+        assert_eq!(of_joints(&read(all, json!({"fit": null})).unwrap())[1], FitRequirement::default());
+    }
+
+    #[test]
+    fn results_say_what_is_asked_where_it_cannot_be_and_what_the_catalogs_lack() {
+        let all = json!({"gear_to_link_max": 1.2, "motor": "behind", "drive_length_max_mm": 150});
+        let remarks = read(all, json!({"fit": {"motor": "in_link"}})).unwrap().remarks.join(" ");
+        for words in [
+            "Fit is checked: gear no wider than 1.2 times the link that the joint carries (shoulder, elbow); length of the gear \
+             and of the motor behind it at most 150.0 mm (shoulder); motor in the hollow of that link (elbow)",
+            "not compared with a link in elbow: there is none before the next joint",
+            "A size that the catalogs do not give is not checked",
+        ] {
+            assert!(remarks.contains(words), "{words}\n{remarks}");
+        }
+        assert!(!remarks.contains("whether the parts fit"), "{remarks}");
+        let nothing = read(json!({}), json!({})).unwrap().remarks.join(" ");
+        assert!(
+            nothing.contains("whether the parts fit into each other") && !nothing.contains("Fit is checked")
+        );
+    }
+
+    #[test]
+    fn an_unknown_place_of_the_motor_is_a_fault() {
+        let fault = read(json!({"motor": "somewhere"}), json!({})).unwrap_err();
+        assert!(fault.contains("fit.motor") && fault.contains("behind"), "{fault}");
+    }
+}

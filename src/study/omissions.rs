@@ -1,5 +1,6 @@
 //! What the numbers of a study leave out, so that it can be said beside the numbers.
 
+use super::connections::connection_share;
 use super::fit::joints_that_ask;
 use super::harness::has_harness;
 use crate::arm::bearing::BearingSource;
@@ -38,16 +39,21 @@ pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
 /// What no number of a study has.
 fn left_out_everywhere(space: &DesignSpace) -> String {
     let fits = joints_that_ask(space).next().is_some();
-    let connections = "the yield of the connections between links and joints";
+    let rigid = connection_share(space) == 0.0;
     let list = [
-        Some(connections),
+        rigid.then_some("the yield of the connections between links and joints"),
         (!has_harness(space)).then_some("the cables along the links"),
         Some("temperature"),
         (!fits).then_some("whether the parts fit into each other"),
     ];
     let list: Vec<&str> = list.into_iter().flatten().collect();
-    let (last, first) = list.split_last().unwrap_or((&connections, &[]));
-    format!("Left out of every number: {}, and {last}.", first.join(", "))
+    let words = match list.split_last() {
+        Some((last, [])) => (*last).to_string(),
+        Some((last, [first])) => format!("{first} and {last}"),
+        Some((last, first)) => format!("{}, and {last}", first.join(", ")),
+        None => String::new(),
+    };
+    format!("Left out of every number: {words}.")
 }
 
 fn joints(space: &DesignSpace) -> impl Iterator<Item = &SpaceJoint> {

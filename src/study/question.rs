@@ -75,6 +75,7 @@ fn asked_joint(joint: &SpaceJoint) -> AskedJoint {
         max_speed_rad_s: joint.max_speed_rad_s,
         has_brake: joint.has_brake,
         duty: joint.duty.iter().flat_map(|duty| &duty.phases).map(phase).collect(),
+        connection_share: joint.connection_share,
         fit: AskedFit {
             gear_to_link_max: joint.fit.gear_to_link_max,
             motor_in_link: joint.fit.motor == MotorPlace::InLink,

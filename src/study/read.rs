@@ -4,12 +4,14 @@
 //! Lengths of sections and limits are in millimetres because that is how profiles are sold; everything
 //! else is SI. The resolved [`DesignSpace`] is SI throughout.
 
+use super::connections::{connections_remark, with_connections};
 use super::definition::Study;
 use super::effects::check_effects;
 use super::environments::{Environment, read_environments};
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
 use super::motion::{read_duty, read_motion};
+use super::motor_kinds::read_motor_kinds;
 use super::omissions::omissions;
 use super::range::{check_poses, read_range};
 use super::sections::{Aside, read_materials, read_sections};
@@ -21,7 +23,6 @@ use crate::arm::load::{read_pose, vector, word};
 use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearMass;
-use crate::catalog::motor::MotorKind;
 use crate::input::json::{Document, Faults, Node, Object};
 use crate::sizing::fit::FitRequirement;
 use crate::sizing::requirement::MotionRequirement;
@@ -31,7 +32,7 @@ use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{Case, DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 use nalgebra::Vector3;
 
-const KEYS: [&str; 19] = [
+const KEYS: [&str; 20] = [
     "name",
     "question",
     "gravity_m_s2",
@@ -46,6 +47,7 @@ const KEYS: [&str; 19] = [
     "extras",
     "fit",
     "harness_kg_per_m",
+    "connection_share",
     "constraints",
     "models",
     "effects",
@@ -95,11 +97,13 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let constraints = root.or("constraints", Constraints::default(), read_constraints);
     let extras = read_extras_source(&root, ExtrasSource::Usual);
     let fit = read_fit(&root, FitRequirement::default());
+    let connection_share = root.or("connection_share", 0.0, Node::non_negative);
     let mut aside = Aside::default();
     let duty = root.or("duty", None, |n| read_duty_of_only_joint(n, node).map(Some));
     let chain = root.required("chain").and_then(|n| {
         let (drives, constraints, extras, fit) = (filter.as_ref()?, constraints.as_ref()?, extras?, fit?);
-        let open = Open { catalogs, drives, constraints, extras, fit, duty: duty.as_ref()?.as_ref() };
+        let (connection_share, duty) = (connection_share?, duty.as_ref()?.as_ref());
+        let open = Open { catalogs, drives, constraints, extras, fit, connection_share, duty };
         read_chain(&n, &open, &mut aside)
     });
     let joints = joint_names(node);
@@ -130,6 +134,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     check_effects(&space, &root)?;
     in_range?;
     let Aside { not_checked, mut remarks } = aside;
+    remarks.extend(connections_remark(&space));
     remarks.extend(harness_remark(&space, harness_kg_per_m));
     remarks.extend(fit_remarks(&space, catalogs));
     remarks.extend(omissions(&space));
@@ -185,6 +190,7 @@ struct Open<'a> {
     constraints: &'a Constraints,
     extras: ExtrasSource,
     fit: FitRequirement,
+    connection_share: f64,
     /// The duty that the study states for its only joint.
     duty: Option<&'a StatedDuty>,
 }
@@ -265,38 +271,6 @@ fn read_ratios(node: &Node, known: &[u32]) -> Option<Vec<u32>> {
         })
         .collect();
     read.into_iter().collect()
-}
-
-const MOTOR_WORDS: [(&str, &[MotorKind]); 6] = [
-    (
-        "electric",
-        &[
-            MotorKind::AcServo,
-            MotorKind::BrushlessServo,
-            MotorKind::FramelessServo,
-            MotorKind::FramelessTorque,
-        ],
-    ),
-    ("hydraulic", &[MotorKind::HydraulicPiston, MotorKind::HydraulicOrbital]),
-    ("ac_servo", &[MotorKind::AcServo]),
-    ("brushless_servo", &[MotorKind::BrushlessServo]),
-    ("frameless_servo", &[MotorKind::FramelessServo]),
-    ("frameless_torque", &[MotorKind::FramelessTorque]),
-];
-
-fn read_motor_kinds(node: &Node) -> Option<Vec<MotorKind>> {
-    let read: Vec<Option<&[MotorKind]>> = node
-        .array()?
-        .iter()
-        .map(|n| {
-            let word = n.string()?;
-            MOTOR_WORDS.iter().find(|(w, _)| *w == word).map(|(_, kinds)| *kinds).or_else(|| {
-                let words: Vec<&str> = MOTOR_WORDS.iter().map(|(w, _)| *w).collect();
-                n.fault(format!("\"{word}\" is not known"), &format!("choose among: {}", words.join(", ")))
-            })
-        })
-        .collect();
-    Some(read.into_iter().collect::<Option<Vec<_>>>()?.concat())
 }
 
 fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePiece>> {
@@ -396,10 +370,24 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
     let usually = if drive.is_sized() { open.extras } else { ExtrasSource::NONE };
     let extras = read_extras_source(&object, usually);
     let range_deg = object.or("range_deg", None, |n| read_range(n).map(Some));
-    let (bearing, extras, range_deg) = (bearing?, extras?, range_deg?);
+    let connection_share = open.connection_share;
+    let (drive, bearing) = with_connections(connection_share, &object, drive, bearing?);
+    let (extras, range_deg) = (extras?, range_deg?);
     let (max_speed_rad_s, has_brake, duty) = (max_speed?, brake?, duty?);
     let (name, axis, fit) = (name?, axis?, fit?);
-    Some(SpaceJoint { name, axis, bearing, extras, drive, max_speed_rad_s, range_deg, has_brake, duty, fit })
+    Some(SpaceJoint {
+        name,
+        axis,
+        bearing,
+        extras,
+        drive,
+        max_speed_rad_s,
+        range_deg,
+        has_brake,
+        duty,
+        fit,
+        connection_share,
+    })
 }
 
 /// Where the bearing of a joint comes from. A component set has none of its own, so a joint that is sized with component

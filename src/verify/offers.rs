@@ -6,7 +6,7 @@ use super::drive_range::DriveRange;
 use super::duty::Duty;
 use super::question::{AllowedParts, AskedDrive, AskedJoint, Question};
 use super::ratings::Ratings;
-use crate::arm::bearing::Bearing;
+use crate::arm::bearing::{Bearing, BearingSource};
 use crate::arm::extras::Extras;
 use crate::arm::joint_law::{Curve, JointLaw, Windup};
 use crate::catalog::Catalogs;
@@ -121,8 +121,13 @@ fn offers(
     for (gear_place, gear) in catalogs.gears.iter().enumerate().filter(|(_, gear)| allowed.allows_gear(gear))
     {
         // a gear whose torsion is not known cannot be judged
-        let Some(windup) = torsion_curve(gear) else { continue };
-        let bearing = with_gear(&joint.bearing, gear, allowed.gear_mass);
+        let Some(windup) = torsion_curve(gear, joint.connection_share) else { continue };
+        let mut bearing = with_gear(&joint.bearing, gear, allowed.gear_mass);
+        if joint.bearing == BearingSource::OfGear
+            && let Some(Bearing { tilt_stiffness_nm_per_rad: Some(stiffness), .. }) = &mut bearing
+        {
+            *stiffness *= 1.0 / (1.0 + joint.connection_share);
+        }
         let (law, tilt_rad_per_nm) = springs(Curve::Windup(windup), bearing);
         let extras = |motor| joint.extras.with_parts(gear, motor, allowed.gear_mass);
         let motors = catalogs.motors.iter().enumerate().filter(|(_, motor)| allowed.allows_motor(motor));
@@ -153,10 +158,12 @@ fn drive_kg(allowed: &AllowedParts, gear: &Gear, motor: &Motor) -> Option<f64> {
     Some(((gear.mass_kg(allowed.gear_mass)? + motor.mass_kg?) * PER_KG).round() / PER_KG)
 }
 
-/// The torsion curve of a gear; `None` if the catalog lacks a number of the curve.
-fn torsion_curve(gear: &Gear) -> Option<Windup> {
+/// The torsion curve of a gear whose connections yield by a share of what the gear itself does; `None` if the catalog lacks a
+/// number of the curve.
+fn torsion_curve(gear: &Gear, share: f64) -> Option<Windup> {
+    let together = |stiffness: Option<f64>| Some(stiffness? * (1.0 / (1.0 + share)));
     let [k1_nm_per_rad, k2_nm_per_rad, k3_nm_per_rad] =
-        [gear.k1_nm_per_rad?, gear.k2_nm_per_rad?, gear.k3_nm_per_rad?];
+        [together(gear.k1_nm_per_rad)?, together(gear.k2_nm_per_rad)?, together(gear.k3_nm_per_rad)?];
     Some(Windup { k1_nm_per_rad, k2_nm_per_rad, k3_nm_per_rad, t1_nm: gear.t1_nm?, t2_nm: gear.t2_nm? })
 }
 

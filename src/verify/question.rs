@@ -73,6 +73,8 @@ pub struct AskedJoint {
     pub duty: Vec<AskedDutyPhase>,
     /// What is asked of the sizes of its parts.
     pub fit: AskedFit,
+    /// Compliance of its connections, as a share of that of a gear of the catalogs and of the gear's bearing.
+    pub connection_share: f64,
 }
 
 /// What is asked of the sizes of a joint's parts; nothing by default.

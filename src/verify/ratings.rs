@@ -202,6 +202,7 @@ mod tests {
             has_brake: false,
             duty: Vec::new(),
             fit: AskedFit::default(),
+            connection_share: 0.0,
         }
     }
 

@@ -2,7 +2,7 @@
 //! the exact search, the brute force and the verifier must have the same designs.
 
 use crate::brute::catalog::Catalog;
-use crate::brute::design::search;
+use crate::brute::design::chains;
 use crate::brute::study::Study as BruteStudy;
 use crate::brute_force::{ALUMINIUM, STEEL, assert_same, boxes, six_axes};
 use crate::dice::Dice;
@@ -29,7 +29,7 @@ fn other_sizes(seed: u64) -> Catalogs {
     let dice = &mut Dice(seed + 6_000);
     let gears = catalogs.gears.iter_mut().map(|gear| &mut gear.envelope);
     for size in gears.chain(catalogs.motors.iter_mut().map(|motor| &mut motor.envelope)) {
-        let by = dice.within(0.3, 0.9);
+        let by = dice.within(0.4, 1.0);
         size.outer_diameter_m = size.outer_diameter_m.map(|m| m * by).filter(|_| dice.below(8) > 0);
         size.length_m = size.length_m.map(|m| m * by).filter(|_| dice.below(8) > 0);
         size.hollow_bore_m = Some(dice.within(0.0, 0.04)).filter(|_| dice.below(4) > 0);
@@ -56,6 +56,8 @@ fn study_of_fits(seed: u64) -> Value {
     let mut study = random_study(seed);
     let dice = &mut Dice(seed + 7_000);
     study["fit"] = wishes(dice);
+    study["connection_share"] = json!(dice.of(&[0.0, 0.0, 0.2]));
+    study["harness_kg_per_m"] = json!(dice.of(&[0.0, 0.0, 0.6]));
     let chain = study["chain"].as_array_mut().expect("a chain");
     for joint in chain.iter_mut().filter(|piece| piece["drive"].is_string()) {
         match dice.below(4) {
@@ -137,9 +139,7 @@ fn the_exact_front_is_whole_where_parts_must_fit() {
             let by_regions = Exact::new(&study.space, &catalogs, &stop, None).by_regions_from(100.0).run(&[]);
             agrees(&problem, &by_regions.front, &sweep.front, &what);
         }
-        if study.space.effects.is_empty() {
-            bounds += bounds_on_mass_hold(&problem, &sweep.front, &what);
-        }
+        bounds += bounds_on_mass_hold(&problem, &sweep.front, &what);
         points += listed;
         feasible += u64::from(listed > 0);
         decided += usize::from(decided_by_links(&problem) > 0);
@@ -149,7 +149,7 @@ fn the_exact_front_is_whole_where_parts_must_fit() {
     );
     assert!(feasible * 3 > studies, "only {feasible} of {studies} studies are feasible");
     assert!(points as u64 > 6 * feasible, "fronts are too small to say much: {points} designs");
-    assert!(decided as u64 * 3 > studies, "links decide in {decided} of {studies} studies only");
+    assert!(decided as u64 * 5 > studies, "links decide in {decided} of {studies} studies only");
 }
 
 /// A waist on a bracket, a shoulder and an elbow; the gears are about as wide as the tubes, and the motors about as wide as their
@@ -159,15 +159,15 @@ fn tight(fit: Value, catalogs: &Catalogs) -> Study {
         json!({"materials": ["Aluminium 6061-T6"],
             "sections": [{"shape": "round_tube", "diameter_mm": diameters_mm, "wall_mm": [3, 5]}]})
     };
-    let few = json!({"gear_series": ["CSG", "SHG"], "ratios": [100], "motor_models": ["ILM50x14", "ILM70x18", "ILM85x26"]});
+    let few = json!({"gear_series": ["CSG", "SHG"], "ratios": [100], "motor_models": ["ILM70x10", "ILM70x18", "ILM85x26"]});
     read(
         &json!({
-            "name": "tight", "fit": fit,
+            "name": "tight", "fit": fit, "connection_share": 0.15, "harness_kg_per_m": 0.4,
             "chain": [
                 {"type": "joint", "name": "waist", "axis": [0, 0, 1], "drive": "first_fit", "drives": few},
                 {"type": "link", "name": "bracket", "vector_m": [0, 0, 0.1]},
                 {"type": "link", "name": "column", "vector_m": [0, 0, 0.2], "material": "Aluminium 6061-T6",
-                    "section": {"shape": "round_tube", "diameter_m": 0.115, "wall_m": 0.006}},
+                    "section": {"shape": "round_tube", "diameter_m": 0.16, "wall_m": 0.006}},
                 {"type": "joint", "name": "shoulder", "axis": [0, 1, 0], "drive": "all_fits", "drives": few},
                 {"type": "link", "name": "upper", "vector_m": [0.5, 0, 0], "choose": tubes(json!([76, 90, 120, 150]))},
                 {"type": "joint", "name": "elbow", "axis": [0, 1, 0], "drive": "first_fit", "drives": few},
@@ -180,9 +180,18 @@ fn tight(fit: Value, catalogs: &Catalogs) -> Study {
     )
 }
 
+/// The catalogs with a hollow through every gear.
+fn hollow_gears() -> Catalogs {
+    let mut catalogs = Catalogs::builtin();
+    for gear in &mut catalogs.gears {
+        gear.envelope.hollow_bore_m = gear.envelope.outer_diameter_m.map(|m| 0.3 * m);
+    }
+    catalogs
+}
+
 const ALL_ASKED: &str =
     r#"{"gear_to_link_max": 1.25, "motor": "in_link", "cable_bore_min_mm": 10, "drive_length_max_mm": 70}"#;
-const ON_AXIS: &str = r#"{"cable_bore_min_mm": 30, "drive_length_max_mm": 110}"#;
+const ON_AXIS: &str = r#"{"cable_bore_min_mm": 25, "drive_length_max_mm": 110}"#;
 
 fn asked(text: &str) -> Value {
     serde_json::from_str(text).expect("JSON")
@@ -200,7 +209,7 @@ const SIZES: [(&str, &str, Spoil); 6] = [
 
 #[test]
 fn one_wrong_size_is_found_by_the_verifier_and_each_decides() {
-    let catalogs = Catalogs::builtin();
+    let catalogs = hollow_gears();
     for (name, fit, spoil) in SIZES {
         let study = tight(asked(fit), &catalogs);
         let true_front = front(&study, &catalogs, &catalogs);
@@ -219,7 +228,7 @@ fn one_wrong_size_is_found_by_the_verifier_and_each_decides() {
 
 #[test]
 fn a_dropped_row_is_found_where_fit_decides() {
-    let catalogs = Catalogs::builtin();
+    let catalogs = hollow_gears();
     let study = tight(asked(ALL_ASKED), &catalogs);
     let rows = front(&study, &catalogs, &catalogs);
     let anything = front(&tight(json!({}), &catalogs), &catalogs, &catalogs);
@@ -254,17 +263,17 @@ fn six_axes_that_fit() -> Value {
     chain[4]["fit"] = json!({"gear_to_link_max": 1.3});
     // a rolling wrist joint that carries a tube of its own, seen along its axis
     chain[9] = json!({"type": "link", "name": "flange", "vector_m": [0.05, 0, 0],
-        "choose": {"materials": [ALUMINIUM], "sections": [{"shape": "rectangular_tube", "width_mm": [90, 70],
-            "height_mm": 80, "wall_mm": 4}]}});
+        "choose": {"materials": [ALUMINIUM], "sections": [{"shape": "rectangular_tube", "width_mm": [90, 110],
+            "height_mm": [80, 100], "wall_mm": 4}]}});
     json!({
         "name": "brute-fit", "extras": "none",
-        "fit": {"gear_to_link_max": 1.05, "motor": "in_link", "cable_bore_min_mm": 10, "drive_length_max_mm": 110},
+        "fit": {"gear_to_link_max": 1.05, "motor": "in_link", "drive_length_max_mm": 75},
         "chain": chain,
         "payload": {"mass_kg": 3, "cg_m": [0.02, 0.06, 0.04]},
         "poses": [{"name": "stretched", "pose_deg": [0, 0, 0, 0, 0, 0]},
             {"name": "aside", "pose_deg": [30, -40, 70, 50, -60, 20]}],
         "motion": {"tip_speed_m_s": 0.5, "ramp_time_s": 0.2},
-        "drives": {"gear_series": ["CSG", "SHG"], "ratios": [100], "motor_models": ["ILM50x14", "ILM70x18", "ILM85x26",
+        "drives": {"gear_series": ["CSG", "SHG"], "ratios": [100], "motor_models": ["ILM70x10", "ILM70x18", "ILM85x26",
             "ILM115x25"], "gear_mass": "housed_unit"}
     })
 }
@@ -273,7 +282,7 @@ fn six_axes_that_fit() -> Value {
 fn the_brute_force_has_the_same_front_where_parts_must_fit() {
     let agreement = assert_same(&six_axes_that_fit());
     assert!(agreement.front > 5, "{agreement:?}");
-    let designs = |study: &Value| search(&BruteStudy::from_json(study, &Catalog::built_in())).designs.len();
+    let designs = |study: &Value| chains(&BruteStudy::from_json(study, &Catalog::built_in())).len();
     let mut anything = six_axes_that_fit();
     anything["fit"] = Value::Null;
     let (fitting, all) = (designs(&six_axes_that_fit()), designs(&anything));

@@ -1,0 +1,37 @@
+//! The words for kinds of motors in a study.
+
+use crate::catalog::motor::MotorKind;
+use crate::input::json::Node;
+
+const MOTOR_WORDS: [(&str, &[MotorKind]); 6] = [
+    (
+        "electric",
+        &[
+            MotorKind::AcServo,
+            MotorKind::BrushlessServo,
+            MotorKind::FramelessServo,
+            MotorKind::FramelessTorque,
+        ],
+    ),
+    ("hydraulic", &[MotorKind::HydraulicPiston, MotorKind::HydraulicOrbital]),
+    ("ac_servo", &[MotorKind::AcServo]),
+    ("brushless_servo", &[MotorKind::BrushlessServo]),
+    ("frameless_servo", &[MotorKind::FramelessServo]),
+    ("frameless_torque", &[MotorKind::FramelessTorque]),
+];
+
+/// Reads a list of such words.
+pub(super) fn read_motor_kinds(node: &Node) -> Option<Vec<MotorKind>> {
+    let read: Vec<Option<&[MotorKind]>> = node
+        .array()?
+        .iter()
+        .map(|n| {
+            let word = n.string()?;
+            MOTOR_WORDS.iter().find(|(w, _)| *w == word).map(|(_, kinds)| *kinds).or_else(|| {
+                let words: Vec<&str> = MOTOR_WORDS.iter().map(|(w, _)| *w).collect();
+                n.fault(format!("\"{word}\" is not known"), &format!("choose among: {}", words.join(", ")))
+            })
+        })
+        .collect();
+    Some(read.into_iter().collect::<Option<Vec<_>>>()?.concat())
+}
