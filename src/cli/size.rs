@@ -6,7 +6,7 @@ use super::failure::Failure;
 use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::report::tube::section_size;
-use crate::sizing::check::checks;
+use crate::sizing::checks::checks;
 use crate::sizing::demand::JointDemand;
 use crate::sizing::select::DriveTable;
 use crate::sizing::sheet::render_rows;

@@ -1,7 +1,7 @@
 //! Explanations: why a part was rejected, and which relaxation helps if no drive holds.
 
-use super::check::{Check, CheckState};
-use super::check::{binding, checks, digits_of, gear_checks, motor_checks};
+use super::check::{Check, CheckState, digits_of};
+use super::checks::{binding, checks, gear_checks, motor_checks};
 use super::demand::JointDemand;
 use super::drive::Drive;
 use super::limits::DriveLimits;

@@ -340,7 +340,7 @@ mod tests {
     };
     use super::super::testing::{hfuc_40_100, hfuc_58_100, motor};
     use super::*;
-    use crate::sizing::check::{all_hold, checks};
+    use crate::sizing::checks::{all_hold, checks};
     use crate::sizing::requirement::MotionRequirement;
     use proptest::prelude::*;
 

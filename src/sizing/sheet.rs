@@ -1,6 +1,7 @@
 //! The sizing table: the numbers of one joint in a row, from the tip to the base.
 
-use super::check::{Check, CheckKind, CheckState, binding, checks, motor_checks};
+use super::check::{Check, CheckKind, CheckState};
+use super::checks::{binding, checks, motor_checks};
 use super::demand::{JointDemand, JointMotion};
 use super::drive::{Drive, rotary_torque_output_nm};
 use super::limits::{input_speed_rpm, mean_input_speed_rpm, stops_allowed};

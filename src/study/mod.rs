@@ -4,6 +4,7 @@ pub(crate) mod alternatives;
 pub(crate) mod ballast;
 pub(crate) mod bounds;
 pub(crate) mod budget;
+pub(crate) mod cases;
 pub(crate) mod check;
 pub(crate) mod definition;
 pub(crate) mod diagnose;
