@@ -192,7 +192,15 @@ impl fmt::Display for Check {
             (_, Some(needed), Some(allowed)) => {
                 let digits = digits_that_differ(needed, allowed);
                 let unit = self.kind.unit();
-                write!(f, "{name} {needed:.digits$} {unit} needed, {allowed:.digits$} allowed")
+                match self.kind {
+                    CheckKind::BearingRest | CheckKind::BearingStop => {
+                        write!(f, "{name} {needed:.digits$} needed, {allowed:.digits$} reached")
+                    }
+                    CheckKind::BearingLife => {
+                        write!(f, "{name} {needed:.digits$} {unit} needed, {allowed:.digits$} reached")
+                    }
+                    _ => write!(f, "{name} {needed:.digits$} {unit} needed, {allowed:.digits$} allowed"),
+                }
             }
             _ => write!(f, "{name}"),
         }

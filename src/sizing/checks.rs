@@ -9,8 +9,7 @@ use super::limits as limit;
 use crate::arm::bearing::Bearing;
 use crate::catalog::gear::Gear;
 
-/// The checks of a gear and of the output bearing, which do not depend on the motor. The bearing is checked if the demand
-/// has loads on it.
+/// The checks of a gear and of the output bearing, which do not depend on the motor.
 pub fn gear_checks(
     gear: &Gear,
     bearing: Option<&Bearing>,
@@ -34,7 +33,7 @@ pub fn gear_checks(
     if let Some(stops) = motion.emergency_stops {
         checks.push(plain(CheckKind::GearStops, stops, Ok(limit::stops_allowed(gear, motion))));
     }
-    if let Some(bearing) = bearing.filter(|_| !demand.bearing.is_zero()) {
+    if let Some(bearing) = bearing {
         checks.extend(bearing_checks(bearing, motion, &demand.bearing));
     }
     checks

@@ -30,6 +30,7 @@
 //! rated speed.
 
 pub(crate) mod bearing;
+pub(crate) mod bearing_advice;
 pub(crate) mod bearing_checks;
 pub(crate) mod check;
 pub(crate) mod checks;
@@ -48,6 +49,7 @@ pub(crate) mod stated;
 pub(crate) mod testing;
 
 pub use bearing::{BearingDemand, BearingLimits, BearingLoad};
+pub use bearing_checks::{BlankRatings, bearing_margin};
 pub use check::{Check, CheckKind, CheckState};
 pub use checks::{all_hold, binding, checks, gear_checks, motor_checks};
 pub use demand::{

@@ -24,6 +24,7 @@ pub(crate) mod sections;
 pub(crate) mod table;
 pub(crate) mod ties;
 pub(crate) mod tolerance;
+pub(crate) mod unchecked;
 pub(crate) mod worst_pose;
 
 pub use ballast::{BallastFlags, ballast_flags};
