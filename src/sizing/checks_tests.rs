@@ -1,5 +1,7 @@
 //! Tests of the checks: each limit alone, what is said, and that thresholds decide alike.
 
+use super::super::bearing::BearingLimits;
+use super::super::bearing_checks::bearing_margin;
 use super::super::testing::{
     any_gear, any_motion, any_motor, any_torques, bearing_loads, char_lynn_j_8_2, f11_10, gear, hfuc_40_100,
     motor,
@@ -273,6 +275,12 @@ proptest! {
         let checks = checks(&drive, &motion, &demand);
         let by_thresholds = DriveLimits::of(&drive, &motion).is_ok_and(|l| l.hold(&demand));
         prop_assert_eq!(by_thresholds, all_hold(&checks));
+        let limits = BearingLimits::of(drive.bearing().as_ref(), motion.mean_speed_rad_s(), motion.life_h);
+        let by_limits = limits.multiple_of(&demand.bearing);
+        match bearing_margin(&checks) {
+            Some(margin) if margin.is_finite() => prop_assert!((margin / by_limits - 1.0).abs() < 1e-12),
+            _ => prop_assert_eq!(by_limits, f64::INFINITY),
+        }
         for c in &checks {
             let Some(margin) = c.margin() else {
                 prop_assert!(matches!(c.state, CheckState::NotChecked(_)), "{:?}", c);
