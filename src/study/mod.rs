@@ -4,6 +4,7 @@ pub(crate) mod alternatives;
 pub(crate) mod ballast;
 pub(crate) mod bounds;
 pub(crate) mod budget;
+pub(crate) mod cases;
 pub(crate) mod check;
 pub(crate) mod definition;
 pub(crate) mod diagnose;
@@ -23,6 +24,7 @@ pub(crate) mod sections;
 pub(crate) mod table;
 pub(crate) mod ties;
 pub(crate) mod tolerance;
+pub(crate) mod unchecked;
 pub(crate) mod worst_pose;
 
 pub use ballast::{BallastFlags, ballast_flags};
