@@ -6,6 +6,7 @@ use super::failure::Failure;
 use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::report::tube::section_size;
+use crate::report::words::{TERMINAL, wrap};
 use crate::sizing::bearing::{BearingDemand, BearingLoad};
 use crate::sizing::checks::checks;
 use crate::sizing::demand::JointDemand;
@@ -69,7 +70,8 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
         return all_fits(&problem, &chosen, joint);
     }
     let rows = sizing_rows(&problem, catalogs, &chosen).map_err(|slot| fails(&problem, &chosen, slot))?;
-    let text = format!("{}{}", heading(&study, &problem, &chosen), render_rows(&rows));
+    let remarks: String = study.remarks.iter().map(|words| wrap(words, TERMINAL, "")).collect();
+    let text = format!("{}{}\n{remarks}", heading(&study, &problem, &chosen), render_rows(&rows));
     let json = serde_json::to_string_pretty(&rows).expect("rows of numbers and strings serialize");
     if let Some(dir) = &args.out {
         let files = [("sizing.json", &json), ("sizing.txt", &text)];
@@ -135,9 +137,6 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
         motion.life_h,
         study.space.sizing_cases.len()
     );
-    for words in &study.remarks {
-        let _ = writeln!(out, "{words}");
-    }
     let Some(parts) = problem.parts(chosen) else { return out };
     for (piece, part) in study.space.pieces.iter().zip(parts) {
         if let (SpacePiece::Choice(choice), crate::space::design::Part::Link(option)) = (piece, part) {

@@ -5,6 +5,7 @@ use super::bearing::BearingDemand;
 use super::duty::{HeatWeights, MeanTorqueWeights};
 use super::stated::{StatedDemand, StatedDuty};
 use super::{RAD_S_PER_RPM, rpm_from_rad_s};
+use crate::catalog::gear::Gear;
 
 /// The reading of Eq 8, which gives the torque of linear acceleration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -236,6 +237,16 @@ pub fn cubic_mean_cubed_nm3(weights: MeanTorqueWeights, static_torque_nm: f64, l
     weights.sum * cube(static_torque_nm + linear_torque_nm)
         + weights.steady * cube(static_torque_nm)
         + weights.difference * cube((static_torque_nm - linear_torque_nm).abs())
+}
+
+/// N ω \[rpm\].
+pub(super) fn input_speed_rpm(gear: &Gear, motion: &JointMotion) -> f64 {
+    f64::from(gear.ratio) * rpm_from_rad_s(motion.speed_rad_s)
+}
+
+/// N times the mean speed over the duty cycle \[rpm\].
+pub(super) fn mean_input_speed_rpm(gear: &Gear, motion: &JointMotion) -> f64 {
+    f64::from(gear.ratio) * rpm_from_rad_s(motion.mean_speed_rad_s())
 }
 
 #[cfg(test)]

@@ -31,9 +31,8 @@
 //! Source of the rule (root mean square within the continuous torque): the selection guides of motor vendors, such as
 //! Oriental Motor, "Motor Sizing Basics Part 3: Acceleration Torque (and RMS Torque)".
 
-use super::demand::{JointDemand, JointMotion};
+use super::demand::{JointDemand, JointMotion, input_speed_rpm};
 use super::drive::{Drive, Rating, known};
-use super::limits::input_speed_rpm;
 use crate::catalog::motor::Motor;
 
 /// What a motor behind its gear uses of its continuous torque T_c. A drive that holds more has smaller numbers.

@@ -7,9 +7,9 @@
 
 use super::bearing::BearingLimits;
 use super::demand::{JointDemand, JointMotion};
+pub(super) use super::demand::{input_speed_rpm, mean_input_speed_rpm};
 use super::drive::{Drive, MissingRating, Rating, known, reference_life_h};
 use super::heat::MotorHeat;
-use super::rpm_from_rad_s;
 use crate::catalog::gear::Gear;
 use crate::catalog::motor::Motor;
 
@@ -156,16 +156,6 @@ fn speeds_hold(drive: &Drive, motion: &JointMotion) -> Result<bool, MissingRatin
     let gear_max = input_rpm <= gear_max_speed_rpm(drive.gear)?;
     let gear_mean = mean_input_speed_rpm(drive.gear, motion) <= gear_average_speed_rpm(drive.gear)?;
     Ok(gear_max && gear_mean && input_rpm <= motor_max_speed_rpm(drive.motor)?)
-}
-
-/// N ω \[rpm\].
-pub(super) fn input_speed_rpm(gear: &Gear, motion: &JointMotion) -> f64 {
-    f64::from(gear.ratio) * rpm_from_rad_s(motion.speed_rad_s)
-}
-
-/// N times the mean speed over the duty cycle \[rpm\].
-pub(super) fn mean_input_speed_rpm(gear: &Gear, motion: &JointMotion) -> f64 {
-    f64::from(gear.ratio) * rpm_from_rad_s(motion.mean_speed_rad_s())
 }
 
 pub(super) fn gear_max_speed_rpm(gear: &Gear) -> Rating {

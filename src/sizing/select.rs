@@ -281,6 +281,12 @@ impl<'c> DriveTable<'c> {
         &self.limits[index]
     }
 
+    /// Whether there is a drive at an index and it holds a demand.
+    #[inline]
+    pub(crate) fn holds(&self, index: usize, demand: &JointDemand) -> bool {
+        self.limits.get(index).is_some_and(|limits| limits.hold(demand))
+    }
+
     /// Index of a legal drive by the names of its parts.
     pub fn index_of(&self, gear_id: &str, motor_id: &str) -> Option<usize> {
         (0..self.len()).find(|&i| parts(&self.drive(i)) == (gear_id, motor_id))

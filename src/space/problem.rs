@@ -302,7 +302,7 @@ impl<'c> ArmProblem<'c> {
         let demand =
             to.next_demand.take().unwrap_or_else(|| self.demand(to, slot, Some(sized.table.motion())));
         let index = match sized.all_fits {
-            true => Some(option as usize).filter(|&i| sized.table.limits(i).hold(&demand)),
+            true => Some(option as usize).filter(|&i| sized.table.holds(i, &demand)),
             false => sized.table.first_fit(&demand),
         };
         let Some(index) = index else { return false };

@@ -179,10 +179,10 @@ fn in_place(arm: &Arm, piece: usize, cases: &[LoadCase]) -> Gain {
 /// Increases mass and stiffness of a piece, that of a joint's bearing too, by the relative step; what effects add stays as
 /// it is.
 fn grow(piece: &mut Piece, element: &Element, step: f64) {
-    let (factor, mass_kg) = (1.0 + step, element.mass_kg());
+    let factor = 1.0 + step;
     match piece {
         Piece::Joint(joint) => {
-            joint.mass_kg += step * mass_kg;
+            joint.mass_kg += step * element.mass_kg();
             joint.law.curve = joint.law.curve.stiffened(factor);
             if let Element::Joint(Joint { bearing: Some(bearing), .. }) = element {
                 joint.tilt_rad_per_nm += bearing.tilt_rad_per_nm() * (1.0 / factor - 1.0);
@@ -194,7 +194,7 @@ fn grow(piece: &mut Piece, element: &Element, step: f64) {
                 beam.material.shear_modulus_pa *= factor;
                 beam.material.density_kg_m3 *= factor;
             }
-            None => link.point_mass_kg += step * mass_kg,
+            None => link.point_mass_kg += step * element.mass_kg(),
         },
     }
 }

@@ -85,6 +85,11 @@ fn by_the_full_model(problem: &ArmProblem, chosen: &[u32], factors: &Factors) ->
             Element::Joint(joint) => {
                 let Some(gear) = joint.gear.clone() else { continue };
                 joint.curve = joint.curve.stiffened(factor(Rating::GearStiffness(gear.clone())));
+                if let Some(stiffness) =
+                    joint.bearing.as_mut().and_then(|b| b.tilt_stiffness_nm_per_rad.as_mut())
+                {
+                    *stiffness *= factor(Rating::BearingStiffness(gear.clone()));
+                }
                 let Some(motor) = joint.motor.clone() else { continue };
                 let catalogs = Catalogs::builtin();
                 let motor_kg = catalogs.motor(&motor).expect("a motor").mass_kg.expect("its mass");
@@ -200,7 +205,7 @@ fn how_often_a_stiffer_gear_stays_on_the_front_follows_from_the_normal_distribut
 
 /// One joint with a rigid link that stands out along its axis: a payload at the tip loads the bearing alone.
 fn arm_on_its_bearing(bearing: Option<Value>) -> Value {
-    let mut joint = json!({"type": "joint", "name": "j", "axis": [1, 0, 0], "drive": "all_fits",
+    let mut joint = json!({"type": "joint", "name": "j", "axis": [1, 0, 0], "max_speed_rad_s": 1.0, "drive": "all_fits",
         "drives": {"gears": ["CSG-32-100"], "gear_mass": "housed_unit", "motor_models": ["ILM85x26"]}});
     bearing.into_iter().for_each(|stated| joint["bearing"] = stated);
     json!({"name": "bearing alone", "chain": [
@@ -363,9 +368,9 @@ fn ballast_study(joint: &Value) -> Value {
         j2,
         {"type": "link", "name": "arm", "vector_m": [0.8, 0, 0], "choose": {"materials": ["Aluminium 6061-T6"],
             "sections": [{"shape": "rectangular_tube", "width_mm": [80, 100, 120], "height_mm": [100, 140], "wall_mm": [3, 5]}]}},
-        {"type": "joint", "name": "j3", "axis": [0, 1, 0], "drive": "all_fits", "drives": wrist},
+        {"type": "joint", "name": "j3", "axis": [0, 1, 0], "drive": "all_fits", "drives": wrist, "bearing": null},
         {"type": "link", "name": "flange", "vector_m": [0.2, 0, 0]}],
-        "payload": {"mass_kg": 3}, "poses": [{"pose_deg": [0, 0]}]})
+        "payload": {"mass_kg": 3}, "poses": [{"pose_deg": [0, 0]}], "extras": "none"})
 }
 
 #[test]

@@ -114,7 +114,7 @@ fn swing(check: bool) -> Value {
     let mut study = json!({"name": "swing", "chain": [
         {"type": "joint", "name": "j1", "axis": [0, 0, 1], "drive": "first_fit",
          "bearing": null, "drives": {"gears": ["CSG-20-100"], "motors": ["electric"]}}, link],
-        "payload": {"mass_kg": 10}, "poses": [{"pose_deg": [0]}],
+        "payload": {"mass_kg": 12}, "poses": [{"pose_deg": [0]}],
         "motion": {"tip_speed_m_s": 2, "ramp_time_s": 0.2, "life_h": 5000}});
     if !check {
         study["motion"]["check_motor_heat"] = json!(false);
