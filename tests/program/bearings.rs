@@ -284,7 +284,11 @@ fn a_bearing_of_a_given_drive_without_names_is_said_not_to_be_checked() {
         "Output bearing not checked in j1: the drive is given without the names of gear and motor.";
     assert!(words(&given).contains(sentence));
     given["chain"][0]["motor"] = json!("F11-5");
-    assert!(!words(&given).contains("Output bearing not checked"));
+    let holds = words(&given);
+    assert!(!holds.contains("Output bearing not checked") && !holds.contains("carries too much"), "{holds}");
+    given["payload"]["mass_kg"] = json!(30);
+    let too_much = "The output bearing of j1 carries too much in";
+    assert!(words(&given).contains(too_much));
 }
 
 #[test]
