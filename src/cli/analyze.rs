@@ -11,7 +11,7 @@ use crate::input::json::Document;
 use crate::mechanics::chain::Chain;
 use crate::mechanics::modes::Mode;
 use crate::mechanics::response::{Response, frequency_response};
-use crate::mechanics::statics::{CarriedLoad, Statics};
+use crate::mechanics::statics::{JointLoad, Statics};
 use crate::report::number::percent;
 use crate::report::small_displacement::too_far;
 use crate::space::bearing_loads::resolved;
@@ -235,7 +235,7 @@ impl Solved {
     }
 
     /// The joints with what their output bearings carry at rest.
-    fn carried(&self) -> impl Iterator<Item = (&str, &CarriedLoad)> {
+    fn carried(&self) -> impl Iterator<Item = (&str, &JointLoad)> {
         let joints = self.statics.joint_torques_nm.iter().map(|(name, _)| name.as_str());
         joints.zip(&self.statics.bearing_loads)
     }
@@ -370,7 +370,7 @@ impl Solved {
 
 /// An output bearing and what it carries at rest.
 struct OnBearing<'a> {
-    load: &'a CarriedLoad,
+    load: &'a JointLoad,
     bearing: Bearing,
 }
 

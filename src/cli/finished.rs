@@ -25,6 +25,7 @@ use crate::search::near::NearDesigns;
 use crate::search::sweep::Status;
 use crate::space::design_space::DesignSpace;
 use crate::space::problem::ArmProblem;
+use crate::study::bearing_remarks::bearing_remarks;
 use crate::study::budget::budgets;
 use crate::study::definition::Study;
 use crate::study::effects::Correction;
@@ -33,7 +34,6 @@ use crate::study::page::study_page;
 use crate::study::range::range_words;
 use crate::study::table::{front_table, slug};
 use crate::study::ties::ties;
-use crate::study::unchecked::unchecked_bearings;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -211,10 +211,10 @@ impl Finished<'_> {
         }
     }
 
-    /// What a reader should know of the question, and of what could not be checked in the answer.
+    /// What a reader should know of the question, and of the output bearings in the answer.
     fn remarks(&self, front: &FrontTable) -> Vec<String> {
         let of_study = self.study.remarks.iter().cloned();
-        of_study.chain(unchecked_bearings(&self.study.space, self.catalogs, front)).collect()
+        of_study.chain(bearing_remarks(&self.study.space, self.catalogs, front)).collect()
     }
 
     /// The study's effects. An effect that describes a test does not count, and says so.

@@ -15,7 +15,7 @@ pub struct Statics {
     pub joint_torques_nm: Vec<(String, f64)>,
     /// What the output bearing of each joint carries, in the order of the torques. It is the same whether the bearing
     /// yields or not.
-    pub bearing_loads: Vec<CarriedLoad>,
+    pub bearing_loads: Vec<JointLoad>,
     /// Displacement of the tip from its place in the weightless arm, in world axes \[m\] (Eq 15).
     pub tip_displacement_m: Vector3<f64>,
     /// The part of this displacement that each element causes, base to tip. The parts add up to the whole.
@@ -32,7 +32,7 @@ pub struct Statics {
 
 /// Force and moment of everything outboard on a joint, across and along its axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CarriedLoad {
+pub struct JointLoad {
     /// Moment across the axis, at the point of the joint \[N m\].
     pub moment_nm: f64,
     /// Force across the axis \[N\].
@@ -41,7 +41,7 @@ pub struct CarriedLoad {
     pub axial_n: f64,
 }
 
-impl CarriedLoad {
+impl JointLoad {
     /// What a wrench about the world's origin puts on a joint with this axis at this place.
     fn of(wrench: &Wrench, axis: &Vector3<f64>, at_m: &Vector3<f64>) -> Self {
         let force_n = linear(wrench);
@@ -120,7 +120,7 @@ impl Posed<'_> {
                 motion += passive_twist * angle_rad;
                 out.joint_torques_nm.push((element.name.clone(), torque_nm));
                 let axis = angular(&element.twists[0]);
-                out.bearing_loads.push(CarriedLoad::of(wrench, &axis, &element.at_m));
+                out.bearing_loads.push(JointLoad::of(wrench, &axis, &element.at_m));
                 (vec![angle_rad], vec![law.tangent_compliance_rad_per_nm(torque_nm)])
             }
             Yielding::Linear(compliances) => {

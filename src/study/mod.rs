@@ -2,6 +2,7 @@
 
 pub(crate) mod alternatives;
 pub(crate) mod ballast;
+pub(crate) mod bearing_remarks;
 pub(crate) mod bounds;
 pub(crate) mod budget;
 pub(crate) mod cases;
@@ -24,7 +25,6 @@ pub(crate) mod sections;
 pub(crate) mod table;
 pub(crate) mod ties;
 pub(crate) mod tolerance;
-pub(crate) mod unchecked;
 pub(crate) mod worst_pose;
 
 pub use ballast::{BallastFlags, ballast_flags};

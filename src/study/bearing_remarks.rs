@@ -1,4 +1,4 @@
-//! Output bearings of a front that could not be checked, so that it can be said beside the front.
+//! Output bearings of a front that could not be checked or are overloaded, so that it can be said beside the front.
 
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
@@ -32,17 +32,54 @@ impl Unchecked {
     }
 }
 
-/// The output bearings of the designs of a front whose ratings are blank, and those of joints whose drive is given without
-/// the names of both parts, in sentences.
-pub(crate) fn unchecked_bearings(
-    space: &DesignSpace,
+/// What a reader of a front should know of its output bearings, in sentences: which lack ratings, which belong to drives that
+/// are given without the names of both parts, and which of a given drive carry too much.
+pub(crate) fn bearing_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &FrontTable) -> Vec<String> {
+    let joints = || {
+        space.pieces.iter().filter_map(|piece| match piece {
+            SpacePiece::Joint(joint) => Some(joint),
+            _ => None,
+        })
+    };
+    let unnamed: Vec<&str> = joints().filter(|j| is_unnamed(j)).map(|joint| joint.name.as_str()).collect();
+    let of_unnamed = (!unnamed.is_empty()).then(|| {
+        format!(
+            "Output bearing not checked in {}: the drive is given without the names of gear and motor.",
+            unnamed.join(", ")
+        )
+    });
+    let blank = unchecked(joints(), catalogs, front).sentences();
+    blank.into_iter().chain(of_unnamed).chain(joints().filter_map(|joint| overloaded(joint, front))).collect()
+}
+
+/// Whether the joint has a bearing, and a drive without the name of a gear or motor.
+fn is_unnamed(joint: &SpaceJoint) -> bool {
+    let is_named = matches!(&joint.drive, DriveChoice::Given { gear: Some(_), motor: Some(_), .. });
+    !joint.drive.is_sized() && !is_named && joint.bearing.stated().is_some()
+}
+
+/// The bearing of a drive that is given and excludes no design, if it carries too much in one.
+fn overloaded(joint: &SpaceJoint, front: &FrontTable) -> Option<String> {
+    let margins = front.numbers(&format!("{}_bearing_margin", joint.name)).into_iter().flatten();
+    let margins: Vec<f64> = margins.filter(|margin| *margin < 1.0).collect();
+    let least = margins.iter().copied().reduce(f64::min)?;
+    Some(format!(
+        "The output bearing of {} carries too much in {} of {} designs of the front, down to a margin of {least:.2}: its drive \
+         is given, so that its checks exclude nothing.",
+        joint.name,
+        margins.len(),
+        front.rows.len(),
+    ))
+}
+
+/// The bearings that lack ratings.
+fn unchecked<'s>(
+    joints: impl Iterator<Item = &'s SpaceJoint>,
     catalogs: &Catalogs,
     front: &FrontTable,
-) -> Vec<String> {
+) -> Unchecked {
     let mut unchecked = Unchecked::default();
-    let mut unnamed: Vec<&str> = Vec::new();
-    for piece in &space.pieces {
-        let SpacePiece::Joint(joint) = piece else { continue };
+    for joint in joints {
         match &joint.drive {
             DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter) => {
                 for gear in gears_of(front, joint).filter_map(|id| catalogs.gear(id).ok()) {
@@ -53,21 +90,14 @@ pub(crate) fn unchecked_bearings(
                     }
                 }
             }
-            DriveChoice::Given { gear: Some(_), motor: Some(_), .. } => {
+            DriveChoice::Given { .. } if is_unnamed(joint) => {}
+            DriveChoice::Given { .. } => {
                 let blank = joint.bearing.stated().and_then(BlankRatings::of_stated);
                 blank.into_iter().for_each(|blank| unchecked.add(blank, bearing_of(joint)));
             }
-            DriveChoice::Given { .. } => unnamed.extend(joint.bearing.stated().map(|_| joint.name.as_str())),
         }
     }
-    let mut out = unchecked.sentences();
-    if !unnamed.is_empty() {
-        out.push(format!(
-            "Output bearing not checked in {}: the drive is given without the names of gear and motor.",
-            unnamed.join(", ")
-        ));
-    }
-    out
+    unchecked
 }
 
 fn bearing_of(joint: &SpaceJoint) -> String {
