@@ -5,15 +5,16 @@ use super::values::{choice, number_list, numbers};
 use crate::arm::effect::entry::Effect;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
-use crate::arm::{Arm, JointModel, LinkModel};
+use crate::arm::{Arm, Bearing, Element, JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::mechanics::chain::Chain;
 use crate::mechanics::modes::Mode;
 use crate::mechanics::response::{Response, frequency_response};
-use crate::mechanics::statics::Statics;
+use crate::mechanics::statics::{JointLoad, Statics};
 use crate::report::number::percent;
 use crate::report::small_displacement::too_far;
+use crate::space::bearing_loads::resolved;
 use clap::Args;
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
@@ -131,8 +132,8 @@ pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Fai
     let ignored: Vec<String> = arm.ignored_effects().into_iter().map(Effect::label).collect();
     let solved: Vec<Solved> = cases.into_iter().map(|case| solve(args, &arm, case)).collect();
     Ok(match (args.json, &args.cases) {
-        (true, None) => pretty(&solved[0].to_json(&ignored)),
-        (true, Some(_)) => pretty(&Value::Array(solved.iter().map(|s| s.to_json(&ignored)).collect())),
+        (true, None) => pretty(&solved[0].to_json(&arm, &ignored)),
+        (true, Some(_)) => pretty(&Value::Array(solved.iter().map(|s| s.to_json(&arm, &ignored)).collect())),
         (false, _) => {
             solved.iter().map(|s| s.to_text(&arm)).collect::<Vec<_>>().join("\n") + &ignored_text(&ignored)
         }
@@ -194,9 +195,11 @@ fn solve(args: &AnalyzeArgs, arm: &Arm, case: LoadCase) -> Solved {
 }
 
 impl Solved {
-    fn to_json(&self, ignored: &[String]) -> Value {
+    fn to_json(&self, arm: &Arm, ignored: &[String]) -> Value {
         let torques: Map<String, Value> =
             self.statics.joint_torques_nm.iter().map(|(n, t)| (n.clone(), json!(t))).collect();
+        let moments: Map<String, Value> =
+            self.carried().map(|(joint, load)| (joint.to_string(), json!(load.moment_nm))).collect();
         let shares: Vec<Value> = self
             .statics
             .shares_m
@@ -206,6 +209,8 @@ impl Solved {
         let mut out = json!({
             "name": self.case.name,
             "joint_torque_nm": torques,
+            "bearing_moment_nm": moments,
+            "bearings": self.bearings_json(arm),
             "tip_displacement_m": self.statics.tip_displacement_m.as_slice(),
             "shares": shares,
             "modes": self.modes.iter().map(mode_json).collect::<Vec<_>>(),
@@ -227,6 +232,58 @@ impl Solved {
                 .collect();
         }
         out
+    }
+
+    /// The joints with what their output bearings carry at rest.
+    fn carried(&self) -> impl Iterator<Item = (&str, &JointLoad)> {
+        let joints = self.statics.joint_torques_nm.iter().map(|(name, _)| name.as_str());
+        joints.zip(&self.statics.bearing_loads)
+    }
+
+    /// The joints that have an output bearing, with the bearing and what it carries.
+    fn on_bearings<'a>(&'a self, arm: &'a Arm) -> impl Iterator<Item = (&'a str, OnBearing<'a>)> {
+        let bearing = |name: &str| {
+            let at = arm.chain.iter().position(|element| element.name() == name)?;
+            let Element::Joint(joint) = &arm.chain[at] else { return None };
+            Some(resolved(joint.bearing?, &joint.axis, arm.chain.get(at + 1)))
+        };
+        self.carried()
+            .filter_map(move |(name, load)| Some((name, OnBearing { load, bearing: bearing(name)? })))
+    }
+
+    fn bearings_json(&self, arm: &Arm) -> Map<String, Value> {
+        let of_joint = |(name, on): (&str, OnBearing)| {
+            let value = json!({
+                "radial_force_n": on.load.radial_n,
+                "axial_force_n": on.load.axial_n,
+                "offset_m": on.bearing.offset_m,
+                "moment_with_offset_nm": on.moment_with_offset_nm(),
+                "permissible_moment_nm": on.bearing.permissible_moment_nm,
+            });
+            (name.to_string(), value)
+        };
+        self.on_bearings(arm).map(of_joint).collect()
+    }
+
+    /// The moments on the output bearings, next to what is permitted.
+    fn bearings_text(&self, arm: &Arm, out: &mut String) {
+        let mut on_bearings = self.on_bearings(arm).peekable();
+        if on_bearings.peek().is_none() {
+            return;
+        }
+        let _ =
+            writeln!(out, "  output bearing  moment Nm   at its centre   permitted   (load at rest alone)");
+        for (name, on) in on_bearings {
+            let permitted = on.bearing.permissible_moment_nm;
+            let _ = writeln!(
+                out,
+                "  {name:<14} {:>10.3} {:>15.3} {:>11}{}",
+                on.load.moment_nm,
+                on.moment_with_offset_nm(),
+                permitted.map_or("unknown".into(), |nm| format!("{nm:.1}")),
+                if permitted.is_some_and(|nm| on.moment_with_offset_nm() > nm) { "   too much" } else { "" }
+            );
+        }
     }
 
     fn to_text(&self, arm: &Arm) -> String {
@@ -256,6 +313,7 @@ impl Solved {
             let _ = writeln!(out, "  ignored, because links are held rigid: {}", self.unbent.join(", "));
         }
         self.shares_text(&mut out);
+        self.bearings_text(arm, &mut out);
         self.modes_text(&mut out);
         self.response_text(&mut out);
         out
@@ -307,6 +365,19 @@ impl Solved {
                 r.frequency_hz, a.x, a.y, a.z, p.x, p.y, p.z
             );
         }
+    }
+}
+
+/// An output bearing and what it carries at rest.
+struct OnBearing<'a> {
+    load: &'a JointLoad,
+    bearing: Bearing,
+}
+
+impl OnBearing<'_> {
+    /// Moment at the centre of the bearing: its lever along the axis counts \[N m\].
+    fn moment_with_offset_nm(&self) -> f64 {
+        self.load.moment_nm + self.bearing.offset_m.unwrap_or_default().abs() * self.load.radial_n
     }
 }
 

@@ -25,6 +25,7 @@ use crate::search::near::NearDesigns;
 use crate::search::sweep::Status;
 use crate::space::design_space::DesignSpace;
 use crate::space::problem::ArmProblem;
+use crate::study::bearing_remarks::bearing_remarks;
 use crate::study::budget::budgets;
 use crate::study::definition::Study;
 use crate::study::effects::Correction;
@@ -190,7 +191,7 @@ impl Finished<'_> {
                 cases: self.judged_cases(),
                 ranges: range_words(&study.space),
                 not_checked: study.not_checked.clone(),
-                remarks: study.remarks.clone(),
+                remarks: self.remarks(&overall),
                 caveats: Caveats::of(self.catalogs),
                 results: self.dir.display().to_string(),
             },
@@ -208,6 +209,12 @@ impl Finished<'_> {
                 })
                 .collect(),
         }
+    }
+
+    /// What a reader should know of the question, and of the output bearings in the answer.
+    fn remarks(&self, front: &FrontTable) -> Vec<String> {
+        let of_study = self.study.remarks.iter().cloned();
+        of_study.chain(bearing_remarks(&self.study.space, self.catalogs, front)).collect()
     }
 
     /// The study's effects. An effect that describes a test does not count, and says so.
@@ -271,7 +278,7 @@ impl Finished<'_> {
             "cases": summary.facts.cases,
             "materials": materials,
             "not_checked": study.not_checked,
-            "remarks": study.remarks,
+            "remarks": summary.facts.remarks,
             "effects": self.effects(),
             "effects_mass_kg": study.space.effects_mass_kg(),
             "carried_over": corrections::to_json(self.corrections),

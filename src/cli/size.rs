@@ -7,7 +7,8 @@ use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::report::tube::section_size;
 use crate::report::words::{TERMINAL, wrap};
-use crate::sizing::check::checks;
+use crate::sizing::bearing::{BearingDemand, BearingLoad};
+use crate::sizing::checks::checks;
 use crate::sizing::demand::JointDemand;
 use crate::sizing::select::DriveTable;
 use crate::sizing::sheet::render_rows;
@@ -183,9 +184,12 @@ fn explain(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String, 
     let (slot, piece, partial) = before(problem, chosen, joint)?;
     let table = &sized(problem, piece, joint)?.table;
     let demand = problem.demand_at(&partial, slot);
-    let mut out = format!("{}\n", demand_line(joint, &demand, table));
+    let mut out = format!("{}\n{}", demand_line(joint, &demand, table), bearing_line(joint, &demand.bearing));
     for rejection in table.explain(&demand) {
         let _ = writeln!(out, "{rejection}");
+    }
+    for words in table.explain_bearings(&demand) {
+        let _ = writeln!(out, "{words}");
     }
     Ok(out)
 }
@@ -216,6 +220,23 @@ fn demand_line(joint: &str, demand: &JointDemand, table: &DriveTable) -> String 
         table.motion().speed_rad_s,
         table.len(),
         table.all_fits(demand).count()
+    )
+}
+
+/// What loads the output bearing of a joint; nothing if it is not checked.
+fn bearing_line(joint: &str, demand: &BearingDemand) -> String {
+    if demand.is_zero() {
+        return String::new();
+    }
+    let words = |load: &BearingLoad| {
+        let [moment_nm, radial_n, axial_n] = [load.moment_nm, load.radial_n, load.axial_n];
+        format!("{moment_nm:.1} N m, {radial_n:.0} N across and {axial_n:.0} N along the axis")
+    };
+    format!(
+        "joint {joint}, output bearing: at rest {}; in a ramp {}; in a stop {}\n",
+        words(&demand.at_rest),
+        words(&demand.running),
+        words(&demand.in_stop)
     )
 }
 

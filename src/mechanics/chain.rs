@@ -71,6 +71,8 @@ pub enum Yielding {
 pub struct ElasticElement {
     /// Name: that of the joint or link, `NAME.bearing`, `NAME.frame_compliance`, or `base`.
     pub name: String,
+    /// Place in the world \[m\]: of the joint, the bearing or the frame, or the root of the link.
+    pub at_m: Vector3<f64>,
     /// Motion of everything outboard per unit of each coordinate.
     pub twists: Vec<Twist>,
     /// How the coordinates follow from the forces on them.
@@ -229,6 +231,7 @@ impl Walk {
         }
         self.items.push(Item::Elastic(ElasticElement {
             name: joint.name.clone(),
+            at_m: self.at_m,
             twists: vec![rotation_twist(&axis, &self.at_m)],
             yielding: Yielding::Joint(joint.law),
             own: None,
@@ -267,6 +270,7 @@ impl Walk {
             .collect();
         ElasticElement {
             name: link.name.clone(),
+            at_m: self.at_m,
             twists,
             yielding: Yielding::Linear(beam.compliances.clone()),
             own: Some(own_mass(piece, beam, &frame, &self.at_m)),
@@ -277,6 +281,7 @@ impl Walk {
     fn tilt(&mut self, name: String, axes: &[Vector3<f64>; 2], compliance: f64) {
         self.items.push(Item::Elastic(ElasticElement {
             name,
+            at_m: self.at_m,
             twists: axes.iter().map(|axis| rotation_twist(axis, &self.at_m)).collect(),
             yielding: Yielding::Linear(vec![compliance; 2]),
             own: None,
@@ -292,6 +297,7 @@ impl Walk {
         let turn = |axis: &Vector3<f64>| rotation_twist(&(self.rotation * axis), &self.at_m);
         self.items.push(Item::Elastic(ElasticElement {
             name: format!("{name}.frame_compliance"),
+            at_m: self.at_m,
             twists: axes.iter().map(turn).collect(),
             yielding: Yielding::Linear(compliances),
             own: None,

@@ -32,7 +32,7 @@ pub use centre_line::Station;
 pub use chain::{Chain, Posed};
 pub use modes::{Mode, Modes};
 pub use response::{Response, frequency_response};
-pub use statics::{LinkRoot, Statics};
+pub use statics::{JointLoad, LinkRoot, Statics};
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 

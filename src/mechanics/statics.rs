@@ -13,6 +13,9 @@ use nalgebra::Vector3;
 pub struct Statics {
     /// Torque of gravity and load on each joint about its axis \[N m\] (Eq 7), with the name of the joint.
     pub joint_torques_nm: Vec<(String, f64)>,
+    /// What the output bearing of each joint carries, in the order of the torques. It is the same whether the bearing
+    /// yields or not.
+    pub bearing_loads: Vec<JointLoad>,
     /// Displacement of the tip from its place in the weightless arm, in world axes \[m\] (Eq 15).
     pub tip_displacement_m: Vector3<f64>,
     /// The part of this displacement that each element causes, base to tip. The parts add up to the whole.
@@ -25,6 +28,27 @@ pub struct Statics {
     pub tangent_compliances: Vec<Vec<f64>>,
     /// Force and moment on the base, about the world's origin.
     pub base_wrench: Wrench,
+}
+
+/// Force and moment of everything outboard on a joint, across and along its axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointLoad {
+    /// Moment across the axis, at the point of the joint \[N m\].
+    pub moment_nm: f64,
+    /// Force across the axis \[N\].
+    pub radial_n: f64,
+    /// Force along the axis \[N\].
+    pub axial_n: f64,
+}
+
+impl JointLoad {
+    /// What a wrench about the world's origin puts on a joint with this axis at this place.
+    fn of(wrench: &Wrench, axis: &Vector3<f64>, at_m: &Vector3<f64>) -> Self {
+        let force_n = linear(wrench);
+        let moment_nm = angular(wrench) - at_m.cross(&force_n);
+        let across = |v: &Vector3<f64>| (v - axis * axis.dot(v)).norm();
+        Self { moment_nm: across(&moment_nm), radial_n: across(&force_n), axial_n: axis.dot(&force_n).abs() }
+    }
 }
 
 /// Force and moment at the root of a link, in its section frame.
@@ -48,6 +72,7 @@ impl Posed<'_> {
         let transferred = self.transferred();
         let mut out = Statics {
             joint_torques_nm: Vec::new(),
+            bearing_loads: Vec::new(),
             tip_displacement_m: Vector3::zeros(),
             shares_m: Vec::new(),
             deformations: Vec::new(),
@@ -62,6 +87,7 @@ impl Posed<'_> {
             }
         }
         out.joint_torques_nm.reverse();
+        out.bearing_loads.reverse();
         out.shares_m.reverse();
         out.deformations.reverse();
         out.link_roots.reverse();
@@ -93,6 +119,8 @@ impl Posed<'_> {
                 let angle_rad = law.rising_angle_rad(torque_nm);
                 motion += passive_twist * angle_rad;
                 out.joint_torques_nm.push((element.name.clone(), torque_nm));
+                let axis = angular(&element.twists[0]);
+                out.bearing_loads.push(JointLoad::of(wrench, &axis, &element.at_m));
                 (vec![angle_rad], vec![law.tangent_compliance_rad_per_nm(torque_nm)])
             }
             Yielding::Linear(compliances) => {

@@ -33,19 +33,41 @@ pub struct NextPart {
     pub gain: Gain,
 }
 
+/// What a row of a budget is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PieceKind {
+    /// A joint: its drive, with what belongs to it.
+    Joint,
+    /// The output bearing of a joint. It has a share of its own; its mass and what a kilogram buys are the joint's.
+    Bearing,
+    /// A link.
+    Link,
+}
+
+impl PieceKind {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Joint => "joint",
+            Self::Bearing => "bearing",
+            Self::Link => "link",
+        }
+    }
+}
+
 /// One piece of an arm and what a kilogram buys there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BudgetRow {
-    /// Joint or link.
+    /// Joint, output bearing (`NAME.bearing`) or link.
     pub piece: String,
-    /// Whether it is a joint.
-    pub is_joint: bool,
-    /// Its mass \[kg\].
+    /// What it is.
+    pub kind: PieceKind,
+    /// Its mass \[kg\]; 0 for a bearing, whose mass is in that of its joint.
     pub mass_kg: f64,
     /// Its part of the tip's deflection in the worst case, from 0 to 1; negative if it lifts the tip.
     pub share: f64,
-    /// What a kilogram buys if mass and stiffness of the piece grow in proportion.
-    pub in_place: Gain,
+    /// What a kilogram buys if mass and stiffness of the piece grow in proportion; `None` for a bearing, which grows with its
+    /// joint.
+    pub in_place: Option<Gain>,
     /// The heavier part that lowers the deflection most per kilogram, if any part helps.
     pub next_part: Option<NextPart>,
 }
@@ -71,6 +93,8 @@ pub struct PickBudget {
     pub design_id: String,
     /// Its mass \[kg\].
     pub mass_kg: f64,
+    /// What its joints weigh beyond drives and bearings, in that mass \[kg\].
+    pub extras_mass_kg: f64,
     /// Lower bounds on its mass; `None` if they could not be worked out.
     pub bound: Option<PickBound>,
     /// Pieces that weigh, base to tip.
@@ -83,15 +107,15 @@ impl PickBudget {
         100.0 * (self.mass_kg / mass_kg - 1.0)
     }
 
-    /// The joints' share of the tip deflection, from 0 to 1.
+    /// The share of joints and their bearings of the tip deflection, from 0 to 1.
     fn joints_share(&self) -> f64 {
-        self.rows.iter().filter(|r| r.is_joint).map(|r| r.share).sum()
+        self.rows.iter().filter(|r| r.kind != PieceKind::Link).map(|r| r.share).sum()
     }
 
-    /// The joint (or link) at which an added kilogram reduces the tip deflection most.
-    fn best(&self, joint: bool) -> Option<&BudgetRow> {
-        let of_kind = self.rows.iter().filter(|r| r.is_joint == joint);
-        of_kind.min_by(|a, b| a.in_place.mm_per_kg.total_cmp(&b.in_place.mm_per_kg))
+    /// The joint (or link) at which an added kilogram reduces the tip deflection most, and what it buys there.
+    fn best(&self, kind: PieceKind) -> Option<(&BudgetRow, Gain)> {
+        let of_kind = self.rows.iter().filter(|r| r.kind == kind).filter_map(|r| Some((r, r.in_place?)));
+        of_kind.min_by(|a, b| a.1.mm_per_kg.total_cmp(&b.1.mm_per_kg))
     }
 
     fn title(&self) -> String {
@@ -105,23 +129,22 @@ impl PickBudget {
             self.title(),
             percent(100.0 * self.joints_share(), 0)
         );
-        let (joint, link) = (self.best(true), self.best(false));
-        let paying = |row: Option<&BudgetRow>| row.is_some_and(|r| r.in_place.mm_per_kg < 0.0);
+        let (joint, link) = (self.best(PieceKind::Joint), self.best(PieceKind::Link));
         let [first, second] = match (joint, link) {
-            (Some(j), Some(l)) if l.in_place.mm_per_kg < j.in_place.mm_per_kg => [link, joint],
+            (Some((_, j)), Some((_, l))) if l.mm_per_kg < j.mm_per_kg => [link, joint],
             (None, _) => [link, joint],
             _ => [joint, link],
         };
         match (first, second) {
-            (Some(best), other) if paying(first) => {
-                let other = other.map_or(String::new(), |o| {
-                    format!("; at the best {} ({}) it {}", kind(o), o.piece, effect(&o.in_place))
+            (Some((best, gain)), other) if gain.mm_per_kg < 0.0 => {
+                let other = other.map_or(String::new(), |(o, gain)| {
+                    format!("; at the best {} ({}) it {}", o.kind.word(), o.piece, effect(&gain))
                 });
-                let place = if best.is_joint { "the drive of" } else { "the link" };
+                let place = if best.kind == PieceKind::Joint { "the drive of" } else { "the link" };
                 format!(
                     "{lead}; add mass first to {place} {}, where it {}{other}.{}",
                     best.piece,
-                    effect(&best.in_place),
+                    effect(&gain),
                     self.mode_advice(best)
                 )
             }
@@ -131,12 +154,12 @@ impl PickBudget {
 
     /// Where the lowest mode rises most, if that is another piece.
     fn mode_advice(&self, told: &BudgetRow) -> String {
-        let best = self.rows.iter().max_by(|a, b| a.in_place.hz_per_kg.total_cmp(&b.in_place.hz_per_kg));
-        best.filter(|b| b.piece != told.piece && b.in_place.hz_per_kg > NOTHING).map_or(
+        let rises = self.rows.iter().filter_map(|r| Some((r, r.in_place?.hz_per_kg)));
+        let best = rises.max_by(|a, b| a.1.total_cmp(&b.1));
+        best.filter(|(row, hz)| row.piece != told.piece && *hz > NOTHING).map_or(
             String::new(),
-            |best| {
-                let hz = significant(best.in_place.hz_per_kg, 2);
-                format!(" The lowest mode rises most at {}, by {hz} Hz/kg.", best.piece)
+            |(row, hz)| {
+                format!(" The lowest mode rises most at {}, by {} Hz/kg.", row.piece, significant(hz, 2))
             },
         )
     }
@@ -147,15 +170,12 @@ impl PickBudget {
             "names": self.names,
             "design_id": self.design_id,
             "mass_kg": self.mass_kg,
+            "extras_mass_kg": self.extras_mass_kg,
             "mass_lower_bound_kg": self.bound.map(|b| b.mass_kg),
             "mixture_kg": self.bound.map(|b| b.mixture_kg),
             "loads_oppose": self.bound.map(|b| b.loads_oppose),
         })
     }
-}
-
-fn kind(row: &BudgetRow) -> &'static str {
-    if row.is_joint { "joint" } else { "link" }
 }
 
 /// Changes smaller than this in a kilogram are rounding errors \[mm or Hz\].
@@ -212,11 +232,15 @@ fn budget_table(pick: &PickBudget, headers: [&str; 9]) -> Table {
             |cell: fn(&NextPart, &BudgetRow) -> String| next.map_or(String::new(), |n| cell(n, row));
         let cells = [
             row.piece.clone(),
-            significant(row.mass_kg, 4),
+            row.in_place.map_or(String::new(), |_| significant(row.mass_kg, 4)),
             fixed(100.0 * row.share, 1),
-            signed(row.in_place.mm_per_kg),
-            signed(row.in_place.hz_per_kg),
-            next.map_or("none".into(), |n| n.name.clone()),
+            row.in_place.map_or(String::new(), |gain| signed(gain.mm_per_kg)),
+            row.in_place.map_or(String::new(), |gain| signed(gain.hz_per_kg)),
+            match (next, row.kind) {
+                (Some(next), _) => next.name.clone(),
+                (None, PieceKind::Bearing) => "with its joint".into(),
+                (None, _) => "none".into(),
+            },
             of_next(|n, row| significant(n.mass_kg - row.mass_kg, 3)),
             of_next(|n, _| signed(n.gain.mm_per_kg)),
             of_next(|n, _| signed(n.gain.hz_per_kg)),
@@ -335,10 +359,15 @@ pub fn budget_csv(budgets: &[PickBudget]) -> String {
     let mut out = csv_line(&header.map(String::from));
     for pick in budgets {
         for row in &pick.rows {
-            let mut cells =
-                vec![pick.names.join(", "), pick.design_id.clone(), row.piece.clone(), kind(row).to_string()];
-            let numbers = [row.mass_kg, row.share, row.in_place.mm_per_kg, row.in_place.hz_per_kg];
-            cells.extend(numbers.map(shortest));
+            let mut cells = vec![
+                pick.names.join(", "),
+                pick.design_id.clone(),
+                row.piece.clone(),
+                row.kind.word().to_string(),
+            ];
+            cells.extend([row.mass_kg, row.share].map(shortest));
+            let in_place = row.in_place.map(|gain| [gain.mm_per_kg, gain.hz_per_kg].map(shortest));
+            cells.extend(in_place.unwrap_or_default());
             match &row.next_part {
                 Some(next) => {
                     cells.push(next.name.clone());

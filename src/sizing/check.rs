@@ -1,13 +1,6 @@
-//! The checks of a drive, one by one, for people: needed, allowed, margin, and whether a check could be made at all.
+//! One check of a drive, for people: needed, allowed, margin, and whether it could be made at all.
 
-use super::bearing::{self, BearingDemand, BearingLimits, BearingLoad};
-use super::demand::{JointDemand, JointMotion};
-use super::drive::{Drive, MissingRating, Rating, known};
-use super::fit::{FitRequirement, LinkRoom, MotorPlace};
-use super::heat::{self, MotorHeat};
-use super::limits as limit;
-use crate::arm::bearing::Bearing;
-use crate::catalog::gear::Gear;
+use super::drive::{MissingRating, Rating};
 use std::fmt;
 
 /// One limit of a gear or a motor.
@@ -232,7 +225,15 @@ impl fmt::Display for Check {
             (_, Some(needed), Some(allowed)) => {
                 let digits = digits_that_differ(needed, allowed);
                 let unit = self.kind.unit();
-                write!(f, "{name} {needed:.digits$} {unit} needed, {allowed:.digits$} allowed")
+                match self.kind {
+                    CheckKind::BearingRest | CheckKind::BearingStop => {
+                        write!(f, "{name} {needed:.digits$} needed, {allowed:.digits$} reached")
+                    }
+                    CheckKind::BearingLife => {
+                        write!(f, "{name} {needed:.digits$} {unit} needed, {allowed:.digits$} reached")
+                    }
+                    _ => write!(f, "{name} {needed:.digits$} {unit} needed, {allowed:.digits$} allowed"),
+                }
             }
             _ => write!(f, "{name}"),
         }
@@ -257,7 +258,7 @@ fn digits_that_differ(a: f64, b: f64) -> usize {
 
 /// Compares `load` with `threshold`. `needed` and `allowed` say the same thing in the units that people use, but they are
 /// not compared: rounding could decide otherwise than the search did.
-fn check(kind: CheckKind, needed: Rating, allowed: Rating, load: f64, threshold: Rating) -> Check {
+pub(super) fn check(kind: CheckKind, needed: Rating, allowed: Rating, load: f64, threshold: Rating) -> Check {
     let state = match threshold {
         Ok(threshold) if load <= threshold => CheckState::Holds,
         Ok(_) => CheckState::Fails,
@@ -269,194 +270,4 @@ fn check(kind: CheckKind, needed: Rating, allowed: Rating, load: f64, threshold:
 /// A check that compares the printed numbers themselves.
 pub(super) fn plain(kind: CheckKind, needed: f64, allowed: Rating) -> Check {
     check(kind, Ok(needed), allowed, needed, allowed)
-}
-
-/// The checks of a gear and of the output bearing, which do not depend on the motor. The bearing is checked if the demand
-/// has loads on it.
-pub fn gear_checks(
-    gear: &Gear,
-    bearing: Option<&Bearing>,
-    motion: &JointMotion,
-    demand: &JointDemand,
-) -> Vec<Check> {
-    let mut checks = vec![
-        plain(CheckKind::GearPeak, demand.peak_torque_nm(), limit::gear_peak_nm(gear)),
-        gear_mean(gear, demand),
-        plain(CheckKind::GearStop, demand.stop_torque_nm, limit::gear_momentary_nm(gear)),
-        plain(CheckKind::GearBuckling, demand.stop_torque_nm, limit::gear_buckling_nm(gear)),
-        plain(CheckKind::GearRatcheting, demand.stop_torque_nm, limit::gear_ratcheting_nm(gear)),
-        plain(CheckKind::GearSpeed, limit::input_speed_rpm(gear, motion), limit::gear_max_speed_rpm(gear)),
-        plain(
-            CheckKind::GearMeanSpeed,
-            limit::mean_input_speed_rpm(gear, motion),
-            limit::gear_average_speed_rpm(gear),
-        ),
-        gear_life(gear, motion, demand),
-    ];
-    if let Some(stops) = motion.emergency_stops {
-        checks.push(plain(CheckKind::GearStops, stops, Ok(limit::stops_allowed(gear, motion))));
-    }
-    checks.extend(gear_fits(gear, &motion.fit, &demand.room));
-    if let Some(bearing) = bearing.filter(|_| !demand.bearing.is_zero()) {
-        checks.extend(bearing_checks(bearing, motion, &demand.bearing));
-    }
-    checks
-}
-
-/// The checks of an output bearing: moment, static safety at rest and in a stop, life.
-fn bearing_checks(bearing: &Bearing, motion: &JointMotion, demand: &BearingDemand) -> [Check; 4] {
-    let speed_rad_s = motion.mean_speed_rad_s();
-    let limits = BearingLimits::of(Some(bearing), speed_rad_s, motion.life_h);
-    let ratings = &bearing.ratings;
-    let known_pitch = |rating, name| {
-        known(ratings.pitch_diameter_m, "bearing_pitch_diameter_m").and_then(|_| known(rating, name))
-    };
-    let moment_nm = limits.moment_nm(&demand.running);
-    let permissible = known(bearing.permissible_moment_nm, "permissible_tilting_moment_nm");
-    let safety = |kind, asked, load: &BearingLoad, limit_n: f64| {
-        let load_n = limits.static_load_n(load);
-        let rating = known_pitch(ratings.static_load_rating_n, "bearing_static_load_rating_n");
-        check(kind, Ok(asked), rating.map(|c0_n| c0_n / load_n), load_n, rating.map(|_| limit_n))
-    };
-    let load_n = limits.dynamic_load_n(&demand.at_rest);
-    let rating = known_pitch(ratings.dynamic_load_rating_n, "bearing_dynamic_load_rating_n");
-    let life = rating.map(|c_n| bearing::life_h(c_n, load_n, speed_rad_s));
-    [
-        plain(CheckKind::BearingMoment, moment_nm, permissible),
-        safety(CheckKind::BearingRest, bearing::SAFETY_AT_REST, &demand.at_rest, limits.at_rest_n),
-        safety(CheckKind::BearingStop, bearing::SAFETY_IN_A_STOP, &demand.in_stop, limits.in_stop_n),
-        check(CheckKind::BearingLife, Ok(motion.life_h), life, load_n, rating.map(|_| limits.life_n)),
-    ]
-}
-
-fn gear_mean(gear: &Gear, demand: &JointDemand) -> Check {
-    check(
-        CheckKind::GearMean,
-        Ok(demand.mean_torque_nm()),
-        limit::gear_average_nm(gear),
-        demand.mean_torque_cubed_nm3,
-        limit::gear_average_cubed_nm3(gear),
-    )
-}
-
-/// L10 = L_ref (T_rated / T_mean)³ (2000 rpm / n_mean), compared with the required life.
-fn gear_life(gear: &Gear, motion: &JointMotion, demand: &JointDemand) -> Check {
-    let life_h = limit::life_product(gear, motion).map(|product| product / demand.mean_torque_cubed_nm3);
-    check(
-        CheckKind::GearLife,
-        Ok(motion.life_h),
-        life_h,
-        demand.mean_torque_cubed_nm3,
-        limit::gear_life_cubed_nm3(gear, motion),
-    )
-}
-
-/// What is asked of the sizes of a gear.
-fn gear_fits(gear: &Gear, fit: &FitRequirement, room: &LinkRoom) -> impl Iterator<Item = Check> {
-    let width = known(gear.envelope.outer_diameter_m, "gear outer_diameter_mm");
-    let bore = known(gear.envelope.hollow_bore_m, "gear hollow_bore_mm");
-    let width = at_most(CheckKind::GearWidth, width, room.gear_m);
-    [width, fit.least_bore_m().map(|least_m| bore_check(CheckKind::GearBore, least_m, bore))]
-        .into_iter()
-        .flatten()
-}
-
-/// What is asked of the sizes of a motor, and of motor and gear together.
-fn motor_fits(drive: &Drive, fit: &FitRequirement, room: &LinkRoom) -> impl Iterator<Item = Check> {
-    let (gear, motor) = (&drive.gear.envelope, &drive.motor.envelope);
-    let width = known(motor.outer_diameter_m, "motor outer_diameter_mm");
-    let blank = if gear.length_m.is_none() { "gear length_mm" } else { "motor length_mm" };
-    let length = known(fit.length_m(drive.gear, drive.motor), blank);
-    let bore = known(motor.hollow_bore_m, "motor hollow_bore_mm");
-    let least_bore_m = fit.least_bore_m().filter(|_| fit.motor == MotorPlace::Behind);
-    let checks = [
-        at_most(CheckKind::MotorWidth, width, room.motor_m),
-        least_bore_m.map(|least_m| bore_check(CheckKind::MotorBore, least_m, bore)),
-        at_most(CheckKind::DriveLength, length, fit.most_length_m().unwrap_or(f64::INFINITY)),
-    ];
-    checks.into_iter().flatten()
-}
-
-/// Whether a size is at most what there is room for; `None` if there is no end of room.
-fn at_most(kind: CheckKind, size: Rating, room_m: f64) -> Option<Check> {
-    let in_mm = |m: f64| m * 1e3;
-    let needed =
-        || check(kind, size.map(in_mm), Ok(in_mm(room_m)), size.unwrap_or(0.0), size.map(|_| room_m));
-    room_m.is_finite().then(needed)
-}
-
-/// Whether cables that need a passage of this diameter go through a bore.
-fn bore_check(kind: CheckKind, least_m: f64, bore: Rating) -> Check {
-    check(kind, Ok(least_m * 1e3), bore.map(|m| m * 1e3), least_m, bore)
-}
-
-/// The checks of a motor behind its gear. Its heat is checked unless the study turns that off. An unknown mass of the pair
-/// is listed too.
-pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
-    let mut checks = vec![motor_hold(drive, motion, demand), motor_peak(drive, motion, demand)];
-    if motion.checks_motor_heat {
-        checks.push(motor_rms(drive, motion, demand));
-    }
-    checks.push(plain(
-        CheckKind::MotorSpeed,
-        limit::input_speed_rpm(drive.gear, motion),
-        limit::motor_max_speed_rpm(drive.motor),
-    ));
-    checks.extend(motor_fits(drive, &motion.fit, &demand.room));
-    if let Err(rating) = drive.mass_kg() {
-        let state = CheckState::NotChecked(rating);
-        checks.push(Check { kind: CheckKind::Mass, needed: None, allowed: None, state });
-    }
-    checks
-}
-
-/// T / (N η), compared with the continuous torque; a brake holds any.
-fn motor_hold(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
-    let rated = known(drive.motor.rated_torque_nm, "motor rated_torque_nm");
-    check(
-        CheckKind::MotorHold,
-        drive.gain().map(|gain| demand.static_torque_nm / gain),
-        if motion.has_brake { Ok(f64::INFINITY) } else { rated },
-        demand.static_torque_nm,
-        limit::motor_hold_nm(drive, motion),
-    )
-}
-
-/// (T + T_lin) / (N η) + J_in N α, compared with the peak torque.
-fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
-    let peak_nm = demand.peak_torque_nm();
-    check(
-        CheckKind::MotorPeak,
-        drive.peak_motor_torque_nm(motion, peak_nm),
-        known(drive.motor.peak_torque_nm, "peak_torque_nm"),
-        peak_nm,
-        limit::motor_peak_nm(drive, motion),
-    )
-}
-
-/// Root mean square of the motor's torque over the cycle, compared with its continuous torque at the cruising speed.
-fn motor_rms(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
-    let input_rpm = limit::input_speed_rpm(drive.gear, motion);
-    let continuous_nm = heat::continuous_torque_nm(drive.motor, input_rpm);
-    let used = MotorHeat::of(drive, motion).map(|heat| heat.share_squared(demand));
-    let needed = used.and_then(|used| Ok(used.sqrt() * continuous_nm?));
-    check(CheckKind::MotorRms, needed, continuous_nm, used.unwrap_or(f64::NAN), used.map(|_| 1.0))
-}
-
-/// All checks of a drive: first those of the gear, then those of the motor.
-pub fn checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
-    let mut all = gear_checks(drive.gear, drive.bearing().as_ref(), motion, demand);
-    all.extend(motor_checks(drive, motion, demand));
-    all
-}
-
-/// Whether every check holds. A check that could not be made does not hold.
-pub fn all_hold(checks: &[Check]) -> bool {
-    checks.iter().all(Check::holds)
-}
-
-/// The check that binds: the one with the smallest torque margin among those that could be made.
-pub fn binding(checks: &[Check]) -> Option<&Check> {
-    let made = checks.iter().filter_map(|c| Some((c.torque_margin()?, c)));
-    made.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, check)| check)
 }

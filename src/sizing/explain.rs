@@ -1,7 +1,8 @@
 //! Explanations: why a part was rejected, and which relaxation helps if no drive holds.
 
-use super::check::{Check, CheckState};
-use super::check::{binding, checks, digits_of, gear_checks, motor_checks};
+use super::bearing_checks::bearing_that_holds;
+use super::check::{Check, CheckState, digits_of};
+use super::checks::{binding, checks, gear_checks, motor_checks};
 use super::demand::JointDemand;
 use super::drive::Drive;
 use super::limits::DriveLimits;
@@ -145,6 +146,10 @@ impl fmt::Display for Shortfall {
             }
             true => f.write_str("; neither less torque nor less speed alone lets one hold"),
             false => write!(f, "; smallest relaxation that helps: {}", steps.join("; or ")),
+        }?;
+        match bearing_that_holds(&self.check) {
+            Some(bearing) => write!(f, "; or {bearing}"),
+            None => Ok(()),
         }
     }
 }
@@ -298,7 +303,7 @@ fn nearest_trial<'t, 'c: 't>(trials: impl Iterator<Item = &'t Trial<'c>>) -> Opt
 }
 
 /// The checks that do not hold. The worst comes first; checks that could not be made come last.
-fn not_holding(checks: Vec<Check>) -> Vec<Check> {
+pub(super) fn not_holding(checks: Vec<Check>) -> Vec<Check> {
     let mut failed: Vec<_> = checks.into_iter().filter(|c| !c.holds()).collect();
     let key = |c: &Check| c.torque_margin().unwrap_or(f64::INFINITY);
     failed.sort_by(|a, b| key(a).total_cmp(&key(b)));

@@ -2,8 +2,9 @@
 //!
 //! The study fixes speed, acceleration and duty cycle of a joint, so every check of a drive compares one torque with one
 //! number. [`DriveLimits`] has these numbers. Three checks are not one torque: that of the output bearing (see
-//! [`BearingLimits`]), that of heat, which compares a mean square with 1, and that of the room ([`DriveWidths`]). A search compares these numbers and nothing
-//! else. The printed checks ([`check`](super::check)) are decided by the same thresholds.
+//! [`BearingLimits`]), that of heat, which compares a mean square with 1, and that of the room ([`DriveWidths`]). A search
+//! compares these numbers and nothing else. The printed checks ([`checks`](super::checks)) are decided by the same
+//! thresholds.
 
 use super::bearing::BearingLimits;
 use super::demand::{JointDemand, JointMotion};

@@ -30,15 +30,17 @@
 //! rated speed.
 
 pub(crate) mod bearing;
+pub(crate) mod bearing_advice;
+pub(crate) mod bearing_checks;
 pub(crate) mod check;
-#[cfg(test)]
-mod check_tests;
+pub(crate) mod checks;
 pub(crate) mod demand;
 pub(crate) mod drive;
 pub(crate) mod duty;
 pub(crate) mod eight;
 pub(crate) mod explain;
 pub(crate) mod fit;
+pub(crate) mod fit_checks;
 pub(crate) mod heat;
 pub(crate) mod limits;
 pub(crate) mod requirement;
@@ -49,7 +51,9 @@ pub(crate) mod stated;
 pub(crate) mod testing;
 
 pub use bearing::{BearingDemand, BearingLimits, BearingLoad};
-pub use check::{Check, CheckKind, CheckState, all_hold, binding, checks, gear_checks, motor_checks};
+pub use bearing_checks::{BlankRatings, bearing_margin};
+pub use check::{Check, CheckKind, CheckState};
+pub use checks::{all_hold, binding, checks, gear_checks, motor_checks};
 pub use demand::{
     JointDemand, JointMotion, LinearReading, cubic_mean_cubed_nm3, linear_torque_nm, stop_torque_nm,
 };

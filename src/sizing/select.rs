@@ -219,6 +219,11 @@ impl<'c> DriveTable<'c> {
         Drive { gear, motor, gear_mass: self.gear_mass, bearing: self.bearing, extras: self.extras }
     }
 
+    /// Where the output bearing of the joint comes from.
+    pub(super) fn bearing_source(&self) -> &BearingSource {
+        &self.bearing
+    }
+
     /// The output bearing of the joint with a gear.
     pub(super) fn bearing_of(&self, gear: &Gear) -> Option<Bearing> {
         self.bearing.with_gear(gear, self.gear_mass)
@@ -346,7 +351,7 @@ mod tests {
     };
     use super::super::testing::{hfuc_40_100, hfuc_58_100, motor};
     use super::*;
-    use crate::sizing::check::{all_hold, checks};
+    use crate::sizing::checks::{all_hold, checks};
     use crate::sizing::requirement::MotionRequirement;
     use proptest::prelude::*;
 

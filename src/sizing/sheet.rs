@@ -1,10 +1,13 @@
 //! The sizing table: the numbers of one joint in a row, from the tip to the base.
 
-use super::check::{Check, CheckKind, CheckState, binding, checks, motor_checks};
+use super::bearing_checks::{BlankRatings, bearing_margin};
+use super::check::{Check, CheckKind, CheckState};
+use super::checks::{binding, checks, motor_checks};
 use super::demand::{JointDemand, JointMotion};
 use super::drive::{Drive, rotary_torque_output_nm};
 use super::limits::{input_speed_rpm, mean_input_speed_rpm, stops_allowed};
 use super::rpm_from_rad_s;
+use crate::arm::bearing::BearingSource;
 use crate::catalog::gear::Gear;
 use serde::Serialize;
 
@@ -40,6 +43,20 @@ pub struct JointSizingRow {
     pub cycle_efficiency: Option<f64>,
     /// The margin of the motor's heat at this efficiency.
     pub motor_rms_margin_at_cycle_efficiency: Option<f64>,
+    /// Largest moment across the axis at the centre of the output bearing while a joint is in its ramp \[N m\]; like all
+    /// numbers of the bearing `None` if the joint has none.
+    pub bearing_moment_nm: Option<f64>,
+    /// Moment that the bearing permits while the joint turns \[N m\].
+    pub bearing_moment_permissible_nm: Option<f64>,
+    /// Static safety C₀ / P₀ of the bearing at rest.
+    pub bearing_safety_at_rest: Option<f64>,
+    /// Static safety of the bearing in an emergency stop.
+    pub bearing_safety_in_a_stop: Option<f64>,
+    /// L10 of the bearing \[h\].
+    pub bearing_life_h: Option<f64>,
+    /// The factor by which all loads on the bearing may grow until one of its checks fails. Also `None` if nothing loads it
+    /// or no check could be made.
+    pub bearing_margin: Option<f64>,
     /// Speed of the joint \[rpm\].
     pub joint_speed_rpm: f64,
     /// Speed of the motor \[rpm\].
@@ -83,7 +100,9 @@ impl JointSizingRow {
         let checks = checks(drive, motion, demand);
         let bound = binding(&checks);
         let finite = |x: &f64| x.is_finite();
-        let rms = checks.iter().find(|c| c.kind == CheckKind::MotorRms);
+        let of_kind = |kind| checks.iter().find(|c| c.kind == kind);
+        let allowed = |kind| of_kind(kind).and_then(|c: &Check| c.allowed).filter(finite);
+        let rms = of_kind(CheckKind::MotorRms);
         let rotary_output = drive
             .input_inertia_kgm2()
             .map(|inertia| rotary_torque_output_nm(inertia, drive.ratio(), motion.acceleration_rad_s2));
@@ -102,6 +121,12 @@ impl JointSizingRow {
             motor_rms_margin: rms.and_then(Check::margin).filter(finite),
             cycle_efficiency: None,
             motor_rms_margin_at_cycle_efficiency: None,
+            bearing_moment_nm: of_kind(CheckKind::BearingMoment).and_then(|c| c.needed),
+            bearing_moment_permissible_nm: allowed(CheckKind::BearingMoment),
+            bearing_safety_at_rest: allowed(CheckKind::BearingRest),
+            bearing_safety_in_a_stop: allowed(CheckKind::BearingStop),
+            bearing_life_h: allowed(CheckKind::BearingLife),
+            bearing_margin: bearing_margin(&checks).filter(finite),
             joint_speed_rpm: rpm_from_rad_s(motion.speed_rad_s),
             motor_speed_rpm: input_speed_rpm(drive.gear, motion),
             mean_input_speed_rpm: mean_input_speed_rpm(drive.gear, motion),
@@ -110,11 +135,11 @@ impl JointSizingRow {
             motor: drive.motor.id.clone(),
             binds: bound.map(|c| c.kind.label()),
             margin: bound.and_then(Check::torque_margin).filter(finite),
-            life_h: life_h(&checks).filter(finite),
+            life_h: allowed(CheckKind::GearLife),
             mass_kg: drive.mass_kg().ok(),
             mass_passed_inward_kg,
-            fails: remarks(&checks, |state| state == CheckState::Fails),
-            not_checked: remarks(&checks, |state| matches!(state, CheckState::NotChecked(_))),
+            fails: remarks(checks.iter().filter(|c| c.state == CheckState::Fails)),
+            not_checked: not_checked(drive, &checks),
             checks,
         }
     }
@@ -141,13 +166,27 @@ impl JointSizingRow {
     }
 }
 
-fn life_h(checks: &[Check]) -> Option<f64> {
-    checks.iter().find(|c| c.kind == CheckKind::GearLife)?.allowed
+/// The checks in words, with the part that they are about.
+fn remarks<'c>(checks: impl Iterator<Item = &'c Check>) -> Vec<String> {
+    let part = |c: &Check| match c.kind {
+        kind if kind.is_bearing() => "",
+        kind if kind.is_gear() => "gear ",
+        _ => "motor ",
+    };
+    checks.map(|c| format!("{}{c}", part(c))).collect()
 }
 
-fn remarks(checks: &[Check], wanted: impl Fn(CheckState) -> bool) -> Vec<String> {
-    let part = |c: &Check| if c.kind.is_gear() { "gear" } else { "motor" };
-    checks.iter().filter(|c| wanted(c.state)).map(|c| format!("{} {c}", part(c))).collect()
+/// What could not be checked, in words. One line is enough for a bearing, whatever it lacks.
+fn not_checked(drive: &Drive, checks: &[Check]) -> Vec<String> {
+    let open = |c: &&Check| matches!(c.state, CheckState::NotChecked(_)) && !c.kind.is_bearing();
+    let mut out = remarks(checks.iter().filter(open));
+    let whose = match drive.bearing {
+        BearingSource::OfGear => drive.gear.id.as_str(),
+        BearingSource::Stated(_) => "the stated bearing",
+    };
+    let blank = BlankRatings::of(&drive.bearing, drive.gear, drive.gear_mass);
+    out.extend(blank.map(|blank| blank.words(&[whose])));
+    out
 }
 
 /// Largest number of characters of a motor's name in the table.
@@ -187,18 +226,34 @@ const CYCLE_HEADERS: [Header; 9] = [
     ("stops", "-", true),
 ];
 
+/// What the output bearings carry.
+const BEARING_HEADERS: [Header; 7] = [
+    ("joint", "", false),
+    ("moment", "N m", true),
+    ("allowed", "N m", true),
+    ("fs rest", "-", true),
+    ("fs stop", "-", true),
+    ("life", "h", true),
+    ("margin", "-", true),
+];
+
 /// What the tilde means.
 const REPRESENTATIVE: &str = "~ at the gear's efficiency at the mean speed and torque of the cycle, by representative \
     curves; the checks use the rated one\n";
 
-/// The rows as two text tables of about 120 characters a line, the second for the whole cycle. Remarks on checks that
-/// failed or could not be made follow them.
+/// The rows as text tables of about 120 characters a line: the drives, the whole cycle, and the output bearings if there
+/// are any. Remarks on checks that failed or could not be made follow them.
 pub fn render_rows(rows: &[JointSizingRow]) -> String {
     let mut text = table(&HEADERS, rows.iter().map(cells));
     text.push_str("\nover the cycle:\n");
     text.push_str(&table(&CYCLE_HEADERS, rows.iter().map(cycle_cells)));
     if rows.iter().any(|row| row.cycle_efficiency.is_some()) {
         text.push_str(REPRESENTATIVE);
+    }
+    let mut on_bearings = rows.iter().filter(|row| row.bearing_moment_nm.is_some()).peekable();
+    if on_bearings.peek().is_some() {
+        text.push_str("\noutput bearings:\n");
+        text.push_str(&table(&BEARING_HEADERS, on_bearings.map(bearing_cells)));
     }
     for row in rows {
         for remark in row.fails.iter().chain(&row.not_checked) {
@@ -261,6 +316,18 @@ fn cycle_cells(row: &JointSizingRow) -> [String; 9] {
         or_none(row.cycle_efficiency),
         or_none(row.motor_rms_margin_at_cycle_efficiency),
         digits(row.emergency_stops_allowed.floor(), 0),
+    ]
+}
+
+fn bearing_cells(row: &JointSizingRow) -> [String; 7] {
+    [
+        row.joint.clone(),
+        or_open(row.bearing_moment_nm, 1),
+        or_open(row.bearing_moment_permissible_nm, 1),
+        or_open(row.bearing_safety_at_rest, 2),
+        or_open(row.bearing_safety_in_a_stop, 2),
+        row.bearing_life_h.map_or("?".to_string(), life_text),
+        row.bearing_margin.map_or("-".to_string(), |x| digits(x, 2)),
     ]
 }
 

@@ -119,7 +119,8 @@ fn is_checked(slot: &Slot, joint: &SpaceJoint) -> bool {
         Slot::Sized(sized) => {
             (0..sized.table.len()).any(|i| sized.table.limits(i).bearing != BearingLimits::NONE)
         }
-        _ => joint.bearing.stated().is_some_and(|bearing| bearing.permissible_moment_nm.is_some()),
+        // the thresholds of a rating that is known are finite at any speed and life
+        _ => BearingLimits::of(joint.bearing.stated().as_ref(), 1.0, 1.0) != BearingLimits::NONE,
     }
 }
 

@@ -131,6 +131,19 @@ impl<'c> ArmProblem<'c> {
         })
     }
 
+    /// What the joints of a design weigh beyond drives and bearings \[kg\]; `None` if the design cannot hold.
+    pub fn extras_mass_kg(&self, options: &[u32]) -> Option<f64> {
+        let joints = self.space().pieces.iter().zip(self.parts(options)?);
+        let extras_kg = joints.map(|(piece, part)| match (piece, part) {
+            (_, Part::Drive(drive)) => drive.extras().total_kg(),
+            (SpacePiece::Joint(joint), _) => joint.extras.stated().total_kg(),
+            _ => 0.0,
+        });
+        const PER_KG: f64 = 1e9;
+        // to the microgram, like the mass of a drive
+        Some((extras_kg.sum::<f64>() * PER_KG).round() / PER_KG)
+    }
+
     /// The judged cases, as load cases of the full model.
     pub fn load_cases(&self) -> Vec<LoadCase> {
         let space = self.space();

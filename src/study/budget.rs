@@ -1,7 +1,7 @@
 //! The stiffness budget of a front's picks: what one more kilogram buys at each joint and link, and how far a
 //! pick is from the lightest arm that could do as well.
 //!
-//! Each piece has two answers, both by the full model with all other parts unchanged. *In place*: the piece's
+//! The output bearing of a joint has a share of its own in the deflection; it grows with its joint. Each piece has two answers, both by the full model with all other parts unchanged. *In place*: the piece's
 //! mass and stiffness grow in proportion (a thicker wall, a gear scaled up), a central difference over 0.1 %
 //! of its mass. *Next part*: the heavier catalog part that fits there, improves anything, and has the best
 //! change of deflection per kilogram; this is the difference between two parts that one can buy. Drives
@@ -17,7 +17,7 @@ use crate::exact::domain_reduction::DomainReduction;
 use crate::mechanics::chain::Chain;
 use crate::pareto::objectives::Objectives;
 use crate::relax::relaxation::Relaxation;
-use crate::report::budget::{BudgetRow, Gain, NextPart, PickBound, PickBudget};
+use crate::report::budget::{BudgetRow, Gain, NextPart, PickBound, PickBudget, PieceKind};
 use crate::report::front_table::FrontTable;
 use crate::report::picks::{Pick, designs, picks};
 use crate::space::design::{evaluate, full_objectives, number, number_of, objectives_with};
@@ -25,6 +25,7 @@ use crate::space::design_space::DesignSpace;
 use crate::space::design_space::SpacePiece;
 use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
+use nalgebra::Vector3;
 use rayon::prelude::*;
 
 /// Relative step of the derivative in place.
@@ -69,6 +70,7 @@ fn pick_budget(
         names: pick.names,
         design_id: pick.design.design_id,
         mass_kg: objectives.mass_kg,
+        extras_mass_kg: problem.extras_mass_kg(&options)?,
     })
 }
 
@@ -86,11 +88,9 @@ fn budget(
     let arm = problem.arm(options)?;
     let cases = problem.load_cases();
     let others = alternatives(problem, whole, options, &arm)?;
-    let shares = shares(&arm, &cases);
+    let shares = Shares::of(&arm, &cases);
     let heaviest_kg = objectives.mass_kg * MOST_OF_ARM;
-    let pieces: Vec<(usize, &Element)> =
-        arm.chain.iter().enumerate().filter(|(_, e)| e.mass_kg() > 0.0).collect();
-    let row = |&(piece, element): &(usize, &Element)| {
+    let row = |(piece, element): (usize, &Element)| {
         let mass_kg = element.mass_kg();
         let with = |other: &Element| {
             let mut changed = arm.clone();
@@ -106,14 +106,19 @@ fn budget(
             .min_by(|a, b| a.gain.mm_per_kg.total_cmp(&b.gain.mm_per_kg));
         BudgetRow {
             piece: element.name().to_string(),
-            is_joint: matches!(element, Element::Joint(_)),
+            kind: if matches!(element, Element::Joint(_)) { PieceKind::Joint } else { PieceKind::Link },
             mass_kg,
-            share: shares[piece],
-            in_place: in_place(&arm, piece, &cases),
+            share: shares.of_element(element.name()).unwrap_or(0.0),
+            in_place: Some(in_place(&arm, piece, &cases)),
             next_part,
         }
     };
-    Some(pieces.par_iter().map(row).collect())
+    let rows = |(piece, element): (usize, &Element)| {
+        let own = (element.mass_kg() > 0.0).then(|| row((piece, element)));
+        own.into_iter().chain(shares.bearing_row(element)).collect::<Vec<_>>()
+    };
+    let rows: Vec<Vec<BudgetRow>> = arm.chain.par_iter().enumerate().map(rows).collect();
+    Some(rows.concat())
 }
 
 /// Change from one design to another per kilogram.
@@ -125,19 +130,40 @@ fn gain(from: &Objectives, to: &Objectives) -> Gain {
     }
 }
 
-/// Each piece's share of the tip deflection in the worst case, along its direction. The tilt of a bearing
-/// counts for its joint.
-fn shares(arm: &Arm, cases: &[LoadCase]) -> Vec<f64> {
-    let solve = |case: &LoadCase| Chain::new(&arm.structure_in(case), case.links).pose(case).statics();
-    let statics = cases.iter().map(solve);
-    let worst = statics.max_by(|a, b| a.tip_displacement_m.norm().total_cmp(&b.tip_displacement_m.norm()));
-    let Some(worst) = worst else { return vec![0.0; arm.chain.len()] };
-    let whole = worst.tip_displacement_m;
-    let of = |name: &str| {
-        let own = worst.shares_m.iter().filter(|(n, _)| n.strip_suffix(".bearing").unwrap_or(n) == name);
-        own.map(|(_, moved)| moved.dot(&whole)).sum::<f64>() / whole.norm_squared().max(f64::MIN_POSITIVE)
-    };
-    arm.chain.iter().map(|element| of(element.name())).collect()
+/// Each element's share of the tip deflection in the worst case, along its direction.
+struct Shares(Vec<(String, f64)>);
+
+impl Shares {
+    fn of(arm: &Arm, cases: &[LoadCase]) -> Self {
+        let solve = |case: &LoadCase| Chain::new(&arm.structure_in(case), case.links).pose(case).statics();
+        let statics = cases.iter().map(solve);
+        let worst =
+            statics.max_by(|a, b| a.tip_displacement_m.norm().total_cmp(&b.tip_displacement_m.norm()));
+        let Some(worst) = worst else { return Self(Vec::new()) };
+        let whole = worst.tip_displacement_m;
+        let share = |moved: &Vector3<f64>| moved.dot(&whole) / whole.norm_squared().max(f64::MIN_POSITIVE);
+        Self(worst.shares_m.iter().map(|(name, moved)| (name.clone(), share(moved))).collect())
+    }
+
+    /// The share of an element; `None` if nothing of this name yields.
+    fn of_element(&self, name: &str) -> Option<f64> {
+        self.0.iter().find(|(n, _)| n == name).map(|(_, share)| *share)
+    }
+
+    /// The row of the bearing of a joint, if it yields.
+    fn bearing_row(&self, element: &Element) -> Option<BudgetRow> {
+        let Element::Joint(joint) = element else { return None };
+        let piece = format!("{}.bearing", joint.name);
+        let share = self.of_element(&piece)?;
+        Some(BudgetRow {
+            piece,
+            kind: PieceKind::Bearing,
+            mass_kg: 0.0,
+            share,
+            in_place: None,
+            next_part: None,
+        })
+    }
 }
 
 /// Change per kilogram by a central difference; mass and stiffness of the piece vary in proportion.
@@ -150,7 +176,8 @@ fn in_place(arm: &Arm, piece: usize, cases: &[LoadCase]) -> Gain {
     gain(&with(-STEP), &with(STEP))
 }
 
-/// Increases mass and stiffness of a piece by the relative step; what effects add stays as it is.
+/// Increases mass and stiffness of a piece, that of a joint's bearing too, by the relative step; what effects add stays as
+/// it is.
 fn grow(piece: &mut Piece, element: &Element, step: f64) {
     let factor = 1.0 + step;
     match piece {

@@ -2,14 +2,15 @@
 
 pub(crate) mod alternatives;
 pub(crate) mod ballast;
+pub(crate) mod bearing_remarks;
 pub(crate) mod bounds;
 pub(crate) mod budget;
+pub(crate) mod cases;
 pub(crate) mod check;
 mod connections;
 pub(crate) mod definition;
 pub(crate) mod diagnose;
 pub(crate) mod effects;
-mod environments;
 mod fit;
 mod harness;
 pub(crate) mod motion;

@@ -4,10 +4,10 @@
 //! Lengths of sections and limits are in millimetres because that is how profiles are sold; everything
 //! else is SI. The resolved [`DesignSpace`] is SI throughout.
 
+use super::cases::{Cases, read_cases};
 use super::connections::{connections_remark, with_connections};
 use super::definition::Study;
 use super::effects::check_effects;
-use super::environments::{Environment, read_environments};
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
 use super::motion::{read_duty, read_motion};
@@ -18,8 +18,7 @@ use super::sections::{Aside, read_materials, read_sections};
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
 use crate::arm::file::{read_curve, read_effects, read_joint_mass, read_link, read_name};
-use crate::arm::load::Payload;
-use crate::arm::load::{read_pose, vector, word};
+use crate::arm::load::{vector, word};
 use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearMass;
@@ -29,8 +28,7 @@ use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
 use crate::sizing::stated::StatedDuty;
 use crate::space::constraint::{Constraints, Servo};
-use crate::space::design_space::{Case, DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
-use nalgebra::Vector3;
+use crate::space::design_space::{DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 
 const KEYS: [&str; 20] = [
     "name",
@@ -464,75 +462,6 @@ fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpaceP
     let options =
         super::sections::options(&materials?, &sections?, open.constraints, name.as_deref()?, aside);
     Some(SpacePiece::Choice(LinkChoice { name: name?, vector_m: vector_m?, options, excerpt: None }))
-}
-
-/// All cases, with the indices of those for judging and for sizing.
-#[derive(Default)]
-struct Cases {
-    cases: Vec<Case>,
-    judged: Vec<usize>,
-    sizing: Vec<usize>,
-}
-
-/// One case as read, before it is put into every environment.
-struct ReadCase {
-    case: Case,
-    judged: bool,
-    sizing: bool,
-}
-
-fn read_cases(root: &Object, joints: &[String]) -> Option<Cases> {
-    let payload = root.or("payload", Payload::default(), Payload::read);
-    let force = root.or("tip_force_n", Vector3::zeros(), vector);
-    let environments = root.or("environments", vec![Environment::default()], read_environments);
-    let poses = root.required("poses").and_then(|n| n.array());
-    let joints: Vec<&str> = joints.iter().map(String::as_str).collect();
-    // faulty defaults must not hide faults of the poses
-    let (usual, push) = (payload.unwrap_or_default(), force.unwrap_or_default());
-    let poses: Vec<_> = poses?.iter().map(|n| read_case(n, &joints, &usual, &push)).collect();
-    let poses = poses.into_iter().collect::<Option<Vec<_>>>()?;
-    let (environments, _, _) = (environments?, payload?, force?);
-    if poses.is_empty() {
-        return root.required("poses")?.fault("is empty", "give at least the pose the arm is judged in");
-    }
-    let mut out = Cases::default();
-    for environment in &environments {
-        for ReadCase { case, judged, sizing } in &poses {
-            let index = out.cases.len();
-            out.judged.extend(judged.then_some(index));
-            out.sizing.extend(sizing.then_some(index));
-            let name = match environment.name.as_str() {
-                "" => case.name.clone(),
-                around => format!("{}, {around}", case.name),
-            };
-            out.cases.push(Case { name, water: environment.water, ..case.clone() });
-        }
-    }
-    if out.judged.is_empty() {
-        return root
-            .required("poses")?
-            .fault("has no judged pose", "leave \"judged\" away, or set it true, in one of them");
-    }
-    if out.sizing.is_empty() {
-        return root.required("poses")?.fault(
-            "has no pose in which drives are sized and stresses checked",
-            "leave \"sizing\" away, or set it true, in one of them",
-        );
-    }
-    Some(out)
-}
-
-fn read_case(node: &Node, joints: &[&str], payload: &Payload, force: &Vector3<f64>) -> Option<ReadCase> {
-    let object = node.object(&["name", "pose_deg", "payload", "tip_force_n", "sizing", "judged"])?;
-    let name = object.or("name", node.path().to_string(), |n| n.string().map(String::from));
-    let pose_deg = object.required("pose_deg").and_then(|n| read_pose(&n, joints));
-    let payload = object.or("payload", *payload, Payload::read);
-    let tip_force_n = object.or("tip_force_n", *force, vector);
-    let sizing = object.or("sizing", true, Node::boolean);
-    let judged = object.or("judged", true, Node::boolean);
-    let case =
-        Case { name: name?, pose_deg: pose_deg?, payload: payload?, tip_force_n: tip_force_n?, water: None };
-    Some(ReadCase { case, judged: judged?, sizing: sizing? })
 }
 
 fn read_constraints(node: &Node) -> Option<Constraints> {

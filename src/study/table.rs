@@ -55,12 +55,13 @@ fn columns(problem: &ArmProblem, catalogs: &Catalogs) -> Vec<String> {
             out.extend(JOINT_COLUMNS.map(|what| format!("{}_{what}", joint.name)));
         }
     }
-    out.extend(["stress_safety_factor", "material_cost_eur"].map(String::from));
+    out.extend(["stress_safety_factor", "material_cost_eur", "extras_mass_kg"].map(String::from));
     out
 }
 
 /// Columns of every joint with a gear and a motor.
-const JOINT_COLUMNS: [&str; 5] = ["margin", "binds", "motor_rms_margin", "input_rpm", "critical_rpm"];
+const JOINT_COLUMNS: [&str; 6] =
+    ["margin", "binds", "bearing_margin", "motor_rms_margin", "input_rpm", "critical_rpm"];
 
 fn has_parts(drive: &DriveChoice) -> bool {
     !matches!(drive, DriveChoice::Given { gear: None, motor: None, .. })
@@ -91,6 +92,7 @@ fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::outcome::Judge
     for joint in sizing_rows(problem, catalogs, &chosen).ok()?.into_iter().rev() {
         out.push(joint.margin.map_or(String::new(), number));
         out.push(joint.binds.unwrap_or_default().to_string());
+        out.push(joint.bearing_margin.map_or(String::new(), number));
         out.push(joint.motor_rms_margin.map_or(String::new(), number));
         out.push(number(joint.motor_speed_rpm));
         out.push(number(critical_rpm(o.lowest_mode_hz)));
@@ -98,6 +100,7 @@ fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::outcome::Judge
     let complete = problem.walk(&chosen, |_, _| {}).ok()?;
     out.push(problem.stress_safety_factor(&complete).map_or(String::new(), number));
     out.push(problem.material_cost_eur(&complete).map_or(String::new(), number));
+    out.push(number(problem.extras_mass_kg(&chosen)?));
     Some(out)
 }
 

@@ -413,7 +413,7 @@ fn few_of_the_parts_of_the_whole_catalog_reach_as_far_as_a_good_design() {
     let text = named("full-catalog").expect("it is built in");
     let study = read_study(Document::parse("full-catalog", text).expect("JSON"), &catalogs).expect("whole");
     // a knee that `armwright run full-catalog` finds, loosened by a percent
-    let asked = Objectives { mass_kg: 16.56, tip_deflection_m: 1.702e-3, lowest_mode_hz: 13.84 };
+    let asked = Objectives { mass_kg: 36.3, tip_deflection_m: 1.621e-3, lowest_mode_hz: 15.29 };
     let reach = DomainReduction::new(&study.space, &catalogs).expect("no level is empty");
     let lists = reach.options_as_good(&asked).expect("it was found");
     let left = study.space.of_options(&lists).expect("a list a level").link_options();

@@ -40,7 +40,7 @@ fn other_sizes(seed: u64) -> Catalogs {
 fn wishes(dice: &mut Dice) -> Value {
     let mut fit = json!({"motor": dice.of(&["behind", "in_link", "in_link", "beside"])});
     if dice.below(4) > 0 {
-        fit["gear_to_link_max"] = json!(dice.within(0.7, 1.6));
+        fit["gear_to_link_max"] = json!(dice.within(0.6, 1.4));
     }
     if dice.below(3) == 0 {
         fit["cable_bore_min_mm"] = json!(dice.within(2.0, 12.0));
@@ -81,7 +81,7 @@ fn study_of_fits(seed: u64) -> Value {
     study
 }
 
-/// Numbers of joints at which some design has another drive, or none, because of its link.
+/// How often a link keeps a drive that would hold out of a joint, in some of the designs.
 fn decided_by_links(problem: &ArmProblem) -> usize {
     let mut decided = 0;
     let sizes = problem.level_sizes();
@@ -92,7 +92,8 @@ fn decided_by_links(problem: &ArmProblem) -> usize {
             let Some(sized) = problem.sized_joint(problem.piece_of_slot(slot)) else { return };
             let demand = problem.demand_at(outboard, slot);
             let anywhere = demand.with_room(LinkRoom::ANY);
-            decided += usize::from(sized.table.first_fit(&demand) != sized.table.first_fit(&anywhere));
+            decided +=
+                usize::from(sized.table.all_fits(&demand).count() != sized.table.all_fits(&anywhere).count());
         });
     }
     decided
@@ -149,7 +150,7 @@ fn the_exact_front_is_whole_where_parts_must_fit() {
     );
     assert!(feasible * 3 > studies, "only {feasible} of {studies} studies are feasible");
     assert!(points as u64 > 6 * feasible, "fronts are too small to say much: {points} designs");
-    assert!(decided as u64 * 5 > studies, "links decide in {decided} of {studies} studies only");
+    assert!(decided as u64 * 3 > studies, "links decide in {decided} of {studies} studies only");
 }
 
 /// A waist on a bracket, a shoulder and an elbow; the gears are about as wide as the tubes, and the motors about as wide as their

@@ -3,6 +3,7 @@
 
 mod architecture;
 mod bad_input;
+mod bearings;
 mod browser;
 mod catalog;
 mod catalog_cli;

@@ -62,6 +62,13 @@ pub struct DeflectionPart {
     pub along_mm: f64,
 }
 
+impl DeflectionPart {
+    /// Whether it is a joint or its output bearing.
+    fn is_of_joint(&self) -> bool {
+        self.torque_nm.is_some() || self.element.ends_with(".bearing")
+    }
+}
+
 impl PickedArm {
     /// Words that name the pick.
     pub fn title(&self) -> String {
@@ -234,11 +241,11 @@ pub(crate) fn deflection_bars(picks: &[PickedArm]) -> Figure {
     let first: &[DeflectionPart] = parts.first().map_or(&[], |(_, list)| list);
     let bars = StackedBars {
         title: "Where the tip's deflection comes from".into(),
-        description: "One bar a picked design: its tip deflection in its worst pose, split into what each joint (solid, blue) \
-                      and each link (hatched, orange) adds along its direction."
+        description: "One bar a picked design: its tip deflection in its worst pose, split into what each joint and bearing \
+                      (solid, blue) and each link (hatched, orange) adds along its direction."
             .into(),
         unit: "mm".into(),
-        parts: first.iter().map(|p| Part { name: p.element.clone(), hatched: p.torque_nm.is_none() }).collect(),
+        parts: first.iter().map(|p| Part { name: p.element.clone(), hatched: !p.is_of_joint() }).collect(),
         bars: parts
             .iter()
             .map(|(label, list)| Bar {
@@ -251,7 +258,7 @@ pub(crate) fn deflection_bars(picks: &[PickedArm]) -> Figure {
             })
             .collect(),
     };
-    let caption = "Joints are solid, links are hatched. Each part is the motion of the tip by the element's deformation (Eqs 13 to 15), \
+    let caption = "Joints and their bearings are solid, links are hatched. Each part is the motion of the tip by the element's deformation (Eqs 13 to 15), \
                    along the direction of the whole deflection, in the design's worst pose.";
     let csv = bars.to_csv();
     Figure { name: "deflection".into(), caption: caption.into(), svg: bars.readable().to_svg(), csv }

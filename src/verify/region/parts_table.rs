@@ -45,6 +45,10 @@ pub(super) struct TubeTable {
     priced: usize,
 }
 
+/// Numbers of a tube beyond its stresses that have no price: whether it is round, half its width, and the room for gear and
+/// motor.
+const BESIDE_STRESSES: usize = 4;
+
 /// Positions of the numbers in the list that describes a tube.
 pub(super) mod place {
     use crate::verify::tubes::{DENSITIES, STIFFNESSES};
@@ -111,7 +115,7 @@ impl TubeTable {
         let tree = options.tree();
         let waters = options.tubes.first().map_or(0, |(_, tube)| tube.around.len());
         let priced = place::priced(waters);
-        let width = priced + STRESSES + 2;
+        let width = priced + STRESSES + BESIDE_STRESSES;
         let mut bounds = vec![0.0; 2 * width * tree.len()];
         // halves come after their node
         for node in (0..tree.len() as u32).rev() {
@@ -192,7 +196,7 @@ fn numbers(tube: &TubeNumbers) -> Vec<f64> {
 }
 
 fn tube(numbers: &[f64]) -> TubeNumbers {
-    let waters = (numbers.len() - 5 - 2 * STIFFNESSES - STRESSES) / (1 + DENSITIES);
+    let waters = (numbers.len() - 1 - 2 * STIFFNESSES - STRESSES - BESIDE_STRESSES) / (1 + DENSITIES);
     let stiffness = |k: f64| if k > 0.0 { k } else { f64::INFINITY };
     let around = |water: usize| TubeAround {
         weight_n_per_m: numbers[place::weight(water)],

@@ -1,21 +1,17 @@
-//! Tests of the checks.
+//! Tests of the checks: each limit alone, what is said, and that thresholds decide alike.
 
-use super::check::plain;
-use super::check::*;
-use super::demand::{JointDemand, JointMotion};
-use super::drive::{Drive, MissingRating};
-use super::fit::{FitRequirement, MotorPlace};
-use super::testing::{
+use super::super::bearing::BearingLimits;
+use super::super::bearing_checks::bearing_margin;
+use super::super::testing::{
     any_gear, any_link_m, any_motion, any_motor, any_torques, bearing_loads, char_lynn_j_8_2, f11_10, gear,
     hfuc_40_100, motor,
 };
-use crate::arm::bearing::Bearing;
+use super::*;
 use crate::arm::bearing::BearingSource;
 use crate::arm::extras::ExtrasSource;
-use crate::catalog::envelope::Envelope;
-use crate::catalog::gear::Gear;
 use crate::catalog::gear::{BearingRatings, GearMass};
 use crate::catalog::motor::Motor;
+use crate::sizing::drive::MissingRating;
 use crate::sizing::limits::{DriveLimits, Obstacle};
 use crate::sizing::requirement::MotionRequirement;
 use proptest::prelude::*;
@@ -250,94 +246,6 @@ fn what_binds_is_the_smallest_margin() {
     assert!(binding(&[]).is_none());
 }
 
-/// The ample drive with sizes, in a joint that asks for them: the link is 150 mm wide with a hollow of 140 mm.
-fn misfits(change: fn(&mut Gear, &mut Motor, &mut FitRequirement)) -> Vec<String> {
-    let mut fit = FitRequirement {
-        gear_to_link_max: Some(1.2),
-        motor: MotorPlace::Behind,
-        cable_bore_min_m: Some(0.02),
-        drive_length_max_m: Some(0.2),
-    };
-    let (mut gear, mut motor) = ample();
-    gear.envelope =
-        Envelope { outer_diameter_m: Some(0.18), length_m: Some(0.08), hollow_bore_m: Some(0.02) };
-    motor.envelope =
-        Envelope { outer_diameter_m: Some(0.14), length_m: Some(0.12), hollow_bore_m: Some(0.02) };
-    change(&mut gear, &mut motor, &mut fit);
-    let motion = JointMotion { fit, ..motion() };
-    let demand = demand().with_room(fit.room(0.15, 0.14));
-    let drive = Drive {
-        gear: &gear,
-        motor: &motor,
-        gear_mass: GearMass::HousedUnit,
-        bearing: BearingSource::OfGear,
-        extras: ExtrasSource::NONE,
-    };
-    let checks = checks(&drive, &motion, &demand);
-    let holds = DriveLimits::of(&drive, &motion).is_ok_and(|limits| limits.hold(&demand));
-    assert_eq!(holds, all_hold(&checks), "search and checks");
-    let said = |c: &&Check| c.kind.is_fit() && c.state != CheckState::Holds;
-    checks.iter().filter(said).map(|c| format!("{}: {c}", c.kind.label())).collect()
-}
-
-#[test]
-fn each_size_is_compared_with_its_own_room_and_just_fits() {
-    assert_eq!(misfits(|_, _, _| ()), [""; 0], "every part just fits");
-    assert_eq!(
-        misfits(|g, _, _| g.envelope.outer_diameter_m = Some(0.181)),
-        ["gear width: width 181 mm needed, 180 allowed"]
-    );
-    assert_eq!(
-        misfits(|g, _, _| g.envelope.hollow_bore_m = Some(0.019)),
-        ["gear bore: bore 20.0 mm needed, 19.0 allowed"]
-    );
-    assert_eq!(
-        misfits(|_, m, _| m.envelope.hollow_bore_m = Some(0.0)),
-        ["motor bore: bore 20.0 mm needed, 0.0 allowed"]
-    );
-    assert_eq!(
-        misfits(|_, m, _| m.envelope.length_m = Some(0.13)),
-        ["drive length: length of the drive 210 mm needed, 200 allowed"]
-    );
-    assert_eq!(
-        misfits(|_, m, fit| (m.envelope.outer_diameter_m, fit.motor) = (Some(0.15), MotorPlace::InLink)),
-        ["motor width: width 150 mm needed, 140 allowed"]
-    );
-}
-
-#[test]
-fn a_motor_that_is_not_behind_the_gear_has_neither_length_nor_bore_on_the_axis() {
-    for place in [MotorPlace::InLink, MotorPlace::Beside] {
-        let (mut gear, mut motor) = ample();
-        gear.envelope.length_m = Some(0.2);
-        motor.envelope = Envelope { outer_diameter_m: None, length_m: Some(9.0), hollow_bore_m: Some(0.0) };
-        let fit = FitRequirement {
-            motor: place,
-            cable_bore_min_m: Some(0.02),
-            drive_length_max_m: Some(0.2),
-            ..FitRequirement::default()
-        };
-        assert!(fit.allows(&gear, &motor), "{place:?}");
-        assert!(!FitRequirement { motor: MotorPlace::Behind, ..fit }.allows(&gear, &motor));
-    }
-}
-
-#[test]
-fn a_size_that_is_blank_is_said_and_excludes_nothing() {
-    let blank = misfits(|g, m, fit| {
-        (g.envelope, m.envelope, fit.motor) = (Envelope::default(), Envelope::default(), MotorPlace::Behind);
-    });
-    assert_eq!(
-        blank,
-        [
-            "gear width: width not checked: lacks gear outer_diameter_mm",
-            "gear bore: bore not checked: lacks gear hollow_bore_mm",
-            "motor bore: bore not checked: lacks motor hollow_bore_mm",
-            "drive length: length of the drive not checked: lacks gear length_mm",
-        ]
-    );
-}
-
 #[test]
 fn a_joint_that_carries_nothing_has_no_end_of_life() {
     let (gear, motor) = (hfuc_40_100(), f11_10());
@@ -364,11 +272,19 @@ proptest! {
     ) {
         let gear_mass = if housed { GearMass::HousedUnit } else { GearMass::ComponentSet };
         let drive = Drive { gear: &gear, motor: &motor, gear_mass, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE };
-        let demand = motion.demand_of_torques(torques[0], torques[1]).with_bearing(bearing_loads(torques[2]))
+        let demand = motion
+            .demand_of_torques(torques[0], torques[1])
+            .with_bearing(bearing_loads(torques[2]))
             .with_room(motion.fit.room(link_m[0], link_m[1]));
         let checks = checks(&drive, &motion, &demand);
         let by_thresholds = DriveLimits::of(&drive, &motion).is_ok_and(|l| l.hold(&demand));
         prop_assert_eq!(by_thresholds, all_hold(&checks));
+        let limits = BearingLimits::of(drive.bearing().as_ref(), motion.mean_speed_rad_s(), motion.life_h);
+        let by_limits = limits.multiple_of(&demand.bearing);
+        match bearing_margin(&checks) {
+            Some(margin) if margin.is_finite() => prop_assert!((margin / by_limits - 1.0).abs() < 1e-12),
+            _ => prop_assert_eq!(by_limits, f64::INFINITY),
+        }
         for c in &checks {
             let Some(margin) = c.margin() else {
                 prop_assert!(matches!(c.state, CheckState::NotChecked(_)), "{:?}", c);

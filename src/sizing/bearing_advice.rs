@@ -1,0 +1,73 @@
+//! What output bearings reject at one joint, what helps, and which of them could not be checked.
+
+use super::bearing_checks::{BlankRatings, bearing_that_holds};
+use super::check::Check;
+use super::checks::gear_checks;
+use super::demand::JointDemand;
+use super::explain::not_holding;
+use super::select::DriveTable;
+use crate::arm::bearing::BearingSource;
+use crate::catalog::gear::Gear;
+
+/// A gear whose output bearing fails a check.
+struct Overloaded<'t> {
+    gear: &'t str,
+    /// The worst check of the bearing.
+    check: Check,
+    /// Whether the gear passes every other check.
+    is_alone: bool,
+}
+
+impl DriveTable<'_> {
+    /// What is to be said of the output bearings of this joint, in sentences: how many gears they reject and what helps,
+    /// and which ratings are blank. Empty if every bearing holds and all ratings are known.
+    pub fn explain_bearings(&self, demand: &JointDemand) -> Vec<String> {
+        self.overloaded_bearings(demand).into_iter().chain(self.blank_bearings()).collect()
+    }
+
+    /// How many gears their bearings reject, the one that comes nearest, and what helps.
+    fn overloaded_bearings(&self, demand: &JointDemand) -> Option<String> {
+        let overloaded: Vec<Overloaded> =
+            self.gears().iter().filter_map(|gear| self.overloaded(gear, demand)).collect();
+        let alone = overloaded.iter().filter(|o| o.is_alone).count();
+        let nearness = |o: &&Overloaded| (o.is_alone, o.check.torque_margin().unwrap_or(0.0));
+        let nearest = overloaded.iter().reduce(|a, b| if nearness(&b) > nearness(&a) { b } else { a })?;
+        let own = bearing_that_holds(&nearest.check).map_or(String::new(), |own| format!(", or {own}"));
+        Some(format!(
+            "joint {}: output bearings reject {} of {} gears, {alone} for no other reason; nearest {}: {}. What helps: less \
+             mass, payload or reach outboard, slower ramps and stops of every joint, a link that attaches closer to the \
+             bearing{own}",
+            self.joint(),
+            overloaded.len(),
+            self.gears().len(),
+            nearest.gear,
+            nearest.check,
+        ))
+    }
+
+    /// The gear, if its bearing fails a check.
+    fn overloaded<'t>(&self, gear: &'t Gear, demand: &JointDemand) -> Option<Overloaded<'t>> {
+        let bearing = self.bearing_of(gear);
+        let failed = not_holding(gear_checks(gear, bearing.as_ref(), self.motion(), demand));
+        let check = *failed.iter().find(|check| check.kind.is_bearing())?;
+        let is_alone = failed.iter().all(|check| check.kind.is_bearing());
+        Some(Overloaded { gear: &gear.id, check, is_alone })
+    }
+
+    /// The bearings that cannot be checked in full, one line each; a stated bearing is the same with every gear.
+    fn blank_bearings(&self) -> Vec<String> {
+        let blank = |gear| BlankRatings::of(self.bearing_source(), gear, self.gear_mass());
+        let line =
+            |blank: BlankRatings, whose: &str| format!("joint {}: {}", self.joint(), blank.words(&[whose]));
+        match self.bearing_source() {
+            BearingSource::Stated(_) => {
+                let first = self.gears().first().and_then(|gear| blank(gear));
+                first.map(|blank| line(blank, "the stated bearing")).into_iter().collect()
+            }
+            BearingSource::OfGear => {
+                let gears = self.gears().iter();
+                gears.filter_map(|gear| Some(line(blank(gear)?, &gear.id))).collect()
+            }
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! The checks of an output bearing, one by one; which ratings they lack; what helps where one fails.
+
+use super::bearing::{self, BearingDemand, BearingLimits, BearingLoad};
+use super::check::{Check, CheckKind, check, plain};
+use super::demand::JointMotion;
+use super::drive::known;
+use crate::arm::bearing::{Bearing, BearingSource};
+use crate::catalog::gear::{Gear, GearMass};
+
+/// The checks of an output bearing: moment, static safety at rest and in a stop, life.
+pub(super) fn bearing_checks(bearing: &Bearing, motion: &JointMotion, demand: &BearingDemand) -> [Check; 4] {
+    let speed_rad_s = motion.mean_speed_rad_s();
+    let limits = BearingLimits::of(Some(bearing), speed_rad_s, motion.life_h);
+    let ratings = &bearing.ratings;
+    let known_pitch = |rating, name| {
+        known(ratings.pitch_diameter_m, "bearing_pitch_diameter_m").and_then(|_| known(rating, name))
+    };
+    let moment_nm = limits.moment_nm(&demand.running);
+    let permissible = known(bearing.permissible_moment_nm, "permissible_tilting_moment_nm");
+    let safety = |kind, asked, load: &BearingLoad, limit_n: f64| {
+        let load_n = limits.static_load_n(load);
+        let rating = known_pitch(ratings.static_load_rating_n, "bearing_static_load_rating_n");
+        check(kind, Ok(asked), rating.map(|c0_n| c0_n / load_n), load_n, rating.map(|_| limit_n))
+    };
+    let load_n = limits.dynamic_load_n(&demand.at_rest);
+    let rating = known_pitch(ratings.dynamic_load_rating_n, "bearing_dynamic_load_rating_n");
+    let life = rating.map(|c_n| bearing::life_h(c_n, load_n, speed_rad_s));
+    [
+        plain(CheckKind::BearingMoment, moment_nm, permissible),
+        safety(CheckKind::BearingRest, bearing::SAFETY_AT_REST, &demand.at_rest, limits.at_rest_n),
+        safety(CheckKind::BearingStop, bearing::SAFETY_IN_A_STOP, &demand.in_stop, limits.in_stop_n),
+        check(CheckKind::BearingLife, Ok(motion.life_h), life, load_n, rating.map(|_| limits.life_n)),
+    ]
+}
+
+/// The margin of an output bearing: the smallest factor on its loads, over its checks, at which one of them just holds. It
+/// is the factor by which all loads may grow together, so it equals [`BearingLimits::multiple_of`]. `None` if no check
+/// could be made.
+pub fn bearing_margin(checks: &[Check]) -> Option<f64> {
+    checks.iter().filter(|c| c.kind.is_bearing()).filter_map(Check::torque_margin).reduce(f64::min)
+}
+
+/// Ratings of an output bearing that are unknown, so that it cannot be checked in full.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BlankRatings {
+    /// Their names: columns of the catalog for the bearing of a gear, keys of the file for a stated one.
+    pub names: Vec<&'static str>,
+    /// Whether no check at all can be made.
+    pub nothing_is_checked: bool,
+}
+
+/// Names of the ratings of a bearing: columns of the catalog of gears, and keys of a bearing that a file states.
+const RATINGS: [[&str; 4]; 2] = [
+    [
+        "permissible_tilting_moment_nm",
+        "bearing_pitch_diameter_m",
+        "bearing_static_load_rating_n",
+        "bearing_dynamic_load_rating_n",
+    ],
+    ["permissible_moment_nm", "pitch_diameter_m", "static_load_rating_n", "dynamic_load_rating_n"],
+];
+
+impl BlankRatings {
+    /// Those of the bearing of a joint with this gear; `None` if all are known or the joint has no bearing.
+    pub fn of(source: &BearingSource, gear: &Gear, which: GearMass) -> Option<Self> {
+        match source {
+            BearingSource::OfGear => Self::under(&RATINGS[0], Bearing::of_gear(gear, which)?),
+            BearingSource::Stated(bearing) => Self::of_stated((*bearing)?),
+        }
+    }
+
+    /// Those of a bearing that a file states; `None` if all are known.
+    pub fn of_stated(bearing: Bearing) -> Option<Self> {
+        Self::under(&RATINGS[1], bearing)
+    }
+
+    /// The ratings that are blank, under these names.
+    fn under(names: &[&'static str; 4], bearing: Bearing) -> Option<Self> {
+        let ratings = bearing.ratings;
+        let loads_n = [ratings.static_load_rating_n, ratings.dynamic_load_rating_n];
+        let known = [bearing.permissible_moment_nm, ratings.pitch_diameter_m, loads_n[0], loads_n[1]];
+        let names: Vec<&str> =
+            names.iter().zip(known).filter(|(_, rating)| rating.is_none()).map(|(name, _)| *name).collect();
+        let some_load = ratings.pitch_diameter_m.is_some() && loads_n.iter().any(Option::is_some);
+        let nothing_is_checked = bearing.permissible_moment_nm.is_none() && !some_load;
+        (!names.is_empty()).then_some(Self { names, nothing_is_checked })
+    }
+
+    /// `bearing not checked: CSF-25-100 lacks bearing_static_load_rating_n`, where `whose` has the bearing.
+    pub fn words(&self, whose: &[&str]) -> String {
+        let how_far = if self.nothing_is_checked { "" } else { " in full" };
+        let lack = if whose.len() > 1 { "lack" } else { "lacks" };
+        format!("bearing not checked{how_far}: {} {lack} {}", whose.join(", "), self.names.join(", "))
+    }
+}
+
+/// The rating with which a bearing of the joint's own would pass a check that fails, in words; `None` for checks of other
+/// parts.
+pub(super) fn bearing_that_holds(check: &Check) -> Option<String> {
+    let times = check.torque_margin().map(|margin| (100.0 / margin).ceil() / 100.0);
+    let rating = match check.kind {
+        CheckKind::BearingMoment => {
+            format!("permissible_moment_nm of at least {}", check.needed?.ceil())
+        }
+        CheckKind::BearingRest | CheckKind::BearingStop => {
+            format!("static_load_rating_n at least {} times as large", times?)
+        }
+        CheckKind::BearingLife => format!("dynamic_load_rating_n at least {} times as large", times?),
+        _ => return None,
+    };
+    Some(format!("a bearing of the joint's own (\"bearing\") with {rating}"))
+}

@@ -1,0 +1,139 @@
+//! All checks of a drive, one by one: those of its gear, of its output bearing and of its motor.
+
+use super::bearing_checks::bearing_checks;
+use super::check::{Check, CheckKind, CheckState, check, plain};
+use super::demand::{JointDemand, JointMotion};
+use super::drive::{Drive, known};
+use super::fit_checks::{gear_fits, motor_fits};
+use super::heat::{self, MotorHeat};
+use super::limits as limit;
+use crate::arm::bearing::Bearing;
+use crate::catalog::gear::Gear;
+
+/// The checks of a gear and of the output bearing, which do not depend on the motor.
+pub fn gear_checks(
+    gear: &Gear,
+    bearing: Option<&Bearing>,
+    motion: &JointMotion,
+    demand: &JointDemand,
+) -> Vec<Check> {
+    let mut checks = vec![
+        plain(CheckKind::GearPeak, demand.peak_torque_nm(), limit::gear_peak_nm(gear)),
+        gear_mean(gear, demand),
+        plain(CheckKind::GearStop, demand.stop_torque_nm, limit::gear_momentary_nm(gear)),
+        plain(CheckKind::GearBuckling, demand.stop_torque_nm, limit::gear_buckling_nm(gear)),
+        plain(CheckKind::GearRatcheting, demand.stop_torque_nm, limit::gear_ratcheting_nm(gear)),
+        plain(CheckKind::GearSpeed, limit::input_speed_rpm(gear, motion), limit::gear_max_speed_rpm(gear)),
+        plain(
+            CheckKind::GearMeanSpeed,
+            limit::mean_input_speed_rpm(gear, motion),
+            limit::gear_average_speed_rpm(gear),
+        ),
+        gear_life(gear, motion, demand),
+    ];
+    if let Some(stops) = motion.emergency_stops {
+        checks.push(plain(CheckKind::GearStops, stops, Ok(limit::stops_allowed(gear, motion))));
+    }
+    checks.extend(gear_fits(gear, &motion.fit, &demand.room));
+    if let Some(bearing) = bearing {
+        checks.extend(bearing_checks(bearing, motion, &demand.bearing));
+    }
+    checks
+}
+
+fn gear_mean(gear: &Gear, demand: &JointDemand) -> Check {
+    check(
+        CheckKind::GearMean,
+        Ok(demand.mean_torque_nm()),
+        limit::gear_average_nm(gear),
+        demand.mean_torque_cubed_nm3,
+        limit::gear_average_cubed_nm3(gear),
+    )
+}
+
+/// L10 = L_ref (T_rated / T_mean)³ (2000 rpm / n_mean), compared with the required life.
+fn gear_life(gear: &Gear, motion: &JointMotion, demand: &JointDemand) -> Check {
+    let life_h = limit::life_product(gear, motion).map(|product| product / demand.mean_torque_cubed_nm3);
+    check(
+        CheckKind::GearLife,
+        Ok(motion.life_h),
+        life_h,
+        demand.mean_torque_cubed_nm3,
+        limit::gear_life_cubed_nm3(gear, motion),
+    )
+}
+
+/// The checks of a motor behind its gear. Its heat is checked unless the study turns that off. An unknown mass of the pair
+/// is listed too.
+pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
+    let mut checks = vec![motor_hold(drive, motion, demand), motor_peak(drive, motion, demand)];
+    if motion.checks_motor_heat {
+        checks.push(motor_rms(drive, motion, demand));
+    }
+    checks.push(plain(
+        CheckKind::MotorSpeed,
+        limit::input_speed_rpm(drive.gear, motion),
+        limit::motor_max_speed_rpm(drive.motor),
+    ));
+    checks.extend(motor_fits(drive, &motion.fit, &demand.room));
+    if let Err(rating) = drive.mass_kg() {
+        let state = CheckState::NotChecked(rating);
+        checks.push(Check { kind: CheckKind::Mass, needed: None, allowed: None, state });
+    }
+    checks
+}
+
+/// T / (N η), compared with the continuous torque; a brake holds any.
+fn motor_hold(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
+    let rated = known(drive.motor.rated_torque_nm, "motor rated_torque_nm");
+    check(
+        CheckKind::MotorHold,
+        drive.gain().map(|gain| demand.static_torque_nm / gain),
+        if motion.has_brake { Ok(f64::INFINITY) } else { rated },
+        demand.static_torque_nm,
+        limit::motor_hold_nm(drive, motion),
+    )
+}
+
+/// (T + T_lin) / (N η) + J_in N α, compared with the peak torque.
+fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
+    let peak_nm = demand.peak_torque_nm();
+    check(
+        CheckKind::MotorPeak,
+        drive.peak_motor_torque_nm(motion, peak_nm),
+        known(drive.motor.peak_torque_nm, "peak_torque_nm"),
+        peak_nm,
+        limit::motor_peak_nm(drive, motion),
+    )
+}
+
+/// Root mean square of the motor's torque over the cycle, compared with its continuous torque at the cruising speed.
+fn motor_rms(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
+    let input_rpm = limit::input_speed_rpm(drive.gear, motion);
+    let continuous_nm = heat::continuous_torque_nm(drive.motor, input_rpm);
+    let used = MotorHeat::of(drive, motion).map(|heat| heat.share_squared(demand));
+    let needed = used.and_then(|used| Ok(used.sqrt() * continuous_nm?));
+    check(CheckKind::MotorRms, needed, continuous_nm, used.unwrap_or(f64::NAN), used.map(|_| 1.0))
+}
+
+/// All checks of a drive: first those of the gear, then those of the motor.
+pub fn checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
+    let mut all = gear_checks(drive.gear, drive.bearing().as_ref(), motion, demand);
+    all.extend(motor_checks(drive, motion, demand));
+    all
+}
+
+/// Whether every check holds. A check that could not be made does not hold.
+pub fn all_hold(checks: &[Check]) -> bool {
+    checks.iter().all(Check::holds)
+}
+
+/// The check that binds: the one with the smallest torque margin among those that could be made.
+pub fn binding(checks: &[Check]) -> Option<&Check> {
+    let made = checks.iter().filter_map(|c| Some((c.torque_margin()?, c)));
+    made.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, check)| check)
+}
+
+#[cfg(test)]
+#[path = "checks_tests.rs"]
+mod tests;

@@ -1,0 +1,167 @@
+//! The checks of the sizes of parts, one by one, for people.
+
+use super::check::{Check, CheckKind, check};
+use super::drive::{Drive, Rating, known};
+use super::fit::{FitRequirement, LinkRoom, MotorPlace};
+use crate::catalog::gear::Gear;
+
+/// What is asked of the sizes of a gear.
+pub(super) fn gear_fits(gear: &Gear, fit: &FitRequirement, room: &LinkRoom) -> impl Iterator<Item = Check> {
+    let width = known(gear.envelope.outer_diameter_m, "gear outer_diameter_mm");
+    let bore = known(gear.envelope.hollow_bore_m, "gear hollow_bore_mm");
+    let width = at_most(CheckKind::GearWidth, width, room.gear_m);
+    [width, fit.least_bore_m().map(|least_m| bore_check(CheckKind::GearBore, least_m, bore))]
+        .into_iter()
+        .flatten()
+}
+
+/// What is asked of the sizes of a motor, and of motor and gear together.
+pub(super) fn motor_fits(
+    drive: &Drive,
+    fit: &FitRequirement,
+    room: &LinkRoom,
+) -> impl Iterator<Item = Check> {
+    let (gear, motor) = (&drive.gear.envelope, &drive.motor.envelope);
+    let width = known(motor.outer_diameter_m, "motor outer_diameter_mm");
+    let blank = if gear.length_m.is_none() { "gear length_mm" } else { "motor length_mm" };
+    let length = known(fit.length_m(drive.gear, drive.motor), blank);
+    let bore = known(motor.hollow_bore_m, "motor hollow_bore_mm");
+    let least_bore_m = fit.least_bore_m().filter(|_| fit.motor == MotorPlace::Behind);
+    let checks = [
+        at_most(CheckKind::MotorWidth, width, room.motor_m),
+        least_bore_m.map(|least_m| bore_check(CheckKind::MotorBore, least_m, bore)),
+        at_most(CheckKind::DriveLength, length, fit.most_length_m().unwrap_or(f64::INFINITY)),
+    ];
+    checks.into_iter().flatten()
+}
+
+/// Whether a size is at most what there is room for; `None` if there is no end of room.
+fn at_most(kind: CheckKind, size: Rating, room_m: f64) -> Option<Check> {
+    let in_mm = |m: f64| m * 1e3;
+    let needed =
+        || check(kind, size.map(in_mm), Ok(in_mm(room_m)), size.unwrap_or(0.0), size.map(|_| room_m));
+    room_m.is_finite().then(needed)
+}
+
+/// Whether cables that need a passage of this diameter go through a bore.
+fn bore_check(kind: CheckKind, least_m: f64, bore: Rating) -> Check {
+    check(kind, Ok(least_m * 1e3), bore.map(|m| m * 1e3), least_m, bore)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::check::CheckState;
+    use super::super::checks::{all_hold, checks};
+    use super::super::demand::JointMotion;
+    use super::super::limits::DriveLimits;
+    use super::super::requirement::MotionRequirement;
+    use super::super::testing::{gear, motor};
+    use super::*;
+    use crate::arm::bearing::BearingSource;
+    use crate::arm::extras::ExtrasSource;
+    use crate::catalog::envelope::Envelope;
+    use crate::catalog::gear::GearMass;
+    use crate::catalog::motor::Motor;
+
+    /// A gear and a motor that hold 300 N m of static and 100 N m of linear torque at 1.35 m in every respect.
+    fn ample() -> (Gear, Motor) {
+        (
+            gear("CSG-50-100", [600.0, 900.0, 700.0, 2000.0], [3500.0, 2500.0], 0.00125, [3.2, 8.9]),
+            motor("M", [10.0, 20.0], [2000.0, 3000.0], 0.0003, 4.0),
+        )
+    }
+
+    fn motion() -> JointMotion {
+        MotionRequirement::default().joint_motion(1.35, None)
+    }
+
+    /// The ample drive with sizes, in a joint that asks for them: the link is 150 mm wide with a hollow of 140 mm.
+    fn misfits(change: fn(&mut Gear, &mut Motor, &mut FitRequirement)) -> Vec<String> {
+        let mut fit = FitRequirement {
+            gear_to_link_max: Some(1.2),
+            motor: MotorPlace::Behind,
+            cable_bore_min_m: Some(0.02),
+            drive_length_max_m: Some(0.2),
+        };
+        let (mut gear, mut motor) = ample();
+        gear.envelope =
+            Envelope { outer_diameter_m: Some(0.18), length_m: Some(0.08), hollow_bore_m: Some(0.02) };
+        motor.envelope =
+            Envelope { outer_diameter_m: Some(0.14), length_m: Some(0.12), hollow_bore_m: Some(0.02) };
+        change(&mut gear, &mut motor, &mut fit);
+        let motion = JointMotion { fit, ..motion() };
+        let demand = motion.demand_of_torques(300.0, 100.0).with_room(fit.room(0.15, 0.14));
+        let drive = Drive {
+            gear: &gear,
+            motor: &motor,
+            gear_mass: GearMass::HousedUnit,
+            bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
+        };
+        let checks = checks(&drive, &motion, &demand);
+        let holds = DriveLimits::of(&drive, &motion).is_ok_and(|limits| limits.hold(&demand));
+        assert_eq!(holds, all_hold(&checks), "search and checks");
+        let said = |c: &&Check| c.kind.is_fit() && c.state != CheckState::Holds;
+        checks.iter().filter(said).map(|c| format!("{}: {c}", c.kind.label())).collect()
+    }
+
+    #[test]
+    fn each_size_is_compared_with_its_own_room_and_just_fits() {
+        assert_eq!(misfits(|_, _, _| ()), [""; 0], "every part just fits");
+        assert_eq!(
+            misfits(|g, _, _| g.envelope.outer_diameter_m = Some(0.181)),
+            ["gear width: width 181 mm needed, 180 allowed"]
+        );
+        assert_eq!(
+            misfits(|g, _, _| g.envelope.hollow_bore_m = Some(0.019)),
+            ["gear bore: bore 20.0 mm needed, 19.0 allowed"]
+        );
+        assert_eq!(
+            misfits(|_, m, _| m.envelope.hollow_bore_m = Some(0.0)),
+            ["motor bore: bore 20.0 mm needed, 0.0 allowed"]
+        );
+        assert_eq!(
+            misfits(|_, m, _| m.envelope.length_m = Some(0.13)),
+            ["drive length: length of the drive 210 mm needed, 200 allowed"]
+        );
+        assert_eq!(
+            misfits(|_, m, fit| (m.envelope.outer_diameter_m, fit.motor) = (Some(0.15), MotorPlace::InLink)),
+            ["motor width: width 150 mm needed, 140 allowed"]
+        );
+    }
+
+    #[test]
+    fn a_motor_that_is_not_behind_the_gear_has_neither_length_nor_bore_on_the_axis() {
+        for place in [MotorPlace::InLink, MotorPlace::Beside] {
+            let (mut gear, mut motor) = ample();
+            gear.envelope.length_m = Some(0.2);
+            motor.envelope =
+                Envelope { outer_diameter_m: None, length_m: Some(9.0), hollow_bore_m: Some(0.0) };
+            let fit = FitRequirement {
+                motor: place,
+                cable_bore_min_m: Some(0.02),
+                drive_length_max_m: Some(0.2),
+                ..FitRequirement::default()
+            };
+            assert!(fit.allows(&gear, &motor), "{place:?}");
+            assert!(!FitRequirement { motor: MotorPlace::Behind, ..fit }.allows(&gear, &motor));
+        }
+    }
+
+    #[test]
+    fn a_size_that_is_blank_is_said_and_excludes_nothing() {
+        let blank = misfits(|g, m, fit| {
+            (g.envelope, m.envelope, fit.motor) =
+                (Envelope::default(), Envelope::default(), MotorPlace::Behind);
+        });
+        assert_eq!(
+            blank,
+            [
+                "gear width: width not checked: lacks gear outer_diameter_mm",
+                "gear bore: bore not checked: lacks gear hollow_bore_mm",
+                "motor bore: bore not checked: lacks motor hollow_bore_mm",
+                "drive length: length of the drive not checked: lacks gear length_mm",
+            ]
+        );
+    }
+}

@@ -1,0 +1,115 @@
+//! Output bearings of a front that could not be checked or are overloaded, so that it can be said beside the front.
+
+use crate::catalog::Catalogs;
+use crate::report::front_table::FrontTable;
+use crate::sizing::bearing_checks::BlankRatings;
+use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
+
+/// The most names in one sentence.
+const MOST_NAMES: usize = 4;
+
+/// Bearings by what they lack, in the order of the chain.
+#[derive(Default)]
+struct Unchecked(Vec<(BlankRatings, Vec<String>)>);
+
+impl Unchecked {
+    fn add(&mut self, blank: BlankRatings, whose: String) {
+        match self.0.iter_mut().find(|(other, _)| *other == blank) {
+            Some((_, names)) if names.contains(&whose) => {}
+            Some((_, names)) => names.push(whose),
+            None => self.0.push((blank, vec![whose])),
+        }
+    }
+
+    fn sentences(&self) -> Vec<String> {
+        let sentence = |(blank, names): &(BlankRatings, Vec<String>)| {
+            let more = format!("and {} more", names.len().saturating_sub(MOST_NAMES));
+            let mut whose: Vec<&str> = names.iter().take(MOST_NAMES).map(String::as_str).collect();
+            whose.extend((names.len() > MOST_NAMES).then_some(more.as_str()));
+            format!("Output {}.", blank.words(&whose))
+        };
+        self.0.iter().map(sentence).collect()
+    }
+}
+
+/// What a reader of a front should know of its output bearings, in sentences: which lack ratings, which belong to drives that
+/// are given without the names of both parts, and which of a given drive carry too much.
+pub(crate) fn bearing_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &FrontTable) -> Vec<String> {
+    let joints = || {
+        space.pieces.iter().filter_map(|piece| match piece {
+            SpacePiece::Joint(joint) => Some(joint),
+            _ => None,
+        })
+    };
+    let unnamed: Vec<&str> = joints().filter(|j| is_unnamed(j)).map(|joint| joint.name.as_str()).collect();
+    let of_unnamed = (!unnamed.is_empty()).then(|| {
+        format!(
+            "Output bearing not checked in {}: the drive is given without the names of gear and motor.",
+            unnamed.join(", ")
+        )
+    });
+    let blank = unchecked(joints(), catalogs, front).sentences();
+    blank.into_iter().chain(of_unnamed).chain(joints().filter_map(|joint| overloaded(joint, front))).collect()
+}
+
+/// Whether the joint has a bearing, and a drive without the name of a gear or motor.
+fn is_unnamed(joint: &SpaceJoint) -> bool {
+    let is_named = matches!(&joint.drive, DriveChoice::Given { gear: Some(_), motor: Some(_), .. });
+    !joint.drive.is_sized() && !is_named && joint.bearing.stated().is_some()
+}
+
+/// The bearing of a drive that is given and excludes no design, if it carries too much in one.
+fn overloaded(joint: &SpaceJoint, front: &FrontTable) -> Option<String> {
+    let margins = front.numbers(&format!("{}_bearing_margin", joint.name)).into_iter().flatten();
+    let margins: Vec<f64> = margins.filter(|margin| *margin < 1.0).collect();
+    let least = margins.iter().copied().reduce(f64::min)?;
+    Some(format!(
+        "The output bearing of {} carries too much in {} of {} designs of the front, down to a margin of {least:.2}: its drive \
+         is given, so that its checks exclude nothing.",
+        joint.name,
+        margins.len(),
+        front.rows.len(),
+    ))
+}
+
+/// The bearings that lack ratings.
+fn unchecked<'s>(
+    joints: impl Iterator<Item = &'s SpaceJoint>,
+    catalogs: &Catalogs,
+    front: &FrontTable,
+) -> Unchecked {
+    let mut unchecked = Unchecked::default();
+    for joint in joints {
+        match &joint.drive {
+            DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter) => {
+                for gear in gears_of(front, joint).filter_map(|id| catalogs.gear(id).ok()) {
+                    if let Some(blank) = BlankRatings::of(&joint.bearing, gear, filter.gear_mass) {
+                        let is_stated = joint.bearing.stated().is_some();
+                        let whose = if is_stated { bearing_of(joint) } else { gear.id.clone() };
+                        unchecked.add(blank, whose);
+                    }
+                }
+            }
+            DriveChoice::Given { .. } if is_unnamed(joint) => {}
+            DriveChoice::Given { .. } => {
+                let blank = joint.bearing.stated().and_then(BlankRatings::of_stated);
+                blank.into_iter().for_each(|blank| unchecked.add(blank, bearing_of(joint)));
+            }
+        }
+    }
+    unchecked
+}
+
+fn bearing_of(joint: &SpaceJoint) -> String {
+    format!("the bearing of {}", joint.name)
+}
+
+/// The gears that the designs of a front have at a joint.
+fn gears_of<'f>(front: &'f FrontTable, joint: &SpaceJoint) -> impl Iterator<Item = &'f str> {
+    let column = front.column(&format!("{}_gear", joint.name));
+    let mut ids: Vec<&str> =
+        column.map_or(Vec::new(), |c| front.rows.iter().map(|row| row[c].as_str()).collect());
+    ids.sort_unstable();
+    ids.dedup();
+    ids.into_iter()
+}

@@ -1,0 +1,100 @@
+//! Reads the cases of a study: its poses with their loads, each in every environment.
+
+use crate::arm::load::{Payload, Water, read_pose, vector};
+use crate::input::json::{Node, Object};
+use crate::space::design_space::Case;
+use nalgebra::Vector3;
+
+/// All cases, with the indices of those for judging and for sizing.
+#[derive(Default)]
+pub(super) struct Cases {
+    pub cases: Vec<Case>,
+    pub judged: Vec<usize>,
+    pub sizing: Vec<usize>,
+}
+
+/// One case as read, before it is put into every environment.
+struct ReadCase {
+    case: Case,
+    judged: bool,
+    sizing: bool,
+}
+
+/// Reads the poses of a study, each in every environment. `joints` are the names of its joints.
+pub(super) fn read_cases(root: &Object, joints: &[String]) -> Option<Cases> {
+    let payload = root.or("payload", Payload::default(), Payload::read);
+    let force = root.or("tip_force_n", Vector3::zeros(), vector);
+    let environments = root.or("environments", vec![Environment::default()], read_environments);
+    let poses = root.required("poses").and_then(|n| n.array());
+    let joints: Vec<&str> = joints.iter().map(String::as_str).collect();
+    // faulty defaults must not hide faults of the poses
+    let (usual, push) = (payload.unwrap_or_default(), force.unwrap_or_default());
+    let poses: Vec<_> = poses?.iter().map(|n| read_case(n, &joints, &usual, &push)).collect();
+    let poses = poses.into_iter().collect::<Option<Vec<_>>>()?;
+    let (environments, _, _) = (environments?, payload?, force?);
+    if poses.is_empty() {
+        return root.required("poses")?.fault("is empty", "give at least the pose the arm is judged in");
+    }
+    let mut out = Cases::default();
+    for environment in &environments {
+        for ReadCase { case, judged, sizing } in &poses {
+            let index = out.cases.len();
+            out.judged.extend(judged.then_some(index));
+            out.sizing.extend(sizing.then_some(index));
+            let name = match environment.name.as_str() {
+                "" => case.name.clone(),
+                around => format!("{}, {around}", case.name),
+            };
+            out.cases.push(Case { name, water: environment.water, ..case.clone() });
+        }
+    }
+    if out.judged.is_empty() {
+        return root
+            .required("poses")?
+            .fault("has no judged pose", "leave \"judged\" away, or set it true, in one of them");
+    }
+    if out.sizing.is_empty() {
+        return root.required("poses")?.fault(
+            "has no pose in which drives are sized and stresses checked",
+            "leave \"sizing\" away, or set it true, in one of them",
+        );
+    }
+    Some(out)
+}
+
+/// What the arm is in.
+#[derive(Debug, Clone, Default)]
+struct Environment {
+    name: String,
+    water: Option<Water>,
+}
+
+fn read_environments(node: &Node) -> Option<Vec<Environment>> {
+    let items = node.array()?;
+    if items.is_empty() {
+        return node.fault("is empty", "name what the arm is in, or leave it away for air");
+    }
+    let read: Vec<_> = items
+        .iter()
+        .map(|n| {
+            let object = n.object(&["name", "water"])?;
+            let name = object.required("name").and_then(|n| n.string().map(String::from));
+            let water = object.or("water", None, |n| Water::read(n).map(Some));
+            Some(Environment { name: name?, water: water? })
+        })
+        .collect();
+    read.into_iter().collect()
+}
+
+fn read_case(node: &Node, joints: &[&str], payload: &Payload, force: &Vector3<f64>) -> Option<ReadCase> {
+    let object = node.object(&["name", "pose_deg", "payload", "tip_force_n", "sizing", "judged"])?;
+    let name = object.or("name", node.path().to_string(), |n| n.string().map(String::from));
+    let pose_deg = object.required("pose_deg").and_then(|n| read_pose(&n, joints));
+    let payload = object.or("payload", *payload, Payload::read);
+    let tip_force_n = object.or("tip_force_n", *force, vector);
+    let sizing = object.or("sizing", true, Node::boolean);
+    let judged = object.or("judged", true, Node::boolean);
+    let case =
+        Case { name: name?, pose_deg: pose_deg?, payload: payload?, tip_force_n: tip_force_n?, water: None };
+    Some(ReadCase { case, judged: judged?, sizing: sizing? })
+}
