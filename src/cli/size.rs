@@ -10,6 +10,7 @@ use crate::report::words::{TERMINAL, wrap};
 use crate::sizing::bearing::{BearingDemand, BearingLoad};
 use crate::sizing::checks::checks;
 use crate::sizing::demand::JointDemand;
+use crate::sizing::fit::LinkRoom;
 use crate::sizing::select::DriveTable;
 use crate::sizing::sheet::render_rows;
 use crate::space::design::number_of;
@@ -211,7 +212,7 @@ fn all_fits(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String,
 fn demand_line(joint: &str, demand: &JointDemand, table: &DriveTable) -> String {
     format!(
         "joint {joint}: static {:.1} N m, linear {:.1} N m, peak {:.1} N m, stop {:.1} N m, mean {:.1} N m, {:.2} rad/s; \
-         {} drives are fast enough, {} hold",
+         {} drives are fast enough{}, {} hold{}",
         demand.static_torque_nm,
         demand.linear_torque_nm,
         demand.peak_torque_nm(),
@@ -219,8 +220,19 @@ fn demand_line(joint: &str, demand: &JointDemand, table: &DriveTable) -> String 
         demand.mean_torque_nm(),
         table.motion().speed_rad_s,
         table.len(),
-        table.all_fits(demand).count()
+        if table.motion().fit.is_asked() { " and go into the joint" } else { "" },
+        table.all_fits(demand).count(),
+        room_words(&demand.room)
     )
+}
+
+/// What the link leaves to gear and motor; nothing if nobody asks.
+fn room_words(room: &LinkRoom) -> String {
+    let part = |part: &str, m: f64| match m.is_finite() {
+        true => format!("; the link leaves {:.1} mm to the {part}", m * 1e3),
+        false => String::new(),
+    };
+    format!("{}{}", part("gear", room.gear_m), part("motor", room.motor_m))
 }
 
 /// What loads the output bearing of a joint; nothing if it is not checked.

@@ -26,9 +26,9 @@ use nalgebra::{Unit, Vector3};
 /// program can also fill in the fields itself, as below: a steel upper arm of two possible walls on one given joint.
 ///
 /// ```
-/// use armwright::arm::{Curve, JointModel, LinkMaterial, LinkModel, Payload, Section};
+/// use armwright::arm::{BearingSource, Curve, ExtrasSource, JointModel, LinkMaterial, LinkModel, Payload, Section};
 /// use armwright::catalog::Catalogs;
-/// use armwright::sizing::MotionRequirement;
+/// use armwright::sizing::{FitRequirement, MotionRequirement};
 /// use armwright::space::constraint::Constraints;
 /// use armwright::space::design_space::{Case, DriveChoice, LinkChoice, LinkOption, SpaceJoint, SpacePiece};
 /// use armwright::space::{ArmProblem, DesignSpace, evaluate};
@@ -58,11 +58,15 @@ use nalgebra::{Unit, Vector3};
 ///         SpacePiece::Joint(SpaceJoint {
 ///             name: "j2".into(),
 ///             axis: Vector3::y_axis(),
+///             bearing: BearingSource::Stated(None),
+///             extras: ExtrasSource::NONE,
 ///             drive,
 ///             max_speed_rad_s: None,
 ///             range_deg: None,
 ///             has_brake: false,
 ///             duty: None,
+///             fit: FitRequirement::default(),
+///             connection_share: 0.0,
 ///         }),
 ///         SpacePiece::Choice(LinkChoice {
 ///             name: "upper_arm".into(),
