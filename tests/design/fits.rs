@@ -278,7 +278,7 @@ fn six_axes_that_fit() -> Value {
         boxes(&[STEEL, ALUMINIUM], json!([100, 160]), json!([120, 180]), json!([4])),
         boxes(&[STEEL, ALUMINIUM], json!([70, 120]), json!([90, 130]), json!([3])),
     );
-    chain[0]["drive"] = json!("all_fits");
+    // the upper arm is the innermost choice, so the sweep sizes the shoulder for eight of them at once
     chain[0]["fit"] = json!({"gear_to_link_max": null, "motor": "beside"});
     chain[4]["fit"] = json!({"gear_to_link_max": 1.3});
     // a rolling wrist joint that carries a tube of its own, seen along its axis
