@@ -123,7 +123,12 @@ fn bounds_on_mass_hold(problem: &ArmProblem, front: &[Candidate], what: &str) ->
     let known = front.iter().step_by(1 + front.len() / 8);
     let mut bounds = 0;
     for Candidate { number, objectives, .. } in known {
-        let asked = Objectives { mass_kg: objectives.mass_kg * 1.1, ..*objectives };
+        // a little less is asked, so that rounding cannot decide
+        let asked = Objectives {
+            tip_deflection_m: objectives.tip_deflection_m * (1.0 + 1e-6),
+            mass_kg: objectives.mass_kg,
+            lowest_mode_hz: objectives.lowest_mode_hz * (1.0 - 1e-6),
+        };
         let is_as_good = |o: &Objectives| {
             o.tip_deflection_m <= asked.tip_deflection_m && o.lowest_mode_hz >= asked.lowest_mode_hz
         };
