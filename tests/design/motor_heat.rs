@@ -53,7 +53,7 @@ fn hot_study(seed: u64) -> Value {
         if piece["drive"].is_null() {
             continue;
         }
-        if seed % 2 == 0 {
+        if seed.is_multiple_of(2) {
             // what no bearing limits, motors do
             piece["bearing"] = Value::Null;
         }
