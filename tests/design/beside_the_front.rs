@@ -89,6 +89,7 @@ fn by_the_full_model(problem: &ArmProblem, chosen: &[u32], factors: &Factors) ->
                     joint.bearing.as_mut().and_then(|b| b.tilt_stiffness_nm_per_rad.as_mut())
                 {
                     *stiffness *= factor(Rating::BearingStiffness(gear.clone()));
+                    *stiffness *= factor(Rating::StatedBearingStiffness(joint.name.clone()));
                 }
                 let Some(motor) = joint.motor.clone() else { continue };
                 let catalogs = Catalogs::builtin();

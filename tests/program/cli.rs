@@ -141,9 +141,9 @@ fn small_study() -> Value {
         };
         for family in sections {
             for key in ["width_mm", "height_mm"] {
-                family[key] = json!([120, 160]);
+                family[key] = json!([80, 120]);
             }
-            family["wall_mm"] = json!([4]);
+            family["wall_mm"] = json!([3]);
         }
     }
     study
@@ -328,8 +328,8 @@ fn endless_study(folder: &Path) {
     let text = std::fs::read_to_string(project().join("studies/compare-materials.json")).expect("readable");
     let mut study: Value = serde_json::from_str(&text).expect("JSON");
     for piece in study["chain"].as_array_mut().expect("pieces") {
-        if piece["drive"] == "first_fit" {
-            piece["drive"] = json!("all_fits");
+        if piece["type"] == "joint" {
+            piece.as_object_mut().expect("a joint").remove("drives");
         }
     }
     std::fs::write(folder.join("endless.json"), study.to_string()).expect("written");
