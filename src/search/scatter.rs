@@ -135,9 +135,10 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
                     (sized.table.drive(option as usize), sized.table.mass_kg(option as usize));
                 // as deviations from the mass in the table, so that factors of 1 give this mass exactly
                 let motor_kg = drive.motor.mass_kg.unwrap_or(0.0);
+                let gear_kg = drive.mass_kg().map_or(0.0, |both_kg| both_kg - motor_kg);
                 let gear_off = factor(Rating::GearMass(drive.gear.id.clone())) - 1.0;
                 let motor_off = factor(Rating::MotorMass(drive.motor.id.clone())) - 1.0;
-                mass_kg + (mass_kg - motor_kg) * gear_off + motor_kg * motor_off
+                mass_kg + gear_kg * gear_off + motor_kg * motor_off
             }
             _ => 0.0,
         };
