@@ -39,7 +39,7 @@ const SAME: f64 = 1e-6;
 #[test]
 fn of_the_light_arms_of_the_whole_catalog_none_is_missing_and_what_is_dropped_is_found() {
     let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
-    let study = full_catalog(&catalogs, 13.85);
+    let study = full_catalog(&catalogs, 13.74);
     let front = Exact::new(&study.space, &catalogs, &stop, None).with_ties_up_to(0).run(&[]).front;
     let rows: Vec<Objectives> = front.iter().map(|c| c.objectives).collect();
     assert!(rows.len() > 20, "{} rows", rows.len());
@@ -60,7 +60,7 @@ fn of_the_light_arms_of_the_whole_catalog_none_is_missing_and_what_is_dropped_is
 fn a_gap_is_proved_and_one_that_is_claimed_too_small_is_found_out() {
     const GAP: f64 = 0.01;
     let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
-    let study = full_catalog(&catalogs, 13.95);
+    let study = full_catalog(&catalogs, 13.8);
     let search = Exact::new(&study.space, &catalogs, &stop, None).with_ties_up_to(0).to_gap(GAP);
     let rows: Vec<Objectives> = search.run(&[]).front.iter().map(|c| c.objectives).collect();
     let taken_for_better = |gap: f64| -> Vec<Objectives> {
