@@ -49,7 +49,7 @@ fn of_the_light_arms_of_the_whole_catalog_none_is_missing_and_what_is_dropped_is
     for design in found(&rows) {
         assert!(rows.iter().any(|row| is_within(SAME, row, &design)), "{design:?} is beside the rows");
     }
-    for dropped in (0..rows.len()).step_by(7) {
+    for dropped in [0, rows.len() / 2, rows.len() - 1] {
         let mut rest = rows.clone();
         let lost = rest.remove(dropped);
         assert!(found(&rest).iter().any(|design| is_within(SAME, design, &lost)), "{lost:?} is not found");
