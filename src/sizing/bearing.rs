@@ -150,7 +150,7 @@ impl BearingLimits {
     };
 
     /// The limits of a bearing in a joint with this mean speed \[rad/s\] and required life \[h\]. A blank rating does not
-    /// limit: what cannot be checked is listed by the [checks](super::bearing_checks).
+    /// limit: what cannot be checked is listed by the checks of the bearing.
     pub fn of(bearing: Option<&Bearing>, mean_speed_rad_s: f64, life_h: f64) -> Self {
         let Some(bearing) = bearing else { return Self::NONE };
         let ratings = &bearing.ratings;
