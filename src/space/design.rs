@@ -1,14 +1,12 @@
 //! One complete design: its number, its parts, its arm, and its objectives by the full model.
 
 use super::bearing_loads::resolved;
-use super::design_space::{DriveChoice, LinkOption, SpacePiece};
+use super::design_space::{DriveChoice, LinkOption, SpaceJoint, SpacePiece};
 use super::levels::OutwardIn;
 use super::problem::ArmProblem;
-use crate::arm::joint_law::Curve;
 use crate::arm::load::LoadCase;
 use crate::arm::structure::Structure;
 use crate::arm::{Arm, Element, Joint};
-use crate::catalog::gear::Gear;
 use crate::mechanics::chain::Chain;
 use crate::pareto::objectives::Objectives;
 use crate::sizing::drive::Drive;
@@ -101,25 +99,10 @@ impl<'c> ArmProblem<'c> {
             .map(|(piece, part)| match (piece, part) {
                 (SpacePiece::Choice(choice), Part::Link(option)) => Some(Element::Link(choice.link(option))),
                 (SpacePiece::Link(link), _) => Some(Element::Link(link.clone())),
-                (SpacePiece::Joint(joint), part) => {
-                    let (curve, mass_kg, [gear, motor]) =
-                        drive_of(&joint.drive, &part, |gear| joint.curve_with(gear))?;
-                    let (bearing, extras) = match &part {
-                        Part::Drive(drive) => (joint.bearing_with(drive), drive.extras()),
-                        _ => (joint.bearing.stated(), joint.extras.stated()),
-                    };
-                    Some(Element::Joint(Joint {
-                        name: joint.name.clone(),
-                        axis: joint.axis,
-                        curve,
-                        mass_kg,
-                        bearing,
-                        extras,
-                        gear,
-                        motor,
-                        coupled: None,
-                    }))
+                (SpacePiece::Joint(joint), Part::Drive(drive)) => {
+                    joint_with(joint, &drive).map(Element::Joint)
                 }
+                (SpacePiece::Joint(joint), _) => given_joint(joint).map(Element::Joint),
                 _ => None,
             })
             .collect::<Option<Vec<_>>>()?;
@@ -175,23 +158,35 @@ fn with_levers(mut chain: Vec<Element>) -> Vec<Element> {
     chain
 }
 
-/// Torsion curve, mass \[kg\], and the names of gear and motor of a joint. `curve_with` is the curve with a gear that was chosen.
-fn drive_of(
-    choice: &DriveChoice,
-    part: &Part,
-    curve_with: impl Fn(&Gear) -> Curve,
-) -> Option<(Curve, f64, [Option<String>; 2])> {
-    match (choice, part) {
-        (DriveChoice::Given { curve, mass_kg, gear, motor }, _) => {
-            Some((*curve, *mass_kg, [gear.clone(), motor.clone()]))
-        }
-        (_, Part::Drive(drive)) => {
-            let curve = curve_with(drive.gear);
-            let names = [&drive.gear.id, &drive.motor.id].map(|id| Some(id.clone()));
-            Some((curve, drive.mass_kg().ok()?, names))
-        }
-        _ => None,
-    }
+/// A joint with a drive of the catalogs, with its bearing and extras; `None` if the catalog leaves a mass blank.
+pub(crate) fn joint_with(joint: &SpaceJoint, drive: &Drive) -> Option<Joint> {
+    Some(Joint {
+        name: joint.name.clone(),
+        axis: joint.axis,
+        curve: joint.curve_with(drive.gear),
+        mass_kg: drive.mass_kg().ok()?,
+        bearing: joint.bearing_with(drive),
+        extras: drive.extras(),
+        gear: Some(drive.gear.id.clone()),
+        motor: Some(drive.motor.id.clone()),
+        coupled: None,
+    })
+}
+
+/// A joint whose drive the study gives; `None` if it is sized.
+fn given_joint(joint: &SpaceJoint) -> Option<Joint> {
+    let DriveChoice::Given { curve, mass_kg, gear, motor } = &joint.drive else { return None };
+    Some(Joint {
+        name: joint.name.clone(),
+        axis: joint.axis,
+        curve: *curve,
+        mass_kg: *mass_kg,
+        bearing: joint.bearing.stated(),
+        extras: joint.extras.stated(),
+        gear: gear.clone(),
+        motor: motor.clone(),
+        coupled: None,
+    })
 }
 
 /// Objectives of an arm over load cases by the full model, which `armwright analyze` uses too: the largest tip
@@ -230,16 +225,31 @@ pub fn evaluate(problem: &ArmProblem, number: u128) -> Option<Evaluated> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arm::bearing::BearingSource;
+    use crate::arm::extras::ExtrasSource;
+    use crate::arm::joint_law::Curve;
 
     #[test]
     fn a_given_gear_keeps_its_name_without_a_motor() {
         let gear = Some("HFUC-50-100".to_string());
-        let choice =
+        let drive =
             DriveChoice::Given { curve: Curve::Linear(4e5), mass_kg: 3.2, gear: gear.clone(), motor: None };
-        assert_eq!(
-            drive_of(&choice, &Part::Given, |_| Curve::Rigid),
-            Some((Curve::Linear(4e5), 3.2, [gear, None]))
-        );
+        let joint = SpaceJoint {
+            name: "j".into(),
+            axis: nalgebra::Vector3::z_axis(),
+            bearing: BearingSource::Stated(None),
+            extras: ExtrasSource::NONE,
+            drive,
+            max_speed_rad_s: None,
+            range_deg: None,
+            has_brake: false,
+            duty: None,
+            fit: Default::default(),
+            connection_share: 0.0,
+        };
+        let given = given_joint(&joint).expect("given");
+        assert_eq!((given.curve, given.mass_kg), (Curve::Linear(4e5), 3.2));
+        assert_eq!((given.gear, given.motor), (gear, None));
     }
 
     #[test]

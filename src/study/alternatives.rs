@@ -2,12 +2,13 @@
 
 use crate::arm::file::windup_of;
 use crate::arm::structure::Beam;
-use crate::arm::{Arm, Element, Joint, Link, LinkBody};
+use crate::arm::{Arm, Element, Link, LinkBody};
 use crate::mechanics::beam::line_stiffnesses;
 use crate::report::number::significant;
 use crate::report::tube::section_size;
 use crate::sizing::drive::Drive;
 use crate::space::constraint::Constraints;
+use crate::space::design::joint_with;
 use crate::space::design_space::DesignSpace;
 use crate::space::design_space::{LinkChoice, LinkOption, SpaceJoint, SpacePiece};
 use crate::space::problem::ArmProblem;
@@ -22,13 +23,9 @@ pub(super) fn alternatives(
     let mut others: Vec<Vec<(String, Element)>> = vec![Vec::new(); arm.chain.len()];
     let complete = problem.walk(options, |slot, outboard| {
         let piece = problem.piece_of_slot(slot);
-        if let (Some(sized), Element::Joint(joint), SpacePiece::Joint(asked)) =
-            (problem.sized_joint(piece), &arm.chain[piece], &whole.pieces[piece])
-        {
+        if let (Some(sized), SpacePiece::Joint(asked)) = (problem.sized_joint(piece), &whole.pieces[piece]) {
             let demand = problem.demand_at(outboard, slot);
-            let holding =
-                sized.table.all_fits(&demand).map(|i| (sized.table.drive(i), sized.table.mass_kg(i)));
-            others[piece] = drives(asked, joint, holding);
+            others[piece] = drives(asked, sized.table.all_fits(&demand).map(|i| sized.table.drive(i)));
         }
     });
     complete.ok()?;
@@ -40,23 +37,23 @@ pub(super) fn alternatives(
     Some(others)
 }
 
-/// The drives that hold at a joint, lightest first; each has a gear that is stiffer than all lighter ones.
-fn drives<'c>(
-    asked: &SpaceJoint,
-    joint: &Joint,
-    drives: impl Iterator<Item = (Drive<'c>, f64)>,
-) -> Vec<(String, Element)> {
+/// The drives that hold at a joint, lightest first, each with its bearing and extras; each is stiffer than every lighter one,
+/// in a segment of its torsion curve or in its bearing.
+fn drives<'c>(asked: &SpaceJoint, drives: impl Iterator<Item = Drive<'c>>) -> Vec<(String, Element)> {
     let mut out: Vec<(String, Element)> = Vec::new();
-    let mut kept: Vec<[f64; 3]> = Vec::new();
-    for (drive, mass_kg) in drives {
-        let Some(windup) = windup_of(drive.gear) else { continue };
-        let stiffness = [windup.k1_nm_per_rad, windup.k2_nm_per_rad, windup.k3_nm_per_rad];
-        if kept.iter().any(|other| (0..3).all(|i| other[i] >= stiffness[i])) {
+    let mut kept: Vec<[f64; 4]> = Vec::new();
+    for drive in drives {
+        let (Some(windup), Some(joint)) = (windup_of(drive.gear), joint_with(asked, &drive)) else {
+            continue;
+        };
+        let tilt = joint.bearing.and_then(|bearing| bearing.tilt_stiffness_nm_per_rad);
+        let stiffness =
+            [windup.k1_nm_per_rad, windup.k2_nm_per_rad, windup.k3_nm_per_rad, tilt.unwrap_or(f64::INFINITY)];
+        if kept.iter().any(|other| other.iter().zip(&stiffness).all(|(other, own)| other >= own)) {
             continue;
         }
         kept.push(stiffness);
-        let curve = asked.curve_with(drive.gear);
-        out.push((drive.gear.id.clone(), Element::Joint(Joint { curve, mass_kg, ..joint.clone() })));
+        out.push((drive.gear.id.clone(), Element::Joint(joint)));
     }
     out
 }

@@ -1,8 +1,9 @@
 //! What one more kilogram buys: against a spring in closed form, and against arm files changed as text.
 
+use armwright::arm::Extras;
 use armwright::arm::LoadCase;
 use armwright::arm::read_arm_document;
-use armwright::catalog::Catalogs;
+use armwright::catalog::{Catalogs, GearMass};
 use armwright::input::Document;
 use armwright::pareto::Objectives;
 use armwright::report::budget::{
@@ -99,11 +100,14 @@ fn the_next_tube_is_no_softer_either_way_and_not_too_slender() {
     assert_eq!(next_of_lightest(&study), "80 x 80 x 3 mm Aluminium 6061-T6");
 }
 
+/// The motors of the drives below.
+const MOTORS: [&str; 3] = ["MF0060008 48V", "MF0076008 48V", "MF0076032 48V"];
+
 /// The bench arm of the examples with few drives, and effects at its elbow and forearm.
 fn bench() -> Value {
     let mut study: Value = serde_json::from_str(include_str!("../../examples/bench-arm.json")).expect("JSON");
     study["drives"] = json!({"gear_series": ["CSG"], "ratios": [100],
-        "motor_models": ["MF0060008 48V", "MF0076008 48V", "MF0076032 48V"]});
+        "motor_models": MOTORS});
     study["effects"] = json!([
         {"effect": "connection_compliance", "at": "elbow", "parameters": {"stiffness_nm_per_rad": 3e4}},
         {"effect": "harness_mass", "at": "forearm", "parameters": {"kg_per_m": 0.5}}]);
@@ -195,6 +199,18 @@ fn the_budget_is_what_arm_files_changed_as_text_say() {
                 let at =
                     arm["chain"].as_array().expect("a chain").iter().position(|p| p["name"] == row.piece);
                 let joint = &arm["chain"][at.expect("the joint")];
+                let gear = catalogs.gear(&next.name).expect("a gear");
+                let weighs = |motor: &&str| {
+                    let motor = catalogs.motor(motor).expect("a motor");
+                    let extras = Extras::usual(gear, motor, GearMass::HousedUnit);
+                    let housed_kg = gear.mass_housed_unit_kg.expect("its mass");
+                    housed_kg + motor.mass_kg.expect("its mass") + extras.total_kg()
+                };
+                let masses_kg: Vec<f64> = MOTORS.iter().map(weighs).collect();
+                assert!(
+                    masses_kg.iter().any(|kg| (kg - next.mass_kg).abs() < 1e-8),
+                    "{next:?}: {masses_kg:?}"
+                );
                 let mut with = arm.clone();
                 with["chain"][at.expect("the joint")] = json!({"type": "joint", "name": row.piece,
                     "axis": joint["axis"], "gear": next.name, "mass_kg": next.mass_kg});
