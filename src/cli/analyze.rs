@@ -211,6 +211,7 @@ impl Solved {
             "joint_torque_nm": torques,
             "bearing_moment_nm": moments,
             "bearings": self.bearings_json(arm),
+            "rigid_bearings": rigid_bearings(arm),
             "tip_displacement_m": self.statics.tip_displacement_m.as_slice(),
             "shares": shares,
             "modes": self.modes.iter().map(mode_json).collect::<Vec<_>>(),
@@ -314,6 +315,10 @@ impl Solved {
         }
         self.shares_text(&mut out);
         self.bearings_text(arm, &mut out);
+        let rigid = rigid_bearings(arm);
+        if !rigid.is_empty() {
+            let _ = writeln!(out, "  rigid output bearing without mass: {}", rigid.join(", "));
+        }
         self.modes_text(&mut out);
         self.response_text(&mut out);
         out
@@ -366,6 +371,12 @@ impl Solved {
             );
         }
     }
+}
+
+/// The joints with a gear whose output bearing the arm file leaves out.
+fn rigid_bearings(arm: &Arm) -> Vec<&str> {
+    let rigid = |element: &Element| matches!(element, Element::Joint(joint) if joint.gear.is_some() && joint.bearing.is_none());
+    arm.chain.iter().filter(|element| rigid(element)).map(Element::name).collect()
 }
 
 /// An output bearing and what it carries at rest.

@@ -144,7 +144,9 @@ fn a_rigid_bearing_carries_the_same_moment_and_has_no_share() {
     rigid["chain"][0]["bearing"] = json!(null);
     let ((yields, _), (stands, text)) = (analyzed(&arm()), analyzed(&rigid));
     assert_eq!(yields["bearing_moment_nm"], stands["bearing_moment_nm"]);
-    assert!(stands["bearings"].as_object().unwrap().is_empty() && !text.contains("output bearing"));
+    assert!(stands["bearings"].as_object().unwrap().is_empty() && !text.contains("at its centre"));
+    assert_eq!((&stands["rigid_bearings"], &yields["rigid_bearings"]), (&json!(["j1"]), &json!([])));
+    assert!(text.contains("rigid output bearing without mass: j1"), "{text}");
     assert!(!stands.to_string().contains("j1.bearing"));
 }
 
