@@ -2,7 +2,7 @@
 
 use super::bearing_checks::bearing_checks;
 use super::check::{Check, CheckKind, CheckState, check, plain};
-use super::demand::{JointDemand, JointMotion};
+use super::demand::{JointDemand, JointMotion, input_speed_rpm, mean_input_speed_rpm};
 use super::drive::{Drive, known};
 use super::fit_checks::{gear_fits, motor_fits};
 use super::heat::{self, MotorHeat};
@@ -23,10 +23,10 @@ pub fn gear_checks(
         plain(CheckKind::GearStop, demand.stop_torque_nm, limit::gear_momentary_nm(gear)),
         plain(CheckKind::GearBuckling, demand.stop_torque_nm, limit::gear_buckling_nm(gear)),
         plain(CheckKind::GearRatcheting, demand.stop_torque_nm, limit::gear_ratcheting_nm(gear)),
-        plain(CheckKind::GearSpeed, limit::input_speed_rpm(gear, motion), limit::gear_max_speed_rpm(gear)),
+        plain(CheckKind::GearSpeed, input_speed_rpm(gear, motion), limit::gear_max_speed_rpm(gear)),
         plain(
             CheckKind::GearMeanSpeed,
-            limit::mean_input_speed_rpm(gear, motion),
+            mean_input_speed_rpm(gear, motion),
             limit::gear_average_speed_rpm(gear),
         ),
         gear_life(gear, motion, demand),
@@ -72,7 +72,7 @@ pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -
     }
     checks.push(plain(
         CheckKind::MotorSpeed,
-        limit::input_speed_rpm(drive.gear, motion),
+        input_speed_rpm(drive.gear, motion),
         limit::motor_max_speed_rpm(drive.motor),
     ));
     checks.extend(motor_fits(drive, &motion.fit, &demand.room));
@@ -109,7 +109,7 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
 
 /// Root mean square of the motor's torque over the cycle, compared with its continuous torque at the cruising speed.
 fn motor_rms(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
-    let input_rpm = limit::input_speed_rpm(drive.gear, motion);
+    let input_rpm = input_speed_rpm(drive.gear, motion);
     let continuous_nm = heat::continuous_torque_nm(drive.motor, input_rpm);
     let used = MotorHeat::of(drive, motion).map(|heat| heat.share_squared(demand));
     let needed = used.and_then(|used| Ok(used.sqrt() * continuous_nm?));

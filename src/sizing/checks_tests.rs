@@ -3,8 +3,8 @@
 use super::super::bearing::BearingLimits;
 use super::super::bearing_checks::bearing_margin;
 use super::super::testing::{
-    any_gear, any_link_m, any_motion, any_motor, any_torques, bearing_loads, char_lynn_j_8_2, f11_10, gear,
-    hfuc_40_100, motor,
+    ample, any_gear, any_link_m, any_motion, any_motor, any_torques, bearing_loads, char_lynn_j_8_2, f11_10,
+    hfuc_40_100, housed,
 };
 use super::*;
 use crate::arm::bearing::BearingSource;
@@ -25,31 +25,12 @@ fn demand() -> JointDemand {
     motion().demand_of_torques(300.0, 100.0)
 }
 
-/// A gear and a motor that hold `demand()` in every respect.
-fn ample() -> (Gear, Motor) {
-    let mut gear = gear("CSG-50-100", [600.0, 900.0, 700.0, 2000.0], [3500.0, 2500.0], 0.00125, [3.2, 8.9]);
-    gear.permissible_tilting_moment_nm = Some(700.0);
-    gear.bearing = BearingRatings {
-        pitch_diameter_m: Some(0.1),
-        offset_m: Some(0.02),
-        static_load_rating_n: Some(80e3),
-        dynamic_load_rating_n: Some(40e3),
-    };
-    (gear, motor("M", [10.0, 20.0], [2000.0, 3000.0], 0.0003, 4.0))
-}
-
 /// Kinds that do not hold after one thing was changed.
 fn failing(change: impl FnOnce(&mut Gear, &mut Motor, &mut JointMotion, &mut JointDemand)) -> Vec<CheckKind> {
     let (mut gear, mut motor) = ample();
     let (mut motion, mut demand) = (motion(), demand());
     change(&mut gear, &mut motor, &mut motion, &mut demand);
-    let drive = Drive {
-        gear: &gear,
-        motor: &motor,
-        gear_mass: GearMass::HousedUnit,
-        bearing: BearingSource::OfGear,
-        extras: ExtrasSource::NONE,
-    };
+    let drive = housed(&gear, &motor);
     let checks = checks(&drive, &motion, &demand);
     assert!(checks.iter().all(|c| c.state != CheckState::Holds || c.margin().unwrap() >= 1.0));
     assert!(checks.iter().all(|c| c.state != CheckState::Fails || c.margin().unwrap() < 1.0));
@@ -199,13 +180,7 @@ fn numbers_that_round_to_the_same_are_printed_until_they_differ() {
 fn a_blank_rating_is_named_and_nothing_else_is_left_unchecked() {
     let (gear, _) = ample();
     let motor = char_lynn_j_8_2();
-    let drive = Drive {
-        gear: &gear,
-        motor: &motor,
-        gear_mass: GearMass::HousedUnit,
-        bearing: BearingSource::OfGear,
-        extras: ExtrasSource::NONE,
-    };
+    let drive = housed(&gear, &motor);
     let checks = checks(&drive, &motion(), &demand());
     let blank: Vec<_> = checks.iter().filter(|c| !c.holds()).map(Check::to_string).collect();
     assert_eq!(
@@ -232,13 +207,7 @@ fn a_rated_speed_stands_in_for_a_blank_largest_speed() {
 #[test]
 fn what_binds_is_the_smallest_margin() {
     let (gear, motor) = ample();
-    let drive = Drive {
-        gear: &gear,
-        motor: &motor,
-        gear_mass: GearMass::HousedUnit,
-        bearing: BearingSource::OfGear,
-        extras: ExtrasSource::NONE,
-    };
+    let drive = housed(&gear, &motor);
     let mut checks = checks(&drive, &motion(), &demand());
     assert_eq!(binding(&checks).unwrap().kind, CheckKind::GearPeak);
     checks.remove(0);
@@ -249,13 +218,7 @@ fn what_binds_is_the_smallest_margin() {
 #[test]
 fn a_joint_that_carries_nothing_has_no_end_of_life() {
     let (gear, motor) = (hfuc_40_100(), f11_10());
-    let drive = Drive {
-        gear: &gear,
-        motor: &motor,
-        gear_mass: GearMass::HousedUnit,
-        bearing: BearingSource::OfGear,
-        extras: ExtrasSource::NONE,
-    };
+    let drive = housed(&gear, &motor);
     let checks = checks(&drive, &motion(), &motion().demand_of_torques(0.0, 0.0));
     assert!(all_hold(&checks));
     let life = checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();

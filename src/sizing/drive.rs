@@ -187,7 +187,7 @@ pub fn reference_life_h(series: &str) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{f11_10, hfuc_58_100};
+    use super::super::testing::{f11_10, hfuc_58_100, housed};
     use super::*;
     use crate::sizing::requirement::MotionRequirement;
 
@@ -220,13 +220,7 @@ mod tests {
     #[test]
     fn the_motor_carries_the_load_through_the_gear_and_its_own_inertia_directly() {
         let (gear, motor) = (hfuc_58_100(), f11_10());
-        let drive = Drive {
-            gear: &gear,
-            motor: &motor,
-            gear_mass: GearMass::HousedUnit,
-            bearing: BearingSource::OfGear,
-            extras: ExtrasSource::NONE,
-        };
+        let drive = housed(&gear, &motor);
         let motion = MotionRequirement::default().joint_motion(1.35, None);
         let torque = drive.peak_motor_torque_nm(&motion, 858.0).unwrap();
         let by_hand = 858.0 / (100.0 * 0.78) + 0.00312 * 100.0 * 5.0 / 1.35;

@@ -55,21 +55,10 @@ mod tests {
     use super::super::demand::JointMotion;
     use super::super::limits::DriveLimits;
     use super::super::requirement::MotionRequirement;
-    use super::super::testing::{gear, motor};
+    use super::super::testing::{ample, housed};
     use super::*;
-    use crate::arm::bearing::BearingSource;
-    use crate::arm::extras::ExtrasSource;
     use crate::catalog::envelope::Envelope;
-    use crate::catalog::gear::GearMass;
     use crate::catalog::motor::Motor;
-
-    /// A gear and a motor that hold 300 N m of static and 100 N m of linear torque at 1.35 m in every respect.
-    fn ample() -> (Gear, Motor) {
-        (
-            gear("CSG-50-100", [600.0, 900.0, 700.0, 2000.0], [3500.0, 2500.0], 0.00125, [3.2, 8.9]),
-            motor("M", [10.0, 20.0], [2000.0, 3000.0], 0.0003, 4.0),
-        )
-    }
 
     fn motion() -> JointMotion {
         MotionRequirement::default().joint_motion(1.35, None)
@@ -91,13 +80,7 @@ mod tests {
         change(&mut gear, &mut motor, &mut fit);
         let motion = JointMotion { fit, ..motion() };
         let demand = motion.demand_of_torques(300.0, 100.0).with_room(fit.room(0.15, 0.14));
-        let drive = Drive {
-            gear: &gear,
-            motor: &motor,
-            gear_mass: GearMass::HousedUnit,
-            bearing: BearingSource::OfGear,
-            extras: ExtrasSource::NONE,
-        };
+        let drive = housed(&gear, &motor);
         let checks = checks(&drive, &motion, &demand);
         let holds = DriveLimits::of(&drive, &motion).is_ok_and(|limits| limits.hold(&demand));
         assert_eq!(holds, all_hold(&checks), "search and checks");

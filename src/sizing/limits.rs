@@ -7,8 +7,7 @@
 //! thresholds.
 
 use super::bearing::BearingLimits;
-use super::demand::{JointDemand, JointMotion};
-pub(super) use super::demand::{input_speed_rpm, mean_input_speed_rpm};
+use super::demand::{JointDemand, JointMotion, input_speed_rpm, mean_input_speed_rpm};
 use super::drive::{Drive, MissingRating, Rating, known, reference_life_h};
 use super::fit::DriveWidths;
 use super::heat::MotorHeat;

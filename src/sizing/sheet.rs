@@ -3,9 +3,9 @@
 use super::bearing_checks::{BlankRatings, bearing_margin};
 use super::check::{Check, CheckKind, CheckState};
 use super::checks::{binding, checks, motor_checks};
-use super::demand::{JointDemand, JointMotion};
+use super::demand::{JointDemand, JointMotion, input_speed_rpm, mean_input_speed_rpm};
 use super::drive::{Drive, rotary_torque_output_nm};
-use super::limits::{input_speed_rpm, mean_input_speed_rpm, stops_allowed};
+use super::limits::stops_allowed;
 use super::rpm_from_rad_s;
 use crate::arm::bearing::BearingSource;
 use crate::catalog::gear::Gear;

@@ -2,10 +2,13 @@
 
 use super::bearing::{BearingDemand, BearingLoad};
 use super::demand::JointMotion;
+use super::drive::Drive;
 use super::fit::{FitRequirement, MotorPlace};
 use super::requirement::MotionRequirement;
+use crate::arm::bearing::BearingSource;
+use crate::arm::extras::ExtrasSource;
 use crate::catalog::envelope::Envelope;
-use crate::catalog::gear::{BearingRatings, Gear};
+use crate::catalog::gear::{BearingRatings, Gear, GearMass};
 use crate::catalog::motor::{Motor, MotorKind};
 use crate::catalog::{Confidence, Provenance};
 use proptest::prelude::*;
@@ -18,6 +21,30 @@ fn provenance() -> Provenance {
         file: "test".into(),
         line: 1,
     }
+}
+
+/// A housed gear with its motor and nothing else.
+pub(crate) fn housed<'c>(gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
+    Drive {
+        gear,
+        motor,
+        gear_mass: GearMass::HousedUnit,
+        bearing: BearingSource::OfGear,
+        extras: ExtrasSource::NONE,
+    }
+}
+
+/// A gear and a motor that hold 300 N m of static and 100 N m of linear torque at 1.35 m in every respect.
+pub(crate) fn ample() -> (Gear, Motor) {
+    let mut gear = gear("CSG-50-100", [600.0, 900.0, 700.0, 2000.0], [3500.0, 2500.0], 0.00125, [3.2, 8.9]);
+    gear.permissible_tilting_moment_nm = Some(700.0);
+    gear.bearing = BearingRatings {
+        pitch_diameter_m: Some(0.1),
+        offset_m: Some(0.02),
+        static_load_rating_n: Some(80e3),
+        dynamic_load_rating_n: Some(40e3),
+    };
+    (gear, motor("M", [10.0, 20.0], [2000.0, 3000.0], 0.0003, 4.0))
 }
 
 /// A gear with every rating that a check needs, in the order of `gears.csv`.

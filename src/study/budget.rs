@@ -1,11 +1,11 @@
 //! The stiffness budget of a front's picks: what one more kilogram buys at each joint and link, and how far a
 //! pick is from the lightest arm that could do as well.
 //!
-//! The output bearing of a joint has a share of its own in the deflection; it grows with its joint. Each piece has two answers, both by the full model with all other parts unchanged. *In place*: the piece's
-//! mass and stiffness grow in proportion (a thicker wall, a gear scaled up), a central difference over 0.1 %
-//! of its mass. *Next part*: the heavier catalog part that fits there, improves anything, and has the best
+//! Each piece has two answers, both by the full model with all other parts unchanged. *In place*: the piece's mass and
+//! stiffness grow in proportion (a thicker wall, a gear scaled up together with its output bearing), a central difference
+//! over 0.1 % of its mass. *Next part*: the heavier catalog part that fits there, improves anything, and has the best
 //! change of deflection per kilogram; this is the difference between two parts that one can buy. Drives
-//! further inboard are not sized again.
+//! further inboard are not sized again. The output bearing of a joint has a row of its own, with its share of the deflection.
 
 use super::alternatives::alternatives;
 use super::bounds::MassBounds;

@@ -5,13 +5,10 @@
 
 use crate::dice::Dice;
 use crate::exact_front::random_study;
-use crate::exact_support::agrees;
+use crate::exact_support::{both_searches, read};
 use armwright::catalog::Catalogs;
 use armwright::exact::Exact;
-use armwright::input::Document;
-use armwright::search::Sweep;
 use armwright::space::{ArmProblem, OutwardIn};
-use armwright::study::{Study, read_study};
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 
@@ -59,12 +56,6 @@ fn study_of_bearings(seed: u64) -> Value {
     study
 }
 
-fn read(study: &Value, catalogs: &Catalogs) -> Study {
-    let text = study.to_string();
-    let document = Document::parse("random study", &text).unwrap_or_else(|fault| panic!("{fault}"));
-    read_study(document, catalogs).unwrap_or_else(|fault| panic!("{fault}\n{text}"))
-}
-
 /// Designs of a study with drives that a bearing alone excludes, at the joints that are levels.
 fn excluded_by_bearings(problem: &ArmProblem) -> usize {
     let mut rigid = 0;
@@ -86,20 +77,13 @@ fn excluded_by_bearings(problem: &ArmProblem) -> usize {
 fn the_exact_front_is_whole_with_bearings_that_tilt_and_limit() {
     let studies: u64 =
         std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(24);
-    let stop = AtomicBool::new(false);
     let (mut points, mut feasible, mut excluded) = (0, 0, 0);
     for seed in 0..studies {
         let (text, catalogs) = (study_of_bearings(seed), other_bearings(seed));
         let study = read(&text, &catalogs);
         let problem = ArmProblem::new(&study.space, &catalogs);
-        let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
-        let exact = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
-        let what = format!("seed {seed}, {} designs: {text}", sweep.designs_total);
-        let listed = agrees(&problem, &exact.front, &sweep.front, &what);
-        if seed % 4 == 0 {
-            let by_regions = Exact::new(&study.space, &catalogs, &stop, None).by_regions_from(100.0).run(&[]);
-            agrees(&problem, &by_regions.front, &sweep.front, &what);
-        }
+        let what = format!("seed {seed}: {text}");
+        let (_, listed) = both_searches(&study, &catalogs, seed.is_multiple_of(4), &what);
         points += listed;
         feasible += u64::from(listed > 0);
         excluded += usize::from(excluded_by_bearings(&problem) > 0);

@@ -56,14 +56,28 @@ pub fn agrees(problem: &ArmProblem, exact: &[Candidate], sweep: &[Candidate], wh
     exact.len()
 }
 
-/// Asserts that both searches find the same designs, and returns how many.
-pub fn agree(text: &Value) -> usize {
-    let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
-    let study = read(text, &catalogs);
-    let problem = ArmProblem::new(&study.space, &catalogs);
+/// Asserts that the exact search, by boxes and if asked by regions too, lists what the sweep lists. Returns the front of the
+/// sweep and how many designs the exact search lists.
+pub fn both_searches(
+    study: &Study,
+    catalogs: &Catalogs,
+    by_regions: bool,
+    what: &str,
+) -> (Vec<Candidate>, usize) {
+    let stop = AtomicBool::new(false);
+    let problem = ArmProblem::new(&study.space, catalogs);
     let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
-    let exact = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
-    let by_regions = Exact::new(&study.space, &catalogs, &stop, None).by_regions_from(100.0).run(&[]);
-    agrees(&problem, &by_regions.front, &sweep.front, &text.to_string());
-    agrees(&problem, &exact.front, &sweep.front, &text.to_string())
+    let what = format!("{} designs: {what}", sweep.designs_total);
+    let exact = || Exact::new(&study.space, catalogs, &stop, None);
+    let listed = agrees(&problem, &exact().run(&[]).front, &sweep.front, &what);
+    if by_regions {
+        agrees(&problem, &exact().by_regions_from(100.0).run(&[]).front, &sweep.front, &what);
+    }
+    (sweep.front, listed)
+}
+
+/// Asserts that both searches find the same designs of a study, by boxes and by regions, and returns how many.
+pub fn agree(text: &Value) -> usize {
+    let catalogs = Catalogs::builtin();
+    both_searches(&read(text, &catalogs), &catalogs, true, &text.to_string()).1
 }

@@ -7,13 +7,11 @@ use crate::brute::study::Study as BruteStudy;
 use crate::brute_force::{ALUMINIUM, STEEL, assert_same, boxes, six_axes};
 use crate::dice::Dice;
 use crate::exact_front::random_study;
-use crate::exact_support::{agrees, read};
+use crate::exact_support::{both_searches, read};
 use crate::witness_drives::{Row, Spoil, faults, front, spoiled, times};
 use armwright::catalog::Catalogs;
-use armwright::exact::Exact;
 use armwright::pareto::Objectives;
 use armwright::relax::Relaxation;
-use armwright::search::Sweep;
 use armwright::search::sweep::Candidate;
 use armwright::sizing::LinkRoom;
 use armwright::space::{ArmProblem, OutwardIn, evaluate};
@@ -149,22 +147,15 @@ fn bounds_on_mass_hold(problem: &ArmProblem, front: &[Candidate], what: &str) ->
 fn the_exact_front_is_whole_where_parts_must_fit() {
     let studies: u64 =
         std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(32);
-    let stop = AtomicBool::new(false);
     let (mut points, mut feasible, mut decided, mut bounds) = (0, 0, 0, 0);
     for seed in 0..studies {
         let (text, catalogs) = (study_of_fits(seed), other_sizes(seed));
         let study = read(&text, &catalogs);
         let problem = ArmProblem::new(&study.space, &catalogs);
-        let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
-        let exact = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
-        let what = format!("seed {seed}, {} designs: {text}", sweep.designs_total);
-        let listed = agrees(&problem, &exact.front, &sweep.front, &what);
-        if seed % 4 == 0 {
-            let by_regions = Exact::new(&study.space, &catalogs, &stop, None).by_regions_from(100.0).run(&[]);
-            agrees(&problem, &by_regions.front, &sweep.front, &what);
-        }
-        assert_objectives_are_those_of_the_full_model(&problem, &sweep.front, &what);
-        bounds += bounds_on_mass_hold(&problem, &sweep.front, &what);
+        let what = format!("seed {seed}: {text}");
+        let (front, listed) = both_searches(&study, &catalogs, seed.is_multiple_of(4), &what);
+        assert_objectives_are_those_of_the_full_model(&problem, &front, &what);
+        bounds += bounds_on_mass_hold(&problem, &front, &what);
         points += listed;
         feasible += u64::from(listed > 0);
         decided += usize::from(decided_by_links(&problem) > 0);

@@ -4,18 +4,13 @@
 
 use crate::dice::Dice;
 use crate::exact_front::random_study;
-use crate::exact_support::{agrees, judged, read};
+use crate::exact_support::{both_searches, judged, read};
+use crate::witness_drives::{faults, front};
 use armwright::catalog::Catalogs;
-use armwright::exact::Exact;
-use armwright::pareto::Objectives;
-use armwright::pareto::front::nondominated;
 use armwright::search::Sweep;
-use armwright::space::{ArmProblem, Evaluated, evaluate};
+use armwright::space::ArmProblem;
 use armwright::study::Study;
-use armwright::study::question::{picks, question};
-use armwright::verify::{Judge, Pick, Settings};
 use serde_json::{Value, json};
-use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 
 fn studies() -> u64 {
@@ -87,49 +82,19 @@ fn swept(study: &Study, catalogs: &Catalogs) -> Vec<u128> {
 
 #[test]
 fn the_exact_front_is_the_front_of_every_design_where_motor_heat_decides() {
-    let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
+    let catalogs = Catalogs::builtin();
     let (mut points, mut decided) = (0, 0);
     for seed in 0..studies() {
         let text = hot_study(seed);
         let study = read(&text, &catalogs);
         let problem = ArmProblem::new(&study.space, &catalogs);
-        let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
-        let exact = Exact::new(&study.space, &catalogs, &stop, None).run(&[]);
-        points += agrees(&problem, &exact.front, &sweep.front, &format!("seed {seed}: {text}"));
-        decided += u64::from(judged(&problem, &sweep.front) != swept(&unheated(&study), &catalogs));
+        let (front, listed) = both_searches(&study, &catalogs, false, &format!("seed {seed}: {text}"));
+        points += listed;
+        decided += u64::from(judged(&problem, &front) != swept(&unheated(&study), &catalogs));
     }
     println!("{} studies, heat decides {decided}, {points} front designs, the same in both", studies());
     assert!(decided * 6 > studies(), "heat decides only {decided} of {}", studies());
     assert!(points as u64 > 5 * studies(), "fronts are too small to say much: {points} designs");
-}
-
-/// A design of a front, by its parts.
-type Row = (Vec<Pick>, Objectives);
-
-/// The front that the sweep finds for one study, in the terms of another.
-fn front(study: &Study, catalogs: &Catalogs) -> Vec<Row> {
-    let problem = ArmProblem::new(&study.space, catalogs);
-    let sweep = Sweep::new(&problem, study.space.constraints, &AtomicBool::new(false)).run();
-    let judged: Vec<Evaluated> = sweep.front.iter().filter_map(|c| evaluate(&problem, c.number)).collect();
-    let points: Vec<_> = judged.iter().map(|d| d.objectives.minimized()).collect();
-    let kept = nondominated(&points).expect("numbers").into_iter().flatten();
-    let row =
-        |i: usize| (picks(&problem, catalogs, judged[i].number).expect("it holds"), judged[i].objectives);
-    kept.map(row).collect()
-}
-
-/// Rows that the verifier says do not hold or have other objectives, and designs that it misses.
-fn faults(truth: &Study, catalogs: &Catalogs, rows: &[Row]) -> [usize; 2] {
-    let question = question(&truth.space);
-    let judge = Judge::new(&question, catalogs);
-    let is_wrong =
-        |(picks, objectives): &&Row| judge.judge(picks).map(|own| own.objectives) != Some(*objectives);
-    let wrong = rows.iter().filter(is_wrong).count();
-    let objectives: Vec<Objectives> = rows.iter().map(|row| row.1).collect();
-    let looked = judge.missing(&objectives, Settings::default(), &AtomicBool::new(false), None);
-    let listed: BTreeSet<&Vec<Pick>> = rows.iter().map(|row| &row.0).collect();
-    let missing = looked.candidates.iter().filter(|design| !listed.contains(&design.picks)).count();
-    [wrong, missing]
 }
 
 #[test]
@@ -138,10 +103,10 @@ fn the_verifier_finds_the_drives_that_a_search_takes_or_drops_by_wrong_heat() {
     let (mut forgot, mut pruned) = (0, 0);
     for seed in 0..studies() {
         let truth = read(&hot_study(seed), &catalogs);
-        let rows = front(&truth, &catalogs);
+        let rows = front(&truth, &catalogs, &catalogs);
         assert_eq!(faults(&truth, &catalogs, &rows), [0, 0], "seed {seed}");
         // a search that forgets the check takes drives that do not hold
-        let forgetful = front(&unheated(&truth), &catalogs);
+        let forgetful = front(&unheated(&truth), &catalogs, &catalogs);
         if forgetful.iter().any(|row| !rows.contains(row)) {
             assert!(faults(&truth, &catalogs, &forgetful)[0] > 0, "seed {seed}");
             forgot += 1;
@@ -152,7 +117,7 @@ fn the_verifier_finds_the_drives_that_a_search_takes_or_drops_by_wrong_heat() {
             .motors
             .iter_mut()
             .for_each(|m| m.rated_speed_rpm = m.rated_speed_rpm.or(m.max_speed_rpm).map(|n| 0.2 * n));
-        let strict = front(&truth, &weaker);
+        let strict = front(&truth, &weaker, &catalogs);
         if rows.iter().any(|row| !strict.contains(row)) {
             let [wrong, missing] = faults(&truth, &catalogs, &strict);
             assert!(wrong + missing > 0, "seed {seed}");
