@@ -212,6 +212,20 @@ impl<'c> ArmProblem<'c> {
         Ok(partial)
     }
 
+    /// The arm with these options, one for each slot, drives that first fit would choose among them; `None` if it cannot hold.
+    pub(crate) fn assemble(&self, options: &[u32]) -> Option<Partial> {
+        let mut partial = self.empty();
+        let mut adds = |(slot, &option): (usize, &u32)| match &self.slots[slot] {
+            Slot::Sized(sized) => {
+                let demand = self.demand(&partial, slot, Some(sized.table.motion()));
+                let index = option as usize;
+                sized.table.holds(index, &demand) && self.add_drive(slot, sized, index, &mut partial)
+            }
+            _ => self.add(slot, option, &mut partial),
+        };
+        options.iter().enumerate().all(&mut adds).then_some(partial)
+    }
+
     /// The piece (base to tip) that stands in a slot (tip first).
     pub fn piece_of_slot(&self, slot: usize) -> usize {
         self.piece_slots.iter().position(|&s| s == slot).unwrap_or_default()
@@ -314,8 +328,12 @@ impl<'c> ArmProblem<'c> {
             true => Some(option as usize).filter(|&i| sized.table.holds(i, &demand)),
             false => sized.table.first_fit(&demand),
         };
-        let Some(index) = index else { return false };
-        // the drive that first fit takes is recorded like an option, so that the parts can be read from the arm
+        index.is_some_and(|index| self.add_drive(slot, sized, index, to))
+    }
+
+    /// Adds a drive that holds. It is recorded like an option even where first fit took it, so that the parts can be read
+    /// from the arm.
+    fn add_drive(&self, slot: usize, sized: &SizedJoint, index: usize, to: &mut Partial) -> bool {
         to.options[slot] = index as u32;
         self.add_joint(slot, &sized.laws[index], sized.table.mass_kg(index), to)
     }
