@@ -25,7 +25,7 @@ def sections(sides, walls):
     return [{"shape": "rectangular_tube", "width_mm": grid(80, 160, sides), "height_mm": "=width", "wall_mm": grid(2, 6, walls)}]
 
 
-def link(name, vector_m, sides=10, walls=15):
+def link(name, vector_m, sides=16, walls=16):
     return {"type": "link", "name": name, "vector_m": vector_m,
             "choose": {"materials": ["Structural steel S355", "Aluminium 6061-T6"], "sections": sections(sides, walls)}}
 
@@ -43,7 +43,7 @@ def joint(name, axis):
     return {"type": "joint", "name": name, "axis": axis, "drive": "first_fit"}
 
 
-def study(joints=6, poses=3, column="offset", bases=0, sides=10, walls=15):
+def study(joints=6, poses=3, column="offset", bases=0, sides=16, walls=16):
     """An arm of two open links; `bases` given offsets stand below joint 1, and `joints - 3` wrist joints follow the elbow."""
     dice = random.Random(7)
     y, x, z = [0, 1, 0], [1, 0, 0], [0, 0, 1]

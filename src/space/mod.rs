@@ -20,6 +20,7 @@ pub(crate) mod excerpt;
 pub(crate) mod fit;
 pub(crate) mod fixed;
 pub(crate) mod levels;
+pub(crate) mod posed;
 pub(crate) mod problem;
 pub(crate) mod slot;
 pub(crate) mod station;
