@@ -1,7 +1,7 @@
 //! The sweep: every design of a space is evaluated, in parallel.
 //!
 //! - [`sweep`] visits every design and keeps those that no other dominates. A *row* is the set of designs that differ in
-//!   the innermost level alone; it is finished eight designs at a time (`finish`).
+//!   one level alone; it is finished eight designs at a time (`finish`).
 //! - [`near`] finds the designs that are nearly on a front.
 //! - [`scatter`] computes designs whose parts differ a little from the catalog.
 //! - `ballast` finds designs that are on a front only because extra weight loads a gear into a stiffer part of its curve.

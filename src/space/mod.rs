@@ -27,5 +27,5 @@ pub(crate) mod station;
 
 pub use design::{Evaluated, evaluate};
 pub use design_space::DesignSpace;
-pub use levels::{Finished, Keep, OutwardIn};
+pub use levels::{DesignRow, Finished, Keep, OutwardIn};
 pub use problem::ArmProblem;
