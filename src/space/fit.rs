@@ -33,7 +33,7 @@ impl RoomAtJoint {
 
     /// The room at the joint in a place of the chain; `None` if nothing is asked of its link, or it carries none.
     /// `piece_slots` are the slots of the chain's pieces.
-    fn new(pieces: &[SpacePiece], place: usize, piece_slots: &[usize]) -> Option<Self> {
+    pub(crate) fn new(pieces: &[SpacePiece], place: usize, piece_slots: &[usize]) -> Option<Self> {
         let SpacePiece::Joint(joint) = &pieces[place] else { return None };
         let link = carried_link(pieces, place).filter(|_| joint.fit.asks_of_link())?;
         let room =
