@@ -26,6 +26,7 @@ pub mod question;
 pub(crate) mod range;
 pub(crate) mod read;
 pub(crate) mod same_drives;
+pub(crate) mod search_cost;
 pub(crate) mod sections;
 pub(crate) mod table;
 pub(crate) mod ties;
