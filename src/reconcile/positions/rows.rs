@@ -1,0 +1,127 @@
+//! The model of positions, linearized: for each sample its weighted error and how its position moves with every number,
+//! and the normal equations of all samples.
+//!
+//! Both cost as many operations as there are samples, and room for a fixed number of them: the rows of the equations are
+//! made in blocks, and only their products are kept.
+
+use super::fitted::{Fitted, Sample};
+use super::kinematics::{Number, Placer};
+use super::normal::Normal;
+use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
+
+/// Prior standard deviation of a compliance \[rad/(N m)\]. It is far above that of any part. Without it, a
+/// compliance that no weight loads could take any value.
+const PRIOR_RAD_PER_NM: f64 = 0.1;
+/// Number of samples whose rows are made at a time. They stay in a processor's cache until their products are taken.
+const BLOCK: usize = 64;
+
+/// Adds columns that belong to no number of the model: derivatives of a sample's position \[m per unit\].
+pub(crate) type Further<'a> = &'a mut dyn FnMut(&Sample, &Placer, &mut Vec<Vector3<f64>>);
+
+/// A model, linearized about its numbers.
+pub(crate) struct Linearized<'a> {
+    here: &'a Fitted,
+    numbers: &'a [Number],
+    placer: Placer<'a>,
+    from_level: Rotation3<f64>,
+    /// The columns of the sample that was asked for last: numbers of the geometry, compliances, further columns.
+    pub columns: Vec<Vector3<f64>>,
+}
+
+impl<'a> Linearized<'a> {
+    pub(crate) fn new(here: &'a Fitted, numbers: &'a [Number]) -> Self {
+        let placer = here.geometry.placer();
+        let from_level = here.geometry.level_to_instrument();
+        Self { here, numbers, placer, from_level, columns: Vec::new() }
+    }
+
+    /// Computes the columns of a sample, and returns its error. Both are scaled by the root of the sample's weight.
+    pub(crate) fn at(&mut self, sample: &Sample, further: Further) -> Vector3<f64> {
+        let here = self.here;
+        let at_m = self.placer.place_m(sample.placing());
+        let error = sample.measured_m - at_m - self.from_level * here.displacement(sample);
+        self.columns.clear();
+        self.placer.slopes(sample.placing(), self.numbers, &mut self.columns);
+        for (column, number) in self.columns.iter_mut().zip(self.numbers) {
+            if let Number::Gravity(c) = number {
+                let pulled = here.yielded(sample, &Vector3::ith(*c, 1.0));
+                *column = self.from_level * (pulled + sample.deflection.known_slopes_m[*c]);
+            }
+        }
+        for &effect in &here.effects {
+            let moved = sample.deflection.per_compliance(effect, &here.geometry.gravity);
+            self.columns.extend(moved.map(|by| self.from_level * by));
+        }
+        further(sample, &self.placer, &mut self.columns);
+        // products of scaled rows have the weight
+        let root = here.weight(&error).sqrt();
+        self.columns.iter_mut().for_each(|column| *column *= root);
+        error * root
+    }
+}
+
+/// Builds the normal equations at a model.
+pub(crate) fn normal(samples: &[&Sample], numbers: &[Number], here: &Fitted, further: Further) -> Normal {
+    let own = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
+    let mut linearized = Linearized::new(here, numbers);
+    let mut products: Option<Products> = None;
+    for block in samples.chunks(BLOCK) {
+        for (k, sample) in block.iter().enumerate() {
+            let error = linearized.at(sample, further);
+            let columns = &linearized.columns;
+            products.get_or_insert_with(|| Products::new(columns.len())).put(k, columns, &error);
+        }
+        products.iter_mut().for_each(|p| p.add(block.len()));
+    }
+    let Products { mut curvature, mut gradient, .. } = products.unwrap_or_else(|| Products::new(own));
+    let priors = numbers.iter().map(Number::prior).zip(&here.moved);
+    // a weak prior keeps the equations regular for a compliance that no weight loads
+    let compliances = here.compliances.iter().flatten().map(|c| (PRIOR_RAD_PER_NM, c));
+    for (i, (prior, moved)) in priors.chain(compliances).enumerate() {
+        let precision = prior.powi(-2);
+        curvature[(i, i)] += precision;
+        gradient[i] -= precision * moved;
+    }
+    Normal { curvature, gradient, own }
+}
+
+/// Sums of products of rows, taken block by block.
+struct Products {
+    /// Rows of a block, as columns: products with the transpose written out are the fast ones.
+    rows: DMatrix<f64>,
+    transposed: DMatrix<f64>,
+    right: DVector<f64>,
+    curvature: DMatrix<f64>,
+    gradient: DVector<f64>,
+}
+
+impl Products {
+    fn new(width: usize) -> Self {
+        Self {
+            rows: DMatrix::zeros(width, 3 * BLOCK),
+            transposed: DMatrix::zeros(3 * BLOCK, width),
+            right: DVector::zeros(3 * BLOCK),
+            curvature: DMatrix::zeros(width, width),
+            gradient: DVector::zeros(width),
+        }
+    }
+
+    /// Puts the three rows of a sample into the block, as sample `k`.
+    fn put(&mut self, k: usize, columns: &[Vector3<f64>], error: &Vector3<f64>) {
+        for c in 0..3 {
+            let mut row = self.rows.column_mut(3 * k + c);
+            row.iter_mut().zip(columns).for_each(|(to, column)| *to = column[c]);
+        }
+        self.right.fixed_rows_mut::<3>(3 * k).copy_from(error);
+    }
+
+    /// Adds the products of the block, which holds `samples` samples.
+    fn add(&mut self, samples: usize) {
+        // the last block may be shorter
+        self.rows.columns_range_mut(3 * samples..).fill(0.0);
+        self.right.rows_range_mut(3 * samples..).fill(0.0);
+        self.rows.transpose_to(&mut self.transposed);
+        self.curvature.gemm(1.0, &self.rows, &self.transposed, 1.0);
+        self.gradient.gemv(1.0, &self.rows, &self.right, 1.0);
+    }
+}
