@@ -11,6 +11,7 @@
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::modal::Solved;
 use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::forward::statics::StaticState;
 use crate::reconcile::model::parameters::Model;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::f64::consts::TAU;
@@ -49,6 +50,8 @@ pub struct Point {
     pub truth: Vec<f64>,
     /// Predicted reading of each datum, in the unit of the datum's file.
     pub predicted: Vec<f64>,
+    /// The loads on the arm in each static pose, and how it yields to them.
+    pub statics: Vec<StaticState>,
     /// Solved modes of each modal test.
     pub solved: Vec<Vec<Solved>>,
     /// The objective.
@@ -73,7 +76,7 @@ pub struct Fit<'a> {
 pub fn evaluate(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Point {
     let coefficients = model.coefficients(forward, u);
     let mut truth = vec![0.0; forward.data.len()];
-    forward.predict_smooth(&coefficients, &mut truth);
+    let statics = forward.predict_smooth(&coefficients, &mut truth);
     let counts = |test: &crate::reconcile::forward::modal::ModalTest| {
         test.modes.iter().any(|(datum, _)| weights.inverse[*datum] > 0.0)
     };
@@ -86,22 +89,10 @@ pub fn evaluate(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) 
     for (test, modes) in forward.modal.iter().zip(&solved) {
         test.write(modes, &mut truth);
     }
-    point(forward, model, u.to_vec(), coefficients, truth, solved, weights)
-}
-
-fn point(
-    forward: &Forward,
-    model: &Model,
-    u: Vec<f64>,
-    coefficients: Coefficients,
-    truth: Vec<f64>,
-    solved: Vec<Vec<Solved>>,
-    weights: &Weights,
-) -> Point {
     let mut predicted = truth.clone();
     forward.read(&coefficients, &mut predicted);
-    let objective = objective(forward, model, &u, &predicted, weights);
-    Point { u, coefficients, truth, predicted, solved, objective }
+    let objective = objective(forward, model, u, &predicted, weights);
+    Point { u: u.to_vec(), coefficients, truth, predicted, statics, solved, objective }
 }
 
 /// The objective `Σ ρ(r) + Σ u²`: Huber's loss of the residuals, and the priors of the parameters.
@@ -130,7 +121,7 @@ pub fn jacobian(forward: &Forward, model: &Model, at: &Point) -> DMatrix<f64> {
         let mut u = at.u.clone();
         u[p] += step;
         let change = change(forward, model, at, &u);
-        out.set_column(p, &(DVector::from_vec(change) / step));
+        out.column_mut(p).iter_mut().zip(change).for_each(|(slope, by)| *slope = by / step);
     }
     out
 }
@@ -143,9 +134,7 @@ pub fn change(forward: &Forward, model: &Model, at: &Point, u: &[f64]) -> Vec<f6
 /// Change of the predictions from a point to other coefficients. Frequencies change to first order.
 pub fn change_to(forward: &Forward, at: &Point, moved: &Coefficients) -> Vec<f64> {
     let mut truth = at.truth.clone();
-    if !same_smooth(&at.coefficients, moved) {
-        forward.predict_smooth(moved, &mut truth);
-    }
+    forward.change_smooth(&at.statics, &at.coefficients, moved, &mut truth);
     if !at.coefficients.same_modes(moved) {
         let mut delta = vec![0.0; truth.len()];
         for (test, solved) in forward.modal.iter().zip(&at.solved) {
@@ -157,23 +146,6 @@ pub fn change_to(forward: &Forward, at: &Point, moved: &Coefficients) -> Vec<f64
     }
     forward.read(moved, &mut truth);
     truth.iter().zip(&at.predicted).map(|(a, b)| a - b).collect()
-}
-
-/// Whether two sets of coefficients give the same static and bench readings.
-fn same_smooth(a: &Coefficients, b: &Coefficients) -> bool {
-    let plain = |c: &Coefficients| {
-        c.laws.iter().all(|l| {
-            l.lost_motion.is_none()
-                && l.hysteresis_rad == 0.0
-                && !matches!(l.curve, crate::arm::joint_law::Curve::Windup(_))
-        })
-    };
-    a.linear == b.linear
-        && a.laws == b.laws
-        && a.payload_delta_kg == b.payload_delta_kg
-        && a.payload_offset_m == b.payload_offset_m
-        && a.payload_weight == b.payload_weight
-        && (a.weights == b.weights || plain(a))
 }
 
 /// Gradient and curvature of half the objective.
@@ -201,17 +173,46 @@ pub fn normal(
     let robust = residual.map(|r| if r.abs() <= HUBER { 1.0 } else { (HUBER / r.abs()).sqrt() });
     let row_factors =
         DVector::from_iterator(robust.len(), robust.iter().zip(&weights.inverse).map(|(r, w)| r * w));
-    let mut scaled = jacobian.clone();
-    scaled.column_iter_mut().for_each(|mut column| column.component_mul_assign(&row_factors));
-    // a product with the transpose written out is several times as fast as one that reads columns as rows
-    let transposed = scaled.transpose();
-    let mut gradient = &transposed * residual.component_mul(&robust);
-    let mut curvature = &transposed * &scaled;
+    let (mut gradient, mut curvature) = products(jacobian, &row_factors, &residual.component_mul(&robust));
     for p in 0..calibrated {
         gradient[p] += u[p];
         curvature[(p, p)] += 1.0;
     }
     Normal { gradient, curvature }
+}
+
+/// Number of rows whose products are taken at a time. They stay in a processor's cache meanwhile.
+const BLOCK: usize = 256;
+
+/// The products `Xᵀr` and `XᵀX`, where the rows of `X` are those of the Jacobian times `row_factors`.
+fn products(
+    jacobian: &DMatrix<f64>,
+    row_factors: &DVector<f64>,
+    right: &DVector<f64>,
+) -> (DVector<f64>, DMatrix<f64>) {
+    let (rows, width) = jacobian.shape();
+    let (mut gradient, mut curvature) = (DVector::zeros(width), DMatrix::zeros(width, width));
+    for first in (0..rows).step_by(BLOCK) {
+        let count = BLOCK.min(rows - first);
+        let mut scaled = jacobian.rows(first, count).into_owned();
+        let factors = row_factors.rows(first, count);
+        scaled.column_iter_mut().for_each(|mut column| column.component_mul_assign(&factors));
+        // a product with the transpose written out is several times as fast as one that reads columns as rows
+        let transposed = scaled.transpose();
+        gradient.gemv(1.0, &transposed, &right.rows(first, count), 1.0);
+        curvature.gemm(1.0, &transposed, &scaled, 1.0);
+    }
+    (gradient, curvature)
+}
+
+/// The product `XᵀY` of two tall matrices.
+pub(crate) fn transposed_product(x: &DMatrix<f64>, y: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut out = DMatrix::zeros(x.ncols(), y.ncols());
+    for first in (0..x.nrows()).step_by(BLOCK) {
+        let count = BLOCK.min(x.nrows() - first);
+        out.gemm(1.0, &x.rows(first, count).transpose(), &y.rows(first, count), 1.0);
+    }
+    out
 }
 
 /// Takes one damped step and keeps it within the bounds.

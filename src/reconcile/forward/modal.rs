@@ -6,7 +6,7 @@
 //! scaled to `xᵀK x = 1`, with `y = M x`, gives the effect of every parameter: `dμ = yᵀ dC y / μ + xᵀ dM x`.
 
 use super::coefficients::{Coefficients, Layout};
-use super::datum::{Datum, group_of};
+use super::datum::{Datum, Groups};
 use super::statics::PoseGeometry;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
@@ -62,13 +62,13 @@ pub(crate) fn prepare(
     campaign: &Campaign,
     layout: &Layout,
     nominal: &Subject,
-    groups: &mut Vec<(Vec<f64>, String)>,
+    groups: &mut Groups,
     data: &mut Vec<Datum>,
 ) -> Vec<ModalTest> {
     let mut tests: Vec<ModalTest> = Vec::new();
     let mut keys: Vec<(Vec<f64>, Payload)> = Vec::new();
     for row in &campaign.modal {
-        let group = group_of(&row.pose_deg, groups);
+        let group = groups.of(&row.pose_deg);
         let key = (row.pose_deg.clone(), row.payload);
         // A mode number that comes again starts a list of its own: the test was repeated.
         let found = keys

@@ -3,9 +3,9 @@
 
 use super::bench::{self, Bench};
 use super::coefficients::{Coefficients, Layout};
-use super::datum::Datum;
+use super::datum::{Datum, Groups};
 use super::modal::{self, ModalTest};
-use super::statics::{self, StaticPose};
+use super::statics::{self, StaticPose, StaticState};
 use crate::arm::JointModel;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
@@ -44,7 +44,7 @@ impl Forward {
             make_links_rigid(&mut nominal);
         }
         let layout = Layout::new(&nominal.structure);
-        let mut groups: Vec<(Vec<f64>, String)> = Vec::new();
+        let mut groups = Groups::default();
         let mut data = Vec::new();
         let statics = statics::prepare(campaign, &layout, &nominal, &mut groups, &mut data);
         let modal_start = data.len();
@@ -64,7 +64,7 @@ impl Forward {
             modal,
             bench,
             starts,
-            groups: groups.into_iter().map(|(_, name)| name).collect(),
+            groups: groups.names,
             payload_density_kg_m3: campaign.statement.payload_density_kg_m3,
             largest_payload_kg: payloads_kg.iter().copied().fold(0.0, f64::max),
             lightest_payload_kg: payloads_kg
@@ -156,13 +156,40 @@ impl Forward {
         out
     }
 
-    /// Predicts statics and bench only. The modal entries stay as they are.
-    pub fn predict_smooth(&self, coefficients: &Coefficients, out: &mut [f64]) {
-        for pose in &self.statics {
-            pose.predict(&self.layout, coefficients, out);
-        }
+    /// Predicts statics and bench only. The modal entries stay as they are. Returns the state of each static pose.
+    pub fn predict_smooth(&self, coefficients: &Coefficients, out: &mut [f64]) -> Vec<StaticState> {
         for bench in &self.bench {
             bench.predict(&coefficients.laws[bench.joint], out);
+        }
+        let state = |pose: &StaticPose| {
+            let state = pose.state(&self.layout, coefficients);
+            pose.write(&state, out);
+            state
+        };
+        self.statics.iter().map(state).collect()
+    }
+
+    /// Changes the values of statics and bench, which are those of coefficients `from` with these states of the poses, to
+    /// those of coefficients `to`. What the change leaves alone is not computed again.
+    pub fn change_smooth(
+        &self,
+        states: &[StaticState],
+        from: &Coefficients,
+        to: &Coefficients,
+        out: &mut [f64],
+    ) {
+        let changes = from.static_changes(to);
+        for bench in self.bench.iter().filter(|bench| changes.laws[bench.joint]) {
+            bench.predict(&to.laws[bench.joint], out);
+        }
+        if changes.is_none() {
+            return;
+        }
+        let mut moved = StaticState::default();
+        for (pose, state) in self.statics.iter().zip(states) {
+            moved.copy_from(state);
+            pose.update(&self.layout, to, &changes, &mut moved);
+            pose.write(&moved, out);
         }
     }
 
