@@ -100,10 +100,9 @@ impl Fitted {
     /// frame \[m\].
     pub(crate) fn yielded(&self, sample: &Sample, gravity: &Vector3<f64>) -> Vector3<f64> {
         let effects = self.effects.iter().zip(&self.compliances);
-        let pulled = effects.flat_map(|(&effect, compliances)| {
-            sample.deflection.per_compliance(effect, gravity).zip(compliances).map(|(p, c)| p * *c)
-        });
-        pulled.sum()
+        effects.fold(Vector3::zeros(), |sum, (&effect, compliances)| {
+            sum + sample.deflection.yielded(effect, compliances, gravity)
+        })
     }
 
     /// Weight of a sample with this error \[1/m²\].

@@ -361,7 +361,10 @@ impl Placer<'_> {
                 }
                 None => {
                     last.at_m += last.rotation * own.vectors_m[i];
-                    last.rotation *= own.mounts[i];
+                    // hardly any link is a mounting
+                    if own.mounts[i] != Rotation3::identity() {
+                        last.rotation *= own.mounts[i];
+                    }
                 }
             }
             self.frames.push(last);

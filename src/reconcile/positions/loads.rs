@@ -16,7 +16,7 @@ use crate::arm::load::Payload;
 use crate::arm::structure::{FrameCompliance, Piece, Structure};
 use crate::arm::{Arm, JointModel, LinkModel};
 use crate::mechanics::chain::Chain;
-use crate::mechanics::chain::{Body, ElasticElement, Item, Posed};
+use crate::mechanics::chain::{Item, Posed};
 use crate::mechanics::{Twist, angular, displacement_at, linear};
 use crate::reconcile::model::exact::{seen_from_tool, with_tool};
 use crate::reconcile::readings::campaign::Campaign;
@@ -83,21 +83,38 @@ impl Deflection {
         &self.swings[slot.first..slot.first + slot.swings]
     }
 
-    /// For each compliance of a candidate, the displacement of the point per compliance, for gravity along `gravity`
-    /// \[m per rad/(N m)\].
+    /// Gives `each` the displacement of the point per compliance of a candidate, compliance by compliance, under gravity
+    /// along `gravity` \[m per rad/(N m)\].
     pub(crate) fn per_compliance(
         &self,
         candidate: usize,
         gravity: &Vector3<f64>,
-    ) -> impl Iterator<Item = Vector3<f64>> {
+        mut each: impl FnMut(Vector3<f64>),
+    ) {
         let own = self.swings(candidate);
         let along = |i: usize, j: usize| own[i].motion_m * own[j].pull_nm.dot(gravity);
-        let count = self.count(candidate);
-        (0..count).map(move |k| match (count, FRAME_ENTRIES[k]) {
-            (1, _) => (0..own.len()).map(|i| along(i, i)).sum(),
-            (_, (i, j)) if i == j => along(i, i),
-            (_, (i, j)) => along(i, j) + along(j, i),
-        })
+        match self.count(candidate) {
+            1 => each((0..own.len()).fold(Vector3::zeros(), |sum, i| sum + along(i, i))),
+            count => FRAME_ENTRIES[..count].iter().for_each(|&(i, j)| {
+                each(if i == j { along(i, i) } else { along(i, j) + along(j, i) });
+            }),
+        }
+    }
+
+    /// Displacement of the point if a candidate has these compliances \[rad/(N m)\], under gravity along `gravity`
+    /// \[m\].
+    pub(crate) fn yielded(
+        &self,
+        candidate: usize,
+        compliances: &[f64],
+        gravity: &Vector3<f64>,
+    ) -> Vector3<f64> {
+        let mut out = Vector3::zeros();
+        let mut compliances = compliances.iter();
+        self.per_compliance(candidate, gravity, |by| {
+            out += by * compliances.next().copied().unwrap_or_default();
+        });
+        out
     }
 
     /// The motion of the point per rotation about the first axis of a candidate \[m\], and the torque about this axis
@@ -269,8 +286,8 @@ impl<'a> Loads<'a> {
             let neighbour = &self.ready[other][0];
             let pose = self.tree.pose_of(other, pose_rad);
             let hanging = neighbour.pose(&neighbour.unit, &pose, &Payload::default());
-            let outboard = bodies(&hanging.items[self.trunk[0]..], &neighbour.unit_structure);
-            posed.items.splice(items..items, outboard.map(Item::Body));
+            let outboard = hanging.items[self.trunk[0]..].iter().filter(|item| matches!(item, Item::Body(_)));
+            posed.items.splice(items..items, outboard.cloned());
         }
     }
 }
@@ -287,11 +304,12 @@ impl Ready {
             }
         }
         let structure = with_tool(&structure, point_m);
-        let unit_structure = yielding_everywhere(&structure);
+        let known = Chain::new(&structure, LinkModel::Full);
+        let unit_structure = yielding_everywhere(&structure, &known, arm.driven_joint_names().len());
         let unit = Chain::new(&unit_structure, LinkModel::Full);
         Self {
             gravity_m_s2: structure.gravity_m_s2,
-            known: Chain::new(&structure, LinkModel::Full),
+            known,
             places: places(&unit, arm, candidates),
             unit,
             structure,
@@ -305,8 +323,9 @@ impl Ready {
     }
 }
 
-/// The structure in which every joint, about and across its axis, the base and every frame have unit compliance.
-fn yielding_everywhere(structure: &Structure) -> Structure {
+/// The structure in which every joint, about and across its axis, the base and every frame have unit compliance, and links
+/// are rigid with their masses at their middles.
+fn yielding_everywhere(structure: &Structure, known: &Chain, joints: usize) -> Structure {
     let mut unit = structure.clone();
     unit.base_tilt_rad_per_nm = 1.0;
     unit.base_frame = FrameCompliance(Matrix3::identity());
@@ -316,7 +335,19 @@ fn yielding_everywhere(structure: &Structure) -> Structure {
                 joint.law = JointLaw::from(Curve::Linear(1.0));
                 joint.tilt_rad_per_nm = 1.0;
             }
-            Piece::Link(link) => link.root_frame = FrameCompliance(Matrix3::identity()),
+            Piece::Link(link) => {
+                link.root_frame = FrameCompliance(Matrix3::identity());
+                link.beam = None;
+            }
+        }
+    }
+    // what of its weight buoyancy leaves is the same in every pose
+    let rest = known.pose_rad(&vec![0.0; joints], &Payload::default(), Vector3::zeros());
+    for own in rest.elements().filter_map(|element| element.own.as_ref()) {
+        if let Piece::Link(link) = &mut unit.pieces[own.piece]
+            && structure.gravity_m_s2 > 0.0
+        {
+            link.point_mass_kg -= linear(&own.weight).z / structure.gravity_m_s2;
         }
     }
     unit
@@ -340,36 +371,12 @@ fn trunk_items(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> [usize
     [of(&first.unit_structure), of(&first.structure)]
 }
 
-/// All bodies of a posed arm, as point masses.
-fn bodies<'a>(items: &'a [Item], structure: &'a Structure) -> impl Iterator<Item = Body> + 'a {
-    items.iter().filter_map(|item| match item {
-        Item::Body(body) => Some(body.clone()),
-        Item::Elastic(element) => own_body(element, structure),
-    })
-}
-
-/// The distributed mass of a link, as a point mass at the link's middle.
-fn own_body(element: &ElasticElement, structure: &Structure) -> Option<Body> {
-    let own = element.own.as_ref()?;
-    let Piece::Link(link) = &structure.pieces[own.piece] else { return None };
-    let weight_n = -linear(&own.weight).z;
-    Some(Body {
-        mass_kg: weight_n / structure.gravity_m_s2,
-        cg_m: own.root_m + own.frame.column(0) * (link.vector_m.norm() / 2.0),
-        inertia_kgm2: Matrix3::zeros(),
-        weight_n,
-    })
-}
-
 /// Where the elements of each candidate are. The elements of an arm are the same in every pose.
 fn places(unit: &Chain, arm: &Arm, candidates: &[Yielding]) -> Vec<Place> {
     let rest = vec![0.0; arm.driven_joint_names().len()];
     let posed = unit.pose_rad(&rest, &Payload::default(), Vector3::zeros());
-    let elastic = posed.items.iter().rev().filter_map(|item| match item {
-        Item::Elastic(element) => Some(element.name.as_str()),
-        Item::Body(_) => None,
-    });
-    let names: Vec<&str> = elastic.collect();
+    let mut names: Vec<&str> = posed.elements().map(|element| element.name.as_str()).collect();
+    names.reverse();
     let place = |name: &str| names.iter().position(|n| *n == name);
     let of = |candidate: &Yielding| {
         let driven = unit.linkages().iter().filter(|l| l.driver == candidate.element());
@@ -404,20 +411,19 @@ impl Ready {
         let (mut weight_n, mut moment_nm) = (0.0, Vector3::zeros());
         // from the tip to the base: what has been passed is outboard
         for item in unit.items.iter().rev() {
-            let body = match item {
-                Item::Body(body) => Some(body.clone()),
+            match item {
+                Item::Body(body) if self.gravity_m_s2 > 0.0 => {
+                    weight_n += body.weight_n;
+                    moment_nm += body.cg_m * body.weight_n;
+                }
+                Item::Body(_) => {}
                 Item::Elastic(element) => {
                     elements.push(swings.len());
                     swings.extend(element.twists.iter().map(|t| Swing {
                         motion_m: displacement_at(t, &unit.tip_m),
                         pull_nm: pull(t, weight_n, &moment_nm),
                     }));
-                    own_body(element, &self.unit_structure)
                 }
-            };
-            if let Some(body) = body.filter(|_| self.gravity_m_s2 > 0.0) {
-                weight_n += body.weight_n;
-                moment_nm += body.cg_m * body.weight_n;
             }
         }
         (elements, swings)

@@ -15,6 +15,9 @@ const PRIOR_RAD_PER_NM: f64 = 0.1;
 /// Number of samples whose rows are made at a time. They stay in a processor's cache until their products are taken.
 const BLOCK: usize = 64;
 
+/// Number of columns of the product that are made at a time.
+const STRIPE: usize = 32;
+
 /// Adds columns that belong to no number of the model: derivatives of a sample's position \[m per unit\].
 pub(crate) type Further<'a> = &'a mut dyn FnMut(&Sample, &Placer, &mut Vec<Vector3<f64>>);
 
@@ -49,8 +52,9 @@ impl<'a> Linearized<'a> {
             }
         }
         for &effect in &here.effects {
-            let moved = sample.deflection.per_compliance(effect, &here.geometry.gravity);
-            self.columns.extend(moved.map(|by| self.from_level * by));
+            sample.deflection.per_compliance(effect, &here.geometry.gravity, |by| {
+                self.columns.push(self.from_level * by);
+            });
         }
         further(sample, &self.placer, &mut self.columns);
         // products of scaled rows have the weight
@@ -65,6 +69,9 @@ pub(crate) fn normal(samples: &[&Sample], numbers: &[Number], here: &Fitted, fur
     let own = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
     let mut linearized = Linearized::new(here, numbers);
     let mut products: Option<Products> = None;
+    // arm by arm, because the numbers of one arm move no point of another
+    let mut samples: Vec<&Sample> = samples.to_vec();
+    samples.sort_by_key(|sample| sample.arm);
     for block in samples.chunks(BLOCK) {
         for (k, sample) in block.iter().enumerate() {
             let error = linearized.at(sample, further);
@@ -73,7 +80,7 @@ pub(crate) fn normal(samples: &[&Sample], numbers: &[Number], here: &Fitted, fur
         }
         products.iter_mut().for_each(|p| p.add(block.len()));
     }
-    let Products { mut curvature, mut gradient, .. } = products.unwrap_or_else(|| Products::new(own));
+    let (mut curvature, mut gradient) = products.unwrap_or_else(|| Products::new(own)).into_whole();
     let priors = numbers.iter().map(Number::prior).zip(&here.moved);
     // a weak prior keeps the equations regular for a compliance that no weight loads
     let compliances = here.compliances.iter().flatten().map(|c| (PRIOR_RAD_PER_NM, c));
@@ -87,9 +94,8 @@ pub(crate) fn normal(samples: &[&Sample], numbers: &[Number], here: &Fitted, fur
 
 /// Sums of products of rows, taken block by block.
 struct Products {
-    /// Rows of a block, as columns: products with the transpose written out are the fast ones.
+    /// Rows of a block, as columns.
     rows: DMatrix<f64>,
-    transposed: DMatrix<f64>,
     right: DVector<f64>,
     curvature: DMatrix<f64>,
     gradient: DVector<f64>,
@@ -99,7 +105,6 @@ impl Products {
     fn new(width: usize) -> Self {
         Self {
             rows: DMatrix::zeros(width, 3 * BLOCK),
-            transposed: DMatrix::zeros(3 * BLOCK, width),
             right: DVector::zeros(3 * BLOCK),
             curvature: DMatrix::zeros(width, width),
             gradient: DVector::zeros(width),
@@ -115,13 +120,30 @@ impl Products {
         self.right.fixed_rows_mut::<3>(3 * k).copy_from(error);
     }
 
-    /// Adds the products of the block, which holds `samples` samples.
+    /// Adds the products of the block, which holds `samples` samples. Numbers that move none of these are left out.
     fn add(&mut self, samples: usize) {
-        // the last block may be shorter
-        self.rows.columns_range_mut(3 * samples..).fill(0.0);
-        self.right.rows_range_mut(3 * samples..).fill(0.0);
-        self.rows.transpose_to(&mut self.transposed);
-        self.curvature.gemm(1.0, &self.rows, &self.transposed, 1.0);
-        self.gradient.gemv(1.0, &self.rows, &self.right, 1.0);
+        let rows = self.rows.columns(0, 3 * samples);
+        let own: Vec<usize> = (0..rows.nrows()).filter(|i| rows.row(*i).iter().any(|x| *x != 0.0)).collect();
+        // products with the transpose written out are the fast ones
+        let columns = DMatrix::from_fn(3 * samples, own.len(), |r, i| rows[(own[i], r)]);
+        let transposed = columns.transpose();
+        let gradient = &transposed * self.right.rows(0, 3 * samples);
+        own.iter().zip(gradient.iter()).for_each(|(i, x)| self.gradient[*i] += x);
+        // the product is symmetric: a stripe of it suffices from its diagonal on
+        for first in (0..own.len()).step_by(STRIPE) {
+            let count = STRIPE.min(own.len() - first);
+            let product = transposed.rows_range(first..) * columns.columns(first, count);
+            for (j, column) in product.column_iter().enumerate() {
+                for (i, x) in column.iter().enumerate().skip(j) {
+                    self.curvature[(own[first + i], own[first + j])] += x;
+                }
+            }
+        }
+    }
+
+    /// The products of all blocks: curvature and gradient.
+    fn into_whole(mut self) -> (DMatrix<f64>, DVector<f64>) {
+        self.curvature.fill_upper_triangle_with_lower_triangle();
+        (self.curvature, self.gradient)
     }
 }

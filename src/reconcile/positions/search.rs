@@ -157,8 +157,9 @@ impl Positions {
         let counts: Vec<usize> = self.candidates.iter().map(|c| c.count()).collect();
         let gains = self.linear_gains(base, &counts, &mut |sample, _, columns| {
             for candidate in 0..self.candidates.len() {
-                let moved = sample.deflection.per_compliance(candidate, &base.geometry.gravity);
-                columns.extend(moved.map(|by| from_level * by));
+                sample.deflection.per_compliance(candidate, &base.geometry.gravity, |by| {
+                    columns.push(from_level * by);
+                });
             }
         });
         gains.into_iter().enumerate().collect()
