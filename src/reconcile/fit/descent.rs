@@ -162,7 +162,7 @@ pub fn normal(
     calibrated: usize,
     u: &[f64],
     predicted: &[f64],
-    jacobian: &DMatrix<f64>,
+    slopes: &Slopes,
     weights: &Weights,
 ) -> Normal {
     let residual = DVector::from_iterator(
@@ -173,7 +173,7 @@ pub fn normal(
     let robust = residual.map(|r| if r.abs() <= HUBER { 1.0 } else { (HUBER / r.abs()).sqrt() });
     let row_factors =
         DVector::from_iterator(robust.len(), robust.iter().zip(&weights.inverse).map(|(r, w)| r * w));
-    let (mut gradient, mut curvature) = products(jacobian, &row_factors, &residual.component_mul(&robust));
+    let (mut gradient, mut curvature) = slopes.products(&row_factors, &residual.component_mul(&robust));
     for p in 0..calibrated {
         gradient[p] += u[p];
         curvature[(p, p)] += 1.0;
@@ -184,25 +184,55 @@ pub fn normal(
 /// Number of rows whose products are taken at a time. They stay in a processor's cache meanwhile.
 const BLOCK: usize = 256;
 
-/// The products `Xᵀr` and `XᵀX`, where the rows of `X` are those of the Jacobian times `row_factors`.
-fn products(
-    jacobian: &DMatrix<f64>,
-    row_factors: &DVector<f64>,
-    right: &DVector<f64>,
-) -> (DVector<f64>, DMatrix<f64>) {
-    let (rows, width) = jacobian.shape();
-    let (mut gradient, mut curvature) = (DVector::zeros(width), DMatrix::zeros(width, width));
-    for first in (0..rows).step_by(BLOCK) {
-        let count = BLOCK.min(rows - first);
-        let mut scaled = jacobian.rows(first, count).into_owned();
-        let factors = row_factors.rows(first, count);
-        scaled.column_iter_mut().for_each(|mut column| column.component_mul_assign(&factors));
-        // a product with the transpose written out is several times as fast as one that reads columns as rows
-        let transposed = scaled.transpose();
-        gradient.gemv(1.0, &transposed, &right.rows(first, count), 1.0);
-        curvature.gemm(1.0, &transposed, &scaled, 1.0);
+/// Derivatives of the data (rows) by parameters (columns), as matrices that stand side by side. What many models share is
+/// then not copied for each.
+pub struct Slopes<'a>(pub &'a [&'a DMatrix<f64>]);
+
+impl Slopes<'_> {
+    fn columns(&self) -> usize {
+        self.0.iter().map(|part| part.ncols()).sum()
     }
-    (gradient, curvature)
+
+    fn rows(&self) -> usize {
+        self.0.first().map_or(0, |part| part.nrows())
+    }
+
+    /// The changes of the data by a change of the parameters.
+    pub fn times(&self, step: &DVector<f64>) -> Vec<f64> {
+        let mut out = DVector::zeros(self.rows());
+        for first in (0..self.rows()).step_by(BLOCK) {
+            let count = BLOCK.min(self.rows() - first);
+            let mut at = 0;
+            for part in self.0 {
+                let own = step.rows(at, part.ncols());
+                out.rows_mut(first, count).gemv(1.0, &part.rows(first, count), &own, 1.0);
+                at += part.ncols();
+            }
+        }
+        out.data.into()
+    }
+
+    /// The products `Xᵀr` and `XᵀX`, where the rows of `X` are these rows times `row_factors`.
+    fn products(&self, row_factors: &DVector<f64>, right: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let width = self.columns();
+        let (mut gradient, mut curvature) = (DVector::zeros(width), DMatrix::zeros(width, width));
+        let mut scaled = DMatrix::zeros(BLOCK, width);
+        let mut transposed = DMatrix::zeros(width, BLOCK);
+        for first in (0..self.rows()).step_by(BLOCK) {
+            let count = BLOCK.min(self.rows() - first);
+            let factors = row_factors.rows(first, count);
+            let own = self.0.iter().flat_map(|part| part.column_iter());
+            for (mut to, column) in scaled.column_iter_mut().zip(own) {
+                to.rows_mut(0, count).cmpy(1.0, &column.rows(first, count), &factors, 0.0);
+            }
+            // a product with the transpose written out is several times as fast as one that reads columns as rows
+            scaled.rows(0, count).transpose_to(&mut transposed.columns_mut(0, count));
+            let transposed = transposed.columns(0, count);
+            gradient.gemv(1.0, &transposed, &right.rows(first, count), 1.0);
+            curvature.gemm(1.0, &transposed, &scaled.rows(0, count), 1.0);
+        }
+        (gradient, curvature)
+    }
 }
 
 /// The product `XᵀY` of two tall matrices.
@@ -334,7 +364,8 @@ fn descended(
     let mut damping = 1e-4;
     for _ in 0..effort.steps {
         let slopes = jacobian(forward, model, &here);
-        let normal = normal(forward, model.calibrated(), &here.u, &here.predicted, &slopes, weights);
+        let normal =
+            normal(forward, model.calibrated(), &here.u, &here.predicted, &Slopes(&[&slopes]), weights);
         let Some(next) = descend(forward, model, &here, &normal, weights, &mut damping) else {
             return (here, Some(slopes));
         };
@@ -387,7 +418,8 @@ pub fn finish<'a>(
     // a number that rests on another could be anywhere below it
     let resting = (0..model.len()).filter(|p| model.rests(*p, &point.u));
     resting.for_each(|p| jacobian.fill_column(p, 0.0));
-    let normal = normal(forward, model.calibrated(), &point.u, &point.predicted, &jacobian, weights);
+    let slopes = Slopes(&[&jacobian]);
+    let normal = normal(forward, model.calibrated(), &point.u, &point.predicted, &slopes, weights);
     let mut curvature = normal.curvature;
     let mut evidence = -0.5 * point.objective;
     for (i, parameter) in model.free_parameters().enumerate() {

@@ -8,7 +8,7 @@
 use super::laws::{Law, of_every_law};
 use super::search::{Scored, Search};
 use super::structure::Structure;
-use crate::reconcile::fit::descent::{Effort, Fit, Weights, normal, objective};
+use crate::reconcile::fit::descent::{Effort, Fit, Slopes, Weights, normal, objective};
 use crate::reconcile::fit::stats::ln_chi_squared_tail;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
@@ -109,16 +109,15 @@ fn competitors(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weig
 fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Competitor {
     let own = fit.point.u.len();
     let n = own + law.columns.len();
-    let mut columns = DMatrix::zeros(fit.jacobian.nrows(), n);
-    columns.columns_mut(0, own).copy_from(&fit.jacobian);
-    for (k, column) in law.columns.iter().enumerate() {
-        columns.column_mut(own + k).copy_from_slice(column);
-    }
+    let mut further = DMatrix::zeros(fit.jacobian.nrows(), law.columns.len());
+    further.column_iter_mut().zip(&law.columns).for_each(|(mut to, column)| to.copy_from_slice(column));
+    let columns = [&fit.jacobian, &further];
+    let columns = Slopes(&columns);
     let mut origin = fit.point.u.clone();
     origin.resize(n, 0.0);
     let origin = DVector::from_vec(origin);
     let at = |u: &DVector<f64>| -> Vec<f64> {
-        let delta = &columns * (u - &origin);
+        let delta = columns.times(&(u - &origin));
         fit.point.predicted.iter().zip(delta.iter()).map(|(p, d)| p + d).collect()
     };
     let (mut u, mut predicted) = (origin.clone(), fit.point.predicted.clone());
