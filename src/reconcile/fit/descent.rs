@@ -114,38 +114,49 @@ fn loss(r: f64) -> f64 {
 
 /// Derivatives of all predictions at a point, data by parameters.
 pub fn jacobian(forward: &Forward, model: &Model, at: &Point) -> DMatrix<f64> {
-    let mut out = DMatrix::zeros(forward.data.len(), model.len());
-    for p in 0..model.len() {
+    let stepped = |p: usize| {
         let (_, high) = model.bounds(p);
         let step = if at.u[p] + STEP > high { -STEP } else { STEP };
         let mut u = at.u.clone();
         u[p] += step;
-        let change = change(forward, model, at, &u);
-        out.column_mut(p).iter_mut().zip(change).for_each(|(slope, by)| *slope = by / step);
-    }
+        (step, model.coefficients(forward, &u))
+    };
+    let (steps, moved): (Vec<f64>, Vec<Coefficients>) = (0..model.len()).map(stepped).unzip();
+    let mut out = changes_to(forward, at, &moved);
+    out.column_iter_mut().zip(steps).for_each(|(mut column, step)| column /= step);
     out
 }
 
 /// Change of the predictions from a point to other parameters. Frequencies change to first order.
 pub fn change(forward: &Forward, model: &Model, at: &Point, u: &[f64]) -> Vec<f64> {
-    change_to(forward, at, &model.coefficients(forward, u))
+    change_to(forward, at, model.coefficients(forward, u))
 }
 
 /// Change of the predictions from a point to other coefficients. Frequencies change to first order.
-pub fn change_to(forward: &Forward, at: &Point, moved: &Coefficients) -> Vec<f64> {
-    let mut truth = at.truth.clone();
-    forward.change_smooth(&at.statics, &at.coefficients, moved, &mut truth);
-    if !at.coefficients.same_modes(moved) {
-        let mut delta = vec![0.0; truth.len()];
-        for (test, solved) in forward.modal.iter().zip(&at.solved) {
-            test.change(&forward.layout, solved, &at.coefficients, moved, &mut delta);
+pub fn change_to(forward: &Forward, at: &Point, moved: Coefficients) -> Vec<f64> {
+    changes_to(forward, at, &[moved]).data.into()
+}
+
+/// Changes of the predictions (rows) from a point to each of other coefficients (columns). Frequencies change to first
+/// order.
+fn changes_to(forward: &Forward, at: &Point, moved: &[Coefficients]) -> DMatrix<f64> {
+    let mut out = DMatrix::zeros(at.truth.len(), moved.len());
+    out.column_iter_mut().for_each(|mut column| column.copy_from_slice(&at.truth));
+    forward.change_smooth(&at.statics, &at.coefficients, moved, &mut out);
+    for (mut column, moved) in out.column_iter_mut().zip(moved) {
+        if !forward.modal.is_empty() && !at.coefficients.same_modes(moved) {
+            let mut delta = vec![0.0; at.truth.len()];
+            for (test, solved) in forward.modal.iter().zip(&at.solved) {
+                test.change(&forward.layout, solved, &at.coefficients, moved, &mut delta);
+            }
+            for i in forward.starts[1]..forward.starts[2] {
+                column[i] += delta[i];
+            }
         }
-        for i in forward.starts[1]..forward.starts[2] {
-            truth[i] += delta[i];
-        }
+        forward.read(moved, column.as_mut_slice());
+        column.iter_mut().zip(&at.predicted).for_each(|(value, before)| *value -= before);
     }
-    forward.read(moved, &mut truth);
-    truth.iter().zip(&at.predicted).map(|(a, b)| a - b).collect()
+    out
 }
 
 /// Gradient and curvature of half the objective.
@@ -165,15 +176,17 @@ pub fn normal(
     slopes: &Slopes,
     weights: &Weights,
 ) -> Normal {
-    let residual = DVector::from_iterator(
-        forward.data.len(),
-        forward.data.iter().zip(predicted).zip(&weights.inverse).map(|((d, p), w)| (p - d.value) * w),
-    );
-    // iteratively reweighted least squares: the weight of a residual beyond the turn is HUBER / |r|
-    let robust = residual.map(|r| if r.abs() <= HUBER { 1.0 } else { (HUBER / r.abs()).sqrt() });
-    let row_factors =
-        DVector::from_iterator(robust.len(), robust.iter().zip(&weights.inverse).map(|(r, w)| r * w));
-    let (mut gradient, mut curvature) = slopes.products(&row_factors, &residual.component_mul(&robust));
+    let count = forward.data.len();
+    let (mut factors, mut right) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    for ((datum, predicted), weight) in forward.data.iter().zip(predicted).zip(&weights.inverse) {
+        let residual = (predicted - datum.value) * weight;
+        // iteratively reweighted least squares: the weight of a residual beyond the turn is HUBER / |r|
+        let robust = if residual.abs() <= HUBER { 1.0 } else { (HUBER / residual.abs()).sqrt() };
+        factors.push(robust * weight);
+        right.push(residual * robust);
+    }
+    let (mut gradient, mut curvature) =
+        slopes.products(&DVector::from_vec(factors), &DVector::from_vec(right));
     for p in 0..calibrated {
         gradient[p] += u[p];
         curvature[(p, p)] += 1.0;

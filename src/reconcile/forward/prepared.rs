@@ -2,7 +2,7 @@
 //! changes.
 
 use super::bench::{self, Bench};
-use super::coefficients::{Coefficients, Layout};
+use super::coefficients::{Coefficients, Layout, StaticChanges};
 use super::datum::{Datum, Groups};
 use super::modal::{self, ModalTest};
 use super::statics::{self, StaticPose, StaticState};
@@ -10,6 +10,7 @@ use crate::arm::JointModel;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
 use crate::reconcile::readings::campaign::Campaign;
+use nalgebra::DMatrix;
 
 /// A campaign prepared for fitting.
 pub struct Forward {
@@ -170,26 +171,29 @@ impl Forward {
     }
 
     /// Changes the values of statics and bench, which are those of coefficients `from` with these states of the poses, to
-    /// those of coefficients `to`. What the change leaves alone is not computed again.
+    /// those of other coefficients, one column of `out` for each. What a change leaves alone is not computed again.
     pub fn change_smooth(
         &self,
         states: &[StaticState],
         from: &Coefficients,
-        to: &Coefficients,
-        out: &mut [f64],
+        to: &[Coefficients],
+        out: &mut DMatrix<f64>,
     ) {
-        let changes = from.static_changes(to);
-        for bench in self.bench.iter().filter(|bench| changes.laws[bench.joint]) {
-            bench.predict(&to.laws[bench.joint], out);
+        let changes: Vec<StaticChanges> = to.iter().map(|to| from.static_changes(to)).collect();
+        for (k, (to, changes)) in to.iter().zip(&changes).enumerate() {
+            for bench in self.bench.iter().filter(|bench| changes.laws[bench.joint]) {
+                bench.predict(&to.laws[bench.joint], out.column_mut(k).as_mut_slice());
+            }
         }
-        if changes.is_none() {
-            return;
-        }
+        let changed: Vec<usize> = (0..to.len()).filter(|k| !changes[*k].is_none()).collect();
         let mut moved = StaticState::default();
+        // pose by pose, so that a pose is read from memory once for all changes
         for (pose, state) in self.statics.iter().zip(states) {
-            moved.copy_from(state);
-            pose.update(&self.layout, to, &changes, &mut moved);
-            pose.write(&moved, out);
+            for &k in &changed {
+                moved.copy_from(state);
+                pose.update(&self.layout, &to[k], &changes[k], &mut moved);
+                pose.write(&moved, out.column_mut(k).as_mut_slice());
+            }
         }
     }
 

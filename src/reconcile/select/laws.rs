@@ -240,7 +240,7 @@ impl Builder<'_> {
         const PART: f64 = 1e-4;
         let mut moved = self.fit.point.coefficients.clone();
         changed(&mut moved, PART);
-        change_to(self.forward, &self.fit.point, &moved).into_iter().map(|d| d / PART).collect()
+        change_to(self.forward, &self.fit.point, moved).into_iter().map(|d| d / PART).collect()
     }
 
     /// The change of every reading by additional compliances of strain coordinates.
