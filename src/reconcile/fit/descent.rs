@@ -9,12 +9,13 @@
 //! differentiated numerically.
 
 use crate::reconcile::forward::coefficients::Coefficients;
-use crate::reconcile::forward::modal::Solved;
+use crate::reconcile::forward::modal::{ModalTest, Solved};
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::forward::statics::StaticState;
 use crate::reconcile::model::parameters::Model;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Residual at which Huber's loss turns from a square into a straight line \[standard deviations\].
 const HUBER: f64 = 4.0;
@@ -53,7 +54,7 @@ pub struct Point {
     /// The loads on the arm in each static pose, and how it yields to them.
     pub statics: Vec<StaticState>,
     /// Solved modes of each modal test.
-    pub solved: Vec<Vec<Solved>>,
+    pub solved: Vec<Arc<Vec<Solved>>>,
     /// The objective.
     pub objective: f64,
 }
@@ -74,18 +75,34 @@ pub struct Fit<'a> {
 
 /// Evaluates a model at the parameters `u`.
 pub fn evaluate(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Point {
+    evaluate_near(forward, model, u, weights, None)
+}
+
+/// Evaluates a model at the parameters `u`. Modes that are the same at a point `near` are taken from there: where a break
+/// point of a gear's curve moves, the slopes of most tests stay.
+pub fn evaluate_near(
+    forward: &Forward,
+    model: &Model,
+    u: &[f64],
+    weights: &Weights,
+    near: Option<&Point>,
+) -> Point {
     let coefficients = model.coefficients(forward, u);
     let mut truth = vec![0.0; forward.data.len()];
     let statics = forward.predict_smooth(&coefficients, &mut truth);
-    let counts = |test: &crate::reconcile::forward::modal::ModalTest| {
-        test.modes.iter().any(|(datum, _)| weights.inverse[*datum] > 0.0)
+    let counts = |test: &ModalTest| test.modes.iter().any(|(datum, _)| weights.inverse[*datum] > 0.0);
+    let known = |test: &ModalTest, index: usize| {
+        let point = near?;
+        let is_same = !point.solved[index].is_empty()
+            && test.same_modes(&forward.layout, &point.coefficients, &coefficients);
+        is_same.then(|| Arc::clone(&point.solved[index]))
     };
-    let solve =
-        |test: &crate::reconcile::forward::modal::ModalTest| match counts(test) || !weights.smooth_only {
-            true => test.solve(&forward.layout, &coefficients, test.mode_count()),
-            false => Vec::new(),
-        };
-    let solved: Vec<Vec<Solved>> = forward.modal.iter().map(solve).collect();
+    let solve = |(index, test): (usize, &ModalTest)| match counts(test) || !weights.smooth_only {
+        true => known(test, index)
+            .unwrap_or_else(|| Arc::new(test.solve(&forward.layout, &coefficients, test.mode_count()))),
+        false => Arc::default(),
+    };
+    let solved: Vec<Arc<Vec<Solved>>> = forward.modal.iter().enumerate().map(solve).collect();
     for (test, modes) in forward.modal.iter().zip(&solved) {
         test.write(modes, &mut truth);
     }
@@ -408,7 +425,7 @@ fn descend(
         if u == here.u {
             return None;
         }
-        let next = evaluate(forward, model, &u, weights);
+        let next = evaluate_near(forward, model, &u, weights, Some(here));
         if next.objective < here.objective {
             // a good step: trust the parabola more
             *damping = (*damping * 0.2).max(1e-9);

@@ -3,7 +3,7 @@
 //! A gear's curve has break points at which frequencies step, and steps stop a descent. Fits of such a model
 //! therefore begin with the steps smoothed, and end with the break points moved by hand.
 
-use crate::reconcile::fit::descent::{Effort, Fit, Point, Weights, descent, evaluate, fit};
+use crate::reconcile::fit::descent::{Effort, Fit, Point, Weights, descent, evaluate_near, fit};
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::{Candidate, Model, Nuisance};
 use crate::reconcile::readings::campaign::Campaign;
@@ -137,7 +137,7 @@ impl<'a> Search<'a> {
                 let rises = (1..=10).map(|i| {
                     let mut moved = u.clone();
                     moved[p] += side * STEP * i as f64;
-                    evaluate(self.forward, &model, &moved, self.weights).objective
+                    evaluate_near(self.forward, &model, &moved, self.weights, Some(&best)).objective
                 });
                 rises.take_while(|o| *o < best.objective + 1.0).count() as f64
             };
