@@ -503,3 +503,27 @@ pub fn data_curvature(fit: &Fit) -> DMatrix<f64> {
     }
     curvature
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slopes_side_by_side_are_one_matrix() {
+        let rows = 2 * BLOCK + 11;
+        let whole = DMatrix::from_fn(rows, 5, |i, j| ((7 * i + 3 * j) % 11) as f64 - 5.0);
+        let (left, right) = (whole.columns(0, 3).into_owned(), whole.columns(3, 2).into_owned());
+        let parts = [&left, &right];
+        let slopes = Slopes(&parts);
+        let step = DVector::from_fn(5, |j, _| j as f64 - 1.0);
+        assert_eq!(slopes.times(&step), (&whole * &step).as_slice());
+        let factors = DVector::from_fn(rows, |i, _| (i % 4) as f64);
+        let residual = DVector::from_fn(rows, |i, _| (i % 5) as f64 - 2.0);
+        let scaled = DMatrix::from_fn(rows, 5, |i, j| factors[i] * whole[(i, j)]);
+        let (gradient, curvature) = slopes.products(&factors, &residual);
+        // whole numbers, so the order of the sums does not matter
+        assert_eq!(gradient, scaled.tr_mul(&residual));
+        assert_eq!(curvature, scaled.tr_mul(&scaled));
+        assert_eq!(transposed_product(&whole, &scaled), whole.tr_mul(&scaled));
+    }
+}

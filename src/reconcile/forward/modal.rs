@@ -525,3 +525,32 @@ fn tip_jacobians(posed: &Posed) -> (Matrix3xX<f64>, Matrix3xX<f64>) {
     let spin: Vec<Vector3<f64>> = twists.iter().map(|t| t.fixed_rows::<3>(3).into_owned()).collect();
     (Matrix3xX::from_columns(&tip), Matrix3xX::from_columns(&spin))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalog::Catalogs;
+    use crate::reconcile::forward::prepared::Forward;
+    use std::path::Path;
+
+    #[test]
+    fn added_masses_move_as_their_mass_matrices_say() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e");
+        let campaign = Campaign::read(&folder, &Catalogs::default()).expect("sound");
+        let forward = Forward::new(&campaign);
+        let (layout, test) = (&forward.layout, &forward.modal[0]);
+        let mut coefficients = forward.coefficients(&forward.nominal);
+        let identity = DMatrix::identity(layout.n, layout.n);
+        let before = test.momenta(&coefficients, &identity);
+        let amounts = [(1, 0.7), (4, -0.2), (layout.joints.len() + 1, 1.3)];
+        amounts.iter().for_each(|(mass, amount)| coefficients.masses[*mass] += amount);
+        let added = test.momenta(&coefficients, &identity) - before;
+        let pose_rad: Vec<f64> = campaign.modal[0].pose_deg.iter().map(|a| a.to_radians()).collect();
+        let matrix = |chain: &Chain| {
+            chain.pose_rad(&pose_rad, &Payload::default(), Vector3::zeros()).mass_matrix() - &test.mass
+        };
+        let direct: DMatrix<f64> =
+            amounts.iter().map(|(mass, amount)| matrix(&layout.with_mass[*mass]) * *amount).sum();
+        assert!((&added - &direct).amax() < 1e-10 * direct.amax(), "{}", (added - &direct).amax());
+    }
+}

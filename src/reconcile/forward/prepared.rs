@@ -214,3 +214,45 @@ pub(crate) fn make_links_rigid(subject: &mut Subject) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalog::Catalogs;
+    use std::path::Path;
+
+    #[test]
+    fn a_change_from_kept_states_gives_the_readings_of_a_fresh_prediction() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e");
+        let campaign = Campaign::read(&folder, &Catalogs::default()).expect("sound");
+        let forward = Forward::new(&campaign);
+        let from = forward.coefficients(&forward.nominal);
+        let changed = |change: &dyn Fn(&mut Coefficients)| {
+            let mut out = from.clone();
+            change(&mut out);
+            out
+        };
+        let to = [
+            from.clone(),
+            changed(&|c| c.linear[0] = 1e-6),
+            changed(&|c| c.weights[2] = 1.5),
+            changed(&|c| c.payload_delta_kg = 0.3),
+            changed(&|c| c.laws[1].hysteresis_rad = 1e-4),
+            changed(&|c| {
+                c.laws[2].connection_rad_per_nm = 1e-5;
+                c.weights[1] = -0.5;
+            }),
+        ];
+        let mut before = vec![0.0; forward.data.len()];
+        let states = forward.predict_smooth(&from, &mut before);
+        let mut after = DMatrix::zeros(before.len(), to.len());
+        after.column_iter_mut().for_each(|mut column| column.copy_from_slice(&before));
+        forward.change_smooth(&states, &from, &to, &mut after);
+        for (k, to) in to.iter().enumerate() {
+            let mut fresh = vec![0.0; before.len()];
+            forward.predict_smooth(to, &mut fresh);
+            assert_eq!(after.column(k).as_slice(), fresh, "change {k}");
+            assert_eq!(fresh == before, k == 0 || k == 2, "change {k}");
+        }
+    }
+}

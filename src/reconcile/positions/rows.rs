@@ -147,3 +147,35 @@ impl Products {
         (self.curvature, self.gradient)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_xoshiro::Xoshiro256PlusPlus;
+    use rand_xoshiro::rand_core::{Rng, SeedableRng};
+
+    #[test]
+    fn sums_of_blocks_are_the_products_of_all_rows_at_once() {
+        let mut dice = Xoshiro256PlusPlus::seed_from_u64(3);
+        let mut next = || (dice.next_u64() >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
+        // more than a stripe of columns; the last block is short, and some columns are zero in some blocks
+        let (samples, width) = (2 * BLOCK + 7, STRIPE + 9);
+        let is_on = |i: usize, j: usize| j % 3 != i / BLOCK;
+        let rows = DMatrix::from_fn(3 * samples, width, |r, j| if is_on(r / 3, j) { next() } else { 0.0 });
+        let errors = DVector::from_fn(3 * samples, |_, _| next());
+        let mut products = Products::new(width);
+        for first in (0..samples).step_by(BLOCK) {
+            let count = BLOCK.min(samples - first);
+            for k in 0..count {
+                let three = 3 * (first + k);
+                let columns: Vec<Vector3<f64>> =
+                    (0..width).map(|j| rows.fixed_view::<3, 1>(three, j).into_owned()).collect();
+                products.put(k, &columns, &errors.fixed_rows::<3>(three).into_owned());
+            }
+            products.add(count);
+        }
+        let (curvature, gradient) = products.into_whole();
+        assert!((curvature - rows.tr_mul(&rows)).amax() < 1e-12);
+        assert!((gradient - rows.tr_mul(&errors)).amax() < 1e-12);
+    }
+}
