@@ -4,7 +4,7 @@
 use super::align;
 use super::fit::fit;
 use super::fitted::{Fitted, Sample};
-use super::kinematics::{Geometry, Number, number_groups};
+use super::kinematics::{Geometry, Number, Pose, number_groups};
 use super::loads::{Loads, Yielding, candidates};
 use super::points::{Point, points};
 use super::tree::Tree;
@@ -241,7 +241,7 @@ pub(super) fn samples(
             let known = poses.len();
             let group = *poses.entry(pose_key(&row.pose_deg)).or_insert(known);
             Sample {
-                pose_rad: row.pose_deg.iter().map(|a| a.to_radians()).collect(),
+                pose: Arc::new(Pose::new(row.pose_deg.iter().map(|a| a.to_radians()).collect())),
                 arm: row.arm,
                 point,
                 station: 0,

@@ -1,6 +1,6 @@
 //! A measured position with what gravity does to it, and a fitted model of geometry and compliances.
 
-use super::kinematics::{Geometry, Placer, Placing};
+use super::kinematics::{Geometry, Placer, Placing, Pose};
 use super::loads::Deflection;
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -11,8 +11,8 @@ pub(crate) const NU: f64 = 4.0;
 /// One measured position.
 #[derive(Debug, Clone)]
 pub(crate) struct Sample {
-    /// Joint angles \[rad\].
-    pub pose_rad: Arc<[f64]>,
+    /// Angles of the driven joints.
+    pub pose: Arc<Pose>,
     /// Index of the arm that carries the point.
     pub arm: usize,
     /// Index of its point on the tool.
@@ -32,7 +32,7 @@ pub(crate) struct Sample {
 impl Sample {
     /// The arguments that the geometry needs.
     pub(crate) fn placing(&self) -> Placing<'_> {
-        Placing { arm: self.arm, pose_rad: &self.pose_rad, point: self.point, station: self.station }
+        Placing { arm: self.arm, pose: &self.pose, point: self.point, station: self.station }
     }
 }
 

@@ -6,7 +6,10 @@ use crate::arm::effect::waves::{transmission_rad, transmission_waves};
 use crate::arm::structure::{JointAngle, Piece};
 use crate::arm::{Arm, Element};
 use crate::reconcile::readings::campaign::PositionsSpec;
-use nalgebra::{Rotation3, Unit, Vector3};
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+
+/// The waves of a joint that turns evenly.
+const EVEN: [f64; 4] = [0.0; 4];
 
 /// One calibrated number of the geometry.
 #[derive(Debug, Clone, PartialEq)]
@@ -161,13 +164,29 @@ pub(crate) struct Geometry {
     arms: Vec<Vec<usize>>,
 }
 
+/// The angles of the driven joints in a pose, with their sines and cosines: the geometry changes, poses do not.
+#[derive(Debug)]
+pub(crate) struct Pose {
+    /// Angles \[rad\].
+    pub angles_rad: Vec<f64>,
+    /// Sine and cosine of each angle.
+    sin_cos: Vec<(f64, f64)>,
+}
+
+impl Pose {
+    pub(crate) fn new(angles_rad: Vec<f64>) -> Self {
+        let sin_cos = angles_rad.iter().map(|angle| angle.sin_cos()).collect();
+        Self { angles_rad, sin_cos }
+    }
+}
+
 /// Which point to place: its arm, pose and session.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Placing<'a> {
     /// Index of the arm.
     pub arm: usize,
-    /// Joint angles \[rad\].
-    pub pose_rad: &'a [f64],
+    /// Angles of the driven joints.
+    pub pose: &'a Pose,
     /// Index of the point.
     pub point: usize,
     /// Index of the session.
@@ -310,6 +329,7 @@ impl Geometry {
             across: self.axes.iter().map(|axis| across(axis).map(Unit::into_inner)).collect(),
             turned_by: (0..self.zeros_rad.len()).map(turned_by).collect(),
             along: self.arms.iter().map(along).collect(),
+            zero_sin_cos: self.zeros_rad.iter().map(|zero| zero.sin_cos()).collect(),
             turned_rad: Vec::new(),
             frames: Vec::new(),
             at_m: Vector3::zeros(),
@@ -332,6 +352,8 @@ pub(crate) struct Placer<'a> {
     turned_by: Vec<Vec<usize>>,
     /// For each arm and piece, the place of the piece in the arm's chain; `None` for pieces of other arms.
     along: Vec<Vec<Option<usize>>>,
+    /// Sine and cosine of each driven joint's zero.
+    zero_sin_cos: Vec<(f64, f64)>,
     /// The angles to which the driven joints turn in the pose \[rad\].
     turned_rad: Vec<f64>,
     /// The frames along the chain: frame `k` is inboard of the chain's piece `k`, frame `k + 1` outboard of it.
@@ -345,20 +367,17 @@ impl Placer<'_> {
     pub(crate) fn place_m(&mut self, asked: Placing) -> Vector3<f64> {
         let own = self.geometry;
         self.turned_rad.clear();
-        let joints = asked.pose_rad.iter().zip(&own.zeros_rad).zip(&own.transmissions_rad);
-        self.turned_rad.extend(joints.map(|((q, zero), waves)| match waves {
-            // most joints turn evenly, and sines cost much
-            [0.0, 0.0, 0.0, 0.0] => q + zero,
-            _ => q + zero + transmission_rad(waves, *q),
+        let joints = asked.pose.angles_rad.iter().zip(&own.zeros_rad).zip(&own.transmissions_rad);
+        self.turned_rad.extend(joints.map(|((q, zero), waves)| match *waves == EVEN {
+            true => q + zero,
+            false => q + zero + transmission_rad(waves, *q),
         }));
         let mut last = Frame { rotation: own.base, at_m: own.origin_m };
         self.frames.clear();
         self.frames.push(last);
         for &i in &own.arms[asked.arm] {
             match &own.angles[i] {
-                Some(angle) => {
-                    last.rotation *= Rotation3::from_axis_angle(&own.axes[i], angle.of(&self.turned_rad));
-                }
+                Some(angle) => last.rotation *= turn(&own.axes[i], self.sin_cos(angle, asked.pose)),
                 None => {
                     last.at_m += last.rotation * own.vectors_m[i];
                     // hardly any link is a mounting
@@ -372,6 +391,18 @@ impl Placer<'_> {
         self.at_m = last.at_m + last.rotation * own.tools_m[asked.point];
         let (turn, shift_m) = &own.stations[asked.station];
         own.origin_m + turn * (self.at_m - own.origin_m) + shift_m
+    }
+
+    /// Sine and cosine of a joint's angle. For a joint that turns evenly they follow from those of its commanded angle and
+    /// of its zero, because sines are what placing would spend most on.
+    fn sin_cos(&self, angle: &JointAngle, pose: &Pose) -> (f64, f64) {
+        match angle {
+            JointAngle::Driven(j) if self.geometry.transmissions_rad[*j] == EVEN => {
+                let ((sin, cos), (zero_sin, zero_cos)) = (pose.sin_cos[*j], self.zero_sin_cos[*j]);
+                (sin * zero_cos + cos * zero_sin, cos * zero_cos - sin * zero_sin)
+            }
+            _ => angle.of(&self.turned_rad).sin_cos(),
+        }
     }
 
     /// Adds the derivatives of the position of the point placed last by each number to `out` \[m per unit\].
@@ -396,7 +427,9 @@ impl Placer<'_> {
             Number::Tool(p, c) if p == asked.point => last() * Vector3::ith(c, 1.0),
             Number::Tool(..) | Number::Gravity(_) => zero,
             Number::Zero(j) => self.turning(j, along),
-            Number::Transmission(j, k) => self.turning(j, along) * transmission_waves(asked.pose_rad[j])[k],
+            Number::Transmission(j, k) => {
+                self.turning(j, along) * transmission_waves(asked.pose.angles_rad[j])[k]
+            }
             Number::Ratio(i, t) => match (along[i], &own.angles[i]) {
                 (Some(k), Some(JointAngle::Coupled(terms))) => self.lever(i, k) * self.turned_rad[terms[t].0],
                 _ => zero,
@@ -441,6 +474,23 @@ fn rate(angle: &JointAngle, driven: usize) -> f64 {
     }
 }
 
+/// The rotation about an axis by an angle of which sine and cosine are given (Rodrigues).
+fn turn(axis: &Unit<Vector3<f64>>, (sin, cos): (f64, f64)) -> Rotation3<f64> {
+    let (x, y, z) = (axis.x, axis.y, axis.z);
+    let rest = 1.0 - cos;
+    Rotation3::from_matrix_unchecked(Matrix3::new(
+        x * x * rest + cos,
+        x * y * rest - z * sin,
+        x * z * rest + y * sin,
+        x * y * rest + z * sin,
+        y * y * rest + cos,
+        y * z * rest - x * sin,
+        x * z * rest - y * sin,
+        y * z * rest + x * sin,
+        z * z * rest + cos,
+    ))
+}
+
 /// Two unit axes, perpendicular to a given axis and to each other.
 fn across(axis: &Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
     let least = Vector3::ith(axis.iamin(), 1.0);
@@ -482,7 +532,7 @@ mod tests {
         let mut numbers: Vec<Number> = groups.into_iter().flat_map(|(_, group)| group).collect();
         assert!(numbers.contains(&Number::Ratio(4, 1)));
         numbers.extend((0..4).map(|k| Number::Transmission(1, k)));
-        let asked = Placing { arm: 0, pose_rad: &[0.4, -0.7], point: 0, station: 0 };
+        let asked = Placing { arm: 0, pose: &Pose::new(vec![0.4, -0.7]), point: 0, station: 0 };
         let mut placer = geometry.placer();
         placer.place_m(asked);
         let mut slopes = Vec::new();

@@ -92,7 +92,9 @@ impl Deflection {
         mut each: impl FnMut(Vector3<f64>),
     ) {
         let own = self.swings(candidate);
-        let along = |i: usize, j: usize| own[i].motion_m * own[j].pull_nm.dot(gravity);
+        let mut torques_nm = [0.0; 3];
+        torques_nm.iter_mut().zip(own).for_each(|(nm, swing)| *nm = swing.pull_nm.dot(gravity));
+        let along = |i: usize, j: usize| own[i].motion_m * torques_nm[j];
         match self.count(candidate) {
             1 => each((0..own.len()).fold(Vector3::zeros(), |sum, i| sum + along(i, i))),
             count => FRAME_ENTRIES[..count].iter().for_each(|&(i, j)| {

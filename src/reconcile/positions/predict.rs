@@ -1,6 +1,6 @@
 //! Predicts positions of points on several arms of one trunk, which carries the weight of all.
 
-use super::kinematics::{Geometry, Placing};
+use super::kinematics::{Geometry, Placing, Pose};
 use super::loads::Loads;
 use super::tree::Tree;
 use crate::arm::effect::channel::Channel;
@@ -39,10 +39,10 @@ pub(crate) fn predicted_mm(mut campaign: Campaign, arms: &[Placed], subjects: &[
             let stand = stands[row.arm][i];
             let asked_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
             let own_rad = subjects[row.arm].turned_rad(&tree.pose_of(row.arm, &asked_rad));
-            let pose_rad = tree.with_pose_of(row.arm, &own_rad, &asked_rad);
+            let pose = Pose::new(tree.with_pose_of(row.arm, &own_rad, &asked_rad));
             geometry.base = Rotation3::from_matrix_unchecked(stand.rotation);
             geometry.origin_m = stand.origin_m;
-            let placing = Placing { arm: row.arm, pose_rad: &pose_rad, point, station: 0 };
+            let placing = Placing { arm: row.arm, pose: &pose, point, station: 0 };
             let at_m = geometry.place_m(placing) + stand.rotation * known_m;
             let reading = &subjects[row.arm].channels[Channel::Positions as usize];
             std::array::from_fn(|c| reading.of(1e3 * at_m[c], c, row.row))

@@ -124,9 +124,12 @@ impl Products {
     fn add(&mut self, samples: usize) {
         let rows = self.rows.columns(0, 3 * samples);
         let own: Vec<usize> = (0..rows.nrows()).filter(|i| rows.row(*i).iter().any(|x| *x != 0.0)).collect();
+        let mut transposed = DMatrix::zeros(own.len(), 3 * samples);
+        for (mut to, from) in transposed.column_iter_mut().zip(rows.column_iter()) {
+            to.iter_mut().zip(&own).for_each(|(to, i)| *to = from[*i]);
+        }
         // products with the transpose written out are the fast ones
-        let columns = DMatrix::from_fn(3 * samples, own.len(), |r, i| rows[(own[i], r)]);
-        let transposed = columns.transpose();
+        let columns = transposed.transpose();
         let gradient = &transposed * self.right.rows(0, 3 * samples);
         own.iter().zip(gradient.iter()).for_each(|(i, x)| self.gradient[*i] += x);
         // the product is symmetric: a stripe of it suffices from its diagonal on

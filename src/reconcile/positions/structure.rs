@@ -150,7 +150,7 @@ impl<'a> Asker<'a> {
         let from_level = self.found.fitted.geometry.level_to_instrument();
         for (j, &candidate) in self.driven.iter().enumerate() {
             let lever = from_level * sample.deflection.lever(candidate).0;
-            for wave in waves(sample.pose_rad[j].to_degrees()) {
+            for wave in waves(sample.pose.angles_rad[j].to_degrees()) {
                 out.extend(along(wave));
                 out.push(lever * wave);
             }
