@@ -67,8 +67,12 @@ pub struct StaticState {
     compliance: Matrix3x6<f64>,
     /// Torque of the dead weight on each joint \[N m\].
     dead_nm: Vec<f64>,
+    /// Room for these torques under other weights \[N m\].
+    moved_dead_nm: Vec<f64>,
     /// The wrench of each load.
     wrenches: Vec<Wrench>,
+    /// Torque on each joint (first index) by each load \[N m\].
+    loaded_nm: Vec<f64>,
     /// The twist of each joint (first index) under each load \[rad\], from that of the unloaded arm.
     twists_rad: Vec<f64>,
 }
@@ -79,6 +83,7 @@ impl StaticState {
         self.compliance = other.compliance;
         self.dead_nm.clone_from(&other.dead_nm);
         self.wrenches.clone_from(&other.wrenches);
+        self.loaded_nm.clone_from(&other.loaded_nm);
         self.twists_rad.clone_from(&other.twists_rad);
     }
 }
@@ -165,13 +170,19 @@ impl PoseGeometry {
 
     /// Torque of the dead weight on each joint \[N m\].
     pub fn dead_torques_nm(&self, coefficients: &Coefficients) -> Vec<f64> {
-        let mut torques = self.dead_nm.clone();
+        let mut torques_nm = Vec::new();
+        self.add_up_dead_torques(coefficients, &mut torques_nm);
+        torques_nm
+    }
+
+    /// Replaces `torques_nm` by the torques of the dead weight \[N m\].
+    fn add_up_dead_torques(&self, coefficients: &Coefficients, torques_nm: &mut Vec<f64>) {
+        torques_nm.clone_from(&self.dead_nm);
         for (per_mass, weight) in self.dead_per_mass_nm.iter().zip(&coefficients.weights) {
             if *weight != 0.0 {
-                torques.iter_mut().zip(per_mass).for_each(|(t, p)| *t += weight * p);
+                torques_nm.iter_mut().zip(per_mass).for_each(|(t, p)| *t += weight * p);
             }
         }
-        torques
     }
 
     /// The load as a wrench about the world origin.
@@ -193,13 +204,13 @@ impl PoseGeometry {
     }
 }
 
-/// Twists of a joint under torques that follow each other, each from the twist of the unloaded arm, which comes to rest
-/// before each pose and whose reading is the reference.
-fn follow(law: &JointLaw, dead_nm: f64, torques_nm: impl Iterator<Item = f64>, twists_rad: &mut [f64]) {
+/// Twists of a joint under loads that follow each other, each from the twist of the unloaded arm, which comes to rest
+/// before each pose and whose reading is the reference. The loads' torques come on top of that of the dead weight.
+fn follow(law: &JointLaw, dead_nm: f64, loaded_nm: &[f64], twists_rad: &mut [f64]) {
     let mut play_nm = law.play_at_rest_nm(dead_nm);
     let reference_rad = law.play_angle_rad(dead_nm, &mut play_nm);
-    for (twist_rad, torque_nm) in twists_rad.iter_mut().zip(torques_nm) {
-        *twist_rad = law.play_angle_rad(torque_nm, &mut play_nm) - reference_rad;
+    for (twist_rad, loaded_nm) in twists_rad.iter_mut().zip(loaded_nm) {
+        *twist_rad = law.play_angle_rad(dead_nm + loaded_nm, &mut play_nm) - reference_rad;
     }
 }
 
@@ -246,24 +257,33 @@ impl StaticPose {
         if changes.linear {
             state.compliance = geometry.compliance(coefficients);
         }
-        if changes.weights {
-            state.dead_nm = geometry.dead_torques_nm(coefficients);
-        }
+        let joints = geometry.joints.len();
+        let count = self.loads.len();
         if changes.payload {
             let wrench = |load: &Load| {
                 geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients)
             };
             state.wrenches.clear();
             state.wrenches.extend(self.loads.iter().map(wrench));
+            state.loaded_nm.clear();
+            let torques_nm =
+                geometry.joints.iter().flat_map(|m| state.wrenches.iter().map(|w| m.twist.dot(w)));
+            state.loaded_nm.extend(torques_nm);
         }
-        let count = self.loads.len();
-        state.twists_rad.resize(geometry.joints.len() * count, 0.0);
-        let joints = geometry.joints.iter().zip(&coefficients.laws).zip(&state.dead_nm);
-        let twists = state.twists_rad.chunks_exact_mut(count);
-        for (j, (((mover, law), dead_nm), twists)) in joints.zip(twists).enumerate() {
-            if changes.weights || changes.payload || changes.laws[j] {
-                let torques_nm = state.wrenches.iter().map(|wrench| dead_nm + mover.twist.dot(wrench));
-                follow(law, *dead_nm, torques_nm, twists);
+        if changes.weights {
+            geometry.add_up_dead_torques(coefficients, &mut state.moved_dead_nm);
+            state.dead_nm.resize(joints, f64::NAN);
+        }
+        state.twists_rad.resize(joints * count, 0.0);
+        for (j, law) in coefficients.laws.iter().enumerate() {
+            // a weight loads the joints inboard of it only
+            let is_loaded_otherwise = changes.weights && state.moved_dead_nm[j] != state.dead_nm[j];
+            if is_loaded_otherwise {
+                state.dead_nm[j] = state.moved_dead_nm[j];
+            }
+            if is_loaded_otherwise || changes.payload || changes.laws[j] {
+                let own = j * count..(j + 1) * count;
+                follow(law, state.dead_nm[j], &state.loaded_nm[own.clone()], &mut state.twists_rad[own]);
             }
         }
     }
