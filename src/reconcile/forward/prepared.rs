@@ -251,8 +251,12 @@ mod tests {
         for (k, to) in to.iter().enumerate() {
             let mut fresh = vec![0.0; before.len()];
             forward.predict_smooth(to, &mut fresh);
-            assert_eq!(after.column(k).as_slice(), fresh, "change {k}");
-            assert_eq!(fresh == before, k == 0 || k == 2, "change {k}");
+            let largest =
+                |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+            // weights do not show where twists are proportional to torques, except in the last digits
+            let (off, moved) = (largest(after.column(k).as_slice(), &fresh), largest(&fresh, &before));
+            assert!(off < 1e-12 && (k == 2 || off == 0.0), "change {k}: {off}");
+            assert_eq!(moved > 1e-9, k != 0 && k != 2, "change {k}: {moved}");
         }
     }
 }
