@@ -42,10 +42,6 @@ pub struct ModalTest {
     /// Factors `L` of the matrix `L Lᵀ` that a unit of each added mass contributes. They have few columns,
     /// and only the rows of coordinates inboard of the mass.
     factors: Vec<DMatrix<f64>>,
-    /// The columns of all factors, one after the other, and for each column the mass it belongs to.
-    stacked: DMatrix<f64>,
-    stacked_transposed: DMatrix<f64>,
-    mass_of: Vec<usize>,
     tip: Matrix3xX<f64>,
     spin: Matrix3xX<f64>,
     forces: DMatrix<f64>,
@@ -107,14 +103,10 @@ impl ModalTest {
         let posed = layout.template.pose_rad(&pose_rad, &empty, Vector3::zeros());
         let mass = posed.mass_matrix();
         let added = |c: &Chain| c.pose_rad(&pose_rad, &empty, Vector3::zeros()).mass_matrix() - &mass;
-        let factors: Vec<DMatrix<f64>> = layout.with_mass.iter().map(|chain| factor(&added(chain))).collect();
-        let (stacked, mass_of) = stacked(&factors, layout.n);
+        let factors = layout.with_mass.iter().map(|chain| factor(&added(chain))).collect();
         let (tip, spin) = tip_jacobians(&posed);
         Self {
             factors,
-            stacked_transposed: stacked.transpose(),
-            stacked,
-            mass_of,
             geometry: PoseGeometry::new(layout, nominal, pose_deg),
             payload: *payload,
             modes: Vec::new(),
@@ -194,14 +186,12 @@ impl ModalTest {
     /// need not be assembled.
     fn momenta(&self, coefficients: &Coefficients, shapes: &DMatrix<f64>) -> DMatrix<f64> {
         let mut out = &self.mass * shapes;
-        let amount = |column: usize| coefficients.masses[self.mass_of[column]];
-        let changed = |column: &usize| amount(*column) != 0.0;
-        let columns = 0..self.mass_of.len();
-        if let (Some(first), Some(last)) = (columns.clone().find(changed), columns.rev().find(changed)) {
-            let mut moved = self.stacked_transposed.rows_range(first..=last) * shapes;
-            let rows = moved.row_iter_mut().zip(first..);
-            rows.for_each(|(mut row, column)| row *= amount(column));
-            out.gemm(1.0, &self.stacked.columns_range(first..=last), &moved, 1.0);
+        for (factor, amount) in self.factors.iter().zip(&coefficients.masses) {
+            if *amount != 0.0 {
+                let reach = factor.nrows();
+                let moved = factor.tr_mul(&shapes.rows(0, reach));
+                out.rows_mut(0, reach).gemm(*amount, factor, &moved, 1.0);
+            }
         }
         let (mass_kg, jacobian) = self.payload_jacobian(coefficients);
         if mass_kg != 0.0 {
@@ -489,18 +479,6 @@ fn factor(matrix: &DMatrix<f64>) -> DMatrix<f64> {
         true => DMatrix::zeros(0, 0),
         false => DMatrix::from_columns(&columns).rows(0, leading(matrix)).into_owned(),
     }
-}
-
-/// The columns of all factors side by side, filled up with zeros to `rows` rows, and the index of each column's factor.
-fn stacked(factors: &[DMatrix<f64>], rows: usize) -> (DMatrix<f64>, Vec<usize>) {
-    let of = factors.iter().enumerate().flat_map(|(mass, factor)| vec![mass; factor.ncols()]);
-    let mass_of: Vec<usize> = of.collect();
-    let mut out = DMatrix::zeros(rows, mass_of.len());
-    let columns = factors.iter().flat_map(|factor| factor.column_iter());
-    for (mut to, column) in out.column_iter_mut().zip(columns) {
-        to.rows_mut(0, column.len()).copy_from(&column);
-    }
-    (out, mass_of)
 }
 
 /// Slope of a joint's law \[rad/(N m)\]. The steps of a gear's curve are smoothed over `width` \[ln of the
