@@ -246,20 +246,21 @@ impl Slopes<'_> {
     fn products(&self, row_factors: &DVector<f64>, right: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let width = self.columns();
         let (mut gradient, mut curvature) = (DVector::zeros(width), DMatrix::zeros(width, width));
-        let mut scaled = DMatrix::zeros(BLOCK, width);
-        let mut transposed = DMatrix::zeros(width, BLOCK);
+        let block = BLOCK.min(self.rows());
+        let (mut scaled, mut transposed) = (DMatrix::zeros(block, width), DMatrix::zeros(width, block));
         for first in (0..self.rows()).step_by(BLOCK) {
-            let count = BLOCK.min(self.rows() - first);
+            let count = block.min(self.rows() - first);
             let factors = row_factors.rows(first, count);
             let own = self.0.iter().flat_map(|part| part.column_iter());
             for (mut to, column) in scaled.column_iter_mut().zip(own) {
                 to.rows_mut(0, count).cmpy(1.0, &column.rows(first, count), &factors, 0.0);
             }
+            // a shorter last block is filled up: the sums are then the same as in one product of all rows
+            scaled.rows_range_mut(count..).fill(0.0);
             // a product with the transpose written out is several times as fast as one that reads columns as rows
-            scaled.rows(0, count).transpose_to(&mut transposed.columns_mut(0, count));
-            let transposed = transposed.columns(0, count);
-            gradient.gemv(1.0, &transposed, &right.rows(first, count), 1.0);
-            curvature.gemm(1.0, &transposed, &scaled.rows(0, count), 1.0);
+            scaled.transpose_to(&mut transposed);
+            gradient.gemv(1.0, &transposed.columns(0, count), &right.rows(first, count), 1.0);
+            curvature.gemm(1.0, &transposed, &scaled, 1.0);
         }
         (gradient, curvature)
     }
