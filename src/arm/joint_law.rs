@@ -287,9 +287,13 @@ impl JointLaw {
     /// Stiffness of the spring in the friction play \[N m/rad\]: the middle slope of the gear with the connection in series.
     /// `None` without friction play, or if nothing twists that friction could hold back.
     pub(crate) fn play_stiffness_nm_per_rad(&self) -> Option<f64> {
+        // asked at every reading, and most joints have none
+        if self.hysteresis_rad <= 0.0 {
+            return None;
+        }
         let gear = self.curve.middle_slope().tangent_compliance_rad_per_nm(0.0);
         let compliance = gear + self.connection_rad_per_nm;
-        (self.hysteresis_rad > 0.0 && compliance > 0.0).then(|| 1.0 / compliance)
+        (compliance > 0.0).then(|| 1.0 / compliance)
     }
 
     /// Twist \[rad\] at a torque, given the state of the friction play. The state is a torque \[N m\] that follows the torque

@@ -461,13 +461,13 @@ impl Analysis<'_> {
     /// The pose whose readings the best model misses most.
     fn worst_pose(&self) -> Option<Vec<f64>> {
         let residuals = self.best.residuals(self.forward, self.weights);
-        let group = (0..self.forward.groups.len())
-            .map(|g| {
-                let own = (0..residuals.len()).filter(|&i| self.forward.data[i].group == g);
-                (rms(own.map(|i| residuals[i])), g)
-            })
-            .max_by(|a, b| a.0.total_cmp(&b.0))?
-            .1;
+        let mut of_groups: Vec<Vec<f64>> = vec![Vec::new(); self.forward.groups.len()];
+        for (residual, datum) in residuals.iter().zip(&self.forward.data) {
+            // rows on the bench have no pose
+            of_groups.get_mut(datum.group).into_iter().for_each(|own| own.push(*residual));
+        }
+        let sizes = of_groups.into_iter().map(|own| rms(own.into_iter()));
+        let group = sizes.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?.0;
         let name = self.forward.groups.get(group)?;
         Some(name.split(',').filter_map(|a| a.parse().ok()).collect())
     }

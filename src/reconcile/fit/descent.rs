@@ -9,11 +9,13 @@
 //! differentiated numerically.
 
 use crate::reconcile::forward::coefficients::Coefficients;
-use crate::reconcile::forward::modal::Solved;
+use crate::reconcile::forward::modal::{ModalTest, Solved};
 use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::forward::statics::StaticState;
 use crate::reconcile::model::parameters::Model;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Residual at which Huber's loss turns from a square into a straight line \[standard deviations\].
 const HUBER: f64 = 4.0;
@@ -49,8 +51,10 @@ pub struct Point {
     pub truth: Vec<f64>,
     /// Predicted reading of each datum, in the unit of the datum's file.
     pub predicted: Vec<f64>,
+    /// The loads on the arm in each static pose, and how it yields to them.
+    pub statics: Vec<StaticState>,
     /// Solved modes of each modal test.
-    pub solved: Vec<Vec<Solved>>,
+    pub solved: Vec<Arc<Vec<Solved>>>,
     /// The objective.
     pub objective: f64,
 }
@@ -71,37 +75,41 @@ pub struct Fit<'a> {
 
 /// Evaluates a model at the parameters `u`.
 pub fn evaluate(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Point {
+    evaluate_near(forward, model, u, weights, None)
+}
+
+/// Evaluates a model at the parameters `u`. Modes that are the same at a point `near` are taken from there: where a break
+/// point of a gear's curve moves, the slopes of most tests stay.
+pub fn evaluate_near(
+    forward: &Forward,
+    model: &Model,
+    u: &[f64],
+    weights: &Weights,
+    near: Option<&Point>,
+) -> Point {
     let coefficients = model.coefficients(forward, u);
     let mut truth = vec![0.0; forward.data.len()];
-    forward.predict_smooth(&coefficients, &mut truth);
-    let counts = |test: &crate::reconcile::forward::modal::ModalTest| {
-        test.modes.iter().any(|(datum, _)| weights.inverse[*datum] > 0.0)
+    let statics = forward.predict_smooth(&coefficients, &mut truth);
+    let counts = |test: &ModalTest| test.modes.iter().any(|(datum, _)| weights.inverse[*datum] > 0.0);
+    let known = |test: &ModalTest, index: usize| {
+        let point = near?;
+        let is_same = !point.solved[index].is_empty()
+            && test.same_modes(&forward.layout, &point.coefficients, &coefficients);
+        is_same.then(|| Arc::clone(&point.solved[index]))
     };
-    let solve =
-        |test: &crate::reconcile::forward::modal::ModalTest| match counts(test) || !weights.smooth_only {
-            true => test.solve(&forward.layout, &coefficients, test.mode_count()),
-            false => Vec::new(),
-        };
-    let solved: Vec<Vec<Solved>> = forward.modal.iter().map(solve).collect();
+    let solve = |(index, test): (usize, &ModalTest)| match counts(test) || !weights.smooth_only {
+        true => known(test, index)
+            .unwrap_or_else(|| Arc::new(test.solve(&forward.layout, &coefficients, test.mode_count()))),
+        false => Arc::default(),
+    };
+    let solved: Vec<Arc<Vec<Solved>>> = forward.modal.iter().enumerate().map(solve).collect();
     for (test, modes) in forward.modal.iter().zip(&solved) {
         test.write(modes, &mut truth);
     }
-    point(forward, model, u.to_vec(), coefficients, truth, solved, weights)
-}
-
-fn point(
-    forward: &Forward,
-    model: &Model,
-    u: Vec<f64>,
-    coefficients: Coefficients,
-    truth: Vec<f64>,
-    solved: Vec<Vec<Solved>>,
-    weights: &Weights,
-) -> Point {
     let mut predicted = truth.clone();
     forward.read(&coefficients, &mut predicted);
-    let objective = objective(forward, model, &u, &predicted, weights);
-    Point { u, coefficients, truth, predicted, solved, objective }
+    let objective = objective(forward, model, u, &predicted, weights);
+    Point { u: u.to_vec(), coefficients, truth, predicted, statics, solved, objective }
 }
 
 /// The objective `Σ ρ(r) + Σ u²`: Huber's loss of the residuals, and the priors of the parameters.
@@ -123,57 +131,49 @@ fn loss(r: f64) -> f64 {
 
 /// Derivatives of all predictions at a point, data by parameters.
 pub fn jacobian(forward: &Forward, model: &Model, at: &Point) -> DMatrix<f64> {
-    let mut out = DMatrix::zeros(forward.data.len(), model.len());
-    for p in 0..model.len() {
+    let stepped = |p: usize| {
         let (_, high) = model.bounds(p);
         let step = if at.u[p] + STEP > high { -STEP } else { STEP };
         let mut u = at.u.clone();
         u[p] += step;
-        let change = change(forward, model, at, &u);
-        out.set_column(p, &(DVector::from_vec(change) / step));
-    }
+        (step, model.coefficients(forward, &u))
+    };
+    let (steps, moved): (Vec<f64>, Vec<Coefficients>) = (0..model.len()).map(stepped).unzip();
+    let mut out = changes_to(forward, at, &moved);
+    out.column_iter_mut().zip(steps).for_each(|(mut column, step)| column /= step);
     out
 }
 
 /// Change of the predictions from a point to other parameters. Frequencies change to first order.
 pub fn change(forward: &Forward, model: &Model, at: &Point, u: &[f64]) -> Vec<f64> {
-    change_to(forward, at, &model.coefficients(forward, u))
+    change_to(forward, at, model.coefficients(forward, u))
 }
 
 /// Change of the predictions from a point to other coefficients. Frequencies change to first order.
-pub fn change_to(forward: &Forward, at: &Point, moved: &Coefficients) -> Vec<f64> {
-    let mut truth = at.truth.clone();
-    if !same_smooth(&at.coefficients, moved) {
-        forward.predict_smooth(moved, &mut truth);
-    }
-    if !at.coefficients.same_modes(moved) {
-        let mut delta = vec![0.0; truth.len()];
-        for (test, solved) in forward.modal.iter().zip(&at.solved) {
-            test.change(&forward.layout, solved, &at.coefficients, moved, &mut delta);
-        }
-        for i in forward.starts[1]..forward.starts[2] {
-            truth[i] += delta[i];
-        }
-    }
-    forward.read(moved, &mut truth);
-    truth.iter().zip(&at.predicted).map(|(a, b)| a - b).collect()
+pub fn change_to(forward: &Forward, at: &Point, moved: Coefficients) -> Vec<f64> {
+    changes_to(forward, at, &[moved]).data.into()
 }
 
-/// Whether two sets of coefficients give the same static and bench readings.
-fn same_smooth(a: &Coefficients, b: &Coefficients) -> bool {
-    let plain = |c: &Coefficients| {
-        c.laws.iter().all(|l| {
-            l.lost_motion.is_none()
-                && l.hysteresis_rad == 0.0
-                && !matches!(l.curve, crate::arm::joint_law::Curve::Windup(_))
-        })
-    };
-    a.linear == b.linear
-        && a.laws == b.laws
-        && a.payload_delta_kg == b.payload_delta_kg
-        && a.payload_offset_m == b.payload_offset_m
-        && a.payload_weight == b.payload_weight
-        && (a.weights == b.weights || plain(a))
+/// Changes of the predictions (rows) from a point to each of other coefficients (columns). Frequencies change to first
+/// order.
+fn changes_to(forward: &Forward, at: &Point, moved: &[Coefficients]) -> DMatrix<f64> {
+    let mut out = DMatrix::zeros(at.truth.len(), moved.len());
+    out.column_iter_mut().for_each(|mut column| column.copy_from_slice(&at.truth));
+    forward.change_smooth(&at.statics, &at.coefficients, moved, &mut out);
+    for (mut column, moved) in out.column_iter_mut().zip(moved) {
+        if !forward.modal.is_empty() && !at.coefficients.same_modes(moved) {
+            let mut delta = vec![0.0; at.truth.len()];
+            for (test, solved) in forward.modal.iter().zip(&at.solved) {
+                test.change(&forward.layout, solved, &at.coefficients, moved, &mut delta);
+            }
+            for i in forward.starts[1]..forward.starts[2] {
+                column[i] += delta[i];
+            }
+        }
+        forward.read(moved, column.as_mut_slice());
+        column.iter_mut().zip(&at.predicted).for_each(|(value, before)| *value -= before);
+    }
+    out
 }
 
 /// Gradient and curvature of half the objective.
@@ -190,28 +190,90 @@ pub fn normal(
     calibrated: usize,
     u: &[f64],
     predicted: &[f64],
-    jacobian: &DMatrix<f64>,
+    slopes: &Slopes,
     weights: &Weights,
 ) -> Normal {
-    let residual = DVector::from_iterator(
-        forward.data.len(),
-        forward.data.iter().zip(predicted).zip(&weights.inverse).map(|((d, p), w)| (p - d.value) * w),
-    );
-    // iteratively reweighted least squares: the weight of a residual beyond the turn is HUBER / |r|
-    let robust = residual.map(|r| if r.abs() <= HUBER { 1.0 } else { (HUBER / r.abs()).sqrt() });
-    let row_factors =
-        DVector::from_iterator(robust.len(), robust.iter().zip(&weights.inverse).map(|(r, w)| r * w));
-    let mut scaled = jacobian.clone();
-    scaled.column_iter_mut().for_each(|mut column| column.component_mul_assign(&row_factors));
-    // a product with the transpose written out is several times as fast as one that reads columns as rows
-    let transposed = scaled.transpose();
-    let mut gradient = &transposed * residual.component_mul(&robust);
-    let mut curvature = &transposed * &scaled;
+    let count = forward.data.len();
+    let (mut factors, mut right) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    for ((datum, predicted), weight) in forward.data.iter().zip(predicted).zip(&weights.inverse) {
+        let residual = (predicted - datum.value) * weight;
+        // iteratively reweighted least squares: the weight of a residual beyond the turn is HUBER / |r|
+        let robust = if residual.abs() <= HUBER { 1.0 } else { (HUBER / residual.abs()).sqrt() };
+        factors.push(robust * weight);
+        right.push(residual * robust);
+    }
+    let (mut gradient, mut curvature) =
+        slopes.products(&DVector::from_vec(factors), &DVector::from_vec(right));
     for p in 0..calibrated {
         gradient[p] += u[p];
         curvature[(p, p)] += 1.0;
     }
     Normal { gradient, curvature }
+}
+
+/// Number of rows whose products are taken at a time. They stay in a processor's cache meanwhile.
+const BLOCK: usize = 256;
+
+/// Derivatives of the data (rows) by parameters (columns), as matrices that stand side by side. What many models share is
+/// then not copied for each.
+pub struct Slopes<'a>(pub &'a [&'a DMatrix<f64>]);
+
+impl Slopes<'_> {
+    fn columns(&self) -> usize {
+        self.0.iter().map(|part| part.ncols()).sum()
+    }
+
+    fn rows(&self) -> usize {
+        self.0.first().map_or(0, |part| part.nrows())
+    }
+
+    /// The changes of the data by a change of the parameters.
+    pub fn times(&self, step: &DVector<f64>) -> Vec<f64> {
+        let mut out = DVector::zeros(self.rows());
+        for first in (0..self.rows()).step_by(BLOCK) {
+            let count = BLOCK.min(self.rows() - first);
+            let mut at = 0;
+            for part in self.0 {
+                let own = step.rows(at, part.ncols());
+                out.rows_mut(first, count).gemv(1.0, &part.rows(first, count), &own, 1.0);
+                at += part.ncols();
+            }
+        }
+        out.data.into()
+    }
+
+    /// The products `Xᵀr` and `XᵀX`, where the rows of `X` are these rows times `row_factors`.
+    fn products(&self, row_factors: &DVector<f64>, right: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let width = self.columns();
+        let (mut gradient, mut curvature) = (DVector::zeros(width), DMatrix::zeros(width, width));
+        let block = BLOCK.min(self.rows());
+        let (mut scaled, mut transposed) = (DMatrix::zeros(block, width), DMatrix::zeros(width, block));
+        for first in (0..self.rows()).step_by(BLOCK) {
+            let count = block.min(self.rows() - first);
+            let factors = row_factors.rows(first, count);
+            let own = self.0.iter().flat_map(|part| part.column_iter());
+            for (mut to, column) in scaled.column_iter_mut().zip(own) {
+                to.rows_mut(0, count).cmpy(1.0, &column.rows(first, count), &factors, 0.0);
+            }
+            // a shorter last block is filled up: the sums are then the same as in one product of all rows
+            scaled.rows_range_mut(count..).fill(0.0);
+            // a product with the transpose written out is several times as fast as one that reads columns as rows
+            scaled.transpose_to(&mut transposed);
+            gradient.gemv(1.0, &transposed.columns(0, count), &right.rows(first, count), 1.0);
+            curvature.gemm(1.0, &transposed, &scaled, 1.0);
+        }
+        (gradient, curvature)
+    }
+}
+
+/// The product `XᵀY` of two tall matrices.
+pub(crate) fn transposed_product(x: &DMatrix<f64>, y: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut out = DMatrix::zeros(x.ncols(), y.ncols());
+    for first in (0..x.nrows()).step_by(BLOCK) {
+        let count = BLOCK.min(x.nrows() - first);
+        out.gemm(1.0, &x.rows(first, count).transpose(), &y.rows(first, count), 1.0);
+    }
+    out
 }
 
 /// Takes one damped step and keeps it within the bounds.
@@ -333,7 +395,8 @@ fn descended(
     let mut damping = 1e-4;
     for _ in 0..effort.steps {
         let slopes = jacobian(forward, model, &here);
-        let normal = normal(forward, model.calibrated(), &here.u, &here.predicted, &slopes, weights);
+        let normal =
+            normal(forward, model.calibrated(), &here.u, &here.predicted, &Slopes(&[&slopes]), weights);
         let Some(next) = descend(forward, model, &here, &normal, weights, &mut damping) else {
             return (here, Some(slopes));
         };
@@ -363,7 +426,7 @@ fn descend(
         if u == here.u {
             return None;
         }
-        let next = evaluate(forward, model, &u, weights);
+        let next = evaluate_near(forward, model, &u, weights, Some(here));
         if next.objective < here.objective {
             // a good step: trust the parabola more
             *damping = (*damping * 0.2).max(1e-9);
@@ -386,7 +449,8 @@ pub fn finish<'a>(
     // a number that rests on another could be anywhere below it
     let resting = (0..model.len()).filter(|p| model.rests(*p, &point.u));
     resting.for_each(|p| jacobian.fill_column(p, 0.0));
-    let normal = normal(forward, model.calibrated(), &point.u, &point.predicted, &jacobian, weights);
+    let slopes = Slopes(&[&jacobian]);
+    let normal = normal(forward, model.calibrated(), &point.u, &point.predicted, &slopes, weights);
     let mut curvature = normal.curvature;
     let mut evidence = -0.5 * point.objective;
     for (i, parameter) in model.free_parameters().enumerate() {
@@ -439,4 +503,28 @@ pub fn data_curvature(fit: &Fit) -> DMatrix<f64> {
         curvature[(p, p)] -= 11.9 / parameter.width(fit.point.u[p]).powi(2);
     }
     curvature
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slopes_side_by_side_are_one_matrix() {
+        let rows = 2 * BLOCK + 11;
+        let whole = DMatrix::from_fn(rows, 5, |i, j| ((7 * i + 3 * j) % 11) as f64 - 5.0);
+        let (left, right) = (whole.columns(0, 3).into_owned(), whole.columns(3, 2).into_owned());
+        let parts = [&left, &right];
+        let slopes = Slopes(&parts);
+        let step = DVector::from_fn(5, |j, _| j as f64 - 1.0);
+        assert_eq!(slopes.times(&step), (&whole * &step).as_slice());
+        let factors = DVector::from_fn(rows, |i, _| (i % 4) as f64);
+        let residual = DVector::from_fn(rows, |i, _| (i % 5) as f64 - 2.0);
+        let scaled = DMatrix::from_fn(rows, 5, |i, j| factors[i] * whole[(i, j)]);
+        let (gradient, curvature) = slopes.products(&factors, &residual);
+        // whole numbers, so the order of the sums does not matter
+        assert_eq!(gradient, scaled.tr_mul(&residual));
+        assert_eq!(curvature, scaled.tr_mul(&scaled));
+        assert_eq!(transposed_product(&whole, &scaled), whole.tr_mul(&scaled));
+    }
 }

@@ -4,8 +4,10 @@ use super::descent::{Fit, Weights};
 use super::stats::median;
 use crate::arm::effect::channel::Channel;
 use crate::reconcile::forward::coefficients::Coefficients;
+use crate::reconcile::forward::datum::Datum;
 use crate::reconcile::forward::modal::ModalTest;
 use crate::reconcile::forward::prepared::Forward;
+use std::collections::{HashMap, HashSet};
 
 /// The quality of the readings, as the residuals show it.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,8 +55,10 @@ impl Default for Noise {
 impl Noise {
     /// The weights of the data under this judgement of the readings.
     pub fn weights(&self, forward: &Forward) -> Weights {
+        let outliers: HashSet<(usize, usize)> =
+            self.outliers.iter().map(|(channel, row, _)| (*channel as usize, *row)).collect();
         let inverse = forward.data.iter().map(|d| {
-            let gross = self.outliers.iter().any(|(c, row, _)| *c == d.channel && *row == d.row);
+            let gross = outliers.contains(&(d.channel as usize, d.row));
             if gross { 0.0 } else { 1.0 / (d.sigma * self.scale[d.channel as usize]) }
         });
         Weights { inverse: inverse.collect(), smooth_only: false }
@@ -133,21 +137,16 @@ impl Noise {
             let own = &residuals[range.clone()];
             // where the model fits badly, only rows that stand out from the rest are gross
             let limit = GROSS * spread(own).clamp(1.0, 3.0);
-            let mut gross: Vec<(usize, f64)> = Vec::new();
-            for (r, datum) in own.iter().zip(&forward.data[range.clone()]) {
-                if r.abs() > limit {
-                    match gross.iter_mut().find(|(row, _)| *row == datum.row) {
-                        Some((_, size)) => *size = size.max(r.abs()),
-                        None => gross.push((datum.row, r.abs())),
-                    }
-                }
-            }
+            let data = &forward.data[range.clone()];
+            let mut gross = largest_of_rows(data.iter().zip(own.iter().map(|r| r.abs())));
+            gross.retain(|(_, size)| *size > limit);
             // many large residuals are a structure and not errors
             if gross.len() > at_most(FEW, rows(forward, channel)) {
                 continue;
             }
             noise.outliers.extend(gross.iter().map(|(row, size)| (channel, *row, *size)));
-            let kept = range.filter(|i| !gross.iter().any(|(row, _)| *row == forward.data[*i].row));
+            let gross: HashSet<usize> = gross.into_iter().map(|(row, _)| row).collect();
+            let kept = range.filter(|i| !gross.contains(&forward.data[*i].row));
             noise.scale[channel as usize] = scale(kept.map(|i| (residuals[i], leverages[i])));
         }
         noise.with_whole_lists(forward, &residuals)
@@ -213,14 +212,28 @@ fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<(Channel, usiz
     let residuals = declared_residuals(forward, &fit.point.predicted);
     let sizes = residuals.iter().zip(fit.leverages(weights));
     let sizes = sizes.map(|(r, leverage)| r.abs() / (1.0 - leverage.min(LARGEST_LEVERAGE)).sqrt());
+    let sizes: Vec<f64> = sizes.collect();
     let mut out: Vec<(Channel, usize, f64)> = Vec::new();
-    for (datum, size) in forward.data.iter().zip(sizes) {
-        match out.iter_mut().find(|(channel, row, _)| (*channel, *row) == (datum.channel, datum.row)) {
-            Some((_, _, largest)) => *largest = largest.max(size),
-            None => out.push((datum.channel, datum.row, size)),
-        }
+    for channel in CHANNELS {
+        let range = forward.range(channel);
+        let own = forward.data[range.clone()].iter().zip(sizes[range].iter().copied());
+        out.extend(largest_of_rows(own).into_iter().map(|(row, size)| (channel, row, size)));
     }
     out.sort_by(|a, b| b.2.total_cmp(&a.2));
+    out
+}
+
+/// The largest size among the data of each row of a channel. Rows come in the order of their first datum.
+fn largest_of_rows<'a>(sizes: impl Iterator<Item = (&'a Datum, f64)>) -> Vec<(usize, f64)> {
+    let mut out: Vec<(usize, f64)> = Vec::new();
+    let mut known: HashMap<usize, usize> = HashMap::new();
+    for (datum, size) in sizes {
+        let at = *known.entry(datum.row).or_insert_with(|| {
+            out.push((datum.row, size));
+            out.len() - 1
+        });
+        out[at].1 = out[at].1.max(size);
+    }
     out
 }
 

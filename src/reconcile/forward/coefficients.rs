@@ -3,7 +3,7 @@
 use crate::arm::LinkModel;
 use crate::arm::effect::channel::Reading;
 use crate::arm::effect::subject::Subject;
-use crate::arm::joint_law::JointLaw;
+use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::load::Water;
 use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure};
 use crate::mechanics::beam::{Strain, compliances, strains};
@@ -75,6 +75,31 @@ pub struct Coefficients {
     pub channels: [Reading; 4],
     /// Width over which the slope of a gear's curve changes at a break point \[ln of the torque\].
     pub smoothing: f64,
+}
+
+/// What differs between two subjects for static readings.
+#[derive(Debug)]
+pub(crate) struct StaticChanges {
+    /// Linear compliances.
+    pub linear: bool,
+    /// Weights of the arm's masses.
+    pub weights: bool,
+    /// The payload's mass, place or buoyancy.
+    pub payload: bool,
+    /// The law of each joint.
+    pub laws: Vec<bool>,
+}
+
+impl StaticChanges {
+    /// Everything differs.
+    pub(crate) fn all(joints: usize) -> Self {
+        Self { linear: true, weights: true, payload: true, laws: vec![true; joints] }
+    }
+
+    /// Whether all static readings are the same.
+    pub(crate) fn is_none(&self) -> bool {
+        !(self.linear || self.weights || self.payload || self.laws.contains(&true))
+    }
 }
 
 impl Layout {
@@ -204,6 +229,22 @@ impl Coefficients {
             channels: subject.channels.clone(),
             smoothing: 0.0,
         }
+    }
+
+    /// What differs between two subjects for static readings.
+    pub(crate) fn static_changes(&self, other: &Self) -> StaticChanges {
+        let laws: Vec<bool> = self.laws.iter().zip(&other.laws).map(|(a, b)| a != b).collect();
+        let linear = self.linear != other.linear;
+        let payload = self.payload_delta_kg != other.payload_delta_kg
+            || self.payload_offset_m != other.payload_offset_m
+            || self.payload_weight != other.payload_weight;
+        // readings count from the unloaded arm, so where twists are proportional to torques, weights do not show
+        let is_proportional = |law: &JointLaw| {
+            law.lost_motion.is_none() && law.hysteresis_rad == 0.0 && !matches!(law.curve, Curve::Windup(_))
+        };
+        let is_other = linear || payload || laws.contains(&true);
+        let weights = self.weights != other.weights && (is_other || !self.laws.iter().all(is_proportional));
+        StaticChanges { linear, weights, payload, laws }
     }
 
     /// Whether two subjects have the same frequencies and the same modal channel.

@@ -1,6 +1,8 @@
 //! One measured number of a campaign, and the poses that data are grouped by.
 
 use crate::arm::effect::channel::Channel;
+use crate::reconcile::readings::rows::pose_key;
+use std::collections::HashMap;
 
 /// One measured number.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,12 +21,20 @@ pub struct Datum {
     pub sigma: f64,
 }
 
-/// The group of a pose. A pose that was not seen before starts a new group.
-pub(crate) fn group_of(pose_deg: &[f64], groups: &mut Vec<(Vec<f64>, String)>) -> usize {
-    if let Some(found) = groups.iter().position(|(p, _)| p == pose_deg) {
-        return found;
+/// The poses that data are grouped by.
+#[derive(Debug, Default)]
+pub(crate) struct Groups {
+    /// Names of the groups: the angles of each pose.
+    pub names: Vec<String>,
+    known: HashMap<Vec<u64>, usize>,
+}
+
+impl Groups {
+    /// The group of a pose. A pose that was not seen before starts a new group.
+    pub(crate) fn of(&mut self, pose_deg: &[f64]) -> usize {
+        *self.known.entry(pose_key(pose_deg)).or_insert_with(|| {
+            self.names.push(pose_deg.iter().map(|a| format!("{a}")).collect::<Vec<_>>().join(","));
+            self.names.len() - 1
+        })
     }
-    let name = pose_deg.iter().map(|a| format!("{a}")).collect::<Vec<_>>().join(",");
-    groups.push((pose_deg.to_vec(), name));
-    groups.len() - 1
 }

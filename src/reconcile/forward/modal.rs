@@ -6,7 +6,7 @@
 //! scaled to `xᵀK x = 1`, with `y = M x`, gives the effect of every parameter: `dμ = yᵀ dC y / μ + xᵀ dM x`.
 
 use super::coefficients::{Coefficients, Layout};
-use super::datum::{Datum, group_of};
+use super::datum::{Datum, Groups};
 use super::statics::PoseGeometry;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
@@ -62,13 +62,13 @@ pub(crate) fn prepare(
     campaign: &Campaign,
     layout: &Layout,
     nominal: &Subject,
-    groups: &mut Vec<(Vec<f64>, String)>,
+    groups: &mut Groups,
     data: &mut Vec<Datum>,
 ) -> Vec<ModalTest> {
     let mut tests: Vec<ModalTest> = Vec::new();
     let mut keys: Vec<(Vec<f64>, Payload)> = Vec::new();
     for row in &campaign.modal {
-        let group = group_of(&row.pose_deg, groups);
+        let group = groups.of(&row.pose_deg);
         let key = (row.pose_deg.clone(), row.payload);
         // A mode number that comes again starts a list of its own: the test was repeated.
         let found = keys
@@ -264,6 +264,14 @@ impl ModalTest {
                 Some(Solved { mu: eigen.eigenvalues[i].max(1e-300), x: &shapes * &z, y: &momenta * &z })
             })
             .collect()
+    }
+
+    /// Whether the modes are the same with two sets of coefficients.
+    pub(crate) fn same_modes(&self, layout: &Layout, from: &Coefficients, to: &Coefficients) -> bool {
+        from.masses == to.masses
+            && from.payload_delta_kg == to.payload_delta_kg
+            && from.payload_offset_m == to.payload_offset_m
+            && self.compliances(layout, from) == self.compliances(layout, to)
     }
 
     /// Whether a frequency is lower than that of a lower mode by more than noise.
@@ -494,4 +502,33 @@ fn tip_jacobians(posed: &Posed) -> (Matrix3xX<f64>, Matrix3xX<f64>) {
     let tip: Vec<Vector3<f64>> = twists.iter().map(|t| displacement_at(t, &posed.tip_m)).collect();
     let spin: Vec<Vector3<f64>> = twists.iter().map(|t| t.fixed_rows::<3>(3).into_owned()).collect();
     (Matrix3xX::from_columns(&tip), Matrix3xX::from_columns(&spin))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalog::Catalogs;
+    use crate::reconcile::forward::prepared::Forward;
+    use std::path::Path;
+
+    #[test]
+    fn added_masses_move_as_their_mass_matrices_say() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e");
+        let campaign = Campaign::read(&folder, &Catalogs::default()).expect("sound");
+        let forward = Forward::new(&campaign);
+        let (layout, test) = (&forward.layout, &forward.modal[0]);
+        let mut coefficients = forward.coefficients(&forward.nominal);
+        let identity = DMatrix::identity(layout.n, layout.n);
+        let before = test.momenta(&coefficients, &identity);
+        let amounts = [(1, 0.7), (4, -0.2), (layout.joints.len() + 1, 1.3)];
+        amounts.iter().for_each(|(mass, amount)| coefficients.masses[*mass] += amount);
+        let added = test.momenta(&coefficients, &identity) - before;
+        let pose_rad: Vec<f64> = campaign.modal[0].pose_deg.iter().map(|a| a.to_radians()).collect();
+        let matrix = |chain: &Chain| {
+            chain.pose_rad(&pose_rad, &Payload::default(), Vector3::zeros()).mass_matrix() - &test.mass
+        };
+        let direct: DMatrix<f64> =
+            amounts.iter().map(|(mass, amount)| matrix(&layout.with_mass[*mass]) * *amount).sum();
+        assert!((&added - &direct).amax() < 1e-10 * direct.amax(), "{}", (added - &direct).amax());
+    }
 }

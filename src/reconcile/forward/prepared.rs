@@ -2,14 +2,15 @@
 //! changes.
 
 use super::bench::{self, Bench};
-use super::coefficients::{Coefficients, Layout};
-use super::datum::Datum;
+use super::coefficients::{Coefficients, Layout, StaticChanges};
+use super::datum::{Datum, Groups};
 use super::modal::{self, ModalTest};
-use super::statics::{self, StaticPose};
+use super::statics::{self, StaticPose, StaticState};
 use crate::arm::JointModel;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
 use crate::reconcile::readings::campaign::Campaign;
+use nalgebra::DMatrix;
 
 /// A campaign prepared for fitting.
 pub struct Forward {
@@ -44,7 +45,7 @@ impl Forward {
             make_links_rigid(&mut nominal);
         }
         let layout = Layout::new(&nominal.structure);
-        let mut groups: Vec<(Vec<f64>, String)> = Vec::new();
+        let mut groups = Groups::default();
         let mut data = Vec::new();
         let statics = statics::prepare(campaign, &layout, &nominal, &mut groups, &mut data);
         let modal_start = data.len();
@@ -64,7 +65,7 @@ impl Forward {
             modal,
             bench,
             starts,
-            groups: groups.into_iter().map(|(_, name)| name).collect(),
+            groups: groups.names,
             payload_density_kg_m3: campaign.statement.payload_density_kg_m3,
             largest_payload_kg: payloads_kg.iter().copied().fold(0.0, f64::max),
             lightest_payload_kg: payloads_kg
@@ -156,13 +157,43 @@ impl Forward {
         out
     }
 
-    /// Predicts statics and bench only. The modal entries stay as they are.
-    pub fn predict_smooth(&self, coefficients: &Coefficients, out: &mut [f64]) {
-        for pose in &self.statics {
-            pose.predict(&self.layout, coefficients, out);
-        }
+    /// Predicts statics and bench only. The modal entries stay as they are. Returns the state of each static pose.
+    pub fn predict_smooth(&self, coefficients: &Coefficients, out: &mut [f64]) -> Vec<StaticState> {
         for bench in &self.bench {
             bench.predict(&coefficients.laws[bench.joint], out);
+        }
+        let state = |pose: &StaticPose| {
+            let state = pose.state(&self.layout, coefficients);
+            pose.write(&state, out);
+            state
+        };
+        self.statics.iter().map(state).collect()
+    }
+
+    /// Changes the values of statics and bench, which are those of coefficients `from` with these states of the poses, to
+    /// those of other coefficients, one column of `out` for each. What a change leaves alone is not computed again.
+    pub fn change_smooth(
+        &self,
+        states: &[StaticState],
+        from: &Coefficients,
+        to: &[Coefficients],
+        out: &mut DMatrix<f64>,
+    ) {
+        let changes: Vec<StaticChanges> = to.iter().map(|to| from.static_changes(to)).collect();
+        for (k, (to, changes)) in to.iter().zip(&changes).enumerate() {
+            for bench in self.bench.iter().filter(|bench| changes.laws[bench.joint]) {
+                bench.predict(&to.laws[bench.joint], out.column_mut(k).as_mut_slice());
+            }
+        }
+        let changed: Vec<usize> = (0..to.len()).filter(|k| !changes[*k].is_none()).collect();
+        let mut moved = StaticState::default();
+        // pose by pose, so that a pose is read from memory once for all changes
+        for (pose, state) in self.statics.iter().zip(states) {
+            for &k in &changed {
+                moved.copy_from(state);
+                pose.update(&self.layout, &to[k], &changes[k], &mut moved);
+                pose.write(&moved, out.column_mut(k).as_mut_slice());
+            }
         }
     }
 
@@ -180,6 +211,52 @@ pub(crate) fn make_links_rigid(subject: &mut Subject) {
     for name in names {
         if let Some(beam) = subject.structure.link_mut(&name).and_then(|l| l.beam.as_mut()) {
             beam.flexibility = 0.0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalog::Catalogs;
+    use std::path::Path;
+
+    #[test]
+    fn a_change_from_kept_states_gives_the_readings_of_a_fresh_prediction() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e");
+        let campaign = Campaign::read(&folder, &Catalogs::default()).expect("sound");
+        let forward = Forward::new(&campaign);
+        let from = forward.coefficients(&forward.nominal);
+        let changed = |change: &dyn Fn(&mut Coefficients)| {
+            let mut out = from.clone();
+            change(&mut out);
+            out
+        };
+        let to = [
+            from.clone(),
+            changed(&|c| c.linear[0] = 1e-6),
+            changed(&|c| c.weights[2] = 1.5),
+            changed(&|c| c.payload_delta_kg = 0.3),
+            changed(&|c| c.laws[1].hysteresis_rad = 1e-4),
+            changed(&|c| {
+                c.laws[2].connection_rad_per_nm = 1e-5;
+                c.weights[1] = -0.5;
+            }),
+        ];
+        let mut before = vec![0.0; forward.data.len()];
+        let states = forward.predict_smooth(&from, &mut before);
+        let mut after = DMatrix::zeros(before.len(), to.len());
+        after.column_iter_mut().for_each(|mut column| column.copy_from_slice(&before));
+        forward.change_smooth(&states, &from, &to, &mut after);
+        for (k, to) in to.iter().enumerate() {
+            let mut fresh = vec![0.0; before.len()];
+            forward.predict_smooth(to, &mut fresh);
+            let largest =
+                |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+            // weights do not show where twists are proportional to torques, except in the last digits
+            let (off, moved) = (largest(after.column(k).as_slice(), &fresh), largest(&fresh, &before));
+            assert!(off < 1e-12 && (k == 2 || off == 0.0), "change {k}: {off}");
+            assert_eq!(moved > 1e-9, k != 0 && k != 2, "change {k}: {moved}");
         }
     }
 }

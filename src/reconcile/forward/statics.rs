@@ -4,10 +4,11 @@
 //! move the tip by `A w`, where `A` is a 3x6 matrix per pose and `w` the wrench of the load. A joint moves it
 //! by `θ(T) - θ(T0)` times its lever. Friction play follows the order of the rows.
 
-use super::coefficients::{Coefficients, Layout};
-use super::datum::{Datum, group_of};
+use super::coefficients::{Coefficients, Layout, StaticChanges};
+use super::datum::{Datum, Groups};
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
+use crate::arm::joint_law::JointLaw;
 use crate::arm::load::Payload;
 use crate::mechanics::chain::{Item, Posed};
 use crate::mechanics::{Twist, Wrench, displacement_at, force_wrench};
@@ -58,18 +59,47 @@ pub struct StaticPose {
     loads: Vec<Load>,
 }
 
+/// What the loads in a pose are, and how an arm with some coefficients yields to them. It is kept with a fit, so that a
+/// change of few coefficients, as for a derivative, costs little.
+#[derive(Debug, Clone, Default)]
+pub struct StaticState {
+    /// Displacement of the tip per wrench by all linear compliances together.
+    compliance: Matrix3x6<f64>,
+    /// Torque of the dead weight on each joint \[N m\].
+    dead_nm: Vec<f64>,
+    /// Room for these torques under other weights \[N m\].
+    moved_dead_nm: Vec<f64>,
+    /// The wrench of each load.
+    wrenches: Vec<Wrench>,
+    /// Torque on each joint (first index) by each load \[N m\].
+    loaded_nm: Vec<f64>,
+    /// The twist of each joint (first index) under each load \[rad\], from that of the unloaded arm.
+    twists_rad: Vec<f64>,
+}
+
+impl StaticState {
+    /// Becomes a copy of another state, in the same memory.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.compliance = other.compliance;
+        self.dead_nm.clone_from(&other.dead_nm);
+        self.wrenches.clone_from(&other.wrenches);
+        self.loaded_nm.clone_from(&other.loaded_nm);
+        self.twists_rad.clone_from(&other.twists_rad);
+    }
+}
+
 /// Prepares the poses of the static rows and appends their data.
 pub(crate) fn prepare(
     campaign: &Campaign,
     layout: &Layout,
     nominal: &Subject,
-    groups: &mut Vec<(Vec<f64>, String)>,
+    groups: &mut Groups,
     data: &mut Vec<Datum>,
 ) -> Vec<StaticPose> {
     let mut poses: Vec<StaticPose> = Vec::new();
     let mut last: Option<&[f64]> = None;
     for row in &campaign.statics {
-        let group = group_of(&row.pose_deg, groups);
+        let group = groups.of(&row.pose_deg);
         // loads in one pose share a history, so only a change of pose starts a new one
         if last != Some(&row.pose_deg) {
             let geometry = PoseGeometry::new(layout, nominal, &row.pose_deg);
@@ -126,15 +156,33 @@ impl PoseGeometry {
         }
     }
 
-    /// Torque of the dead weight on each joint \[N m\].
-    pub fn dead_torques_nm(&self, coefficients: &Coefficients) -> Vec<f64> {
-        let mut torques = self.dead_nm.clone();
-        for (per_mass, weight) in self.dead_per_mass_nm.iter().zip(&coefficients.weights) {
-            if *weight != 0.0 {
-                torques.iter_mut().zip(per_mass).for_each(|(t, p)| *t += weight * p);
+    /// Displacement of the tip per wrench by all linear compliances together.
+    fn compliance(&self, coefficients: &Coefficients) -> Matrix3x6<f64> {
+        let mut out = Matrix3x6::zeros();
+        for mover in &self.linear {
+            let compliance = coefficients.linear[mover.index];
+            if compliance != 0.0 {
+                out += mover.tip * (compliance * mover.twist.transpose());
             }
         }
-        torques
+        out
+    }
+
+    /// Torque of the dead weight on each joint \[N m\].
+    pub fn dead_torques_nm(&self, coefficients: &Coefficients) -> Vec<f64> {
+        let mut torques_nm = Vec::new();
+        self.add_up_dead_torques(coefficients, &mut torques_nm);
+        torques_nm
+    }
+
+    /// Replaces `torques_nm` by the torques of the dead weight \[N m\].
+    fn add_up_dead_torques(&self, coefficients: &Coefficients, torques_nm: &mut Vec<f64>) {
+        torques_nm.clone_from(&self.dead_nm);
+        for (per_mass, weight) in self.dead_per_mass_nm.iter().zip(&coefficients.weights) {
+            if *weight != 0.0 {
+                torques_nm.iter_mut().zip(per_mass).for_each(|(t, p)| *t += weight * p);
+            }
+        }
     }
 
     /// The load as a wrench about the world origin.
@@ -153,6 +201,16 @@ impl PoseGeometry {
             wrench += force_wrench(&Vector3::new(0.0, 0.0, -weight_n), &cg_m);
         }
         wrench
+    }
+}
+
+/// Twists of a joint under loads that follow each other, each from the twist of the unloaded arm, which comes to rest
+/// before each pose and whose reading is the reference. The loads' torques come on top of that of the dead weight.
+fn follow(law: &JointLaw, dead_nm: f64, loaded_nm: &[f64], twists_rad: &mut [f64]) {
+    let mut play_nm = law.play_at_rest_nm(dead_nm);
+    let reference_rad = law.play_angle_rad(dead_nm, &mut play_nm);
+    for (twist_rad, loaded_nm) in twists_rad.iter_mut().zip(loaded_nm) {
+        *twist_rad = law.play_angle_rad(dead_nm + loaded_nm, &mut play_nm) - reference_rad;
     }
 }
 
@@ -180,33 +238,63 @@ fn dead_torques(posed: &Posed) -> Vec<f64> {
 }
 
 impl StaticPose {
-    /// Displacements of all loads of the pose \[mm\].
-    pub fn predict(&self, layout: &Layout, coefficients: &Coefficients, out: &mut [f64]) {
+    /// The state of the arm with these coefficients in this pose.
+    pub(crate) fn state(&self, layout: &Layout, coefficients: &Coefficients) -> StaticState {
+        let mut out = StaticState::default();
+        self.update(layout, coefficients, &StaticChanges::all(coefficients.laws.len()), &mut out);
+        out
+    }
+
+    /// Changes a state of other coefficients, from which these differ by `changes`, to theirs.
+    pub(crate) fn update(
+        &self,
+        layout: &Layout,
+        coefficients: &Coefficients,
+        changes: &StaticChanges,
+        state: &mut StaticState,
+    ) {
         let geometry = &self.geometry;
-        let dead = geometry.dead_torques_nm(coefficients);
-        let compliance: Matrix3x6<f64> = geometry
-            .linear
-            .iter()
-            .filter(|m| coefficients.linear[m.index] != 0.0)
-            .map(|m| m.tip * (coefficients.linear[m.index] * m.twist.transpose()))
-            .sum();
-        // the unloaded arm comes to rest before each pose, and its reading is the reference
-        let mut play: Vec<f64> =
-            coefficients.laws.iter().zip(&dead).map(|(law, t)| law.play_at_rest_nm(*t)).collect();
-        let reference: Vec<f64> = coefficients
-            .laws
-            .iter()
-            .zip(&dead)
-            .zip(&mut play)
-            .map(|((law, t), state)| law.play_angle_rad(*t, state))
-            .collect();
-        for load in &self.loads {
-            let wrench = geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients);
-            let mut tip = compliance * wrench;
-            for (j, mover) in geometry.joints.iter().enumerate() {
-                let torque = dead[j] + mover.twist.dot(&wrench);
-                let twist = coefficients.laws[j].play_angle_rad(torque, &mut play[j]);
-                tip += mover.tip * (twist - reference[j]);
+        if changes.linear {
+            state.compliance = geometry.compliance(coefficients);
+        }
+        let joints = geometry.joints.len();
+        let count = self.loads.len();
+        if changes.payload {
+            let wrench = |load: &Load| {
+                geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients)
+            };
+            state.wrenches.clear();
+            state.wrenches.extend(self.loads.iter().map(wrench));
+            state.loaded_nm.clear();
+            let torques_nm =
+                geometry.joints.iter().flat_map(|m| state.wrenches.iter().map(|w| m.twist.dot(w)));
+            state.loaded_nm.extend(torques_nm);
+        }
+        if changes.weights {
+            geometry.add_up_dead_torques(coefficients, &mut state.moved_dead_nm);
+            state.dead_nm.resize(joints, f64::NAN);
+        }
+        state.twists_rad.resize(joints * count, 0.0);
+        for (j, law) in coefficients.laws.iter().enumerate() {
+            // a weight loads the joints inboard of it only
+            let is_loaded_otherwise = changes.weights && state.moved_dead_nm[j] != state.dead_nm[j];
+            if is_loaded_otherwise {
+                state.dead_nm[j] = state.moved_dead_nm[j];
+            }
+            if is_loaded_otherwise || changes.payload || changes.laws[j] {
+                let own = j * count..(j + 1) * count;
+                follow(law, state.dead_nm[j], &state.loaded_nm[own.clone()], &mut state.twists_rad[own]);
+            }
+        }
+    }
+
+    /// Writes the displacements of all loads \[mm\].
+    pub(crate) fn write(&self, state: &StaticState, out: &mut [f64]) {
+        let count = self.loads.len();
+        for (k, (load, wrench)) in self.loads.iter().zip(&state.wrenches).enumerate() {
+            let mut tip = state.compliance * wrench;
+            for (j, mover) in self.geometry.joints.iter().enumerate() {
+                tip += mover.tip * state.twists_rad[j * count + k];
             }
             for component in 0..3 {
                 out[load.first_datum + component] = 1e3 * tip[component];

@@ -1,7 +1,8 @@
 //! Finds from nothing where the arm stands in the instrument's frame, and how parts of unknown mounting are
 //! mounted.
 
-use super::fit::{Fitted, Sample, fit};
+use super::fit::fit;
+use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number, mount_numbers};
 use super::tree::Tree;
 use crate::reconcile::readings::campaign::PositionsSpec;
@@ -87,7 +88,8 @@ fn cube() -> Vec<Rotation3<f64>> {
 /// nearest 90 %.
 fn nearest_motion(samples: &[&Sample], geometry: &mut Geometry) {
     (geometry.base, geometry.origin_m) = (Rotation3::identity(), Vector3::zeros());
-    let nominal: Vec<Vector3<f64>> = samples.iter().map(|s| geometry.place(s.placing(), &[]).at_m).collect();
+    let mut placer = geometry.placer();
+    let nominal: Vec<Vector3<f64>> = samples.iter().map(|s| placer.place_m(s.placing())).collect();
     let mut kept: Vec<usize> = (0..samples.len()).collect();
     for _ in 0..4 {
         let count = kept.len() as f64;

@@ -2,19 +2,23 @@
 //! turns unevenly, effect by effect.
 
 use super::align;
-use super::fit::{Fitted, Sample, fit};
-use super::kinematics::{Geometry, Number, number_groups};
-use super::loads::{Yielding, candidates, deflections};
+use super::fit::fit;
+use super::fitted::{Fitted, Sample};
+use super::kinematics::{Geometry, Number, Pose, number_groups};
+use super::loads::{Loads, Yielding, candidates};
 use super::points::{Point, points};
 use super::tree::Tree;
 use crate::arm::Arm;
 use crate::arm::effect::kind::Yields;
 use crate::reconcile::fit::stats::median;
 use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::readings::rows::pose_key;
 use crate::reconcile::verdict::stage::Stage;
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 use rayon::prelude::*;
 use serde_json::Value;
+use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Number of folds that the poses are dealt into. One fold is held out at a time.
 const HANDS: usize = 5;
@@ -160,30 +164,27 @@ impl Positions {
     /// Computes the effect of gravity again for the fitted geometry.
     pub(super) fn refresh(&mut self, campaign: &Campaign) {
         self.fitted.geometry.relevel();
-        let points: Vec<usize> = self.samples.iter().map(|s| s.point).collect();
-        let deflections = deflections(campaign, &self.tree, &self.fitted.geometry, &self.candidates, &points);
-        self.samples
-            .iter_mut()
-            .zip(deflections)
-            .for_each(|(sample, deflection)| sample.deflection = deflection);
-        if campaign.statement.positions.frees_gravity() {
-            (0..2).for_each(|c| self.lean(campaign, &points, c));
-        }
-    }
-
-    /// Computes the derivative of the known deflection by one component of the direction of gravity.
-    fn lean(&mut self, campaign: &Campaign, points: &[usize], component: usize) {
         let upright = &self.fitted.geometry;
-        let mut leaning = upright.clone();
-        leaning.step(&[Number::Gravity(component)], &[LEAN]);
-        leaning.relevel();
-        // deflections are compared in the same level frame
-        let back = upright.level * leaning.level.inverse();
-        let deflections = deflections(campaign, &self.tree, &leaning, &self.candidates, points);
-        for (sample, deflection) in self.samples.iter_mut().zip(deflections) {
-            sample.deflection.known_slopes_m[component] =
-                (back * deflection.known_m - sample.deflection.known_m) / LEAN;
-        }
+        let loads = Loads::new(campaign, &self.tree, upright, &self.candidates);
+        let leans = if campaign.statement.positions.frees_gravity() { 2 } else { 0 };
+        let leaning: Vec<(Rotation3<f64>, Loads)> = (0..leans)
+            .map(|component| {
+                let mut leaning = upright.clone();
+                leaning.step(&[Number::Gravity(component)], &[LEAN]);
+                leaning.relevel();
+                // deflections are compared in the same level frame
+                let back = upright.level * leaning.level.inverse();
+                (back, Loads::new(campaign, &self.tree, &leaning, &[]))
+            })
+            .collect();
+        let samples = self.samples.par_iter_mut().zip(&campaign.positions);
+        samples.for_each(|(sample, row)| {
+            let mut deflection = loads.deflection(row, sample.point);
+            for ((back, loads), slope) in leaning.iter().zip(&mut deflection.known_slopes_m) {
+                *slope = (back * loads.known_m(row, sample.point) - deflection.known_m) / LEAN;
+            }
+            sample.deflection = Arc::new(deflection);
+        });
     }
 
     /// Adds a row for the current model to the table of position errors.
@@ -232,25 +233,22 @@ pub(super) fn samples(
         .iter()
         .map(|row| points.iter().position(|p| *p == Point::of(row)).unwrap_or_default())
         .collect();
-    let deflections = deflections(campaign, tree, geometry, candidates, &points);
-    let mut poses: Vec<&Vec<f64>> = Vec::new();
-    let rows = campaign.positions.iter().zip(deflections).zip(points);
+    let loads = Loads::new(campaign, tree, geometry, candidates);
+    let mut poses: HashMap<Vec<u64>, usize> = HashMap::new();
+    let rows = campaign.positions.iter().zip(points);
     rows.enumerate()
-        .map(|(index, ((row, deflection), point))| {
-            let known = poses.iter().position(|p| **p == row.pose_deg);
-            let group = known.unwrap_or_else(|| {
-                poses.push(&row.pose_deg);
-                poses.len() - 1
-            });
+        .map(|(index, (row, point))| {
+            let known = poses.len();
+            let group = *poses.entry(pose_key(&row.pose_deg)).or_insert(known);
             Sample {
-                pose_rad: row.pose_deg.iter().map(|a| a.to_radians()).collect(),
+                pose: Arc::new(Pose::new(row.pose_deg.iter().map(|a| a.to_radians()).collect())),
                 arm: row.arm,
                 point,
                 station: 0,
                 index,
                 group,
                 measured_m: Vector3::from(row.position_mm) / 1e3,
-                deflection,
+                deflection: Arc::new(loads.deflection(row, point)),
             }
         })
         .collect()

@@ -6,109 +6,19 @@
 //! the point by `c P ĝ`, where `P` is its displacement at unit compliance per direction of gravity
 //! ([`loads`](super::loads)).
 
-use super::kinematics::{Geometry, Number, Placing};
-use super::loads::Deflection;
-use super::normal::Normal;
+use super::fitted::{Fitted, NU, Sample, errors, weight};
+use super::kinematics::Number;
+use super::rows::normal;
 use super::springs::{Best, best_springs};
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use nalgebra::Vector3;
 
-/// Degrees of freedom of the Student distribution.
-const NU: f64 = 4.0;
 const MOST_STEPS: usize = 40;
 /// Largest number of times that a step is halved because the fit is worse after it.
 const MOST_HALVINGS: i32 = 10;
-/// Prior standard deviation of a compliance \[rad/(N m)\]. It is far above that of any part. Without it, a
-/// compliance that no weight loads could take any value.
-const PRIOR_RAD_PER_NM: f64 = 0.1;
 /// Largest turn of a frame in one step \[rad\].
 const MOST_TURN_RAD: f64 = 0.3;
 
-/// One measured position.
-#[derive(Debug, Clone)]
-pub(crate) struct Sample {
-    /// Joint angles \[rad\].
-    pub pose_rad: Vec<f64>,
-    /// Index of the arm that carries the point.
-    pub arm: usize,
-    /// Index of its point on the tool.
-    pub point: usize,
-    /// Index of the instrument's session.
-    pub station: usize,
-    /// Index of this sample among the samples.
-    pub index: usize,
-    /// Index of its pose. Samples of one pose are held out together.
-    pub group: usize,
-    /// Measured position in the instrument's frame \[m\].
-    pub measured_m: Vector3<f64>,
-    /// The effect of gravity on this position.
-    pub deflection: Deflection,
-}
-
-impl Sample {
-    /// The arguments that the geometry needs.
-    pub(crate) fn placing(&self) -> Placing<'_> {
-        Placing { arm: self.arm, pose_rad: &self.pose_rad, point: self.point, station: self.station }
-    }
-}
-
-/// A fitted model.
-#[derive(Debug, Clone)]
-pub(crate) struct Fitted {
-    /// Geometry.
-    pub geometry: Geometry,
-    /// Change of each number of the geometry from its nominal value.
-    pub moved: Vec<f64>,
-    /// Standard deviations of the numbers of the geometry.
-    pub number_deviations: Vec<f64>,
-    /// Indices of the candidates that the model contains as effects.
-    pub effects: Vec<usize>,
-    /// The compliances of each effect \[rad/(N m)\].
-    pub compliances: Vec<Vec<f64>>,
-    /// Standard deviations of the compliances \[rad/(N m)\].
-    pub deviations: Vec<Vec<f64>>,
-    /// Scale of the errors \[m\].
-    pub scale_m: f64,
-    /// ln of the likelihood.
-    pub ln_likelihood: f64,
-}
-
 impl Fitted {
-    /// A model of a geometry without effects.
-    pub(crate) fn rigid(geometry: Geometry, scale_m: f64) -> Self {
-        Self {
-            geometry,
-            moved: Vec::new(),
-            number_deviations: Vec::new(),
-            effects: Vec::new(),
-            compliances: Vec::new(),
-            deviations: Vec::new(),
-            scale_m,
-            ln_likelihood: 0.0,
-        }
-    }
-
-    /// Predicted position \[m\].
-    pub(crate) fn predicted_m(&self, sample: &Sample) -> Vector3<f64> {
-        let rigid = self.geometry.place(sample.placing(), &[]).at_m;
-        rigid + self.geometry.level_to_instrument() * self.displacement(sample)
-    }
-
-    /// Error of a sample, measured minus predicted \[m\].
-    pub(crate) fn error(&self, sample: &Sample) -> Vector3<f64> {
-        sample.measured_m - self.predicted_m(sample)
-    }
-
-    /// Displacement of a sample's point by gravity: known deflection, and the effects of the model, in the level
-    /// frame \[m\].
-    pub(crate) fn displacement(&self, sample: &Sample) -> Vector3<f64> {
-        let effects = self.effects.iter().zip(&self.compliances);
-        let gravity = &self.geometry.gravity;
-        let pulled = effects.map(|(&e, c)| pull(sample, e, c) * gravity);
-        let leaning =
-            sample.deflection.known_slopes_m[0] * gravity.x + sample.deflection.known_slopes_m[1] * gravity.y;
-        sample.deflection.known_m + leaning + pulled.sum::<Vector3<f64>>()
-    }
-
     /// The model after a part of a step: the geometry changes by this part of `step`, the compliances go this part of
     /// the way to those of `goal`.
     fn towards(&self, goal: &Self, part: f64, numbers: &[Number], step: &[f64], samples: &[&Sample]) -> Self {
@@ -129,21 +39,18 @@ impl Fitted {
         self
     }
 
+    /// Sets the standard deviations of the geometry's `numbers` and, after them, of the compliances.
+    fn set_deviations(&mut self, numbers: usize, deviations: &[f64]) {
+        self.number_deviations = deviations[..numbers].to_vec();
+        let own = self.deviations.iter_mut().flatten();
+        own.zip(&deviations[numbers..]).for_each(|(own, deviation)| *own = *deviation);
+    }
+
     /// ln of the likelihood and of the prior of the numbers together.
     fn merit(&self, numbers: &[Number]) -> f64 {
         let prior = numbers.iter().zip(&self.moved).map(|(n, moved)| 0.5 * (moved / n.prior()).powi(2));
         self.ln_likelihood - prior.sum::<f64>()
     }
-
-    /// Weight of a sample with this error \[1/m²\].
-    pub(crate) fn weight(&self, error: &Vector3<f64>) -> f64 {
-        weight(error, self.scale_m) / (self.scale_m * self.scale_m)
-    }
-}
-
-/// The displacement of the point by the compliances of one effect, per unit vector of gravity's direction.
-fn pull(sample: &Sample, effect: usize, compliances: &[f64]) -> Matrix3<f64> {
-    sample.deflection.per_compliance[effect].iter().zip(compliances).map(|(p, c)| p * *c).sum()
 }
 
 /// Fits geometry and the named compliances to the samples, starting from a model.
@@ -153,7 +60,7 @@ pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], st
         .iter()
         .map(|&e| {
             let known = start.effects.iter().position(|s| *s == e);
-            let none = || vec![0.0; samples.first().map_or(1, |s| s.deflection.per_compliance[e].len())];
+            let none = || vec![0.0; samples.first().map_or(1, |s| s.deflection.count(e))];
             known.map_or_else(none, |i| start.compliances[i].clone())
         })
         .collect();
@@ -164,15 +71,18 @@ pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], st
     let begin = here.clone().judged(samples);
     // The first step may make the fit worse, because the parabola is a poor model far from the best fit.
     let mut merit = f64::NEG_INFINITY;
+    let mut last: Option<Best> = None;
     for _ in 0..MOST_STEPS {
         let before = here.clone();
-        let step = shortened(numbers, step(samples, numbers, &mut here));
+        let best = step(samples, numbers, &mut here);
+        let step = best.as_ref().map_or(vec![0.0; numbers.len()], |b| b.step[..numbers.len()].to_vec());
+        last = best.or(last);
+        let step = shortened(numbers, step);
         let goal = here;
         let parts = (0..MOST_HALVINGS).map(|n| 0.5f64.powi(n));
         let mut tried = parts.map(|part| before.towards(&goal, part, numbers, &step, samples));
         let Some(better) = tried.find(|t| t.merit(numbers) >= merit - 1e-9 * merit.abs()) else {
-            here =
-                Fitted { deviations: goal.deviations, number_deviations: goal.number_deviations, ..before };
+            here = before;
             break;
         };
         here = better;
@@ -183,7 +93,10 @@ pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], st
         }
     }
     if here.merit(numbers) < begin.merit(numbers) {
-        here = Fitted { deviations: here.deviations, number_deviations: here.number_deviations, ..begin };
+        here = begin;
+    }
+    if let Some(best) = last {
+        here.set_deviations(numbers.len(), &best.deviations());
     }
     let errors = errors(samples, &here);
     let free = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
@@ -220,14 +133,6 @@ fn shortened(numbers: &[Number], step: Vec<f64>) -> Vec<f64> {
     step.into_iter().map(|s| s * part).collect()
 }
 
-fn weight(error: &Vector3<f64>, scale_m: f64) -> f64 {
-    (NU + 3.0) / (NU + error.norm_squared() / (scale_m * scale_m))
-}
-
-fn errors(samples: &[&Sample], fitted: &Fitted) -> Vec<Vector3<f64>> {
-    samples.iter().map(|s| fitted.error(s)).collect()
-}
-
 /// The scale of errors, by fixed-point iteration from a value nearby \[m\].
 pub(crate) fn scale(errors: &[Vector3<f64>], near_m: f64) -> f64 {
     let mut scale_m = near_m;
@@ -246,76 +151,12 @@ pub(crate) fn ln_likelihood(errors: &[Vector3<f64>], scale_m: f64) -> f64 {
     errors.iter().map(one).sum()
 }
 
-/// Builds the normal equations at a model. `further` gives additional columns, which belong to no parameter of the
-/// model: the derivatives of a sample's position \[m per unit\].
-pub(crate) fn normal(
-    samples: &[&Sample],
-    numbers: &[Number],
-    here: &Fitted,
-    further: &dyn Fn(&Sample) -> Vec<Vector3<f64>>,
-) -> Normal {
-    let own = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
-    let width = own + samples.first().map_or(0, |s| further(s).len());
-    let mut rows = DMatrix::zeros(3 * samples.len(), width);
-    let mut right = DVector::zeros(3 * samples.len());
-    let from_level = here.geometry.level_to_instrument();
-    for (i, sample) in samples.iter().enumerate() {
-        let placed = here.geometry.place(sample.placing(), numbers);
-        let error = sample.measured_m - placed.at_m - from_level * here.displacement(sample);
-        // rows are scaled by the root of the weight, so their product has the weight
-        let root = here.weight(&error).sqrt();
-        let mut columns = placed.slopes;
-        let gravity = numbers.iter().enumerate().filter_map(|(n, number)| match number {
-            Number::Gravity(c) => Some((n, *c)),
-            _ => None,
-        });
-        for (n, c) in gravity {
-            let effects = here.effects.iter().zip(&here.compliances);
-            let pulled: Vector3<f64> =
-                effects.map(|(&e, own)| pull(sample, e, own).column(c).into_owned()).sum();
-            columns[n] = from_level * (pulled + sample.deflection.known_slopes_m[c]);
-        }
-        let pulls = here.effects.iter().flat_map(|&e| &sample.deflection.per_compliance[e]);
-        columns.extend(pulls.map(|p| from_level * p * here.geometry.gravity));
-        columns.extend(further(sample));
-        for (j, column) in columns.iter().enumerate() {
-            rows.fixed_view_mut::<3, 1>(3 * i, j).copy_from(&(column * root));
-        }
-        right.fixed_rows_mut::<3>(3 * i).copy_from(&(error * root));
-    }
-    let transposed = rows.transpose();
-    let mut curvature = &transposed * &rows;
-    let mut gradient = &transposed * right;
-    for (i, (number, moved)) in numbers.iter().zip(&here.moved).enumerate() {
-        let precision = number.prior().powi(-2);
-        curvature[(i, i)] += precision;
-        gradient[i] -= precision * moved;
-    }
-    let compliances = here.compliances.iter().flatten();
-    for (i, compliance) in (numbers.len()..).zip(compliances) {
-        // a weak prior keeps the equations regular for a compliance that no weight loads
-        let precision = PRIOR_RAD_PER_NM.powi(-2);
-        curvature[(i, i)] += precision;
-        gradient[i] -= precision * compliance;
-    }
-    Normal { curvature, gradient, own }
-}
-
-/// Takes one weighted Gauss-Newton step. It returns the step of the geometry, and sets the compliances to the best
-/// values that springs can have.
-fn step(samples: &[&Sample], numbers: &[Number], here: &mut Fitted) -> Vec<f64> {
-    let normal = normal(samples, numbers, here, &|_| Vec::new());
-    let n = numbers.len();
-    let Some(best) = best_springs(&normal, n, &here.compliances) else { return vec![0.0; n] };
-    let Best { mut step, deviations } = best;
-    let (mut at, mut own) = (n, here.compliances.iter_mut().zip(&mut here.deviations));
-    own.by_ref().for_each(|(compliances, own_deviations)| {
-        let block = at..at + compliances.len();
-        at = block.end;
-        compliances.iter_mut().zip(&step[block.clone()]).for_each(|(c, by)| *c += by);
-        *own_deviations = deviations[block].to_vec();
-    });
-    here.number_deviations = deviations[..n].to_vec();
-    step.truncate(n);
-    step
+/// Takes one weighted Gauss-Newton step: sets the compliances to the best values that springs can have, and returns the
+/// step of all numbers; `None` if the equations are singular.
+fn step(samples: &[&Sample], numbers: &[Number], here: &mut Fitted) -> Option<Best> {
+    let normal = normal(samples, numbers, here, &mut |_, _, _| {});
+    let best = best_springs(&normal, numbers.len(), &here.compliances)?;
+    let compliances = here.compliances.iter_mut().flatten();
+    compliances.zip(&best.step[numbers.len()..]).for_each(|(c, by)| *c += by);
+    Some(best)
 }

@@ -6,7 +6,10 @@ use crate::arm::effect::waves::{transmission_rad, transmission_waves};
 use crate::arm::structure::{JointAngle, Piece};
 use crate::arm::{Arm, Element};
 use crate::reconcile::readings::campaign::PositionsSpec;
-use nalgebra::{Rotation3, Unit, Vector3};
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+
+/// The waves of a joint that turns evenly.
+const EVEN: [f64; 4] = [0.0; 4];
 
 /// One calibrated number of the geometry.
 #[derive(Debug, Clone, PartialEq)]
@@ -161,35 +164,41 @@ pub(crate) struct Geometry {
     arms: Vec<Vec<usize>>,
 }
 
+/// The angles of the driven joints in a pose, with their sines and cosines: the geometry changes, poses do not.
+#[derive(Debug)]
+pub(crate) struct Pose {
+    /// Angles \[rad\].
+    pub angles_rad: Vec<f64>,
+    /// Sine and cosine of each angle.
+    sin_cos: Vec<(f64, f64)>,
+}
+
+impl Pose {
+    pub(crate) fn new(angles_rad: Vec<f64>) -> Self {
+        let sin_cos = angles_rad.iter().map(|angle| angle.sin_cos()).collect();
+        Self { angles_rad, sin_cos }
+    }
+}
+
 /// Which point to place: its arm, pose and session.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Placing<'a> {
     /// Index of the arm.
     pub arm: usize,
-    /// Joint angles \[rad\].
-    pub pose_rad: &'a [f64],
+    /// Angles of the driven joints.
+    pub pose: &'a Pose,
     /// Index of the point.
     pub point: usize,
     /// Index of the session.
     pub station: usize,
 }
 
-/// A placed point and its derivatives by the numbers, in the instrument's frame.
-pub(crate) struct Placed {
-    /// Position \[m\].
-    pub at_m: Vector3<f64>,
-    /// Derivative of the position by each number \[m per unit\].
-    pub slopes: Vec<Vector3<f64>>,
-}
-
+/// A frame: its rotation and its origin \[m\], in the instrument's frame.
 #[derive(Clone, Copy)]
 struct Frame {
     rotation: Rotation3<f64>,
     at_m: Vector3<f64>,
 }
-
-/// For each piece, the frame inboard of it and the frame outboard of it; `None` for pieces of other arms.
-type Frames = Vec<Option<(Frame, Frame)>>;
 
 impl Geometry {
     /// The nominal geometry, the arm standing at the instrument's origin.
@@ -302,92 +311,157 @@ impl Geometry {
         turned
     }
 
-    /// Places a point of an arm, with its derivatives.
-    pub(crate) fn place(&self, asked: Placing, numbers: &[Number]) -> Placed {
-        let pose = self.turned_rad(asked.pose_rad);
-        let mut frames: Frames = vec![None; self.axes.len()];
-        let mut last = Frame { rotation: self.base, at_m: self.origin_m };
-        for &i in &self.arms[asked.arm] {
-            let before = last;
-            match &self.angles[i] {
-                Some(angle) => last.rotation *= Rotation3::from_axis_angle(&self.axes[i], angle.of(&pose)),
-                None => {
-                    last.at_m += last.rotation * self.vectors_m[i];
-                    last.rotation *= self.mounts[i];
-                }
-            }
-            frames[i] = Some((before, last));
+    /// Prepares for the placing of many points.
+    pub(crate) fn placer(&self) -> Placer<'_> {
+        let along = |chain: &Vec<usize>| {
+            let mut out = vec![None; self.axes.len()];
+            chain.iter().enumerate().for_each(|(k, &piece)| out[piece] = Some(k));
+            out
+        };
+        let turns = |driven: usize, piece: usize| match &self.angles[piece] {
+            Some(JointAngle::Driven(index)) => *index == driven,
+            Some(JointAngle::Coupled(terms)) => terms.iter().any(|(index, _)| *index == driven),
+            None => false,
+        };
+        let turned_by = |j: usize| (0..self.axes.len()).filter(|&piece| turns(j, piece)).collect();
+        Placer {
+            geometry: self,
+            across: self.axes.iter().map(|axis| across(axis).map(Unit::into_inner)).collect(),
+            turned_by: (0..self.zeros_rad.len()).map(turned_by).collect(),
+            along: self.arms.iter().map(along).collect(),
+            zero_sin_cos: self.zeros_rad.iter().map(|zero| zero.sin_cos()).collect(),
+            turned_rad: Vec::new(),
+            frames: Vec::new(),
+            at_m: Vector3::zeros(),
         }
-        let at_m = last.at_m + last.rotation * self.tools_m[asked.point];
-        let slope = |n: &Number| self.slope(n, &frames, &last, &at_m, asked);
-        // the rotation of a session is small, so its derivatives are those of the first session
-        let slopes = numbers.iter().map(slope).collect();
-        let (turn, shift_m) = &self.stations[asked.station];
-        Placed { at_m: self.origin_m + turn * (at_m - self.origin_m) + shift_m, slopes }
     }
 
-    /// The angles to which the driven joints turn for the angles `pose_rad` that are commanded.
-    fn turned_rad(&self, pose_rad: &[f64]) -> Vec<f64> {
-        let joints = pose_rad.iter().zip(&self.zeros_rad).zip(&self.transmissions_rad);
-        joints.map(|((q, zero), waves)| q + zero + transmission_rad(waves, *q)).collect()
-    }
-
-    fn slope(
-        &self,
-        number: &Number,
-        frames: &Frames,
-        last: &Frame,
-        at_m: &Vector3<f64>,
-        asked: Placing,
-    ) -> Vector3<f64> {
-        let zero = Vector3::zeros();
-        match *number {
-            Number::BaseRotation(c) => Vector3::ith(c, 1.0).cross(&(at_m - self.origin_m)),
-            Number::BasePosition(c) => Vector3::ith(c, 1.0),
-            Number::SessionRotation(s, c) if s == asked.station => {
-                Vector3::ith(c, 1.0).cross(&(at_m - self.origin_m))
-            }
-            Number::SessionPosition(s, c) if s == asked.station => Vector3::ith(c, 1.0),
-            Number::SessionRotation(..) | Number::SessionPosition(..) => zero,
-            Number::Tool(p, c) if p == asked.point => last.rotation * Vector3::ith(c, 1.0),
-            Number::Tool(..) | Number::Gravity(_) => zero,
-            Number::Zero(j) => self.turning(j, frames, at_m),
-            Number::Transmission(j, k) => {
-                self.turning(j, frames, at_m) * transmission_waves(asked.pose_rad[j])[k]
-            }
-            Number::Ratio(i, t) => match (&frames[i], &self.angles[i]) {
-                (Some((before, _)), Some(JointAngle::Coupled(terms))) => {
-                    let driver = self.turned_rad(asked.pose_rad)[terms[t].0];
-                    self.lever(i, before, at_m) * driver
-                }
-                _ => zero,
-            },
-            Number::Axis(i, k) => frames[i].map_or(zero, |(before, behind)| {
-                let tilt = across(&self.axes[i])[k].into_inner();
-                (before.rotation * tilt - behind.rotation * tilt).cross(&(at_m - before.at_m))
-            }),
-            Number::Mount(i, c) => frames[i].map_or(zero, |(before, behind)| {
-                (before.rotation * Vector3::ith(c, 1.0)).cross(&(at_m - behind.at_m))
-            }),
-            Number::Vector(i, c) | Number::MountVector(i, c) => {
-                frames[i].map_or(zero, |(before, _)| before.rotation * Vector3::ith(c, 1.0))
-            }
-        }
+    /// Position of a point \[m\]. For many points, a [`placer`](Self::placer) is faster.
+    pub(crate) fn place_m(&self, asked: Placing) -> Vector3<f64> {
+        self.placer().place_m(asked)
     }
 }
 
-impl Geometry {
-    /// Derivative of a point's position by the angle of a driven joint.
-    fn turning(&self, driven: usize, frames: &Frames, at_m: &Vector3<f64>) -> Vector3<f64> {
-        (0..self.axes.len())
-            .filter_map(|i| Some((i, frames[i]?.0, rate(self.angles[i].as_ref()?, driven))))
-            .map(|(i, before, rate)| rate * self.lever(i, &before, at_m))
+/// Places points by one geometry. The room for a pose's frames is used again for the next pose, so that nothing is
+/// allocated for a point.
+pub(crate) struct Placer<'a> {
+    geometry: &'a Geometry,
+    /// For each piece, the two axes across its axis.
+    across: Vec<[Vector3<f64>; 2]>,
+    /// For each driven joint, the pieces that turn with it.
+    turned_by: Vec<Vec<usize>>,
+    /// For each arm and piece, the place of the piece in the arm's chain; `None` for pieces of other arms.
+    along: Vec<Vec<Option<usize>>>,
+    /// Sine and cosine of each driven joint's zero.
+    zero_sin_cos: Vec<(f64, f64)>,
+    /// The angles to which the driven joints turn in the pose \[rad\].
+    turned_rad: Vec<f64>,
+    /// The frames along the chain: frame `k` is inboard of the chain's piece `k`, frame `k + 1` outboard of it.
+    frames: Vec<Frame>,
+    /// The point, as the first session sees it \[m\].
+    at_m: Vector3<f64>,
+}
+
+impl Placer<'_> {
+    /// Position of a point \[m\]. The [slopes](Self::slopes) are those of the point placed last.
+    pub(crate) fn place_m(&mut self, asked: Placing) -> Vector3<f64> {
+        let own = self.geometry;
+        self.turned_rad.clear();
+        let joints = asked.pose.angles_rad.iter().zip(&own.zeros_rad).zip(&own.transmissions_rad);
+        self.turned_rad.extend(joints.map(|((q, zero), waves)| match *waves == EVEN {
+            true => q + zero,
+            false => q + zero + transmission_rad(waves, *q),
+        }));
+        let mut last = Frame { rotation: own.base, at_m: own.origin_m };
+        self.frames.clear();
+        self.frames.push(last);
+        for &i in &own.arms[asked.arm] {
+            match &own.angles[i] {
+                Some(angle) => last.rotation *= turn(&own.axes[i], self.sin_cos(angle, asked.pose)),
+                None => {
+                    last.at_m += last.rotation * own.vectors_m[i];
+                    // hardly any link is a mounting
+                    if own.mounts[i] != Rotation3::identity() {
+                        last.rotation *= own.mounts[i];
+                    }
+                }
+            }
+            self.frames.push(last);
+        }
+        self.at_m = last.at_m + last.rotation * own.tools_m[asked.point];
+        let (turn, shift_m) = &own.stations[asked.station];
+        own.origin_m + turn * (self.at_m - own.origin_m) + shift_m
+    }
+
+    /// Sine and cosine of a joint's angle. For a joint that turns evenly they follow from those of its commanded angle and
+    /// of its zero, because sines are what placing would spend most on.
+    fn sin_cos(&self, angle: &JointAngle, pose: &Pose) -> (f64, f64) {
+        match angle {
+            JointAngle::Driven(j) if self.geometry.transmissions_rad[*j] == EVEN => {
+                let ((sin, cos), (zero_sin, zero_cos)) = (pose.sin_cos[*j], self.zero_sin_cos[*j]);
+                (sin * zero_cos + cos * zero_sin, cos * zero_cos - sin * zero_sin)
+            }
+            _ => angle.of(&self.turned_rad).sin_cos(),
+        }
+    }
+
+    /// Adds the derivatives of the position of the point placed last by each number to `out` \[m per unit\].
+    pub(crate) fn slopes(&self, asked: Placing, numbers: &[Number], out: &mut Vec<Vector3<f64>>) {
+        // the rotation of a session is small, so its derivatives are those of the first session
+        out.extend(numbers.iter().map(|number| self.slope(number, asked)));
+    }
+
+    fn slope(&self, number: &Number, asked: Placing) -> Vector3<f64> {
+        let own = self.geometry;
+        let zero = Vector3::zeros();
+        let along = &self.along[asked.arm];
+        let last = || self.frames[self.frames.len() - 1].rotation;
+        match *number {
+            Number::BaseRotation(c) => Vector3::ith(c, 1.0).cross(&(self.at_m - own.origin_m)),
+            Number::BasePosition(c) => Vector3::ith(c, 1.0),
+            Number::SessionRotation(s, c) if s == asked.station => {
+                Vector3::ith(c, 1.0).cross(&(self.at_m - own.origin_m))
+            }
+            Number::SessionPosition(s, c) if s == asked.station => Vector3::ith(c, 1.0),
+            Number::SessionRotation(..) | Number::SessionPosition(..) => zero,
+            Number::Tool(p, c) if p == asked.point => last() * Vector3::ith(c, 1.0),
+            Number::Tool(..) | Number::Gravity(_) => zero,
+            Number::Zero(j) => self.turning(j, along),
+            Number::Transmission(j, k) => {
+                self.turning(j, along) * transmission_waves(asked.pose.angles_rad[j])[k]
+            }
+            Number::Ratio(i, t) => match (along[i], &own.angles[i]) {
+                (Some(k), Some(JointAngle::Coupled(terms))) => self.lever(i, k) * self.turned_rad[terms[t].0],
+                _ => zero,
+            },
+            Number::Axis(i, side) => along[i].map_or(zero, |k| {
+                let (before, behind) = (&self.frames[k], &self.frames[k + 1]);
+                let tilt = self.across[i][side];
+                (before.rotation * tilt - behind.rotation * tilt).cross(&(self.at_m - before.at_m))
+            }),
+            Number::Mount(i, c) => along[i].map_or(zero, |k| {
+                let about = self.frames[k].rotation * Vector3::ith(c, 1.0);
+                about.cross(&(self.at_m - self.frames[k + 1].at_m))
+            }),
+            Number::Vector(i, c) | Number::MountVector(i, c) => {
+                along[i].map_or(zero, |k| self.frames[k].rotation * Vector3::ith(c, 1.0))
+            }
+        }
+    }
+
+    /// Derivative of the point's position by the angle of a driven joint.
+    fn turning(&self, driven: usize, along: &[Option<usize>]) -> Vector3<f64> {
+        let pieces = self.turned_by[driven].iter();
+        pieces
+            .filter_map(|&i| Some((i, along[i]?, rate(self.geometry.angles[i].as_ref()?, driven))))
+            .map(|(i, k, rate)| rate * self.lever(i, k))
             .sum()
     }
 
-    /// Derivative of a point's position by the angle of the joint at a piece.
-    fn lever(&self, piece: usize, before: &Frame, at_m: &Vector3<f64>) -> Vector3<f64> {
-        (before.rotation * self.axes[piece].into_inner()).cross(&(at_m - before.at_m))
+    /// Derivative of the point's position by the angle of the joint at a piece, whose place in the chain is `k`.
+    fn lever(&self, piece: usize, k: usize) -> Vector3<f64> {
+        let before = &self.frames[k];
+        (before.rotation * self.geometry.axes[piece].into_inner()).cross(&(self.at_m - before.at_m))
     }
 }
 
@@ -398,6 +472,23 @@ fn rate(angle: &JointAngle, driven: usize) -> f64 {
         JointAngle::Driven(index) => f64::from(u8::from(*index == driven)),
         JointAngle::Coupled(terms) => terms.iter().filter(|(i, _)| *i == driven).map(|(_, f)| f).sum(),
     }
+}
+
+/// The rotation about an axis by an angle of which sine and cosine are given (Rodrigues).
+fn turn(axis: &Unit<Vector3<f64>>, (sin, cos): (f64, f64)) -> Rotation3<f64> {
+    let (x, y, z) = (axis.x, axis.y, axis.z);
+    let rest = 1.0 - cos;
+    Rotation3::from_matrix_unchecked(Matrix3::new(
+        x * x * rest + cos,
+        x * y * rest - z * sin,
+        x * z * rest + y * sin,
+        x * y * rest + z * sin,
+        y * y * rest + cos,
+        y * z * rest - x * sin,
+        x * z * rest - y * sin,
+        y * z * rest + x * sin,
+        z * z * rest + cos,
+    ))
 }
 
 /// Two unit axes, perpendicular to a given axis and to each other.
@@ -441,13 +532,16 @@ mod tests {
         let mut numbers: Vec<Number> = groups.into_iter().flat_map(|(_, group)| group).collect();
         assert!(numbers.contains(&Number::Ratio(4, 1)));
         numbers.extend((0..4).map(|k| Number::Transmission(1, k)));
-        let asked = Placing { arm: 0, pose_rad: &[0.4, -0.7], point: 0, station: 0 };
-        let placed = geometry.place(asked, &numbers);
-        for (number, slope) in numbers.iter().zip(&placed.slopes) {
+        let asked = Placing { arm: 0, pose: &Pose::new(vec![0.4, -0.7]), point: 0, station: 0 };
+        let mut placer = geometry.placer();
+        placer.place_m(asked);
+        let mut slopes = Vec::new();
+        placer.slopes(asked, &numbers, &mut slopes);
+        for (number, slope) in numbers.iter().zip(&slopes) {
             let at = |by: f64| {
                 let mut moved = geometry.clone();
                 moved.step(std::slice::from_ref(number), &[by]);
-                moved.place(asked, &[]).at_m
+                moved.place_m(asked)
             };
             let difference = (at(1e-6) - at(-1e-6)) / 2e-6;
             assert!((difference - slope).norm() < 1e-8, "{number:?}: {difference} {slope}");

@@ -16,13 +16,13 @@ use crate::arm::load::Payload;
 use crate::arm::structure::{FrameCompliance, Piece, Structure};
 use crate::arm::{Arm, JointModel, LinkModel};
 use crate::mechanics::chain::Chain;
-use crate::mechanics::chain::{Body, ElasticElement, Item, Posed};
+use crate::mechanics::chain::{Item, Posed};
 use crate::mechanics::{Twist, angular, displacement_at, linear};
 use crate::reconcile::model::exact::{seen_from_tool, with_tool};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::PositionRow;
 use nalgebra::{Matrix3, Vector3};
-use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Row and column of each entry of a frame's compliance matrix, in the order in which the entries are fitted.
 pub(crate) const FRAME_ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (0, 1), (0, 2), (1, 2), (2, 2)];
@@ -39,18 +39,91 @@ pub(crate) struct Yielding {
 }
 
 /// The effect of gravity on one measured position, in the level frame.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(crate) struct Deflection {
     /// Displacement that the model already has \[m\].
     pub known_m: Vector3<f64>,
     /// Derivatives of the known displacement by the two components of gravity across the vertical \[m\].
     pub known_slopes_m: [Vector3<f64>; 2],
-    /// For each compliance of each candidate, the displacement of the point per compliance, for gravity along each
-    /// axis \[m per rad/(N m)\].
-    pub per_compliance: Vec<Vec<Matrix3<f64>>>,
-    /// For each candidate, the motion of the point per rotation about the candidate's first axis \[m\], and the
-    /// torque about this axis under gravity along -z \[N m\]. Errors of a joint's angle show along this motion.
-    pub levers: Vec<(Vector3<f64>, f64)>,
+    /// The swings of all candidates, one after the other.
+    swings: Vec<Swing>,
+    slots: Arc<[Slot]>,
+}
+
+/// What a rotation by which a candidate may yield does.
+#[derive(Debug, Clone, Copy, Default)]
+struct Swing {
+    /// Displacement of the point per rotation \[m\].
+    motion_m: Vector3<f64>,
+    /// Torque about the axis of rotation under gravity along each axis \[N m\].
+    pull_nm: Vector3<f64>,
+}
+
+/// Where the swings of a candidate are among those of all candidates, and the number of its compliances.
+#[derive(Debug, Clone, Copy)]
+struct Slot {
+    first: usize,
+    swings: usize,
+    compliances: usize,
+}
+
+impl Deflection {
+    /// A known displacement, without candidates \[m\].
+    pub(crate) fn known(known_m: Vector3<f64>) -> Self {
+        Self { known_m, known_slopes_m: [Vector3::zeros(); 2], swings: Vec::new(), slots: Arc::new([]) }
+    }
+
+    /// Number of compliances of a candidate.
+    pub(crate) fn count(&self, candidate: usize) -> usize {
+        self.slots[candidate].compliances
+    }
+
+    fn swings(&self, candidate: usize) -> &[Swing] {
+        let slot = &self.slots[candidate];
+        &self.swings[slot.first..slot.first + slot.swings]
+    }
+
+    /// Gives `each` the displacement of the point per compliance of a candidate, compliance by compliance, under gravity
+    /// along `gravity` \[m per rad/(N m)\].
+    pub(crate) fn per_compliance(
+        &self,
+        candidate: usize,
+        gravity: &Vector3<f64>,
+        mut each: impl FnMut(Vector3<f64>),
+    ) {
+        let own = self.swings(candidate);
+        let mut torques_nm = [0.0; 3];
+        torques_nm.iter_mut().zip(own).for_each(|(nm, swing)| *nm = swing.pull_nm.dot(gravity));
+        let along = |i: usize, j: usize| own[i].motion_m * torques_nm[j];
+        match self.count(candidate) {
+            1 => each((0..own.len()).fold(Vector3::zeros(), |sum, i| sum + along(i, i))),
+            count => FRAME_ENTRIES[..count].iter().for_each(|&(i, j)| {
+                each(if i == j { along(i, i) } else { along(i, j) + along(j, i) });
+            }),
+        }
+    }
+
+    /// Displacement of the point if a candidate has these compliances \[rad/(N m)\], under gravity along `gravity`
+    /// \[m\].
+    pub(crate) fn yielded(
+        &self,
+        candidate: usize,
+        compliances: &[f64],
+        gravity: &Vector3<f64>,
+    ) -> Vector3<f64> {
+        let mut out = Vector3::zeros();
+        let mut compliances = compliances.iter();
+        self.per_compliance(candidate, gravity, |by| {
+            out += by * compliances.next().copied().unwrap_or_default();
+        });
+        out
+    }
+
+    /// The motion of the point per rotation about the first axis of a candidate \[m\], and the torque about this axis
+    /// under gravity along -z \[N m\]. Errors of a joint's angle show along this motion.
+    pub(crate) fn lever(&self, candidate: usize) -> (Vector3<f64>, f64) {
+        self.swings(candidate).first().map_or_else(Default::default, |s| (s.motion_m, -s.pull_nm.z))
+    }
 }
 
 /// All candidates: every joint about its axis and across its axis, the base, and the structures behind the joints.
@@ -107,6 +180,15 @@ impl Yielding {
         }
     }
 
+    /// Number of axes about which the candidate yields.
+    fn axes(&self) -> usize {
+        match self.yields {
+            Yields::AboutAxis => 1,
+            Yields::Tilt => 2,
+            Yields::Frame => 3,
+        }
+    }
+
     /// The name of the candidate's element in the chain.
     fn element(&self) -> String {
         let is_base_tilt = self.effect == base_compliance::KIND.name;
@@ -119,7 +201,7 @@ impl Yielding {
     }
 }
 
-/// One arm in the level frame with calibrated geometry, ready to be posed.
+/// One arm in the level frame with calibrated geometry and a point on its tool, ready to be posed.
 struct Ready {
     gravity_m_s2: f64,
     known: Chain,
@@ -127,37 +209,93 @@ struct Ready {
     structure: Structure,
     unit_structure: Structure,
     point_m: Vector3<f64>,
+    /// For each candidate, where its elements are among the elastic elements, tip to base.
+    places: Vec<Place>,
 }
 
-/// The effect of gravity on every measured position. `points` holds the index of each row's point.
-pub(crate) fn deflections(
-    campaign: &Campaign,
-    tree: &Tree,
-    geometry: &Geometry,
-    candidates: &[Yielding],
-    points: &[usize],
-) -> Vec<Deflection> {
-    let ready: Vec<Vec<Ready>> = campaign
-        .arms()
-        .iter()
-        .enumerate()
-        .map(|(i, arm)| {
-            let mut calibrated = (*arm).clone();
-            let turned = geometry.write_into(i, &mut calibrated);
-            geometry.tools_m.iter().map(|t| Ready::new(campaign, &calibrated, turned * t)).collect()
-        })
-        .collect();
-    let trunk = trunk_items(campaign, tree, &ready);
-    campaign
-        .positions
-        .par_iter()
-        .zip(points)
-        .map(|(row, &point)| deflection(tree, &ready, trunk, candidates, row, point))
-        .collect()
+/// Where a candidate's element is among the elastic elements of an arm, tip to base; `None` on other arms. A passive joint
+/// turns with its driver, so its compliance acts through the driver: the passive joints' places, and their factors.
+struct Place {
+    own: Option<usize>,
+    passive: Vec<(usize, f64)>,
+}
+
+/// The effect of gravity on the positions of a campaign, with one geometry.
+pub(crate) struct Loads<'a> {
+    tree: &'a Tree,
+    /// For each arm, the arm with each of the points.
+    ready: Vec<Vec<Ready>>,
+    /// How many items of a posed arm belong to the trunk: in the arm with unit compliances, and in the arm as it is.
+    trunk: [usize; 2],
+    slots: Arc<[Slot]>,
+}
+
+impl<'a> Loads<'a> {
+    /// Prepares the arms with the calibrated geometry.
+    pub(crate) fn new(
+        campaign: &Campaign,
+        tree: &'a Tree,
+        geometry: &Geometry,
+        candidates: &[Yielding],
+    ) -> Self {
+        let ready: Vec<Vec<Ready>> = campaign
+            .arms()
+            .iter()
+            .enumerate()
+            .map(|(i, arm)| {
+                let mut calibrated = (*arm).clone();
+                let turned = geometry.write_into(i, &mut calibrated);
+                let point = |t| Ready::new(campaign, &calibrated, turned * t, candidates);
+                geometry.tools_m.iter().map(point).collect()
+            })
+            .collect();
+        let mut first = 0;
+        let slot = |candidate: &Yielding| {
+            let slot = Slot { first, swings: candidate.axes(), compliances: candidate.count() };
+            first += slot.swings;
+            slot
+        };
+        let slots = candidates.iter().map(slot).collect();
+        Self { tree, trunk: trunk_items(campaign, tree, &ready), ready, slots }
+    }
+
+    /// The effect of gravity on a position: all but the derivatives by the direction of gravity.
+    pub(crate) fn deflection(&self, row: &PositionRow, point: usize) -> Deflection {
+        let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
+        let own = &self.ready[row.arm][point];
+        let mut unit = own.pose(&own.unit, &self.tree.pose_of(row.arm, &pose_rad), &row.payload);
+        self.load_trunk(&mut unit, self.trunk[0], row, &pose_rad);
+        Deflection {
+            known_m: self.known_m(row, point),
+            known_slopes_m: [Vector3::zeros(); 2],
+            swings: own.swings(&unit, &self.slots),
+            slots: Arc::clone(&self.slots),
+        }
+    }
+
+    /// Displacement that the model already has \[m\].
+    pub(crate) fn known_m(&self, row: &PositionRow, point: usize) -> Vector3<f64> {
+        let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
+        let own = &self.ready[row.arm][point];
+        let mut known = own.pose(&own.known, &self.tree.pose_of(row.arm, &pose_rad), &row.payload);
+        self.load_trunk(&mut known, self.trunk[1], row, &pose_rad);
+        known.statics().tip_displacement_m
+    }
+
+    /// Hangs the other arms on the trunk, which ends after `items` items: their weight moves the point too.
+    fn load_trunk(&self, posed: &mut Posed, items: usize, row: &PositionRow, pose_rad: &[f64]) {
+        for other in (0..self.ready.len()).filter(|&other| other != row.arm) {
+            let neighbour = &self.ready[other][0];
+            let pose = self.tree.pose_of(other, pose_rad);
+            let hanging = neighbour.pose(&neighbour.unit, &pose, &Payload::default());
+            let outboard = hanging.items[self.trunk[0]..].iter().filter(|item| matches!(item, Item::Body(_)));
+            posed.items.splice(items..items, outboard.cloned());
+        }
+    }
 }
 
 impl Ready {
-    fn new(campaign: &Campaign, arm: &Arm, point_m: Vector3<f64>) -> Self {
+    fn new(campaign: &Campaign, arm: &Arm, point_m: Vector3<f64>, candidates: &[Yielding]) -> Self {
         let mut structure = arm.structure(JointModel::ThreeSegment);
         for piece in &mut structure.pieces {
             if let Piece::Link(link) = piece
@@ -168,11 +306,14 @@ impl Ready {
             }
         }
         let structure = with_tool(&structure, point_m);
-        let unit_structure = yielding_everywhere(&structure);
+        let known = Chain::new(&structure, LinkModel::Full);
+        let unit_structure = yielding_everywhere(&structure, &known, arm.driven_joint_names().len());
+        let unit = Chain::new(&unit_structure, LinkModel::Full);
         Self {
             gravity_m_s2: structure.gravity_m_s2,
-            known: Chain::new(&structure, LinkModel::Full),
-            unit: Chain::new(&unit_structure, LinkModel::Full),
+            known,
+            places: places(&unit, arm, candidates),
+            unit,
             structure,
             unit_structure,
             point_m,
@@ -184,8 +325,9 @@ impl Ready {
     }
 }
 
-/// The structure in which every joint, about and across its axis, the base and every frame have unit compliance.
-fn yielding_everywhere(structure: &Structure) -> Structure {
+/// The structure in which every joint, about and across its axis, the base and every frame have unit compliance, and links
+/// are rigid with their masses at their middles.
+fn yielding_everywhere(structure: &Structure, known: &Chain, joints: usize) -> Structure {
     let mut unit = structure.clone();
     unit.base_tilt_rad_per_nm = 1.0;
     unit.base_frame = FrameCompliance(Matrix3::identity());
@@ -195,7 +337,19 @@ fn yielding_everywhere(structure: &Structure) -> Structure {
                 joint.law = JointLaw::from(Curve::Linear(1.0));
                 joint.tilt_rad_per_nm = 1.0;
             }
-            Piece::Link(link) => link.root_frame = FrameCompliance(Matrix3::identity()),
+            Piece::Link(link) => {
+                link.root_frame = FrameCompliance(Matrix3::identity());
+                link.beam = None;
+            }
+        }
+    }
+    // what of its weight buoyancy leaves is the same in every pose
+    let rest = known.pose_rad(&vec![0.0; joints], &Payload::default(), Vector3::zeros());
+    for own in rest.elements().filter_map(|element| element.own.as_ref()) {
+        if let Piece::Link(link) = &mut unit.pieces[own.piece]
+            && structure.gravity_m_s2 > 0.0
+        {
+            link.point_mass_kg -= linear(&own.weight).z / structure.gravity_m_s2;
         }
     }
     unit
@@ -219,124 +373,63 @@ fn trunk_items(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> [usize
     [of(&first.unit_structure), of(&first.structure)]
 }
 
-fn deflection(
-    tree: &Tree,
-    ready: &[Vec<Ready>],
-    [unit_trunk, known_trunk]: [usize; 2],
-    candidates: &[Yielding],
-    row: &PositionRow,
-    point: usize,
-) -> Deflection {
-    let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
-    let own = &ready[row.arm][point];
-    let own_pose = tree.pose_of(row.arm, &pose_rad);
-    let mut known = own.pose(&own.known, &own_pose, &row.payload);
-    let mut unit = own.pose(&own.unit, &own_pose, &row.payload);
-    let empty = Payload::default();
-    // the weight of other arms loads the trunk, and so moves the point
-    for other in (0..ready.len()).filter(|&other| other != row.arm) {
-        let neighbour = &ready[other][0];
-        let posed = neighbour.pose(&neighbour.unit, &tree.pose_of(other, &pose_rad), &empty);
-        let hanging = || bodies(&posed.items[unit_trunk..], &neighbour.unit_structure);
-        known.items.splice(known_trunk..known_trunk, hanging().map(Item::Body));
-        unit.items.splice(unit_trunk..unit_trunk, hanging().map(Item::Body));
+/// Where the elements of each candidate are. The elements of an arm are the same in every pose.
+fn places(unit: &Chain, arm: &Arm, candidates: &[Yielding]) -> Vec<Place> {
+    let rest = vec![0.0; arm.driven_joint_names().len()];
+    let posed = unit.pose_rad(&rest, &Payload::default(), Vector3::zeros());
+    let mut names: Vec<&str> = posed.elements().map(|element| element.name.as_str()).collect();
+    names.reverse();
+    let place = |name: &str| names.iter().position(|n| *n == name);
+    let of = |candidate: &Yielding| {
+        let driven = unit.linkages().iter().filter(|l| l.driver == candidate.element());
+        let passive = driven.filter_map(|l| Some((place(&l.passive)?, l.factor)));
+        Place { own: place(&candidate.element()), passive: passive.collect() }
+    };
+    candidates.iter().map(of).collect()
+}
+
+impl Ready {
+    /// The swings of all candidates, in a pose.
+    fn swings(&self, unit: &Posed, slots: &[Slot]) -> Vec<Swing> {
+        let (elements, swings) = self.swings_of_elements(unit);
+        let mut out = Vec::with_capacity(slots.last().map_or(0, |s| s.first + s.swings));
+        for (place, slot) in self.places.iter().zip(slots) {
+            // a candidate on another arm does not move this point
+            let own = |k: usize| place.own.map_or_else(Swing::default, |at| swings[elements[at] + k]);
+            out.extend((0..slot.swings).map(own));
+            for (at, factor) in &place.passive {
+                let (driver, passive) = (&mut out[slot.first], &swings[elements[*at]]);
+                driver.motion_m += passive.motion_m * *factor;
+                driver.pull_nm += passive.pull_nm * *factor;
+            }
+        }
+        out
     }
-    let (per_compliance, levers) = signatures(&unit, own, candidates);
-    Deflection {
-        known_m: known.statics().tip_displacement_m,
-        known_slopes_m: [Vector3::zeros(); 2],
-        per_compliance,
-        levers,
-    }
-}
 
-/// All bodies of a posed arm, as point masses.
-fn bodies<'a>(items: &'a [Item], structure: &'a Structure) -> impl Iterator<Item = Body> + 'a {
-    items.iter().filter_map(|item| match item {
-        Item::Body(body) => Some(body.clone()),
-        Item::Elastic(element) => own_body(element, structure),
-    })
-}
-
-/// The distributed mass of a link, as a point mass at the link's middle.
-fn own_body(element: &ElasticElement, structure: &Structure) -> Option<Body> {
-    let own = element.own.as_ref()?;
-    let Piece::Link(link) = &structure.pieces[own.piece] else { return None };
-    let weight_n = -linear(&own.weight).z;
-    Some(Body {
-        mass_kg: weight_n / structure.gravity_m_s2,
-        cg_m: own.root_m + own.frame.column(0) * (link.vector_m.norm() / 2.0),
-        inertia_kgm2: Matrix3::zeros(),
-        weight_n,
-    })
-}
-
-/// For a joint, the motion of the tip per rotation \[m\], and the torque on the joint \[N m\].
-type Lever = (Vector3<f64>, f64);
-
-/// For every candidate: the displacement at unit compliance for gravity along each axis, and the lever with its
-/// torque.
-fn signatures(unit: &Posed, own: &Ready, candidates: &[Yielding]) -> (Vec<Vec<Matrix3<f64>>>, Vec<Lever>) {
-    let answers = answers(unit, own);
-    let of =
-        |name: &str| answers.iter().find(|(n, _)| *n == name).map_or(Vec::new(), |(_, list)| list.clone());
-    candidates
-        .iter()
-        .map(|candidate| {
-            let mut list = of(&candidate.element());
-            // a passive joint turns with its driver, so its compliance acts through the driver
-            for linkage in unit.chain.linkages().iter().filter(|l| l.driver == candidate.element()) {
-                for (driver, passive) in list.iter_mut().zip(of(&linkage.passive)) {
-                    driver.0 += passive.0 * linkage.factor;
-                    driver.1 += passive.1 * linkage.factor;
+    /// The swings of every elastic element, tip to base, and for each element the index of its first.
+    fn swings_of_elements(&self, unit: &Posed) -> (Vec<usize>, Vec<Swing>) {
+        let (mut elements, mut swings) = (Vec::new(), Vec::new());
+        // weight and its first moment of everything outboard so far
+        let (mut weight_n, mut moment_nm) = (0.0, Vector3::zeros());
+        // from the tip to the base: what has been passed is outboard
+        for item in unit.items.iter().rev() {
+            match item {
+                Item::Body(body) if self.gravity_m_s2 > 0.0 => {
+                    weight_n += body.weight_n;
+                    moment_nm += body.cg_m * body.weight_n;
+                }
+                Item::Body(_) => {}
+                Item::Elastic(element) => {
+                    elements.push(swings.len());
+                    swings.extend(element.twists.iter().map(|t| Swing {
+                        motion_m: displacement_at(t, &unit.tip_m),
+                        pull_nm: pull(t, weight_n, &moment_nm),
+                    }));
                 }
             }
-            let lever = list.first().map_or((Vector3::zeros(), 0.0), |(motion, pull)| (*motion, -pull.z));
-            (per_compliance(candidate.count(), &list), lever)
-        })
-        .unzip()
-}
-
-/// Displacement per unit of each of `count` compliances about the twists' axes.
-fn per_compliance(count: usize, list: &[Answer]) -> Vec<Matrix3<f64>> {
-    // a candidate on another arm has no twists here
-    let along = |(i, j): (usize, usize)| match (list.get(i), list.get(j)) {
-        (Some((motion, _)), Some((_, pull))) => motion * pull.transpose(),
-        _ => Matrix3::zeros(),
-    };
-    match count {
-        1 => vec![(0..list.len()).map(|i| along((i, i))).sum()],
-        _ => FRAME_ENTRIES[..count]
-            .iter()
-            .map(|&(i, j)| if i == j { along((i, i)) } else { along((i, j)) + along((j, i)) })
-            .collect(),
-    }
-}
-
-/// Displacement of the point by a unit twist, and the generalized force on this twist by gravity along each axis.
-type Answer = (Vector3<f64>, Vector3<f64>);
-
-/// For every element, the answers of its twists, by the element's name.
-fn answers<'a>(unit: &'a Posed, own: &Ready) -> Vec<(&'a str, Vec<Answer>)> {
-    let mut out = Vec::new();
-    // weight and its first moment of everything outboard so far
-    let (mut weight_n, mut moment_nm) = (0.0, Vector3::zeros());
-    // from the tip to the base: what has been passed is outboard
-    for item in unit.items.iter().rev() {
-        let body = match item {
-            Item::Body(body) => Some(body.clone()),
-            Item::Elastic(element) => {
-                let answer = |t: &Twist| (displacement_at(t, &unit.tip_m), pull(t, weight_n, &moment_nm));
-                out.push((element.name.as_str(), element.twists.iter().map(answer).collect()));
-                own_body(element, &own.unit_structure)
-            }
-        };
-        if let Some(body) = body.filter(|_| own.gravity_m_s2 > 0.0) {
-            weight_n += body.weight_n;
-            moment_nm += body.cg_m * body.weight_n;
         }
+        (elements, swings)
     }
-    out
 }
 
 /// Generalized force on a twist, for gravity along each axis.

@@ -3,8 +3,8 @@
 //!
 //! - `tree` joins the arms that stand on one trunk; `points` lists the points on their tools.
 //! - [`kinematics`] says where a point is, and [`loads`] how gravity moves it.
-//! - `align` places the arm from nothing. [`fit`](mod@fit) fits, by the equations in `normal`, with compliances
-//!   that are `springs`.
+//! - `align` places the arm from nothing. [`fit`](mod@fit) fits a model (`fitted`), by the equations in `normal` that
+//!   `rows` sums up, with compliances that are `springs`.
 //! - [`analysis`] is the whole analysis. `sessions` tells sessions apart and `standing` finds where the arm stands in each;
 //!   `search` finds what yields and `transmission` what turns unevenly.
 //! - `structure` asks what is left, `next_test` says what to measure, and [`outcome`] concludes.
@@ -13,6 +13,7 @@
 pub(crate) mod align;
 pub(crate) mod analysis;
 pub(crate) mod fit;
+pub(crate) mod fitted;
 pub(crate) mod kinematics;
 pub(crate) mod loads;
 pub(crate) mod next_test;
@@ -20,6 +21,7 @@ pub(crate) mod normal;
 pub(crate) mod outcome;
 pub(crate) mod points;
 pub(crate) mod predict;
+pub(crate) mod rows;
 pub(crate) mod search;
 pub(crate) mod sessions;
 pub(crate) mod springs;

@@ -2,12 +2,13 @@
 //! Where no pose tells them apart, or nothing in the library fits, it proposes another kind of test.
 
 use super::analysis::{Positions, samples};
-use super::fit::Fitted;
+use super::fitted::Fitted;
 use super::points::Point;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
 use crate::reconcile::verdict::next_test::{ENOUGH, spread_pose};
 use crate::reconcile::verdict::outcome::{NextTest, Verdict};
+use std::collections::HashSet;
 
 /// Separation that one reading must reach \[standard deviations\]. With less, a hundred readings would not be
 /// enough.
@@ -104,9 +105,9 @@ impl Positions {
     /// Proposes a test if no effect of the library fits, so that no pose can separate models. What the errors follow
     /// says which kind of test is worth making; it is made in the pose that the best model misses most.
     fn after_unexplained(&self, campaign: &Campaign, left: &LackOfFit) -> Option<NextTest> {
-        let gross = |i: usize| self.gross.iter().any(|(row, _)| *row == i);
+        let gross: HashSet<usize> = self.gross.iter().map(|(row, _)| *row).collect();
         let errors = self.samples.iter().map(|s| self.fitted.error(s).norm()).enumerate();
-        let worst = errors.filter(|(i, _)| !gross(*i)).max_by(|a, b| a.1.total_cmp(&b.1))?.0;
+        let worst = errors.filter(|(i, _)| !gross.contains(i)).max_by(|a, b| a.1.total_cmp(&b.1))?.0;
         let row = &campaign.positions[worst];
         let follows = left.structures.iter().find(|s| self.is_material(s)).map(|s| s.follows.as_str());
         let what = match follows.and_then(|f| f.rsplit_once(' ')) {

@@ -35,4 +35,11 @@ impl Factor {
     pub(crate) fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
         self.cholesky.solve(&right.component_mul(&self.diagonal)).component_mul(&self.diagonal)
     }
+
+    /// Multiplies columns by `W`, for which `A⁻¹ = WᵀW` with the factorized curvature `A`.
+    pub(crate) fn whiten(&self, columns: &mut DMatrix<f64>) {
+        columns.column_iter_mut().for_each(|mut column| column.component_mul_assign(&self.diagonal));
+        // a Cholesky factor has no zero on its diagonal
+        self.cholesky.l_dirty().solve_lower_triangular_mut(columns);
+    }
 }

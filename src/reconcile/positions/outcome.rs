@@ -1,7 +1,7 @@
 //! Draws the conclusion from a campaign of absolute positions.
 
 use super::analysis::{Positions, analyze};
-use super::fit::Fitted;
+use super::fitted::Fitted;
 use super::kinematics::Number;
 use super::loads::FRAME_ENTRIES;
 use super::springs::frame_matrix;
@@ -22,6 +22,7 @@ use crate::reconcile::verdict::files::CORRECTED_FILE;
 use crate::reconcile::verdict::outcome::{Evidence, Located, Outcome, ReadingResidual, Verdict};
 use crate::reconcile::verdict::stage::Stage;
 use serde_json::{Value, json};
+use std::collections::{HashMap, HashSet};
 
 /// Smallest number of positions from which anything can be concluded.
 pub(crate) const FEWEST: usize = 20;
@@ -284,9 +285,10 @@ impl Positions {
 
     fn residuals(&self, campaign: &Campaign) -> Vec<ReadingResidual> {
         let rows = campaign.positions.iter().zip(&self.samples).enumerate();
+        let all_gross: HashSet<usize> = self.gross.iter().map(|(row, _)| *row).collect();
         rows.flat_map(|(i, (row, sample))| {
             let [before, after] = [&self.rigid, &self.fitted].map(|f| 1e3 * f.predicted_m(sample));
-            let gross = self.gross.iter().any(|(g, _)| *g == i);
+            let gross = all_gross.contains(&i);
             let left_out = 1e3 * self.held_out[i] / row.sigma_mm;
             (0..3).map(move |c| ReadingResidual {
                 channel: Channel::Positions,
@@ -309,6 +311,7 @@ impl Positions {
 /// row.
 pub(crate) fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec<Located> {
     let mut parts: Vec<(String, Vec<&ReadingResidual>)> = Vec::new();
+    let mut known: HashMap<String, usize> = HashMap::new();
     for (row, own) in campaign.positions.iter().zip(residuals.chunks_exact(3)).filter(|(_, r)| !r[0].gross) {
         let pose: Vec<String> = row.pose_deg.iter().map(|a| format!("{a}")).collect();
         let names = [
@@ -318,10 +321,11 @@ pub(crate) fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec
             format!("pose {} deg", pose.join(",")),
         ];
         for name in names {
-            match parts.iter_mut().find(|(n, _)| *n == name) {
-                Some((_, list)) => list.extend(own),
-                None => parts.push((name, own.iter().collect())),
-            }
+            let part = *known.entry(name).or_insert_with_key(|name| {
+                parts.push((name.clone(), Vec::new()));
+                parts.len() - 1
+            });
+            parts[part].1.extend(own);
         }
     }
     let all = parts.into_iter().map(|(part, list)| Located {

@@ -1,7 +1,7 @@
 //! Predicts positions of points on several arms of one trunk, which carries the weight of all.
 
-use super::kinematics::{Geometry, Placing};
-use super::loads::deflections;
+use super::kinematics::{Geometry, Placing, Pose};
+use super::loads::Loads;
 use super::tree::Tree;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
@@ -9,6 +9,7 @@ use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::placement::Placed;
 use crate::reconcile::readings::placement::Stand;
 use nalgebra::Rotation3;
+use rayon::prelude::*;
 
 /// The positions that the campaign's arms would show \[mm\]. `subjects` holds each arm with all of its
 /// effects.
@@ -29,18 +30,20 @@ pub(crate) fn predicted_mm(mut campaign: Campaign, arms: &[Placed], subjects: &[
             geometry.tools_m.push(tool_m);
         }
     }
-    let deflections = deflections(&campaign, &tree, &geometry, &[], &points);
-    let rows = campaign.positions.iter().zip(&points).zip(deflections);
+    let loads = Loads::new(&campaign, &tree, &geometry, &[]);
+    let known_m: Vec<_> =
+        campaign.positions.par_iter().zip(&points).map(|(row, &point)| loads.known_m(row, point)).collect();
+    let rows = campaign.positions.iter().zip(&points).zip(known_m);
     rows.enumerate()
-        .map(|(i, ((row, &point), deflection))| {
+        .map(|(i, ((row, &point), known_m))| {
             let stand = stands[row.arm][i];
             let asked_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
             let own_rad = subjects[row.arm].turned_rad(&tree.pose_of(row.arm, &asked_rad));
-            let pose_rad = tree.with_pose_of(row.arm, &own_rad, &asked_rad);
+            let pose = Pose::new(tree.with_pose_of(row.arm, &own_rad, &asked_rad));
             geometry.base = Rotation3::from_matrix_unchecked(stand.rotation);
             geometry.origin_m = stand.origin_m;
-            let placing = Placing { arm: row.arm, pose_rad: &pose_rad, point, station: 0 };
-            let at_m = geometry.place(placing, &[]).at_m + stand.rotation * deflection.known_m;
+            let placing = Placing { arm: row.arm, pose: &pose, point, station: 0 };
+            let at_m = geometry.place_m(placing) + stand.rotation * known_m;
             let reading = &subjects[row.arm].channels[Channel::Positions as usize];
             std::array::from_fn(|c| reading.of(1e3 * at_m[c], c, row.row))
         })

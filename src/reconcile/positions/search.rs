@@ -2,12 +2,14 @@
 //! fitted in full. A candidate that is worth its price stays if held-out poses confirm it.
 
 use super::analysis::Positions;
-use super::fit::{Fitted, Sample, fit, ln_likelihood, normal, scale};
+use super::fit::{fit, ln_likelihood, scale};
+use super::fitted::{Fitted, Sample};
 use super::normal::Factor;
+use super::rows::{Further, normal};
 use super::structure::squares;
 use crate::arm::effect::kind::Yields;
 use crate::reconcile::readings::campaign::Campaign;
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// Number of candidates fitted in full at each stage.
@@ -152,26 +154,20 @@ impl Positions {
     /// For each candidate, the rise of ln of the likelihood that the linearized model expects.
     fn gains(&self, base: &Fitted) -> Vec<(usize, f64)> {
         let from_level = base.geometry.level_to_instrument();
-        let columns = |s: &Sample| -> Vec<Vector3<f64>> {
-            s.deflection
-                .per_compliance
-                .iter()
-                .flatten()
-                .map(|p| from_level * p * base.geometry.gravity)
-                .collect()
-        };
         let counts: Vec<usize> = self.candidates.iter().map(|c| c.count()).collect();
-        self.linear_gains(base, &columns, &counts).into_iter().enumerate().collect()
+        let gains = self.linear_gains(base, &counts, &mut |sample, _, columns| {
+            for candidate in 0..self.candidates.len() {
+                sample.deflection.per_compliance(candidate, &base.geometry.gravity, |by| {
+                    columns.push(from_level * by);
+                });
+            }
+        });
+        gains.into_iter().enumerate().collect()
     }
 
     /// Gain in ln of the likelihood of each block of additional columns; `counts` holds the number of columns of each
     /// block. A single column is a compliance and gains nothing where it would be negative.
-    pub(crate) fn linear_gains(
-        &self,
-        base: &Fitted,
-        columns: &dyn Fn(&Sample) -> Vec<Vector3<f64>>,
-        counts: &[usize],
-    ) -> Vec<f64> {
+    pub(crate) fn linear_gains(&self, base: &Fitted, counts: &[usize], columns: Further) -> Vec<f64> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let normal = normal(&all, &self.numbers, base, columns);
         let own: Vec<usize> = (0..normal.own).collect();

@@ -4,19 +4,24 @@
 //! Between two sessions a reflector is put back slightly differently, or the instrument or the base is moved.
 //! Every row is tried as the first of a new session, by the gain of the linearized model. The earlier rows
 //! then have an offset or a placement of their own.
+//!
+//! With the curvature `A` of the model (its factor whitens: `A⁻¹ = WᵀW`), and sums over the earlier rows of products of
+//! the slopes `s` of the offset, of the model's slopes `m` and of the errors `e`, the gain is `½ bᵀ S⁻¹ b` with
+//! `S = Σ s sᵀ - Cᵀ C`, `b = Σ s e - Cᵀ W g`, `C = Σ W m sᵀ` and the gradient `g` of the model. All sums grow row by row,
+//! so one pass tries every row: its cost grows as the rows, its memory not at all.
 
 use super::analysis::Positions;
-use super::fit::{Fitted, Sample, fit, normal};
+use super::fit::fit;
+use super::fitted::{Fitted, Sample};
 use super::kinematics::Number;
 use super::normal::Factor;
 use super::points::Point;
-use nalgebra::{DMatrix, Vector3};
+use super::rows::{Linearized, normal};
+use super::structure::squares;
+use nalgebra::{DMatrix, DVector, Vector3};
 
 /// Smallest number of positions in a session.
 const FEWEST: usize = 5;
-/// Number of rows that are tried at first as the first row of a session. The rows around the best of them are tried
-/// next.
-const TRIED: usize = 40;
 /// Largest number of sessions beyond the first.
 const MOST: usize = 6;
 
@@ -34,6 +39,16 @@ impl Moved {
         match self {
             Moved::Point(p) => sample.point == p,
             Moved::Station(s) => sample.station == s,
+        }
+    }
+
+    /// Gives the rows before `first` to `new`.
+    fn relabel(self, samples: &mut [Sample], first: usize, new: Moved) {
+        for sample in samples[..first].iter_mut().filter(|s| self.has(s)) {
+            match new {
+                Moved::Point(p) => sample.point = p,
+                Moved::Station(s) => sample.station = s,
+            }
         }
     }
 
@@ -58,6 +73,12 @@ struct Split {
     gain: f64,
 }
 
+/// The model that is divided, factorized.
+struct Whole {
+    factor: Factor,
+    gradient: DVector<f64>,
+}
+
 impl Positions {
     /// Finds sessions, as long as another session is worth its price. Returns one sentence for each.
     pub(crate) fn find_sessions(&mut self, tools_free: bool, base_free: bool) -> Vec<String> {
@@ -66,8 +87,9 @@ impl Positions {
             let points = (0..self.points.len()).filter(|_| tools_free).map(Moved::Point);
             let stations = (0..self.fitted.geometry.stations.len()).filter(|_| base_free).map(Moved::Station);
             let kinds: Vec<Moved> = points.chain(stations).collect();
+            let Some(whole) = self.whole() else { break };
             let splits = kinds.iter().filter_map(|&moved| {
-                let first = self.best_first(moved)?;
+                let first = self.best_first(moved, &whole)?;
                 Some(self.split(moved, first, kinds.len()))
             });
             let Some(best) = splits.filter(|s| s.gain > 0.0).max_by(|a, b| a.gain.total_cmp(&b.gain)) else {
@@ -78,69 +100,53 @@ impl Positions {
         out
     }
 
-    /// The row that is best as the first of a new session.
-    fn best_first(&self, moved: Moved) -> Option<usize> {
-        let rows: Vec<usize> = (0..self.samples.len()).filter(|&i| moved.has(&self.samples[i])).collect();
-        let inside = FEWEST..rows.len().saturating_sub(FEWEST);
-        if inside.is_empty() {
-            return None;
-        }
-        let stride = inside.len().div_ceil(TRIED);
-        let coarse = self.gains_of(moved, inside.clone().step_by(stride).map(|i| rows[i]).collect());
-        let (around, _) = coarse.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let at = rows.iter().position(|&r| r == around)?;
-        let near = at.saturating_sub(stride).max(inside.start)..(at + stride + 1).min(inside.end);
-        let fine = self.gains_of(moved, near.map(|i| rows[i]).collect());
-        fine.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(first, _)| first)
+    fn whole(&self) -> Option<Whole> {
+        let all: Vec<&Sample> = self.samples.iter().collect();
+        let normal = normal(&all, &self.numbers, &self.fitted, &mut |_, _, _| {});
+        let own: Vec<usize> = (0..normal.own).collect();
+        Some(Whole { factor: Factor::new(&normal.curvature, &own)?, gradient: normal.gradient })
     }
 
-    /// For each row of `firsts`, the gain in ln of the likelihood if the rows before it had their own placement.
-    fn gains_of(&self, moved: Moved, firsts: Vec<usize>) -> Vec<(usize, f64)> {
-        let all: Vec<&Sample> = self.samples.iter().collect();
+    /// The row that is best as the first of a new session, if there are enough rows before and after it.
+    fn best_first(&self, moved: Moved, whole: &Whole) -> Option<usize> {
+        let rows = self.samples.iter().filter(|s| moved.has(s)).count();
+        let inside = FEWEST..rows.saturating_sub(FEWEST);
         let own = moved.numbers();
-        let columns = |s: &Sample| -> Vec<Vector3<f64>> {
-            let slopes = self.fitted.geometry.place(s.placing(), &own).slopes;
-            let before = |first: &usize| if moved.has(s) && s.index < *first { 1.0 } else { 0.0 };
-            firsts.iter().flat_map(|f| slopes.iter().map(move |slope| slope * before(f))).collect()
-        };
-        let normal = normal(&all, &self.numbers, &self.fitted, &columns);
-        let model: Vec<usize> = (0..normal.own).collect();
-        let Some(factor) = Factor::new(&normal.curvature, &model) else { return Vec::new() };
-        let width = own.len();
-        let gain = |k: usize| -> f64 {
-            let at = normal.own + width * k;
-            let cross = normal.curvature.view((0, at), (normal.own, width)).into_owned();
-            let answers: Vec<_> = (0..width).map(|c| factor.solve(&cross.column(c).into_owned())).collect();
-            let answered = DMatrix::from_columns(&answers);
-            let left = normal.curvature.view((at, at), (width, width)) - cross.transpose() * &answered;
-            let gradient =
-                normal.gradient.rows(at, width) - answered.transpose() * normal.gradient.rows(0, normal.own);
-            left.try_inverse().map_or(0.0, |inverse| 0.5 * gradient.dot(&(inverse * &gradient)))
-        };
-        firsts.iter().enumerate().map(|(k, first)| (*first, gain(k))).collect()
+        let mut linearized = Linearized::new(&self.fitted, &self.numbers);
+        let mut earlier = Earlier::new(whole, own.len());
+        let mut best: Option<(usize, f64)> = None;
+        for (at, sample) in self.samples.iter().filter(|s| moved.has(s)).enumerate().take(inside.end) {
+            if inside.contains(&at) {
+                let gain = earlier.gain();
+                if best.is_none_or(|(_, most)| gain >= most) {
+                    best = Some((sample.index, gain));
+                }
+            }
+            let error = linearized.at(sample, &mut |sample, placer, columns| {
+                placer.slopes(sample.placing(), &own, columns);
+            });
+            earlier.add(&linearized.columns, &error);
+        }
+        best.map(|(first, _)| first)
     }
 
     /// The model in which the rows before `first` have their own placement. Its likelihood is charged for the numbers
     /// of this placement and for having looked at every row.
     fn split(&self, moved: Moved, first: usize, kinds: usize) -> Split {
-        let mut samples = self.samples.clone();
         let mut start = self.fitted.clone();
         let geometry = &mut start.geometry;
-        let earlier = samples[..first].iter_mut().filter(|s| moved.has(s));
         let new = match moved {
             Moved::Point(p) => {
-                let new = geometry.tools_m.len();
                 geometry.tools_m.push(geometry.tools_m[p]);
-                earlier.for_each(|s| s.point = new);
-                Moved::Point(new)
+                Moved::Point(geometry.tools_m.len() - 1)
             }
             Moved::Station(s) => {
-                let new = geometry.stations.len();
                 geometry.stations.push(geometry.stations[s]);
-                earlier.for_each(|sample| sample.station = new);
-                Moved::Station(new)
+                Moved::Station(geometry.stations.len() - 1)
             }
         };
+        let mut samples = self.samples.clone();
+        moved.relabel(&mut samples, first, new);
         let mut numbers = self.numbers.clone();
         numbers.extend(new.numbers());
         let all: Vec<&Sample> = samples.iter().collect();
@@ -169,6 +175,106 @@ impl Positions {
                 format!(
                     "before row {row} the instrument or the base stood {mm:.2} mm and {mrad:.2} mrad elsewhere: a session of its own"
                 )
+            }
+        }
+    }
+}
+
+/// Sums over the rows before a row: what an offset of their own would gain.
+struct Earlier<'a> {
+    factor: &'a Factor,
+    /// The model's gradient, whitened.
+    gradient: DVector<f64>,
+    /// The model's slopes of a row, whitened, and the offset's.
+    model: DMatrix<f64>,
+    offset: DMatrix<f64>,
+    cross: DMatrix<f64>,
+    curvature: DMatrix<f64>,
+    slope: DVector<f64>,
+}
+
+impl<'a> Earlier<'a> {
+    /// No rows yet. The offset has `width` numbers.
+    fn new(whole: &'a Whole, width: usize) -> Self {
+        let numbers = whole.gradient.len();
+        let mut gradient = DMatrix::from_columns(std::slice::from_ref(&whole.gradient));
+        whole.factor.whiten(&mut gradient);
+        Self {
+            factor: &whole.factor,
+            gradient: gradient.column(0).into_owned(),
+            model: DMatrix::zeros(numbers, 3),
+            offset: DMatrix::zeros(3, width),
+            cross: DMatrix::zeros(numbers, width),
+            curvature: DMatrix::zeros(width, width),
+            slope: DVector::zeros(width),
+        }
+    }
+
+    /// Adds a row: the columns of the model's numbers, then those of the offset, and the error.
+    fn add(&mut self, columns: &[Vector3<f64>], error: &Vector3<f64>) {
+        let (model, offset) = columns.split_at(self.model.nrows());
+        for c in 0..3 {
+            self.model.column_mut(c).iter_mut().zip(model).for_each(|(to, column)| *to = column[c]);
+            self.offset.row_mut(c).iter_mut().zip(offset).for_each(|(to, column)| *to = column[c]);
+        }
+        self.factor.whiten(&mut self.model);
+        self.cross.gemm(1.0, &self.model, &self.offset, 1.0);
+        self.curvature.gemm_tr(1.0, &self.offset, &self.offset, 1.0);
+        self.slope.gemv_tr(1.0, &self.offset, error, 1.0);
+    }
+
+    /// Gain in ln of the likelihood if the rows so far had an offset of their own.
+    fn gain(&self) -> f64 {
+        let left = &self.curvature - self.cross.tr_mul(&self.cross);
+        let gradient = &self.slope - self.cross.tr_mul(&self.gradient);
+        0.5 * squares(&left, &gradient).0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_xoshiro::Xoshiro256PlusPlus;
+    use rand_xoshiro::rand_core::{Rng, SeedableRng};
+
+    const ROWS: usize = 40;
+    const NUMBERS: usize = 7;
+
+    /// The dense definition: one set of normal equations, in which the offset's columns are zero from `first` on.
+    fn dense_gain(rows: &[(Vec<Vector3<f64>>, Vector3<f64>)], width: usize, first: usize) -> f64 {
+        let column = |r: usize, j: usize| {
+            let is_on = j < NUMBERS || r / 3 < first;
+            if is_on { rows[r / 3].0[j][r % 3] } else { 0.0 }
+        };
+        let x = DMatrix::from_fn(3 * ROWS, NUMBERS + width, column);
+        let e = DVector::from_fn(3 * ROWS, |r, _| rows[r / 3].1[r % 3]);
+        let fall = |x: &DMatrix<f64>| {
+            let gradient = x.tr_mul(&e);
+            0.5 * gradient.dot(&(x.tr_mul(x).try_inverse().expect("regular") * &gradient))
+        };
+        fall(&x) - fall(&x.columns(0, NUMBERS).into_owned())
+    }
+
+    #[test]
+    fn one_pass_gives_every_row_the_gain_of_the_dense_equations() {
+        let mut dice = Xoshiro256PlusPlus::seed_from_u64(7);
+        let mut next = || (dice.next_u64() >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
+        for width in [3, 6] {
+            let mut vector = || Vector3::new(next(), next(), next());
+            let rows: Vec<(Vec<Vector3<f64>>, Vector3<f64>)> =
+                (0..ROWS).map(|_| ((0..NUMBERS + width).map(|_| vector()).collect(), vector())).collect();
+            let x = DMatrix::from_fn(3 * ROWS, NUMBERS, |r, j| rows[r / 3].0[j][r % 3]);
+            let e = DVector::from_fn(3 * ROWS, |r, _| rows[r / 3].1[r % 3]);
+            let all: Vec<usize> = (0..NUMBERS).collect();
+            let factor = Factor::new(&x.tr_mul(&x), &all).expect("regular");
+            let whole = Whole { factor, gradient: x.tr_mul(&e) };
+            let mut earlier = Earlier::new(&whole, width);
+            for (first, (columns, error)) in rows.iter().enumerate() {
+                if (FEWEST..ROWS - FEWEST).contains(&first) {
+                    let (own, dense) = (earlier.gain(), dense_gain(&rows, width, first));
+                    assert!((own - dense).abs() < 1e-9 * dense, "row {first}: {own} and {dense}");
+                }
+                earlier.add(columns, error);
             }
         }
     }

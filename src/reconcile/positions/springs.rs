@@ -25,8 +25,23 @@ const LOWER: [(usize, usize); FRAME_ENTRIES.len()] = [(0, 0), (1, 0), (1, 1), (2
 pub(crate) struct Best {
     /// Change of each number. The numbers of the geometry come first, then the compliances.
     pub step: Vec<f64>,
+    /// Derivatives of every number (rows) by every free variable (columns).
+    slopes: DMatrix<f64>,
+    /// The factorized curvature over the free variables.
+    factor: Factor,
+}
+
+impl Best {
     /// Standard deviations of the numbers; infinite for a number that is held.
-    pub deviations: Vec<f64>,
+    pub(crate) fn deviations(&self) -> Vec<f64> {
+        let variance = |row: usize| {
+            let row = self.slopes.row(row).transpose();
+            row.dot(&self.factor.solve(&row))
+        };
+        let is_open = |row: usize| self.slopes.row(row).iter().any(|s| *s != 0.0);
+        let deviation = |row: usize| if is_open(row) { variance(row).max(0.0).sqrt() } else { f64::INFINITY };
+        (0..self.step.len()).map(deviation).collect()
+    }
 }
 
 /// How the compliances of an effect may change.
@@ -125,21 +140,18 @@ impl Parabola<'_> {
                 (linear, self.blocks) = (from, blocks);
                 step = self.step(&linear);
             }
-            // without frames the parabola is solved in one step
+            // without frames the parabola is solved in one step, and its slopes are the same everywhere
             let is_linear = !self.blocks.iter().any(|block| matches!(block, Block::Frame(_)));
-            if is_linear || !is_better || right.dot(&move_by) < SETTLED {
+            if is_linear {
+                return Some(Best { step, slopes, factor });
+            }
+            if !is_better || right.dot(&move_by) < SETTLED {
                 break;
             }
         }
         let slopes = self.slopes();
         let factor = self.factor(&slopes)?;
-        let variance = |row: usize| {
-            let row = slopes.row(row).transpose();
-            row.dot(&factor.solve(&row))
-        };
-        let is_open = |row: usize| slopes.row(row).iter().any(|s| *s != 0.0);
-        let deviation = |row: usize| if is_open(row) { variance(row).max(0.0).sqrt() } else { f64::INFINITY };
-        Some(Best { deviations: (0..step.len()).map(deviation).collect(), step })
+        Some(Best { step, slopes, factor })
     }
 
     /// Starts every frame again from its present compliance.

@@ -1,12 +1,16 @@
 //! Finds where the calibrated arms stand: in each session, and the place that suits all sessions best.
 
 use super::analysis::Positions;
-use super::fit::{Fitted, Sample, fit};
+use super::fit::fit;
+use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number};
+use super::loads::Deflection;
 use super::points::{Point, points};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::placement::{Placement, Session, Stand, pose_mark, test_numbers};
 use nalgebra::Rotation3;
+use std::collections::HashMap;
+use std::sync::Arc;
 
 impl Positions {
     /// The placement of one of the arms. `turned` is the rotation of its last frame.
@@ -57,16 +61,22 @@ impl Positions {
     /// The samples of an arm, divided into runs within which neither the instrument nor a point was moved.
     fn runs(&self, campaign: &Campaign, own: &[usize]) -> Vec<Vec<usize>> {
         let mut out: Vec<Vec<usize>> = Vec::new();
+        // the point of each name that was seen in the last run
+        let mut seen: HashMap<&str, usize> = HashMap::new();
         for &i in own {
-            let same = |&j: &usize| {
-                let (a, b) = (&self.samples[i], &self.samples[j]);
-                let one_name = campaign.positions[i].point == campaign.positions[j].point;
-                a.station == b.station && (a.point == b.point || !one_name)
+            let (sample, name) = (&self.samples[i], campaign.positions[i].point.as_str());
+            let is_same = |run: &Vec<usize>| {
+                self.samples[run[0]].station == sample.station
+                    && seen.get(name).is_none_or(|point| *point == sample.point)
             };
-            match out.last_mut() {
-                Some(run) if run.iter().all(same) => run.push(i),
-                _ => out.push(vec![i]),
+            match out.last_mut().filter(|run| is_same(run)) {
+                Some(run) => run.push(i),
+                None => {
+                    out.push(vec![i]);
+                    seen.clear();
+                }
             }
+            seen.insert(name, sample.point);
         }
         out
     }
@@ -102,7 +112,7 @@ impl Positions {
             .zip(&campaign.positions)
             .map(|(sample, row)| {
                 let mut out = sample.clone();
-                out.deflection.known_m = shown.displacement(sample);
+                out.deflection = Arc::new(Deflection::known(shown.displacement(sample)));
                 out.point = named.iter().position(|p| *p == Point::of(row)).unwrap_or_default();
                 out.station = 0;
                 out

@@ -6,8 +6,9 @@
 //! of squares.
 
 use super::analysis::Positions;
-use super::fit::{Sample, normal};
+use super::fitted::Sample;
 use super::normal::Factor;
+use super::rows::normal;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::kind::Yields;
 use crate::reconcile::fit::stats::{ln_chi_squared_tail, median};
@@ -34,7 +35,7 @@ impl Positions {
     pub(crate) fn lack_of_fit(&self, campaign: &Campaign) -> LackOfFit {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let asker = Asker::new(self, campaign);
-        let normal = normal(&all, &self.numbers, &self.fitted, &|s| asker.columns(s));
+        let normal = normal(&all, &self.numbers, &self.fitted, &mut |s, _, out| asker.columns(s, out));
         let own: Vec<usize> = (0..normal.own).collect();
         let mut structures = Vec::new();
         let mut at = normal.own;
@@ -124,7 +125,7 @@ impl<'a> Asker<'a> {
     fn new(found: &'a Positions, campaign: &Campaign) -> Self {
         let joint = |c: &usize| found.candidates[*c].yields == Yields::AboutAxis;
         let torque =
-            |c: usize| found.samples.iter().map(|s| s.deflection.levers[c].1.abs()).fold(1e-9, f64::max);
+            |c: usize| found.samples.iter().map(|s| s.deflection.lever(c).1.abs()).fold(1e-9, f64::max);
         let joints: Vec<(usize, f64)> =
             (0..found.candidates.len()).filter(joint).map(|c| (c, torque(c))).collect();
         let at = |name: &String| joints.iter().find(|(c, _)| found.candidates[*c].at == *name).map(|j| j.0);
@@ -141,22 +142,21 @@ impl<'a> Asker<'a> {
         Self { found, questions, joints, driven, largest_payload_kg, payloads_kg }
     }
 
-    fn columns(&self, sample: &Sample) -> Vec<Vector3<f64>> {
-        let mut out = Vec::new();
+    fn columns(&self, sample: &Sample, out: &mut Vec<Vector3<f64>>) {
         let along = |size: f64| (0..3).map(move |c| Vector3::ith(c, size));
         let index = sample.index;
         let order = order_functions(index as f64 / self.found.samples.len() as f64);
         out.extend(order.into_iter().flat_map(along));
         let from_level = self.found.fitted.geometry.level_to_instrument();
         for (j, &candidate) in self.driven.iter().enumerate() {
-            let lever = from_level * sample.deflection.levers[candidate].0;
-            for wave in waves(sample.pose_rad[j].to_degrees()) {
+            let lever = from_level * sample.deflection.lever(candidate).0;
+            for wave in waves(sample.pose.angles_rad[j].to_degrees()) {
                 out.extend(along(wave));
                 out.push(lever * wave);
             }
         }
         for (candidate, largest_nm) in &self.joints {
-            let (lever, torque_nm) = sample.deflection.levers[*candidate];
+            let (lever, torque_nm) = sample.deflection.lever(*candidate);
             let part = torque_nm / largest_nm;
             out.extend([(8.0 * part).tanh(), part.powi(3)].map(|size| from_level * lever * size));
         }
@@ -164,6 +164,5 @@ impl<'a> Asker<'a> {
             let part = self.payloads_kg[index] / self.largest_payload_kg;
             out.extend([part, part * part].into_iter().flat_map(along));
         }
-        out
     }
 }

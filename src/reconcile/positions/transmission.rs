@@ -1,13 +1,13 @@
 //! Finds joints that turn unevenly: the error of a gear or of its sensor, once and twice a turn.
 
 use super::analysis::Positions;
-use super::fit::{Fitted, Sample, fit};
+use super::fit::fit;
+use super::fitted::{Fitted, Sample};
 use super::kinematics::Number;
 use super::search::{FULL_FITS, TIE};
 use crate::arm::effect::transmission_error;
 use crate::arm::effect::waves::transmission_waves;
 use crate::reconcile::readings::campaign::Campaign;
-use nalgebra::Vector3;
 use rayon::prelude::*;
 
 /// Name of the effect.
@@ -47,10 +47,10 @@ impl Positions {
         let open: Vec<usize> =
             (0..self.tree.driven.len()).filter(|j| !self.transmissions.contains(j)).collect();
         let further: Vec<Number> = open.iter().flat_map(|&j| numbers(j)).collect();
-        let columns =
-            |s: &Sample| -> Vec<Vector3<f64>> { self.fitted.geometry.place(s.placing(), &further).slopes };
         let counts = vec![numbers(0).count(); open.len()];
-        let gains = self.linear_gains(&self.fitted, &columns, &counts);
+        let gains = self.linear_gains(&self.fitted, &counts, &mut |sample, placer, columns| {
+            placer.slopes(sample.placing(), &further, columns);
+        });
         let mut order: Vec<(usize, f64)> = open.into_iter().zip(gains).collect();
         order.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         order.truncate(FULL_FITS);

@@ -6,6 +6,11 @@ use crate::arm::load::Payload;
 use nalgebra::Vector3;
 use std::collections::HashMap;
 
+/// A key under which equal poses are found. Zero and minus zero are one angle.
+pub(crate) fn pose_key(pose_deg: &[f64]) -> Vec<u64> {
+    pose_deg.iter().map(|angle| (angle + 0.0).to_bits()).collect()
+}
+
 /// A tip displacement under load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticRow {

@@ -10,7 +10,7 @@ use super::structure::Structure;
 use super::unnamed;
 use super::waves::{order_functions, waves};
 use crate::arm::effect::channel::Channel;
-use crate::reconcile::fit::descent::{Fit, Weights};
+use crate::reconcile::fit::descent::{Fit, Weights, transposed_product};
 use crate::reconcile::fit::stats::ln_chi_squared_tail;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Calibration;
@@ -60,11 +60,9 @@ pub(crate) fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, wei
     for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
         let range = forward.range(channel);
         if range.len() >= 8 {
-            structures.extend(
-                questions(campaign, forward, fit, weights, channel)
-                    .into_iter()
-                    .filter_map(|(follows, regressors)| tester.ask(channel, follows, &regressors)),
-            );
+            questions(campaign, forward, fit, weights, channel, &mut |follows, regressors| {
+                structures.extend(tester.ask(channel, follows, &regressors));
+            });
         }
     }
     // Bonferroni: with many questions one of them looks improbable by chance
@@ -128,8 +126,8 @@ impl Tester {
         // one scale for all regressors, so that small eigenvalues mean dependence and not units
         let x = unit_columns(x);
         let z = x.tr_mul(&self.residual);
-        let xj = x.tr_mul(&self.jacobian);
-        let s = x.tr_mul(&x) - &xj * &self.covariance * xj.transpose();
+        let xj = transposed_product(&x, &self.jacobian);
+        let s = transposed_product(&x, &x) - &xj * &self.covariance * xj.transpose();
         let eigen = SymmetricEigen::new((&s + s.transpose()) * 0.5);
         let largest = eigen.eigenvalues.max();
         let (mut statistic, mut dof) = (0.0, 0.0);
@@ -160,33 +158,31 @@ impl Tester {
     }
 }
 
-/// The questions about a channel, each with what the residuals would follow and with regressors. Regressors are zero
-/// outside the channel.
+/// Takes what the residuals would follow, and its regressors. Questions are asked one by one, because the regressors of
+/// all would need much memory.
+type Ask<'a> = &'a mut dyn FnMut(String, Vec<Vec<f64>>);
+
+/// Asks the questions about a channel. Regressors are zero outside the channel.
 fn questions(
     campaign: &Campaign,
     forward: &Forward,
     fit: &Fit,
     weights: &Weights,
     channel: Channel,
-) -> Vec<(String, Vec<Vec<f64>>)> {
-    let mut out = match channel {
-        Channel::Static => static_questions(campaign, forward, fit),
-        Channel::Modal => modal_questions(campaign, forward),
-        _ => return windup_questions(campaign, forward),
-    };
-    out.extend(stiffness_questions(campaign, forward, fit, weights, channel));
-    out.extend(change_questions(forward, fit, weights, channel));
-    out
+    ask: Ask,
+) {
+    match channel {
+        Channel::Static => static_questions(campaign, forward, fit, ask),
+        Channel::Modal => modal_questions(campaign, forward, ask),
+        _ => return windup_questions(campaign, forward, ask),
+    }
+    stiffness_questions(campaign, forward, fit, weights, channel, ask);
+    change_questions(forward, fit, weights, channel, ask);
 }
 
 /// Asks whether the size of an effect, or a material's modulus, changes in the course of the tests. The
 /// regressors are the sensitivities of the readings times functions of the order.
-fn change_questions(
-    forward: &Forward,
-    fit: &Fit,
-    weights: &Weights,
-    channel: Channel,
-) -> Vec<(String, Vec<Vec<f64>>)> {
+fn change_questions(forward: &Forward, fit: &Fit, weights: &Weights, channel: Channel, ask: Ask) {
     let range = forward.range(channel);
     let part = |i: usize| (i - range.start) as f64 / range.len() as f64;
     let ordered = |p: usize, k: usize| -> Vec<f64> {
@@ -196,21 +192,21 @@ fn change_questions(
         }
         column
     };
-    let question = |what: String, numbers: std::ops::Range<usize>| {
+    let mut question = |what: String, numbers: std::ops::Range<usize>| {
         let columns = numbers.flat_map(|p| [0, 2].map(|k| (p, k))).map(|(p, k)| ordered(p, k)).collect();
-        (format!("{what} that changes with the order of the tests"), columns)
+        ask(format!("{what} that changes with the order of the tests"), columns);
     };
-    let moduli = fit.model.nuisance.numbers.iter().enumerate().filter_map(|(p, (calibration, _))| {
-        let Calibration::Modulus(material, _) = calibration else { return None };
-        Some(question(format!("a modulus of {material}"), p..p + 1))
-    });
+    for (p, (calibration, _)) in fit.model.nuisance.numbers.iter().enumerate() {
+        if let Calibration::Modulus(material, _) = calibration {
+            question(format!("a modulus of {material}"), p..p + 1);
+        }
+    }
     // a wrong unit has no parameter
     let sized = fit.model.effects.iter().enumerate().filter(|(_, of)| !of.free_parameters.is_empty());
-    let effects = sized.map(|(effect, of)| {
+    for (effect, of) in sized {
         let first = fit.model.first_parameter(effect);
-        question(format!("a size of {}", of.label()), first..first + of.free_parameters.len())
-    });
-    moduli.chain(effects).collect()
+        question(format!("a size of {}", of.label()), first..first + of.free_parameters.len());
+    }
 }
 
 /// Asks whether a joint's stiffness changes with its angle, its torque or the order of the tests. The
@@ -221,8 +217,8 @@ fn stiffness_questions(
     fit: &Fit,
     weights: &Weights,
     channel: Channel,
-) -> Vec<(String, Vec<Vec<f64>>)> {
-    let mut out = Vec::new();
+    ask: Ask,
+) {
     let torques = forward.torques_nm(&fit.point.coefficients);
     let names: Vec<String> = campaign.arm.joints().map(|j| j.name.clone()).collect();
     let driven = campaign.arm.driven_joint_names();
@@ -244,17 +240,16 @@ fn stiffness_questions(
                 _ => &campaign.modal[i - forward.starts[1]].pose_deg,
             };
             let angle = (0..4).map(|k| times(&|i| waves(pose(i)[j])[k])).collect();
-            out.push((format!("a stiffness of {name} that changes with its angle"), angle));
+            ask(format!("a stiffness of {name} that changes with its angle"), angle);
         }
         let first = forward.range(channel).start;
         let part = |i: usize| (i - first) as f64 / count;
         let order = (0..4).map(|k| times(&|i| order_functions(part(i))[k])).collect();
-        out.push((format!("a stiffness of {name} that changes with the order of the tests"), order));
+        ask(format!("a stiffness of {name} that changes with the order of the tests"), order);
         let law: [fn(f64) -> f64; 4] = [|t| t.abs(), |t| t * t, |t| t.signum(), |t| t];
         let torque = law.iter().map(|f| times(&|i| f(torques[i][joint] / largest))).collect();
-        out.push((format!("a stiffness of {name} that changes with its torque"), torque));
+        ask(format!("a stiffness of {name} that changes with its torque"), torque);
     }
-    out
 }
 
 /// Values at the data of a channel, and zero elsewhere.
@@ -266,7 +261,7 @@ fn spread(forward: &Forward, channel: Channel, value: impl Fn(usize, usize) -> f
     out
 }
 
-fn static_questions(campaign: &Campaign, forward: &Forward, fit: &Fit) -> Vec<(String, Vec<Vec<f64>>)> {
+fn static_questions(campaign: &Campaign, forward: &Forward, fit: &Fit, ask: Ask) {
     let rows = &campaign.statics;
     let row = |i: usize| i / 3;
     let count = rows.len() as f64;
@@ -281,12 +276,11 @@ fn static_questions(campaign: &Campaign, forward: &Forward, fit: &Fit) -> Vec<(S
         }));
         out
     };
-    let mut out = Vec::new();
     let order: Vec<Vec<f64>> = (0..6).flat_map(|k| vary(&|r| order_functions(r as f64 / count)[k])).collect();
-    out.push(("the order of the tests".to_string(), order));
+    ask("the order of the tests".to_string(), order);
     for (j, name) in campaign.arm.driven_joint_names().iter().enumerate() {
         let angle: Vec<Vec<f64>> = (0..4).flat_map(|k| vary(&|r| waves(rows[r].pose_deg[j])[k])).collect();
-        out.push((format!("the angle of {name}"), angle));
+        ask(format!("the angle of {name}"), angle);
     }
     let load: Vec<Vec<f64>> = [
         vary(&|r| rows[r].payload.mass_kg / 10.0),
@@ -294,54 +288,46 @@ fn static_questions(campaign: &Campaign, forward: &Forward, fit: &Fit) -> Vec<(S
         vary(&|r| rows[r].force_n.norm() / 100.0),
     ]
     .concat();
-    out.push(("the load".to_string(), load));
+    ask("the load".to_string(), load);
     let branch = vary(&|r| if rows[r].branch == "unloading" { 1.0 } else { 0.0 });
-    out.push(("loading or unloading".to_string(), branch));
-    out
+    ask("loading or unloading".to_string(), branch);
 }
 
-fn modal_questions(campaign: &Campaign, forward: &Forward) -> Vec<(String, Vec<Vec<f64>>)> {
+fn modal_questions(campaign: &Campaign, forward: &Forward, ask: Ask) {
     let rows = &campaign.modal;
     let first = forward.starts[1];
     let count = rows.len() as f64;
     let function = |f: &dyn Fn(usize) -> f64| spread(forward, Channel::Modal, |i, _| f(i - first));
-    let mut out = Vec::new();
     let order = (0..6).map(|k| function(&|r| order_functions(r as f64 / count)[k])).collect();
-    out.push(("the order of the tests".to_string(), order));
+    ask("the order of the tests".to_string(), order);
     for (j, name) in campaign.arm.driven_joint_names().iter().enumerate() {
         let low = |r: usize, k: usize| if rows[r].mode <= 2 { waves(rows[r].pose_deg[j])[k] } else { 0.0 };
         let angle = (0..4)
             .flat_map(|k| [function(&|r| waves(rows[r].pose_deg[j])[k]), function(&|r| low(r, k))])
             .collect();
-        out.push((format!("the angle of {name}"), angle));
+        ask(format!("the angle of {name}"), angle);
     }
     let load = vec![function(&|r| rows[r].payload.mass_kg / 10.0), function(&|_| 1.0)];
-    out.push(("the payload".to_string(), load));
+    ask("the payload".to_string(), load);
     let modes = (1..=6).map(|m| function(&|r| if rows[r].mode == m { 1.0 } else { 0.0 })).collect();
-    out.push(("the number of the mode".to_string(), modes));
-    out
+    ask("the number of the mode".to_string(), modes);
 }
 
-fn windup_questions(campaign: &Campaign, forward: &Forward) -> Vec<(String, Vec<Vec<f64>>)> {
+fn windup_questions(campaign: &Campaign, forward: &Forward, ask: Ask) {
     let rows = &campaign.windup;
     let first = forward.starts[2];
     let names: Vec<&str> = campaign.arm.joints().map(|j| j.name.as_str()).collect();
-    names
-        .into_iter()
-        .filter(|name| rows.iter().filter(|r| r.joint == *name).count() >= 6)
-        .map(|name| {
-            let largest =
-                rows.iter().filter(|r| r.joint == name).map(|r| r.torque_nm.abs()).fold(1e-9, f64::max);
-            let function = |f: &dyn Fn(f64, f64) -> f64| {
-                spread(forward, Channel::Windup, |i, _| {
-                    let row = &rows[i - first];
-                    let side = if row.branch == "unloading" { 1.0 } else { -1.0 };
-                    if row.joint == name { f(row.torque_nm / largest, side) } else { 0.0 }
-                })
-            };
-            let mut regressors: Vec<Vec<f64>> = (0..6).map(|k| function(&|t, _| t.powi(k))).collect();
-            regressors.extend((0..3).map(|k| function(&|t, side| side * t.powi(k))));
-            (format!("the torque on {name}"), regressors)
-        })
-        .collect()
+    for name in names.into_iter().filter(|name| rows.iter().filter(|r| r.joint == *name).count() >= 6) {
+        let largest = rows.iter().filter(|r| r.joint == name).map(|r| r.torque_nm.abs()).fold(1e-9, f64::max);
+        let function = |f: &dyn Fn(f64, f64) -> f64| {
+            spread(forward, Channel::Windup, |i, _| {
+                let row = &rows[i - first];
+                let side = if row.branch == "unloading" { 1.0 } else { -1.0 };
+                if row.joint == name { f(row.torque_nm / largest, side) } else { 0.0 }
+            })
+        };
+        let mut regressors: Vec<Vec<f64>> = (0..6).map(|k| function(&|t, _| t.powi(k))).collect();
+        regressors.extend((0..3).map(|k| function(&|t, side| side * t.powi(k))));
+        ask(format!("the torque on {name}"), regressors);
+    }
 }

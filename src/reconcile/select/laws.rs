@@ -15,6 +15,7 @@ use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::DVector;
+use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// A law without a name: a way in which readings can differ that is not an effect of the library.
@@ -25,17 +26,25 @@ pub(crate) struct Law {
     pub columns: Vec<Vec<f64>>,
 }
 
-/// Every law at every place, linearized about a fit.
-pub(crate) fn laws(campaign: &Campaign, forward: &Forward, fit: &Fit) -> Vec<Law> {
+/// What `each` says of every law at every place, linearized about a fit. Laws are made and asked in groups, because the
+/// columns of all would need much memory.
+pub(crate) fn of_every_law<T: Send>(
+    campaign: &Campaign,
+    forward: &Forward,
+    fit: &Fit,
+    each: impl Fn(&Law) -> T + Sync,
+) -> Vec<T> {
     let builder = Builder { campaign, forward, fit, torques_nm: forward.torques_nm(&fit.point.coefficients) };
-    let joints = (0..forward.layout.joints.len()).flat_map(|j| builder.joint_laws(j));
-    let mut out: Vec<Law> = joints
-        .chain(builder.yielding_laws())
-        .chain(builder.link_laws())
-        .chain(builder.reading_laws())
-        .collect();
-    // a law that changes no reading cannot be tested
-    out.retain(|law| law.columns.iter().all(|c| c.iter().any(|x| *x != 0.0)));
+    let mut out = Vec::new();
+    let mut ask = |mut group: Vec<Law>| {
+        // a law that changes no reading cannot be tested
+        group.retain(|law| law.columns.iter().all(|c| c.iter().any(|x| *x != 0.0)));
+        out.par_extend(group.par_iter().map(&each));
+    };
+    (0..forward.layout.joints.len()).for_each(|joint| ask(builder.joint_laws(joint)));
+    ask(builder.yielding_laws());
+    ask(builder.link_laws());
+    ask(builder.reading_laws());
     out
 }
 
@@ -231,7 +240,7 @@ impl Builder<'_> {
         const PART: f64 = 1e-4;
         let mut moved = self.fit.point.coefficients.clone();
         changed(&mut moved, PART);
-        change_to(self.forward, &self.fit.point, &moved).into_iter().map(|d| d / PART).collect()
+        change_to(self.forward, &self.fit.point, moved).into_iter().map(|d| d / PART).collect()
     }
 
     /// The change of every reading by additional compliances of strain coordinates.

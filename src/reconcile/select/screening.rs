@@ -8,7 +8,8 @@
 use super::search::{Scored, Search};
 use super::unnamed::{self, Better};
 use crate::reconcile::fit::descent::{
-    Effort, Fit, Normal, Point, bounded_step, change, descent, evaluate, fit, jacobian, normal, objective,
+    Effort, Fit, Normal, Point, Slopes, bounded_step, change, descent, evaluate, fit, jacobian, normal,
+    objective,
 };
 use crate::reconcile::model::parameters::Model;
 use nalgebra::{DMatrix, DVector};
@@ -292,21 +293,22 @@ impl<'a> Search<'a> {
         let mut u = here.u.clone();
         u.extend_from_slice(start);
         let base = change(self.forward, model, here, &u);
-        let mut columns = slopes.clone().resize_horizontally(u.len(), 0.0);
-        for p in here.u.len()..u.len() {
+        let mut own = DMatrix::zeros(base.len(), start.len());
+        for (p, mut column) in (here.u.len()..u.len()).zip(own.column_iter_mut()) {
             let (_, high) = model.bounds(p);
             // a difference must stay within the bounds
             let step = if u[p] + 1e-3 > high { -1e-3 } else { 1e-3 };
             let mut moved = u.clone();
             moved[p] += step;
             let ahead = change(self.forward, model, here, &moved);
-            for i in 0..base.len() {
-                columns[(i, p)] = (ahead[i] - base[i]) / step;
-            }
+            let changes = ahead.iter().zip(&base);
+            column.iter_mut().zip(changes).for_each(|(slope, (ahead, base))| *slope = (ahead - base) / step);
         }
+        let columns = [slopes, &own];
+        let columns = Slopes(&columns);
         let origin = DVector::from_vec(u.clone());
         let at = |u: &[f64]| -> Vec<f64> {
-            let delta = &columns * (DVector::from_column_slice(u) - &origin);
+            let delta = columns.times(&(DVector::from_column_slice(u) - &origin));
             here.predicted.iter().zip(&base).zip(delta.iter()).map(|((p, b), d)| p + b + d).collect()
         };
         let mut predicted = at(&u);

@@ -3,7 +3,7 @@
 //! A gear's curve has break points at which frequencies step, and steps stop a descent. Fits of such a model
 //! therefore begin with the steps smoothed, and end with the break points moved by hand.
 
-use crate::reconcile::fit::descent::{Effort, Fit, Point, Weights, descent, evaluate, fit};
+use crate::reconcile::fit::descent::{Effort, Fit, Point, Weights, descent, evaluate_near, fit};
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::{Candidate, Model, Nuisance};
 use crate::reconcile::readings::campaign::Campaign;
@@ -137,7 +137,7 @@ impl<'a> Search<'a> {
                 let rises = (1..=10).map(|i| {
                     let mut moved = u.clone();
                     moved[p] += side * STEP * i as f64;
-                    evaluate(self.forward, &model, &moved, self.weights).objective
+                    evaluate_near(self.forward, &model, &moved, self.weights, Some(&best)).objective
                 });
                 rises.take_while(|o| *o < best.objective + 1.0).count() as f64
             };
@@ -196,5 +196,47 @@ impl<'a> Search<'a> {
         effects.remove(effect);
         u.drain(first..first + model.effects[effect].free_parameters.len());
         (effects, u)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::effect::soft_windup;
+    use crate::catalog::Catalogs;
+    use crate::reconcile::fit::descent::evaluate;
+    use crate::reconcile::fit::noise::Noise;
+    use crate::reconcile::model::candidates::candidates;
+    use std::path::Path;
+
+    #[test]
+    fn modes_taken_from_a_neighbour_are_those_solved_anew_wherever_a_break_point_is() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e");
+        let campaign = Campaign::read(&folder, &Catalogs::default()).expect("sound");
+        let forward = Forward::new(&campaign);
+        let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
+        let candidates = candidates(&forward);
+        let curve = candidates
+            .iter()
+            .find(|c| c.kind.name == soft_windup::KIND.name && c.at == "j2")
+            .expect("a gear");
+        let model = Model::baseline(&nuisance).with(curve);
+        let weights = Noise::default().weights(&forward);
+        let mut u = vec![0.0; model.calibrated()];
+        u.extend(&curve.starts[0]);
+        let near = evaluate(&forward, &model, &u, &weights);
+        let mut kept = 0;
+        for p in model.break_points() {
+            for step in 1..=10 {
+                let mut moved = u.clone();
+                moved[p] += 0.05 * step as f64;
+                let taken = evaluate_near(&forward, &model, &moved, &weights, Some(&near));
+                let solved = evaluate(&forward, &model, &moved, &weights);
+                assert_eq!(taken.predicted, solved.predicted, "break point {p}, step {step}");
+                let same = taken.solved.iter().zip(&near.solved);
+                kept += same.filter(|(a, b)| std::sync::Arc::ptr_eq(a, b)).count();
+            }
+        }
+        assert!(kept > 0, "no modes were kept");
     }
 }

@@ -5,15 +5,14 @@
 //! general [`laws`](super::laws), which are fitted together with the calibration. A law is added to the named
 //! effects, or replaces them.
 
-use super::laws::{Law, laws};
+use super::laws::{Law, of_every_law};
 use super::search::{Scored, Search};
 use super::structure::Structure;
-use crate::reconcile::fit::descent::{Effort, Fit, Weights, normal, objective};
+use crate::reconcile::fit::descent::{Effort, Fit, Slopes, Weights, normal, objective};
 use crate::reconcile::fit::stats::ln_chi_squared_tail;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{Cholesky, DMatrix, DVector};
-use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Sizes of a law below this part of its full size are equally likely. At full size a stiffness or a reading changes
@@ -55,7 +54,7 @@ pub(crate) fn law_questions(
     fit: &Fit,
     weights: &Weights,
 ) -> Vec<Structure> {
-    let competitors = competitors(forward, fit, &laws(campaign, forward, fit), weights);
+    let competitors = competitors(campaign, forward, fit, weights);
     // Bonferroni: one of many laws fits better by chance
     let asked = (competitors.len() as f64).max(1.0).ln();
     competitors
@@ -71,8 +70,8 @@ pub(crate) fn law_questions(
 /// The law that, added to calibration alone, explains the readings better than calibration does.
 pub(crate) fn better_than_calibration(search: &Search, baseline: &Fit) -> Option<Better> {
     let places = search.places() as f64;
-    let laws = laws(search.campaign, search.forward, baseline);
-    best_of(competitors(search.forward, baseline, &laws, search.weights), baseline.evidence, places)
+    let competitors = competitors(search.campaign, search.forward, baseline, search.weights);
+    best_of(competitors, baseline.evidence, places)
 }
 
 /// The law that explains the readings better in place of one named effect, or of all of them.
@@ -85,9 +84,8 @@ pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<
     });
     let fits: Vec<Fit> = single.collect();
     let better = |fit: &Fit| {
-        let laws = laws(search.campaign, search.forward, fit);
         let evidence = best.score + fit.model.effects.len() as f64 * places.ln();
-        best_of(competitors(search.forward, fit, &laws, search.weights), evidence, places)
+        best_of(competitors(search.campaign, search.forward, fit, search.weights), evidence, places)
     };
     fits.iter().chain([baseline]).filter_map(better).max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
@@ -103,23 +101,23 @@ fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<B
 }
 
 /// Fits each law together with the parameters of a fit.
-fn competitors(forward: &Forward, fit: &Fit, laws: &[Law], weights: &Weights) -> Vec<Competitor> {
-    laws.par_iter().map(|law| competitor(forward, fit, law, weights)).collect()
+fn competitors(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<Competitor> {
+    of_every_law(campaign, forward, fit, |law| competitor(forward, fit, law, weights))
 }
 
 /// Fits a model and a law, linearized.
 fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Competitor {
     let own = fit.point.u.len();
     let n = own + law.columns.len();
-    let mut columns = fit.jacobian.clone().resize_horizontally(n, 0.0);
-    for (k, column) in law.columns.iter().enumerate() {
-        columns.column_mut(own + k).copy_from_slice(column);
-    }
+    let mut further = DMatrix::zeros(fit.jacobian.nrows(), law.columns.len());
+    further.column_iter_mut().zip(&law.columns).for_each(|(mut to, column)| to.copy_from_slice(column));
+    let columns = [&fit.jacobian, &further];
+    let columns = Slopes(&columns);
     let mut origin = fit.point.u.clone();
     origin.resize(n, 0.0);
     let origin = DVector::from_vec(origin);
     let at = |u: &DVector<f64>| -> Vec<f64> {
-        let delta = &columns * (u - &origin);
+        let delta = columns.times(&(u - &origin));
         fit.point.predicted.iter().zip(delta.iter()).map(|(p, d)| p + d).collect()
     };
     let (mut u, mut predicted) = (origin.clone(), fit.point.predicted.clone());

@@ -6,6 +6,7 @@ use crate::reconcile::fit::descent::{Fit, Weights};
 use crate::reconcile::fit::held_out::rms;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
+use std::collections::HashMap;
 
 /// Number of poses that are listed.
 const WORST_POSES: usize = 3;
@@ -19,13 +20,15 @@ pub(crate) fn located(
     weights: &Weights,
 ) -> Vec<Located> {
     let mut parts: Vec<(String, Vec<usize>)> = Vec::new();
+    let mut known: HashMap<String, usize> = HashMap::new();
     for (i, datum) in forward.data.iter().enumerate() {
         if weights.inverse[i] > 0.0 {
             for name in names(campaign, forward, i) {
-                match parts.iter_mut().find(|(n, _)| *n == name) {
-                    Some((_, list)) => list.push(i),
-                    None => parts.push((name, vec![i])),
-                }
+                let part = *known.entry(name).or_insert_with_key(|name| {
+                    parts.push((name.clone(), Vec::new()));
+                    parts.len() - 1
+                });
+                parts[part].1.push(i);
             }
         }
         debug_assert!(datum.sigma > 0.0);

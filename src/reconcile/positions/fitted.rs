@@ -1,0 +1,123 @@
+//! A measured position with what gravity does to it, and a fitted model of geometry and compliances.
+
+use super::kinematics::{Geometry, Placer, Placing, Pose};
+use super::loads::Deflection;
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+/// Degrees of freedom of the Student distribution.
+pub(crate) const NU: f64 = 4.0;
+
+/// One measured position.
+#[derive(Debug, Clone)]
+pub(crate) struct Sample {
+    /// Angles of the driven joints.
+    pub pose: Arc<Pose>,
+    /// Index of the arm that carries the point.
+    pub arm: usize,
+    /// Index of its point on the tool.
+    pub point: usize,
+    /// Index of the instrument's session.
+    pub station: usize,
+    /// Index of this sample among the samples.
+    pub index: usize,
+    /// Index of its pose. Samples of one pose are held out together.
+    pub group: usize,
+    /// Measured position in the instrument's frame \[m\].
+    pub measured_m: Vector3<f64>,
+    /// The effect of gravity on this position.
+    pub deflection: Arc<Deflection>,
+}
+
+impl Sample {
+    /// The arguments that the geometry needs.
+    pub(crate) fn placing(&self) -> Placing<'_> {
+        Placing { arm: self.arm, pose: &self.pose, point: self.point, station: self.station }
+    }
+}
+
+/// A fitted model.
+#[derive(Debug, Clone)]
+pub(crate) struct Fitted {
+    /// Geometry.
+    pub geometry: Geometry,
+    /// Change of each number of the geometry from its nominal value.
+    pub moved: Vec<f64>,
+    /// Standard deviations of the numbers of the geometry.
+    pub number_deviations: Vec<f64>,
+    /// Indices of the candidates that the model contains as effects.
+    pub effects: Vec<usize>,
+    /// The compliances of each effect \[rad/(N m)\].
+    pub compliances: Vec<Vec<f64>>,
+    /// Standard deviations of the compliances \[rad/(N m)\].
+    pub deviations: Vec<Vec<f64>>,
+    /// Scale of the errors \[m\].
+    pub scale_m: f64,
+    /// ln of the likelihood.
+    pub ln_likelihood: f64,
+}
+
+impl Fitted {
+    /// A model of a geometry without effects.
+    pub(crate) fn rigid(geometry: Geometry, scale_m: f64) -> Self {
+        Self {
+            geometry,
+            moved: Vec::new(),
+            number_deviations: Vec::new(),
+            effects: Vec::new(),
+            compliances: Vec::new(),
+            deviations: Vec::new(),
+            scale_m,
+            ln_likelihood: 0.0,
+        }
+    }
+
+    /// Predicted position \[m\].
+    pub(crate) fn predicted_m(&self, sample: &Sample) -> Vector3<f64> {
+        self.predicted_by(&mut self.geometry.placer(), sample)
+    }
+
+    /// Predicted position by a placer of the model's geometry \[m\].
+    pub(crate) fn predicted_by(&self, placer: &mut Placer, sample: &Sample) -> Vector3<f64> {
+        let rigid = placer.place_m(sample.placing());
+        rigid + self.geometry.level_to_instrument() * self.displacement(sample)
+    }
+
+    /// Error of a sample, measured minus predicted \[m\].
+    pub(crate) fn error(&self, sample: &Sample) -> Vector3<f64> {
+        sample.measured_m - self.predicted_m(sample)
+    }
+
+    /// Displacement of a sample's point by gravity: known deflection, and the effects of the model, in the level
+    /// frame \[m\].
+    pub(crate) fn displacement(&self, sample: &Sample) -> Vector3<f64> {
+        let gravity = &self.geometry.gravity;
+        let [by_x, by_y] = &sample.deflection.known_slopes_m;
+        sample.deflection.known_m + by_x * gravity.x + by_y * gravity.y + self.yielded(sample, gravity)
+    }
+
+    /// Displacement of a sample's point by the effects of the model under gravity along a direction, in the level
+    /// frame \[m\].
+    pub(crate) fn yielded(&self, sample: &Sample, gravity: &Vector3<f64>) -> Vector3<f64> {
+        let effects = self.effects.iter().zip(&self.compliances);
+        effects.fold(Vector3::zeros(), |sum, (&effect, compliances)| {
+            sum + sample.deflection.yielded(effect, compliances, gravity)
+        })
+    }
+
+    /// Weight of a sample with this error \[1/m²\].
+    pub(crate) fn weight(&self, error: &Vector3<f64>) -> f64 {
+        weight(error, self.scale_m) / (self.scale_m * self.scale_m)
+    }
+}
+
+/// Errors of samples, measured minus predicted \[m\].
+pub(crate) fn errors(samples: &[&Sample], fitted: &Fitted) -> Vec<Vector3<f64>> {
+    let mut placer = fitted.geometry.placer();
+    samples.iter().map(|s| s.measured_m - fitted.predicted_by(&mut placer, s)).collect()
+}
+
+/// Weight of a sample with this error, in units of the scale.
+pub(crate) fn weight(error: &Vector3<f64>, scale_m: f64) -> f64 {
+    (NU + 3.0) / (NU + error.norm_squared() / (scale_m * scale_m))
+}
