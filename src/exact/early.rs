@@ -17,9 +17,9 @@ use super::search_state::{Findings, SearchState};
 use crate::pareto::objectives::Objectives;
 
 /// Number of dives.
-const DIVES: usize = 24;
+const DIVES: usize = 16;
 /// Number of boxes of the cover: they take about as long as the dives.
-const BOXES: usize = 2048;
+const BOXES: usize = 1024;
 
 /// What is known before the first pass.
 pub(super) struct Early<'l> {
@@ -48,7 +48,7 @@ impl<'l> Early<'l> {
             gap: self.gap(found),
             front_size: found.len().max(self.findings.kept.len()) as u64,
             boxes_open: self.cover.len() as u64,
-            designs: designs + self.findings.evaluated,
+            designs: designs.max(self.findings.evaluated),
             ..Known::default()
         });
     }
