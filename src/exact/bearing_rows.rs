@@ -208,6 +208,7 @@ impl Sum {
 }
 
 /// The components of a load at rest plus a ramp times a factor.
+#[inline]
 fn moving(
     at_rest: &[[f64; 2]; COMPONENTS],
     ramp: &[[f64; 2]; COMPONENTS],
@@ -224,12 +225,15 @@ fn moving(
 type Squares = [f64; 3];
 
 /// The least and the greatest load of components in intervals, squared.
+#[inline]
 fn squared_lengths(components: &[[f64; 2]; COMPONENTS]) -> [Squares; 2] {
-    let squares = components.map(|[low, high]| [low.max(-high).max(0.0), high.max(-low)].map(|x| x * x));
-    [0, 1].map(|end| {
-        let length = |places: &[usize]| places.iter().map(|&at| squares[at][end]).sum();
-        [length(&MOMENT), length(&RADIAL), length(&AXIAL)]
-    })
+    let mut squares = [[0.0; COMPONENTS]; 2];
+    for (at, [low, high]) in components.iter().enumerate() {
+        let sizes = [low.max(-high).max(0.0), high.max(-low)];
+        squares[0][at] = sizes[0] * sizes[0];
+        squares[1][at] = sizes[1] * sizes[1];
+    }
+    squares.map(|of| [of[MOMENT[0]] + of[MOMENT[1]], of[RADIAL[0]] + of[RADIAL[1]], of[AXIAL[0]]])
 }
 
 /// Makes each end of a load the larger of two.

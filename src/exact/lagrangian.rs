@@ -171,13 +171,18 @@ impl Rows<'_> {
             let adds = member.adds[before..].iter_mut().zip(&member.values);
             adds.for_each(|(before, value)| *before = value - *before);
         }
+        self.complete(&mut member);
+        (DualPoint { multipliers, least: total, levels }, member)
+    }
+
+    /// Computes the mode rows of a relaxed design whose pieces are all added, and scales every row.
+    fn complete(&self, member: &mut RelaxedDesign) {
         for (m, mode) in self.modes.iter().enumerate() {
-            member.values[self.first_mode + m] = self.mode_value(mode, &member);
+            member.values[self.first_mode + m] = self.mode_value(mode, member);
         }
         for ((value, scale), fixed) in member.values.iter_mut().zip(&self.scale).zip(&self.fixed) {
             *value = *value / scale + fixed;
         }
-        (DualPoint { multipliers, least: total, levels }, member)
     }
 
     /// A relaxed design in which all numbers are zero.

@@ -1,6 +1,6 @@
 //! A matrix game: the weights of columns under which the least weighted row is as large as possible.
 
-use crate::mechanics::lanes::{LaneWork, Lanes, in_lanes, subtract_multiple};
+use crate::mechanics::lanes::{LANES, LaneWork, Lanes, in_lanes, subtract_multiple};
 use std::ops::Range;
 
 /// Greatest number of simplex pivots.
@@ -54,13 +54,12 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
     table[width * line..width * line + count].fill(-1.0);
     for _ in 0..MOST_PIVOTS {
         let objective = &table[width * line..width * line + line - 1];
-        let Some((enter, &cost)) = objective.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else {
-            break;
-        };
+        let cost = in_lanes(Least(objective));
         // No variable improves the objective: the tableau is optimal.
         if cost > -NOTHING {
             break;
         }
+        let Some(enter) = objective.iter().position(|x| *x == cost) else { break };
         let ratio = |i: usize| {
             let a = table[i * line + enter];
             if a > NOTHING { table[i * line + line - 1] / a } else { f64::INFINITY }
@@ -84,6 +83,23 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
     let weighted = |row: &[f64]| row.iter().zip(&weights).map(|(a, w)| a * w).sum::<f64>();
     let value = rows.chunks(width).map(weighted).fold(f64::INFINITY, f64::min);
     Game { weights, mix, value }
+}
+
+/// The least number of a list.
+struct Least<'a>(&'a [f64]);
+
+impl LaneWork for Least<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> f64 {
+        let (eights, rest) = self.0.as_chunks::<LANES>();
+        let mut least = V::splat(f64::INFINITY);
+        for eight in eights {
+            least = least.min(V::load(eight));
+        }
+        least.store().iter().chain(rest).fold(f64::INFINITY, |least, x| least.min(*x))
+    }
 }
 
 /// One step of the simplex method: the variable `enter` becomes basic in the place of that of line `leave`.

@@ -41,7 +41,7 @@ fn a_long_time_limit_changes_no_slack() {
 fn a_time_limit_proves_nearly_the_gap_that_a_single_pass_of_that_time_would() {
     for growth in [2.0, 2.5, 3.0, 3.3, 3.6, 4.0] {
         for limit_s in [1.0, 5.0, 20.0, 60.0, 300.0] {
-            let first_s = 2e-3;
+            let first_s: f64 = 2e-3;
             let best = (first_s / limit_s).powf(1.0 / growth);
             let done = planned(0.0, growth, first_s, Some(limit_s));
             let (proved, at_s) = done.last().copied().expect("a pass is done");
