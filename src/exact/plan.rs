@@ -4,9 +4,9 @@
 //! bound, so a completed pass proves that every design has a found one that close. The time of a pass grows as a power of
 //! the reciprocal of its slack, `t ∝ ε^-g`. The exponent is measured: it is that between the last two passes done.
 //!
-//! Without a time limit the slacks are those of a list and do not depend on the machine. With a time limit the next slack
-//! is the one of the list too, if the pass should be done in time. Otherwise it is the least slack for which there should
-//! be time.
+//! Without a time limit the slacks are those of a list and do not depend on the machine. With a time limit they are the
+//! same as long as passes are short beside the time left, and if the gap that was asked for can be proved in time.
+//! Otherwise the plan is to make its last pass with the least slack for which there should be time.
 
 /// The slacks of the list.
 const SLACKS: [f64; 25] = [
@@ -23,11 +23,13 @@ const PASSED_OVER_TO_A_GAP: usize = 8;
 const GROWTH: f64 = 3.3;
 const LEAST_GROWTH: f64 = 1.0;
 const MOST_GROWTH: f64 = 4.5;
-/// A pass is chosen if it should take at most this part of the time left.
+/// The last pass should take at most this part of the time left.
 const SAFE: f64 = 0.75;
-/// With a time limit, the most by which one pass divides the slack. A longer step would rest on a measurement from too far
-/// away; the additional pass takes a tenth of the time of the next.
-const LONGEST_STEP: f64 = 2.5;
+/// A pass that should take at most this part of the time left is short.
+const SHORT: f64 = 0.05;
+/// The most by which one pass divides the slack. A longer step would rest on a measurement from too far away; an additional
+/// pass takes a small part of the time of the next.
+const LONGEST_STEP: f64 = 3.0;
 /// If there should be no time for any finer pass, the slack is still multiplied by this: the prediction may be wrong.
 const SHORTEST_STEP: f64 = 0.95;
 
@@ -64,10 +66,13 @@ impl Plan {
         let Some(last) = done.last() else { return self.slacks.first().copied() };
         let listed = self.listed(last.slack)?;
         let Some(left_s) = left_s.filter(|_| listed > 0.0) else { return Some(listed) };
-        let affordable = least_slack_within(done, SAFE * left_s).max(last.slack / LONGEST_STEP);
-        let finer = affordable.min(last.slack * SHORTEST_STEP);
-        let reaches = listed >= affordable;
-        Some(if reaches { listed } else { finer.max(listed) })
+        let is_goal = self.slacks.last() == Some(&listed);
+        let part = if is_goal { SAFE } else { SHORT };
+        if listed >= least_slack_within(done, part * left_s) {
+            return Some(listed);
+        }
+        let finest = self.slacks.iter().copied().rfind(|slack| *slack > 0.0)?;
+        Some(step_to(least_slack_within(done, SAFE * left_s).max(finest), last.slack).max(finest))
     }
 
     /// The next slack of the list, after those that are skipped. The pass without slack is never skipped to; it comes
@@ -78,6 +83,16 @@ impl Plan {
         let next = ahead.next()?;
         Some(ahead.take_while(|slack| *slack > 0.0).last().unwrap_or(next))
     }
+}
+
+/// The first of as few equal steps as possible from a slack to a finer one, in the logarithm.
+fn step_to(slack: f64, from: f64) -> f64 {
+    let finer = from / slack;
+    if finer * SHORTEST_STEP < 1.0 {
+        return from * SHORTEST_STEP;
+    }
+    let steps = (finer.ln() / LONGEST_STEP.ln()).ceil().max(1.0);
+    from * finer.powf(-steps.recip())
 }
 
 /// The exponent `g` of the growth `t ∝ ε^-g`, measured between the last two passes.

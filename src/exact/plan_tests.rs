@@ -39,13 +39,13 @@ fn a_long_time_limit_changes_no_slack() {
 
 #[test]
 fn a_time_limit_proves_nearly_the_gap_that_a_single_pass_of_that_time_would() {
-    for growth in [2.0, 2.5, 3.0, 3.3, 3.6, 4.0] {
-        for limit_s in [1.0, 5.0, 20.0, 60.0, 300.0] {
+    for (growth, factor) in [(2.0, 1.4), (2.5, 1.25), (3.0, 1.2), (3.3, 1.2), (3.6, 1.2), (4.0, 1.2)] {
+        for limit_s in (1..300).map(f64::from) {
             let first_s: f64 = 2e-3;
             let best = (first_s / limit_s).powf(1.0 / growth);
             let done = planned(0.0, growth, first_s, Some(limit_s));
             let (proved, at_s) = done.last().copied().expect("a pass is done");
-            assert!(proved <= 1.25 * best, "exponent {growth}, {limit_s} s: {proved} and not {best}");
+            assert!(proved <= factor * best, "exponent {growth}, {limit_s} s: {proved} and not {best}");
             assert!(at_s <= limit_s);
         }
     }
@@ -55,9 +55,9 @@ fn a_time_limit_proves_nearly_the_gap_that_a_single_pass_of_that_time_would() {
 fn a_longer_time_limit_never_proves_a_much_larger_gap() {
     let proved = |limit_s: f64| planned(0.02, 3.3, 2e-3, Some(limit_s)).last().map(|(slack, _)| *slack);
     let mut before = f64::INFINITY;
-    for limit_s in (1..400).map(f64::from) {
+    for limit_s in (1..2000).map(f64::from) {
         let now = proved(limit_s).expect("a pass is done");
-        assert!(now <= 1.2 * before, "{limit_s} s prove {now}, a second less {before}");
+        assert!(now <= 1.1 * before, "{limit_s} s prove {now}, a second less {before}");
         before = before.min(now);
     }
     assert_eq!(before, 0.02);
@@ -71,4 +71,7 @@ fn the_exponent_is_measured_between_the_last_two_passes() {
     near(growth(&[pass(0.2, 1.0), pass(0.1, 1.1)]), LEAST_GROWTH);
     near(growth(&[pass(0.2, 0.0), pass(0.1, 1.0)]), GROWTH);
     near(least_slack_within(&[pass(0.2, 1.0), pass(0.1, 8.0)], 64.0), 0.05);
+    near(step_to(0.05, 0.2), 0.1);
+    near(step_to(0.08, 0.2), 0.08);
+    near(step_to(0.3, 0.2), 0.19);
 }
