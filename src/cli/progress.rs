@@ -176,7 +176,7 @@ mod tests {
     fn the_line_of_an_exact_search_says_its_gap_and_its_front() {
         let known = Known { boxes: 125_000, boxes_open: 12, designs: 9, front_size: 431, gap: Some(0.123) };
         let line = search_line(&known, Duration::from_secs(20));
-        assert_eq!(line, "20 s: gap 12.3 %, front of 431, 1.250e5 boxes, 12 open");
+        assert_eq!(line, "20 s: gap 12 %, front of 431, 1.250e5 boxes, 12 open");
         let line = search_line(&Known::default(), Duration::from_secs(1));
         assert!(line.contains("gap not known yet"), "{line}");
     }

@@ -1,3 +1,5 @@
+//! The plan against passes whose growth is known.
+
 use super::*;
 
 /// The passes of a search whose passes take `first_s` at a slack of 1 and grow with a known exponent, up to a time limit.
