@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release --example speed -- simple 1e6 1e7 1e8` sweeps two links with fixed joints (rigid links, one
 //! case) over that many designs; `-- compare-materials` sweeps the named study (full links, three-segment gears, six
-//! sized joints, two poses). One thread; rates are per second of processor time.
+//! sized joints, three poses), and `-- FILE.json` the study in a file. One thread; rates are per second of processor time.
 
 #[path = "../benches/common/mod.rs"]
 mod common;
@@ -19,9 +19,13 @@ fn main() {
     let mut words = std::env::args().skip(1);
     let study = words.next().unwrap_or_else(|| "simple".into());
     let catalogs = Catalogs::builtin();
-    if let Some(text) = named(&study) {
-        let document = Document::parse(&study, text).expect("a named study is JSON");
-        report(&read_study(document, &catalogs).expect("a named study is whole"), &catalogs);
+    let text = match study.ends_with(".json") {
+        true => Some(std::fs::read_to_string(&study).expect("a file that can be read")),
+        false => named(&study).map(String::from),
+    };
+    if let Some(text) = text {
+        let document = Document::parse(&study, &text).unwrap_or_else(|faults| panic!("{faults}"));
+        report(&read_study(document, &catalogs).unwrap_or_else(|faults| panic!("{faults}")), &catalogs);
         return;
     }
     let sizes: Vec<f64> = words.filter_map(|w| w.parse().ok()).collect();

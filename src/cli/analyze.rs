@@ -213,6 +213,7 @@ impl Solved {
             "bearings": self.bearings_json(arm),
             "rigid_bearings": rigid_bearings(arm),
             "tip_displacement_m": self.statics.tip_displacement_m.as_slice(),
+            "small_displacements": too_far(self.statics.tip_displacement_m.norm(), arm.reach_m()).is_none(),
             "shares": shares,
             "modes": self.modes.iter().map(mode_json).collect::<Vec<_>>(),
         });

@@ -53,7 +53,7 @@ pub(crate) fn run(
 ) -> Result<(Outcome, String), Failure> {
     match &args.study {
         // a study that does not read, or a search that does not suit it, fails now and not after the fits
-        Some(study) => drop(args.how.kind(&super::asked::load_study(study, catalogs)?.0, catalogs)?),
+        Some(study) => drop(args.how.check(&super::asked::load_study(study, catalogs)?.0, catalogs)?),
         None if !args.how.is_default() => {
             return Err(Failure::Usage("--search and --time-limit are for the runs of --study".into()));
         }

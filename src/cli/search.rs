@@ -8,11 +8,13 @@ use super::supplements::SupplementArgs;
 use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::report::certificate::certificate_words;
+use crate::report::words::{TERMINAL, wrap};
 use crate::search::sweep::Status;
 use crate::space::problem::ArmProblem;
 use crate::study::definition::Study;
 use crate::study::diagnose::{empty_pieces, why_infeasible};
 use crate::study::outcome::{ExactStudy, Extent, run_exact, run_study};
+use crate::study::search_cost::SearchCost;
 use crate::study::tolerance::part;
 use clap::{Args, ValueEnum};
 use std::path::Path;
@@ -23,7 +25,8 @@ use std::time::{Duration, Instant};
 /// How the front is searched for, and how long.
 #[derive(Debug, Clone, Copy, Default, Args)]
 pub(crate) struct SearchArgs {
-    /// How the front is searched for; default: exhaustive up to 1e9 designs, exact beyond
+    /// How the front is searched for. Default: exact with --gap or --time-limit, or where it is estimated to
+    /// take less than half the processor time of visiting every design; else exhaustive
     #[arg(long, value_enum)]
     search: Option<SearchKind>,
     /// Stop the exact search after so many seconds, as Ctrl-C does; write what it found and how much may be
@@ -48,45 +51,64 @@ pub(super) enum SearchKind {
     Exact,
 }
 
-/// Above this many designs the exact search is the default.
-const MOST_VISITED: u128 = 1_000_000_000;
-
 /// Above this many designs an exhaustive search would take years.
 const MOST_CONCEIVABLE: u128 = 1_000_000_000_000_000;
 
 impl SearchArgs {
-    /// The search that was asked for, or the one that suits the number of designs.
+    /// The search that was asked for, or the one that is estimated to cost less, which is told on the terminal.
     ///
     /// # Errors
     /// It does not suit the study, or would take years.
-    pub(super) fn kind(&self, study: &Study, catalogs: &Catalogs) -> Result<SearchKind, Failure> {
-        let designs = study.space.designs(catalogs).ok_or_else(|| {
-            Failure::Usage(format!("the study \"{}\" has more than 1e38 designs; thin a grid", study.name))
-        })?;
-        let suits = if designs > MOST_VISITED { SearchKind::Exact } else { SearchKind::Exhaustive };
-        let kind = self.search.unwrap_or(suits);
-        if kind == SearchKind::Exhaustive && designs > MOST_CONCEIVABLE {
-            return Err(Failure::Usage(format!(
+    fn kind(&self, study: &Study, catalogs: &Catalogs) -> Result<SearchKind, Failure> {
+        let designs = self.check(study, catalogs)?;
+        Ok(match (self.search, self.gap.is_some() || self.time_limit.is_some()) {
+            (Some(kind), _) => kind,
+            (None, true) => SearchKind::Exact,
+            (None, false) => cheaper(study, catalogs, designs as f64),
+        })
+    }
+
+    /// Checks that what was asked for suits the study, and counts its designs.
+    ///
+    /// # Errors
+    /// It does not suit the study, or would take years.
+    pub(super) fn check(&self, study: &Study, catalogs: &Catalogs) -> Result<u128, Failure> {
+        let refused = |why: String| Err(Failure::Usage(why));
+        let Some(designs) = study.space.designs(catalogs) else {
+            return refused(format!("the study \"{}\" has more than 1e38 designs; thin a grid", study.name));
+        };
+        let exhaustive = self.search == Some(SearchKind::Exhaustive);
+        if exhaustive && designs > MOST_CONCEIVABLE {
+            return refused(format!(
                 "visiting the {:.1e} designs of the study \"{}\" would take years; use --search exact",
                 designs as f64, study.name
-            )));
+            ));
         }
-        if kind == SearchKind::Exhaustive && self.time_limit.is_some() {
-            return Err(Failure::Usage("--time-limit goes with --search exact".into()));
+        if exhaustive && self.time_limit.is_some() {
+            return refused("--time-limit goes with --search exact".into());
         }
-        if kind == SearchKind::Exhaustive && self.gap.is_some() {
-            return Err(Failure::Usage("--gap goes with --search exact".into()));
+        if exhaustive && self.gap.is_some() {
+            return refused("--gap goes with --search exact".into());
         }
         if self.time_limit.is_some_and(|s| s.is_nan() || s <= 0.0) {
-            return Err(Failure::Usage("--time-limit is a number of seconds above zero".into()));
+            return refused("--time-limit is a number of seconds above zero".into());
         }
-        Ok(kind)
+        Ok(designs)
     }
 
     /// Whether anything is asked for.
     pub(crate) fn is_default(&self) -> bool {
         self.search.is_none() && self.time_limit.is_none() && self.gap.is_none()
     }
+}
+
+/// The search that is estimated to cost less.
+fn cheaper(study: &Study, catalogs: &Catalogs, designs: f64) -> SearchKind {
+    let cost = SearchCost::of(&study.space, catalogs, designs);
+    if let Some(words) = cost.words() {
+        eprint!("{}", wrap(&words, TERMINAL, ""));
+    }
+    if cost.speaks_for_exact() { SearchKind::Exact } else { SearchKind::Exhaustive }
 }
 
 /// A percentage, which may be 0.

@@ -13,6 +13,7 @@ use crate::study::ballast::{self, ballast_flags};
 use crate::study::near::{self, NearFront, near_front};
 use crate::study::outcome::StudyOutcome;
 use crate::study::pick_poses::picks_in_poses;
+use crate::study::same_drives::picks_on_same_drives;
 use crate::study::ties::{self, ties};
 use crate::study::tolerance::{Sampling, Tolerance, part, scatter_front};
 use clap::Args;
@@ -71,6 +72,7 @@ impl SupplementArgs {
         let stopped = || Failure::Interrupted("stopped after the search; nothing was written".into());
         let mut out = vec![
             picks_in_poses(found.problem, front).supplement(),
+            picks_on_same_drives(found.problem, front).supplement(),
             ballast_flags(found.problem, &found.outcome.front).supplement(),
         ];
         if !found.ties_listed {

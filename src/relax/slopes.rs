@@ -19,13 +19,22 @@ pub(super) fn tangent_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
 /// Least and greatest mean slope of the twist between any two torques of an interval, if the torque has risen from
 /// rest \[rad/(N m)\]. Friction holds back the twist of the gear's spring until its half width is used up.
 pub(super) fn rising_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
-    let [least, most] = tangent_range(law, torque_nm);
+    let [least, most] = tangent_range(&as_it_twists(law), torque_nm);
     let Some(stiffness) = law.play_stiffness_nm_per_rad() else { return [least, most] };
     let [near, far] = size_range(torque_nm);
     let reach = stiffness * law.hysteresis_rad;
     let held_back = if near <= reach { 1.0 / stiffness } else { 0.0 };
     let freed = if far < reach { 1.0 / stiffness } else { 0.0 };
     [least - held_back, most - freed]
+}
+
+/// The law with the curve that it twists by: a gear that vibrates with its first slope still twists along all three.
+fn as_it_twists(law: &JointLaw) -> JointLaw {
+    let curve = match law.curve {
+        Curve::WindupK1(windup) => Curve::Windup(windup),
+        other => other,
+    };
+    JointLaw { curve, ..*law }
 }
 
 /// Least and greatest magnitude of a torque in an interval \[N m\].
@@ -65,9 +74,9 @@ mod tests {
             t2_nm,
         });
         let lost = prop::option::of((1e-5..1e-3f64, 1.0..50.0f64));
-        (curve, 0.0..1e-5f64, lost, prop::option::of(1e-5..1e-3f64)).prop_map(
-            |(curve, connection, lost, play)| JointLaw {
-                curve: Curve::Windup(curve),
+        (curve, 0.0..1e-5f64, lost, prop::option::of(1e-5..1e-3f64), any::<bool>()).prop_map(
+            |(curve, connection, lost, play, by_k1)| JointLaw {
+                curve: if by_k1 { Curve::WindupK1(curve) } else { Curve::Windup(curve) },
                 connection_rad_per_nm: connection,
                 lost_motion: lost.map(|(half_width_rad, torque_nm)| LostMotion { half_width_rad, torque_nm }),
                 hysteresis_rad: play.unwrap_or(0.0),

@@ -1,4 +1,4 @@
-//! Eight arms side by side, as pieces are added from the innermost level to the base.
+//! Eight arms side by side, as pieces are added from the row level to the base.
 
 use super::row::hinge_numbers;
 use crate::mechanics::lanes::{Eight, LANES};
@@ -12,6 +12,8 @@ use crate::space::problem::ArmProblem;
 pub(crate) struct EightArms {
     /// One bit for each arm that holds so far.
     pub held: u8,
+    /// If none holds: how many of the drives chosen inboard of the row level were added before that showed.
+    pub failed_with: usize,
     pub mass_kg: Eight,
     /// Mass of the drive in each inner slot. The masses of given drives are set from the beginning.
     pub masses_kg: Vec<Eight>,
@@ -40,7 +42,7 @@ impl EightArms {
     /// Working space for eight arms of a problem.
     pub(crate) fn new(problem: &ArmProblem) -> Self {
         let zeros = [0.0; LANES];
-        let inner = &problem.slots()[problem.level_slots().last().copied().unwrap_or(0)..];
+        let inner = &problem.slots()[problem.row_slot().unwrap_or(0)..];
         let numbers = hinge_numbers(inner);
         let nothing = CaseArms {
             tip_m: [zeros; 3],
@@ -51,6 +53,7 @@ impl EightArms {
         };
         Self {
             held: 0,
+            failed_with: 0,
             mass_kg: zeros,
             masses_kg: inner.iter().map(|slot| [slot.fixed_kg().unwrap_or(0.0); LANES]).collect(),
             largest_s2: zeros,

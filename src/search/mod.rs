@@ -1,10 +1,11 @@
 //! The sweep: every design of a space is evaluated, in parallel.
 //!
 //! - [`sweep`] visits every design and keeps those that no other dominates. A *row* is the set of designs that differ in
-//!   the innermost level alone; it is finished eight designs at a time (`finish`).
+//!   one level alone; it is finished eight designs at a time (`finish`).
 //! - [`near`] finds the designs that are nearly on a front.
 //! - [`scatter`] computes designs whose parts differ a little from the catalog.
 //! - `ballast` finds designs that are on a front only because extra weight loads a gear into a stiffer part of its curve.
+//! - `same_drives` finds the lightest arm on the drives that first fit gave a design.
 
 pub(crate) mod arms;
 pub(crate) mod ballast;
@@ -16,6 +17,7 @@ pub(crate) mod row_begun;
 pub(crate) mod row_lanes;
 pub(crate) mod row_modes;
 pub(crate) mod row_room;
+pub(crate) mod same_drives;
 pub mod scatter;
 pub mod sweep;
 pub(crate) mod visit;

@@ -1,7 +1,7 @@
-//! Rows: the innermost level, compiled for eight options at a time.
+//! Rows: the row level, compiled for eight options at a time.
 //!
-//! All options of the innermost level share everything outboard of it, so a sweep finishes them together, as a row. Three
-//! things meet in a row:
+//! All options of the row level share everything outboard of it and the drives that are chosen inboard of it, so a sweep
+//! finishes them together, as a row. Three things meet in a row:
 //!
 //! - [`Chunk`] has the data of eight options, side by side in memory. It is compiled once.
 //! - [`Begun`](super::row_begun::Begun) has what depends on the outboard arm. It is worked out once for each row.
@@ -10,7 +10,7 @@
 //! A chunk takes some tens of kilobytes. Rows are finished in batches, so that a chunk stays in the nearest cache while
 //! it is used for all rows of a batch.
 //!
-//! An *inner* slot is one from the innermost level to the base. Inner slots are numbered from 0. What yields in them are
+//! An *inner* slot is one from the row level to the base. Inner slots are numbered from 0. What yields in them are
 //! *hinges*: a joint is one hinge, and a given tube has six, one for each end coordinate of its condensed link. The hinge
 //! of a joint has the number of its slot; the hinges of tubes follow after all slots.
 
@@ -29,8 +29,10 @@ use std::ops::Range;
 
 /// The inner slots of a problem, compiled.
 pub(crate) struct Row {
-    /// Slot of the innermost level.
+    /// Slot of the row level.
     pub first: usize,
+    /// For each inner slot whose drive is a choice of its own, its place among the levels inboard of the row level.
+    pub chosen: Vec<Option<usize>>,
     /// The link options, eight in a chunk; empty if the level is the drive of a joint.
     pub chunks: Vec<Chunk>,
     pub cases: Vec<RowCase>,
@@ -44,9 +46,9 @@ pub(crate) struct Row {
     pub fixed_kg: f64,
     /// How the drives of each inner slot twist.
     pub twisting: Vec<Twisting>,
-    /// The checked bearings of inner joints whose drives are found by first fit.
+    /// The checked bearings of the joints inboard of the row level.
     pub bearings: Vec<RowBearing>,
-    /// The rooms at inner joints whose drives are found by first fit.
+    /// The rooms at the joints inboard of the row level.
     pub rooms: Vec<RowRoom>,
 }
 
@@ -175,6 +177,8 @@ pub(crate) struct RowChunk<'a, 'c> {
     pub problem: &'a ArmProblem<'c>,
     pub row: &'a Row,
     pub from: &'a Partial,
+    /// Option of each level inboard of the row level.
+    pub inner: &'a [u32],
     pub chunk: usize,
 }
 
@@ -199,10 +203,10 @@ impl DriveAttributes {
 }
 
 impl Row {
-    /// Compiles the innermost level. Returns `None` if there is no level, or if a given tube inboard of it is too slender,
+    /// Compiles the row level. Returns `None` if there is no level, or if a given tube inboard of it is too slender,
     /// so that no design holds.
     pub(crate) fn new(problem: &ArmProblem) -> Option<Self> {
-        let first = *problem.level_slots().last()?;
+        let first = problem.row_slot()?;
         let slots = &problem.slots()[first..];
         let given_tubes = || slots[1..].iter().filter_map(Slot::given_tube);
         if given_tubes().any(|tube| tube.slender) {
@@ -229,6 +233,7 @@ impl Row {
         let drives: Vec<DriveAttributes> = slots.iter().map(drive_attributes).collect();
         Some(Self {
             first,
+            chosen: chosen(problem, first),
             chunks,
             yielding: (0..slots.len()).filter(|&k| hinges.iter().any(|hinge| hinge.slot == k)).collect(),
             fixed_kg: slots.iter().filter_map(Slot::fixed_kg).sum::<f64>()
@@ -241,6 +246,12 @@ impl Row {
             drives,
         })
     }
+}
+
+/// For each inner slot whose drive is a choice of its own, its place among the levels inboard of the row level.
+fn chosen(problem: &ArmProblem, first: usize) -> Vec<Option<usize>> {
+    let inner: Vec<usize> = problem.level_slots().iter().copied().filter(|&slot| slot > first).collect();
+    (first..problem.slots().len()).map(|slot| inner.iter().position(|&level| level == slot)).collect()
 }
 
 /// The hinges of inner slots.
@@ -312,7 +323,7 @@ fn twisting(slot: &Slot, drives: &DriveAttributes, k: usize, cases: &[RowCase]) 
 }
 
 impl RowCase {
-    /// Compiles a case. `pieces` are the inner slots, `first` is the slot of the innermost level.
+    /// Compiles a case. `pieces` are the inner slots, `first` is the slot of the row level.
     fn new(
         station: &Station,
         pieces: &[Slot],
@@ -487,7 +498,7 @@ impl Chunk {
         options: &[OptionAttributes],
         c: usize,
     ) -> Self {
-        let first = problem.level_slots().last().copied().unwrap_or_default();
+        let first = problem.row_slot().unwrap_or_default();
         // lanes beyond the end repeat the last option; the kernel ignores them
         let at = |lane: usize| (LANES * c + lane).min(options.len() - 1);
         let lanes =

@@ -133,13 +133,14 @@ impl BearingCase {
 }
 
 impl RowBearing {
-    /// The checked bearings of the inner joints whose drives are found by first fit, compiled.
+    /// The checked bearings of the joints inboard of the row level, compiled; that of the row level itself is not among them,
+    /// because all its drives feel the same loads.
     pub(crate) fn all(problem: &ArmProblem, first: usize) -> Vec<Self> {
         let slots = problem.slots();
         let levers = problem.bearing_loads().levers.iter().enumerate().skip(first);
         let checked = levers.filter_map(|(slot, lever)| {
-            let first_fit = matches!(&slots[slot], Slot::Sized(sized) if !sized.all_fits);
-            lever.as_ref().filter(|_| first_fit).map(|lever| (slot, lever))
+            let is_inboard = matches!(&slots[slot], Slot::Sized(sized) if slot > first || !sized.all_fits);
+            lever.as_ref().filter(|_| is_inboard).map(|lever| (slot, lever))
         });
         checked
             .map(|(slot, lever)| {

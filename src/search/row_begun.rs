@@ -23,10 +23,10 @@ pub(crate) struct Begun {
     /// For each inner joint, the step of the drive table at which the drive of the last design was found. The next search
     /// starts there, because the demands of neighbouring designs are similar.
     pub steps: Vec<usize>,
-    /// Loads on the bearing of the innermost level, if that is the drive of a joint.
-    pub of_innermost: BearingDemand,
+    /// Loads on the bearing of the row level, if that is the drive of a joint.
+    pub of_row: BearingDemand,
     /// The room at that joint.
-    pub room_of_innermost: LinkRoom,
+    pub room_of_row: LinkRoom,
     pub bearings: BearingsBegun,
 }
 
@@ -72,7 +72,7 @@ impl RowScratch {
 impl Begun {
     /// Working space for one row of a problem.
     fn new(problem: &ArmProblem) -> Self {
-        let inner = &problem.slots()[problem.level_slots().last().copied().unwrap_or(0)..];
+        let inner = &problem.slots()[problem.row_slot().unwrap_or(0)..];
         let numbers = hinge_numbers(inner);
         let cases = problem.stations().iter().map(|station| CaseBegun {
             outboard: match &station.modal {
@@ -87,16 +87,16 @@ impl Begun {
         Self {
             cases: cases.collect(),
             steps: vec![0; inner.len()],
-            of_innermost: BearingDemand::default(),
-            room_of_innermost: LinkRoom::ANY,
+            of_row: BearingDemand::default(),
+            room_of_row: LinkRoom::ANY,
             bearings: Vec::new(),
         }
     }
 
     /// Begins the row beyond the arm `from`. Memory of the row before is used again.
     fn refill(&mut self, problem: &ArmProblem, row: &Row, from: &Partial) {
-        self.of_innermost = from.next_demand.map_or(BearingDemand::default(), |demand| demand.bearing);
-        self.room_of_innermost = from.next_demand.map_or(LinkRoom::ANY, |demand| demand.room);
+        self.of_row = from.next_demand.map_or(BearingDemand::default(), |demand| demand.bearing);
+        self.room_of_row = from.next_demand.map_or(LinkRoom::ANY, |demand| demand.room);
         self.bearings.resize_with(row.bearings.len(), Vec::new);
         for (bearing, begun) in row.bearings.iter().zip(&mut self.bearings) {
             bearing.begin(from, begun);

@@ -1,6 +1,6 @@
 //! The kernel of the sweep: eight designs of a row, finished at once.
 //!
-//! The slots from the innermost level to the base are added in lanes, one design in each lane. Then follow
+//! The slots from the row level to the base are added in lanes, one design in each lane. Then follow
 //! [the lowest modes](super::row_modes). Designs that cannot hold, or that are surely dominated, are only counted.
 //!
 //! The functions are `#[inline(always)]` because the lanes are compiled for the instructions of one processor, and a call
@@ -15,17 +15,17 @@ use super::row_begun::{Begun, RowScratch};
 use super::row_modes::Question;
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, splat_all};
 use crate::sizing::eight::EightDemands;
-use crate::space::levels::{Finished, Keep, OutwardIn};
+use crate::space::levels::{DesignRow, Finished, Keep, OutwardIn};
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::{SizedJoint, Slot};
 use crate::space::station::{Station, StationJoint, StationSlot};
 use std::f64::consts::TAU;
 
-/// Rows to be finished, each an outboard arm with the number of the row's first design.
+/// Rows to be finished.
 pub(crate) struct RowsWork<'a, 'c, K> {
     pub problem: &'a ArmProblem<'c>,
     pub row: &'a Row,
-    pub rows: &'a [(u128, Partial)],
+    pub rows: &'a [DesignRow<Partial>],
     /// Number of designs in each row.
     pub options: u32,
     pub scratch: &'a mut RowScratch,
@@ -54,13 +54,20 @@ impl<K: Keep> LaneWork for RowsWork<'_, '_, K> {
         for chunk in 0..(options as usize).div_ceil(LANES) {
             let lanes = LANES.min(options as usize - chunk * LANES);
             let valid = u8::MAX >> (LANES - lanes);
-            for ((first, from), begun) in rows.iter().zip(&mut scratch.rows) {
-                let at = RowChunk { problem, row, from, chunk };
+            // what rules out all eight in one row rules them out in every row that begins like it
+            let mut ruled_out: Option<(&DesignRow<Partial>, usize)> = None;
+            for (designs, begun) in rows.iter().zip(&mut scratch.rows) {
+                if ruled_out.is_some_and(|(other, levels)| designs.begins_like(other, levels)) {
+                    excluded += u128::from(valid.count_ones());
+                    continue;
+                }
+                let at = RowChunk { problem, row, from: &designs.from, inner: &designs.inner, chunk };
                 let done = at.finish::<V>(begun, &mut scratch.arms, valid, keep);
+                ruled_out = (done.held == 0).then_some((designs, scratch.arms.failed_with));
                 excluded += u128::from((valid & !done.held).count_ones());
                 below_bar += u64::from(done.below_bar.count_ones());
                 if done.below_bar != done.held {
-                    at.hand_over(done, *first, &scratch.arms, &mut scratch.spare, keep);
+                    at.hand_over(done, designs, &scratch.arms, &mut scratch.spare, keep);
                 }
             }
         }
@@ -81,7 +88,7 @@ impl RowChunk<'_, '_> {
         keep: &impl Keep,
     ) -> FinishedEight {
         arms.held = valid;
-        self.grow::<V>(begun, arms);
+        arms.failed_with = self.grow::<V>(begun, arms);
         if let Some(max_kg) = self.problem.space().constraints.mass_max_kg {
             arms.held &= !V::splat(max_kg).less(V::load(&arms.mass_kg));
         }
@@ -117,7 +124,7 @@ impl RowChunk<'_, '_> {
     fn hand_over(
         &self,
         done: FinishedEight,
-        first: u128,
+        designs: &DesignRow<Partial>,
         arms: &EightArms,
         spare: &mut Partial,
         keep: &mut impl Keep,
@@ -126,26 +133,27 @@ impl RowChunk<'_, '_> {
             let option = (self.chunk * LANES + lane) as u32;
             // the iteration in lanes may fail to converge; the search by itself does not
             if done.unsure >> lane & 1 == 1 {
-                let level = self.problem.level_sizes_slice().len() - 1;
-                self.problem.finish_one(level, option, self.from, first, spare, keep);
+                self.problem.finish_one(designs, option, spare, keep);
             } else {
                 let finished = Finished { objectives: arms.objectives(lane), group: self.group(lane) };
-                keep.complete(first + u128::from(option), finished);
+                keep.complete(designs.number(option), finished);
             }
         }
     }
 
-    /// Adds piece after piece, until every arm is complete or none holds.
+    /// Adds piece after piece, until every arm is complete or none holds. Returns how many of the drives chosen inboard of
+    /// the row level were added.
     #[inline(always)]
-    fn grow<V: Lanes>(&self, begun: &mut Begun, arms: &mut EightArms) {
+    fn grow<V: Lanes>(&self, begun: &mut Begun, arms: &mut EightArms) -> usize {
         let slots = &self.problem.slots()[self.row.first..];
         let mut largest_s2 = V::zero();
         let mut indices = [0; LANES];
-        // the innermost level is a link or a drive, and no other inner slot is a link
+        // the row level is a link or a drive, and no other inner slot is a link
         match self.row.chunks.get(self.chunk) {
             Some(chunk) => self.start_with_link::<V>(chunk, begun, arms),
             None => self.start::<V>(begun, arms),
         }
+        let mut chosen = 0;
         for &k in &self.row.yielding {
             if slots[k].given_tube().is_some() {
                 largest_s2 = largest_s2.max(self.add_tube(k, arms));
@@ -157,8 +165,9 @@ impl RowChunk<'_, '_> {
                 Slot::Bearing { .. } => indices,
                 _ => [0; LANES],
             };
+            chosen += usize::from(self.row.chosen[k].is_some());
             if arms.held == 0 {
-                return;
+                return chosen;
             }
             if matches!(slots[k], Slot::Sized(_)) {
                 self.add_drive::<V>(k, &indices, arms);
@@ -166,6 +175,7 @@ impl RowChunk<'_, '_> {
             largest_s2 = largest_s2.max(self.add_joint(k, indices, arms));
         }
         arms.largest_s2 = largest_s2.store();
+        chosen
     }
 
     /// Starts with the arm outboard of the row, the same in every lane.
@@ -266,32 +276,52 @@ impl RowChunk<'_, '_> {
             }
             inertia_kgm2 = inertia_kgm2.max(V::load(&arms.cases[c].inertia_at[k]));
         }
-        if !sized.all_fits {
-            let bearing = match self.row.bearings.iter().position(|bearing| bearing.k == k) {
-                None => None,
-                Some(which) => Some(self.row.bearings[which].demands(
-                    self.problem,
-                    (self.from, self.chunk),
-                    &begun.bearings[which],
-                    &arms.masses_kg,
-                )),
-            };
-            let room = self.row.rooms.iter().find(|room| room.k == k);
-            let room = room.and_then(|room| room.room(self.problem, (self.from, self.chunk)));
-            let demands = EightDemands::new(sized.table.motion(), static_nm, inertia_kgm2)
-                .with_bearing(bearing)
-                .with_room(room);
-            let (fits, held) = sized.table.first_fits(&demands, arms.held, &mut begun.steps[k]);
-            arms.held = held;
-            return fits;
+        if sized.all_fits && k == 0 {
+            return self.drive_in_each_lane(sized, begun, [static_nm.store(), inertia_kgm2.store()], arms);
         }
-        // the joint is the innermost level: each lane has a drive of its own, with limits of its own
-        let (static_nm, inertia_kgm2) = (static_nm.store(), inertia_kgm2.store());
+        let bearing = match self.row.bearings.iter().position(|bearing| bearing.k == k) {
+            None => None,
+            Some(which) => Some(self.row.bearings[which].demands(
+                self.problem,
+                (self.from, self.chunk),
+                &begun.bearings[which],
+                &arms.masses_kg,
+            )),
+        };
+        let room = self.row.rooms.iter().find(|room| room.k == k);
+        let room = room.and_then(|room| room.room(self.problem, (self.from, self.chunk)));
+        let demands = EightDemands::new(sized.table.motion(), static_nm, inertia_kgm2)
+            .with_bearing(bearing)
+            .with_room(room);
+        match self.row.chosen[k] {
+            Some(level) => {
+                let index = self.inner[level] as usize;
+                arms.held = demands.held_by(sized.table.limits(index), arms.held);
+                [index; LANES]
+            }
+            None => {
+                let (fits, held) = sized.table.first_fits(&demands, arms.held, &mut begun.steps[k]);
+                arms.held = held;
+                fits
+            }
+        }
+    }
+
+    /// The drive of each arm if the joint is the row level: each lane has a drive of its own, with limits of its own, and the
+    /// loads are the same in all.
+    #[inline(always)]
+    fn drive_in_each_lane(
+        &self,
+        sized: &SizedJoint,
+        begun: &Begun,
+        [static_nm, inertia_kgm2]: [Eight; 2],
+        arms: &mut EightArms,
+    ) -> [usize; LANES] {
         let mut indices = [0; LANES];
         for lane in 0..LANES {
             if arms.held >> lane & 1 == 1 {
                 let torques = sized.table.motion().demand(static_nm[lane], inertia_kgm2[lane]);
-                let demand = torques.with_bearing(begun.of_innermost).with_room(begun.room_of_innermost);
+                let demand = torques.with_bearing(begun.of_row).with_room(begun.room_of_row);
                 indices[lane] = LANES * self.chunk + lane;
                 arms.held &= !(u8::from(!sized.table.limits(indices[lane]).hold(&demand)) << lane);
             }

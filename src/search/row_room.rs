@@ -5,7 +5,7 @@ use crate::space::fit::RoomAtJoint;
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::Slot;
 
-/// The room at an inner joint whose drive is found by first fit.
+/// The room at a joint inboard of the row level.
 pub(crate) struct RowRoom {
     /// Inner slot of the joint.
     pub k: usize,
@@ -21,11 +21,12 @@ enum RoomOf {
 }
 
 impl RowRoom {
-    /// The rooms at the inner joints of a row whose innermost level is in slot `first`.
+    /// The rooms at the joints inboard of the row level, which is in slot `first`.
     pub(crate) fn all(problem: &ArmProblem, first: usize) -> Vec<Self> {
         let slots = problem.slots();
-        let first_fit = |slot: usize| matches!(&slots[slot], Slot::Sized(sized) if !sized.all_fits);
-        let rooms = problem.rooms().iter().enumerate().skip(first).filter(|(slot, _)| first_fit(*slot));
+        let is_inboard =
+            |slot: usize| matches!(&slots[slot], Slot::Sized(sized) if slot > first || !sized.all_fits);
+        let rooms = problem.rooms().iter().enumerate().skip(first).filter(|(slot, _)| is_inboard(*slot));
         let room = |(slot, room): (usize, &Option<RoomAtJoint>)| {
             let room = room.as_ref()?;
             let of = if room.link_slot == first { RoomOf::Chunk(chunks(room)) } else { RoomOf::Slot(slot) };

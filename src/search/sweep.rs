@@ -1,8 +1,9 @@
-//! The sweep: it visits every design, in parallel and in constant memory.
+//! The sweep: it visits every design, in parallel.
 //!
 //! `Visit` walks the tree in tasks. A design that another clearly dominates is dropped at once (`Archive`). The
-//! others are filtered exactly from time to time, so that memory grows with the front and not with the space. The result
-//! does not depend on the order of visits or on the number of threads.
+//! others are filtered exactly from time to time, so that memory grows with the front and with what the problem keeps for
+//! each option (for arms some kilobytes an option and case), not with the number of designs. The result does not depend on
+//! the order of visits or on the number of threads.
 
 use super::finish::FinishRows;
 use super::visit::Visit;

@@ -1,12 +1,12 @@
 //! A walk through every design of a tree, in parallel.
 //!
-//! A *row* is the set of designs that differ in the innermost level alone. Each task takes a range of rows. It builds the
+//! A *row* is the set of designs that differ in the row level alone. Each task takes a range of rows. It builds the
 //! arm outboard of a row level by level and reuses the levels that the row shares with the one before. Rows are finished
 //! in batches. A task keeps its finds to itself until it ends, so tasks do not wait for each other.
 
 use super::finish::FinishRows;
 use crate::space::design::options;
-use crate::space::levels::{Finished, Keep};
+use crate::space::levels::{DesignRow, Finished, Keep};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -16,15 +16,15 @@ const TASKS: u128 = 512;
 /// Smallest number of tasks when a task gets a whole batch of rows. A smaller space is divided into smaller tasks, because
 /// idle threads cost more than incomplete batches.
 const LEAST_TASKS: u128 = 64;
-/// Largest number of rows that are finished together, and of designs in them. A batch reads each chunk of the innermost
-/// level from memory once for all its rows.
+/// Largest number of rows that are finished together, and of designs in them. A batch reads each chunk of the row level
+/// from memory once for all its rows.
 const BATCH: usize = 16;
 const BATCH_DESIGNS: usize = 1 << 18;
 
 /// A walk that other threads can watch and stop.
 pub(crate) struct Visit<'p, P: FinishRows> {
     pub problem: &'p P,
-    /// The innermost level, compiled.
+    /// The row level, compiled.
     pub compiled: P::Compiled,
     /// Designs visited or excluded so far.
     pub visited: &'p AtomicU64,
@@ -38,8 +38,8 @@ impl<P: FinishRows> Visit<'_, P> {
         root: &'v P::Partial,
         keeper: impl Fn() -> K + Send + Sync + 'v,
     ) -> impl ParallelIterator<Item = K> + 'v {
-        let sizes = self.problem.level_sizes();
-        let rows: u128 = sizes.iter().rev().skip(1).map(|&size| u128::from(size)).product();
+        let Levels { outer, inner, .. } = Levels::of(self.problem);
+        let rows = product(outer) * product(inner);
         let each = (rows / TASKS).max((BATCH as u128).min(rows / LEAST_TASKS)).max(1);
         let tasks = rows.div_ceil(each) as usize;
         (0..tasks).into_par_iter().map(move |task| {
@@ -51,6 +51,26 @@ impl<P: FinishRows> Visit<'_, P> {
     }
 }
 
+/// The sizes of the levels outboard of the row level, of the row level, and of those inboard of it.
+struct Levels<'p> {
+    outer: &'p [u32],
+    row: u32,
+    inner: &'p [u32],
+}
+
+impl<'p> Levels<'p> {
+    /// A problem without levels has a row of one design.
+    fn of(problem: &'p impl FinishRows) -> Self {
+        let (outer, inward) = problem.level_sizes().split_at(problem.row_level());
+        let (row, inner) = inward.split_first().map_or((1, inward), |(&row, inner)| (row, inner));
+        Self { outer, row, inner }
+    }
+}
+
+fn product(sizes: &[u32]) -> u128 {
+    sizes.iter().map(|&size| u128::from(size)).product()
+}
+
 /// The state of one task.
 struct Walker<'v, 'p, P: FinishRows, K> {
     visit: &'v Visit<'p, P>,
@@ -59,8 +79,8 @@ struct Walker<'v, 'p, P: FinishRows, K> {
     begun: Vec<P::Partial>,
     /// The options of these arms.
     options: Vec<u32>,
-    /// Rows to be finished together, each with the number of its first design.
-    batch: Vec<(u128, P::Partial)>,
+    /// Rows to be finished together.
+    batch: Vec<DesignRow<P::Partial>>,
     scratch: P::Scratch,
 }
 
@@ -80,27 +100,36 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
     /// Visits every design of some rows. A space without levels has one design.
     fn walk(&mut self, rows: Range<u128>) {
         let problem = self.visit.problem;
-        let Some((&last, outer)) = problem.level_sizes().split_last() else {
+        if problem.level_sizes().is_empty() {
             if let Some(objectives) = problem.objectives(&self.begun[0]) {
                 let group = problem.group(&self.begun[0]);
                 self.keeper.complete(0, Finished { objectives, group });
             }
             return;
-        };
-        let batch = (BATCH_DESIGNS / last.max(1) as usize).clamp(1, BATCH);
+        }
+        let Levels { outer, row: length, inner } = Levels::of(problem);
+        let batch = (BATCH_DESIGNS / length.max(1) as usize).clamp(1, BATCH);
+        // the rows of one arm outboard follow each other, one for each choice inboard
+        let choices = product(inner);
         let mut row = rows.start;
         while row < rows.end && !self.visit.stop.load(Ordering::Relaxed) {
-            let next = match self.begin(outer, row) {
+            let (arm, choice) = (row / choices, row % choices);
+            let next = match self.begin(outer, arm) {
                 Ok(()) => {
-                    self.batch.push((row * u128::from(last), self.begun[outer.len()].clone()));
+                    self.batch.push(DesignRow {
+                        from: self.begun[outer.len()].clone(),
+                        arm,
+                        inner: options(inner, choice).unwrap_or_default(),
+                        first: arm * u128::from(length) * choices + choice,
+                        step: choices,
+                    });
                     row + 1
                 }
                 Err(level) => {
                     // every row with the same options up to this level fails with it: skip to the next that differs
-                    let rows_of_level: u128 =
-                        outer[level + 1..].iter().map(|&size| u128::from(size)).product();
+                    let rows_of_level = product(&outer[level + 1..]) * choices;
                     let next = ((row / rows_of_level + 1) * rows_of_level).min(rows.end);
-                    let designs = (next - row) * u128::from(last);
+                    let designs = (next - row) * u128::from(length);
                     self.keeper.exclude(designs);
                     self.count(designs);
                     next
@@ -108,18 +137,18 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
             };
             row = next;
             if self.batch.len() == batch {
-                self.finish(last);
+                self.finish(length);
             }
         }
-        self.finish(last);
+        self.finish(length);
     }
 
     /// Builds the arm outboard of a row.
     ///
     /// # Errors
     /// The level at which no design with this beginning can hold.
-    fn begin(&mut self, outer: &[u32], row: u128) -> Result<(), usize> {
-        let wanted = options(outer, row).unwrap_or_default();
+    fn begin(&mut self, outer: &[u32], arm: u128) -> Result<(), usize> {
+        let wanted = options(outer, arm).unwrap_or_default();
         // neighbouring rows differ in their last levels; the arms up to the first difference are kept
         let shared = self.options.iter().zip(&wanted).take_while(|(a, b)| a == b).count();
         self.options.truncate(shared);

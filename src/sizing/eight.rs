@@ -207,7 +207,7 @@ impl<V: Lanes> EightDemands<V> {
 
     /// Those of the lanes `of` whose demand a drive holds.
     #[inline(always)]
-    fn held_by(&self, limits: &DriveLimits, of: u8) -> u8 {
+    pub(crate) fn held_by(&self, limits: &DriveLimits, of: u8) -> u8 {
         let held = of
             & !(V::splat(limits.static_torque_nm).less(self.static_torque_nm)
                 | V::splat(limits.peak_torque_nm).less(self.peak_torque_nm)

@@ -3,7 +3,7 @@
 use super::bearing_loads::resolved;
 use super::design_space::{DriveChoice, LinkOption, SpaceJoint, SpacePiece};
 use super::levels::OutwardIn;
-use super::problem::ArmProblem;
+use super::problem::{ArmProblem, Partial};
 use crate::arm::load::LoadCase;
 use crate::arm::structure::Structure;
 use crate::arm::{Arm, Element, Joint};
@@ -70,13 +70,16 @@ pub fn number_of(id: &str) -> Option<u128> {
 impl<'c> ArmProblem<'c> {
     /// The parts of the design with these options, base to tip; `None` if the design cannot hold.
     pub fn parts(&self, options: &[u32]) -> Option<Vec<Part<'c>>> {
-        let complete = self.walk(options, |_, _| {}).ok()?;
-        let parts = self
-            .space()
+        Some(self.parts_of(&self.walk(options, |_, _| {}).ok()?))
+    }
+
+    /// The parts of a complete arm, base to tip.
+    pub(crate) fn parts_of(&self, complete: &Partial) -> Vec<Part<'c>> {
+        self.space()
             .pieces
             .iter()
             .enumerate()
-            .zip(self.options(&complete))
+            .zip(self.options(complete))
             .map(|((piece, what), option)| match what {
                 SpacePiece::Choice(choice) => Part::Link(&choice.options[option as usize]),
                 SpacePiece::Joint(_) => self
@@ -84,18 +87,21 @@ impl<'c> ArmProblem<'c> {
                     .map_or(Part::Given, |s| Part::Drive(s.table.drive(option as usize))),
                 SpacePiece::Link(_) => Part::Given,
             })
-            .collect();
-        Some(parts)
+            .collect()
     }
 
     /// The arm of a design, with every part resolved to numbers; `None` if the design cannot hold.
     pub fn arm(&self, options: &[u32]) -> Option<Arm> {
-        let parts = self.parts(options)?;
+        self.arm_of(&self.walk(options, |_, _| {}).ok()?)
+    }
+
+    /// A complete arm with every part resolved to numbers; `None` if the catalog leaves a mass blank.
+    pub(crate) fn arm_of(&self, complete: &Partial) -> Option<Arm> {
         let space = self.space();
         let chain = space
             .pieces
             .iter()
-            .zip(parts)
+            .zip(self.parts_of(complete))
             .map(|(piece, part)| match (piece, part) {
                 (SpacePiece::Choice(choice), Part::Link(option)) => Some(Element::Link(choice.link(option))),
                 (SpacePiece::Link(link), _) => Some(Element::Link(link.clone())),

@@ -22,6 +22,15 @@ pub(crate) struct RoomAtJoint {
 }
 
 impl RoomAtJoint {
+    /// The rooms in all slots; `None` where nothing depends on a link.
+    pub(crate) fn all(pieces: &[SpacePiece], piece_slots: &[usize], slots: usize) -> Vec<Option<Self>> {
+        let mut rooms: Vec<Option<Self>> = (0..slots).map(|_| None).collect();
+        for (place, &slot) in piece_slots.iter().enumerate() {
+            rooms[slot] = Self::new(pieces, place, piece_slots);
+        }
+        rooms
+    }
+
     /// The room at the joint in a place of the chain; `None` if nothing is asked of its link, or it carries none.
     /// `piece_slots` are the slots of the chain's pieces.
     pub(crate) fn new(pieces: &[SpacePiece], place: usize, piece_slots: &[usize]) -> Option<Self> {

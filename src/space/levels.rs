@@ -1,4 +1,7 @@
 //! A design space as a tree: one level for each choice, from the tip to the base.
+//!
+//! A *row* is the set of designs that differ in one level alone, the *row level*. They share the arm outboard of it and the
+//! option of every level inboard of it.
 
 use crate::pareto::objectives::Objectives;
 
@@ -33,6 +36,33 @@ pub trait Keep {
     }
 }
 
+/// A row of designs.
+#[derive(Debug, Clone)]
+pub struct DesignRow<P> {
+    /// The arm outboard of the row level.
+    pub from: P,
+    /// Number of that arm among those outboard of the row level.
+    pub arm: u128,
+    /// Option of each level inboard of the row level.
+    pub inner: Vec<u32>,
+    /// Number of the design with the first option.
+    pub first: u128,
+    /// Difference between the numbers of neighbours in the row.
+    pub step: u128,
+}
+
+impl<P> DesignRow<P> {
+    /// Whether another row has the same arm outboard of the row level, and so many levels inboard of it alike.
+    pub(crate) fn begins_like(&self, other: &Self, levels: usize) -> bool {
+        self.arm == other.arm && self.inner[..levels] == other.inner[..levels]
+    }
+
+    /// Number of the design with an option of the row level.
+    pub fn number(&self, option: u32) -> u128 {
+        self.first + self.step * u128::from(option)
+    }
+}
+
 /// A tree of designs whose levels go from the tip of the arm to the base.
 pub trait OutwardIn: Sync {
     /// A partial arm: everything outboard of the next level.
@@ -48,22 +78,28 @@ pub trait OutwardIn: Sync {
     /// Returns `false` if no design with this beginning meets the constraints.
     fn extend(&self, level: usize, option: u32, from: &Self::Partial, to: &mut Self::Partial) -> bool;
 
-    /// Finishes one design by itself and shows it to `keep`. `first` is the number of the design with option 0;
-    /// `complete` is working space.
+    /// The level whose options make a row; the innermost one if nothing speaks for another.
+    fn row_level(&self) -> usize {
+        self.level_sizes().len().saturating_sub(1)
+    }
+
+    /// Finishes one design of a row by itself and shows it to `keep`; `complete` is working space.
     fn finish_one(
         &self,
-        level: usize,
+        row: &DesignRow<Self::Partial>,
         option: u32,
-        from: &Self::Partial,
-        first: u128,
         complete: &mut Self::Partial,
         keep: &mut dyn Keep,
     ) {
-        let holds = self.extend(level, option, from, complete);
+        let level = self.row_level();
+        let mut holds = self.extend(level, option, &row.from, complete);
+        for (inner, &option) in (level + 1..).zip(&row.inner) {
+            holds = holds && self.extend(inner, option, &complete.clone(), complete);
+        }
         match if holds { self.objectives(complete) } else { None } {
             Some(objectives) => {
                 let group = self.group(complete);
-                keep.complete(first + u128::from(option), Finished { objectives, group });
+                keep.complete(row.number(option), Finished { objectives, group });
             }
             None => keep.exclude(1),
         }

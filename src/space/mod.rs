@@ -20,11 +20,12 @@ pub(crate) mod excerpt;
 pub(crate) mod fit;
 pub(crate) mod fixed;
 pub(crate) mod levels;
+pub(crate) mod posed;
 pub(crate) mod problem;
 pub(crate) mod slot;
 pub(crate) mod station;
 
 pub use design::{Evaluated, evaluate};
 pub use design_space::DesignSpace;
-pub use levels::{Finished, Keep, OutwardIn};
+pub use levels::{DesignRow, Finished, Keep, OutwardIn};
 pub use problem::ArmProblem;

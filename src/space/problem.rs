@@ -17,6 +17,7 @@ use super::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink
 use crate::arm::joint_law::JointLaw;
 use crate::catalog::Catalogs;
 use crate::mechanics::Wrench;
+use crate::mechanics::lanes::LANES;
 use crate::mechanics::lowest::{Step, frequency_hz, lowest_eigenvalue};
 use crate::pareto::objectives::Objectives;
 use crate::sizing::demand::{JointDemand, JointMotion};
@@ -36,6 +37,7 @@ pub struct ArmProblem<'c> {
     /// Slot of each level, tip first.
     level_slots: Vec<usize>,
     level_sizes: Vec<u32>,
+    row_level: usize,
     /// The cases, in the order of the design space.
     stations: Vec<Station>,
     /// Number of materials, each of which has a front of its own.
@@ -120,19 +122,20 @@ impl<'c> ArmProblem<'c> {
             });
         }
         let level_slots: Vec<usize> = (0..slots.len()).filter(|&i| slots[i].is_level()).collect();
-        let level_sizes = level_slots.iter().map(|&i| slots[i].options()).collect();
+        let level_sizes: Vec<u32> = level_slots.iter().map(|&i| slots[i].options()).collect();
         // by the paper's reading the acceleration a adds a/g times the static load; without gravity nothing is loaded,
         // and a tiny divisor does no harm
         let a_over_g = space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE);
         Self {
             space,
+            row_level: row_level(&slots, &level_slots, &level_sizes),
             level_slots,
             level_sizes,
             stations: Station::all(space),
             materials: space.material_names().len(),
             peak_factor: 1.0 + a_over_g,
             bearing_loads: BearingLoads::new(space, &slots, &piece_slots, &reaches),
-            rooms: rooms(space, &piece_slots, slots.len()),
+            rooms: RoomAtJoint::all(&space.pieces, &piece_slots, slots.len()),
             slots,
             piece_slots,
         }
@@ -212,6 +215,20 @@ impl<'c> ArmProblem<'c> {
         Ok(partial)
     }
 
+    /// The arm with these options, one for each slot, drives that first fit would choose among them; `None` if it cannot hold.
+    pub(crate) fn assemble(&self, options: &[u32]) -> Option<Partial> {
+        let mut partial = self.empty();
+        let mut adds = |(slot, &option): (usize, &u32)| match &self.slots[slot] {
+            Slot::Sized(sized) => {
+                let demand = self.demand(&partial, slot, Some(sized.table.motion()));
+                let index = option as usize;
+                sized.table.holds(index, &demand) && self.add_drive(slot, sized, index, &mut partial)
+            }
+            _ => self.add(slot, option, &mut partial),
+        };
+        options.iter().enumerate().all(&mut adds).then_some(partial)
+    }
+
     /// The piece (base to tip) that stands in a slot (tip first).
     pub fn piece_of_slot(&self, slot: usize) -> usize {
         self.piece_slots.iter().position(|&s| s == slot).unwrap_or_default()
@@ -232,6 +249,11 @@ impl<'c> ArmProblem<'c> {
 
     pub(crate) fn level_sizes_slice(&self) -> &[u32] {
         &self.level_sizes
+    }
+
+    /// Slot of the row level; `None` if there is no level.
+    pub(crate) fn row_slot(&self) -> Option<usize> {
+        self.level_slots.get(self.row_level).copied()
     }
 
     pub(crate) fn stations(&self) -> &[Station] {
@@ -314,8 +336,12 @@ impl<'c> ArmProblem<'c> {
             true => Some(option as usize).filter(|&i| sized.table.holds(i, &demand)),
             false => sized.table.first_fit(&demand),
         };
-        let Some(index) = index else { return false };
-        // the drive that first fit takes is recorded like an option, so that the parts can be read from the arm
+        index.is_some_and(|index| self.add_drive(slot, sized, index, to))
+    }
+
+    /// Adds a drive that holds. It is recorded like an option even where first fit took it, so that the parts can be read
+    /// from the arm.
+    fn add_drive(&self, slot: usize, sized: &SizedJoint, index: usize, to: &mut Partial) -> bool {
         to.options[slot] = index as u32;
         self.add_joint(slot, &sized.laws[index], sized.table.mass_kg(index), to)
     }
@@ -402,13 +428,13 @@ impl<'c> ArmProblem<'c> {
     }
 }
 
-/// The room that links leave to the joint in each slot.
-fn rooms(space: &DesignSpace, piece_slots: &[usize], slots: usize) -> Vec<Option<RoomAtJoint>> {
-    let mut rooms: Vec<Option<RoomAtJoint>> = (0..slots).map(|_| None).collect();
-    for (place, &slot) in piece_slots.iter().enumerate() {
-        rooms[slot] = RoomAtJoint::new(&space.pieces, place, piece_slots);
-    }
-    rooms
+/// The level whose options stand side by side in lanes: the innermost link, unless it has too few options to fill them.
+/// Drives inboard of it are the same for a whole row.
+fn row_level(slots: &[Slot], level_slots: &[usize], level_sizes: &[u32]) -> usize {
+    let innermost = level_slots.len().saturating_sub(1);
+    let link = level_slots.iter().rposition(|&slot| matches!(slots[slot], Slot::Link { .. }));
+    link.filter(|&link| level_sizes[link] as usize >= LANES || level_sizes[link] >= level_sizes[innermost])
+        .unwrap_or(innermost)
 }
 
 /// Objectives of a complete arm from its states in the judged cases.
@@ -516,6 +542,10 @@ impl OutwardIn for ArmProblem<'_> {
 
     fn level_sizes(&self) -> &[u32] {
         &self.level_sizes
+    }
+
+    fn row_level(&self) -> usize {
+        self.row_level
     }
 
     fn root(&self) -> Option<Partial> {

@@ -9,7 +9,7 @@ use crate::search::sweep::Sweep;
 use crate::sizing::rpm_from_rad_s;
 use crate::space::constraint::Constraints;
 use crate::space::design_space::SpacePiece;
-use crate::space::levels::{Keep, OutwardIn};
+use crate::space::levels::{DesignRow, Keep, OutwardIn};
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::SizedJoint;
 use std::sync::atomic::AtomicBool;
@@ -212,7 +212,7 @@ impl FinishRows for Relaxed<'_, '_> {
         Partial::default()
     }
 
-    fn finish<K: Keep>(&self, (): &(), rows: &[(u128, Partial)], spare: &mut Partial, keep: &mut K) {
+    fn finish<K: Keep>(&self, (): &(), rows: &[DesignRow<Partial>], spare: &mut Partial, keep: &mut K) {
         finish_one_by_one(self, rows, spare, keep);
     }
 }

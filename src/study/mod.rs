@@ -25,6 +25,8 @@ pub(crate) mod pose_search;
 pub mod question;
 pub(crate) mod range;
 pub(crate) mod read;
+pub(crate) mod same_drives;
+pub(crate) mod search_cost;
 pub(crate) mod sections;
 pub(crate) mod table;
 pub(crate) mod ties;
@@ -43,6 +45,7 @@ pub use outcome::{ExactStudy, Extent, Front, Judged, OfMaterial, StudyOutcome, r
 pub use page::study_page;
 pub use pick_poses::{PicksInPoses, picks_in_poses};
 pub use read::read_study;
+pub use same_drives::{PicksOnSameDrives, picks_on_same_drives};
 pub use table::{front_table, slug};
 pub use ties::{Ties, ties};
 pub use tolerance::{Sampling, Tolerance, part, scatter_front};

@@ -12,10 +12,12 @@ use armwright::search::near::{Slack, near_designs};
 use armwright::search::scatter::{ChosenParts, Factors, Rating};
 use armwright::space::ArmProblem;
 use armwright::space::OutwardIn;
-use armwright::space::design::{full_objectives, id_of, number, options};
+use armwright::space::design::{full_objectives, id_of, number, number_of, options};
+use armwright::space::design_space::SpacePiece;
 use armwright::space::evaluate;
 use armwright::study::ballast_flags;
 use armwright::study::front_table;
+use armwright::study::picks_on_same_drives;
 use armwright::study::{Extent, Judged, StudyOutcome, run_exact, run_study};
 use armwright::study::{NearFront, near_front};
 use armwright::study::{Sampling, scatter_front};
@@ -451,6 +453,77 @@ fn designs_are_flagged_whose_heavier_part_only_presses_a_gear_into_a_stiffer_seg
         words.contains("because the play of j2 opens.") && words.contains("where it is stiffer"),
         "{words}"
     );
+}
+
+/// An arm whose shoulder and elbow take the lightest drive that holds.
+fn first_fit_study() -> Value {
+    let tube = |name: &str, length_m: f64| {
+        json!({"type": "link", "name": name, "vector_m": [length_m, 0, 0], "choose": {
+            "materials": ["Structural steel S355", "Aluminium 6061-T6"],
+            "sections": [{"shape": "rectangular_tube", "width_mm": [60, 90, 120], "height_mm": "=width", "wall_mm": [2, 4, 8]}]}})
+    };
+    let joint = |name: &str| json!({"type": "joint", "name": name, "axis": [0, 1, 0], "drive": "first_fit"});
+    json!({"name": "first fit", "chain": [
+        joint("shoulder"), tube("upper_arm", 0.6), joint("elbow"), tube("forearm", 0.5)],
+        "payload": {"mass_kg": 3}, "poses": [{"pose_deg": [0, 0]}]})
+}
+
+/// Whether an arm with the drives of a design and one other, lighter tube is no worse, by the full model.
+fn one_lighter_tube_is_no_worse(problem: &ArmProblem, design: &[u32]) -> bool {
+    let arm = problem.arm(design).expect("a design that holds");
+    let cases = problem.load_cases();
+    let judged = full_objectives(&arm, &cases);
+    let choices = problem.space().pieces.iter().enumerate().filter_map(|(piece, what)| match what {
+        SpacePiece::Choice(choice) => Some((piece, choice)),
+        _ => None,
+    });
+    let mut others =
+        choices.flat_map(|(piece, choice)| choice.options.iter().map(move |o| (piece, choice.link(o))));
+    others.any(|(piece, link)| {
+        let mut other = arm.clone();
+        other.chain[piece] = Element::Link(link);
+        let o = full_objectives(&other, &cases);
+        o.mass_kg < judged.mass_kg
+            && o.tip_deflection_m <= judged.tip_deflection_m
+            && o.lowest_mode_hz >= judged.lowest_mode_hz
+    })
+}
+
+#[test]
+fn picks_are_named_whose_weight_alone_gives_them_their_drives() {
+    let catalogs = Catalogs::builtin();
+    let named = |study: &Value| {
+        let study = read(study, &catalogs);
+        let problem = ArmProblem::new(&study.space, &catalogs);
+        let front = front_table(&problem, &catalogs, &outcome(&study, &catalogs).front);
+        let told = picks_on_same_drives(&problem, &front).supplement();
+        let (_, told) = told.run.expect("a fact for run.json");
+        let beaten = picks::picks(&picks::designs(&front)).into_iter().filter_map(|pick| {
+            let number = number_of(&pick.design.design_id).expect("an id");
+            let design = options(problem.level_sizes(), number).expect("in range");
+            one_lighter_tube_is_no_worse(&problem, &design)
+                .then_some((pick.design.design_id, pick.design.mass_kg))
+        });
+        (told, beaten.collect::<Vec<_>>())
+    };
+    let (told, beaten) = named(&first_fit_study());
+    let told = told.as_array().expect("a list");
+    assert!(!beaten.is_empty(), "no pick has its drives for its weight");
+    assert_eq!(told.len(), beaten.len(), "{told:?} {beaten:?}");
+    for (told, (id, mass_kg)) in told.iter().zip(&beaten) {
+        assert_eq!(told["design_id"], json!(id));
+        assert!(told["mass_kg"].as_f64().expect("a number") < *mass_kg);
+        assert!(!told["joints"].as_array().expect("joints").is_empty(), "{told}");
+    }
+    // a search that chooses the drives itself finds the lighter arm
+    let mut chosen = first_fit_study();
+    for joint in ["/chain/0", "/chain/2"] {
+        let joint = chosen.pointer_mut(joint).expect("a joint");
+        joint["drive"] = json!("all_fits");
+        joint["drives"] = wrist_drives(&["ILM70x18", "ILM85x26"]);
+    }
+    let (told, beaten) = named(&chosen);
+    assert_eq!((told, beaten.len()), (json!([]), 0));
 }
 
 fn run(dir: &Path, out: &str, words: &[&str]) -> (Option<i32>, String, String) {

@@ -9,11 +9,14 @@ use crate::dice::Dice;
 use crate::exact_front::random_study;
 use crate::exact_support::{both_searches, read};
 use crate::witness_drives::{Row, Spoil, faults, front, spoiled, times};
+use armwright::arm::BearingSource;
 use armwright::catalog::Catalogs;
 use armwright::pareto::Objectives;
 use armwright::relax::Relaxation;
+use armwright::search::Sweep;
 use armwright::search::sweep::Candidate;
 use armwright::sizing::LinkRoom;
+use armwright::space::design_space::SpacePiece;
 use armwright::space::{ArmProblem, OutwardIn, evaluate};
 use armwright::study::Study;
 use armwright::study::question::question;
@@ -194,6 +197,25 @@ fn tight(fit: Value, catalogs: &Catalogs) -> Study {
         }),
         catalogs,
     )
+}
+
+/// The drives of a first-fit joint are bounded from above only where no bearing may ask for a heavier one.
+#[test]
+fn the_bound_on_mass_holds_where_narrow_tubes_need_other_drives() {
+    let mut bounds = 0;
+    for seed in 0..24 {
+        let catalogs = other_sizes(seed);
+        let mut study = tight(json!({"gear_to_link_max": 0.9, "motor": "in_link"}), &catalogs);
+        for piece in &mut study.space.pieces {
+            if let SpacePiece::Joint(joint) = piece {
+                joint.bearing = BearingSource::Stated(None);
+            }
+        }
+        let problem = ArmProblem::new(&study.space, &catalogs);
+        let front = Sweep::new(&problem, study.space.constraints, &AtomicBool::new(false)).run().front;
+        bounds += bounds_on_mass_hold(&problem, &front, &format!("seed {seed}"));
+    }
+    assert!(bounds > 60, "{bounds} bounds say too little");
 }
 
 /// The catalogs with a hollow through every gear.

@@ -1,4 +1,5 @@
 //! The lower bound on mass against every design of small random studies.
+//! `ARMWRIGHT_EXACT_STUDIES=300 cargo test --release --test design relaxation` draws more of them.
 
 use crate::dice::Dice;
 use armwright::catalog::Catalogs;
@@ -86,7 +87,12 @@ fn study(dice: &mut Dice) -> Value {
     if dice.below(4) == 0 {
         poses[0]["pose_deg"] = json!(pose(dice));
     }
-    let models = [json!({}), json!({"links": "rigid"}), json!({"links": "bending", "joints": "k2"})];
+    let models = [
+        json!({}),
+        json!({"links": "rigid"}),
+        json!({"links": "bending", "joints": "k2"}),
+        json!({"joints": "three_segment_k1"}),
+    ];
     let models = dice.of(&models);
     let mut study = json!({
         "name": "random", "question": "is the bound one?",
@@ -123,7 +129,8 @@ fn no_design_that_meets_a_target_is_lighter_than_the_bound() {
     let mut dice = Dice(7);
     let mut gaps = Vec::new();
     let (mut opposed, mut with_effects) = (0, 0);
-    for round in 0..ROUNDS {
+    let rounds = std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(ROUNDS);
+    for round in 0..rounds {
         let text = study(&mut dice).to_string();
         let study = read_study(Document::parse("random", &text).expect("JSON"), &catalogs)
             .unwrap_or_else(|faults| panic!("{faults}\n{text}"));
@@ -165,9 +172,9 @@ fn no_design_that_meets_a_target_is_lighter_than_the_bound() {
         at(1.0)
     );
     assert!(gaps.len() > 40 && opposed > 3 && with_effects > 10, "the studies drawn say too little");
-    assert!(at(0.5) < 3.0, "the median gap is {:.2} %", at(0.5));
+    assert!(at(0.5) < 5.0, "the median gap is {:.2} %", at(0.5));
 }
 
 /// Studies drawn, and targets in each.
-const ROUNDS: usize = 30;
+const ROUNDS: usize = 40;
 const TARGETS: usize = 4;

@@ -14,7 +14,7 @@ use armwright::search::{Status, Sweep};
 use armwright::space::ArmProblem;
 use armwright::space::design;
 use armwright::space::evaluate;
-use armwright::space::{Finished, Keep, OutwardIn};
+use armwright::space::{DesignRow, Finished, Keep, OutwardIn};
 use armwright::study::named;
 use armwright::study::{Study, read_study};
 use serde_json::{Value, json};
@@ -195,12 +195,15 @@ impl Keep for Seen {
 /// Largest difference of each design that holds among some of some rows.
 fn compare(problem: &ArmProblem, dice: &mut Dice, rows: usize, stride: usize) -> Vec<f64> {
     let sizes = problem.level_sizes().to_vec();
-    let (&last, outer) = sizes.split_last().expect("a level");
+    let (outer, inward) = sizes.split_at(problem.row_level());
+    let (&length, inner) = inward.split_first().expect("a level");
     let root = problem.root().expect("a root");
     let (compiled, mut scratch) = (problem.compile(), problem.scratch());
     let mut differences = Vec::new();
     for _ in 0..rows {
-        let options: Vec<u32> = outer.iter().map(|&n| dice.below(u64::from(n)) as u32).collect();
+        let mut draw =
+            |sizes: &[u32]| -> Vec<u32> { sizes.iter().map(|&n| dice.below(u64::from(n)) as u32).collect() };
+        let (options, inner) = (draw(outer), draw(inner));
         let mut from = root.clone();
         let begins = options.iter().enumerate().all(|(level, &option)| {
             let before = from.clone();
@@ -209,12 +212,14 @@ fn compare(problem: &ArmProblem, dice: &mut Dice, rows: usize, stride: usize) ->
         if !begins {
             continue;
         }
-        let start = dice.below(u64::from(last)) as u32;
+        let start = dice.below(u64::from(length)) as u32;
         let mut row = Seen(BTreeMap::new());
-        problem.finish(&compiled, &[(0, from)], &mut scratch, &mut row);
-        for option in (start..last.min(start + 60)).step_by(stride) {
+        let designs = DesignRow { from, arm: 0, inner: inner.clone(), first: 0, step: 1 };
+        problem.finish(&compiled, &[designs], &mut scratch, &mut row);
+        for option in (start..length.min(start + 60)).step_by(stride) {
             let fast = row.0.get(&u128::from(option)).copied();
-            let number = design::number(&sizes, &[options.as_slice(), &[option]].concat());
+            let chosen = [options.as_slice(), &[option], inner.as_slice()].concat();
+            let number = design::number(&sizes, &chosen);
             let full = evaluate(problem, number);
             assert_eq!(fast.is_some(), full.is_some(), "design {number}");
             let (Some(fast), Some(full)) = (fast, full) else { continue };
@@ -222,7 +227,7 @@ fn compare(problem: &ArmProblem, dice: &mut Dice, rows: usize, stride: usize) ->
             let mut worst = 0.0f64;
             for (a, b) in fast.objectives.minimized().into_iter().zip(full.objectives.minimized()) {
                 let difference = if a == b { 0.0 } else { (a / b - 1.0).abs() };
-                let alone = || problem.walk(&[options.as_slice(), &[option]].concat(), |_, _| {});
+                let alone = || problem.walk(&chosen, |_, _| {});
                 assert!(
                     difference <= AGREE,
                     "design {number}: eight at once {:?}\nalone {:?}\nfull {:?}",

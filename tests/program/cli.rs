@@ -272,6 +272,9 @@ fn an_analysis_says_what_effects_add_and_which_are_left_out() {
     let far = said(here.path(), &["analyze", "arm.json"]);
     assert!(far.contains("small displacements") && far.contains("unit"), "{far}");
     assert!(!bends.contains("small displacements"), "{bends}");
+    let far: Value =
+        serde_json::from_str(&said(here.path(), &["analyze", "arm.json", "--json"])).expect("JSON");
+    assert_eq!(far["small_displacements"], json!(false));
 }
 
 fn tip_mm(case: &Value) -> f64 {

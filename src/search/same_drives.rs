@@ -1,0 +1,69 @@
+//! Lighter arms on the drives of a design.
+//!
+//! Where the lightest drive that holds is taken (first fit), a lighter link may let a smaller and softer drive hold inboard.
+//! A design with a heavy link can then be on a front only because the larger drive came with it. The sign of this is an
+//! arm with the same drives at those joints that is lighter, deflects no more and has as high a lowest mode. No design of
+//! the study is that arm, because first fit would give it smaller drives.
+
+use crate::pareto::objectives::Objectives;
+use crate::space::levels::OutwardIn;
+use crate::space::problem::{ArmProblem, Partial};
+use crate::space::slot::Slot;
+
+/// A lighter arm that keeps the drives that first fit gave a design.
+pub struct OnSameDrives {
+    /// Pieces whose parts differ from those of the design, base to tip.
+    pub exchanged: Vec<usize>,
+    /// Joints at which first fit would take a smaller drive in the lighter arm, as pieces, base to tip.
+    pub oversized: Vec<usize>,
+    pub(crate) arm: Partial,
+}
+
+impl ArmProblem<'_> {
+    /// The lightest arm that keeps the first-fit drives of a design and is no worse in any objective, as far as exchanging
+    /// one part at a time finds it; `None` if no joint is sized by first fit or if no part can be exchanged.
+    pub fn lighter_on_same_drives(&self, options: &[u32]) -> Option<OnSameDrives> {
+        let design = self.walk(options, |_, _| {}).ok()?;
+        let first_fit = |slot: &Slot| matches!(slot, Slot::Sized(sized) if !sized.all_fits);
+        if !self.slots().iter().any(first_fit) {
+            return None;
+        }
+        let judged = self.objectives(&design)?;
+        let mut arm = design.clone();
+        while let Some(lighter) = self.lightest_exchange(&arm, &judged) {
+            arm = lighter;
+        }
+        let exchanged = self.pieces_where(&arm, &design);
+        if exchanged.is_empty() {
+            return None;
+        }
+        let levels: Vec<u32> = self.level_slots().iter().map(|&slot| arm.options[slot]).collect();
+        let sized_anew = self.walk(&levels, |_, _| {}).ok()?;
+        Some(OnSameDrives { exchanged, oversized: self.pieces_where(&sized_anew, &arm), arm })
+    }
+
+    /// The lightest arm with one other part that is no worse than the objectives.
+    fn lightest_exchange(&self, arm: &Partial, judged: &Objectives) -> Option<Partial> {
+        let sizes = self.level_slots().iter().zip(self.level_sizes());
+        let exchanges = sizes.flat_map(|(&slot, &size)| (0..size).map(move |option| (slot, option)));
+        let others = exchanges.filter_map(|(slot, option)| {
+            let mut options = arm.options.clone();
+            options[slot] = option;
+            let other = self.assemble(&options)?;
+            let is_lighter = other.mass_kg < arm.mass_kg;
+            (is_lighter && no_worse(&self.objectives(&other)?, judged)).then_some(other)
+        });
+        others.min_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg))
+    }
+
+    /// Pieces at which two arms have different parts, base to tip.
+    fn pieces_where(&self, a: &Partial, b: &Partial) -> Vec<usize> {
+        let pieces = self.options(a).zip(self.options(b)).enumerate();
+        pieces.filter(|(_, (a, b))| a != b).map(|(piece, _)| piece).collect()
+    }
+}
+
+/// Whether an arm is no worse than another in deflection and lowest mode.
+fn no_worse(arm: &Objectives, than: &Objectives) -> bool {
+    arm.tip_deflection_m <= than.tip_deflection_m && arm.lowest_mode_hz >= than.lowest_mode_hz
+}

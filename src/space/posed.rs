@@ -1,0 +1,341 @@
+//! Compiles the cases of a space into stations, slot by slot.
+//!
+//! A link may have a hundred thousand options, and each takes some kilobytes in each case. Options are therefore condensed a
+//! few at a time, put into every case with the same surroundings, and forgotten. What remains is the stations: their
+//! memory grows as options times cases.
+
+use super::design_space::{Case, DesignSpace, SpacePiece};
+use super::effects::Layer;
+use super::station::{
+    Block, BlockSlot, Modal, Place, Station, StationJoint, StationLink, StationSlot, Walk, payload_in,
+    weight_wrench,
+};
+use crate::arm::structure::{LinkPiece, Structure};
+use crate::arm::{Link, LinkModel};
+use crate::mechanics::beam::{PreparedBeam, section_frame};
+use crate::mechanics::condensed::{CondensedLink, PlacedLink};
+use crate::mechanics::lowest::BlockLink;
+use crate::mechanics::{body_inertia, displacement_at, rotation_twist};
+use nalgebra::{Matrix3, Matrix3x6, Matrix6, SMatrix, SVector, Vector3};
+use rayon::prelude::*;
+
+/// Number of options that are condensed at a time.
+const AT_A_TIME: usize = 1024;
+
+/// Motions within the x-z plane (x, z, rotation about y) and across it (y, rotations about x and z).
+const PLANES: [[usize; 3]; 2] = [[0, 2, 4], [1, 3, 5]];
+/// All six motions: three displacements and three rotations.
+const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
+
+/// Largest part of a direction that counts as rounding.
+const ROUNDING: f64 = 1e-12;
+
+impl Station {
+    /// Compiles every case of a space.
+    pub(crate) fn all(space: &DesignSpace) -> Vec<Self> {
+        let layers = space.layers();
+        let mut posed: Vec<Posed> = space.cases.iter().map(|case| Posed::new(space, case, &layers)).collect();
+        let mut surroundings: Vec<Structure> = Vec::new();
+        for of in &posed {
+            if !surroundings.contains(&of.structure) {
+                surroundings.push(of.structure.clone());
+            }
+        }
+        for (slot, (_, layer)) in layers.iter().enumerate() {
+            for structure in &surroundings {
+                for tubes in few_at_a_time(space, structure, layer) {
+                    let alike = posed.iter_mut().filter(|of| of.structure == *structure);
+                    alike.for_each(|of| of.add_options(slot, &tubes));
+                }
+            }
+        }
+        posed.into_iter().map(|of| of.station).collect()
+    }
+}
+
+/// A tube or a harness, independent of the pose.
+struct Tube {
+    condensed: CondensedLink,
+    length_m: f64,
+    /// Net weight: buoyancy is subtracted.
+    weight_n_per_m: f64,
+}
+
+impl Tube {
+    /// Condenses a link; `None` for a rigid offset without mass along it, or without length.
+    fn new(link: &LinkPiece, structure: &Structure, model: LinkModel) -> Option<Self> {
+        let beam = PreparedBeam::new(link, structure, model)?;
+        let condensed = CondensedLink::new(&beam);
+        Some(Self { condensed, length_m: beam.length_m, weight_n_per_m: beam.weight_n_per_m })
+    }
+}
+
+/// The tubes of a layer, in the order of its options; none if the layer is no link.
+fn few_at_a_time<'a>(
+    space: &'a DesignSpace,
+    structure: &'a Structure,
+    layer: &'a Layer,
+) -> impl Iterator<Item = Vec<Tube>> + 'a {
+    let options = match layer {
+        Layer::Piece(SpacePiece::Link(_)) => 1,
+        Layer::Piece(SpacePiece::Choice(choice)) => choice.options.len(),
+        _ => 0,
+    };
+    let tube = move |option: usize| match layer {
+        Layer::Piece(SpacePiece::Link(link)) => Tube::new(&space.link_piece(link), structure, space.links),
+        Layer::Piece(SpacePiece::Choice(choice)) => {
+            Tube::new(&space.link_piece(&choice.link(&choice.options[option])), structure, space.links)
+        }
+        _ => None,
+    };
+    (0..options)
+        .step_by(AT_A_TIME)
+        .map(move |first| (first..options.min(first + AT_A_TIME)).into_par_iter().filter_map(tube).collect())
+}
+
+/// A case of which the options of links are still to be added.
+struct Posed {
+    structure: Structure,
+    tip_m: Vector3<f64>,
+    station: Station,
+}
+
+impl Posed {
+    fn new(space: &DesignSpace, case: &Case, layers: &[(usize, Layer)]) -> Self {
+        let around = space.surroundings();
+        // the water of a case comes before the water of an effect
+        let structure = Structure { water: case.water.or(around.water), ..around };
+        let walk = Walk::new(space, case);
+        let (start_wrench, start_inertia) = payload_in(space, case, structure.water, &walk);
+        let mut slots: Vec<StationSlot> = layers
+            .iter()
+            .map(|(piece, layer)| {
+                Builder { space, structure: &structure, place: &walk.places[*piece], tip_m: &walk.tip_m }
+                    .build(layer)
+            })
+            .collect();
+        let is_planar = planar(&slots, &start_inertia);
+        if !is_planar {
+            slots.iter_mut().for_each(put_into_one_block);
+        }
+        let modal = match is_planar {
+            true => Modal::Planar(Box::new(PLANES.map(|motions| block(&slots, &start_inertia, motions)))),
+            false => Modal::Spatial(Box::new(block(&slots, &start_inertia, ALL))),
+        };
+        Self { structure, tip_m: walk.tip_m, station: Station { slots, modal, start_wrench, start_inertia } }
+    }
+
+    /// Puts options of the link in a slot into the pose; nothing if there is no link.
+    fn add_options(&mut self, slot: usize, tubes: &[Tube]) {
+        let StationSlot::Link { options, place } = &mut self.station.slots[slot] else { return };
+        let placed = |tube: &Tube| tube.condensed.place(&place.root_m, &place.end_m, &place.frame);
+        let placed: Vec<PlacedLink> = tubes.par_iter().map(placed).collect();
+        let is_planar = matches!(self.station.modal, Modal::Planar(_));
+        let option = |(tube, placed)| station_link(tube, placed, place, &self.tip_m, is_planar);
+        options.par_extend(tubes.par_iter().zip(&placed).map(option));
+        match &mut self.station.modal {
+            Modal::Planar(blocks) => {
+                blocks.iter_mut().zip(PLANES).for_each(|(block, motions)| block.add(slot, &placed, motions));
+            }
+            Modal::Spatial(block) => block.add(slot, &placed, ALL),
+        }
+    }
+}
+
+/// Builds the slot at one place of a pose, without the options of links.
+struct Builder<'a> {
+    space: &'a DesignSpace,
+    structure: &'a Structure,
+    place: &'a (Vector3<f64>, nalgebra::Rotation3<f64>),
+    tip_m: &'a Vector3<f64>,
+}
+
+impl Builder<'_> {
+    fn build(&self, layer: &Layer) -> StationSlot {
+        let (at_m, rotation) = self.place;
+        match layer {
+            Layer::Tilt(tilt) => self.hinge(&tilt.axis(rotation)),
+            Layer::Bearing(spring) => self.hinge(&spring.axis(rotation)),
+            Layer::Mass(mass_kg) | Layer::Extra(mass_kg) => self.body(*mass_kg, at_m),
+            Layer::Piece(SpacePiece::Joint(joint)) => self.hinge(&(rotation * joint.axis)),
+            Layer::Piece(SpacePiece::Link(link)) => self.link(link),
+            Layer::Piece(SpacePiece::Choice(choice)) => self.tube(&choice.vector_m, choice.options.len()),
+        }
+    }
+
+    /// A joint or a spring that turns about an axis of the world through this place.
+    fn hinge(&self, axis: &Vector3<f64>) -> StationSlot {
+        let (at_m, _) = self.place;
+        let twist = rotation_twist(axis, at_m);
+        StationSlot::Joint(StationJoint {
+            twist,
+            at_m: *at_m,
+            tip_m_per_rad: displacement_at(&twist, self.tip_m),
+            inertia_per_kg: body_inertia(1.0, at_m, &Matrix3::zeros()),
+            weight_per_kg: weight_wrench(self.structure.gravity_m_s2, at_m),
+            // rounding leaves traces of the other plane in an axis that was turned
+            block: usize::from(PLANES[1].iter().any(|&i| twist[i].abs() > ROUNDING * twist.amax())),
+        })
+    }
+
+    /// A point mass.
+    fn body(&self, mass_kg: f64, centre_m: &Vector3<f64>) -> StationSlot {
+        StationSlot::Body {
+            inertia: body_inertia(mass_kg, centre_m, &Matrix3::zeros()),
+            weight: weight_wrench(mass_kg * self.structure.gravity_m_s2, centre_m),
+        }
+    }
+
+    /// A given tube, or a rigid offset with its point mass and the harness along it.
+    fn link(&self, link: &Link) -> StationSlot {
+        let (at_m, rotation) = self.place;
+        let piece = self.space.link_piece(link);
+        let point = self.body(piece.point_mass_kg, &(at_m + rotation * link.vector_m / 2.0));
+        let Some(tube) = Tube::new(&piece, self.structure, self.space.links) else { return point };
+        if piece.beam.is_some() {
+            return self.tube(&link.vector_m, 1);
+        }
+        let StationSlot::Body { inertia, weight } = point else { return point };
+        // a harness on a rigid offset has mass and no compliance, so both together are one rigid body
+        let place = self.place_of(&link.vector_m);
+        let placed = tube.condensed.place(&place.root_m, &place.end_m, &place.frame);
+        let along = station_link(&tube, &placed, &place, self.tip_m, false);
+        StationSlot::Body { inertia: inertia + along.inertia, weight: weight + along.weight }
+    }
+
+    /// A tube with room for its options.
+    fn tube(&self, vector_m: &Vector3<f64>, options: usize) -> StationSlot {
+        StationSlot::Link { options: Vec::with_capacity(options), place: self.place_of(vector_m) }
+    }
+
+    fn place_of(&self, vector_m: &Vector3<f64>) -> Place {
+        let (root_m, rotation) = *self.place;
+        let (vector_m, frame) = (rotation * vector_m, rotation.matrix() * section_frame(vector_m));
+        Place { root_m, centre_m: root_m + vector_m / 2.0, end_m: root_m + vector_m, frame }
+    }
+}
+
+/// One option of a link in a pose.
+fn station_link(
+    tube: &Tube,
+    placed: &PlacedLink,
+    place: &Place,
+    tip_m: &Vector3<f64>,
+    is_planar: bool,
+) -> StationLink {
+    let tips: Vec<Vector3<f64>> =
+        (0..6).map(|g| displacement_at(&placed.end.column(g).into(), tip_m)).collect();
+    StationLink {
+        // to order 0 in λ, over the motion of the root: the link as a rigid body
+        inertia: placed.inertia[0].fixed_view::<6, 6>(0, 0).into_owned(),
+        // a uniform weight acts at mid-length
+        weight: weight_wrench(tube.weight_n_per_m * tube.length_m, &place.centre_m),
+        end: placed.end,
+        own_weight_end: placed.end_per_weight * tube.weight_n_per_m,
+        tip: Matrix3x6::from_columns(&tips),
+        end_inertia: placed.inertia[0].diagonal().fixed_rows::<6>(6).into_owned(),
+        block: if is_planar { ends_by_block(placed) } else { [0; 6] },
+        inner_trace_s2: placed.inner_trace_s2,
+    }
+}
+
+fn put_into_one_block(slot: &mut StationSlot) {
+    if let StationSlot::Joint(joint) = slot {
+        joint.block = 0;
+    }
+}
+
+/// Whether the motions within the x-z plane and those across it are coupled nowhere: by no inertia, no joint axis and no
+/// link.
+fn planar(slots: &[StationSlot], payload: &Matrix6<f64>) -> bool {
+    let uncoupled = |m: &Matrix6<f64>| {
+        let largest = m.amax();
+        PLANES[0].iter().all(|&i| PLANES[1].iter().all(|&j| m[(i, j)].abs() <= ROUNDING * largest))
+    };
+    uncoupled(payload)
+        && slots.iter().all(|slot| match slot {
+            StationSlot::Joint(joint) => {
+                let across = PLANES[1].iter().any(|&i| joint.twist[i].abs() > ROUNDING);
+                let within = PLANES[0].iter().any(|&i| joint.twist[i].abs() > ROUNDING);
+                !(across && within) && uncoupled(&joint.inertia_per_kg)
+            }
+            StationSlot::Body { inertia, .. } => uncoupled(inertia),
+            StationSlot::Link { place, .. } => is_symmetric(place),
+        })
+}
+
+/// Whether the x-z plane is a plane of symmetry of a link: it lies in that plane, and one axis of its section is across it.
+fn is_symmetric(place: &Place) -> bool {
+    let size_m = place.root_m.amax().max(place.end_m.amax());
+    let in_plane = |point_m: &Vector3<f64>| point_m.y.abs() <= ROUNDING * size_m;
+    let one_of = |y: f64| y.abs() <= ROUNDING || (y.abs() - 1.0).abs() <= ROUNDING;
+    in_plane(&place.root_m) && in_plane(&place.end_m) && place.frame.row(1).iter().all(|y| one_of(*y))
+}
+
+/// The block of each end coordinate of a link that lies symmetric to the x-z plane; each block gets three.
+fn ends_by_block(placed: &PlacedLink) -> [usize; 6] {
+    let part = |column: usize, plane: usize| {
+        let motions = placed.end.column(column);
+        PLANES[plane].iter().map(|&i| motions[i].abs()).fold(0.0, f64::max)
+    };
+    // a coordinate that moves nothing (a direction without compliance) can stand in either block: those come last and
+    // fill up the blocks
+    let mut order = ALL;
+    order.sort_by_key(|&g| part(g, 0).max(part(g, 1)) == 0.0);
+    let (mut blocks, mut counts) = ([0; 6], [0; 2]);
+    for g in order {
+        let wanted = usize::from(part(g, 1) > part(g, 0));
+        let is_free = part(g, 0).max(part(g, 1)) == 0.0;
+        blocks[g] = if is_free { usize::from(counts[0] == 3) } else { wanted };
+        counts[blocks[g]] += 1;
+    }
+    blocks
+}
+
+/// The slots restricted to the given motions, with room for the options of links.
+fn block<const N: usize>(slots: &[StationSlot], payload: &Matrix6<f64>, motions: [usize; N]) -> Block<N> {
+    let select = |m: &Matrix6<f64>| SMatrix::<f64, N, N>::from_fn(|i, j| m[(motions[i], motions[j])]);
+    let restricted = |slot: &StationSlot| match slot {
+        StationSlot::Joint(joint) => BlockSlot::Joint {
+            twist: SVector::from_fn(|i, _| joint.twist[motions[i]]),
+            inertia_per_kg: select(&joint.inertia_per_kg),
+        },
+        StationSlot::Body { inertia, .. } => BlockSlot::Body(select(inertia)),
+        StationSlot::Link { options, .. } => BlockSlot::Links(Vec::with_capacity(options.capacity())),
+    };
+    Block { payload: select(payload), slots: slots.iter().map(restricted).collect() }
+}
+
+impl<const N: usize> Block<N> {
+    /// Adds options to the link in a slot.
+    fn add(&mut self, slot: usize, placed: &[PlacedLink], motions: [usize; N]) {
+        if let BlockSlot::Links(options) = &mut self.slots[slot] {
+            options.par_extend(placed.par_iter().map(|placed| block_link(placed, motions)));
+        }
+    }
+}
+
+/// One option of a link restricted to the given motions, with the end coordinates that belong to them.
+fn block_link<const N: usize>(placed: &PlacedLink, motions: [usize; N]) -> BlockLink<N> {
+    let mut ends = [0; N];
+    // in one block of six every end coordinate takes part; in two blocks each takes the three that move it
+    if N == 6 {
+        ends.copy_from_slice(&ALL[..N]);
+    } else {
+        let blocks = ends_by_block(placed);
+        let wanted = usize::from(motions[0] == PLANES[1][0]);
+        let members = (0..6).filter(|&g| blocks[g] == wanted);
+        ends.iter_mut().zip(members).for_each(|(slot, g)| *slot = g);
+    }
+    let part = |rows: [usize; N], columns: [usize; N]| {
+        placed.inertia.map(|m| SMatrix::<f64, N, N>::from_fn(|i, j| m[(rows[i], columns[j])]))
+    };
+    // a condensed link has the root motion in rows 0-5 and the end coordinates in rows 6-11
+    let inner = ends.map(|g| 6 + g);
+    BlockLink {
+        root: part(motions, motions),
+        cross: part(motions, inner),
+        end_inertia: part(inner, inner),
+        end: SMatrix::from_fn(|i, j| placed.end[(motions[i], ends[j])]),
+    }
+}

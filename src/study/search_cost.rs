@@ -1,0 +1,206 @@
+//! What it would cost to visit every design of a study, and what an exact search would cost.
+//!
+//! A visit costs a known time for each design, piece and case, less where drives or stresses exclude the design early. How
+//! much an exact search can discard, no formula tells. Both are therefore tried on thinned spaces, which have some of the
+//! sections and gears of the study. The share of designs that hold, and the power by which the number of boxes grows with the
+//! number of designs, are taken from there. Only counts enter, no clock: the same study gets the same search on every machine.
+
+use crate::catalog::Catalogs;
+use crate::exact::run::Exact;
+use crate::report::number::significant;
+use crate::search::sweep::Sweep;
+use crate::space::design_space::{DesignSpace, DriveChoice, SpacePiece};
+use crate::space::levels::OutwardIn;
+use crate::space::problem::ArmProblem;
+use std::sync::atomic::AtomicBool;
+
+/// Processor time of a visit for each design, piece and case \[s\]: `benches/growth.py` prints 12e-9 to 50e-9.
+const VISIT_S: f64 = 25e-9;
+/// Share of that time which a design takes that cannot hold.
+const EXCLUDED: f64 = 0.1;
+/// Processor time of an exact search for each box, piece and case \[s\], from the named studies.
+const BOX_S: f64 = 2.5e-6;
+/// A visit that takes less than this is made without asking what an exact search would cost \[s\].
+const QUICK_S: f64 = 10.0;
+/// A visit that would take longer than this is not thought of \[s\].
+const HOPELESS_S: f64 = 1e6;
+/// Numbers of designs of the thinned spaces.
+const THINNED: [f64; 2] = [1e4, 1e5];
+/// An exact search has to be so many times cheaper. A visit needs no trust in bounds, and it counts what each limit excludes.
+const CHEAPER: f64 = 2.0;
+
+/// Estimated processor times of both searches on one core.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SearchCost {
+    /// Of a visit to every design \[s\].
+    pub(crate) exhaustive_core_s: f64,
+    /// Of an exact search \[s\]; `None` if it was not worked out, because a visit is quick or out of the question.
+    pub(crate) exact_core_s: Option<f64>,
+}
+
+impl SearchCost {
+    /// Estimates both for a study with so many designs.
+    pub(crate) fn of(space: &DesignSpace, catalogs: &Catalogs, designs: f64) -> Self {
+        let each = (space.pieces.len() * space.cases.len()) as f64;
+        let exhaustive_core_s = designs * each * VISIT_S;
+        if !(QUICK_S..HOPELESS_S).contains(&exhaustive_core_s) {
+            return Self { exhaustive_core_s, exact_core_s: None };
+        }
+        let [small, large] = THINNED.map(|most| Trial::new(&thinned(space, catalogs, most), catalogs));
+        Self {
+            exhaustive_core_s: exhaustive_core_s * (large.held + EXCLUDED * (1.0 - large.held)),
+            exact_core_s: Some(grown(&small, &large, designs) * each * BOX_S),
+        }
+    }
+
+    /// Both costs and the choice in a sentence; `None` if there was nothing to compare.
+    pub(crate) fn words(&self) -> Option<String> {
+        let seconds = |s: f64| format!("{} s", significant(s, 1));
+        let exact_core_s = self.exact_core_s?;
+        let choice =
+            if self.speaks_for_exact() { "The exact search runs" } else { "Every design is visited" };
+        Some(format!(
+            "Visiting every design is estimated to take {} of one core, the exact search {}. {choice}.",
+            seconds(self.exhaustive_core_s),
+            seconds(exact_core_s)
+        ))
+    }
+
+    /// Whether an exact search suits the study better.
+    pub(crate) fn speaks_for_exact(&self) -> bool {
+        match self.exact_core_s {
+            Some(exact_core_s) => exact_core_s * CHEAPER < self.exhaustive_core_s,
+            None => self.exhaustive_core_s >= HOPELESS_S,
+        }
+    }
+}
+
+/// Both searches of a thinned space.
+struct Trial {
+    designs: f64,
+    /// Share of the designs that hold.
+    held: f64,
+    /// Boxes of the exact searches for the front and for those of the materials.
+    boxes: f64,
+}
+
+impl Trial {
+    fn new(space: &DesignSpace, catalogs: &Catalogs) -> Self {
+        let stop = AtomicBool::new(false);
+        let problem = ArmProblem::new(space, catalogs);
+        let sweep = Sweep::new(&problem, space.constraints, &stop).run();
+        let search = Exact::new(space, catalogs, &stop, None);
+        search.run(&[]);
+        let materials = space.material_names().len();
+        if materials > 1 {
+            (0..materials).for_each(|material| {
+                search.run_of_material(material);
+            });
+        }
+        let designs: f64 = problem.level_sizes().iter().map(|&size| f64::from(size)).product();
+        Self {
+            designs: designs.max(1.0),
+            held: sweep.designs_evaluated as f64 / designs.max(1.0),
+            boxes: search.known().boxes as f64,
+        }
+    }
+}
+
+/// Boxes of a space with so many designs, by the power that two smaller spaces show.
+fn grown(small: &Trial, large: &Trial, designs: f64) -> f64 {
+    let growth = (large.boxes.max(1.0) / small.boxes.max(1.0)).ln();
+    let of_designs = (large.designs / small.designs).ln();
+    // two spaces of nearly the same size show no power; then no box is spared
+    let power = if of_designs > 0.1 { (growth / of_designs).clamp(0.0, 1.0) } else { 1.0 };
+    large.boxes.max(1.0) * (designs / large.designs).max(1.0).powf(power)
+}
+
+/// The space with at most so many designs, made by dropping every second option of the piece that has most of them.
+fn thinned(space: &DesignSpace, catalogs: &Catalogs, most: f64) -> DesignSpace {
+    let mut space = space.clone();
+    while space.designs(catalogs).is_none_or(|designs| designs as f64 > most)
+        && drop_half(&mut space, catalogs)
+    {}
+    space
+}
+
+/// Drops every second section or gear of the piece that has most of them; `false` if none has two.
+fn drop_half(space: &mut DesignSpace, catalogs: &Catalogs) -> bool {
+    let options = |piece: &SpacePiece| match piece {
+        SpacePiece::Choice(choice) => choice.options.len(),
+        SpacePiece::Joint(joint) => match &joint.drive {
+            DriveChoice::AllFits(filter) => {
+                catalogs.gears.iter().filter(|gear| filter.allows_gear(gear)).count()
+            }
+            _ => 0,
+        },
+        SpacePiece::Link(_) => 0,
+    };
+    let Some(largest) = space.pieces.iter_mut().max_by_key(|piece| options(piece)) else { return false };
+    if options(largest) < 2 {
+        return false;
+    }
+    match largest {
+        SpacePiece::Choice(choice) => {
+            choice.options = choice.options.iter().step_by(2).cloned().collect();
+        }
+        SpacePiece::Joint(joint) => {
+            if let DriveChoice::AllFits(filter) = &mut joint.drive {
+                let allowed = catalogs.gears.iter().filter(|gear| filter.allows_gear(gear));
+                filter.gear_ids = Some(allowed.step_by(2).map(|gear| gear.id.clone()).collect());
+            }
+        }
+        SpacePiece::Link(_) => {}
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::Document;
+    use crate::study::definition::Study;
+    use crate::study::named::named;
+    use crate::study::read::read_study;
+
+    fn study(name: &str, catalogs: &Catalogs) -> Study {
+        let text = named(name).expect("a named study");
+        read_study(Document::parse(name, text).expect("JSON"), catalogs).expect("a sound study")
+    }
+
+    #[test]
+    fn a_thinned_space_has_at_most_the_designs_asked_for_and_not_far_less() {
+        let catalogs = Catalogs::builtin();
+        for name in ["stiff-arm", "compare-materials", "full-catalog"] {
+            let space = thinned(&study(name, &catalogs).space, &catalogs, 1e5);
+            let designs = space.designs(&catalogs).expect("countable") as f64;
+            assert!((1e4..=1e5).contains(&designs), "{name}: {designs}");
+        }
+    }
+
+    #[test]
+    fn boxes_grow_by_the_power_that_two_spaces_show() {
+        let trial = |designs: f64, boxes: f64| Trial { designs, held: 1.0, boxes };
+        let by_root = grown(&trial(1e4, 100.0), &trial(1e6, 1000.0), 1e8);
+        assert!((by_root - 1e4).abs() < 1e-6, "{by_root}");
+        // a power above one or below zero is an accident of two small spaces
+        assert_eq!(grown(&trial(1e4, 10.0), &trial(1e5, 1e4), 1e6), 1e5);
+        assert_eq!(grown(&trial(1e4, 10.0), &trial(1e5, 5.0), 1e6), 5.0);
+    }
+
+    #[test]
+    fn a_quick_visit_is_not_compared_and_a_hopeless_one_is_not_thought_of() {
+        let catalogs = Catalogs::builtin();
+        let cost =
+            |name: &str, designs: f64| SearchCost::of(&study(name, &catalogs).space, &catalogs, designs);
+        let quick = cost("stiff-arm", 1e5);
+        assert!(quick.exact_core_s.is_none() && !quick.speaks_for_exact(), "{quick:?}");
+        let hopeless = cost("full-catalog", 1e32);
+        assert!(hopeless.exact_core_s.is_none() && hopeless.speaks_for_exact(), "{hopeless:?}");
+        let compared = cost("stiff-arm", 1e11);
+        assert!(
+            compared.speaks_for_exact() && compared.exact_core_s.is_some_and(|s| s > 0.0),
+            "{compared:?}"
+        );
+    }
+}
