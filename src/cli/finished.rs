@@ -2,6 +2,7 @@
 
 use super::corrections;
 use super::failure::Failure;
+use super::progress::Progress;
 use super::supplements::{FILES, Found, SupplementArgs};
 use super::write::write_all;
 use crate::arm::effect::entry::Effect;
@@ -51,6 +52,11 @@ pub(super) struct Written {
     pub gap: Option<f64>,
     /// Whether no design is missing in it.
     pub is_whole: bool,
+    /// The mass up to which the front is proved whole \[kg\]; `None` if it is not, or if the study limits no mass.
+    pub proved_to_mass_kg: Option<f64>,
+    /// The state of the search at its end, and its time \[s\].
+    pub progress: Progress,
+    pub elapsed_s: f64,
 }
 
 impl Written {
@@ -153,8 +159,34 @@ impl Finished<'_> {
         let paragraphs: String = paragraphs.map(|text| format!("\n{text}")).collect();
         let terminal = terminal_summary(&summary) + &paragraphs;
         let (status, gap) = (self.outcome.sweep.status, summary.facts.gap);
-        let is_whole = summary.facts.is_whole();
-        Ok(Written { files, terminal, front: summary.overall, status, gap, is_whole })
+        Ok(Written {
+            files,
+            terminal,
+            status,
+            gap,
+            is_whole: summary.facts.is_whole(),
+            proved_to_mass_kg: self.proved_to_mass_kg(&summary.facts),
+            progress: self.progress(&summary.facts),
+            elapsed_s: self.elapsed_s,
+            front: summary.overall,
+        })
+    }
+
+    /// The mass up to which the front is proved whole: the study's limit of mass, if no design within it is missing.
+    fn proved_to_mass_kg(&self, facts: &SummaryFacts) -> Option<f64> {
+        self.study.space.constraints.mass_max_kg.filter(|_| facts.is_whole())
+    }
+
+    /// The state of the search at its end. An exhaustive search has visited every design.
+    fn progress(&self, facts: &SummaryFacts) -> Progress {
+        let sweep = &self.outcome.sweep;
+        let visited = u64::try_from(sweep.designs_total).unwrap_or(u64::MAX);
+        Progress {
+            designs: self.exact.map_or(visited, |_| sweep.designs_evaluated),
+            gap: facts.gap.or(facts.is_whole().then_some(0.0)),
+            front_size: Some(self.outcome.front.len() as u64),
+            boxes_open: self.exact.map(|exact| exact.boxes[1]),
+        }
     }
 
     /// The front, and the front and ties of every material.
@@ -289,6 +321,7 @@ impl Finished<'_> {
             "boxes": self.exact.map(|exact| exact.boxes[0]),
             "boxes_open": self.exact.map(|exact| exact.boxes[1]),
             "gap": self.exact.and_then(|exact| exact.gap),
+            "proved_to_mass_kg": self.proved_to_mass_kg(&summary.facts),
             "ties_listed": self.ties_listed(),
         });
         for (key, value) in supplements.iter().filter_map(|s| s.run.as_ref()) {

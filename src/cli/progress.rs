@@ -1,69 +1,183 @@
-//! What is shown while a search runs: a bar on a terminal, a plain line every ten seconds otherwise.
+//! What is shown while a search runs: a bar on a terminal, a plain line every ten seconds otherwise, and the record that
+//! `--progress FILE` asks for.
 
+use super::failure::Failure;
+use crate::exact::Known;
+use crate::report::number::percent_rounded;
 use indicatif::{ProgressBar, ProgressStyle};
-use std::io::IsTerminal;
+use serde_json::json;
+use std::fs::File;
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Shows progress: a bar on a terminal, a plain line every ten seconds otherwise.
-pub(super) fn watch(total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool) {
-    if std::io::stderr().is_terminal() {
-        bar(total, visited, finished);
-    } else {
-        lines(total, visited, finished);
-    }
-}
-
-fn bar(total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool) {
-    let bar = ProgressBar::new(u64::try_from(total).unwrap_or(u64::MAX));
-    let style =
-        ProgressStyle::with_template("{bar:30} {human_pos}/{human_len} designs, {per_sec}, {eta} left");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    while !finished.load(Ordering::Relaxed) {
-        bar.set_position(visited());
-        std::thread::sleep(Duration::from_millis(100));
-    }
-    bar.finish_and_clear();
-}
-
+/// Time between two looks at a search.
+const LOOK_EVERY: Duration = Duration::from_millis(50);
+/// Time between two plain lines.
 const LINE_EVERY: Duration = Duration::from_secs(10);
+/// Time between two lines of a record, unless the gap falls in between.
+const RECORD_EVERY: Duration = Duration::from_secs(1);
 
-fn lines(total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool) {
-    let started = Instant::now();
-    let mut next = LINE_EVERY;
-    while !finished.load(Ordering::Relaxed) {
-        std::thread::sleep(Duration::from_millis(50));
-        if started.elapsed() < next {
-            continue;
+/// The state of a search at a moment. What a method of search does not know while it runs is `None`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Progress {
+    pub designs: u64,
+    pub gap: Option<f64>,
+    pub front_size: Option<u64>,
+    pub boxes_open: Option<u64>,
+}
+
+impl Progress {
+    /// Of an exhaustive search, which knows its front at its end alone.
+    fn visited(designs: u64) -> Self {
+        Self { designs, gap: None, front_size: None, boxes_open: None }
+    }
+
+    fn known(known: &Known) -> Self {
+        Self {
+            designs: known.designs,
+            gap: known.gap,
+            front_size: Some(known.front_size),
+            boxes_open: Some(known.boxes_open),
         }
-        next += LINE_EVERY;
-        let (done, elapsed_s) = (visited() as f64, started.elapsed().as_secs_f64());
-        let rate = done / elapsed_s;
-        eprintln!(
-            "{elapsed_s:.0} s: {done:.3e} of {:.3e} designs ({:.0} %), {rate:.0} designs/s, about {:.0} s left",
-            total as f64,
-            100.0 * done / total as f64,
-            (total as f64 - done) / rate.max(1.0)
-        );
     }
 }
 
-/// Shows the progress of an exact search.
-pub(super) fn watch_boxes(boxes: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool) {
-    let started = Instant::now();
-    let bar = std::io::stderr().is_terminal().then(ProgressBar::new_spinner);
-    let mut next = LINE_EVERY;
-    while !finished.load(Ordering::Relaxed) {
-        std::thread::sleep(Duration::from_millis(50));
-        let line = || format!("{:.0} s: {:.3e} boxes", started.elapsed().as_secs_f64(), boxes() as f64);
-        match &bar {
-            Some(bar) => bar.set_message(line()),
-            None if started.elapsed() >= next => {
-                next += LINE_EVERY;
-                eprintln!("{}", line());
+/// The record of a search's progress: a JSON object a line.
+pub(super) struct Record {
+    path: PathBuf,
+    file: File,
+}
+
+impl Record {
+    /// An empty record. A file of that name is replaced.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub(super) fn create(path: &Path) -> Result<Self, Failure> {
+        let file = File::create(path).map_err(|e| Failure::file(path, "create", &e))?;
+        Ok(Self { path: path.to_path_buf(), file })
+    }
+
+    /// Adds a line.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub(super) fn add(&self, elapsed_s: f64, progress: &Progress) -> Result<(), Failure> {
+        let Progress { designs, gap, front_size, boxes_open } = progress;
+        let line = json!({
+            "elapsed_s": elapsed_s, "designs": designs, "gap": gap, "front_size": front_size, "boxes_open": boxes_open,
+        });
+        // one call writes the whole line, so that a reader never sees a part of it
+        (&self.file)
+            .write_all(format!("{line}\n").as_bytes())
+            .map_err(|e| Failure::file(&self.path, "write", &e))
+    }
+}
+
+/// Watches a search from its start on.
+pub(super) struct Watch<'r> {
+    started: Instant,
+    record: Option<&'r Record>,
+}
+
+impl<'r> Watch<'r> {
+    pub(super) fn new(started: Instant, record: Option<&'r Record>) -> Self {
+        Self { started, record }
+    }
+
+    /// Looks at a search until it is finished. `see` gets the elapsed time.
+    fn look(&self, finished: &AtomicBool, now: impl Fn() -> Progress, mut see: impl FnMut(Duration)) {
+        let (mut next, mut last_gap) = (Duration::ZERO, None);
+        while !finished.load(Ordering::Relaxed) {
+            std::thread::sleep(LOOK_EVERY);
+            let elapsed = self.started.elapsed();
+            if let Some(record) = self.record {
+                let progress = now();
+                if elapsed >= next || progress.gap != last_gap {
+                    (next, last_gap) = (elapsed + RECORD_EVERY, progress.gap);
+                    // a disk that is full now may not be later; the last line tells if it still is
+                    let _ = record.add(elapsed.as_secs_f64(), &progress);
+                }
             }
-            None => {}
+            see(elapsed);
         }
     }
-    bar.iter().for_each(ProgressBar::finish_and_clear);
+
+    /// Shows how many designs are visited of how many.
+    pub(super) fn designs(&self, total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool) {
+        let now = || Progress::visited(visited());
+        if std::io::stderr().is_terminal() {
+            let bar = ProgressBar::new(u64::try_from(total).unwrap_or(u64::MAX));
+            let style = ProgressStyle::with_template(
+                "{bar:30} {human_pos}/{human_len} designs, {per_sec}, {eta} left",
+            );
+            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            self.look(finished, now, |_| bar.set_position(visited()));
+            bar.finish_and_clear();
+        } else {
+            let line = |elapsed: Duration| eprintln!("{}", visited_line(total, visited(), elapsed));
+            self.look(finished, now, in_lines(line));
+        }
+    }
+
+    /// Shows what an exact search knows.
+    pub(super) fn search(&self, known: &(dyn Fn() -> Known + Sync), finished: &AtomicBool) {
+        let now = || Progress::known(&known());
+        let line = |elapsed: Duration| search_line(&known(), elapsed);
+        if std::io::stderr().is_terminal() {
+            let spinner = ProgressBar::new_spinner();
+            self.look(finished, now, |elapsed| spinner.set_message(line(elapsed)));
+            spinner.finish_and_clear();
+        } else {
+            self.look(finished, now, in_lines(|elapsed| eprintln!("{}", line(elapsed))));
+        }
+    }
+}
+
+/// Calls `say` every ten seconds.
+fn in_lines(say: impl Fn(Duration)) -> impl FnMut(Duration) {
+    let mut next = LINE_EVERY;
+    move |elapsed| {
+        if elapsed >= next {
+            next += LINE_EVERY;
+            say(elapsed);
+        }
+    }
+}
+
+fn visited_line(total: u128, visited: u64, elapsed: Duration) -> String {
+    let (done, total, elapsed_s) = (visited as f64, total as f64, elapsed.as_secs_f64());
+    let rate = done / elapsed_s;
+    format!(
+        "{elapsed_s:.0} s: {done:.3e} of {total:.3e} designs ({:.0} %), {rate:.0} designs/s, about {:.0} s left",
+        100.0 * done / total,
+        (total - done) / rate.max(1.0)
+    )
+}
+
+fn search_line(known: &Known, elapsed: Duration) -> String {
+    let gap = known.gap.map_or("not known yet".into(), |gap| percent_rounded(100.0 * gap, 2));
+    format!(
+        "{:.0} s: gap {gap}, front of {}, {:.3e} boxes, {} open",
+        elapsed.as_secs_f64(),
+        known.front_size,
+        known.boxes as f64,
+        known.boxes_open
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_line_of_an_exact_search_says_its_gap_and_its_front() {
+        let known = Known { boxes: 125_000, boxes_open: 12, designs: 9, front_size: 431, gap: Some(0.123) };
+        let line = search_line(&known, Duration::from_secs(20));
+        assert_eq!(line, "20 s: gap 12 %, front of 431, 1.250e5 boxes, 12 open");
+        let line = search_line(&Known::default(), Duration::from_secs(1));
+        assert!(line.contains("gap not known yet"), "{line}");
+    }
 }

@@ -75,7 +75,10 @@ pub(super) fn rerun(
     for (asked, folder) in [(&nominal, "nominal"), (&corrected, "corrected")] {
         let results = dir.join("study").join(folder);
         let supplements = SupplementArgs::default();
-        match search(asked, &With { catalogs, overlay, dir: &results, how, supplements: &supplements }) {
+        match search(
+            asked,
+            &With { catalogs, overlay, dir: &results, how, supplements: &supplements, record: None },
+        ) {
             Ok(written) => {
                 written.write(&results)?;
                 found.push(written);

@@ -4,10 +4,12 @@ use super::asked::{Asked, load_study};
 use super::corrections;
 use super::failure::Failure;
 use super::finished::{catalogs_hash, facts_of, is_front_of_material, pretty};
+use super::progress::Record;
 use super::search::{SearchArgs, With, search};
 use super::supplements::SupplementArgs;
 use super::write::write_all;
 use crate::catalog::Catalogs;
+use crate::input::json::Document;
 use crate::paper::names::{NAMES, question};
 use crate::report::html::document::DocumentPage;
 use crate::report::html::render::PLOTS;
@@ -15,7 +17,9 @@ use crate::report::section::Figure;
 use crate::report::table::Table;
 use crate::report::words::{TERMINAL, wrap};
 use crate::search::sweep::Status;
+use crate::study::definition::Study;
 use crate::study::effects::left_out;
+use crate::study::read::read_study;
 use crate::study::table::slug;
 use clap::Args;
 use serde_json::{Value, json};
@@ -28,7 +32,8 @@ use std::time::Instant;
 #[command(
     after_help = "Example: armwright run compare-materials\n         armwright run my-study.json --out results/mine\n         \
                   armwright run my-study.json --effects results/may/arm.corrected.json\n         \
-                  armwright run my-study.json --within 2% --tolerance gear_stiffness=20%"
+                  armwright run my-study.json --within 2% --tolerance gear_stiffness=20%\n         \
+                  armwright run full-catalog --gap 0% --mass-max-kg 14.5 --progress progress.jsonl"
 )]
 pub(crate) struct RunArgs {
     /// A built-in study (see `armwright studies`) or a study file
@@ -40,10 +45,63 @@ pub(crate) struct RunArgs {
     /// and links of the same name; every effect that does not apply is listed
     #[arg(long, value_name = "ARM")]
     effects: Option<PathBuf>,
+    /// Look for arms of at most this mass only. With --gap 0 this part of the front is proved whole, which takes
+    /// seconds for light arms where the whole front would take years; run.json then has proved_to_mass_kg
+    #[arg(long, value_name = "KG", value_parser = mass_limit)]
+    mass_max_kg: Option<f64>,
+    /// Record the progress of the search in a file, a JSON object a line: elapsed_s, designs, gap, front_size,
+    /// boxes_open. There is a line every second and whenever the gap falls; null stands for what is not known
+    #[arg(long, value_name = "FILE")]
+    progress: Option<PathBuf>,
     #[command(flatten)]
     search: SearchArgs,
     #[command(flatten)]
     supplements: SupplementArgs,
+}
+
+impl RunArgs {
+    /// The study with the limit of mass and the effects that were asked for.
+    fn asked(&self, catalogs: &Catalogs) -> Result<Asked, Failure> {
+        let (study, text) = load_study(&self.study, catalogs)?;
+        let (study, text) = match self.mass_max_kg {
+            Some(most_kg) => up_to_mass(most_kg, study, text, catalogs)?,
+            None => (study, text),
+        };
+        match &self.effects {
+            None => Ok(Asked { corrections: left_out(&study), study, text }),
+            Some(path) => corrections::from_arm_file(path, &study, &text, catalogs),
+        }
+    }
+
+    /// Name of the folder of results, if none is given.
+    fn folder(&self, study: &Study) -> String {
+        let up_to = self.mass_max_kg.map_or(String::new(), |kg| format!("-up-to-{kg}-kg"));
+        let effects = if self.effects.is_some() { "-with-effects" } else { "" };
+        format!("{}{up_to}{effects}", slug(&study.name))
+    }
+}
+
+/// A study that asks for arms of at most this mass. If it has a lower limit already, nothing changes.
+fn up_to_mass(
+    most_kg: f64,
+    study: Study,
+    text: String,
+    catalogs: &Catalogs,
+) -> Result<(Study, String), Failure> {
+    if study.space.constraints.mass_max_kg.is_some_and(|kg| kg <= most_kg) {
+        return Ok((study, text));
+    }
+    let mut file: Value = serde_json::from_str(&text).map_err(|e| Failure::Internal(e.to_string()))?;
+    file["constraints"]["mass_max_kg"] = json!(most_kg);
+    let text = format!("{file:#}\n");
+    let name = format!("{} up to {most_kg} kg", study.name);
+    Ok((read_study(Document::parse(&name, &text)?, catalogs)?, text))
+}
+
+/// A limit of mass \[kg\].
+fn mass_limit(text: &str) -> Result<f64, String> {
+    let kg = text.parse::<f64>().ok().filter(|kg| kg.is_finite() && *kg > 0.0);
+    kg.ok_or_else(|| "a mass above zero, in kilograms".into())
 }
 
 /// Executes the verb.
@@ -51,17 +109,11 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
     if NAMES.contains(&args.study.as_str()) {
         return run_paper(args, catalogs);
     }
-    let (study, text) = load_study(&args.study, catalogs)?;
-    let (asked, suffix) = match &args.effects {
-        None => (Asked { corrections: left_out(&study), study, text }, ""),
-        Some(path) => (corrections::from_arm_file(path, &study, &text, catalogs)?, "-with-effects"),
-    };
-    let name = format!("{}{suffix}", slug(&asked.study.name));
-    let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(name));
-    let written = search(
-        &asked,
-        &With { catalogs, overlay, dir: &dir, how: &args.search, supplements: &args.supplements },
-    )?;
+    let asked = args.asked(catalogs)?;
+    let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(args.folder(&asked.study)));
+    let record = args.progress.as_deref().map(Record::create).transpose()?;
+    let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
+    let written = search(&asked, &With { catalogs, overlay, dir: &dir, how, supplements, record })?;
     written.write(&dir)?;
     let applied = corrections::to_text(&asked.corrections);
     Ok(format!("{}{applied}\n{}", written.terminal, told(&dir, &written.files)))

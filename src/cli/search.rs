@@ -3,7 +3,7 @@
 use super::asked::Asked;
 use super::failure::Failure;
 use super::finished::{Finished, FoundExactly, Written};
-use super::progress::{watch, watch_boxes};
+use super::progress::{Record, Watch};
 use super::supplements::SupplementArgs;
 use super::write::write_all;
 use crate::catalog::Catalogs;
@@ -129,6 +129,8 @@ pub(super) struct With<'a> {
     pub how: &'a SearchArgs,
     /// What is asked for in addition to the front.
     pub supplements: &'a SupplementArgs,
+    /// Where progress is recorded.
+    pub record: Option<&'a Record>,
 }
 
 /// Searches a study; nothing is written yet.
@@ -136,10 +138,14 @@ pub(super) struct With<'a> {
 /// # Errors
 /// The search that is asked for does not suit the study, finds nothing, or is interrupted.
 pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
-    match with.how.kind(&asked.study, with.catalogs)? {
+    let written = match with.how.kind(&asked.study, with.catalogs)? {
         SearchKind::Exhaustive => visit_all(asked, with),
         SearchKind::Exact => search_exactly(asked, with),
+    }?;
+    if let Some(record) = with.record {
+        record.add(written.elapsed_s, &written.progress)?;
     }
+    Ok(written)
 }
 
 /// Visits every design of a study.
@@ -151,7 +157,9 @@ fn visit_all(Asked { study, text, corrections }: &Asked, with: &With) -> Result<
     write_all(dir, &[])?;
     let stop = stopped_by_signal();
     let started = Instant::now();
-    let outcome = run_study(study, catalogs, stop, watch);
+    let outcome = run_study(study, catalogs, stop, |total, visited, finished| {
+        Watch::new(started, with.record).designs(total, visited, finished);
+    });
     let elapsed_s = started.elapsed().as_secs_f64();
     match outcome.sweep.status {
         Status::Interrupted => {
@@ -205,7 +213,7 @@ pub(super) fn stopped_by_signal() -> &'static AtomicBool {
 
 /// Finds the front of a study without visiting every design.
 fn search_exactly(Asked { study, text, corrections }: &Asked, with: &With) -> Result<Written, Failure> {
-    let With { catalogs, overlay, dir, how, supplements } = *with;
+    let With { catalogs, overlay, dir, how, supplements, .. } = *with;
     write_all(dir, &[])?;
     let stop = stopped_by_signal();
     let started = Instant::now();
@@ -215,7 +223,9 @@ fn search_exactly(Asked { study, text, corrections }: &Asked, with: &With) -> Re
         near: supplements.slack(),
     };
     let ExactStudy { study: part, outcome, boxes, gap, near, ties_listed } =
-        run_exact(study, catalogs, stop, extent, watch_boxes);
+        run_exact(study, catalogs, stop, extent, |known, finished| {
+            Watch::new(started, with.record).search(known, finished);
+        });
     // what was found is written; a further signal stops that too
     stop.store(false, Ordering::Relaxed);
     let nothing = |problem: String| {
@@ -250,7 +260,7 @@ fn search_exactly(Asked { study, text, corrections }: &Asked, with: &With) -> Re
                 dir,
             };
             let mut written = finished.files(supplements, stop)?;
-            written.terminal.push_str(&certificate_words(boxes, gap));
+            written.terminal.push_str(&certificate_words(boxes, gap, written.proved_to_mass_kg));
             Ok(written)
         }
     }

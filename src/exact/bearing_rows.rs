@@ -119,18 +119,22 @@ impl BearingRows {
     /// The least and the greatest loads, before levers along the axis.
     pub(super) fn loads(&self, numbers: &Numbers, stop_factor: f64) -> [BearingDemand; 2] {
         let at_rest = self.at_rest.each_ref().map(|sum| sum.between_weights(numbers.weights_n));
-        let rest = lengths(&at_rest);
+        let rest = squared_lengths(&at_rest);
         let [mut running, mut in_stop] = [rest; 2];
         for ramp in &self.ramps {
             let ramp = ramp
                 .each_ref()
                 .map(|sum| sum.between_inertias(numbers.light.as_flattened(), numbers.heavy.as_flattened()));
             for sign in [1.0, -1.0] {
-                widen(&mut running, lengths(&moving(&at_rest, &ramp, sign)));
-                widen(&mut in_stop, lengths(&moving(&at_rest, &ramp, sign * stop_factor)));
+                widen(&mut running, squared_lengths(&moving(&at_rest, &ramp, sign)));
+                widen(&mut in_stop, squared_lengths(&moving(&at_rest, &ramp, sign * stop_factor)));
             }
         }
-        [0, 1].map(|end| BearingDemand { at_rest: rest[end], running: running[end], in_stop: in_stop[end] })
+        [0, 1].map(|end| BearingDemand {
+            at_rest: load(&rest[end]),
+            running: load(&running[end]),
+            in_stop: load(&in_stop[end]),
+        })
     }
 
     /// Whether no load can fall when a drive gets heavier.
@@ -204,6 +208,7 @@ impl Sum {
 }
 
 /// The components of a load at rest plus a ramp times a factor.
+#[inline]
 fn moving(
     at_rest: &[[f64; 2]; COMPONENTS],
     ramp: &[[f64; 2]; COMPONENTS],
@@ -215,20 +220,33 @@ fn moving(
     })
 }
 
-/// The least and the greatest load of components in intervals.
-fn lengths(components: &[[f64; 2]; COMPONENTS]) -> [BearingLoad; 2] {
-    let sizes = components.map(|[low, high]| [low.max(-high).max(0.0), high.max(-low)]);
-    [0, 1].map(|end| {
-        let length = |[a, b]: [usize; 2]| sizes[a][end].hypot(sizes[b][end]);
-        BearingLoad { moment_nm: length(MOMENT), radial_n: length(RADIAL), axial_n: sizes[AXIAL[0]][end] }
-    })
+/// Squares of the moment, of the radial and of the axial force. The largest load has the largest squares, so one root
+/// for all cases is enough.
+type Squares = [f64; 3];
+
+/// The least and the greatest load of components in intervals, squared.
+#[inline]
+fn squared_lengths(components: &[[f64; 2]; COMPONENTS]) -> [Squares; 2] {
+    let mut squares = [[0.0; COMPONENTS]; 2];
+    for (at, [low, high]) in components.iter().enumerate() {
+        let sizes = [low.max(-high).max(0.0), high.max(-low)];
+        squares[0][at] = sizes[0] * sizes[0];
+        squares[1][at] = sizes[1] * sizes[1];
+    }
+    squares.map(|of| [of[MOMENT[0]] + of[MOMENT[1]], of[RADIAL[0]] + of[RADIAL[1]], of[AXIAL[0]]])
 }
 
 /// Makes each end of a load the larger of two.
-fn widen(load: &mut [BearingLoad; 2], other: [BearingLoad; 2]) {
-    for (load, other) in load.iter_mut().zip(other) {
-        *load = load.max(other);
+fn widen(load: &mut [Squares; 2], other: [Squares; 2]) {
+    for (load, other) in load.iter_mut().flatten().zip(other.iter().flatten()) {
+        *load = load.max(*other);
     }
+}
+
+/// The load whose squares are given.
+fn load(squares: &Squares) -> BearingLoad {
+    let [moment_nm, radial_n, axial_n] = squares.map(f64::sqrt);
+    BearingLoad { moment_nm, radial_n, axial_n }
 }
 
 #[cfg(test)]

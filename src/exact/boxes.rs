@@ -2,6 +2,8 @@
 
 use super::bound::{BoxBound, DesignBox, Verdict};
 use super::budget::Budget;
+use super::gap::gap;
+use super::live::Live;
 use super::local_upper_bounds::LocalUpperBound;
 use super::problem::Problem;
 use super::rounds::{Done, in_rounds};
@@ -34,20 +36,22 @@ impl OpenBox {
 }
 
 /// Bounds the box of all designs and all boxes into which it is divided. Findings are learned at the end of each
-/// round. Returns the boxes that are still open when the search is stopped.
+/// round, after which `see` is shown what is known and which boxes are open. Returns the boxes that are still open when
+/// the search is stopped.
 pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
     problem: &Problem,
     state: &mut K,
     open: impl Fn(&K, OpenBox, &mut Work, &mut F) -> Vec<OpenBox> + Sync,
     learn: impl Fn(&mut K, F),
+    see: impl Fn(&K, &[OpenBox]),
 ) -> Vec<OpenBox> {
     let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return Vec::new() };
     let root = OpenBox { design_box: problem.root(), shapes: Arc::new(shapes), box_bound: BoxBound::OPEN };
     let task = |state: &K, root: OpenBox| {
         open_boxes(budget, root, |next, work, findings| open(state, next, work, findings))
     };
-    in_rounds(state, vec![root], || budget.stopped(), task, learn)
+    in_rounds(state, vec![root], || budget.stopped(), task, learn, see)
 }
 
 /// Bounds a box and then some of the boxes into which it is divided, depth first. Returns the open boxes and the
@@ -74,7 +78,9 @@ pub(super) fn pass_by_boxes(
     problem: &Problem,
     state: &mut SearchState,
     slack: f64,
+    live: Option<&Live>,
 ) -> Vec<BoxBound> {
+    let bounds = |open: &[OpenBox]| open.iter().map(|opened| opened.box_bound).collect::<Vec<_>>();
     let left = open_all_boxes(
         budget,
         problem,
@@ -83,8 +89,17 @@ pub(super) fn pass_by_boxes(
             Search { budget, problem, state, slack, below: None }.open(next, work, findings)
         },
         SearchState::learn,
+        |state, open| {
+            live.into_iter().for_each(|live| {
+                live.update(|| {
+                    let front = state.front();
+                    let gap = gap(&bounds(open), &front).map(|gap| gap.max(slack));
+                    state.known(&front, open.len(), gap)
+                });
+            });
+        },
     );
-    left.iter().map(|opened| opened.box_bound).collect()
+    bounds(&left)
 }
 
 /// A search of a problem, with the state that was shared when its round began.

@@ -134,7 +134,7 @@ impl Rows<'_> {
                 // The underestimate takes the force at the end of its interval that moves the tip least.
                 let least = if tip_per_unit > 0.0 { low } else { high };
                 let made = |member: &RelaxedDesign| -> f64 {
-                    row.per_n.iter().zip(&member.weights_n[judged]).map(|(c, w)| c * w).sum()
+                    row.per_n.iter().zip(member.weights_in(judged)).map(|(c, w)| c * w).sum()
                 };
                 let acting = row.fixed + mean(mixed, made);
                 left_out += multiplier * self.product(mixed, judged, row, acting - least);
@@ -174,7 +174,7 @@ impl Rows<'_> {
         multipliers
             .map(|(piece, (per_n, [light, heavy]))| {
                 let least = if tip_per_unit * per_n > 0.0 { light } else { heavy };
-                per_n * (mean(mixed, |member| member.weights_n[judged][piece]) - least)
+                per_n * (mean(mixed, |member| member.weights_in(judged)[piece]) - least)
             })
             .collect()
     }
@@ -192,7 +192,7 @@ impl Rows<'_> {
             let [least_nm, most_nm] = self.work.torques[case][row.piece];
             stiffest[0] = curve.steepest(least_nm, most_nm);
         }
-        mean(mixed, |member| yields(&member.stiffness[judged][row.piece])) - yields(&stiffest)
+        mean(mixed, |member| yields(&member.stiffness_in(judged)[row.piece])) - yields(&stiffest)
     }
 }
 
@@ -211,7 +211,10 @@ impl Problem<'_> {
         match branching.by {
             BranchOn::Options { level, axis } => {
                 let [low, high] = self.branch_on_options(kept, level, axis, branching.at)?;
-                Some([self.restricted_to(&low)?, self.restricted_to(&high)?])
+                let low = self.restricted_to(&low)?;
+                // The other levels are the same, so their trees serve both halves.
+                let high = low.restricted_to(&high)?;
+                Some([low, high])
             }
             BranchOn::Force { case, row } => {
                 let narrower = self.restricted_to(kept)?;

@@ -6,6 +6,7 @@ use std::time::Instant;
 /// The limits of a search, shared by all of its workers.
 pub(super) struct Budget<'p> {
     stop: &'p AtomicBool,
+    started: Instant,
     deadline: Option<Instant>,
     boxes: AtomicU64,
 }
@@ -13,12 +14,24 @@ pub(super) struct Budget<'p> {
 impl<'p> Budget<'p> {
     /// A budget that ends the search when `stop` is set or the deadline has passed.
     pub(super) fn new(stop: &'p AtomicBool, deadline: Option<Instant>) -> Self {
-        Self { stop, deadline, boxes: AtomicU64::new(0) }
+        Self { stop, started: Instant::now(), deadline, boxes: AtomicU64::new(0) }
     }
 
-    /// The time at which the search ends at the latest.
-    pub(super) fn deadline(&self) -> Option<Instant> {
-        self.deadline
+    /// The same limits for work whose boxes are not counted.
+    pub(super) fn aside(&self) -> Self {
+        Self { boxes: AtomicU64::new(0), ..*self }
+    }
+
+    /// The time that is left \[s\]; `None` without a time limit.
+    pub(super) fn left_s(&self) -> Option<f64> {
+        let left = |deadline: Instant| deadline.saturating_duration_since(Instant::now()).as_secs_f64();
+        self.deadline.map(left)
+    }
+
+    /// Whether a part of the time limit has passed, or the search has to end.
+    pub(super) fn has_spent(&self, part: f64) -> bool {
+        let limit = self.deadline.map(|deadline| deadline.saturating_duration_since(self.started));
+        self.stopped() || limit.is_some_and(|limit| self.started.elapsed() >= limit.mul_f64(part))
     }
 
     /// The number of boxes bounded so far.

@@ -8,6 +8,7 @@ use super::dual_price::DualPrice;
 use super::parts::{DriveBox, LeastDemand};
 use super::torsion::CurveBox;
 use super::tree::Tree;
+use std::sync::Arc;
 
 /// The drives of one curve and one bearing: mass \[kg\] and node of the lightest and of the heaviest.
 struct CurveGroup {
@@ -31,12 +32,11 @@ impl CurveGroup {
 }
 
 /// The feasible drives, one group for each curve and bearing.
-#[derive(Default)]
-pub(super) struct DrivesByCurve(Vec<CurveGroup>);
+struct DrivesByCurve(Vec<CurveGroup>);
 
 impl DrivesByCurve {
     /// The drives below a node that can carry the least demand.
-    pub(super) fn new(tree: &Tree<DriveBox>, node: u32, asked: Option<&LeastDemand>) -> Self {
+    fn new(tree: &Tree<DriveBox>, node: u32, asked: Option<&LeastDemand>) -> Self {
         let mut curves: Vec<CurveGroup> = Vec::new();
         let (mut open, mut last) = (vec![node], 0);
         while let Some(at) = open.pop() {
@@ -68,13 +68,45 @@ impl DrivesByCurve {
         Self(curves)
     }
 
-    /// The least price of a drive and its node. `None` if no drive is feasible.
-    pub(super) fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
+    fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
         let of = |of: &CurveGroup| {
             let (mass_kg, node) = if price.of_mass([0.0, 1.0]) < 0.0 { of.heaviest } else { of.lightest };
             (price.of_joint([mass_kg; 2], of.curve.as_ref(), of.tilt_rad_per_nm), node)
         };
         self.0.iter().map(of).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
+    }
+}
+
+/// The feasible drives of a level, kept as long as neither the drives nor the demand on them change.
+#[derive(Clone)]
+pub(super) struct FeasibleDrives {
+    tree: Arc<Tree<DriveBox>>,
+    node: u32,
+    asked: Option<LeastDemand>,
+    drives: Arc<DrivesByCurve>,
+}
+
+impl FeasibleDrives {
+    /// The drives below a node that can carry the least demand. They are those of `before` if it was made of the same.
+    pub(super) fn new(
+        tree: &Arc<Tree<DriveBox>>,
+        node: u32,
+        asked: Option<&LeastDemand>,
+        before: Option<&Self>,
+    ) -> Self {
+        let is_same =
+            |of: &&Self| Arc::ptr_eq(&of.tree, tree) && of.node == node && of.asked.as_ref() == asked;
+        before.filter(is_same).cloned().unwrap_or_else(|| Self {
+            tree: Arc::clone(tree),
+            node,
+            asked: asked.cloned(),
+            drives: Arc::new(DrivesByCurve::new(tree, node, asked)),
+        })
+    }
+
+    /// The least price of a drive and its node. `None` if no drive is feasible.
+    pub(super) fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
+        self.drives.cheapest(price)
     }
 }
 

@@ -26,6 +26,8 @@ use std::sync::Arc;
 
 /// Greatest number of generations. Later ones hardly find better designs.
 const GENERATIONS: u64 = 20;
+/// Greatest part of a time limit after which another generation begins. The passes prove something, generations do not.
+const MOST_TIME: f64 = 0.25;
 /// Greatest number of children in a generation. In a small space, a generation has as many children as the square
 /// root of the number of designs.
 const MOST_CHILDREN: f64 = 8192.0;
@@ -67,12 +69,14 @@ impl Offspring {
     }
 }
 
-/// Evolves designs from those in `first` and adds the designs found to the state.
+/// Evolves designs from those in `first` and adds the designs found to the state. After each generation `tell` gets the
+/// objectives of the best designs, and the number of designs whose objectives were computed.
 pub(super) fn evolve<'p>(
     budget: &Budget,
     problem: &Problem<'p>,
     first: Vec<Individual>,
     state: &mut SearchState,
+    tell: impl Fn(&[Objectives], u64),
 ) {
     let mut seen = Incumbents::default();
     first.iter().for_each(|member| seen.enter(&member.objectives));
@@ -80,7 +84,7 @@ pub(super) fn evolve<'p>(
     let children_per_generation = (problem.designs() as f64).sqrt().min(MOST_CHILDREN) as u64;
     let mut findings = Findings::default();
     for generation in 0..GENERATIONS {
-        if parents.is_empty() || budget.stopped() {
+        if parents.is_empty() || budget.has_spent(MOST_TIME) {
             break;
         }
         let children = (0..children_per_generation).into_par_iter().map_init(Work::default, |work, n| {
@@ -93,6 +97,8 @@ pub(super) fn evolve<'p>(
         children.iter().for_each(|member| seen.enter(&member.objectives));
         parents.extend(children);
         parents = by_mass(parents);
+        let found: Vec<Objectives> = parents.iter().map(|member| member.objectives).collect();
+        tell(&found, state.evaluated + findings.evaluated);
     }
     let candidate = |member: &Individual| {
         let options = problem.options(&member.design_box)?;

@@ -1,37 +1,36 @@
-//! How near to every design of the study some found design is, after a search that was stopped.
+//! How near to every design of the study some found design is, while boxes are open.
 
 use super::bound::BoxBound;
-use crate::search::sweep::Candidate;
+use crate::pareto::objectives::Objectives;
 use rayon::prelude::*;
 
-/// The least `ε` such that for every open box some design of the front, with mass and deflection divided by
+/// The least `ε` such that for every open box some design found, with mass and deflection divided by
 /// `1 + ε` and mode multiplied by it, is no worse than the bound of the box. For every missed design some
-/// design of the front is then worse by at most `ε` in each objective. `None` if a bound says nothing, or if
-/// the front is empty.
-pub(super) fn gap(open: &[BoxBound], front: &[Candidate]) -> Option<f64> {
-    let of = |box_bound: &BoxBound| {
-        let factor = |c: &Candidate| {
-            let o = &c.objectives;
-            (o.mass_kg / box_bound.mass_kg)
-                .max(o.tip_deflection_m / box_bound.tip_m)
-                .max(box_bound.hz / o.lowest_mode_hz)
-        };
-        front.iter().map(factor).fold(f64::INFINITY, f64::min)
+/// design found is then worse by at most `ε` in each objective. `None` if a bound says nothing, or if
+/// nothing was found.
+pub(super) fn gap(open: &[BoxBound], found: &[Objectives]) -> Option<f64> {
+    let worst = open.par_iter().map(|bound| gap_of(bound, found)).reduce(|| 0.0, f64::max);
+    worst.is_finite().then_some(worst)
+}
+
+/// The gap that one open box leaves; infinite if its bound says nothing, or if nothing was found.
+pub(super) fn gap_of(bound: &BoxBound, found: &[Objectives]) -> f64 {
+    let factor = |o: &Objectives| {
+        (o.mass_kg / bound.mass_kg).max(o.tip_deflection_m / bound.tip_m).max(bound.hz / o.lowest_mode_hz)
     };
-    let worst = open.par_iter().map(of).reduce(|| 1.0, f64::max);
-    (worst.is_finite()).then_some(worst - 1.0)
+    (found.iter().map(factor).fold(f64::INFINITY, f64::min) - 1.0).max(0.0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pareto::objectives::Objectives;
 
     #[test]
     fn the_gap_is_the_factor_to_the_nearest_design_of_the_front() {
-        let at = |mass_kg: f64, tip_deflection_m: f64, lowest_mode_hz: f64| Candidate {
-            number: 0,
-            objectives: Objectives { tip_deflection_m, mass_kg, lowest_mode_hz },
+        let at = |mass_kg: f64, tip_deflection_m: f64, lowest_mode_hz: f64| Objectives {
+            tip_deflection_m,
+            mass_kg,
+            lowest_mode_hz,
         };
         let front = [at(10.0, 1e-3, 20.0), at(20.0, 5e-4, 30.0)];
         let box_bound = |mass_kg, tip_m, hz| BoxBound { mass_kg, tip_m, hz };

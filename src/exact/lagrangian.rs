@@ -51,12 +51,13 @@ impl Rows<'_> {
         /// A row this far below its limit (scaled) has no influence.
         const NO_SAY: f64 = -10.0;
         let row_limits: Vec<f64> = self.row_limits(upper).collect();
-        let above = |member: &RelaxedDesign| -> Vec<f64> {
-            member.values.iter().zip(&row_limits).map(|(v, a)| (v - a).max(NO_SAY)).collect()
-        };
+        let mut above = Vec::with_capacity(members.len() * row_limits.len());
+        for member in members {
+            above.extend(member.values.iter().zip(&row_limits).map(|(v, a)| (v - a).max(NO_SAY)));
+        }
         // The rows of a force are equalities on the mixture and not numbers to be kept low.
         let balanced = 1 + self.tips.len()..self.first_mode;
-        solve(&members.iter().flat_map(above).collect::<Vec<f64>>(), row_limits.len(), balanced)
+        solve(&above, row_limits.len(), balanced)
     }
 
     /// Adds a row for each mode of the mixed arm that lies below the required frequency. Returns whether there was
@@ -106,7 +107,7 @@ impl Rows<'_> {
         let pieces = self.problem.parts.len();
         let mut arm = (vec![[0.0; STIFFNESSES]; pieces], vec![[0.0; INERTIAS]; pieces]);
         for (member, share) in members.iter().zip(mix).filter(|(_, share)| **share > 0.0) {
-            let pairs = arm.0.iter_mut().zip(&member.stiffness[judged]);
+            let pairs = arm.0.iter_mut().zip(member.stiffness_in(judged));
             let pairs = pairs.chain(arm.1.iter_mut().zip(&member.inertia));
             pairs.for_each(|(sum, x)| sum.iter_mut().zip(x).for_each(|(sum, x)| *sum += share * x));
         }
@@ -122,11 +123,12 @@ impl Rows<'_> {
             let level = levels.len();
             let price = || self.price(piece, &multipliers);
             // What the piece adds to each row is needed to choose a branching.
-            let before = member.values[..self.first_mode].to_vec();
+            let before = member.adds.len();
+            member.adds.extend_from_slice(&member.values[..self.first_mode]);
             total += match part {
                 Part::Drives { tree, .. } => {
                     let price = price();
-                    let cheapest = self.drives[level].cheapest(&price);
+                    let cheapest = self.drives[level].as_ref().and_then(|drives| drives.cheapest(&price));
                     // If no drive is feasible the sum is infinite, and any local upper bound is refuted.
                     let (least, at) = cheapest.unwrap_or((f64::INFINITY, design_box[level]));
                     member.design_box[level] = at;
@@ -166,15 +168,21 @@ impl Rows<'_> {
                     multipliers[0] / self.scale[0] * mass_kg
                 }
             };
-            member.adds.push(member.values.iter().zip(&before).map(|(a, b)| a - b).collect());
+            let adds = member.adds[before..].iter_mut().zip(&member.values);
+            adds.for_each(|(before, value)| *before = value - *before);
         }
+        self.complete(&mut member);
+        (DualPoint { multipliers, least: total, levels }, member)
+    }
+
+    /// Computes the mode rows of a relaxed design whose pieces are all added, and scales every row.
+    fn complete(&self, member: &mut RelaxedDesign) {
         for (m, mode) in self.modes.iter().enumerate() {
-            member.values[self.first_mode + m] = self.mode_value(mode, &member);
+            member.values[self.first_mode + m] = self.mode_value(mode, member);
         }
         for ((value, scale), fixed) in member.values.iter_mut().zip(&self.scale).zip(&self.fixed) {
             *value = *value / scale + fixed;
         }
-        (DualPoint { multipliers, least: total, levels }, member)
     }
 
     /// A relaxed design in which all numbers are zero.
@@ -182,11 +190,11 @@ impl Rows<'_> {
         let pieces = self.problem.parts.len();
         RelaxedDesign {
             design_box: design_box.to_vec(),
-            adds: Vec::with_capacity(pieces),
-            weights_n: vec![vec![0.0; pieces]; self.tips.len()],
+            adds: Vec::with_capacity(pieces * self.first_mode),
+            weights_n: vec![0.0; pieces * self.tips.len()],
             values: vec![0.0; self.scale.len()],
             inertia: vec![[0.0; INERTIAS]; pieces],
-            stiffness: vec![vec![[0.0; STIFFNESSES]; pieces]; self.tips.len()],
+            stiffness: vec![[0.0; STIFFNESSES]; pieces * self.tips.len()],
         }
     }
 
@@ -200,13 +208,15 @@ impl Rows<'_> {
         for (judged, tip) in self.tips.iter().enumerate() {
             let cheaper = tilt_rad_per_nm[usize::from(price.compliance[TILT] < 0.0)];
             member.values[1 + judged] += tip.compliances[piece][TILT] * cheaper;
-            member.stiffness[judged][piece][TILT] = stiffness_of(tilt_rad_per_nm[0]);
+            let place = member.place(judged, piece);
+            member.stiffness[place][TILT] = stiffness_of(tilt_rad_per_nm[0]);
         }
         let gears = self.gears.iter().filter(|gear| gear.piece == piece);
         for (gear, price) in gears.zip(&price.joint) {
             let state = price.best_of(curve).1;
             member.values[1 + gear.judged] += state.twist_rad * self.tips[gear.judged].joints[piece];
-            member.stiffness[gear.judged][piece][TORSION] = state.slope;
+            let place = member.place(gear.judged, piece);
+            member.stiffness[place][TORSION] = state.slope;
             if let Some(row) = gear.row {
                 member.values[row] += state.torque_nm;
                 member.values[row + 1] -= state.torque_nm;
@@ -226,14 +236,16 @@ impl Rows<'_> {
             let yields = tip.compliances[piece].iter().zip(stiffnesses).map(|(c, s)| c / s);
             member.values[1 + judged] += yields.sum::<f64>();
             // What does not yield stores no energy.
-            member.stiffness[judged][piece] = stiffnesses.map(|s| if s.is_finite() { s } else { 0.0 });
+            let place = member.place(judged, piece);
+            member.stiffness[place] = stiffnesses.map(|s| if s.is_finite() { s } else { 0.0 });
         }
     }
 
     /// Adds the effect of a piece's weight on the tip and on the torques of the gears inboard.
     fn add_weight(&self, piece: usize, judged: usize, weight_n: f64, member: &mut RelaxedDesign) {
         member.values[1 + judged] += weight_n * self.tips[judged].per_n[piece];
-        member.weights_n[judged][piece] = weight_n;
+        let place = member.place(judged, piece);
+        member.weights_n[place] = weight_n;
         for force in self.forces.iter().filter(|force| force.judged == judged) {
             let Some(per_n) = force.per_n.get(piece) else { continue };
             // The gear's own torque enters these rows with the opposite sign, in `add_joint`.
@@ -298,11 +310,11 @@ impl Rows<'_> {
     /// The amount that a piece of a relaxed design adds to a row, divided by the row's scale.
     pub(super) fn added(&self, member: &RelaxedDesign, piece: usize, row: usize) -> f64 {
         let adds = match row.checked_sub(self.first_mode) {
-            None => member.adds[piece][row],
+            None => member.adds[piece * self.first_mode + row],
             Some(m) => {
                 let Mode { shape, judged, .. } = &self.modes[m];
                 let moves = dot(&shape.kinetic[piece], &member.inertia[piece]);
-                self.lambda * moves - dot(&shape.strain[piece], &member.stiffness[*judged][piece])
+                self.lambda * moves - dot(&shape.strain[piece], &member.stiffness_in(*judged)[piece])
             }
         };
         adds / self.scale[row]
@@ -311,6 +323,6 @@ impl Rows<'_> {
     /// `λ xᵀMx - xᵀKx` of a relaxed design, without the part of the payload and given bodies.
     fn mode_value(&self, mode: &Mode, member: &RelaxedDesign) -> f64 {
         let moves = products(&mode.shape.kinetic, &member.inertia);
-        self.lambda * moves - products(&mode.shape.strain, &member.stiffness[mode.judged])
+        self.lambda * moves - products(&mode.shape.strain, member.stiffness_in(mode.judged))
     }
 }

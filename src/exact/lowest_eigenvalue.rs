@@ -7,6 +7,7 @@ use super::parts::INERTIAS;
 use super::pose::{COORDINATES, Pose};
 use super::shape::{Ideal, Work, inertia_forces};
 use crate::mechanics::Twist;
+use crate::mechanics::lanes::{LaneWork, Lanes, in_lanes, subtract_multiple};
 
 /// Relative tolerance of the lowest eigenvalue.
 const TOLERANCE: f64 = 1e-9;
@@ -69,10 +70,7 @@ impl CaseInertia {
     fn scaled(&self, pose: &Pose, arm: &Ideal) -> Vec<f64> {
         let n = self.coordinates.len();
         let mut m = self.fixed.clone();
-        for (piece, k, form) in &self.forms {
-            let amount = arm.inertia[*piece][*k];
-            m.iter_mut().zip(form).for_each(|(m, f)| *m += amount * f);
-        }
+        in_lanes(Inertia { m: &mut m, forms: &self.forms, of_arm: arm.inertia });
         let root: Vec<f64> = self
             .coordinates
             .iter()
@@ -92,23 +90,57 @@ impl CaseInertia {
     /// Cholesky factorization.
     fn all_above(&self, scaled: &[f64], lambda: f64) -> bool {
         let n = self.coordinates.len();
-        let mut l: Vec<f64> = scaled.iter().map(|a| -a).collect();
+        let mut matrix: Vec<f64> = scaled.iter().map(|a| -a).collect();
         for i in 0..n {
-            l[i * n + i] += 1.0 / lambda;
+            matrix[i * n + i] += 1.0 / lambda;
         }
+        in_lanes(Cholesky { matrix: &mut matrix, n })
+    }
+}
+
+/// Adds the matrices of an arm's inertias to that of what is given.
+struct Inertia<'a> {
+    m: &'a mut [f64],
+    forms: &'a [(usize, usize, Vec<f64>)],
+    of_arm: &'a [[f64; INERTIAS]],
+}
+
+impl LaneWork for Inertia<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        for (piece, k, form) in self.forms {
+            subtract_multiple::<V>(self.m, -self.of_arm[*piece][*k], form);
+        }
+    }
+}
+
+/// Decides whether a symmetric matrix of `n` rows is positive definite.
+struct Cholesky<'a> {
+    matrix: &'a mut [f64],
+    n: usize,
+}
+
+impl LaneWork for Cholesky<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> bool {
+        let Self { matrix, n } = self;
         for j in 0..n {
-            let pivot = l[j * n + j];
+            let pivot = matrix[j * n + j];
             // A pivot that is not positive proves an eigenvalue at or below `lambda`.
             if pivot <= 0.0 {
                 return false;
             }
-            let (done, below) = l.split_at_mut((j + 1) * n);
+            let (done, below) = matrix.split_at_mut((j + 1) * n);
             let row = &done[j * n..];
             for i in j + 1..n {
                 let target = &mut below[(i - j - 1) * n..(i - j) * n];
                 let factor = target[j] / pivot;
                 if factor != 0.0 {
-                    target[j + 1..].iter_mut().zip(&row[j + 1..]).for_each(|(t, r)| *t -= factor * r);
+                    subtract_multiple::<V>(&mut target[j + 1..], factor, &row[j + 1..]);
                 }
             }
         }

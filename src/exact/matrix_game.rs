@@ -1,5 +1,6 @@
 //! A matrix game: the weights of columns under which the least weighted row is as large as possible.
 
+use crate::mechanics::lanes::{LANES, LaneWork, Lanes, in_lanes, subtract_multiple};
 use std::ops::Range;
 
 /// Greatest number of simplex pivots.
@@ -53,24 +54,22 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
     table[width * line..width * line + count].fill(-1.0);
     for _ in 0..MOST_PIVOTS {
         let objective = &table[width * line..width * line + line - 1];
-        let Some((enter, &cost)) = objective.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else {
-            break;
-        };
+        let cost = in_lanes(Least(objective));
         // No variable improves the objective: the tableau is optimal.
         if cost > -NOTHING {
             break;
         }
+        let Some(enter) = objective.iter().position(|x| *x == cost) else { break };
         let ratio = |i: usize| {
             let a = table[i * line + enter];
             if a > NOTHING { table[i * line + line - 1] / a } else { f64::INFINITY }
         };
-        let Some(leave) = (0..width).min_by(|&a, &b| ratio(a).total_cmp(&ratio(b))) else { break };
-        // The program is bounded, so this is rounding; the solution so far is used.
-        if ratio(leave).is_infinite() {
-            break;
-        }
+        let ratios = (0..width).map(|i| (i, ratio(i)));
+        // The program is bounded, so without a finite ratio this is rounding; the solution so far is used.
+        let least = ratios.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, ratio)| ratio.is_finite());
+        let Some((leave, _)) = least else { break };
         basic[leave] = enter;
-        pivot(&mut table, line, leave, enter);
+        in_lanes(Pivot { table: &mut table, line, leave, enter });
     }
     let mut weights: Vec<f64> = (0..width).map(|i| table[width * line + count + i].max(0.0)).collect();
     let mut mix = vec![0.0; count];
@@ -86,17 +85,51 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
     Game { weights, mix, value }
 }
 
-fn pivot(work: &mut [f64], line: usize, leave: usize, enter: usize) {
-    let by = 1.0 / work[leave * line + enter];
-    for x in &mut work[leave * line..(leave + 1) * line] {
-        *x *= by;
+/// The least number of a list.
+struct Least<'a>(&'a [f64]);
+
+impl LaneWork for Least<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> f64 {
+        let (eights, rest) = self.0.as_chunks::<LANES>();
+        let mut least = V::splat(f64::INFINITY);
+        for eight in eights {
+            least = least.min(V::load(eight));
+        }
+        least.store().iter().chain(rest).fold(f64::INFINITY, |least, x| least.min(*x))
     }
-    let (before, rest) = work.split_at_mut(leave * line);
-    let (pivotal, after) = rest.split_at_mut(line);
-    for other in before.chunks_mut(line).chain(after.chunks_mut(line)) {
-        let factor = other[enter];
-        if factor != 0.0 {
-            other.iter_mut().zip(&*pivotal).for_each(|(x, p)| *x -= factor * p);
+}
+
+/// One step of the simplex method: the variable `enter` becomes basic in the place of that of line `leave`.
+struct Pivot<'a> {
+    table: &'a mut [f64],
+    /// Numbers in a line.
+    line: usize,
+    leave: usize,
+    enter: usize,
+}
+
+impl LaneWork for Pivot<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        let Self { table, line, leave, enter } = self;
+        let by = 1.0 / table[leave * line + enter];
+        for x in &mut table[leave * line..(leave + 1) * line] {
+            *x *= by;
+        }
+        let (before, rest) = table.split_at_mut(leave * line);
+        let (pivotal, after) = rest.split_at_mut(line);
+        for half in [before, after] {
+            for other in half.chunks_exact_mut(line) {
+                let factor = other[enter];
+                if factor != 0.0 {
+                    subtract_multiple::<V>(other, factor, pivotal);
+                }
+            }
         }
     }
 }

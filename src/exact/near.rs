@@ -38,6 +38,7 @@ impl Exact<'_> {
                 &mut seeker,
                 |seeker, next, work, near| self.open_near(&problem, seeker, next, work, near),
                 Seeker::learn,
+                |_, _| (),
             );
             if !left.is_empty() {
                 return None;

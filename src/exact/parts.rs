@@ -196,6 +196,7 @@ impl Rays {
 pub(super) const HEAT_ROUNDING: f64 = 1e-12;
 
 /// The least demand that the members of a box make on a joint.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct LeastDemand {
     pub demand: JointDemand,
     /// For each ray, the multiple of its demand that lies below this demand.

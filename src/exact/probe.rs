@@ -17,10 +17,14 @@ use std::sync::Arc;
 
 /// Greatest number of boxes that the first descent of a probe bounds.
 const DIVE_BOXES: usize = 2_000;
+/// The same for a probe that is to be done at once.
+const QUICK_DIVE_BOXES: usize = 400;
 /// Greatest number of boxes that are bounded while one level is optimized.
 const LEVEL_BOXES: usize = 300;
 /// Greatest number of rounds over all levels.
 const ROUNDS: usize = 3;
+/// Greatest part of a time limit after which another round begins.
+const MOST_TIME: f64 = 0.1;
 
 /// Weights of mass, deflection and mode. They sum to one.
 #[derive(Clone, Copy)]
@@ -73,6 +77,22 @@ pub(super) fn probe<'p>(
     best.into_iter().flatten().collect()
 }
 
+/// The designs that short probes find, without any optimization of single levels.
+pub(super) fn dives(budget: &Budget, problem: &Problem, dives: usize) -> Findings {
+    let mut all = Findings::default();
+    let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return all };
+    let shapes = Arc::new(shapes);
+    let dive = |n: usize| {
+        let (mut work, mut findings) = (Work::default(), Findings::default());
+        let probe = Probe { budget, problem, merit: Merit::nth(n) };
+        probe.descend(problem.root(), &shapes, QUICK_DIVE_BOXES, None, &mut work, &mut findings);
+        findings
+    };
+    let found: Vec<Findings> = (0..dives).into_par_iter().map(dive).collect();
+    found.into_iter().for_each(|findings| all.append(findings));
+    all
+}
+
 /// One probe: a descent to a good design for one weighting of the objectives.
 struct Probe<'a, 'p> {
     budget: &'a Budget<'p>,
@@ -95,7 +115,7 @@ impl Probe<'_, '_> {
                 best = self.descend(design_box, &shapes, LEVEL_BOXES, Some(best), &mut work, findings)?;
             }
             // A round without progress means a local optimum.
-            if best.merit >= before || self.budget.stopped() {
+            if best.merit >= before || self.budget.has_spent(MOST_TIME) {
                 break;
             }
         }

@@ -40,7 +40,7 @@ impl Problem<'_> {
         work: &Work,
         upper: &LocalUpperBound,
     ) -> Option<Survivors> {
-        let mut rows = Rows::new(self, design_box, box_bound, upper, &warm_start.shapes, work);
+        let mut rows = Rows::new(self, design_box, box_bound, upper, warm_start, work);
         let (mut points, mut members) = (Vec::<DualPoint>::new(), Vec::<RelaxedDesign>::new());
         let mut starts = rows.single_row_multipliers(upper);
         let most = starts.len() + MOST_POINTS;

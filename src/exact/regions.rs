@@ -13,6 +13,7 @@ use super::bound::{BoxBound, DesignBox, Verdict};
 use super::boxes::{OpenBox, Search, open_boxes};
 use super::budget::Budget;
 use super::grid::thinned;
+use super::live::Live;
 use super::local_upper_bounds::{LocalUpperBound, LocalUpperBounds};
 use super::problem::Problem;
 use super::region_bound::Survivors;
@@ -59,6 +60,7 @@ pub(super) fn pass_by_regions<'p>(
     state: &mut SearchState,
     slack: f64,
     regions_to: f64,
+    live: Option<&Live>,
 ) -> Vec<BoxBound> {
     let mut found: Vec<Objectives> =
         state.incumbents.all().iter().map(|o| improved_by_slack(o, slack)).collect();
@@ -82,8 +84,13 @@ pub(super) fn pass_by_regions<'p>(
             Done { tasks: tasks.into_iter().map(boxes).collect(), findings }
         }
     };
+    let see = |state: &SearchState, open: &[Task<'p>]| {
+        live.into_iter().for_each(|live| {
+            live.update(|| state.known(&state.front(), open.len(), None));
+        });
+    };
     let remaining =
-        in_rounds(state, first.into_iter().collect(), || budget.stopped(), task, SearchState::learn);
+        in_rounds(state, first.into_iter().collect(), || budget.stopped(), task, SearchState::learn, see);
     remaining.iter().map(|_| BoxBound::OPEN).collect()
 }
 

@@ -16,14 +16,15 @@ pub(super) struct Done<T, F> {
     pub findings: F,
 }
 
-/// Does the tasks in `first` and the tasks that they produce, the last first. Returns the tasks that remain when the
-/// search is stopped.
+/// Does the tasks in `first` and the tasks that they produce, the last first. `see` is shown what is known and which
+/// tasks are open after each round. Returns the tasks that remain when the search is stopped.
 pub(super) fn in_rounds<K: Sync, T: Send, F: Send>(
     known: &mut K,
     first: Vec<T>,
     stopped: impl Fn() -> bool,
     task: impl Fn(&K, T) -> Done<T, F> + Sync,
     learn: impl Fn(&mut K, F),
+    see: impl Fn(&K, &[T]),
 ) -> Vec<T> {
     let mut tasks = first;
     while !tasks.is_empty() && !stopped() {
@@ -33,6 +34,7 @@ pub(super) fn in_rounds<K: Sync, T: Send, F: Send>(
             tasks.extend(one.tasks);
             learn(known, one.findings);
         }
+        see(known, &tasks);
     }
     tasks
 }

@@ -15,7 +15,7 @@
 //! [`lagrangian`](super::lagrangian) minimizes the sum.
 
 use super::bound::{BoxBound, DesignBox, STARTS};
-use super::drives_by_curve::DrivesByCurve;
+use super::drives_by_curve::FeasibleDrives;
 use super::dual_price::Gear;
 use super::local_upper_bounds::LocalUpperBound;
 use super::parts::{INERTIAS, STIFFNESSES};
@@ -31,18 +31,20 @@ pub(super) const DOMINANCE_MARGIN: f64 = 2e-7;
 /// Rounding of sums whose terms are about 1.
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// Multipliers and trial shapes of the parent box, with which the search for multipliers starts.
+/// Multipliers, trial shapes and feasible drives of the parent box, with which the search for multipliers starts.
 #[derive(Clone, Default)]
 pub(super) struct WarmStart {
     /// Multipliers of the mass, the tip rows and the modes. Every box makes its own for torque rows.
     pub multipliers: Vec<f64>,
     pub shapes: Vec<Shape>,
+    /// The feasible drives of each level of drives.
+    drives: Vec<Option<FeasibleDrives>>,
 }
 
 impl WarmStart {
     /// The warm start of the box of all designs: no multipliers, and the box's own trial shapes.
     pub(super) fn new(shapes: &[Shape]) -> Self {
-        Self { multipliers: Vec::new(), shapes: shapes.to_vec() }
+        Self { multipliers: Vec::new(), shapes: shapes.to_vec(), drives: Vec::new() }
     }
 }
 
@@ -66,8 +68,8 @@ pub(super) struct Rows<'a> {
     pub modes: Vec<Mode>,
     /// Index of the first mode row.
     pub first_mode: usize,
-    /// The feasible drives of each level; empty for a level of links.
-    pub drives: Vec<DrivesByCurve>,
+    /// The feasible drives of each level; `None` for a level of links.
+    pub drives: Vec<Option<FeasibleDrives>>,
 }
 
 /// A force that the weights make in a judged case. It takes two rows, one for its least and one for its greatest
@@ -95,13 +97,30 @@ pub(super) struct RelaxedDesign {
     /// The scaled value of every row.
     pub values: Vec<f64>,
     /// For each piece, the amount that it adds to each row before the modes, unscaled.
-    pub adds: Vec<Vec<f64>>,
+    pub adds: Vec<f64>,
     /// Line inertias of each piece.
     pub inertia: Vec<[f64; INERTIAS]>,
     /// Weight of each piece in each judged case \[N\].
-    pub weights_n: Vec<Vec<f64>>,
+    pub weights_n: Vec<f64>,
     /// Stiffnesses of each piece in each judged case.
-    pub stiffness: Vec<Vec<[f64; STIFFNESSES]>>,
+    pub stiffness: Vec<[f64; STIFFNESSES]>,
+}
+
+impl RelaxedDesign {
+    /// The place of a piece in the lists that have a number for each judged case and each piece.
+    pub(super) fn place(&self, judged: usize, piece: usize) -> usize {
+        judged * self.inertia.len() + piece
+    }
+
+    /// Weight of each piece in a judged case \[N\].
+    pub(super) fn weights_in(&self, judged: usize) -> &[f64] {
+        &self.weights_n[self.place(judged, 0)..self.place(judged + 1, 0)]
+    }
+
+    /// Stiffnesses of each piece in a judged case.
+    pub(super) fn stiffness_in(&self, judged: usize) -> &[[f64; STIFFNESSES]] {
+        &self.stiffness[self.place(judged, 0)..self.place(judged + 1, 0)]
+    }
 }
 
 /// A point of the dual function: the multipliers, the least weighted sum over the box, and the amount that each level
@@ -113,13 +132,19 @@ pub(super) struct DualPoint {
 }
 
 impl Problem<'_> {
-    /// The feasible drives of each level of a box; empty for a level of links.
-    fn drives_by_curve(&self, design_box: &[u32], work: &Work) -> Vec<DrivesByCurve> {
-        let of = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
-            Part::Drives { tree, .. } => DrivesByCurve::new(tree, node, work.least_demands[piece].as_ref()),
-            _ => DrivesByCurve::default(),
+    /// The feasible drives of each level of a box; `None` for a level of links. `before` has those of the parent box.
+    fn drives_of_levels(
+        &self,
+        design_box: &[u32],
+        work: &Work,
+        before: &[Option<FeasibleDrives>],
+    ) -> Vec<Option<FeasibleDrives>> {
+        let of = |(level, (&piece, &node)): (usize, (&usize, &u32))| {
+            let Part::Drives { tree, .. } = &self.parts[piece] else { return None };
+            let before = before.get(level).and_then(Option::as_ref);
+            Some(FeasibleDrives::new(tree, node, work.least_demands[piece].as_ref(), before))
         };
-        self.level_pieces.iter().zip(design_box).map(of).collect()
+        self.level_pieces.iter().zip(design_box).enumerate().map(of).collect()
     }
 }
 
@@ -130,7 +155,7 @@ impl<'a> Rows<'a> {
         design_box: &[u32],
         box_bound: &BoxBound,
         upper: &LocalUpperBound,
-        shapes: &[Shape],
+        warm_start: &WarmStart,
         work: &'a Work,
     ) -> Self {
         // Far below the modes of the box the rows would say nothing, even if the local upper bound asks for
@@ -147,7 +172,7 @@ impl<'a> Rows<'a> {
             lambda: (hz * std::f64::consts::TAU).powi(2),
             modes: Vec::new(),
             first_mode: 0,
-            drives: problem.drives_by_curve(design_box, work),
+            drives: problem.drives_of_levels(design_box, work, &warm_start.drives),
         };
         for (judged, case) in problem.judged_cases().enumerate() {
             let (tip, fixed_m) = TipRow::new(problem, judged, case, work);
@@ -163,7 +188,7 @@ impl<'a> Rows<'a> {
             rows.push_force_bounds(judged, case);
         }
         rows.first_mode = rows.scale.len();
-        for (place, shape) in shapes.iter().enumerate() {
+        for (place, shape) in warm_start.shapes.iter().enumerate() {
             rows.push_mode(place / STARTS.len(), place % STARTS.len(), shape.clone());
         }
         rows
@@ -264,9 +289,10 @@ impl<'a> Rows<'a> {
         multipliers
     }
 
-    /// Saves the multipliers and the last shapes for the halves of the box.
+    /// Saves the multipliers, the last shapes and the feasible drives for the halves of the box.
     pub(super) fn save_warm_start(&mut self, multipliers: &[f64], warm_start: &mut WarmStart) {
         let (tips, kept) = (self.tips.len(), warm_start.shapes.len());
+        warm_start.drives = std::mem::take(&mut self.drives);
         warm_start.multipliers.clear();
         warm_start.multipliers.extend(&multipliers[..=tips]);
         warm_start.multipliers.resize(1 + tips + kept, 0.0);

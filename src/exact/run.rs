@@ -1,10 +1,14 @@
 //! The exact search: probes, passes with less and less slack, and the listing of the front.
 
+use super::bound::BoxBound;
 use super::boxes::pass_by_boxes;
 use super::budget::Budget;
+use super::early::Early;
 use super::evolve::evolve;
 use super::gap::gap;
 use super::kinds::Ties;
+use super::live::{Known, Live, least};
+use super::plan::{Pass, Plan};
 use super::probe::probe;
 use super::problem::Problem;
 use super::regions::pass_by_regions;
@@ -16,22 +20,6 @@ use crate::space::design_space::{DesignSpace, LinkOption};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Slacks of the passes over a large space. With slack a box is also pruned if an incumbent comes that close
-/// to its bound. A completed pass therefore proves that every design has a found one that close.
-const SLACKS: [f64; 25] = [
-    1.0, 0.7, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.16, 0.12, 0.09, 0.075, 0.06, 0.05, 0.04, 0.035, 0.03, 0.025,
-    0.02, 0.015, 0.01, 0.007, 0.005, 0.0035, 0.0025,
-];
-/// Slacks below this are used only in searches by regions. A search by boxes finds as much without such passes.
-const FINE: f64 = 0.02;
-/// A pass may be skipped if the next finer pass should take less than the part [`QUICK`] of the time left. At most
-/// this many passes are skipped at once. With a target gap at most [`PASSED_OVER_TO_A_GAP`] are skipped, whatever
-/// time they take.
-const MOST_PASSED_OVER: usize = 4;
-const PASSED_OVER_TO_A_GAP: usize = 8;
-const QUICK: f64 = 0.65;
-/// The time of a pass grows about as this power of the reciprocal of its slack.
-const GROWTH: f64 = 2.5;
 /// Number of designs above which a space is searched in passes.
 const LARGE: f64 = 1e9;
 /// Number of designs above which a space is searched region by region.
@@ -82,6 +70,13 @@ pub struct Exact<'p> {
     regions_to: f64,
     /// Greatest number of designs that are listed with all their ties.
     most_with_ties: usize,
+    live: Live,
+}
+
+/// How the passes of a search ended: the gap that was proved, and the bounds of what is open.
+struct Ended {
+    gap: Option<f64>,
+    open: Vec<BoxBound>,
 }
 
 /// The result of the search.
@@ -123,6 +118,7 @@ impl<'p> Exact<'p> {
             regions_from: VAST,
             regions_to: FEW,
             most_with_ties: MOST_WITH_TIES,
+            live: Live::default(),
         }
     }
 
@@ -147,39 +143,22 @@ impl<'p> Exact<'p> {
         Self { gap, ..self }
     }
 
-    /// Number of boxes bounded so far.
-    pub fn boxes(&self) -> u64 {
-        self.budget.boxes()
-    }
-
-    /// The index of the next pass: the one with the least slack for which there should be time. With a target gap the
-    /// choice does not depend on the time. A front with a gap depends on the passes before it and must be the same on
-    /// every machine.
-    fn next_pass(&self, passes: &[f64], last: usize, started: Instant) -> usize {
-        let left = self.budget.deadline().map(|deadline| deadline.saturating_duration_since(Instant::now()));
-        let took_s = started.elapsed().as_secs_f64();
-        let has_gap = self.gap > 0.0;
-        let most = if has_gap { PASSED_OVER_TO_A_GAP } else { MOST_PASSED_OVER };
-        let is_quick = |pass: &usize| {
-            let should_take_s = took_s * (passes[last] / passes[*pass]).powf(GROWTH);
-            has_gap || left.is_none_or(|left| should_take_s < QUICK * left.as_secs_f64())
-        };
-        let ahead = last + 2..(last + 2 + most).min(passes.len());
-        // The pass without slack is never skipped to; it comes last in any case.
-        ahead.take_while(|pass| passes[*pass] > 0.0 && is_quick(pass)).last().unwrap_or(last + 1)
+    /// What is known of the front of all designs now. The gap never rises.
+    pub fn known(&self) -> Known {
+        Known { boxes: self.budget.boxes(), ..self.live.known() }
     }
 
     /// Finds the front. `known` holds the objectives of designs that are known already. They prune boxes, but these
     /// designs are not listed.
     pub fn run(&self, known: &[Objectives]) -> ExactOutcome {
-        self.run_of(self.problem(&|_| true, Ties::Merged), known)
+        self.run_of(self.problem(&|_| true, Ties::Merged), known, Some(&self.live))
     }
 
     /// Finds the front of the designs whose chosen links are all of one material, given by its index in the
     /// study.
     pub fn run_of_material(&self, material_index: usize) -> ExactOutcome {
         let is_of_it = |option: &LinkOption| option.material_index == material_index;
-        self.run_of(self.problem(&is_of_it, Ties::Merged), &[])
+        self.run_of(self.problem(&is_of_it, Ties::Merged), &[], None)
     }
 
     /// The compiled space with the link options for which `takes` is true. `None` if a level has no option.
@@ -187,41 +166,12 @@ impl<'p> Exact<'p> {
         Problem::new(self.space, self.catalogs, takes, ties)
     }
 
-    fn run_of(&self, whole: Option<Problem<'p>>, given: &[Objectives]) -> ExactOutcome {
+    fn run_of(&self, whole: Option<Problem<'p>>, given: &[Objectives], live: Option<&Live>) -> ExactOutcome {
         let mut state = SearchState::default();
         given.iter().for_each(|objectives| state.enter(objectives));
-        let (mut proven, mut last_slack, mut open) = (None, 0.0, Vec::new());
+        let mut ended = Ended { gap: Some(0.0), open: Vec::new() };
         if let Some(whole) = &whole {
-            let designs = whole.designs() as f64;
-            let by_regions = designs > self.regions_from;
-            let is_large = by_regions || designs > LARGE;
-            // With given designs there is something to prune with from the start.
-            if given.is_empty() {
-                let probes = if by_regions { PROBES_TO_EVOLVE } else { PROBES };
-                let probed =
-                    probe(&self.budget, whole, (probes * designs.log10().powi(2)) as usize, &mut state);
-                if by_regions {
-                    evolve(&self.budget, whole, probed, &mut state);
-                }
-            }
-            // Small spaces, and searches with given designs, need no passes with slack.
-            let helps = |slack: &f64| is_large && given.is_empty() && (by_regions || *slack >= FINE);
-            let coarser = SLACKS.into_iter().filter(|slack| helps(slack) && *slack > self.gap);
-            let passes: Vec<f64> = coarser.chain([self.gap]).collect();
-            let mut next = 0;
-            while let Some(&slack) = passes.get(next) {
-                let started = Instant::now();
-                open = match by_regions {
-                    true => pass_by_regions(&self.budget, whole, &mut state, slack, self.regions_to),
-                    false => pass_by_boxes(&self.budget, whole, &mut state, slack),
-                };
-                if !open.is_empty() {
-                    last_slack = slack;
-                    break;
-                }
-                proven = Some(slack);
-                next = self.next_pass(&passes, next, started);
-            }
+            ended = self.search(whole, given.is_empty(), &mut state, live);
         }
         let designs_evaluated = state.evaluated;
         let front = state.into_front();
@@ -235,19 +185,70 @@ impl<'p> Exact<'p> {
         ExactOutcome {
             designs_total: whole.as_ref().map_or(0, Problem::designs),
             designs_evaluated,
-            boxes: self.boxes(),
-            boxes_open: open.len() as u64,
-            gap: match open.is_empty() {
-                true => proven.or(Some(0.0)),
-                false => least(proven, gap(&open, &front).map(|gap| gap.max(last_slack))),
-            },
+            boxes: self.budget.boxes(),
+            boxes_open: ended.open.len() as u64,
+            gap: ended.gap,
             front,
             ties_listed,
         }
     }
-}
 
-/// The smaller of two bounds; a bound that is `None` is unknown and does not count.
-fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
-    a.into_iter().chain(b).reduce(f64::min)
+    /// Searches a compiled space in passes. `is_new` tells whether no designs are known at the start.
+    fn search(
+        &self,
+        whole: &Problem<'p>,
+        is_new: bool,
+        state: &mut SearchState,
+        live: Option<&Live>,
+    ) -> Ended {
+        let designs = whole.designs() as f64;
+        let by_regions = designs > self.regions_from;
+        // Small spaces need no passes with slack. With given designs there is something to prune with from the start.
+        let in_passes = is_new && (by_regions || designs > LARGE);
+        let early = live.filter(|_| in_passes).map(|live| Early::new(&self.budget, whole, live));
+        if is_new {
+            self.first_incumbents(whole, by_regions, state, early.as_ref());
+        }
+        let plan = if in_passes { Plan::new(self.gap, by_regions) } else { Plan::single(self.gap) };
+        let (mut done, mut open) = (Vec::<Pass>::new(), Vec::new());
+        while let Some(slack) = plan.next(&done, self.budget.left_s()) {
+            let started = Instant::now();
+            open = match by_regions {
+                true => pass_by_regions(&self.budget, whole, state, slack, self.regions_to, live),
+                false => pass_by_boxes(&self.budget, whole, state, slack, live),
+            };
+            if !open.is_empty() {
+                // What was told once stays true of the designs found since.
+                let told = live.and_then(|live| live.known().gap);
+                let of_early = early.and_then(|early| early.into_state(state));
+                let of_open = gap(&open, &state.front()).map(|gap| gap.max(slack));
+                let proven = done.last().map(|pass| pass.slack);
+                let gap = [proven, told, of_early, of_open].into_iter().reduce(least).flatten();
+                return Ended { gap, open };
+            }
+            done.push(Pass { slack, took_s: started.elapsed().as_secs_f64() });
+            live.into_iter().for_each(|live| live.prove(Some(slack)));
+        }
+        Ended { gap: done.last().map(|pass| pass.slack), open }
+    }
+
+    /// Finds the first incumbents. Spaces that are searched by regions repay a genetic algorithm.
+    fn first_incumbents(
+        &self,
+        whole: &Problem<'p>,
+        by_regions: bool,
+        state: &mut SearchState,
+        early: Option<&Early>,
+    ) {
+        let tell = |found: &[Objectives], designs: u64| {
+            early.into_iter().for_each(|early| early.tell(found, designs));
+        };
+        let per_decade = if by_regions { PROBES_TO_EVOLVE } else { PROBES };
+        let probes = (per_decade * (whole.designs() as f64).log10().powi(2)) as usize;
+        let probed = probe(&self.budget, whole, probes, state);
+        tell(&state.front(), state.evaluated);
+        if by_regions {
+            evolve(&self.budget, whole, probed, state, tell);
+        }
+    }
 }

@@ -2,7 +2,8 @@
 
 use super::bound::BoxBound;
 use super::incumbents::{Incumbents, is_better};
-use crate::pareto::front::not_clearly_beaten;
+use super::live::Known;
+use crate::pareto::front::{exact_front, not_clearly_beaten};
 use crate::pareto::objectives::Objectives;
 use crate::search::sweep::{Candidate, SLACK};
 use std::collections::HashSet;
@@ -32,6 +33,14 @@ pub(super) struct Findings {
 }
 
 impl Findings {
+    /// Adds the findings of another task.
+    pub(super) fn append(&mut self, mut other: Self) {
+        self.kept.append(&mut other.kept);
+        self.undecided.append(&mut other.undecided);
+        self.tried.append(&mut other.tried);
+        self.evaluated += other.evaluated;
+    }
+
     /// Whether a design that the task found dominates every member of a box.
     pub(super) fn dominates(&self, box_bound: &BoxBound) -> bool {
         let best = Objectives::from(*box_bound);
@@ -43,6 +52,25 @@ impl SearchState {
     /// Adds the objectives of a known design, from whatever source.
     pub(super) fn enter(&mut self, objectives: &Objectives) {
         self.incumbents.enter(objectives);
+    }
+
+    /// The objectives of the designs found so far that no other dominates.
+    pub(super) fn front(&self) -> Vec<Objectives> {
+        let points: Vec<[f64; 3]> = self.kept.iter().map(|c| c.objectives.minimized()).collect();
+        // Objectives are numbers, so the front exists.
+        exact_front(&points).unwrap_or_default().into_iter().map(|i| self.kept[i].objectives).collect()
+    }
+
+    /// What there is to tell of the search, with this front and this many boxes or regions to bound. `None` of a gap says
+    /// nothing new.
+    pub(super) fn known(&self, front: &[Objectives], open: usize, gap: Option<f64>) -> Known {
+        Known {
+            boxes_open: open as u64,
+            designs: self.evaluated,
+            front_size: front.len() as u64,
+            gap,
+            ..Known::default()
+        }
     }
 
     /// Takes in the findings of a task.

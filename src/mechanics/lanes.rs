@@ -61,6 +61,19 @@ pub(crate) fn splat_all<V: Lanes, const K: usize>(numbers: [f64; K]) -> [V; K] {
     out
 }
 
+/// Subtracts a multiple of a list from another of the same length, number by number.
+#[inline(always)]
+pub(crate) fn subtract_multiple<V: Lanes>(from: &mut [f64], factor: f64, list: &[f64]) {
+    let (eights, rest) = from.as_chunks_mut::<LANES>();
+    let (list_eights, list_rest) = list.as_chunks::<LANES>();
+    for (x, y) in eights.iter_mut().zip(list_eights) {
+        *x = (V::load(x) - V::splat(factor) * V::load(y)).store();
+    }
+    for (x, y) in rest.iter_mut().zip(list_rest) {
+        *x -= factor * y;
+    }
+}
+
 /// Work that is written over [`Lanes`].
 ///
 /// Everything that handles lanes must be inlined into `run`, because only `run` is compiled for a particular instruction

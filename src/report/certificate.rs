@@ -1,7 +1,7 @@
 //! How sure a front is: what was visited, what was discarded and why, and what may be missing.
 
 use super::facts::SummaryFacts;
-use super::number::{large, percent_rounded};
+use super::number::{large, percent_rounded, shortest};
 use super::section::PageSection;
 use super::words::{TERMINAL, wrap};
 
@@ -72,11 +72,13 @@ pub(crate) fn gap_words(gap: f64) -> String {
     )
 }
 
-/// What an exact search proved, for the terminal. `boxes` as in [`certificate_section`].
-pub(crate) fn certificate_words([boxes, open]: [u64; 2], gap: Option<f64>) -> String {
+/// What an exact search proved, for the terminal. `boxes` as in [`certificate_section`]; `up_to_kg` is the limit of mass
+/// up to which a whole front is proved.
+pub(crate) fn certificate_words([boxes, open]: [u64; 2], gap: Option<f64>, up_to_kg: Option<f64>) -> String {
     match (open, gap) {
         (0, None | Some(0.0)) => {
-            format!("certified: every design of the front is listed ({boxes} boxes)\n")
+            let limit = up_to_kg.map_or(String::new(), |kg| format!(" up to {} kg", shortest(kg)));
+            format!("certified: every design of the front{limit} is listed ({boxes} boxes)\n")
         }
         (0, Some(gap)) => wrap(&format!("certified: {} ({boxes} boxes)", gap_words(gap)), TERMINAL, ""),
         (_, Some(gap)) => {

@@ -2,6 +2,7 @@
 
 use super::definition::Study;
 use crate::catalog::Catalogs;
+use crate::exact::Known;
 use crate::exact::run::{Exact, ExactOutcome};
 use crate::pareto::front::nondominated;
 use crate::search::near::{NearDesign, NearDesigns, Slack};
@@ -226,18 +227,18 @@ fn status(found: &ExactOutcome) -> Status {
 
 /// Finds the fronts of a space without visiting every design, and the designs near the front if they are
 /// asked for. It ends at the extent that is asked for or when `stop` is set. `watch` runs on another thread;
-/// it gets a function that returns how many boxes are done, and must return when its second argument is set.
+/// it gets a function that returns what is known, and must return when its second argument is set.
 pub fn run_exact(
     study: &Study,
     catalogs: &Catalogs,
     stop: &AtomicBool,
     Extent { deadline, gap, near }: Extent,
-    watch: impl FnOnce(&(dyn Fn() -> u64 + Sync), &AtomicBool) + Send,
+    watch: impl FnOnce(&(dyn Fn() -> Known + Sync), &AtomicBool) + Send,
 ) -> ExactStudy {
     let search = Exact::new(&study.space, catalogs, stop, deadline).to_gap(gap);
     let most = near.map(|slack| slack.most);
     let searched = watched(
-        |finished| watch(&|| search.boxes(), finished),
+        |finished| watch(&|| search.known(), finished),
         || Searched::new(&search, &study.space, near),
     );
     let space = study.space.excerpt(catalogs, &searched.numbers()).unwrap_or_else(|| study.space.clone());

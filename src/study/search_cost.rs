@@ -101,7 +101,7 @@ impl Trial {
         Self {
             designs: designs.max(1.0),
             held: sweep.designs_evaluated as f64 / designs.max(1.0),
-            boxes: search.boxes() as f64,
+            boxes: search.known().boxes as f64,
         }
     }
 }

@@ -9,6 +9,7 @@ mod brute_force;
 mod budget;
 mod closed_forms;
 mod dice;
+mod exact_anytime;
 mod exact_bearings;
 mod exact_front;
 mod exact_support;

@@ -17,5 +17,6 @@ mod left_out;
 mod links;
 mod other_poses;
 mod pages;
+mod progress;
 mod study_effects;
 mod words;

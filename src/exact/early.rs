@@ -1,0 +1,66 @@
+//! The first gap of a search, long before its first pass is done.
+//!
+//! Short dives find a few designs. A cover of the space by a few thousand boxes ([`cover`](super::cover)) says how near to
+//! every design of the space they are. As more designs are found, the gap of the same boxes falls.
+//!
+//! The result of a search does not depend on these designs. They are listed only if the search is stopped, because then
+//! its gap may rest on them.
+
+use super::bound::BoxBound;
+use super::budget::Budget;
+use super::cover::Cover;
+use super::gap::gap;
+use super::live::{Known, Live};
+use super::probe::dives;
+use super::problem::Problem;
+use super::search_state::{Findings, SearchState};
+use crate::pareto::objectives::Objectives;
+
+/// Number of dives.
+const DIVES: usize = 16;
+/// Number of boxes of the cover: they take about as long as the dives.
+const BOXES: usize = 1024;
+
+/// What is known before the first pass.
+pub(super) struct Early<'l> {
+    live: &'l Live,
+    /// Bounds of boxes that hold every design, except those that a design in `findings` dominates.
+    cover: Vec<BoxBound>,
+    findings: Findings,
+}
+
+impl<'l> Early<'l> {
+    /// Finds a few designs and tells of their gap.
+    pub(super) fn new(budget: &Budget, problem: &Problem, live: &'l Live) -> Self {
+        let aside = budget.aside();
+        let findings = dives(&aside, problem, DIVES);
+        let found: Vec<Objectives> = findings.kept.iter().map(|c| c.objectives).collect();
+        let cover = Cover::new(&aside, problem, &found, BOXES).bounds();
+        let early = Self { live, cover, findings };
+        early.tell(&[], 0);
+        early
+    }
+
+    /// Tells of the gap, now that these designs were found too. `designs` is the number of those whose objectives were
+    /// computed.
+    pub(super) fn tell(&self, found: &[Objectives], designs: u64) {
+        self.live.update(|| Known {
+            gap: self.gap(found),
+            front_size: found.len().max(self.findings.kept.len()) as u64,
+            boxes_open: self.cover.len() as u64,
+            designs: designs.max(self.findings.evaluated),
+            ..Known::default()
+        });
+    }
+
+    /// Adds the designs to those of a search that was stopped, and returns their gap.
+    pub(super) fn into_state(self, state: &mut SearchState) -> Option<f64> {
+        state.learn(self.findings);
+        gap(&self.cover, &state.front())
+    }
+
+    fn gap(&self, found: &[Objectives]) -> Option<f64> {
+        let dived = self.findings.kept.iter().map(|c| c.objectives);
+        gap(&self.cover, &found.iter().copied().chain(dived).collect::<Vec<_>>())
+    }
+}
