@@ -101,7 +101,7 @@ TABLES = {
     "options": lambda: table("Options of each link", "options",
                              [(2 * s * w, study(sides=s, walls=w)) for s, w in [(5, 5), (7, 7), (10, 10), (14, 14), (20, 20)]], True),
     "designs": lambda: table("Designs, one pose, rigid wrist", "options",
-                             [(2 * s * s, study(joints=3, poses=1, sides=s, walls=s)) for s in [22, 40, 70, 126]], True),
+                             [(2 * s * s, study(joints=3, poses=1, sides=s, walls=s)) for s in [22, 40, 70]], True),
 }
 
 if __name__ == "__main__":

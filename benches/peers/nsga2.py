@@ -122,7 +122,7 @@ def main():
         for name, room, operators in variants(len(true)):
             designs = Designs(study)
             algorithm = NSGA2(pop_size=room, sampling=IntegerRandomSampling(), eliminate_duplicates=True, **operators)
-            found = minimize(designs, algorithm, ProcessorTime(times * seconds, designs), seed=SEED).F
+            found = minimize(designs, algorithm, ProcessorTime(times * seconds, designs), seed=SEED, copy_termination=False).F
             designs.judge.stdin.close()
             found = np.empty((0, 3)) if found is None else np.atleast_2d(found)
             share = np.mean([np.any(np.all(np.abs(found - f) < 1e-6, axis=1)) for f in true]) if len(found) else 0.0
