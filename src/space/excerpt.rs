@@ -89,7 +89,7 @@ impl DesignSpace {
     }
 
     /// Numbers the materials that are left without gaps, in the order of the study.
-    fn renumber_materials(&mut self) {
+    pub(crate) fn renumber_materials(&mut self) {
         let options = |piece: &mut SpacePiece| match piece {
             SpacePiece::Choice(choice) => std::mem::take(&mut choice.options),
             _ => Vec::new(),

@@ -122,6 +122,8 @@ fn thinned(space: &DesignSpace, catalogs: &Catalogs, most: f64) -> DesignSpace {
     while space.designs(catalogs).is_none_or(|designs| designs as f64 > most)
         && drop_half(&mut space, catalogs)
     {}
+    // a material of which no section is left has no front
+    space.renumber_materials();
     space
 }
 
@@ -190,6 +192,19 @@ mod tests {
             let designs = space.designs(&catalogs).expect("countable") as f64;
             assert!((1e3..=1e5).contains(&designs), "{name}: {designs}");
         }
+    }
+
+    #[test]
+    fn materials_without_a_section_left_are_no_groups_of_a_thinned_space() {
+        let catalogs = Catalogs::builtin();
+        let space = thinned(&study("compare-materials", &catalogs).space, &catalogs, 200.0);
+        let materials = space.material_names().len();
+        let numbers = space.pieces.iter().flat_map(|piece| match piece {
+            SpacePiece::Choice(choice) => choice.options.iter().map(|o| o.material_index).collect(),
+            _ => Vec::new(),
+        });
+        assert!(numbers.max().expect("sections") < materials, "{materials} materials are left");
+        assert!(Trial::new(&space, &catalogs).designs <= 200.0);
     }
 
     #[test]
