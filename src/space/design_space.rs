@@ -150,6 +150,17 @@ pub enum SpacePiece {
     Choice(LinkChoice),
 }
 
+impl SpacePiece {
+    /// Name.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Joint(joint) => &joint.name,
+            Self::Link(link) => &link.name,
+            Self::Choice(choice) => &choice.name,
+        }
+    }
+}
+
 /// A joint and how its drive is found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpaceJoint {

@@ -12,7 +12,6 @@ use crate::report::words::{TERMINAL, wrap};
 use crate::search::ballast::Ballast;
 use crate::space::design::evaluate;
 use crate::space::design::{Part, id_of, options};
-use crate::space::design_space::SpacePiece;
 use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
@@ -60,11 +59,7 @@ pub fn ballast_flags(problem: &ArmProblem, front: &Front) -> BallastFlags {
 
 fn flagged(problem: &ArmProblem, judged: &Judged, ballast: &Ballast) -> Option<Flagged> {
     let space = problem.space();
-    let name = |piece: usize| match &space.pieces[piece] {
-        SpacePiece::Joint(joint) => joint.name.clone(),
-        SpacePiece::Choice(choice) => choice.name.clone(),
-        SpacePiece::Link(link) => link.name.clone(),
-    };
+    let name = |piece: usize| space.pieces[piece].name().to_string();
     let part = |design: u128| {
         let parts = problem.parts(&options(problem.level_sizes(), design)?)?;
         Some(match &parts[ballast.piece] {

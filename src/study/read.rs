@@ -291,12 +291,7 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
 }
 
 fn unique_names(node: &Node, pieces: &[SpacePiece]) -> Option<()> {
-    let name = |p: &SpacePiece| match p {
-        SpacePiece::Joint(joint) => joint.name.clone(),
-        SpacePiece::Link(link) => link.name.clone(),
-        SpacePiece::Choice(choice) => choice.name.clone(),
-    };
-    let names: Vec<String> = pieces.iter().map(name).collect();
+    let names: Vec<&str> = pieces.iter().map(SpacePiece::name).collect();
     match (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
         Some(i) => {
             node.fault(format!("has two pieces named \"{}\"", names[i]), "give every piece a name of its own")

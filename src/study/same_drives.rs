@@ -11,7 +11,6 @@ use crate::report::supplement::Supplement;
 use crate::report::words::{TERMINAL, and, wrap};
 use crate::search::same_drives::OnSameDrives;
 use crate::space::design::{Part, full_objectives, number_of};
-use crate::space::design_space::SpacePiece;
 use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -53,12 +52,12 @@ impl Beaten {
                 Part::Link(option) => link_words(option),
                 Part::Given => String::new(),
             };
-            (name_of(&pieces[piece]).to_string(), part)
+            (pieces[piece].name().to_string(), part)
         });
         Some(Self {
             pick,
             exchanged: exchanged.collect(),
-            joints: on.oversized.iter().map(|&piece| name_of(&pieces[piece]).to_string()).collect(),
+            joints: on.oversized.iter().map(|&piece| pieces[piece].name().to_string()).collect(),
             lighter: full_objectives(&problem.arm_of(&on.arm)?, &problem.load_cases()),
         })
     }
@@ -119,13 +118,5 @@ impl PicksOnSameDrives {
             }),
             run,
         }
-    }
-}
-
-fn name_of(piece: &SpacePiece) -> &str {
-    match piece {
-        SpacePiece::Joint(joint) => &joint.name,
-        SpacePiece::Choice(choice) => &choice.name,
-        SpacePiece::Link(link) => &link.name,
     }
 }

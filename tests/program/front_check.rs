@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::Command;
 use tempfile::TempDir;
 
-const STUDY: &str = r#"{"name": "short-arm", "chain": [
+pub const STUDY: &str = r#"{"name": "short-arm", "chain": [
   {"type": "joint", "name": "shoulder", "axis": [0, 1, 0], "drive": "first_fit", "drives": {"motors": ["electric"]}},
   {"type": "link", "name": "upper", "vector_m": [0.5, 0, 0], "choose": {
     "materials": ["Structural steel S355", "Aluminium 6061-T6"],

@@ -1,19 +1,9 @@
 //! What a run says of a search while it runs (`--progress`), and what it proves of a part of the front (`--mass-max-kg`).
 
+use crate::front_check::STUDY;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::process::Command;
-
-const SMALL: &str = r#"{"name": "short-arm", "chain": [
-  {"type": "joint", "name": "shoulder", "axis": [0, 1, 0], "drive": "first_fit", "drives": {"motors": ["electric"]}},
-  {"type": "link", "name": "upper", "vector_m": [0.5, 0, 0], "choose": {
-    "materials": ["Structural steel S355", "Aluminium 6061-T6"],
-    "sections": [{"shape": "rectangular_tube", "width_mm": [50, 60, 80], "height_mm": [60, 80, 100], "wall_mm": [2, 3, 5]}]}},
-  {"type": "joint", "name": "elbow", "axis": [0, 1, 0], "drive": "first_fit", "drives": {"motors": ["electric"]}},
-  {"type": "link", "name": "fore", "vector_m": [0.4, 0, 0], "choose": {
-    "materials": ["Aluminium 6061-T6"],
-    "sections": [{"shape": "round_tube", "diameter_mm": [50, 60, 80], "wall_mm": [2, 4]}]}}],
-  "payload": {"mass_kg": 3}, "poses": [{"pose_deg": [0, 0]}, {"pose_deg": [-40, 90]}]}"#;
 
 /// Exit code and everything that was said.
 fn armwright(folder: &Path, words: &[&str]) -> (i32, String) {
@@ -67,7 +57,7 @@ fn a_progress_record_has_the_keys_of_its_contract_and_its_gap_never_rises() {
 #[test]
 fn the_record_of_an_exhaustive_search_ends_with_its_whole_front() {
     let here = tempfile::tempdir().expect("a folder");
-    std::fs::write(here.path().join("study.json"), SMALL).expect("written");
+    std::fs::write(here.path().join("study.json"), STUDY).expect("written");
     let (code, said) =
         armwright(here.path(), &["run", "study.json", "--progress", "seen.jsonl", "--out", "out"]);
     assert_eq!(code, 0, "{said}");
@@ -83,7 +73,7 @@ fn the_record_of_an_exhaustive_search_ends_with_its_whole_front() {
 #[test]
 fn a_limit_of_mass_proves_that_part_of_the_front_and_says_up_to_which_mass() {
     let here = tempfile::tempdir().expect("a folder");
-    std::fs::write(here.path().join("study.json"), SMALL).expect("written");
+    std::fs::write(here.path().join("study.json"), STUDY).expect("written");
     for search in ["exact", "exhaustive"] {
         let run = |more: &[&str], out: &str| {
             let words = ["run", "study.json", "--search", search, "--out", out];
